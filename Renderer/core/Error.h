@@ -1,0 +1,35 @@
+#pragma once
+// Every failure that a user can cause is an Error: one line that names the file (or flag), the field
+// and the mend. The kind is the process's exit status.
+
+#include <stdexcept>
+#include <string>
+
+namespace fenestra {
+
+enum class ErrorKind {
+  usage = 2,  ///< the command line is wrong
+  input = 3,  ///< a file or what it holds is wrong
+  output = 4, ///< a result cannot be written, or a resource is missing
+};
+
+class Error : public std::runtime_error {
+public:
+  Error(ErrorKind kind, const std::string& line) : std::runtime_error(line), m_kind(kind) {}
+
+  ErrorKind kind() const { return m_kind; }
+  int exitStatus() const { return static_cast<int>(m_kind); }
+
+private:
+  ErrorKind m_kind;
+};
+
+inline Error usageError(const std::string& line) { return {ErrorKind::usage, line}; }
+inline Error inputError(const std::string& file, const std::string& what) {
+  return {ErrorKind::input, file + ": " + what};
+}
+inline Error outputError(const std::string& file, const std::string& what) {
+  return {ErrorKind::output, file + ": " + what};
+}
+
+} // namespace fenestra

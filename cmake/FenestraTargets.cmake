@@ -1,0 +1,29 @@
+# How every target of this project is made: one warning set, one sanitizer set, no global flags.
+
+add_library(fenestra_warnings INTERFACE)
+target_compile_options(fenestra_warnings INTERFACE -Wall -Wextra -Wconversion -Werror)
+
+add_library(fenestra_sanitizers INTERFACE)
+if(FENESTRA_SANITIZERS)
+  target_compile_options(fenestra_sanitizers INTERFACE
+    -fsanitize=${FENESTRA_SANITIZERS} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(fenestra_sanitizers INTERFACE -fsanitize=${FENESTRA_SANITIZERS})
+endif()
+
+# fenestra_library(NAME [sources...] [PUBLIC libraries...] [PRIVATE libraries...])
+# A concept of the renderer: the target fenestra_NAME, header-only where it has no sources.
+# Headers are included as "NAME/Header.h".
+function(fenestra_library name)
+  cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE" ${ARGN})
+  set(target fenestra_${name})
+  if(arg_UNPARSED_ARGUMENTS)
+    add_library(${target} STATIC ${arg_UNPARSED_ARGUMENTS})
+    target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}/Renderer")
+    target_link_libraries(${target} PUBLIC ${arg_PUBLIC} fenestra_sanitizers
+      PRIVATE ${arg_PRIVATE} fenestra_warnings)
+  else()
+    add_library(${target} INTERFACE)
+    target_include_directories(${target} INTERFACE "${PROJECT_SOURCE_DIR}/Renderer")
+    target_link_libraries(${target} INTERFACE ${arg_PUBLIC} fenestra_sanitizers)
+  endif()
+endfunction()
