@@ -1,0 +1,190 @@
+// Every cell, in order, whatever the ray: GridWalk against its promises and against brute force.
+
+#include "core/Random.h"
+#include "volume/GridWalk.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+using namespace fenestra;
+
+namespace {
+
+struct Walked {
+  std::int64_t cells = 0;
+  double worstOutside = 0.0; ///< how far, in cells, an interval's middle lies outside its cell
+};
+
+/// Walks the ray and checks every promise that holds for any finite ray.
+Walked checkedWalk(const Ray& ray, const Interval& range, const Size3& cells) {
+  Walked walked;
+  const Interval inside = Box{Vec3::Zero(), cells.cast<double>()}.clip(ray, range);
+  double reached = inside.begin;
+  Size3 before = Size3::Constant(-1);
+  for (GridWalk walk(ray, range, cells); !walk.done(); walk.next()) {
+    const Size3& c = walk.coordinates();
+    const Interval interval = walk.interval();
+    const bool inGrid = (c.array() >= 0).all() && (c.array() < cells.array()).all();
+    EXPECT_TRUE(inGrid) << c.transpose();
+    EXPECT_EQ(walk.cell(), c.x() + cells.x() * (c.y() + cells.y() * c.z()));
+    EXPECT_EQ(interval.begin, reached);
+    EXPECT_LE(interval.begin, interval.end);
+    EXPECT_TRUE(walked.cells == 0 || (c - before).cwiseAbs().sum() == 1);
+    before = c;
+    reached = interval.end;
+    if (std::isfinite(reached) && interval.begin < reached) {
+      const Vec3 middle = ray.at(0.5 * (interval.begin + interval.end));
+      const Vec3 low = c.cast<double>() - middle;
+      const Vec3 high = middle - (c.cast<double>() + Vec3::Ones());
+      walked.worstOutside = std::max({walked.worstOutside, low.maxCoeff(), high.maxCoeff()});
+    }
+    if (++walked.cells > cells.sum() || !inGrid || testing::Test::HasFailure()) {
+      ADD_FAILURE() << "ray " << ray.origin.transpose() << " | " << ray.direction.transpose();
+      return walked;
+    }
+  }
+  if (!inside.empty())
+    EXPECT_EQ(reached, inside.end);
+  else
+    EXPECT_EQ(walked.cells, 0);
+  return walked;
+}
+
+double signedUniform(Random& random) {
+  return 2.0 * random.uniform() - 1.0;
+}
+
+/// A coordinate that likes faces, corners, zeros and extremes.
+double awkward(Random& random, double extent) {
+  switch (random.bits() % 6) {
+  case 0:
+    return std::floor((extent + 1.0) * random.uniform());
+  case 1:
+    return std::nextafter(std::floor((extent + 1.0) * random.uniform()),
+                          signedUniform(random) * 99);
+  case 2:
+    return extent * random.uniform();
+  case 3:
+    return extent * 3.0 * signedUniform(random);
+  case 4:
+    return std::ldexp(signedUniform(random), static_cast<int>(random.bits() % 80) - 40);
+  default:
+    return 0.5 * std::floor(2.0 * (extent + 1.0) * random.uniform());
+  }
+}
+
+double awkwardDirection(Random& random) {
+  switch (random.bits() % 5) {
+  case 0:
+    return random.bits() % 2 ? 0.0 : -0.0;
+  case 1:
+    return random.bits() % 2 ? 1.0 : -1.0;
+  case 2:
+    return std::ldexp(signedUniform(random), -static_cast<int>(random.bits() % 1080));
+  default:
+    return signedUniform(random);
+  }
+}
+
+TEST(GridWalk, VisitsTheCellsOfAnAxisInOrder) {
+  const Ray ray{{-1.0, 0.5, 1.5}, {2.0, 0.0, 0.0}};
+  GridWalk walk(ray, {}, {3, 1, 2});
+  for (int i = 0; i < 3; ++i, walk.next()) {
+    ASSERT_FALSE(walk.done());
+    EXPECT_EQ(walk.cell(), 3 + i);
+    EXPECT_DOUBLE_EQ(walk.interval().begin, 0.5 + 0.5 * i);
+    EXPECT_DOUBLE_EQ(walk.interval().end, 1.0 + 0.5 * i);
+  }
+  EXPECT_TRUE(walk.done());
+}
+
+TEST(GridWalk, MissesAndEmptyRangesAreDoneAtOnce) {
+  const Size3 cells(4, 4, 4);
+  EXPECT_TRUE(GridWalk({{5.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, {}, cells).done());
+  EXPECT_TRUE(GridWalk({{-1.0, 9.0, 1.0}, {1.0, 0.1, 0.0}}, {}, cells).done());
+  EXPECT_TRUE(GridWalk({{1.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, {2.0, 2.0}, cells).done());
+}
+
+TEST(GridWalk, StartsOnAFaceInTheCellAhead) {
+  const Size3 cells(4, 4, 4);
+  EXPECT_EQ(GridWalk({{2.0, 0.5, 0.5}, {1.0, 0.0, 0.0}}, {}, cells).coordinates().x(), 2);
+  EXPECT_EQ(GridWalk({{2.0, 0.5, 0.5}, {-1.0, 0.0, 0.0}}, {}, cells).coordinates().x(), 1);
+  EXPECT_EQ(GridWalk({{4.0, 4.0, 4.0}, {-1.0, -1.0, -1.0}}, {}, cells).cell(), 63);
+}
+
+TEST(GridWalk, RunsAlongOuterFacesInsideTheGrid) {
+  const Size3 cells(4, 5, 6);
+  EXPECT_EQ(checkedWalk({{4.0, 5.0, -2.0}, {0.0, 0.0, 1.0}}, {}, cells).cells, 6);
+  EXPECT_EQ(checkedWalk({{0.0, 9.0, 0.0}, {0.0, -1.0, 0.0}}, {}, cells).cells, 5);
+}
+
+TEST(GridWalk, AStandingRayStaysInItsCell) {
+  const Walked walked = checkedWalk({{1.5, 1.5, 1.5}, Vec3::Zero()}, {0.0, infinity}, {3, 3, 3});
+  EXPECT_EQ(walked.cells, 1);
+}
+
+TEST(GridWalk, AgreesWithDenseSamplingOfTheRay) {
+  Random random(1, 2, 3);
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Size3 cells(1 + random.bits() % 9, 1 + random.bits() % 9, 1 + random.bits() % 9);
+    const Vec3 a(9 * signedUniform(random), 9 * signedUniform(random), 9 * signedUniform(random));
+    const Vec3 b(9 * random.uniform(), 9 * random.uniform(), 9 * random.uniform());
+    const Ray ray{a, (b - a).normalized()};
+    std::set<std::int64_t> walked;
+    for (GridWalk walk(ray, {}, cells); !walk.done(); walk.next())
+      walked.insert(walk.cell());
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 p = ray.at(0.15 * (i + random.uniform()));
+      const Size3 c = p.array().floor().cast<std::int64_t>();
+      const bool inGrid = (c.array() >= 0).all() && (c.array() < cells.array()).all();
+      const std::int64_t cell = c.x() + cells.x() * (c.y() + cells.y() * c.z());
+      ASSERT_TRUE(!inGrid || walked.contains(cell));
+    }
+  }
+}
+
+TEST(GridWalk, RandomRaysTileTheirRange) {
+  Random random(4, 5, 6);
+  double worst = 0.0;
+  for (int trial = 0; trial < 1000000 && !HasFailure(); ++trial) {
+    const Size3 cells(1 + random.bits() % 40, 1 + random.bits() % 40, 1 + random.bits() % 40);
+    const Vec3 n = cells.cast<double>();
+    const Vec3 from =
+        n.cwiseProduct(Vec3(2 * random.uniform(), random.uniform(), -random.uniform()));
+    const Vec3 to = n.cwiseProduct(Vec3(random.uniform(), random.uniform(), random.uniform()));
+    const Interval range{random.uniform(), 100.0 * random.uniform()};
+    worst =
+        std::max(worst, checkedWalk({from, (to - from).normalized()}, range, cells).worstOutside);
+  }
+  EXPECT_LT(worst, 1e-12);
+}
+
+TEST(GridWalk, AwkwardRaysTileTheirRange) {
+  Random random(7, 8, 9);
+  for (int trial = 0; trial < 3000000 && !HasFailure(); ++trial) {
+    const Size3 cells(1 + random.bits() % 12, 1 + random.bits() % 12, 1 + random.bits() % 12);
+    Ray ray;
+    for (int axis = 0; axis < 3; ++axis) {
+      ray.origin[axis] = awkward(random, static_cast<double>(cells[axis]));
+      ray.direction[axis] = awkwardDirection(random);
+    }
+    const double begin = random.bits() % 4 ? 0.0 : awkward(random, 10.0);
+    checkedWalk(ray, {begin, random.bits() % 2 ? infinity : 20.0 * random.uniform()}, cells);
+  }
+}
+
+TEST(GridWalk, FarOriginsKeepTheirCellsToRounding) {
+  Random random(10, 11, 12);
+  for (int trial = 0; trial < 200000 && !HasFailure(); ++trial) {
+    const double far = std::pow(10.0, 8.0 * random.uniform());
+    const Size3 cells(16, 16, 16);
+    const Vec3 to = 16.0 * Vec3(random.uniform(), random.uniform(), random.uniform());
+    const Vec3 direction =
+        Vec3(signedUniform(random), signedUniform(random), signedUniform(random)).normalized();
+    const Walked walked = checkedWalk({to - far * direction, direction}, {}, cells);
+    EXPECT_LT(walked.worstOutside, 1e-14 * (far + 100.0));
+  }
+}
+
+} // namespace

@@ -1,0 +1,4 @@
+fenestra_test(ClippingTests
+  GridWalkTests.cxx
+  LIBRARIES fenestra_volume
+  LABELS unit)
