@@ -38,4 +38,11 @@ private:
   std::uint64_t m_state;
 };
 
+/// Uniform on the unit sphere.
+inline Vec3 uniformDirection(const Vec2& u) {
+  const double z = 1.0 - 2.0 * u.x();
+  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
+  return {r * std::cos(2.0 * pi * u.y()), r * std::sin(2.0 * pi * u.y()), z};
+}
+
 } // namespace fenestra

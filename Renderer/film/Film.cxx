@@ -1,0 +1,36 @@
+#include "film/Film.h"
+
+namespace fenestra {
+
+void PixelSums::add(const PathSample& sample) {
+  ++samples;
+  const Rgb before = sample.radiance - mean;
+  mean += before / static_cast<double>(samples);
+  deviation += before * (sample.radiance - mean);
+  alpha += sample.alpha;
+  albedo += sample.albedo;
+  normal += sample.normal;
+  if (sample.depth < infinity) {
+    depth += sample.depth;
+    ++collided;
+  }
+}
+
+Rgb PixelSums::standardError() const {
+  if (samples < 2)
+    return Rgb::Zero();
+  const auto n = static_cast<double>(samples);
+  return (deviation / (n * (n - 1.0))).sqrt();
+}
+
+double Film::noise() const {
+  double sum = 0.0;
+  for (const PixelSums& pixel : m_pixels) {
+    if (pixel.samples < 2)
+      return infinity;
+    sum += (pixel.standardError().square() / (pixel.mean.square() + 0.01)).sum();
+  }
+  return std::sqrt(sum / (3.0 * static_cast<double>(m_pixels.size())));
+}
+
+} // namespace fenestra

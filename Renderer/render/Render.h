@@ -1,0 +1,60 @@
+#pragma once
+// From a prepared scene to a film: passes over the picture until enough samples, time or quality.
+// The voxel type is resolved once, here; below it everything is a template.
+
+#include "film/Film.h"
+#include "lights/LightSet.h"
+#include "transport/PathEstimator.h"
+#include "volume/Volume.h"
+
+#include <atomic>
+
+namespace fenestra {
+
+/// Everything that transport reads; all of it outlives the render.
+struct RenderScene {
+  const Volume& volume;
+  const TransferFunction& transfer;
+  const MajorantGrid& majorants;
+  const LightSet& lights;
+  const Camera& camera;
+  const Clip& clip;
+};
+
+/// Stops at the first of samples, seconds and noise.
+struct RenderSettings {
+  PathSettings path;
+  std::uint64_t samples = 64; ///< a pixel, at most
+  double seconds = infinity;  ///< of transport
+  double noise = 0.0;         ///< Film::noise() at the end of a pass
+  std::uint64_t seed = 0;
+  int threads = 0;                 ///< 0: all
+  std::uint64_t passSamples = 0;   ///< samples a pass; 0: growing passes. Never changes the picture.
+};
+
+/// What a running render tells other threads, and how they stop it.
+struct RenderMonitor {
+  std::atomic<bool> stop = false;
+  std::atomic<std::uint64_t> paths = 0; ///< finished so far
+  std::atomic<double> noise = infinity; ///< at the end of the last pass
+};
+
+enum class StopReason { samples, seconds, noise, request };
+
+struct RenderResult {
+  Film film;
+  Counters counters;
+  StopReason reason = StopReason::samples;
+  std::uint64_t finishedSamples = 0; ///< that every pixel has; after a request some may have more
+};
+
+RenderResult render(const RenderScene& scene, const RenderSettings& settings,
+                    RenderMonitor& monitor);
+
+/// Mean over eye rays through pixel centres with a finite focus depth (mm in view space, row by row
+/// from the top) of the transmittance from where the ray starts to the focus: the share of the
+/// focus's pixels shown unoccluded. A focus point that clipping removes counts as not shown.
+double focusCoverage(const RenderScene& scene, const std::vector<double>& focusDepth,
+                     std::uint64_t seed);
+
+} // namespace fenestra

@@ -1,0 +1,25 @@
+#pragma once
+// What tracking did: plain sums, one set a tile, added up at its end.
+
+#include <cstdint>
+
+namespace fenestra {
+
+struct Counters {
+  std::uint64_t paths = 0;
+  std::uint64_t collisions = 0;   ///< real ones, of eye and scatter rays
+  std::uint64_t lookups = 0;      ///< of the extinction
+  std::uint64_t cells = 0;        ///< majorant cells walked through
+  std::uint64_t skippedCells = 0; ///< of them, those with majorant 0
+
+  Counters& operator+=(const Counters& o) {
+    paths += o.paths;
+    collisions += o.collisions;
+    lookups += o.lookups;
+    cells += o.cells;
+    skippedCells += o.skippedCells;
+    return *this;
+  }
+};
+
+} // namespace fenestra

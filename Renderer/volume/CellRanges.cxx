@@ -1,0 +1,57 @@
+#include "volume/CellRanges.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace fenestra {
+namespace {
+
+struct Span {
+  std::int64_t first, last; ///< voxels, both included
+};
+
+/// Voxels that interpolation within cell `c` of one axis touches.
+Span footprint(std::int64_t c, std::int64_t voxels, int apron) {
+  const std::int64_t first = c * CellRanges::edge - 1 - apron;
+  const std::int64_t last = (c + 1) * CellRanges::edge + apron;
+  return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
+}
+
+} // namespace
+
+CellRanges::CellRanges(const Volume& volume, int apron)
+    : m_cellCount((volume.grid.size.array() + (edge - 1)) / edge),
+      m_low(static_cast<std::size_t>(m_cellCount.prod())), m_high(m_low.size()) {
+  std::visit([&](const auto& voxels) { fill(volume.grid, voxels, apron); }, volume.voxels);
+}
+
+template <typename Voxel>
+void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels, int apron) {
+  const auto fillSlab = [&](std::int64_t cz) {
+    const Span z = footprint(cz, grid.size.z(), apron);
+    for (std::int64_t cy = 0; cy < m_cellCount.y(); ++cy) {
+      const Span y = footprint(cy, grid.size.y(), apron);
+      for (std::int64_t cx = 0; cx < m_cellCount.x(); ++cx) {
+        const Span x = footprint(cx, grid.size.x(), apron);
+        Voxel low = voxels[static_cast<std::size_t>(
+            x.first + grid.size.x() * (y.first + grid.size.y() * z.first))];
+        Voxel high = low;
+        for (std::int64_t k = z.first; k <= z.last; ++k)
+          for (std::int64_t j = y.first; j <= y.last; ++j) {
+            const Voxel* row = voxels.data() + grid.size.x() * (j + grid.size.y() * k);
+            for (std::int64_t i = x.first; i <= x.last; ++i) {
+              low = std::min(low, row[i]);
+              high = std::max(high, row[i]);
+            }
+          }
+        const auto cell =
+            static_cast<std::size_t>(cx + m_cellCount.x() * (cy + m_cellCount.y() * cz));
+        m_low[cell] = static_cast<float>(low);
+        m_high[cell] = static_cast<float>(high);
+      }
+    }
+  };
+  tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), fillSlab);
+}
+
+} // namespace fenestra
