@@ -1,0 +1,25 @@
+#pragma once
+// Writes finished pictures.
+
+#include "film/Image.h"
+
+#include <filesystem>
+#include <string>
+
+namespace fenestra {
+
+/// Writes a picture in the format that the extension names, atomically:
+/// - `.exr`: every channel as 32-bit float, and the header as string attributes "fenestra.<key>".
+/// - `.nrrd`: R, G, B, A (1 without A) as a float vector volume of one slice that lies on `plane`
+///   in the world, and Z, if there is one, as a scalar volume beside it, "<stem>-Z.nrrd".
+/// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through the display transform's `view` (by
+///   default its first), sRGB, with straight alpha if any pixel is not opaque.
+/// Equal pictures give equal bytes. Throws Error: usage for another extension, an unknown view or
+/// missing R, G, B; output where the file cannot be written.
+void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
+                const std::string& view = "");
+
+/// Throws what writeImage would throw for this path alone: for asking before a long render.
+void checkImagePath(const std::filesystem::path& path);
+
+} // namespace fenestra
