@@ -1,0 +1,195 @@
+#include "film/Compare.h"
+
+#include "core/Error.h"
+
+#include <array>
+
+namespace fenestra {
+
+namespace {
+
+constexpr std::array<const char*, 3> colourNames = {"R", "G", "B"};
+constexpr std::array<const char*, 3> errorNames = {"error.R", "error.G", "error.B"};
+constexpr double fullColourZ = 5.0;
+
+using Planes = std::array<const std::vector<float>*, 3>;
+
+Planes findPlanes(const Image& image, const std::array<const char*, 3>& names) {
+  return {image.find(names[0]), image.find(names[1]), image.find(names[2])};
+}
+
+bool complete(const Planes& planes) {
+  return planes[0] && planes[1] && planes[2];
+}
+
+Planes colours(const Image& image) {
+  const Planes planes = findPlanes(image, colourNames);
+  if (!complete(planes))
+    throw inputError("image", "has no channels R, G and B; compare pictures in colour");
+  return planes;
+}
+
+std::string sizeOf(const Image& image) {
+  return std::to_string(image.width) + "x" + std::to_string(image.height);
+}
+
+void requireSameSize(const Image& a, const Image& b) {
+  if (a.width != b.width || a.height != b.height)
+    throw inputError("images", "are of different sizes, " + sizeOf(a) + " and " + sizeOf(b) +
+                                   "; compare pictures of one size");
+}
+
+double square(double x) {
+  return x * x;
+}
+
+/// Both pictures of a comparison, value by value.
+struct Pair {
+  Planes a, b, errorA, errorB;
+  std::size_t pixels;
+
+  Pair(const Image& imageA, const Image& imageB)
+      : a(colours(imageA)),
+        b(colours(imageB)),
+        errorA(findPlanes(imageA, errorNames)),
+        errorB(findPlanes(imageB, errorNames)),
+        pixels(a[0]->size()) {
+    requireSameSize(imageA, imageB);
+  }
+
+  bool hasErrors() const { return complete(errorA) && complete(errorB); }
+  double difference(std::size_t c, std::size_t i) const {
+    return static_cast<double>((*a[c])[i]) - static_cast<double>((*b[c])[i]);
+  }
+  double variance(std::size_t c, std::size_t i) const {
+    return square((*errorA[c])[i]) + square((*errorB[c])[i]);
+  }
+};
+
+/// What differences make of one channel.
+void accumulate(const Pair& pair, std::size_t c, Comparison& result) {
+  const bool hasErrorB = complete(pair.errorB);
+  for (std::size_t i = 0; i < pair.pixels; ++i) {
+    const double b = (*pair.b[c])[i];
+    const double d = pair.difference(c, i);
+    const double own = hasErrorB ? square((*pair.errorB[c])[i]) : 0.0;
+    result.relMse += (square(d) - own) / (square(b) + 0.01);
+    result.rmse += square(d);
+    if (!(std::abs(d) <= result.maxDifference) && !std::isnan(result.maxDifference))
+      result.maxDifference = std::abs(d);
+    result.notFinite += !std::isfinite(d);
+    result.meanA[static_cast<int>(c)] += (*pair.a[c])[i];
+    result.meanB[static_cast<int>(c)] += b;
+  }
+}
+
+ZStatistics zStatistics(const Pair& pair, int width) {
+  ZStatistics z;
+  double squares = 0.0, above = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double sum = 0.0, variance = 0.0;
+    for (std::size_t i = 0; i < pair.pixels; ++i) {
+      const double d = pair.difference(c, i), v = pair.variance(c, i);
+      sum += d;
+      variance += v;
+      if (v == 0.0)
+        continue;
+      const double value = d / std::sqrt(v);
+      ++z.count;
+      z.mean += value;
+      squares += square(value);
+      above += std::abs(value) > 3.0;
+      if (std::abs(value) > z.largest) {
+        z.largest = std::abs(value);
+        z.column = static_cast<int>(i) % width;
+        z.row = static_cast<int>(i) / width;
+        z.channel = colourNames[c][0];
+      }
+    }
+    z.imageMean[static_cast<int>(c)] = sum == 0.0 ? 0.0 : sum / std::sqrt(variance);
+  }
+  const double count = std::max(static_cast<double>(z.count), 1.0);
+  z.mean /= count;
+  z.deviation =
+      std::sqrt(std::max(squares - count * square(z.mean), 0.0) / std::max(count - 1.0, 1.0));
+  z.shareAbove3 = above / count;
+  return z;
+}
+
+/// z where the pictures state errors (0 where both are 0), else nothing to divide by.
+double largestZ(const Pair& pair, std::size_t i) {
+  double largest = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double v = pair.variance(c, i);
+    const double z = v == 0.0 ? 0.0 : pair.difference(c, i) / std::sqrt(v);
+    if (!(std::abs(z) <= std::abs(largest)))
+      largest = z;
+  }
+  return largest;
+}
+
+double meanDifference(const Pair& pair, std::size_t i) {
+  return (pair.difference(0, i) + pair.difference(1, i) + pair.difference(2, i)) / 3.0;
+}
+
+/// Signed values to show, with full colour at modulus 1.
+std::vector<double> signedDifferences(const Pair& pair) {
+  std::vector<double> values(pair.pixels);
+  double scale = pair.hasErrors() ? fullColourZ : 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = pair.hasErrors() ? largestZ(pair, i) : meanDifference(pair, i);
+    if (!pair.hasErrors() && std::isfinite(values[i]))
+      scale = std::max(scale, std::abs(values[i]));
+  }
+  if (scale > 0.0)
+    for (double& value : values)
+      value /= scale;
+  return values;
+}
+
+Rgb divergingColour(double t) {
+  if (!std::isfinite(t))
+    return Rgb::Zero();
+  const double fade = 1.0 - std::min(std::abs(t), 1.0);
+  return t > 0.0 ? Rgb(1.0, fade, fade) : Rgb(fade, fade, 1.0);
+}
+
+} // namespace
+
+Comparison compareImages(const Image& a, const Image& b) {
+  const Pair pair(a, b);
+  Comparison result;
+  for (std::size_t c = 0; c < 3; ++c)
+    accumulate(pair, c, result);
+  const auto pixels = static_cast<double>(pair.pixels);
+  result.relMse /= 3.0 * pixels;
+  result.rmse = std::sqrt(result.rmse / (3.0 * pixels));
+  result.psnr = -20.0 * std::log10(result.rmse);
+  result.meanA /= pixels;
+  result.meanB /= pixels;
+  if (pair.hasErrors())
+    result.z = zStatistics(pair, a.width);
+  return result;
+}
+
+Image differenceImage(const Image& a, const Image& b) {
+  const Pair pair(a, b);
+  const std::vector<double> values = signedDifferences(pair);
+  Image image{a.width, a.height, {}, {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    auto& plane = image.channels[colourNames[c]];
+    plane.resize(pair.pixels);
+    for (std::size_t i = 0; i < pair.pixels; ++i)
+      plane[i] = static_cast<float>(divergingColour(values[i])[static_cast<int>(c)]);
+  }
+  return image;
+}
+
+void attachError(Image& image, const Image& error) {
+  requireSameSize(image, error);
+  const Planes planes = colours(error);
+  for (std::size_t c = 0; c < 3; ++c)
+    image.channels[errorNames[c]] = *planes[c];
+}
+
+} // namespace fenestra
