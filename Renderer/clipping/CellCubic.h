@@ -1,0 +1,81 @@
+#pragma once
+// A trilinear function along a ray through one cell, which is a cubic, and where it first reaches
+// 0.
+
+#include "core/Vector.h"
+
+#include <array>
+
+namespace fenestra {
+
+/// c0 + c1 s + c2 s^2 + c3 s^3.
+struct Cubic {
+  std::array<double, 4> c{};
+
+  double operator()(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
+  double slope(double s) const { return c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]); }
+};
+
+/// The trilinear function of a unit cell's corner values (x fastest), from `from` at s = 0 to
+/// `from + along` at s = 1.
+inline Cubic cellCubic(const std::array<double, 8>& v, const Vec3& from, const Vec3& along) {
+  // a + x bx + y by + z bz + x y cxy + x z cxz + y z cyz + x y z d
+  const Vec3 b(v[1] - v[0], v[2] - v[0], v[4] - v[0]);
+  const double cxy = v[3] - v[2] - b.x();
+  const double cxz = v[5] - v[4] - b.x();
+  const double cyz = v[6] - v[4] - b.y();
+  const double d = v[7] - v[6] - v[5] + v[4] - cxy;
+  const auto [x, y, z] = std::array{from.x(), from.y(), from.z()};
+  const auto [u, w, q] = std::array{along.x(), along.y(), along.z()};
+  return {{v[0] + b.dot(from) + x * y * cxy + x * z * cxz + y * z * cyz + x * y * z * d,
+           b.dot(along) + (x * w + y * u) * cxy + (x * q + z * u) * cxz + (y * q + z * w) * cyz +
+               (x * y * q + x * w * z + u * y * z) * d,
+           u * w * cxy + u * q * cxz + w * q * cyz + (x * w * q + u * y * q + u * w * z) * d,
+           u * w * q * d}};
+}
+
+/// Where the cubic's slope changes sign in (0, 1), ascending; 1 stands for "nowhere".
+inline std::array<double, 2> turningPoints(const Cubic& cubic) {
+  const double a = 3.0 * cubic.c[3], halfB = cubic.c[2], c = cubic.c[1];
+  const double discriminant = halfB * halfB - a * c;
+  if (!(discriminant > 0.0))
+    return {1.0, 1.0};
+  const double q = -(halfB + std::copysign(std::sqrt(discriminant), halfB)); // nothing cancels
+  const auto inside = [](double s) {
+    return s > 0.0 && s < 1.0 ? s : 1.0;
+  }; // not for NaN, infinity
+  const auto [first, second] = std::minmax({inside(q / a), inside(c / q)});
+  return {first, second};
+}
+
+/// The root of a cubic that rises monotonically from below 0 at `low` to at least 0 at `high`:
+/// Newton's steps, bisection wherever they leave the bracket.
+inline double rootBetween(const Cubic& cubic, double low, double high) {
+  double s = 0.5 * (low + high);
+  for (int step = 0; step < 100; ++step) {
+    const double value = cubic(s);
+    (value < 0.0 ? low : high) = s;
+    const double newton = s - value / cubic.slope(s);
+    const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+    if (std::abs(next - s) <= 1e-16)
+      break;
+    s = next;
+  }
+  return s;
+}
+
+/// The least s in [0, 1] at which the cubic is not below 0; infinity where there is none.
+inline double firstNonNegative(const Cubic& cubic) {
+  if (cubic(0.0) >= 0.0)
+    return 0.0;
+  double low = 0.0;
+  const auto [first, second] = turningPoints(cubic);
+  for (const double high : {first, second, 1.0}) { // between these the cubic is monotone
+    if (cubic(high) >= 0.0)
+      return rootBetween(cubic, low, high);
+    low = high;
+  }
+  return infinity;
+}
+
+} // namespace fenestra

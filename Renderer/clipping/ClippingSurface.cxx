@@ -1,0 +1,146 @@
+#include "clipping/ClippingSurface.h"
+
+#include "clipping/ThinPlateSpline.h"
+#include "core/Error.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+
+namespace fenestra {
+
+namespace {
+
+/// Seconds since it was made or last asked.
+class Stopwatch {
+public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(m_start, now)).count();
+  }
+
+private:
+  std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
+void check(const SurfaceOptions& options) {
+  if (options.controlPoints < 1 || options.controlPoints > 1000)
+    throw usageError("--controlpoints: must be from 1 to 1000");
+  if (!(options.smoothing >= 0.0 && options.smoothing <= 1.0))
+    throw usageError("--smoothing: must be from 0 to 1");
+}
+
+std::string nameOf(const Mask& focus) {
+  std::string names = "focus";
+  for (const std::string& name : focus.names)
+    names += (names == "focus" ? " " : ", ") + name;
+  return names;
+}
+
+/// Throws where no sample meets the focus; true where one inside the viewport does.
+bool inPicture(const FocusDepth& focus, const Mask& mask) {
+  if (std::ranges::find(focus.regions, Region::focus) == focus.regions.end())
+    throw inputError(nameOf(mask),
+                     "no eye ray meets it: it lies outside the volume, behind the eye, "
+                     "or between two pixels; choose another --focus or view");
+  const DepthAxis& x = focus.depth.xAxis();
+  const DepthAxis& y = focus.depth.yAxis();
+  for (std::int64_t row = y.before; row < y.before + y.inside; ++row)
+    for (std::int64_t column = x.before; column < x.before + x.inside; ++column)
+      if (focus.isFocus(column, row))
+        return true;
+  return false;
+}
+
+ThinPlateSpline splineThrough(const std::vector<ControlPoint>& points, double smoothing) {
+  std::vector<Vec2> sites;
+  std::vector<double> depths;
+  for (const ControlPoint& point : points) {
+    sites.push_back(point.site);
+    depths.push_back(point.depth);
+  }
+  return {sites, depths, smoothing};
+}
+
+BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
+                            const std::vector<ControlPoint>& samples) {
+  std::vector<double> misses;
+  misses.reserve(samples.size());
+  for (const ControlPoint& sample : samples)
+    misses.push_back(std::abs(spline(sample.site) - sample.depth));
+  std::ranges::sort(misses);
+  const auto count = static_cast<double>(misses.size());
+  BoundaryMismatch mismatch;
+  for (const double miss : misses)
+    mismatch.mean += miss / count;
+  mismatch.p95 = misses[static_cast<std::size_t>(0.95 * (count - 1.0))];
+  mismatch.max = misses.back();
+  return mismatch;
+}
+
+/// The spline wherever the focus is not.
+void fill(DepthBuffer& buffer, const std::vector<Region>& regions, const ThinPlateSpline& spline) {
+  std::vector<double> x;
+  for (std::int64_t column = 0; column < buffer.columns(); ++column)
+    x.push_back(buffer.xAxis().coordinate(column));
+  tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, buffer.rows()), [&](const auto& rows) {
+    std::vector<double> depths(x.size());
+    for (std::int64_t row = rows.begin(); row < rows.end(); ++row) {
+      spline.evaluateRow(x, buffer.yAxis().coordinate(row), depths);
+      for (std::int64_t column = 0; column < buffer.columns(); ++column) {
+        const std::int64_t sample = buffer.sample(column, row);
+        if (regions[static_cast<std::size_t>(sample)] != Region::focus)
+          buffer.set(sample, depths[static_cast<std::size_t>(column)]);
+      }
+    }
+  });
+}
+
+/// Nothing is removed where the focus is not.
+void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
+  for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
+    if (regions[static_cast<std::size_t>(sample)] != Region::focus)
+      buffer.set(sample, -infinity);
+}
+
+/// The spline of the focus's outline, and what it is judged by.
+ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& options) {
+  const std::vector<Contour> contours = traceContours(surface.focus);
+  surface.controlPoints = placeControlPoints(surface.focus, contours, options.controlPoints);
+  const ThinPlateSpline spline = splineThrough(surface.controlPoints, options.smoothing);
+  surface.mismatch = mismatchOf(spline, boundarySamples(surface.focus, contours));
+  if (surface.controlPoints.size() < 3)
+    surface.warnings.push_back("the focus covers hardly a pixel: the clipping surface is flat");
+  return spline;
+}
+
+} // namespace
+
+ClippingSurface buildClippingSurface(const Camera& camera, const Grid& volume, const Mask& focus,
+                                     const SurfaceOptions& options) {
+  check(options);
+  Stopwatch stopwatch;
+  ClippingSurface surface{.clip = {}, .focus = traceFocus(camera, volume, focus)};
+  if (!inPicture(surface.focus, focus))
+    surface.warnings.push_back(nameOf(focus) + " lies outside the picture");
+  surface.focusSeconds = stopwatch.lap();
+
+  auto buffer = std::make_shared<DepthBuffer>(surface.focus.depth);
+  const bool isCutaway = options.mode == SurfaceMode::cutaway;
+  if (isCutaway) {
+    fillCutaway(*buffer, surface.focus.regions);
+  } else {
+    const ThinPlateSpline spline = fitOutline(surface, options);
+    surface.splineSeconds = stopwatch.lap();
+    fill(*buffer, surface.focus.regions, spline);
+  }
+  auto pyramid = std::make_shared<const MinPyramid>(*buffer);
+  surface.clip = ClipDepth{camera, std::move(buffer), std::move(pyramid),
+                           isCutaway ? ClipDepth::Lookup::nearest : ClipDepth::Lookup::linear};
+  surface.fillSeconds = stopwatch.lap();
+  return surface;
+}
+
+} // namespace fenestra

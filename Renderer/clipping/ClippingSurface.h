@@ -1,0 +1,42 @@
+#pragma once
+// The first pass of the method: from a view and a focus to the clip that shows it.
+
+#include "clipping/Clip.h"
+#include "clipping/Contour.h"
+#include "clipping/FocusDepth.h"
+
+#include <string>
+#include <vector>
+
+namespace fenestra {
+
+enum class SurfaceMode {
+  cutaway, ///< removes what is in front of the focus only
+  surface, ///< the volumetric clipping surface: the cut continues into the focus's surroundings
+};
+
+struct SurfaceOptions {
+  SurfaceMode mode = SurfaceMode::surface;
+  int controlPoints = 50; ///< on the focus's contours, 1 to 1000
+  double smoothing = 0.5; ///< p of the thin plate spline, 0 to 1
+};
+
+/// |f(x) - z| in mm over the focus samples on the contours: how far the spline misses their depth.
+struct BoundaryMismatch {
+  double mean = 0.0, p95 = 0.0, max = 0.0;
+};
+
+struct ClippingSurface {
+  Clip clip;                                 ///< a ClipDepth
+  FocusDepth focus;                          ///< its viewport is where clip's buffer has it
+  std::vector<ControlPoint> controlPoints{}; ///< empty for a cutaway, as is the mismatch
+  BoundaryMismatch mismatch{};
+  double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
+  std::vector<std::string> warnings{};
+};
+
+/// Throws Error (usage) for options out of range and Error (input) where no ray meets the focus.
+ClippingSurface buildClippingSurface(const Camera& camera, const Grid& volume, const Mask& focus,
+                                     const SurfaceOptions& options);
+
+} // namespace fenestra

@@ -1,0 +1,61 @@
+#include "clipping/MinPyramid.h"
+
+#include <bit>
+
+namespace fenestra {
+
+namespace {
+
+/// The samples that interpolation between two coordinates reads; rounding included.
+struct SampleRange {
+  std::int64_t first, last;
+
+  SampleRange(const DepthAxis& axis, double a, double b) {
+    constexpr double slack = 1e-3;
+    const auto [low, high] = std::minmax({axis.index(a), axis.index(b)});
+    first = static_cast<std::int64_t>(std::max(0.0, low - slack));
+    last = std::min(axis.size() - 1, static_cast<std::int64_t>(std::ceil(high + slack)));
+  }
+};
+
+} // namespace
+
+MinPyramid::MinPyramid(const DepthBuffer& buffer) {
+  const auto halve = [](std::int64_t columns, std::int64_t rows, const auto& depth) {
+    Level level{(columns + 1) / 2, (rows + 1) / 2, {}};
+    level.least.reserve(static_cast<std::size_t>(level.columns * level.rows));
+    for (std::int64_t row = 0; row < rows; row += 2)
+      for (std::int64_t column = 0; column < columns; column += 2) {
+        const std::int64_t right = std::min(column + 1, columns - 1);
+        const std::int64_t below = std::min(row + 1, rows - 1);
+        level.least.push_back(
+            std::min({depth(row * columns + column), depth(row * columns + right),
+                      depth(below * columns + column), depth(below * columns + right)}));
+      }
+    return level;
+  };
+  m_levels.push_back(halve(buffer.columns(), buffer.rows(),
+                           [&](std::int64_t sample) { return buffer.at(sample); }));
+  while (m_levels.back().least.size() > 1) {
+    const Level& below = m_levels.back();
+    m_levels.push_back(halve(below.columns, below.rows, [&](std::int64_t entry) {
+      return below.least[static_cast<std::size_t>(entry)];
+    }));
+  }
+}
+
+double MinPyramid::lowerBound(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const {
+  const SampleRange columns(buffer.xAxis(), a.x(), b.x());
+  const SampleRange rows(buffer.yAxis(), a.y(), b.y());
+  // An entry of m_levels[l - 1] spans 2^l samples: no fewer than the range, which so meets two.
+  const auto longest = std::max(columns.last - columns.first, rows.last - rows.first);
+  const auto l = std::min<std::size_t>(m_levels.size(), std::bit_width<std::uint64_t>(longest | 1));
+  const Level& level = m_levels[l - 1];
+  double least = infinity;
+  for (std::int64_t row = rows.first >> l; row <= rows.last >> l; ++row)
+    for (std::int64_t column = columns.first >> l; column <= columns.last >> l; ++column)
+      least = std::min(least, level.least[static_cast<std::size_t>(row * level.columns + column)]);
+  return least;
+}
+
+} // namespace fenestra
