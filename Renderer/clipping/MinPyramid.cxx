@@ -47,10 +47,13 @@ MinPyramid::MinPyramid(const DepthBuffer& buffer) {
 double MinPyramid::lowerBound(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const {
   const SampleRange columns(buffer.xAxis(), a.x(), b.x());
   const SampleRange rows(buffer.yAxis(), a.y(), b.y());
-  // An entry of m_levels[l - 1] spans 2^l samples: no fewer than the range, which so meets two.
+  // An entry of m_levels[l - 1] spans 2^l samples: a quarter of the range or more, which so meets
+  // five at most along each axis, and hardly more than itself.
   const auto longest = std::max(columns.last - columns.first, rows.last - rows.first);
-  const auto l = std::min<std::size_t>(m_levels.size(), std::bit_width<std::uint64_t>(longest | 1));
-  const Level& level = m_levels[l - 1];
+  const auto bits =
+      static_cast<std::ptrdiff_t>(std::bit_width(static_cast<std::uint64_t>(longest)));
+  const std::ptrdiff_t l = std::clamp<std::ptrdiff_t>(bits - 2, 1, std::ssize(m_levels));
+  const Level& level = m_levels[static_cast<std::size_t>(l - 1)];
   double least = infinity;
   for (std::int64_t row = rows.first >> l; row <= rows.last >> l; ++row)
     for (std::int64_t column = columns.first >> l; column <= columns.last >> l; ++column)

@@ -1,5 +1,5 @@
 #pragma once
-// The least depth over any rectangle of a depth buffer, from four look-ups.
+// The least depth over any rectangle of a depth buffer, from a few look-ups.
 
 #include "clipping/DepthBuffer.h"
 

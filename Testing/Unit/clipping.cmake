@@ -1,4 +1,9 @@
 fenestra_test(ClippingTests
+  ClipTests.cxx
+  ContourTests.cxx
+  DepthBufferTests.cxx
+  FocusDepthTests.cxx
   GridWalkTests.cxx
-  LIBRARIES fenestra_volume
+  ThinPlateSplineTests.cxx
+  LIBRARIES fenestra_clipping
   LABELS unit)

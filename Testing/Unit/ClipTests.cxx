@@ -1,0 +1,272 @@
+// keep, visible and removed say the same; the surface meets the focus; errors name their mend.
+
+#include "ClippingTesting.h"
+#include "clipping/ClippingSurface.h"
+#include "core/Error.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+constexpr std::array projections{Projection::orthographic, Projection::perspective};
+
+/// The paper's model, smaller: a cuboid focus in the middle of a cube.
+struct Model {
+  Grid volume = centredGrid({64, 64, 64});
+  Mask focus = boxMask(volume, {-16, -16, -24}, {16, 16, 24});
+
+  ClippingSurface surface(const Camera& camera, SurfaceMode mode = SurfaceMode::surface) const {
+    return buildClippingSurface(camera, volume, focus, {.mode = mode});
+  }
+};
+
+/// A knee-like focus: a bent thin shell, seen aslant.
+struct Shell {
+  Grid volume = centredGrid({60, 50, 40}, {1.0, 1.2, 1.5});
+  Mask focus = maskOf(volume, [](const Vec3& p) {
+    return std::abs(p.norm() - 18.0) < 2.0 && p.x() + 2.0 * p.y() < 8.0;
+  });
+};
+
+Camera obliqueCamera(Projection projection, double distance, int side) {
+  CameraPose pose;
+  pose.projection = projection;
+  pose.position = distance * Vec3(0.5, -1.0, 0.3).normalized();
+  pose.target = {1.0, 2.0, -1.0};
+  pose.scale = 35.0;
+  pose.angle = std::min(45.0, 360.0 / pi * std::atan(pose.scale / distance));
+  return {pose, side, side};
+}
+
+std::vector<Clip> everyClip(const Camera& camera) {
+  const Shell shell;
+  std::vector<Clip> clips{ClipNone{}, ClipPlane{camera, {2.0, -3.0, 1.0}, {0.4, -2.0, 0.3}},
+                          ClipPlane{camera, {2.0, -3.0, 1.0}, {-0.4, 2.0, -0.3}}};
+  for (const auto mode : {SurfaceMode::cutaway, SurfaceMode::surface})
+    clips.push_back(buildClippingSurface(camera, shell.volume, shell.focus, {.mode = mode}).clip);
+  return clips;
+}
+
+TEST(Clip, NoneKeepsEverything) {
+  EXPECT_EQ(keep(Clip{}, {1e9, -1e9, 0.0}), 1.0);
+  EXPECT_EQ(visible(Clip{}, {}).begin, 0.0);
+  EXPECT_EQ(visible(Clip{}, {}).end, infinity);
+}
+
+TEST(Clip, PlaneRemovesWhatItsNormalPointsAt) {
+  const Clip clip =
+      ClipPlane{anteriorCamera(Projection::orthographic, 100, 50, 8, 8), {0, -5, 0}, {0, -3, 0}};
+  EXPECT_EQ(keep(clip, {0, -6, 0}), 0.0);
+  EXPECT_EQ(keep(clip, {0, -4, 0}), 1.0);
+  EXPECT_EQ(keep(clip, {0, -200, 0}), 0.0);
+  const Interval seen = visible(clip, {{0, -100, 0}, {0, 1, 0}});
+  EXPECT_NEAR(seen.begin, 95.0, 1e-12);
+  EXPECT_EQ(seen.end, infinity);
+}
+
+TEST(Clip, PlaneParallelToARayRemovesAllOrNothing) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 100, 50, 8, 8);
+  const Ray ray{{0, -100, 0}, {0, 1, 0}};
+  EXPECT_TRUE(visible(ClipPlane{camera, {-1, 0, 0}, {1, 0, 0}}, ray).empty());
+  EXPECT_FALSE(visible(ClipPlane{camera, {1, 0, 0}, {1, 0, 0}}, ray).empty());
+}
+
+TEST(Clip, InPerspectiveWhatIsBehindTheEyeIsRemovedInEveryClippedMode) {
+  const Camera camera = obliqueCamera(Projection::perspective, 10.0, 32);
+  const Vec3 behind = camera.pose().position - 3.0 * camera.forward();
+  const auto clips = everyClip(camera);
+  EXPECT_EQ(keep(clips[0], behind), 1.0);
+  for (std::size_t i = 1; i < clips.size(); ++i) {
+    EXPECT_EQ(keep(clips[i], behind), 0.0);
+    EXPECT_EQ(keep(clips[i], camera.pose().position), 0.0);
+  }
+}
+
+TEST(Clip, EyeRaysStartWhereKeepBegins) {
+  Random random(1, 0, 0);
+  for (const auto projection : projections)
+    for (const double distance : {12.0, 120.0, 1e5}) {
+      const Camera camera = obliqueCamera(projection, distance, 96);
+      for (const Clip& clip : everyClip(camera))
+        for (int i = 0; i < 3000; ++i) {
+          const Ray ray = camera.ray(uniform(random, 0, 96), uniform(random, 0, 96));
+          const Interval seen = visible(clip, ray);
+          const double step = 1e-6 * (1.0 + 1e-4 * distance);
+          if (!seen.empty()) {
+            ASSERT_EQ(keep(clip, ray.at(std::min(seen.begin + step, seen.end))), 1.0);
+            ASSERT_EQ(keep(clip, ray.at(seen.begin + 0.9 * std::min(seen.end - seen.begin, 50.0))),
+                      1.0);
+          }
+          if (seen.begin > 2.0 * step) {
+            ASSERT_EQ(keep(clip, ray.at(seen.begin - step)), 0.0);
+            ASSERT_EQ(keep(clip, ray.at(seen.begin * random.uniform() * 0.999)), 0.0);
+          }
+          if (seen.end < infinity) {
+            ASSERT_EQ(keep(clip, ray.at(seen.end + step)), 0.0);
+          }
+        }
+    }
+}
+
+TEST(Clip, RemovedBoxesHaveNothingToKeep) {
+  Random random(2, 0, 0);
+  for (const auto projection : projections)
+    for (const double distance : {12.0, 120.0}) {
+      const Camera camera = obliqueCamera(projection, distance, 64);
+      const auto clips = everyClip(camera);
+      for (std::size_t c = 0; c < clips.size(); ++c) {
+        int found = 0, empty = 0;
+        for (int trial = 0; trial < 20000; ++trial) {
+          const Vec3 center = randomPoint(random, -35, 35);
+          const Vec3 half =
+              Vec3::Constant(0.2) + std::pow(random.uniform(), 4) * randomPoint(random, 0, 20);
+          const Mat3 turn(
+              Eigen::AngleAxisd(random.uniform(), randomPoint(random, -1, 1).normalized()));
+          const Box box{-half, half};
+          Corners corners;
+          for (int i = 0; i < 8; ++i)
+            corners[static_cast<std::size_t>(i)] = center + turn * box.corner(i);
+          bool anythingKept = false;
+          for (int i = 0; i < 60 && !anythingKept; ++i) {
+            const Vec3 p =
+                i < 8 ? corners[static_cast<std::size_t>(i)]
+                      : Vec3(center + turn * half.cwiseProduct(randomPoint(random, -1, 1)));
+            anythingKept = keep(clips[c], p) > 0.0;
+          }
+          const bool isRemoved = removed(clips[c], corners);
+          ASSERT_FALSE(isRemoved && anythingKept);
+          found += isRemoved;
+          empty += !anythingKept;
+        }
+        // Not merely cautious: small boxes that are clipped are found.
+        EXPECT_GE(found, c == 0 ? 0 : c == 3 ? empty / 3 : empty * 3 / 4) << "clip " << c;
+      }
+    }
+}
+
+TEST(ClippingSurface, ShowsTheFocusAtItsOwnDepth) {
+  const Model model;
+  for (const auto projection : projections)
+    for (const auto mode : {SurfaceMode::cutaway, SurfaceMode::surface}) {
+      const Camera camera = anteriorCamera(projection, 200.0, 40.0, 80, 80);
+      const ClippingSurface surface = model.surface(camera, mode);
+      const auto& clip = std::get<ClipDepth>(surface.clip);
+      for (std::int64_t i = 0; i < surface.focus.depth.size(); ++i)
+        if (surface.focus.regions[static_cast<std::size_t>(i)] == Region::focus) {
+          ASSERT_EQ(clip.buffer->at(i), surface.focus.depth.at(i));
+        }
+      EXPECT_EQ(keep(surface.clip, {0.3, -16.1, 0.2}), 0.0);
+      EXPECT_EQ(keep(surface.clip, {0.3, -15.9, 0.2}), 1.0);
+      EXPECT_EQ(keep(surface.clip, {25.0, -30.0, 0.2}), mode == SurfaceMode::cutaway ? 1.0 : 0.0);
+      EXPECT_TRUE(surface.warnings.empty());
+    }
+}
+
+TEST(ClippingSurface, AFlatFocusContinuesAsItsPlane) {
+  const Model model;
+  const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 80, 80);
+  const ClippingSurface surface = model.surface(camera);
+  EXPECT_EQ(surface.controlPoints.size(), 50U);
+  EXPECT_LT(surface.mismatch.max, 1e-4);
+  const auto& buffer = *std::get<ClipDepth>(surface.clip).buffer;
+  for (std::int64_t i = 0; i < buffer.size(); ++i) {
+    EXPECT_NEAR(buffer.at(i), 184.0, 1e-3);
+  }
+}
+
+TEST(ClippingSurface, LeavesTheFocusWithinItsStatedMismatch) {
+  const Shell shell;
+  for (const auto projection : projections) {
+    const Camera camera = obliqueCamera(projection, 120.0, 160);
+    const ClippingSurface surface = buildClippingSurface(camera, shell.volume, shell.focus, {});
+    EXPECT_LE(surface.mismatch.mean, surface.mismatch.p95);
+    EXPECT_LE(surface.mismatch.p95, surface.mismatch.max);
+    EXPECT_GT(surface.mismatch.max, 0.0);
+    const auto& buffer = *std::get<ClipDepth>(surface.clip).buffer;
+    // From one sample to the next the spline itself moves by its slope, seen outside the focus.
+    double slope = 0.0, worst = 0.0;
+    for (std::int64_t row = 0; row < buffer.rows(); ++row)
+      for (std::int64_t column = 1; column < buffer.columns(); ++column) {
+        const double change = std::abs(buffer.at(buffer.sample(column, row)) -
+                                       buffer.at(buffer.sample(column - 1, row)));
+        const bool in = surface.focus.isFocus(column, row);
+        const bool wasIn = surface.focus.isFocus(column - 1, row);
+        if (in != wasIn)
+          worst = std::max(worst, change);
+        else if (!in)
+          slope = std::max(slope, change);
+      }
+    EXPECT_LE(worst, surface.mismatch.max + 2.0 * slope);
+  }
+}
+
+TEST(ClippingSurface, DoesNotDependOnFraming) {
+  const Shell shell;
+  const Camera wide = anteriorCamera(Projection::orthographic, 150.0, 40.0, 160, 160);
+  const Camera narrow = anteriorCamera(Projection::orthographic, 150.0, 10.0, 40, 40);
+  const Clip a = buildClippingSurface(wide, shell.volume, shell.focus, {}).clip;
+  const Clip b = buildClippingSurface(narrow, shell.volume, shell.focus, {}).clip;
+  Random random(3, 0, 0);
+  int different = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 p = randomPoint(random, -30, 30);
+    different += keep(a, p) != keep(b, p);
+  }
+  EXPECT_LT(different, 20); // samples coincide; where the contour starts does not matter
+}
+
+TEST(ClippingSurface, SaysWhenTheFocusIsOutsideThePicture) {
+  const Model model;
+  CameraPose pose;
+  pose.position = {28.0, -200.0, 28.0};
+  pose.target = {28.0, 0.0, 28.0};
+  pose.scale = 2.0;
+  const ClippingSurface surface = model.surface({pose, 32, 32});
+  ASSERT_EQ(surface.warnings.size(), 1U);
+  EXPECT_EQ(surface.warnings[0], "focus A lies outside the picture");
+}
+
+TEST(ClippingSurface, AFocusThatNoRayMeetsIsAnInputError) {
+  const Model model;
+  const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 40, 40);
+  Affine aside = model.focus.grid.indexToWorld;
+  aside.pretranslate(Vec3(500, 0, 0));
+  Mask outside = model.focus;
+  outside.grid = Grid(outside.grid.size, aside);
+  Mask nothing = maskOf(model.volume, [](const Vec3&) { return false; });
+  for (const Mask& mask : {outside, nothing})
+    try {
+      buildClippingSurface(camera, model.volume, mask, {});
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      EXPECT_EQ(std::string(error.what()).substr(0, 8), "focus A:");
+    }
+}
+
+TEST(ClippingSurface, OptionsOutOfRangeAreUsageErrors) {
+  const Model model;
+  const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 8, 8);
+  for (const SurfaceOptions& options :
+       {SurfaceOptions{.controlPoints = 0}, SurfaceOptions{.controlPoints = 1000001},
+        SurfaceOptions{.smoothing = -0.1}, SurfaceOptions{.smoothing = std::nan("")}})
+    EXPECT_THROW(buildClippingSurface(camera, model.volume, model.focus, options), Error);
+}
+
+TEST(ClippingSurface, AFocusOfOnePixelGivesALevelSurface) {
+  const Grid volume = centredGrid({21, 21, 21});
+  const Mask dot = boxMask(volume, Vec3::Constant(-0.1), Vec3::Constant(0.1));
+  CameraPose pose;
+  pose.position = {0.5, -100.0, 0.5};
+  pose.target = {0.5, 0.0, 0.5};
+  pose.scale = 8.0;
+  const ClippingSurface surface = buildClippingSurface({pose, 16, 16}, volume, dot, {});
+  EXPECT_EQ(surface.controlPoints.size(), 1U);
+  EXPECT_EQ(surface.warnings.size(), 1U);
+  EXPECT_NEAR(std::get<ClipDepth>(surface.clip).surface({9.0, -9.0}), 99.5, 1e-4);
+}
+
+} // namespace

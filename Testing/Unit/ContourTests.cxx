@@ -1,0 +1,212 @@
+// Contours of drawn regions: loops, lengths, holes, and control points spaced uniformly on them.
+
+#include "ClippingTesting.h"
+#include "clipping/Contour.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+double length(const DepthBuffer& buffer, const Contour& contour) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < contour.size(); ++i)
+    sum +=
+        (position(buffer, contour[(i + 1) % contour.size()]) - position(buffer, contour[i])).norm();
+  return sum;
+}
+
+std::vector<std::string> randomPicture(Random& random, int width, int height, double density) {
+  std::vector<std::string> rows(static_cast<std::size_t>(height));
+  for (std::string& row : rows)
+    for (int i = 0; i < width; ++i)
+      row += random.uniform() < density ? '#' : '.';
+  return rows;
+}
+
+/// Connected parts of the picture's samples of one kind, diagonally joined or not; the outside of
+/// the picture is a border of dots.
+int parts(const std::vector<std::string>& rows, char kind, bool diagonal) {
+  const int width = static_cast<int>(rows[0].size()) + 2,
+            height = static_cast<int>(rows.size()) + 2;
+  const auto at = [&](int x, int y) {
+    const bool border = x == 0 || y == 0 || x == width - 1 || y == height - 1;
+    return border ? '.' : rows[static_cast<std::size_t>(y - 1)][static_cast<std::size_t>(x - 1)];
+  };
+  std::set<std::pair<int, int>> seen;
+  int count = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      if (at(x, y) != kind || seen.contains({x, y}))
+        continue;
+      ++count;
+      std::vector<std::pair<int, int>> open{{x, y}};
+      seen.insert({x, y});
+      while (!open.empty()) {
+        const auto [cx, cy] = open.back();
+        open.pop_back();
+        for (int dy = -1; dy <= 1; ++dy)
+          for (int dx = -1; dx <= 1; ++dx) {
+            const int nx = cx + dx, ny = cy + dy;
+            if ((dx != 0 && dy != 0 && !diagonal) || nx < 0 || ny < 0 || nx >= width ||
+                ny >= height)
+              continue;
+            if (at(nx, ny) == kind && seen.insert({nx, ny}).second)
+              open.push_back({nx, ny});
+          }
+      }
+    }
+  return count;
+}
+
+TEST(Contour, NoFocusHasNone) {
+  EXPECT_TRUE(traceContours(drawnFocus({"...", "..."})).empty());
+}
+
+TEST(Contour, ASampleIsADiamond) {
+  const FocusDepth focus = drawnFocus({"...", ".#.", "..."});
+  const auto contours = traceContours(focus);
+  ASSERT_EQ(contours.size(), 1U);
+  EXPECT_EQ(contours[0].size(), 4U);
+  EXPECT_NEAR(length(focus.depth, contours[0]), 2.0 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(Contour, ARectangleIsAsLongAsItsSides) {
+  const FocusDepth focus = drawnFocus({"......", ".####.", ".####.", ".####.", "......"});
+  const auto contours = traceContours(focus);
+  ASSERT_EQ(contours.size(), 1U);
+  EXPECT_NEAR(length(focus.depth, contours[0]), 2 * (3 + 2) + 4 * std::sqrt(0.5), 1e-12);
+}
+
+TEST(Contour, AFocusAtTheEdgeOfTheBufferClosesThere) {
+  const FocusDepth focus = drawnFocus({"###", "###"});
+  const auto contours = traceContours(focus);
+  ASSERT_EQ(contours.size(), 1U);
+  EXPECT_EQ(contours[0].size(), 10U);
+  EXPECT_NEAR(length(focus.depth, contours[0]), 2 * (2 + 1) + 4 * std::sqrt(0.5), 1e-12);
+}
+
+TEST(Contour, HolesAndComponentsHaveLoopsOfTheirOwn) {
+  EXPECT_EQ(traceContours(drawnFocus({"###", "#.#", "###"})).size(), 2U);
+  EXPECT_EQ(traceContours(drawnFocus({"#.#", "...", "#.#"})).size(), 4U);
+  EXPECT_EQ(traceContours(drawnFocus({"#####", "#...#", "#.#.#", "#...#", "#####"})).size(), 3U);
+}
+
+TEST(Contour, DiagonalNeighboursAreJoinedWhicheverWayTheyLie) {
+  EXPECT_EQ(traceContours(drawnFocus({"#.", ".#"})).size(), 1U);
+  EXPECT_EQ(traceContours(drawnFocus({".#", "#."})).size(), 1U);
+}
+
+TEST(Contour, EveryCrossingLiesOnOneLoopWhateverTheRegion) {
+  Random random(1, 0, 0);
+  for (int trial = 0; trial < 300; ++trial) {
+    const auto picture =
+        randomPicture(random, 2 + trial % 13, 2 + trial % 11, 0.1 + 0.08 * (trial % 10));
+    const FocusDepth focus = drawnFocus(picture);
+    const auto contours = traceContours(focus);
+    std::set<std::array<int, 3>> met;
+    for (const Contour& contour : contours)
+      for (std::size_t i = 0; i < contour.size(); ++i) {
+        const Crossing& c = contour[i];
+        EXPECT_TRUE(focus.isFocus(c.column, c.row));
+        EXPECT_TRUE(met.insert({c.column, c.row, c.side}).second);
+        const Crossing& next = contour[(i + 1) % contour.size()];
+        EXPECT_LT((position(focus.depth, next) - position(focus.depth, c)).norm(), 1.0 + 1e-12);
+      }
+    std::size_t expected = 0;
+    for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
+      for (std::int64_t column = 0; column < focus.depth.columns(); ++column)
+        if (focus.isFocus(column, row))
+          for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+            expected += focus.isFocus(column + dx, row + dy) ? 0 : 1;
+    EXPECT_EQ(met.size(), expected);
+    const int loops = parts(picture, '#', true) + parts(picture, '.', false) - 1;
+    EXPECT_EQ(contours.size(), static_cast<std::size_t>(loops));
+  }
+}
+
+/// A disc of radius 40 mm with a hole of radius 15 mm, and a small disc beside it.
+FocusDepth discs() {
+  std::vector<std::string> rows(100, std::string(140, '.'));
+  for (std::size_t y = 0; y < rows.size(); ++y)
+    for (std::size_t x = 0; x < rows[0].size(); ++x) {
+      const double big = std::hypot(static_cast<double>(x) - 50.0, static_cast<double>(y) - 50.0);
+      const double small =
+          std::hypot(static_cast<double>(x) - 115.0, static_cast<double>(y) - 50.0);
+      if ((big <= 40.0 && big > 15.0) || small <= 10.0)
+        rows[y][x] = '#';
+    }
+  return drawnFocus(rows);
+}
+
+TEST(ControlPoints, SpreadOverLoopsInProportionToTheirLength) {
+  const FocusDepth focus = discs();
+  const auto contours = traceContours(focus);
+  ASSERT_EQ(contours.size(), 3U);
+  const auto points = placeControlPoints(focus, contours, 65);
+  EXPECT_EQ(points.size(), 65U);
+  std::array<int, 3> on{};
+  for (const ControlPoint& point : points) {
+    const Vec2 pixel(point.site.x() + 69.5, 49.5 - point.site.y());
+    const double fromBig = (pixel - Vec2(50, 50)).norm();
+    ++on[pixel.x() > 100 ? 2U : fromBig > 27 ? 0U : 1U];
+  }
+  EXPECT_NEAR(on[0], 40, 1); // radii 40 : 15 : 10
+  EXPECT_NEAR(on[1], 15, 1);
+  EXPECT_NEAR(on[2], 10, 1);
+}
+
+TEST(ControlPoints, AreUniformInArcLength) {
+  std::vector<std::string> rows(100, std::string(100, '.'));
+  for (std::size_t y = 0; y < 100; ++y)
+    for (std::size_t x = 0; x < 100; ++x)
+      if (std::hypot(static_cast<double>(x) - 50.0, static_cast<double>(y) - 50.0) <= 40.0)
+        rows[y][x] = '#';
+  const FocusDepth focus = drawnFocus(rows);
+  const auto points = placeControlPoints(focus, traceContours(focus), 50);
+  ASSERT_EQ(points.size(), 50U);
+  std::vector<double> angles;
+  for (const ControlPoint& point : points)
+    angles.push_back(std::atan2(point.site.y() + 0.5, point.site.x() - 0.5));
+  std::ranges::sort(angles);
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double gap =
+        i + 1 < angles.size() ? angles[i + 1] - angles[i] : angles[0] + 2 * pi - angles[i];
+    // Spacing 5 mm; sites lie within a sample of their place, and a staircase is up to 8 % longer
+    // where it runs between the axes and the diagonals.
+    EXPECT_NEAR(gap * 40.0, 2 * pi * 40.0 / 50.0, 1.9);
+  }
+}
+
+TEST(ControlPoints, CarryTheirOwnSamplesDepthAndOccurOnce) {
+  const FocusDepth focus = discs();
+  const auto contours = traceContours(focus);
+  const auto points = placeControlPoints(focus, contours, 1000);
+  EXPECT_LT(points.size(), 1000U);
+  std::set<std::pair<double, double>> sites;
+  for (const ControlPoint& point : points) {
+    EXPECT_TRUE(sites.insert({point.site.x(), point.site.y()}).second);
+    EXPECT_NEAR(point.depth, point.site.x() + 69.5 + 10.0 * (49.5 - point.site.y()), 1e-4);
+  }
+  EXPECT_LE(points.size(), boundarySamples(focus, contours).size());
+}
+
+TEST(ControlPoints, BoundarySamplesAreTheFocusSamplesWithAnOutsideNeighbour) {
+  const FocusDepth focus = discs();
+  std::size_t expected = 0;
+  for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
+    for (std::int64_t column = 0; column < focus.depth.columns(); ++column)
+      if (focus.isFocus(column, row))
+        expected += focus.isFocus(column + 1, row) && focus.isFocus(column - 1, row) &&
+                            focus.isFocus(column, row + 1) && focus.isFocus(column, row - 1)
+                        ? 0
+                        : 1;
+  EXPECT_EQ(boundarySamples(focus, traceContours(focus)).size(), expected);
+}
+
+} // namespace

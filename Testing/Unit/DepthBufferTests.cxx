@@ -1,0 +1,152 @@
+// Where the buffer's samples lie, how far they reach, and what is between and beyond them.
+
+#include "ClippingTesting.h"
+#include "clipping/MinPyramid.h"
+#include "core/Error.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+constexpr std::int64_t most = 4 << 20;
+
+TEST(DepthBuffer, SamplesAreTheViewportsPixelCentres) {
+  for (const auto projection : {Projection::orthographic, Projection::perspective}) {
+    const Camera camera = anteriorCamera(projection, 300.0, 20.0, 37, 22);
+    const DepthBuffer buffer(camera, centredGrid({100, 100, 100}));
+    EXPECT_GT(buffer.columns(), 37);
+    for (int row = 0; row < 22; ++row)
+      for (int column = 0; column < 37; ++column) {
+        const Vec2 pixel = camera.toPlane(column + 0.5, row + 0.5);
+        const std::int64_t sample = buffer.viewportSample(column, row);
+        EXPECT_LT(
+            (buffer.position(sample % buffer.columns(), sample / buffer.columns()) - pixel).norm(),
+            1e-12);
+      }
+  }
+}
+
+TEST(DepthBuffer, SpansTheVolumesProjection) {
+  const Grid grid = centredGrid({200, 300, 100});
+  const Camera camera = anteriorCamera(Projection::orthographic, 500.0, 10.0, 64, 64);
+  const DepthBuffer buffer(camera, grid);
+  const double pixel = camera.pixelPitch();
+  EXPECT_EQ(buffer.xAxis().factor, 1.0);
+  EXPECT_NEAR(buffer.xAxis().coordinate(0), -100.0, pixel);
+  EXPECT_NEAR(buffer.xAxis().coordinate(buffer.columns() - 1), 100.0, pixel);
+  EXPECT_NEAR(buffer.yAxis().coordinate(0), 50.0, pixel);
+  EXPECT_NEAR(buffer.yAxis().coordinate(buffer.rows() - 1), -50.0, pixel);
+  EXPECT_LE(buffer.xAxis().coordinate(0), -100.0);
+}
+
+TEST(DepthBuffer, IsCoarserBeyondTheViewportWhereItWouldBeTooLarge) {
+  const Grid grid = centredGrid({500, 500, 500});
+  for (const double scale : {10.0, 5.0, 0.01, 1e-6}) {
+    const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
+    const DepthBuffer buffer(camera, grid);
+    EXPECT_LE(buffer.size(), most);
+    EXPECT_GT(buffer.xAxis().factor, 1.0);
+    EXPECT_EQ(buffer.xAxis().factor, std::floor(buffer.xAxis().factor));
+    EXPECT_LE(buffer.xAxis().coordinate(0), -250.0 * (1 - 1e-12));
+    EXPECT_GE(buffer.yAxis().coordinate(0), 250.0 * (1 - 1e-12));
+    if (scale >= 5.0) {
+      EXPECT_GT(buffer.size(), most / 4); // no coarser than it has to be
+    }
+  }
+}
+
+TEST(DepthBuffer, PerspectiveReachesToSeventyFiveDegrees) {
+  const Camera camera = anteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
+  const DepthBuffer buffer(camera, centredGrid({100, 100, 100})); // the eye is inside
+  const double limit = 30.0 * std::tan(75.0 * pi / 180.0);
+  const double sample = buffer.xAxis().factor * camera.pixelPitch();
+  EXPECT_NEAR(buffer.xAxis().coordinate(0), -limit, sample);
+  EXPECT_NEAR(buffer.yAxis().coordinate(buffer.rows() - 1), -limit, sample);
+}
+
+TEST(DepthBuffer, IndexAndCoordinateAreInverse) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, 5.0, 300, 200);
+  const DepthBuffer buffer(camera, centredGrid({500, 500, 500}));
+  for (const DepthAxis* axis : {&buffer.xAxis(), &buffer.yAxis()})
+    for (std::int64_t i = 0; i < axis->size(); ++i) {
+      EXPECT_NEAR(axis->index(axis->coordinate(i)), static_cast<double>(i), 1e-9);
+    }
+  EXPECT_EQ(buffer.xAxis().index(-1e9), 0.0);
+  EXPECT_EQ(buffer.xAxis().index(infinity), static_cast<double>(buffer.columns() - 1));
+  EXPECT_EQ(buffer.xAxis().index(std::nan("")), static_cast<double>(buffer.columns() - 1));
+}
+
+TEST(DepthBuffer, InterpolatesLinearFunctionsExactlyAcrossBothDensities) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 1e5, 5.0, 300, 200);
+  DepthBuffer buffer(camera, centredGrid({500, 500, 500}));
+  ASSERT_GT(buffer.xAxis().factor, 1.0);
+  const auto plane = [](const Vec2& p) { return 1e5 + 0.25 * p.x() - 0.5 * p.y(); };
+  for (std::int64_t row = 0; row < buffer.rows(); ++row)
+    for (std::int64_t column = 0; column < buffer.columns(); ++column)
+      buffer.set(buffer.sample(column, row), plane(buffer.position(column, row)));
+  Random random(1, 0, 0);
+  for (int i = 0; i < 100000; ++i) {
+    const Vec2 p = randomPoint(random, i % 2 ? -250 : -7, i % 2 ? 250 : 7).head<2>();
+    EXPECT_NEAR(buffer.depth(p), plane(p), 2e-5);
+  }
+  EXPECT_NEAR(buffer.depth({1e6, 0.0}), plane({250.0, 0.0}), 0.1); // the edge's value
+}
+
+TEST(DepthBuffer, NearestIsTheSampleWhosePixelIsMet) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 4.0, 8, 8);
+  DepthBuffer buffer(camera, centredGrid({2, 2, 2}));
+  for (std::int64_t i = 0; i < buffer.size(); ++i)
+    buffer.set(i, static_cast<double>(i));
+  EXPECT_EQ(buffer.nearest({-3.9, 3.9}), 0.0);
+  EXPECT_EQ(buffer.nearest({-2.1, 3.1}), 1.0);
+  EXPECT_EQ(buffer.nearest({-2.1, 2.9}), 9.0);
+  EXPECT_EQ(buffer.nearest({99.0, -99.0}), 63.0);
+}
+
+TEST(DepthBuffer, APictureWithoutExtentIsRefused) {
+  EXPECT_THROW(DepthBuffer(anteriorCamera(Projection::orthographic, 100.0, 0.0, 8, 8),
+                           centredGrid({2, 2, 2})),
+               Error);
+}
+
+TEST(MinPyramid, BoundsWhatTheBufferReturnsInARectangle) {
+  Random random(2, 0, 0);
+  for (const auto& [width, height] : {std::pair{1, 1}, {5, 1}, {33, 17}, {64, 64}}) {
+    const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 8.0, width, height);
+    DepthBuffer buffer(camera, centredGrid({20, 20, 20}));
+    for (std::int64_t i = 0; i < buffer.size(); ++i)
+      buffer.set(i, uniform(random, 50, 150));
+    const MinPyramid pyramid(buffer);
+    double least = infinity;
+    for (std::int64_t i = 0; i < buffer.size(); ++i)
+      least = std::min(least, buffer.at(i));
+    EXPECT_EQ(pyramid.lowerBound(buffer, Vec2::Constant(-infinity), Vec2::Constant(infinity)),
+              least);
+    for (int trial = 0; trial < 2000; ++trial) {
+      const Vec2 a = randomPoint(random, -15, 15).head<2>();
+      const Vec2 b = a + std::pow(random.uniform(), 3) * randomPoint(random, -15, 15).head<2>();
+      const double bound = pyramid.lowerBound(buffer, a, b);
+      for (int i = 0; i < 50; ++i) {
+        const Vec2 p(uniform(random, a.x(), b.x()), uniform(random, a.y(), b.y()));
+        ASSERT_LE(bound, buffer.depth(p) + 1e-9);
+        ASSERT_LE(bound, buffer.nearest(p));
+      }
+    }
+  }
+}
+
+TEST(MinPyramid, IsTightOnASmallRectangle) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 32.0, 64, 64);
+  DepthBuffer buffer(camera, centredGrid({20, 20, 20}));
+  for (std::int64_t i = 0; i < buffer.size(); ++i)
+    buffer.set(i, 100.0 + buffer.position(i % 64, i / 64).x());
+  const MinPyramid pyramid(buffer);
+  for (double x = -20.0; x < 20.0; x += 0.7) {
+    EXPECT_GT(pyramid.lowerBound(buffer, {x, 0.0}, {x + 2.0, 2.0}), 100.0 + x - 5.0);
+  }
+}
+
+} // namespace

@@ -1,0 +1,192 @@
+// The focus's depth is exact: against planes, against dense marching of the same indicator.
+
+#include "ClippingTesting.h"
+#include "clipping/CellCubic.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+double trilinear(const std::array<double, 8>& v, const Vec3& p) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 8; ++i)
+    sum += v[i] * (i & 1 ? p.x() : 1.0 - p.x()) * (i & 2 ? p.y() : 1.0 - p.y()) *
+           (i & 4 ? p.z() : 1.0 - p.z());
+  return sum;
+}
+
+/// The mask's indicator at a world point, straight from its definition.
+double indicator(const Mask& mask, const Vec3& world) {
+  const Vec3 index = mask.grid.worldToIndex * world;
+  const Vec3 floor = index.array().floor();
+  std::array<double, 8> corners{};
+  for (std::int64_t i = 0; i < 8; ++i) {
+    const Size3 voxel = floor.cast<std::int64_t>() + Size3(i & 1, i >> 1 & 1, i >> 2);
+    if ((voxel.array() >= 0).all() && (voxel.array() < mask.grid.size.array()).all())
+      corners[static_cast<std::size_t>(i)] = mask.voxels[static_cast<std::size_t>(
+          voxel.x() + mask.grid.size.x() * (voxel.y() + mask.grid.size.y() * voxel.z()))];
+  }
+  return trilinear(corners, index - floor);
+}
+
+double depthAt(const FocusDepth& focus, const Vec2& position) {
+  return focus.depth.nearest(position);
+}
+
+TEST(CellCubic, IsTheTrilinearFunctionAlongTheRay) {
+  Random random(1, 0, 0);
+  for (int trial = 0; trial < 10000; ++trial) {
+    std::array<double, 8> corners;
+    for (double& corner : corners)
+      corner = uniform(random, -1, 1);
+    const Vec3 from = randomPoint(random, 0, 1);
+    const Vec3 along = randomPoint(random, -1, 1);
+    const Cubic cubic = cellCubic(corners, from, along);
+    const double s = random.uniform();
+    EXPECT_NEAR(cubic(s), trilinear(corners, from + s * along), 1e-14);
+    const double step = 1e-5;
+    EXPECT_NEAR(cubic.slope(s), (cubic(s + step) - cubic(s - step)) / (2 * step), 1e-8);
+  }
+}
+
+TEST(CellCubic, FindsTheFirstRootThatBruteForceFinds) {
+  Random random(2, 0, 0);
+  int roots = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    Cubic cubic{{uniform(random, -1, 0.05), uniform(random, -4, 4), uniform(random, -8, 8),
+                 uniform(random, -8, 8)}};
+    cubic.c[trial % 5 == 0 ? 3 : 0] *= trial % 5 == 0 ? 0.0 : 1.0;
+    cubic.c[trial % 10 == 0 ? 2 : 0] *= trial % 10 == 0 ? 1e-18 : 1.0;
+    const double root = firstNonNegative(cubic);
+    const int samples = 400;
+    for (int i = 0; i <= samples; ++i) {
+      const double s = static_cast<double>(i) / samples;
+      if (s < root - 1e-9) {
+        ASSERT_LT(cubic(s), 1e-12) << "a root before " << root;
+      }
+    }
+    if (root > 0.0 && root < infinity) {
+      ++roots;
+      ASSERT_LE(root, 1.0);
+      ASSERT_NEAR(cubic(root), 0.0, 1e-13);
+    }
+  }
+  EXPECT_GT(roots, 5000);
+}
+
+TEST(CellCubic, HandlesTouchingConstantAndLinear) {
+  EXPECT_EQ(firstNonNegative({{-1, 0, 0, 0}}), infinity);
+  EXPECT_EQ(firstNonNegative({{0, -1, 0, 0}}), 0.0);
+  EXPECT_NEAR(firstNonNegative({{-0.25, 1, 0, 0}}), 0.25, 1e-15);
+  EXPECT_NEAR(firstNonNegative({{-0.25, 1, -1, 0}}), 0.5, 1e-7); // a double root
+  EXPECT_NEAR(firstNonNegative({{-1, 0, 0, 1}}), 1.0, 1e-15);
+}
+
+TEST(FocusDepth, BoxFacesLieAtTheVoxelsFaces) {
+  const Grid grid = centredGrid({40, 40, 40}, {1.0, 0.7, 1.3});
+  const Mask mask = boxMask(grid, {-10.1, -7.1, -13.1}, {10.1, 7.1, 13.1});
+  for (const auto projection : {Projection::orthographic, Projection::perspective}) {
+    const Camera camera = anteriorCamera(projection, 200.0, 30.0, 64, 48);
+    const FocusDepth focus = traceFocus(camera, grid, mask);
+    const double face = 200.0 - 0.7 * 10.0; // ten voxels to each side of the origin
+    EXPECT_NEAR(depthAt(focus, {0.3, 0.3}), face, 1e-5);
+    EXPECT_NEAR(depthAt(focus, {-8.0, 11.0}), face, 1e-5);
+    EXPECT_EQ(depthAt(focus, {13.0, 0.0}), infinity);
+  }
+}
+
+TEST(FocusDepth, RegionsTellFocusContextAndOutside) {
+  const Grid grid = centredGrid({20, 20, 20});
+  const Mask mask = boxMask(grid, Vec3::Constant(-4), Vec3::Constant(4));
+  const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
+  const FocusDepth focus = traceFocus(camera, grid, mask);
+  std::array<int, 3> count{};
+  for (const Region region : focus.regions)
+    ++count[static_cast<std::size_t>(region)];
+  EXPECT_EQ(count[static_cast<std::size_t>(Region::focus)], 8 * 8);
+  EXPECT_EQ(count[static_cast<std::size_t>(Region::context)], 20 * 20 - 8 * 8);
+  EXPECT_EQ(count[static_cast<std::size_t>(Region::outside)], 40 * 40 - 20 * 20);
+}
+
+/// Every hit is on the 0.5 level, and nothing of the focus is in front of it.
+void compareWithMarching(const Camera& camera, const Grid& volume, const Mask& mask) {
+  const FocusDepth focus = traceFocus(camera, volume, mask);
+  const double step = 0.02;
+  int hits = 0;
+  for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
+    for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
+      const Ray ray = camera.rayThrough(focus.depth.position(column, row));
+      const Interval inside = volume.indexBox().clip(transformed(volume.worldToIndex, ray));
+      const double hit =
+          focus.depth.at(focus.depth.sample(column, row)) / camera.depthPerLength(ray);
+      if (hit < infinity) {
+        ++hits;
+        ASSERT_GE(indicator(mask, ray.at(hit)), 0.5 - 1e-4);
+        if (hit > inside.begin + 1e-4) {
+          ASSERT_NEAR(indicator(mask, ray.at(hit)), 0.5, 1e-4);
+        }
+      }
+      for (double t = inside.begin; t < std::min(inside.end, hit - 1e-4); t += step) {
+        ASSERT_LT(indicator(mask, ray.at(t)), 0.5 + 1e-9);
+      }
+    }
+  EXPECT_GT(hits, 50);
+}
+
+TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
+  Random random(3, 0, 0);
+  for (int trial = 0; trial < 6; ++trial) {
+    Affine map = Affine::Identity();
+    map.linear() =
+        Mat3(Eigen::AngleAxisd(random.uniform() * 6, randomPoint(random, -1, 1).normalized())) *
+        (Mat3::Identity() + 0.2 * Mat3(Mat3::NullaryExpr([&] { return uniform(random, -1, 1); })));
+    map.translation() = map.linear() * Vec3::Constant(-10.0);
+    const Grid grid({21, 21, 21}, map);
+    const Mask mask = maskOf(grid, [&](const Vec3& p) {
+      return p.norm() < 5.0 || (p.norm() < 8.0 && random.uniform() < 0.2);
+    });
+    CameraPose pose;
+    pose.projection = trial % 2 ? Projection::perspective : Projection::orthographic;
+    pose.position = 50.0 * randomPoint(random, -1, 1).normalized();
+    pose.target = Vec3::Zero();
+    pose.scale = 10.0;
+    compareWithMarching({pose, 24, 20}, grid, mask);
+  }
+}
+
+TEST(FocusDepth, ARayThatStartsInsideMeetsTheFocusThere) {
+  const Grid grid = centredGrid({20, 20, 20});
+  const Mask mask = sphereMask(grid, 6.0);
+  const Camera camera = anteriorCamera(Projection::perspective, 1.0, 1.0, 8, 8);
+  EXPECT_EQ(depthAt(traceFocus(camera, grid, mask), {0.0, 0.0}), 0.0);
+}
+
+TEST(FocusDepth, TheVolumesFaceCutsAFocusThatReachesBeyondIt) {
+  const Grid volume = centredGrid({20, 20, 20});
+  const Mask mask = sphereMask(centredGrid({40, 40, 40}), 15.0);
+  const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 16, 16);
+  EXPECT_NEAR(depthAt(traceFocus(camera, volume, mask), {0.0, 0.0}), 40.0, 1e-5);
+}
+
+TEST(FocusDepth, AMaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
+  const Grid volume = centredGrid({20, 20, 20});
+  const Mask mask = maskOf(centredGrid({2, 1, 2}, {2, 2, 2}), [](const Vec3&) { return true; });
+  const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 64, 64);
+  const FocusDepth focus = traceFocus(camera, volume, mask);
+  EXPECT_NEAR(depthAt(focus, {0.1, 0.1}), 49.0, 1e-5);
+  EXPECT_EQ(depthAt(focus, {2.2, 0.1}), infinity);
+}
+
+TEST(FocusDepth, AFarEyeLosesNothing) {
+  const Grid grid = centredGrid({40, 40, 40});
+  const Mask mask = boxMask(grid, Vec3::Constant(-10), Vec3::Constant(10));
+  for (const auto projection : {Projection::orthographic, Projection::perspective}) {
+    const Camera camera = anteriorCamera(projection, 1e6, 30.0, 32, 32);
+    EXPECT_NEAR(depthAt(traceFocus(camera, grid, mask), {1.0, 1.0}) - 1e6, -10.0, 1e-5);
+  }
+}
+
+} // namespace
