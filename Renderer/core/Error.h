@@ -1,6 +1,6 @@
 #pragma once
-// Every failure that a user can cause is an Error: one line that names the file (or flag), the field
-// and the mend. The kind is the process's exit status.
+// Every failure that a user can cause is an Error: one line that names the file (or flag), the
+// field and the mend. The kind is the process's exit status.
 
 #include <stdexcept>
 #include <string>
@@ -24,7 +24,9 @@ private:
   ErrorKind m_kind;
 };
 
-inline Error usageError(const std::string& line) { return {ErrorKind::usage, line}; }
+inline Error usageError(const std::string& line) {
+  return {ErrorKind::usage, line};
+}
 inline Error inputError(const std::string& file, const std::string& what) {
   return {ErrorKind::input, file + ": " + what};
 }

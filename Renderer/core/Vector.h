@@ -33,8 +33,8 @@ struct Interval {
   bool empty() const { return !(begin < end); }
 };
 
-/// origin + t * direction. In world space the direction is a unit vector, so t is in mm; mapped into
-/// index space the direction is scaled so that t stays in world mm.
+/// origin + t * direction. In world space the direction is a unit vector, so t is in mm; mapped
+/// into index space the direction is scaled so that t stays in world mm.
 struct Ray {
   Vec3 origin = Vec3::Zero();
   Vec3 direction = Vec3::UnitZ();

@@ -5,7 +5,9 @@
 namespace fenestra {
 namespace {
 
-double brightness(const Rgb& c) { return c.maxCoeff(); }
+double brightness(const Rgb& c) {
+  return c.maxCoeff();
+}
 
 struct Pick {
   int index;
@@ -51,10 +53,11 @@ EnvironmentSampler::EnvironmentSampler(EnvironmentLight light) : m_light(std::mo
   m_columnCdf.resize((static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(height));
 
   const auto rowWeight = [&](int row) {
-    const double solidAngle = 2.0 * pi / width *
-                              (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
+    const double solidAngle =
+        2.0 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
     m_rowSolidAngle[static_cast<std::size_t>(row)] = solidAngle;
-    double* cdf = &m_columnCdf[(static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(row)];
+    double* cdf =
+        &m_columnCdf[(static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(row)];
     const auto texelWeight = [&](int column) {
       const Rgb value = texel(texelIndex(column, row));
       m_mean += value * (solidAngle / (4.0 * pi));
@@ -98,9 +101,9 @@ Vec3 EnvironmentSampler::sample(const Vec2& u) const {
   const int width = m_light.map.width;
   const int height = m_light.map.height;
   const Pick row = pick(m_rowCdf.data(), height, u.x());
-  const Pick column =
-      pick(&m_columnCdf[(static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(row.index)],
-           width, u.y());
+  const Pick column = pick(
+      &m_columnCdf[(static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(row.index)],
+      width, u.y());
 
   // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
   const double top = std::cos(pi * row.index / height);

@@ -30,15 +30,15 @@ struct DirectionalLight {
 
 enum class LightFrame { world, camera };
 
-/// Shines from one side, along `normal`. In the camera's frame x is right, y up, z toward the viewer,
-/// the origin is the volume's centre, and lengths are in radii of its bounding sphere.
+/// Shines from one side, along `normal`. In the camera's frame x is right, y up, z toward the
+/// viewer, the origin is the volume's centre, and lengths are in radii of its bounding sphere.
 struct AreaLight {
   enum class Shape { rectangle, disk };
   Shape shape = Shape::rectangle;
   Vec3 center = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ(); ///< unit
-  Vec3 up = Vec3::UnitY();     ///< orients a rectangle's second edge; need not be orthogonal to normal
-  Vec2 size = Vec2::Ones();    ///< full edges, or the diameter in x
+  Vec3 up = Vec3::UnitY();  ///< orients a rectangle's second edge; need not be orthogonal to normal
+  Vec2 size = Vec2::Ones(); ///< full edges, or the diameter in x
   Rgb radiance = Rgb::Ones();
   LightFrame frame = LightFrame::world;
 };

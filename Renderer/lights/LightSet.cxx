@@ -3,23 +3,29 @@
 namespace fenestra {
 namespace {
 
-double brightness(const Rgb& c) { return c.maxCoeff(); }
+double brightness(const Rgb& c) {
+  return c.maxCoeff();
+}
 
-/// No light's share falls below this part of an equal share, however dark it looks from the volume's
-/// centre: it may matter elsewhere.
+/// No light's share falls below this part of an equal share, however dark it looks from the
+/// volume's centre: it may matter elsewhere.
 constexpr double leastShare = 0.05;
 
-template <typename... Kinds> struct Overloaded : Kinds... {
+template <typename... Kinds>
+struct Overloaded : Kinds... {
   using Kinds::operator()...;
 };
-template <typename... Kinds> Overloaded(Kinds...) -> Overloaded<Kinds...>;
+template <typename... Kinds>
+Overloaded(Kinds...) -> Overloaded<Kinds...>;
 
 } // namespace
 
 LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera) {
   for (const Light& light : lights)
     std::visit(Overloaded{
-                   [&](const EnvironmentLight& l) { m_environments.push_back({EnvironmentSampler(l), 0.0}); },
+                   [&](const EnvironmentLight& l) {
+                     m_environments.push_back({EnvironmentSampler(l), 0.0});
+                   },
                    [&](const DirectionalLight& l) {
                      m_directionals.push_back({-l.direction.normalized(), l.irradiance, 0.0});
                    },
@@ -44,8 +50,8 @@ void LightSet::place(const AreaLight& light, const Grid& volume, const Camera& c
   placed.normal = (axes * light.normal).normalized();
   const Vec3 up = axes * light.up;
   const Vec3 across = up.cross(placed.normal);
-  placed.right = across.norm() > 1e-9 * up.norm() ? Vec3(across.normalized())
-                                                  : Frame(placed.normal).tangent;
+  placed.right =
+      across.norm() > 1e-9 * up.norm() ? Vec3(across.normalized()) : Frame(placed.normal).tangent;
   placed.up = placed.normal.cross(placed.right);
   const bool disk = light.shape == AreaLight::Shape::disk;
   placed.half = 0.5 * unit * (disk ? Vec2::Constant(light.size.x()) : light.size);
@@ -144,8 +150,8 @@ std::optional<LightArrival> LightSet::PlacedAreaLight::arrival(const Ray& ray, d
     return std::nullopt;
   const Vec3 d = ray.at(t) - center;
   const Vec2 at(d.dot(right) / half.x(), d.dot(up) / half.y());
-  const bool inside = shape == AreaLight::Shape::disk ? at.squaredNorm() <= 1.0
-                                                      : at.cwiseAbs().maxCoeff() <= 1.0;
+  const bool inside =
+      shape == AreaLight::Shape::disk ? at.squaredNorm() <= 1.0 : at.cwiseAbs().maxCoeff() <= 1.0;
   if (!inside)
     return std::nullopt;
   return LightArrival{radiance, share * t * t / (area * cosine)};

@@ -15,12 +15,12 @@
 namespace fenestra {
 
 struct LightSample {
-  Vec3 direction;   ///< unit, from the point toward the light
-  double distance;  ///< mm; infinity for environment and directional lights
-  Rgb radiance;     ///< arriving; for a directional light its irradiance
-  double pdf;       ///< per steradian, the choice of the light included; for a directional light
-                    ///< the chance of that choice alone
-  bool delta;       ///< a directional light: scattering can never draw its direction
+  Vec3 direction;  ///< unit, from the point toward the light
+  double distance; ///< mm; infinity for environment and directional lights
+  Rgb radiance;    ///< arriving; for a directional light its irradiance
+  double pdf;      ///< per steradian, the choice of the light included; for a directional light
+                   ///< the chance of that choice alone
+  bool delta;      ///< a directional light: scattering can never draw its direction
 };
 
 /// Radiance that arrives along a direction, and the density of sample() there.
@@ -41,7 +41,8 @@ public:
   LightArrival environment(const Vec3& direction) const;
 
   /// All area lights that the ray meets before `end` (mm), summed with `weigh(arrival)` each.
-  template <typename Weigh> Rgb areaArrivals(const Ray& ray, double end, Weigh&& weigh) const {
+  template <typename Weigh>
+  Rgb areaArrivals(const Ray& ray, double end, Weigh&& weigh) const {
     Rgb sum = Rgb::Zero();
     for (const PlacedAreaLight& light : m_areas)
       if (const std::optional<LightArrival> arrival = light.arrival(ray, end))

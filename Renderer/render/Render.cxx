@@ -1,23 +1,18 @@
 #include "render/Render.h"
 
+#include "core/Stopwatch.h"
+
 #include <tbb/blocked_range2d.h>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <chrono>
-
 namespace fenestra {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 /// Dispatches once on the volume's storage type.
-template <typename Work> auto withMedium(const RenderScene& scene, Work&& work) {
+template <typename Work>
+auto withMedium(const RenderScene& scene, Work&& work) {
   return std::visit(
       [&](const auto& voxels) {
         using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
@@ -47,8 +42,9 @@ bool renderPass(const Estimator& estimator, std::uint64_t first, std::uint64_t c
     Counters& local = counters.local();
     for (int row = tile.rows().begin(); row < tile.rows().end(); ++row) {
       for (int column = tile.cols().begin(); column < tile.cols().end(); ++column) {
-        const auto pixel = static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(film.width()) +
-                           static_cast<std::uint64_t>(column);
+        const auto pixel =
+            static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(film.width()) +
+            static_cast<std::uint64_t>(column);
         for (std::uint64_t sample = first; sample < first + count; ++sample) {
           if (monitor.stop.load(std::memory_order_relaxed))
             return;
@@ -73,11 +69,11 @@ template <typename Estimator>
 RenderResult renderPasses(const Estimator& estimator, const RenderScene& scene,
                           const RenderSettings& settings, RenderMonitor& monitor) {
   RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0};
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   while (result.finishedSamples < settings.samples) {
     std::uint64_t count = passSize(result.finishedSamples, settings);
     if (settings.seconds < infinity && result.finishedSamples > 0) {
-      const double elapsed = secondsSince(start);
+      const double elapsed = watch.seconds();
       const double perSample = elapsed / static_cast<double>(result.finishedSamples);
       const double affordable = (settings.seconds - elapsed) / perSample;
       if (affordable < 1.0) {
@@ -130,7 +126,7 @@ double focusCoverage(const RenderScene& scene, const std::vector<double>& focusD
       const int row = static_cast<int>(pixel / static_cast<std::size_t>(width));
       const Ray ray = scene.camera.ray(column + 0.5, row + 0.5);
       const double focus = focusDepth[pixel] / scene.camera.depthPerLength(ray);
-      const Interval range = visible(scene.clip, ray, scene.camera);
+      const Interval range = visible(scene.clip, ray);
       if (range.begin > focus + 0.5 * scene.camera.pixelPitch())
         continue; // the focus itself is cut away
       Random random(seed, pixel, 0);

@@ -28,8 +28,8 @@ struct RenderSettings {
   double seconds = infinity;  ///< of transport
   double noise = 0.0;         ///< Film::noise() at the end of a pass
   std::uint64_t seed = 0;
-  int threads = 0;                 ///< 0: all
-  std::uint64_t passSamples = 0;   ///< samples a pass; 0: growing passes. Never changes the picture.
+  int threads = 0;               ///< 0: all
+  std::uint64_t passSamples = 0; ///< samples a pass; 0: growing passes. Never changes the picture.
 };
 
 /// What a running render tells other threads, and how they stop it.

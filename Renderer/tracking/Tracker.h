@@ -11,23 +11,29 @@
 namespace fenestra {
 
 /// A view: grid, medium, majorants and clip outlive it. Rays are in world space, unit direction.
-template <typename Voxel> class Tracker {
+template <typename Voxel>
+class Tracker {
 public:
   Tracker(const Grid& grid, const Medium<Voxel>& medium, const MajorantGrid& majorants,
           const Clip& clip)
-      : m_worldToIndex(grid.worldToIndex), m_medium(medium), m_majorants(majorants), m_clip(clip) {}
+      : m_worldToIndex(grid.worldToIndex),
+        m_box(grid.indexBox()),
+        m_medium(medium),
+        m_majorants(majorants),
+        m_clip(clip) {}
 
   /// Distance (mm) to the next real collision within `range`, or infinity.
   double sampleCollision(const Ray& ray, const Interval& range, Random& random,
                          Counters& counters) const {
     const Ray indexRay = transformed(m_worldToIndex, ray);
     double distance = infinity;
-    walkTentative(ray, range, random, counters, [&](double t, double majorant) {
-      if (random.uniform() * majorant >= keptExtinction(ray, indexRay, t, counters))
-        return true; // a null collision
-      distance = t;
-      return false;
-    });
+    walkTentative(ray, m_box.clip(indexRay, range), random, counters,
+                  [&](double t, double majorant) {
+                    if (random.uniform() * majorant >= keptExtinction(ray, indexRay, t, counters))
+                      return true; // a null collision
+                    distance = t;
+                    return false;
+                  });
     return distance;
   }
 
@@ -38,18 +44,20 @@ public:
     constexpr double rouletteBelow = 0.1;
     const Ray indexRay = transformed(m_worldToIndex, ray);
     double ratio = 1.0;
-    walkTentative(ray, range, random, counters, [&](double t, double majorant) {
-      ratio *= std::max(0.0, 1.0 - keptExtinction(ray, indexRay, t, counters) / majorant);
-      if (ratio < rouletteBelow)
-        ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
-      return ratio > 0.0;
-    });
+    walkTentative(
+        ray, m_box.clip(indexRay, range), random, counters, [&](double t, double majorant) {
+          ratio *= std::max(0.0, 1.0 - keptExtinction(ray, indexRay, t, counters) / majorant);
+          if (ratio < rouletteBelow)
+            ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
+          return ratio > 0.0;
+        });
     return ratio;
   }
 
 private:
   /// Calls visit(t, majorant) at each tentative collision until it returns false. One exponential
-  /// optical depth is spent across cell borders and drawn anew after each collision.
+  /// optical depth is spent across cell borders and drawn anew after each collision. `range` lies
+  /// inside the volume: the last cells of an axis may reach beyond it.
   template <typename Visit>
   void walkTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
                      Visit&& visit) const {
@@ -86,6 +94,7 @@ private:
   }
 
   Affine m_worldToIndex;
+  Box m_box; ///< of the volume, in index space
   const Medium<Voxel>& m_medium;
   const MajorantGrid& m_majorants;
   const Clip& m_clip;

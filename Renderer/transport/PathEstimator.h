@@ -29,20 +29,26 @@ struct PathSettings {
   bool wantNormals = false; ///< fill PathSample::normal even where shading needs no gradient
 };
 
-template <typename Voxel> class PathEstimator {
+template <typename Voxel>
+class PathEstimator {
 public:
   PathEstimator(const Grid& grid, const Medium<Voxel>& medium, const Tracker<Voxel>& tracker,
                 const LightSet& lights, const Camera& camera, const Clip& clip,
                 const PathSettings& settings)
-      : m_worldToIndex(grid.worldToIndex), m_medium(medium), m_tracker(tracker), m_lights(lights),
-        m_camera(camera), m_clip(clip), m_settings(settings) {}
+      : m_worldToIndex(grid.worldToIndex),
+        m_medium(medium),
+        m_tracker(tracker),
+        m_lights(lights),
+        m_camera(camera),
+        m_clip(clip),
+        m_settings(settings) {}
 
   /// One path through raster position (column, row).
   PathSample trace(double column, double row, Random& random, Counters& counters) const {
     ++counters.paths;
     PathSample result;
     Ray ray = m_camera.ray(column, row);
-    Interval range = visible(m_clip, ray, m_camera);
+    Interval range = visible(m_clip, ray);
     Rgb weight = Rgb::Ones();
     double scatterPdf = 0.0;
     for (std::uint64_t bounce = 0;; ++bounce) {
@@ -107,7 +113,8 @@ private:
     return PhaseScattering(incoming, transfer.g, matter.albedo);
   }
 
-  /// Next-event estimation: one light, seen through the volume, weighted against scattering into it.
+  /// Next-event estimation: one light, seen through the volume, weighted against scattering into
+  /// it.
   Rgb sampledLight(const Vec3& point, const Scattering& scattering, Random& random,
                    Counters& counters) const {
     const std::optional<LightSample> light = m_lights.sample(point, random);

@@ -1,0 +1,11 @@
+#pragma once
+// The subcommands. Each takes the arguments after its own name and returns the exit status; errors
+// are thrown (core/Error.h) and reported by main.
+
+namespace fenestra {
+
+int renderCommand(int argc, char** argv, int first);
+int compareCommand(int argc, char** argv, int first);
+int phantomCommand(int argc, char** argv, int first);
+
+} // namespace fenestra

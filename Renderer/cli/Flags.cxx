@@ -1,0 +1,190 @@
+#include "cli/Flags.h"
+
+#include "cli/Version.h"
+#include "core/Error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <iostream>
+
+namespace fenestra {
+namespace {
+
+std::optional<double> parseNumber(std::string_view text) {
+  while (!text.empty() && text.front() == ' ')
+    text.remove_prefix(1);
+  if (!text.empty() && text.front() == '+')
+    text.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> splitAtCommas(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\\' && i + 1 < text.size() && text[i + 1] == ',')
+      parts.back() += text[++i];
+    else if (text[i] == ',')
+      parts.emplace_back();
+    else
+      parts.back() += text[i];
+  }
+  return parts;
+}
+
+Error badValue(const std::string& flag, const std::string& expected, const std::string& got) {
+  return usageError("--" + flag + ": expected " + expected + ", got '" + got + "'");
+}
+
+std::string shortNumber(double x) {
+  std::ostringstream out;
+  out << x;
+  return out.str();
+}
+
+/// The one line of a CLI11 error, in our words where its own are unclear.
+Error usageErrorFrom(const CLI::Error& error, const CommandSyntax& syntax) {
+  std::string line = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error))
+    line = "unknown flag or extra argument " + line.substr(line.rfind(':') + 2);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  const std::string help = *syntax.name ? std::string("fenestra ") + syntax.name : "fenestra";
+  return usageError(line + " (see " + help + " --help)");
+}
+
+} // namespace
+
+std::optional<std::string> FlagValues::text(const std::string& name) const {
+  const auto it = m_values.find(name);
+  if (it == m_values.end())
+    return std::nullopt;
+  if (it->second.size() > 1)
+    throw usageError("--" + name + ": given more than once");
+  return it->second.front();
+}
+
+std::vector<std::string> FlagValues::texts(const std::string& name) const {
+  const auto it = m_values.find(name);
+  return it == m_values.end() ? std::vector<std::string>() : it->second;
+}
+
+std::optional<double> FlagValues::number(const std::string& name, double least,
+                                         double greatest) const {
+  const auto given = text(name);
+  if (!given)
+    return std::nullopt;
+  const auto value = parseNumber(*given);
+  if (!value || *value < least || *value > greatest)
+    throw badValue(name, "a number from " + shortNumber(least) + " to " + shortNumber(greatest),
+                   *given);
+  return value;
+}
+
+std::optional<std::uint64_t> FlagValues::count(const std::string& name, std::uint64_t least,
+                                               std::uint64_t greatest) const {
+  const auto given = text(name);
+  if (!given)
+    return std::nullopt;
+  std::uint64_t value = 0;
+  const char* last = given->data() + given->size();
+  const auto [end, error] = std::from_chars(given->data(), last, value);
+  if (error != std::errc() || end != last || value < least || value > greatest)
+    throw badValue(
+        name, "a whole number from " + std::to_string(least) + " to " + std::to_string(greatest),
+        *given);
+  return value;
+}
+
+std::optional<std::vector<double>> FlagValues::numbers(const std::string& name,
+                                                       std::size_t size) const {
+  const auto given = text(name);
+  if (!given)
+    return std::nullopt;
+  std::vector<double> values;
+  for (const std::string& part : splitAtCommas(*given))
+    if (const auto value = parseNumber(part))
+      values.push_back(*value);
+    else
+      throw badValue(name, std::to_string(size) + " numbers separated by commas", *given);
+  if (values.size() != size)
+    throw badValue(name, std::to_string(size) + " numbers separated by commas", *given);
+  return values;
+}
+
+std::optional<Vec3> FlagValues::triple(const std::string& name) const {
+  const auto values = numbers(name, 3);
+  if (!values)
+    return std::nullopt;
+  return Vec3((*values)[0], (*values)[1], (*values)[2]);
+}
+
+std::optional<std::string> FlagValues::word(const std::string& name,
+                                            const std::vector<std::string>& words) const {
+  const auto given = text(name);
+  if (!given || std::find(words.begin(), words.end(), *given) != words.end())
+    return given;
+  std::string known;
+  for (const std::string& w : words)
+    known += (known.empty() ? "" : ", ") + w;
+  throw badValue(name, "one of " + known, *given);
+}
+
+std::vector<std::string> FlagValues::list(const std::string& name) const {
+  std::vector<std::string> all;
+  for (const std::string& given : texts(name))
+    for (const std::string& part : splitAtCommas(given)) {
+      if (part.empty())
+        throw badValue(name, "names separated by commas", given);
+      all.push_back(part);
+    }
+  return all;
+}
+
+std::optional<FlagValues> parseFlags(const CommandSyntax& syntax, int argc, char** argv,
+                                     int first) {
+  CLI::App app(syntax.summary, *syntax.name ? std::string("fenestra ") + syntax.name : "fenestra");
+  app.set_help_flag("--help", "Print this help and exit");
+  app.set_version_flag("--version", std::string("fenestra ") + versionText);
+  app.get_formatter()->column_width(34);
+
+  std::vector<std::string> positionals(syntax.positionals.size());
+  for (std::size_t i = 0; i < positionals.size(); ++i)
+    app.add_option(syntax.positionals[i], positionals[i])->required();
+  std::map<std::string, std::vector<std::string>> values;
+  for (const Flag& flag : syntax.flags) {
+    const std::string dashed = std::string("--") + flag.name;
+    CLI::Option* option = *flag.value ? app.add_option(dashed, values[flag.name], flag.text)
+                                            ->type_name(flag.value)
+                                            ->allow_extra_args(false)
+                                      : app.add_flag(dashed, flag.text);
+    option->group(flag.group);
+  }
+
+  std::vector<std::string> arguments(argv + first, argv + argc);
+  std::reverse(arguments.begin(), arguments.end());
+  try {
+    app.parse(arguments);
+  } catch (const CLI::Success& success) {
+    app.exit(success, std::cout, std::cerr);
+    return std::nullopt;
+  } catch (const CLI::Error& error) {
+    throw usageErrorFrom(error, syntax);
+  }
+
+  FlagValues result;
+  for (std::size_t i = 0; i < positionals.size(); ++i)
+    result.add(syntax.positionals[i], positionals[i]);
+  for (const Flag& flag : syntax.flags) {
+    if (!*flag.value && app.count(std::string("--") + flag.name) > 0)
+      result.add(flag.name, "");
+    for (const std::string& value : values[flag.name])
+      result.add(flag.name, value);
+  }
+  return result;
+}
+
+} // namespace fenestra

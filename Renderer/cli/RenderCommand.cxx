@@ -1,0 +1,130 @@
+#include "cli/Commands.h"
+
+#include "cli/Progress.h"
+#include "cli/RenderFlags.h"
+#include "cli/Stats.h"
+#include "cli/Stop.h"
+#include "cli/Version.h"
+#include "core/Error.h"
+#include "io/AtomicFile.h"
+#include "io/ImageWriter.h"
+#include "scene/Scene.h"
+
+#include <iostream>
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+std::string commandLine(int argc, char** argv) {
+  std::string line = "fenestra";
+  for (int i = 1; i < argc; ++i)
+    line += std::string(" ") + argv[i];
+  return line;
+}
+
+std::string text(const Vec3& v) {
+  std::ostringstream out;
+  out.precision(17);
+  out << v.x() << ',' << v.y() << ',' << v.z();
+  return out.str();
+}
+
+std::map<std::string, std::string> header(const Scene& scene, const RenderSettings& settings,
+                                          const RenderResult& result, const std::string& command) {
+  const CameraPose& pose = scene.camera().pose();
+  const bool perspective = pose.projection == Projection::perspective;
+  std::ostringstream camera;
+  camera.precision(17);
+  camera << (perspective ? "--projection perspective --angle "
+                         : "--projection orthographic --scale ")
+         << (perspective ? pose.angle : pose.scale) << " --position=" << text(pose.position)
+         << " --target=" << text(pose.target) << " --up=" << text(pose.up);
+  return {{"version", versionText},
+          {"target", targetText},
+          {"seed", std::to_string(settings.seed)},
+          {"samples", std::to_string(result.finishedSamples)},
+          {"camera", camera.str()},
+          {"command", command}};
+}
+
+/// Fails before the long work, not after it.
+void checkOutputs(const RenderOptions& options) {
+  for (const std::filesystem::path& path : options.outputs)
+    checkImagePath(path);
+  if (options.stats)
+    checkWritable(*options.stats);
+}
+
+RenderResult renderWithProgress(const Scene& scene, const RenderOptions& options,
+                                RenderMonitor& monitor) {
+  const Progress progress(options.progress, options.settings,
+                          static_cast<std::uint64_t>(options.scene.width) *
+                              static_cast<std::uint64_t>(options.scene.height),
+                          monitor);
+  return render(scene.forRender(), options.settings, monitor);
+}
+
+void report(const RenderOptions& options, const RenderResult& result, double seconds) {
+  std::string files;
+  for (const std::filesystem::path& path : options.outputs)
+    files += (files.empty() ? "" : ", ") + path.string();
+  const double noise = result.film.noise();
+  std::ostringstream line;
+  line.precision(3);
+  line << files << ": " << options.scene.width << "x" << options.scene.height << " pixels, "
+       << result.finishedSamples << " samples each";
+  if (noise < infinity)
+    line << ", noise " << noise;
+  line << ", " << seconds << " s"
+       << (result.reason == StopReason::request ? " (stopped on request)" : "");
+  std::cout << line.str() << std::endl;
+}
+
+} // namespace
+
+int renderCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> flags = parseFlags(renderSyntax, argc, argv, first);
+  if (!flags)
+    return 0;
+  const RenderOptions options = renderOptions(*flags);
+  checkOutputs(options);
+
+  RenderMonitor monitor;
+  StopOnSignal stopOnSignal;
+  const Stopwatch total;
+  RenderStats stats;
+  const Scene scene(options.scene);
+  for (const std::string& warning : scene.warnings())
+    std::cerr << "fenestra: warning: " << warning << '\n';
+
+  stopOnSignal.stopRender(monitor);
+  const Stopwatch transport;
+  const RenderResult result = renderWithProgress(scene, options, monitor);
+  stats.transport = transport.seconds();
+  if (result.finishedSamples == 0) {
+    std::cerr << "fenestra: stopped before the first pass; nothing was written\n";
+    return stoppedStatus;
+  }
+
+  const Stopwatch write;
+  Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
+  image.header = header(scene, options.settings, result, commandLine(argc, argv));
+  for (const std::filesystem::path& path : options.outputs)
+    writeImage(image, picturePlane(scene.camera()), path);
+  if (options.stats) {
+    stats.stages = scene.seconds();
+    stats.mismatch = scene.mismatch();
+    stats.warnings = scene.warnings();
+    if (!scene.focusDepth().empty())
+      stats.focusCoverage =
+          focusCoverage(scene.forRender(), scene.focusDepth(), options.settings.seed);
+    stats.write = write.seconds();
+    stats.total = total.seconds();
+    writeFile(*options.stats, statsJson(stats, result));
+  }
+  report(options, result, total.seconds());
+  return result.reason == StopReason::request ? stoppedStatus : 0;
+}
+
+} // namespace fenestra

@@ -1,0 +1,239 @@
+#include "cli/RenderFlags.h"
+
+#include "core/Error.h"
+
+namespace fenestra {
+namespace {
+
+constexpr const char* sceneGroup = "What is shown";
+constexpr const char* clipGroup = "What is clipped";
+constexpr const char* viewGroup = "View";
+constexpr const char* lookGroup = "Look";
+constexpr const char* qualityGroup = "Quality";
+constexpr const char* outputGroup = "Output";
+
+constexpr Flag flags[] = {
+    {"segmentation", "FILE", sceneGroup, "Segments: a .seg.nrrd, or any label map"},
+    {"focus", "A,B,...", sceneGroup,
+     "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,)", true},
+    {"clip", "MODE", clipGroup,
+     "none, plane, cutaway or surface [surface with a focus, else none]"},
+    {"boundary", "KIND", clipGroup, "How the surface meets the focus: spline (the paper's)"},
+    {"controlpoints", "N", clipGroup, "Control points of the spline, 3 to 2000 [50]"},
+    {"smoothing", "P", clipGroup,
+     "Spline's p in mm, from 0 (a plane) to 1 (through the points) [0.5]"},
+    {"plane", "OX,OY,OZ,NX,NY,NZ", clipGroup,
+     "Clip plane in RAS mm; what the normal points at is removed"},
+    {"view", "NAME", viewGroup,
+     "anterior, posterior, left, right, superior or inferior [anterior]"},
+    {"position", "R,A,S", viewGroup, "Eye, mm"},
+    {"target", "R,A,S", viewGroup, "Point looked at, mm [centre of the focus, else of the volume]"},
+    {"up", "R,A,S", viewGroup, "Direction that is up in the picture"},
+    {"projection", "KIND", viewGroup, "orthographic or perspective [orthographic]"},
+    {"scale", "MM", viewGroup, "Orthographic: half the picture's height [frames the focus]"},
+    {"angle", "DEGREES", viewGroup, "Perspective: full vertical angle [30]"},
+    {"transfer", "FILE|PRESET", lookGroup,
+     "Transfer function: .vp, .vp.json, Fenestra .json, ct-soft or ct-bone [by modality]"},
+    {"shift", "X", lookGroup, "Moves the transfer function along the scalar [0]"},
+    {"density", "D", lookGroup, "Multiplies the extinction [1]"},
+    {"lights", "FILE|PRESET", lookGroup, "Lights: .json, studio, headlight or soft [studio]"},
+    {"environment", "R,G,B|FILE", lookGroup,
+     "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own"},
+    {"background", "R,G,B|KIND", lookGroup, "Linear colour, transparent or environment [0,0,0]"},
+    {"size", "WxH", qualityGroup, "Pixels [512x512]"},
+    {"samples", "N", qualityGroup,
+     "Stop at N samples a pixel [64 unless seconds or noise are given]"},
+    {"seconds", "T", qualityGroup, "Stop after T seconds of rendering"},
+    {"noise", "E", qualityGroup, "Stop when the relative noise is at most E, for example 0.03"},
+    {"bounces", "B", qualityGroup, "Scatterings a path, at most (biased) [unlimited]"},
+    {"seed", "S", qualityGroup, "Random seed [0]"},
+    {"threads", "K", qualityGroup, "Threads [all]"},
+    {"output", "FILE", outputGroup,
+     "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth) [INPUT.png]",
+     true},
+    {"layers", "L,...", outputGroup,
+     "Channels of an .exr: color, depth, clip, albedo, normal, error, samples [all]", true},
+    {"stats", "FILE", outputGroup, "Times, counts and measures as .json"},
+    {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none [auto]"},
+};
+
+ClipMode clipMode(const std::string& word) {
+  if (word == "none")
+    return ClipMode::none;
+  if (word == "plane")
+    return ClipMode::plane;
+  return word == "cutaway" ? ClipMode::cutaway : ClipMode::surface;
+}
+
+void refuseTogether(const FlagValues& flags, const char* a, const char* b) {
+  if (flags.has(a) && flags.has(b))
+    throw usageError(std::string("--") + a + " and --" + b + " contradict each other; give one");
+}
+
+ClipRequest clipRequest(const FlagValues& flags) {
+  ClipRequest clip;
+  if (const auto word = flags.word("clip", {"none", "plane", "cutaway", "surface"}))
+    clip.mode = clipMode(*word);
+  flags.word("boundary", {"spline"});
+  if (const auto n = flags.count("controlpoints", 3, 2000))
+    clip.controlPoints = static_cast<int>(*n);
+  clip.smoothing = flags.number("smoothing", 0.0, 1.0).value_or(clip.smoothing);
+  if (const auto p = flags.numbers("plane", 6)) {
+    const Vec3 normal((*p)[3], (*p)[4], (*p)[5]);
+    if (!(normal.norm() > 0.0))
+      throw usageError("--plane: the normal NX,NY,NZ must not be zero");
+    clip.plane = PlaneRequest{Vec3((*p)[0], (*p)[1], (*p)[2]), normal.normalized()};
+  }
+
+  const bool hasFocus = flags.has("focus");
+  const ClipMode mode = clip.mode.value_or(hasFocus ? ClipMode::surface : ClipMode::none);
+  if (!hasFocus && (mode == ClipMode::surface || mode == ClipMode::cutaway))
+    throw usageError("--clip: " + *flags.text("clip") + " needs a focus; add --focus");
+  if (mode == ClipMode::plane && !clip.plane)
+    throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ");
+  if (mode != ClipMode::plane && clip.plane)
+    throw usageError("--plane: only --clip plane uses it");
+  for (const char* name : {"boundary", "controlpoints", "smoothing"})
+    if (mode != ClipMode::surface && flags.has(name))
+      throw usageError(std::string("--") + name + ": only --clip surface uses it");
+  return clip;
+}
+
+ViewRequest viewRequest(const FlagValues& flags) {
+  refuseTogether(flags, "view", "position");
+  ViewRequest view;
+  if (const auto word = flags.word("projection", {"orthographic", "perspective"}))
+    view.projection = *word == "perspective" ? Projection::perspective : Projection::orthographic;
+  if (view.projection == Projection::perspective && flags.has("scale"))
+    throw usageError("--scale: only for --projection orthographic; use --angle");
+  if (view.projection == Projection::orthographic && flags.has("angle"))
+    throw usageError("--angle: only for --projection perspective; use --scale");
+  view.name = flags.text("view");
+  view.position = flags.triple("position");
+  view.target = flags.triple("target");
+  view.up = flags.triple("up");
+  view.scale = flags.number("scale", 1e-9, 1e9);
+  view.angle = flags.number("angle", 1e-6, 179.0);
+  return view;
+}
+
+void readSize(const FlagValues& flags, SceneRequest& scene) {
+  const auto text = flags.text("size");
+  if (!text)
+    return;
+  constexpr int largest = 16384;
+  int width = 0;
+  int height = 0;
+  char rest = 0;
+  if (std::sscanf(text->c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 ||
+      height < 1 || width > largest || height > largest)
+    throw usageError("--size: expected WIDTHxHEIGHT in pixels, each from 1 to " +
+                     std::to_string(largest) + ", got '" + *text + "'");
+  scene.width = width;
+  scene.height = height;
+}
+
+Rgb color(const FlagValues& flags, const char* name) {
+  const Rgb value = flags.triple(name)->array();
+  if (value.minCoeff() < 0.0)
+    throw usageError(std::string("--") + name + ": must not be negative");
+  return value;
+}
+
+void readEnvironment(const FlagValues& flags, SceneRequest& scene) {
+  const auto text = flags.text("environment");
+  if (!text)
+    return;
+  if (text->ends_with(".exr"))
+    scene.environmentMap = *text;
+  else
+    scene.environment = color(flags, "environment");
+}
+
+Background background(const FlagValues& flags) {
+  const auto text = flags.text("background");
+  if (!text)
+    return {};
+  if (*text == "transparent")
+    return {Background::Kind::transparent, Rgb::Zero()};
+  if (*text == "environment")
+    return {Background::Kind::environment, Rgb::Zero()};
+  return {Background::Kind::color, color(flags, "background")};
+}
+
+RenderSettings renderSettings(const FlagValues& flags) {
+  constexpr std::uint64_t unlimited = std::uint64_t{1} << 40;
+  RenderSettings settings;
+  const bool otherStop = flags.has("seconds") || flags.has("noise");
+  settings.samples =
+      flags.count("samples", 1, unlimited).value_or(otherStop ? unlimited : settings.samples);
+  settings.seconds = flags.number("seconds", 1e-3, 1e9).value_or(settings.seconds);
+  settings.noise = flags.number("noise", 1e-6, 1e6).value_or(settings.noise);
+  settings.seed = flags.count("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(0);
+  settings.threads = static_cast<int>(flags.count("threads", 1, 1024).value_or(0));
+  settings.path.bounces = flags.count("bounces", 0, unlimited).value_or(settings.path.bounces);
+  settings.path.background = background(flags);
+  return settings;
+}
+
+ProgressMode progressMode(const FlagValues& flags) {
+  const std::string word = flags.word("progress", {"auto", "bar", "xml", "none"}).value_or("auto");
+  if (word == "bar")
+    return ProgressMode::bar;
+  if (word == "xml")
+    return ProgressMode::xml;
+  return word == "none" ? ProgressMode::none : ProgressMode::automatic;
+}
+
+/// INPUT.png in the current folder, without the input's own endings.
+std::filesystem::path defaultOutput(const std::filesystem::path& input) {
+  std::string name = input.filename().string();
+  for (const char* ending : {".gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd"})
+    if (name.ends_with(ending))
+      name.resize(name.size() - std::string_view(ending).size());
+  return name + ".png";
+}
+
+} // namespace
+
+const CommandSyntax renderSyntax = {
+    "render",
+    "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
+    "a "
+    "clipping surface.",
+    {"INPUT"},
+    flags,
+};
+
+RenderOptions renderOptions(const FlagValues& flags) {
+  RenderOptions options;
+  SceneRequest& scene = options.scene;
+  scene.volume = *flags.text("INPUT");
+  scene.segmentation = flags.text("segmentation");
+  scene.focus = flags.list("focus");
+  if (!scene.focus.empty() && !scene.segmentation)
+    throw usageError("--focus: needs --segmentation FILE to find segments in");
+  scene.transfer = flags.text("transfer");
+  scene.shift = flags.number("shift", -1e30, 1e30).value_or(0.0);
+  scene.density = flags.number("density", 0.0, 1e12).value_or(1.0);
+  scene.lights = flags.text("lights").value_or(scene.lights);
+  readEnvironment(flags, scene);
+  scene.view = viewRequest(flags);
+  scene.clip = clipRequest(flags);
+  readSize(flags, scene);
+
+  options.settings = renderSettings(flags);
+  for (const std::string& file : flags.texts("output"))
+    options.outputs.emplace_back(file);
+  if (options.outputs.empty())
+    options.outputs.push_back(defaultOutput(scene.volume));
+  options.layers = layerSet(flags.list("layers"));
+  options.stats = flags.text("stats");
+  options.progress = progressMode(flags);
+  const bool anyExr = std::any_of(options.outputs.begin(), options.outputs.end(),
+                                  [](const auto& path) { return path.extension() == ".exr"; });
+  options.settings.path.wantNormals = anyExr && options.layers.normal;
+  return options;
+}
+
+} // namespace fenestra

@@ -1,0 +1,26 @@
+#pragma once
+// The flags of `fenestra [render]`, and what they mean.
+
+#include "cli/Flags.h"
+#include "scene/Picture.h"
+#include "scene/RenderRequest.h"
+
+namespace fenestra {
+
+enum class ProgressMode { automatic, bar, xml, none };
+
+struct RenderOptions {
+  SceneRequest scene;
+  RenderSettings settings;
+  std::vector<std::filesystem::path> outputs; ///< at least one
+  LayerSet layers;
+  std::optional<std::filesystem::path> stats = {};
+  ProgressMode progress = ProgressMode::automatic;
+};
+
+extern const CommandSyntax renderSyntax;
+
+/// Throws Error (usage) for values out of range and for flags that contradict each other.
+RenderOptions renderOptions(const FlagValues& flags);
+
+} // namespace fenestra

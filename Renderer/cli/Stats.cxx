@@ -1,0 +1,62 @@
+#include "cli/Stats.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+namespace fenestra {
+namespace {
+
+struct SampleCounts {
+  std::uint64_t least = 0, greatest = 0;
+  double mean = 0.0;
+};
+
+SampleCounts sampleCounts(const Film& film) {
+  SampleCounts counts{std::numeric_limits<std::uint64_t>::max(), 0, 0.0};
+  for (const PixelSums& pixel : film.pixels()) {
+    counts.least = std::min(counts.least, pixel.samples);
+    counts.greatest = std::max(counts.greatest, pixel.samples);
+    counts.mean += static_cast<double>(pixel.samples) / static_cast<double>(film.pixelCount());
+  }
+  return counts;
+}
+
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
+} // namespace
+
+std::string statsJson(const RenderStats& stats, const RenderResult& result) {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  const SampleCounts samples = sampleCounts(result.film);
+  const Counters& c = result.counters;
+  const double noise = result.film.noise();
+
+  nlohmann::ordered_json json;
+  json["seconds"] = {{"load", stats.stages.load},   {"classify", stats.stages.classify},
+                     {"focus", stats.stages.focus}, {"spline", stats.stages.spline},
+                     {"fill", stats.stages.fill},   {"transport", stats.transport},
+                     {"write", stats.write},        {"total", stats.total}};
+  json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  json["paths"] = c.paths;
+  json["collisions"] = c.collisions;
+  json["lookups"] = c.lookups;
+  json["skippedFraction"] =
+      c.cells > 0 ? static_cast<double>(c.skippedCells) / static_cast<double>(c.cells) : 0.0;
+  json["samplesPerPixel"] = {
+      {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
+  json["noise"] = noise < infinity ? nlohmann::ordered_json(noise) : nullptr;
+  json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+  if (stats.mismatch)
+    json["boundaryMismatchMm"] = {
+        {"mean", stats.mismatch->mean}, {"p95", stats.mismatch->p95}, {"max", stats.mismatch->max}};
+  if (stats.focusCoverage)
+    json["focusCoverage"] = *stats.focusCoverage;
+  json["warnings"] = stats.warnings;
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+} // namespace fenestra

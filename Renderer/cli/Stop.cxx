@@ -1,0 +1,47 @@
+#include "cli/Stop.h"
+
+#include <csignal>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+std::atomic<RenderMonitor*> running = nullptr;
+static_assert(std::atomic<RenderMonitor*>::is_always_lock_free);
+
+/// Only what a signal handler may do.
+void onSignal(int) {
+  if (RenderMonitor* monitor = running) {
+    monitor->stop = true;
+    return;
+  }
+  static constexpr char line[] = "fenestra: stopped before rendering; nothing was written\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line, sizeof line - 1);
+  ::_exit(stoppedStatus);
+}
+
+void handle(void (*handler)(int)) {
+  struct sigaction action = {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM})
+    sigaction(signal, &action, nullptr);
+}
+
+} // namespace
+
+StopOnSignal::StopOnSignal() {
+  handle(onSignal);
+}
+
+StopOnSignal::~StopOnSignal() {
+  handle(SIG_DFL);
+  running = nullptr;
+}
+
+void StopOnSignal::stopRender(RenderMonitor& monitor) {
+  running = &monitor;
+}
+
+} // namespace fenestra

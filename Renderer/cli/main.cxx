@@ -1,0 +1,56 @@
+#include "cli/Commands.h"
+#include "core/Error.h"
+
+#include <algorithm>
+#include <iostream>
+#include <new>
+#include <string>
+#include <string_view>
+
+namespace {
+
+using Command = int (*)(int argc, char** argv, int first);
+
+struct NamedCommand {
+  std::string_view name;
+  Command run;
+};
+
+constexpr NamedCommand commands[] = {
+    {"render", fenestra::renderCommand},
+    {"compare", fenestra::compareCommand},
+    {"phantom", fenestra::phantomCommand},
+};
+
+int dispatch(int argc, char** argv) {
+  const std::string_view word = argc > 1 ? argv[1] : "";
+  const auto* named =
+      std::find_if(std::begin(commands), std::end(commands),
+                   [word](const NamedCommand& command) { return command.name == word; });
+  if (named != std::end(commands))
+    return named->run(argc, argv, 2);
+  return fenestra::renderCommand(argc, argv, 1);
+}
+
+/// Whatever an exception says, on one line.
+int fail(int status, std::string line) {
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  std::cerr << "fenestra: " << line << std::endl;
+  return status;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  using fenestra::ErrorKind;
+  try {
+    return dispatch(argc, argv);
+  } catch (const fenestra::Error& error) {
+    return fail(error.exitStatus(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(static_cast<int>(ErrorKind::output),
+                "out of memory; use a smaller volume or picture");
+  } catch (const std::exception& error) {
+    return fail(static_cast<int>(ErrorKind::output), error.what());
+  }
+}

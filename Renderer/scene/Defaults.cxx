@@ -1,0 +1,177 @@
+#include "scene/Defaults.h"
+
+#include "core/Error.h"
+
+#include <map>
+
+namespace fenestra {
+namespace {
+
+struct AnatomicalView {
+  Vec3 fromTarget; ///< where the viewer stands, RAS
+  Vec3 up;
+};
+
+const std::map<std::string, AnatomicalView>& anatomicalViews() {
+  static const std::map<std::string, AnatomicalView> views = {
+      {"anterior", {Vec3::UnitY(), Vec3::UnitZ()}}, {"posterior", {-Vec3::UnitY(), Vec3::UnitZ()}},
+      {"right", {Vec3::UnitX(), Vec3::UnitZ()}},    {"left", {-Vec3::UnitX(), Vec3::UnitZ()}},
+      {"superior", {Vec3::UnitZ(), Vec3::UnitY()}}, {"inferior", {-Vec3::UnitZ(), Vec3::UnitY()}},
+  };
+  return views;
+}
+
+/// Quantiles of the voxels' values, from at most about a million of them.
+std::vector<double> quantiles(const Volume& volume, const std::vector<double>& fractions) {
+  return std::visit(
+      [&](const auto& voxels) {
+        const std::size_t stride = voxels.size() / 1'000'000 + 1;
+        std::vector<double> values;
+        for (std::size_t i = 0; i < voxels.size(); i += stride)
+          values.push_back(static_cast<double>(voxels[i]));
+        std::sort(values.begin(), values.end());
+        std::vector<double> result;
+        for (const double f : fractions)
+          result.push_back(
+              values[static_cast<std::size_t>(f * static_cast<double>(values.size() - 1))]);
+        return result;
+      },
+      volume.voxels);
+}
+
+/// The threshold that best parts a sample of values in two (Otsu 1979), from a 256-bin histogram
+/// of [low, high].
+double backgroundLevel(const Volume& volume, double low, double high) {
+  constexpr int bins = 256;
+  std::vector<double> histogram(bins, 0.0);
+  std::visit(
+      [&](const auto& voxels) {
+        const std::size_t stride = voxels.size() / 1'000'000 + 1;
+        for (std::size_t i = 0; i < voxels.size(); i += stride) {
+          const double x = (static_cast<double>(voxels[i]) - low) / (high - low);
+          histogram[static_cast<std::size_t>(std::clamp(x, 0.0, 1.0) * (bins - 1))] += 1.0;
+        }
+      },
+      volume.voxels);
+  double total = 0.0;
+  double moment = 0.0;
+  for (int i = 0; i < bins; ++i) {
+    total += histogram[static_cast<std::size_t>(i)];
+    moment += i * histogram[static_cast<std::size_t>(i)];
+  }
+  double below = 0.0;
+  double belowMoment = 0.0;
+  double best = -1.0;
+  int threshold = 0;
+  for (int i = 0; i < bins; ++i) {
+    below += histogram[static_cast<std::size_t>(i)];
+    belowMoment += i * histogram[static_cast<std::size_t>(i)];
+    if (below == 0.0 || below == total)
+      continue;
+    const double gap = belowMoment / below - (moment - belowMoment) / (total - below);
+    const double between = below * (total - below) * gap * gap;
+    if (between > best) {
+      best = between;
+      threshold = i;
+    }
+  }
+  return low + (high - low) * (threshold + 1.0) / bins;
+}
+
+struct Extent {
+  Vec3 center;
+  double across, up; ///< half extents along the view's right and up, mm
+};
+
+/// Half extents of a box's corners around its centre, seen along a view.
+Extent seen(const Affine& indexToWorld, const Box& indexBox, const Vec3& right, const Vec3& up) {
+  Extent extent{indexToWorld * indexBox.center(), 0.0, 0.0};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 d = indexToWorld * indexBox.corner(i) - extent.center;
+    extent.across = std::max(extent.across, std::abs(d.dot(right)));
+    extent.up = std::max(extent.up, std::abs(d.dot(up)));
+  }
+  return extent;
+}
+
+} // namespace
+
+std::optional<std::string> transferPresetFor(const Volume& volume) {
+  const bool hounsfield = volume.minimum <= -500.0 && volume.minimum >= -5000.0 &&
+                          volume.maximum >= 200.0 && volume.maximum <= 70000.0;
+  return hounsfield ? std::optional<std::string>("ct-soft") : std::nullopt;
+}
+
+TransferFunction relativeTransfer(const Volume& volume) {
+  const double unit =
+      100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm
+  const std::vector<double> levels = quantiles(volume, {0.005, 0.995});
+  const double low = levels[0];
+  const double high = levels[1] > low ? levels[1] : volume.maximum;
+  if (!(high > low))
+    return {ScalarFunction({{low, ScalarFunction::Value(0.02 * unit)}}),
+            ColorFunction({{low, Rgb(0.9, 0.85, 0.8)}})};
+
+  const double background = backgroundLevel(volume, low, high);
+  const auto between = [&](double f) { return background + f * (high - background); };
+  const auto knot = [](double s, double sigma_t) {
+    return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
+  };
+  const double start = background - 0.35 * (background - low);
+  return {ScalarFunction({knot(start, 0.0), knot(background, 0.8 * unit),
+                          knot(between(0.3), 2.5 * unit), knot(high, 5.0 * unit)}),
+          ColorFunction({{start, Rgb(0.55, 0.22, 0.16)},
+                         {between(0.15), Rgb(0.74, 0.36, 0.27)},
+                         {between(0.45), Rgb(0.86, 0.60, 0.47)},
+                         {between(0.75), Rgb(0.94, 0.82, 0.68)},
+                         {high, Rgb(0.97, 0.93, 0.86)}}),
+          {},
+          0.0,
+          SurfaceShading{}};
+}
+
+CameraPose frameView(const ViewRequest& view, const Grid& volume, const Mask* focus, int width,
+                     int height) {
+  constexpr double surroundings = 1.6; // how much more than the focus is framed
+  constexpr double margin = 1.05;      // around the whole volume
+  constexpr double defaultAngle = 30.0;
+  const std::string name = view.name.value_or("anterior");
+  const auto known = anatomicalViews().find(name);
+  if (known == anatomicalViews().end())
+    throw usageError("--view: '" + name +
+                     "' is unknown; use anterior, posterior, left, right, superior or inferior");
+
+  CameraPose pose;
+  pose.projection = view.projection;
+  pose.angle = view.angle.value_or(defaultAngle);
+  const Grid& framed = focus ? focus->grid : volume;
+  pose.target = view.target.value_or(framed.worldCenter());
+  const Vec3 back =
+      view.position ? Vec3((*view.position - pose.target).normalized()) : known->second.fromTarget;
+  pose.up = view.up.value_or(std::abs(back.dot(known->second.up)) > 0.999 * back.norm()
+                                 ? Vec3(Vec3::UnitY())
+                                 : known->second.up);
+  const Vec3 right = pose.up.cross(back).normalized();
+  const Vec3 up = back.cross(right);
+
+  // The whole volume, or the focus with its surroundings where that is less.
+  const double aspect = static_cast<double>(width) / height;
+  const auto halfHeight = [&](const Grid& grid) {
+    const Extent extent = seen(grid.indexToWorld, grid.indexBox(), right, up);
+    return std::max(extent.up, extent.across / aspect);
+  };
+  double half = margin * halfHeight(volume);
+  if (focus)
+    half = std::min(half, surroundings * halfHeight(focus->grid));
+  pose.scale = view.scale.value_or(half);
+
+  const double clearance =
+      2.0 * volume.boundingRadius() + (pose.target - volume.worldCenter()).norm();
+  const double distance = pose.projection == Projection::perspective
+                              ? half / std::tan(pose.angle * pi / 360.0) + volume.boundingRadius()
+                              : clearance;
+  pose.position = view.position.value_or(pose.target + distance * back);
+  return pose;
+}
+
+} // namespace fenestra

@@ -1,0 +1,28 @@
+#pragma once
+// What a scene gets where its user says nothing: a look by modality and range, and a view that
+// frames what matters.
+
+#include "camera/Camera.h"
+#include "medium/TransferFunction.h"
+#include "scene/RenderRequest.h"
+#include "volume/Mask.h"
+#include "volume/Volume.h"
+
+namespace fenestra {
+
+/// The name of a transfer preset for CT in Hounsfield units, nothing for any other volume.
+std::optional<std::string> transferPresetFor(const Volume& volume);
+
+/// A look for volumes without an absolute scale (MR, ultrasound, stored values): from transparent
+/// at the background's level to opaque at the 99.5th percentile, dark red-brown through tissue to
+/// ivory. Extinction is relative to the volume's size. A constant volume gets a uniform haze
+/// without shading.
+TransferFunction relativeTransfer(const Volume& volume);
+
+/// The pose that a view request means for this volume and focus: named views look along the
+/// patient's axes at the focus (else the volume), and what is framed is the focus with its
+/// surroundings. Throws Error (usage) for an unknown view name.
+CameraPose frameView(const ViewRequest& view, const Grid& volume, const Mask* focus, int width,
+                     int height);
+
+} // namespace fenestra

@@ -1,0 +1,52 @@
+#pragma once
+// What a user asks for: plain data, filled by the command line (and whoever else drives a render).
+
+#include "camera/Camera.h"
+#include "render/Render.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fenestra {
+
+enum class ClipMode { none, plane, cutaway, surface };
+
+struct PlaneRequest {
+  Vec3 origin, normal; ///< RAS mm; what the normal points at is removed
+};
+
+struct ClipRequest {
+  std::optional<ClipMode> mode = {}; ///< by default `surface` when there is a focus, else `none`
+  std::optional<PlaneRequest> plane = {};
+  int controlPoints = 50;
+  double smoothing = 0.5; ///< p of the approximating thin plate spline
+};
+
+/// Where the eye is: a named direction, or a pose of which unset parts are derived from the scene.
+struct ViewRequest {
+  Projection projection = Projection::orthographic;
+  std::optional<std::string> name = {}; ///< anterior, posterior, left, right, superior, inferior
+  std::optional<Vec3> position = {}, target = {}, up = {};
+  std::optional<double> scale = {}; ///< orthographic: half the viewport's height, mm
+  std::optional<double> angle = {}; ///< perspective: full vertical angle, degrees
+};
+
+struct SceneRequest {
+  std::filesystem::path volume;
+  std::optional<std::filesystem::path> segmentation = {};
+  std::vector<std::string> focus = {}; ///< ids, names or label values
+  std::optional<std::string> transfer =
+      {}; ///< a file, or a preset's name; by default from the volume
+  double shift = 0.0;
+  double density = 1.0;
+  std::string lights = "studio";       ///< a file, or a preset's name
+  std::optional<Rgb> environment = {}; ///< replaces the lights' own environment
+  std::optional<std::filesystem::path> environmentMap = {};
+  ViewRequest view;
+  ClipRequest clip;
+  int width = 512, height = 512;
+};
+
+} // namespace fenestra

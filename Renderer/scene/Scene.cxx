@@ -1,0 +1,149 @@
+#include "scene/Scene.h"
+
+#include "core/Error.h"
+#include "core/Stopwatch.h"
+#include "io/EmbeddedResources.h"
+#include "io/LightReader.h"
+#include "io/SegmentationReader.h"
+#include "io/TransferReader.h"
+#include "io/VolumeReader.h"
+#include "scene/Defaults.h"
+
+namespace fenestra {
+namespace {
+
+/// What `name` means under Resources/<kind>/: the text of a preset, empty where there is none.
+std::string_view preset(const std::string& kind, const std::string& name) {
+  return embeddedResource(kind + "/" + name + ".json");
+}
+
+/// A name without a dot is a preset's; so is no file's.
+Error unknownPreset(const std::string& flag, const std::string& kind, const std::string& name) {
+  std::string known;
+  for (const std::string& path : embeddedResourceNames(kind + "/"))
+    known += (known.empty() ? "" : ", ") +
+             path.substr(kind.size() + 1, path.size() - kind.size() - 1 - std::strlen(".json"));
+  return inputError(name, "no such file, and no preset of that name; --" + flag +
+                              " takes a file or one of " + known);
+}
+
+TransferFunction requestedTransfer(const SceneRequest& request, const Volume& volume) {
+  std::optional<std::string> name = request.transfer;
+  if (!name)
+    name = transferPresetFor(volume);
+  if (!name)
+    return relativeTransfer(volume);
+  if (const std::string_view text = preset("transfer", *name); !text.empty())
+    return parseTransferFunction(text, *name);
+  if (!std::filesystem::exists(*name))
+    throw unknownPreset("transfer", "transfer", *name);
+  return readTransferFunction(*name);
+}
+
+std::vector<Light> requestedLights(const SceneRequest& request) {
+  std::vector<Light> lights;
+  if (const std::string_view text = preset("lights", request.lights); !text.empty())
+    lights = parseLights(text, request.lights);
+  else if (!std::filesystem::exists(request.lights))
+    throw unknownPreset("lights", "lights", request.lights);
+  else
+    lights = readLights(request.lights);
+
+  if (request.environment || request.environmentMap) {
+    std::erase_if(lights,
+                  [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l); });
+    EnvironmentLight environment;
+    if (request.environment)
+      environment.radiance = *request.environment;
+    else
+      environment.map = readEnvironmentMap(*request.environmentMap);
+    lights.emplace_back(environment);
+  }
+  return lights;
+}
+
+/// The focus depths at the viewport's pixels.
+std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera) {
+  std::vector<double> depths;
+  for (int row = 0; row < camera.height(); ++row)
+    for (int column = 0; column < camera.width(); ++column)
+      depths.push_back(focus.depth.at(focus.depth.viewportSample(column, row)));
+  return depths;
+}
+
+} // namespace
+
+Scene::Scene(const SceneRequest& request) {
+  load(request);
+  placeCamera(request);
+  placeLights(request);
+  buildClip(request);
+  classify();
+}
+
+void Scene::load(const SceneRequest& request) {
+  const Stopwatch watch;
+  m_volume = readVolume(request.volume);
+  m_warnings = m_volume.warnings;
+  if (!request.focus.empty())
+    m_focus = readSegmentation(*request.segmentation).mask(request.focus, m_volume.grid);
+  m_transfer = requestedTransfer(request, m_volume).shifted(request.shift).scaled(request.density);
+  if (m_transfer->shading && m_volume.minimum == m_volume.maximum)
+    throw inputError(m_volume.name,
+                     "every voxel has the same value, so there is no gradient for the transfer "
+                     "function's shading; use one with shading off (\"shading\": \"volume\")");
+  m_seconds.load = watch.seconds();
+}
+
+void Scene::placeCamera(const SceneRequest& request) {
+  const CameraPose pose = frameView(request.view, m_volume.grid, m_focus ? &*m_focus : nullptr,
+                                    request.width, request.height);
+  m_camera.emplace(pose, request.width, request.height);
+}
+
+void Scene::placeLights(const SceneRequest& request) {
+  m_lights.emplace(requestedLights(request), m_volume.grid, *m_camera);
+}
+
+void Scene::buildClip(const SceneRequest& request) {
+  const ClipMode mode = request.clip.mode.value_or(m_focus ? ClipMode::surface : ClipMode::none);
+  switch (mode) {
+  case ClipMode::cutaway:
+    return buildDepthClip(SurfaceMode::cutaway, request.clip);
+  case ClipMode::surface:
+    return buildDepthClip(SurfaceMode::surface, request.clip);
+  case ClipMode::plane:
+    m_clip = ClipPlane{*m_camera, request.clip.plane->origin, request.clip.plane->normal};
+    break;
+  case ClipMode::none:
+    break;
+  }
+  if (!m_focus)
+    return;
+  const Stopwatch watch; // for the coverage alone
+  m_focusDepth = viewportDepths(traceFocus(*m_camera, m_volume.grid, *m_focus), *m_camera);
+  m_seconds.focus = watch.seconds();
+}
+
+void Scene::buildDepthClip(SurfaceMode mode, const ClipRequest& request) {
+  ClippingSurface surface = buildClippingSurface(*m_camera, m_volume.grid, *m_focus,
+                                                 {mode, request.controlPoints, request.smoothing});
+  m_focusDepth = viewportDepths(surface.focus, *m_camera);
+  m_clip = std::move(surface.clip);
+  if (mode == SurfaceMode::surface)
+    m_mismatch = surface.mismatch;
+  m_seconds.focus = surface.focusSeconds;
+  m_seconds.spline = surface.splineSeconds;
+  m_seconds.fill = surface.fillSeconds;
+  m_warnings.insert(m_warnings.end(), surface.warnings.begin(), surface.warnings.end());
+}
+
+void Scene::classify() {
+  const Stopwatch watch;
+  const CellRanges ranges(m_volume, MajorantGrid::apronFor(*m_transfer));
+  const auto isRemoved = [this](const Corners& corners) { return removed(m_clip, corners); };
+  m_majorants.emplace(m_volume.grid, ranges, *m_transfer, isRemoved);
+  m_seconds.classify = watch.seconds();
+}
+
+} // namespace fenestra

@@ -1,0 +1,102 @@
+// The furnace: albedo 1 in a constant environment of 1 shows 1 everywhere, whatever the medium, the
+// projection and the clip.
+
+#include "Support.h"
+
+#include "clipping/ClippingSurface.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+enum class MediumKind { homogeneous, heterogeneous, spikes };
+enum class ClipKind { none, plane, cutaway, surface };
+
+using Case = std::tuple<MediumKind, Projection, ClipKind, double>;
+
+Volume volumeOf(MediumKind kind) {
+  const Grid grid = centredGrid({20, 24, 18}, {1.0, 0.8, 1.3});
+  return makeVolume(grid, [kind](const Vec3& p) {
+    if (kind == MediumKind::homogeneous)
+      return 1.0;
+    return 0.5 + 0.5 * std::sin(0.9 * p.x()) * std::cos(0.7 * p.y() + 0.3 * p.z());
+  });
+}
+
+/// Non-monotone: nothing at both ends of the range, dense in a thin band between.
+TransferFunction spikes() {
+  const auto knot = [](double s, double sigma_t) {
+    return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
+  };
+  return {ScalarFunction({knot(0.0, 0.0), knot(0.45, 0.0), knot(0.5, 4.0), knot(0.55, 0.0),
+                          knot(0.9, 0.0), knot(0.9, 1.5), knot(1.0, 0.2)}),
+          ColorFunction({{0.0, Rgb::Ones()}})};
+}
+
+/// A ball of radius 4 mm, off-centre.
+Mask ball() {
+  const Grid grid = centredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
+  Mask mask{grid, {}, 0, {"ball"}};
+  for (int k = 0; k < 16; ++k)
+    for (int j = 0; j < 16; ++j)
+      for (int i = 0; i < 16; ++i) {
+        const Vec3 p = grid.indexToWorld * Vec3(i, j, k) - Vec3(1.0, -1.0, 0.5);
+        mask.voxels.push_back(p.norm() < 4.0 ? 1 : 0);
+        mask.count += mask.voxels.back();
+      }
+  return mask;
+}
+
+Clip clipOf(ClipKind kind, const Camera& camera, const Grid& volume) {
+  switch (kind) {
+  case ClipKind::none:
+    return ClipNone{};
+  case ClipKind::plane:
+    return ClipPlane{camera, Vec3(0.0, -2.0, 0.0), Vec3(0.2, 1.0, 0.1).normalized()};
+  case ClipKind::cutaway:
+    return buildClippingSurface(camera, volume, ball(), {SurfaceMode::cutaway, 50, 0.5}).clip;
+  case ClipKind::surface:
+    return buildClippingSurface(camera, volume, ball(), {SurfaceMode::surface, 50, 0.5}).clip;
+  }
+  return {};
+}
+
+class Furnace : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Furnace, IsOne) {
+  const auto [mediumKind, projection, clipKind, g] = GetParam();
+  TestScene scene{volumeOf(mediumKind),
+                  mediumKind == MediumKind::spikes ? spikes() : linearTransfer(0.4, Rgb::Ones()),
+                  {EnvironmentLight{}},
+                  {},
+                  24,
+                  24};
+  scene.transfer.g = g;
+  scene.pose.projection = projection;
+  scene.pose.position = {5.0, 40.0, 12.0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = 12.0;
+  scene.clip = clipOf(clipKind, Camera(scene.pose, scene.width, scene.height), scene.volume.grid);
+
+  RenderSettings settings;
+  settings.samples = 64;
+  settings.seed = 11;
+  settings.path.background.kind = Background::Kind::environment;
+  const RenderResult result = scene.render(settings);
+  const Estimate estimate = imageEstimate(result.film);
+  EXPECT_GT(result.counters.collisions, 10000U) << "the medium must matter";
+  EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error);
+  EXPECT_LT(estimate.error, 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Everywhere, Furnace,
+    ::testing::Combine(
+        ::testing::Values(MediumKind::homogeneous, MediumKind::heterogeneous, MediumKind::spikes),
+        ::testing::Values(Projection::orthographic, Projection::perspective),
+        ::testing::Values(ClipKind::none, ClipKind::plane, ClipKind::cutaway, ClipKind::surface),
+        ::testing::Values(0.0, 0.7)));
+
+} // namespace
+} // namespace fenestra::testing

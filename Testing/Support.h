@@ -1,0 +1,84 @@
+#pragma once
+// Small scenes and statistics that tests share.
+
+#include "render/Render.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace fenestra::testing {
+
+/// A grid centred at the origin, axes along RAS.
+inline Grid centredGrid(const Size3& size, const Vec3& spacing) {
+  Affine map = Affine::Identity();
+  map.linear().diagonal() = spacing;
+  map.translation() = -0.5 * spacing.cwiseProduct((size.array() - 1).matrix().cast<double>());
+  return {size, map};
+}
+
+template <typename Voxel = float, typename Function>
+Volume makeVolume(const Grid& grid, Function&& value) {
+  std::vector<Voxel> voxels;
+  voxels.reserve(static_cast<std::size_t>(grid.voxelCount()));
+  for (std::int64_t k = 0; k < grid.size.z(); ++k)
+    for (std::int64_t j = 0; j < grid.size.y(); ++j)
+      for (std::int64_t i = 0; i < grid.size.x(); ++i)
+        voxels.push_back(static_cast<Voxel>(
+            value(Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)))));
+  Volume volume{grid, std::move(voxels), 0.0, 0.0, "test volume", {}};
+  computeRange(volume);
+  return volume;
+}
+
+/// Extinction sigma_t * s and one albedo.
+inline TransferFunction linearTransfer(double sigma_t, const Rgb& albedo, double g = 0.0) {
+  TransferFunction transfer{
+      ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {1.0, ScalarFunction::Value(sigma_t)}}),
+      ColorFunction({{0.0, albedo}})};
+  transfer.g = g;
+  return transfer;
+}
+
+/// Owns what a RenderScene refers to.
+struct TestScene {
+  Volume volume;
+  TransferFunction transfer;
+  std::vector<Light> lights;
+  CameraPose pose;
+  int width = 16, height = 16;
+  Clip clip = {};
+
+  RenderResult render(const RenderSettings& settings) const {
+    const Camera camera(pose, width, height);
+    const LightSet lightSet(lights, volume.grid, camera);
+    const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
+    const MajorantGrid majorants(volume.grid, ranges, transfer,
+                                 [this](const Corners& c) { return removed(clip, c); });
+    RenderMonitor monitor;
+    return fenestra::render({volume, transfer, majorants, lightSet, camera, clip}, settings,
+                            monitor);
+  }
+};
+
+/// Mean and standard error over all pixels and channels' average, from the pixels' own means: valid
+/// where all pixels estimate the same value.
+struct Estimate {
+  double mean = 0.0, error = 0.0;
+};
+
+inline Estimate imageEstimate(const Film& film) {
+  Estimate estimate;
+  double variance = 0.0;
+  for (const PixelSums& pixel : film.pixels()) {
+    estimate.mean += pixel.mean.mean();
+    // Channels of one path are correlated: their mean's error is at most their errors' mean.
+    variance += std::pow(pixel.standardError().mean(), 2.0);
+  }
+  const auto n = static_cast<double>(film.pixelCount());
+  estimate.mean /= n;
+  estimate.error = std::sqrt(variance) / n;
+  return estimate;
+}
+
+} // namespace fenestra::testing
