@@ -1,0 +1,1 @@
+fenestra_test(VolumePropertyTests VolumePropertyTests.cxx LIBRARIES fenestra_medium LABELS unit)
