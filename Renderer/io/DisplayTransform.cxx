@@ -74,11 +74,14 @@ DisplayTransform::DisplayTransform(const std::string& view) {
 DisplayTransform::~DisplayTransform() = default;
 
 void DisplayTransform::apply(float* rgb, std::size_t count) const {
-  for (float* value = rgb; value != rgb + 3 * count; ++value)
-    *value = sanitized(*value);
+  if (count == 0)
+    return; // OpenColorIO refuses empty pictures
+  float* const end = rgb + 3 * count;
+  std::transform(rgb, end, rgb, sanitized);
   ocio::PackedImageDesc pixels(rgb, static_cast<long>(count), 1, ocio::CHANNEL_ORDERING_RGB);
-  if (count > 0)
-    m_processor->cpu->apply(pixels);
+  m_processor->cpu->apply(pixels);
+  // Rounding takes white past 1.
+  std::transform(rgb, end, rgb, [](float value) { return std::clamp(value, 0.0f, 1.0f); });
 }
 
 std::vector<float> toDisplay(const Image& image, const DisplayTransform& transform) {

@@ -1,9 +1,5 @@
 #include "io/ImageFormat.h"
 
-#include <itkNrrdImageIO.h>
-#include <itkPNGImageIO.h>
-#include <itkTIFFImageIO.h>
-
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -22,17 +18,6 @@ std::optional<ImageFormat> imageFormat(const std::filesystem::path& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto it = formats.find(extension);
   return it == formats.end() ? std::nullopt : std::optional(it->second);
-}
-
-itk::ImageIOBase::Pointer itkImageIo(ImageFormat format) {
-  switch (format) {
-  case ImageFormat::nrrd:
-    return itk::NrrdImageIO::New().GetPointer();
-  case ImageFormat::png:
-    return itk::PNGImageIO::New().GetPointer();
-  default:
-    return itk::TIFFImageIO::New().GetPointer();
-  }
 }
 
 } // namespace fenestra

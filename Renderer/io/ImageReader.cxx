@@ -9,11 +9,14 @@
 #include <ImfInputFile.h>
 #include <ImfPartType.h>
 #include <ImfStringAttribute.h>
-#include <itkImageIOBase.h>
+#include <itkNrrdImageIO.h>
+#include <png.h>
+#include <tiffio.h>
 
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <memory>
 
 namespace fenestra {
 
@@ -104,14 +107,15 @@ void checkAttached(const std::filesystem::path& path) {
   }
 }
 
-/// Channel names by the number of components; empty names mean grey.
+/// Channel names by the number of components, none where it is not ours; empty names mean grey.
 std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
-  const std::vector<std::string> byCount[5] = {{},
-                                               {format == ImageFormat::nrrd ? "Z" : ""},
-                                               {"", "A"},
-                                               {"R", "G", "B"},
-                                               {"R", "G", "B", "A"}};
-  return components < std::size(byCount) ? byCount[components] : std::vector<std::string>();
+  if (components == 3)
+    return {"R", "G", "B"};
+  if (components == 4)
+    return {"R", "G", "B", "A"};
+  if (format == ImageFormat::nrrd)
+    return components == 1 ? std::vector<std::string>{"Z"} : std::vector<std::string>();
+  return components == 1 ? std::vector<std::string>{""} : std::vector<std::string>{"", "A"};
 }
 
 /// Interleaved samples to planes; integers become [0, 1].
@@ -133,18 +137,78 @@ void unpack(const std::vector<char>& bytes, const std::vector<std::string>& name
   }
 }
 
-void unpackAs(itk::IOComponentEnum type, const std::filesystem::path& path,
-              const std::vector<char>& bytes, const std::vector<std::string>& names, Image& image) {
-  if (type == itk::IOComponentEnum::UCHAR)
-    unpack<std::uint8_t>(bytes, names, image);
-  else if (type == itk::IOComponentEnum::USHORT)
+/// By libpng's simplified interface, which brings every kind of PNG to 8 bit.
+Image readPng(const std::filesystem::path& path) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  const std::unique_ptr<png_image, void (*)(png_image*)> cleanup(&png, png_image_free);
+  if (!png_image_begin_read_from_file(&png, path.c_str()))
+    throw std::runtime_error(png.message);
+  const bool hasAlpha = (png.format & PNG_FORMAT_FLAG_ALPHA) != 0;
+  png.format = hasAlpha ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
+  png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
+  checkSize(path, png.width, png.height, hasAlpha ? 4 : 3);
+  std::vector<char> bytes(PNG_IMAGE_SIZE(png));
+  if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr))
+    throw std::runtime_error(png.message);
+  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}, {}};
+  unpack<std::uint8_t>(bytes, channelNames(ImageFormat::png, hasAlpha ? 4 : 3), image);
+  return image;
+}
+
+std::uint32_t tiffField(TIFF* tiff, std::uint32_t tag) {
+  std::uint16_t value = 0;
+  TIFFGetFieldDefaulted(tiff, tag, &value);
+  return value;
+}
+
+/// What readTiff reads: rows of interleaved unsigned samples, grey or RGB.
+void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
+  const auto bits = tiffField(tiff, TIFFTAG_BITSPERSAMPLE);
+  const auto samples = tiffField(tiff, TIFFTAG_SAMPLESPERPIXEL);
+  const auto photometric = tiffField(tiff, TIFFTAG_PHOTOMETRIC);
+  const bool known = (bits == 8 || bits == 16) &&
+                     photometric == (samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) &&
+                     tiffField(tiff, TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT;
+  if (!known || samples < 1 || samples > 4 || TIFFIsTiled(tiff) ||
+      tiffField(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)
+    throw inputError(path.string(),
+                     "is not grey or RGB of 8 or 16 bit in interleaved rows; convert it");
+}
+
+std::vector<char> readTiffRows(TIFF* tiff, std::size_t rowBytes, std::uint32_t height) {
+  if (static_cast<std::size_t>(TIFFScanlineSize(tiff)) != rowBytes)
+    throw std::runtime_error("rows of another length");
+  std::vector<char> bytes(rowBytes * height);
+  for (std::uint32_t row = 0; row < height; ++row)
+    if (TIFFReadScanline(tiff, &bytes[row * rowBytes], row) != 1)
+      throw std::runtime_error("row " + std::to_string(row) + " cannot be decoded");
+  return bytes;
+}
+
+Image readTiff(const std::filesystem::path& path) {
+  TIFFSetErrorHandler(nullptr); // standard error is ours
+  TIFFSetWarningHandler(nullptr);
+  // m: no memory mapping, in which a file that shrinks kills its reader.
+  const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(path.c_str(), "rm"), TIFFClose);
+  if (!tiff)
+    throw std::runtime_error("no TIFF directory");
+  checkTiff(path, tiff.get());
+  std::uint32_t width = 0, height = 0;
+  TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width);
+  TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
+  const auto samples = tiffField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
+  const bool wide = tiffField(tiff.get(), TIFFTAG_BITSPERSAMPLE) == 16;
+  checkSize(path, width, height, samples);
+  const auto bytes =
+      readTiffRows(tiff.get(), std::size_t{width} * samples * (wide ? 2 : 1), height);
+  Image image{static_cast<int>(width), static_cast<int>(height), {}, {}};
+  const auto names = channelNames(ImageFormat::tiff, samples);
+  if (wide)
     unpack<std::uint16_t>(bytes, names, image);
-  else if (type == itk::IOComponentEnum::FLOAT)
-    unpack<float>(bytes, names, image);
   else
-    throw inputError(path.string(), "has samples of type " +
-                                        itk::ImageIOBase::GetComponentTypeAsString(type) +
-                                        "; store 8 or 16 bit, or 32-bit float");
+    unpack<std::uint8_t>(bytes, names, image);
+  return image;
 }
 
 /// Its further axes, if any, hold one slice.
@@ -155,28 +219,35 @@ bool isOnePicture(const itk::ImageIOBase& io) {
   return one;
 }
 
-Image readThroughItk(const std::filesystem::path& path, ImageFormat format) {
-  if (format == ImageFormat::nrrd)
-    checkAttached(path);
-  const auto io = itkImageIo(format);
+Image readNrrd(const std::filesystem::path& path) {
+  checkAttached(path);
+  const auto io = itk::NrrdImageIO::New();
   io->SetFileName(path.string());
   io->ReadImageInformation();
-  const auto names = channelNames(format, io->GetNumberOfComponents());
-  if (!isOnePicture(*io) || names.empty())
-    throw inputError(path.string(), "is not one picture of 1 to 4 components; extract one");
+  const auto names = channelNames(ImageFormat::nrrd, io->GetNumberOfComponents());
+  if (!isOnePicture(*io) || names.empty() || io->GetComponentType() != itk::IOComponentEnum::FLOAT)
+    throw inputError(path.string(), "is not one slice of 1, 3 or 4 floats a pixel; extract one");
   checkSize(path, static_cast<std::int64_t>(io->GetDimensions(0)),
             static_cast<std::int64_t>(io->GetDimensions(1)), io->GetNumberOfComponents());
-  itk::ImageIORegion region(io->GetNumberOfDimensions());
-  for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis)
-    region.SetSize(axis, io->GetDimensions(axis));
-  io->SetIORegion(region);
-  Image image;
-  image.width = static_cast<int>(io->GetDimensions(0));
-  image.height = static_cast<int>(io->GetDimensions(1));
+  Image image{
+      static_cast<int>(io->GetDimensions(0)), static_cast<int>(io->GetDimensions(1)), {}, {}};
   std::vector<char> bytes(static_cast<std::size_t>(io->GetImageSizeInBytes()));
   io->Read(bytes.data());
-  unpackAs(io->GetComponentType(), path, bytes, names, image);
+  unpack<float>(bytes, names, image);
   return image;
+}
+
+Image readAs(ImageFormat format, const std::filesystem::path& path) {
+  switch (format) {
+  case ImageFormat::exr:
+    return readExr(path);
+  case ImageFormat::nrrd:
+    return readNrrd(path);
+  case ImageFormat::png:
+    return readPng(path);
+  default:
+    return readTiff(path);
+  }
 }
 
 } // namespace
@@ -190,16 +261,16 @@ Image readImage(const std::filesystem::path& path) {
     throw inputError(path.string(),
                      std::string("has no known extension; name an image ") + imageExtensions);
   try {
-    return *format == ImageFormat::exr ? readExr(path) : readThroughItk(path, *format);
+    return readAs(*format, path);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
     throw inputError(path.string(), "does not fit into memory; use a smaller image");
+  } catch (const itk::ExceptionObject&) { // its text names ITK's own source lines
+    throw inputError(path.string(), "is damaged or not of its extension's format; write it again");
   } catch (const std::exception& error) {
-    // ITK's text names its own source lines; OpenEXR's says what is wrong.
-    const std::string detail = *format == ImageFormat::exr ? " (" + firstLine(error) + ")" : "";
-    throw inputError(path.string(),
-                     "is damaged or not of its extension's format" + detail + "; write it again");
+    throw inputError(path.string(), "is damaged or not of its extension's format (" +
+                                        firstLine(error) + "); write it again");
   }
 }
 

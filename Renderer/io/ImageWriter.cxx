@@ -14,14 +14,21 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <itkImageIOBase.h>
+#include <itkNrrdImageIO.h>
+#include <png.h>
+#include <tiffio.h>
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 namespace fenestra {
 
 namespace {
+
+Error unwritable(const std::filesystem::path& path) {
+  return outputError(path.string(), "cannot be written whole; free some space on its disk");
+}
 
 /// In memory, because OpenEXR keeps silent about a disk that fills as it closes a file.
 std::string encodeExr(const Image& image) {
@@ -46,54 +53,73 @@ std::string encodeExr(const Image& image) {
   return stream.str();
 }
 
-template <typename T>
-itk::IOComponentEnum componentOf() {
-  return itk::ImageIOBase::MapPixelType<T>::CType;
+bool isOpaque(const std::vector<float>& rgba) {
+  for (std::size_t i = 3; i < rgba.size(); i += 4)
+    if (rgba[i] < 1.0f)
+      return false;
+  return true;
 }
 
-/// Writes interleaved values to the temporary file. A disk that fills in a file's last block goes
-/// unnoticed by the libraries; reading back notices.
+/// Values in [0, 1] as integers from 0 to the largest, without alpha where it says nothing.
 template <typename T>
-void writeThroughItk(itk::ImageIOBase& io, const std::vector<T>& values, const AtomicFile& file,
-                     const std::filesystem::path& path) {
-  io.SetComponentType(componentOf<T>());
-  io.SetFileName(file.temporaryPath().string());
-  try {
-    io.Write(values.data());
-    readImage(file.temporaryPath());
-  } catch (const std::exception&) { // ITK's text names its own source lines
-    throw outputError(path.string(), "cannot be written whole; free some space on its disk");
-  }
-}
-
-void setSize(itk::ImageIOBase& io, const Image& image, unsigned dimensions, unsigned components,
-             itk::IOPixelEnum pixelType) {
-  io.SetNumberOfDimensions(dimensions);
-  for (unsigned axis = 0; axis < dimensions; ++axis)
-    io.SetDimensions(axis, 1);
-  io.SetDimensions(0, static_cast<std::size_t>(image.width));
-  io.SetDimensions(1, static_cast<std::size_t>(image.height));
-  io.SetNumberOfComponents(components);
-  io.SetPixelType(pixelType);
-}
-
-/// `display`: RGBA values in [0, 1] by pixel. T is the integer type of the file.
-template <typename T>
-void writeDisplay(const Image& image, const std::vector<float>& display, ImageFormat format,
-                  const std::filesystem::path& path) {
-  bool opaque = true;
-  for (std::size_t i = 3; i < display.size(); i += 4)
-    opaque = opaque && display[i] >= 1.0f;
+std::vector<T> quantized(const std::vector<float>& rgba) {
+  const bool opaque = isOpaque(rgba);
   std::vector<T> values;
-  values.reserve(display.size());
-  for (std::size_t i = 0; i < display.size(); ++i)
+  values.reserve(rgba.size());
+  for (std::size_t i = 0; i < rgba.size(); ++i)
     if (!opaque || i % 4 != 3)
-      values.push_back(static_cast<T>(std::lround(
-          static_cast<double>(display[i]) * static_cast<double>(std::numeric_limits<T>::max()))));
-  const auto io = itkImageIo(format);
-  setSize(*io, image, 2, opaque ? 3 : 4, opaque ? itk::IOPixelEnum::RGB : itk::IOPixelEnum::RGBA);
+      values.push_back(static_cast<T>(
+          std::lround(static_cast<double>(rgba[i]) * std::numeric_limits<T>::max())));
+  return values;
+}
+
+std::string encodePng(const Image& image, const std::vector<float>& rgba) {
+  const std::vector<std::uint8_t> values = quantized<std::uint8_t>(rgba);
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(image.width);
+  png.height = static_cast<png_uint_32>(image.height);
+  png.format = isOpaque(rgba) ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string content(size, '\0');
+  if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
+    throw std::runtime_error(std::string("libpng: ") + png.message);
+  content.resize(size);
+  return content;
+}
+
+void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
+  const std::uint16_t straightAlpha = EXTRASAMPLE_UNASSALPHA;
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, image.width);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, image.height);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, opaque ? 3 : 4);
+  if (!opaque)
+    TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &straightAlpha);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+  TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
+}
+
+void writeTiff(const Image& image, const std::vector<float>& rgba,
+               const std::filesystem::path& path) {
+  std::vector<std::uint16_t> values = quantized<std::uint16_t>(rgba);
+  const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
   AtomicFile file(path);
-  writeThroughItk(*io, values, file, path);
+  TIFFSetErrorHandler(nullptr); // standard error is ours
+  std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.temporaryPath().c_str(), "w"),
+                                              TIFFClose);
+  bool good = tiff != nullptr;
+  if (good)
+    setTiffFields(tiff.get(), image, isOpaque(rgba));
+  for (std::size_t row = 0; good && row < static_cast<std::size_t>(image.height); ++row)
+    good = TIFFWriteScanline(tiff.get(), &values[row * rowLength],
+                             static_cast<std::uint32_t>(row)) == 1;
+  if (!good || TIFFFlush(tiff.get()) != 1)
+    throw unwritable(path);
+  tiff.reset();
   file.commit();
 }
 
@@ -108,18 +134,32 @@ void setGeometry(itk::ImageIOBase& io, const ImagePlane& plane) {
     const Vec3 direction = axes[axis].normalized().cwiseProduct(lpsFromRas);
     io.SetSpacing(axis, axes[axis].norm());
     io.SetOrigin(axis, plane.topLeft[axis] * lpsFromRas[axis]);
-    io.SetDirection(axis, {direction.x(), direction.y(), direction.z()});
+    // + 0.0: no "-0" in the header
+    io.SetDirection(axis, {direction.x() + 0.0, direction.y() + 0.0, direction.z() + 0.0});
   }
 }
 
+/// `values`: one or more floats by pixel. A disk that fills in a file's last block goes unnoticed
+/// by ITK; reading back notices.
 void writeSlice(const Image& image, const ImagePlane& plane, const std::vector<float>& values,
                 const AtomicFile& file, const std::filesystem::path& path) {
   const auto components = static_cast<unsigned>(values.size() / image.channels.at("R").size());
-  const auto io = itkImageIo(ImageFormat::nrrd);
-  setSize(*io, image, 3, components,
-          components > 1 ? itk::IOPixelEnum::VECTOR : itk::IOPixelEnum::SCALAR);
+  const auto io = itk::NrrdImageIO::New();
+  io->SetNumberOfDimensions(3);
+  io->SetDimensions(0, static_cast<std::size_t>(image.width));
+  io->SetDimensions(1, static_cast<std::size_t>(image.height));
+  io->SetDimensions(2, 1);
   setGeometry(*io, plane);
-  writeThroughItk(*io, values, file, path);
+  io->SetNumberOfComponents(components);
+  io->SetPixelType(components > 1 ? itk::IOPixelEnum::VECTOR : itk::IOPixelEnum::SCALAR);
+  io->SetComponentType(itk::IOComponentEnum::FLOAT);
+  io->SetFileName(file.temporaryPath().string());
+  try {
+    io->Write(values.data());
+    readImage(file.temporaryPath());
+  } catch (const std::exception&) { // its text names ITK's own source lines
+    throw unwritable(path);
+  }
 }
 
 std::vector<float> interleavedRgba(const Image& image) {
@@ -172,9 +212,9 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
     return writeNrrd(image, plane, path);
   const std::vector<float> display = toDisplay(image, DisplayTransform(view));
   if (format == ImageFormat::png)
-    writeDisplay<std::uint8_t>(image, display, format, path);
+    writeFile(path, encodePng(image, display));
   else
-    writeDisplay<std::uint16_t>(image, display, format, path);
+    writeTiff(image, display, path);
 }
 
 void checkImagePath(const std::filesystem::path& path) {

@@ -1,0 +1,193 @@
+// Comparisons of pictures whose statistics are known.
+
+#include "core/Error.h"
+#include "core/Random.h"
+#include "film/Compare.h"
+#include "io/ImageReader.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+using namespace fenestra;
+
+namespace {
+
+Image constantImage(int width, int height, float value) {
+  const std::vector<float> plane(static_cast<std::size_t>(width * height), value);
+  return {width, height, {{"R", plane}, {"G", plane}, {"B", plane}}, {}};
+}
+
+Image withError(Image image, float error) {
+  for (const char* name : {"error.R", "error.G", "error.B"})
+    image.channels[name].assign(image.channels["R"].size(), error);
+  return image;
+}
+
+/// Normal values (Box and Muller 1958).
+Image noisyImage(int size, float mean, float deviation, std::uint64_t seed) {
+  Image image = constantImage(size, size, mean);
+  Random random(seed, 0, 0);
+  for (auto& [name, plane] : image.channels)
+    for (float& value : plane)
+      value += deviation * static_cast<float>(std::sqrt(2.0 * random.exponential()) *
+                                              std::cos(2.0 * pi * random.uniform()));
+  return withError(image, deviation);
+}
+
+ErrorKind kindOfComparing(const Image& a, const Image& b) {
+  try {
+    compareImages(a, b);
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    return error.kind();
+  }
+  ADD_FAILURE() << "nothing thrown";
+  return ErrorKind::output;
+}
+
+} // namespace
+
+TEST(CompareImages, MeasuresAConstantDifference) {
+  const Comparison c = compareImages(constantImage(5, 3, 0.6f), constantImage(5, 3, 0.5f));
+  EXPECT_NEAR(c.relMse, 0.01 / 0.26, 1e-7);
+  EXPECT_NEAR(c.rmse, 0.1, 1e-7);
+  EXPECT_NEAR(c.psnr, 20.0, 1e-5);
+  EXPECT_NEAR(c.maxDifference, 0.1, 1e-7);
+  EXPECT_NEAR(c.meanA[1], 0.6, 1e-7);
+  EXPECT_NEAR(c.meanB[2], 0.5, 1e-7);
+  EXPECT_EQ(c.notFinite, 0u);
+  EXPECT_FALSE(c.z.has_value());
+}
+
+TEST(CompareImages, FindsEqualPicturesEqual) {
+  const Image image = constantImage(4, 4, 0.25f);
+  const Comparison c = compareImages(image, image);
+  EXPECT_EQ(c.relMse, 0.0);
+  EXPECT_EQ(c.rmse, 0.0);
+  EXPECT_EQ(c.psnr, infinity);
+  EXPECT_EQ(c.maxDifference, 0.0);
+}
+
+TEST(CompareImages, TakesTheReferencesOwnVarianceOff) {
+  const Image reference = noisyImage(200, 1.0f, 0.01f, 1);
+  const Image exact = constantImage(200, 200, 1.0f);
+  const double own = 1e-4 / 1.01;
+  // A mean of 120000 squares of normal values.
+  const double tolerance = 5.0 * own * std::sqrt(2.0 / 120000.0);
+  EXPECT_NEAR(compareImages(exact, reference).relMse, 0.0, tolerance);
+  Image silent = reference;
+  silent.channels.erase("error.G");
+  EXPECT_NEAR(compareImages(exact, silent).relMse, own, tolerance);
+}
+
+TEST(CompareImages, GivesNormalZForHonestErrors) {
+  const Comparison c =
+      compareImages(noisyImage(200, 1.0f, 0.03f, 1), noisyImage(200, 1.0f, 0.04f, 2));
+  ASSERT_TRUE(c.z.has_value());
+  EXPECT_EQ(c.z->count, 120000u);
+  EXPECT_NEAR(c.z->mean, 0.0, 5.0 / std::sqrt(120000.0));
+  EXPECT_NEAR(c.z->deviation, 1.0, 5.0 / std::sqrt(240000.0));
+  EXPECT_NEAR(c.z->shareAbove3, 0.0027, 5.0 * std::sqrt(0.0027 / 120000.0));
+  EXPECT_LT(c.z->imageMean.abs().maxCoeff(), 4.5);
+}
+
+TEST(CompareImages, SeesABiasInTheImageMeansThatNoPixelShows) {
+  const Comparison c =
+      compareImages(noisyImage(200, 1.001f, 0.03f, 1), noisyImage(200, 1.0f, 0.04f, 2));
+  EXPECT_NEAR(c.z->imageMean.mean(), 0.001 / (0.05 / 200.0), 3.0); // 4 standard errors
+  EXPECT_NEAR(c.z->deviation, 1.0, 0.02);
+}
+
+TEST(CompareImages, FindsTheLargestZ) {
+  Image a = withError(constantImage(7, 4, 1.0f), 0.3f);
+  const Image b = withError(constantImage(7, 4, 1.0f), 0.4f);
+  a.channels["G"][2 * 7 + 5] = -1.0f;
+  const Comparison c = compareImages(a, b);
+  EXPECT_NEAR(c.z->largest, 4.0, 1e-6);
+  EXPECT_EQ(c.z->column, 5);
+  EXPECT_EQ(c.z->row, 2);
+  EXPECT_EQ(c.z->channel, 'G');
+  EXPECT_NEAR(c.z->shareAbove3, 1.0 / 84.0, 1e-12);
+  EXPECT_NEAR(c.z->mean, -4.0 / 84.0, 1e-6);
+}
+
+TEST(CompareImages, SkipsOnlyWhereBothErrorsAreZero) {
+  const Image a = withError(constantImage(2, 1, 1.0f), 0.0f);
+  Image b = withError(constantImage(2, 1, 0.5f), 0.0f);
+  EXPECT_EQ(compareImages(a, b).z->count, 0u);
+  EXPECT_EQ(compareImages(a, b).z->imageMean[0], infinity);
+  EXPECT_EQ(compareImages(a, a).z->imageMean[0], 0.0);
+  b.channels["error.R"][1] = 0.25f;
+  EXPECT_EQ(compareImages(a, b).z->count, 1u);
+  EXPECT_EQ(compareImages(a, b).z->mean, 2.0);
+  EXPECT_EQ(compareImages(a, b).z->deviation, 0.0);
+}
+
+TEST(CompareImages, DoesNotHideValuesThatAreNotFinite) {
+  const Image b = constantImage(3, 3, 1.0f);
+  Image a = b;
+  a.channels["G"][4] = std::numeric_limits<float>::quiet_NaN();
+  const Comparison withNan = compareImages(a, b);
+  EXPECT_EQ(withNan.notFinite, 1u);
+  EXPECT_TRUE(std::isnan(withNan.relMse));
+  EXPECT_TRUE(std::isnan(withNan.maxDifference));
+  a.channels["G"][4] = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(compareImages(a, b).relMse, infinity);
+  EXPECT_EQ(compareImages(b, a).notFinite, 1u);
+}
+
+TEST(CompareImages, RefusesDifferentSizesAndMissingChannels) {
+  EXPECT_EQ(kindOfComparing(constantImage(2, 3, 1.0f), constantImage(3, 2, 1.0f)),
+            ErrorKind::input);
+  Image grey = constantImage(2, 3, 1.0f);
+  grey.channels.erase("B");
+  EXPECT_EQ(kindOfComparing(grey, constantImage(2, 3, 1.0f)), ErrorKind::input);
+}
+
+TEST(DifferenceImage, ShowsTheSignInRedAndBlue) {
+  const Image b = constantImage(3, 1, 1.0f);
+  Image a = b;
+  for (const char* name : {"R", "G", "B"})
+    a.channels[name] = {1.0f, 1.5f, 0.75f};
+  const Image shown = differenceImage(a, b);
+  EXPECT_EQ(shown.channels.at("R"), (std::vector<float>{1.0f, 1.0f, 0.5f}));
+  EXPECT_EQ(shown.channels.at("G"), (std::vector<float>{1.0f, 0.0f, 0.5f}));
+  EXPECT_EQ(shown.channels.at("B"), (std::vector<float>{1.0f, 0.0f, 1.0f}));
+}
+
+TEST(DifferenceImage, ShowsTheLargestZOfAPixelWhereErrorsAreKnown) {
+  const Image b = withError(constantImage(3, 1, 1.0f), 0.4f);
+  Image a = withError(b, 0.3f);
+  a.channels["G"] = {1.0f, 2.25f, 1.0f}; // z 2.5, half of full colour
+  a.channels["B"] = {1.0f, 1.5f, std::numeric_limits<float>::quiet_NaN()};
+  const Image shown = differenceImage(a, b);
+  EXPECT_NEAR(shown.channels.at("R")[1], 1.0, 1e-6);
+  EXPECT_NEAR(shown.channels.at("B")[1], 0.5, 1e-6);
+  EXPECT_EQ(shown.channels.at("R")[0], 1.0f);
+  EXPECT_EQ(shown.channels.at("R")[2], 0.0f);
+  EXPECT_EQ(shown.channels.at("B")[2], 0.0f);
+}
+
+TEST(AttachError, TakesThePictureOfErrorsAsErrorChannels) {
+  Image image = constantImage(2, 2, 1.0f);
+  attachError(image, constantImage(2, 2, 0.125f));
+  for (const char* name : {"error.R", "error.G", "error.B"})
+    EXPECT_EQ(image.channels.at(name), std::vector<float>(4, 0.125f));
+  EXPECT_THROW(attachError(image, constantImage(1, 4, 0.125f)), Error);
+}
+
+TEST(AttachError, MakesTheStoredReferencesComparable) {
+  const std::filesystem::path folder = FENESTRA_REFERENCE;
+  if (!std::filesystem::exists(folder / "S1_best.exr"))
+    GTEST_SKIP() << "no reference pictures in " << folder;
+  Image reference = readImage(folder / "S1_best.exr");
+  attachError(reference, readImage(folder / "S1_best_se.exr"));
+  Image silent = reference;
+  for (const char* name : {"error.R", "error.G", "error.B"})
+    silent.channels.erase(name);
+  // Its README states the relative variance of the reference: 7e-5.
+  const double ownVariance = -compareImages(silent, reference).relMse;
+  EXPECT_GT(ownVariance, 6e-5);
+  EXPECT_LT(ownVariance, 8e-5);
+}

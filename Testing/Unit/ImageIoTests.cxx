@@ -1,0 +1,437 @@
+// Pictures to files and back: what is kept, what a failure leaves, what a damaged file does.
+
+#include "core/Error.h"
+#include "io/AtomicFile.h"
+#include "io/EmbeddedResources.h"
+#include "io/ImageReader.h"
+#include "io/ImageWriter.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfTiledOutputFile.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+using namespace fenestra;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
+constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
+
+std::string contentOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream content;
+  content << file.rdbuf();
+  return content.str();
+}
+
+void store(const fs::path& path, const std::string& content) {
+  std::ofstream(path, std::ios::binary) << content;
+}
+
+/// The kind of Error that something throws; its text must be one line that names the file.
+ErrorKind kindOf(const std::function<void()>& action, const std::string& named = "") {
+  try {
+    action();
+  } catch (const Error& error) {
+    const std::string line = error.what();
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+    EXPECT_NE(line.find(named), std::string::npos) << line;
+    return error.kind();
+  }
+  ADD_FAILURE() << "nothing thrown for " << named;
+  return {};
+}
+
+/// A gradient in every channel that a render has.
+Image renderedImage(int width = 13, int height = 7) {
+  Image image{width, height, {}, {{"seed", "7"}, {"command", "fenestra a.nrrd --size 13x7"}}};
+  float start = 0.0f;
+  for (const char* name :
+       {"R", "G", "B", "Z", "clip.Z", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y",
+        "normal.Z", "error.R", "error.G", "error.B", "samples.N"}) {
+    auto& plane = image.channels[name];
+    for (int i = 0; i < width * height; ++i)
+      plane.push_back(start + 0.01f * static_cast<float>(i));
+    start += 0.1f;
+  }
+  image.channels["A"].assign(static_cast<std::size_t>(width * height), 1.0f);
+  return image;
+}
+
+Image onePixel(float r, float g, float b, float a) {
+  return {1, 1, {{"R", {r}}, {"G", {g}}, {"B", {b}}, {"A", {a}}}, {}};
+}
+
+/// While it lives, no file grows past `bytes`, as on a full disk.
+class FullDisk {
+public:
+  explicit FullDisk(rlim_t bytes) : m_handler(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &m_before);
+    const rlimit limit{bytes, m_before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &m_before);
+    std::signal(SIGXFSZ, m_handler);
+  }
+
+private:
+  rlimit m_before{};
+  void (*m_handler)(int);
+};
+
+class ImageFiles : public testing::Test {
+protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    m_folder = fs::path(testing::TempDir()) /
+               ("fenestra-" + std::to_string(::getpid()) + "-" + test->name());
+    fs::create_directory(m_folder);
+  }
+  void TearDown() override { fs::remove_all(m_folder); }
+
+  fs::path path(const std::string& name) const { return m_folder / name; }
+  std::size_t fileCount() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()));
+  }
+  fs::path written(const Image& image, const std::string& name, const ImagePlane& plane = {},
+                   const std::string& view = "") const {
+    writeImage(image, plane, path(name), view);
+    return path(name);
+  }
+
+  fs::path m_folder;
+};
+
+using AtomicFiles = ImageFiles;
+using ExrFiles = ImageFiles;
+using NrrdFiles = ImageFiles;
+using DisplayFiles = ImageFiles;
+using DamagedFiles = ImageFiles;
+
+} // namespace
+
+TEST(EmbeddedResources, HoldTheColourConfiguration) {
+  EXPECT_TRUE(embeddedResource("color/fenestra.ocio").starts_with("ocio_profile_version"));
+  EXPECT_TRUE(embeddedResource("color/other.ocio").empty());
+  EXPECT_EQ(embeddedResourceNames("color/"), std::vector<std::string>{"color/fenestra.ocio"});
+  EXPECT_TRUE(embeddedResourceNames("nothing/").empty());
+}
+
+TEST_F(AtomicFiles, AppearWhenCommitted) {
+  AtomicFile file(path("result.seg.nrrd"));
+  store(file.temporaryPath(), "content");
+  EXPECT_FALSE(fs::exists(path("result.seg.nrrd")));
+  EXPECT_TRUE(file.temporaryPath().filename().string().ends_with("result.seg.nrrd"));
+  file.commit();
+  EXPECT_EQ(contentOf(path("result.seg.nrrd")), "content");
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST_F(AtomicFiles, LeaveTheFormerFileUnlessCommitted) {
+  store(path("a.txt"), "before");
+  {
+    const AtomicFile first(path("a.txt"));
+    const AtomicFile second(path("a.txt"));
+    EXPECT_NE(first.temporaryPath(), second.temporaryPath());
+    store(first.temporaryPath(), "half");
+  }
+  EXPECT_EQ(contentOf(path("a.txt")), "before");
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST_F(AtomicFiles, RefuseWhatIsNotAFile) {
+  fs::create_directory(path("folder.png"));
+  fs::create_symlink("/dev/full", path("device.png"));
+  for (const auto& bad : {path("folder.png"), path("device.png"), path("missing/a.png"),
+                          path("folder.png/"), path(std::string(300, 'n') + ".png")})
+    EXPECT_EQ(kindOf([&] { checkWritable(bad); }, bad.string()), ErrorKind::output);
+  EXPECT_EQ(kindOf([] { checkWritable("/dev/full"); }, "/dev/full"), ErrorKind::output);
+  EXPECT_EQ(kindOf([] { checkWritable("/proc/a.png"); }, "/proc/a.png"), ErrorKind::output);
+  EXPECT_EQ(fileCount(), 2u);
+}
+
+TEST_F(AtomicFiles, CheckingLeavesNothingBehind) {
+  checkWritable(path("a.png"));
+  EXPECT_EQ(fileCount(), 0u);
+}
+
+TEST_F(AtomicFiles, WriteWholeContentOrNone) {
+  writeFile(path("a.txt"), "new");
+  EXPECT_EQ(contentOf(path("a.txt")), "new");
+  {
+    const FullDisk full(100);
+    EXPECT_EQ(kindOf([&] { writeFile(path("a.txt"), std::string(1000, 'x')); }, "a.txt"),
+              ErrorKind::output);
+  }
+  EXPECT_EQ(contentOf(path("a.txt")), "new");
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST_F(ExrFiles, KeepEveryChannelBitByBitAndTheHeader) {
+  Image image = renderedImage();
+  image.channels["Z"][3] = infinite;
+  image.channels["R"][0] = notANumber;
+  image.channels["G"][1] = -infinite;
+  image.channels["B"][2] = -0.0f;
+  image.channels["A"][2] = std::numeric_limits<float>::denorm_min();
+  image.header["empty"] = "";
+  image.header["a key of more than thirty-one characters"] = std::string(3000, 'v');
+  const Image read = readImage(written(image, "a.exr"));
+  EXPECT_EQ(read.width, image.width);
+  EXPECT_EQ(read.height, image.height);
+  EXPECT_EQ(read.header, image.header);
+  ASSERT_EQ(read.channels.size(), image.channels.size());
+  for (const auto& [name, plane] : image.channels)
+    for (std::size_t i = 0; i < plane.size(); ++i)
+      EXPECT_EQ(std::bit_cast<std::uint32_t>(read.channels.at(name)[i]),
+                std::bit_cast<std::uint32_t>(plane[i]))
+          << name << " " << i;
+}
+
+TEST_F(ExrFiles, AreReadFromTilesOfHalfFloatAndIntegerWithAnOffsetWindow) {
+  const int width = 21, height = 10;
+  std::vector<Imath::half> halves(static_cast<std::size_t>(width * height));
+  std::vector<unsigned> integers(halves.size());
+  for (std::size_t i = 0; i < halves.size(); ++i) {
+    halves[i] = Imath::half(static_cast<float>(i) * 0.5f);
+    integers[i] = static_cast<unsigned>(3 * i);
+  }
+  const Imath::Box2i window({-4, 5}, {-4 + width - 1, 5 + height - 1});
+  Imf::Header header(window, window);
+  header.setTileDescription(Imf::TileDescription(8, 8));
+  header.channels().insert("Y", Imf::Channel(Imf::HALF));
+  header.channels().insert("id", Imf::Channel(Imf::UINT));
+  Imf::FrameBuffer frame;
+  frame.insert("Y", Imf::Slice::Make(Imf::HALF, halves.data(), window));
+  frame.insert("id", Imf::Slice::Make(Imf::UINT, integers.data(), window));
+  {
+    Imf::TiledOutputFile file(path("tiled.exr").c_str(), header);
+    file.setFrameBuffer(frame);
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+  }
+  const Image read = readImage(path("tiled.exr"));
+  EXPECT_EQ(read.width, width);
+  EXPECT_EQ(read.height, height);
+  for (std::size_t i = 0; i < halves.size(); ++i) {
+    EXPECT_EQ(read.channels.at("Y")[i], static_cast<float>(i) * 0.5f);
+    EXPECT_EQ(read.channels.at("id")[i], static_cast<float>(3 * i));
+  }
+}
+
+TEST_F(ImageFiles, OfEqualPicturesAreEqualByteByByte) {
+  for (const char* extension : {".exr", ".nrrd", ".png", ".tif"}) {
+    const auto first = written(renderedImage(), std::string("first") + extension);
+    const auto second = written(renderedImage(), std::string("second") + extension);
+    EXPECT_EQ(contentOf(first), contentOf(second)) << extension;
+    EXPECT_GT(contentOf(first).size(), 100u) << extension;
+  }
+}
+
+TEST_F(NrrdFiles, KeepColourAndDepth) {
+  Image image = renderedImage();
+  image.channels["A"][5] = 0.25f;
+  image.channels["Z"][3] = infinite;
+  image.channels["R"][2] = -7.5f;
+  const Image colour = readImage(written(image, "view.nrrd"));
+  EXPECT_EQ(colour.channels.size(), 4u);
+  for (const char* name : {"R", "G", "B", "A"})
+    EXPECT_EQ(colour.channels.at(name), image.channels.at(name)) << name;
+  const Image depth = readImage(path("view-Z.nrrd"));
+  EXPECT_EQ(depth.channels.size(), 1u);
+  EXPECT_EQ(depth.channels.at("Z"), image.channels.at("Z"));
+  EXPECT_EQ(fileCount(), 2u);
+}
+
+TEST_F(NrrdFiles, AreOpaqueWithoutAlphaAndAloneWithoutDepth) {
+  Image image = renderedImage();
+  image.channels.erase("A");
+  image.channels.erase("Z");
+  const Image colour = readImage(written(image, "view.nrrd"));
+  EXPECT_EQ(colour.channels.at("A"), std::vector<float>(image.channels["R"].size(), 1.0f));
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST_F(NrrdFiles, LieOnThePlaneInLps) {
+  // Seen from anterior: the patient's right is on the picture's left, superior is up.
+  const ImagePlane plane{{90.0, 100.0, 80.0}, {-0.5, 0.0, 0.0}, {0.0, 0.0, -0.25}};
+  const std::string content = contentOf(written(renderedImage(), "view.nrrd", plane));
+  const std::string header = content.substr(0, content.find("\n\n"));
+  for (const char* line : {"space: left-posterior-superior", "sizes: 4 13 7 1", "type: float",
+                           "space directions: none (0.5,0,0) (0,0,-0.25) (0,0.5,0)",
+                           "space origin: (-90,-100,80)", "kinds: vector domain domain domain"})
+    EXPECT_NE(header.find(line), std::string::npos) << line << "\nin\n" << header;
+}
+
+TEST_F(DisplayFiles, ShowKnownValuesWithStraightAlpha) {
+  // Middle grey is 0.4614 in sRGB: 117.6 of 255.
+  const float grey = 0.18f;
+  for (const auto& [name, tolerance] :
+       {std::pair("a.png", 0.5f / 255.0f), std::pair("a.tif", 0.5f / 65535.0f)}) {
+    const Image read =
+        readImage(written(onePixel(grey / 2, grey / 2, grey / 2, 0.5f), name, {}, "Standard"));
+    EXPECT_NEAR(read.channels.at("R")[0], 0.46135f, tolerance + 2e-5f) << name;
+    EXPECT_NEAR(read.channels.at("A")[0], 0.5f, tolerance + 2e-5f) << name;
+  }
+  EXPECT_EQ(readImage(path("a.png")).channels.at("G")[0], 118.0f / 255.0f);
+  EXPECT_EQ(readImage(path("a.png")).channels.at("A")[0], 128.0f / 255.0f);
+}
+
+TEST_F(DisplayFiles, CarryAlphaOnlyWhereSomethingIsTransparent) {
+  Image image = renderedImage();
+  EXPECT_EQ(readImage(written(image, "opaque.png")).channels.count("A"), 0u);
+  EXPECT_EQ(readImage(written(image, "opaque.tiff")).channels.count("A"), 0u);
+  image.channels["A"][3] = 0.75f;
+  EXPECT_EQ(readImage(written(image, "clear.png")).channels.count("A"), 1u);
+  EXPECT_EQ(readImage(written(image, "clear.TIF")).channels.count("A"), 1u);
+}
+
+TEST_F(DisplayFiles, KeepTheTopRowOnTop) {
+  Image image{2, 2, {}, {}};
+  for (const char* name : {"R", "G", "B"})
+    image.channels[name] = {1.0f, 0.5f, 0.0f, 0.0f};
+  for (const char* name : {"a.png", "a.tif", "a.exr", "a.nrrd"}) {
+    const Image read = readImage(written(image, name));
+    EXPECT_GT(read.channels.at("R")[0], read.channels.at("R")[1]) << name;
+    EXPECT_GT(read.channels.at("R")[1], read.channels.at("R")[2]) << name;
+    EXPECT_EQ(read.channels.at("R")[2], read.channels.at("R")[3]) << name;
+  }
+}
+
+TEST_F(DisplayFiles, ShowNanAndInfinity) {
+  const Image read = readImage(written(onePixel(notANumber, infinite, -infinite, 1.0f), "a.png"));
+  EXPECT_EQ(read.channels.at("R")[0], 0.0f);
+  EXPECT_EQ(read.channels.at("G")[0], 1.0f);
+  EXPECT_EQ(read.channels.at("B")[0], 0.0f);
+}
+
+TEST_F(ImageFiles, OfUnknownFormatsAndPicturesWithoutColourAreRefused) {
+  const auto write = [](const Image& image, const fs::path& file) {
+    return [=] { writeImage(image, {}, file); };
+  };
+  EXPECT_EQ(kindOf(write(renderedImage(), path("a.jpg")), ".exr, .nrrd, .png or .tif"),
+            ErrorKind::usage);
+  EXPECT_EQ(kindOf([&] { checkImagePath(path("a")); }, ".exr, .nrrd, .png or .tif"),
+            ErrorKind::usage);
+  checkImagePath(path("a.png"));
+  Image depth = renderedImage();
+  depth.channels.erase("G");
+  EXPECT_EQ(kindOf(write(depth, path("a.png")), "a.png"), ErrorKind::usage);
+  EXPECT_EQ(kindOf(write(depth, path("a.nrrd")), "a.nrrd"), ErrorKind::usage);
+  EXPECT_EQ(fileCount(), 0u);
+}
+
+TEST_F(ImageFiles, ThatFailLeaveNothingBehindAndKeepTheFormer) {
+  const Image image = renderedImage(300, 200);
+  for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
+    writeImage(image, {}, path(name));
+    const std::string before = contentOf(path(name));
+    const std::size_t count = fileCount();
+    // Full at once, midway, and within the last block, where a buffered writer no longer looks.
+    for (const std::size_t limit : {std::size_t{0}, before.size() / 2, before.size() - 1}) {
+      const FullDisk full(limit);
+      testing::internal::CaptureStderr();
+      EXPECT_EQ(kindOf([&] { writeImage(image, {}, path(name)); }, name), ErrorKind::output);
+      EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << name << " " << limit;
+    }
+    EXPECT_EQ(fileCount(), count) << name;
+    EXPECT_EQ(contentOf(path(name)), before) << name;
+    EXPECT_EQ(kindOf([&] { writeImage(image, {}, path("missing/" + name)); }, name),
+              ErrorKind::output);
+  }
+}
+
+TEST_F(DamagedFiles, CutShortAreRefusedOrLoseNothing) {
+  for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
+    const Image image = readImage(written(renderedImage(), name));
+    const std::string whole = contentOf(path(name));
+    for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 100) {
+      store(path("cut-" + name), whole.substr(0, length));
+      try { // a PNG has every pixel before its last bytes
+        const Image read = readImage(path("cut-" + name));
+        EXPECT_EQ(read.channels, image.channels) << length << " of " << whole.size();
+        EXPECT_GT(length, whole.size() * 9 / 10) << name;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::input);
+      }
+    }
+  }
+}
+
+TEST_F(DamagedFiles, WithAnyByteChangedAreReadOrRefused) {
+  for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
+    const std::string whole = contentOf(written(renderedImage(), name));
+    const std::size_t step = 1 + whole.size() / 1500;
+    for (std::size_t at = 0; at < whole.size(); at += step)
+      for (const char value : {'\0', '\x7f', '\xff'}) {
+        std::string changed = whole;
+        changed[at] = value;
+        store(path("changed-" + name), changed);
+        try {
+          const Image image = readImage(path("changed-" + name));
+          for (const auto& [channel, plane] : image.channels)
+            ASSERT_EQ(plane.size(), static_cast<std::size_t>(image.width * image.height));
+        } catch (const Error& error) {
+          ASSERT_EQ(error.kind(), ErrorKind::input);
+        }
+      }
+  }
+}
+
+TEST_F(DamagedFiles, CannotClaimMoreThanTheyHold) {
+  const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: raw\nendian: little\n"
+                           "kinds: vector domain domain\n";
+  store(path("a.nrrd"), head + "sizes: 4 30000 30000\n\n1234");
+  EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "too short"), ErrorKind::input);
+  store(path("b.nrrd"), head + "sizes: 4 40000 2\n\n1234");
+  EXPECT_EQ(kindOf([&] { readImage(path("b.nrrd")); }, "32768"), ErrorKind::input);
+  // A PNG's width and height are bytes 16 to 23; libpng looks at the checksum first or at them.
+  std::string png = contentOf(written(renderedImage(), "a.png"));
+  png.replace(16, 8, std::string("\0\0\x70\0\0\0\x70\0", 8));
+  store(path("a.png"), png);
+  EXPECT_EQ(kindOf([&] { readImage(path("a.png")); }, "a.png"), ErrorKind::input);
+}
+
+TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {
+  store(path("a.nrrd"), "NRRD0004\ntype: float\ndimension: 2\nencoding: raw\nendian: little\n"
+                        "sizes: 4 4\ndata file: -\n\n");
+  EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input);
+  ::mkfifo(path("pipe.exr").c_str(), 0600);
+  fs::create_directory(path("folder.png"));
+  for (const char* name : {"pipe.exr", "folder.png", "missing.exr", "text.txt"})
+    EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
+}
+
+TEST_F(DamagedFiles, AreRefusedWithoutNoise) {
+  testing::internal::CaptureStderr();
+  for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
+    store(path(name), "not a picture at all, whatever the extension says");
+    EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(ImageFiles, OfTheReferenceAreRead) {
+  const fs::path reference = fs::path(FENESTRA_REFERENCE) / "S1_best.exr";
+  if (!fs::exists(reference))
+    GTEST_SKIP() << "no reference pictures in " << FENESTRA_REFERENCE;
+  const Image image = readImage(reference);
+  EXPECT_GT(image.width, 0);
+  for (const char* name : {"R", "G", "B"})
+    for (const float value : image.channels.at(name))
+      ASSERT_TRUE(std::isfinite(value));
+}
