@@ -5,16 +5,16 @@
 namespace fenestra {
 namespace {
 
-/// The transfer function's maximum over [low, high], widened by what interpolating between two values
-/// of that size can round to.
+/// The transfer function's maximum over [low, high], widened by what interpolating between two
+/// values of that size can round to.
 double greatest(const ScalarFunction& f, double low, double high) {
   const double rounding =
       4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
   return f.range(low - rounding, high + rounding)[1];
 }
 
-/// Greatest |gradient| (scalar units per mm) where all interpolated values differ by at most `spread`:
-/// every central difference is at most half of it a voxel.
+/// Greatest |gradient| (scalar units per mm) where all interpolated values differ by at most
+/// `spread`: every central difference is at most half of it a voxel.
 double gradientBound(const Grid& grid, double spread) {
   return 0.5 * spread * grid.worldToIndex.linear().rowwise().norm().sum();
 }

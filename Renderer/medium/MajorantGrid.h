@@ -1,6 +1,7 @@
 #pragma once
 // An upper bound of the extinction in each cell of a coarse grid: what null-collision tracking
-// steps by. Cells that hold nothing (or nothing that clipping keeps) have majorant 0 and are skipped.
+// steps by. Cells that hold nothing (or nothing that clipping keeps) have majorant 0 and are
+// skipped.
 
 #include "medium/TransferFunction.h"
 #include "volume/CellRanges.h"

@@ -14,7 +14,8 @@ struct Matter {
 };
 
 /// A view: volume and transfer function outlive it. Points are in index space.
-template <typename Voxel> class Medium {
+template <typename Voxel>
+class Medium {
 public:
   Medium(const Grid& grid, const std::vector<Voxel>& voxels, const TransferFunction& transfer)
       : m_field(grid, voxels), m_transfer(transfer) {}

@@ -10,7 +10,8 @@
 
 namespace fenestra {
 
-template <int Channels> class PiecewiseLinear {
+template <int Channels>
+class PiecewiseLinear {
 public:
   using Value = Eigen::Array<double, Channels, 1>;
   struct Knot {

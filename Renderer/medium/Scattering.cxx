@@ -21,8 +21,8 @@ double schlick(double cosine) {
 double PhaseScattering::pdf(const Vec3& outgoing) const {
   if (m_g == 0.0)
     return 0.25 / pi;
-  // 1 + g^2 - 2 g cos, written so that nothing cancels where g and cos are near 1: with unit vectors
-  // 2 (1 - cos) = |a - b|^2.
+  // 1 + g^2 - 2 g cos, written so that nothing cancels where g and cos are near 1: with unit
+  // vectors 2 (1 - cos) = |a - b|^2.
   const double chord2 = (outgoing - m_incoming).squaredNorm();
   const double d = (1.0 - m_g) * (1.0 - m_g) + m_g * chord2;
   return 0.25 / pi * (1.0 - m_g) * (1.0 + m_g) / (d * std::sqrt(d));

@@ -1,8 +1,9 @@
 #pragma once
 // What happens to light at a real collision: it scatters by the phase function or at a surface.
-// Conventions: `incoming` is the direction in which the path travels (away from the eye), `outgoing`
-// the direction in which it goes on (toward a light). evaluate() is the factor on radiance per
-// steradian, with albedo and, at surfaces, the cosine included; pdf() is per steradian.
+// Conventions: `incoming` is the direction in which the path travels (away from the eye),
+// `outgoing` the direction in which it goes on (toward a light). evaluate() is the factor on
+// radiance per steradian, with albedo and, at surfaces, the cosine included; pdf() is per
+// steradian.
 
 #include "core/Random.h"
 #include "medium/TransferFunction.h"
@@ -52,9 +53,9 @@ private:
   double normalDensity(const Vec3& h) const;
   Vec3 sampleVisibleNormal(const Vec2& u) const;
 
-  Frame m_frame;  ///< local z is the normal
-  Vec3 m_viewer;  ///< local direction back along the path
-  Rgb m_diffuse;  ///< weight * albedo
+  Frame m_frame; ///< local z is the normal
+  Vec3 m_viewer; ///< local direction back along the path
+  Rgb m_diffuse; ///< weight * albedo
   double m_specular;
   double m_roughness;
   double m_lambertShare; ///< chance that sample() takes the Lambert lobe

@@ -20,9 +20,10 @@ struct SurfaceShading {
 struct TransferFunction {
   ScalarFunction extinction; ///< mm^-1 over the scalar
   ColorFunction albedo;      ///< linear Rec. 709, each in [0, 1]
-  std::optional<ScalarFunction> gradientOpacity = {}; ///< factor over |gradient|, scalar units per mm
-  double g = 0.0;                                     ///< Henyey-Greenstein mean cosine, in (-1, 1)
-  std::optional<SurfaceShading> shading = {};         ///< set: hybrid; else the phase function alone
+  std::optional<ScalarFunction> gradientOpacity =
+      {};                                     ///< factor over |gradient|, scalar units per mm
+  double g = 0.0;                             ///< Henyey-Greenstein mean cosine, in (-1, 1)
+  std::optional<SurfaceShading> shading = {}; ///< set: hybrid; else the phase function alone
 
   /// The same function of (s - offset): every knot moved by `offset` scalar units.
   TransferFunction shifted(double offset) const;

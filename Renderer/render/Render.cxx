@@ -10,6 +10,9 @@
 namespace fenestra {
 namespace {
 
+/// A noise estimate from fewer samples a pixel is too uncertain to stop by.
+constexpr std::uint64_t leastForNoise = 16;
+
 /// Dispatches once on the volume's storage type.
 template <typename Work>
 auto withMedium(const RenderScene& scene, Work&& work) {
@@ -89,7 +92,7 @@ RenderResult renderPasses(const Estimator& estimator, const RenderScene& scene,
     }
     result.finishedSamples += count;
     monitor.noise = result.film.noise();
-    if (monitor.noise <= settings.noise) {
+    if (result.finishedSamples >= leastForNoise && monitor.noise <= settings.noise) {
       result.reason = StopReason::noise;
       return result;
     }

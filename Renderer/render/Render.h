@@ -26,7 +26,7 @@ struct RenderSettings {
   PathSettings path;
   std::uint64_t samples = 64; ///< a pixel, at most
   double seconds = infinity;  ///< of transport
-  double noise = 0.0;         ///< Film::noise() at the end of a pass
+  double noise = -1.0; ///< Film::noise() at the end of a pass, from 16 samples on; negative: never
   std::uint64_t seed = 0;
   int threads = 0;               ///< 0: all
   std::uint64_t passSamples = 0; ///< samples a pass; 0: growing passes. Never changes the picture.

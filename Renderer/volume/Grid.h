@@ -9,8 +9,8 @@ namespace fenestra {
 
 /// Index space has voxel centres at integers; the grid fills [-0.5, size - 0.5] in each axis.
 struct Grid {
-  Size3 size = Size3::Zero();                 ///< voxels in each axis, the fastest first
-  Affine indexToWorld = Affine::Identity();   ///< index to RAS mm; any invertible map
+  Size3 size = Size3::Zero();               ///< voxels in each axis, the fastest first
+  Affine indexToWorld = Affine::Identity(); ///< index to RAS mm; any invertible map
   Affine worldToIndex = Affine::Identity();
 
   Grid() = default;

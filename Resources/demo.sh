@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# From a fresh Debian 12 to the paper's figure 1 on the synthetic knee: installs what it needs,
+# builds, makes the knee, renders it with the four clip modes and puts them side by side.
+# Can be run again cheaply. usage: bash Resources/demo.sh [FOLDER]
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+out=$(mkdir -p "${1:-$top/demo}" && cd "${1:-$top/demo}" && pwd) || die "cannot make folder ${1:-$top/demo}"
+
+install_packages "${build_packages[@]}" imagemagick fonts-dejavu-core
+say "Building (some minutes the first time)"
+build release -DFENESTRA_BUILD_TESTS=OFF
+fenestra=$top/build/bin/fenestra
+
+if [ ! -s "$out/knee/knee.nrrd" ] || [ "$fenestra" -nt "$out/knee/knee.nrrd" ]; then
+  say "Making the synthetic knee"
+  "$fenestra" phantom knee --output "$out/knee"
+fi
+
+# The knee from in front and a little below and to the side: femoral, tibial and patellar cartilage.
+view=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
+  --focus "Femoral cartilage,Tibial cartilage" --size 512x512 --samples 48)
+
+render() { # MODE [flags]
+  local mode=$1
+  shift
+  say "Rendering: $mode"
+  "$fenestra" "$out/knee/knee.nrrd" "${view[@]}" --clip "$mode" "$@" \
+    --output "$out/$mode.exr" --output "$out/$mode.png" --stats "$out/$mode.json"
+}
+start=$SECONDS
+render none
+render plane --plane "0,12,0,0,1,0"
+render cutaway
+render surface
+say "Rendering took $((SECONDS - start)) s"
+
+montage -font DejaVu-Sans -pointsize 18 -geometry +6+6 -background '#181818' -fill white \
+  -label 'a  Whole volume: the cartilage is hidden' "$out/none.png" \
+  -label 'b  Clip plane: poor coverage' "$out/plane.png" \
+  -label 'c  Cut-away: cliffs, dark focus' "$out/cutaway.png" \
+  -label 'd  Clipping surface' "$out/surface.png" \
+  -tile 4x1 "$out/figure1.png" || die "montage could not put the pictures side by side"
+
+say "Done. Look at:"
+echo "$out/figure1.png"
+ls "$out"/*.exr

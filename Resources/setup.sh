@@ -1,0 +1,47 @@
+# Sourced by demo.sh and Testing/run.sh: installs the Debian packages that Fenestra needs, and builds.
+# Sets `top` (the project's folder). Prints a plain reason and exits where something is missing.
+
+top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+say() { printf '\n== %s\n' "$*"; }
+die() {
+  printf 'fenestra: %s\n' "$*" >&2
+  exit 1
+}
+
+# install_packages PACKAGE...: only those that are missing; as root, or through sudo.
+install_packages() {
+  command -v dpkg-query >/dev/null || die "this set-up needs Debian or a derivative (dpkg is missing)"
+  local missing=()
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  say "Installing ${missing[*]}"
+  local root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || die "installing packages needs root or sudo: ${missing[*]}"
+    root=(sudo)
+  fi
+  local log
+  log=$(mktemp)
+  { "${root[@]}" apt-get update &&
+    "${root[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 ||
+    { tail -n 15 "$log" >&2; die "apt-get could not install ${missing[*]} (log: $log)"; }
+  rm -f "$log"
+}
+
+build_packages=(
+  g++ cmake ninja-build
+  libinsighttoolkit5-dev libeigen3-dev libopenexr-dev libopencolorio-dev libtbb-dev
+  libcli11-dev nlohmann-json3-dev libgtest-dev zlib1g-dev)
+
+# build PRESET [cmake arguments]: configures and builds into the preset's folder.
+build() {
+  local preset=$1
+  shift
+  (cd "$top" && cmake --preset "$preset" "$@" >/dev/null && cmake --build --preset "$preset") ||
+    die "the $preset build failed (see above)"
+}

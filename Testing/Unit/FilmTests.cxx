@@ -1,0 +1,51 @@
+#include "film/Film.h"
+
+#include "core/Random.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+TEST(PixelSums, MeanAndStandardErrorAreTheTextbook) {
+  PixelSums sums;
+  std::vector<double> values;
+  for (int i = 0; i < 1000; ++i) {
+    Random random(1, static_cast<std::uint64_t>(i), 0);
+    values.push_back(1e6 + random.uniform()); // large offset: sums of squares would cancel
+    PathSample sample;
+    sample.radiance = Rgb::Constant(values.back());
+    sums.add(sample);
+  }
+  double mean = 0.0;
+  for (const double v : values)
+    mean += v / 1000.0;
+  double variance = 0.0;
+  for (const double v : values)
+    variance += (v - mean) * (v - mean) / 999.0;
+  EXPECT_NEAR(sums.mean[0], mean, 1e-6);
+  EXPECT_NEAR(sums.standardError()[0], std::sqrt(variance / 1000.0), 1e-9);
+}
+
+TEST(PixelSums, OneSampleHasNoError) {
+  PixelSums sums;
+  EXPECT_EQ(sums.standardError()[0], 0.0);
+  sums.add({});
+  EXPECT_EQ(sums.standardError()[1], 0.0);
+}
+
+TEST(Film, NoiseFollowsItsDefinition) {
+  Film film(1, 2);
+  EXPECT_EQ(film.noise(), infinity);
+  for (const double x : {1.0, 3.0}) {
+    PathSample sample;
+    sample.radiance = Rgb::Constant(x);
+    film.at(0, 0).add(sample);
+    film.at(0, 1).add({}); // black, without error
+  }
+  // se^2 = 1, x = 2: half of the pixels have 1 / 4.01.
+  EXPECT_NEAR(film.noise(), std::sqrt(0.5 / 4.01), 1e-12);
+}
+
+} // namespace
+} // namespace fenestra::testing

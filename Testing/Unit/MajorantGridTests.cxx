@@ -1,0 +1,101 @@
+#include "medium/MajorantGrid.h"
+
+#include "core/Random.h"
+#include "medium/Medium.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+ScalarFunction::Knot knot(double s, double y) {
+  return {s, ScalarFunction::Value(y)};
+}
+
+template <typename Voxel>
+std::vector<Voxel> noise(const Size3& size, double low, double high) {
+  std::vector<Voxel> voxels;
+  for (std::int64_t i = 0; i < size.prod(); ++i) {
+    Random random(6, static_cast<std::uint64_t>(i), 0);
+    // One half nearly flat, the other with rare peaks, so that ranges differ from cell to cell.
+    const double most = i % size.x() < size.x() / 2 ? 0.02 : 1.0;
+    voxels.push_back(
+        static_cast<Voxel>(low + most * (high - low) * std::pow(random.uniform(), 20.0)));
+  }
+  return voxels;
+}
+
+/// No point of the volume has more extinction than its cell's majorant.
+template <typename Voxel>
+void expectConservative(const TransferFunction& transfer, double low, double high) {
+  Affine map = Affine::Identity();
+  map.linear() = Vec3(0.3, -1.0, 2.5).asDiagonal();
+  const Grid grid(Size3(29, 17, 11), map);
+  Volume volume{grid, noise<Voxel>(grid.size, low, high), 0.0, 0.0, "noise", {}};
+  computeRange(volume);
+  const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
+  const MajorantGrid majorants(grid, ranges, transfer, [](const auto&) { return false; });
+  const Medium<Voxel> medium(grid, std::get<std::vector<Voxel>>(volume.voxels), transfer);
+
+  const Box box = grid.indexBox();
+  double tightest = infinity;
+  for (int i = 0; i < 300000; ++i) {
+    Random random(7, static_cast<std::uint64_t>(i), 0);
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis) {
+      p[axis] = box.lower[axis] + random.uniform() * (box.upper[axis] - box.lower[axis]);
+      if (random.uniform() < 0.3) // often on voxel centres and cell faces
+        p[axis] = std::round(2.0 * p[axis]) / 2.0;
+    }
+    const Vec3 inCells = majorants.worldToCell() * (grid.indexToWorld * p);
+    Size3 cell;
+    for (int axis = 0; axis < 3; ++axis)
+      cell[axis] = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(inCells[axis])), 0,
+                                            majorants.cellCount()[axis] - 1);
+    const auto index = static_cast<std::size_t>(
+        cell.x() + majorants.cellCount().x() * (cell.y() + majorants.cellCount().y() * cell.z()));
+    const double sigma_t = medium.extinction(p);
+    ASSERT_LE(sigma_t, majorants.majorant(index)) << "at " << p.transpose();
+    tightest = std::min(tightest, majorants.majorant(index));
+  }
+  EXPECT_LT(tightest, transfer.extinction.range(-1e9, 1e9)[1]) << "some cell must be tighter";
+}
+
+const ColorFunction grey({{0.0, Rgb::Constant(0.5)}});
+
+TEST(MajorantGrid, BoundsANonMonotoneFunction) {
+  const TransferFunction transfer{
+      ScalarFunction({knot(0, 0), knot(40, 0), knot(50, 8), knot(60, 0), knot(200, 1)}), grey};
+  expectConservative<std::uint8_t>(transfer, 0, 255);
+  expectConservative<float>(transfer, -20, 220);
+}
+
+TEST(MajorantGrid, BoundsStepsAndSpikes) {
+  const TransferFunction transfer{ScalarFunction({knot(0, 0), knot(100, 0), knot(100, 5),
+                                                  knot(101, 5), knot(101, 0), knot(1000, 0.1)}),
+                                  grey};
+  expectConservative<std::int16_t>(transfer, -50, 1000);
+}
+
+TEST(MajorantGrid, BoundsGradientOpacity) {
+  TransferFunction transfer{ScalarFunction({knot(0, 0.5), knot(255, 3)}), grey};
+  transfer.gradientOpacity = ScalarFunction({knot(0, 0), knot(30, 0.2), knot(60, 1), knot(200, 0)});
+  expectConservative<std::uint16_t>(transfer, 0, 255);
+}
+
+TEST(MajorantGrid, DropsClippedAndEmptyCells) {
+  const Grid grid(Size3(32, 32, 32), Affine::Identity());
+  Volume volume{grid, std::vector<float>(32768, 1.0F), 1.0, 1.0, "ones", {}};
+  const CellRanges ranges(volume, 0);
+  const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), grey};
+  const MajorantGrid clipped(grid, ranges, opaque, [](const std::array<Vec3, 8>& corners) {
+    return std::all_of(corners.begin(), corners.end(), [](const Vec3& c) { return c.z() < 16.0; });
+  });
+  EXPECT_DOUBLE_EQ(clipped.emptyFraction(), 0.5);
+  const TransferFunction empty{ScalarFunction({knot(1.5, 0), knot(2, 2)}), grey};
+  EXPECT_EQ(MajorantGrid(grid, ranges, empty, [](const auto&) { return false; }).emptyFraction(),
+            1.0);
+}
+
+} // namespace
+} // namespace fenestra::testing

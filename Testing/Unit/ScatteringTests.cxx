@@ -1,0 +1,133 @@
+#include "medium/Scattering.h"
+
+#include "Histogram.h"
+
+namespace fenestra::testing {
+namespace {
+
+const Vec3 incoming = Vec3(0.3, -0.5, 0.81).normalized();
+
+class HenyeyGreenstein : public ::testing::TestWithParam<double> {};
+
+TEST_P(HenyeyGreenstein, SamplingMatchesPdf) {
+  const PhaseScattering phase(incoming, GetParam(), Rgb::Ones());
+  // Peaked lobes need a finer rule for the bins' integrals.
+  expectSamplingMatchesPdf([&](Random& r) { return phase.sample(r).outgoing; },
+                           [&](const Vec3& d) { return phase.pdf(d); }, 1.0,
+                           std::abs(GetParam()) > 0.9 ? 400 : 60);
+}
+
+TEST_P(HenyeyGreenstein, MeanCosineIsG) {
+  const PhaseScattering phase(incoming, GetParam(), Rgb::Ones());
+  double sum = 0.0;
+  double squares = 0.0;
+  constexpr int n = 400000;
+  for (int i = 0; i < n; ++i) {
+    Random random(3, static_cast<std::uint64_t>(i), 0);
+    const double cosine = phase.sample(random).outgoing.dot(incoming);
+    sum += cosine;
+    squares += cosine * cosine;
+  }
+  const double mean = sum / n;
+  const double error = std::sqrt((squares / n - mean * mean) / n);
+  EXPECT_NEAR(mean, GetParam(), 4.5 * error + 1e-12);
+}
+
+TEST_P(HenyeyGreenstein, WeightIsTheAlbedo) {
+  const PhaseScattering phase(incoming, GetParam(), Rgb(0.9, 0.5, 0.1));
+  Random random(1, 2, 3);
+  const ScatterSample sample = phase.sample(random);
+  EXPECT_TRUE(sample.weight.isApprox(Rgb(0.9, 0.5, 0.1)));
+  EXPECT_TRUE(phase.evaluate(sample.outgoing).isApprox(sample.weight * sample.pdf));
+}
+
+INSTANTIATE_TEST_SUITE_P(MeanCosines, HenyeyGreenstein,
+                         ::testing::Values(-0.95, -0.5, -1e-7, 0.0, 1e-9, 0.3, 0.85, 0.97));
+
+TEST(HenyeyGreensteinExtremes, StayUnitAndFinite) {
+  for (const double g : {-0.9999, 0.9999, 0.9999999}) {
+    const PhaseScattering phase(-Vec3::UnitZ(), g, Rgb::Ones());
+    for (int i = 0; i < 100000; ++i) {
+      Random random(8, static_cast<std::uint64_t>(i), 0);
+      const ScatterSample sample = phase.sample(random);
+      ASSERT_NEAR(sample.outgoing.norm(), 1.0, 1e-12);
+      ASSERT_TRUE(std::isfinite(sample.pdf));
+      ASSERT_GT(sample.pdf, 0.0);
+    }
+  }
+}
+
+struct SurfaceCase {
+  double cosine; ///< of the viewer
+  SurfaceShading shading;
+};
+
+class Surface : public ::testing::TestWithParam<SurfaceCase> {
+protected:
+  SurfaceScattering surface() const {
+    const Vec3 normal = Vec3(0.2, 0.4, -0.9).normalized();
+    const Frame frame(normal);
+    const double c = GetParam().cosine;
+    const Vec3 toViewer = frame.toWorld({std::sqrt(1.0 - c * c), 0.0, c});
+    return {-toViewer, -3.0 * normal, GetParam().shading, Rgb(0.9, 0.6, 0.3)};
+  }
+};
+
+TEST_P(Surface, SamplingMatchesPdf) {
+  const SurfaceScattering s = surface();
+  // Directions below the surface have no density: their share of the glossy lobe is what is
+  // missing.
+  double below = 0.0;
+  constexpr int n = 200000;
+  for (int i = 0; i < n; ++i) {
+    Random random(77, static_cast<std::uint64_t>(i), 0);
+    below += s.sample(random).pdf > 0.0 ? 0.0 : 1.0 / n;
+  }
+  expectSamplingMatchesPdf(
+      [&](Random& r) {
+        const ScatterSample sample = s.sample(r);
+        return sample.pdf > 0.0 ? sample.outgoing : Vec3(Vec3::Zero());
+      },
+      [&](const Vec3& d) { return s.pdf(d); }, 1.0 - below, 100);
+}
+
+TEST_P(Surface, ReflectsNoMoreThanArrives) {
+  const SurfaceScattering s = surface();
+  Rgb reflected = Rgb::Zero();
+  constexpr int n = 200000;
+  for (int i = 0; i < n; ++i) {
+    Random random(5, static_cast<std::uint64_t>(i), 0);
+    reflected += s.sample(random).weight / n;
+  }
+  const Rgb direct = [&] { // the same by the midpoint rule
+    Rgb sum = Rgb::Zero();
+    const int fine = 400;
+    for (int i = 0; i < fine; ++i)
+      for (int j = 0; j < fine; ++j)
+        sum += s.evaluate(SphereBins::direction((i + 0.5) / fine * SphereBins::rows,
+                                                (j + 0.5) / fine * SphereBins::columns)) *
+               (4.0 * pi / (fine * fine));
+    return sum;
+  }();
+  EXPECT_LE(reflected.maxCoeff(), 1.0);
+  EXPECT_TRUE(reflected.isApprox(direct, 0.01)) << reflected << "\n" << direct;
+}
+
+INSTANTIATE_TEST_SUITE_P(Lobes, Surface,
+                         ::testing::Values(SurfaceCase{1.0, {0.9, 0.2, 10.0, 0.5}},
+                                           SurfaceCase{0.6, {0.7, 0.3, 30.0, 0.5}},
+                                           SurfaceCase{0.1, {0.0, 1.0, 4.0, 0.5}},
+                                           SurfaceCase{0.3, {2.0, 1.0, 1.0, 0.5}},
+                                           SurfaceCase{0.8, {1.0, 0.0, 10.0, 0.5}}));
+
+TEST(SurfaceNormal, TurnsToWhereThePathCameFrom) {
+  const SurfaceShading matte{1.0, 0.0, 10.0, 0.5};
+  for (const Vec3& gradient : {Vec3(0, 0, 2), Vec3(0, 0, -2)}) {
+    const SurfaceScattering s(Vec3(0, 0, -1), gradient, matte, Rgb::Ones());
+    EXPECT_NEAR(s.pdf(Vec3::UnitZ()), 1.0 / pi, 1e-12);
+    EXPECT_EQ(s.pdf(-Vec3::UnitZ()), 0.0);
+  }
+}
+
+} // namespace
+} // namespace fenestra::testing
