@@ -147,6 +147,27 @@ TEST(Clip, RemovedBoxesHaveNothingToKeep) {
     }
 }
 
+TEST(Clip, ABoxAcrossTheEyesPlaneIsSeenInEveryDirection) {
+  // 20 mm deep, but for what is seen far to the right, at the edge of the buffer.
+  const Camera camera = anteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
+  auto buffer = std::make_shared<DepthBuffer>(camera, centredGrid({100, 100, 100}));
+  for (std::int64_t i = 0; i < buffer->size(); ++i)
+    buffer->set(i, buffer->xAxis().coordinate(i % buffer->columns()) > 100.0 ? -1.0 : 20.0);
+  const Clip clip = ClipDepth{camera, buffer, std::make_shared<MinPyramid>(*buffer)};
+  const auto viewBox = [&](const Vec3& lower, const Vec3& upper) {
+    Corners corners;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 view = Box{lower, upper}.corner(i);
+      corners[static_cast<std::size_t>(i)] = camera.pose().position + view.x() * camera.right() +
+                                             view.y() * camera.up() + view.z() * camera.forward();
+    }
+    return corners;
+  };
+  EXPECT_TRUE(removed(clip, viewBox({1.0, -1.0, 5.0}, {3.0, 1.0, 10.0})));
+  EXPECT_FALSE(removed(clip, viewBox({1.0, -1.0, -0.5}, {3.0, 1.0, 10.0})));
+  EXPECT_TRUE(removed(clip, viewBox({1.0, -1.0, -0.5}, {3.0, 1.0, -0.1})));
+}
+
 TEST(ClippingSurface, ShowsTheFocusAtItsOwnDepth) {
   const Model model;
   for (const auto projection : projections)

@@ -52,10 +52,18 @@ TEST(DepthBuffer, IsCoarserBeyondTheViewportWhereItWouldBeTooLarge) {
     EXPECT_EQ(buffer.xAxis().factor, std::floor(buffer.xAxis().factor));
     EXPECT_LE(buffer.xAxis().coordinate(0), -250.0 * (1 - 1e-12));
     EXPECT_GE(buffer.yAxis().coordinate(0), 250.0 * (1 - 1e-12));
-    if (scale >= 5.0) {
-      EXPECT_GT(buffer.size(), most / 4); // no coarser than it has to be
-    }
   }
+}
+
+TEST(DepthBuffer, IsNoCoarserThanItHasToBe) {
+  const Grid grid = centredGrid({500, 500, 500});
+  const auto factor = [&](double scale) {
+    const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
+    return DepthBuffer(camera, grid).xAxis().factor;
+  };
+  EXPECT_EQ(factor(40.0), 1.0); // 1250^2 samples
+  EXPECT_EQ(factor(10.0), 3.0); // (300 + 4700 / 3) (200 + 4800 / 3), against (2650) (2600)
+  EXPECT_EQ(factor(5.0), 6.0);  // (300 + 9700 / 6) (200 + 9800 / 6), against (2240) (2160)
 }
 
 TEST(DepthBuffer, PerspectiveReachesToSeventyFiveDegrees) {

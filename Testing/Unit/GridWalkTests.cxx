@@ -174,6 +174,23 @@ TEST(GridWalk, AwkwardRaysTileTheirRange) {
   }
 }
 
+TEST(GridWalk, RaysThroughCornersTileTheirRange) {
+  Random random(13, 14, 15);
+  const Size3 cells(9, 10, 11);
+  for (int trial = 0; trial < 500000 && !HasFailure(); ++trial) {
+    Vec3 from, to; // half of the corners lie in the grid's surface, where the walk begins
+    for (int axis = 0; axis < 3; ++axis) {
+      from[axis] = 30.0 * signedUniform(random);
+      to[axis] = static_cast<double>(random.bits() % static_cast<std::uint64_t>(cells[axis] + 1));
+    }
+    if (trial % 2)
+      to[trial % 3] = 0.0;
+    const Ray ray{from, (to - from).normalized()};
+    EXPECT_LT(checkedWalk(ray, {}, cells).worstOutside, 1e-13);
+    EXPECT_LT(checkedWalk(ray, {(to - from).norm(), infinity}, cells).worstOutside, 1e-13);
+  }
+}
+
 TEST(GridWalk, FarOriginsKeepTheirCellsToRounding) {
   Random random(10, 11, 12);
   for (int trial = 0; trial < 200000 && !HasFailure(); ++trial) {
