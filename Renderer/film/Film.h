@@ -10,11 +10,11 @@ namespace fenestra {
 
 /// What one path contributes to its pixel.
 struct PathSample {
-  Rgb radiance = Rgb::Zero();   ///< premultiplied, background included where it is opaque
-  double alpha = 1.0;           ///< 0 where an eye ray passes through to a transparent background
-  double depth = infinity;      ///< of the first collision, mm in view space; infinity where none
-  Rgb albedo = Rgb::Zero();     ///< at the first collision
-  Vec3 normal = Vec3::Zero();   ///< unit, world axes, at the first collision; zero where none
+  Rgb radiance = Rgb::Zero(); ///< premultiplied, background included where it is opaque
+  double alpha = 1.0;         ///< 0 where an eye ray passes through to a transparent background
+  double depth = infinity;    ///< of the first collision, mm in view space; infinity where none
+  Rgb albedo = Rgb::Zero();   ///< at the first collision
+  Vec3 normal = Vec3::Zero(); ///< unit, world axes, at the first collision; zero where none
 };
 
 /// Running sums of one pixel, in double. Samples are added in their own order, so that the sums do
@@ -38,7 +38,8 @@ struct PixelSums {
 class Film {
 public:
   Film(int width, int height)
-      : m_width(width), m_height(height),
+      : m_width(width),
+        m_height(height),
         m_pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
   int width() const { return m_width; }
@@ -48,7 +49,8 @@ public:
   const PixelSums& at(int column, int row) const { return m_pixels[index(column, row)]; }
   const std::vector<PixelSums>& pixels() const { return m_pixels; }
 
-  /// sqrt(mean over pixels and channels of se^2 / (x^2 + 0.01)); infinity below two samples a pixel.
+  /// sqrt(mean over pixels and channels of se^2 / (x^2 + 0.01)); infinity below two samples a
+  /// pixel.
   double noise() const;
 
 private:

@@ -21,7 +21,8 @@ Span footprint(std::int64_t c, std::int64_t voxels, int apron) {
 
 CellRanges::CellRanges(const Volume& volume, int apron)
     : m_cellCount((volume.grid.size.array() + (edge - 1)) / edge),
-      m_low(static_cast<std::size_t>(m_cellCount.prod())), m_high(m_low.size()) {
+      m_low(static_cast<std::size_t>(m_cellCount.prod())),
+      m_high(m_low.size()) {
   std::visit([&](const auto& voxels) { fill(volume.grid, voxels, apron); }, volume.voxels);
 }
 

@@ -22,7 +22,7 @@ struct Volume {
   Voxels voxels;
   double minimum = 0.0; ///< over all voxels
   double maximum = 0.0;
-  std::string name;     ///< for messages: the file
+  std::string name; ///< for messages: the file
   std::vector<std::string> warnings;
 };
 
@@ -31,7 +31,8 @@ void computeRange(Volume& volume);
 
 /// The continuous field of `Volume::voxels`: trilinear between voxel centres, clamped in the outer
 /// half voxel. Points are in index space, inside Grid::indexBox(). A view: the volume outlives it.
-template <typename Voxel> class Field {
+template <typename Voxel>
+class Field {
 public:
   Field(const Grid& grid, const std::vector<Voxel>& voxels)
       : m_voxels(voxels.data()),
