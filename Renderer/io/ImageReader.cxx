@@ -43,13 +43,33 @@ std::string firstLine(const std::exception& error) {
   return text.substr(0, text.find('\n'));
 }
 
+/// OpenEXR takes memory for an attribute of any size before it looks for its bytes. Layout of a
+/// header: "OpenEXR File Layout", openexr.com: name, type, size, value, ..., and an empty name.
+void checkExrAttributes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const auto length = static_cast<std::int64_t>(std::filesystem::file_size(path));
+  file.seekg(5); // in the version field
+  const bool severalParts = (file.get() & 0x10) != 0;
+  file.seekg(8);
+  std::string name, type;
+  do { // each part has a header, after the last comes an empty one
+    while (std::getline(file, name, '\0') && !name.empty() && std::getline(file, type, '\0')) {
+      std::uint32_t size = 0; // little endian
+      for (unsigned shift = 0; shift < 32; shift += 8)
+        size |= static_cast<std::uint32_t>(file.get() & 0xff) << shift;
+      if (!file || size > length - file.tellg())
+        throw std::runtime_error("an attribute reaches past the end");
+      file.seekg(size, std::ios::cur);
+    }
+  } while (severalParts && file.peek() > 0);
+}
+
 void checkExr(const std::filesystem::path& path, const Imf::Header& header) {
   const auto& window = header.dataWindow();
   std::int64_t channels = 0;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it, ++channels)
     if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
-      throw inputError(path.string(), std::string("channel ") + it.name() +
-                                          " is subsampled; write it at full resolution");
+      throw inputError(path.string(), "has subsampled channels; write them at full resolution");
   if (header.hasType() && Imf::isDeepData(header.type()))
     throw inputError(path.string(), "holds deep pixels; flatten them first");
   checkSize(path, std::int64_t{window.max.x} - window.min.x + 1,
@@ -70,6 +90,7 @@ std::map<std::string, std::string> ownAttributes(const Imf::Header& header) {
 
 Image readExr(const std::filesystem::path& path) {
   // OpenEXR allocates tables of offsets and tiles before we see the header.
+  checkExrAttributes(path);
   constexpr int side = static_cast<int>(largestSide);
   Imf::Header::setMaxImageSize(side, side);
   Imf::Header::setMaxTileSize(4096, 4096);
