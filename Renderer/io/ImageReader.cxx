@@ -13,12 +13,16 @@
 #include <png.h>
 #include <tiffio.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <fstream>
 #include <limits>
 #include <memory>
 
 namespace fenestra {
+
+using namespace std::string_literals;
 
 namespace {
 
@@ -118,14 +122,18 @@ Image readExr(const std::filesystem::path& path) {
 /// A NRRD header can send its reader to other files or to standard input.
 void checkAttached(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string line(4096, '\0');
+  std::string line(4096, '\0'); // ours have no longer ones
   while (file.getline(line.data(), static_cast<std::streamsize>(line.size()))) {
-    const std::string_view field(line.c_str());
-    if (field.empty() || field == "\r")
+    std::string field = line.substr(0, line.find_first_of(":\r\0"s));
+    if (field.empty())
       return;
-    if (field.starts_with("data file:") || field.starts_with("datafile:"))
+    std::erase_if(field, [](unsigned char c) { return std::isspace(c); });
+    std::transform(field.begin(), field.end(), field.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (field == "datafile")
       throw inputError(path.string(), "keeps its data outside; store them in the file itself");
   }
+  throw std::runtime_error("its header does not end");
 }
 
 /// Channel names by the number of components, none where it is not ours; empty names mean grey.

@@ -83,7 +83,7 @@ std::string encodePng(const Image& image, const std::vector<float>& rgba) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string content(size, '\0');
   if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
-    throw std::runtime_error(std::string("libpng: ") + png.message);
+    throw outputError("picture as PNG", std::string(png.message) + "; write it as .exr");
   content.resize(size);
   return content;
 }

@@ -23,6 +23,7 @@
 #include <unistd.h>
 
 using namespace fenestra;
+using namespace std::string_literals;
 namespace fs = std::filesystem;
 
 /// For the leak sanitizer, if there is one: ITK's NRRD reader forgets a few bytes of a damaged
@@ -283,6 +284,17 @@ TEST_F(NrrdFiles, LieOnThePlaneInLps) {
     EXPECT_NE(header.find(line), std::string::npos) << line << "\nin\n" << header;
 }
 
+TEST_F(NrrdFiles, KeepThePlaneToThePrecisionOfDoubles) {
+  const ImagePlane plane{
+      {1.0 / 3.0, 0.0, 0.0}, {0.6 / 7.0, 0.8 / 7.0, 0.0}, {0.0, 0.0, -1.0 / 7.0}};
+  const std::string content = contentOf(written(renderedImage(), "view.nrrd", plane));
+  const auto numberAfter = [&](const std::string& text) {
+    return std::stod(content.substr(content.find(text) + text.size()));
+  };
+  EXPECT_NEAR(numberAfter("space origin: ("), -1.0 / 3.0, 1e-15);
+  EXPECT_NEAR(numberAfter("space directions: none ("), -0.6 / 7.0, 1e-15);
+}
+
 TEST_F(DisplayFiles, ShowKnownValuesWithStraightAlpha) {
   // Middle grey is 0.4614 in sRGB: 117.6 of 255.
   const float grey = 0.18f;
@@ -418,9 +430,13 @@ TEST_F(DamagedFiles, CannotClaimMoreThanTheyHold) {
 }
 
 TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {
-  store(path("a.nrrd"), "NRRD0004\ntype: float\ndimension: 2\nencoding: raw\nendian: little\n"
-                        "sizes: 4 4\ndata file: -\n\n");
-  EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input);
+  const std::string head = "NRRD0004\ntype: float\ndimension: 2\nencoding: raw\nendian: little\n"
+                           "sizes: 4 4\n";
+  for (const std::string& line : {"data file: -"s, "datafile: /dev/zero"s, " Data  File:-"s,
+                                  "#" + std::string(5000, 'x') + "\ndata file: -"}) {
+    store(path("a.nrrd"), head + line + "\n\n" + std::string(64, '\0'));
+    EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input) << line;
+  }
   ::mkfifo(path("pipe.exr").c_str(), 0600);
   fs::create_directory(path("folder.png"));
   for (const char* name : {"pipe.exr", "folder.png", "missing.exr", "text.txt"})
