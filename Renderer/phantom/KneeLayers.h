@@ -1,0 +1,60 @@
+#pragma once
+// The knee as layers: which shape hides which, what tissue it is, and the segment it belongs to.
+
+#include "phantom/KneeBones.h"
+#include "phantom/KneeSignal.h"
+#include "phantom/KneeSoftTissue.h"
+#include "phantom/Phantom.h"
+
+#include <functional>
+
+namespace fenestra {
+
+/// A place, and what most layers ask about it.
+struct Site {
+  Vec3 point;
+  double leg;                           ///< distances in mm: to the skin's surface
+  double femur, tibia, fibula, patella; ///< and the bones'
+  double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
+};
+
+struct Layer {
+  std::uint8_t label;
+  Tissue tissue;
+  Box box;                                     ///< world; the shape lies inside it
+  std::function<double(const Site&)> distance; ///< mm, negative inside
+};
+
+class KneeLayers {
+public:
+  KneeLayers();
+
+  /// Front to back: a layer hides those after it.
+  const std::vector<Layer>& layers() const { return m_layers; }
+  const std::vector<PhantomSegment>& segments() const { return m_segments; }
+
+  Site site(const Vec3& point) const;
+
+private:
+  using Distance = std::function<double(const Site&)>;
+
+  void segment(const char* id, const char* name, const Rgb& color);
+  void layer(Tissue tissue, const Box& box, Distance distance);
+  void band(Tissue tissue, Tube tube);
+  void muscle(const char* id, const char* name, std::vector<Loft> bellies);
+
+  void addBones();
+  void addCartilage();
+  void addLigaments();
+  void addJointSpace();
+  void addVessels();
+  void addMuscles();
+  void addCovers();
+
+  KneeBones m_bones;
+  LegOutline m_leg;
+  std::vector<Layer> m_layers;
+  std::vector<PhantomSegment> m_segments;
+};
+
+} // namespace fenestra

@@ -1,0 +1,27 @@
+#include "phantom/Knee.h"
+
+namespace fenestra {
+
+VolumeProperty kneeProperty() {
+  VolumeProperty property;
+  // Air and flow voids are empty. Cartilage is far denser than what its border's values pass
+  // through on the way from fluid (215) or bone's cortex (66), so that no muscle red shows on it.
+  property.scalarOpacity = {{0, 0},      {46, 0},     {70, 0.30},  {130, 0.42}, {185, 0.20},
+                            {240, 0.14}, {300, 0.30}, {350, 0.42}, {400, 0.40}, {450, 0.75},
+                            {500, 0.97}, {580, 0.97}, {650, 0.60}, {740, 0.45}, {1200, 0.50}};
+  property.gradientOpacity = {{0, 1}, {2000, 1}};
+  property.color = {
+      {0, {0.86, 0.80, 0.72}},   {70, {0.90, 0.85, 0.76}},  {130, {0.93, 0.89, 0.82}},
+      {190, {0.88, 0.80, 0.74}}, {250, {0.80, 0.52, 0.45}}, {310, {0.72, 0.30, 0.25}},
+      {370, {0.74, 0.32, 0.26}}, {415, {0.86, 0.62, 0.52}}, {455, {0.88, 0.90, 0.93}},
+      {500, {0.90, 0.94, 0.97}}, {590, {0.91, 0.94, 0.96}}, {650, {0.96, 0.90, 0.72}},
+      {740, {0.97, 0.84, 0.52}}, {860, {0.97, 0.81, 0.46}}, {1000, {0.97, 0.83, 0.52}}};
+  property.unitDistance = 1.0;
+  property.shade = true;
+  property.diffuse = 0.9;
+  property.specular = 0.25;
+  property.specularPower = 20.0;
+  return property;
+}
+
+} // namespace fenestra

@@ -1,0 +1,86 @@
+#include "phantom/KneeSignal.h"
+
+#include "phantom/Noise.h"
+#include "phantom/Shapes.h"
+
+namespace fenestra {
+
+namespace {
+
+/// 1 on thin sheets through space about `size` mm apart, 0 off them.
+double septa(const Vec3& p, const Vec3& size, double thickness, std::uint64_t seed) {
+  return 1.0 -
+         smoothStep(0.5 * thickness, thickness, std::abs(valueNoise(p.cwiseQuotient(size), seed)));
+}
+
+double muscleSignal(const Vec3& p) {
+  const double fibres = 16.0 * valueNoise(p.cwiseQuotient(Vec3{1.1, 1.1, 9.0}), 71);
+  const double bundles = 12.0 * valueNoise(p.cwiseQuotient(Vec3{4.0, 4.0, 20.0}), 72);
+  const double fat =
+      0.55 * septa(p, {7.0, 7.0, 30.0}, 0.07, 73) * smoothStep(-0.3, 0.4, valueNoise(p / 11.0, 74));
+  return std::lerp(350.0 + fibres + bundles, 780.0, fat);
+}
+
+double fatSignal(const Vec3& p, double strands) {
+  const double lobules = 22.0 * valueNoise(p / 3.5, 75);
+  return 860.0 + lobules - strands * septa(p, Vec3::Constant(6.0), 0.09, 76);
+}
+
+/// The scars of the growth plates: dark, slightly wavy sheets.
+double physis(const Vec3& p) {
+  const double wave = 1.6 * valueNoise(p / 9.0, 77) + 0.004 * (p.x() * p.x() - 500.0);
+  const double femoral = std::abs(p.z() - 35.0 + wave + 0.12 * p.y());
+  const double tibial = std::abs(p.z() + 17.0 + wave - 0.05 * p.y());
+  return 1.0 - smoothStep(0.3, 1.1, std::min(femoral, tibial));
+}
+
+double marrowSignal(const Vec3& p) {
+  // Trabeculae run mainly along the limb's axis.
+  const double trabeculae =
+      38.0 * valueNoise(p.cwiseQuotient(Vec3{0.9, 0.9, 2.2}), 78) + 22.0 * valueNoise(p / 2.5, 79);
+  const double patches = 28.0 * valueNoise(p / 12.0, 80);
+  return 815.0 + trabeculae + patches - 260.0 * physis(p);
+}
+
+} // namespace
+
+double tissueSignal(Tissue tissue, const Vec3& p) {
+  switch (tissue) {
+  case Tissue::skin:
+    return 410.0;
+  case Tissue::subcutaneousFat:
+    return fatSignal(p, 230.0);
+  case Tissue::fascia:
+    return 210.0;
+  case Tissue::deepFat:
+    return fatSignal(p, 150.0);
+  case Tissue::fatPad:
+    return fatSignal(p, 330.0) - 20.0;
+  case Tissue::muscle:
+    return muscleSignal(p);
+  case Tissue::vessel:
+    return 45.0;
+  case Tissue::nerve:
+    return 420.0 + 60.0 * valueNoise(p.cwiseQuotient(Vec3{0.9, 0.9, 8.0}), 81);
+  case Tissue::fluid:
+    return 215.0;
+  case Tissue::meniscus:
+    return 105.0 + 18.0 * valueNoise(p / 2.0, 82);
+  case Tissue::ligament:
+    return 112.0 + 28.0 * valueNoise(p / 1.5, 83);
+  case Tissue::cartilage:
+    return 520.0 + 16.0 * valueNoise(p / 2.5, 84);
+  case Tissue::cortex:
+    return 66.0;
+  case Tissue::marrow:
+    return marrowSignal(p);
+  }
+  return 0.0;
+}
+
+double biasField(const Vec3& p) {
+  const double coil = 0.06 * p.y() / 60.0 + 0.03 * std::cos((p.z() - 10.0) / 28.0);
+  return 1.0 + coil + 0.05 * valueNoise(p / 55.0, 85);
+}
+
+} // namespace fenestra
