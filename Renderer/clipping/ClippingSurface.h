@@ -28,7 +28,7 @@ struct BoundaryMismatch {
 
 struct ClippingSurface {
   Clip clip;                                 ///< a ClipDepth
-  FocusDepth focus;                          ///< its viewport is where clip's buffer has it
+  FocusDepth focus;                          ///< over the samples of the clip's buffer
   std::vector<ControlPoint> controlPoints{}; ///< empty for a cutaway, as is the mismatch
   BoundaryMismatch mismatch{};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;

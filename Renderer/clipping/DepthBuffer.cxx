@@ -40,7 +40,8 @@ void spread(DepthAxis& axis, double factor, double a, double b) {
   const double first = std::min(a / axis.pitch, b / axis.pitch) - axis.start;
   const double last = std::max(a / axis.pitch, b / axis.pitch) - axis.start;
   const auto beyond = [factor](double pixels) {
-    return static_cast<std::int64_t>(std::ceil(std::clamp(pixels / factor, 0.0, 1e9)));
+    constexpr double most = 1e9; // more than any buffer has; its square is no overflow
+    return static_cast<std::int64_t>(std::ceil(std::clamp(pixels / factor, 0.0, most)));
   };
   axis.factor = factor;
   axis.before = beyond(-first);
@@ -63,17 +64,21 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
       m_y(viewportAxis(-camera.pixelPitch(), camera.height())),
       m_reference(camera.targetDepth()) {
   const double pitch = camera.pixelPitch();
-  if (!(pitch > 0.0) || !std::isfinite(pitch) || std::min(camera.width(), camera.height()) < 1)
-    throw usageError("--scale, --angle and --size: the picture must have an extent");
   const Rectangle span = projection(camera, volume);
-  const std::int64_t limit = std::max<std::int64_t>(4 << 20, m_x.inside * m_y.inside * 5 / 4);
+  const double farthest = span.lower.cwiseAbs().cwiseMax(span.upper.cwiseAbs()).maxCoeff();
+  if (!(pitch > 0.0) || !std::isfinite(pitch) || !(farthest / pitch < 1e15) ||
+      std::min(camera.width(), camera.height()) < 1)
+    throw usageError("--scale, --angle and --size: the picture is empty, or too small beside the "
+                     "volume or too far from it");
+  const std::int64_t limit = std::max<std::int64_t>(
+      {4 << 20, m_x.inside * m_y.inside * 5 / 4, (m_x.inside + 2) * (m_y.inside + 2)});
   const auto fits = [&](double factor) {
     spread(m_x, factor, span.lower.x(), span.upper.x());
     spread(m_y, factor, span.lower.y(), span.upper.y());
     return size() <= limit;
   };
   double fitting = 1.0;
-  while (!fits(fitting) && fitting < 0x1p50) // at last one sample is left on each side
+  while (!fits(fitting)) // at last one sample is left on each side, which the limit allows
     fitting *= 2.0;
   for (double failing = 0.5 * fitting; failing >= 1.0 && fitting - failing > 1.0;) {
     const double middle = std::floor(0.5 * (failing + fitting));

@@ -114,10 +114,20 @@ TEST(DepthBuffer, NearestIsTheSampleWhosePixelIsMet) {
   EXPECT_EQ(buffer.nearest({99.0, -99.0}), 63.0);
 }
 
-TEST(DepthBuffer, APictureWithoutExtentIsRefused) {
-  EXPECT_THROW(DepthBuffer(anteriorCamera(Projection::orthographic, 100.0, 0.0, 8, 8),
-                           centredGrid({2, 2, 2})),
-               Error);
+TEST(DepthBuffer, APictureWithoutExtentOrOutOfProportionIsRefused) {
+  const Grid grid = centredGrid({2, 2, 2});
+  for (const double scale : {0.0, -1.0, 1e-30, infinity, std::nan("")}) {
+    EXPECT_THROW(DepthBuffer(anteriorCamera(Projection::orthographic, 100.0, scale, 8, 8), grid),
+                 Error);
+  }
+}
+
+TEST(DepthBuffer, AViewportBeyondTheLimitKeepsItsPixels) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 0.5, 1, 5000000);
+  const DepthBuffer buffer(camera, centredGrid({2, 2, 2}));
+  EXPECT_EQ(buffer.xAxis().inside, 1);
+  EXPECT_EQ(buffer.yAxis().inside, 5000000);
+  EXPECT_LE(buffer.size(), 3 * 5000002);
 }
 
 TEST(MinPyramid, BoundsWhatTheBufferReturnsInARectangle) {
