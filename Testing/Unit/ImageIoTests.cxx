@@ -45,6 +45,7 @@ std::string contentOf(const fs::path& path) {
 }
 
 void store(const fs::path& path, const std::string& content) {
+  fs::remove(path); // overwriting makes some file systems wait for the disk
   std::ofstream(path, std::ios::binary) << content;
 }
 
