@@ -19,7 +19,7 @@ constexpr Flag flags[] = {
     {"clip", "MODE", clipGroup,
      "none, plane, cutaway or surface [surface with a focus, else none]"},
     {"boundary", "KIND", clipGroup, "How the surface meets the focus: spline (the paper's)"},
-    {"controlpoints", "N", clipGroup, "Control points of the spline, 3 to 2000 [50]"},
+    {"controlpoints", "N", clipGroup, "Control points of the spline, 3 to 1000 [50]"},
     {"smoothing", "P", clipGroup,
      "Spline's p in mm, from 0 (a plane) to 1 (through the points) [0.5]"},
     {"plane", "OX,OY,OZ,NX,NY,NZ", clipGroup,
@@ -75,7 +75,7 @@ ClipRequest clipRequest(const FlagValues& flags) {
   if (const auto word = flags.word("clip", {"none", "plane", "cutaway", "surface"}))
     clip.mode = clipMode(*word);
   flags.word("boundary", {"spline"});
-  if (const auto n = flags.count("controlpoints", 3, 2000))
+  if (const auto n = flags.count("controlpoints", 3, 1000))
     clip.controlPoints = static_cast<int>(*n);
   clip.smoothing = flags.number("smoothing", 0.0, 1.0).value_or(clip.smoothing);
   if (const auto p = flags.numbers("plane", 6)) {
