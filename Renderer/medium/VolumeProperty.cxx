@@ -217,8 +217,9 @@ void checkNodes(const std::vector<Node>& nodes, const std::string& name,
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const std::string place = name + ", point " + std::to_string(i + 1) + ": ";
     const Node& node = nodes[i];
-    if (!std::isfinite(node.x) || (i > 0 && node.x < nodes[i - 1].x))
-      throw inputError(source, place + "x must be finite and not below the point before");
+    if (!(std::abs(node.x) <= 1e38) || (i > 0 && node.x < nodes[i - 1].x))
+      throw inputError(source,
+                       place + "x must be a number of at most 1e38 and not below the point before");
     if (!inUnitRange(valueOf(node)))
       throw inputError(source, place + "value is outside 0 to 1; move it inside");
     if (!inUnitRange(node.midpoint) || !inUnitRange(node.sharpness))

@@ -1,0 +1,145 @@
+#include "io/JsonNode.h"
+
+#include <algorithm>
+#include <fstream>
+
+namespace fenestra {
+namespace {
+
+constexpr std::uintmax_t largestFile = 64 << 20;
+constexpr int deepest = 64;
+
+/// How deep brackets nest outside strings.
+int nesting(std::string_view text) {
+  int depth = 0, greatest = 0;
+  bool inString = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (inString && c == '\\')
+      ++i;
+    else if (c == '"')
+      inString = !inString;
+    else if (!inString && (c == '[' || c == '{'))
+      greatest = std::max(greatest, ++depth);
+    else if (!inString && (c == ']' || c == '}'))
+      --depth;
+  }
+  return greatest;
+}
+
+std::string shortNumber(double x) {
+  std::string text = nlohmann::json(x).dump();
+  return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+}
+
+} // namespace
+
+std::string readText(const std::filesystem::path& path) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed))
+    throw inputError(path.string(), "is not a file that can be read; check the name");
+  const auto size = std::filesystem::file_size(path, failed);
+  if (failed || size > largestFile)
+    throw inputError(path.string(), "has more than 64 MB; name a smaller text file");
+  std::string text(static_cast<std::size_t>(size), '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(text.data(), static_cast<std::streamsize>(size)))
+    throw inputError(path.string(), "cannot be read; check its permissions");
+  return text;
+}
+
+nlohmann::json parseJson(std::string_view text, const std::string& source) {
+  if (nesting(text) > deepest)
+    throw inputError(source, "nests more than " + std::to_string(deepest) +
+                                 " brackets; it is not a file of ours");
+  try {
+    return nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw inputError(source, "is not JSON at byte " + std::to_string(error.byte) +
+                                 "; check its brackets, commas and quotes");
+  } catch (const nlohmann::json::exception&) {
+    throw inputError(source, "holds a number that is too large; write a smaller one");
+  }
+}
+
+Error JsonNode::error(const std::string& mend) const {
+  return inputError(m_source, m_place.empty() ? mend : m_place + ": " + mend);
+}
+
+bool JsonNode::boolean() const {
+  if (!m_value->is_boolean())
+    throw error("must be true or false");
+  return m_value->get<bool>();
+}
+
+std::string JsonNode::text() const {
+  if (!m_value->is_string())
+    throw error("must be a string");
+  return m_value->get<std::string>();
+}
+
+double JsonNode::number() const {
+  if (!m_value->is_number())
+    throw error("must be a number");
+  return m_value->get<double>();
+}
+
+double JsonNode::numberIn(double low, double high) const {
+  const double x = number();
+  if (!(x >= low && x <= high))
+    throw error("is " + shortNumber(x) + "; it must be from " + shortNumber(low) + " to " +
+                shortNumber(high));
+  return x;
+}
+
+std::vector<double> JsonNode::numbers(std::size_t count, double low, double high) const {
+  const std::vector<JsonNode> nodes = elements();
+  if (nodes.size() != count)
+    throw error("must have " + std::to_string(count) + " numbers, not " +
+                std::to_string(nodes.size()));
+  std::vector<double> result;
+  for (const JsonNode& node : nodes)
+    result.push_back(node.numberIn(low, high));
+  return result;
+}
+
+std::vector<JsonNode> JsonNode::elements() const {
+  if (!m_value->is_array())
+    throw error("must be an array");
+  std::vector<JsonNode> nodes;
+  for (const nlohmann::json& value : *m_value)
+    nodes.push_back({value, m_source, m_place + "[" + std::to_string(nodes.size()) + "]"});
+  return nodes;
+}
+
+std::optional<JsonNode> JsonNode::find(const std::string& key) const {
+  if (!m_value->is_object())
+    throw error("must be an object, {…}");
+  const auto it = m_value->find(key);
+  if (it == m_value->end())
+    return std::nullopt;
+  return JsonNode(*it, m_source, m_place.empty() ? key : m_place + "." + key);
+}
+
+JsonNode JsonNode::at(const std::string& key) const {
+  const auto node = find(key);
+  if (!node)
+    throw error("has no \"" + key + "\"; add it");
+  return *node;
+}
+
+void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {
+  if (!m_value->is_object())
+    throw error("must be an object, {…}");
+  for (const auto& [key, value] : m_value->items())
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+      std::string known;
+      for (const std::string_view k : keys)
+        known += (known.empty() ? "" : ", ") + std::string(k);
+      const std::string shown =
+          nlohmann::json(key).dump(-1, ' ', true); // one line, whatever it holds
+      throw error("unknown key " + shown.substr(0, 80) + "; known ones are " + known);
+    }
+}
+
+} // namespace fenestra

@@ -1,0 +1,57 @@
+#pragma once
+// JSON from untrusted files, read so that every complaint names its place. For io's own sources.
+
+#include "core/Error.h"
+#include "core/Vector.h"
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace fenestra {
+
+/// The content of a text file. Throws Error (input) where it cannot be read or exceeds 64 MB.
+std::string readText(const std::filesystem::path& path);
+
+/// Throws Error (input) for anything but one JSON value nested at most 64 deep.
+nlohmann::json parseJson(std::string_view text, const std::string& source);
+
+/// A value and where it is, like "lights[2].radiance". A view: the document outlives it. Every
+/// accessor throws Error (input) where the value is not what it asks for.
+class JsonNode {
+public:
+  JsonNode(const nlohmann::json& document, std::string source)
+      : JsonNode(document, std::move(source), "") {}
+
+  bool isNumber() const { return m_value->is_number(); }
+  bool boolean() const;
+  std::string text() const;
+  double number() const;
+  double numberIn(double low, double high) const;
+  /// An array of exactly `count` numbers from low to high.
+  std::vector<double> numbers(std::size_t count, double low, double high) const;
+
+  /// Of an array.
+  std::vector<JsonNode> elements() const;
+
+  /// Of an object.
+  std::optional<JsonNode> find(const std::string& key) const;
+  JsonNode at(const std::string& key) const;
+  void allowOnly(std::initializer_list<std::string_view> keys) const;
+
+  /// Names the file and the place.
+  Error error(const std::string& mend) const;
+
+private:
+  JsonNode(const nlohmann::json& value, std::string source, std::string place)
+      : m_value(&value), m_source(std::move(source)), m_place(std::move(place)) {}
+
+  const nlohmann::json* m_value;
+  std::string m_source, m_place;
+};
+
+} // namespace fenestra

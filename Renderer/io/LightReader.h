@@ -1,0 +1,24 @@
+#pragma once
+// Reads lights, and the environment maps that they name.
+
+#include "lights/Light.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fenestra {
+
+/// A lights `.json` (design, section 3). Throws Error (input). An environment's `file` is relative
+/// to the folder of the JSON; its `radiance`, if there, multiplies the map.
+std::vector<Light> readLights(const std::filesystem::path& path);
+
+/// The same from text; files are relative to the working directory. `source` names it in messages.
+std::vector<Light> parseLights(std::string_view json, const std::string& source);
+
+/// R, G, B of an EXR, latitude-longitude. Throws Error (input), also where a value is negative or
+/// not finite.
+EnvironmentMap readEnvironmentMap(const std::filesystem::path& path);
+
+} // namespace fenestra

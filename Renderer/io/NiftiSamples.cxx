@@ -1,0 +1,178 @@
+#include "io/NiftiSamples.h"
+
+#include "core/Error.h"
+#include "io/MedicalHeader.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+namespace fenestra {
+namespace {
+
+Error damaged(const std::filesystem::path& path) {
+  return inputError(path.string(), "is damaged or truncated; copy or write it again");
+}
+
+/// Plain and compressed files alike.
+class Stream {
+public:
+  explicit Stream(const std::filesystem::path& path)
+      : m_path(path), m_file(gzopen(path.c_str(), "rb"), gzclose) {
+    if (!m_file)
+      throw inputError(path.string(), "cannot be read; check its permissions");
+    gzbuffer(m_file.get(), 1 << 18);
+  }
+
+  void read(void* to, std::size_t bytes) {
+    auto* at = static_cast<char*>(to);
+    while (bytes > 0) {
+      const auto part = static_cast<unsigned>(std::min<std::size_t>(bytes, 1 << 30));
+      if (gzread(m_file.get(), at, part) != static_cast<int>(part))
+        throw damaged(m_path);
+      at += part;
+      bytes -= part;
+    }
+  }
+
+  void seek(std::int64_t offset) {
+    if (gzseek(m_file.get(), offset, SEEK_SET) != offset)
+      throw damaged(m_path);
+  }
+
+  /// Reading on makes zlib compare checksums, if the stream ends soon.
+  void checkEnd() {
+    std::array<char, 1024> rest;
+    if (gzread(m_file.get(), rest.data(), rest.size()) < 0)
+      throw damaged(m_path);
+  }
+
+private:
+  std::filesystem::path m_path;
+  std::unique_ptr<std::remove_pointer_t<gzFile>, int (*)(gzFile)> m_file;
+};
+
+template <typename T>
+void swapBytes(T& x) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), &x, sizeof(T));
+  std::reverse(bytes.begin(), bytes.end());
+  std::memcpy(&x, bytes.data(), sizeof(T));
+}
+
+/// The fields of nifti_1_header that samples depend on.
+struct Header {
+  bool swapped = false;
+  std::int16_t type = 0;
+  float offset = 0.0f, slope = 0.0f, intercept = 0.0f;
+
+  bool rescales() const {
+    return std::isfinite(slope) && std::isfinite(intercept) && slope != 0.0f &&
+           (slope != 1.0f || intercept != 0.0f);
+  }
+};
+
+Header readHeader(const std::filesystem::path& path, Stream& stream) {
+  std::array<char, 348> bytes;
+  stream.read(bytes.data(), bytes.size());
+  Header header;
+  const auto field = [&]<typename T>(std::size_t at, T& value) {
+    std::memcpy(&value, &bytes[at], sizeof(T));
+    if (header.swapped)
+      swapBytes(value);
+  };
+  std::int16_t axes = 0;
+  field(40, axes); // 1 to 7 tells the byte order
+  header.swapped = axes < 1 || axes > 7;
+  field(40, axes);
+  std::int32_t size = 0;
+  field(0, size);
+  field(70, header.type);
+  field(108, header.offset);
+  field(112, header.slope);
+  field(116, header.intercept);
+  constexpr float farthest = 1 << 30;
+  if (size != static_cast<std::int32_t>(bytes.size()) || axes < 1 || axes > 7 ||
+      std::memcmp(&bytes[344], "n+1", 4) != 0 || !(header.offset <= farthest))
+    throw inputError(path.string(), "is not a NIfTI-1 file of one part; write it again as .nii.gz");
+  return header;
+}
+
+template <typename Rescaled, typename T>
+std::vector<Rescaled> rescaled(const std::vector<T>& samples, const Header& header) {
+  std::vector<Rescaled> result(samples.size());
+  const double slope = header.slope, intercept = header.intercept;
+  std::transform(samples.begin(), samples.end(), result.begin(), [=](T x) {
+    return static_cast<Rescaled>(slope * static_cast<double>(x) + intercept);
+  });
+  return result;
+}
+
+template <typename T>
+Samples readAs(const std::filesystem::path& path, Stream& stream, const Header& header,
+               std::size_t count) {
+  // Samples follow the header and four bytes that announce extensions.
+  const auto offset = static_cast<std::int64_t>(std::max(header.offset, 352.0f));
+  std::uint64_t end = 0;
+  if (__builtin_mul_overflow(count, sizeof(T), &end) ||
+      __builtin_add_overflow(end, static_cast<std::uint64_t>(offset) - 348, &end))
+    end = UINT64_MAX;
+  checkCapacity(path, locateSamples(path, MedicalFormat::nifti), end);
+  stream.seek(offset);
+  std::vector<T> samples(count);
+  stream.read(samples.data(), count * sizeof(T));
+  stream.checkEnd();
+  if (header.swapped && sizeof(T) > 1)
+    for (T& x : samples)
+      swapBytes(x);
+  if (!header.rescales())
+    return samples;
+  if constexpr (sizeof(T) <= 2)
+    return rescaled<float>(samples, header);
+  else
+    return rescaled<double>(samples, header);
+}
+
+} // namespace
+
+void checkNiftiHeader(const std::filesystem::path& path) {
+  Stream stream(path);
+  readHeader(path, stream);
+}
+
+Samples readNiftiSamples(const std::filesystem::path& path, std::size_t count) {
+  Stream stream(path);
+  const Header header = readHeader(path, stream);
+  const auto as = [&]<typename T>(T) { return readAs<T>(path, stream, header, count); };
+  switch (header.type) { // NIFTI_TYPE_… of nifti1.h
+  case 2:
+    return as(std::uint8_t());
+  case 4:
+    return as(std::int16_t());
+  case 8:
+    return as(std::int32_t());
+  case 16:
+    return as(float());
+  case 64:
+    return as(double());
+  case 256:
+    return as(std::int8_t());
+  case 512:
+    return as(std::uint16_t());
+  case 768:
+    return as(std::uint32_t());
+  case 1024:
+    return as(std::int64_t());
+  case 1280:
+    return as(std::uint64_t());
+  default:
+    throw inputError(path.string(), "datatype: " + std::to_string(header.type) +
+                                        " is not read; convert it to 16-bit integers");
+  }
+}
+
+} // namespace fenestra

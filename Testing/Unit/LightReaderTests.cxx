@@ -1,0 +1,129 @@
+// Lights from JSON, environment maps from EXR, and what is refused.
+
+#include "io/EmbeddedResources.h"
+#include "io/ImageWriter.h"
+#include "io/LightReader.h"
+
+#include "MedicalFiles.h"
+
+namespace fenestra {
+namespace {
+
+TEST(LightReader, readsEveryKind) {
+  const auto lights = parseLights(R"({"lights": [
+    {"type": "environment", "radiance": [1, 2, 3]},
+    {"type": "directional", "direction": [0, 0, -4], "irradiance": [3, 2, 1]},
+    {"type": "rectangle", "center": [1, 2, 3], "normal": [0, 3, 0], "up": [0, 0, 2],
+     "size": [4, 5], "radiance": [6, 7, 8], "frame": "camera"},
+    {"type": "disk", "center": [1, 2, 3], "normal": [3, 0, 4], "size": 9, "radiance": [1, 1, 1]},
+    {"type": "disk", "center": [0, 0, 0], "normal": [0, 0, 1], "size": [2, 2],
+     "radiance": [0, 0, 0], "frame": "world"}]})",
+                                  "test");
+  ASSERT_EQ(lights.size(), 5u);
+  EXPECT_TRUE((std::get<EnvironmentLight>(lights[0]).radiance == Rgb(1, 2, 3)).all());
+  EXPECT_EQ(std::get<DirectionalLight>(lights[1]).direction, Vec3(0, 0, -1));
+  EXPECT_TRUE((std::get<DirectionalLight>(lights[1]).irradiance == Rgb(3, 2, 1)).all());
+  const auto& rectangle = std::get<AreaLight>(lights[2]);
+  EXPECT_EQ(rectangle.shape, AreaLight::Shape::rectangle);
+  EXPECT_EQ(rectangle.center, Vec3(1, 2, 3));
+  EXPECT_EQ(rectangle.normal, Vec3(0, 1, 0));
+  EXPECT_EQ(rectangle.up, Vec3(0, 0, 1));
+  EXPECT_EQ(rectangle.size, Vec2(4, 5));
+  EXPECT_EQ(rectangle.frame, LightFrame::camera);
+  const auto& disk = std::get<AreaLight>(lights[3]);
+  EXPECT_EQ(disk.shape, AreaLight::Shape::disk);
+  EXPECT_TRUE(disk.normal.isApprox(Vec3(0.6, 0, 0.8)));
+  EXPECT_EQ(disk.size, Vec2(9, 9));
+  EXPECT_EQ(disk.frame, LightFrame::world);
+}
+
+TEST(LightReader, namesThePlaceOfWhatIsWrong) {
+  const auto refuse = [](const std::string& light, const std::string& text) {
+    const std::string json =
+        R"({"lights": [{"type": "environment", "radiance": [1, 1, 1]}, )" + light + "]}";
+    expectRefused("test", text, [&] { parseLights(json, "test"); });
+  };
+  refuse(R"({"type": "spot"})", "lights[1].type: must be");
+  refuse(R"({"radiance": [1, 1, 1]})", "lights[1]: has no \"type\"");
+  refuse("3", "lights[1]: must be an object");
+  refuse(R"({"type": "environment"})", "lights[1]: has no \"radiance\"");
+  refuse(R"({"type": "environment", "radiance": [1, 1]})", "lights[1].radiance: must have 3");
+  refuse(R"({"type": "environment", "radiance": [1, -1, 1]})", "lights[1].radiance[1]: is -1");
+  refuse(R"({"type": "environment", "radiance": [1, 1, 1e35]})", "lights[1].radiance[2]");
+  refuse(R"({"type": "environment", "radiance": 1})", "lights[1].radiance: must be an array");
+  refuse(R"({"type": "environment", "color": 1})", "lights[1]: unknown key \"color\"");
+  refuse(R"({"type": "directional", "direction": [0, 0, 0], "irradiance": [1, 1, 1]})",
+         "lights[1].direction: is the zero vector");
+  const std::string area = R"("center": [0, 0, 0], "radiance": [1, 1, 1], )";
+  refuse(R"({"type": "disk", )" + area + R"("normal": [0, 0, 0], "size": 1})", "lights[1].normal");
+  refuse(R"({"type": "disk", )" + area + R"("normal": [0, 0, 1], "size": 0})", "lights[1].size");
+  refuse(R"({"type": "disk", )" + area + R"("normal": [0, 0, 1], "size": [1, 2]})",
+         "lights[1].size: of a disk");
+  refuse(R"({"type": "rectangle", )" + area + R"("normal": [0, 0, 1], "size": 1})",
+         "lights[1].size");
+  refuse(R"({"type": "rectangle", )" + area +
+             R"("normal": [0, 0, 1], "size": [1, 1], "frame": "eye"})",
+         "lights[1].frame");
+  expectRefused("test", "has no \"lights\"", [] { parseLights("{}", "test"); });
+  expectRefused("test", "unknown key \"light\"",
+                [] { parseLights(R"({"lights": [], "light": 1})", "test"); });
+}
+
+Image sky(float value = 0.5f) {
+  Image image{.width = 4, .height = 2, .channels = {}, .header = {}};
+  for (const char* name : {"R", "G", "B"})
+    image.channels[name].assign(8, 0.25f);
+  image.channels["G"][6] = value;
+  return image;
+}
+
+TEST(LightReader, readsEnvironmentMapsBesideTheirFile) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "maps");
+  writeImage(sky(), {}, folder / "maps/sky.exr");
+  const auto path = folder.write(
+      "lights.json",
+      R"({"lights": [{"type": "environment", "file": "maps/sky.exr", "radiance": [2, 2, 2]}]})");
+  const auto lights = readLights(path);
+  const auto& light = std::get<EnvironmentLight>(lights.at(0));
+  EXPECT_EQ(light.map.width, 4);
+  EXPECT_EQ(light.map.height, 2);
+  ASSERT_EQ(light.map.rgb.size(), 24u);
+  EXPECT_EQ(light.map.rgb[3 * 6 + 0], 0.25f);
+  EXPECT_EQ(light.map.rgb[3 * 6 + 1], 0.5f);
+  EXPECT_EQ(light.radiance[0], 2.0);
+}
+
+TEST(LightReader, refusesMapsThatAreNone) {
+  const TemporaryFolder folder;
+  const auto path = folder / "sky.exr";
+  const auto refuse = [&path](const std::string& text) {
+    expectRefused(path, text, [&path] { readEnvironmentMap(path); });
+  };
+  refuse("is not a file");
+  for (const float value : {-0.1f, std::nanf(""), std::numeric_limits<float>::infinity()}) {
+    writeImage(sky(value), {}, path);
+    refuse("channel G at pixel 2, 1");
+  }
+  folder.write("sky.exr", "v/1\x01 nothing");
+  refuse("damaged");
+  expectRefused(folder / "sky.png", "name a .exr", [&] { readEnvironmentMap(folder / "sky.png"); });
+}
+
+TEST(LightReader, readsThePresets) {
+  const auto names = embeddedResourceNames("lights/");
+  EXPECT_FALSE(names.empty());
+  for (const std::string& name : names)
+    EXPECT_NO_THROW(parseLights(embeddedResource(name), name)) << name;
+}
+
+TEST(LightReader, readsTheReferencesLights) {
+  const std::filesystem::path root(FENESTRA_REFERENCE);
+  if (!std::filesystem::exists(root / "S2.lights.json"))
+    GTEST_SKIP() << "no references at " << FENESTRA_REFERENCE;
+  EXPECT_EQ(readLights(root / "S1.lights.json").size(), 1u);
+  EXPECT_EQ(readLights(root / "S2.lights.json").size(), 2u);
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,189 @@
+// Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and files that are neither.
+
+#include "io/TransferReader.h"
+#include "medium/VolumeProperty.h"
+
+#include "MedicalFiles.h"
+
+namespace fenestra {
+namespace {
+
+TEST(TransferReader, readsItsOwnFormat) {
+  const TransferFunction f = parseTransferFunction(
+      R"({"extinction": [[100, 4], [0, 0]], "albedo": [[0, 0.1, 0.2, 0.3], [10, 0.5, 0.6, 1]],
+          "g": -0.5, "shading": "hybrid"})",
+      "test");
+  EXPECT_DOUBLE_EQ(f.extinction(25)[0], 1.0);
+  EXPECT_DOUBLE_EQ(f.extinction(1000)[0], 4.0);
+  EXPECT_TRUE(f.albedo(5).isApprox(Rgb(0.3, 0.4, 0.65)));
+  EXPECT_EQ(f.g, -0.5);
+  ASSERT_TRUE(f.shading);
+  EXPECT_EQ(f.shading->gamma, 0.5);
+  EXPECT_FALSE(f.gradientOpacity);
+  const TransferFunction least =
+      parseTransferFunction(R"({"extinction": [[0, 1]], "albedo": [[0, 1, 1, 1]]})", "test");
+  EXPECT_EQ(least.g, 0.0);
+  EXPECT_FALSE(least.shading);
+}
+
+void expectRefusal(const std::string& json, const std::string& text) {
+  expectRefused("test", text, [&] { parseTransferFunction(json, "test"); });
+}
+
+TEST(TransferReader, namesThePlaceOfWhatIsWrong) {
+  const std::string e = R"("extinction": [[0, 1], [5, 2]])", a = R"("albedo": [[0, 1, 1, 1]])";
+  expectRefusal("{" + e + "}", "has no \"albedo\"");
+  expectRefusal("{" + a + "}", "has no \"extinction\"");
+  expectRefusal("{" + e + "," + a + R"(, "opacity": 1})", "unknown key \"opacity\"");
+  expectRefusal("{" + e + "," + a + R"(, "new\nline": 1})", "unknown key");
+  expectRefusal("{" + e + "," + a + R"(, "g": 1})", "g: must be between");
+  expectRefusal("{" + e + "," + a + R"(, "g": "x"})", "g: must be a number");
+  expectRefusal("{" + e + "," + a + R"(, "shading": "phong"})", "shading: must be");
+  expectRefusal("{" + a + R"(, "extinction": [[0, 1], [1, -2]]})", "extinction[1]: value must not");
+  expectRefusal("{" + a + R"(, "extinction": [[0, 1], [1]]})",
+                "extinction[1]: must have 2 numbers");
+  expectRefusal("{" + a + R"(, "extinction": []})", "extinction: is empty");
+  expectRefusal("{" + a + R"(, "extinction": 3})", "extinction: must be an array");
+  expectRefusal("{" + a + R"(, "extinction": [[0, 1e40]]})", "extinction[0][1]: is 1e+40");
+  expectRefusal("{" + e + R"(, "albedo": [[0, 1, 1.5, 1]]})",
+                "albedo[0]: values must be from 0 to 1");
+  expectRefusal("[]", "must be an object");
+  expectRefusal("", "is not JSON");
+  expectRefusal("{\"extinction\": [[0,", "is not JSON");
+  expectRefusal("{\"extinction\": 1e999}", "");
+  expectRefusal("{\"extinction\": \"\xff\"}", "is not JSON");
+  expectRefusal(std::string(1'000'000, '['), "nests more than 64");
+}
+
+/// A .vp.json around the given members of its property and component.
+std::string slicer(const std::string& property, const std::string& component) {
+  return R"({"@schema": "x", "volumeProperties": [{"effectiveRange": [0, "bad"], )" + property +
+         R"("components": [{)" + component + R"(
+    "scalarOpacity": {"type": "piecewiseLinearFunction", "points": [
+      {"x": 200, "y": 0.5, "midpoint": 0.5, "sharpness": 0},
+      {"x": 0, "y": 0, "midpoint": 0.25, "sharpness": 0.5}]},
+    "rgbTransferFunction": {"type": "colorTransferFunction", "points": [
+      {"x": 0, "color": [1, 0.5, 0], "midpoint": 0.5, "sharpness": 0}]}}]}]})";
+}
+
+TEST(TransferReader, readsSlicersJson) {
+  const TransferFunction f =
+      parseTransferFunction(slicer(R"("scatteringAnisotropy": 0.3, )",
+                                   R"("scalarOpacityUnitDistance": 2, "shade": true,
+                "lighting": {"ambient": 0.1, "diffuse": 0.6, "specular": 0.3, "specularPower": 20},
+                "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 10, "y": 1}]}, )"),
+                            "test");
+  const std::vector<OpacityNode> nodes = {{0, 0, 0.25, 0.5}, {200, 0.5}};
+  for (const double x : {-10.0, 20.0, 50.0, 111.0, 199.0, 300.0}) {
+    const double truth = -std::log1p(-opacityAt(nodes, x)) / 2.0;
+    EXPECT_NEAR(f.extinction(x)[0], truth, 1e-4 * truth) << x;
+  }
+  EXPECT_TRUE((f.albedo(0) == decodeSrgb({1, 0.5, 0})).all());
+  EXPECT_EQ(f.g, 0.3);
+  ASSERT_TRUE(f.shading);
+  EXPECT_EQ(f.shading->diffuse, 0.6);
+  EXPECT_EQ(f.shading->specular, 0.3);
+  EXPECT_EQ(f.shading->power, 20);
+  ASSERT_TRUE(f.gradientOpacity);
+  EXPECT_DOUBLE_EQ((*f.gradientOpacity)(5)[0], 0.5);
+}
+
+TEST(TransferReader, leavesGradientOpacityOutWhereItDoesNothing) {
+  for (const char* component :
+       {"", R"("gradientOpacity": {"points": [{"x": 0, "y": 1}, {"x": 9, "y": 1}]}, )",
+        R"("disableGradientOpacity": true, "gradientOpacity": {"points": [{"x": 0, "y": 0}]}, )"})
+    EXPECT_FALSE(parseTransferFunction(slicer("", component), "test").gradientOpacity);
+}
+
+TEST(TransferReader, keepsAnisotropyInside) {
+  EXPECT_EQ(parseTransferFunction(slicer(R"("scatteringAnisotropy": 1, )", ""), "").g, 0.999);
+  EXPECT_EQ(parseTransferFunction(slicer(R"("scatteringAnisotropy": -1, )", ""), "").g, -0.999);
+  expectRefusal(slicer(R"("scatteringAnisotropy": 1.01, )", ""),
+                "volumeProperties[0].scatteringAnisotropy: is 1.01; it must be from -1 to 1");
+}
+
+TEST(TransferReader, refusesDamagedSlicerJson) {
+  expectRefusal(R"({"volumeProperties": []})", "volumeProperties: is empty");
+  expectRefusal(R"({"volumeProperties": [{"components": [{}]}]})",
+                "volumeProperties[0].components[0]: has no \"scalarOpacity\"");
+  expectRefusal(slicer("", R"("scalarOpacityUnitDistance": 0, )"), "scalarOpacityUnitDistance");
+  expectRefusal(slicer("", R"("shade": 1, )"), "shade: must be true or false");
+  expectRefusal(slicer("", R"("gradientOpacity": {"points": [{"x": 0, "y": 2}]}, )"),
+                "gradientOpacity.points[0].y");
+  expectRefusal(
+      slicer("", R"("gradientOpacity": {"points": [{"x": 0, "y": 1, "sharpness": 3}]}, )"),
+      "gradient opacity, point 1");
+}
+
+const std::string propertyText = "1\r\n1\n0.42\n0.44\n0.46\n38.5\n"
+                                 "8 -17 0 13 0.2 13 0.6 235 1\n"
+                                 "4 -17 1 235 1\n"
+                                 "8 -17 1 0 0.5 235 1 1 1\n";
+
+TEST(TransferReader, readsSlicersText) {
+  const TemporaryFolder folder;
+  const TransferFunction f = readTransferFunction(folder.write("a.vp", propertyText));
+  EXPECT_NEAR(f.extinction(-2)[0], -std::log1p(-0.1), 1e-4 * 0.1);
+  EXPECT_DOUBLE_EQ(f.extinction(13)[0], -std::log1p(-0.6)); // equal positions make a step
+  EXPECT_NEAR(f.extinction(13 - 1e-9)[0], -std::log1p(-0.2), 1e-6);
+  EXPECT_TRUE(f.albedo(235).isApprox(Rgb(1, 1, 1)));
+  EXPECT_FALSE(f.gradientOpacity);
+  ASSERT_TRUE(f.shading);
+  EXPECT_EQ(f.shading->diffuse, 0.42);
+  EXPECT_EQ(f.shading->specular, 0.46);
+  EXPECT_EQ(f.shading->power, 38.5);
+}
+
+TEST(TransferReader, refusesDamagedText) {
+  const TemporaryFolder folder;
+  const auto refuse = [&folder](const std::string& from, const std::string& to,
+                                const std::string& text) {
+    std::string content = propertyText;
+    content.replace(content.find(from), from.size(), to);
+    const auto path = folder.write("a.vp", content);
+    expectRefused(path, text, [&path] { readTransferFunction(path); });
+  };
+  refuse("8 -17 0", "6 -17 0", "line 7 (scalar opacity)");
+  refuse("8 -17 0", "1e9 -17 0", "line 7 (scalar opacity)");
+  refuse("8 -17 0", "8 -17 nan", "line 7 (scalar opacity)");
+  refuse("8 -17 0", "8 -17 O", "line 7 (scalar opacity)");
+  refuse("8 -17 0 13", "8 -17 7 13", "scalar opacity, point 1");
+  refuse("0.44\n", "\n", "line 4 (ambient)");
+  refuse("8 -17 1 0 0.5 235 1 1 1\n", "", "line 9 (color transfer)");
+  refuse("8 -17 1 0 0.5 235 1 1 1\n", "0\n", "color: has 0 points");
+}
+
+TEST(TransferReader, refusesFilesOfOtherKinds) {
+  const TemporaryFolder folder;
+  expectRefused(folder / "x.txt", "name a .vp", [&] { readTransferFunction(folder / "x.txt"); });
+  expectRefused(folder / "x.vp", "is not a file", [&] { readTransferFunction(folder / "x.vp"); });
+  std::filesystem::create_directory(folder / "d.json");
+  expectRefused(folder / "d.json", "is not a file",
+                [&] { readTransferFunction(folder / "d.json"); });
+}
+
+TEST(TransferReader, readsRealVolumeProperties) {
+  const std::filesystem::path root = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes";
+  if (!std::filesystem::exists(root))
+    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+  int read = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.ends_with(".vp") && !name.ends_with(".vp.json"))
+      continue;
+    EXPECT_NO_THROW(readTransferFunction(entry.path())) << name;
+    ++read;
+  }
+  EXPECT_GE(read, 4);
+}
+
+TEST(TransferReader, readsTheReferencesTransferFunctions) {
+  const std::filesystem::path root(FENESTRA_REFERENCE);
+  if (!std::filesystem::exists(root / "S1.transfer.json"))
+    GTEST_SKIP() << "no references at " << FENESTRA_REFERENCE;
+  for (const char* name : {"S1", "S2", "S2hi", "S3het"})
+    EXPECT_NO_THROW(readTransferFunction(root / (std::string(name) + ".transfer.json"))) << name;
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,366 @@
+// Round trips through every format and sample type, and files that are not what they say.
+
+#include "io/VolumeReader.h"
+
+#include "MedicalFiles.h"
+
+#include <numeric>
+
+namespace fenestra {
+namespace {
+
+template <typename Stored>
+const std::vector<Stored>& as(const Volume& volume) {
+  return std::get<std::vector<Stored>>(volume.voxels);
+}
+
+/// 24 samples of the default geometry.
+template <typename T>
+std::vector<T> ramp(double first, double step) {
+  std::vector<T> samples(24);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i] = static_cast<T>(first + step * static_cast<double>(i));
+  return samples;
+}
+
+template <typename Stored, typename T>
+void expectRoundTrip(const std::vector<T>& samples) {
+  const TemporaryFolder folder;
+  for (const char* name : {"v.nrrd", "v.nhdr", "v.nii", "v.nii.gz", "v.mha", "v.mhd"})
+    for (const bool compress : {false, true}) {
+      if (std::string(name).starts_with("v.nii") && sizeof(T) == 8 && std::is_integral_v<T>)
+        continue; // ITK does not write 64-bit integers there
+      const auto path = folder / name;
+      writeFile(path, samples, {.compress = compress});
+      const Volume volume = readVolume(path);
+      ASSERT_TRUE(std::holds_alternative<std::vector<Stored>>(volume.voxels)) << name;
+      ASSERT_EQ(as<Stored>(volume).size(), samples.size());
+      for (std::size_t i = 0; i < samples.size(); ++i)
+        ASSERT_EQ(static_cast<double>(as<Stored>(volume)[i]), static_cast<double>(samples[i]))
+            << name;
+      const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+      EXPECT_EQ(volume.minimum, static_cast<double>(*low));
+      EXPECT_EQ(volume.maximum, static_cast<double>(*high));
+      EXPECT_TRUE(volume.warnings.empty());
+      EXPECT_EQ(volume.grid.size, Size3(3, 4, 2));
+    }
+}
+
+TEST(VolumeReader, storesEveryTypeInTheSmallestThatHoldsIt) {
+  expectRoundTrip<std::uint8_t>(ramp<std::int8_t>(0, 5));
+  expectRoundTrip<std::int16_t>(ramp<std::int8_t>(-100, 5));
+  expectRoundTrip<std::uint8_t>(ramp<std::uint8_t>(3, 10));
+  expectRoundTrip<std::int16_t>(ramp<std::int16_t>(-1024, 170));
+  expectRoundTrip<std::uint16_t>(ramp<std::uint16_t>(0, 2800));
+  expectRoundTrip<std::int16_t>(ramp<std::uint16_t>(0, 1000));
+  expectRoundTrip<std::int16_t>(ramp<std::int32_t>(-1024, 170));
+  expectRoundTrip<float>(ramp<std::int32_t>(-100000, 9000));
+  expectRoundTrip<std::uint16_t>(ramp<std::uint32_t>(0, 2800));
+  expectRoundTrip<std::int16_t>(ramp<std::int64_t>(-30000, 2000));
+  expectRoundTrip<float>(ramp<std::int64_t>(-65536.0 * 65536.0, 65536.0));
+  expectRoundTrip<std::uint8_t>(ramp<std::uint64_t>(0, 11));
+  expectRoundTrip<float>(ramp<float>(-0.5, 0.25));
+  expectRoundTrip<std::int16_t>(ramp<float>(-1024, 100));
+  expectRoundTrip<float>(ramp<double>(-0.5, 0.25));
+  expectRoundTrip<std::uint8_t>(ramp<double>(0, 1));
+}
+
+TEST(VolumeReader, roundsWhatNoStorageHolds) {
+  const TemporaryFolder folder;
+  auto samples = ramp<double>(0.1, 1);
+  samples[3] = 1e300;
+  samples[4] = -1e300;
+  writeFile(folder / "v.nrrd", samples);
+  const Volume volume = readVolume(folder / "v.nrrd");
+  EXPECT_EQ(as<float>(volume)[0], 0.1f);
+  EXPECT_EQ(volume.maximum, double(std::numeric_limits<float>::max()));
+  EXPECT_EQ(volume.minimum, -double(std::numeric_limits<float>::max()));
+}
+
+TEST(VolumeReader, mendsWhatIsNotFinite) {
+  const TemporaryFolder folder;
+  for (const char* name : {"v.nrrd", "v.nii.gz", "v.mha"})
+    for (const double step : {0.5, 1.0}) { // stays float; becomes integers
+      auto samples = ramp<float>(-3, step);
+      samples[5] = std::numeric_limits<float>::quiet_NaN();
+      samples[6] = std::numeric_limits<float>::infinity();
+      samples[7] = -std::numeric_limits<float>::infinity();
+      writeFile(folder / name, samples);
+      const Volume volume = readVolume(folder / name);
+      std::visit(
+          [&](const auto& voxels) {
+            EXPECT_EQ(double(voxels[5]), -3.0) << name;
+            EXPECT_EQ(double(voxels[6]), -3 + 23 * step);
+            EXPECT_EQ(double(voxels[7]), -3.0);
+            EXPECT_EQ(double(voxels[8]), -3 + 8 * step);
+          },
+          volume.voxels);
+      ASSERT_EQ(volume.warnings.size(), 2u);
+      EXPECT_NE(volume.warnings[0].find("1 voxels are not a number"), std::string::npos);
+      EXPECT_NE(volume.warnings[1].find("2 voxels are infinite"), std::string::npos);
+    }
+}
+
+TEST(VolumeReader, convertsObliqueGeometryToRas) {
+  const TemporaryFolder folder;
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  FileGeometry geometry{.directions = {{c, s, 0}, {-s, c, 0}, {0, 0, 1}},
+                        .spacing = {0.5, 0.75, 3},
+                        .origin = {10, -20, 30}};
+  for (const bool leftHanded : {false, true}) {
+    geometry.directions[2] = {0, 0, leftHanded ? -1.0 : 1.0};
+    for (const char* name : {"v.nrrd", "v.nii", "v.nii.gz", "v.mha", "v.mhd"}) {
+      writeFile(folder / name, ramp<std::uint8_t>(0, 1), geometry);
+      const Grid grid = readVolume(folder / name).grid;
+      const Vec3 index(2, 3, 1);
+      const Vec3 lps = Vec3(10, -20, 30) + index[0] * 0.5 * Vec3(c, s, 0) +
+                       index[1] * 0.75 * Vec3(-s, c, 0) +
+                       index[2] * 3.0 * Vec3(0, 0, leftHanded ? -1 : 1);
+      EXPECT_TRUE((grid.indexToWorld * index).isApprox(Vec3(-lps.x(), -lps.y(), lps.z()), 1e-6))
+          << name << " " << (grid.indexToWorld * index).transpose();
+      EXPECT_TRUE((grid.worldToIndex * (grid.indexToWorld * index)).isApprox(index, 1e-6));
+      EXPECT_TRUE(grid.spacing().isApprox(Vec3(0.5, 0.75, 3), 1e-6)) << name;
+    }
+  }
+}
+
+/// A raw NRRD by hand: `head` holds the fields that vary.
+std::string nrrd(const std::string& head, const std::string& data,
+                 const std::string& encoding = "raw") {
+  return "NRRD0004\ntype: unsigned char\nencoding: " + encoding + "\n" + head + "\n\n" + data;
+}
+
+TEST(VolumeReader, readsRasAndShearedHeaders) {
+  const TemporaryFolder folder;
+  const std::string samples(24, 'x');
+  const auto path = folder.write(
+      "ras.nrrd", nrrd("dimension: 3\nspace: right-anterior-superior\nsizes: 3 4 2\n"
+                       "space directions: (2,0,0) (0.5,1,0) (0,0,-3)\nspace origin: (1,2,3)",
+                       samples));
+  const Grid grid = readVolume(path).grid;
+  EXPECT_TRUE((grid.indexToWorld * Vec3(1, 1, 1)).isApprox(Vec3(3.5, 3, 0), 1e-12));
+  EXPECT_LT(grid.indexToWorld.linear().determinant(), 0.0);
+  const auto lps = folder.write(
+      "lps.nrrd", nrrd("dimension: 3\nspace: left-posterior-superior\nsizes: 3 4 2\n"
+                       "space directions: (-2,0,0) (0,-1,0) (0,0,3)\nspace origin: (1,2,3)",
+                       samples));
+  EXPECT_TRUE((readVolume(lps).grid.indexToWorld * Vec3(1, 1, 1)).isApprox(Vec3(1, -1, 6), 1e-12));
+}
+
+TEST(VolumeReader, readsDetachedDataAndLists) {
+  const TemporaryFolder folder;
+  const std::string head = "dimension: 3\nsizes: 3 4 2\n";
+  folder.write("half.raw", std::string(12, '\1'));
+  folder.write("whole.raw", std::string(24, '\2'));
+  const auto one = folder.write("one.nhdr", nrrd(head + "data file: whole.raw", ""));
+  EXPECT_EQ(readVolume(one).minimum, 2.0);
+  const auto list = folder.write("list.nhdr", "NRRD0004\ntype: unsigned char\nencoding: raw\n" +
+                                                  head + "data file: LIST 2\nhalf.raw\nhalf.raw\n");
+  EXPECT_EQ(readVolume(list).maximum, 1.0);
+}
+
+TEST(VolumeReader, dropsTrailingAxesOfOneFrame) {
+  const TemporaryFolder folder;
+  const auto path = folder.write(
+      "legacy.nrrd", nrrd("dimension: 4\nspace dimension: 4\nsizes: 3 4 2 1\nkinds: domain domain "
+                          "domain domain\nspace directions: (-2,0,0,0) (0,-1,0,0) (0,0,3,0) "
+                          "(0,0,0,1)\nspace origin: (1,2,3,0)",
+                          std::string(24, 'x')));
+  const Volume volume = readVolume(path);
+  EXPECT_EQ(volume.grid.size, Size3(3, 4, 2));
+  EXPECT_TRUE((volume.grid.indexToWorld * Vec3(1, 1, 1)).isApprox(Vec3(1, -1, 6), 1e-12));
+  writeFile(folder / "slice.nrrd", std::vector<std::uint8_t>(12, 1), {.size = {3, 4, 1}});
+  EXPECT_EQ(readVolume(folder / "slice.nrrd").grid.size, Size3(3, 4, 1));
+}
+
+void expectRefusal(const std::filesystem::path& path, const std::string& text) {
+  expectRefused(path, text, [&path] { readVolume(path); });
+}
+
+TEST(VolumeReader, refusesWhatIsNoScalarVolume) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> samples(96, 1);
+  for (const std::string end : {".nrrd", ".nii.gz", ".mha"}) {
+    writeFile(folder / ("frames" + end), samples, {.size = {3, 4, 2, 4}});
+    expectRefusal(folder / ("frames" + end), "frames");
+    writeFile(folder / ("vectors" + end), samples, {.components = 3});
+    expectRefusal(folder / ("vectors" + end), "components");
+  }
+  for (const std::string end : {".nrrd", ".mha"}) {
+    writeFile(folder / ("flat" + end), samples, {.size = {3, 4}});
+    expectRefusal(folder / ("flat" + end), "not a volume");
+  }
+}
+
+TEST(VolumeReader, refusesWhatIsMissingOrUnknown) {
+  const TemporaryFolder folder;
+  expectRefusal(folder / "missing.nrrd", "is not a file");
+  expectRefusal(folder / "", "is not a file");
+  expectRefusal(folder.write("volume.dat", "x"), "no known extension");
+  for (const char* name : {"a.nrrd", "a.nhdr", "a.nii", "a.nii.gz", "a.mha", "a.mhd"}) {
+    expectRefusal(folder.write(name, ""), "");
+    expectRefusal(folder.write(name, "something else\nentirely\n"), "");
+    expectRefusal(folder.write(name, std::string(5000, '\0')), "");
+    expectRefusal(folder.write(name, std::string(5000, '\xff')), "");
+  }
+}
+
+TEST(VolumeReader, refusesTruncatedFiles) {
+  const TemporaryFolder folder;
+  std::vector<std::uint16_t> samples(8000);
+  for (std::size_t i = 0; i < samples.size(); ++i) // not to be compressed away
+    samples[i] = static_cast<std::uint16_t>(i * i * 40503u);
+  for (const char* name : {"v.nrrd", "v.nii", "v.nii.gz", "v.mha"})
+    for (const bool compress : {false, true}) {
+      writeFile(folder / name, samples, {.size = {20, 20, 20}, .compress = compress});
+      const std::string whole = bytesOf(folder / name);
+      for (const double share : {0.02, 0.3, 0.9, 0.999})
+        expectRefusal(folder.write(std::string("cut-") + name,
+                                   whole.substr(0, std::size_t(share * double(whole.size())))),
+                      "");
+    }
+  for (const bool compress : {false, true}) {
+    writeFile(folder / "v.mhd", samples, {.size = {20, 20, 20}, .compress = compress});
+    const std::string data = bytesOf(folder / (compress ? "v.zraw" : "v.raw"));
+    folder.write(compress ? "v.zraw" : "v.raw", data.substr(0, data.size() - 9));
+    expectRefusal(folder / "v.mhd", "truncated");
+  }
+}
+
+TEST(VolumeReader, refusesDamagedStreams) {
+  const TemporaryFolder folder;
+  std::vector<std::uint16_t> samples(8000);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i] = static_cast<std::uint16_t>(i * i * 40503u);
+  for (const char* name : {"v.nrrd", "v.mha"}) {
+    writeFile(folder / name, samples, {.size = {20, 20, 20}, .compress = true});
+    std::string bytes = bytesOf(folder / name);
+    for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 40; ++i)
+      bytes[i] = static_cast<char>(~bytes[i]);
+    expectRefusal(folder.write(name, bytes), "");
+  }
+}
+
+TEST(VolumeReader, refusesSizesThatTheFileCannotHold) {
+  const TemporaryFolder folder;
+  const auto sized = [&](const std::string& sizes, const std::string& encoding) {
+    return folder.write("huge.nrrd", nrrd("dimension: 3\nsizes: " + sizes, "xxxx", encoding));
+  };
+  for (const char* encoding : {"raw", "gzip", "ascii", "hex"}) {
+    expectRefusal(sized("100000 100000 100000", encoding), "truncated");
+    expectRefusal(sized("2147483647 2147483647 2147483647", encoding), "");
+    expectRefusal(sized("4294967297 1 4", encoding), "sizes");
+    expectRefusal(sized("3 0 4", encoding), "sizes");
+    expectRefusal(sized("3 -4 4", encoding), "sizes");
+  }
+  const auto meta = [&](const std::string& size, const std::string& more) {
+    return folder.write("huge.mha", "ObjectType = Image\nNDims = 3\nDimSize = " + size + "\n" +
+                                        more +
+                                        "ElementType = MET_DOUBLE\nElementDataFile = LOCAL\nxxxx");
+  };
+  expectRefusal(meta("2000000 2000000 2000000", ""), "truncated");
+  expectRefusal(meta("2000000 2000000 2000000", "CompressedData = True\n"), "truncated");
+  expectRefusal(meta("100 100", ""), "DimSize");
+  expectRefusal(meta("3 3 3\nNDims = 4000", ""), "NDims");
+  expectRefusal(meta("3 3 3\nComment = " + std::string(3000, 'c'), ""), "Comment");
+  expectRefusal(meta("1 1 1\nTransformMatrix = 1 0", ""), "TransformMatrix");
+  writeFile(folder / "v.nii", ramp<float>(0, 1));
+  std::string nifti = bytesOf(folder / "v.nii");
+  for (const std::size_t axis : {1u, 2u, 3u}) { // dim[] begins at byte 40, two bytes each
+    nifti[40 + 2 * axis] = '\xff';
+    nifti[41 + 2 * axis] = '\x7f';
+  }
+  expectRefusal(folder.write("huge.nii", nifti), "truncated");
+}
+
+TEST(VolumeReader, refusesGeometryThatIsSingular) {
+  const TemporaryFolder folder;
+  const auto placed = [&](const std::string& directions, const std::string& origin) {
+    return folder.write("v.nrrd",
+                        nrrd("dimension: 3\nspace: left-posterior-superior\nsizes: 3 4 2\n"
+                             "space directions: " +
+                                 directions + "\nspace origin: " + origin,
+                             std::string(24, 'x')));
+  };
+  expectRefusal(placed("(1,0,0) (2,0,0) (0,0,1)", "(0,0,0)"), "directions");
+  expectRefusal(placed("(1,0,0) (0,0,0) (0,0,1)", "(0,0,0)"), "");
+  expectRefusal(placed("(1,0,0) (0,inf,0) (0,0,1)", "(0,0,0)"), "");
+  expectRefusal(placed("(1,0,0) (nan,nan,nan) (0,0,1)", "(0,0,0)"), "");
+  expectRefusal(placed("(1,0,0) (0,1,0) (0,0,1)", "(0,1e300,0)"), "origin");
+  for (const char* spacings : {"1 0 1", "1 -1 1", "1 inf 1"})
+    expectRefusal(
+        folder.write("s.nrrd",
+                     nrrd(std::string("dimension: 3\nsizes: 3 4 2\nspacings: ") + spacings,
+                          std::string(24, 'x'))),
+        "");
+  for (const char* spacing : {"1 0 1", "1 -1 1"})
+    expectRefusal(
+        folder.write("s.mha", std::string("ObjectType = Image\nNDims = 3\nDimSize = 3 4 2\n"
+                                          "ElementSpacing = ") +
+                                  spacing + "\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" +
+                                  std::string(24, 'x')),
+        "spacing");
+}
+
+TEST(VolumeReader, refusesVolumesWithoutAFiniteVoxel) {
+  const TemporaryFolder folder;
+  writeFile(folder / "v.nrrd", std::vector<double>(24, std::nan("")));
+  expectRefusal(folder / "v.nrrd", "no voxel is a finite number");
+}
+
+TEST(VolumeReader, refusesDataFilesThatAreNone) {
+  const TemporaryFolder folder;
+  for (const char* name : {"-", "/dev/zero", ".", "missing.raw", "part%03d.raw 1 9 1"})
+    expectRefusal(
+        folder.write("v.nhdr",
+                     nrrd(std::string("dimension: 3\nsizes: 3 4 2\ndata file: ") + name, "")),
+        "data file");
+  for (const char* name : {"/dev/zero", ".", "missing.raw", "LIST", "part%03d.raw 1 9 1"})
+    expectRefusal(
+        folder.write("v.mhd", std::string("ObjectType = Image\nNDims = 3\nDimSize = 3 4 2\n"
+                                          "ElementType = MET_UCHAR\nElementDataFile = ") +
+                                  name + "\n"),
+        "");
+}
+
+TEST(VolumeReader, appliesTheRescalingOfNifti) {
+  const TemporaryFolder folder;
+  writeFile(folder / "v.nii", ramp<std::uint8_t>(0, 1));
+  std::string bytes = bytesOf(folder / "v.nii");
+  const float slope = 2.0f, intercept = -1000.0f;
+  bytes.replace(112, 4, rawBytes(std::vector<float>{slope}));
+  bytes.replace(116, 4, rawBytes(std::vector<float>{intercept}));
+  const Volume volume = readVolume(folder.write("scaled.nii", bytes));
+  EXPECT_EQ(volume.minimum, -1000.0);
+  EXPECT_EQ(as<std::int16_t>(volume)[23], -954);
+}
+
+// ---- real data
+// -----------------------------------------------------------------------------------
+
+std::filesystem::path data(const std::string& name) {
+  return std::filesystem::path(FENESTRA_DATA) / name;
+}
+
+TEST(VolumeReader, readsRealScans) {
+  if (!std::filesystem::exists(data("torso_ct_ccth_a01")))
+    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+  const Volume torso = readVolume(data("torso_ct_ccth_a01/ct.nii.gz"));
+  EXPECT_EQ(torso.grid.size, Size3(493, 389, 296));
+  EXPECT_TRUE(std::holds_alternative<std::vector<std::int16_t>>(torso.voxels));
+  EXPECT_EQ(torso.minimum, -1024.0);
+  EXPECT_NEAR(torso.grid.spacing().z(), 2.5, 1e-3);
+  const Volume abdomen = readVolume(data("abdomen_ct_totalseg/ct.nii.gz"));
+  EXPECT_EQ(abdomen.grid.size, Size3(122, 101, 112));
+  EXPECT_TRUE(std::holds_alternative<std::vector<std::int16_t>>(abdomen.voxels)); // from int32
+  const Volume head = readVolume(data("head_mr_seg3d/t1.nii.gz"));
+  EXPECT_EQ(head.grid.size, Size3(160, 232, 160));
+  EXPECT_NEAR(head.maximum, 255 * 2.007843, 1e-3); // uint8 in the file, rescaled
+  const Volume chest = readVolume(data("slicerio_segnrrd/CTChest4.nrrd"));
+  EXPECT_EQ(chest.grid.size, Size3(128, 128, 34));
+  EXPECT_TRUE(
+      (chest.grid.indexToWorld * Vec3::Zero()).isApprox(Vec3(-193.096, -216.396, -340.25), 1e-4));
+}
+
+} // namespace
+} // namespace fenestra
