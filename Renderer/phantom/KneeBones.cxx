@@ -51,16 +51,16 @@ struct Walls {
 };
 Walls walls(const Vec3& p) {
   const double distal = std::max(0.0, 20.0 - p.z());
-  const double narrowing = 0.008 * distal * distal;
+  const double narrowing = 0.003 * distal * distal;
   const double back = p.y() < 0.0 ? 0.0035 * p.y() * p.y() : 0.0;
   const double front = p.y() > 0.0 ? p.y() * p.y() : 0.0;
-  return {-39.5 + narrowing + back + 0.013 * front, 39.0 - narrowing - back - 0.0065 * front};
+  return {-38.5 + narrowing + back + 0.013 * front, 38.2 - narrowing - back - 0.0065 * front};
 }
 
 /// The notch is open to the back and below; its roof rises backward along Blumensaat's line.
 double notchField(const Vec3& p) {
   const double roof = ((p.y() - 8.0) * 28.0 + (p.z() - 8.5) * 24.0) / std::hypot(28.0, 24.0);
-  const double sides = std::abs(p.x() - notchX) - 9.5 - 0.05 * std::max(0.0, -10.0 - p.y());
+  const double sides = std::abs(p.x() - notchX) - 9.2 - 0.05 * std::max(0.0, -10.0 - p.y());
   return smoothIntersection(roof, sides, 9.0);
 }
 
@@ -70,11 +70,11 @@ template <typename Field>
 double firstOrderDistance(const Field& field, const Vec3& p) {
   constexpr double step = 0.05;
   const double value = field(p);
-  if (std::abs(value) > KneeBones::beyond)
+  if (std::abs(value) > 4.0) // far off, the field may have kinks, and nobody asks closely
     return value;
   const Vec3 slope{field(p + Vec3{step, 0, 0}) - value, field(p + Vec3{0, step, 0}) - value,
                    field(p + Vec3{0, 0, step}) - value};
-  return value / std::max(slope.norm() / step, 0.3);
+  return value / std::clamp(slope.norm() / step, 0.3, 2.0);
 }
 
 /// 1 on the trochlea, 0 on the condyles' bearing and rear parts.
@@ -118,9 +118,9 @@ KneeBones::KneeBones()
                      {-38, {-0.5, 0}, {20.5, 21}},
                      {-27, {0, -1}, {28, 23}},
                      {-16, {0, -2.5}, {34, 24.5}},
-                     {-8, {0, -4}, {36, 23.5}},
-                     {-2, {0, -4.5}, {37, 23.5}},
-                     {16, {0, -4.5}, {37, 23.5}}},
+                     {-8, {0, -4}, {35.5, 23.5}},
+                     {-2, {0, -4.5}, {36, 23.5}},
+                     {16, {0, -4.5}, {36, 23.5}}},
                     0.35, 3.0),
       m_fibulaShaft({{-66, {41, -20}, {6.5, 6}},
                      {-42, {40, -20}, {6, 6.5}},
@@ -174,9 +174,9 @@ double KneeBones::femurField(const Vec3& p) const {
   const Walls wall = walls(p);
   const double sides = std::max(wall.medial - p.x(), p.x() - wall.lateral);
   double bone = smoothIntersection(wheelField(p), sides, 9.0);
-  const double medialEpicondyle = ellipsoidDistance(p, {-37.5, -3, 26}, {4.5, 9, 9});
-  const double lateralEpicondyle = ellipsoidDistance(p, {37.5, -5, 25}, {4, 8, 8});
-  bone = smoothUnion(bone, std::min(medialEpicondyle, lateralEpicondyle), 4.0);
+  const double medialEpicondyle = ellipsoidDistance(p, {-35, -3, 25}, {5.5, 11, 11});
+  const double lateralEpicondyle = ellipsoidDistance(p, {35, -5, 24}, {5, 9, 9});
+  bone = smoothUnion(bone, std::min(medialEpicondyle, lateralEpicondyle), 8.0);
   bone = smoothUnion(bone, m_femoralShaft.distance(p), 7.0);
   return smoothDifference(bone, notchField(p), 8.0);
 }
@@ -190,8 +190,8 @@ double KneeBones::femur(const Vec3& point) const {
 
 double KneeBones::tibiaField(const Vec3& p) const {
   const double tuberosity = ellipsoidDistance(p, {2, 19, -37}, {9, 6.5, 12});
-  const double medial = ellipsoidDistance(p, {-20.5, -4.5, -8}, {18.5, 26, 15});
-  const double lateral = ellipsoidDistance(p, {20.5, -5.5, -8}, {18, 23, 14});
+  const double medial = ellipsoidDistance(p, {-19.5, -4.5, -8}, {17.5, 26, 15});
+  const double lateral = ellipsoidDistance(p, {19.5, -5.5, -8}, {17, 23, 14});
   const double condyles = std::min(medial, lateral);
   const double shaft =
       smoothUnion(smoothUnion(m_tibialShaft.distance(p), tuberosity, 8.0), condyles, 12.0);

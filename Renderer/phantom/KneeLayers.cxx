@@ -8,6 +8,7 @@ namespace {
 
 constexpr double boxMargin = 1.5; ///< mm: soft borders reach this far past a shape
 constexpr double skinThickness = 1.5;
+constexpr double fasciaThickness = 0.6;
 constexpr double film = 0.7; ///< mm of fluid on the joint's faces
 
 const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
@@ -37,6 +38,7 @@ KneeLayers::KneeLayers() {
   addBones();
   addCartilage();
   addLigaments();
+  addMenisci();
   addJointSpace();
   addVessels();
   addMuscles();
@@ -47,6 +49,7 @@ Site KneeLayers::site(const Vec3& p) const {
   Site s{};
   s.point = p;
   s.leg = m_leg.distance(p);
+  s.fascia = s.leg + fasciaDepth(p);
   s.femur = m_bones.femur(p);
   s.tibia = m_bones.tibia(p);
   s.fibula = m_bones.fibula(p);
@@ -63,37 +66,48 @@ Site KneeLayers::site(const Vec3& p) const {
   return s;
 }
 
-void KneeLayers::segment(const char* id, const char* name, const Rgb& color) {
-  m_segments.push_back({id, name, color, static_cast<std::uint8_t>(m_segments.size() + 1)});
+std::uint8_t KneeLayers::segment(const char* id, const char* name, const Rgb& color) {
+  const auto label = static_cast<std::uint8_t>(m_segments.size() + 1);
+  m_segments.push_back({id, name, color, label});
+  return label;
 }
 
-void KneeLayers::layer(Tissue tissue, const Box& box, Distance distance) {
-  m_layers.push_back(
-      {m_segments.back().label, tissue, expanded(box, boxMargin), std::move(distance)});
+void KneeLayers::layer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance) {
+  m_layers.push_back({label, tissue, expanded(box, boxMargin), std::move(distance)});
 }
 
-void KneeLayers::band(Tissue tissue, Tube tube) {
+void KneeLayers::deepLayer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance) {
+  layer(label, tissue, box, [distance = std::move(distance)](const Site& s) {
+    return std::max(distance(s), s.fascia + fasciaThickness);
+  });
+}
+
+void KneeLayers::ligament(const char* id, const char* name, Tube tube) {
   const Box box = tube.box();
-  layer(tissue, box, [tube = std::move(tube)](const Site& s) { return tube.distance(s.point); });
+  deepLayer(segment(id, name, ligamentColor), Tissue::ligament, box,
+            [tube = std::move(tube)](const Site& s) { return tube.distance(s.point); });
 }
 
-void KneeLayers::muscle(const char* id, const char* name, std::vector<Loft> bellies) {
-  segment(id, name, muscleColor);
-  for (Loft& belly : bellies) {
-    const Box box = belly.box();
-    layer(Tissue::muscle, box, [belly = std::move(belly)](const Site& s) {
-      return belly.distance(s.point) + 0.6 * valueNoise(s.point / 8.0, 92);
-    });
+/// Fat keeps neighbouring muscles apart.
+void KneeLayers::muscle(const char* id, const char* name, const std::vector<Loft>& bellies) {
+  const auto label = segment(id, name, muscleColor);
+  for (const Loft& belly : bellies) {
+    const Distance shape = [belly](const Site& s) {
+      return belly.distance(s.point) + 0.9 * valueNoise(s.point / 8.0, 92);
+    };
+    deepLayer(label, Tissue::muscle, belly.box(), shape);
+    deepLayer(m_deepFat, Tissue::deepFat, belly.box(),
+              [shape](const Site& s) { return shape(s) - 0.8; });
   }
 }
 
 void KneeLayers::addBones() {
   const auto bone = [this](const char* id, const char* name, double Site::*surface) {
-    segment(id, name, boneColor);
-    layer(Tissue::marrow, everywhere, [surface](const Site& s) {
+    const auto label = segment(id, name, boneColor);
+    layer(label, Tissue::marrow, everywhere, [surface](const Site& s) {
       return s.*surface < 1.0 ? s.*surface + cortexThickness(s.point) : KneeBones::beyond;
     });
-    layer(Tissue::cortex, everywhere, [surface](const Site& s) { return s.*surface; });
+    layer(label, Tissue::cortex, everywhere, [surface](const Site& s) { return s.*surface; });
   };
   bone("Femur", "Femur", &Site::femur);
   bone("Tibia", "Tibia", &Site::tibia);
@@ -102,22 +116,17 @@ void KneeLayers::addBones() {
 }
 
 void KneeLayers::addCartilage() {
-  segment("FemoralCartilage", "Femoral cartilage", cartilageColor);
-  layer(Tissue::cartilage, everywhere,
-        [](const Site& s) { return cover(s.femur, s.femoralCartilage, 0.0); });
-  segment("TibialCartilage", "Tibial cartilage", cartilageColor);
-  layer(Tissue::cartilage, everywhere,
-        [](const Site& s) { return cover(s.tibia, s.tibialCartilage, 0.0); });
-  segment("PatellarCartilage", "Patellar cartilage", cartilageColor);
-  layer(Tissue::cartilage, everywhere,
-        [](const Site& s) { return cover(s.patella, s.patellarCartilage, 0.0); });
+  const auto cartilage = [this](const char* id, const char* name, double Site::*bone,
+                                double Site::*thickness) {
+    layer(segment(id, name, cartilageColor), Tissue::cartilage, everywhere,
+          [bone, thickness](const Site& s) { return cover(s.*bone, s.*thickness, 0.0); });
+  };
+  cartilage("FemoralCartilage", "Femoral cartilage", &Site::femur, &Site::femoralCartilage);
+  cartilage("TibialCartilage", "Tibial cartilage", &Site::tibia, &Site::tibialCartilage);
+  cartilage("PatellarCartilage", "Patellar cartilage", &Site::patella, &Site::patellarCartilage);
 }
 
 void KneeLayers::addLigaments() {
-  const auto ligament = [this](const char* id, const char* name, Tube tube) {
-    segment(id, name, ligamentColor);
-    band(Tissue::ligament, std::move(tube));
-  };
   ligament("ACL", "Anterior cruciate ligament", anteriorCruciateLigament());
   ligament("PCL", "Posterior cruciate ligament", posteriorCruciateLigament());
   ligament("MCL", "Medial collateral ligament", medialCollateralLigament());
@@ -128,46 +137,57 @@ void KneeLayers::addLigaments() {
   ligament("SemitendinosusTendon", "Semitendinosus tendon", semitendinosusTendon());
 }
 
-void KneeLayers::addJointSpace() {
+void KneeLayers::addMenisci() {
   const auto meniscus = [this](const char* id, const char* name, const MeniscusRing& ring) {
-    segment(id, name, meniscusColor);
     const Vec3 center{ring.center.x(), ring.center.y(), 2.0};
     const Vec3 reach{ring.outerRadii.x(), ring.outerRadii.y(), 6.0};
-    layer(Tissue::meniscus, {center - reach, center + reach}, [ring](const Site& s) {
-      const double above = s.femoralCartilage + 0.25 - s.femur;
-      const double below = s.tibialCartilage + 0.15 - s.tibia;
-      return std::max({ring.distance(s.point), above, below});
-    });
+    layer(segment(id, name, meniscusColor), Tissue::meniscus, {center - reach, center + reach},
+          [ring](const Site& s) {
+            const double above = s.femoralCartilage + 0.25 - s.femur;
+            const double below = s.tibialCartilage + 0.15 - s.tibia;
+            return std::max({ring.distance(s.point), above, below});
+          });
   };
   meniscus("MedialMeniscus", "Medial meniscus", medialMeniscus());
   meniscus("LateralMeniscus", "Lateral meniscus", lateralMeniscus());
+}
 
-  segment("JointFluid", "Joint fluid", {0.667, 0.980, 0.980});
-  layer(Tissue::fluid, everywhere, [](const Site& s) {
+void KneeLayers::addJointSpace() {
+  const auto fluid = segment("JointFluid", "Joint fluid", {0.667, 0.980, 0.980});
+  layer(fluid, Tissue::fluid, everywhere, [](const Site& s) {
     return std::min({cover(s.femur, s.intactFemoralCartilage, film),
                      cover(s.tibia, s.tibialCartilage, film),
                      cover(s.patella, s.patellarCartilage, film)});
   });
-  layer(Tissue::fluid, {{-17, 25, 45}, {19, 38, 75}},
+  layer(fluid, Tissue::fluid, {{-17, 25, 45}, {19, 38, 75}},
         [](const Site& s) { return suprapatellarRecess(s.point); });
 
-  segment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588});
-  layer(Tissue::fatPad, {{-35, 6, -25}, {39, 48, 30}},
-        [](const Site& s) { return infrapatellarFatPad(s.point); });
+  const auto retinaculum = segment("Retinaculum", "Patellar retinaculum", ligamentColor);
+  deepLayer(retinaculum, Tissue::fascia, {{-46, 0, -14}, {49, 46, 62}},
+            [](const Site& s) { return patellarRetinaculum(s.point); });
+  const auto fatPad =
+      segment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588});
+  deepLayer(fatPad, Tissue::fatPad, {{-35, 6, -25}, {39, 48, 30}},
+            [](const Site& s) { return infrapatellarFatPad(s.point); });
 }
 
 void KneeLayers::addVessels() {
-  segment("PoplitealArtery", "Popliteal artery", {0.847, 0.396, 0.310});
-  band(Tissue::vessel, poplitealArtery());
-  segment("PoplitealVein", "Popliteal vein", {0.0, 0.592, 0.808});
-  band(Tissue::vessel, poplitealVein());
-  segment("SaphenousVein", "Great saphenous vein", {0.0, 0.592, 0.808});
-  band(Tissue::vessel, saphenousVein());
-  segment("TibialNerve", "Tibial nerve", {0.957, 0.839, 0.192});
-  band(Tissue::nerve, tibialNerve());
+  const auto add = [this](std::uint8_t label, Tissue tissue, Tube tube) {
+    const Box box = tube.box();
+    layer(label, tissue, box, [tube = std::move(tube)](const Site& s) {
+      return std::max(tube.distance(s.point), s.leg + skinThickness + 0.5);
+    });
+  };
+  const Rgb veinColor{0.0, 0.592, 0.808};
+  add(segment("PoplitealArtery", "Popliteal artery", {0.847, 0.396, 0.310}), Tissue::vessel,
+      poplitealArtery());
+  add(segment("PoplitealVein", "Popliteal vein", veinColor), Tissue::vessel, poplitealVein());
+  add(segment("SaphenousVein", "Great saphenous vein", veinColor), Tissue::vessel, saphenousVein());
+  add(segment("TibialNerve", "Tibial nerve", {0.957, 0.839, 0.192}), Tissue::nerve, tibialNerve());
 }
 
 void KneeLayers::addMuscles() {
+  m_deepFat = segment("IntermuscularFat", "Intermuscular fat", fatColor);
   muscle("VastusMedialis", "Vastus medialis muscle", vastusMedialis());
   muscle("VastusLateralis", "Vastus lateralis muscle", vastusLateralis());
   muscle("Quadriceps", "Rectus femoris and vastus intermedius muscles", quadricepsBelly());
@@ -183,16 +203,14 @@ void KneeLayers::addMuscles() {
 }
 
 void KneeLayers::addCovers() {
-  constexpr double fasciaThickness = 0.6;
-  segment("IntermuscularFat", "Intermuscular fat", fatColor);
-  layer(Tissue::deepFat, everywhere,
-        [](const Site& s) { return s.leg + fasciaDepth(s.point) + fasciaThickness; });
-  segment("Fascia", "Fascia", ligamentColor);
-  layer(Tissue::fascia, everywhere, [](const Site& s) { return s.leg + fasciaDepth(s.point); });
-  segment("SubcutaneousFat", "Subcutaneous fat", fatColor);
-  layer(Tissue::subcutaneousFat, everywhere, [](const Site& s) { return s.leg + skinThickness; });
-  segment("Skin", "Skin", {0.694, 0.478, 0.396});
-  layer(Tissue::skin, everywhere, [](const Site& s) { return s.leg; });
+  layer(m_deepFat, Tissue::deepFat, everywhere,
+        [](const Site& s) { return s.fascia + fasciaThickness; });
+  layer(segment("Fascia", "Fascia", ligamentColor), Tissue::fascia, everywhere,
+        [](const Site& s) { return s.fascia; });
+  layer(segment("SubcutaneousFat", "Subcutaneous fat", fatColor), Tissue::subcutaneousFat,
+        everywhere, [](const Site& s) { return s.leg + skinThickness; });
+  layer(segment("Skin", "Skin", {0.694, 0.478, 0.396}), Tissue::skin, everywhere,
+        [](const Site& s) { return s.leg; });
 }
 
 } // namespace fenestra

@@ -14,6 +14,7 @@ namespace fenestra {
 struct Site {
   Vec3 point;
   double leg;                           ///< distances in mm: to the skin's surface
+  double fascia;                        ///< to the sheath around muscles and joint
   double femur, tibia, fibula, patella; ///< and the bones'
   double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
 };
@@ -38,14 +39,18 @@ public:
 private:
   using Distance = std::function<double(const Site&)>;
 
-  void segment(const char* id, const char* name, const Rgb& color);
-  void layer(Tissue tissue, const Box& box, Distance distance);
-  void band(Tissue tissue, Tube tube);
-  void muscle(const char* id, const char* name, std::vector<Loft> bellies);
+  /// Returns the new segment's label.
+  std::uint8_t segment(const char* id, const char* name, const Rgb& color);
+  void layer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance);
+  /// Its shape ends at the fascia.
+  void deepLayer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance);
+  void ligament(const char* id, const char* name, Tube tube);
+  void muscle(const char* id, const char* name, const std::vector<Loft>& bellies);
 
   void addBones();
   void addCartilage();
   void addLigaments();
+  void addMenisci();
   void addJointSpace();
   void addVessels();
   void addMuscles();
@@ -55,6 +60,7 @@ private:
   LegOutline m_leg;
   std::vector<Layer> m_layers;
   std::vector<PhantomSegment> m_segments;
+  std::uint8_t m_deepFat = 0; ///< label
 };
 
 } // namespace fenestra

@@ -7,23 +7,25 @@ namespace fenestra {
 
 namespace {
 
-/// 1 on thin sheets through space about `size` mm apart, 0 off them.
+/// 1 on thin, crumpled sheets through space about `size` mm apart, fading in and out; else 0.
 double septa(const Vec3& p, const Vec3& size, double thickness, std::uint64_t seed) {
-  return 1.0 -
-         smoothStep(0.5 * thickness, thickness, std::abs(valueNoise(p.cwiseQuotient(size), seed)));
+  const Vec3 bend{valueNoise(p / 5.0, seed + 100), valueNoise(p / 5.0, seed + 101),
+                  valueNoise(p / 5.0, seed + 102)};
+  const double level = std::abs(valueNoise((p + 2.0 * bend).cwiseQuotient(size), seed));
+  return (1.0 - smoothStep(0.2 * thickness, thickness, level)) *
+         smoothStep(-0.5, 0.5, valueNoise(p / 9.0, seed + 103));
 }
 
 double muscleSignal(const Vec3& p) {
-  const double fibres = 16.0 * valueNoise(p.cwiseQuotient(Vec3{1.1, 1.1, 9.0}), 71);
-  const double bundles = 12.0 * valueNoise(p.cwiseQuotient(Vec3{4.0, 4.0, 20.0}), 72);
-  const double fat =
-      0.55 * septa(p, {7.0, 7.0, 30.0}, 0.07, 73) * smoothStep(-0.3, 0.4, valueNoise(p / 11.0, 74));
+  const double fibres = 20.0 * valueNoise(p.cwiseQuotient(Vec3{1.2, 1.2, 10.0}), 71);
+  const double bundles = 16.0 * valueNoise(p.cwiseQuotient(Vec3{4.0, 4.0, 20.0}), 72);
+  const double fat = 0.5 * septa(p, {5.5, 5.5, 25.0}, 0.12, 73);
   return std::lerp(350.0 + fibres + bundles, 780.0, fat);
 }
 
 double fatSignal(const Vec3& p, double strands) {
-  const double lobules = 22.0 * valueNoise(p / 3.5, 75);
-  return 860.0 + lobules - strands * septa(p, Vec3::Constant(6.0), 0.09, 76);
+  const double lobules = 20.0 * valueNoise(p / 3.0, 75) + 18.0 * valueNoise(p / 9.0, 74);
+  return 860.0 + lobules - strands * septa(p, {6.0, 6.0, 8.0}, 0.16, 76);
 }
 
 /// The scars of the growth plates: dark, slightly wavy sheets.
@@ -31,7 +33,8 @@ double physis(const Vec3& p) {
   const double wave = 1.6 * valueNoise(p / 9.0, 77) + 0.004 * (p.x() * p.x() - 500.0);
   const double femoral = std::abs(p.z() - 35.0 + wave + 0.12 * p.y());
   const double tibial = std::abs(p.z() + 17.0 + wave - 0.05 * p.y());
-  return 1.0 - smoothStep(0.3, 1.1, std::min(femoral, tibial));
+  const double kneecap = smoothStep(28.0, 31.0, p.y()); // it has none
+  return (1.0 - kneecap) * (1.0 - smoothStep(0.3, 1.1, std::min(femoral, tibial)));
 }
 
 double marrowSignal(const Vec3& p) {
@@ -49,13 +52,13 @@ double tissueSignal(Tissue tissue, const Vec3& p) {
   case Tissue::skin:
     return 410.0;
   case Tissue::subcutaneousFat:
-    return fatSignal(p, 230.0);
+    return fatSignal(p, 190.0);
   case Tissue::fascia:
     return 210.0;
   case Tissue::deepFat:
     return fatSignal(p, 150.0);
   case Tissue::fatPad:
-    return fatSignal(p, 330.0) - 20.0;
+    return fatSignal(p, 300.0) - 15.0;
   case Tissue::muscle:
     return muscleSignal(p);
   case Tissue::vessel:

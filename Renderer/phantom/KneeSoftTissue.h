@@ -58,6 +58,8 @@ struct MeniscusRing {
 MeniscusRing medialMeniscus();
 MeniscusRing lateralMeniscus();
 
+/// Thin sheets from the kneecap's sides to the condyles.
+double patellarRetinaculum(const Vec3& point);
 double infrapatellarFatPad(const Vec3& point);
 /// The joint cavity above the kneecap, between the quadriceps tendon and the femur.
 double suprapatellarRecess(const Vec3& point);

@@ -1,0 +1,214 @@
+#include "core/Error.h"
+#include "medium/TransferFunction.h"
+#include "phantom/Knee.h"
+#include "phantom/KneeBones.h"
+#include "phantom/KneeSignal.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <map>
+
+using namespace fenestra;
+
+namespace {
+
+const Phantom& smallKnee() {
+  static const Phantom knee = makeKneePhantom({{120, 138, 80}});
+  return knee;
+}
+
+const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
+  return std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+}
+
+double medianOf(const Phantom& phantom, const std::string& id) {
+  std::uint8_t label = 0;
+  for (const PhantomSegment& segment : phantom.segments)
+    if (segment.id == id)
+      label = segment.label;
+  std::vector<std::int16_t> values;
+  for (std::size_t i = 0; i < phantom.labels.size(); ++i)
+    if (label != 0 && phantom.labels[i] == label)
+      values.push_back(voxelsOf(phantom)[i]);
+  if (values.empty())
+    return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Cartilage along the bone's normal, from the bone to where the cartilage ends; mm.
+double thicknessAbove(const KneeBones& bones, const Vec3& surface) {
+  constexpr double h = 0.05;
+  const Vec3 normal =
+      Vec3(bones.femur(surface + Vec3(h, 0, 0)) - bones.femur(surface - Vec3(h, 0, 0)),
+           bones.femur(surface + Vec3(0, h, 0)) - bones.femur(surface - Vec3(0, h, 0)),
+           bones.femur(surface + Vec3(0, 0, h)) - bones.femur(surface - Vec3(0, 0, h)))
+          .normalized();
+  double t = 0.0;
+  while (t < 5.0) {
+    const Vec3 p = surface + (t + h) * normal;
+    if (bones.femur(p) >= bones.femoralCartilage(p))
+      break;
+    t += h;
+  }
+  return t;
+}
+
+double thicknessAt(const KneeBones& bones, double x, double angle) {
+  return thicknessAbove(bones, bones.femoralSurface(x, angle));
+}
+
+} // namespace
+
+TEST(PhantomKnee, EverySegmentHasVoxelsAndANameOfItsOwn) {
+  const Phantom& knee = smallKnee();
+  std::map<int, std::int64_t> count;
+  for (const std::uint8_t label : knee.labels)
+    ++count[label];
+  std::map<std::string, int> names;
+  for (std::size_t i = 0; i < knee.segments.size(); ++i) {
+    EXPECT_EQ(knee.segments[i].label, i + 1);
+    EXPECT_GT(count[knee.segments[i].label], 20) << knee.segments[i].name;
+    EXPECT_EQ(++names[knee.segments[i].id], 1);
+    EXPECT_EQ(++names["name " + knee.segments[i].name], 1);
+  }
+  EXPECT_EQ(count.rbegin()->first, static_cast<int>(knee.segments.size()));
+  EXPECT_GT(count[0], knee.volume.grid.voxelCount() / 10) << "air";
+}
+
+TEST(PhantomKnee, IsTheSameOnOneThreadAndOnMany) {
+  const KneeOptions options{{40, 46, 40}};
+  const Phantom many = makeKneePhantom(options);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Phantom single = makeKneePhantom(options);
+  EXPECT_EQ(voxelsOf(many), voxelsOf(single));
+  EXPECT_EQ(many.labels, single.labels);
+}
+
+TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
+  for (const Size3& size : {Size3(300, 344, 120), Size3(30, 43, 20)}) {
+    const Grid grid = makeKneePhantom({Size3(size.cwiseMin(64))}).volume.grid;
+    EXPECT_TRUE(
+        (grid.spacing().cwiseProduct(grid.size.cast<double>())).isApprox(Vec3(120, 137.6, 120)));
+    EXPECT_TRUE(grid.worldCenter().isApprox(Vec3(0, -2, 6.8)));
+  }
+  const Mat3 axes = smallKnee().volume.grid.indexToWorld.linear().colwise().normalized();
+  EXPECT_TRUE(axes.col(0).isApprox(Vec3(0, -1, 0))) << "posterior";
+  EXPECT_TRUE(axes.col(1).isApprox(Vec3(0, 0, -1))) << "inferior";
+  EXPECT_TRUE(axes.col(2).isApprox(Vec3(1, 0, 0))) << "right";
+}
+
+TEST(PhantomKnee, RefusesSizesThatAreNoVolume) {
+  EXPECT_THROW(makeKneePhantom({{8, 100, 100}}), Error);
+  EXPECT_THROW(makeKneePhantom({{100, 100, 4000}}), Error);
+}
+
+TEST(PhantomKnee, HasTheProportionsOfAnAdult) {
+  const KneeBones bones;
+  const auto extent = [&](auto distance, const Vec3& from, const Vec3& to) {
+    int inside = 0;
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i)
+      inside += distance(from + (to - from) * (i + 0.5) / steps) < 0.0;
+    return (to - from).norm() * inside / steps;
+  };
+  const auto femur = [&](const Vec3& p) { return bones.femur(p); };
+  const auto tibia = [&](const Vec3& p) { return bones.tibia(p); };
+  const auto patella = [&](const Vec3& p) { return bones.patella(p); };
+  EXPECT_NEAR(extent(femur, {-60, -3, 25}, {60, -3, 25}), 80.0, 4.0) << "bicondylar width";
+  EXPECT_NEAR(extent(femur, {22, -50, 25}, {22, 50, 25}), 62.0, 5.0) << "lateral condyle's depth";
+  EXPECT_NEAR(extent(femur, {-60, -20, 12}, {0, -20, 12}), 26.0, 4.0) << "medial condyle's width";
+  EXPECT_NEAR(extent(tibia, {-60, -4, -8}, {60, -4, -8}), 76.0, 4.0) << "plateau's width";
+  EXPECT_NEAR(extent(patella, {-30, 42, 42}, {30, 42, 42}), 44.0, 3.0) << "patella's width";
+  EXPECT_NEAR(extent(patella, {2, 42, 0}, {2, 42, 80}), 43.0, 4.0) << "patella's height";
+  EXPECT_NEAR(extent(patella, {2, 20, 42}, {2, 60, 42}), 18.5, 2.5) << "patella's thickness";
+}
+
+TEST(PhantomKnee, FemoralCartilageIsAsThickAsInLife) {
+  const KneeBones bones;
+  double sum = 0.0, thinnest = infinity, thickest = 0.0;
+  int count = 0;
+  for (const double x : {-24.0, -20.0, 18.0, 24.0})
+    for (double angle = -2.2; angle < -0.1; angle += 0.1) {
+      const Vec3 surface = bones.femoralSurface(x, angle);
+      const double intact = bones.intactFemoralCartilage(surface);
+      if (bones.femoralCartilage(surface) < intact)
+        continue; // a lesion
+      const double thickness = thicknessAbove(bones, surface);
+      sum += thickness;
+      thinnest = std::min(thinnest, thickness);
+      thickest = std::max(thickest, thickness);
+      ++count;
+    }
+  ASSERT_GT(count, 60);
+  EXPECT_GE(thinnest, 1.2);
+  EXPECT_LE(thickest, 2.8);
+  EXPECT_GT(sum / count, 1.6);
+  EXPECT_LT(sum / count, 2.6);
+  EXPECT_GT(thickest - thinnest, 0.5) << "it varies";
+}
+
+TEST(PhantomKnee, OneLesionReachesTheBoneAndOneGoesHalfway) {
+  const KneeBones bones;
+  const auto width = [&](const CartilageLesion& lesion) {
+    int missing = 0;
+    for (double x = -12.0; x < 12.0; x += 0.1) {
+      const Vec3 p = bones.femoralSurface(lesion.x + x, lesion.angle);
+      missing +=
+          bones.femoralCartilage(p) < (1.0 - 0.5 * lesion.depth) * bones.intactFemoralCartilage(p);
+    }
+    return 0.1 * missing;
+  };
+  EXPECT_EQ(thicknessAt(bones, fullThicknessLesion.x, fullThicknessLesion.angle), 0.0);
+  EXPECT_NEAR(width(fullThicknessLesion), 8.0, 1.2);
+
+  const Vec3 floor = bones.femoralSurface(partialThicknessLesion.x, partialThicknessLesion.angle);
+  EXPECT_NEAR(thicknessAbove(bones, floor) / bones.intactFemoralCartilage(floor), 0.5, 0.1);
+  EXPECT_NEAR(width(partialThicknessLesion), 9.0, 1.2);
+}
+
+TEST(PhantomKnee, TheLesionsAreOnTheFrontAndUndersideOfTheCondyles) {
+  const KneeBones bones;
+  for (const CartilageLesion& lesion : {fullThicknessLesion, partialThicknessLesion}) {
+    const Vec3 p = bones.femoralSurface(lesion.x, lesion.angle);
+    const double h = 0.5;
+    const Vec3 normal(0.0, bones.femur(p + Vec3(0, h, 0)) - bones.femur(p - Vec3(0, h, 0)),
+                      bones.femur(p + Vec3(0, 0, h)) - bones.femur(p - Vec3(0, 0, h)));
+    EXPECT_GT(normal.normalized().dot(Vec3(0, 1, -1).normalized()), 0.85) << "inferior-anterior";
+  }
+}
+
+TEST(PhantomKnee, SignalsFollowT1) {
+  const Phantom& knee = smallKnee();
+  EXPECT_NEAR(medianOf(knee, "MedialGastrocnemius"), 350.0, 45.0);
+  EXPECT_NEAR(medianOf(knee, "SubcutaneousFat"), 850.0, 80.0);
+  EXPECT_NEAR(medianOf(knee, "Femur"), 820.0, 70.0);
+  EXPECT_NEAR(medianOf(knee, "FemoralCartilage"), 510.0, 60.0);
+  EXPECT_LT(medianOf(knee, "MedialMeniscus"), 200.0);
+  EXPECT_LT(medianOf(knee, "PCL"), 200.0);
+  const double snr = tissueSignal(Tissue::muscle, {-20, -45, -30}) / noiseSigma;
+  EXPECT_GT(snr, 25.0);
+  EXPECT_LT(snr, 40.0);
+}
+
+TEST(PhantomKnee, TheBiasFieldStaysWithinFifteenPercent) {
+  for (double x = -60; x <= 60; x += 4)
+    for (double y = -62; y <= 58; y += 4)
+      for (double z = -62; z <= 76; z += 4)
+        EXPECT_NEAR(biasField({x, y, z}), 1.0, 0.15);
+}
+
+TEST(PhantomKnee, ItsPropertyShowsCartilageDenseAndAirNotAtAll) {
+  const TransferFunction transfer = tabulate(kneeProperty(), "knee");
+  const auto sigma = [&](double s) { return transfer.extinction(s).value(); };
+  EXPECT_EQ(sigma(14.0), 0.0); // the mean of noise in air
+  EXPECT_EQ(sigma(44.0), 0.0); // four standard deviations
+  EXPECT_GT(sigma(66.0), 0.2) << "cortex";
+  EXPECT_GT(sigma(520.0), 3.0 * sigma(350.0)) << "muscle";
+  EXPECT_GT(sigma(520.0), 3.0 * sigma(850.0)) << "fat";
+  const Rgb cartilage = transfer.albedo(520.0), fat = transfer.albedo(850.0);
+  EXPECT_GE(cartilage.z(), cartilage.x()) << "bluish white";
+  EXPECT_LT(fat.z(), 0.5 * fat.x()) << "yellow";
+}

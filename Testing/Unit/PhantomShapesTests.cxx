@@ -1,0 +1,75 @@
+#include "phantom/Noise.h"
+#include "phantom/Shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+using namespace fenestra;
+
+TEST(PhantomShapes, BlendsEqualTheSharpOperationAwayFromTheSeam) {
+  EXPECT_DOUBLE_EQ(smoothUnion(1.0, 5.0, 2.0), 1.0);
+  EXPECT_DOUBLE_EQ(smoothIntersection(1.0, 5.0, 2.0), 5.0);
+  EXPECT_DOUBLE_EQ(smoothDifference(-6.0, 3.0, 2.0), -3.0);
+  EXPECT_DOUBLE_EQ(smoothUnion(1.0, 1.0, 2.0), 0.5); // deepest at the seam: a quarter of the blend
+}
+
+TEST(PhantomShapes, ATubeIsAsFarAsItsAxisLessItsRadius) {
+  const Tube tube({{{0, 0, -10}, 2.0}, {{0, 0, 0}, 2.0}, {{0, 0, 10}, 2.0}});
+  EXPECT_NEAR(tube.distance({5, 0, 1}), 3.0, 1e-12);
+  EXPECT_NEAR(tube.distance({0, 0, 0.3}), -2.0, 1e-12);
+  EXPECT_NEAR(tube.distance({0, 0, 14}), 2.0, 1e-12);
+  EXPECT_TRUE(tube.box().upper.isApprox(Vec3(2, 2, 12)));
+}
+
+TEST(PhantomShapes, ABandIsStretchedAcrossButNotAlongItsThickness) {
+  const Tube band({{{0, 0, 0}, 1.5}, {{0, 0, 20}, 1.5}}, {4, 1, 1});
+  EXPECT_NEAR(band.distance({0, 1.5, 10}), 0.0, 1e-12);
+  EXPECT_NEAR(band.distance({6, 0, 10}), 0.0, 1e-12);
+}
+
+TEST(PhantomShapes, ALoftOfEqualCirclesIsACylinder) {
+  const Loft loft({{-20, {1, 2}, {5, 5}}, {0, {1, 2}, {5, 5}}, {20, {1, 2}, {5, 5}}}, 0.0, 1.0);
+  EXPECT_NEAR(loft.distance({9, 2, 3}), 3.0, 1e-9);
+  EXPECT_NEAR(loft.distance({1, 5, -3}), -2.0, 1e-9);
+  EXPECT_NEAR(loft.distance({1, 2.5, 24}), 4.0, 1e-9);
+}
+
+TEST(PhantomShapes, ALoftPassesThroughItsSections) {
+  const std::vector<LoftSection> sections = {
+      {-10, {0, 0}, {4, 6}}, {0, {2, 1}, {7, 5}}, {15, {3, -1}, {5, 3}}, {30, {0, 0}, {2, 2}}};
+  const Loft loft(sections, 0.6, 1.0);
+  for (std::size_t i = 1; i + 1 < sections.size(); ++i) {
+    const LoftSection& s = sections[i];
+    EXPECT_NEAR(loft.distance({s.center.x() + s.radii.x(), s.center.y(), s.z}), 0.0, 1e-9);
+    EXPECT_NEAR(loft.distance({s.center.x(), s.center.y() - s.radii.y(), s.z}), 0.0, 1e-9);
+  }
+}
+
+TEST(PhantomNoise, IsAContinuousFunctionOfPositionWithinItsRange) {
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(0.37 * i - 300.0, -0.21 * i, 0.11 * i);
+    const double value = valueNoise(p, 5);
+    EXPECT_LE(std::abs(value), 1.0);
+    EXPECT_EQ(value, valueNoise(p, 5));
+    EXPECT_NEAR(value, valueNoise(p + Vec3::Constant(1e-6), 5), 2e-5);
+  }
+  EXPECT_NE(valueNoise({0.5, 0.5, 0.5}, 1), valueNoise({0.5, 0.5, 0.5}, 2));
+}
+
+TEST(PhantomNoise, RicianMomentsAreThoseOfTheLiterature) {
+  constexpr int n = 200000;
+  constexpr double sigma = 11.0;
+  double air = 0.0, muscle = 0.0, square = 0.0;
+  for (std::uint64_t i = 0; i < n; ++i) {
+    air += ricianNoise(0.0, sigma, i) / n;
+    const double m = ricianNoise(350.0, sigma, i);
+    muscle += m / n;
+    square += m * m / n;
+  }
+  // Gudbjartsson and Patz 1995: Rayleigh where there is no signal, nearly normal where it is
+  // strong.
+  EXPECT_NEAR(air, sigma * std::sqrt(pi / 2.0), 0.1);
+  EXPECT_NEAR(muscle, std::sqrt(350.0 * 350.0 + sigma * sigma), 0.15);
+  EXPECT_NEAR(std::sqrt(square - muscle * muscle), sigma, 0.1);
+}

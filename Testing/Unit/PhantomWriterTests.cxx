@@ -1,0 +1,139 @@
+#include "core/Error.h"
+#include "io/PhantomWriter.h"
+#include "phantom/Knee.h"
+
+#include <gtest/gtest.h>
+#include <itkMetaDataObject.h>
+#include <itkNrrdImageIO.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+using namespace fenestra;
+
+namespace {
+
+struct PhantomFiles : testing::Test {
+  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
+                                 testing::UnitTest::GetInstance()->current_test_info()->name() /
+                                 "deeper";
+  Phantom phantom = makeKneePhantom({{48, 56, 40}});
+
+  void SetUp() override {
+    std::filesystem::remove_all(folder.parent_path());
+    writePhantom(phantom, folder, "knee");
+  }
+  void TearDown() override { std::filesystem::remove_all(folder.parent_path()); }
+
+  itk::NrrdImageIO::Pointer open(const std::string& name) const {
+    const auto io = itk::NrrdImageIO::New();
+    io->SetFileName((folder / name).string());
+    io->ReadImageInformation();
+    return io;
+  }
+};
+
+template <typename T>
+std::vector<T> read(itk::NrrdImageIO& io) {
+  std::vector<T> values(io.GetImageSizeInPixels());
+  io.Read(values.data());
+  return values;
+}
+
+std::string field(const itk::NrrdImageIO& io, const std::string& key) {
+  std::string value;
+  itk::ExposeMetaData<std::string>(io.GetMetaDataDictionary(), key, value);
+  return value;
+}
+
+/// The place of a voxel as the file states it, turned from LPS to RAS.
+Vec3 worldOf(const itk::NrrdImageIO& io, const Vec3& index) {
+  Vec3 lps;
+  for (unsigned axis = 0; axis < 3; ++axis)
+    lps[axis] = io.GetOrigin(axis);
+  for (unsigned axis = 0; axis < 3; ++axis)
+    for (unsigned row = 0; row < 3; ++row)
+      lps[row] += io.GetDirection(axis)[row] * io.GetSpacing(axis) * index[axis];
+  return {-lps.x(), -lps.y(), lps.z()};
+}
+
+TEST_F(PhantomFiles, TheVolumeComesBackVoxelForVoxelInItsPlace) {
+  const auto io = open("knee.nrrd");
+  EXPECT_EQ(field(*io, "NRRD_space"), "left-posterior-superior");
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 index = Box{Vec3::Zero(), phantom.volume.grid.size.cast<double>()}.corner(corner);
+    EXPECT_TRUE(worldOf(*io, index).isApprox(phantom.volume.grid.indexToWorld * index, 1e-9));
+  }
+  EXPECT_EQ(read<std::int16_t>(*io), std::get<std::vector<std::int16_t>>(phantom.volume.voxels));
+}
+
+TEST_F(PhantomFiles, TheSegmentationNamesEverySegmentAsSlicerDoes) {
+  const auto io = open("knee.seg.nrrd");
+  const std::vector<std::uint8_t> labels = read<std::uint8_t>(*io);
+  EXPECT_EQ(labels, phantom.labels);
+  EXPECT_TRUE(
+      worldOf(*io, {1, 2, 3}).isApprox(phantom.volume.grid.indexToWorld * Vec3(1, 2, 3), 1e-9));
+  EXPECT_EQ(field(*io, "Segmentation_MasterRepresentation"), "Binary labelmap");
+  for (std::size_t i = 0; i < phantom.segments.size(); ++i) {
+    const std::string prefix = "Segment" + std::to_string(i) + "_";
+    EXPECT_EQ(field(*io, prefix + "ID"), phantom.segments[i].id);
+    EXPECT_EQ(field(*io, prefix + "Name"), phantom.segments[i].name);
+    EXPECT_EQ(field(*io, prefix + "LabelValue"), std::to_string(phantom.segments[i].label));
+    EXPECT_EQ(field(*io, prefix + "Layer"), "0");
+    EXPECT_FALSE(field(*io, prefix + "Tags").empty());
+  }
+  EXPECT_EQ(field(*io, "Segment" + std::to_string(phantom.segments.size()) + "_ID"), "");
+}
+
+TEST_F(PhantomFiles, ASegmentsExtentIsTheLeastThatHoldsIt) {
+  std::istringstream text(field(*open("knee.seg.nrrd"), "Segment3_Extent"));
+  Eigen::Matrix<std::int64_t, 6, 1> extent;
+  for (std::int64_t& value : extent)
+    text >> value;
+  Eigen::AlignedBox<std::int64_t, 3> held;
+  const Size3& size = phantom.volume.grid.size;
+  for (std::int64_t at = 0; at < size.prod(); ++at)
+    if (phantom.labels[static_cast<std::size_t>(at)] == 4)
+      held.extend(Size3(at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y())));
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(extent[2 * axis], held.min()[axis]);
+    EXPECT_EQ(extent[2 * axis + 1], held.max()[axis]);
+  }
+}
+
+TEST_F(PhantomFiles, ThePropertyIsSlicersJson) {
+  std::ifstream file(folder / "knee.vp.json");
+  const nlohmann::json json = nlohmann::json::parse(file);
+  EXPECT_NE(json.at("@schema").get<std::string>().find("volume-property-schema-v1.0.0.json#"),
+            std::string::npos);
+  const auto& component = json.at("volumeProperties").at(0).at("components").at(0);
+  EXPECT_EQ(component.at("shade"), phantom.property.shade);
+  EXPECT_EQ(component.at("scalarOpacityUnitDistance"), phantom.property.unitDistance);
+  const auto& opacity = component.at("scalarOpacity").at("points");
+  ASSERT_EQ(opacity.size(), phantom.property.scalarOpacity.size());
+  for (std::size_t i = 0; i < opacity.size(); ++i) {
+    EXPECT_EQ(opacity[i].at("x"), phantom.property.scalarOpacity[i].x);
+    EXPECT_EQ(opacity[i].at("y"), phantom.property.scalarOpacity[i].y);
+  }
+  EXPECT_EQ(component.at("rgbTransferFunction").at("points").size(), phantom.property.color.size());
+}
+
+TEST_F(PhantomFiles, NothingButTheThreeFilesIsLeft) {
+  std::size_t count = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder))
+    ++count;
+  EXPECT_EQ(count, 3u);
+}
+
+TEST_F(PhantomFiles, AFolderThatCannotBeMadeIsAnOutputError) {
+  const auto file = folder / "knee.nrrd";
+  try {
+    writePhantom(phantom, file / "inside", "knee");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::output);
+    EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
+  }
+}
+
+} // namespace
