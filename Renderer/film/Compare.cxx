@@ -64,6 +64,12 @@ struct Pair {
   double variance(std::size_t c, std::size_t i) const {
     return square((*errorA[c])[i]) + square((*errorB[c])[i]);
   }
+  /// Neither value has noise that a float could show, nor do they differ by more than its rounding:
+  /// a background, say, of which one renderer states an error of some 1e-10. Says nothing of noise.
+  bool bothExact(std::size_t c, std::size_t i) const {
+    const double rounding = 0x1p-24 * std::max(std::abs((*a[c])[i]), std::abs((*b[c])[i]));
+    return variance(c, i) <= square(rounding) && std::abs(difference(c, i)) <= 2.0 * rounding;
+  }
 };
 
 /// What differences make of one channel.
@@ -92,9 +98,9 @@ ZStatistics zStatistics(const Pair& pair, int width) {
       const double d = pair.difference(c, i), v = pair.variance(c, i);
       sum += d;
       variance += v;
-      if (v == 0.0)
+      if (pair.bothExact(c, i))
         continue;
-      const double value = d / std::sqrt(v);
+      const double value = d / std::sqrt(v); // infinite where exact values differ
       ++z.count;
       z.mean += value;
       squares += square(value);
@@ -116,12 +122,12 @@ ZStatistics zStatistics(const Pair& pair, int width) {
   return z;
 }
 
-/// z where the pictures state errors (0 where both are 0), else nothing to divide by.
+/// The z of largest modulus of a pixel; 0 where both values are exact.
 double largestZ(const Pair& pair, std::size_t i) {
   double largest = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double v = pair.variance(c, i);
-    const double z = v == 0.0 ? 0.0 : pair.difference(c, i) / std::sqrt(v);
+    const double z =
+        pair.bothExact(c, i) ? 0.0 : pair.difference(c, i) / std::sqrt(pair.variance(c, i));
     if (!(std::abs(z) <= std::abs(largest)))
       largest = z;
   }

@@ -9,8 +9,9 @@
 namespace fenestra {
 
 /// Statistics of z = (a - b) / sqrt(se_a^2 + se_b^2) over pixels and R, G, B; of two independent
-/// unbiased renders with honest errors it has mean 0 and deviation 1. Values of which both standard
-/// errors are 0 are left out.
+/// unbiased renders with honest errors it has mean 0 and deviation 1. Values that agree and of
+/// which both standard errors are 0, to the rounding of a float, are left out; if they differ, z is
+/// infinite.
 struct ZStatistics {
   std::size_t count = 0; ///< values in the statistics
   double mean = 0.0, deviation = 0.0;
