@@ -2,7 +2,6 @@
 // JSON from untrusted files, read so that every complaint names its place. For io's own sources.
 
 #include "core/Error.h"
-#include "core/Vector.h"
 
 #include <nlohmann/json.hpp>
 
@@ -11,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace fenestra {
 

@@ -59,7 +59,9 @@ Error damaged(const std::filesystem::path& path, const std::string& format) {
 /// The text header at the front of a file, line by line; it may be followed by binary samples.
 class HeaderLines {
 public:
-  explicit HeaderLines(const std::filesystem::path& path) : m_text(longestHeader, '\0') {
+  explicit HeaderLines(const std::filesystem::path& path) {
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    m_text.resize(static_cast<std::size_t>(std::min<std::uintmax_t>(longestHeader, size)));
     std::ifstream file(path, std::ios::binary);
     file.read(m_text.data(), static_cast<std::streamsize>(m_text.size()));
     m_text.resize(static_cast<std::size_t>(file.gcount()));
@@ -174,7 +176,7 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   checkNrrdGeometry(path, fields);
   StoredSamples stored;
   const std::string encoding = lower(fields["encoding"]);
-  stored.compressed = encoding.starts_with("gz") || encoding.starts_with("bz");
+  stored.compressed = encoding != "raw" && encoding != "hex"; // a text's digit can be 8 bytes
   locateNrrdFiles(path, fields, lines, stored);
   return stored;
 }

@@ -89,6 +89,12 @@ Header readHeader(const std::filesystem::path& path, Stream& stream) {
   field(40, axes); // 1 to 7 tells the byte order
   header.swapped = axes < 1 || axes > 7;
   field(40, axes);
+  bool sized = axes >= 1 && axes <= 7;
+  for (std::size_t axis = 1; sized && axis <= static_cast<std::size_t>(axes); ++axis) {
+    std::int16_t voxels = 0;
+    field(40 + 2 * axis, voxels);
+    sized = voxels >= 1;
+  }
   std::int32_t size = 0;
   field(0, size);
   field(70, header.type);
@@ -96,7 +102,7 @@ Header readHeader(const std::filesystem::path& path, Stream& stream) {
   field(112, header.slope);
   field(116, header.intercept);
   constexpr float farthest = 1 << 30;
-  if (size != static_cast<std::int32_t>(bytes.size()) || axes < 1 || axes > 7 ||
+  if (size != static_cast<std::int32_t>(bytes.size()) || !sized ||
       std::memcmp(&bytes[344], "n+1", 4) != 0 || !(header.offset <= farthest))
     throw inputError(path.string(), "is not a NIfTI-1 file of one part; write it again as .nii.gz");
   return header;
@@ -137,42 +143,48 @@ Samples readAs(const std::filesystem::path& path, Stream& stream, const Header& 
     return rescaled<double>(samples, header);
 }
 
+/// Calls `use` with a zero of the samples' type.
+template <typename Use>
+auto withType(const std::filesystem::path& path, const Header& header, Use&& use) {
+  switch (header.type) { // NIFTI_TYPE_… of nifti1.h
+  case 2:
+    return use(std::uint8_t());
+  case 4:
+    return use(std::int16_t());
+  case 8:
+    return use(std::int32_t());
+  case 16:
+    return use(float());
+  case 64:
+    return use(double());
+  case 256:
+    return use(std::int8_t());
+  case 512:
+    return use(std::uint16_t());
+  case 768:
+    return use(std::uint32_t());
+  case 1024:
+    return use(std::int64_t());
+  case 1280:
+    return use(std::uint64_t());
+  default:
+    throw inputError(path.string(), "datatype: " + std::to_string(header.type) +
+                                        " is no real scalar; convert it to 16-bit integers");
+  }
+}
+
 } // namespace
 
 void checkNiftiHeader(const std::filesystem::path& path) {
   Stream stream(path);
-  readHeader(path, stream);
+  withType(path, readHeader(path, stream), [](auto) {});
 }
 
 Samples readNiftiSamples(const std::filesystem::path& path, std::size_t count) {
   Stream stream(path);
   const Header header = readHeader(path, stream);
-  const auto as = [&]<typename T>(T) { return readAs<T>(path, stream, header, count); };
-  switch (header.type) { // NIFTI_TYPE_… of nifti1.h
-  case 2:
-    return as(std::uint8_t());
-  case 4:
-    return as(std::int16_t());
-  case 8:
-    return as(std::int32_t());
-  case 16:
-    return as(float());
-  case 64:
-    return as(double());
-  case 256:
-    return as(std::int8_t());
-  case 512:
-    return as(std::uint16_t());
-  case 768:
-    return as(std::uint32_t());
-  case 1024:
-    return as(std::int64_t());
-  case 1280:
-    return as(std::uint64_t());
-  default:
-    throw inputError(path.string(), "datatype: " + std::to_string(header.type) +
-                                        " is not read; convert it to 16-bit integers");
-  }
+  return withType(path, header,
+                  [&]<typename T>(T) { return readAs<T>(path, stream, header, count); });
 }
 
 } // namespace fenestra

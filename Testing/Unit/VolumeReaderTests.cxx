@@ -159,6 +159,17 @@ TEST(VolumeReader, readsDetachedDataAndLists) {
   EXPECT_EQ(readVolume(list).maximum, 1.0);
 }
 
+TEST(VolumeReader, readsEveryEncoding) {
+  const TemporaryFolder folder;
+  const std::string head = "NRRD0004\ntype: double\ndimension: 3\nsizes: 2 2 1\nendian: little\n";
+  const auto text = folder.write("a.nrrd", head + "encoding: ascii\n\n1 2 3 4\n");
+  EXPECT_EQ(readVolume(text).maximum, 4.0);
+  std::string hex;
+  for (int i = 0; i < 4; ++i)
+    hex += "000000000000f03f"; // 1.0
+  EXPECT_EQ(readVolume(folder.write("h.nrrd", head + "encoding: hex\n\n" + hex)).minimum, 1.0);
+}
+
 TEST(VolumeReader, dropsTrailingAxesOfOneFrame) {
   const TemporaryFolder folder;
   const auto path = folder.write(
