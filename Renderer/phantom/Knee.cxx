@@ -24,54 +24,74 @@ Grid kneeGrid(const Size3& size) {
   return {size, indexToWorld};
 }
 
-struct Voxel {
+/// What is at a place.
+struct Sample {
   double signal = 0.0;
   std::uint8_t label = 0;
+  double border = infinity; ///< mm to the next border that could show
 };
 
-/// Paints voxels of a grid, from the front layer back until nothing more shows.
+/// Paints places of a grid, from the front layer back until nothing more shows.
 class Painter {
 public:
-  Painter(const KneeLayers& knee, const Vec3& spacing)
-      : m_knee(knee), m_softness(0.6 * std::cbrt(spacing.prod())) {}
+  Painter(const KneeLayers& knee, const Grid& grid)
+      : m_knee(knee),
+        m_sliceStep(grid.indexToWorld.linear().col(2)),
+        m_softness(0.6 * std::cbrt(grid.spacing().prod())) {}
 
   /// The layers that a row of voxels along y can meet.
   std::vector<const Layer*> layersOfRow(double x, double z) const {
+    const double margin = 0.5 * m_sliceStep.norm();
     std::vector<const Layer*> row;
     for (const Layer& layer : m_knee.layers()) {
-      const Box& box = layer.box;
+      const Box box = expanded(layer.box, margin);
       if (x >= box.lower.x() && x <= box.upper.x() && z >= box.lower.z() && z <= box.upper.z())
         row.push_back(&layer);
     }
     return row;
   }
 
-  Voxel paint(const std::vector<const Layer*>& row, const Vec3& point) const {
+  /// A slice is as thick as it is far from the next: a voxel shows the mean across it, which takes
+  /// more than its middle only where a border is near.
+  Sample voxel(const std::vector<const Layer*>& row, const Vec3& center) const {
+    Sample middle = paint(row, center);
+    if (middle.border > m_softness + m_sliceStep.norm() / 3.0)
+      return middle;
+    for (const double offset : {-1.0 / 3.0, 1.0 / 3.0})
+      middle.signal += paint(row, center + offset * m_sliceStep).signal;
+    middle.signal /= 3.0;
+    return middle;
+  }
+
+private:
+  Sample paint(const std::vector<const Layer*>& row, const Vec3& point) const {
     const Site site = m_knee.site(point);
-    Voxel voxel;
-    double visible = 1.0; // what the layers so far leave of the voxel
+    Sample sample;
+    sample.border = std::abs(site.leg);
     if (site.leg > m_softness)
-      return voxel;
+      return sample;
+    double visible = 1.0; // what the layers so far leave of the voxel
     for (const Layer* layer : row) {
       if (point.y() < layer->box.lower.y() || point.y() > layer->box.upper.y())
         continue;
       const double distance = layer->distance(site);
+      sample.border = std::min(sample.border, std::abs(distance));
       // A voxel on a border holds some of either side: the partial volume effect.
       const double share = smoothStep(m_softness, -m_softness, distance);
       if (share == 0.0)
         continue;
-      if (voxel.label == 0 && distance <= 0.0)
-        voxel.label = layer->label;
-      voxel.signal += visible * share * tissueSignal(layer->tissue, point);
+      if (sample.label == 0 && distance <= 0.0)
+        sample.label = layer->label;
+      sample.signal += visible * share * tissueSignal(layer->tissue, point);
       visible *= 1.0 - share;
       if (visible < 1e-3)
         break;
     }
-    return voxel;
+    return sample;
   }
 
-private:
   const KneeLayers& m_knee;
+  Vec3 m_sliceStep;  ///< from a slice to the next, mm
   double m_softness; ///< mm: half the width of a border
 };
 
@@ -82,7 +102,7 @@ void paintSlice(const Painter& painter, const Grid& grid, std::int64_t slice,
     const std::vector<const Layer*> row = painter.layersOfRow(start.x(), start.z());
     for (std::int64_t i = 0; i < grid.size.x(); ++i) {
       const Vec3 point = grid.indexToWorld * Size3{i, j, slice}.cast<double>();
-      const Voxel voxel = painter.paint(row, point);
+      const Sample voxel = painter.voxel(row, point);
       const std::int64_t index = i + grid.size.x() * (j + grid.size.y() * slice);
       const auto at = static_cast<std::size_t>(index);
       const double signal = ricianNoise(voxel.signal * biasField(point), noiseSigma, at);
@@ -103,7 +123,7 @@ Phantom makeKneePhantom(const KneeOptions& options) {
   const auto count = static_cast<std::size_t>(grid.voxelCount());
   std::vector<std::int16_t> voxels(count);
   phantom.labels.resize(count);
-  const Painter painter(knee, grid.spacing());
+  const Painter painter(knee, grid);
   tbb::parallel_for(std::int64_t{0}, grid.size.z(), [&](std::int64_t slice) {
     paintSlice(painter, grid, slice, voxels, phantom.labels);
   });

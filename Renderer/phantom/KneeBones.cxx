@@ -262,10 +262,11 @@ double tapered(double thickness, double margin) {
 double KneeBones::intactFemoralCartilage(const Vec3& p) const {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double angle = std::atan2(z, y);
-  const double top = (p.y() > 0.0 ? 45.0 - 0.02 * std::pow(p.x() - 4.0, 2) : 37.0) - p.z();
+  const double top = (p.y() > 0.0 ? 45.0 - 0.007 * std::pow(p.x() - 4.0, 2) : 35.0) - p.z();
   const Walls wall = walls(p);
-  const double sides = std::min(wall.lateral - p.x(), p.x() - wall.medial) - 2.5;
-  const double margin = std::min({top, sides, notchField(p) - 0.8});
+  const double behind = 3.0 * smoothStep(0.0, -20.0, p.y());
+  const double sides = std::min(wall.lateral - p.x(), p.x() - wall.medial) - 2.5 - behind;
+  const double margin = std::min({top, sides, notchField(p) - 2.3});
   if (margin <= 0.0)
     return 0.0;
   const double trochlea = trochleaShare(angle, -0.9, 0.1);

@@ -18,8 +18,11 @@ struct CartilageLesion {
   double depth;    ///< share of the cartilage that is gone
 };
 
-inline constexpr CartilageLesion fullThicknessLesion{-22.0, -0.72, 8.0, 1.0};   ///< medial condyle
-inline constexpr CartilageLesion partialThicknessLesion{22.5, -0.62, 9.0, 0.5}; ///< lateral condyle
+/// On the medial slope of the lower trochlea: the notch is behind it, not more cartilage,
+/// so that a view from in front through the lesion meets the bone of its floor.
+inline constexpr CartilageLesion fullThicknessLesion{-4.8, -0.48, 8.0, 1.0};
+/// On the lateral condyle.
+inline constexpr CartilageLesion partialThicknessLesion{22.5, -0.62, 9.0, 0.5};
 
 class KneeBones {
 public:

@@ -42,7 +42,7 @@ double marrowSignal(const Vec3& p) {
   const double trabeculae =
       38.0 * valueNoise(p.cwiseQuotient(Vec3{0.9, 0.9, 2.2}), 78) + 22.0 * valueNoise(p / 2.5, 79);
   const double patches = 28.0 * valueNoise(p / 12.0, 80);
-  return 815.0 + trabeculae + patches - 260.0 * physis(p);
+  return 815.0 + trabeculae + patches - 150.0 * physis(p);
 }
 
 } // namespace

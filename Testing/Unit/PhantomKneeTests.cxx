@@ -14,7 +14,7 @@ using namespace fenestra;
 namespace {
 
 const Phantom& smallKnee() {
-  static const Phantom knee = makeKneePhantom({{120, 138, 80}});
+  static const Phantom knee = makeKneePhantom({{100, 115, 64}});
   return knee;
 }
 
@@ -79,7 +79,7 @@ TEST(PhantomKnee, EverySegmentHasVoxelsAndANameOfItsOwn) {
 }
 
 TEST(PhantomKnee, IsTheSameOnOneThreadAndOnMany) {
-  const KneeOptions options{{40, 46, 40}};
+  const KneeOptions options{{24, 28, 24}};
   const Phantom many = makeKneePhantom(options);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Phantom single = makeKneePhantom(options);
@@ -89,7 +89,7 @@ TEST(PhantomKnee, IsTheSameOnOneThreadAndOnMany) {
 
 TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
   for (const Size3& size : {Size3(300, 344, 120), Size3(30, 43, 20)}) {
-    const Grid grid = makeKneePhantom({Size3(size.cwiseMin(64))}).volume.grid;
+    const Grid grid = makeKneePhantom({Size3(size.cwiseMin(24))}).volume.grid;
     EXPECT_TRUE(
         (grid.spacing().cwiseProduct(grid.size.cast<double>())).isApprox(Vec3(120, 137.6, 120)));
     EXPECT_TRUE(grid.worldCenter().isApprox(Vec3(0, -2, 6.8)));
@@ -178,6 +178,17 @@ TEST(PhantomKnee, TheLesionsAreOnTheFrontAndUndersideOfTheCondyles) {
                       bones.femur(p + Vec3(0, 0, h)) - bones.femur(p - Vec3(0, 0, h)));
     EXPECT_GT(normal.normalized().dot(Vec3(0, 1, -1).normalized()), 0.85) << "inferior-anterior";
   }
+}
+
+TEST(PhantomKnee, SeenFromInFrontNoCartilageLiesBehindTheFullLesion) {
+  const KneeBones bones;
+  const Vec3 floor = bones.femoralSurface(fullThicknessLesion.x, fullThicknessLesion.angle);
+  for (double aside = -3.0; aside <= 3.0; aside += 0.5)
+    for (double y = floor.y() + 10.0; y > -45.0; y -= 0.1) {
+      const Vec3 p(floor.x() + aside, y, floor.z());
+      EXPECT_FALSE(bones.femur(p) > 0.0 && bones.femur(p) < bones.femoralCartilage(p) - 0.05)
+          << p.transpose();
+    }
 }
 
 TEST(PhantomKnee, SignalsFollowT1) {

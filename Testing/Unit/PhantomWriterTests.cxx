@@ -17,7 +17,7 @@ struct PhantomFiles : testing::Test {
   std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
                                  testing::UnitTest::GetInstance()->current_test_info()->name() /
                                  "deeper";
-  Phantom phantom = makeKneePhantom({{48, 56, 40}});
+  Phantom phantom = makeKneePhantom({{32, 36, 24}});
 
   void SetUp() override {
     std::filesystem::remove_all(folder.parent_path());
