@@ -53,8 +53,7 @@ struct TestScene {
     const Camera camera(pose, width, height);
     const LightSet lightSet(lights, volume.grid, camera);
     const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
-    const MajorantGrid majorants(volume.grid, ranges, transfer,
-                                 [this](const Corners& c) { return removed(clip, c); });
+    const MajorantGrid majorants(volume.grid, ranges, transfer, clip);
     RenderMonitor monitor;
     return fenestra::render({volume, transfer, majorants, lightSet, camera, clip}, settings,
                             monitor);

@@ -32,21 +32,35 @@ Interval visiblePart(const ClipDepth& clip, const Ray& eyeRay) {
   return {std::max(0.0, depth / depthPerLength), infinity};
 }
 
-bool removedBox(const ClipNone&, const Corners&) {
-  return false;
+Kept keptBox(const ClipNone&, const Corners&) {
+  return Kept::all;
 }
 
-bool removedBox(const ClipPlane& clip, const Corners& corners) {
+/// What of a stretch of depths, mm, lies in front of the eye.
+Kept inFrontOfEye(const Camera& camera, double nearest, double farthest) {
+  if (behindEye(camera, farthest + slack))
+    return Kept::none;
+  return behindEye(camera, nearest - slack) ? Kept::some : Kept::all;
+}
+
+Kept keptBox(const ClipPlane& clip, const Corners& corners) {
   const double margin = slack * clip.normal.norm();
-  return std::ranges::all_of(
-             corners,
-             [&](const Vec3& corner) { return (corner - clip.point).dot(clip.normal) > margin; }) ||
-         std::ranges::all_of(corners, [&](const Vec3& corner) {
-           return behindEye(clip.camera, clip.camera.toView(corner).z() + slack);
-         });
+  double lowest = infinity, highest = -infinity, nearest = infinity, farthest = -infinity;
+  for (const Vec3& corner : corners) {
+    const double height = (corner - clip.point).dot(clip.normal); // the removed side is > 0
+    const double depth = clip.camera.toView(corner).z();
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+    nearest = std::min(nearest, depth);
+    farthest = std::max(farthest, depth);
+  }
+  const Kept inFront = inFrontOfEye(clip.camera, nearest, farthest);
+  if (inFront == Kept::none || lowest > margin)
+    return Kept::none;
+  return inFront == Kept::all && highest < -margin ? Kept::all : Kept::some;
 }
 
-bool removedBox(const ClipDepth& clip, const Corners& corners) {
+Kept keptBox(const ClipDepth& clip, const Corners& corners) {
   Vec2 lower = Vec2::Constant(infinity), upper = Vec2::Constant(-infinity);
   double nearest = infinity, farthest = -infinity;
   for (const Vec3& corner : corners) {
@@ -56,13 +70,17 @@ bool removedBox(const ClipDepth& clip, const Corners& corners) {
     nearest = std::min(nearest, at.z());
     farthest = std::max(farthest, at.z());
   }
-  if (behindEye(clip.camera, farthest + slack))
-    return true;
-  if (behindEye(clip.camera, nearest - slack)) { // its projection has no bounds
+  const Kept inFront = inFrontOfEye(clip.camera, nearest, farthest);
+  if (inFront == Kept::none)
+    return Kept::none;
+  if (inFront == Kept::some) { // its projection has no bounds
     lower.setConstant(-infinity);
     upper.setConstant(infinity);
   }
-  return farthest + slack < clip.pyramid->lowerBound(*clip.buffer, lower, upper);
+  const DepthPyramid::Bounds surface = clip.pyramid->bounds(*clip.buffer, lower, upper);
+  if (farthest + slack < surface.least)
+    return Kept::none;
+  return inFront == Kept::all && nearest - slack > surface.greatest ? Kept::all : Kept::some;
 }
 
 } // namespace
@@ -71,8 +89,8 @@ Interval visible(const Clip& clip, const Ray& eyeRay) {
   return std::visit([&](const auto& kind) { return visiblePart(kind, eyeRay); }, clip);
 }
 
-bool removed(const Clip& clip, const Corners& corners) {
-  return std::visit([&](const auto& kind) { return removedBox(kind, corners); }, clip);
+Kept keptIn(const Clip& clip, const Corners& corners) {
+  return std::visit([&](const auto& kind) { return keptBox(kind, corners); }, clip);
 }
 
 } // namespace fenestra

@@ -4,7 +4,7 @@
 
 #include "camera/Camera.h"
 #include "clipping/DepthBuffer.h"
-#include "clipping/MinPyramid.h"
+#include "clipping/DepthPyramid.h"
 
 #include <array>
 #include <memory>
@@ -41,7 +41,7 @@ struct ClipDepth {
 
   Camera camera;
   std::shared_ptr<const DepthBuffer> buffer; ///< -infinity where nothing is removed (nearest only)
-  std::shared_ptr<const MinPyramid> pyramid; ///< of the buffer
+  std::shared_ptr<const DepthPyramid> pyramid; ///< of the buffer
   Lookup lookup = Lookup::linear;
 
   /// The depth at (x, y), mm, below which everything is removed.
@@ -81,8 +81,10 @@ Interval visible(const Clip& clip, const Ray& eyeRay);
 /// World corners of a box, in any order.
 using Corners = std::array<Vec3, 8>;
 
-/// True only where keep is 0 everywhere in the convex hull of the corners (false may be returned
-/// then, too).
-bool removed(const Clip& clip, const Corners& corners);
+enum class Kept { none, some, all };
+
+/// `none` only where keep is 0 everywhere in the convex hull of the corners, `all` only where it is 1
+/// everywhere; `some` may be returned then, too.
+Kept keptIn(const Clip& clip, const Corners& corners);
 
 } // namespace fenestra

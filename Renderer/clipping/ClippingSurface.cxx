@@ -136,7 +136,7 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Grid& volume, c
     surface.splineSeconds = stopwatch.lap();
     fill(*buffer, surface.focus.regions, spline);
   }
-  auto pyramid = std::make_shared<const MinPyramid>(*buffer);
+  auto pyramid = std::make_shared<const DepthPyramid>(*buffer);
   surface.clip = ClipDepth{camera, std::move(buffer), std::move(pyramid),
                            isCutaway ? ClipDepth::Lookup::nearest : ClipDepth::Lookup::linear};
   surface.fillSeconds = stopwatch.lap();

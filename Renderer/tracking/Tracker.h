@@ -2,10 +2,9 @@
 // Free paths and transmittance through the clipped, classified volume, by null collisions against a
 // majorant grid (Woodcock et al. 1965; Novak et al. 2018 for the terms). Exact: no step size.
 
-#include "clipping/Clip.h"
-#include "medium/MajorantGrid.h"
 #include "medium/Medium.h"
 #include "tracking/Counters.h"
+#include "tracking/MajorantGrid.h"
 #include "volume/GridWalk.h"
 
 namespace fenestra {
@@ -25,15 +24,13 @@ public:
   /// Distance (mm) to the next real collision within `range`, or infinity.
   double sampleCollision(const Ray& ray, const Interval& range, Random& random,
                          Counters& counters) const {
-    const Ray indexRay = transformed(m_worldToIndex, ray);
     double distance = infinity;
-    walkTentative(ray, m_box.clip(indexRay, range), random, counters,
-                  [&](double t, double majorant) {
-                    if (random.uniform() * majorant >= keptExtinction(ray, indexRay, t, counters))
-                      return true; // a null collision
-                    distance = t;
-                    return false;
-                  });
+    walkTentative(ray, range, random, counters, [&](double t, double realShare) {
+      if (random.uniform() >= realShare)
+        return true; // a null collision
+      distance = t;
+      return false;
+    });
     return distance;
   }
 
@@ -42,29 +39,31 @@ public:
   double transmittance(const Ray& ray, const Interval& range, Random& random,
                        Counters& counters) const {
     constexpr double rouletteBelow = 0.1;
-    const Ray indexRay = transformed(m_worldToIndex, ray);
     double ratio = 1.0;
-    walkTentative(
-        ray, m_box.clip(indexRay, range), random, counters, [&](double t, double majorant) {
-          ratio *= std::max(0.0, 1.0 - keptExtinction(ray, indexRay, t, counters) / majorant);
-          if (ratio < rouletteBelow)
-            ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
-          return ratio > 0.0;
-        });
+    walkTentative(ray, range, random, counters, [&](double, double realShare) {
+      ratio *= std::max(0.0, 1.0 - realShare);
+      if (ratio < rouletteBelow)
+        ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
+      return ratio > 0.0;
+    });
     return ratio;
   }
 
 private:
-  /// Calls visit(t, majorant) at each tentative collision until it returns false. One exponential
-  /// optical depth is spent across cell borders and drawn anew after each collision. `range` lies
-  /// inside the volume: the last cells of an axis may reach beyond it.
+  /// Calls visit(t, keep * extinction / majorant) at each tentative collision until it returns
+  /// false. One exponential optical depth is spent across cell borders and drawn anew after each
+  /// collision.
   template <typename Visit>
   void walkTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
                      Visit&& visit) const {
+    const Ray indexRay = transformed(m_worldToIndex, ray);
+    // The last cells of an axis may reach beyond the volume: its own box bounds the walk.
+    GridWalk walk(transformed(m_majorants.worldToCell(), ray), m_box.clip(indexRay, range),
+                  m_majorants.cellCount());
     double opticalDepth = random.exponential();
-    GridWalk walk(transformed(m_majorants.worldToCell(), ray), range, m_majorants.cellCount());
     for (; !walk.done(); walk.next()) {
-      const double majorant = m_majorants.majorant(static_cast<std::size_t>(walk.cell()));
+      const MajorantGrid::Cell& cell = m_majorants.cell(walk.cell());
+      const double majorant = cell.majorant;
       ++counters.cells;
       if (majorant == 0.0) {
         ++counters.skippedCells;
@@ -78,19 +77,16 @@ private:
           break;
         }
         t += opticalDepth / majorant;
-        if (!visit(t, majorant))
+        double extinction = cell.cut ? keep(m_clip, ray.at(t)) : 1.0;
+        if (extinction > 0.0) {
+          ++counters.lookups;
+          extinction *= m_medium.extinction(indexRay.at(t));
+        }
+        if (!visit(t, extinction / majorant))
           return;
         opticalDepth = random.exponential();
       }
     }
-  }
-
-  double keptExtinction(const Ray& ray, const Ray& indexRay, double t, Counters& counters) const {
-    const double kept = keep(m_clip, ray.at(t));
-    if (kept == 0.0)
-      return 0.0;
-    ++counters.lookups;
-    return kept * m_medium.extinction(indexRay.at(t));
   }
 
   Affine m_worldToIndex;

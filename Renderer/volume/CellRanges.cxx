@@ -11,29 +11,42 @@ struct Span {
 };
 
 /// Voxels that interpolation within cell `c` of one axis touches.
-Span footprint(std::int64_t c, std::int64_t voxels, int apron) {
-  const std::int64_t first = c * CellRanges::edge - 1 - apron;
-  const std::int64_t last = (c + 1) * CellRanges::edge + apron;
+Span footprint(std::int64_t c, std::int64_t edge, std::int64_t voxels, int apron) {
+  const std::int64_t first = c * edge - 1 - apron;
+  const std::int64_t last = (c + 1) * edge + apron;
   return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
 }
 
 } // namespace
 
 CellRanges::CellRanges(const Volume& volume, int apron)
-    : m_cellCount((volume.grid.size.array() + (edge - 1)) / edge),
+    : m_edge(edgeFor(volume.grid)),
+      m_cellCount((volume.grid.size.array() + m_edge.array() - 1) / m_edge.array()),
       m_low(static_cast<std::size_t>(m_cellCount.prod())),
       m_high(m_low.size()) {
   std::visit([&](const auto& voxels) { fill(volume.grid, voxels, apron); }, volume.voxels);
 }
 
+Size3 CellRanges::edgeFor(const Grid& grid) {
+  constexpr double cells = 1 << 18;
+  const Vec3 spacing = grid.spacing();
+  const Vec3 extent = spacing.cwiseProduct(grid.size.cast<double>());
+  const double edge = std::cbrt(extent.prod() / cells); // mm
+  Size3 voxels;
+  for (int axis = 0; axis < 3; ++axis)
+    voxels[axis] = static_cast<std::int64_t>(
+        std::clamp(std::round(edge / spacing[axis]), 1.0, static_cast<double>(grid.size[axis])));
+  return voxels;
+}
+
 template <typename Voxel>
 void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels, int apron) {
   const auto fillSlab = [&](std::int64_t cz) {
-    const Span z = footprint(cz, grid.size.z(), apron);
+    const Span z = footprint(cz, m_edge.z(), grid.size.z(), apron);
     for (std::int64_t cy = 0; cy < m_cellCount.y(); ++cy) {
-      const Span y = footprint(cy, grid.size.y(), apron);
+      const Span y = footprint(cy, m_edge.y(), grid.size.y(), apron);
       for (std::int64_t cx = 0; cx < m_cellCount.x(); ++cx) {
-        const Span x = footprint(cx, grid.size.x(), apron);
+        const Span x = footprint(cx, m_edge.x(), grid.size.x(), apron);
         Voxel low = voxels[static_cast<std::size_t>(
             x.first + grid.size.x() * (y.first + grid.size.y() * z.first))];
         Voxel high = low;

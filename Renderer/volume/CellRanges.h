@@ -5,15 +5,18 @@
 
 namespace fenestra {
 
-/// Cell c spans [c, c + 1] * edge voxels, counted from the volume's corner: index space from
-/// c * edge - 0.5 on. Its range covers every voxel that trilinear interpolation inside it can
-/// touch, plus `apron` voxels more to every side (1 for central differences).
+/// Cell c spans [c, c + 1] * edge voxels in each axis, counted from the volume's corner: index
+/// space from c * edge - 0.5 on. Its range covers every voxel that trilinear interpolation inside
+/// it can touch, plus `apron` voxels more to every side (1 for central differences).
 class CellRanges {
 public:
-  static constexpr int edge = 8; ///< voxels; 4 is as fast at eight times the memory, 16 is 10 to 40 % slower
-
   CellRanges(const Volume& volume, int apron);
 
+  /// Voxels that a cell spans: cells are as near to cubes in mm as whole voxels allow, and about
+  /// a quarter of a million of them, so that thick slices do not make long cells with loose bounds.
+  static Size3 edgeFor(const Grid& grid);
+
+  const Size3& edge() const { return m_edge; }
   const Size3& cellCount() const { return m_cellCount; }
   std::size_t size() const { return m_low.size(); }
   double low(std::size_t cell) const { return m_low[cell]; }
@@ -23,7 +26,7 @@ private:
   template <typename Voxel>
   void fill(const Grid& grid, const std::vector<Voxel>& voxels, int apron);
 
-  Size3 m_cellCount;
+  Size3 m_edge, m_cellCount;
   std::vector<float> m_low, m_high; ///< exact: every storage type fits a float
 };
 

@@ -47,13 +47,11 @@ TEST(RatioTracking, ShadowThroughASlabIsExponential) {
   const TestScene scene = slab(100.0, depth, Rgb::Zero());
   const Camera camera(scene.pose, 8, 8);
   const CellRanges ranges(scene.volume, 0);
-  const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer,
-                               [](const Corners&) { return false; });
+  const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, ClipNone{});
   const auto& voxels = std::get<std::vector<float>>(scene.volume.voxels);
   // Twice the extinction as majorant, so that ratios are not all 0: a scaled grid.
   const TransferFunction doubled = scene.transfer.scaled(2.0);
-  const MajorantGrid loose(scene.volume.grid, ranges, doubled,
-                           [](const Corners&) { return false; });
+  const MajorantGrid loose(scene.volume.grid, ranges, doubled, ClipNone{});
   const Medium<float> medium(scene.volume.grid, voxels, scene.transfer);
   const Clip clip;
   for (const MajorantGrid* grid : {&majorants, &loose}) {

@@ -1,4 +1,4 @@
-// keep, visible and removed say the same; the surface meets the focus; errors name their mend.
+// keep, visible and keptIn say the same; the surface meets the focus; errors name their mend.
 
 #include "ClippingTesting.h"
 #include "clipping/ClippingSurface.h"
@@ -111,14 +111,14 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
     }
 }
 
-TEST(Clip, RemovedBoxesHaveNothingToKeep) {
+TEST(Clip, BoxesAreKeptOrRemovedAsTheirPointsAre) {
   Random random(2, 0, 0);
   for (const auto projection : projections)
     for (const double distance : {12.0, 120.0}) {
       const Camera camera = obliqueCamera(projection, distance, 64);
       const auto clips = everyClip(camera);
       for (std::size_t c = 0; c < clips.size(); ++c) {
-        int found = 0, empty = 0;
+        int found = 0, empty = 0, foundWhole = 0, whole = 0;
         for (int trial = 0; trial < 20000; ++trial) {
           const Vec3 center = randomPoint(random, -35, 35);
           const Vec3 half =
@@ -129,20 +129,24 @@ TEST(Clip, RemovedBoxesHaveNothingToKeep) {
           Corners corners;
           for (int i = 0; i < 8; ++i)
             corners[static_cast<std::size_t>(i)] = center + turn * box.corner(i);
-          bool anythingKept = false;
-          for (int i = 0; i < 60 && !anythingKept; ++i) {
+          int kept = 0;
+          for (int i = 0; i < 60; ++i) {
             const Vec3 p =
                 i < 8 ? corners[static_cast<std::size_t>(i)]
                       : Vec3(center + turn * half.cwiseProduct(randomPoint(random, -1, 1)));
-            anythingKept = keep(clips[c], p) > 0.0;
+            kept += keep(clips[c], p) > 0.0;
           }
-          const bool isRemoved = removed(clips[c], corners);
-          ASSERT_FALSE(isRemoved && anythingKept);
-          found += isRemoved;
-          empty += !anythingKept;
+          const Kept verdict = keptIn(clips[c], corners);
+          ASSERT_FALSE(verdict == Kept::none && kept > 0);
+          ASSERT_FALSE(verdict == Kept::all && kept < 60);
+          found += verdict == Kept::none;
+          empty += kept == 0;
+          foundWhole += verdict == Kept::all;
+          whole += kept == 60;
         }
-        // Not merely cautious: small boxes that are clipped are found.
+        // Not merely cautious: small boxes that are clipped, or not touched, are found.
         EXPECT_GE(found, c == 0 ? 0 : c == 3 ? empty / 3 : empty * 3 / 4) << "clip " << c;
+        EXPECT_GE(foundWhole, whole / 3) << "clip " << c;
       }
     }
 }
@@ -153,7 +157,7 @@ TEST(Clip, ABoxAcrossTheEyesPlaneIsSeenInEveryDirection) {
   auto buffer = std::make_shared<DepthBuffer>(camera, centredGrid({100, 100, 100}));
   for (std::int64_t i = 0; i < buffer->size(); ++i)
     buffer->set(i, buffer->xAxis().coordinate(i % buffer->columns()) > 100.0 ? -1.0 : 20.0);
-  const Clip clip = ClipDepth{camera, buffer, std::make_shared<MinPyramid>(*buffer)};
+  const Clip clip = ClipDepth{camera, buffer, std::make_shared<DepthPyramid>(*buffer)};
   const auto viewBox = [&](const Vec3& lower, const Vec3& upper) {
     Corners corners;
     for (int i = 0; i < 8; ++i) {
@@ -163,9 +167,10 @@ TEST(Clip, ABoxAcrossTheEyesPlaneIsSeenInEveryDirection) {
     }
     return corners;
   };
-  EXPECT_TRUE(removed(clip, viewBox({1.0, -1.0, 5.0}, {3.0, 1.0, 10.0})));
-  EXPECT_FALSE(removed(clip, viewBox({1.0, -1.0, -0.5}, {3.0, 1.0, 10.0})));
-  EXPECT_TRUE(removed(clip, viewBox({1.0, -1.0, -0.5}, {3.0, 1.0, -0.1})));
+  EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, 5.0}, {3.0, 1.0, 10.0})), Kept::none);
+  EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, -0.5}, {3.0, 1.0, 10.0})), Kept::some);
+  EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, -0.5}, {3.0, 1.0, -0.1})), Kept::none);
+  EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, 21.0}, {3.0, 1.0, 22.0})), Kept::all);
 }
 
 TEST(ClippingSurface, ShowsTheFocusAtItsOwnDepth) {

@@ -1,7 +1,7 @@
 // Where the buffer's samples lie, how far they reach, and what is between and beyond them.
 
 #include "ClippingTesting.h"
-#include "clipping/MinPyramid.h"
+#include "clipping/DepthPyramid.h"
 #include "core/Error.h"
 
 #include <gtest/gtest.h>
@@ -130,40 +130,45 @@ TEST(DepthBuffer, AViewportBeyondTheLimitKeepsItsPixels) {
   EXPECT_LE(buffer.size(), 3 * 5000002);
 }
 
-TEST(MinPyramid, BoundsWhatTheBufferReturnsInARectangle) {
+TEST(DepthPyramid, BoundsWhatTheBufferReturnsInARectangle) {
   Random random(2, 0, 0);
   for (const auto& [width, height] : {std::pair{1, 1}, {5, 1}, {33, 17}, {64, 64}}) {
     const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 8.0, width, height);
     DepthBuffer buffer(camera, centredGrid({20, 20, 20}));
     for (std::int64_t i = 0; i < buffer.size(); ++i)
       buffer.set(i, uniform(random, 50, 150));
-    const MinPyramid pyramid(buffer);
-    double least = infinity;
+    const DepthPyramid pyramid(buffer);
+    DepthPyramid::Bounds all;
     for (std::int64_t i = 0; i < buffer.size(); ++i)
-      least = std::min(least, buffer.at(i));
-    EXPECT_EQ(pyramid.lowerBound(buffer, Vec2::Constant(-infinity), Vec2::Constant(infinity)),
-              least);
+      all.include({buffer.at(i), buffer.at(i)});
+    const auto found = pyramid.bounds(buffer, Vec2::Constant(-infinity), Vec2::Constant(infinity));
+    EXPECT_EQ(found.least, all.least);
+    EXPECT_EQ(found.greatest, all.greatest);
     for (int trial = 0; trial < 2000; ++trial) {
       const Vec2 a = randomPoint(random, -15, 15).head<2>();
       const Vec2 b = a + std::pow(random.uniform(), 3) * randomPoint(random, -15, 15).head<2>();
-      const double bound = pyramid.lowerBound(buffer, a, b);
+      const auto [least, greatest] = pyramid.bounds(buffer, a, b);
       for (int i = 0; i < 50; ++i) {
         const Vec2 p(uniform(random, a.x(), b.x()), uniform(random, a.y(), b.y()));
-        ASSERT_LE(bound, buffer.depth(p) + 1e-9);
-        ASSERT_LE(bound, buffer.nearest(p));
+        ASSERT_LE(least, buffer.depth(p) + 1e-9);
+        ASSERT_LE(least, buffer.nearest(p));
+        ASSERT_GE(greatest, buffer.depth(p) - 1e-9);
+        ASSERT_GE(greatest, buffer.nearest(p));
       }
     }
   }
 }
 
-TEST(MinPyramid, IsTightOnASmallRectangle) {
+TEST(DepthPyramid, IsTightOnASmallRectangle) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 32.0, 64, 64);
   DepthBuffer buffer(camera, centredGrid({20, 20, 20}));
   for (std::int64_t i = 0; i < buffer.size(); ++i)
     buffer.set(i, 100.0 + buffer.position(i % 64, i / 64).x());
-  const MinPyramid pyramid(buffer);
+  const DepthPyramid pyramid(buffer);
   for (double x = -20.0; x < 20.0; x += 0.7) {
-    EXPECT_GT(pyramid.lowerBound(buffer, {x, 0.0}, {x + 2.0, 2.0}), 100.0 + x - 5.0);
+    const auto [least, greatest] = pyramid.bounds(buffer, {x, 0.0}, {x + 2.0, 2.0});
+    EXPECT_GT(least, 100.0 + x - 5.0);
+    EXPECT_LT(greatest, 102.0 + x + 5.0);
   }
 }
 

@@ -73,8 +73,7 @@ TEST(Render, StopsOnRequestWithWhatItHas) {
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
   const CellRanges ranges(s.volume, 0);
-  const MajorantGrid majorants(s.volume.grid, ranges, s.transfer,
-                               [](const Corners&) { return false; });
+  const MajorantGrid majorants(s.volume.grid, ranges, s.transfer, s.clip);
   RenderMonitor monitor;
   monitor.stop = true;
   RenderSettings settings;

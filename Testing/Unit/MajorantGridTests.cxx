@@ -1,4 +1,4 @@
-#include "medium/MajorantGrid.h"
+#include "tracking/MajorantGrid.h"
 
 #include "core/Random.h"
 #include "medium/Medium.h"
@@ -34,7 +34,7 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
   Volume volume{grid, noise<Voxel>(grid.size, low, high), 0.0, 0.0, "noise", {}};
   computeRange(volume);
   const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
-  const MajorantGrid majorants(grid, ranges, transfer, [](const auto&) { return false; });
+  const MajorantGrid majorants(grid, ranges, transfer, ClipNone{});
   const Medium<Voxel> medium(grid, std::get<std::vector<Voxel>>(volume.voxels), transfer);
 
   const Box box = grid.indexBox();
@@ -52,11 +52,12 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
     for (int axis = 0; axis < 3; ++axis)
       cell[axis] = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(inCells[axis])), 0,
                                             majorants.cellCount()[axis] - 1);
-    const auto index = static_cast<std::size_t>(
-        cell.x() + majorants.cellCount().x() * (cell.y() + majorants.cellCount().y() * cell.z()));
+    const std::int64_t index =
+        cell.x() + majorants.cellCount().x() * (cell.y() + majorants.cellCount().y() * cell.z());
     const double sigma_t = medium.extinction(p);
-    ASSERT_LE(sigma_t, majorants.majorant(index)) << "at " << p.transpose();
-    tightest = std::min(tightest, majorants.majorant(index));
+    ASSERT_LE(sigma_t, static_cast<double>(majorants.cell(index).majorant))
+        << "at " << p.transpose();
+    tightest = std::min(tightest, static_cast<double>(majorants.cell(index).majorant));
   }
   EXPECT_LT(tightest, transfer.extinction.range(-1e9, 1e9)[1]) << "some cell must be tighter";
 }
@@ -83,18 +84,38 @@ TEST(MajorantGrid, BoundsGradientOpacity) {
   expectConservative<std::uint16_t>(transfer, 0, 255);
 }
 
-TEST(MajorantGrid, DropsClippedAndEmptyCells) {
+TEST(MajorantGrid, DropsClippedAndEmptyCellsAndMarksThoseThatAreCut) {
   const Grid grid(Size3(32, 32, 32), Affine::Identity());
   Volume volume{grid, std::vector<float>(32768, 1.0F), 1.0, 1.0, "ones", {}};
   const CellRanges ranges(volume, 0);
   const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), grey};
-  const MajorantGrid clipped(grid, ranges, opaque, [](const std::array<Vec3, 8>& corners) {
-    return std::all_of(corners.begin(), corners.end(), [](const Vec3& c) { return c.z() < 16.0; });
-  });
-  EXPECT_DOUBLE_EQ(clipped.emptyFraction(), 0.5);
+  CameraPose pose;
+  pose.position = {16, 16, 100};
+  pose.target = {16, 16, 16};
+  pose.up = Vec3::UnitY();
+  // Through the middle of a layer of cells; above it is removed.
+  const Clip plane = ClipPlane{Camera(pose, 8, 8), Vec3(0, 0, 15.9), Vec3::UnitZ()};
+  const MajorantGrid clipped(grid, ranges, opaque, plane);
+  const double layer = 1.0 / static_cast<double>(clipped.cellCount().z());
+  EXPECT_NEAR(clipped.emptyFraction(), 0.5, layer);
+  std::int64_t cut = 0;
+  for (std::int64_t i = 0; i < clipped.cellCount().prod(); ++i)
+    cut += clipped.cell(i).cut;
+  EXPECT_EQ(cut, clipped.cellCount().x() * clipped.cellCount().y());
+
   const TransferFunction empty{ScalarFunction({knot(1.5, 0), knot(2, 2)}), grey};
-  EXPECT_EQ(MajorantGrid(grid, ranges, empty, [](const auto&) { return false; }).emptyFraction(),
-            1.0);
+  EXPECT_EQ(MajorantGrid(grid, ranges, empty, ClipNone{}).emptyFraction(), 1.0);
+}
+
+TEST(CellRanges, ThickSlicesMakeNoLongCells) {
+  Affine map = Affine::Identity();
+  map.linear() = Vec3(0.5, 0.5, 5.0).asDiagonal();
+  const Grid grid(Size3(512, 512, 60), map);
+  const Size3 edge = CellRanges::edgeFor(grid);
+  EXPECT_EQ(edge.z(), 1);
+  EXPECT_EQ(edge.x(), edge.y());
+  EXPECT_NEAR(0.5 * static_cast<double>(edge.x()), 5.0, 2.5);
+  EXPECT_EQ(CellRanges::edgeFor(Grid(Size3(1, 1, 1), map)), Size3(1, 1, 1));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 fenestra_test(MediumTests PiecewiseLinearTests.cxx MajorantGridTests.cxx VolumeTests.cxx
-  LIBRARIES fenestra_medium LABELS unit)
+  LIBRARIES fenestra_tracking LABELS unit)
 fenestra_test(ScatteringTests ScatteringTests.cxx LIBRARIES fenestra_medium LABELS unit)
 fenestra_test(LightTests LightSetTests.cxx LIBRARIES fenestra_lights LABELS unit)
 fenestra_test(RenderTests FilmTests.cxx DeterminismTests.cxx LIBRARIES fenestra_render LABELS unit)

@@ -1,4 +1,4 @@
-#include "clipping/MinPyramid.h"
+#include "clipping/DepthPyramid.h"
 
 #include <bit>
 
@@ -20,31 +20,33 @@ struct SampleRange {
 
 } // namespace
 
-MinPyramid::MinPyramid(const DepthBuffer& buffer) {
-  const auto halve = [](std::int64_t columns, std::int64_t rows, const auto& depth) {
+DepthPyramid::DepthPyramid(const DepthBuffer& buffer) {
+  const auto halve = [](std::int64_t columns, std::int64_t rows, const auto& bounds) {
     Level level{(columns + 1) / 2, (rows + 1) / 2, {}};
-    level.least.reserve(static_cast<std::size_t>(level.columns * level.rows));
+    level.bounds.reserve(static_cast<std::size_t>(level.columns * level.rows));
     for (std::int64_t row = 0; row < rows; row += 2)
       for (std::int64_t column = 0; column < columns; column += 2) {
-        const std::int64_t right = std::min(column + 1, columns - 1);
-        const std::int64_t below = std::min(row + 1, rows - 1);
-        level.least.push_back(
-            std::min({depth(row * columns + column), depth(row * columns + right),
-                      depth(below * columns + column), depth(below * columns + right)}));
+        Bounds block;
+        for (std::int64_t r = row; r < std::min(row + 2, rows); ++r)
+          for (std::int64_t c = column; c < std::min(column + 2, columns); ++c)
+            block.include(bounds(r * columns + c));
+        level.bounds.push_back(block);
       }
     return level;
   };
-  m_levels.push_back(halve(buffer.columns(), buffer.rows(),
-                           [&](std::int64_t sample) { return buffer.at(sample); }));
-  while (m_levels.back().least.size() > 1) {
+  m_levels.push_back(halve(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
+    return Bounds{buffer.at(sample), buffer.at(sample)};
+  }));
+  while (m_levels.back().bounds.size() > 1) {
     const Level& below = m_levels.back();
     m_levels.push_back(halve(below.columns, below.rows, [&](std::int64_t entry) {
-      return below.least[static_cast<std::size_t>(entry)];
+      return below.bounds[static_cast<std::size_t>(entry)];
     }));
   }
 }
 
-double MinPyramid::lowerBound(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const {
+DepthPyramid::Bounds DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2& a,
+                                          const Vec2& b) const {
   const SampleRange columns(buffer.xAxis(), a.x(), b.x());
   const SampleRange rows(buffer.yAxis(), a.y(), b.y());
   // An entry of m_levels[l - 1] spans 2^l samples: a quarter of the range or more, which so meets
@@ -54,11 +56,11 @@ double MinPyramid::lowerBound(const DepthBuffer& buffer, const Vec2& a, const Ve
       static_cast<std::ptrdiff_t>(std::bit_width(static_cast<std::uint64_t>(longest)));
   const std::ptrdiff_t l = std::clamp<std::ptrdiff_t>(bits - 2, 1, std::ssize(m_levels));
   const Level& level = m_levels[static_cast<std::size_t>(l - 1)];
-  double least = infinity;
+  Bounds result;
   for (std::int64_t row = rows.first >> l; row <= rows.last >> l; ++row)
     for (std::int64_t column = columns.first >> l; column <= columns.last >> l; ++column)
-      least = std::min(least, level.least[static_cast<std::size_t>(row * level.columns + column)]);
-  return least;
+      result.include(level.bounds[static_cast<std::size_t>(row * level.columns + column)]);
+  return result;
 }
 
 } // namespace fenestra

@@ -1,0 +1,36 @@
+#pragma once
+// The least and the greatest depth over any rectangle of a depth buffer, from a few look-ups.
+
+#include "clipping/DepthBuffer.h"
+
+#include <vector>
+
+namespace fenestra {
+
+/// Level 0 holds the extremes of 2 x 2 samples, each further level those of 2 x 2 below it.
+class DepthPyramid {
+public:
+  explicit DepthPyramid(const DepthBuffer& buffer);
+
+  struct Bounds {
+    double least = infinity, greatest = -infinity; ///< mm
+
+    void include(const Bounds& other) {
+      least = std::min(least, other.least);
+      greatest = std::max(greatest, other.greatest);
+    }
+  };
+
+  /// Bounds of what the buffer returns, interpolated or not, anywhere in the rectangle between two
+  /// positions in mm: the extreme samples of it and its near surroundings.
+  Bounds bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const;
+
+private:
+  struct Level {
+    std::int64_t columns, rows;
+    std::vector<Bounds> bounds;
+  };
+  std::vector<Level> m_levels;
+};
+
+} // namespace fenestra
