@@ -54,7 +54,7 @@ Walls walls(const Vec3& p) {
   const double narrowing = 0.003 * distal * distal;
   const double back = p.y() < 0.0 ? 0.0035 * p.y() * p.y() : 0.0;
   const double front = p.y() > 0.0 ? p.y() * p.y() : 0.0;
-  return {-38.5 + narrowing + back + 0.013 * front, 38.2 - narrowing - back - 0.0065 * front};
+  return {-38.5 + narrowing + back + 0.009 * front, 38.2 - narrowing - back - 0.0065 * front};
 }
 
 /// The notch is open to the back and below; its roof rises backward along Blumensaat's line.
@@ -262,11 +262,13 @@ double tapered(double thickness, double margin) {
 double KneeBones::intactFemoralCartilage(const Vec3& p) const {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double angle = std::atan2(z, y);
-  const double top = (p.y() > 0.0 ? 45.0 - 0.007 * std::pow(p.x() - 4.0, 2) : 35.0) - p.z();
+  const double rear = smoothStep(5.0, -20.0, p.y());
+  const double front = 45.0 - 0.005 * std::pow(p.x() - 2.0, 2);
+  const double top = std::lerp(front, 34.0, rear) - p.z();
   const Walls wall = walls(p);
-  const double behind = 3.0 * smoothStep(0.0, -20.0, p.y());
-  const double sides = std::min(wall.lateral - p.x(), p.x() - wall.medial) - 2.5 - behind;
-  const double margin = std::min({top, sides, notchField(p) - 2.3});
+  const double sides = std::min(wall.lateral - p.x(), p.x() - wall.medial) - 2.5 - 2.0 * rear;
+  const double corners = smoothUnion(top, sides, std::lerp(3.0, 9.0, rear));
+  const double margin = smoothUnion(corners, notchField(p) - 2.3, 4.0);
   if (margin <= 0.0)
     return 0.0;
   const double trochlea = trochleaShare(angle, -0.9, 0.1);
