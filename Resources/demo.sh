@@ -16,25 +16,25 @@ if [ ! -s "$out/knee/knee.nrrd" ] || [ "$fenestra" -nt "$out/knee/knee.nrrd" ]; 
   "$fenestra" phantom knee --output "$out/knee"
 fi
 
-# The knee from in front and a little below and to the side: femoral, tibial and patellar cartilage.
-view=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
-  --focus "Femoral cartilage,Tibial cartilage" --size 512x512 --samples 48)
+# The femoral cartilage from in front and a little below, with its two lesions.
+scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
+  --focus "Femoral cartilage" --position=-15,200,-90 --size 512x512 --samples 32)
 
 render() { # MODE [flags]
   local mode=$1
   shift
   say "Rendering: $mode"
-  "$fenestra" "$out/knee/knee.nrrd" "${view[@]}" --clip "$mode" "$@" \
+  "$fenestra" "$out/knee/knee.nrrd" "${scene[@]}" --clip "$mode" "$@" \
     --output "$out/$mode.exr" --output "$out/$mode.png" --stats "$out/$mode.json"
 }
 start=$SECONDS
 render none
-render plane --plane "0,12,0,0,1,0"
+render plane --plane=0,10,-5,0,0.91,-0.41
 render cutaway
 render surface
 say "Rendering took $((SECONDS - start)) s"
 
-montage -font DejaVu-Sans -pointsize 18 -geometry +6+6 -background '#181818' -fill white \
+montage -font DejaVu-Sans -pointsize 20 -geometry +6+6 -background '#181818' -fill white \
   -label 'a  Whole volume: the cartilage is hidden' "$out/none.png" \
   -label 'b  Clip plane: poor coverage' "$out/plane.png" \
   -label 'c  Cut-away: cliffs, dark focus' "$out/cutaway.png" \

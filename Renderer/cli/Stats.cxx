@@ -17,8 +17,9 @@ SampleCounts sampleCounts(const Film& film) {
   for (const PixelSums& pixel : film.pixels()) {
     counts.least = std::min(counts.least, pixel.samples);
     counts.greatest = std::max(counts.greatest, pixel.samples);
-    counts.mean += static_cast<double>(pixel.samples) / static_cast<double>(film.pixelCount());
+    counts.mean += static_cast<double>(pixel.samples);
   }
+  counts.mean /= static_cast<double>(film.pixelCount());
   return counts;
 }
 
