@@ -64,11 +64,14 @@ struct Pair {
   double variance(std::size_t c, std::size_t i) const {
     return square((*errorA[c])[i]) + square((*errorB[c])[i]);
   }
-  /// Neither value has noise that a float could show, nor do they differ by more than its rounding:
-  /// a background, say, of which one renderer states an error of some 1e-10. Says nothing of noise.
-  bool bothExact(std::size_t c, std::size_t i) const {
+  /// No draw of a normal z: both errors are 0 to the rounding of a float, or one is and the values
+  /// agree to it. So it is where neither renderer met anything, whatever error one of them states.
+  bool saysNothing(std::size_t c, std::size_t i) const {
     const double rounding = 0x1p-24 * std::max(std::abs((*a[c])[i]), std::abs((*b[c])[i]));
-    return variance(c, i) <= square(rounding) && std::abs(difference(c, i)) <= 2.0 * rounding;
+    const bool exactA = std::abs((*errorA[c])[i]) <= rounding;
+    const bool exactB = std::abs((*errorB[c])[i]) <= rounding;
+    const bool agree = std::abs(difference(c, i)) <= 2.0 * rounding;
+    return (exactA && exactB) || ((exactA || exactB) && agree);
   }
 };
 
@@ -98,9 +101,9 @@ ZStatistics zStatistics(const Pair& pair, int width) {
       const double d = pair.difference(c, i), v = pair.variance(c, i);
       sum += d;
       variance += v;
-      if (pair.bothExact(c, i))
+      if (pair.saysNothing(c, i))
         continue;
-      const double value = d / std::sqrt(v); // infinite where exact values differ
+      const double value = d / std::sqrt(v);
       ++z.count;
       z.mean += value;
       squares += square(value);
@@ -122,12 +125,12 @@ ZStatistics zStatistics(const Pair& pair, int width) {
   return z;
 }
 
-/// The z of largest modulus of a pixel; 0 where both values are exact.
+/// The z of largest modulus of a pixel; 0 where they say nothing.
 double largestZ(const Pair& pair, std::size_t i) {
   double largest = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
     const double z =
-        pair.bothExact(c, i) ? 0.0 : pair.difference(c, i) / std::sqrt(pair.variance(c, i));
+        pair.saysNothing(c, i) ? 0.0 : pair.difference(c, i) / std::sqrt(pair.variance(c, i));
     if (!(std::abs(z) <= std::abs(largest)))
       largest = z;
   }
