@@ -9,9 +9,9 @@
 namespace fenestra {
 
 /// Statistics of z = (a - b) / sqrt(se_a^2 + se_b^2) over pixels and R, G, B; of two independent
-/// unbiased renders with honest errors it has mean 0 and deviation 1. Values that agree and of
-/// which both standard errors are 0, to the rounding of a float, are left out; if they differ, z is
-/// infinite.
+/// unbiased renders with honest errors it has mean 0 and deviation 1. Values are left out
+/// where both standard errors are 0 to the rounding of a float, or one is and the values agree to
+/// it (a background that neither renderer saw anything in front of).
 struct ZStatistics {
   std::size_t count = 0; ///< values in the statistics
   double mean = 0.0, deviation = 0.0;

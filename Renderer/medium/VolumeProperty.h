@@ -25,8 +25,9 @@ struct ColorNode {
 };
 
 struct VolumeProperty {
-  std::vector<OpacityNode> scalarOpacity;   ///< opacity per unit distance
-  std::vector<OpacityNode> gradientOpacity; ///< over |gradient| in scalar units per mm; may be empty
+  std::vector<OpacityNode> scalarOpacity; ///< opacity per unit distance
+  std::vector<OpacityNode>
+      gradientOpacity; ///< over |gradient| in scalar units per mm; may be empty
   std::vector<ColorNode> color;
   double unitDistance = 1.0; ///< mm
   bool shade = false;
@@ -42,9 +43,10 @@ Rgb colorAt(const std::vector<ColorNode>& nodes, double x);
 /// The sRGB electro-optical transfer function (IEC 61966-2-1), per component.
 Rgb decodeSrgb(const Rgb& encoded);
 
-/// Extinction -ln(1 - opacity) / unitDistance with opacity capped at 0.9999, decoded colour as albedo;
-/// both piecewise linear with knots kept and a relative error of at most 1e-4 (design, section 1).
-/// Throws Error (input; `source` names the file) where a node list is empty or a number is not usable.
+/// Extinction -ln(1 - opacity) / unitDistance with opacity capped at 0.9999, decoded colour as
+/// albedo; both piecewise linear with knots kept and a relative error of at most 1e-4 (design,
+/// section 1). Throws Error (input; `source` names the file) where a node list is empty or a number
+/// is not usable.
 TransferFunction tabulate(const VolumeProperty& property, const std::string& source);
 
 } // namespace fenestra

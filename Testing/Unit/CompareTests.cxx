@@ -124,6 +124,14 @@ TEST(CompareImages, SkipsOnlyWhereBothErrorsAreZero) {
   EXPECT_EQ(compareImages(a, b).z->deviation, 0.0);
 }
 
+TEST(CompareImages, SkipsExactAgreementWhateverErrorOneSideStates) {
+  const Image a = withError(constantImage(2, 1, 0.2f), 0.0f);
+  const Image b = withError(constantImage(2, 1, 0.2f), 5e-4f);
+  EXPECT_EQ(compareImages(a, b).z->count, 0u);
+  const Image c = withError(constantImage(2, 1, 0.2001f), 5e-4f);
+  EXPECT_EQ(compareImages(a, c).z->count, 6u);
+}
+
 TEST(CompareImages, DoesNotHideValuesThatAreNotFinite) {
   const Image b = constantImage(3, 3, 1.0f);
   Image a = b;
