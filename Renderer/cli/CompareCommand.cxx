@@ -1,6 +1,8 @@
 #include "cli/Commands.h"
 
-#include "cli/Flags.h"
+#include "cli/CommandLine.h"
+#include "cli/OutputFiles.h"
+#include "core/Error.h"
 #include "film/Compare.h"
 #include "io/ImageReader.h"
 #include "io/ImageWriter.h"
@@ -21,7 +23,7 @@ const CommandSyntax syntax = {
     "compare",
     "Compares picture A with reference B: error measures, and z statistics where both carry "
     "errors.",
-    {"A", "B"},
+    {{"A", "Picture: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
     flags,
 };
 
@@ -30,6 +32,28 @@ Image readWithError(const FlagValues& values, const char* name, const char* erro
   if (const auto error = values.text(errorFlag))
     attachError(image, readImage(*error));
   return image;
+}
+
+/// Fails before the reading, not after it.
+void checkOutput(const FlagValues& values) {
+  const auto output = values.text("output");
+  if (!output)
+    return;
+  std::vector<std::filesystem::path> inputs;
+  for (const char* name : {"A", "B", "errora", "errorb"})
+    if (const auto input = values.text(name))
+      inputs.emplace_back(*input);
+  checkDistinct(inputs, imageFiles(*output));
+  checkImagePath(*output);
+}
+
+/// The comparison knows pictures, a user knows files.
+Comparison compared(const FlagValues& values, const Image& a, const Image& b) {
+  try {
+    return compareImages(a, b);
+  } catch (const Error& error) {
+    throw Error(error.kind(), *values.text("A") + ", " + *values.text("B") + ": " + error.what());
+  }
 }
 
 void print(const Comparison& c) {
@@ -55,12 +79,13 @@ void print(const Comparison& c) {
 } // namespace
 
 int compareCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseFlags(syntax, argc, argv, first);
+  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, first);
   if (!values)
     return 0;
+  checkOutput(*values);
   const Image a = readWithError(*values, "A", "errora");
   const Image b = readWithError(*values, "B", "errorb");
-  print(compareImages(a, b));
+  print(compared(*values, a, b));
   if (const auto output = values->text("output"))
     writeImage(differenceImage(a, b), {}, *output, "Standard");
   return 0;

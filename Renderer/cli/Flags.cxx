@@ -1,21 +1,19 @@
 #include "cli/Flags.h"
 
-#include "cli/Version.h"
 #include "core/Error.h"
 
-#include <CLI/CLI.hpp>
-
+#include <algorithm>
 #include <charconv>
-#include <iostream>
+#include <sstream>
 
 namespace fenestra {
 namespace {
 
 std::optional<double> parseNumber(std::string_view text) {
-  while (!text.empty() && text.front() == ' ')
+  while (text.starts_with(' '))
     text.remove_prefix(1);
-  if (!text.empty() && text.front() == '+')
-    text.remove_prefix(1);
+  while (text.ends_with(' '))
+    text.remove_suffix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
@@ -46,16 +44,6 @@ std::string shortNumber(double x) {
   return out.str();
 }
 
-/// The one line of a CLI11 error, in our words where its own are unclear.
-Error usageErrorFrom(const CLI::Error& error, const CommandSyntax& syntax) {
-  std::string line = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error))
-    line = "unknown flag or extra argument " + line.substr(line.rfind(':') + 2);
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  const std::string help = *syntax.name ? std::string("fenestra ") + syntax.name : "fenestra";
-  return usageError(line + " (see " + help + " --help)");
-}
-
 } // namespace
 
 std::optional<std::string> FlagValues::text(const std::string& name) const {
@@ -63,7 +51,7 @@ std::optional<std::string> FlagValues::text(const std::string& name) const {
   if (it == m_values.end())
     return std::nullopt;
   if (it->second.size() > 1)
-    throw usageError("--" + name + ": given more than once");
+    throw usageError("--" + name + ": is given more than once; give it once");
   return it->second.front();
 }
 
@@ -129,8 +117,8 @@ std::optional<std::string> FlagValues::word(const std::string& name,
     return given;
   std::string known;
   for (const std::string& w : words)
-    known += (known.empty() ? "" : ", ") + w;
-  throw badValue(name, "one of " + known, *given);
+    known += (known.empty() ? "" : w == words.back() ? " or " : ", ") + w;
+  throw badValue(name, known, *given);
 }
 
 std::vector<std::string> FlagValues::list(const std::string& name) const {
@@ -142,49 +130,6 @@ std::vector<std::string> FlagValues::list(const std::string& name) const {
       all.push_back(part);
     }
   return all;
-}
-
-std::optional<FlagValues> parseFlags(const CommandSyntax& syntax, int argc, char** argv,
-                                     int first) {
-  CLI::App app(syntax.summary, *syntax.name ? std::string("fenestra ") + syntax.name : "fenestra");
-  app.set_help_flag("--help", "Print this help and exit");
-  app.set_version_flag("--version", std::string("fenestra ") + versionText);
-  app.get_formatter()->column_width(34);
-
-  std::vector<std::string> positionals(syntax.positionals.size());
-  for (std::size_t i = 0; i < positionals.size(); ++i)
-    app.add_option(syntax.positionals[i], positionals[i])->required();
-  std::map<std::string, std::vector<std::string>> values;
-  for (const Flag& flag : syntax.flags) {
-    const std::string dashed = std::string("--") + flag.name;
-    CLI::Option* option = *flag.value ? app.add_option(dashed, values[flag.name], flag.text)
-                                            ->type_name(flag.value)
-                                            ->allow_extra_args(false)
-                                      : app.add_flag(dashed, flag.text);
-    option->group(flag.group);
-  }
-
-  std::vector<std::string> arguments(argv + first, argv + argc);
-  std::reverse(arguments.begin(), arguments.end());
-  try {
-    app.parse(arguments);
-  } catch (const CLI::Success& success) {
-    app.exit(success, std::cout, std::cerr);
-    return std::nullopt;
-  } catch (const CLI::Error& error) {
-    throw usageErrorFrom(error, syntax);
-  }
-
-  FlagValues result;
-  for (std::size_t i = 0; i < positionals.size(); ++i)
-    result.add(syntax.positionals[i], positionals[i]);
-  for (const Flag& flag : syntax.flags) {
-    if (!*flag.value && app.count(std::string("--") + flag.name) > 0)
-      result.add(flag.name, "");
-    for (const std::string& value : values[flag.name])
-      result.add(flag.name, value);
-  }
-  return result;
 }
 
 } // namespace fenestra

@@ -15,15 +15,19 @@ struct Flag {
   const char* name;  ///< one lower-case word, without dashes
   const char* value; ///< what the value looks like; empty for a switch
   const char* group; ///< heading in the help
-  const char* text;  ///< one line of help
-  bool repeatable = false;
+  const char* text;  ///< one sentence of help
+};
+
+struct Positional {
+  const char* name;
+  const char* text; ///< one sentence of help
 };
 
 /// What a command takes: positional arguments first, by name, then flags.
 struct CommandSyntax {
   const char* name;
   const char* summary;
-  std::vector<const char*> positionals; ///< all required, in order
+  std::vector<Positional> positionals; ///< all required, in order
   std::span<const Flag> flags;
 };
 
@@ -52,9 +56,5 @@ public:
 private:
   std::map<std::string, std::vector<std::string>> m_values;
 };
-
-/// Parses argv[first …]. Prints help or version and returns nothing where they were asked for.
-/// Throws Error (usage).
-std::optional<FlagValues> parseFlags(const CommandSyntax& syntax, int argc, char** argv, int first);
 
 } // namespace fenestra

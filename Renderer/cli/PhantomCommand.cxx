@@ -1,6 +1,7 @@
 #include "cli/Commands.h"
 
-#include "cli/Flags.h"
+#include "cli/CommandLine.h"
+#include "cli/Stop.h"
 #include "core/Error.h"
 #include "io/PhantomWriter.h"
 #include "phantom/Knee.h"
@@ -19,8 +20,8 @@ constexpr Flag flags[] = {
 
 const CommandSyntax syntax = {
     "phantom",
-    "Makes a synthetic subject: an image, its segments and a transfer function. KIND is knee.",
-    {"KIND"},
+    "Makes a synthetic subject: an image, its segments and a transfer function.",
+    {{"KIND", "knee"}},
     flags,
 };
 
@@ -42,18 +43,21 @@ KneeOptions kneeOptions(const FlagValues& values) {
 } // namespace
 
 int phantomCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseFlags(syntax, argc, argv, first);
+  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, first);
   if (!values)
     return 0;
   const std::string kind = *values->text("KIND");
   if (kind != "knee")
-    throw usageError("phantom: KIND '" + kind + "' is unknown; use knee");
+    throw usageError("KIND: '" + kind + "' is unknown; use knee");
   const std::string folder = values->text("output").value_or(kind);
+  StopOnSignal stopOnSignal;
   const Phantom phantom = makeKneePhantom(kneeOptions(*values));
+  std::atomic<bool> stopped = false;
+  stopOnSignal.setInstead(stopped); // the files belong together
   writePhantom(phantom, folder, kind);
   std::cout << folder << ": " << kind << ".nrrd, " << kind << ".seg.nrrd, " << kind << ".vp.json, "
             << phantom.segments.size() << " segments" << std::endl;
-  return 0;
+  return stopped ? stoppedStatus : 0;
 }
 
 } // namespace fenestra

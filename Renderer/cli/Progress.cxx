@@ -1,6 +1,7 @@
 #include "cli/Progress.h"
 
 #include <cstdio>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace fenestra {
@@ -18,11 +19,16 @@ std::string clock(double seconds) {
   return text;
 }
 
-std::string bar(double fraction) {
-  constexpr int width = 24;
-  const int full = static_cast<int>(fraction * width);
-  return std::string(static_cast<std::size_t>(full), '#') +
-         std::string(static_cast<std::size_t>(width - full), '.');
+std::string bar(double fraction, std::size_t width) {
+  const auto full = static_cast<std::size_t>(fraction * static_cast<double>(width));
+  return std::string("[") + std::string(full, '#') + std::string(width - full, '.') + "] ";
+}
+
+/// Of the terminal, which may change while we run.
+std::size_t columns() {
+  winsize size = {};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
 }
 
 } // namespace
@@ -72,30 +78,48 @@ double Progress::fraction(double seconds) const {
   return std::clamp(most, 0.0, 1.0);
 }
 
-void Progress::show(bool last) const {
+void Progress::show(bool last) {
+  const double now = last && !m_monitor.stop ? 1.0 : fraction(m_watch.seconds());
+  m_fraction = std::max(m_fraction, now);
+  if (m_mode == ProgressMode::xml)
+    return showTags(m_fraction, last);
+  if (last)
+    std::fputs("\r\033[K", stderr); // what is said at the end stands alone
+  else
+    showBar(m_fraction);
+  std::fflush(stderr);
+}
+
+void Progress::showTags(double done, bool last) const {
+  std::printf("<filter-progress>%.4f</filter-progress>\n", done);
+  if (last)
+    std::printf("<filter-end>\n<filter-name>fenestra</filter-name>\n<filter-time>%.2f"
+                "</filter-time>\n</filter-end>\n",
+                m_watch.seconds());
+  std::fflush(stdout);
+}
+
+void Progress::showBar(double done) const {
   const double seconds = m_watch.seconds();
-  const double done = last && !m_monitor.stop ? 1.0 : fraction(seconds);
-  if (m_mode == ProgressMode::xml) {
-    std::printf("<filter-progress>%.4f</filter-progress>\n", done);
-    if (last)
-      std::printf("<filter-end>\n<filter-name>fenestra</filter-name>\n<filter-time>%.2f"
-                  "</filter-time>\n</filter-end>\n",
-                  seconds);
-    std::fflush(stdout);
-    return;
-  }
   const double samples = static_cast<double>(m_monitor.paths) / m_pixels;
   const double noise = m_monitor.noise;
+  const double left = done > 0.0 ? seconds * (1.0 - done) / done : infinity;
   char noiseText[32] = "";
   if (noise < infinity)
-    std::snprintf(noiseText, sizeof noiseText, "  noise %.3f", noise);
-  const double left = done > 0.0 ? seconds * (1.0 - done) / done : infinity;
-  std::fprintf(stderr, "\r[%s] %3.0f %%  %.*f samples%s  %s  ETA %s \033[K", bar(done).c_str(),
-               100.0 * done, samples < 10.0 ? 1 : 0, samples, noiseText, clock(seconds).c_str(),
-               clock(left).c_str());
-  if (last)
-    std::fputc('\n', stderr);
-  std::fflush(stderr);
+    std::snprintf(noiseText, sizeof noiseText, "noise %.3f  ", noise);
+  char text[128];
+  std::snprintf(text, sizeof text, "%3.0f %%  %s left  %.*f samples a pixel  %s%s", 100.0 * done,
+                clock(left).c_str(), samples < 10.0 ? 1 : 0, samples, noiseText,
+                clock(seconds).c_str());
+
+  // A line that wraps cannot be taken back: drop the bar first, then what stands last.
+  constexpr std::size_t longest = 24;
+  constexpr std::size_t frame = 3;
+  const std::size_t width = columns() - 1;
+  std::string line = std::string(text).substr(0, width);
+  if (line.size() + frame + longest / 3 <= width)
+    line = bar(done, std::min(longest, width - line.size() - frame)) + line;
+  std::fprintf(stderr, "\r%s\033[K", line.c_str());
 }
 
 } // namespace fenestra

@@ -10,8 +10,9 @@
 
 namespace fenestra {
 
-/// Shows progress from construction to destruction: a bar on standard error, or Slicer's tags on
-/// standard output. `automatic` is a bar where standard error is a terminal.
+/// Shows progress from construction to destruction: a bar on standard error, which goes away at the
+/// end, or Slicer's tags on standard output. `automatic` is a bar where standard error is a
+/// terminal.
 class Progress {
 public:
   Progress(ProgressMode mode, const RenderSettings& settings, std::uint64_t pixels,
@@ -22,7 +23,9 @@ public:
 
 private:
   void run();
-  void show(bool last) const;
+  void show(bool last);
+  void showTags(double done, bool last) const;
+  void showBar(double done) const;
   /// The nearest to its end of samples, seconds and noise, in [0, 1].
   double fraction(double seconds) const;
 
@@ -34,6 +37,7 @@ private:
   std::mutex m_mutex;
   std::condition_variable m_wake;
   bool m_done = false;
+  double m_fraction = 0.0; ///< shown last: noise can grow between passes, progress does not
   std::thread m_thread;
 };
 

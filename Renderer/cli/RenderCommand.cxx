@@ -1,5 +1,7 @@
 #include "cli/Commands.h"
 
+#include "cli/CommandLine.h"
+#include "cli/OutputFiles.h"
 #include "cli/Progress.h"
 #include "cli/RenderFlags.h"
 #include "cli/Stats.h"
@@ -12,14 +14,31 @@
 
 #include <iostream>
 #include <sstream>
+#include <unistd.h>
 
 namespace fenestra {
 namespace {
 
+/// As a shell takes it back.
+std::string quoted(const std::string& argument) {
+  const char* const plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
+    return argument;
+  std::string result(1, '\'');
+  for (const char c : argument)
+    if (c == '\'')
+      result += "'\\''";
+    else
+      result += c;
+  result += '\'';
+  return result;
+}
+
 std::string commandLine(int argc, char** argv) {
   std::string line = "fenestra";
   for (int i = 1; i < argc; ++i)
-    line += std::string(" ") + argv[i];
+    line.append(" ").append(quoted(argv[i]));
   return line;
 }
 
@@ -50,10 +69,34 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderSettin
 
 /// Fails before the long work, not after it.
 void checkOutputs(const RenderOptions& options) {
+  std::vector<std::filesystem::path> results;
+  for (const std::filesystem::path& path : options.outputs)
+    for (const std::filesystem::path& file : imageFiles(path))
+      results.push_back(file);
+  if (options.stats)
+    results.push_back(*options.stats);
+  checkDistinct(options.inputs, results);
   for (const std::filesystem::path& path : options.outputs)
     checkImagePath(path);
   if (options.stats)
     checkWritable(*options.stats);
+}
+
+/// Linux grants memory that it does not have, and ends the process when it is used.
+void checkMemory(const SceneRequest& scene) {
+  constexpr double bytesPerPixel = 2.0 * sizeof(PixelSums); // the film, and its channels as written
+  constexpr double gigabyte = 1e9;
+  const double needed = bytesPerPixel * scene.width * scene.height;
+  const double there =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  if (needed <= there)
+    return;
+  std::ostringstream line;
+  line.precision(3);
+  line << "a picture of " << scene.width << "x" << scene.height << " pixels takes "
+       << needed / gigabyte << " GB of memory, this machine has " << there / gigabyte
+       << "; choose a smaller one";
+  throw outputError("--size", line.str());
 }
 
 RenderResult renderWithProgress(const Scene& scene, const RenderOptions& options,
@@ -73,7 +116,8 @@ void report(const RenderOptions& options, const RenderResult& result, double sec
   std::ostringstream line;
   line.precision(3);
   line << files << ": " << options.scene.width << "x" << options.scene.height << " pixels, "
-       << result.finishedSamples << " samples each";
+       << result.finishedSamples
+       << (result.finishedSamples == 1 ? " sample each" : " samples each");
   if (noise < infinity)
     line << ", noise " << noise;
   line << ", " << seconds << " s"
@@ -84,26 +128,27 @@ void report(const RenderOptions& options, const RenderResult& result, double sec
 } // namespace
 
 int renderCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> flags = parseFlags(renderSyntax, argc, argv, first);
+  const std::optional<FlagValues> flags = parseCommandLine(renderSyntax, argc, argv, first);
   if (!flags)
     return 0;
   const RenderOptions options = renderOptions(*flags);
+  StopOnSignal stopOnSignal;
   checkOutputs(options);
+  checkMemory(options.scene);
 
   RenderMonitor monitor;
-  StopOnSignal stopOnSignal;
   const Stopwatch total;
   RenderStats stats;
   const Scene scene(options.scene);
   for (const std::string& warning : scene.warnings())
     std::cerr << "fenestra: warning: " << warning << '\n';
 
-  stopOnSignal.stopRender(monitor);
+  stopOnSignal.setInstead(monitor.stop);
   const Stopwatch transport;
   const RenderResult result = renderWithProgress(scene, options, monitor);
   stats.transport = transport.seconds();
   if (result.finishedSamples == 0) {
-    std::cerr << "fenestra: stopped before the first pass; nothing was written\n";
+    std::cerr << "fenestra: stopped on request before the first pass; nothing was written\n";
     return stoppedStatus;
   }
 

@@ -2,6 +2,8 @@
 
 #include "core/Error.h"
 
+#include <algorithm>
+
 namespace fenestra {
 namespace {
 
@@ -15,7 +17,8 @@ constexpr const char* outputGroup = "Output";
 constexpr Flag flags[] = {
     {"segmentation", "FILE", sceneGroup, "Segments: a .seg.nrrd, or any label map"},
     {"focus", "A,B,...", sceneGroup,
-     "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,)", true},
+     "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,); may be "
+     "repeated"},
     {"clip", "MODE", clipGroup,
      "none, plane, cutaway or surface [surface with a focus, else none]"},
     {"boundary", "KIND", clipGroup, "How the surface meets the focus: spline (the paper's)"},
@@ -35,7 +38,7 @@ constexpr Flag flags[] = {
     {"transfer", "FILE|PRESET", lookGroup,
      "Transfer function: .vp, .vp.json, Fenestra .json, ct-soft or ct-bone [by modality]"},
     {"shift", "X", lookGroup, "Moves the transfer function along the scalar [0]"},
-    {"density", "D", lookGroup, "Multiplies the extinction [1]"},
+    {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000 [1]"},
     {"lights", "FILE|PRESET", lookGroup, "Lights: .json, studio, headlight or soft [studio]"},
     {"environment", "R,G,B|FILE", lookGroup,
      "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own"},
@@ -43,16 +46,17 @@ constexpr Flag flags[] = {
     {"size", "WxH", qualityGroup, "Pixels [512x512]"},
     {"samples", "N", qualityGroup,
      "Stop at N samples a pixel [64 unless seconds or noise are given]"},
-    {"seconds", "T", qualityGroup, "Stop after T seconds of rendering"},
+    {"seconds", "T", qualityGroup,
+     "Stop after T seconds of rendering, but not before one sample a pixel"},
     {"noise", "E", qualityGroup, "Stop when the relative noise is at most E, for example 0.03"},
     {"bounces", "B", qualityGroup, "Scatterings a path, at most (biased) [unlimited]"},
     {"seed", "S", qualityGroup, "Random seed [0]"},
-    {"threads", "K", qualityGroup, "Threads [all]"},
+    {"threads", "K", qualityGroup, "Threads, at most one a core [all]"},
     {"output", "FILE", outputGroup,
-     "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth) [INPUT.png]",
-     true},
+     "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "
+     "repeated [INPUT.png]"},
     {"layers", "L,...", outputGroup,
-     "Channels of an .exr: color, depth, clip, albedo, normal, error, samples [all]", true},
+     "Channels of an .exr: color, depth, clip, albedo, normal, error, samples [all]"},
     {"stats", "FILE", outputGroup, "Times, counts and measures as .json"},
     {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none [auto]"},
 };
@@ -92,10 +96,10 @@ ClipRequest clipRequest(const FlagValues& flags) {
   if (mode == ClipMode::plane && !clip.plane)
     throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ");
   if (mode != ClipMode::plane && clip.plane)
-    throw usageError("--plane: only --clip plane uses it");
+    throw usageError("--plane: only --clip plane uses it; add --clip plane, or drop it");
   for (const char* name : {"boundary", "controlpoints", "smoothing"})
     if (mode != ClipMode::surface && flags.has(name))
-      throw usageError(std::string("--") + name + ": only --clip surface uses it");
+      throw usageError(std::string("--") + name + ": only --clip surface uses it; drop it");
   return clip;
 }
 
@@ -133,10 +137,22 @@ void readSize(const FlagValues& flags, SceneRequest& scene) {
   scene.height = height;
 }
 
-Rgb color(const FlagValues& flags, const char* name) {
-  const Rgb value = flags.triple(name)->array();
-  if (value.minCoeff() < 0.0)
-    throw usageError(std::string("--") + name + ": must not be negative");
+bool isExr(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".exr";
+}
+
+/// Linear R,G,B; `otherwise` says what else the flag takes.
+Rgb color(const FlagValues& flags, const std::string& name, const std::string& otherwise) {
+  constexpr double brightest = 1e12; // what is made of it fits a float
+  const std::string text = *flags.text(name);
+  const bool numbers = text.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
+  const Rgb value = numbers ? Rgb(flags.triple(name)->array()) : Rgb::Constant(-1.0);
+  if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
+    throw usageError("--" + name + ": expected R,G,B, each from 0 to 1e12, or " + otherwise +
+                     ", got '" + text + "'");
   return value;
 }
 
@@ -144,10 +160,10 @@ void readEnvironment(const FlagValues& flags, SceneRequest& scene) {
   const auto text = flags.text("environment");
   if (!text)
     return;
-  if (text->ends_with(".exr"))
+  if (isExr(*text))
     scene.environmentMap = *text;
   else
-    scene.environment = color(flags, "environment");
+    scene.environment = color(flags, "environment", "an .exr file");
 }
 
 Background background(const FlagValues& flags) {
@@ -158,7 +174,7 @@ Background background(const FlagValues& flags) {
     return {Background::Kind::transparent, Rgb::Zero()};
   if (*text == "environment")
     return {Background::Kind::environment, Rgb::Zero()};
-  return {Background::Kind::color, color(flags, "background")};
+  return {Background::Kind::color, color(flags, "background", "transparent or environment")};
 }
 
 RenderSettings renderSettings(const FlagValues& flags) {
@@ -194,14 +210,38 @@ std::filesystem::path defaultOutput(const std::filesystem::path& input) {
   return name + ".png";
 }
 
+std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
+  std::vector<std::filesystem::path> files;
+  for (const char* name : {"INPUT", "segmentation", "transfer", "lights", "environment"})
+    if (const auto file = flags.text(name))
+      files.emplace_back(*file);
+  return files;
+}
+
+void readOutputs(const FlagValues& flags, RenderOptions& options) {
+  for (const std::string& file : flags.texts("output"))
+    options.outputs.emplace_back(file);
+  if (options.outputs.empty())
+    options.outputs.push_back(defaultOutput(options.scene.volume));
+  options.stats = flags.text("stats");
+  options.layers = layerSet(flags.list("layers"));
+  const auto exrs = std::count_if(options.outputs.begin(), options.outputs.end(), isExr);
+  if (exrs == 0 && flags.has("layers"))
+    throw usageError("--layers: only an .exr has them; add --output FILE.exr");
+  for (const std::filesystem::path& path : options.outputs)
+    if (!options.layers.color && !isExr(path))
+      throw usageError("--layers: " + path.string() + " needs color; add it, or write .exr alone");
+  options.settings.path.wantNormals = exrs > 0 && options.layers.normal;
+}
+
 } // namespace
 
 const CommandSyntax renderSyntax = {
     "render",
     "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
-    "a "
-    "clipping surface.",
-    {"INPUT"},
+    "a clipping surface. \"render\" may be left out. Other subcommands: fenestra compare, fenestra "
+    "phantom.",
+    {{"INPUT", "Volume: .nrrd .nhdr .nii .nii.gz .mha .mhd"}},
     flags,
 };
 
@@ -213,9 +253,11 @@ RenderOptions renderOptions(const FlagValues& flags) {
   scene.focus = flags.list("focus");
   if (!scene.focus.empty() && !scene.segmentation)
     throw usageError("--focus: needs --segmentation FILE to find segments in");
+  if (scene.segmentation && scene.focus.empty())
+    throw usageError("--segmentation: only --focus uses it; add --focus A,B,...");
   scene.transfer = flags.text("transfer");
   scene.shift = flags.number("shift", -1e30, 1e30).value_or(0.0);
-  scene.density = flags.number("density", 0.0, 1e12).value_or(1.0);
+  scene.density = flags.number("density", 0.0, 1000.0).value_or(1.0);
   scene.lights = flags.text("lights").value_or(scene.lights);
   readEnvironment(flags, scene);
   scene.view = viewRequest(flags);
@@ -223,16 +265,9 @@ RenderOptions renderOptions(const FlagValues& flags) {
   readSize(flags, scene);
 
   options.settings = renderSettings(flags);
-  for (const std::string& file : flags.texts("output"))
-    options.outputs.emplace_back(file);
-  if (options.outputs.empty())
-    options.outputs.push_back(defaultOutput(scene.volume));
-  options.layers = layerSet(flags.list("layers"));
-  options.stats = flags.text("stats");
+  options.inputs = inputFiles(flags);
+  readOutputs(flags, options);
   options.progress = progressMode(flags);
-  const bool anyExr = std::any_of(options.outputs.begin(), options.outputs.end(),
-                                  [](const auto& path) { return path.extension() == ".exr"; });
-  options.settings.path.wantNormals = anyExr && options.layers.normal;
   return options;
 }
 

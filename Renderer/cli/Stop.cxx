@@ -6,16 +6,16 @@
 namespace fenestra {
 namespace {
 
-std::atomic<RenderMonitor*> running = nullptr;
-static_assert(std::atomic<RenderMonitor*>::is_always_lock_free);
+std::atomic<std::atomic<bool>*> flag = nullptr;
+static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
 /// Only what a signal handler may do.
 void onSignal(int) {
-  if (RenderMonitor* monitor = running) {
-    monitor->stop = true;
+  if (std::atomic<bool>* stop = flag) {
+    *stop = true;
     return;
   }
-  static constexpr char line[] = "fenestra: stopped before rendering; nothing was written\n";
+  static constexpr char line[] = "fenestra: stopped on request; nothing was written\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line, sizeof line - 1);
   ::_exit(stoppedStatus);
 }
@@ -37,11 +37,11 @@ StopOnSignal::StopOnSignal() {
 
 StopOnSignal::~StopOnSignal() {
   handle(SIG_DFL);
-  running = nullptr;
+  flag = nullptr;
 }
 
-void StopOnSignal::stopRender(RenderMonitor& monitor) {
-  running = &monitor;
+void StopOnSignal::setInstead(std::atomic<bool>& stop) {
+  flag = &stop;
 }
 
 } // namespace fenestra

@@ -1,8 +1,8 @@
 #pragma once
-// Ctrl-C and SIGTERM. Before a render runs they end the process at once; then they stop the render,
-// which keeps its finished passes; what is being written becomes whole. Exit status 5 either way.
+// Ctrl-C and SIGTERM. At first they end the process at once; where that would cost finished work or
+// leave a file half-written, they set a flag instead. Exit status 5 either way.
 
-#include "render/Render.h"
+#include <atomic>
 
 namespace fenestra {
 
@@ -16,8 +16,8 @@ public:
   StopOnSignal(const StopOnSignal&) = delete;
   StopOnSignal& operator=(const StopOnSignal&) = delete;
 
-  /// From now on signals set monitor.stop instead of ending the process. The monitor outlives this.
-  void stopRender(RenderMonitor& monitor);
+  /// From now on signals set `stop` instead of ending the process. It outlives this.
+  void setInstead(std::atomic<bool>& stop);
 };
 
 } // namespace fenestra

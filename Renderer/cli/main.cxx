@@ -1,7 +1,9 @@
+#include "cli/CommandLine.h"
 #include "cli/Commands.h"
 #include "core/Error.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <string>
@@ -22,6 +24,18 @@ constexpr NamedCommand commands[] = {
     {"phantom", fenestra::phantomCommand},
 };
 
+/// A word alone that is nearly a subcommand and no file is meant as one.
+void refuseMisspelt(std::string_view word) {
+  std::vector<std::string_view> names;
+  for (const NamedCommand& command : commands)
+    names.push_back(command.name);
+  const std::string_view likely = fenestra::nearest(word, names);
+  if (!likely.empty() && !std::filesystem::exists(word))
+    throw fenestra::usageError("'" + std::string(word) +
+                               "': neither a file nor a subcommand; did you mean fenestra " +
+                               std::string(likely) + "?");
+}
+
 int dispatch(int argc, char** argv) {
   const std::string_view word = argc > 1 ? argv[1] : "";
   const auto* named =
@@ -29,6 +43,7 @@ int dispatch(int argc, char** argv) {
                    [word](const NamedCommand& command) { return command.name == word; });
   if (named != std::end(commands))
     return named->run(argc, argv, 2);
+  refuseMisspelt(word);
   return fenestra::renderCommand(argc, argv, 1);
 }
 

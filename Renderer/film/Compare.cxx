@@ -25,7 +25,7 @@ bool complete(const Planes& planes) {
 Planes colours(const Image& image) {
   const Planes planes = findPlanes(image, colourNames);
   if (!complete(planes))
-    throw inputError("image", "has no channels R, G and B; compare pictures in colour");
+    throw inputError("pictures", "one has no channels R, G and B; compare pictures in colour");
   return planes;
 }
 
@@ -35,7 +35,7 @@ std::string sizeOf(const Image& image) {
 
 void requireSameSize(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throw inputError("images", "are of different sizes, " + sizeOf(a) + " and " + sizeOf(b) +
+    throw inputError("pictures", "are of different sizes, " + sizeOf(a) + " and " + sizeOf(b) +
                                    "; compare pictures of one size");
 }
 

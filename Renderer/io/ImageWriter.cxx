@@ -173,14 +173,17 @@ std::vector<float> interleavedRgba(const Image& image) {
   return values;
 }
 
+std::filesystem::path depthPath(const std::filesystem::path& path) {
+  return path.parent_path() / (path.stem().string() + "-Z.nrrd");
+}
+
 /// Both files are complete before either gets its name.
 void writeNrrd(const Image& image, const ImagePlane& plane, const std::filesystem::path& path) {
   AtomicFile colour(path);
   writeSlice(image, plane, interleavedRgba(image), colour, path);
   if (const std::vector<float>* depth = image.find("Z")) {
-    const auto depthPath = path.parent_path() / (path.stem().string() + "-Z.nrrd");
-    AtomicFile file(depthPath);
-    writeSlice(image, plane, *depth, file, depthPath);
+    AtomicFile file(depthPath(path));
+    writeSlice(image, plane, *depth, file, depthPath(path));
     file.commit();
   }
   colour.commit();
@@ -217,9 +220,15 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
     writeTiff(image, display, path);
 }
 
+std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path) {
+  if (checkedFormat(path) == ImageFormat::nrrd)
+    return {path, depthPath(path)};
+  return {path};
+}
+
 void checkImagePath(const std::filesystem::path& path) {
-  checkedFormat(path);
-  checkWritable(path);
+  for (const std::filesystem::path& file : imageFiles(path))
+    checkWritable(file);
 }
 
 } // namespace fenestra

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace fenestra {
 
@@ -18,6 +19,9 @@ namespace fenestra {
 /// missing R, G, B; output where the file cannot be written.
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 const std::string& view = "");
+
+/// The files that writeImage makes for this path.
+std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path);
 
 /// Throws what writeImage would throw for this path alone: for asking before a long render.
 void checkImagePath(const std::filesystem::path& path);

@@ -104,7 +104,8 @@ RenderResult renderPasses(const Estimator& estimator, const RenderScene& scene,
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                     RenderMonitor& monitor) {
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency(); // TBB complains about more
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   return arena.execute([&] {
     return withMedium(scene, [&](const auto& medium, const auto& tracker) {
       const PathEstimator estimator(scene.volume.grid, medium, tracker, scene.lights, scene.camera,

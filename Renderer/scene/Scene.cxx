@@ -9,6 +9,8 @@
 #include "io/VolumeReader.h"
 #include "scene/Defaults.h"
 
+#include <sstream>
+
 namespace fenestra {
 namespace {
 
@@ -62,6 +64,22 @@ std::vector<Light> requestedLights(const SceneRequest& request) {
   return lights;
 }
 
+/// Null collisions take time in proportion to the greatest extinction: without a limit a file could
+/// ask for paths that never end.
+void checkExtinction(const TransferFunction& transfer, const Volume& volume) {
+  constexpr double thickest = 1e7; // optical depth across the volume
+  double greatest = 0.0;
+  for (const auto& knot : transfer.extinction.knots())
+    greatest = std::max(greatest, knot.value[0]);
+  const double allowed = thickest / (2.0 * volume.grid.boundingRadius());
+  if (greatest <= allowed)
+    return;
+  std::ostringstream line;
+  line << "extinction: reaches " << greatest << " per mm, more than " << allowed
+       << " is opaque in any picture of this volume; lower it or --density";
+  throw inputError("transfer function", line.str());
+}
+
 /// The focus depths at the viewport's pixels.
 std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera) {
   std::vector<double> depths;
@@ -88,6 +106,7 @@ void Scene::load(const SceneRequest& request) {
   if (!request.focus.empty())
     m_focus = readSegmentation(*request.segmentation).mask(request.focus, m_volume.grid);
   m_transfer = requestedTransfer(request, m_volume).shifted(request.shift).scaled(request.density);
+  checkExtinction(*m_transfer, m_volume);
   if (m_transfer->shading && m_volume.minimum == m_volume.maximum)
     throw inputError(m_volume.name,
                      "every voxel has the same value, so there is no gradient for the transfer "
