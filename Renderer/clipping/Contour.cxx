@@ -44,11 +44,12 @@ ControlPoint controlPoint(const DepthBuffer& buffer, const Crossing& crossing) {
 std::vector<ControlPoint> distinctSamples(const DepthBuffer& buffer, Contour crossings) {
   const auto sample = [&](const Crossing& crossing) { return sampleOf(buffer, crossing); };
   std::ranges::sort(crossings, {}, sample);
-  const auto rest = std::ranges::unique(crossings, {}, sample);
+  const auto isSame = [&](const Crossing& a, const Crossing& b) { return sample(a) == sample(b); };
+  crossings.erase(std::unique(crossings.begin(), crossings.end(), isSame), crossings.end());
   std::vector<ControlPoint> points;
-  points.reserve(static_cast<std::size_t>(rest.begin() - crossings.begin()));
-  for (auto crossing = crossings.begin(); crossing != rest.begin(); ++crossing)
-    points.push_back(controlPoint(buffer, *crossing));
+  points.reserve(crossings.size());
+  for (const Crossing& crossing : crossings)
+    points.push_back(controlPoint(buffer, crossing));
   return points;
 }
 
