@@ -1,6 +1,7 @@
 #pragma once
 // Small medical image files for tests, in a folder that goes away with its test.
 
+#include "TemporaryFolder.h"
 #include "core/Error.h"
 
 #include <itkMetaDataObject.h>
@@ -10,45 +11,13 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace fenestra {
-
-class TemporaryFolder {
-public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "fenestra-XXXXXX").string();
-    if (!mkdtemp(name.data()))
-      throw std::runtime_error("no temporary folder");
-    m_path = name;
-  }
-  ~TemporaryFolder() { std::filesystem::remove_all(m_path); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return m_path / name; }
-
-  std::filesystem::path write(const std::string& name, const std::string& content) const {
-    std::ofstream(m_path / name, std::ios::binary) << content;
-    return m_path / name;
-  }
-
-private:
-  std::filesystem::path m_path;
-};
-
-inline std::string bytesOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 template <typename T>
 std::string rawBytes(const std::vector<T>& samples) {

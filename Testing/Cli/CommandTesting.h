@@ -1,0 +1,126 @@
+#pragma once
+// Small files to run the executable on, and what every refusal has to look like.
+
+#include "Process.h"
+#include "TemporaryFolder.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <set>
+
+namespace fenestra {
+
+struct NrrdText {
+  std::string sizes = "4 4 4";
+  std::string type = "int16";
+  std::string encoding = "raw";
+  std::string fields = {}; ///< further lines
+
+  /// A volume of 1 mm voxels with its first voxel's centre at the origin; other numbers of axes
+  /// have no space.
+  std::string with(const std::string& samples) const {
+    const auto axes = 1 + std::count(sizes.begin(), sizes.end(), ' ');
+    std::string text = "NRRD0004\ntype: " + type + "\ndimension: " + std::to_string(axes) + "\n";
+    if (axes == 3)
+      text += "space: left-posterior-superior\n"
+              "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n";
+    return text + "sizes: " + sizes + "\nendian: little\nencoding: " + encoding + "\n" + fields +
+           "\n" + samples;
+  }
+};
+
+/// 4x4x4 values of 16 bits that differ.
+inline std::string ramp() {
+  std::string samples;
+  for (char value = 0; value < 64; ++value)
+    samples += {value, 0};
+  return samples;
+}
+
+inline std::string gzipped(const std::string& bytes, const TemporaryFolder& folder) {
+  const std::filesystem::path path = folder / "deflated.gz";
+  const gzFile file = gzopen(path.c_str(), "wb");
+  gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
+  gzclose(file);
+  const std::string result = bytesOf(path);
+  std::filesystem::remove(path);
+  return result;
+}
+
+/// Segments A ("Bone, left", one voxel in the middle, value 1) and B ("Void", no voxel, value 2).
+inline std::string segments() {
+  NrrdText text;
+  text.type = "uint8";
+  text.fields = "Segment0_ID:=A\nSegment0_Name:=Bone, left\nSegment0_LabelValue:=1\n"
+                "Segment0_Layer:=0\nSegment1_ID:=B\nSegment1_Name:=Void\n"
+                "Segment1_LabelValue:=2\nSegment1_Layer:=0\n";
+  std::string labels(64, '\0');
+  labels[21] = 1;
+  return text.with(labels);
+}
+
+/// A volume and its segments, in the folder of the test.
+class SmallScene : public testing::Test {
+protected:
+  SmallScene() {
+    folder.write("volume.nrrd", NrrdText().with(ramp()));
+    folder.write("segments.seg.nrrd", segments());
+  }
+
+  /// `fenestra volume.nrrd … ` at 16x16 pixels and 2 samples a pixel.
+  Outcome renderWith(const Arguments& arguments) const {
+    Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "2"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return run(all, folder.path());
+  }
+
+  TemporaryFolder folder;
+};
+
+/// A knee of 60x68x24 voxels, made by the executable: once a program, in knee/ of the folder.
+inline const TemporaryFolder& kneeFolder() {
+  static const TemporaryFolder folder;
+  static const Outcome made =
+      run({"phantom", "knee", "--size", "60x68x24", "--output", "knee"}, folder.path());
+  if (made.status != 0)
+    throw std::runtime_error("no knee: " + made.err);
+  return folder;
+}
+
+inline std::set<std::string> filesIn(const std::filesystem::path& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    names.insert(entry.path().lexically_relative(folder).string());
+  return names;
+}
+
+/// A command line that must be refused.
+struct Refusal {
+  std::string name;
+  Arguments arguments;
+  int status;
+  std::string text; ///< part of the one line
+};
+
+/// Runs each and expects its exit status, one line on standard error, nothing on standard output,
+/// and no file more or less.
+inline void expectRefused(const std::vector<Refusal>& refusals,
+                          const std::filesystem::path& folder) {
+  const std::set<std::string> before = filesIn(folder);
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(refusal.name);
+    const Outcome outcome = run(refusal.arguments, folder);
+    EXPECT_EQ(outcome.status, refusal.status) << outcome.err;
+    EXPECT_TRUE(outcome.err.starts_with("fenestra: ")) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_TRUE(outcome.err.ends_with('\n')) << outcome.err;
+    EXPECT_NE(outcome.err.find(refusal.text), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(filesIn(folder), before);
+  }
+}
+
+} // namespace fenestra

@@ -1,0 +1,193 @@
+// Files that cannot be read or written: one line, exit status 3 or 4, nothing left behind.
+
+#include "CommandTesting.h"
+
+namespace fenestra {
+namespace {
+
+class FilesCommand : public SmallScene {};
+
+TEST_F(FilesCommand, RefusesWhatIsNoVolume) {
+  folder.write("text.nrrd", "These are\nonly words.\n");
+  folder.write("text.txt", "words");
+  folder.write("empty.nrrd", "");
+  folder.write("picture.nrrd", "\x89PNG\r\n\x1a\n0000");
+  folder.write("picture.png", "\x89PNG\r\n\x1a\n0000");
+  folder.write("flat.nrrd", NrrdText{"8 8"}.with(ramp()));
+  folder.write("film.nrrd", NrrdText{"4 4 2 2"}.with(ramp()));
+  folder.write("none.nrrd", NrrdText{"0 4 4"}.with(""));
+  folder.write("negative.nrrd", NrrdText{"-4 4 4"}.with(ramp()));
+  expectRefused(
+      {
+          {"missing", {"missing.nrrd"}, 3, "missing.nrrd: "},
+          {"a folder", {"."}, 3, ".: "},
+          {"a device", {"/dev/zero"}, 3, "/dev/zero: "},
+          {"an empty name", {""}, 2, "INPUT: is empty"},
+          {"text", {"text.nrrd"}, 3, "text.nrrd: is not a NRRD file"},
+          {"another extension", {"text.txt"}, 3, "text.txt: has no known extension; name a .nrrd"},
+          {"an empty file", {"empty.nrrd"}, 3, "empty.nrrd: is not a NRRD file"},
+          {"a PNG called NRRD", {"picture.nrrd"}, 3, "picture.nrrd: is not a NRRD file"},
+          {"a PNG", {"picture.png"}, 3, "picture.png: has no known extension"},
+          {"two axes", {"flat.nrrd"}, 3, "flat.nrrd: is a picture of 2 axes"},
+          {"four axes", {"film.nrrd"}, 3, "film.nrrd: has 4 axes"},
+          {"no voxels", {"none.nrrd"}, 3, "none.nrrd: sizes: "},
+          {"fewer than no voxels", {"negative.nrrd"}, 3, "negative.nrrd: sizes: "},
+      },
+      folder.path());
+}
+
+TEST_F(FilesCommand, RefusesTruncatedVolumes) {
+  const std::string deflated = gzipped(ramp(), folder);
+  NrrdText gzip{"4 4 4", "int16", "gzip"};
+  folder.write("raw.nrrd", NrrdText().with(ramp().substr(1)));
+  folder.write("gzip.nrrd", gzip.with(deflated.substr(0, deflated.size() - 12)));
+  folder.write("larger.nrrd", NrrdText{"400 400 400"}.with(ramp()));
+  gzip.sizes = "400 400 400";
+  folder.write("largergzip.nrrd", gzip.with(deflated));
+  folder.write("huge.nrrd", NrrdText{"100000 100000 100000"}.with(ramp()));
+  gzip.sizes = "100000 100000 100000";
+  folder.write("hugegzip.nrrd", gzip.with(deflated));
+  expectRefused(
+      {
+          {"raw", {"raw.nrrd"}, 3, "announces 128 bytes of samples, the file has 127"},
+          {"gzip", {"gzip.nrrd"}, 3, "gzip.nrrd: "},
+          {"larger than the file", {"larger.nrrd"}, 3, "larger.nrrd: is truncated"},
+          {"larger than gzip holds", {"largergzip.nrrd"}, 3, "largergzip.nrrd: is truncated"},
+          {"larger than memory", {"huge.nrrd"}, 3, "huge.nrrd: is truncated"},
+          {"gzip larger than memory", {"hugegzip.nrrd"}, 3, "hugegzip.nrrd: is truncated"},
+      },
+      folder.path());
+}
+
+TEST_F(FilesCommand, RefusesFocusThatIsNotThere) {
+  std::string far = segments();
+  const std::string origin = "space origin: (0,0,0)";
+  far.replace(far.find(origin), origin.size(), "space origin: (5000,0,0)");
+  folder.write("far.seg.nrrd", far);
+  folder.write("blank.seg.nrrd", NrrdText{"4 4 4", "uint8"}.with(std::string(64, '\0')));
+  const auto focus = [](const std::string& file, const std::string& segment) {
+    return Arguments{"volume.nrrd", "--segmentation", file, "--focus", segment};
+  };
+  expectRefused(
+      {
+          {"unknown", focus("segments.seg.nrrd", "C"), 3,
+           "has no segment \"C\"; it has A (Bone, left), B (Void)"},
+          {"comma not escaped", focus("segments.seg.nrrd", "Bone, left"), 3, "\"Bone\""},
+          {"no segments", focus("blank.seg.nrrd", "1"), 3, "blank.seg.nrrd: has no segment \"1\""},
+          {"no voxel", focus("segments.seg.nrrd", "B"), 3, "the focus has no voxel (B (Void))"},
+          {"outside the volume", focus("far.seg.nrrd", "A"), 3, "outside the volume"},
+          {"missing file", focus("missing.seg.nrrd", "A"), 3, "missing.seg.nrrd: "},
+          {"empty name", focus("segments.seg.nrrd", "A,,B"), 2, "--focus: expected names"},
+      },
+      folder.path());
+}
+
+TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
+  folder.write("cut.json", R"({"extinction": [[0,)");
+  folder.write("word.json", R"({"extinction": [[0, "x"]], "albedo": [[0, 1, 1, 1]]})");
+  folder.write("words.vp", "words");
+  folder.write("none.vp.json", R"({"volumeProperties": []})");
+  folder.write("spot.json", R"({"lights": [{"type": "spot"}]})");
+  folder.write("dark.exr", "no picture");
+  const std::string albedo = R"("albedo": [[0, 1, 1, 1]], "g": 0, "shading": )";
+  folder.write("hybrid.json", R"({"extinction": [[0, 0], [9, 1]], )" + albedo + R"("hybrid"})");
+  folder.write("thick.json", R"({"extinction": [[0, 0], [9, 1e20]], )" + albedo + R"("volume"})");
+  folder.write("constant.nrrd", NrrdText().with(std::string(128, '\1')));
+  const auto with = [](const std::string& flag, const std::string& value) {
+    return Arguments{"volume.nrrd", flag, value};
+  };
+  expectRefused(
+      {
+          {"transfer preset", with("--transfer", "ct-bones"), 3, "one of ct-bone, ct-soft"},
+          {"transfer file", with("--transfer", "missing.vp"), 3, "missing.vp: no such file"},
+          {"half of a .json", with("--transfer", "cut.json"), 3, "cut.json: is not JSON"},
+          {"word for a number", with("--transfer", "word.json"), 3, "extinction[0][1]: "},
+          {"damaged .vp", with("--transfer", "words.vp"), 3, "words.vp: line 1"},
+          {"empty .vp.json", with("--transfer", "none.vp.json"), 3, "volumeProperties: is empty"},
+          {"a volume", with("--transfer", "volume.nrrd"), 3, "is no transfer function"},
+          {"endless paths", with("--transfer", "thick.json"), 3, "extinction: reaches 1e+20"},
+          {"no gradient",
+           {"constant.nrrd", "--transfer", "hybrid.json"},
+           3,
+           "constant.nrrd: every voxel has the same value"},
+          {"light preset", with("--lights", "sun"), 3, "one of headlight, soft, studio"},
+          {"light type", with("--lights", "spot.json"), 3, "spot.json: lights[0].type: "},
+          {"half of a light", with("--lights", "cut.json"), 3, "cut.json: is not JSON"},
+          {"environment", with("--environment", "missing.exr"), 3, "missing.exr: "},
+          {"damaged environment", with("--environment", "dark.exr"), 3, "dark.exr: "},
+      },
+      folder.path());
+}
+
+TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
+  std::filesystem::create_directory(folder / "folder.png");
+  std::filesystem::create_directory(folder / "depth-Z.nrrd");
+  const auto to = [](const std::string& file) {
+    return Arguments{"volume.nrrd", "--output", file};
+  };
+  const std::string known = "has no known extension; name a file .exr, .nrrd, .png or .tif";
+  expectRefused(
+      {
+          {"missing folder", to("missing/a.png"), 4, "missing/a.png: cannot be written: "},
+          {"a folder", to("folder.png"), 4, "folder.png: is a folder"},
+          {"depth is a folder", to("depth.nrrd"), 4, "depth-Z.nrrd: is a folder"},
+          {"no permission", to("/proc/a.png"), 4, "/proc/a.png: cannot be written: "},
+          {"a device", to("/dev/full"), 2, known},
+          {"unknown extension", to("a.gif"), 2, known},
+          {"no extension", to("a"), 2, known},
+          {"second of two", {"volume.nrrd", "--output", "a.png", "--output", "b"}, 2, known},
+          {"the input", to("./volume.nrrd"), 2, "./volume.nrrd: would replace an input file"},
+          {"twice", {"volume.nrrd", "--output", "a.png", "--output", "./a.png"}, 2, "twice"},
+          {"no color", {"volume.nrrd", "--layers", "depth"}, 2, "--layers: only an .exr"},
+          {"PNG without color",
+           {"volume.nrrd", "--layers", "depth", "--output", "a.exr", "--output", "b.png"},
+           2,
+           "--layers: b.png needs color"},
+          {"stats", {"volume.nrrd", "--stats", "missing/a.json"}, 4, "missing/a.json: "},
+          {"stats on a device", {"volume.nrrd", "--stats", "/dev/full"}, 4, "/dev/full: is a "},
+      },
+      folder.path());
+}
+
+TEST_F(FilesCommand, RefusesToCompareWhatDiffersInSize) {
+  ASSERT_EQ(renderWith({"--output", "a.png"}).status, 0);
+  ASSERT_EQ(renderWith({"--size", "8x8", "--output", "b.png"}).status, 2) << "--size twice";
+  ASSERT_EQ(
+      run({"volume.nrrd", "--size", "8x8", "--samples", "1", "--output", "b.png"}, folder.path())
+          .status,
+      0);
+  folder.write("text.txt", "words");
+  folder.write("text.png", "words");
+  expectRefused(
+      {
+          {"sizes", {"compare", "a.png", "b.png"}, 3, "a.png, b.png: "},
+          {"missing", {"compare", "a.png", "missing.png"}, 3, "missing.png: "},
+          {"text", {"compare", "a.png", "text.txt"}, 3, "text.txt: has no known extension"},
+          {"damaged", {"compare", "a.png", "text.png"}, 3, "text.png: "},
+          {"one picture", {"compare", "a.png"}, 2, "B: is missing"},
+          {"over an input", {"compare", "a.png", "a.png", "--output", "a.png"}, 2, "replace"},
+          {"unwritable", {"compare", "a.png", "a.png", "--output", "no/a.png"}, 4, "no/a.png: "},
+      },
+      folder.path());
+}
+
+TEST_F(FilesCommand, RefusesPhantomsThatCannotBeMade) {
+  const auto into = [](const std::string& where) {
+    return Arguments{"phantom", "knee", "--size", "16x16x16", "--output", where};
+  };
+  expectRefused(
+      {
+          {"kind", {"phantom", "elbow"}, 2, "KIND: 'elbow' is unknown; use knee"},
+          {"no kind", {"phantom"}, 2, "KIND: is missing"},
+          {"one number", {"phantom", "knee", "--size", "64"}, 2, "--size: expected WIDTHxHEIGHT"},
+          {"too small", {"phantom", "knee", "--size", "1x1x1"}, 2, "between 16 and 1024"},
+          {"too large", {"phantom", "knee", "--size", "99999x16x16"}, 2, "between 16 and 1024"},
+          {"no permission", into("/proc/knee"), 4, "/proc/knee: cannot be made"},
+          {"a file", into("volume.nrrd"), 4, "volume.nrrd: cannot be made"},
+          {"a device", into("/dev/null"), 4, "/dev/null: cannot be made"},
+      },
+      folder.path());
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,200 @@
+// Wrong usage: one line that names the flag and the mend, exit status 2.
+
+#include "CommandTesting.h"
+
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+class FlagsCommand : public SmallScene {
+protected:
+  /// `volume.nrrd flags…` must be refused as wrong usage.
+  static Refusal refusal(Arguments flags, const std::string& text) {
+    std::string name;
+    for (const std::string& flag : flags)
+      name += flag + " ";
+    flags.insert(flags.begin(), "volume.nrrd");
+    return {name, flags, 2, text};
+  }
+};
+
+TEST_F(FlagsCommand, RefusesWhatItDoesNotKnow) {
+  expectRefused(
+      {
+          {"nothing", {}, 2, "INPUT: is missing"},
+          {"render alone", {"render"}, 2, "INPUT: is missing"},
+          {"render misspelt", {"rendr", "volume.nrrd"}, 2, "did you mean fenestra render?"},
+          {"compare misspelt", {"comprae", "a", "b"}, 2, "did you mean fenestra compare?"},
+          {"subcommand of later", {"turntable", "volume.nrrd"}, 2, "one argument too many"},
+          {"two volumes", {"volume.nrrd", "other.nrrd"}, 2, "'other.nrrd': one argument too many"},
+          refusal({"--sample", "3"}, "--sample: no such flag; did you mean --samples?"),
+          refusal({"--smaples", "3"}, "did you mean --samples?"),
+          refusal({"--Output=a.png"}, "did you mean --output?"),
+          refusal({"-output", "a.png"}, "-output: no such flag; did you mean --output?"),
+          refusal({"--zzz"}, "--zzz: no such flag (fenestra render --help"),
+          refusal({"-s", "3"}, "-s: no such flag"),
+          {"flag of another command", {"compare", "a", "b", "--seed", "1"}, 2, "no such flag"},
+      },
+      folder.path());
+}
+
+TEST_F(FlagsCommand, RefusesFlagsOfTheContractThatDoNothingYet) {
+  std::vector<Refusal> refusals;
+  for (const char* flag :
+       {"--hole", "--ghost", "--offset", "--checkpoint", "--resume", "--xml", "--preset",
+        "--volume", "--surface", "--echo", "--returnparameterfile", "--processinformationaddress"})
+    refusals.push_back(refusal({flag, "1"}, std::string(flag) + ": no such flag"));
+  refusals.push_back(
+      refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "exact"},
+              "--boundary: expected spline, got 'exact'"));
+  expectRefused(refusals, folder.path());
+}
+
+TEST_F(FlagsCommand, RefusesMissingAndRepeatedValues) {
+  expectRefused(
+      {
+          refusal({"--samples"}, "--samples: its value is missing; write --samples N"),
+          refusal({"--samples", "--seed", "3"}, "--samples: its value is missing"),
+          refusal({"--samples="}, "--samples: its value is empty"),
+          refusal({"--samples", ""}, "--samples: its value is empty"),
+          refusal({"--samples", "3", "--samples", "4"}, "--samples: is given more than once"),
+      },
+      folder.path());
+}
+
+TEST_F(FlagsCommand, RefusesNumbersOutOfRange) {
+  std::vector<Refusal> refusals;
+  const auto refuseAll = [&](const std::string& flag, const Arguments& values) {
+    for (const std::string& value : values)
+      refusals.push_back(refusal({flag, value}, flag + ": "));
+  };
+  const Arguments noNumbers = {"nan", "inf", "-inf", "", "many", "1e999", "0x10", "1,5"};
+  for (const char* flag :
+       {"--samples", "--seed", "--bounces", "--threads", "--controlpoints", "--seconds", "--noise",
+        "--scale", "--smoothing", "--shift", "--density"})
+    refuseAll(flag, noNumbers);
+  refuseAll("--samples", {"0", "-1", "1.5", "99999999999999999999"});
+  refuseAll("--seed", {"-1", "18446744073709551616"});
+  refuseAll("--bounces", {"-1", "0.5"});
+  refuseAll("--threads", {"0", "1025"});
+  refuseAll("--controlpoints", {"2", "1001"});
+  refuseAll("--seconds", {"0", "-1"});
+  refuseAll("--noise", {"0", "-1"});
+  refuseAll("--scale", {"0", "-1", "1e10"});
+  refuseAll("--smoothing", {"-0.1", "1.1"});
+  refuseAll("--density", {"-1", "1001"});
+  for (const char* flag : {"--position", "--target", "--up"})
+    refuseAll(flag, {"1,2", "1,2,3,4", "1,2,nan", "1,2,inf", "a,b,c", "1,,3", ""});
+  refuseAll("--environment", {"1,2", "-1,0,0", "1,2,nan", "1e300,0,0", "sky.hdr"});
+  refuseAll("--background", {"1,2", "0,0,-1", "1,2,nan", "blue"});
+  refuseAll("--size", {"0x0", "32", "-1x3", "1x1x1", "1e3x2", "32X32", "16385x1", "1x16385",
+                       "99999999999x1", "x", "nanxnan", ""});
+  expectRefused(refusals, folder.path());
+}
+
+TEST_F(FlagsCommand, RefusesAnglesAndPlanesOutOfRange) {
+  std::vector<Refusal> refusals;
+  for (const char* angle : {"0", "180", "-30", "nan", "inf", "wide"})
+    refusals.push_back(
+        refusal({"--projection", "perspective", "--angle", angle}, "--angle: expected a number"));
+  for (const char* plane : {"0,0,0", "0,0,0,0,0,0", "0,0,0,0,0,nan", "a"})
+    refusals.push_back(refusal({"--clip", "plane", "--plane", plane}, "--plane: "));
+  expectRefused(refusals, folder.path());
+}
+
+TEST_F(FlagsCommand, RefusesPicturesThatMemoryCannotHold) {
+  const double memory =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  if (memory > 60e9)
+    GTEST_SKIP() << "this machine has memory for the largest picture";
+  expectRefused({{"largest", {"volume.nrrd", "--size", "16384x16384"}, 4, "GB of memory"}},
+                folder.path());
+}
+
+TEST_F(FlagsCommand, RefusesUnknownWords) {
+  expectRefused(
+      {
+          refusal({"--view", "top"}, "--view: 'top' is unknown; use anterior, "),
+          refusal({"--projection", "fisheye"},
+                  "--projection: expected orthographic or perspective"),
+          refusal({"--clip", "hole"}, "--clip: expected none, plane, cutaway or surface, got"),
+          refusal({"--progress", "dots"}, "--progress: expected auto, bar, xml or none, got"),
+          refusal({"--layers", "colour", "--output", "a.exr"}, "--layers: 'colour' is unknown"),
+      },
+      folder.path());
+}
+
+TEST_F(FlagsCommand, RefusesContradictions) {
+  const auto withFocus = [](Arguments flags, const std::string& text) {
+    const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
+    flags.insert(flags.begin(), focus.begin(), focus.end());
+    return refusal(flags, text);
+  };
+  expectRefused(
+      {
+          refusal({"--view", "left", "--position", "1,2,3"}, "--view and --position contradict"),
+          refusal({"--plane", "0,0,0,0,0,1"}, "--plane: only --clip plane uses it"),
+          refusal({"--clip", "none", "--plane", "0,0,0,0,0,1"}, "--plane: only --clip plane"),
+          refusal({"--clip", "plane"}, "--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ"),
+          refusal({"--clip", "surface"}, "--clip: surface needs a focus; add --focus"),
+          refusal({"--clip", "cutaway"}, "--clip: cutaway needs a focus; add --focus"),
+          refusal({"--projection", "perspective", "--scale", "10"}, "--scale: only for"),
+          refusal({"--angle", "20"}, "--angle: only for --projection perspective"),
+          refusal({"--focus", "A"}, "--focus: needs --segmentation FILE"),
+          refusal({"--segmentation", "segments.seg.nrrd"}, "--segmentation: only --focus uses it"),
+          withFocus({"--clip", "none", "--boundary", "spline"}, "--boundary: only --clip surface"),
+          withFocus({"--clip", "cutaway", "--smoothing", "1"}, "--smoothing: only --clip surface"),
+          refusal({"--controlpoints", "9"}, "--controlpoints: only --clip surface uses it"),
+          refusal({"--position", "1,2,3", "--target", "1,2,3"}, "two different finite points"),
+          refusal({"--position", "0,0,9", "--target", "0,0,0", "--up", "0,0,1"}, "--up: must not"),
+          refusal({"--up", "0,0,0"}, "--up: must not be zero"),
+          refusal({"--view", "superior", "--up", "0,0,1"}, "--up: must not"),
+      },
+      folder.path());
+}
+
+TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
+  const std::vector<std::pair<Arguments, Arguments>> commands = {
+      {{"--help"},
+       {"INPUT",  "segmentation", "focus",    "clip",     "boundary", "controlpoints", "smoothing",
+        "plane",  "view",         "position", "target",   "up",       "projection",    "scale",
+        "angle",  "transfer",     "shift",    "density",  "lights",   "environment",   "background",
+        "size",   "samples",      "seconds",  "noise",    "bounces",  "seed",          "threads",
+        "output", "layers",       "stats",    "progress", "help",     "version"}},
+      {{"render", "--help"}, {"INPUT", "focus", "output"}},
+      {{"compare", "--help"}, {"A", "B", "errora", "errorb", "output", "help", "version"}},
+      {{"phantom", "--help"}, {"KIND", "output", "size", "help", "version"}},
+      {{"missing.nrrd", "--samples", "x", "--help"}, {"focus"}}, // whatever else is wrong
+  };
+  for (const auto& [arguments, names] : commands) {
+    const Outcome outcome = run(arguments, folder.path());
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    for (const std::string& name : names) {
+      const bool positional = std::isupper(static_cast<unsigned char>(name[0]));
+      EXPECT_NE(outcome.out.find("  " + std::string(positional ? "" : "--") + name + " "),
+                std::string::npos)
+          << name << outcome.out;
+    }
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);)
+      EXPECT_LE(line.size(), 80u) << line;
+  }
+}
+
+TEST_F(FlagsCommand, VersionIsOneLineOfEverySubcommand) {
+  for (const Arguments& arguments : {Arguments{"--version"},
+                                     {"render", "--version"},
+                                     {"compare", "--version"},
+                                     {"phantom", "--version"}}) {
+    const Outcome outcome = run(arguments, folder.path());
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_TRUE(outcome.out.starts_with("fenestra ")) << outcome.out;
+    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1);
+  }
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,113 @@
+#include "Process.h"
+
+#include "core/Stopwatch.h"
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <thread>
+
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+/// A position of its own, for the child and the reader share one otherwise.
+std::string content(int file) {
+  const std::ifstream stream("/proc/self/fd/" + std::to_string(file), std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream.rdbuf()), {}};
+}
+
+[[noreturn]] void become(const Arguments& arguments, const std::filesystem::path& folder, int out,
+                         int err) {
+  std::vector<char*> words = {const_cast<char*>(FENESTRA_EXECUTABLE)};
+  for (const std::string& argument : arguments)
+    words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  if (::chdir(folder.c_str()) == 0 && ::dup2(out, STDOUT_FILENO) >= 0 &&
+      ::dup2(err, STDERR_FILENO) >= 0)
+    ::execv(FENESTRA_EXECUTABLE, words.data());
+  ::_exit(127);
+}
+
+} // namespace
+
+Process::Process(const Arguments& arguments, const std::filesystem::path& folder)
+    : m_out(::memfd_create("out", MFD_CLOEXEC)), m_err(::memfd_create("err", MFD_CLOEXEC)) {
+  m_id = ::fork();
+  if (m_id < 0 || m_out < 0 || m_err < 0)
+    throw std::runtime_error("no process");
+  if (m_id == 0)
+    become(arguments, folder, m_out, m_err);
+}
+
+Process::~Process() {
+  if (running()) {
+    ::kill(m_id, SIGKILL);
+    ::waitpid(m_id, nullptr, 0);
+  }
+  ::close(m_out);
+  ::close(m_err);
+}
+
+void Process::send(int signal) const {
+  if (running())
+    ::kill(m_id, signal);
+}
+
+bool Process::waitUntilHandling(int signal) const {
+  return waitUntil(
+      [&] {
+        std::ifstream status("/proc/" + std::to_string(m_id) + "/status");
+        for (std::string line; std::getline(status, line);)
+          if (line.starts_with("SigCgt:"))
+            return (std::strtoull(line.c_str() + 7, nullptr, 16) >> (signal - 1) & 1) != 0;
+        return false;
+      },
+      10.0);
+}
+
+bool Process::waitForOutput(const std::string& text) const {
+  return waitUntil([&] { return content(m_out).find(text) != std::string::npos; }, 10.0);
+}
+
+Outcome Process::wait(double limit) {
+  const Stopwatch watch;
+  waitUntil([] { return false; }, limit);
+  Outcome outcome;
+  outcome.seconds = watch.seconds();
+  if (running()) {
+    ::kill(m_id, SIGKILL);
+    ::waitpid(m_id, &m_waitStatus, 0);
+    m_ended = true;
+  }
+  if (WIFEXITED(m_waitStatus))
+    outcome.status = WEXITSTATUS(m_waitStatus);
+  outcome.out = content(m_out);
+  outcome.err = content(m_err);
+  return outcome;
+}
+
+bool Process::running() const {
+  if (!m_ended)
+    m_ended = ::waitpid(m_id, &m_waitStatus, WNOHANG) == m_id;
+  return !m_ended;
+}
+
+bool Process::waitUntil(const std::function<bool()>& condition, double limit) const {
+  for (const Stopwatch watch; running() && watch.seconds() < limit;) {
+    if (condition())
+      return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+Outcome run(const Arguments& arguments, const std::filesystem::path& folder) {
+  return Process(arguments, folder).wait();
+}
+
+} // namespace fenestra

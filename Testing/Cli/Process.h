@@ -1,0 +1,48 @@
+#pragma once
+// Runs the executable under test as a shell would.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fenestra {
+
+using Arguments = std::vector<std::string>;
+
+struct Outcome {
+  int status = -1; ///< exit status; -1 where the process had to be killed, or a signal ended it
+  std::string out, err;
+  double seconds = 0.0; ///< waited for
+};
+
+/// `fenestra arguments…`, running in `folder` from construction on; killed by the destructor.
+class Process {
+public:
+  Process(const Arguments& arguments, const std::filesystem::path& folder);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void send(int signal) const;
+  /// Until the process handles `signal` itself; false after ten seconds or at its end.
+  bool waitUntilHandling(int signal) const;
+  /// Until its standard output has `text` on it; false after ten seconds or at its end.
+  bool waitForOutput(const std::string& text) const;
+  /// Until its end, and kills it after `limit` seconds.
+  Outcome wait(double limit = 30.0);
+
+private:
+  bool running() const;
+  bool waitUntil(const std::function<bool()>& condition, double limit) const;
+
+  int m_id = 0;
+  int m_out = -1, m_err = -1; ///< files in memory
+  mutable int m_waitStatus = 0;
+  mutable bool m_ended = false;
+};
+
+/// Runs to its end.
+Outcome run(const Arguments& arguments, const std::filesystem::path& folder);
+
+} // namespace fenestra

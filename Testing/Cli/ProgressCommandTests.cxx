@@ -1,0 +1,66 @@
+// Who hears of progress, and what.
+
+#include "CommandTesting.h"
+
+namespace fenestra {
+namespace {
+
+class ProgressCommand : public SmallScene {
+protected:
+  /// A render of about half a second, which leaves time for some reports.
+  Outcome withProgress(const Arguments& flags) const {
+    Arguments all = {"volume.nrrd", "--size", "32x32", "--seconds", "0.5"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    return run(all, folder.path());
+  }
+};
+
+std::vector<double> fractions(const std::string& text) {
+  const std::string tag = "<filter-progress>";
+  std::vector<double> result;
+  for (std::size_t at = text.find(tag); at != std::string::npos; at = text.find(tag, at + 1))
+    result.push_back(std::stod(text.substr(at + tag.size())));
+  return result;
+}
+
+TEST_F(ProgressCommand, XmlIsSlicersTagsOnStandardOutput) {
+  for (const Arguments& flags : {Arguments{}, {"--noise", "0.05"}}) {
+    Arguments all = {"--progress", "xml"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const Outcome outcome = withProgress(all);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_TRUE(outcome.out.starts_with("<filter-start>\n<filter-name>fenestra</filter-name>\n"));
+    EXPECT_NE(outcome.out.find("</filter-end>\n"), std::string::npos) << outcome.out;
+    const std::vector<double> all_fractions = fractions(outcome.out);
+    ASSERT_FALSE(all_fractions.empty());
+    EXPECT_TRUE(std::is_sorted(all_fractions.begin(), all_fractions.end())) << outcome.out;
+    EXPECT_GE(all_fractions.front(), 0.0);
+    EXPECT_EQ(all_fractions.back(), 1.0);
+  }
+}
+
+TEST_F(ProgressCommand, BarIsOnStandardErrorAndGoesAway) {
+  const Outcome outcome = withProgress({"--progress", "bar"});
+  ASSERT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find(" % "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(" left "), std::string::npos) << outcome.err;
+  EXPECT_TRUE(outcome.err.ends_with("\r\x1b[K")) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 0);
+  EXPECT_TRUE(outcome.out.starts_with("volume.png: ")) << outcome.out;
+  std::istringstream lines(outcome.err);
+  for (std::string line; std::getline(lines, line, '\r');)
+    EXPECT_LE(line.size(), 79 + std::string("\x1b[K").size()) << line;
+}
+
+TEST_F(ProgressCommand, NothingWithoutATerminal) {
+  for (const char* kind : {"auto", "none"}) {
+    const Outcome outcome = withProgress({"--progress", kind});
+    ASSERT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+  }
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,187 @@
+// What a render leaves behind: pictures, statistics, and what it says.
+
+#include "CommandTesting.h"
+#include "io/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fenestra {
+namespace {
+
+class RendersCommand : public SmallScene {
+protected:
+  Image rendered(const Arguments& arguments) const {
+    Arguments all = arguments;
+    all.insert(all.end(), {"--output", "picture.exr"});
+    const Outcome outcome = renderWith(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return readImage(folder / "picture.exr");
+  }
+
+  nlohmann::json stats(const std::string& name) const {
+    return nlohmann::json::parse(bytesOf(folder / name));
+  }
+};
+
+TEST_F(RendersCommand, NamesThePictureAfterItsInputInTheCurrentFolder) {
+  std::filesystem::create_directory(folder / "data");
+  std::filesystem::rename(folder / "volume.nrrd", folder / "data/volume.nrrd");
+  const Outcome outcome =
+      run({"render", "data/volume.nrrd", "--size", "16x8", "--samples", "1"}, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_TRUE(outcome.out.starts_with("volume.png: 16x8 pixels, 1 sample each")) << outcome.out;
+  const Image image = readImage(folder / "volume.png");
+  EXPECT_EQ(image.width, 16);
+  EXPECT_EQ(image.height, 8);
+  EXPECT_EQ(filesIn(folder.path()),
+            (std::set<std::string>{"data", "data/volume.nrrd", "segments.seg.nrrd", "volume.png"}));
+}
+
+TEST_F(RendersCommand, WritesEveryFormatAndComparesThemWithThemselves) {
+  const Arguments names = {"a.png", "a.tif", "A.EXR", "a.nrrd"};
+  Arguments arguments;
+  for (const std::string& name : names)
+    arguments.insert(arguments.end(), {"--output", name});
+  ASSERT_EQ(renderWith(arguments).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "a-Z.nrrd"));
+  for (const std::string& name : names) {
+    const Outcome outcome = run({"compare", name, name}, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("\nlargest     0\n"), std::string::npos) << name << outcome.out;
+    // relMSE is less the reference's own variance where the picture states it
+    EXPECT_EQ(outcome.out.starts_with("relMSE      0\n"), name != "A.EXR") << outcome.out;
+  }
+  EXPECT_TRUE(readImage(folder / "A.EXR").find("normal.X"));
+  const Image linear = readImage(folder / "A.EXR");
+  EXPECT_EQ(*linear.find("R"), *readImage(folder / "a.nrrd").find("R"));
+  EXPECT_EQ(*linear.find("Z"), *readImage(folder / "a-Z.nrrd").find("Z"));
+}
+
+TEST_F(RendersCommand, WritesTheLayersAskedForAndTheHeader) {
+  const Image all = rendered({});
+  for (const char* name : {"R", "A", "Z", "albedo.G", "normal.Y", "error.B", "samples.N"})
+    EXPECT_TRUE(all.find(name)) << name;
+  EXPECT_EQ(all.header.at("seed"), "0");
+  EXPECT_EQ(all.header.at("samples"), "2");
+  EXPECT_EQ(all.header.at("command"),
+            "fenestra volume.nrrd --size 16x16 --samples 2 --output picture.exr");
+  for (const char* key : {"version", "target", "camera"})
+    EXPECT_FALSE(all.header.at(key).empty()) << key;
+
+  const Image some = rendered({"--layers", "color,depth", "--layers", "samples"});
+  std::set<std::string> names;
+  for (const auto& [name, plane] : some.channels)
+    names.insert(name);
+  EXPECT_EQ(names, (std::set<std::string>{"R", "G", "B", "A", "Z", "samples.N"}));
+  for (const float samples : *some.find("samples.N"))
+    EXPECT_EQ(samples, 2.0f);
+}
+
+TEST_F(RendersCommand, SameSeedSamePictureWhateverTheThreads) {
+  const Image one = rendered({"--threads", "1", "--seed", "7"});
+  const Image two = rendered({"--threads", "2", "--seed", "7"});
+  const Image many = rendered({"--threads", "64", "--seed", "7"});
+  const Image other = rendered({"--seed", "8"});
+  EXPECT_EQ(one.channels, two.channels);
+  EXPECT_EQ(one.channels, many.channels);
+  EXPECT_NE(one.channels.at("R"), other.channels.at("R"));
+}
+
+TEST_F(RendersCommand, StopsAtSecondsAndAtNoise) {
+  Outcome outcome = run({"volume.nrrd", "--size", "32x32", "--seconds", "0.3", "--stats", "s.json"},
+                        folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const double seconds = stats("s.json")["seconds"]["transport"];
+  EXPECT_GT(seconds, 0.1);
+  EXPECT_LT(seconds, 2.0);
+  outcome =
+      run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--stats", "n.json"}, folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_LE(stats("n.json")["noise"], 0.1);
+  EXPECT_GE(stats("n.json")["samplesPerPixel"]["min"], 16);
+}
+
+TEST_F(RendersCommand, StatsHaveEveryKeyOfTheContract) {
+  const Outcome outcome =
+      run({"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
+           "--transfer", "knee/knee.vp.json", "--size", "32x32", "--samples", "4", "--output",
+           (folder / "knee.png").string(), "--stats", (folder / "knee.json").string()},
+          kneeFolder().path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json json = stats("knee.json");
+  double stages = 0.0;
+  for (const char* stage : {"load", "classify", "focus", "spline", "fill", "transport", "write"}) {
+    EXPECT_GT(json["seconds"][stage], 0.0) << stage;
+    stages += json["seconds"][stage].get<double>();
+  }
+  EXPECT_LE(stages, json["seconds"]["total"].get<double>() * 1.001);
+  EXPECT_GT(json["cpuSeconds"], 0.0);
+  EXPECT_EQ(json["paths"], 32 * 32 * 4);
+  EXPECT_GT(json["collisions"], 0);
+  EXPECT_GT(json["lookups"], json["collisions"]);
+  EXPECT_GE(json["skippedFraction"], 0.0);
+  EXPECT_LE(json["skippedFraction"], 1.0);
+  EXPECT_EQ(json["samplesPerPixel"], (nlohmann::json{{"min", 4}, {"mean", 4.0}, {"max", 4}}));
+  EXPECT_GT(json["noise"], 0.0);
+  EXPECT_GT(json["peakBytes"], 1'000'000);
+  EXPECT_GE(json["boundaryMismatchMm"]["mean"], 0.0);
+  EXPECT_GE(json["boundaryMismatchMm"]["p95"], json["boundaryMismatchMm"]["mean"]);
+  EXPECT_GE(json["boundaryMismatchMm"]["max"], json["boundaryMismatchMm"]["p95"]);
+  EXPECT_GT(json["focusCoverage"], 0.5);
+  EXPECT_LE(json["focusCoverage"], 1.0);
+  EXPECT_TRUE(json["warnings"].is_array());
+}
+
+TEST_F(RendersCommand, TakesNegativeNumbersAsValues) {
+  const Image joined = rendered({"--position=-1,20,3", "--shift=-5"});
+  const Image apart = rendered({"--position", "-1,20,3", "--shift", "-5"});
+  const Image bare = rendered({"--position", "-1.0,20,3.", "--shift", "-.5e1"});
+  EXPECT_EQ(joined.channels, apart.channels);
+  EXPECT_EQ(joined.channels, bare.channels);
+  EXPECT_NE(joined.header.at("camera").find("--position=-1,20,3 "), std::string::npos)
+      << joined.header.at("camera");
+}
+
+TEST_F(RendersCommand, TheHeadersCameraRendersTheSamePicture) {
+  const Image named = rendered({"--view", "left"});
+  Arguments pose;
+  std::istringstream words(named.header.at("camera"));
+  for (std::string word; words >> word;)
+    pose.push_back(word);
+  EXPECT_EQ(named.channels, rendered(pose).channels);
+}
+
+TEST_F(RendersCommand, FindsTheFocusByIdNameAndValue) {
+  const auto focus = [this](Arguments arguments) {
+    arguments.insert(arguments.begin(), {"--segmentation", "segments.seg.nrrd"});
+    return rendered(arguments).channels;
+  };
+  const auto byId = focus({"--focus", "A"});
+  EXPECT_EQ(byId.count("clip.Z"), 1u);
+  EXPECT_EQ(byId, focus({"--focus", "Bone\\, left"}));
+  EXPECT_EQ(byId, focus({"--focus", "1"}));
+  EXPECT_EQ(byId, focus({"--focus", "A,B"}));
+  EXPECT_EQ(byId, focus({"--focus", "A", "--focus=B"}));
+}
+
+TEST_F(RendersCommand, TakesNamesThatLookLikeFlagsOrSubcommands) {
+  std::filesystem::copy(folder / "volume.nrrd", folder / "--volume.nrrd");
+  const Arguments small = {"--size", "4x4", "--samples", "1", "--output=-a.png"};
+  Arguments arguments = small;
+  arguments.insert(arguments.end(), {"--", "--volume.nrrd"});
+  const Outcome outcome = run(arguments, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "-a.png"));
+}
+
+TEST_F(RendersCommand, ReplacesAPictureAndNothingElse) {
+  folder.write("volume.png", "an older picture");
+  const std::string volume = bytesOf(folder / "volume.nrrd");
+  ASSERT_EQ(renderWith({}).status, 0);
+  EXPECT_EQ(readImage(folder / "volume.png").width, 16);
+  EXPECT_EQ(bytesOf(folder / "volume.nrrd"), volume);
+}
+
+} // namespace
+} // namespace fenestra

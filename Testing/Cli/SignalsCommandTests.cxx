@@ -1,0 +1,92 @@
+// Ctrl-C and SIGTERM: exit status 5, at once; finished passes are kept, files are whole.
+
+#include "CommandTesting.h"
+#include "io/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+namespace fenestra {
+namespace {
+
+constexpr double soon = 2.0; ///< seconds; about 0.1 on an idle machine
+
+class SignalsCommand : public SmallScene, public testing::WithParamInterface<int> {};
+
+INSTANTIATE_TEST_SUITE_P(Both, SignalsCommand, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& info) {
+                           return info.param == SIGINT ? "Interrupt" : "Terminate";
+                         });
+
+TEST_P(SignalsCommand, KeepsFinishedPasses) {
+  Process process({"volume.nrrd", "--size", "64x64", "--samples", "1000000", "--progress", "xml",
+                   "--output", "a.exr", "--output", "a.png", "--stats", "a.json"},
+                  folder.path());
+  ASSERT_TRUE(process.waitForOutput("<filter-progress>"));
+  process.send(GetParam());
+  process.send(GetParam()); // another does no harm
+  const Outcome outcome = process.wait();
+  std::cout << "stopped within " << outcome.seconds << " s\n";
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_NE(outcome.out.find("stopped on request"), std::string::npos) << outcome.out;
+  const Image image = readImage(folder / "a.exr");
+  const auto samples = std::stoull(image.header.at("samples"));
+  EXPECT_GE(samples, 1u);
+  EXPECT_LT(samples, 1000000u);
+  for (const float count : *image.find("samples.N"))
+    EXPECT_GE(count, static_cast<float>(samples));
+  EXPECT_EQ(readImage(folder / "a.png").width, 64);
+  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "a.json"))["samplesPerPixel"]["min"], samples);
+  EXPECT_EQ(filesIn(folder.path()).size(), 5u); // two inputs, three results
+}
+
+TEST_P(SignalsCommand, WritesNothingBeforeTheFirstPass) {
+  const auto before = filesIn(kneeFolder().path());
+  Process process({"knee/knee.nrrd", "--size", "1024x1024", "--samples", "1000000", "--density",
+                   "1000", "--progress", "xml"},
+                  kneeFolder().path()); // its first pass takes minutes
+  ASSERT_TRUE(process.waitForOutput("<filter-start>"));
+  process.send(GetParam());
+  const Outcome outcome = process.wait();
+  std::cout << "stopped within " << outcome.seconds << " s\n";
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_EQ(outcome.err,
+            "fenestra: stopped on request before the first pass; nothing was written\n");
+  EXPECT_EQ(filesIn(kneeFolder().path()), before);
+}
+
+TEST_P(SignalsCommand, EndsWhileLoading) {
+  folder.write("large.nrrd", NrrdText{"800 800 400", "uint8"}.with(""));
+  std::filesystem::resize_file(folder / "large.nrrd",
+                               std::filesystem::file_size(folder / "large.nrrd") + 256'000'000);
+  const auto before = filesIn(folder.path());
+  Process process({"large.nrrd", "--size", "16x16", "--samples", "1"}, folder.path());
+  ASSERT_TRUE(process.waitUntilHandling(GetParam()));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20)); // past the check of the outputs
+  process.send(GetParam());
+  const Outcome outcome = process.wait();
+  std::cout << "stopped within " << outcome.seconds << " s\n";
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_EQ(outcome.err, "fenestra: stopped on request; nothing was written\n");
+  EXPECT_EQ(filesIn(folder.path()), before);
+}
+
+TEST_P(SignalsCommand, LeavesNoHalfAPhantom) {
+  const auto before = filesIn(folder.path());
+  Process process({"phantom", "knee"}, folder.path());
+  ASSERT_TRUE(process.waitUntilHandling(GetParam()));
+  process.send(GetParam());
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_EQ(filesIn(folder.path()), before);
+}
+
+} // namespace
+} // namespace fenestra
