@@ -19,6 +19,12 @@ std::string clock(double seconds) {
   return text;
 }
 
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
 std::string bar(double fraction, std::size_t width) {
   const auto full = static_cast<std::size_t>(fraction * static_cast<double>(width));
   return std::string("[") + std::string(full, '#') + std::string(width - full, '.') + "] ";
@@ -104,19 +110,20 @@ void Progress::showBar(double done) const {
   const double samples = static_cast<double>(m_monitor.paths) / m_pixels;
   const double noise = m_monitor.noise;
   const double left = done > 0.0 ? seconds * (1.0 - done) / done : infinity;
-  char noiseText[32] = "";
+  std::vector<std::string> fields = {
+      formatted("%3.0f %%", 100.0 * done), clock(left) + " left",
+      formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples)};
   if (noise < infinity)
-    std::snprintf(noiseText, sizeof noiseText, "noise %.3f  ", noise);
-  char text[128];
-  std::snprintf(text, sizeof text, "%3.0f %%  %s left  %.*f samples a pixel  %s%s", 100.0 * done,
-                clock(left).c_str(), samples < 10.0 ? 1 : 0, samples, noiseText,
-                clock(seconds).c_str());
+    fields.push_back(formatted("noise %.3f", noise));
 
-  // A line that wraps cannot be taken back: drop the bar first, then what stands last.
+  // A line that wraps cannot be taken back: what does not fit is left out, the bar first.
   constexpr std::size_t longest = 24;
   constexpr std::size_t frame = 3;
   const std::size_t width = columns() - 1;
-  std::string line = std::string(text).substr(0, width);
+  std::string line;
+  for (const std::string& field : fields)
+    if (line.size() + 2 + field.size() <= width)
+      line += (line.empty() ? "" : "  ") + field;
   if (line.size() + frame + longest / 3 <= width)
     line = bar(done, std::min(longest, width - line.size() - frame)) + line;
   std::fprintf(stderr, "\r%s\033[K", line.c_str());

@@ -3,6 +3,7 @@
 
 #include "Support.h"
 
+#include "cli/CommandLine.h"
 #include "cli/RenderFlags.h"
 #include "film/Compare.h"
 #include "io/ImageReader.h"
@@ -35,7 +36,7 @@ Image renderReference(const ReferenceCase& c) {
   for (std::string& word : words)
     argv.push_back(word.data());
 
-  const auto flags = parseFlags(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
+  const auto flags = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
   const RenderOptions options = renderOptions(*flags);
   const Scene scene(options.scene);
   RenderMonitor monitor;
