@@ -63,7 +63,7 @@ public:
     }
     if (m_positionals < m_syntax.positionals.size()) {
       const Positional& missing = m_syntax.positionals[m_positionals];
-      throw usageError(std::string(missing.name) + ": is missing; name it: " + missing.text +
+      throw usageError(std::string(missing.name) + ": is missing; it is: " + missing.text +
                        seeHelp(m_syntax));
     }
     return std::move(m_values);

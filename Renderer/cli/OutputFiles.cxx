@@ -23,7 +23,7 @@ void checkDistinct(const std::vector<std::filesystem::path>& inputs,
     for (const std::filesystem::path& input : inputs)
       if (sameFile(results[i], input))
         throw usageError(results[i].string() +
-                         ": would replace an input file; name the result otherwise");
+                         ": would replace an input file; choose another name");
     for (std::size_t other = 0; other < i; ++other)
       if (sameFile(results[i], results[other]))
         throw usageError(results[i].string() + ": would be written twice; give each result a name "

@@ -66,7 +66,8 @@ std::vector<Light> requestedLights(const SceneRequest& request) {
 
 /// Null collisions take time in proportion to the greatest extinction: without a limit a file could
 /// ask for paths that never end.
-void checkExtinction(const TransferFunction& transfer, const Volume& volume) {
+void checkExtinction(const TransferFunction& transfer, const Volume& volume,
+                     const std::string& name) {
   constexpr double thickest = 1e7; // optical depth across the volume
   double greatest = 0.0;
   for (const auto& knot : transfer.extinction.knots())
@@ -75,9 +76,9 @@ void checkExtinction(const TransferFunction& transfer, const Volume& volume) {
   if (greatest <= allowed)
     return;
   std::ostringstream line;
-  line << "extinction: reaches " << greatest << " per mm, more than " << allowed
+  line << "extinction: reaches " << greatest << " per mm, and " << allowed
        << " is opaque in any picture of this volume; lower it or --density";
-  throw inputError("transfer function", line.str());
+  throw inputError(name, line.str());
 }
 
 /// The focus depths at the viewport's pixels.
@@ -106,7 +107,7 @@ void Scene::load(const SceneRequest& request) {
   if (!request.focus.empty())
     m_focus = readSegmentation(*request.segmentation).mask(request.focus, m_volume.grid);
   m_transfer = requestedTransfer(request, m_volume).shifted(request.shift).scaled(request.density);
-  checkExtinction(*m_transfer, m_volume);
+  checkExtinction(*m_transfer, m_volume, request.transfer.value_or(m_volume.name));
   if (m_transfer->shading && m_volume.minimum == m_volume.maximum)
     throw inputError(m_volume.name,
                      "every voxel has the same value, so there is no gradient for the transfer "

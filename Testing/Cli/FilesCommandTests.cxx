@@ -105,7 +105,8 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
           {"damaged .vp", with("--transfer", "words.vp"), 3, "words.vp: line 1"},
           {"empty .vp.json", with("--transfer", "none.vp.json"), 3, "volumeProperties: is empty"},
           {"a volume", with("--transfer", "volume.nrrd"), 3, "is no transfer function"},
-          {"endless paths", with("--transfer", "thick.json"), 3, "extinction: reaches 1e+20"},
+          {"endless paths", with("--transfer", "thick.json"), 3,
+           "thick.json: extinction: reaches 1e+20"},
           {"no gradient",
            {"constant.nrrd", "--transfer", "hybrid.json"},
            3,
@@ -122,6 +123,7 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
 TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
   std::filesystem::create_directory(folder / "folder.png");
   std::filesystem::create_directory(folder / "depth-Z.nrrd");
+  folder.write("a-Z.nrrd", NrrdText().with(ramp()));
   const auto to = [](const std::string& file) {
     return Arguments{"volume.nrrd", "--output", file};
   };
@@ -138,6 +140,18 @@ TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
           {"second of two", {"volume.nrrd", "--output", "a.png", "--output", "b"}, 2, known},
           {"the input", to("./volume.nrrd"), 2, "./volume.nrrd: would replace an input file"},
           {"twice", {"volume.nrrd", "--output", "a.png", "--output", "./a.png"}, 2, "twice"},
+          {"stats over the picture",
+           {"volume.nrrd", "--output", "a.png", "--stats", "a.png"},
+           2,
+           "a.png: would be written twice"},
+          {"stats over the input",
+           {"volume.nrrd", "--stats", "volume.nrrd"},
+           2,
+           "replace an input"},
+          {"depth over the input",
+           {"a-Z.nrrd", "--output", "a.nrrd"},
+           2,
+           "a-Z.nrrd: would replace"},
           {"no color", {"volume.nrrd", "--layers", "depth"}, 2, "--layers: only an .exr"},
           {"PNG without color",
            {"volume.nrrd", "--layers", "depth", "--output", "a.exr", "--output", "b.png"},

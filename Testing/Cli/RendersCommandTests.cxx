@@ -14,7 +14,8 @@ protected:
     Arguments all = arguments;
     all.insert(all.end(), {"--output", "picture.exr"});
     const Outcome outcome = renderWith(all);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
     return readImage(folder / "picture.exr");
   }
 
