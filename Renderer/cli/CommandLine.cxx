@@ -3,8 +3,11 @@
 #include "cli/Version.h"
 #include "core/Error.h"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <iostream>
+#include <map>
 
 namespace fenestra {
 namespace {
@@ -39,71 +42,94 @@ Error extraArgument(const CommandSyntax& syntax, const std::string& given) {
                     "; quote names with blanks" + seeHelp(syntax));
 }
 
-/// -1,2,3 and -.5 are values, -x is a misspelt flag.
-bool looksLikeFlag(std::string_view argument) {
-  return argument.size() > 1 && argument[0] == '-' &&
-         (argument[1] == '-' || std::isalpha(static_cast<unsigned char>(argument[1])));
+/// A value that is missing, or that is the next flag.
+Error missingValue(const Flag& flag) {
+  return usageError(std::string("--") + flag.name + ": its value is missing; write --" + flag.name +
+                    " " + flag.value);
 }
 
+/// What CLI11 says of a flag's value, in our words; its messages start with the flag.
+Error valueError(const CommandSyntax& syntax, const CLI::Error& error) {
+  const std::string message = error.what();
+  const std::size_t dashes = message.find("--");
+  if (dashes != std::string::npos) {
+    const std::size_t end = message.find_first_of(": ,", dashes);
+    if (const Flag* flag =
+            find(syntax, std::string_view(message).substr(dashes + 2, end - dashes - 2)))
+      return missingValue(*flag);
+  }
+  return usageError(message.substr(0, message.find('\n')) + seeHelp(syntax));
+}
+
+/// A command's syntax, declared to CLI11, and where it puts what it finds.
 class Parser {
 public:
-  Parser(const CommandSyntax& syntax, std::vector<std::string> arguments)
-      : m_syntax(syntax), m_arguments(std::move(arguments)) {}
+  explicit Parser(const CommandSyntax& syntax)
+      : m_syntax(syntax), m_app(syntax.summary, std::string("fenestra ") + syntax.name) {
+    m_app.set_help_flag("--help", "Print this and exit");
+    m_app.set_version_flag("--version", std::string("fenestra ") + versionText);
+    m_app.get_formatter()->column_width(30);
+    m_app.allow_extras(); // so that we can say what was meant
+    for (const Positional& positional : syntax.positionals)
+      m_app.add_option(positional.name, m_positionals[positional.name], positional.text)
+          ->type_name("");
+    for (const Flag& flag : syntax.flags)
+      m_app.add_option(std::string("--") + flag.name, m_flags[flag.name], flag.text)
+          ->type_name(flag.value)
+          ->group(flag.group)
+          ->expected(1)
+          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  }
 
-  FlagValues parse() {
-    bool onlyPositionals = false;
-    while (m_next < m_arguments.size()) {
-      const std::string argument = m_arguments[m_next++];
-      if (!onlyPositionals && argument == "--")
-        onlyPositionals = true;
-      else if (!onlyPositionals && looksLikeFlag(argument))
-        takeFlag(argument);
-      else
-        takePositional(argument);
+  /// Nothing where help or version was asked for, and printed.
+  std::optional<FlagValues> parse(std::vector<std::string> arguments) {
+    std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
+    try {
+      m_app.parse(arguments);
+    } catch (const CLI::Success& success) {
+      m_app.exit(success, std::cout, std::cerr);
+      return std::nullopt;
+    } catch (const CLI::Error& error) {
+      throw valueError(m_syntax, error);
     }
-    if (m_positionals < m_syntax.positionals.size()) {
-      const Positional& missing = m_syntax.positionals[m_positionals];
-      throw usageError(std::string(missing.name) + ": is missing; it is: " + missing.text +
-                       seeHelp(m_syntax));
-    }
-    return std::move(m_values);
+    refuseExtras();
+    return values();
   }
 
 private:
-  void takeFlag(const std::string& argument) {
-    const std::size_t equals = argument.find('=');
-    const std::string dashed = argument.substr(0, equals);
-    const Flag* flag = dashed.starts_with("--") ? find(m_syntax, dashed.substr(2)) : nullptr;
-    if (!flag)
-      throw unknownFlag(m_syntax, dashed);
-    if (!*flag->value) {
-      if (equals != std::string::npos)
-        throw usageError(dashed + ": takes no value");
-      return m_values.add(flag->name, "");
-    }
-    if (equals == std::string::npos &&
-        (m_next == m_arguments.size() || m_arguments[m_next].starts_with("--")))
-      throw usageError(dashed + ": its value is missing; write " + dashed + " " + flag->value);
-    const std::string value =
-        equals == std::string::npos ? m_arguments[m_next++] : argument.substr(equals + 1);
-    if (value.empty())
-      throw usageError(dashed + ": its value is empty; write " + dashed + " " + flag->value);
-    m_values.add(flag->name, value);
+  void refuseExtras() const {
+    for (const std::string& extra : m_app.remaining())
+      throw extra.size() > 1 && extra[0] == '-' ? unknownFlag(m_syntax, extra)
+                                                : extraArgument(m_syntax, extra);
   }
 
-  void takePositional(const std::string& argument) {
-    if (m_positionals == m_syntax.positionals.size())
-      throw extraArgument(m_syntax, argument);
-    const std::string name = m_syntax.positionals[m_positionals++].name;
-    if (argument.empty())
-      throw usageError(name + ": is empty; name a file");
-    m_values.add(name, argument);
+  FlagValues values() const {
+    FlagValues values;
+    for (const Positional& positional : m_syntax.positionals) {
+      const std::string& found = m_positionals.at(positional.name);
+      if (m_app.count(positional.name) == 0)
+        throw usageError(std::string(positional.name) +
+                         ": is missing; name it: " + positional.text + seeHelp(m_syntax));
+      if (found.empty())
+        throw usageError(std::string(positional.name) + ": is empty; name a file");
+      values.add(positional.name, found);
+    }
+    for (const Flag& flag : m_syntax.flags)
+      for (const std::string& value : m_flags.at(flag.name)) {
+        if (value.starts_with("--"))
+          throw missingValue(flag);
+        if (value.empty())
+          throw usageError(std::string("--") + flag.name + ": its value is empty; write --" +
+                           flag.name + " " + flag.value);
+        values.add(flag.name, value);
+      }
+    return values;
   }
 
   const CommandSyntax& m_syntax;
-  std::vector<std::string> m_arguments;
-  FlagValues m_values;
-  std::size_t m_next = 0, m_positionals = 0;
+  CLI::App m_app;
+  std::map<std::string, std::string> m_positionals;
+  std::map<std::string, std::vector<std::string>> m_flags;
 };
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swapped neighbours.
@@ -144,19 +170,7 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 
 std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
                                            int first) {
-  const std::vector<std::string> arguments(argv + first, argv + argc);
-  const auto asked = [&](const char* flag) {
-    return std::find(arguments.begin(), arguments.end(), flag) != arguments.end();
-  };
-  if (asked("--help")) {
-    std::cout << helpText(syntax) << std::flush;
-    return std::nullopt;
-  }
-  if (asked("--version")) {
-    std::cout << "fenestra " << versionText << std::endl;
-    return std::nullopt;
-  }
-  return Parser(syntax, arguments).parse();
+  return Parser(syntax).parse({argv + first, argv + argc});
 }
 
 } // namespace fenestra

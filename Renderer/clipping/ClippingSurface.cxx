@@ -109,7 +109,7 @@ void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
 ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& options) {
   const std::vector<Contour> contours = traceContours(surface.focus);
   surface.controlPoints = placeControlPoints(surface.focus, contours, options.controlPoints);
-  const ThinPlateSpline spline = splineThrough(surface.controlPoints, options.smoothing);
+  ThinPlateSpline spline = splineThrough(surface.controlPoints, options.smoothing);
   surface.mismatch = mismatchOf(spline, boundarySamples(surface.focus, contours));
   if (surface.controlPoints.size() < 3)
     surface.warnings.push_back("the focus covers hardly a pixel: the clipping surface is flat");

@@ -53,7 +53,7 @@ void writeFile(const std::filesystem::path& path, const std::vector<T>& samples,
   for (unsigned a = 0; a < axes; ++a) {
     io->SetDimensions(a, geometry.size[a]);
     std::vector<double> direction(axes, 0.0);
-    for (unsigned c = 0; a < 3 && c < 3; ++c)
+    for (unsigned c = 0; a < 3 && c < std::min(axes, 3U); ++c)
       direction[c] = geometry.directions[a][c];
     if (a >= 3)
       direction[a] = 1.0;
