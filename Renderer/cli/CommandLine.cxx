@@ -23,6 +23,7 @@ const Flag* find(const CommandSyntax& syntax, std::string_view name) {
 }
 
 Error unknownFlag(const CommandSyntax& syntax, std::string_view given) {
+  given = given.substr(0, given.find('='));
   std::vector<std::string_view> names = {"help", "version"};
   for (const Flag& flag : syntax.flags)
     names.push_back(flag.name);
@@ -61,20 +62,41 @@ Error valueError(const CommandSyntax& syntax, const CLI::Error& error) {
   return usageError(message.substr(0, message.find('\n')) + seeHelp(syntax));
 }
 
+/// The text in lines of at most `width` characters.
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string lines;
+  std::size_t used = 0;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    const bool fits = used + 1 + word.size() <= width;
+    if (!lines.empty())
+      lines += fits ? ' ' : '\n';
+    lines += word;
+    used = (fits ? used + 1 : 0) + word.size();
+  }
+  return lines;
+}
+
 /// A command's syntax, declared to CLI11, and where it puts what it finds.
 class Parser {
 public:
   explicit Parser(const CommandSyntax& syntax)
-      : m_syntax(syntax), m_app(syntax.summary, std::string("fenestra ") + syntax.name) {
+      : m_syntax(syntax),
+        m_app(wrapped(syntax.summary, page), std::string("fenestra ") + syntax.name) {
     m_app.set_help_flag("--help", "Print this and exit");
     m_app.set_version_flag("--version", std::string("fenestra ") + versionText);
-    m_app.get_formatter()->column_width(30);
+    m_app.get_formatter()->column_width(column);
     m_app.allow_extras(); // so that we can say what was meant
     for (const Positional& positional : syntax.positionals)
-      m_app.add_option(positional.name, m_positionals[positional.name], positional.text)
+      m_app
+          .add_option(positional.name, m_positionals[positional.name],
+                      wrapped(positional.text, page - column))
           ->type_name("");
     for (const Flag& flag : syntax.flags)
-      m_app.add_option(std::string("--") + flag.name, m_flags[flag.name], flag.text)
+      m_app
+          .add_option(std::string("--") + flag.name, m_flags[flag.name],
+                      wrapped(flag.text, page - column))
           ->type_name(flag.value)
           ->group(flag.group)
           ->expected(1)
@@ -99,8 +121,9 @@ public:
 private:
   void refuseExtras() const {
     for (const std::string& extra : m_app.remaining())
-      throw extra.size() > 1 && extra[0] == '-' ? unknownFlag(m_syntax, extra)
-                                                : extraArgument(m_syntax, extra);
+      throw extra.size() > 1 && extra[0] == '-'
+          ? unknownFlag(m_syntax, extra.substr(0, extra.find('=')))
+          : extraArgument(m_syntax, extra);
   }
 
   FlagValues values() const {
@@ -125,6 +148,8 @@ private:
       }
     return values;
   }
+
+  static constexpr std::size_t page = 80, column = 30; ///< of the help
 
   const CommandSyntax& m_syntax;
   CLI::App m_app;

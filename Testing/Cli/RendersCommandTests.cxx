@@ -166,14 +166,15 @@ TEST_F(RendersCommand, FindsTheFocusByIdNameAndValue) {
   EXPECT_EQ(byId, focus({"--focus", "A", "--focus=B"}));
 }
 
-TEST_F(RendersCommand, TakesNamesThatLookLikeFlagsOrSubcommands) {
+TEST_F(RendersCommand, TakesFilesThatLookLikeFlagsOrSubcommands) {
   std::filesystem::copy(folder / "volume.nrrd", folder / "--volume.nrrd");
-  const Arguments small = {"--size", "4x4", "--samples", "1", "--output=-a.png"};
-  Arguments arguments = small;
-  arguments.insert(arguments.end(), {"--", "--volume.nrrd"});
-  const Outcome outcome = run(arguments, folder.path());
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(std::filesystem::exists(folder / "-a.png"));
+  std::filesystem::copy(folder / "volume.nrrd", folder / "rendr.nrrd");
+  for (const char* input : {"./--volume.nrrd", "rendr.nrrd"}) {
+    const Outcome outcome =
+        run({input, "--size", "4x4", "--samples", "1", "--output=-a.png"}, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(std::filesystem::remove(folder / "-a.png"));
+  }
 }
 
 TEST_F(RendersCommand, ReplacesAPictureAndNothingElse) {
