@@ -41,6 +41,7 @@ template <typename Estimator>
 bool renderPass(const Estimator& estimator, std::uint64_t first, std::uint64_t count,
                 std::uint64_t seed, Film& film, Counters& total, RenderMonitor& monitor) {
   tbb::combinable<Counters> counters;
+  std::atomic<bool> whole = true;
   const auto renderTile = [&](const tbb::blocked_range2d<int>& tile) {
     Counters& local = counters.local();
     for (int row = tile.rows().begin(); row < tile.rows().end(); ++row) {
@@ -49,8 +50,10 @@ bool renderPass(const Estimator& estimator, std::uint64_t first, std::uint64_t c
             static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(film.width()) +
             static_cast<std::uint64_t>(column);
         for (std::uint64_t sample = first; sample < first + count; ++sample) {
-          if (monitor.stop.load(std::memory_order_relaxed))
+          if (monitor.stop.load(std::memory_order_relaxed)) {
+            whole = false;
             return;
+          }
           Random random(seed, pixel, sample);
           const Vec2 jitter = random.uniform2();
           film.at(column, row)
@@ -65,7 +68,7 @@ bool renderPass(const Estimator& estimator, std::uint64_t first, std::uint64_t c
   tbb::parallel_for(
       tbb::blocked_range2d<int>(0, film.height(), tileSize, 0, film.width(), tileSize), renderTile);
   counters.combine_each([&](const Counters& local) { total += local; });
-  return !monitor.stop;
+  return whole;
 }
 
 template <typename Estimator>
