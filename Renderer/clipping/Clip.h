@@ -83,8 +83,8 @@ using Corners = std::array<Vec3, 8>;
 
 enum class Kept { none, some, all };
 
-/// `none` only where keep is 0 everywhere in the convex hull of the corners, `all` only where it is 1
-/// everywhere; `some` may be returned then, too.
+/// `none` only where keep is 0 everywhere in the convex hull of the corners, `all` only where it is
+/// 1 everywhere; `some` may be returned then, too.
 Kept keptIn(const Clip& clip, const Corners& corners);
 
 } // namespace fenestra

@@ -36,7 +36,7 @@ std::string sizeOf(const Image& image) {
 void requireSameSize(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
     throw inputError("pictures", "are of different sizes, " + sizeOf(a) + " and " + sizeOf(b) +
-                                   "; compare pictures of one size");
+                                     "; compare pictures of one size");
 }
 
 double square(double x) {
