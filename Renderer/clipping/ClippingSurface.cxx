@@ -42,9 +42,10 @@ std::string nameOf(const Mask& focus) {
 /// Throws where no sample meets the focus; true where one inside the viewport does.
 bool inPicture(const FocusDepth& focus, const Mask& mask) {
   if (std::ranges::find(focus.regions, Region::focus) == focus.regions.end())
-    throw inputError(nameOf(mask),
-                     "no eye ray meets it: it lies outside the volume, behind the eye, "
-                     "or between two pixels; choose another --focus or view");
+    throw inputError(
+        nameOf(mask),
+        "cannot be seen: it lies outside the volume, behind the eye, or is smaller than "
+        "a pixel; choose another --focus or view");
   const DepthAxis& x = focus.depth.xAxis();
   const DepthAxis& y = focus.depth.yAxis();
   for (std::int64_t row = y.before; row < y.before + y.inside; ++row)

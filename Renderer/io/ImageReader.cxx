@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/ImageFormat.h"
+#include "io/InputFile.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -282,9 +283,7 @@ Image readAs(ImageFormat format, const std::filesystem::path& path) {
 } // namespace
 
 Image readImage(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored))
-    throw inputError(path.string(), "is not a file that can be read; name an image");
+  requireFile(path, "name an image");
   const auto format = imageFormat(path);
   if (!format)
     throw inputError(path.string(),

@@ -1,5 +1,7 @@
 #include "io/JsonNode.h"
 
+#include "io/InputFile.h"
+
 #include <algorithm>
 #include <fstream>
 
@@ -35,9 +37,8 @@ std::string shortNumber(double x) {
 } // namespace
 
 std::string readText(const std::filesystem::path& path) {
+  requireFile(path, "name a file in it");
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed))
-    throw inputError(path.string(), "is not a file that can be read; check the name");
   const auto size = std::filesystem::file_size(path, failed);
   if (failed || size > largestFile)
     throw inputError(path.string(), "has more than 64 MB; name a smaller text file");

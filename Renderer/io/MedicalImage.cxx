@@ -1,6 +1,7 @@
 #include "io/MedicalImage.h"
 
 #include "core/Error.h"
+#include "io/InputFile.h"
 #include "io/MedicalHeader.h"
 #include "io/NiftiSamples.h"
 
@@ -200,9 +201,7 @@ MedicalImage readThroughItk(const std::filesystem::path& path, MedicalFormat for
 } // namespace
 
 MedicalImage readMedicalImage(const std::filesystem::path& path, Components allowed) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored))
-    throw inputError(path.string(), "is not a file that can be read; check the name");
+  requireFile(path, "name a volume file in it (of a DICOM series, export a .nrrd or .nii.gz)");
   const auto format = medicalFormat(path);
   if (!format)
     throw inputError(path.string(), "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, "

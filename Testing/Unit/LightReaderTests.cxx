@@ -100,7 +100,7 @@ TEST(LightReader, refusesMapsThatAreNone) {
   const auto refuse = [&path](const std::string& text) {
     expectRefused(path, text, [&path] { readEnvironmentMap(path); });
   };
-  refuse("is not a file");
+  refuse("no such file");
   for (const float value : {-0.1f, std::nanf(""), std::numeric_limits<float>::infinity()}) {
     writeImage(sky(value), {}, path);
     refuse("channel G at pixel 2, 1");

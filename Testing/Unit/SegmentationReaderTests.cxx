@@ -200,7 +200,7 @@ TEST(SegmentationReader, refusesWhatIsNoSegmentation) {
   const auto refuse = [&folder](const std::string& text) {
     expectRefused(folder / "s.nrrd", text, [&] { readSegmentation(folder / "s.nrrd"); });
   };
-  refuse("is not a file");
+  refuse("no such file");
   std::vector<float> fraction(24, 0.0f);
   fraction[3] = 0.5f;
   writeFile(folder / "s.nrrd", fraction);

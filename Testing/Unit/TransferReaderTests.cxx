@@ -156,9 +156,9 @@ TEST(TransferReader, refusesDamagedText) {
 TEST(TransferReader, refusesFilesOfOtherKinds) {
   const TemporaryFolder folder;
   expectRefused(folder / "x.txt", "name a .vp", [&] { readTransferFunction(folder / "x.txt"); });
-  expectRefused(folder / "x.vp", "is not a file", [&] { readTransferFunction(folder / "x.vp"); });
+  expectRefused(folder / "x.vp", "no such file", [&] { readTransferFunction(folder / "x.vp"); });
   std::filesystem::create_directory(folder / "d.json");
-  expectRefused(folder / "d.json", "is not a file",
+  expectRefused(folder / "d.json", "is a folder",
                 [&] { readTransferFunction(folder / "d.json"); });
 }
 

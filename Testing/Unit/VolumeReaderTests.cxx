@@ -205,8 +205,8 @@ TEST(VolumeReader, refusesWhatIsNoScalarVolume) {
 
 TEST(VolumeReader, refusesWhatIsMissingOrUnknown) {
   const TemporaryFolder folder;
-  expectRefusal(folder / "missing.nrrd", "is not a file");
-  expectRefusal(folder / "", "is not a file");
+  expectRefusal(folder / "missing.nrrd", "no such file");
+  expectRefusal(folder / "", "is a folder");
   expectRefusal(folder.write("volume.dat", "x"), "no known extension");
   for (const char* name : {"a.nrrd", "a.nhdr", "a.nii", "a.nii.gz", "a.mha", "a.mhd"}) {
     expectRefusal(folder.write(name, ""), "");

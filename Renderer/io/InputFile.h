@@ -1,0 +1,23 @@
+#pragma once
+// The first question that every reader asks of its path.
+
+#include "core/Error.h"
+
+#include <filesystem>
+
+namespace fenestra {
+
+/// Throws Error (input) unless `path` is a file; `mend` says what to name instead of a folder.
+inline void requireFile(const std::filesystem::path& path, const std::string& mend) {
+  std::error_code failed;
+  const auto status = std::filesystem::status(path, failed);
+  if (std::filesystem::is_regular_file(status))
+    return;
+  if (std::filesystem::is_directory(status))
+    throw inputError(path.string(), "is a folder; " + mend);
+  if (!std::filesystem::exists(status))
+    throw inputError(path.string(), "there is no such file; check the name");
+  throw inputError(path.string(), "is not a file that can be read; " + mend);
+}
+
+} // namespace fenestra
