@@ -165,11 +165,13 @@ CameraPose frameView(const ViewRequest& view, const Grid& volume, const Mask* fo
     half = std::min(half, surroundings * halfHeight(focus->grid));
   pose.scale = view.scale.value_or(half);
 
-  const double clearance =
-      2.0 * volume.boundingRadius() + (pose.target - volume.worldCenter()).norm();
-  const double distance = pose.projection == Projection::perspective
-                              ? half / std::tan(pose.angle * pi / 360.0) + volume.boundingRadius()
-                              : clearance;
+  // The eye stands outside the volume; in perspective at least as far as the usual angle asks, and
+  // where that is still inside, further away with a narrower one.
+  const double outside =
+      margin * volume.boundingRadius() + (pose.target - volume.worldCenter()).norm();
+  const double distance = std::max(outside, half / std::tan(pose.angle * pi / 360.0));
+  if (!view.angle && !view.position)
+    pose.angle = 360.0 / pi * std::atan2(half, distance);
   pose.position = view.position.value_or(pose.target + distance * back);
   return pose;
 }

@@ -1,0 +1,112 @@
+// What a scene gets where its user says nothing.
+
+#include "scene/Defaults.h"
+#include "scene/Picture.h"
+
+#include "Support.h"
+#include "core/Error.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+Volume ramp(double low, double high) {
+  return makeVolume<float>(centredGrid({40, 30, 20}, {2.0, 2.0, 2.0}),
+                           [=](const Vec3& p) { return low + (high - low) * p.x() / 39.0; });
+}
+
+Mask smallFocus() {
+  Affine map = Affine::Identity();
+  map.translation() = Vec3(10, 5, -8);
+  return {Grid({8, 8, 8}, map), std::vector<std::uint8_t>(512, 1), 512, {"A"}};
+}
+
+TEST(FrameView, LooksAlongThePatientsAxesAtTheWholeVolume) {
+  const Grid grid = ramp(0, 1).grid;
+  ViewRequest view;
+  view.name = "left";
+  const Camera camera(frameView(view, grid, nullptr, 200, 100), 200, 100);
+  EXPECT_TRUE(camera.forward().isApprox(Vec3::UnitX())) << "a viewer at the left looks right";
+  EXPECT_TRUE(camera.up().isApprox(Vec3::UnitZ()));
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = camera.toView(grid.worldCorner(i));
+    EXPECT_GT(corner.z(), 0.0) << "nothing is behind the eye";
+    EXPECT_LE(std::abs(corner.y()), camera.pose().scale);
+    EXPECT_LE(std::abs(corner.x()), 2.0 * camera.pose().scale);
+  }
+}
+
+TEST(FrameView, FramesTheFocusTheSameInBothProjections) {
+  const Grid grid = ramp(0, 1).grid;
+  const Mask focus = smallFocus();
+  ViewRequest view;
+  const Camera parallel(frameView(view, grid, &focus, 64, 64), 64, 64);
+  view.projection = Projection::perspective;
+  const Camera perspective(frameView(view, grid, &focus, 64, 64), 64, 64);
+  EXPECT_TRUE(parallel.pose().target.isApprox(focus.grid.worldCenter()));
+  EXPECT_NEAR(perspective.pixelPitch(), parallel.pixelPitch(), 1e-9);
+  EXPECT_LT(parallel.pose().scale, 10.0) << "the focus, not the volume";
+  const Vec3 fromCenter =
+      grid.worldToIndex * perspective.pose().position - grid.indexBox().center();
+  const Vec3 half = 0.5 * grid.size.cast<double>();
+  EXPECT_GT((fromCenter.cwiseAbs() - half).maxCoeff(), 0.0) << "the eye is outside the volume";
+}
+
+TEST(FrameView, RefusesAnUnknownName) {
+  ViewRequest view;
+  view.name = "sideways";
+  EXPECT_THROW(frameView(view, ramp(0, 1).grid, nullptr, 8, 8), Error);
+}
+
+TEST(DefaultTransfer, TellsHounsfieldUnitsFromOthers) {
+  EXPECT_TRUE(transferPresetFor(ramp(-1000, 1500)));
+  EXPECT_FALSE(transferPresetFor(ramp(0, 255)));
+  EXPECT_FALSE(transferPresetFor(ramp(0, 4000)));
+}
+
+TEST(DefaultTransfer, RunsFromTransparentToOpaqueAndSurvivesAConstantVolume) {
+  const TransferFunction transfer = relativeTransfer(ramp(0, 1000));
+  EXPECT_EQ(transfer.extinction(0.0).value(), 0.0);
+  EXPECT_GT(transfer.extinction(1000.0).value(), 1.0);
+  EXPECT_TRUE(transfer.shading);
+  const TransferFunction flat = relativeTransfer(ramp(7, 7));
+  EXPECT_GT(flat.extinction(7.0).value(), 0.0);
+  EXPECT_FALSE(flat.shading);
+}
+
+TEST(Picture, PlaneLiesThroughTheTargetAndItsCornersAreThePictures) {
+  CameraPose pose;
+  pose.position = {0, -100, 0};
+  pose.target = {0, 0, 0};
+  pose.scale = 10.0;
+  const ImagePlane plane = picturePlane(Camera(pose, 40, 20));
+  EXPECT_TRUE(plane.topLeft.isApprox(Vec3(-19.5, 0.0, 9.5)));
+  EXPECT_TRUE(plane.columnStep.isApprox(Vec3(1, 0, 0)));
+  EXPECT_TRUE(plane.rowStep.isApprox(Vec3(0, 0, -1)));
+}
+
+TEST(Picture, CarriesTheContractsChannels) {
+  CameraPose pose;
+  const Camera camera(pose, 2, 1);
+  Film film(2, 1);
+  PathSample hit;
+  hit.radiance = Rgb(1, 2, 3);
+  hit.depth = 5.0;
+  film.at(0, 0).add(hit);
+  PathSample miss;
+  miss.alpha = 0.0;
+  film.at(1, 0).add(miss);
+  const Image image = picture(film, camera, ClipPlane{camera, Vec3(0, 3, 0), -Vec3::UnitY()}, {});
+  for (const char* name :
+       {"R", "G", "B", "A", "Z", "clip.Z", "albedo.R", "albedo.G", "albedo.B", "normal.X",
+        "normal.Y", "normal.Z", "error.R", "error.G", "error.B", "samples.N"})
+    ASSERT_TRUE(image.find(name)) << name;
+  EXPECT_EQ(*image.find("Z"), (std::vector<float>{5.0F, std::numeric_limits<float>::infinity()}));
+  EXPECT_EQ(*image.find("A"), (std::vector<float>{1.0F, 0.0F}));
+  EXPECT_NEAR((*image.find("clip.Z"))[0], 3.0F, 1e-5);
+  EXPECT_EQ(picture(film, camera, ClipNone{}, layerSet({"depth"})).channels.size(), 1U);
+}
+
+} // namespace
+} // namespace fenestra::testing
