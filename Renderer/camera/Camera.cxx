@@ -11,8 +11,8 @@ Camera::Camera(const CameraPose& pose, int width, int height)
   if (!(m_targetDepth > 0.0) || !std::isfinite(m_targetDepth))
     throw usageError("--position and --target: must be two different finite points");
   m_forward = view / m_targetDepth;
-  const Vec3 side = m_forward.cross(pose.up);
-  if (!(side.norm() > 1e-12 * pose.up.norm()))
+  const Vec3 side = m_forward.cross(pose.up.stableNormalized());
+  if (!(side.norm() > 1e-12))
     throw usageError("--up: must not be zero or along the viewing direction");
   m_right = side.normalized();
   m_up = m_right.cross(m_forward);

@@ -2,6 +2,7 @@
 
 #include "cli/CommandLine.h"
 #include "cli/OutputFiles.h"
+#include "cli/Stop.h"
 #include "core/Error.h"
 #include "film/Compare.h"
 #include "io/ImageReader.h"
@@ -82,13 +83,16 @@ int compareCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, first);
   if (!values)
     return 0;
+  std::atomic<bool> stopped = false;
+  StopOnSignal stopOnSignal;
   checkOutput(*values);
   const Image a = readWithError(*values, "A", "errora");
   const Image b = readWithError(*values, "B", "errorb");
   print(compared(*values, a, b));
+  stopOnSignal.setInstead(stopped);
   if (const auto output = values->text("output"))
     writeImage(differenceImage(a, b), {}, *output, "Standard");
-  return 0;
+  return stopped ? stoppedStatus : 0;
 }
 
 } // namespace fenestra

@@ -112,7 +112,7 @@ std::optional<Vec3> FlagValues::triple(const std::string& name) const {
 
 std::optional<std::string> FlagValues::word(const std::string& name,
                                             const std::vector<std::string>& words) const {
-  const auto given = text(name);
+  auto given = text(name);
   if (!given || std::find(words.begin(), words.end(), *given) != words.end())
     return given;
   std::string known;

@@ -50,9 +50,9 @@ int phantomCommand(int argc, char** argv, int first) {
   if (kind != "knee")
     throw usageError("KIND: '" + kind + "' is unknown; use knee");
   const std::string folder = values->text("output").value_or(kind);
+  std::atomic<bool> stopped = false;
   StopOnSignal stopOnSignal;
   const Phantom phantom = makeKneePhantom(kneeOptions(*values));
-  std::atomic<bool> stopped = false;
   stopOnSignal.setInstead(stopped); // the files belong together
   writePhantom(phantom, folder, kind);
   std::cout << folder << ": " << kind << ".nrrd, " << kind << ".seg.nrrd, " << kind << ".vp.json, "

@@ -12,6 +12,9 @@
 #include "io/ImageWriter.h"
 #include "scene/Scene.h"
 
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
 #include <iostream>
 #include <sstream>
 #include <unistd.h>
@@ -64,6 +67,7 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderSettin
           {"seed", std::to_string(settings.seed)},
           {"samples", std::to_string(result.finishedSamples)},
           {"camera", camera.str()},
+          {"look", scene.look()},
           {"command", command}};
 }
 
@@ -99,6 +103,11 @@ void checkMemory(const SceneRequest& scene) {
   throw outputError("--size", line.str());
 }
 
+std::size_t threadCount(const RenderSettings& settings) {
+  const auto cores = static_cast<std::size_t>(tbb::info::default_concurrency());
+  return settings.threads > 0 ? std::min(static_cast<std::size_t>(settings.threads), cores) : cores;
+}
+
 RenderResult renderWithProgress(const Scene& scene, const RenderOptions& options,
                                 RenderMonitor& monitor) {
   const Progress progress(options.progress, options.settings,
@@ -132,11 +141,13 @@ int renderCommand(int argc, char** argv, int first) {
   if (!flags)
     return 0;
   const RenderOptions options = renderOptions(*flags);
+  RenderMonitor monitor;
   StopOnSignal stopOnSignal;
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    threadCount(options.settings));
   checkOutputs(options);
   checkMemory(options.scene);
 
-  RenderMonitor monitor;
   const Stopwatch total;
   RenderStats stats;
   const Scene scene(options.scene);
@@ -152,18 +163,23 @@ int renderCommand(int argc, char** argv, int first) {
     return stoppedStatus;
   }
 
+  if (options.stats && !scene.focusDepth().empty()) {
+    const Stopwatch focus;
+    stats.focusCoverage =
+        focusCoverage(scene.forRender(), scene.focusDepth(), options.settings.seed);
+    stats.stages.focus = focus.seconds();
+  }
   const Stopwatch write;
   Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
   image.header = header(scene, options.settings, result, commandLine(argc, argv));
   for (const std::filesystem::path& path : options.outputs)
     writeImage(image, picturePlane(scene.camera()), path);
   if (options.stats) {
+    const double coverageSeconds = stats.stages.focus;
     stats.stages = scene.seconds();
+    stats.stages.focus += coverageSeconds;
     stats.mismatch = scene.mismatch();
     stats.warnings = scene.warnings();
-    if (!scene.focusDepth().empty())
-      stats.focusCoverage =
-          focusCoverage(scene.forRender(), scene.focusDepth(), options.settings.seed);
     stats.write = write.seconds();
     stats.total = total.seconds();
     writeFile(*options.stats, statsJson(stats, result));

@@ -1,6 +1,7 @@
 #include "cli/RenderFlags.h"
 
 #include "core/Error.h"
+#include "io/ImageFormat.h"
 
 #include <algorithm>
 
@@ -43,7 +44,9 @@ constexpr Flag flags[] = {
     {"lights", "FILE|PRESET", lookGroup, "Lights: .json, studio, headlight or soft [studio]"},
     {"environment", "R,G,B|FILE", lookGroup,
      "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own"},
-    {"background", "R,G,B|KIND", lookGroup, "Linear colour, transparent or environment [0,0,0]"},
+    {"background", "R,G,B|KIND", lookGroup,
+     "Linear colour (the photographic tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
+     "white), transparent or environment [0,0,0]"},
     {"size", "WxH", qualityGroup, "Pixels [512x512]"},
     {"samples", "N", qualityGroup,
      "Stop at N samples a pixel [64 unless seconds or noise are given]"},
@@ -85,9 +88,9 @@ ClipRequest clipRequest(const FlagValues& flags) {
   clip.smoothing = flags.number("smoothing", 0.0, 1.0).value_or(clip.smoothing);
   if (const auto p = flags.numbers("plane", 6)) {
     const Vec3 normal((*p)[3], (*p)[4], (*p)[5]);
-    if (!(normal.norm() > 0.0))
+    if (normal.isZero(0.0))
       throw usageError("--plane: the normal NX,NY,NZ must not be zero");
-    clip.plane = PlaneRequest{Vec3((*p)[0], (*p)[1], (*p)[2]), normal.normalized()};
+    clip.plane = PlaneRequest{Vec3((*p)[0], (*p)[1], (*p)[2]), normal.stableNormalized()};
   }
 
   const bool hasFocus = flags.has("focus");
@@ -113,7 +116,8 @@ ViewRequest viewRequest(const FlagValues& flags) {
     throw usageError("--scale: only for --projection orthographic; use --angle");
   if (view.projection == Projection::orthographic && flags.has("angle"))
     throw usageError("--angle: only for --projection perspective; use --scale");
-  view.name = flags.text("view");
+  view.name =
+      flags.word("view", {"anterior", "posterior", "left", "right", "superior", "inferior"});
   view.position = flags.triple("position");
   view.target = flags.triple("target");
   view.up = flags.triple("up");
@@ -139,10 +143,7 @@ void readSize(const FlagValues& flags, SceneRequest& scene) {
 }
 
 bool isExr(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".exr";
+  return imageFormat(path) == ImageFormat::exr;
 }
 
 /// Linear R,G,B; `otherwise` says what else the flag takes.
@@ -150,7 +151,7 @@ Rgb color(const FlagValues& flags, const std::string& name, const std::string& o
   constexpr double brightest = 1e12; // what is made of it fits a float
   const std::string text = *flags.text(name);
   const bool numbers = text.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
-  const Rgb value = numbers ? Rgb(flags.triple(name)->array()) : Rgb::Constant(-1.0);
+  Rgb value = numbers ? Rgb(flags.triple(name)->array()) : Rgb::Constant(-1.0);
   if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
     throw usageError("--" + name + ": expected R,G,B, each from 0 to 1e12, or " + otherwise +
                      ", got '" + text + "'");
@@ -225,6 +226,7 @@ void readOutputs(const FlagValues& flags, RenderOptions& options) {
   if (options.outputs.empty())
     options.outputs.push_back(defaultOutput(options.scene.volume));
   options.stats = flags.text("stats");
+  options.scene.measureCoverage = options.stats.has_value();
   options.layers = layerSet(flags.list("layers"));
   const auto exrs = std::count_if(options.outputs.begin(), options.outputs.end(), isExr);
   if (exrs == 0 && flags.has("layers"))

@@ -2,28 +2,16 @@
 
 #include "clipping/ThinPlateSpline.h"
 #include "core/Error.h"
+#include "core/Stopwatch.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 
 namespace fenestra {
 
 namespace {
-
-/// Seconds since it was made or last asked.
-class Stopwatch {
-public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(m_start, now)).count();
-  }
-
-private:
-  std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
-};
 
 void check(const SurfaceOptions& options) {
   if (options.controlPoints < 1 || options.controlPoints > 1000)

@@ -1,5 +1,5 @@
 #pragma once
-// Wall-clock time since construction.
+// Wall-clock time.
 
 #include <chrono>
 
@@ -7,12 +7,25 @@ namespace fenestra {
 
 class Stopwatch {
 public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+  /// Since construction or the last lap().
+  double seconds() const { return since(Clock::now()); }
+
+  /// The same, and starts anew.
+  double lap() {
+    const Clock::time_point now = Clock::now();
+    const double seconds = since(now);
+    m_start = now;
+    return seconds;
   }
 
 private:
-  std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+  using Clock = std::chrono::steady_clock;
+
+  double since(Clock::time_point now) const {
+    return std::chrono::duration<double>(now - m_start).count();
+  }
+
+  Clock::time_point m_start = Clock::now();
 };
 
 } // namespace fenestra

@@ -1,7 +1,7 @@
 #include "io/ImageFormat.h"
 
-#include <algorithm>
-#include <cctype>
+#include "io/InputFile.h"
+
 #include <map>
 #include <string>
 
@@ -13,10 +13,7 @@ std::optional<ImageFormat> imageFormat(const std::filesystem::path& path) {
                                                              {".png", ImageFormat::png},
                                                              {".tif", ImageFormat::tiff},
                                                              {".tiff", ImageFormat::tiff}};
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto it = formats.find(extension);
+  const auto it = formats.find(lowerExtension(path));
   return it == formats.end() ? std::nullopt : std::optional(it->second);
 }
 

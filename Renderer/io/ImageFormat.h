@@ -1,5 +1,5 @@
 #pragma once
-// Which picture files there are. For io's own sources.
+// Which picture files there are.
 
 #include <filesystem>
 #include <optional>

@@ -1,9 +1,12 @@
 #pragma once
-// The first question that every reader asks of its path.
+// The first questions that every reader asks of its path.
 
 #include "core/Error.h"
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <string>
 
 namespace fenestra {
 
@@ -18,6 +21,14 @@ inline void requireFile(const std::filesystem::path& path, const std::string& me
   if (!std::filesystem::exists(status))
     throw inputError(path.string(), "there is no such file; check the name");
   throw inputError(path.string(), "is not a file that can be read; " + mend);
+}
+
+/// The last extension with its dot, in lower case: ".GZ" of "a.nii.GZ" is ".gz".
+inline std::string lowerExtension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 } // namespace fenestra

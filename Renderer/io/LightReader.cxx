@@ -1,5 +1,7 @@
 #include "io/LightReader.h"
 
+#include "io/InputFile.h"
+
 #include "io/ImageReader.h"
 #include "io/JsonNode.h"
 
@@ -111,7 +113,7 @@ std::vector<Light> parseLights(std::string_view json, const std::string& source)
 }
 
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
-  if (path.extension() != ".exr")
+  if (lowerExtension(path) != ".exr")
     throw inputError(path.string(), "is no environment map; name a .exr file");
   const Image image = readImage(path);
   EnvironmentMap map{image.width, image.height, {}};

@@ -129,7 +129,9 @@ private:
     info.labelValue = number(n, "LabelValue", 1);
     if (info.labelValue == 0)
       throw inputError(m_source, key(n, "LabelValue") + ": 0 is the background; use another");
-    const std::int32_t layer = number(n, "Layer", static_cast<std::int32_t>(n)); // older files
+    // Older files do not say: with several layers it is the segment's own.
+    const std::int32_t layer =
+        number(n, "Layer", layerCount == 1 ? 0 : static_cast<std::int32_t>(n));
     if (std::cmp_less(layer, 0) || std::cmp_greater_equal(layer, layerCount))
       throw inputError(m_source, key(n, "Layer") + ": is " + std::to_string(layer) +
                                      ", but the file has " + std::to_string(layerCount) +

@@ -1,5 +1,7 @@
 #include "io/TransferReader.h"
 
+#include "io/InputFile.h"
+
 #include "io/JsonNode.h"
 #include "medium/VolumeProperty.h"
 
@@ -227,7 +229,7 @@ TransferFunction parseTransferFunction(std::string_view json, const std::string&
 
 TransferFunction readTransferFunction(const std::filesystem::path& path) {
   const std::string source = path.string();
-  const std::string extension = path.extension().string();
+  const std::string extension = lowerExtension(path);
   if (extension != ".vp" && extension != ".json")
     throw inputError(source, "is no transfer function; name a .vp, .vp.json or .json file");
   const std::string text = readText(path);

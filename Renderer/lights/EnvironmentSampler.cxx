@@ -5,10 +5,6 @@
 namespace fenestra {
 namespace {
 
-double brightness(const Rgb& c) {
-  return c.maxCoeff();
-}
-
 struct Pick {
   int index;
   double remainder; ///< position inside the picked bin, [0, 1)

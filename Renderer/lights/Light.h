@@ -10,6 +10,11 @@
 
 namespace fenestra {
 
+/// What choices between lights, and between texels, go by.
+inline double brightness(const Rgb& radiance) {
+  return radiance.maxCoeff();
+}
+
 /// Latitude-longitude radiance, row 0 superior, middle column anterior (design, section 1).
 struct EnvironmentMap {
   int width = 0, height = 0;

@@ -3,10 +3,6 @@
 namespace fenestra {
 namespace {
 
-double brightness(const Rgb& c) {
-  return c.maxCoeff();
-}
-
 /// No light's share falls below this part of an equal share, however dark it looks from the
 /// volume's centre: it may matter elsewhere.
 constexpr double leastShare = 0.05;

@@ -7,6 +7,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <numeric>
+
 namespace fenestra {
 namespace {
 
@@ -56,8 +58,13 @@ bool renderPass(const Estimator& estimator, std::uint64_t first, std::uint64_t c
           }
           Random random(seed, pixel, sample);
           const Vec2 jitter = random.uniform2();
-          film.at(column, row)
-              .add(estimator.trace(column + jitter.x(), row + jitter.y(), random, local));
+          const std::optional<PathSample> path =
+              estimator.trace(column + jitter.x(), row + jitter.y(), random, local);
+          if (!path) {
+            whole = false;
+            return;
+          }
+          film.at(column, row).add(*path);
         }
       }
       const auto columns = static_cast<std::uint64_t>(tile.cols().end() - tile.cols().begin());
@@ -112,7 +119,7 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
   return arena.execute([&] {
     return withMedium(scene, [&](const auto& medium, const auto& tracker) {
       const PathEstimator estimator(scene.volume.grid, medium, tracker, scene.lights, scene.camera,
-                                    scene.clip, settings.path);
+                                    scene.clip, settings.path, monitor.stop);
       return renderPasses(estimator, scene, settings, monitor);
     });
   });
@@ -122,24 +129,28 @@ double focusCoverage(const RenderScene& scene, const std::vector<double>& focusD
                      std::uint64_t seed) {
   const int width = scene.camera.width();
   return withMedium(scene, [&](const auto&, const auto& tracker) {
-    double shown = 0.0;
-    std::uint64_t pixels = 0;
-    Counters counters;
-    for (std::size_t pixel = 0; pixel < focusDepth.size(); ++pixel) {
+    std::vector<double> shown(focusDepth.size(), 0.0);
+    const auto show = [&](std::size_t pixel) {
       if (!(focusDepth[pixel] < infinity))
-        continue;
-      ++pixels;
+        return;
       const int column = static_cast<int>(pixel % static_cast<std::size_t>(width));
       const int row = static_cast<int>(pixel / static_cast<std::size_t>(width));
       const Ray ray = scene.camera.ray(column + 0.5, row + 0.5);
       const double focus = focusDepth[pixel] / scene.camera.depthPerLength(ray);
       const Interval range = visible(scene.clip, ray);
-      if (range.begin > focus + 0.5 * scene.camera.pixelPitch())
-        continue; // the focus itself is cut away
+      const double rounding = 0.5 * scene.camera.pixelPitch();
+      if (range.empty() || range.begin > focus + rounding || range.end < focus - rounding)
+        return; // the focus itself is cut away
       Random random(seed, pixel, 0);
-      shown += tracker.transmittance(ray, {range.begin, focus}, random, counters);
-    }
-    return pixels > 0 ? shown / static_cast<double>(pixels) : 0.0;
+      Counters counters;
+      shown[pixel] = tracker.transmittance(ray, {range.begin, focus}, random, counters);
+    };
+    tbb::parallel_for(std::size_t{0}, focusDepth.size(), show);
+    const auto pixels = std::count_if(focusDepth.begin(), focusDepth.end(),
+                                      [](double depth) { return depth < infinity; });
+    return pixels > 0
+               ? std::accumulate(shown.begin(), shown.end(), 0.0) / static_cast<double>(pixels)
+               : 0.0;
   });
 }
 

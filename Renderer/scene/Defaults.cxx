@@ -97,8 +97,8 @@ Extent seen(const Affine& indexToWorld, const Box& indexBox, const Vec3& right, 
 } // namespace
 
 std::optional<std::string> transferPresetFor(const Volume& volume) {
-  const bool hounsfield = volume.minimum <= -500.0 && volume.minimum >= -5000.0 &&
-                          volume.maximum >= 200.0 && volume.maximum <= 70000.0;
+  // Air, or padding beyond it (-2000, -8192, -32768 occur), and bone.
+  const bool hounsfield = volume.minimum <= -500.0 && volume.maximum >= 200.0;
   return hounsfield ? std::optional<std::string>("ct-soft") : std::nullopt;
 }
 

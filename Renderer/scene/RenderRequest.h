@@ -47,6 +47,7 @@ struct SceneRequest {
   ViewRequest view;
   ClipRequest clip;
   int width = 512, height = 512;
+  bool measureCoverage = false; ///< trace the focus even where no clip needs it
 };
 
 } // namespace fenestra

@@ -29,17 +29,12 @@ Error unknownPreset(const std::string& flag, const std::string& kind, const std:
                               " takes a file or one of " + known);
 }
 
-TransferFunction requestedTransfer(const SceneRequest& request, const Volume& volume) {
-  std::optional<std::string> name = request.transfer;
-  if (!name)
-    name = transferPresetFor(volume);
-  if (!name)
-    return relativeTransfer(volume);
-  if (const std::string_view text = preset("transfer", *name); !text.empty())
-    return parseTransferFunction(text, *name);
-  if (!std::filesystem::exists(*name))
-    throw unknownPreset("transfer", "transfer", *name);
-  return readTransferFunction(*name);
+TransferFunction namedTransfer(const std::string& name) {
+  if (const std::string_view text = preset("transfer", name); !text.empty())
+    return parseTransferFunction(text, name);
+  if (!std::filesystem::exists(name))
+    throw unknownPreset("transfer", "transfer", name);
+  return readTransferFunction(name);
 }
 
 std::vector<Light> requestedLights(const SceneRequest& request) {
@@ -93,20 +88,28 @@ std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera
 } // namespace
 
 Scene::Scene(const SceneRequest& request) {
+  const std::vector<Light> lights =
+      requestedLights(request); // small files first: errors come early
   load(request);
   placeCamera(request);
-  placeLights(request);
+  m_lights.emplace(lights, m_volume.grid, *m_camera);
   buildClip(request);
   classify();
 }
 
 void Scene::load(const SceneRequest& request) {
   const Stopwatch watch;
+  if (request.transfer)
+    m_transfer = namedTransfer(*request.transfer);
   m_volume = readVolume(request.volume);
   m_warnings = m_volume.warnings;
   if (!request.focus.empty())
     m_focus = readSegmentation(*request.segmentation).mask(request.focus, m_volume.grid);
-  m_transfer = requestedTransfer(request, m_volume).shifted(request.shift).scaled(request.density);
+  const std::optional<std::string> preset = transferPresetFor(m_volume);
+  m_look = request.transfer ? *request.transfer : preset.value_or("by the volume's range");
+  if (!m_transfer)
+    m_transfer = preset ? namedTransfer(*preset) : relativeTransfer(m_volume);
+  m_transfer = m_transfer->shifted(request.shift).scaled(request.density);
   checkExtinction(*m_transfer, m_volume, request.transfer.value_or(m_volume.name));
   if (m_transfer->shading && m_volume.minimum == m_volume.maximum)
     throw inputError(m_volume.name,
@@ -119,10 +122,6 @@ void Scene::placeCamera(const SceneRequest& request) {
   const CameraPose pose = frameView(request.view, m_volume.grid, m_focus ? &*m_focus : nullptr,
                                     request.width, request.height);
   m_camera.emplace(pose, request.width, request.height);
-}
-
-void Scene::placeLights(const SceneRequest& request) {
-  m_lights.emplace(requestedLights(request), m_volume.grid, *m_camera);
 }
 
 void Scene::buildClip(const SceneRequest& request) {
@@ -138,9 +137,9 @@ void Scene::buildClip(const SceneRequest& request) {
   case ClipMode::none:
     break;
   }
-  if (!m_focus)
+  if (!m_focus || !request.measureCoverage)
     return;
-  const Stopwatch watch; // for the coverage alone
+  const Stopwatch watch;
   m_focusDepth = viewportDepths(traceFocus(*m_camera, m_volume.grid, *m_focus), *m_camera);
   m_seconds.focus = watch.seconds();
 }

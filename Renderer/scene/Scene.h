@@ -25,10 +25,12 @@ public:
   }
   const Volume& volume() const { return m_volume; }
   const TransferFunction& transfer() const { return *m_transfer; }
+  /// Which transfer function it is: a file, a preset, or that it follows the volume's range.
+  const std::string& look() const { return m_look; }
   const Camera& camera() const { return *m_camera; }
   const Clip& clip() const { return m_clip; }
   /// Depth of the focus at each pixel's centre, mm, infinity where it is missed; empty without a
-  /// focus.
+  /// focus, and in the clip modes none and plane unless coverage is to be measured.
   const std::vector<double>& focusDepth() const { return m_focusDepth; }
   /// How far the spline misses the focus's boundary; nothing in the other clip modes.
   const std::optional<BoundaryMismatch>& mismatch() const { return m_mismatch; }
@@ -38,7 +40,6 @@ public:
 private:
   void load(const SceneRequest& request);
   void placeCamera(const SceneRequest& request);
-  void placeLights(const SceneRequest& request);
   void buildClip(const SceneRequest& request);
   void buildDepthClip(SurfaceMode mode, const ClipRequest& request);
   void classify();
@@ -46,6 +47,7 @@ private:
   Volume m_volume;
   std::optional<Mask> m_focus;
   std::optional<TransferFunction> m_transfer;
+  std::string m_look;
   std::optional<Camera> m_camera;
   std::optional<LightSet> m_lights;
   Clip m_clip;

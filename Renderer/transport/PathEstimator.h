@@ -14,6 +14,9 @@
 #include "medium/Scattering.h"
 #include "tracking/Tracker.h"
 
+#include <atomic>
+#include <optional>
+
 namespace fenestra {
 
 /// What an eye ray shows where it passes through the volume.
@@ -34,17 +37,20 @@ class PathEstimator {
 public:
   PathEstimator(const Grid& grid, const Medium<Voxel>& medium, const Tracker<Voxel>& tracker,
                 const LightSet& lights, const Camera& camera, const Clip& clip,
-                const PathSettings& settings)
+                const PathSettings& settings, const std::atomic<bool>& stop)
       : m_worldToIndex(grid.worldToIndex),
         m_medium(medium),
         m_tracker(tracker),
         m_lights(lights),
         m_camera(camera),
         m_clip(clip),
-        m_settings(settings) {}
+        m_settings(settings),
+        m_stop(stop) {}
 
-  /// One path through raster position (column, row).
-  PathSample trace(double column, double row, Random& random, Counters& counters) const {
+  /// One path through raster position (column, row). Nothing where `stop` became true during a long
+  /// one: with albedo 1 in a dense medium a path can take minutes.
+  std::optional<PathSample> trace(double column, double row, Random& random,
+                                  Counters& counters) const {
     ++counters.paths;
     PathSample result;
     Ray ray = m_camera.ray(column, row);
@@ -52,6 +58,8 @@ public:
     Rgb weight = Rgb::Ones();
     double scatterPdf = 0.0;
     for (std::uint64_t bounce = 0;; ++bounce) {
+      if (bounce % bouncesBetweenLooks == bouncesBetweenLooks - 1 && m_stop)
+        return std::nullopt;
       const double distance = m_tracker.sampleCollision(ray, range, random, counters);
       if (bounce == 0 && distance == infinity)
         return escaped(ray, result);
@@ -81,6 +89,8 @@ public:
   }
 
 private:
+  static constexpr std::uint64_t bouncesBetweenLooks = 256;
+
   /// An eye ray that met nothing shows the background.
   PathSample escaped(const Ray& ray, PathSample& result) const {
     switch (m_settings.background.kind) {
@@ -160,6 +170,7 @@ private:
   const Camera& m_camera;
   const Clip& m_clip;
   const PathSettings& m_settings;
+  const std::atomic<bool>& m_stop;
 };
 
 } // namespace fenestra

@@ -115,7 +115,7 @@ TEST_F(FlagsCommand, RefusesPicturesThatMemoryCannotHold) {
 TEST_F(FlagsCommand, RefusesUnknownWords) {
   expectRefused(
       {
-          refusal({"--view", "top"}, "--view: 'top' is unknown; use anterior, "),
+          refusal({"--view", "top"}, "--view: expected anterior"),
           refusal({"--projection", "fisheye"},
                   "--projection: expected orthographic or perspective"),
           refusal({"--clip", "hole"}, "--clip: expected none, plane, cutaway or surface, got"),
