@@ -158,8 +158,7 @@ TEST(TransferReader, refusesFilesOfOtherKinds) {
   expectRefused(folder / "x.txt", "name a .vp", [&] { readTransferFunction(folder / "x.txt"); });
   expectRefused(folder / "x.vp", "no such file", [&] { readTransferFunction(folder / "x.vp"); });
   std::filesystem::create_directory(folder / "d.json");
-  expectRefused(folder / "d.json", "is a folder",
-                [&] { readTransferFunction(folder / "d.json"); });
+  expectRefused(folder / "d.json", "is a folder", [&] { readTransferFunction(folder / "d.json"); });
 }
 
 TEST(TransferReader, readsRealVolumeProperties) {
