@@ -61,6 +61,7 @@ TEST(FrameView, RefusesAnUnknownName) {
 
 TEST(DefaultTransfer, TellsHounsfieldUnitsFromOthers) {
   EXPECT_TRUE(transferPresetFor(ramp(-1000, 1500)));
+  EXPECT_TRUE(transferPresetFor(ramp(-8192, 3071))) << "padded";
   EXPECT_FALSE(transferPresetFor(ramp(0, 255)));
   EXPECT_FALSE(transferPresetFor(ramp(0, 4000)));
 }

@@ -1,0 +1,85 @@
+// How much of the focus is shown, and stopping inside a long path.
+
+#include "Support.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+namespace fenestra::testing {
+namespace {
+
+/// A cube of 20 mm around the origin, extinction 0.1 per mm, seen from in front (anterior); the
+/// focus is met 5 mm behind its face in every pixel.
+struct Cube {
+  TestScene scene{
+      makeVolume(centredGrid({10, 10, 10}, {2.0, 2.0, 2.0}), [](const Vec3&) { return 1.0; }),
+      linearTransfer(0.1, Rgb::Ones()),
+      {EnvironmentLight{}},
+      {},
+      16,
+      16};
+  static constexpr double faceDepth = 90.0, focusDepth = 95.0;
+
+  Cube() {
+    scene.pose.position = {0, 100, 0};
+    scene.pose.target = Vec3::Zero();
+    scene.pose.scale = 8.0;
+  }
+
+  double coverage(const Vec3& origin, const Vec3& normal) const {
+    const Camera camera(scene.pose, scene.width, scene.height);
+    return coverage(ClipPlane{camera, origin, normal});
+  }
+
+  double coverage(const Clip& clip) const {
+    const Camera camera(scene.pose, scene.width, scene.height);
+    const LightSet lights(scene.lights, scene.volume.grid, camera);
+    const CellRanges ranges(scene.volume, 0);
+    const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, clip);
+    return focusCoverage({scene.volume, scene.transfer, majorants, lights, camera, clip},
+                         std::vector<double>(256, focusDepth), 1);
+  }
+};
+
+TEST(FocusCoverage, IsTheTransmittanceToTheFocus) {
+  // 256 estimates of exp(-0.5) that are 0 or 1.
+  EXPECT_NEAR(Cube().coverage(ClipNone{}), std::exp(-0.5), 4.0 * std::sqrt(0.25 / 256.0));
+}
+
+TEST(FocusCoverage, IsWholeBehindAPlaneThatEndsAtTheFocus) {
+  EXPECT_DOUBLE_EQ(Cube().coverage(Vec3(0, 5.0, 0), Vec3::UnitY()), 1.0);
+}
+
+TEST(FocusCoverage, CountsAFocusThatIsCutAwayAsNotShown) {
+  const Cube cube;
+  EXPECT_EQ(cube.coverage(Vec3(0, 3.0, 0), Vec3::UnitY()), 0.0) << "cut from in front";
+  EXPECT_EQ(cube.coverage(Vec3(0, 8.0, 0), -Vec3::UnitY()), 0.0) << "cut from behind";
+  EXPECT_EQ(cube.coverage(Vec3(-50, 0, 0), Vec3::UnitX()), 0.0) << "all gone, plane along the view";
+}
+
+TEST(Render, StopsInsideAPathThatWouldTakeMinutes) {
+  TestScene scene = Cube().scene;
+  scene.transfer =
+      linearTransfer(20000.0, Rgb::Ones()); // nothing absorbs, and hardly anything leaves
+  const Camera camera(scene.pose, scene.width, scene.height);
+  const LightSet lights(scene.lights, scene.volume.grid, camera);
+  const CellRanges ranges(scene.volume, 0);
+  const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, scene.clip);
+  RenderMonitor monitor;
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    monitor.stop = true;
+  });
+  const RenderResult result =
+      render({scene.volume, scene.transfer, majorants, lights, camera, scene.clip}, {}, monitor);
+  stopper.join();
+  EXPECT_EQ(result.reason, StopReason::request);
+  std::uint64_t samples = 0;
+  for (const PixelSums& pixel : result.film.pixels())
+    samples += pixel.samples;
+  EXPECT_LT(samples, 64U * 256U) << "abandoned paths are no samples";
+}
+
+} // namespace
+} // namespace fenestra::testing
