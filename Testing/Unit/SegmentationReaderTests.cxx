@@ -137,6 +137,20 @@ void describe(FileGeometry& geometry, int n, const std::string& id, const std::s
     geometry.fields[prefix + "Layer"] = layer;
 }
 
+TEST(SegmentationReader, readsOneLayerWhoseSegmentsDoNotSayWhich) {
+  const TemporaryFolder folder;
+  FileGeometry geometry;
+  describe(geometry, 0, "a", "liver", "1", "");
+  describe(geometry, 1, "b", "tumour", "2", "");
+  std::vector<std::uint8_t> labels(24, 0);
+  labels[3] = 1;
+  labels[7] = labels[8] = 2;
+  writeFile(folder / "s.seg.nrrd", labels, geometry);
+  const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
+  EXPECT_EQ(s.mask({"liver"}, s.grid()).count, 1);
+  EXPECT_EQ(s.mask({"tumour"}, s.grid()).count, 2);
+}
+
 TEST(SegmentationReader, readsLayersThatOverlap) {
   const TemporaryFolder folder;
   for (const bool old : {false, true}) { // older files have no Layer
