@@ -62,10 +62,4 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
   });
 }
 
-double MajorantGrid::emptyFraction() const {
-  const auto empty = std::count_if(m_cells.begin(), m_cells.end(),
-                                   [](const Cell& cell) { return cell.majorant == 0.0F; });
-  return static_cast<double>(empty) / static_cast<double>(m_cells.size());
-}
-
 } // namespace fenestra

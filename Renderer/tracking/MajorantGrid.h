@@ -29,8 +29,6 @@ public:
   const Cell& cell(std::int64_t index) const { return m_cells[static_cast<std::size_t>(index)]; }
   /// World space to cell space, in which cell c covers [c, c + 1].
   const Affine& worldToCell() const { return m_worldToCell; }
-  /// Share of cells with majorant 0.
-  double emptyFraction() const;
 
 private:
   Size3 m_cellCount;
