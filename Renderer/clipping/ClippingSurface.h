@@ -36,7 +36,7 @@ struct ClippingSurface {
 };
 
 /// Throws Error (usage) for options out of range and Error (input) where no ray meets the focus.
-ClippingSurface buildClippingSurface(const Camera& camera, const Grid& volume, const Mask& focus,
+ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                      const SurfaceOptions& options);
 
 } // namespace fenestra

@@ -113,16 +113,15 @@ private:
 
 } // namespace
 
-FocusDepth traceFocus(const Camera& camera, const Grid& volume, const Mask& focus) {
-  FocusDepth result{DepthBuffer(camera, volume), {}};
+FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus) {
+  FocusDepth result{DepthBuffer(camera, volume.grid()), {}};
   DepthBuffer& depth = result.depth;
   result.regions.assign(static_cast<std::size_t>(depth.size()), Region::outside);
   const DualCells cells(focus);
-  const Box box = volume.indexBox();
 
   const auto traceSample = [&](std::int64_t column, std::int64_t row) {
     const Ray ray = camera.rayThrough(depth.position(column, row));
-    const Interval inVolume = box.clip(transformed(volume.worldToIndex, ray));
+    const Interval inVolume = volume.clip(transformed(volume.grid().worldToIndex, ray));
     if (inVolume.empty())
       return;
     const std::int64_t sample = depth.sample(column, row);

@@ -2,6 +2,7 @@
 // Where the eye first meets the focus.
 
 #include "clipping/DepthBuffer.h"
+#include "volume/Domain.h"
 #include "volume/Mask.h"
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace fenestra {
 
-/// What an eye ray meets: the focus; the volume's box but not the focus; neither.
+/// What an eye ray meets: the focus; the volume's domain but not the focus; neither.
 enum class Region : std::uint8_t { outside, context, focus };
 
 struct FocusDepth {
@@ -23,8 +24,8 @@ struct FocusDepth {
 };
 
 /// The depth at which the ray of each sample first meets the 0.5 level of the focus inside the
-/// volume's box and in front of the eye: exact, to rounding. A ray that starts inside the focus
-/// meets it there.
-FocusDepth traceFocus(const Camera& camera, const Grid& volume, const Mask& focus);
+/// volume's domain and in front of the eye: exact, to rounding. A ray that starts, or enters the
+/// domain, inside the focus meets it there. The buffer spans the whole volume, cropped or not.
+FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus);
 
 } // namespace fenestra

@@ -22,7 +22,8 @@ auto withMedium(const RenderScene& scene, Work&& work) {
       [&](const auto& voxels) {
         using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
         const Medium<Voxel> medium(scene.volume.grid, voxels, scene.transfer);
-        const Tracker<Voxel> tracker(scene.volume.grid, medium, scene.majorants, scene.clip);
+        const Tracker<Voxel> tracker(Domain(scene.volume.grid, scene.crop), medium, scene.majorants,
+                                     scene.clip);
         return work(medium, tracker);
       },
       scene.volume.voxels);

@@ -19,6 +19,7 @@ struct RenderScene {
   const LightSet& lights;
   const Camera& camera;
   const Clip& clip;
+  std::optional<CropBox> crop = {};
 };
 
 /// Stops at the first of samples, seconds and noise.

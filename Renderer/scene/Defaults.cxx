@@ -78,16 +78,27 @@ double backgroundLevel(const Volume& volume, double low, double high) {
   return low + (high - low) * (threshold + 1.0) / bins;
 }
 
+/// Of the least box along a domain's grid that holds it, world mm.
+Vec3 centerOf(const Domain& domain) {
+  Vec3 lower = Vec3::Constant(infinity);
+  Vec3 upper = -lower;
+  for (const Vec3& corner : domain.indexCorners()) {
+    lower = lower.cwiseMin(corner);
+    upper = upper.cwiseMax(corner);
+  }
+  return domain.grid().indexToWorld * Box{lower, upper}.center();
+}
+
 struct Extent {
-  Vec3 center;
-  double across, up; ///< half extents along the view's right and up, mm
+  double across = 0.0, up = 0.0; ///< half extents along the view's right and up, mm
 };
 
-/// Half extents of a box's corners around its centre, seen along a view.
-Extent seen(const Affine& indexToWorld, const Box& indexBox, const Vec3& right, const Vec3& up) {
-  Extent extent{indexToWorld * indexBox.center(), 0.0, 0.0};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 d = indexToWorld * indexBox.corner(i) - extent.center;
+/// Of a domain around its centre, seen along a view.
+Extent seen(const Domain& domain, const Vec3& right, const Vec3& up) {
+  const Vec3 center = centerOf(domain);
+  Extent extent;
+  for (const Vec3& corner : domain.indexCorners()) {
+    const Vec3 d = domain.grid().indexToWorld * corner - center;
     extent.across = std::max(extent.across, std::abs(d.dot(right)));
     extent.up = std::max(extent.up, std::abs(d.dot(up)));
   }
@@ -130,7 +141,7 @@ TransferFunction relativeTransfer(const Volume& volume) {
           SurfaceShading{}};
 }
 
-CameraPose frameView(const ViewRequest& view, const Grid& volume, const Mask* focus, int width,
+CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
                      int height) {
   constexpr double surroundings = 1.6; // how much more than the focus is framed
   constexpr double margin = 1.05;      // around the whole volume
@@ -141,11 +152,12 @@ CameraPose frameView(const ViewRequest& view, const Grid& volume, const Mask* fo
     throw usageError("--view: '" + name +
                      "' is unknown; use anterior, posterior, left, right, superior or inferior");
 
+  const Grid& grid = domain.grid();
+  const Domain volume = domain.indexCorners().empty() ? Domain(grid) : domain;
   CameraPose pose;
   pose.projection = view.projection;
   pose.angle = view.angle.value_or(defaultAngle);
-  const Grid& framed = focus ? focus->grid : volume;
-  pose.target = view.target.value_or(framed.worldCenter());
+  pose.target = view.target.value_or(focus ? focus->grid.worldCenter() : centerOf(volume));
   const Vec3 back =
       view.position ? Vec3((*view.position - pose.target).normalized()) : known->second.fromTarget;
   pose.up = view.up.value_or(std::abs(back.dot(known->second.up)) > 0.999 * back.norm()
@@ -156,8 +168,8 @@ CameraPose frameView(const ViewRequest& view, const Grid& volume, const Mask* fo
 
   // The whole volume, or the focus with its surroundings where that is less.
   const double aspect = static_cast<double>(width) / height;
-  const auto halfHeight = [&](const Grid& grid) {
-    const Extent extent = seen(grid.indexToWorld, grid.indexBox(), right, up);
+  const auto halfHeight = [&](const Domain& domain) {
+    const Extent extent = seen(domain, right, up);
     return std::max(extent.up, extent.across / aspect);
   };
   double half = margin * halfHeight(volume);
@@ -167,8 +179,7 @@ CameraPose frameView(const ViewRequest& view, const Grid& volume, const Mask* fo
 
   // The eye stands outside the volume; in perspective at least as far as the usual angle asks, and
   // where that is still inside, further away with a narrower one.
-  const double outside =
-      margin * volume.boundingRadius() + (pose.target - volume.worldCenter()).norm();
+  const double outside = margin * grid.boundingRadius() + (pose.target - grid.worldCenter()).norm();
   const double distance = std::max(outside, half / std::tan(pose.angle * pi / 360.0));
   if (!view.angle && !view.position)
     pose.angle = 360.0 / pi * std::atan2(half, distance);

@@ -5,6 +5,7 @@
 #include "camera/Camera.h"
 #include "medium/TransferFunction.h"
 #include "scene/RenderRequest.h"
+#include "volume/Domain.h"
 #include "volume/Mask.h"
 #include "volume/Volume.h"
 
@@ -20,9 +21,9 @@ std::optional<std::string> transferPresetFor(const Volume& volume);
 TransferFunction relativeTransfer(const Volume& volume);
 
 /// The pose that a view request means for this volume and focus: named views look along the
-/// patient's axes at the focus (else the volume), and what is framed is the focus with its
-/// surroundings. Throws Error (usage) for an unknown view name.
-CameraPose frameView(const ViewRequest& view, const Grid& volume, const Mask* focus, int width,
+/// patient's axes at the focus (else the volume, or what a crop leaves of it), and what is framed
+/// is the focus with its surroundings. Throws Error (usage) for an unknown view name.
+CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
                      int height);
 
 } // namespace fenestra

@@ -3,6 +3,7 @@
 
 #include "camera/Camera.h"
 #include "render/Render.h"
+#include "volume/Domain.h"
 
 #include <filesystem>
 #include <optional>
@@ -45,6 +46,7 @@ struct SceneRequest {
   std::optional<Rgb> environment = {}; ///< replaces the lights' own environment
   std::optional<std::filesystem::path> environmentMap = {};
   ViewRequest view;
+  std::optional<CropBox> crop = {}; ///< what is outside it is empty; the command line has none
   ClipRequest clip;
   int width = 512, height = 512;
   bool measureCoverage = false; ///< trace the focus even where no clip needs it

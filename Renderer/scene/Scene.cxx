@@ -87,7 +87,7 @@ std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera
 
 } // namespace
 
-Scene::Scene(const SceneRequest& request) {
+Scene::Scene(const SceneRequest& request) : m_crop(request.crop) {
   const std::vector<Light> lights =
       requestedLights(request); // small files first: errors come early
   load(request);
@@ -103,6 +103,8 @@ void Scene::load(const SceneRequest& request) {
     m_transfer = namedTransfer(*request.transfer);
   m_volume = readVolume(request.volume);
   m_warnings = m_volume.warnings;
+  if (domain().indexCorners().empty())
+    m_warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");
   if (!request.focus.empty())
     m_focus = readSegmentation(*request.segmentation).mask(request.focus, m_volume.grid);
   const std::optional<std::string> preset = transferPresetFor(m_volume);
@@ -119,7 +121,7 @@ void Scene::load(const SceneRequest& request) {
 }
 
 void Scene::placeCamera(const SceneRequest& request) {
-  const CameraPose pose = frameView(request.view, m_volume.grid, m_focus ? &*m_focus : nullptr,
+  const CameraPose pose = frameView(request.view, domain(), m_focus ? &*m_focus : nullptr,
                                     request.width, request.height);
   m_camera.emplace(pose, request.width, request.height);
 }
@@ -140,12 +142,12 @@ void Scene::buildClip(const SceneRequest& request) {
   if (!m_focus || !request.measureCoverage)
     return;
   const Stopwatch watch;
-  m_focusDepth = viewportDepths(traceFocus(*m_camera, m_volume.grid, *m_focus), *m_camera);
+  m_focusDepth = viewportDepths(traceFocus(*m_camera, domain(), *m_focus), *m_camera);
   m_seconds.focus = watch.seconds();
 }
 
 void Scene::buildDepthClip(SurfaceMode mode, const ClipRequest& request) {
-  ClippingSurface surface = buildClippingSurface(*m_camera, m_volume.grid, *m_focus,
+  ClippingSurface surface = buildClippingSurface(*m_camera, domain(), *m_focus,
                                                  {mode, request.controlPoints, request.smoothing});
   m_focusDepth = viewportDepths(surface.focus, *m_camera);
   m_clip = std::move(surface.clip);

@@ -21,7 +21,7 @@ public:
   explicit Scene(const SceneRequest& request);
 
   RenderScene forRender() const {
-    return {m_volume, *m_transfer, *m_majorants, *m_lights, *m_camera, m_clip};
+    return {m_volume, *m_transfer, *m_majorants, *m_lights, *m_camera, m_clip, m_crop};
   }
   const Volume& volume() const { return m_volume; }
   const TransferFunction& transfer() const { return *m_transfer; }
@@ -44,7 +44,10 @@ private:
   void buildDepthClip(SurfaceMode mode, const ClipRequest& request);
   void classify();
 
+  Domain domain() const { return {m_volume.grid, m_crop}; }
+
   Volume m_volume;
+  std::optional<CropBox> m_crop;
   std::optional<Mask> m_focus;
   std::optional<TransferFunction> m_transfer;
   std::string m_look;

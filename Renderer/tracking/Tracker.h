@@ -5,21 +5,18 @@
 #include "medium/Medium.h"
 #include "tracking/Counters.h"
 #include "tracking/MajorantGrid.h"
+#include "volume/Domain.h"
 #include "volume/GridWalk.h"
 
 namespace fenestra {
 
-/// A view: grid, medium, majorants and clip outlive it. Rays are in world space, unit direction.
+/// A view: medium, majorants and clip outlive it. Rays are in world space, unit direction.
 template <typename Voxel>
 class Tracker {
 public:
-  Tracker(const Grid& grid, const Medium<Voxel>& medium, const MajorantGrid& majorants,
+  Tracker(const Domain& domain, const Medium<Voxel>& medium, const MajorantGrid& majorants,
           const Clip& clip)
-      : m_worldToIndex(grid.worldToIndex),
-        m_box(grid.indexBox()),
-        m_medium(medium),
-        m_majorants(majorants),
-        m_clip(clip) {}
+      : m_domain(domain), m_medium(medium), m_majorants(majorants), m_clip(clip) {}
 
   /// Distance (mm) to the next real collision within `range`, or infinity.
   double sampleCollision(const Ray& ray, const Interval& range, Random& random,
@@ -56,9 +53,9 @@ private:
   template <typename Visit>
   void walkTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
                      Visit&& visit) const {
-    const Ray indexRay = transformed(m_worldToIndex, ray);
-    // The last cells of an axis may reach beyond the volume: its own box bounds the walk.
-    GridWalk walk(transformed(m_majorants.worldToCell(), ray), m_box.clip(indexRay, range),
+    const Ray indexRay = transformed(m_domain.grid().worldToIndex, ray);
+    // Cells may reach beyond the volume and its crop: the domain itself bounds the walk.
+    GridWalk walk(transformed(m_majorants.worldToCell(), ray), m_domain.clip(indexRay, range),
                   m_majorants.cellCount());
     double opticalDepth = random.exponential();
     for (; !walk.done(); walk.next()) {
@@ -89,8 +86,7 @@ private:
     }
   }
 
-  Affine m_worldToIndex;
-  Box m_box; ///< of the volume, in index space
+  Domain m_domain;
   const Medium<Voxel>& m_medium;
   const MajorantGrid& m_majorants;
   const Clip& m_clip;
