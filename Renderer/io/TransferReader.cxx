@@ -1,12 +1,10 @@
 #include "io/TransferReader.h"
 
 #include "io/InputFile.h"
-
 #include "io/JsonNode.h"
+#include "io/NumberText.h"
 #include "medium/VolumeProperty.h"
 
-#include <cctype>
-#include <charconv>
 #include <span>
 
 namespace fenestra {
@@ -135,31 +133,41 @@ VolumeProperty readSlicer(const JsonNode& root) {
   return property;
 }
 
-// ---- Slicer's .vp
-// --------------------------------------------------------------------------------
+// ---- Slicer's .vp, and the same texts as a scene's attributes
+// ----------------------------------
 
-/// The lines of a .vp, one after the other, each a list of numbers.
-class PropertyText {
+/// The texts of a property by the names that MRML gives them, in the order of a .vp's lines.
+constexpr const char* propertyFields[] = {"interpolation", "shade",           "diffuse",
+                                          "ambient",       "specular",        "specularPower",
+                                          "scalarOpacity", "gradientOpacity", "colorTransfer"};
+
+enum class PropertyForm { lines, attributes };
+
+class PropertyTexts {
 public:
-  PropertyText(std::string_view text, const std::string& source) : m_rest(text), m_source(source) {}
+  PropertyTexts(const std::map<std::string, std::string>& texts, PropertyForm form,
+                std::string source)
+      : m_texts(texts), m_form(form), m_source(std::move(source)) {}
 
-  double number(const std::string& field) {
-    const auto numbers = line(field);
-    if (numbers.size() != 1)
-      throw inputError(m_source, place(field) + "must be one number");
-    return numbers[0];
+  bool has(const std::string& field) const { return m_texts.contains(field); }
+
+  double number(const std::string& field) const {
+    const auto all = numbers(field);
+    if (all.size() != 1)
+      throw error(field, "must be one number");
+    return all[0];
   }
 
   /// `<count> x v... x v...` in rows of `width`; Slicer moves an x that does not grow to the one
   /// before (and 10 units in the last place more).
-  std::vector<std::vector<double>> rows(const std::string& field, std::size_t width) {
-    const auto numbers = line(field);
-    if (numbers.empty() || numbers[0] != static_cast<double>(numbers.size() - 1) ||
-        (numbers.size() - 1) % width != 0)
-      throw inputError(m_source, place(field) + "must be a count and that many numbers, " +
-                                     std::to_string(width) + " a point");
+  std::vector<std::vector<double>> rows(const std::string& field, std::size_t width) const {
+    const auto all = numbers(field);
+    if (all.empty() || all[0] != static_cast<double>(all.size() - 1) ||
+        (all.size() - 1) % width != 0)
+      throw error(field,
+                  "must be a count and that many numbers, " + std::to_string(width) + " a point");
     std::vector<std::vector<double>> rows;
-    for (auto it = numbers.begin() + 1; it != numbers.end(); it += static_cast<long>(width)) {
+    for (auto it = all.begin() + 1; it != all.end(); it += static_cast<long>(width)) {
       rows.emplace_back(it, it + static_cast<long>(width));
       if (rows.size() > 1)
         rows.back()[0] = std::max(rows.back()[0], rows[rows.size() - 2][0]);
@@ -168,53 +176,62 @@ public:
   }
 
 private:
-  std::string place(const std::string& field) const {
-    return "line " + std::to_string(m_line) + " (" + field + "): ";
+  Error error(const std::string& field, const std::string& what) const {
+    if (m_form == PropertyForm::attributes)
+      return inputError(m_source, field + ": " + what);
+    const auto* const line = std::find(std::begin(propertyFields), std::end(propertyFields), field);
+    return inputError(m_source, "line " + std::to_string(line - std::begin(propertyFields) + 1) +
+                                    " (" + field + "): " + what);
   }
 
-  std::vector<double> line(const std::string& field) {
-    ++m_line;
-    const std::size_t end = std::min(m_rest.find('\n'), m_rest.size());
-    std::string_view text = m_rest.substr(0, end);
-    m_rest.remove_prefix(std::min(end + 1, m_rest.size()));
-    std::vector<double> numbers;
-    const auto skipSpace = [&text] {
-      while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())))
-        text.remove_prefix(1);
-    };
-    for (skipSpace(); !text.empty(); skipSpace()) {
-      double x = 0.0;
-      const auto [next, failure] = std::from_chars(text.data(), text.data() + text.size(), x);
-      if (failure != std::errc() || !(std::abs(x) <= largest))
-        throw inputError(m_source, place(field) + "holds something other than numbers; save the "
-                                                  "volume property again");
-      numbers.push_back(x);
-      text.remove_prefix(static_cast<std::size_t>(next - text.data()));
-    }
-    return numbers;
+  std::vector<double> numbers(const std::string& field) const {
+    const auto text = m_texts.find(field);
+    if (text == m_texts.end())
+      throw error(field, "is missing; save the volume property again");
+    auto all = parseNumbers(text->second);
+    if (!all ||
+        std::any_of(all->begin(), all->end(), [](double x) { return !(std::abs(x) <= largest); }))
+      throw error(field, "holds something other than numbers; save the volume property again");
+    return std::move(*all);
   }
 
-  std::string_view m_rest;
+  const std::map<std::string, std::string>& m_texts;
+  PropertyForm m_form;
   std::string m_source;
-  int m_line = 0;
 };
 
-VolumeProperty readPropertyText(std::string_view content, const std::string& source) {
-  PropertyText text(content, source);
+/// Light that arrives from nowhere (ambient) has no place in path tracing.
+VolumeProperty readProperty(const PropertyTexts& texts) {
   VolumeProperty property;
-  text.number("interpolation");
-  property.shade = text.number("shade") != 0.0;
-  property.diffuse = text.number("diffuse");
-  text.number("ambient"); // light that arrives from nowhere has no place in path tracing
-  property.specular = text.number("specular");
-  property.specularPower = text.number("specular power");
-  for (const auto& row : text.rows("scalar opacity", 2))
+  if (texts.has("shade"))
+    property.shade = texts.number("shade") != 0.0;
+  const std::pair<const char*, double*> numbers[] = {{"diffuse", &property.diffuse},
+                                                     {"specular", &property.specular},
+                                                     {"specularPower", &property.specularPower}};
+  for (const auto& [field, value] : numbers)
+    if (texts.has(field))
+      *value = texts.number(field);
+  for (const auto& row : texts.rows("scalarOpacity", 2))
     property.scalarOpacity.push_back({row[0], row[1]});
-  for (const auto& row : text.rows("gradient opacity", 2))
-    property.gradientOpacity.push_back({row[0], row[1]});
-  for (const auto& row : text.rows("color transfer", 4))
+  if (texts.has("gradientOpacity"))
+    for (const auto& row : texts.rows("gradientOpacity", 2))
+      property.gradientOpacity.push_back({row[0], row[1]});
+  for (const auto& row : texts.rows("colorTransfer", 4))
     property.color.push_back({row[0], {row[1], row[2], row[3]}});
   return property;
+}
+
+VolumeProperty readPropertyLines(std::string_view content, const std::string& source) {
+  std::map<std::string, std::string> texts;
+  for (const char* field : propertyFields) {
+    const std::size_t end = std::min(content.find('\n'), content.size());
+    texts[field] = content.substr(0, end);
+    content.remove_prefix(std::min(end + 1, content.size()));
+  }
+  const PropertyTexts property(texts, PropertyForm::lines, source);
+  for (const char* field : {"interpolation", "ambient"}) // of no use here, but of the format
+    property.number(field);
+  return readProperty(property);
 }
 
 } // namespace
@@ -227,13 +244,19 @@ TransferFunction parseTransferFunction(std::string_view json, const std::string&
   return readOwn(root);
 }
 
+TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
+                                       const std::string& source) {
+  return tabulate(readProperty(PropertyTexts(attributes, PropertyForm::attributes, source)),
+                  source);
+}
+
 TransferFunction readTransferFunction(const std::filesystem::path& path) {
   const std::string source = path.string();
   const std::string extension = lowerExtension(path);
   if (extension != ".vp" && extension != ".json")
     throw inputError(source, "is no transfer function; name a .vp, .vp.json or .json file");
   const std::string text = readText(path);
-  return extension == ".vp" ? tabulate(readPropertyText(text, source), source)
+  return extension == ".vp" ? tabulate(readPropertyLines(text, source), source)
                             : parseTransferFunction(text, source);
 }
 

@@ -4,6 +4,7 @@
 #include "medium/TransferFunction.h"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -15,5 +16,10 @@ TransferFunction readTransferFunction(const std::filesystem::path& path);
 
 /// The text of a `.json` of either kind. `source` names it in messages.
 TransferFunction parseTransferFunction(std::string_view json, const std::string& source);
+
+/// A volume property as the attributes of a scene's node, which have the names and forms of a
+/// .vp's lines.
+TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
+                                       const std::string& source);
 
 } // namespace fenestra

@@ -143,13 +143,13 @@ TEST(TransferReader, refusesDamagedText) {
     const auto path = folder.write("a.vp", content);
     expectRefused(path, text, [&path] { readTransferFunction(path); });
   };
-  refuse("8 -17 0", "6 -17 0", "line 7 (scalar opacity)");
-  refuse("8 -17 0", "1e9 -17 0", "line 7 (scalar opacity)");
-  refuse("8 -17 0", "8 -17 nan", "line 7 (scalar opacity)");
-  refuse("8 -17 0", "8 -17 O", "line 7 (scalar opacity)");
+  refuse("8 -17 0", "6 -17 0", "line 7 (scalarOpacity)");
+  refuse("8 -17 0", "1e9 -17 0", "line 7 (scalarOpacity)");
+  refuse("8 -17 0", "8 -17 nan", "line 7 (scalarOpacity)");
+  refuse("8 -17 0", "8 -17 O", "line 7 (scalarOpacity)");
   refuse("8 -17 0 13", "8 -17 7 13", "scalar opacity, point 1");
   refuse("0.44\n", "\n", "line 4 (ambient)");
-  refuse("8 -17 1 0 0.5 235 1 1 1\n", "", "line 9 (color transfer)");
+  refuse("8 -17 1 0 0.5 235 1 1 1\n", "", "line 9 (colorTransfer)");
   refuse("8 -17 1 0 0.5 235 1 1 1\n", "0\n", "color: has 0 points");
 }
 
