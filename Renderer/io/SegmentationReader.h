@@ -32,6 +32,8 @@ public:
                std::vector<SegmentInfo> segments);
 
   const Grid& grid() const { return m_grid; }
+  /// To another place, of the same size.
+  void moveTo(const Grid& grid) { m_grid = grid; }
   const std::vector<SegmentInfo>& segments() const { return m_segments; }
 
   /// The union of the segments that the selectors name, each by id, else by name, else by label
