@@ -48,6 +48,7 @@ struct TestScene {
   CameraPose pose;
   int width = 16, height = 16;
   Clip clip = {};
+  std::optional<CropBox> crop = {};
 
   RenderResult render(const RenderSettings& settings) const {
     const Camera camera(pose, width, height);
@@ -55,7 +56,7 @@ struct TestScene {
     const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
     const MajorantGrid majorants(volume.grid, ranges, transfer, clip);
     RenderMonitor monitor;
-    return fenestra::render({volume, transfer, majorants, lightSet, camera, clip}, settings,
+    return fenestra::render({volume, transfer, majorants, lightSet, camera, clip, crop}, settings,
                             monitor);
   }
 };

@@ -1,5 +1,5 @@
 // The furnace: albedo 1 in a constant environment of 1 shows 1 everywhere, whatever the medium, the
-// projection and the clip.
+// projection, the clip and the crop.
 
 #include "Support.h"
 
@@ -13,7 +13,7 @@ namespace {
 enum class MediumKind { homogeneous, heterogeneous, spikes };
 enum class ClipKind { none, plane, cutaway, surface };
 
-using Case = std::tuple<MediumKind, Projection, ClipKind, double>;
+using Case = std::tuple<MediumKind, Projection, ClipKind, double, bool>;
 
 Volume volumeOf(MediumKind kind) {
   const Grid grid = centredGrid({20, 24, 18}, {1.0, 0.8, 1.3});
@@ -48,7 +48,14 @@ Mask ball() {
   return mask;
 }
 
-Clip clipOf(ClipKind kind, const Camera& camera, const Grid& volume) {
+/// Turned; cuts through the ball and two of the volume's corners.
+CropBox turnedCrop() {
+  return CropBox(Eigen::Translation3d(0.5, -2.0, 1.0) *
+                 Eigen::AngleAxisd(0.5, Vec3(1.0, 1.0, -2.0).normalized()) *
+                 Eigen::Scaling(Vec3(7.0, 5.0, 12.0)));
+}
+
+Clip clipOf(ClipKind kind, const Camera& camera, const Domain& volume) {
   switch (kind) {
   case ClipKind::none:
     return ClipNone{};
@@ -65,7 +72,7 @@ Clip clipOf(ClipKind kind, const Camera& camera, const Grid& volume) {
 class Furnace : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Furnace, IsOne) {
-  const auto [mediumKind, projection, clipKind, g] = GetParam();
+  const auto [mediumKind, projection, clipKind, g, isCropped] = GetParam();
   TestScene scene{volumeOf(mediumKind),
                   mediumKind == MediumKind::spikes ? spikes() : linearTransfer(0.4, Rgb::Ones()),
                   {EnvironmentLight{}},
@@ -77,7 +84,10 @@ TEST_P(Furnace, IsOne) {
   scene.pose.position = {5.0, 40.0, 12.0};
   scene.pose.target = Vec3::Zero();
   scene.pose.scale = 12.0;
-  scene.clip = clipOf(clipKind, Camera(scene.pose, scene.width, scene.height), scene.volume.grid);
+  if (isCropped)
+    scene.crop = turnedCrop();
+  scene.clip = clipOf(clipKind, Camera(scene.pose, scene.width, scene.height),
+                      Domain(scene.volume.grid, scene.crop));
 
   RenderSettings settings;
   settings.samples = 64;
@@ -96,7 +106,15 @@ INSTANTIATE_TEST_SUITE_P(
         ::testing::Values(MediumKind::homogeneous, MediumKind::heterogeneous, MediumKind::spikes),
         ::testing::Values(Projection::orthographic, Projection::perspective),
         ::testing::Values(ClipKind::none, ClipKind::plane, ClipKind::cutaway, ClipKind::surface),
-        ::testing::Values(0.0, 0.7)));
+        ::testing::Values(0.0, 0.7), ::testing::Values(false)));
+
+INSTANTIATE_TEST_SUITE_P(Cropped, Furnace,
+                         ::testing::Combine(::testing::Values(MediumKind::heterogeneous),
+                                            ::testing::Values(Projection::orthographic,
+                                                              Projection::perspective),
+                                            ::testing::Values(ClipKind::none, ClipKind::plane,
+                                                              ClipKind::cutaway, ClipKind::surface),
+                                            ::testing::Values(0.7), ::testing::Values(true)));
 
 } // namespace
 } // namespace fenestra::testing

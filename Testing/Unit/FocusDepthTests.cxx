@@ -112,14 +112,14 @@ TEST(FocusDepth, RegionsTellFocusContextAndOutside) {
 }
 
 /// Every hit is on the 0.5 level, and nothing of the focus is in front of it.
-void compareWithMarching(const Camera& camera, const Grid& volume, const Mask& mask) {
+void compareWithMarching(const Camera& camera, const Domain& volume, const Mask& mask) {
   const FocusDepth focus = traceFocus(camera, volume, mask);
   const double step = 0.02;
   int hits = 0;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
     for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
       const Ray ray = camera.rayThrough(focus.depth.position(column, row));
-      const Interval inside = volume.indexBox().clip(transformed(volume.worldToIndex, ray));
+      const Interval inside = volume.clip(transformed(volume.grid().worldToIndex, ray));
       const double hit =
           focus.depth.at(focus.depth.sample(column, row)) / camera.depthPerLength(ray);
       if (hit < infinity) {
@@ -154,6 +154,9 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
     pose.target = Vec3::Zero();
     pose.scale = 10.0;
     compareWithMarching({pose, 24, 20}, grid, mask);
+    const CropBox crop(Affine(Eigen::AngleAxisd(0.4, randomPoint(random, -1, 1).normalized())) *
+                       Eigen::Scaling(Vec3(6.0, 7.0, 5.0)));
+    compareWithMarching({pose, 24, 20}, {grid, crop}, mask);
   }
 }
 
@@ -169,6 +172,30 @@ TEST(FocusDepth, TheVolumesFaceCutsAFocusThatReachesBeyondIt) {
   const Mask mask = sphereMask(centredGrid({40, 40, 40}), 15.0);
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 16, 16);
   EXPECT_NEAR(depthAt(traceFocus(camera, volume, mask), {0.0, 0.0}), 40.0, 1e-5);
+}
+
+TEST(FocusDepth, ACropCutsTheFocusAndItsContext) {
+  const Grid volume = centredGrid({40, 40, 40});
+  const Mask mask = sphereMask(volume, 10.0);
+  // Keeps what is behind a plane through the origin that falls 1 mm of depth a mm to the right.
+  const CropBox crop(Eigen::AngleAxisd(-pi / 4, Vec3::UnitZ()) *
+                     Eigen::Translation3d(0.0, 30.0, 0.0) * Eigen::Scaling(Vec3(60.0, 30.0, 18.0)));
+  const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
+  const FocusDepth focus = traceFocus(camera, {volume, crop}, mask);
+  const auto region = [&](const Vec2& at) {
+    for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
+      for (std::int64_t column = 0; column < focus.depth.columns(); ++column)
+        if ((focus.depth.position(column, row) - at).norm() < 0.1)
+          return focus.regions[static_cast<std::size_t>(focus.depth.sample(column, row))];
+    return Region::outside;
+  };
+  EXPECT_NEAR(depthAt(focus, {4.5, 0.5}), 50.0 - 4.5, 1e-5) << "met in the crop's face";
+  EXPECT_NEAR(depthAt(focus, {-4.5, 0.5}), 50.0 + 4.5, 1e-5);
+  EXPECT_EQ(region({-4.5, 0.5}), Region::focus);
+  EXPECT_EQ(depthAt(focus, {-8.5, 0.5}), infinity) << "the crop begins behind the sphere";
+  EXPECT_EQ(region({-8.5, 0.5}), Region::context);
+  EXPECT_EQ(region({0.5, 17.5}), Region::context);
+  EXPECT_EQ(region({0.5, 18.5}), Region::outside) << "above the crop, inside the volume";
 }
 
 TEST(FocusDepth, AMaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {

@@ -1,0 +1,157 @@
+// A cropped volume's domain against its definition: a point is inside where it is in both boxes.
+
+#include "volume/Domain.h"
+
+#include "core/Random.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+double uniform(Random& random, double low, double high) {
+  return low + (high - low) * random.uniform();
+}
+
+Vec3 randomPoint(Random& random, double size) {
+  return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
+}
+
+/// Rotated, sheared and stretched about the origin, sometimes mirrored.
+Affine randomMap(Random& random, double size) {
+  Affine map = Affine::Identity();
+  const Mat3 shear =
+      Mat3::Identity() + 0.3 * Mat3(Mat3::NullaryExpr([&] { return uniform(random, -1, 1); }));
+  map.linear() =
+      Mat3(Eigen::AngleAxisd(uniform(random, -3, 3), randomPoint(random, 1).normalized())) * shear *
+      Vec3(size, uniform(random, 0.2, 1) * size, uniform(random, 0.2, 1) * size).asDiagonal();
+  if (random.uniform() < 0.5)
+    map.linear().col(0) *= -1.0;
+  map.translation() = randomPoint(random, 0.5 * size);
+  return map;
+}
+
+Grid randomGrid(Random& random) {
+  const Size3 size(5, 9, 7);
+  return {size, randomMap(random, 1.0) *
+                    Eigen::Translation3d(-0.5 * (size.array() - 1).cast<double>().matrix())};
+}
+
+/// How far a world point is outside, in the boxes' own units: 0 on the surface, negative inside.
+double outside(const Grid& grid, const CropBox& crop, const Vec3& world) {
+  const Vec3 index = grid.worldToIndex * world;
+  const Box box = grid.indexBox();
+  const double beyondGrid =
+      std::max((box.lower - index).maxCoeff(), (index - box.upper).maxCoeff());
+  return std::max(beyondGrid, (crop.worldToBox * world).cwiseAbs().maxCoeff() - 1.0);
+}
+
+TEST(Domain, IsWhatBothBoxesHold) {
+  Random random(21, 0, 0);
+  int hits = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Grid grid = randomGrid(random);
+    const CropBox crop(randomMap(random, 3.0));
+    const Vec3 through = crop.boxToWorld * randomPoint(random, 1.0);
+    Ray ray{randomPoint(random, 6.0), Vec3::Zero()};
+    ray.direction = (through - ray.origin).normalized();
+    if (trial % 3 == 0) // along an axis of the world, or of one of the boxes
+      ray.direction = Vec3::Unit(trial % 9 / 3);
+    else if (trial % 3 == 1)
+      ray.direction = (trial % 2 ? crop.boxToWorld : grid.indexToWorld).linear().col(trial % 9 / 3);
+    const Interval range{uniform(random, -4.0, 4.0), uniform(random, 4.0, 20.0)};
+    const Interval inside = Domain(grid, crop).clip(transformed(grid.worldToIndex, ray), range);
+    hits += inside.empty() ? 0 : 1;
+    for (int i = 0; i < 200; ++i) {
+      const double t = range.begin + (i + 0.5) / 200.0 * (range.end - range.begin);
+      const double beyond = outside(grid, crop, ray.at(t));
+      if (std::abs(beyond) > 1e-9) {
+        ASSERT_EQ(beyond < 0.0, !inside.empty() && t >= inside.begin && t <= inside.end)
+            << "trial " << trial << " at " << t;
+      }
+    }
+    if (inside.empty())
+      continue;
+    for (const double end : {inside.begin, inside.end}) {
+      if (end != range.begin && end != range.end) {
+        ASSERT_NEAR(outside(grid, crop, ray.at(end)), 0.0, 1e-9) << "no step, no voxel";
+      }
+    }
+  }
+  EXPECT_GT(hits, 300);
+  EXPECT_LT(hits, 1500);
+}
+
+TEST(Domain, WithoutACropIsTheGrid) {
+  Random random(22, 0, 0);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Grid grid = randomGrid(random);
+    const Ray ray = transformed(grid.worldToIndex,
+                                {randomPoint(random, 6.0), randomPoint(random, 1.0).normalized()});
+    const Interval expected = grid.indexBox().clip(ray, {0.5, 9.0});
+    const Interval inside = Domain(grid).clip(ray, {0.5, 9.0});
+    EXPECT_EQ(inside.begin, expected.begin);
+    EXPECT_EQ(inside.end, expected.end);
+  }
+  EXPECT_EQ(Domain(Grid({2, 2, 2}, Affine::Identity())).indexCorners().size(), 8U);
+}
+
+TEST(Domain, ARayInAFaceIsInside) {
+  const Grid grid({8, 8, 8}, Affine::Identity());
+  Affine half = Affine::Identity(); // [1, 3] in each axis
+  half.translation() = Vec3::Constant(2.0);
+  const Domain domain(grid, CropBox(half));
+  for (const double face : {1.0, 3.0}) {
+    const Interval along = domain.clip({Vec3(-4, face, 2), Vec3::UnitX()});
+    EXPECT_EQ(along.begin, 5.0);
+    EXPECT_EQ(along.end, 7.0);
+  }
+  EXPECT_TRUE(domain.clip({Vec3(-4, std::nextafter(3.0, 4.0), 2), Vec3::UnitX()}).empty());
+  EXPECT_TRUE(domain.clip({Vec3(-4, 2, 2), -Vec3::UnitX()}).empty()) << "behind the ray";
+  EXPECT_EQ(domain.clip({Vec3(2, 2, 2), Vec3::UnitZ()}).begin, 0.0) << "from inside";
+}
+
+TEST(Domain, CornersSpanIt) {
+  Random random(23, 0, 0);
+  int cut = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Grid grid = randomGrid(random);
+    const CropBox crop(trial % 4 ? randomMap(random, 3.0) // else exactly the grid's own box
+                                 : grid.indexToWorld * Eigen::Translation3d(2, 4, 3) *
+                                       Eigen::Scaling(Vec3(2.5, 4.5, 3.5)));
+    const std::vector<Vec3> corners = Domain(grid, crop).indexCorners();
+    for (const Vec3& corner : corners)
+      ASSERT_LT(outside(grid, crop, grid.indexToWorld * corner), 1e-7);
+    std::vector<Vec3> inside;
+    const Box box = grid.indexBox();
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 index(uniform(random, box.lower.x(), box.upper.x()),
+                       uniform(random, box.lower.y(), box.upper.y()),
+                       uniform(random, box.lower.z(), box.upper.z()));
+      if (outside(grid, crop, grid.indexToWorld * index) < 0.0)
+        inside.push_back(index);
+    }
+    ASSERT_FALSE(corners.empty() && !inside.empty());
+    cut += !inside.empty() && inside.size() < 2000 ? 1 : 0;
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 direction = randomPoint(random, 1.0);
+      double farthest = -infinity;
+      for (const Vec3& corner : corners)
+        farthest = std::max(farthest, direction.dot(corner));
+      for (const Vec3& point : inside)
+        ASSERT_LT(direction.dot(point), farthest);
+    }
+  }
+  EXPECT_GT(cut, 100);
+}
+
+TEST(Domain, ACropBesideTheGridLeavesNothing) {
+  Affine map = Affine::Identity();
+  map.translation() = Vec3(20, 0, 0);
+  const Domain domain(Grid({8, 8, 8}, Affine::Identity()), CropBox(map));
+  EXPECT_TRUE(domain.indexCorners().empty());
+  EXPECT_TRUE(domain.clip({Vec3(-4, 0, 0), Vec3::UnitX()}).empty());
+}
+
+} // namespace
+} // namespace fenestra::testing

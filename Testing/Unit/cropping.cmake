@@ -1,0 +1,1 @@
+fenestra_test(DomainTests DomainTests.cxx LIBRARIES fenestra_volume LABELS unit)
