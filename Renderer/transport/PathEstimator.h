@@ -13,18 +13,12 @@
 #include "lights/LightSet.h"
 #include "medium/Scattering.h"
 #include "tracking/Tracker.h"
+#include "transport/Background.h"
 
 #include <atomic>
 #include <optional>
 
 namespace fenestra {
-
-/// What an eye ray shows where it passes through the volume.
-struct Background {
-  enum class Kind { color, transparent, environment };
-  Kind kind = Kind::color;
-  Rgb color = Rgb::Zero();
-};
 
 struct PathSettings {
   Background background;
@@ -62,7 +56,7 @@ public:
         return std::nullopt;
       const double distance = m_tracker.sampleCollision(ray, range, random, counters);
       if (bounce == 0 && distance == infinity)
-        return escaped(ray, result);
+        return escaped(ray, row, result);
       if (bounce > 0)
         result.radiance += weight * arriving(ray, distance, scatterPdf);
       if (distance == infinity || bounce >= m_settings.bounces)
@@ -91,11 +85,16 @@ public:
 private:
   static constexpr std::uint64_t bouncesBetweenLooks = 256;
 
-  /// An eye ray that met nothing shows the background.
-  PathSample escaped(const Ray& ray, PathSample& result) const {
-    switch (m_settings.background.kind) {
+  /// An eye ray that met nothing shows the background: one colour over a whole row of pixels, so
+  /// that where a sample falls inside its pixel adds no noise.
+  PathSample escaped(const Ray& ray, double row, PathSample& result) const {
+    const Background& background = m_settings.background;
+    switch (background.kind) {
     case Background::Kind::color:
-      result.radiance = m_settings.background.color;
+      result.radiance = background.color;
+      break;
+    case Background::Kind::gradient:
+      result.radiance = background.at(1.0 - (std::floor(row) + 0.5) / m_camera.height());
       break;
     case Background::Kind::transparent:
       result.alpha = 0.0;

@@ -1,0 +1,68 @@
+// What is shown where eye rays meet nothing.
+
+#include "Support.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+/// An empty volume in front of a background, 4 x 8 pixels.
+Film behindNothing(const Background& background, double sigma_t = 0.0, int threads = 0) {
+  TestScene scene{
+      makeVolume(centredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
+      linearTransfer(sigma_t, Rgb::Zero()),
+      {},
+      {},
+      4,
+      8};
+  scene.pose.position = {0, -100, 0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = 1.0;
+  RenderSettings settings;
+  settings.samples = 50;
+  settings.threads = threads;
+  settings.path.background = background;
+  return scene.render(settings).film;
+}
+
+TEST(Background, RunsFromBottomToTopInDisplayValues) {
+  const Rgb bottom(0.756863, 0.764706, 0.909804); // Slicer's own defaults
+  const Rgb top(0.454902, 0.470588, 0.745098);
+  const Film film = behindNothing(Background::gradient(bottom, top));
+  for (int row = 0; row < 8; ++row)
+    for (int column = 0; column < 4; ++column) {
+      const PixelSums& pixel = film.at(column, row);
+      const double height = (7.5 - row) / 8.0; // row 0 is the top one
+      const Rgb encoded = (1.0 - height) * bottom + height * top;
+      const Rgb expected = ((encoded + 0.055) / 1.055).pow(2.4);
+      EXPECT_LT((pixel.mean - expected).abs().maxCoeff(), 1e-12) << "row " << row;
+      EXPECT_EQ(pixel.standardError().maxCoeff(), 0.0) << "a background is no noise";
+      EXPECT_EQ(pixel.alpha, 50.0);
+    }
+}
+
+TEST(Background, OfTwoEqualColoursIsPlain) {
+  const Background background = Background::gradient(Rgb(0.5, 0.2, 1.0), Rgb(0.5, 0.2, 1.0));
+  EXPECT_EQ(background.kind, Background::Kind::color);
+  EXPECT_NEAR(background.color[0], 0.21404114, 1e-8);
+  EXPECT_NEAR(background.color[2], 1.0, 1e-15);
+  EXPECT_EQ((behindNothing(background).at(0, 0).mean - background.color).abs().maxCoeff(), 0.0);
+}
+
+TEST(Background, ShowsThroughTheVolumeTheSameOnAnyThread) {
+  const Background background = Background::gradient(Rgb(0.1, 0.2, 0.3), Rgb(0.9, 0.8, 0.7));
+  const Film one = behindNothing(background, 0.3, 1);
+  const Film two = behindNothing(background, 0.3, 2);
+  for (std::size_t i = 0; i < one.pixelCount(); ++i) {
+    EXPECT_TRUE((one.pixels()[i].mean == two.pixels()[i].mean).all());
+    // Black matter of 4 mm: some paths meet it, the others show all of the background.
+    const Rgb behind = background.at((7.5 - static_cast<double>(i / 4)) / 8.0);
+    const double share = one.pixels()[i].mean[0] / behind[0];
+    EXPECT_NEAR(share, std::exp(-1.2), 5.0 * std::sqrt(0.25 / 50.0));
+    EXPECT_LT((one.pixels()[i].mean - share * behind).abs().maxCoeff(), 1e-12);
+  }
+}
+
+} // namespace
+} // namespace fenestra::testing
