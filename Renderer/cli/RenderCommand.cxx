@@ -140,7 +140,7 @@ int renderCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> flags = parseCommandLine(renderSyntax, argc, argv, first);
   if (!flags)
     return 0;
-  const RenderOptions options = renderOptions(*flags);
+  RenderOptions options = renderOptions(*flags);
   RenderMonitor monitor;
   StopOnSignal stopOnSignal;
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
@@ -151,6 +151,8 @@ int renderCommand(int argc, char** argv, int first) {
   const Stopwatch total;
   RenderStats stats;
   const Scene scene(options.scene);
+  Background& background = options.settings.path.background;
+  background = options.background.value_or(scene.background().value_or(background));
   for (const std::string& warning : scene.warnings())
     std::cerr << "fenestra: warning: " << warning << '\n';
 

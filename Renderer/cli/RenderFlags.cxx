@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/ImageFormat.h"
+#include "io/mrml/SceneFiles.h"
 
 #include <algorithm>
 
@@ -16,7 +17,10 @@ constexpr const char* qualityGroup = "Quality";
 constexpr const char* outputGroup = "Output";
 
 constexpr Flag flags[] = {
-    {"segmentation", "FILE", sceneGroup, "Segments: a .seg.nrrd, or any label map"},
+    {"volume", "NAME", sceneGroup,
+     "Which volume of a scene (name or id), or which series of a DICOM folder [as in Slicer]"},
+    {"segmentation", "FILE|NAME", sceneGroup,
+     "Segments: a .seg.nrrd, any label map, or a node of the scene [the scene's]"},
     {"focus", "A,B,...", sceneGroup,
      "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,); may be "
      "repeated"},
@@ -29,16 +33,18 @@ constexpr Flag flags[] = {
     {"plane", "OX,OY,OZ,NX,NY,NZ", clipGroup,
      "Clip plane in RAS mm; what the normal points at is removed"},
     {"view", "NAME", viewGroup,
-     "anterior, posterior, left, right, superior or inferior [anterior]"},
+     "anterior, posterior, left, right, superior or inferior [the scene's camera, else anterior]"},
     {"position", "R,A,S", viewGroup, "Eye, mm"},
     {"target", "R,A,S", viewGroup, "Point looked at, mm [centre of the focus, else of the volume]"},
     {"up", "R,A,S", viewGroup, "Direction that is up in the picture"},
-    {"projection", "KIND", viewGroup, "orthographic or perspective [orthographic]"},
+    {"projection", "KIND", viewGroup,
+     "orthographic or perspective [the scene's, else orthographic]"},
     {"scale", "MM", viewGroup, "Orthographic: half the picture's height [frames the focus]"},
     {"angle", "DEGREES", viewGroup,
      "Perspective: full vertical angle [30, or less to frame the focus]"},
     {"transfer", "FILE|PRESET", lookGroup,
-     "Transfer function: .vp, .vp.json, Fenestra .json, ct-soft or ct-bone [by modality]"},
+     "Transfer function: .vp, .vp.json, Fenestra .json, ct-soft or ct-bone [the scene's, else by "
+     "modality]"},
     {"shift", "X", lookGroup, "Moves the transfer function along the scalar [0]"},
     {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000 [1]"},
     {"lights", "FILE|PRESET", lookGroup, "Lights: .json, studio, headlight or soft [studio]"},
@@ -46,7 +52,7 @@ constexpr Flag flags[] = {
      "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own"},
     {"background", "R,G,B|KIND", lookGroup,
      "Linear colour (the photographic tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
-     "white), transparent or environment [0,0,0]"},
+     "white), transparent or environment [the scene's, else 0,0,0]"},
     {"size", "WxH", qualityGroup, "Pixels [512x512]"},
     {"samples", "N", qualityGroup,
      "Stop at N samples a pixel [64 unless seconds or noise are given]"},
@@ -107,15 +113,11 @@ ClipRequest clipRequest(const FlagValues& flags) {
   return clip;
 }
 
-ViewRequest viewRequest(const FlagValues& flags) {
+ViewRequest viewRequest(const FlagValues& flags, bool sceneCamera) {
   refuseTogether(flags, "view", "position");
   ViewRequest view;
   if (const auto word = flags.word("projection", {"orthographic", "perspective"}))
     view.projection = *word == "perspective" ? Projection::perspective : Projection::orthographic;
-  if (view.projection == Projection::perspective && flags.has("scale"))
-    throw usageError("--scale: only for --projection orthographic; use --angle");
-  if (view.projection == Projection::orthographic && flags.has("angle"))
-    throw usageError("--angle: only for --projection perspective; use --scale");
   view.name =
       flags.word("view", {"anterior", "posterior", "left", "right", "superior", "inferior"});
   view.position = flags.triple("position");
@@ -123,6 +125,14 @@ ViewRequest viewRequest(const FlagValues& flags) {
   view.up = flags.triple("up");
   view.scale = flags.number("scale", 1e-9, 1e9);
   view.angle = flags.number("angle", 1e-6, 179.0);
+  // Where a scene's camera may apply, its projection is known only later.
+  if (sceneCamera && !view.projection && view.followsScene())
+    return view;
+  const bool perspective = view.projection == Projection::perspective;
+  if (perspective && view.scale)
+    throw usageError("--scale: only for --projection orthographic; use --angle");
+  if (!perspective && view.angle)
+    throw usageError("--angle: only for --projection perspective; use --scale");
   return view;
 }
 
@@ -168,15 +178,16 @@ void readEnvironment(const FlagValues& flags, SceneRequest& scene) {
     scene.environment = color(flags, "environment", "an .exr file");
 }
 
-Background background(const FlagValues& flags) {
+std::optional<Background> background(const FlagValues& flags) {
   const auto text = flags.text("background");
   if (!text)
-    return {};
+    return std::nullopt;
   if (*text == "transparent")
-    return {Background::Kind::transparent, Rgb::Zero()};
+    return Background{Background::Kind::transparent, Rgb::Zero()};
   if (*text == "environment")
-    return {Background::Kind::environment, Rgb::Zero()};
-  return {Background::Kind::color, color(flags, "background", "transparent or environment")};
+    return Background{Background::Kind::environment, Rgb::Zero()};
+  return Background{Background::Kind::color,
+                    color(flags, "background", "transparent or environment")};
 }
 
 RenderSettings renderSettings(const FlagValues& flags) {
@@ -190,7 +201,6 @@ RenderSettings renderSettings(const FlagValues& flags) {
   settings.seed = flags.count("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(0);
   settings.threads = static_cast<int>(flags.count("threads", 1, 1024).value_or(0));
   settings.path.bounces = flags.count("bounces", 0, unlimited).value_or(settings.path.bounces);
-  settings.path.background = background(flags);
   return settings;
 }
 
@@ -205,8 +215,10 @@ ProgressMode progressMode(const FlagValues& flags) {
 
 /// INPUT.png in the current folder, without the input's own endings.
 std::filesystem::path defaultOutput(const std::filesystem::path& input) {
-  std::string name = input.filename().string();
-  for (const char* ending : {".gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd"})
+  std::string name = input.lexically_normal().filename().string();
+  if (name.empty()) // a folder's name with a slash behind it
+    name = input.lexically_normal().parent_path().filename().string();
+  for (const char* ending : {".gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd", ".mrml", ".mrb"})
     if (name.ends_with(ending))
       name.resize(name.size() - std::string_view(ending).size());
   return name + ".png";
@@ -224,7 +236,7 @@ void readOutputs(const FlagValues& flags, RenderOptions& options) {
   for (const std::string& file : flags.texts("output"))
     options.outputs.emplace_back(file);
   if (options.outputs.empty())
-    options.outputs.push_back(defaultOutput(options.scene.volume));
+    options.outputs.push_back(defaultOutput(options.scene.input));
   options.stats = flags.text("stats");
   options.scene.measureCoverage = options.stats.has_value();
   options.layers = layerSet(flags.list("layers"));
@@ -244,17 +256,22 @@ const CommandSyntax renderSyntax = {
     "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
     "a clipping surface. \"render\" may be left out. Other subcommands: fenestra compare, fenestra "
     "phantom.",
-    {{"INPUT", "Volume: .nrrd .nhdr .nii .nii.gz .mha .mhd"}},
+    {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
+               ".mrb)"}},
     flags,
 };
 
 RenderOptions renderOptions(const FlagValues& flags) {
   RenderOptions options;
   SceneRequest& scene = options.scene;
-  scene.volume = *flags.text("INPUT");
+  scene.input = *flags.text("INPUT");
+  scene.volume = flags.text("volume");
   scene.segmentation = flags.text("segmentation");
   scene.focus = flags.list("focus");
-  if (!scene.focus.empty() && !scene.segmentation)
+  const bool isScene = isSceneFile(scene.input);
+  if (scene.volume && !isScene && !std::filesystem::is_directory(scene.input))
+    throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
+  if (!scene.focus.empty() && !scene.segmentation && !isScene)
     throw usageError("--focus: needs --segmentation FILE to find segments in");
   if (scene.segmentation && scene.focus.empty())
     throw usageError("--segmentation: only --focus uses it; add --focus A,B,...");
@@ -263,11 +280,12 @@ RenderOptions renderOptions(const FlagValues& flags) {
   scene.density = flags.number("density", 0.0, 1000.0).value_or(1.0);
   scene.lights = flags.text("lights").value_or(scene.lights);
   readEnvironment(flags, scene);
-  scene.view = viewRequest(flags);
+  scene.view = viewRequest(flags, isScene);
   scene.clip = clipRequest(flags);
   readSize(flags, scene);
 
   options.settings = renderSettings(flags);
+  options.background = background(flags);
   options.inputs = inputFiles(flags);
   readOutputs(flags, options);
   options.progress = progressMode(flags);

@@ -12,6 +12,7 @@ enum class ProgressMode { automatic, bar, xml, none };
 struct RenderOptions {
   SceneRequest scene;
   RenderSettings settings;
+  std::optional<Background> background = {};  ///< by default the scene's, else that of the settings
   std::vector<std::filesystem::path> inputs;  ///< files named as such, presets aside
   std::vector<std::filesystem::path> outputs; ///< at least one
   LayerSet layers;

@@ -1,5 +1,7 @@
 #include "cli/Stop.h"
 
+#include "io/PrivateFolder.h"
+
 #include <csignal>
 #include <unistd.h>
 
@@ -15,6 +17,7 @@ void onSignal(int) {
     *stop = true;
     return;
   }
+  removePrivateFolders();
   static constexpr char line[] = "fenestra: stopped on request; nothing was written\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line, sizeof line - 1);
   ::_exit(stoppedStatus);

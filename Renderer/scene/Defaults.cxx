@@ -155,7 +155,7 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   const Grid& grid = domain.grid();
   const Domain volume = domain.indexCorners().empty() ? Domain(grid) : domain;
   CameraPose pose;
-  pose.projection = view.projection;
+  pose.projection = view.projection.value_or(Projection::orthographic);
   pose.angle = view.angle.value_or(defaultAngle);
   pose.target = view.target.value_or(focus ? focus->grid.worldCenter() : centerOf(volume));
   const Vec3 back =
@@ -184,6 +184,23 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   if (!view.angle && !view.position)
     pose.angle = 360.0 / pi * std::atan2(half, distance);
   pose.position = view.position.value_or(pose.target + distance * back);
+  return pose;
+}
+
+CameraPose adjustedView(const ViewRequest& view, const CameraPose& scene) {
+  CameraPose pose = scene;
+  pose.projection = view.projection.value_or(scene.projection);
+  const bool perspective = pose.projection == Projection::perspective;
+  if (perspective && view.scale)
+    throw usageError("--scale: the scene's camera is a perspective one; use --angle, or add "
+                     "--projection orthographic");
+  if (!perspective && view.angle)
+    throw usageError("--angle: the scene's camera is an orthographic one; use --scale, or add "
+                     "--projection perspective");
+  pose.target = view.target.value_or(scene.target);
+  pose.up = view.up.value_or(scene.up);
+  pose.scale = view.scale.value_or(scene.scale);
+  pose.angle = view.angle.value_or(scene.angle);
   return pose;
 }
 

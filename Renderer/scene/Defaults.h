@@ -26,4 +26,8 @@ TransferFunction relativeTransfer(const Volume& volume);
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
                      int height);
 
+/// A scene's camera with what the request states of it. Throws Error (usage) where --scale or
+/// --angle is for the other projection.
+CameraPose adjustedView(const ViewRequest& view, const CameraPose& scene);
+
 } // namespace fenestra

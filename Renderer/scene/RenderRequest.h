@@ -3,7 +3,6 @@
 
 #include "camera/Camera.h"
 #include "render/Render.h"
-#include "volume/Domain.h"
 
 #include <filesystem>
 #include <optional>
@@ -27,26 +26,29 @@ struct ClipRequest {
 
 /// Where the eye is: a named direction, or a pose of which unset parts are derived from the scene.
 struct ViewRequest {
-  Projection projection = Projection::orthographic;
+  std::optional<Projection> projection = {}; ///< by default the scene's, else orthographic
   std::optional<std::string> name = {}; ///< anterior, posterior, left, right, superior, inferior
   std::optional<Vec3> position = {}, target = {}, up = {};
   std::optional<double> scale = {}; ///< orthographic: half the viewport's height, mm
   std::optional<double> angle = {}; ///< perspective: full vertical angle, degrees
+
+  /// The camera of a Slicer scene applies, with what else is set here changed.
+  bool followsScene() const { return !name && !position; }
 };
 
 struct SceneRequest {
-  std::filesystem::path volume;
-  std::optional<std::filesystem::path> segmentation = {};
-  std::vector<std::string> focus = {}; ///< ids, names or label values
+  std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
+  std::optional<std::string> volume = {};       ///< which one of several: a node, or a DICOM series
+  std::optional<std::string> segmentation = {}; ///< a node of the scene, or a file
+  std::vector<std::string> focus = {};          ///< ids, names or label values
   std::optional<std::string> transfer =
-      {}; ///< a file, or a preset's name; by default from the volume
+      {}; ///< a file, or a preset's name; by default the scene's, else from the volume
   double shift = 0.0;
   double density = 1.0;
   std::string lights = "studio";       ///< a file, or a preset's name
   std::optional<Rgb> environment = {}; ///< replaces the lights' own environment
   std::optional<std::filesystem::path> environmentMap = {};
   ViewRequest view;
-  std::optional<CropBox> crop = {}; ///< what is outside it is empty; the command line has none
   ClipRequest clip;
   int width = 512, height = 512;
   bool measureCoverage = false; ///< trace the focus even where no clip needs it

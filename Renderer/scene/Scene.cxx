@@ -4,9 +4,7 @@
 #include "core/Stopwatch.h"
 #include "io/EmbeddedResources.h"
 #include "io/LightReader.h"
-#include "io/SegmentationReader.h"
 #include "io/TransferReader.h"
-#include "io/VolumeReader.h"
 #include "scene/Defaults.h"
 
 #include <sstream>
@@ -87,7 +85,7 @@ std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera
 
 } // namespace
 
-Scene::Scene(const SceneRequest& request) : m_crop(request.crop) {
+Scene::Scene(const SceneRequest& request) {
   const std::vector<Light> lights =
       requestedLights(request); // small files first: errors come early
   load(request);
@@ -101,28 +99,42 @@ void Scene::load(const SceneRequest& request) {
   const Stopwatch watch;
   if (request.transfer)
     m_transfer = namedTransfer(*request.transfer);
-  m_volume = readVolume(request.volume);
-  m_warnings = m_volume.warnings;
+  SceneInput input = loadInput(request);
+  m_volume = std::move(input.volume);
+  m_focus = std::move(input.focus);
+  m_crop = input.crop;
+  m_sceneCamera = input.camera;
+  m_background = input.background;
+  m_warnings = input.warnings;
   if (domain().indexCorners().empty())
     m_warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");
-  if (!request.focus.empty())
-    m_focus = readSegmentation(*request.segmentation).mask(request.focus, m_volume.grid);
-  const std::optional<std::string> preset = transferPresetFor(m_volume);
-  m_look = request.transfer ? *request.transfer : preset.value_or("by the volume's range");
-  if (!m_transfer)
+  chooseTransfer(request, input);
+  m_seconds.load = watch.seconds();
+}
+
+/// The request's, else the scene's, else what suits the volume.
+void Scene::chooseTransfer(const SceneRequest& request, const SceneInput& input) {
+  m_look = request.transfer.value_or(input.transferName);
+  if (!m_transfer && input.transfer)
+    m_transfer = input.transfer;
+  if (!m_transfer) {
+    const std::optional<std::string> preset = transferPresetFor(m_volume);
+    m_look = preset.value_or("by the volume's range");
     m_transfer = preset ? namedTransfer(*preset) : relativeTransfer(m_volume);
+  }
   m_transfer = m_transfer->shifted(request.shift).scaled(request.density);
   checkExtinction(*m_transfer, m_volume, request.transfer.value_or(m_volume.name));
   if (m_transfer->shading && m_volume.minimum == m_volume.maximum)
     throw inputError(m_volume.name,
                      "every voxel has the same value, so there is no gradient for the transfer "
                      "function's shading; use one with shading off (\"shading\": \"volume\")");
-  m_seconds.load = watch.seconds();
 }
 
 void Scene::placeCamera(const SceneRequest& request) {
-  const CameraPose pose = frameView(request.view, domain(), m_focus ? &*m_focus : nullptr,
-                                    request.width, request.height);
+  const CameraPose pose = m_sceneCamera
+                              ? adjustedView(request.view, *m_sceneCamera)
+                              : frameView(request.view, domain(), m_focus ? &*m_focus : nullptr,
+                                          request.width, request.height);
   m_camera.emplace(pose, request.width, request.height);
 }
 

@@ -6,6 +6,7 @@
 #include "clipping/ClippingSurface.h"
 #include "lights/LightSet.h"
 #include "scene/RenderRequest.h"
+#include "scene/SceneInput.h"
 
 namespace fenestra {
 
@@ -36,9 +37,12 @@ public:
   const std::optional<BoundaryMismatch>& mismatch() const { return m_mismatch; }
   const StageSeconds& seconds() const { return m_seconds; }
   const std::vector<std::string>& warnings() const { return m_warnings; }
+  /// What a Slicer scene shows where no ray meets anything; nothing for other inputs.
+  const std::optional<Background>& background() const { return m_background; }
 
 private:
   void load(const SceneRequest& request);
+  void chooseTransfer(const SceneRequest& request, const SceneInput& input);
   void placeCamera(const SceneRequest& request);
   void buildClip(const SceneRequest& request);
   void buildDepthClip(SurfaceMode mode, const ClipRequest& request);
@@ -48,6 +52,8 @@ private:
 
   Volume m_volume;
   std::optional<CropBox> m_crop;
+  std::optional<CameraPose> m_sceneCamera;
+  std::optional<Background> m_background;
   std::optional<Mask> m_focus;
   std::optional<TransferFunction> m_transfer;
   std::string m_look;

@@ -1,0 +1,143 @@
+// Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
+
+#include "io/InputFile.h"
+#include "io/JsonNode.h"
+#include "io/NumberText.h"
+#include "io/mrml/MrmlScene.h"
+
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+constexpr double largest = 1e9; ///< mm
+
+/// [-1, 1]^3 to a box of half edges along the columns of `axes`. Throws where it is flat.
+template <typename Fail>
+Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges, const Fail& fail) {
+  if (!(halfEdges.array() > 0.0).all())
+    throw fail("its size must be above 0 in every axis; mend it in the Markups module");
+  if (!(std::abs(axes.determinant()) > 1e-6))
+    throw fail("its axes do not span space; mend it in the Markups module");
+  Affine map;
+  map.linear() = axes * halfEdges.asDiagonal();
+  map.translation() = center;
+  return map;
+}
+
+template <typename Fail>
+void refuseInsideOut(bool insideOut, const Fail& fail) {
+  if (insideOut)
+    throw fail("is inside out, which crops everything in Slicer, too; turn that off in the Markups "
+               "module");
+}
+
+// ---- .mrk.json
+// -----------------------------------------------------------------------------------
+
+Vec3 vector(const JsonNode& node) {
+  const auto numbers = node.numbers(3, -largest, largest);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+bool isLps(const JsonNode& markup) {
+  const auto system = markup.find("coordinateSystem");
+  if (!system)
+    return true;          // Slicer's default
+  if (system->isNumber()) // of the first files: vtkMRMLStorageNode's enumeration
+    return system->number() != 0.0;
+  const std::string name = system->text();
+  if (name != "LPS" && name != "RAS")
+    throw system->error("must be \"LPS\" or \"RAS\"");
+  return name == "LPS";
+}
+
+Affine readMarkupsJson(const std::filesystem::path& path) {
+  const std::string source = path.string();
+  const nlohmann::json document = parseJson(readText(path), source);
+  const JsonNode markups = JsonNode(document, source).at("markups");
+  const std::vector<JsonNode> elements = markups.elements();
+  if (elements.empty())
+    throw markups.error("is empty; save the region of interest again");
+  const JsonNode& roi = elements.front();
+  const auto fail = [&roi](const std::string& what) { return roi.error(what); };
+  if (roi.at("type").text() != "ROI")
+    throw roi.at("type").error("must be \"ROI\"; name a region of interest");
+  if (const auto insideOut = roi.find("insideOut"))
+    refuseInsideOut(insideOut->boolean(), fail);
+
+  Vec3 center = vector(roi.at("center"));
+  Mat3 axes = Mat3::Identity();
+  const bool lps = isLps(roi);
+  if (const auto orientation = roi.find("orientation")) {
+    const auto numbers = orientation->numbers(9, -largest, largest);
+    axes = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
+    if (lps)
+      axes.topRows<2>() *= -1.0;
+  }
+  if (lps)
+    center.head<2>() *= -1.0;
+  return boxMap(center, axes, 0.5 * vector(roi.at("size")), fail);
+}
+
+// ---- older forms: centre and half edges, RAS
+// -----------------------------------------------------
+
+template <typename Fail>
+Affine axisAligned(const std::vector<double>& centerAndRadius, const Fail& fail) {
+  if (centerAndRadius.size() != 6)
+    throw fail("needs a centre and a radius, three numbers each; save it again");
+  const auto n = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(centerAndRadius.data());
+  return boxMap(n.head<3>(), Mat3::Identity(), n.tail<3>(), fail);
+}
+
+/// Annotation files: two lines "point|x|y|z|...".
+Affine readAnnotation(const std::filesystem::path& path) {
+  const auto fail = [&path](const std::string& what) { return inputError(path.string(), what); };
+  std::vector<double> numbers;
+  std::istringstream lines(readText(path));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("point|"))
+      continue;
+    std::istringstream cells(line.substr(line.find('|') + 1));
+    std::string cell;
+    for (int axis = 0; axis < 3 && std::getline(cells, cell, '|'); ++axis) {
+      const auto number = parseNumbers(cell);
+      if (!number || number->size() != 1)
+        throw fail("point: must have three numbers; save it again");
+      numbers.push_back(number->front());
+    }
+  }
+  return axisAligned(numbers, fail);
+}
+
+Affine inlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
+  const auto fail = [&](const std::string& what) { return scene.document.error(roi, what); };
+  std::string text = roi.text("ctrlPtsCoord"); // "x y z|x y z"
+  if (text.empty())
+    text = roi.text("xyz") + roi.text("XYZ") + " " + roi.text("radiusXYZ") + roi.text("RadiusXYZ");
+  std::replace(text.begin(), text.end(), '|', ' ');
+  return axisAligned(parseNumbers(text).value_or(std::vector<double>()), fail);
+}
+
+Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
+  refuseInsideOut(roi.flag("insideOut", false),
+                  [&](const std::string& what) { return scene.document.error(roi, what); });
+  const std::vector<std::string> names = storedFiles(scene, roi);
+  if (names.empty())
+    return inlineRoi(scene, roi);
+  const std::filesystem::path file = scene.files.locate(names.front());
+  try {
+    return lowerExtension(file) == ".acsv" ? readAnnotation(file) : readMarkupsJson(file);
+  } catch (const Error& error) {
+    throw scene.files.asKnown(error);
+  }
+}
+
+} // namespace
+
+CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
+  return CropBox(toWorld(scene, roi) * boxInNode(scene, roi));
+}
+
+} // namespace fenestra

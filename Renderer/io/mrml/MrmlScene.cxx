@@ -1,0 +1,178 @@
+#include "io/mrml/MrmlScene.h"
+
+#include "io/TransferReader.h"
+#include "io/VolumeReader.h"
+#include "medium/VolumeProperty.h"
+
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+/// What a storage node says of the geometry in a volume's file (vtkITKArchetypeImageSeriesReader).
+Grid placed(const MrmlNode* storage, const Grid& fromFile) {
+  if (!storage)
+    return fromFile;
+  Affine indexToWorld = fromFile.indexToWorld;
+  if (!storage->flag("UseOrientationFromFile", true)) {
+    indexToWorld.linear() = fromFile.spacing().asDiagonal();
+    indexToWorld.translation().setZero();
+  } else if (storage->flag("centerImage", false)) {
+    const Vec3 middle = fromFile.indexBox().center();
+    indexToWorld.translation() = -(fromFile.indexToWorld.linear() * middle);
+  }
+  return {fromFile.size, indexToWorld};
+}
+
+/// Runs a reader on the node's files, and lets its errors name them as the user does.
+template <typename Read>
+auto withFiles(MrmlScene& scene, const MrmlNode& node, Read&& read) {
+  const std::vector<std::string> names = storedFiles(scene, node);
+  if (names.empty())
+    throw scene.document.error(node, "names no file; save its data in Slicer, then the scene");
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : names)
+    files.push_back(scene.files.locate(name));
+  try {
+    return read(files);
+  } catch (const Error& error) {
+    throw scene.files.asKnown(error);
+  }
+}
+
+bool isOf(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+Rgb colorOf(const MrmlNode& node, const std::string& attribute, const Rgb& otherwise) {
+  const auto numbers = node.numbers(attribute);
+  if (!numbers || numbers->size() != 3)
+    return otherwise;
+  return Rgb((*numbers)[0], (*numbers)[1], (*numbers)[2]).max(0.0).min(1.0);
+}
+
+} // namespace
+
+bool isLabelMap(const MrmlNode& node) {
+  return node.tag == "LabelMapVolume" || (node.tag == "Volume" && node.flag("labelMap", false));
+}
+
+bool isScalarVolume(const MrmlNode& node) {
+  return node.tag == "Volume" && !isLabelMap(node);
+}
+
+bool isVolumeRendering(const MrmlNode& node) {
+  return isOf(node.tag, {"GPURayCastVolumeRendering", "CPURayCastVolumeRendering",
+                         "MultiVolumeRendering", "NCIRayCastVolumeRendering", "VolumeRendering"});
+}
+
+std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node) {
+  std::vector<std::string> names;
+  const MrmlNode* storage = scene.document.follow(node, "storage");
+  if (!storage)
+    return names;
+  const auto add = [&names](const std::string& name) {
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  };
+  add(storage->text("fileName"));
+  for (std::size_t n = 0; storage->find("fileListMember" + std::to_string(n)); ++n)
+    add(storage->text("fileListMember" + std::to_string(n)));
+  return names;
+}
+
+Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
+  const Affine above = toWorld(scene, node);
+  Volume volume = withFiles(scene, node, [](const std::vector<std::filesystem::path>& files) {
+    return readVolume(files.front());
+  });
+  volume.grid = placed(scene.document.follow(node, "storage"), volume.grid);
+  volume.grid = Grid(volume.grid.size, above * volume.grid.indexToWorld);
+  volume.name = node.name.empty() ? volume.name : node.name;
+  return volume;
+}
+
+Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node) {
+  const Affine above = toWorld(scene, node);
+  const MrmlNode* storage = isLabelMap(node) ? scene.document.follow(node, "storage") : nullptr;
+  Segmentation segmentation =
+      withFiles(scene, node, [&](const std::vector<std::filesystem::path>& files) {
+        return readSegmentation(files.front());
+      });
+  const Grid grid = placed(storage, segmentation.grid());
+  segmentation.moveTo(Grid(grid.size, above * grid.indexToWorld));
+  return segmentation;
+}
+
+std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node) {
+  std::map<std::string, bool> visible;
+  const MrmlNode* display = scene.document.follow(node, "display");
+  if (!display)
+    return visible;
+  std::istringstream segments(display->text("SegmentationDisplayProperties"));
+  for (std::string segment; std::getline(segments, segment, '|');) {
+    std::istringstream words(segment);
+    std::string id;
+    words >> id;
+    bool shown = true;
+    for (std::string word; words >> word;)
+      shown = shown && word != "Visible:false" && word != "Visible3D:false";
+    if (!id.empty())
+      visible[decodedUrl(id)] = shown;
+  }
+  return visible;
+}
+
+TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property) {
+  const std::string inScene = scene.document.source() + ": " + property.tag + " " + shown(property);
+  const std::vector<std::string> names = storedFiles(scene, property);
+  const bool isInline = property.find("scalarOpacity") && property.find("colorTransfer");
+  if (names.empty() && !isInline)
+    throw scene.document.error(property, "has neither a file nor points of its own; save the "
+                                         "volume property, or give --transfer");
+  if (names.empty())
+    return parseTransferFunction(property.attributes, inScene);
+  return withFiles(scene, property, [](const std::vector<std::filesystem::path>& files) {
+    return readTransferFunction(files.front());
+  });
+}
+
+std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const MrmlNode& display,
+                                                const std::array<double, 2>& range) {
+  const auto number = [&display](const std::string& attribute, double otherwise) {
+    const auto numbers = display.numbers(attribute);
+    return numbers && numbers->size() == 1 ? numbers->front() : otherwise;
+  };
+  const std::string colors = display.referenced("color");
+  if (!display.find("window") || !display.find("level") ||
+      (!colors.empty() && colors != "vtkMRMLColorTableNodeGrey"))
+    return std::nullopt;
+  const double window = std::abs(number("window", 0.0));
+  const double low = number("level", 0.0) - 0.5 * window;
+  const double high = low + window;
+
+  const bool byWindow = rendering.flag("ignoreVolumeDisplayNodeThreshold", false);
+  const auto inRange = [&range](double x) { return std::clamp(x, range[0], range[1]); };
+  const double from = inRange(byWindow ? low : number("lowerThreshold", range[0]));
+  const double to = std::max(from, inRange(byWindow ? high : number("upperThreshold", range[1])));
+  const double beyond = byWindow ? 1.0 : 0.0;
+
+  VolumeProperty property;
+  property.scalarOpacity = {
+      {range[0], 0.0}, {from, 0.0}, {to, 1.0}, {to, beyond}, {range[1], beyond}};
+  const bool inverted = display.flag("invertDisplayScalarRange", false);
+  const Rgb first = Rgb::Constant(inverted ? 1.0 : 0.0);
+  property.color = {{low, first}, {high, 1.0 - first}};
+  property.shade = true;
+  property.diffuse = 0.6;
+  property.specular = 0.5;
+  property.specularPower = 40.0;
+  return tabulate(property, display.name);
+}
+
+ViewBackground viewBackground(const MrmlNode& view) {
+  const Rgb bottom = colorOf(view, "backgroundColor", Rgb::Zero());
+  return {bottom, colorOf(view, "backgroundColor2", bottom)};
+}
+
+} // namespace fenestra

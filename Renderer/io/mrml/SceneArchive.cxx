@@ -1,0 +1,147 @@
+#include "io/mrml/SceneArchive.h"
+
+#include "core/Error.h"
+
+#include <zip.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <functional>
+#include <numeric>
+#include <string_view>
+
+namespace fenestra {
+namespace {
+
+constexpr std::int64_t mostEntries = 1'000'000;
+
+/// Deflate packs at most 1032 bytes into one; what claims more is no archive of Slicer's.
+constexpr std::uint64_t greatestRatio = 1032;
+
+bool leadsOut(const std::filesystem::path& name) {
+  return name.is_absolute() ||
+         std::any_of(name.begin(), name.end(), [](const auto& part) { return part == ".."; });
+}
+
+using Chunk = std::function<void(std::string_view)>;
+
+} // namespace
+
+struct SceneArchive::Zip {
+  struct Close {
+    void operator()(zip_t* archive) const { zip_discard(archive); }
+    void operator()(zip_file_t* file) const { zip_fclose(file); }
+  };
+
+  std::unique_ptr<zip_t, Close> archive;
+  std::string source;
+
+  Error damaged(const std::filesystem::path& file) const {
+    return inputError(source, file.string() + " in it is damaged; save the scene again");
+  }
+
+  zip_stat_t stat(std::uint64_t entry, const std::filesystem::path& file) const {
+    zip_stat_t stat;
+    zip_stat_init(&stat);
+    constexpr zip_uint64_t needed = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_ENCRYPTION_METHOD;
+    if (zip_stat_index(archive.get(), entry, 0, &stat) != 0 || (stat.valid & needed) != needed)
+      throw damaged(file);
+    if (stat.encryption_method != ZIP_EM_NONE)
+      throw inputError(source,
+                       file.string() + " in it is encrypted; save the scene without a password");
+    if (stat.size / greatestRatio > stat.comp_size)
+      throw inputError(source, file.string() + " in it claims more bytes than it can hold; save "
+                                               "the scene again");
+    return stat;
+  }
+
+  /// Exactly as many bytes as declared, or an Error.
+  void read(std::uint64_t entry, const std::filesystem::path& file, std::uint64_t size,
+            const Chunk& take) const {
+    const std::unique_ptr<zip_file_t, Close> stream(zip_fopen_index(archive.get(), entry, 0));
+    if (!stream)
+      throw damaged(file);
+    std::array<char, 1 << 16> buffer;
+    std::uint64_t rest = size;
+    for (;;) { // to the end of the stream, where the checksum is
+      const zip_int64_t count = zip_fread(stream.get(), buffer.data(), buffer.size());
+      if (count < 0 || static_cast<std::uint64_t>(count) > rest)
+        throw damaged(file);
+      if (count == 0)
+        break;
+      rest -= static_cast<std::uint64_t>(count);
+      take({buffer.data(), static_cast<std::size_t>(count)});
+    }
+    if (rest > 0)
+      throw damaged(file);
+  }
+};
+
+SceneArchive::SceneArchive(const std::filesystem::path& path)
+    : m_source(path.string()), m_zip(std::make_unique<Zip>()) {
+  int failure = 0;
+  m_zip->source = m_source;
+  m_zip->archive.reset(zip_open(path.c_str(), ZIP_RDONLY, &failure));
+  if (!m_zip->archive)
+    throw inputError(m_source, "is no whole archive; save the scene again, or name its .mrml");
+  const zip_int64_t count = zip_get_num_entries(m_zip->archive.get(), 0);
+  if (count > mostEntries)
+    throw inputError(m_source, "holds more than a million files; save a smaller scene");
+
+  std::vector<std::pair<std::filesystem::path, std::uint64_t>> found;
+  for (zip_int64_t entry = 0; entry < count; ++entry) {
+    const auto index = static_cast<std::uint64_t>(entry);
+    const char* name = zip_get_name(m_zip->archive.get(), index, 0);
+    if (!name)
+      throw inputError(m_source, "has an entry without a name; save the scene again");
+    const std::filesystem::path file = name;
+    if (leadsOut(file))
+      throw inputError(m_source, "holds an entry that leads out of the archive (" +
+                                     file.string().substr(0, 80) + "); it is not Slicer's work");
+    if (!file.empty() && file.has_filename())
+      found.emplace_back(file.lexically_normal(), index);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& [file, entry] : found) {
+    m_files.push_back(std::move(file));
+    m_entries.push_back(entry);
+  }
+}
+
+SceneArchive::~SceneArchive() = default;
+
+bool SceneArchive::contains(const std::filesystem::path& file) const {
+  return std::binary_search(m_files.begin(), m_files.end(), file);
+}
+
+void SceneArchive::extract(const std::filesystem::path& file,
+                           const std::filesystem::path& destination) const {
+  const auto at = std::lower_bound(m_files.begin(), m_files.end(), file);
+  const std::uint64_t entry = m_entries[static_cast<std::size_t>(at - m_files.begin())];
+  std::ofstream out(destination, std::ios::binary);
+  m_zip->read(entry, file, m_zip->stat(entry, file).size, [&](std::string_view chunk) {
+    if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size())))
+      throw outputError(destination.string(), "there is no room to unpack " + file.string() +
+                                                  "; set TMPDIR to a folder with more");
+  });
+  out.close();
+  if (!out)
+    throw outputError(destination.string(), "there is no room to unpack " + file.string() +
+                                                "; set TMPDIR to a folder with more");
+}
+
+std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t most) const {
+  const auto at = std::lower_bound(m_files.begin(), m_files.end(), file);
+  const std::uint64_t entry = m_entries[static_cast<std::size_t>(at - m_files.begin())];
+  const std::uint64_t size = m_zip->stat(entry, file).size;
+  if (size > most)
+    throw inputError(m_source, file.string() + " in it is larger than " +
+                                   std::to_string(most >> 20) + " MB; save a smaller scene");
+  std::string text;
+  m_zip->read(entry, file, size, [&](std::string_view chunk) { text += chunk; });
+  return text;
+}
+
+} // namespace fenestra

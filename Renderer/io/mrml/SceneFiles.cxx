@@ -1,0 +1,113 @@
+#include "io/mrml/SceneFiles.h"
+
+#include "io/InputFile.h"
+#include "io/JsonNode.h"
+#include "io/mrml/SceneArchive.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace fenestra {
+namespace {
+
+constexpr std::uint64_t largestScene = std::uint64_t{64} << 20;
+
+std::ptrdiff_t depth(const std::filesystem::path& file) {
+  return std::distance(file.begin(), file.end());
+}
+
+/// Slicer takes the scene closest to the root: those deeper belong to sequences.
+std::filesystem::path mainScene(const SceneArchive& archive, const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> closest;
+  for (const std::filesystem::path& file : archive.files()) {
+    if (lowerExtension(file) != ".mrml")
+      continue;
+    if (!closest.empty() && depth(file) < depth(closest.front()))
+      closest.clear();
+    if (closest.empty() || depth(file) == depth(closest.front()))
+      closest.push_back(file);
+  }
+  if (closest.empty())
+    throw inputError(path.string(), "holds no .mrml, so it is no scene; save it again from Slicer");
+  if (closest.size() == 1)
+    return closest.front();
+  std::vector<std::filesystem::path> named;
+  std::string listed;
+  for (const std::filesystem::path& file : closest) {
+    if (file.stem() == path.stem() || file.stem() == file.parent_path().filename())
+      named.push_back(file);
+    listed += (listed.empty() ? "" : ", ") + file.string();
+  }
+  if (named.size() == 1)
+    return named.front();
+  throw inputError(path.string(), "holds several scenes (" + listed.substr(0, 300) +
+                                      "); unpack it and name one of them");
+}
+
+} // namespace
+
+std::string decodedUrl(std::string text) {
+  // In this order: the escape of % comes last, as it was made first.
+  constexpr std::pair<std::string_view, std::string_view> escapes[] = {
+      {"%22", "\""}, {"%3C", "<"}, {"%3E", ">"}, {"%27", "'"}, {"%20", " "}, {"%25", "%"}};
+  for (const auto& [escape, character] : escapes)
+    for (std::size_t at = text.find(escape); at != std::string::npos;
+         at = text.find(escape, at + character.size()))
+      text.replace(at, escape.size(), character);
+  return text;
+}
+
+bool isSceneFile(const std::filesystem::path& path) {
+  const std::string extension = lowerExtension(path);
+  return extension == ".mrml" || extension == ".mrb";
+}
+
+SceneFiles::SceneFiles(const std::filesystem::path& path) : m_source(path.string()) {
+  requireFile(path, "name the .mrml or .mrb in it");
+  if (lowerExtension(path) == ".mrb") {
+    m_archive = std::make_unique<SceneArchive>(path);
+    const std::filesystem::path scene = mainScene(*m_archive, path);
+    m_sceneText = m_archive->text(scene, largestScene);
+    m_folder = scene.parent_path();
+  } else {
+    m_sceneText = readText(path);
+    m_folder = path.parent_path();
+  }
+}
+
+SceneFiles::~SceneFiles() = default;
+
+std::filesystem::path SceneFiles::locate(const std::string& fileName) {
+  const std::filesystem::path name = decodedUrl(fileName);
+  const std::filesystem::path file = (m_folder / name).lexically_normal(); // or an absolute name
+  if (!m_archive) {
+    if (std::error_code failed; !std::filesystem::exists(file, failed))
+      throw inputError(m_source, "names " + file.string() +
+                                     ", which is not there; put it back, or save the scene again");
+    return file;
+  }
+  if (const auto known = m_located.find(file); known != m_located.end())
+    return known->second;
+  if (name.is_absolute() || *file.begin() == "..")
+    throw inputError(m_source, "names " + name.string() +
+                                   ", which is outside the archive; save the scene again");
+  if (!m_archive->contains(file))
+    throw inputError(m_source,
+                     "names " + file.string() + ", which it does not hold; save the scene again");
+  if (!m_unpacked)
+    m_unpacked.emplace();
+  const std::filesystem::path destination = m_unpacked->add(file);
+  m_archive->extract(file, destination);
+  return m_located[file] = destination;
+}
+
+Error SceneFiles::asKnown(const Error& error) const {
+  std::string line = error.what();
+  if (m_unpacked)
+    for (std::size_t at = line.find(m_unpacked->path().string()); at != std::string::npos;
+         at = line.find(m_unpacked->path().string(), at + m_source.size()))
+      line.replace(at, m_unpacked->path().string().size(), m_source);
+  return {error.kind(), line};
+}
+
+} // namespace fenestra

@@ -1,0 +1,54 @@
+#pragma once
+// The files of a Slicer scene: beside a .mrml, or inside a .mrb.
+
+#include "core/Error.h"
+#include "io/PrivateFolder.h"
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace fenestra {
+
+class SceneArchive;
+
+/// True for .mrml and .mrb, in either case.
+bool isSceneFile(const std::filesystem::path& path);
+
+/// Undoes the escapes of vtkMRMLNode::URLEncodeString, which are six and no others.
+std::string decodedUrl(std::string text);
+
+class SceneFiles {
+public:
+  /// Opens a .mrml or a .mrb; of an archive the scene is the .mrml closest to its root (of several
+  /// as close, the one that is named like the archive or its folder). Throws Error (input).
+  explicit SceneFiles(const std::filesystem::path& path);
+  ~SceneFiles();
+
+  /// Names the scene in messages: the .mrml, or the archive.
+  const std::string& source() const { return m_source; }
+  /// The content of the .mrml.
+  const std::string& sceneText() const { return m_sceneText; }
+
+  /// Where the file that a storage node names can be read: its URL escapes are undone, and relative
+  /// names start at the .mrml. An archive's files are unpacked when they are asked for; it holds
+  /// all of its own, so names that lead out of it are refused. Throws Error (input) where there is
+  /// no such file.
+  std::filesystem::path locate(const std::string& fileName);
+
+  /// The error with the places of unpacked files as the user knows them.
+  Error asKnown(const Error& error) const;
+
+private:
+  std::string m_source;
+  std::string m_sceneText;
+  std::filesystem::path m_folder; ///< of the .mrml, in the archive where there is one
+  std::unique_ptr<SceneArchive> m_archive;
+  std::optional<PrivateFolder> m_unpacked;
+  std::map<std::filesystem::path, std::filesystem::path> m_located;
+};
+
+} // namespace fenestra

@@ -1,0 +1,84 @@
+#include "scene/SceneInput.h"
+
+#include "core/Error.h"
+#include "io/SegmentationReader.h"
+#include "io/VolumeReader.h"
+#include "io/mrml/ScenePlan.h"
+#include "medium/VolumeProperty.h"
+
+namespace fenestra {
+namespace {
+
+std::array<double, 2> rangeOf(const Volume& volume) {
+  return {volume.minimum, volume.maximum};
+}
+
+void readFocus(const SceneRequest& request, const Segmentation& segmentation, SceneInput& input) {
+  input.focus = segmentation.mask(request.focus, input.volume.grid);
+}
+
+/// The segmentation by its name in the scene, else a file of that name.
+void readSceneFocus(MrmlScene& scene, const ScenePlan& plan, const SceneRequest& request,
+                    SceneInput& input) {
+  if (plan.segmentation)
+    return readFocus(request, readSceneSegmentation(scene, *plan.segmentation), input);
+  if (!std::filesystem::exists(*request.segmentation))
+    throw inputError(scene.document.source(),
+                     "has no segmentation \"" + *request.segmentation +
+                         "\", and there is no file of that name; fenestra inspect lists what "
+                         "there is");
+  readFocus(request, readSegmentation(*request.segmentation), input);
+}
+
+void readLook(MrmlScene& scene, const ScenePlan& plan, SceneInput& input) {
+  if (plan.followed) {
+    input.transfer = followedDisplay(*plan.rendering, *plan.followed, rangeOf(input.volume));
+    input.transferName = "the volume's window and level";
+  }
+  if (!input.transfer && plan.property) {
+    input.transfer = readSceneProperty(scene, *plan.property);
+    input.transferName = plan.property->name;
+  }
+}
+
+Background backgroundOf(const MrmlNode& view) {
+  const ViewBackground colors = viewBackground(view);
+  return {Background::Kind::color, decodeSrgb(colors.bottom)};
+}
+
+SceneInput loadScene(const SceneRequest& request) {
+  MrmlScene scene(request.input);
+  const ScenePlan plan =
+      planRender(scene.document, {request.volume, request.segmentation, !request.focus.empty()});
+  SceneInput input{.volume = readSceneVolume(scene, *plan.volume)};
+  if (!request.transfer)
+    readLook(scene, plan, input);
+  if (plan.roi)
+    input.crop = readSceneRoi(scene, *plan.roi);
+  if (!request.focus.empty())
+    readSceneFocus(scene, plan, request, input);
+  if (plan.camera && request.view.followsScene())
+    input.camera = readSceneCamera(scene, *plan.camera);
+  if (plan.view)
+    input.background = backgroundOf(*plan.view);
+  input.warnings = plan.warnings;
+  return input;
+}
+
+SceneInput loadFiles(const SceneRequest& request) {
+  SceneInput input{.volume = readVolume(request.input)};
+  if (!request.focus.empty())
+    readFocus(request, readSegmentation(*request.segmentation), input);
+  return input;
+}
+
+} // namespace
+
+SceneInput loadInput(const SceneRequest& request) {
+  SceneInput input = isSceneFile(request.input) ? loadScene(request) : loadFiles(request);
+  input.warnings.insert(input.warnings.begin(), input.volume.warnings.begin(),
+                        input.volume.warnings.end());
+  return input;
+}
+
+} // namespace fenestra

@@ -1,0 +1,123 @@
+// MRML as XML: nodes, attributes, references of old and new scenes, and what is no scene.
+
+#include "SceneTesting.h"
+
+namespace fenestra {
+namespace {
+
+MrmlDocument parse(const std::string& nodes) {
+  return {"<MRML>" + nodes + "</MRML>", "test"};
+}
+
+void refuse(const std::string& text, const std::string& because) {
+  expectRefused("test", because, [&] { MrmlDocument(text, "test"); });
+}
+
+TEST(MrmlDocument, readsNodesInTheirOrder) {
+  const MrmlDocument document = parse(R"(<Volume id="v" name="a &amp; b"></Volume>
+    <!-- <Volume id="commented"/> --> <View id="w"/><Volume id="x"/>)");
+  ASSERT_EQ(document.nodes().size(), 3U);
+  EXPECT_EQ(document.nodes()[0].name, "a & b");
+  ASSERT_EQ(document.withTag("Volume").size(), 2U);
+  EXPECT_EQ(document.withTag("Volume")[1]->id, "x");
+  EXPECT_EQ(document.find("w")->tag, "View");
+  EXPECT_FALSE(document.find("nothing"));
+  EXPECT_FALSE(document.find(""));
+}
+
+TEST(MrmlDocument, leavesOutTheCopiesInSceneViews) {
+  const MrmlDocument document = parse(R"(
+    <SceneView id="sv"><Volume id="v" name="copy"/></SceneView><Volume id="v" name="own"/>
+    <SubjectHierarchy id="sh"><SubjectHierarchyItem id="3"/></SubjectHierarchy>)");
+  ASSERT_EQ(document.withTag("Volume").size(), 1U);
+  EXPECT_EQ(document.find("v")->name, "own");
+  EXPECT_FALSE(document.find("3"));
+}
+
+TEST(MrmlDocument, readsReferencesOfNewScenes) {
+  const MrmlDocument document = parse(
+      R"(<Volume id="v" references="display:d1 d2;storage:s {size=3,kind=a%20b};unit/length:u;"/>
+         <D id="d1"/><S id="s"/>)");
+  const MrmlNode& volume = document.nodes()[0];
+  EXPECT_EQ(volume.references.at("display"), (std::vector<std::string>{"d1", "d2"}));
+  EXPECT_EQ(volume.references.at("storage"), std::vector<std::string>{"s"});
+  EXPECT_EQ(volume.referenced("unit/length"), "u");
+  EXPECT_EQ(document.follow(volume, "display")->tag, "D");
+  EXPECT_FALSE(document.follow(volume, "transform"));
+  EXPECT_FALSE(document.follow(volume, "unit/length")); // names no node of the scene
+}
+
+TEST(MrmlDocument, readsReferencesOfOldScenes) {
+  const MrmlDocument document = parse(
+      R"(<Volume displayNodeRef="d1 d2" storageNodeRef="s" transformNodeRef="t"/>
+         <GPURayCastVolumeRendering volumePropertyNodeID="p" ROINodeID="r" viewNodeRef="w"/>
+         <Selection activeVolumeID="v"/><VolumeDisplay colorNodeID="c"/>)");
+  const MrmlNode& volume = document.nodes()[0];
+  EXPECT_EQ(volume.references.at("display"), (std::vector<std::string>{"d1", "d2"}));
+  EXPECT_EQ(volume.referenced("storage"), "s");
+  EXPECT_EQ(volume.referenced("transform"), "t");
+  const MrmlNode& rendering = document.nodes()[1];
+  EXPECT_EQ(rendering.referenced("volumeProperty"), "p");
+  EXPECT_EQ(rendering.referenced("roi"), "r");
+  EXPECT_EQ(rendering.referenced("view"), "w");
+  EXPECT_EQ(document.nodes()[2].referenced("ActiveVolume"), "v");
+  EXPECT_EQ(document.nodes()[3].referenced("color"), "c");
+}
+
+TEST(MrmlDocument, prefersTheNewFormOfAReference) {
+  const MrmlDocument document =
+      parse(R"(<Volume displayNodeRef="old" storageNodeRef="s" references="display:new;"/>)");
+  EXPECT_EQ(document.nodes()[0].references.at("display"), std::vector<std::string>{"new"});
+  EXPECT_EQ(document.nodes()[0].referenced("storage"), "s");
+}
+
+TEST(MrmlDocument, surviveReferencesThatAreNone) {
+  const MrmlDocument document =
+      parse(R"(<Volume references=";;:x;role;a:;b: ;c:1"/><Volume references=""/>)");
+  EXPECT_EQ(document.nodes()[0].references.size(), 1U);
+  EXPECT_EQ(document.nodes()[0].referenced("c"), "1");
+}
+
+TEST(MrmlDocument, convertsAttributes) {
+  const MrmlDocument document =
+      parse(R"(<N a="true" b="false" c="1" d="0" e="yes" n=" 1  -2e3 2.2250738585072e-308 "
+                  m="1 2x" i="1 inf" o=""/>)");
+  const MrmlNode& node = document.nodes()[0];
+  EXPECT_TRUE(node.flag("a", false));
+  EXPECT_FALSE(node.flag("b", true));
+  EXPECT_TRUE(node.flag("c", false));
+  EXPECT_FALSE(node.flag("d", true));
+  EXPECT_TRUE(node.flag("e", true));
+  EXPECT_FALSE(node.flag("missing", false));
+  EXPECT_EQ(*node.numbers("n"), (std::vector<double>{1, -2000, 2.2250738585072e-308}));
+  EXPECT_FALSE(node.numbers("m"));
+  EXPECT_FALSE(node.numbers("i"));
+  EXPECT_TRUE(node.numbers("o")->empty());
+  EXPECT_FALSE(node.numbers("missing"));
+}
+
+TEST(MrmlDocument, refusesWhatIsNoScene) {
+  refuse("", "no whole XML");
+  refuse("words", "no whole XML");
+  refuse("<MRML><Volume></MRML>", "no whole XML");
+  refuse("<MRML><Volume id=\"v\"", "no whole XML");
+  refuse("<VTKFile/>", "no MRML element");
+}
+
+TEST(MrmlDocument, refusesEntities) {
+  refuse("<!DOCTYPE MRML [<!ENTITY a \"b\"><!ENTITY c \"&a;&a;\">]><MRML>&c;</MRML>",
+         "document type");
+}
+
+TEST(MrmlDocument, survivesDeepNesting) {
+  std::string deep = "<MRML>";
+  for (int i = 0; i < 200'000; ++i)
+    deep += "<a>";
+  refuse(deep, "no whole XML");
+  for (int i = 0; i < 200'000; ++i)
+    deep += "</a>";
+  EXPECT_EQ(MrmlDocument(deep + "</MRML>", "test").nodes().size(), 1U);
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,144 @@
+// Where a scene's files are: beside a .mrml, inside a .mrb, and names that lead elsewhere.
+
+#include "SceneTesting.h"
+
+#include <random>
+
+namespace fenestra {
+namespace {
+
+std::string located(SceneFiles& files, const std::string& name) {
+  return bytesOf(files.locate(name));
+}
+
+TEST(SceneFiles, findsFilesBesideTheScene) {
+  const TemporaryFolder folder;
+  folder.write("a b.txt", "escaped");
+  folder.write("50%.txt", "percent");
+  folder.write("%20.txt", "an escape of the escape");
+  folder.write("it's <\"x\">.txt", "all six");
+  folder.write("plus+%41.txt", "no other escapes");
+  std::filesystem::create_directory(folder / "sub");
+  const auto scene = folder.write("sub/scene.MRML", "<MRML/>");
+  SceneFiles files(scene);
+  EXPECT_EQ(files.sceneText(), "<MRML/>");
+  EXPECT_EQ(located(files, "../a%20b.txt"), "escaped");
+  EXPECT_EQ(located(files, "../a b.txt"), "escaped");
+  EXPECT_EQ(located(files, "../50%25.txt"), "percent");
+  EXPECT_EQ(located(files, "../%2520.txt"), "an escape of the escape");
+  EXPECT_EQ(located(files, "../it%27s%20%3C%22x%22%3E.txt"), "all six");
+  EXPECT_EQ(located(files, "../plus+%41.txt"), "no other escapes");
+  EXPECT_EQ(located(files, (folder / "a b.txt").string()), "escaped"); // absolute
+  expectRefused(scene, "nowhere.nrrd, which is not there", [&] { files.locate("nowhere.nrrd"); });
+}
+
+TEST(SceneFiles, findsFilesInAnArchiveAndCleansUp) {
+  const TemporaryFolder folder;
+  const auto archive = folder / "my.mrb";
+  writeArchive(archive, {{"Study/Study.mrml", "<MRML/>"},
+                         {"Study/Data/a b.txt", "inside"},
+                         {"Study/Data/", ""},
+                         {"Study/Data/seq.mrml", "<MRML>of a sequence</MRML>"},
+                         {"other.txt", "beside"}});
+  std::filesystem::path unpacked;
+  {
+    SceneFiles files(archive);
+    EXPECT_EQ(files.sceneText(), "<MRML/>");
+    unpacked = files.locate("Data/a%20b.txt");
+    EXPECT_EQ(bytesOf(unpacked), "inside");
+    EXPECT_EQ(unpacked.filename(), "a b.txt"); // readers go by extensions
+    EXPECT_EQ(files.locate("Data/a%20b.txt"), unpacked);
+    EXPECT_EQ(located(files, "../other.txt"), "beside");
+    EXPECT_EQ(
+        std::filesystem::status(unpacked.parent_path().parent_path().parent_path()).permissions() &
+            std::filesystem::perms::others_all,
+        std::filesystem::perms::none);
+    const Error known = files.asKnown(inputError(unpacked.string(), "is damaged"));
+    EXPECT_EQ(std::string(known.what()), archive.string() + "/Study/Data/a b.txt: is damaged");
+    expectRefused(archive, "outside the archive", [&] { files.locate("../../up.txt"); });
+    expectRefused(archive, "outside the archive", [&] { files.locate("/etc/passwd"); });
+    expectRefused(archive, "does not hold", [&] { files.locate("Data/missing.txt"); });
+  }
+  EXPECT_FALSE(std::filesystem::exists(unpacked));
+  EXPECT_FALSE(std::filesystem::exists(unpacked.parent_path().parent_path().parent_path()));
+}
+
+TEST(SceneFiles, unpacksNothingBeforeItIsAskedFor) {
+  const TemporaryFolder folder;
+  const TemporaryFolder temporary;
+  setenv("TMPDIR", temporary.path().c_str(), 1);
+  writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}, {"big", std::string(1000, 'x')}});
+  {
+    SceneFiles files(folder / "a.mrb");
+    EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
+    files.locate("big");
+    EXPECT_FALSE(std::filesystem::is_empty(temporary.path()));
+    removePrivateFolders(); // what a signal does
+    EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
+  }
+  unsetenv("TMPDIR");
+}
+
+TEST(SceneFiles, choosesTheMainSceneAsSlicerDoes) {
+  const TemporaryFolder folder;
+  const auto mainOf = [&](const std::map<std::string, std::string>& files) {
+    writeArchive(folder / "case.mrb", files);
+    return SceneFiles(folder / "case.mrb").sceneText();
+  };
+  EXPECT_EQ(mainOf({{"a/deep/z.mrml", "deep"}, {"z/main.mrml", "main"}}), "main");
+  EXPECT_EQ(mainOf({{"x/case.mrml", "named"}, {"x/other.mrml", "other"}}), "named");
+  EXPECT_EQ(mainOf({{"x/x.mrml", "like its folder"}, {"x/other.mrml", "other"}}),
+            "like its folder");
+  expectRefused(folder / "case.mrb", "several scenes (x/a.mrml, x/b.mrml)", [&] {
+    mainOf({{"x/a.mrml", ""}, {"x/b.mrml", ""}});
+  });
+  expectRefused(folder / "case.mrb", "holds no .mrml", [&] { mainOf({{"x/a.txt", ""}}); });
+}
+
+TEST(SceneFiles, refusesArchivesThatAreNotSlicers) {
+  const TemporaryFolder folder;
+  const auto refuse = [&](const std::map<std::string, std::string>& files,
+                          const std::string& because) {
+    writeArchive(folder / "bad.mrb", files);
+    expectRefused(folder / "bad.mrb", because, [&] { SceneFiles(folder / "bad.mrb"); });
+  };
+  refuse({{"a.mrml", "<MRML/>"}, {"../../evil", "x"}}, "leads out of the archive");
+  refuse({{"a.mrml", "<MRML/>"}, {"/etc/evil", "x"}}, "leads out of the archive");
+  refuse({{"a.mrml", "<MRML/>"}, {"x/../../evil", "x"}}, "leads out of the archive");
+
+  const auto words = folder.write("words.mrb", "not an archive");
+  expectRefused(words, "no whole archive", [&] { SceneFiles files(words); });
+  writeArchive(folder / "whole.mrb", {{"a.mrml", "<MRML/>" + std::string(5000, ' ')}});
+  const std::string bytes = bytesOf(folder / "whole.mrb");
+  const auto half = folder.write("half.mrb", bytes.substr(0, bytes.size() / 2));
+  expectRefused(half, "no whole archive", [&] { SceneFiles files(half); });
+}
+
+TEST(SceneFiles, refusesDamagedAndBoundlessEntries) {
+  const TemporaryFolder folder;
+  std::mt19937 random(1);
+  std::string noise(4000, ' '); // does not compress, so it is stored
+  std::generate(noise.begin(), noise.end(), [&] { return static_cast<char>(random() & 0xff); });
+  writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}, {"data", noise}});
+  std::string bytes = bytesOf(folder / "a.mrb");
+  const std::size_t at = bytes.find(noise.substr(2000, 8));
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = static_cast<char>(bytes[at] ^ 1);
+  const auto damaged = folder.write("damaged.mrb", bytes);
+  SceneFiles files(damaged);
+  expectRefused(damaged, "data in it is damaged", [&] { files.locate("data"); });
+
+  // The uncompressed size in the central directory, set to 4 GB less one.
+  bytes = bytesOf(folder / "a.mrb");
+  const std::size_t directory = bytes.find("PK\x01\x02", bytes.find("PK\x01\x02") + 4);
+  ASSERT_NE(directory, std::string::npos);
+  bytes.replace(directory + 24, 4, "\xfe\xff\xff\xff");
+  const auto boundless = folder.write("boundless.mrb", bytes);
+  expectRefused(boundless, "", [&] {
+    SceneFiles claimed(boundless);
+    claimed.locate("data");
+  });
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,4 @@
+foreach(idea MrmlDocument SceneFiles)
+  fenestra_test(${idea}Tests ${idea}Tests.cxx
+    LIBRARIES fenestra_io_mrml fenestra_itk PkgConfig::LibZip LABELS unit)
+endforeach()
