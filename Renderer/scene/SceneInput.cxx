@@ -43,7 +43,7 @@ void readLook(MrmlScene& scene, const ScenePlan& plan, SceneInput& input) {
 
 Background backgroundOf(const MrmlNode& view) {
   const ViewBackground colors = viewBackground(view);
-  return {Background::Kind::color, decodeSrgb(colors.bottom)};
+  return Background::gradient(colors.bottom, colors.top);
 }
 
 SceneInput loadScene(const SceneRequest& request) {

@@ -1,0 +1,398 @@
+// What nodes mean: geometry, transforms, cropping boxes, cameras, looks, visibility.
+
+#include "SceneTesting.h"
+
+namespace fenestra {
+namespace {
+
+const MrmlNode& node(const MrmlScene& scene, const std::string& id) {
+  return *scene.document.find(id);
+}
+
+void expectSame(const Affine& a, const Affine& b, double tolerance = 1e-12) {
+  EXPECT_LT((a.matrix() - b.matrix()).cwiseAbs().maxCoeff(), tolerance) << a.matrix() << "\n\n"
+                                                                        << b.matrix();
+}
+
+Affine affine(std::initializer_list<double> rows) {
+  Affine map;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      map.matrix()(row, column) = std::data(rows)[4 * row + column];
+  return map;
+}
+
+// ---- volumes
+// -------------------------------------------------------------------------------------
+
+TEST(MrmlScene, takesGeometryFromTheFileNotFromTheScene) {
+  const SceneFolder folder;
+  MrmlScene scene = folder.scene(volumeNode);
+  const Volume volume = readSceneVolume(scene, node(scene, "vol1"));
+  EXPECT_EQ(volume.grid.size, Size3(3, 4, 2));
+  expectSame(volume.grid.indexToWorld, affine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30}));
+  EXPECT_EQ(volume.maximum, 230);
+  EXPECT_EQ(volume.name, "CT");
+}
+
+Grid gridWith(const SceneFolder& folder, const std::string& attributes) {
+  MrmlScene scene = folder.scene(R"(<Volume id="v" storageNodeRef="s"/>
+    <VolumeArchetypeStorage id="s" fileName="ct.nrrd" )" +
+                                 attributes + "/>");
+  return readSceneVolume(scene, node(scene, "v")).grid;
+}
+
+TEST(MrmlScene, heedsWhatTheStorageSaysOfGeometry) {
+  const SceneFolder folder;
+  const Affine fromFile = affine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30});
+  expectSame(gridWith(folder, R"(centerImage="0" UseOrientationFromFile="1")").indexToWorld,
+             fromFile);
+  const Grid centred = gridWith(folder, R"(centerImage="1")");
+  expectSame(Affine(centred.indexToWorld.linear()), Affine(fromFile.linear()));
+  EXPECT_TRUE(centred.worldCenter().isZero(1e-12));
+  expectSame(gridWith(folder, R"(UseOrientationFromFile="0" centerImage="1")").indexToWorld,
+             affine({1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0}));
+}
+
+TEST(MrmlScene, namesTheNodeWhoseFileIsMissing) {
+  const SceneFolder folder;
+  const auto path = folder.writeScene(R"(<Volume id="v" name="CT" storageNodeRef="s"/>
+    <VolumeArchetypeStorage id="s" fileName="gone.nrrd"/><Volume id="w" name="MR"/>)");
+  MrmlScene scene(path);
+  expectRefused(path, "gone.nrrd, which is not there",
+                [&] { readSceneVolume(scene, node(scene, "v")); });
+  expectRefused(path, "Volume MR (w): names no file",
+                [&] { readSceneVolume(scene, node(scene, "w")); });
+}
+
+TEST(MrmlScene, readsSegmentationsAndLabelMapsInTheWorld) {
+  const SceneFolder folder;
+  std::vector<std::uint8_t> labels(24, 0);
+  labels[1] = 5;
+  FileGeometry geometry;
+  geometry.origin = {10, 20, 30};
+  geometry.spacing = {1, 2, 3};
+  writeFile(folder / "labels.nrrd", labels, geometry);
+  MrmlScene scene = folder.scene(R"(
+    <LinearTransform id="t" matrixTransformToParent="1 0 0 100 0 1 0 0 0 0 1 0 0 0 0 1"/>
+    <Segmentation id="s" storageNodeRef="ss" transformNodeRef="t"/>
+    <SegmentationStorage id="ss" fileName="labels.nrrd"/>
+    <LabelMapVolume id="l" storageNodeRef="ls"/>
+    <VolumeArchetypeStorage id="ls" fileName="labels.nrrd" UseOrientationFromFile="0"/>)");
+  EXPECT_TRUE(readSceneSegmentation(scene, node(scene, "s"))
+                  .grid()
+                  .indexToWorld.translation()
+                  .isApprox(Vec3(90, -20, 30)));
+  const Segmentation labelMap = readSceneSegmentation(scene, node(scene, "l"));
+  EXPECT_TRUE(labelMap.grid().indexToWorld.translation().isZero());
+  EXPECT_EQ(labelMap.segments().at(0).labelValue, 5);
+}
+
+TEST(MrmlScene, knowsWhichSegmentsAreShown) {
+  const SceneFolder folder;
+  MrmlScene scene = folder.scene(R"(<Segmentation id="s" displayNodeRef="d"/>
+    <SegmentationDisplay id="d" SegmentationDisplayProperties="A%20b OverrideColorR:-1 Visible:true Visible3D:true Opacity3D:1|c Visible:false Visible3D:true|d Visible:true Visible3D:false|"/>)");
+  EXPECT_EQ(segmentVisibility(scene, node(scene, "s")),
+            (std::map<std::string, bool>{{"A b", true}, {"c", false}, {"d", false}}));
+}
+
+// ---- transforms
+// ----------------------------------------------------------------------------------
+
+const std::string turned = "0 -1 0 5  1 0 0 6  0 0 1 7  0 0 0 1";
+const Affine turnedMap = affine({0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7});
+
+TEST(MrmlScene, appliesTransformsUpTheChain) {
+  const SceneFolder folder;
+  MrmlScene scene =
+      folder.scene(R"(
+    <LinearTransform id="outer" matrixTransformToParent=")" +
+                   turned + R"("/>
+    <LinearTransform id="inner" references="transform:outer;"
+      matrixTransformToParent="2 0 0 10  0 1 0 0  0 0 1 0  0 0 0 1"/>)" +
+                   R"(<Volume id="v" references="storage:store1;transform:inner;"/>)" + volumeNode);
+  const Affine expected = turnedMap * affine({2, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0});
+  expectSame(toWorld(scene, node(scene, "v")), expected);
+  const Grid grid = readSceneVolume(scene, node(scene, "v")).grid;
+  expectSame(grid.indexToWorld, expected * affine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30}));
+}
+
+TEST(MrmlScene, readsTheOldInverseForm) {
+  const SceneFolder folder;
+  MrmlScene scene = folder.scene(R"(<N id="n" transformNodeRef="t"/>
+    <LinearTransform id="t" matrixTransformFromParent=")" +
+                                 turned + "\"/>");
+  expectSame(toWorld(scene, node(scene, "n")), turnedMap.inverse());
+}
+
+/// An ITK text transform that shifts by (1, 2, 3) in LPS.
+const std::string shiftFile = "#Insight Transform File V1.0\n#Transform 0\n"
+                              "Transform: TranslationTransform_double_3_3\n"
+                              "Parameters: 1 2 3.0000000001\nFixedParameters:\n";
+
+Affine shifted(const std::string& tag, const std::string& attributes) {
+  const SceneFolder folder;
+  folder.write("shift.tfm", shiftFile);
+  MrmlScene scene = folder.scene("<N id=\"n\" transformNodeRef=\"t\"/><" + tag +
+                                 " id=\"t\" storageNodeRef=\"s\" " + attributes +
+                                 "/><TransformStorage id=\"s\" fileName=\"shift.tfm\"/>");
+  return toWorld(scene, node(scene, "n"));
+}
+
+TEST(MrmlScene, prefersTheTransformsFileForItsDigits) {
+  const Vec3 toParent(1, 2, -3.0000000001); // LPS, from the parent
+  EXPECT_EQ(shifted("Transform", "").translation(), toParent);
+  EXPECT_EQ(
+      shifted("LinearTransform", R"(matrixTransformToParent="1 0 0 1 0 1 0 2 0 0 1 -3 0 0 0 1")")
+          .translation(),
+      toParent);
+}
+
+TEST(MrmlScene, knowsHowOldScenesMeantTheirFiles) {
+  const Vec3 toParent(1, 2, -3.0000000001);
+  EXPECT_EQ(shifted("Transform", R"(readWriteAsTransformToParent="false")").translation(),
+            toParent);
+  EXPECT_EQ(shifted("Transform", R"(readWriteAsTransformToParent="true")").translation(),
+            -toParent);
+  EXPECT_EQ(shifted("LinearTransform", R"(readWriteAsTransformToParent="true")").translation(),
+            toParent); // Slicer wrote it the wrong way round
+  EXPECT_EQ(shifted("LinearTransform", R"(readWriteAsTransformToParent="false")").translation(),
+            -toParent);
+}
+
+TEST(MrmlScene, refusesTransformsItCannotFollow) {
+  const SceneFolder folder;
+  const auto refuse = [&](const std::string& transforms, const std::string& because) {
+    const auto path = folder.writeScene("<N id=\"n\" transformNodeRef=\"t\"/>" + transforms);
+    MrmlScene scene(path);
+    expectRefused(path, because, [&] { toWorld(scene, node(scene, "n")); });
+  };
+  refuse(R"(<BSplineTransform id="t" name="warp"/>)", "BSplineTransform warp (t): is not linear");
+  refuse(R"(<GridTransform id="t"/>)", "is not linear");
+  refuse(R"(<Transform id="t"/>)", "neither a matrix nor a file");
+  refuse(R"(<LinearTransform id="t" transformNodeRef="u" matrixTransformToParent=")" + turned +
+             R"("/><LinearTransform id="u" transformNodeRef="t" matrixTransformToParent=")" +
+             turned + "\"/>",
+         "loop");
+  refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1"/>)",
+         "cannot be inverted");
+  refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1"/>)",
+         "last row");
+  refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0"/>)", "16 numbers");
+}
+
+// ---- cropping boxes
+// ------------------------------------------------------------------------------
+
+Affine boxOf(const std::string& nodes, const std::map<std::string, std::string>& files = {}) {
+  const SceneFolder folder;
+  for (const auto& [name, content] : files)
+    folder.write(name, content);
+  MrmlScene scene = folder.scene(nodes);
+  return readSceneRoi(scene, node(scene, "r")).boxToWorld;
+}
+
+const std::string roiNode = R"(<MarkupsROI id="r" storageNodeRef="s"/>
+  <MarkupsROIJsonStorage id="s" fileName="my%20roi.mrk.json" coordinateSystem="LPS"/>)";
+
+std::string roiJson(const std::string& system, const std::string& more = "") {
+  return R"({"markups": [{"type": "ROI", )" + system + R"("center": [10, 20, 30],
+    "orientation": [0, -1, 0, -1, 0, 0, 0, 0, 1], "size": [2, 4, 6])" +
+         more + "}]}";
+}
+
+TEST(MrmlScene, readsARegionOfInterestInEitherSystem) {
+  // Object axes are the columns of the orientation; LPS negates its first two rows.
+  const Affine ras = affine({0, -2, 0, 10, -1, 0, 0, 20, 0, 0, 3, 30});
+  const Affine lps = affine({0, 2, 0, -10, 1, 0, 0, -20, 0, 0, 3, 30});
+  const auto read = [](const std::string& system) {
+    return boxOf(roiNode, {{"my roi.mrk.json", roiJson(system)}});
+  };
+  expectSame(read(R"("coordinateSystem": "RAS", )"), ras);
+  expectSame(read(R"("coordinateSystem": "LPS", )"), lps);
+  expectSame(read(""), lps);
+  expectSame(read(R"("coordinateSystem": 0, )"), ras);
+  expectSame(read(R"("coordinateSystem": 1, )"), lps);
+}
+
+TEST(MrmlScene, placesARegionOfInterestByItsTransform) {
+  const Affine box = boxOf(R"(<MarkupsROI id="r" references="storage:s;transform:t;"/>
+      <MarkupsROIJsonStorage id="s" fileName="roi.mrk.json"/>
+      <LinearTransform id="t" matrixTransformToParent=")" +
+                               turned + "\"/>",
+                           {{"roi.mrk.json", roiJson(R"("coordinateSystem": "RAS", )")}});
+  expectSame(box, turnedMap * affine({0, -2, 0, 10, -1, 0, 0, 20, 0, 0, 3, 30}));
+}
+
+TEST(MrmlScene, readsOlderRegionsOfInterest) {
+  const Affine expected = affine({4, 0, 0, 1, 0, 5, 0, 2, 0, 0, 6, 3}); // radii, RAS
+  expectSame(boxOf(R"(<AnnotationROI id="r" storageNodeRef="s"/>
+                      <AnnotationStorage id="s" fileName="roi.acsv"/>)",
+                   {{"roi.acsv", "# comment\npoint|1|2|3|1|1\npoint|4|5|6|1|1\nline|0|1|1|1\n"}}),
+             expected);
+  expectSame(boxOf(R"(<AnnotationROI id="r" ctrlPtsCoord="1 2 3|4 5 6"/>)"), expected);
+  expectSame(boxOf(R"(<ROI id="r" xyz="1 2 3" radiusXYZ="4 5 6"/>)"), expected);
+  expectSame(boxOf(R"(<ROI id="r" XYZ="1 2 3" RadiusXYZ="4 5 6"/>)"), expected);
+}
+
+TEST(MrmlScene, refusesRegionsThatAreNone) {
+  const SceneFolder folder;
+  const auto refuseJson = [&](const std::string& json, const std::string& because) {
+    const auto file = folder.write("my roi.mrk.json", json);
+    MrmlScene scene = folder.scene(roiNode);
+    expectRefused(file, because, [&] { readSceneRoi(scene, node(scene, "r")); });
+  };
+  refuseJson(roiJson("", R"(, "insideOut": true)"), "inside out");
+  refuseJson(R"({"markups": [{"type": "Fiducial"}]})", "must be \"ROI\"");
+  refuseJson(R"({"markups": []})", "is empty");
+  refuseJson(R"({"markups": [{"type": "ROI", "center": [0, 0, 0], "size": [1, 0, 1]}]})",
+             "size must be above 0");
+  refuseJson(R"({"markups": [{"type": "ROI", "center": [0, 0, 0]}]})", "has no \"size\"");
+  refuseJson(roiJson(R"("coordinateSystem": "XYZ", )"), "must be \"LPS\" or \"RAS\"");
+  const auto path = folder.writeScene(R"(<AnnotationROI id="r" ctrlPtsCoord="1 2 3"/>)");
+  MrmlScene scene(path);
+  expectRefused(path, "AnnotationROI (r): needs a centre and a radius",
+                [&] { readSceneRoi(scene, node(scene, "r")); });
+}
+
+// ---- cameras and views
+// ---------------------------------------------------------------------------
+
+CameraPose poseOf(const std::string& attributes, const std::string& more = "") {
+  const SceneFolder folder;
+  MrmlScene scene =
+      folder.scene("<Camera id=\"c\" position=\"1 2 3\" focalPoint=\"1 102 3\" viewUp=\"0 0 1\" " +
+                   attributes + "/>" + more);
+  return readSceneCamera(scene, node(scene, "c"));
+}
+
+TEST(MrmlScene, readsCameras) {
+  const CameraPose parallel =
+      poseOf(R"(parallelProjection="true" parallelScale="80" viewAngle="20")");
+  EXPECT_EQ(parallel.projection, Projection::orthographic);
+  EXPECT_EQ(parallel.scale, 80.0); // half the height, as ours
+  EXPECT_EQ(parallel.position, Vec3(1, 2, 3));
+  EXPECT_EQ(parallel.target, Vec3(1, 102, 3));
+  EXPECT_EQ(parallel.up, Vec3(0, 0, 1));
+  const CameraPose perspective = poseOf(R"(parallelProjection="false" viewAngle="20")");
+  EXPECT_EQ(perspective.projection, Projection::perspective);
+  EXPECT_EQ(perspective.angle, 20.0);
+  EXPECT_EQ(poseOf("").angle, 30.0); // VTK's default
+}
+
+TEST(MrmlScene, doesNotMoveACameraTwice) {
+  const std::string transform =
+      "<LinearTransform id=\"t\" matrixTransformToParent=\"" + turned + "\"/>";
+  const CameraPose applied =
+      poseOf("transformNodeRef=\"t\" appliedTransform=\"" + turned + "\"", transform);
+  EXPECT_TRUE(applied.position.isApprox(Vec3(1, 2, 3)));
+  const CameraPose notYet = poseOf("transformNodeRef=\"t\"", transform);
+  EXPECT_TRUE(notYet.position.isApprox(turnedMap * Vec3(1, 2, 3)));
+  EXPECT_TRUE(notYet.up.isApprox(Vec3(0, 0, 1)));
+}
+
+TEST(MrmlScene, refusesCamerasThatLookNowhere) {
+  const SceneFolder folder;
+  const auto refuse = [&](const std::string& attributes, const std::string& because) {
+    const auto path = folder.writeScene("<Camera id=\"c\" " + attributes + "/>");
+    MrmlScene scene(path);
+    expectRefused(path, because, [&] { readSceneCamera(scene, node(scene, "c")); });
+  };
+  refuse(R"(position="1 2 3" focalPoint="1 2 3" viewUp="0 0 1")", "looks nowhere");
+  refuse(R"(position="1 2 3" focalPoint="1 2 9" viewUp="0 0 1")", "looks nowhere");
+  refuse(R"(position="1 2 3" focalPoint="1 9 3")", "viewUp: must be three numbers");
+  refuse(R"(position="1 2 3" focalPoint="1 9 3" viewUp="0 0 1" viewAngle="0")", "viewAngle");
+}
+
+TEST(MrmlScene, readsTheViewsBackground) {
+  const MrmlDocument document(
+      R"(<MRML><View backgroundColor="0.1 0.2 0.3" backgroundColor2="0.4 0.5 0.6"/>
+         <View backgroundColor="0.1 0.2 0.3"/><View/></MRML>)",
+      "test");
+  EXPECT_TRUE(viewBackground(document.nodes()[0]).top.isApprox(Rgb(0.4, 0.5, 0.6)));
+  EXPECT_TRUE(viewBackground(document.nodes()[0]).bottom.isApprox(Rgb(0.1, 0.2, 0.3)));
+  EXPECT_TRUE(viewBackground(document.nodes()[1]).top.isApprox(Rgb(0.1, 0.2, 0.3)));
+  EXPECT_TRUE((viewBackground(document.nodes()[2]).bottom == 0.0).all());
+}
+
+// ---- looks
+// ---------------------------------------------------------------------------------------
+
+const std::string inlineProperty = R"(shade="1" diffuse="0.9" ambient="0.1" specular="0.2"
+  specularPower="10" scalarOpacity="4 0 0 100 0.5" gradientOpacity="4 0 1 255 1"
+  colorTransfer="8 0 0 0 0 100 1 1 1" effectiveRange="0 -1")";
+
+double extinctionAt100(const std::string& nodes,
+                       const std::map<std::string, std::string>& files = {}) {
+  const SceneFolder folder;
+  for (const auto& [name, content] : files)
+    folder.write(name, content);
+  MrmlScene scene = folder.scene(nodes);
+  return readSceneProperty(scene, node(scene, "p")).extinction(100)[0];
+}
+
+TEST(MrmlScene, readsAPropertyFromItsFileElseFromTheScene) {
+  const std::string text =
+      "1\n1\n0.9\n0.1\n0.2\n10\n4 0 0 100 0.75\n4 0 1 255 1\n8 0 0 0 0 100 1 1 1\n";
+  const std::string json = R"({"volumeProperties": [{"components": [{
+      "rgbTransferFunction": {"points": [{"x": 0, "color": [1, 1, 1]}]},
+      "scalarOpacity": {"points": [{"x": 100, "y": 0.875}]}}]}]})";
+  const std::string stored = R"(<VolumePropertyStorage id="s" fileName="p.vp"/>)";
+  const std::string storedJson = R"(<VolumePropertyJsonStorage id="s" fileName="p.vp.json"/>)";
+  const auto property = [](const std::string& attributes) {
+    return "<VolumeProperty id=\"p\" " + attributes + "/>";
+  };
+  EXPECT_NEAR(extinctionAt100(property(inlineProperty)), std::log(2.0), 1e-4);
+  EXPECT_NEAR(extinctionAt100(property("storageNodeRef=\"s\" " + inlineProperty) + stored,
+                              {{"p.vp", text}}),
+              std::log(4.0), 2e-4);
+  EXPECT_NEAR(extinctionAt100(property("storageNodeRef=\"s\"") + storedJson, {{"p.vp.json", json}}),
+              std::log(8.0), 3e-4);
+}
+
+TEST(MrmlScene, refusesAPropertyWithoutPoints) {
+  const SceneFolder folder;
+  const auto path = folder.writeScene(R"(<VolumeProperty id="p" name="mine"/>
+      <VolumeProperty id="q" scalarOpacity="3 0 0 1" colorTransfer="4 0 1 1 1"/>)");
+  MrmlScene scene(path);
+  expectRefused(path, "VolumeProperty mine (p): has neither",
+                [&] { readSceneProperty(scene, node(scene, "p")); });
+  expectRefused(path, "VolumeProperty (q): scalarOpacity: must be a count",
+                [&] { readSceneProperty(scene, node(scene, "q")); });
+}
+
+TEST(MrmlScene, followsTheVolumesDisplay) {
+  const MrmlDocument document(R"(<MRML><GPURayCastVolumeRendering/>
+    <GPURayCastVolumeRendering ignoreVolumeDisplayNodeThreshold="1"/>
+    <VolumeDisplay window="100" level="150" lowerThreshold="-32768" upperThreshold="32767"/>
+    <VolumeDisplay window="100" level="150" colorNodeID="vtkMRMLColorTableNodeRainbow"/>
+    <VolumeDisplay window="100" level="150" invertDisplayScalarRange="true"
+      lowerThreshold="50" upperThreshold="250" colorNodeID="vtkMRMLColorTableNodeGrey"/></MRML>)",
+                              "test");
+  const auto& nodes = document.nodes();
+  const auto opacity = [](const TransferFunction& f, double s) {
+    return 1.0 - std::exp(-f.extinction(s)[0]);
+  };
+  const auto whole = followedDisplay(nodes[0], nodes[2], {0, 400});
+  ASSERT_TRUE(whole); // a ramp over the whole range
+  EXPECT_NEAR(opacity(*whole, 100), 0.25, 1e-3);
+  EXPECT_NEAR(opacity(*whole, 300), 0.75, 1e-3);
+  EXPECT_NEAR(whole->albedo(100)[0], 0.0, 1e-6); // black to white over the window
+  EXPECT_NEAR(whole->albedo(200)[0], 1.0, 1e-6);
+  EXPECT_TRUE(whole->shading);
+
+  const auto window = followedDisplay(nodes[1], nodes[2], {0, 400});
+  EXPECT_NEAR(opacity(*window, 150), 0.5, 1e-3); // a ramp over the window, opaque beyond
+  EXPECT_NEAR(opacity(*window, 99), 0.0, 1e-9);
+  EXPECT_GT(opacity(*window, 300), 0.99);
+
+  const auto threshold = followedDisplay(nodes[0], nodes[4], {0, 400});
+  EXPECT_NEAR(opacity(*threshold, 150), 0.5, 1e-3); // a ramp over the threshold, empty beyond
+  EXPECT_NEAR(opacity(*threshold, 300), 0.0, 1e-9);
+  EXPECT_NEAR(threshold->albedo(100)[0], 1.0, 1e-6);
+
+  EXPECT_FALSE(followedDisplay(nodes[0], nodes[3], {0, 400})); // another colour table
+}
+
+} // namespace
+} // namespace fenestra

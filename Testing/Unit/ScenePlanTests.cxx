@@ -1,0 +1,185 @@
+// Which nodes of a scene a picture shows, and what is refused or ignored, and why.
+
+#include "io/mrml/ScenePlan.h"
+
+#include "MedicalFiles.h"
+
+namespace fenestra {
+namespace {
+
+MrmlDocument parse(const std::string& nodes) {
+  return {"<MRML>" + nodes + "</MRML>", "test"};
+}
+
+std::string volumeOf(const std::string& nodes, const std::optional<std::string>& choice = {}) {
+  const MrmlDocument document = parse(nodes);
+  return planRender(document, {.volume = choice}).volume->id;
+}
+
+void refuse(const std::string& nodes, const std::string& because, const SceneChoice& choice = {}) {
+  const MrmlDocument document = parse(nodes);
+  expectRefused("test", because, [&] { planRender(document, choice); });
+}
+
+const std::string threeVolumes = R"(
+  <Volume id="v1" name="one" references="display:d1;"/>
+  <Volume id="v2" name="two" references="display:s2 d2;"/>
+  <Volume id="v3" name="three"/><VolumeDisplay id="s2"/>)";
+
+TEST(ScenePlan, takesTheVolumeThatIsRenderedInSlicer) {
+  EXPECT_EQ(volumeOf(threeVolumes + R"(<GPURayCastVolumeRendering id="d1" visibility="false"/>
+                                       <GPURayCastVolumeRendering id="d2" visibility="true"/>)"),
+            "v2");
+  EXPECT_EQ(volumeOf(threeVolumes + R"(<CPURayCastVolumeRendering id="d2" visibility="false"/>)"),
+            "v2"); // nothing else has settings
+  EXPECT_EQ(volumeOf(threeVolumes + R"(<Selection references="ActiveVolume:v3;"/>)"), "v3");
+  EXPECT_EQ(volumeOf(threeVolumes + R"(<Selection activeVolumeID="v1"/>)"), "v1");
+  EXPECT_EQ(volumeOf(R"(<Volume id="v"/><LabelMapVolume id="l"/><Volume id="m" labelMap="1"/>
+                        <VectorVolume id="x"/>)"),
+            "v");
+}
+
+TEST(ScenePlan, takesTheVolumeThatTheUserNames) {
+  const std::string rendered = threeVolumes + R"(<GPURayCastVolumeRendering id="d1"/>)";
+  EXPECT_EQ(volumeOf(rendered, "v3"), "v3");
+  EXPECT_EQ(volumeOf(rendered, "three"), "v3");
+  EXPECT_EQ(volumeOf(R"(<Volume id="a" name="b"/><Volume id="b" name="a"/>)", "a"),
+            "a"); // ids first
+  refuse(rendered, "has no scalar volume \"four\"; it has one (v1), two (v2), three (v3)",
+         {.volume = "four"});
+  refuse(R"(<Volume id="a" name="x"/><Volume id="b" name="x"/>)",
+         "--volume x can be any of x (a), x (b); name one by its id", {.volume = "x"});
+}
+
+TEST(ScenePlan, leavesOpenChoicesToTheUser) {
+  refuse(threeVolumes,
+         "several volumes to render (one (v1), two (v2), three (v3)); choose one with "
+         "--volume");
+  refuse(threeVolumes +
+             R"(<GPURayCastVolumeRendering id="d1"/><GPURayCastVolumeRendering id="d2"/>)",
+         "several volumes to render (one (v1), two (v2))");
+  refuse("<Model/>", "holds no scalar volume");
+}
+
+TEST(ScenePlan, followsTheRenderingToItsSettings) {
+  const MrmlDocument document = parse(R"(
+    <Volume id="v" displayNodeRef="s d"/><VolumeDisplay id="s"/>
+    <GPURayCastVolumeRendering id="d" croppingEnabled="1"
+       references="volumeProperty:p;roi:r;"/>
+    <VolumeProperty id="p0"/><VolumeProperty id="p"/><MarkupsROI id="r"/>)");
+  const ScenePlan plan = planRender(document, {});
+  EXPECT_EQ(plan.rendering->id, "d");
+  EXPECT_EQ(plan.property->id, "p");
+  EXPECT_EQ(plan.roi->id, "r");
+  EXPECT_FALSE(plan.followed);
+  EXPECT_TRUE(plan.warnings.empty());
+}
+
+TEST(ScenePlan, cropsOnlyWhereCroppingIsOn) {
+  const MrmlDocument document = parse(R"(
+    <Volume id="v" displayNodeRef="d"/>
+    <GPURayCastVolumeRendering id="d" croppingEnabled="0" ROINodeID="r"/><MarkupsROI id="r"/>)");
+  const ScenePlan plan = planRender(document, {});
+  EXPECT_FALSE(plan.roi);
+  EXPECT_EQ(plan.ignored, std::vector<std::string>{"MarkupsROI (r): cropping is off"});
+  const MrmlDocument lost = parse(R"(<Volume id="v" displayNodeRef="d"/>
+    <GPURayCastVolumeRendering id="d" croppingEnabled="1"/>)");
+  ASSERT_EQ(planRender(lost, {}).warnings.size(), 1U);
+}
+
+TEST(ScenePlan, followsTheVolumeDisplayWhereTheRenderingDoes) {
+  const std::string nodes = R"(<Volume id="v" displayNodeRef="d s"/><VolumeDisplay id="s"/>
+    <GPURayCastVolumeRendering id="d" followVolumeDisplayNode=")";
+  const MrmlDocument following = parse(nodes + "1\"/>");
+  const MrmlDocument own = parse(nodes + "0\"/>");
+  EXPECT_EQ(planRender(following, {}).followed->id, "s");
+  EXPECT_FALSE(planRender(own, {}).followed);
+}
+
+TEST(ScenePlan, reportsAClipNode) {
+  const std::string nodes = R"(<Volume id="v" displayNodeRef="d"/><Model id="m" name="knife"/>
+    <GPURayCastVolumeRendering id="d" references="ClipNode:m;" clipping=")";
+  const MrmlDocument on = parse(nodes + "true\"/>");
+  EXPECT_EQ(planRender(on, {}).warnings,
+            std::vector<std::string>{
+                "Model knife (m): clips the rendering in Slicer, and is ignored here"});
+  const MrmlDocument off = parse(nodes + "false\"/>");
+  EXPECT_TRUE(planRender(off, {}).warnings.empty());
+}
+
+TEST(ScenePlan, refusesProjectionsThatHaveNoLight) {
+  const std::string volume = R"(<Volume id="v" displayNodeRef="d"/>)";
+  const std::string rendering = R"(<GPURayCastVolumeRendering id="d")";
+  const auto inView = [&](const std::string& technique) {
+    return volume + rendering + "/><View id=\"w\" raycastTechnique=\"" + technique + "\"/>";
+  };
+  refuse(inView("MaximumIntensityProjection"), "maximum intensity projection");
+  refuse(inView("MinimumIntensityProjection"), "minimum intensity projection");
+  refuse(volume + rendering + " raycastTechnique=\"2\"/>", "maximum intensity projection");
+  const MrmlDocument composite = parse(inView("Composite"));
+  EXPECT_EQ(planRender(composite, {}).view->id, "w");
+}
+
+std::string cameraOf(const std::string& nodes) {
+  const MrmlDocument document = parse("<Volume id=\"v\" displayNodeRef=\"d\"/>" + nodes);
+  const ScenePlan plan = planRender(document, {});
+  return (plan.view ? plan.view->id : "none") + " " + (plan.camera ? plan.camera->id : "none");
+}
+
+TEST(ScenePlan, pairsTheCameraWithItsView) {
+  const std::string cameras =
+      R"(<Camera id="c2" singletonTag="2"/><Camera id="c1" singletonTag="1"/>)";
+  EXPECT_EQ(cameraOf(cameras + R"(<View id="w1" layoutName="1"/>)"), "w1 c1");
+  EXPECT_EQ(cameraOf(cameras + R"(<View id="w1" singletonTag="1"/>)"), "w1 c1");
+  EXPECT_EQ(cameraOf(R"(<Camera id="c2" activetag="w2"/><Camera id="c1" activetag="w1"/>
+                        <View id="w1"/>)"),
+            "w1 c1");
+  EXPECT_EQ(cameraOf(R"(<Camera id="c" singletonTag="x"/><View id="w" layoutName="1"/>)"), "w c");
+  EXPECT_EQ(cameraOf(cameras + R"(<View id="w" layoutName="3"/>)"), "w none");
+  EXPECT_EQ(cameraOf(R"(<Camera id="c"/>)"), "none c");
+}
+
+TEST(ScenePlan, choosesTheViewThatTheRenderingIsIn) {
+  const std::string both = R"(<View id="w1" layoutName="1"/><View id="w2" layoutName="2")";
+  EXPECT_EQ(cameraOf(both + "/>"), "w1 none");
+  EXPECT_EQ(cameraOf(both + R"( active="true"/>)"), "w2 none");
+  EXPECT_EQ(cameraOf(both + R"( attributes="MappedInLayout:1"/>)"), "w2 none");
+  EXPECT_EQ(cameraOf(both + R"(/><GPURayCastVolumeRendering id="d" viewNodeRef="w2"/>)"),
+            "w2 none");
+}
+
+std::string segmentationOf(const std::string& nodes, SceneChoice choice) {
+  const MrmlDocument document = parse("<Volume id=\"v\"/>" + nodes);
+  const ScenePlan plan = planRender(document, choice);
+  return plan.segmentation ? plan.segmentation->id : "none";
+}
+
+TEST(ScenePlan, choosesTheSegmentation) {
+  const SceneChoice any{.needsSegmentation = true};
+  EXPECT_EQ(segmentationOf(R"(<LabelMapVolume id="l"/><Segmentation id="s"/>)", any), "s");
+  EXPECT_EQ(segmentationOf(R"(<LabelMapVolume id="l"/>)", any), "l");
+  EXPECT_EQ(segmentationOf(R"(<Volume id="m" labelMap="1"/>)", any), "m");
+  EXPECT_EQ(segmentationOf(R"(<Segmentation id="s" displayNodeRef="d"/><Segmentation id="t"/>
+                              <SegmentationDisplay id="d" visibility="false"/>)",
+                           any),
+            "t");
+  EXPECT_EQ(segmentationOf(R"(<Segmentation id="s"/><LabelMapVolume id="l" name="brain"/>)",
+                           {.segmentation = "brain", .needsSegmentation = true}),
+            "l");
+  EXPECT_EQ(segmentationOf("", {.segmentation = "file.nrrd", .needsSegmentation = true}), "none");
+  refuse("<Volume id=\"v\"/><Segmentation id=\"s\"/><Segmentation id=\"t\"/>",
+         "several segmentations ((s), (t)); choose one with --segmentation", any);
+  refuse("<Volume id=\"v\"/>", "no segmentation to find a focus in", any);
+}
+
+TEST(ScenePlan, listsWhatItLeavesOut) {
+  const MrmlDocument document = parse(R"(<Volume id="v" name="CT" displayNodeRef="d"/>
+    <GPURayCastVolumeRendering id="d"/><Volume id="o" name="other"/><Model id="m1"/><Model id="m2"/>
+    <Model id="m3"/><Model id="m4"/><Slice id="x"/>)");
+  EXPECT_EQ(planRender(document, {}).ignored,
+            (std::vector<std::string>{"Volume other (o): another volume is rendered",
+                                      "4 nodes Model: surfaces and markups are not rendered"}));
+}
+
+} // namespace
+} // namespace fenestra
