@@ -4,13 +4,12 @@
 #include "io/InputFile.h"
 #include "io/MedicalHeader.h"
 #include "io/NiftiSamples.h"
+#include "io/Quiet.h"
 
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
-
-#include <iostream>
 
 namespace fenestra {
 namespace {
@@ -160,21 +159,6 @@ std::map<std::string, std::string> textFields(const itk::ImageIOBase& io) {
   }
   return fields;
 }
-
-/// Libraries that complain on std::cerr do so to no one; what matters becomes an Error.
-class Quiet {
-public:
-  Quiet() : m_before(std::cerr.rdbuf(nullptr)) { itk::Object::SetGlobalWarningDisplay(false); }
-  ~Quiet() {
-    std::cerr.rdbuf(m_before);
-    std::cerr.clear();
-  }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
-private:
-  std::streambuf* m_before;
-};
 
 MedicalImage readThroughItk(const std::filesystem::path& path, MedicalFormat format,
                             Components allowed) {

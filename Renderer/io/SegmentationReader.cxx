@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/MedicalImage.h"
+#include "io/ShownText.h"
 
 #include <charconv>
 #include <optional>
@@ -283,14 +284,6 @@ private:
 
 // ---- messages
 // ------------------------------------------------------------------------------------
-
-/// Text from files stays on one line and short.
-std::string shown(const std::string& text) {
-  std::string line = text.substr(0, 80);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return line;
-}
 
 std::string listed(const std::vector<SegmentInfo>& segments) {
   constexpr std::size_t most = 40;

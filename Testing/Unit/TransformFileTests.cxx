@@ -1,0 +1,372 @@
+// Every linear transform that ITK writes, against what ITK itself does with a point; and files that
+// are not what they say.
+
+#include "io/TransformFile.h"
+
+#include "MedicalFiles.h"
+#include "io/mrml/SceneArchive.h"
+
+#include <itkAffineTransform.h>
+#include <itkBSplineTransform.h>
+#include <itkCenteredEuler3DTransform.h>
+#include <itkComposeScaleSkewVersor3DTransform.h>
+#include <itkCompositeTransform.h>
+#include <itkEuler2DTransform.h>
+#include <itkHDF5TransformIO.h>
+#include <itkIdentityTransform.h>
+#include <itkMatlabTransformIO.h>
+#include <itkQuaternionRigidTransform.h>
+#include <itkScaleLogarithmicTransform.h>
+#include <itkScaleSkewVersor3DTransform.h>
+#include <itkScaleVersor3DTransform.h>
+#include <itkSimilarity3DTransform.h>
+#include <itkTransformFileWriter.h>
+#include <itkTranslationTransform.h>
+#include <itkTxtTransformIO.h>
+#include <itkVersorRigid3DTransform.h>
+#include <itk_hdf5.h>
+
+#include <cstring>
+#include <random>
+
+namespace fenestra {
+namespace {
+
+using Extensions = std::vector<std::string>;
+const Extensions everyExtension = {".tfm", ".txt", ".h5", "z.h5", ".hdf5", ".mat"}; // z: compressed
+
+template <typename Real>
+typename itk::TransformIOBaseTemplate<Real>::Pointer transformIo(const std::string& extension) {
+  if (extension == ".mat")
+    return itk::MatlabTransformIOTemplate<Real>::New().GetPointer();
+  if (extension == ".h5" || extension == ".hdf5")
+    return itk::HDF5TransformIOTemplate<Real>::New().GetPointer();
+  return itk::TxtTransformIOTemplate<Real>::New().GetPointer();
+}
+
+template <typename Transform>
+std::filesystem::path write(const TemporaryFolder& folder, const std::string& extension,
+                            const Transform* transform, bool compress = false) {
+  using Real = typename Transform::ParametersValueType;
+  const auto writer = itk::TransformFileWriterTemplate<Real>::New();
+  const auto path = folder / ("t" + extension);
+  writer->SetFileName(path.string());
+  writer->SetTransformIO(transformIo<Real>(extension));
+  writer->SetInput(transform);
+  writer->SetUseCompression(compress);
+  writer->Update();
+  return path;
+}
+
+/// The file maps LPS points as ITK's object does; ours maps the same points in RAS, the other way.
+template <typename Transform>
+void expectSameMap(const Transform* transform, const Extensions& extensions = everyExtension) {
+  using Real = typename Transform::ScalarType;
+  constexpr double error = sizeof(Real) == 4 ? 1e-3 : 1e-9;
+  const TemporaryFolder folder;
+  for (std::string extension : extensions) {
+    const bool compress = extension.starts_with("z");
+    const auto path = write(folder, extension.substr(compress ? 1 : 0), transform, compress);
+    const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
+    const Affine old = readLinearTransform(path, TransformSense::toParent);
+    for (const Vec3& ras : {Vec3(0, 0, 0), Vec3(100, -20, 7), Vec3(-3, 50, -80)}) {
+      itk::Point<Real, 3> lps;
+      for (unsigned i = 0; i < 3; ++i)
+        lps[i] = static_cast<Real>(i < 2 ? -ras[i] : ras[i]);
+      const auto mapped = transform->TransformPoint(lps);
+      const Vec3 expected(-mapped[0], -mapped[1], mapped[2]);
+      EXPECT_LT((toParent * expected - ras).norm(), error)
+          << transform->GetNameOfClass() << extension;
+      EXPECT_LT((old * ras - expected).norm(), error) << transform->GetNameOfClass() << extension;
+    }
+  }
+}
+
+/// A rotation about a centre, with numbers of no symmetry.
+template <typename Transform>
+typename Transform::Pointer turned() {
+  auto transform = Transform::New();
+  typename Transform::InputPointType center;
+  center[0] = 11;
+  center[1] = -23;
+  center[2] = 5;
+  transform->SetCenter(center);
+  typename Transform::OutputVectorType axis, shift;
+  axis[0] = 1;
+  axis[1] = 2;
+  axis[2] = -1;
+  shift[0] = 4;
+  shift[1] = 8;
+  shift[2] = -16;
+  if constexpr (requires { transform->SetRotation(axis, 0.7); })
+    transform->SetRotation(axis, static_cast<typename Transform::ScalarType>(0.7));
+  else if constexpr (requires { transform->SetRotation(0.1, 0.2, 0.3); })
+    transform->SetRotation(typename Transform::ScalarType(0.1), typename Transform::ScalarType(0.2),
+                           typename Transform::ScalarType(0.3));
+  else if constexpr (requires { transform->Rotate3D(axis, 0.7); })
+    transform->Rotate3D(axis, static_cast<typename Transform::ScalarType>(0.7));
+  if (transform->GetNumberOfParameters() >= 6) // else no parameter keeps it
+    transform->SetTranslation(shift);
+  return transform;
+}
+
+TEST(TransformFile, readsEveryLinearKind) {
+  expectSameMap(turned<itk::AffineTransform<double, 3>>().GetPointer());
+  expectSameMap(turned<itk::Euler3DTransform<double>>().GetPointer());
+  expectSameMap(turned<itk::CenteredEuler3DTransform<double>>().GetPointer());
+  expectSameMap(turned<itk::VersorRigid3DTransform<double>>().GetPointer());
+  expectSameMap(turned<itk::VersorTransform<double>>().GetPointer());
+  auto similarity = turned<itk::Similarity3DTransform<double>>();
+  similarity->SetScale(1.7);
+  expectSameMap(similarity.GetPointer());
+  expectSameMap(itk::IdentityTransform<double, 3>::New().GetPointer(), {".tfm", ".h5", ".mat"});
+  auto translation = itk::TranslationTransform<double, 3>::New();
+  const double shift[] = {3, -4, 5};
+  translation->SetOffset(shift);
+  expectSameMap(translation.GetPointer());
+  auto quaternion = itk::QuaternionRigidTransform<double>::New();
+  auto parameters = quaternion->GetParameters();
+  const double values[] = {0.1, 0.2, -0.3, std::sqrt(0.86), 7, 8, 9};
+  std::copy(std::begin(values), std::end(values), parameters.begin());
+  quaternion->SetParameters(parameters);
+  expectSameMap(quaternion.GetPointer());
+}
+
+template <typename Transform>
+typename Transform::Pointer stretched() {
+  auto transform = turned<Transform>();
+  const double stretch[] = {1.5, 0.5, 2.0};
+  transform->SetScale(stretch);
+  transform->SetCenter(transform->GetCenter()); // some of ITK's left their offset as it was
+  return transform;
+}
+
+TEST(TransformFile, readsScalesAndSkews) {
+  expectSameMap(stretched<itk::ScaleVersor3DTransform<double>>().GetPointer());
+  expectSameMap(stretched<itk::ScaleSkewVersor3DTransform<double>>().GetPointer());
+  expectSameMap(stretched<itk::ComposeScaleSkewVersor3DTransform<double>>().GetPointer());
+  expectSameMap(stretched<itk::ScaleTransform<double, 3>>().GetPointer());
+  expectSameMap(stretched<itk::ScaleLogarithmicTransform<double, 3>>().GetPointer());
+}
+
+TEST(TransformFile, readsFloatsAndTheOrderOfEulerAngles) {
+  expectSameMap(turned<itk::AffineTransform<float, 3>>().GetPointer());
+  expectSameMap(turned<itk::Similarity3DTransform<float>>().GetPointer());
+  auto euler = turned<itk::Euler3DTransform<double>>();
+  euler->SetComputeZYX(true);
+  expectSameMap(euler.GetPointer());
+}
+
+TEST(TransformFile, appliesTheLastOfACompositeFirst) {
+  const auto composite = itk::CompositeTransform<double, 3>::New();
+  auto first = itk::TranslationTransform<double, 3>::New();
+  const double shift[] = {10, 0, 0};
+  first->SetOffset(shift);
+  composite->AddTransform(first);
+  composite->AddTransform(turned<itk::Euler3DTransform<double>>());
+  auto third = turned<itk::Similarity3DTransform<double>>();
+  third->SetScale(3);
+  composite->AddTransform(third);
+  expectSameMap(composite.GetPointer(), {".tfm", ".txt", ".h5", "z.h5"});
+}
+
+TEST(TransformFile, readsColumnsOfTheOtherByteOrder) {
+  const TemporaryFolder folder;
+  const auto affine = turned<itk::AffineTransform<double, 3>>();
+  const Affine expected =
+      readLinearTransform(write(folder, ".mat", affine.GetPointer()), TransformSense::fromParent);
+  std::string bytes = bytesOf(folder / "t.mat");
+  const auto reverse = [&](std::size_t at, std::size_t size) {
+    std::reverse(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(at + size));
+  };
+  const std::string name = "AffineTransform_double_3_3";
+  std::size_t at = 0;
+  for (const auto& [length, rows] : {std::pair(name.size(), 12), std::pair(std::size_t(5), 3)}) {
+    std::int32_t kind = 1000;
+    std::memcpy(bytes.data() + at, &kind, sizeof kind);
+    for (int i = 0; i < 5; ++i, at += 4)
+      reverse(at, 4);
+    at += length + 1;
+    for (int i = 0; i < rows; ++i, at += 8)
+      reverse(at, 8);
+  }
+  ASSERT_EQ(at, bytes.size());
+  const auto path = folder.write("big.mat", bytes);
+  EXPECT_TRUE(readLinearTransform(path, TransformSense::fromParent).isApprox(expected, 1e-15));
+}
+
+/// As the HDF5 library writes by itself, and older ITK did: groups are symbol tables.
+std::filesystem::path writeOldHdf5(const TemporaryFolder& folder, int count) {
+  const auto path = folder / "old.h5";
+  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  H5Gclose(H5Gcreate2(file, "TransformGroup", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  const auto put = [file](const std::string& name, hid_t type, hsize_t size, const void* values) {
+    const hid_t space = H5Screate_simple(1, &size, nullptr);
+    const hid_t set =
+        H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(set, type == H5T_IEEE_F64BE ? H5T_NATIVE_DOUBLE : type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+             values);
+    H5Dclose(set);
+    H5Sclose(space);
+  };
+  const hid_t text = H5Tcopy(H5T_C_S1);
+  H5Tset_size(text, H5T_VARIABLE);
+  for (int i = 0; i < count; ++i) {
+    const std::string group = "/TransformGroup/" + std::to_string(i);
+    H5Gclose(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    const char* type = i == 0 ? "CompositeTransform_double_3_3" : "TranslationTransform_double_3_3";
+    put(group + "/TransformType", text, 1, &type);
+    const double parameters[] = {1, 2.0 * i, 3};
+    put(group + "/TranformParameters", H5T_IEEE_F64BE, 3, parameters);
+    put(group + "/TranformFixedParameters", H5T_IEEE_F64BE, 0, parameters);
+  }
+  H5Tclose(text);
+  H5Fclose(file);
+  return path;
+}
+
+TEST(TransformFile, readsOldHdf5) {
+  const TemporaryFolder folder;
+  for (const int count : {2, 5, 100}) { // symbol tables of one leaf, and of many
+    const Affine toParent =
+        readLinearTransform(writeOldHdf5(folder, count), TransformSense::fromParent);
+    EXPECT_TRUE(
+        toParent.translation().isApprox(Vec3(count - 1, count * (count - 1), -3 * (count - 1))));
+  }
+}
+
+const std::string affineText = "#Insight Transform File V1.0\n"
+                               "# Transform 0\n"
+                               "Transform: AffineTransform_double_3_3\n"
+                               "Parameters: 1 0 0 0 1 0 0 0 1 10 20 30\n"
+                               "FixedParameters: 0 0 0\n";
+
+void expectRefused(const std::filesystem::path& path, const std::string& text) {
+  fenestra::expectRefused(path, text,
+                          [&] { readLinearTransform(path, TransformSense::fromParent); });
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
+TEST(TransformFile, isFromTheParentInLps) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("a.tfm", affineText);
+  const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
+  EXPECT_TRUE(toParent.translation().isApprox(Vec3(10, 20, -30)));
+  EXPECT_TRUE(readLinearTransform(path, TransformSense::toParent)
+                  .translation()
+                  .isApprox(Vec3(-10, -20, 30)));
+}
+
+TEST(TransformFile, refusesWhatIsNotLinear) {
+  const TemporaryFolder folder;
+  const auto bspline = itk::BSplineTransform<double, 3, 3>::New();
+  for (const char* extension : {".tfm", ".txt", ".h5", ".hdf5", ".mat"})
+    expectRefused(write(folder, extension, bspline.GetPointer()), "is not linear; harden it");
+  const auto composite = itk::CompositeTransform<double, 3>::New();
+  composite->AddTransform(turned<itk::Euler3DTransform<double>>());
+  composite->AddTransform(bspline);
+  expectRefused(write(folder, ".h5", composite.GetPointer()), "is not linear; harden it");
+  for (const char* type :
+       {"DisplacementFieldTransform_double_3_3", "ThinPlateSplineKernelTransform_double_3_3",
+        "InverseDisplacementFieldTransform_double_3_3", "NoSuchTransform_double_3_3"})
+    expectRefused(folder.write("n.tfm", replaced(affineText, "AffineTransform_double_3_3", type)),
+                  std::string("Transform: ") + type + " is not linear; harden it in Slicer");
+  expectRefused(folder.write("field.nrrd", "NRRD0004"), "is a displacement field");
+}
+
+TEST(TransformFile, refusesMapsThatCannotBeInverted) {
+  const TemporaryFolder folder;
+  for (const char* matrix : {"0 0 0 0 1 0 0 0 1", "1 0 0 1 0 0 0 0 1", "1e-300 0 0 0 1 0 0 0 1",
+                             "1e300 0 0 0 1e300 0 0 0 1e300"})
+    expectRefused(folder.write("s.tfm", replaced(affineText, "1 0 0 0 1 0 0 0 1", matrix)),
+                  "cannot be inverted");
+  for (const char* offset : {"nan 20 30", "1e999 20 30", "inf 0 0", "10 20", "10 20 30 40", "x"})
+    expectRefused(folder.write("n.tfm", replaced(affineText, "10 20 30", offset)), "is damaged");
+  expectRefused(folder.write("f.tfm", replaced(affineText, "10 20 30", "1e200 0 0")),
+                "cannot be inverted");
+}
+
+TEST(TransformFile, refusesWhatSlicerRefuses) {
+  const TemporaryFolder folder;
+  expectRefused(folder.write("two.tfm", affineText + affineText), "holds 2 transforms");
+  expectRefused(write(folder, ".tfm", itk::Euler2DTransform<double>::New().GetPointer()),
+                "is not linear");
+  expectRefused(folder.write("2d.tfm", replaced(affineText, "AffineTransform_double_3_3",
+                                                "AffineTransform_double_2_2")),
+                "is not a transform of three axes");
+  expectRefused(folder.write("c.tfm", "Transform: CompositeTransform_double_3_3\n"
+                                      "ComponentTransformFile: ../../other.tfm\n"),
+                "ComponentTransformFile: further files are not read");
+  expectRefused(folder.write("nested.tfm", "Transform: CompositeTransform_double_3_3\n"
+                                           "Transform: CompositeTransform_double_3_3\n"),
+                "is damaged");
+}
+
+TEST(TransformFile, refusesWhatIsNoTransform) {
+  const TemporaryFolder folder;
+  expectRefused(folder / "none.tfm", "there is no such file");
+  expectRefused(folder.path(), "is a folder");
+  expectRefused(folder.write("t.xyz", affineText), "has no known extension");
+  for (const std::string extension : {".tfm", ".txt", ".h5", ".hdf5", ".mat"}) {
+    expectRefused(folder.write("empty" + extension, ""), "is damaged");
+    expectRefused(folder.write("text" + extension, "what is this"), "is damaged");
+  }
+  expectRefused(folder.write("p.tfm", "Parameters: 1 2 3\n"), "is damaged");
+  expectRefused(folder.write("rigid.tfm",
+                             replaced(replaced(affineText, "Affine", "Rigid3D"), "1 0 0", "2 0 0")),
+                "is damaged");
+  const auto large = folder.write("large.tfm", affineText);
+  std::filesystem::resize_file(large, (64 << 20) + 1);
+  expectRefused(large, "is larger than 64 MB");
+}
+
+/// Whatever becomes of the bytes: read, or refused on one line.
+TEST(TransformFile, survivesDamage) {
+  const TemporaryFolder folder;
+  const auto composite = itk::CompositeTransform<double, 3>::New();
+  composite->AddTransform(turned<itk::Euler3DTransform<double>>());
+  composite->AddTransform(turned<itk::AffineTransform<double, 3>>());
+  std::mt19937 random(7);
+  for (const std::string extension : {".tfm", ".h5", ".mat"}) {
+    const std::string whole =
+        bytesOf(extension == ".mat" ? write(folder, extension,
+                                            turned<itk::AffineTransform<double, 3>>().GetPointer())
+                                    : write(folder, extension, composite.GetPointer()));
+    for (int i = 0; i < 400; ++i) {
+      std::string bytes = whole;
+      if (i % 4 == 0)
+        bytes.resize(random() % whole.size());
+      for (int n = 0; n < i % 4; ++n)
+        bytes[random() % bytes.size()] = static_cast<char>(random());
+      const auto path = folder.write("damaged" + extension, bytes);
+      testing::internal::CaptureStderr();
+      try {
+        EXPECT_TRUE(readLinearTransform(path, TransformSense::fromParent).matrix().allFinite());
+      } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      }
+      EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    }
+  }
+}
+
+/// What Slicer 5.2.2 wrote, and the matrix that it wrote beside it.
+TEST(TransformFile, readsSlicersFile) {
+  const auto scene = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_5_2_written" /
+                     "chest_transformed_cropped.mrb";
+  if (!std::filesystem::exists(scene))
+    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+  const TemporaryFolder folder;
+  const auto path = folder.write("tilt.h5", "");
+  SceneArchive(scene).extract("chest_transformed_cropped/Data/tilt.h5", path);
+  Affine expected;
+  expected.matrix() << 0.939693, -0.34202, 0, 20, 0.34202, 0.939693, 0, -10, 0, 0, 1, 15;
+  const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
+  EXPECT_LT((toParent.matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,6 @@
+# ITK's own writers make the files of these tests.
+find_package(ITK REQUIRED COMPONENTS
+  ITKHDF5 ITKIOTransformHDF5 ITKIOTransformInsightLegacy ITKIOTransformMatlab)
+fenestra_test(TransformFileTests TransformFileTests.cxx
+  LIBRARIES fenestra_io_read fenestra_io_mrml fenestra_itk ${ITK_LIBRARIES} LABELS unit)
+target_include_directories(TransformFileTests SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
