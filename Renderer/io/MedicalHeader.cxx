@@ -178,6 +178,9 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   const std::string encoding = lower(fields["encoding"]);
   stored.compressed = encoding != "raw" && encoding != "hex"; // a text's digit can be 8 bytes
   locateNrrdFiles(path, fields, lines, stored);
+  const bool skips = fields.contains("line skip") || fields.contains("lineskip") ||
+                     fields.contains("byte skip") || fields.contains("byteskip");
+  stored.isStream = (encoding == "gzip" || encoding == "gz") && stored.files.size() == 1 && !skips;
   return stored;
 }
 
@@ -245,7 +248,7 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
                                     "volume into one file");
   const bool local = lower(name) == "local";
   StoredSamples stored;
-  stored.compressed = isTrue("CompressedData");
+  stored.compressed = stored.isStream = isTrue("CompressedData");
   addFile(path, local ? path.filename().string() : name, stored);
   const std::int64_t header = wholeNumber(fields["HeaderSize"]).value_or(0);
   // A negative HeaderSize means: the samples end where the file ends.

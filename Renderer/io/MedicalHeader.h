@@ -21,6 +21,7 @@ struct StoredSamples {
   std::uint64_t offset = 0;                 ///< of the first sample's byte in the first file
   std::uint64_t bytes = 0;                  ///< from there on, in all files
   bool compressed = false;                  ///< or written as text: a byte may stand for more
+  bool isStream = false; ///< one zlib or gzip stream, nothing of it skipped: checkStream applies
 };
 
 /// Throws Error (input) where the header is not of its format, points to something other than plain

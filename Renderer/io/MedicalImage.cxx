@@ -39,13 +39,18 @@ void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io,
                                         "); convert it to one scalar a voxel");
 }
 
-/// The number of axes that matter is three.
-Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io) {
+std::size_t framesOf(const itk::ImageIOBase& io) {
+  return io.GetNumberOfDimensions() > 3 ? io.GetDimensions(3) : 1;
+}
+
+/// The number of axes that matter is three; a fourth may hold several frames where `allowed`.
+Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
   const unsigned axes = io.GetNumberOfDimensions();
   if (axes < 3)
     throw inputError(path.string(), "is a picture of " + std::to_string(axes) +
                                         " axes, not a volume; name one of three");
-  for (unsigned axis = 3; axis < axes; ++axis)
+  const bool frames = allowed == Components::any && io.GetNumberOfComponents() == 1;
+  for (unsigned axis = frames ? 4 : 3; axis < axes; ++axis)
     if (io.GetDimensions(axis) != 1)
       throw inputError(path.string(), "has " + std::to_string(axes) + " axes, the " +
                                           std::to_string(axis + 1) + "th with " +
@@ -61,8 +66,8 @@ Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io) {
   return size;
 }
 
-Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io) {
-  const Size3 size = sizeOf(path, io);
+Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
+  const Size3 size = sizeOf(path, io, allowed);
   const Eigen::DiagonalMatrix<double, 3> lpsToRas(-1.0, -1.0, 1.0);
   Mat3 directions;
   Vec3 spacing, origin;
@@ -90,7 +95,7 @@ Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io) {
 /// The greatest number where there are more.
 std::uint64_t sampleCount(const itk::ImageIOBase& io) {
   std::uint64_t samples = io.GetNumberOfComponents();
-  for (unsigned axis = 0; axis < 3; ++axis)
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
     if (__builtin_mul_overflow(samples, io.GetDimensions(axis), &samples))
       return UINT64_MAX;
   return samples;
@@ -98,13 +103,13 @@ std::uint64_t sampleCount(const itk::ImageIOBase& io) {
 
 /// Refuses more samples than the files can hold.
 void checkCount(const std::filesystem::path& path, const StoredSamples& stored,
-                MedicalFormat format, const itk::ImageIOBase& io) {
+                const itk::ImageIOBase& io) {
   std::uint64_t declared = 0;
   if (__builtin_mul_overflow(sampleCount(io), io.GetComponentSize(), &declared))
     declared = UINT64_MAX;
   checkCapacity(path, stored, declared);
-  if (format == MedicalFormat::metaImage && stored.compressed)
-    checkStream(path, stored, declared); // MetaIO takes half a stream for a whole one
+  if (stored.isStream) // MetaIO takes half a stream for a whole one, teem all but its end
+    checkStream(path, stored, declared);
 }
 
 template <typename T>
@@ -149,6 +154,20 @@ Samples readSamples(const std::filesystem::path& path, itk::ImageIOBase& io, std
   }
 }
 
+/// From one frame after the other to the components of a voxel together.
+Samples interleaved(const Samples& frames, std::size_t count) {
+  return std::visit(
+      [count](const auto& samples) -> Samples {
+        std::decay_t<decltype(samples)> together(samples.size());
+        const std::size_t voxels = samples.size() / count;
+        for (std::size_t frame = 0; frame < count; ++frame)
+          for (std::size_t voxel = 0; voxel < voxels; ++voxel)
+            together[voxel * count + frame] = samples[frame * voxels + voxel];
+        return together;
+      },
+      frames);
+}
+
 std::map<std::string, std::string> textFields(const itk::ImageIOBase& io) {
   const itk::MetaDataDictionary& dictionary = io.GetMetaDataDictionary();
   std::map<std::string, std::string> fields;
@@ -170,13 +189,19 @@ MedicalImage readThroughItk(const std::filesystem::path& path, MedicalFormat for
   io->SetFileName(path.string());
   io->ReadImageInformation();
   // Of the formats, NRRD alone keeps a list of layers.
-  checkPixels(path, *io, format == MedicalFormat::nrrd ? allowed : Components::one);
-  MedicalImage image{.grid = gridOf(path, *io), .components = io->GetNumberOfComponents()};
+  if (format != MedicalFormat::nrrd)
+    allowed = Components::one;
+  checkPixels(path, *io, allowed);
+  MedicalImage image{.grid = gridOf(path, *io, allowed), .components = io->GetNumberOfComponents()};
   if (format == MedicalFormat::nifti)
     image.samples = readNiftiSamples(path, sampleCount(*io));
   else {
-    checkCount(path, stored, format, *io);
+    checkCount(path, stored, *io);
     image.samples = readSamples(path, *io, sampleCount(*io));
+  }
+  if (framesOf(*io) > 1) {
+    image.components = framesOf(*io);
+    image.samples = interleaved(image.samples, image.components);
   }
   image.fields = textFields(*io);
   return image;

@@ -28,9 +28,9 @@ struct MedicalImage {
 enum class Components { one, any };
 
 /// Exactly three axes (further ones of size 1 are dropped), real scalars; several of them in a
-/// voxel only where `allowed`. Throws Error (input), one line, for anything else: missing or
-/// damaged files, more samples than the file can hold (before memory is taken for them), geometry
-/// that no point can be mapped through.
+/// voxel only where `allowed`: a NRRD's list, or the frames along its fourth axis. Throws Error
+/// (input), one line, for anything else: missing or damaged files, more samples than the file can
+/// hold (before memory is taken for them), geometry that no point can be mapped through.
 MedicalImage readMedicalImage(const std::filesystem::path& path, Components allowed);
 
 } // namespace fenestra

@@ -5,8 +5,10 @@
 #include "io/ShownText.h"
 
 #include <charconv>
+#include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <utility>
 
 namespace fenestra {
@@ -88,6 +90,27 @@ std::optional<std::int32_t> wholeNumber(std::string_view text) {
   if (failure != std::errc() || end != text.data() + text.size())
     return std::nullopt;
   return value;
+}
+
+/// The oldest files keep the geometry of the whole reference image, in RAS, and say in
+/// Segmentation_Extent which part of it their voxels are. (A bladder of such a file meets the same
+/// patient's bladder surface only so.)
+Grid placed(const Grid& grid, const std::map<std::string, std::string>& fields,
+            const std::string& source) {
+  const auto extent = fields.find("Segmentation_Extent");
+  if (extent == fields.end())
+    return grid;
+  std::istringstream numbers(extent->second); // "i0 i1 j0 j1 k0 k1"
+  Vec3 first;
+  std::int32_t lower = 0;
+  std::int32_t upper = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(numbers >> lower >> upper))
+      throw inputError(source, "Segmentation_Extent: must be six whole numbers");
+    first[axis] = lower;
+  }
+  const Affine readAsLps(Eigen::Scaling(-1.0, -1.0, 1.0));
+  return {grid.size, readAsLps * grid.indexToWorld * Eigen::Translation3d(first)};
 }
 
 class SegmentFields {
@@ -282,6 +305,51 @@ private:
   std::vector<std::set<std::int32_t>> m_values; ///< chosen ones of each layer
 };
 
+// ---- statistics
+// ----------------------------------------------------------------------------------
+
+struct ValueStatistics {
+  std::int64_t voxels = 0;
+  Extent extent = {};
+};
+
+using StatisticsOfValues = std::map<std::int32_t, ValueStatistics>;
+
+/// Adds one layer's voxels to those of the values that are there.
+template <typename Label>
+void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_t layer,
+                 std::size_t layerCount, StatisticsOfValues& values) {
+  std::size_t at = layer;
+  std::int32_t last = 0; // labels come in runs
+  ValueStatistics* counted = nullptr;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x, at += layerCount) {
+        const std::int32_t label = labels[at];
+        if (label != std::exchange(last, label)) {
+          const auto found = values.find(label);
+          counted = found == values.end() ? nullptr : &found->second;
+        }
+        if (counted) {
+          ++counted->voxels;
+          counted->extent.add({x, y, z});
+        }
+      }
+}
+
+/// Of whole voxels, along the world's axes.
+Box worldBounds(const Grid& grid, const Extent& extent) {
+  const Box voxels{extent.lower.cast<double>().array() - 0.5,
+                   extent.upper.cast<double>().array() + 0.5};
+  Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = grid.indexToWorld * voxels.corner(i);
+    bounds.lower = bounds.lower.cwiseMin(corner);
+    bounds.upper = bounds.upper.cwiseMax(corner);
+  }
+  return bounds;
+}
+
 // ---- messages
 // ------------------------------------------------------------------------------------
 
@@ -331,6 +399,26 @@ const SegmentInfo& Segmentation::find(const std::string& selector) const {
                                  (m_segments.empty() ? "none at all" : listed(m_segments)));
 }
 
+std::vector<SegmentStatistics> Segmentation::statistics() const {
+  std::vector<StatisticsOfValues> layers(m_layerCount);
+  for (const SegmentInfo& segment : m_segments)
+    layers[segment.layer][segment.labelValue] = {};
+  std::visit(
+      [&](const auto& labels) {
+        for (std::size_t layer = 0; layer < m_layerCount; ++layer)
+          countVoxels(labels, m_grid.size, layer, m_layerCount, layers[layer]);
+      },
+      m_labels);
+  std::vector<SegmentStatistics> statistics;
+  for (const SegmentInfo& segment : m_segments) {
+    const ValueStatistics& value = layers[segment.layer].at(segment.labelValue);
+    statistics.push_back({value.voxels, {}});
+    if (value.voxels > 0)
+      statistics.back().bounds = worldBounds(m_grid, value.extent);
+  }
+  return statistics;
+}
+
 Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& volume) const {
   std::vector<SegmentInfo> chosen;
   Mask mask;
@@ -359,7 +447,8 @@ Segmentation readSegmentation(const std::filesystem::path& path) {
       [&source](auto& samples) { return toLabels(std::move(samples), source); }, image.samples);
   if (segments.empty())
     segments = segmentsOf(labels, source);
-  return {source, image.grid, image.components, std::move(labels), std::move(segments)};
+  return {source, placed(image.grid, image.fields, source), image.components, std::move(labels),
+          std::move(segments)};
 }
 
 } // namespace fenestra

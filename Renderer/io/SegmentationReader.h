@@ -20,6 +20,11 @@ struct SegmentInfo {
   Rgb color = Rgb::Constant(0.5); ///< display-encoded, as Slicer has it
 };
 
+struct SegmentStatistics {
+  std::int64_t voxels = 0;
+  Box bounds = {}; ///< along RAS axes, mm; holds its voxels whole; empty (at 0) without voxels
+};
+
 /// Labels in layers: segments of different layers may overlap.
 class Segmentation {
 public:
@@ -35,6 +40,9 @@ public:
   /// To another place, of the same size.
   void moveTo(const Grid& grid) { m_grid = grid; }
   const std::vector<SegmentInfo>& segments() const { return m_segments; }
+
+  /// What each segment holds, in their order: one pass over the labels.
+  std::vector<SegmentStatistics> statistics() const;
 
   /// The union of the segments that the selectors name, each by id, else by name, else by label
   /// value; cropped, and continued over the faces that the labelmap shares with `volume`, as Mask.h
@@ -53,7 +61,10 @@ private:
 };
 
 /// Slicer's `.seg.nrrd`, or a labelmap in any format and geometry that readVolume takes: one
-/// segment "Segment_<value>" for each value other than 0. Throws Error (input).
+/// segment "Segment_<value>" for each value other than 0. Where voxels lie is the file's geometry
+/// alone, which includes Segmentation_ReferenceImageExtentOffset; only in the oldest files, known
+/// by their Segmentation_Extent, it does not, and is in RAS. SegmentN_Extent is not looked at:
+/// labels say where a segment is. Throws Error (input).
 Segmentation readSegmentation(const std::filesystem::path& path);
 
 } // namespace fenestra
