@@ -1,0 +1,23 @@
+// The command line of a render: one word a line. Nothing is read or written.
+#include "Harness.h"
+
+#include "cli/CommandLine.h"
+#include "cli/RenderFlags.h"
+
+#include <vector>
+
+FENESTRA_FUZZ(input) {
+  using namespace fenestra;
+  std::vector<std::string> words = {"fenestra"};
+  while (!input.empty() && words.size() < 64) {
+    const std::string_view word = input.substr(0, input.find('\n'));
+    input.remove_prefix(std::min(input.size(), word.size() + 1));
+    words.emplace_back(word.substr(0, word.find('\0'))); // as a process gets them
+  }
+  std::vector<char*> argv;
+  for (std::string& word : words)
+    argv.push_back(word.data());
+  if (const auto flags =
+          parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1))
+    renderOptions(*flags);
+}

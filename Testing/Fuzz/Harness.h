@@ -1,0 +1,85 @@
+#pragma once
+// What every fuzz target does: put the input where a reader finds it, and see that the reader takes
+// or refuses it. Whatever else a reader does (another exception, a crash, a sanitizer's report, too
+// much time or memory) is a finding, and libFuzzer says so.
+
+#include "TemporaryFolder.h"
+#include "core/Error.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <iostream>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace fenestra::fuzzing {
+
+/// A folder of the process's own, under TMPDIR: in memory where that is, as run.sh sees to.
+inline const TemporaryFolder& folder() {
+  static const TemporaryFolder made;
+  return made;
+}
+
+/// The input as the file `name` in folder(), rewritten each time.
+inline std::filesystem::path asFile(std::string_view bytes, const std::string& name) {
+  const std::filesystem::path path = folder() / name;
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  const bool whole =
+      file >= 0 && ::write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
+  if (file >= 0)
+    ::close(file);
+  if (!whole)
+    throw std::runtime_error("no room for the input under " + path.string());
+  return path;
+}
+
+/// What a reader may do to its user: an Error of one line that says something.
+template <typename Read>
+void readOrRefuse(Read&& read) {
+  try {
+    read();
+  } catch (const Error& error) {
+    const std::string_view line = error.what();
+    if (line.empty() || line.find('\n') != std::string_view::npos)
+      throw std::logic_error("not one line: " + std::string(line));
+  }
+}
+
+/// One of several file names, chosen by the input's first byte, which is taken off.
+template <std::size_t N>
+std::string chooseName(std::string_view& input, const std::array<const char*, N>& names) {
+  if (input.empty())
+    return names[0];
+  const auto first = static_cast<unsigned char>(input[0]);
+  input.remove_prefix(1);
+  // Seeds are text that people write: they start with a digit.
+  return names[(first >= '0' ? first - std::size_t{'0'} : first) % N];
+}
+
+/// Keeps what the product prints away from libFuzzer's own lines.
+inline void silence() {
+  std::cout.rdbuf(nullptr);
+  std::cerr.rdbuf(nullptr);
+}
+
+} // namespace fenestra::fuzzing
+
+/// The one function of a target: `statements` see the input as `std::string_view input`.
+#define FENESTRA_FUZZ(input)                                                                       \
+  static void fuzzOne(std::string_view input);                                                     \
+  extern "C" int LLVMFuzzerInitialize(int*, char***) {                                             \
+    fenestra::fuzzing::silence();                                                                  \
+    return 0;                                                                                      \
+  }                                                                                                \
+  extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {              \
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);                       \
+    fenestra::fuzzing::readOrRefuse([bytes] { fuzzOne(bytes); });                                  \
+    return 0;                                                                                      \
+  }                                                                                                \
+  static void fuzzOne(std::string_view input)

@@ -1,0 +1,100 @@
+// usage: MakeSeeds FOLDER: writes the seeds that are not text, into FOLDER/<target>/.
+#include "Regression/SampleFiles.h"
+#include "TemporaryFolder.h"
+#include "io/ImageWriter.h"
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+
+void save(const fs::path& folder, const std::string& name, const std::string& bytes) {
+  fs::create_directories(folder);
+  std::ofstream(folder / name, std::ios::binary) << bytes;
+}
+
+/// 3x3x2 voxels of 16 bits with both of NIfTI's ways to say where they are.
+std::string nifti() {
+  std::string header(352, '\0');
+  const auto put = [&header](std::size_t at, auto value) {
+    std::memcpy(header.data() + at, &value, sizeof(value));
+  };
+  put(0, std::int32_t{348});
+  put(40, std::array<std::int16_t, 8>{3, 3, 3, 2, 1, 1, 1, 1});
+  put(70, std::int16_t{4}); // int16
+  put(72, std::int16_t{16});
+  put(76, std::array<float, 8>{1.0f, 1.0f, 1.0f, 2.0f, 1.0f, 1.0f, 1.0f, 1.0f});
+  put(108, 352.0f);          // where voxels start
+  put(112, 1.0f);            // slope
+  put(252, std::int16_t{1}); // qform
+  put(254, std::int16_t{1}); // sform
+  put(280, std::array<float, 12>{1, 0, 0, -1, 0, 1, 0, -1, 0, 0, 2, -1});
+  std::memcpy(header.data() + 344, "n+1", 4);
+  return header + std::string("\1\0\2\0\3\0\4\0\5\0\6\0\7\0\10\0\11\0", 18) + std::string(18, '\0');
+}
+
+std::string metaImage() {
+  return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+         "CompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\n"
+         "ElementSpacing = 1 1 2\nDimSize = 2 2 2\nElementType = MET_SHORT\n"
+         "ElementDataFile = LOCAL\n" +
+         std::string(16, '\3');
+}
+
+void makeVolumes(const fs::path& corpus, const fs::path& traps) {
+  for (const auto& entry : fs::directory_iterator(traps)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "detached.nhdr") {
+      std::string text = bytesOf(entry.path());
+      text.replace(text.find("detached.raw"), 12, "samples.raw");
+      save(corpus / "Volume", name, "1" + text);
+    } else if (name.ends_with(".seg.nrrd") || name == "labels.nrrd")
+      save(corpus / "Segmentation", name, bytesOf(entry.path()));
+    else if (name.ends_with(".nrrd"))
+      save(corpus / "Volume", name, "0" + bytesOf(entry.path()));
+  }
+  save(corpus / "Volume", "volume.nii", "2" + nifti());
+  save(corpus / "Volume", "volume.mha", "4" + metaImage());
+}
+
+void makePictures(const fs::path& corpus) {
+  const TemporaryFolder folder;
+  Image image{3, 2, {}, {{"seed", "1"}}};
+  for (const char* channel : {"R", "G", "B", "A"})
+    image.channels[channel] = {0.0f, 0.1f, 0.5f, 1.0f, 1.0f, 1.0f};
+  // The digit chooses the format.
+  for (const auto& [digit, name] : {std::pair{"0", "picture.exr"},
+                                    {"1", "picture.png"},
+                                    {"2", "picture.tif"},
+                                    {"3", "picture.nrrd"}}) {
+    writeImage(image, {}, folder / name);
+    save(corpus / "Picture", name, digit + bytesOf(folder / name));
+  }
+}
+
+} // namespace
+} // namespace fenestra
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: MakeSeeds FOLDER\n");
+    return 2;
+  }
+  try {
+    const fenestra::TemporaryFolder traps;
+    constexpr double spacing = 12.0; // mm: 3 voxels an axis
+    fenestra::testing::writeTraps(traps.path(), spacing);
+    fenestra::makeVolumes(argv[1], traps.path());
+    fenestra::makePictures(argv[1]);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "MakeSeeds: %s\n", error.what());
+    return 4;
+  }
+}

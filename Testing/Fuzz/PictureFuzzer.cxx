@@ -1,0 +1,15 @@
+// Pictures that are compared or shine as environments; the first byte chooses the format.
+#include "Harness.h"
+
+#include "io/ImageReader.h"
+
+FENESTRA_FUZZ(input) {
+  using namespace fenestra;
+  const std::string name =
+      fuzzing::chooseName(input, std::array{"p.exr", "p.png", "p.tif", "p.nrrd"});
+  const Image image = readImage(fuzzing::asFile(input, name));
+  for (const auto& [channel, plane] : image.channels)
+    if (plane.size() !=
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+      throw std::logic_error(channel + " is not of the picture's size");
+}

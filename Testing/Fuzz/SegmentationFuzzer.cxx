@@ -1,0 +1,16 @@
+// Segmentations: their metadata, and the mask of the first segments.
+#include "Harness.h"
+
+#include "io/SegmentationReader.h"
+
+FENESTRA_FUZZ(input) {
+  using namespace fenestra;
+  const Segmentation segmentation = readSegmentation(fuzzing::asFile(input, "s.seg.nrrd"));
+  std::vector<std::string> focus;
+  for (const SegmentInfo& segment : segmentation.segments())
+    if (focus.size() < 3)
+      focus.push_back(segment.id);
+  const Mask mask = segmentation.mask(focus, segmentation.grid());
+  if (mask.count < 1 || mask.names.size() != focus.size())
+    throw std::logic_error("a mask of nothing");
+}

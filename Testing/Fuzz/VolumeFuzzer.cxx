@@ -1,0 +1,13 @@
+// Volumes of every format; the first byte chooses it. A detached header's samples are
+// `samples.raw`.
+#include "Harness.h"
+
+#include "io/VolumeReader.h"
+
+FENESTRA_FUZZ(input) {
+  using namespace fenestra;
+  static const auto samples = fuzzing::asFile(std::string(256, '\x2a'), "samples.raw");
+  const std::string name = fuzzing::chooseName(
+      input, std::array{"v.nrrd", "v.nhdr", "v.nii", "v.nii.gz", "v.mha", "v.mhd"});
+  readVolume(fuzzing::asFile(input, name));
+}

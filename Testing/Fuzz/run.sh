@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Builds the fuzz targets with clang and runs them one after the other, each for SECONDS (5) or up to
+# FENESTRA_FUZZ_RUNS executions, from the seeds of Corpus/ and what earlier runs found (FENESTRA_FUZZ_DIR,
+# build-fuzz/fuzz), and says of each how many inputs it took. What stops a target is kept in
+# FENESTRA_FUZZ_DIR/findings, and the exit status is 1. usage: run.sh [SECONDS] [TARGET...]
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"
+seconds=${1:-5}
+shift $(($# > 0 ? 1 : 0))
+here=$top/Testing/Fuzz
+build_folder=${FENESTRA_FUZZ_BUILD:-$top/build-fuzz}
+work=${FENESTRA_FUZZ_DIR:-$build_folder/fuzz}
+
+# The words that a target's inputs are made of; not every target has some.
+dictionary() {
+  case $1 in
+    Transfer | PropertyJson | Lights) echo "-dict=$here/Dictionaries/Json.dict" ;;
+    *) [ ! -f "$here/Dictionaries/$1.dict" ] || echo "-dict=$here/Dictionaries/$1.dict" ;;
+  esac
+}
+
+# summary LOG: what libFuzzer counted.
+summary() {
+  awk -F': *' '
+    /^stat::number_of_executed_units/ { runs = $2 }
+    /^stat::average_exec_per_sec/ { rate = $2 }
+    /^stat::peak_rss_mb/ { rss = $2 }
+    / cov: / { split($0, cov, /cov: /); split(cov[2], edges, " ") }
+    END { printf "%10d runs %7d /s  %6d edges  %5d MB", runs, rate, edges[1], rss }' "$1"
+}
+
+# fuzz TARGET: status 1 where it found something.
+fuzz() {
+  local target=$1 log=$work/$1.log status=0
+  mkdir -p "$work/corpus/$target" "$work/findings"
+  TMPDIR=$memory ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 \
+    "$build_folder/bin/Fuzz$target" "$work/corpus/$target" "$here/Corpus/$target" \
+    -max_total_time="$seconds" -runs="${FENESTRA_FUZZ_RUNS:--1}" -max_len=16384 -timeout=10 \
+    -rss_limit_mb=2048 -close_fd_mask=1 -print_final_stats=1 -reload=0 \
+    -artifact_prefix="$work/findings/$target-" $(dictionary "$target") >"$log" 2>&1 || status=$?
+  printf '%-14s %s  %s\n' "$target" "$(summary "$log")" \
+    "$([ $status -eq 0 ] && echo fine || echo "FINDING, see $log")"
+  return $((status != 0))
+}
+
+install_packages "${build_packages[@]}" clang libclang-rt-14-dev
+(cd "$top" && cmake --preset fuzz -B "$build_folder" >/dev/null &&
+  cmake --build "$build_folder" --target fuzzers) || die "the fuzz targets do not build (see above)"
+
+targets=("$@")
+[ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(ls "$here/Corpus")
+memory=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" fenestra-fuzz-XXXXXX)
+trap 'rm -rf "$memory"' EXIT
+say "Fuzzing, $seconds s a target"
+failed=0
+for target in "${targets[@]}"; do
+  fuzz "$target" || failed=1
+done
+exit $failed

@@ -1,0 +1,20 @@
+// usage: MakeSamples FOLDER: writes the format traps that baselines.sh renders.
+#include "SampleFiles.h"
+
+#include <cstdio>
+#include <exception>
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: MakeSamples FOLDER\n");
+    return 2;
+  }
+  try {
+    constexpr double spacing = 1.6; // mm: 25 voxels an axis, the largest file has 130 KB
+    fenestra::testing::writeTraps(argv[1], spacing);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "MakeSamples: %s\n", error.what());
+    return 4;
+  }
+}
