@@ -64,6 +64,32 @@ void swapBytes(T& x) {
   std::memcpy(&x, bytes.data(), sizeof(T));
 }
 
+using HeaderBytes = std::array<char, 348>;
+
+/// A field of nifti_1_header, by its offset.
+template <typename T>
+T fieldAt(const HeaderBytes& bytes, std::size_t at, bool swapped) {
+  T value;
+  std::memcpy(&value, &bytes[at], sizeof(T));
+  if (swapped)
+    swapBytes(value);
+  return value;
+}
+
+/// What says where voxels are, as far as it applies: ITK ends the process over numbers in it that
+/// are not finite, or cease to be when they are squared.
+bool isPlaced(const HeaderBytes& bytes, bool swapped) {
+  const auto sane = [&](std::size_t at, std::size_t count) {
+    for (std::size_t end = at + 4 * count; at < end; at += 4)
+      if (!(std::abs(fieldAt<float>(bytes, at, swapped)) < 1e9f))
+        return false;
+    return true;
+  };
+  const bool qform = fieldAt<std::int16_t>(bytes, 252, swapped) != 0;
+  const bool sform = fieldAt<std::int16_t>(bytes, 254, swapped) != 0;
+  return sane(76, 4) && (!qform || sane(256, 6)) && (!sform || sane(280, 12));
+}
+
 /// The fields of nifti_1_header that samples depend on.
 struct Header {
   bool swapped = false;
@@ -77,13 +103,11 @@ struct Header {
 };
 
 Header readHeader(const std::filesystem::path& path, Stream& stream) {
-  std::array<char, 348> bytes;
+  HeaderBytes bytes;
   stream.read(bytes.data(), bytes.size());
   Header header;
   const auto field = [&]<typename T>(std::size_t at, T& value) {
-    std::memcpy(&value, &bytes[at], sizeof(T));
-    if (header.swapped)
-      swapBytes(value);
+    value = fieldAt<T>(bytes, at, header.swapped);
   };
   std::int16_t axes = 0;
   field(40, axes); // 1 to 7 tells the byte order
@@ -105,6 +129,9 @@ Header readHeader(const std::filesystem::path& path, Stream& stream) {
   if (size != static_cast<std::int32_t>(bytes.size()) || !sized ||
       std::memcmp(&bytes[344], "n+1", 4) != 0 || !(header.offset <= farthest))
     throw inputError(path.string(), "is not a NIfTI-1 file of one part; write it again as .nii.gz");
+  if (!isPlaced(bytes, header.swapped))
+    throw inputError(path.string(), "qform, sform or pixdim: holds a number that is not finite or "
+                                    "beyond 1e9 mm; write it again");
   return header;
 }
 

@@ -334,6 +334,20 @@ TEST(VolumeReader, refusesDataFilesThatAreNone) {
         "");
 }
 
+TEST(VolumeReader, refusesNumbersThatItkDoesNotSurviveInNifti) {
+  const TemporaryFolder folder;
+  writeFile(folder / "v.nii", ramp<std::uint8_t>(0, 1));
+  const std::string good = bytesOf(folder / "v.nii");
+  for (const std::size_t at : {80u, 256u, 268u, 280u, 324u}) // pixdim, qform, sform
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
+                            -std::numeric_limits<float>::infinity(), 1e38f}) {
+      std::string bytes = good;
+      bytes.replace(252, 4, std::string("\1\0\1\0", 4)); // both forms apply
+      bytes.replace(at, 4, rawBytes(std::vector<float>{bad}));
+      expectRefusal(folder.write("bad.nii", bytes), "qform");
+    }
+}
+
 TEST(VolumeReader, appliesTheRescalingOfNifti) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nii", ramp<std::uint8_t>(0, 1));
