@@ -32,8 +32,8 @@ bool inPicture(const FocusDepth& focus, const Mask& mask) {
   if (std::ranges::find(focus.regions, Region::focus) == focus.regions.end())
     throw inputError(
         nameOf(mask),
-        "cannot be seen: it lies outside the volume or its cropping box, behind the eye, "
-        " or is smaller than a pixel; choose another --focus or view");
+        "cannot be seen: it lies outside the volume or its cropping box, behind the eye, or "
+        "is smaller than a pixel; choose another --focus or view");
   const DepthAxis& x = focus.depth.xAxis();
   const DepthAxis& y = focus.depth.yAxis();
   for (std::int64_t row = y.before; row < y.before + y.inside; ++row)
