@@ -4,6 +4,7 @@
 #include "cli/Stop.h"
 #include "core/Error.h"
 #include "io/PhantomWriter.h"
+#include "phantom/Cube.h"
 #include "phantom/Knee.h"
 
 #include <cstdio>
@@ -14,30 +15,55 @@ namespace {
 
 constexpr const char* group = "Phantom";
 constexpr Flag flags[] = {
-    {"output", "DIR", group, "Folder for KIND.nrrd, KIND.seg.nrrd and KIND.vp.json [KIND]"},
-    {"size", "WxHxD", group, "Voxels over the same field of view [300x344x120]"},
+    {"output", "DIR", group, "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
+    {"size", "WxHxD", group,
+     "Voxels over the same field of view; N for the cube [knee 300x344x120, cube 512]"},
+    {"edge", "MM", group, "The cube's edge [1]"},
 };
 
 const CommandSyntax syntax = {
     "phantom",
-    "Makes a synthetic subject: an image, its segments and a transfer function.",
-    {{"KIND", "knee"}},
+    "Makes a synthetic subject: an image, its segments, a transfer function, and scenes of them.",
+    {{"KIND", "knee (MR) or cube (the scalar is the z index)"}},
     flags,
 };
 
-KneeOptions kneeOptions(const FlagValues& values) {
-  KneeOptions options;
+/// WxHxD in voxels.
+std::optional<Size3> sizeOf(const FlagValues& values) {
   const auto size = values.text("size");
   if (!size)
-    return options;
+    return std::nullopt;
   long x = 0;
   long y = 0;
   long z = 0;
   char rest = 0;
   if (std::sscanf(size->c_str(), "%ldx%ldx%ld%c", &x, &y, &z, &rest) != 3)
     throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '" + *size + "'");
-  options.size = {x, y, z};
-  return options;
+  return Size3{x, y, z};
+}
+
+Phantom makeKnee(const FlagValues& values) {
+  KneeOptions options;
+  options.size = sizeOf(values).value_or(options.size);
+  return makeKneePhantom(options);
+}
+
+Phantom makeCube(const FlagValues& values) {
+  CubeOptions options;
+  options.edge = values.number("edge", 1e-3, 1e5).value_or(options.edge);
+  if (const auto size = values.count("size", 16, 1024))
+    options.size = static_cast<std::int64_t>(*size);
+  return makeCubePhantom(options);
+}
+
+Phantom makePhantom(const std::string& kind, const FlagValues& values) {
+  if (kind != "cube" && values.has("edge"))
+    throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
+  if (kind == "knee")
+    return makeKnee(values);
+  if (kind == "cube")
+    return makeCube(values);
+  throw usageError("KIND: '" + kind + "' is unknown; use knee or cube");
 }
 
 } // namespace
@@ -47,16 +73,15 @@ int phantomCommand(int argc, char** argv, int first) {
   if (!values)
     return 0;
   const std::string kind = *values->text("KIND");
-  if (kind != "knee")
-    throw usageError("KIND: '" + kind + "' is unknown; use knee");
   const std::string folder = values->text("output").value_or(kind);
   std::atomic<bool> stopped = false;
   StopOnSignal stopOnSignal;
-  const Phantom phantom = makeKneePhantom(kneeOptions(*values));
+  const Phantom phantom = makePhantom(kind, *values);
   stopOnSignal.setInstead(stopped); // the files belong together
-  writePhantom(phantom, folder, kind);
-  std::cout << folder << ": " << kind << ".nrrd, " << kind << ".seg.nrrd, " << kind << ".vp.json, "
-            << phantom.segments.size() << " segments" << std::endl;
+  std::cout << folder << ":";
+  for (const std::string& file : writePhantom(phantom, folder, kind))
+    std::cout << ' ' << file;
+  std::cout << ", " << phantom.segments.size() << " segments" << std::endl;
   return stopped ? stoppedStatus : 0;
 }
 

@@ -5,13 +5,17 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace fenestra {
 
-/// Writes into `directory`, which is made where it is missing: `baseName`.nrrd (the volume),
-/// .seg.nrrd (one layer of all segments) and .vp.json (the volume property). Files are LPS, and
-/// each appears whole or not at all. Throws Error (output).
-void writePhantom(const Phantom& phantom, const std::filesystem::path& directory,
-                  const std::string& baseName);
+/// Writes into `directory`, which is made where it is missing: `name`.nrrd (the volume), .seg.nrrd
+/// (the segments, in their layers), .vp.json and .vp (the volume property; the second for Slicers
+/// before 5.10), -roi.mrk.json (the volume's box), .mrml (a scene of these) and .mrb (the same in
+/// an archive). Files are LPS, the same bytes on every run, and each appears whole or not at all.
+/// Returns their names. Throws Error (output).
+std::vector<std::string> writePhantom(const Phantom& phantom,
+                                      const std::filesystem::path& directory,
+                                      const std::string& name);
 
 } // namespace fenestra

@@ -45,11 +45,11 @@ KneeLayers::KneeLayers() {
   addCovers();
 }
 
-Site KneeLayers::site(const Vec3& p) const {
-  Site s{};
+KneeSite KneeLayers::site(const Vec3& p) const {
+  KneeSite s{};
   s.point = p;
-  s.leg = m_leg.distance(p);
-  s.fascia = s.leg + fasciaDepth(p);
+  s.surface = m_leg.distance(p);
+  s.fascia = s.surface + fasciaDepth(p);
   s.femur = m_bones.femur(p);
   s.tibia = m_bones.tibia(p);
   s.fibula = m_bones.fibula(p);
@@ -72,58 +72,61 @@ std::uint8_t KneeLayers::segment(const char* id, const char* name, const Rgb& co
   return label;
 }
 
-void KneeLayers::layer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance) {
+void KneeLayers::layer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance) {
   m_layers.push_back({label, tissue, expanded(box, boxMargin), std::move(distance)});
 }
 
-void KneeLayers::deepLayer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance) {
-  layer(label, tissue, box, [distance = std::move(distance)](const Site& s) {
+void KneeLayers::deepLayer(std::uint8_t label, KneeTissue tissue, const Box& box,
+                           Distance distance) {
+  layer(label, tissue, box, [distance = std::move(distance)](const KneeSite& s) {
     return std::max(distance(s), s.fascia + fasciaThickness);
   });
 }
 
 void KneeLayers::ligament(const char* id, const char* name, Tube tube) {
   const Box box = tube.box();
-  deepLayer(segment(id, name, ligamentColor), Tissue::ligament, box,
-            [tube = std::move(tube)](const Site& s) { return tube.distance(s.point); });
+  deepLayer(segment(id, name, ligamentColor), KneeTissue::ligament, box,
+            [tube = std::move(tube)](const KneeSite& s) { return tube.distance(s.point); });
 }
 
 /// Fat keeps neighbouring muscles apart.
 void KneeLayers::muscle(const char* id, const char* name, const std::vector<Loft>& bellies) {
   const auto label = segment(id, name, muscleColor);
   for (const Loft& belly : bellies) {
-    const Distance shape = [belly](const Site& s) {
+    const Distance shape = [belly](const KneeSite& s) {
       return belly.distance(s.point) + 0.9 * valueNoise(s.point / 8.0, 92);
     };
-    deepLayer(label, Tissue::muscle, belly.box(), shape);
-    deepLayer(m_deepFat, Tissue::deepFat, belly.box(),
-              [shape](const Site& s) { return shape(s) - 0.8; });
+    deepLayer(label, KneeTissue::muscle, belly.box(), shape);
+    deepLayer(m_deepFat, KneeTissue::deepFat, belly.box(),
+              [shape](const KneeSite& s) { return shape(s) - 0.8; });
   }
 }
 
 void KneeLayers::addBones() {
-  const auto bone = [this](const char* id, const char* name, double Site::*surface) {
+  const auto bone = [this](const char* id, const char* name, double KneeSite::*surface) {
     const auto label = segment(id, name, boneColor);
-    layer(label, Tissue::marrow, everywhere, [surface](const Site& s) {
+    layer(label, KneeTissue::marrow, everywhere, [surface](const KneeSite& s) {
       return s.*surface < 1.0 ? s.*surface + cortexThickness(s.point) : KneeBones::beyond;
     });
-    layer(label, Tissue::cortex, everywhere, [surface](const Site& s) { return s.*surface; });
+    layer(label, KneeTissue::cortex, everywhere,
+          [surface](const KneeSite& s) { return s.*surface; });
   };
-  bone("Femur", "Femur", &Site::femur);
-  bone("Tibia", "Tibia", &Site::tibia);
-  bone("Fibula", "Fibula", &Site::fibula);
-  bone("Patella", "Patella", &Site::patella);
+  bone("Femur", "Femur", &KneeSite::femur);
+  bone("Tibia", "Tibia", &KneeSite::tibia);
+  bone("Fibula", "Fibula", &KneeSite::fibula);
+  bone("Patella", "Patella", &KneeSite::patella);
 }
 
 void KneeLayers::addCartilage() {
-  const auto cartilage = [this](const char* id, const char* name, double Site::*bone,
-                                double Site::*thickness) {
-    layer(segment(id, name, cartilageColor), Tissue::cartilage, everywhere,
-          [bone, thickness](const Site& s) { return cover(s.*bone, s.*thickness, 0.0); });
+  const auto cartilage = [this](const char* id, const char* name, double KneeSite::*bone,
+                                double KneeSite::*thickness) {
+    layer(segment(id, name, cartilageColor), KneeTissue::cartilage, everywhere,
+          [bone, thickness](const KneeSite& s) { return cover(s.*bone, s.*thickness, 0.0); });
   };
-  cartilage("FemoralCartilage", "Femoral cartilage", &Site::femur, &Site::femoralCartilage);
-  cartilage("TibialCartilage", "Tibial cartilage", &Site::tibia, &Site::tibialCartilage);
-  cartilage("PatellarCartilage", "Patellar cartilage", &Site::patella, &Site::patellarCartilage);
+  cartilage("FemoralCartilage", "Femoral cartilage", &KneeSite::femur, &KneeSite::femoralCartilage);
+  cartilage("TibialCartilage", "Tibial cartilage", &KneeSite::tibia, &KneeSite::tibialCartilage);
+  cartilage("PatellarCartilage", "Patellar cartilage", &KneeSite::patella,
+            &KneeSite::patellarCartilage);
 }
 
 void KneeLayers::addLigaments() {
@@ -141,8 +144,8 @@ void KneeLayers::addMenisci() {
   const auto meniscus = [this](const char* id, const char* name, const MeniscusRing& ring) {
     const Vec3 center{ring.center.x(), ring.center.y(), 2.0};
     const Vec3 reach{ring.outerRadii.x(), ring.outerRadii.y(), 6.0};
-    layer(segment(id, name, meniscusColor), Tissue::meniscus, {center - reach, center + reach},
-          [ring](const Site& s) {
+    layer(segment(id, name, meniscusColor), KneeTissue::meniscus, {center - reach, center + reach},
+          [ring](const KneeSite& s) {
             const double above = s.femoralCartilage + 0.25 - s.femur;
             const double below = s.tibialCartilage + 0.15 - s.tibia;
             return std::max({ring.distance(s.point), above, below});
@@ -154,36 +157,38 @@ void KneeLayers::addMenisci() {
 
 void KneeLayers::addJointSpace() {
   const auto fluid = segment("JointFluid", "Joint fluid", {0.667, 0.980, 0.980});
-  layer(fluid, Tissue::fluid, everywhere, [](const Site& s) {
+  layer(fluid, KneeTissue::fluid, everywhere, [](const KneeSite& s) {
     return std::min({cover(s.femur, s.intactFemoralCartilage, film),
                      cover(s.tibia, s.tibialCartilage, film),
                      cover(s.patella, s.patellarCartilage, film)});
   });
-  layer(fluid, Tissue::fluid, {{-17, 25, 45}, {19, 38, 75}},
-        [](const Site& s) { return suprapatellarRecess(s.point); });
+  layer(fluid, KneeTissue::fluid, {{-17, 25, 45}, {19, 38, 75}},
+        [](const KneeSite& s) { return suprapatellarRecess(s.point); });
 
   const auto retinaculum = segment("Retinaculum", "Patellar retinaculum", ligamentColor);
-  deepLayer(retinaculum, Tissue::fascia, {{-46, 0, -14}, {49, 46, 62}},
-            [](const Site& s) { return patellarRetinaculum(s.point); });
+  deepLayer(retinaculum, KneeTissue::fascia, {{-46, 0, -14}, {49, 46, 62}},
+            [](const KneeSite& s) { return patellarRetinaculum(s.point); });
   const auto fatPad =
       segment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588});
-  deepLayer(fatPad, Tissue::fatPad, {{-35, 6, -25}, {39, 48, 30}},
-            [](const Site& s) { return infrapatellarFatPad(s.point); });
+  deepLayer(fatPad, KneeTissue::fatPad, {{-35, 6, -25}, {39, 48, 30}},
+            [](const KneeSite& s) { return infrapatellarFatPad(s.point); });
 }
 
 void KneeLayers::addVessels() {
-  const auto add = [this](std::uint8_t label, Tissue tissue, Tube tube) {
+  const auto add = [this](std::uint8_t label, KneeTissue tissue, Tube tube) {
     const Box box = tube.box();
-    layer(label, tissue, box, [tube = std::move(tube)](const Site& s) {
-      return std::max(tube.distance(s.point), s.leg + skinThickness + 0.5);
+    layer(label, tissue, box, [tube = std::move(tube)](const KneeSite& s) {
+      return std::max(tube.distance(s.point), s.surface + skinThickness + 0.5);
     });
   };
   const Rgb veinColor{0.0, 0.592, 0.808};
-  add(segment("PoplitealArtery", "Popliteal artery", {0.847, 0.396, 0.310}), Tissue::vessel,
+  add(segment("PoplitealArtery", "Popliteal artery", {0.847, 0.396, 0.310}), KneeTissue::vessel,
       poplitealArtery());
-  add(segment("PoplitealVein", "Popliteal vein", veinColor), Tissue::vessel, poplitealVein());
-  add(segment("SaphenousVein", "Great saphenous vein", veinColor), Tissue::vessel, saphenousVein());
-  add(segment("TibialNerve", "Tibial nerve", {0.957, 0.839, 0.192}), Tissue::nerve, tibialNerve());
+  add(segment("PoplitealVein", "Popliteal vein", veinColor), KneeTissue::vessel, poplitealVein());
+  add(segment("SaphenousVein", "Great saphenous vein", veinColor), KneeTissue::vessel,
+      saphenousVein());
+  add(segment("TibialNerve", "Tibial nerve", {0.957, 0.839, 0.192}), KneeTissue::nerve,
+      tibialNerve());
 }
 
 void KneeLayers::addMuscles() {
@@ -203,14 +208,14 @@ void KneeLayers::addMuscles() {
 }
 
 void KneeLayers::addCovers() {
-  layer(m_deepFat, Tissue::deepFat, everywhere,
-        [](const Site& s) { return s.fascia + fasciaThickness; });
-  layer(segment("Fascia", "Fascia", ligamentColor), Tissue::fascia, everywhere,
-        [](const Site& s) { return s.fascia; });
-  layer(segment("SubcutaneousFat", "Subcutaneous fat", fatColor), Tissue::subcutaneousFat,
-        everywhere, [](const Site& s) { return s.leg + skinThickness; });
-  layer(segment("Skin", "Skin", {0.694, 0.478, 0.396}), Tissue::skin, everywhere,
-        [](const Site& s) { return s.leg; });
+  layer(m_deepFat, KneeTissue::deepFat, everywhere,
+        [](const KneeSite& s) { return s.fascia + fasciaThickness; });
+  layer(segment("Fascia", "Fascia", ligamentColor), KneeTissue::fascia, everywhere,
+        [](const KneeSite& s) { return s.fascia; });
+  layer(segment("SubcutaneousFat", "Subcutaneous fat", fatColor), KneeTissue::subcutaneousFat,
+        everywhere, [](const KneeSite& s) { return s.surface + skinThickness; });
+  layer(segment("Skin", "Skin", {0.694, 0.478, 0.396}), KneeTissue::skin, everywhere,
+        [](const KneeSite& s) { return s.surface; });
 }
 
 } // namespace fenestra

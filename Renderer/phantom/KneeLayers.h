@@ -4,46 +4,39 @@
 #include "phantom/KneeBones.h"
 #include "phantom/KneeSignal.h"
 #include "phantom/KneeSoftTissue.h"
-#include "phantom/Phantom.h"
-
-#include <functional>
+#include "phantom/Painter.h"
 
 namespace fenestra {
 
 /// A place, and what most layers ask about it.
-struct Site {
+struct KneeSite {
   Vec3 point;
-  double leg;                           ///< distances in mm: to the skin's surface
+  double surface;                       ///< distances in mm: to the skin's
   double fascia;                        ///< to the sheath around muscles and joint
   double femur, tibia, fibula, patella; ///< and the bones'
   double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
 };
 
-struct Layer {
-  std::uint8_t label;
-  Tissue tissue;
-  Box box;                                     ///< world; the shape lies inside it
-  std::function<double(const Site&)> distance; ///< mm, negative inside
-};
+using KneeLayer = PaintLayer<KneeSite, KneeTissue>;
 
 class KneeLayers {
 public:
   KneeLayers();
 
   /// Front to back: a layer hides those after it.
-  const std::vector<Layer>& layers() const { return m_layers; }
+  const std::vector<KneeLayer>& layers() const { return m_layers; }
   const std::vector<PhantomSegment>& segments() const { return m_segments; }
 
-  Site site(const Vec3& point) const;
+  KneeSite site(const Vec3& point) const;
 
 private:
-  using Distance = std::function<double(const Site&)>;
+  using Distance = std::function<double(const KneeSite&)>;
 
   /// Returns the new segment's label.
   std::uint8_t segment(const char* id, const char* name, const Rgb& color);
-  void layer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance);
+  void layer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance);
   /// Its shape ends at the fascia.
-  void deepLayer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance);
+  void deepLayer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance);
   void ligament(const char* id, const char* name, Tube tube);
   void muscle(const char* id, const char* name, const std::vector<Loft>& bellies);
 
@@ -58,7 +51,7 @@ private:
 
   KneeBones m_bones;
   LegOutline m_leg;
-  std::vector<Layer> m_layers;
+  std::vector<KneeLayer> m_layers;
   std::vector<PhantomSegment> m_segments;
   std::uint8_t m_deepFat = 0; ///< label
 };

@@ -47,35 +47,35 @@ double marrowSignal(const Vec3& p) {
 
 } // namespace
 
-double tissueSignal(Tissue tissue, const Vec3& p) {
+double tissueSignal(KneeTissue tissue, const Vec3& p) {
   switch (tissue) {
-  case Tissue::skin:
+  case KneeTissue::skin:
     return 410.0;
-  case Tissue::subcutaneousFat:
+  case KneeTissue::subcutaneousFat:
     return fatSignal(p, 190.0);
-  case Tissue::fascia:
+  case KneeTissue::fascia:
     return 210.0;
-  case Tissue::deepFat:
+  case KneeTissue::deepFat:
     return fatSignal(p, 150.0);
-  case Tissue::fatPad:
+  case KneeTissue::fatPad:
     return fatSignal(p, 300.0) - 15.0;
-  case Tissue::muscle:
+  case KneeTissue::muscle:
     return muscleSignal(p);
-  case Tissue::vessel:
+  case KneeTissue::vessel:
     return 45.0;
-  case Tissue::nerve:
+  case KneeTissue::nerve:
     return 420.0 + 60.0 * valueNoise(p.cwiseQuotient(Vec3{0.9, 0.9, 8.0}), 81);
-  case Tissue::fluid:
+  case KneeTissue::fluid:
     return 215.0;
-  case Tissue::meniscus:
+  case KneeTissue::meniscus:
     return 105.0 + 18.0 * valueNoise(p / 2.0, 82);
-  case Tissue::ligament:
+  case KneeTissue::ligament:
     return 112.0 + 28.0 * valueNoise(p / 1.5, 83);
-  case Tissue::cartilage:
+  case KneeTissue::cartilage:
     return 520.0 + 16.0 * valueNoise(p / 2.5, 84);
-  case Tissue::cortex:
+  case KneeTissue::cortex:
     return 66.0;
-  case Tissue::marrow:
+  case KneeTissue::marrow:
     return marrowSignal(p);
   }
   return 0.0;

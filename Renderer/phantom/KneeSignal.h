@@ -5,7 +5,7 @@
 
 namespace fenestra {
 
-enum class Tissue {
+enum class KneeTissue {
   skin,
   subcutaneousFat,
   fascia,
@@ -23,7 +23,7 @@ enum class Tissue {
 };
 
 /// Signal with the tissue's own texture, before bias field and noise; `point` in the knee's frame.
-double tissueSignal(Tissue tissue, const Vec3& point);
+double tissueSignal(KneeTissue tissue, const Vec3& point);
 
 /// The receive coils' sensitivity: smooth, within 0.85 and 1.15.
 double biasField(const Vec3& point);

@@ -164,7 +164,7 @@ TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
         "output", "layers",       "stats",    "progress", "help",     "version"}},
       {{"render", "--help"}, {"INPUT", "focus", "output"}},
       {{"compare", "--help"}, {"A", "B", "errora", "errorb", "output", "help", "version"}},
-      {{"phantom", "--help"}, {"KIND", "output", "size", "help", "version"}},
+      {{"phantom", "--help"}, {"KIND", "output", "size", "edge", "help", "version"}},
       {{"missing.nrrd", "--samples", "x", "--help"}, {"focus"}}, // whatever else is wrong
   };
   for (const auto& [arguments, names] : commands) {

@@ -70,7 +70,7 @@ TEST_F(PhantomFiles, TheVolumeComesBackVoxelForVoxelInItsPlace) {
 TEST_F(PhantomFiles, TheSegmentationNamesEverySegmentAsSlicerDoes) {
   const auto io = open("knee.seg.nrrd");
   const std::vector<std::uint8_t> labels = read<std::uint8_t>(*io);
-  EXPECT_EQ(labels, phantom.labels);
+  EXPECT_EQ(labels, phantom.labels.layers.at(0));
   EXPECT_TRUE(
       worldOf(*io, {1, 2, 3}).isApprox(phantom.volume.grid.indexToWorld * Vec3(1, 2, 3), 1e-9));
   EXPECT_EQ(field(*io, "Segmentation_MasterRepresentation"), "Binary labelmap");
@@ -93,7 +93,7 @@ TEST_F(PhantomFiles, ASegmentsExtentIsTheLeastThatHoldsIt) {
   Eigen::AlignedBox<std::int64_t, 3> held;
   const Size3& size = phantom.volume.grid.size;
   for (std::int64_t at = 0; at < size.prod(); ++at)
-    if (phantom.labels[static_cast<std::size_t>(at)] == 4)
+    if (phantom.labels.layers[0][static_cast<std::size_t>(at)] == 4)
       held.extend(Size3(at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y())));
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(extent[2 * axis], held.min()[axis]);
@@ -118,11 +118,11 @@ TEST_F(PhantomFiles, ThePropertyIsSlicersJson) {
   EXPECT_EQ(component.at("rgbTransferFunction").at("points").size(), phantom.property.color.size());
 }
 
-TEST_F(PhantomFiles, NothingButTheThreeFilesIsLeft) {
+TEST_F(PhantomFiles, NothingButTheSevenFilesIsLeft) {
   std::size_t count = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder))
     ++count;
-  EXPECT_EQ(count, 3u);
+  EXPECT_EQ(count, 7u);
 }
 
 TEST_F(PhantomFiles, AFolderThatCannotBeMadeIsAnOutputError) {
