@@ -1,6 +1,7 @@
 #include "film/Compare.h"
 
 #include "core/Error.h"
+#include "film/StudentT.h"
 
 #include <array>
 
@@ -64,14 +65,19 @@ struct Pair {
   double variance(std::size_t c, std::size_t i) const {
     return square((*errorA[c])[i]) + square((*errorB[c])[i]);
   }
+  double rounding(std::size_t c, std::size_t i) const {
+    return 0x1p-24 * std::max(std::abs((*a[c])[i]), std::abs((*b[c])[i]));
+  }
+  /// To the rounding of a float.
+  bool agrees(std::size_t c, std::size_t i) const {
+    return std::abs(difference(c, i)) <= 2.0 * rounding(c, i);
+  }
   /// No draw of a normal z: both errors are 0 to the rounding of a float, or one is and the values
   /// agree to it. So it is where neither renderer met anything, whatever error one of them states.
   bool saysNothing(std::size_t c, std::size_t i) const {
-    const double rounding = 0x1p-24 * std::max(std::abs((*a[c])[i]), std::abs((*b[c])[i]));
-    const bool exactA = std::abs((*errorA[c])[i]) <= rounding;
-    const bool exactB = std::abs((*errorB[c])[i]) <= rounding;
-    const bool agree = std::abs(difference(c, i)) <= 2.0 * rounding;
-    return (exactA && exactB) || ((exactA || exactB) && agree);
+    const bool exactA = std::abs((*errorA[c])[i]) <= rounding(c, i);
+    const bool exactB = std::abs((*errorB[c])[i]) <= rounding(c, i);
+    return (exactA && exactB) || ((exactA || exactB) && agrees(c, i));
   }
 };
 
@@ -156,6 +162,52 @@ std::vector<double> signedDifferences(const Pair& pair) {
   return values;
 }
 
+/// A picture whose noise is known.
+struct Estimates {
+  Planes means, errors;
+  const std::vector<float>* samples;
+
+  explicit Estimates(const Image& image)
+      : means(colours(image)),
+        errors(findPlanes(image, errorNames)),
+        samples(image.find("samples.N")) {
+    if (!complete(errors) || !samples)
+      throw inputError("pictures", "one has no channels error.R, error.G, error.B and samples.N; "
+                                   "compare renders with all layers");
+  }
+  double variance(std::size_t c, std::size_t i) const { return square((*errors[c])[i]); }
+  /// What the variance of a variance is in proportion to.
+  double squareByFreedom(std::size_t c, std::size_t i) const {
+    return square(variance(c, i)) / std::max(static_cast<double>((*samples)[i]) - 1.0, 1.0);
+  }
+};
+
+/// Sums over one tile and channel.
+struct TileSums {
+  double mean = 0.0, variance = 0.0, squareByFreedom = 0.0;
+  int pixels = 0;
+
+  void add(const Estimates& image, std::size_t c, std::size_t i) {
+    mean += static_cast<double>((*image.means[c])[i]);
+    variance += image.variance(c, i);
+    squareByFreedom += image.squareByFreedom(c, i);
+    ++pixels;
+  }
+  /// Infinite where nothing varies.
+  double freedom() const {
+    return squareByFreedom > 0.0 ? square(variance) / squareByFreedom : infinity;
+  }
+};
+
+TileSums sumTile(const Image& image, const Estimates& estimates, std::size_t c, int left, int top,
+                 int size) {
+  TileSums sums;
+  for (int row = top; row < std::min(top + size, image.height); ++row)
+    for (int column = left; column < std::min(left + size, image.width); ++column)
+      sums.add(estimates, c, static_cast<std::size_t>(row * image.width + column));
+  return sums;
+}
+
 Rgb divergingColour(double t) {
   if (!std::isfinite(t))
     return Rgb::Zero();
@@ -192,6 +244,44 @@ Image differenceImage(const Image& a, const Image& b) {
       plane[i] = static_cast<float>(divergingColour(values[i])[static_cast<int>(c)]);
   }
   return image;
+}
+
+Image tileMeans(const Image& image, int size) {
+  const Estimates estimates(image);
+  size = std::min(size, std::max(image.width, image.height));
+  Image result{(image.width + size - 1) / size, (image.height + size - 1) / size, {}, {}};
+  for (int row = 0; row < result.height; ++row)
+    for (int column = 0; column < result.width; ++column) {
+      double freedom = infinity;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const TileSums sums = sumTile(image, estimates, c, column * size, row * size, size);
+        result.channels[colourNames[c]].push_back(static_cast<float>(sums.mean / sums.pixels));
+        result.channels[errorNames[c]].push_back(
+            static_cast<float>(std::sqrt(sums.variance) / sums.pixels));
+        freedom = std::min(freedom, sums.freedom());
+      }
+      result.channels["samples.N"].push_back(static_cast<float>(1.0 + freedom));
+    }
+  return result;
+}
+
+double agreementProbability(const Image& a, const Image& b) {
+  const Pair pair(a, b);
+  const Estimates estimatesA(a), estimatesB(b);
+  double least = 1.0, count = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < pair.pixels; ++i) {
+      const double d = pair.difference(c, i);
+      if (pair.saysNothing(c, i) && pair.agrees(c, i))
+        continue;
+      const double v = pair.variance(c, i);
+      const double freedom =
+          square(v) / (estimatesA.squareByFreedom(c, i) + estimatesB.squareByFreedom(c, i));
+      const double p = studentTail(d / std::sqrt(v), freedom);
+      least = std::isnan(p) ? 0.0 : std::min(least, p); // no freedom: exact
+      ++count;
+    }
+  return count == 0.0 ? 1.0 : -std::expm1(count * std::log1p(-least)); // 1 - (1 - p)^count
 }
 
 void attachError(Image& image, const Image& error) {

@@ -44,6 +44,18 @@ Comparison compareImages(const Image& a, const Image& b);
 /// Black where a difference is not finite. Throws as compareImages does.
 Image differenceImage(const Image& a, const Image& b);
 
+/// Means over square tiles of `size` pixels (fewer at the right and lower border, so one tile of a
+/// great size is the whole picture): R, G, B, their standard errors, and in samples.N the degrees
+/// of freedom that these have, plus one (Satterthwaite 1946). Needs error.R, error.G, error.B and
+/// samples.N, and throws Error (input) where one is missing.
+Image tileMeans(const Image& image, int size);
+
+/// How probable a difference as large as the largest of any R, G or B is between two renders of one
+/// scene with independent seeds: Welch's t of each value, corrected for the number of values
+/// (Šidák 1967). Exact values (see ZStatistics) that differ make it 0; so does what is not finite.
+/// Throws as tileMeans does, and for different sizes.
+double agreementProbability(const Image& a, const Image& b);
+
 /// Takes R, G, B of `error`, a picture of standard errors, as the error channels of `image`. Throws
 /// Error (input) for different sizes or missing channels.
 void attachError(Image& image, const Image& error);

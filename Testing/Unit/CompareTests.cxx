@@ -3,6 +3,7 @@
 #include "core/Error.h"
 #include "core/Random.h"
 #include "film/Compare.h"
+#include "film/StudentT.h"
 #include "io/ImageReader.h"
 
 #include <gtest/gtest.h>
@@ -198,4 +199,72 @@ TEST(AttachError, MakesTheStoredReferencesComparable) {
   const double ownVariance = -compareImages(silent, reference).relMse;
   EXPECT_GT(ownVariance, 6e-5);
   EXPECT_LT(ownVariance, 8e-5);
+}
+
+// ---- whether two renders can be of one scene
+// --------------------------------------------------------
+
+namespace {
+
+Image withSamples(Image image, float samples) {
+  image.channels["samples.N"].assign(image.channels["R"].size(), samples);
+  return image;
+}
+
+/// Two independent ones of equal means and honest errors.
+Image render(std::uint64_t seed, float mean = 0.5f) {
+  return withSamples(noisyImage(32, mean, 0.01f, seed), 1e4f);
+}
+
+} // namespace
+
+TEST(StudentTail, MatchesClosedForms) {
+  EXPECT_DOUBLE_EQ(studentTail(0.0, 5.0), 1.0);
+  for (const double t : {0.3, 1.0, 4.0, 50.0}) {
+    EXPECT_NEAR(studentTail(t, 1.0) / (1.0 - 2.0 / pi * std::atan(t)), 1.0, 1e-9);
+    EXPECT_NEAR(studentTail(-t, 2.0) / (1.0 - t / std::sqrt(2.0 + t * t)), 1.0, 1e-9);
+  }
+  for (const double t : {0.3, 1.0, 4.0, 6.0}) // normal in the limit
+    EXPECT_NEAR(studentTail(t, 1e8) / std::erfc(t / std::sqrt(2.0)), 1.0, 1e-4);
+  EXPECT_EQ(studentTail(infinity, 7.0), 0.0);
+}
+
+TEST(TileMeans, AverageAndKnowTheirErrors) {
+  Image image = withSamples(withError(constantImage(5, 4, 1.0f), 0.2f), 11.0f);
+  image.channels["R"][0] = 5.0f;
+  const Image tiles = tileMeans(image, 4);
+  ASSERT_EQ(tiles.width, 2);
+  ASSERT_EQ(tiles.height, 1);
+  EXPECT_FLOAT_EQ(tiles.find("R")->at(0), 1.25f);
+  EXPECT_FLOAT_EQ(tiles.find("R")->at(1), 1.0f);
+  EXPECT_FLOAT_EQ(tiles.find("error.G")->at(0), 0.05f);
+  EXPECT_FLOAT_EQ(tiles.find("error.G")->at(1), 0.1f);
+  EXPECT_FLOAT_EQ(tiles.find("samples.N")->at(0), 161.0f); // sixteen times ten, plus one
+  EXPECT_EQ(tileMeans(image, 1000).find("R")->size(), 1u);
+  EXPECT_THROW(tileMeans(constantImage(2, 2, 1.0f), 2), Error);
+}
+
+TEST(AgreementProbability, IsUniformOverIndependentRenders) {
+  int below = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed)
+    below += agreementProbability(render(2 * seed), render(2 * seed + 1)) < 0.1;
+  EXPECT_NEAR(below, 20, 4 * std::sqrt(20 * 0.9));
+}
+
+TEST(AgreementProbability, VanishesWhereOneValueDiffers) {
+  Image image = render(1);
+  image.channels["G"][77] += 0.1f; // seven combined errors
+  EXPECT_LT(agreementProbability(image, render(2)), 1e-6);
+  image.channels["G"][77] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(agreementProbability(image, render(2)), 0.0);
+}
+
+TEST(AgreementProbability, TakesExactValuesAtTheirWord) {
+  const Image black = withSamples(withError(constantImage(4, 4, 0.0f), 0.0f), 9.0f);
+  EXPECT_EQ(agreementProbability(black, black), 1.0);
+  Image other = black;
+  other.channels["B"][3] = 0.5f;
+  EXPECT_EQ(agreementProbability(black, other), 0.0);
+  other.channels["error.B"][3] = 0.3f; // one of few samples met something
+  EXPECT_GT(agreementProbability(black, other), 0.05);
 }
