@@ -394,5 +394,55 @@ TEST(MrmlScene, followsTheVolumesDisplay) {
   EXPECT_FALSE(followedDisplay(nodes[0], nodes[3], {0, 400})); // another colour table
 }
 
+// ---- real files
+// ----------------------------------------------------------------------------------
+
+const std::filesystem::path slicerScenes = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes";
+
+TEST(RealScenes, readEveryPreset) {
+  if (!std::filesystem::exists(slicerScenes))
+    GTEST_SKIP() << slicerScenes << " is absent";
+  std::size_t presets = 0;
+  for (const char* file : {"slicer_core/presets.xml", "slicer_core/volRender.mrml",
+                           "vr_properties/SM_presets.mrml", "vr_properties/US-VrPresets.mrml"}) {
+    MrmlScene scene(slicerScenes / file);
+    for (const MrmlNode* property : scene.document.withTag("VolumeProperty")) {
+      SCOPED_TRACE(shown(*property));
+      const TransferFunction f = readSceneProperty(scene, *property);
+      const auto& knots = f.extinction.knots();
+      EXPECT_TRUE(std::any_of(knots.begin(), knots.end(),
+                              [](const auto& knot) { return knot.value[0] > 0.0; }));
+      ++presets;
+    }
+  }
+  EXPECT_GE(presets, 40U);
+}
+
+TEST(RealScenes, readAnAnnotationsRegion) {
+  const auto file = slicerScenes / "slicer_core/AnnotationROI.acsv";
+  if (!std::filesystem::exists(file))
+    GTEST_SKIP() << file << " is absent";
+  expectSame(boxOf("<AnnotationROI id=\"r\" storageNodeRef=\"s\"/><AnnotationStorage id=\"s\" "
+                   "fileName=\"" +
+                   file.string() + "\"/>"),
+             affine({56.6131, 0, 0, -26.5869, 0, 121.875, 0, 0, 0, 0, 121.875, 0}));
+}
+
+TEST(RealScenes, haveOneTransformInTheirFileAndInTheirSixDigits) {
+  const auto file = slicerScenes / "slicer_5_2_written/chest_transformed_cropped.mrb";
+  if (!std::filesystem::exists(file))
+    GTEST_SKIP() << file << " is absent";
+  MrmlScene scene(file);
+  const MrmlNode& volume = *scene.document.withTag("Volume").at(0);
+  const MrmlNode& transform = *scene.document.follow(volume, "transform");
+  const auto n = *transform.numbers("matrixTransformToParent");
+  const Affine sixDigits =
+      affine({n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]});
+  expectSame(toWorld(scene, volume), sixDigits, 1e-6);
+  EXPECT_GT((toWorld(scene, volume).matrix() - sixDigits.matrix()).norm(), 1e-8); // has more
+  const Affine roi = readSceneRoi(scene, *scene.document.withTag("MarkupsROI").at(0)).boxToWorld;
+  expectSame(roi, affine({150, 0, 0, 0, 0, 130, 0, -20, 0, 0, 110, -170}), 1e-9);
+}
+
 } // namespace
 } // namespace fenestra
