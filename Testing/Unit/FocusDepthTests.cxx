@@ -124,6 +124,8 @@ void compareWithMarching(const Camera& camera, const Domain& volume, const Mask&
           focus.depth.at(focus.depth.sample(column, row)) / camera.depthPerLength(ray);
       if (hit < infinity) {
         ++hits;
+        ASSERT_GE(hit, inside.begin - 1e-4);
+        ASSERT_LE(hit, inside.end + 1e-4);
         ASSERT_GE(indicator(mask, ray.at(hit)), 0.5 - 1e-4);
         if (hit > inside.begin + 1e-4) {
           ASSERT_NEAR(indicator(mask, ray.at(hit)), 0.5, 1e-4);
