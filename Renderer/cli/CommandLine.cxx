@@ -43,8 +43,14 @@ Error extraArgument(const CommandSyntax& syntax, const std::string& given) {
                     "; quote names with blanks" + seeHelp(syntax));
 }
 
-/// A value that is missing, or that is the next flag.
-Error missingValue(const Flag& flag) {
+bool isSwitch(const Flag& flag) {
+  return *flag.value == 0;
+}
+
+/// A value that is missing, or that is the next flag; or one that a switch has.
+Error wrongValue(const Flag& flag) {
+  if (isSwitch(flag))
+    return usageError(std::string("--") + flag.name + ": is a switch; write it without a value");
   return usageError(std::string("--") + flag.name + ": its value is missing; write --" + flag.name +
                     " " + flag.value);
 }
@@ -57,7 +63,7 @@ Error valueError(const CommandSyntax& syntax, const CLI::Error& error) {
     const std::size_t end = message.find_first_of(": ,", dashes);
     if (const Flag* flag =
             find(syntax, std::string_view(message).substr(dashes + 2, end - dashes - 2)))
-      return missingValue(*flag);
+      return wrongValue(*flag);
   }
   return usageError(message.substr(0, message.find('\n')) + seeHelp(syntax));
 }
@@ -94,13 +100,7 @@ public:
                       wrapped(positional.text, page - column))
           ->type_name("");
     for (const Flag& flag : syntax.flags)
-      m_app
-          .add_option(std::string("--") + flag.name, m_flags[flag.name],
-                      wrapped(flag.text, page - column))
-          ->type_name(flag.value)
-          ->group(flag.group)
-          ->expected(1)
-          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      isSwitch(flag) ? addSwitch(flag) : addFlag(flag);
   }
 
   /// Nothing where help or version was asked for, and printed.
@@ -119,6 +119,24 @@ public:
   }
 
 private:
+  void addFlag(const Flag& flag) {
+    m_app
+        .add_option(std::string("--") + flag.name, m_flags[flag.name],
+                    wrapped(flag.text, page - column))
+        ->type_name(flag.value)
+        ->group(flag.group)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  }
+
+  void addSwitch(const Flag& flag) {
+    m_app
+        .add_flag(std::string("--") + flag.name, m_switches[flag.name],
+                  wrapped(flag.text, page - column))
+        ->group(flag.group)
+        ->disable_flag_override();
+  }
+
   void refuseExtras() const {
     for (const std::string& extra : m_app.remaining())
       throw extra.size() > 1 && extra[0] == '-'
@@ -138,15 +156,22 @@ private:
       values.add(positional.name, found);
     }
     for (const Flag& flag : m_syntax.flags)
-      for (const std::string& value : m_flags.at(flag.name)) {
-        if (value.starts_with("--"))
-          throw missingValue(flag);
-        if (value.empty())
-          throw usageError(std::string("--") + flag.name + ": its value is empty; write --" +
-                           flag.name + " " + flag.value);
-        values.add(flag.name, value);
-      }
+      if (!isSwitch(flag))
+        addValues(flag, values);
+      else if (m_switches.at(flag.name))
+        values.add(flag.name, "");
     return values;
+  }
+
+  void addValues(const Flag& flag, FlagValues& values) const {
+    for (const std::string& value : m_flags.at(flag.name)) {
+      if (value.starts_with("--"))
+        throw wrongValue(flag);
+      if (value.empty())
+        throw usageError(std::string("--") + flag.name + ": its value is empty; write --" +
+                         flag.name + " " + flag.value);
+      values.add(flag.name, value);
+    }
   }
 
   static constexpr std::size_t page = 80, column = 30; ///< of the help
@@ -155,6 +180,7 @@ private:
   CLI::App m_app;
   std::map<std::string, std::string> m_positionals;
   std::map<std::string, std::vector<std::string>> m_flags;
+  std::map<std::string, bool> m_switches;
 };
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swapped neighbours.

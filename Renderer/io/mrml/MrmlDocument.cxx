@@ -122,6 +122,7 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   const pugi::xml_node root = document.child("MRML");
   if (!root)
     throw inputError(m_source, "has no MRML element, so it is no scene; name a .mrml or .mrb");
+  m_version = root.attribute("version").value();
   for (const pugi::xml_node& element : root.children())
     if (element.type() == pugi::node_element) {
       if (m_nodes.size() == mostNodes)

@@ -39,6 +39,8 @@ public:
   MrmlDocument(std::string_view text, std::string source);
 
   const std::string& source() const { return m_source; }
+  /// Who wrote it, as it says: "Slicer 5.6.2 32448"; empty where it does not.
+  const std::string& version() const { return m_version; }
   /// Those of the scene itself, in their order; scene views hold copies, which do not count.
   const std::vector<MrmlNode>& nodes() const { return m_nodes; }
   std::vector<const MrmlNode*> withTag(std::string_view tag) const;
@@ -53,7 +55,7 @@ public:
   Error error(const MrmlNode& node, const std::string& what) const;
 
 private:
-  std::string m_source;
+  std::string m_source, m_version;
   std::vector<MrmlNode> m_nodes;
   std::map<std::string, std::size_t> m_byId;
 };

@@ -32,6 +32,8 @@ bool isLabelMap(const MrmlNode& node);
 bool isScalarVolume(const MrmlNode& node);
 /// A display node of some volume rendering method.
 bool isVolumeRendering(const MrmlNode& node);
+/// A display node that shows its object in 3-D views.
+bool isShown(const MrmlNode& display);
 
 /// Files of a node's storage, the first one first; empty where it has none.
 std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node);

@@ -77,9 +77,19 @@ SceneFiles::SceneFiles(const std::filesystem::path& path) : m_source(path.string
 
 SceneFiles::~SceneFiles() = default;
 
+std::filesystem::path SceneFiles::resolved(const std::string& fileName) const {
+  return (m_folder / decodedUrl(fileName)).lexically_normal(); // or an absolute name
+}
+
+bool SceneFiles::holds(const std::string& fileName) const {
+  std::error_code failed;
+  const std::filesystem::path file = resolved(fileName);
+  return m_archive ? m_archive->contains(file) : std::filesystem::exists(file, failed);
+}
+
 std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   const std::filesystem::path name = decodedUrl(fileName);
-  const std::filesystem::path file = (m_folder / name).lexically_normal(); // or an absolute name
+  const std::filesystem::path file = resolved(fileName);
   if (!m_archive) {
     if (std::error_code failed; !std::filesystem::exists(file, failed))
       throw inputError(m_source, "names " + file.string() +

@@ -38,11 +38,15 @@ public:
   /// all of its own, so names that lead out of it are refused. Throws Error (input) where there is
   /// no such file.
   std::filesystem::path locate(const std::string& fileName);
+  /// Whether locate would find it.
+  bool holds(const std::string& fileName) const;
 
   /// The error with the places of unpacked files as the user knows them.
   Error asKnown(const Error& error) const;
 
 private:
+  std::filesystem::path resolved(const std::string& fileName) const;
+
   std::string m_source;
   std::string m_sceneText;
   std::filesystem::path m_folder; ///< of the .mrml, in the archive where there is one

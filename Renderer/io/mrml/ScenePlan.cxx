@@ -47,10 +47,6 @@ const MrmlNode* named(const MrmlDocument& document, const Nodes& nodes, const st
   return byName.empty() ? nullptr : byName.front();
 }
 
-bool isShown(const MrmlNode& display) {
-  return display.flag("visibility", true) && display.flag("visibility3D", true);
-}
-
 /// The first display of the volume that matches.
 template <typename Matches>
 const MrmlNode* displayOf(const MrmlDocument& document, const MrmlNode& volume, Matches&& matches) {
