@@ -1,0 +1,356 @@
+// Slicer scenes through the command line. The picture of a solid box is compared with its outline
+// as the scene's own numbers have it, by a projection written here from VTK's conventions.
+
+#include "CommandTesting.h"
+#include "io/ImageReader.h"
+
+#include <Eigen/Geometry>
+#include <zip.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+using Vector = Eigen::Vector3d;
+using Map = Eigen::Affine3d;
+
+struct ViewNumbers {
+  Vector position, focalPoint, viewUp;
+  bool parallel;
+  double parallelScale, viewAngle;
+};
+
+/// Boxes as maps from [-1, 1]^3 to the world: the picture shows where they all overlap.
+using Boxes = std::vector<Map>;
+
+bool meets(const Vector& origin, const Vector& direction, const Boxes& boxes) {
+  double from = 0.0;
+  double to = 1e9;
+  for (const Map& box : boxes) {
+    const Vector o = box.inverse() * origin;
+    const Vector d = box.inverse().linear() * direction;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double a = (-1.0 - o[axis]) / d[axis];
+      const double b = (1.0 - o[axis]) / d[axis];
+      from = std::max(from, std::min(a, b));
+      to = std::min(to, std::max(a, b));
+    }
+  }
+  return from < to;
+}
+
+/// Whether the ray through a place of the picture, in pixels from its upper left, meets the boxes.
+bool isCovered(const ViewNumbers& view, const Boxes& boxes, int size, double column, double row) {
+  const Vector forward = (view.focalPoint - view.position).normalized();
+  const Vector right = forward.cross(view.viewUp).normalized();
+  const Vector up = right.cross(forward);
+  const double half =
+      view.parallel ? view.parallelScale : std::tan(view.viewAngle * std::numbers::pi / 360.0);
+  const Vector offset =
+      half * ((2.0 * column / size - 1.0) * right + (1.0 - 2.0 * row / size) * up);
+  return view.parallel ? meets(view.position + offset, forward, boxes)
+                       : meets(view.position, forward + offset, boxes);
+}
+
+constexpr int size = 96;
+
+/// Renders the scene with every scalar opaque, and expects the boxes' outline: all pixels but those
+/// that an edge crosses.
+void expectOutline(const TemporaryFolder& folder, const std::string& scene,
+                   const Arguments& arguments, const ViewNumbers& view, const Boxes& boxes) {
+  folder.write("solid.json", R"({"extinction": [[0, 1000]], "albedo": [[0, 0.5, 0.5, 0.5]]})");
+  Arguments all = {scene,
+                   "--transfer",
+                   "solid.json",
+                   "--background",
+                   "transparent",
+                   "--size",
+                   std::to_string(size) + "x" + std::to_string(size),
+                   "--samples",
+                   "4",
+                   "--bounces",
+                   "0",
+                   "--output",
+                   "solid.exr"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  const Outcome outcome = run(all, folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Image image = readImage(folder / "solid.exr");
+  const std::vector<float>& alpha = *image.find("A");
+  int inside = 0;
+  int edges = 0;
+  int wrong = 0;
+  for (int row = 0; row < size; ++row)
+    for (int column = 0; column < size; ++column) {
+      const bool covered = isCovered(view, boxes, size, column + 0.5, row + 0.5);
+      bool uniform = true;
+      for (const double x : {0.0, 0.5, 1.0})
+        for (const double y : {0.0, 0.5, 1.0})
+          uniform = uniform && isCovered(view, boxes, size, column + x, row + y) == covered;
+      inside += covered;
+      edges += !uniform;
+      const auto pixel = static_cast<std::size_t>(row * size + column);
+      wrong += uniform && alpha[pixel] != (covered ? 1.0F : 0.0F);
+    }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(inside, size * size / 20); // there is something to see, and its outline is in view
+  EXPECT_GT(edges, 10);
+}
+
+// ---- a scene with everything
+// ---------------------------------------------------------------------
+
+Map mapOf(std::initializer_list<double> rows) {
+  Map map;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      map(row, column) = std::data(rows)[4 * row + column];
+  return map;
+}
+
+/// The numbers of a map's sixteen, row by row.
+std::string textOf(const Map& map) {
+  std::ostringstream text;
+  text.precision(17);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      text << map.matrix()(row, column) << ' ';
+  return text.str();
+}
+
+/// The 4x4x4 volume of NrrdText in [-1, 1]^3, RAS.
+Map cubeOfVolume() {
+  return mapOf({-2, 0, 0, -1.5, 0, -2, 0, -1.5, 0, 0, 2, 1.5});
+}
+
+class ScenesCommand : public SmallScene {
+protected:
+  ScenesCommand() {
+    outer = Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(0.5, Vector(1, 2, 3).normalized());
+    inner = Eigen::AngleAxisd(-0.8, Vector::UnitY()) * Eigen::Scaling(1.5, 1.0, 0.75);
+    roi = Eigen::Translation3d(2.5, -3.0, 2.0) * Eigen::AngleAxisd(0.4, Vector::UnitX()) *
+          Eigen::Scaling(1.8, 1.1, 1.3);
+    std::ostringstream json;
+    json.precision(17);
+    const Eigen::Matrix3d axes = roi.linear() * Vector(1 / 1.8, 1 / 1.1, 1 / 1.3).asDiagonal();
+    json << R"({"markups": [{"type": "ROI", "coordinateSystem": "RAS", "center": [2.5, -3, 2],)"
+         << R"("size": [3.6, 2.2, 2.6], "orientation": [)";
+    for (int i = 0; i < 9; ++i)
+      json << (i > 0 ? ", " : "") << axes(i / 3, i % 3);
+    json << "]}]}";
+    folder.write("R O I.mrk.json", json.str());
+  }
+
+  std::string scene(const std::string& camera, bool cropping) const {
+    return R"(<?xml version="1.0" encoding="UTF-8"?><MRML version="Slicer 5.6.2 32448">
+      <LinearTransform id="outer" matrixTransformToParent=")" +
+           textOf(outer) + R"("/>
+      <LinearTransform id="inner" references="transform:outer;" matrixTransformToParent=")" +
+           textOf(inner) + R"("/>
+      <Volume id="v" name="ramp" references="display:d;storage:vs;transform:inner;"/>
+      <VolumeArchetypeStorage id="vs" fileName="volume.nrrd"/>
+      <GPURayCastVolumeRendering id="d" croppingEnabled=")" +
+           (cropping ? "1" : "0") +
+           R"(" references="roi:r;volumeProperty:p;"/>
+      <VolumeProperty id="p" name="warm and cold" scalarOpacity="4 0 0 20 0.9" colorTransfer="8 0 1 0 0 20 0 0 1"/>
+      <MarkupsROI id="r" references="storage:rs;"/>
+      <MarkupsROIJsonStorage id="rs" fileName="R%20O%20I.mrk.json"/>
+      <Segmentation id="s" name="parts" references="storage:ss;transform:inner;"/>
+      <SegmentationStorage id="ss" fileName="segments.seg.nrrd"/>
+      <View id="w" layoutName="1" singletonTag="1" backgroundColor="0.2 0.4 0.6"
+        backgroundColor2="0.2 0.4 0.6"/>
+      <Camera id="c" singletonTag="1" position="3 -30 6" focalPoint="2 -2 1" viewUp="0.1 0 1" )" +
+           camera + "/></MRML>\n";
+  }
+
+  ViewNumbers view{{3, -30, 6}, {2, -2, 1}, {0.1, 0, 1}, true, 4.0, 16.0};
+  Map outer, inner, roi;
+};
+
+TEST_F(ScenesCommand, SeesTheVolumeWhereTheParallelCameraHasIt) {
+  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
+  expectOutline(folder, "s.mrml", {}, view, {outer * inner * cubeOfVolume()});
+}
+
+TEST_F(ScenesCommand, CropsByTheTurnedRegionInAPerspectiveView) {
+  folder.write("s.mrml", scene(R"(parallelProjection="false" viewAngle="16")", true));
+  view.parallel = false;
+  expectOutline(folder, "s.mrml", {}, view, {outer * inner * cubeOfVolume(), roi});
+}
+
+TEST_F(ScenesCommand, LetsFlagsWinOverTheScenesCamera) {
+  folder.write("s.mrml", scene(R"(viewAngle="16" parallelScale="4")", true));
+  const Boxes boxes = {outer * inner * cubeOfVolume(), roi};
+  expectOutline(folder, "s.mrml", {"--projection", "orthographic"}, view, boxes);
+  view.parallelScale = 3.0;
+  view.focalPoint = {2, -2.5, 0.5};
+  expectOutline(folder, "s.mrml",
+                {"--projection", "orthographic", "--scale", "3", "--target", "2,-2.5,0.5"}, view,
+                boxes);
+}
+
+TEST_F(ScenesCommand, ShowsWhatTheSceneSaysAndWhatTheUserSaysInstead) {
+  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
+  const auto render = [&](const Arguments& more) {
+    Arguments all = {"s.mrml", "--size", "16x16", "--samples", "64", "--output", "look.exr"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = run(all, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    return readImage(folder / "look.exr");
+  };
+  const Image own = render({});
+  EXPECT_EQ(own.header.at("look"), "warm and cold");
+  const double green = std::pow((0.4 + 0.055) / 1.055, 2.4);
+  EXPECT_NEAR(own.find("G")->front(), green, 1e-6); // the view's background, decoded
+  const std::size_t middle = 16 * 8 + 8;
+  EXPECT_GT(own.find("albedo.B")->at(middle), 0.9); // high values are blue
+  EXPECT_LT(own.find("albedo.R")->at(middle), 0.1);
+
+  folder.write("green.json", R"({"extinction": [[0, 9]], "albedo": [[0, 0.1, 0.8, 0.1]]})");
+  const Image changed = render({"--transfer", "green.json", "--background", "0,0,0"});
+  EXPECT_EQ(changed.header.at("look"), "green.json");
+  EXPECT_EQ(changed.find("G")->front(), 0.0F);
+  EXPECT_NEAR(changed.find("albedo.G")->at(middle), 0.8, 0.05);
+}
+
+TEST_F(ScenesCommand, FindsTheFocusInTheScenesSegmentationOrInAFile) {
+  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
+  const Arguments common = {"s.mrml", "--size",  "64x64",    "--samples", "1",
+                            "--clip", "cutaway", "--layers", "color,clip"};
+  const auto with = [&](const Arguments& more) {
+    Arguments all = common;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all, folder.path());
+  };
+  const Outcome own = with({"--focus", "Bone\\, left", "--output", "own.exr"});
+  ASSERT_EQ(own.status, 0) << own.err;
+  EXPECT_TRUE(readImage(folder / "own.exr").find("clip.Z"));
+  EXPECT_EQ(with({"--focus", "A", "--segmentation", "parts", "--output", "named.exr"}).status, 0);
+  EXPECT_EQ(*readImage(folder / "own.exr").find("clip.Z"),
+            *readImage(folder / "named.exr").find("clip.Z"));
+  // A file has no transform above it: its voxel lies beside the volume, which has been moved.
+  const Outcome file =
+      with({"--focus", "A", "--segmentation", "segments.seg.nrrd", "--output", "file.exr"});
+  EXPECT_EQ(file.status, 3);
+  EXPECT_NE(file.err.find("cannot be seen"), std::string::npos) << file.err;
+}
+
+TEST_F(ScenesCommand, RefusesWhatASceneDoesNotHold) {
+  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
+  folder.write("perspective.mrml", scene(R"(viewAngle="16")", false));
+  folder.write("none.mrml", "<MRML/>");
+  folder.write("entities.mrml", "<!DOCTYPE a [<!ENTITY b 'c'>]><MRML>&b;</MRML>");
+  folder.write("half.mrml", "<MRML><Volume");
+  folder.write("words.mrb", "words");
+  std::string mip = scene("", false);
+  mip.replace(mip.find("<View "), 6, "<View raycastTechnique=\"MaximumIntensityProjection\" ");
+  folder.write("mip.mrml", mip);
+  const auto with = [](const std::string& file, const Arguments& more) {
+    Arguments all = {file};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expectRefused(
+      {
+          {"no volume", with("none.mrml", {}), 3, "none.mrml: holds no scalar volume"},
+          {"entities", with("entities.mrml", {}), 3, "entities.mrml: has a document type"},
+          {"half", with("half.mrml", {}), 3, "half.mrml: is no whole XML"},
+          {"no archive", with("words.mrb", {}), 3, "words.mrb: is no whole archive"},
+          {"missing", with("missing.mrml", {}), 3, "missing.mrml: there is no such file"},
+          {"MIP", with("mip.mrml", {}), 3, "maximum intensity projection"},
+          {"volume", with("s.mrml", {"--volume", "x"}), 3, "no scalar volume \"x\"; it has ramp"},
+          {"segmentation", with("s.mrml", {"--segmentation", "x", "--focus", "A"}), 3,
+           "no segmentation \"x\""},
+          {"segment", with("s.mrml", {"--focus", "x"}), 3, "has no segment \"x\""},
+          {"volume of a file", with("volume.nrrd", {"--volume", "x"}), 2, "--volume: only"},
+          {"angle", with("s.mrml", {"--angle", "9"}), 2, "--angle: the scene's camera"},
+          {"scale", with("perspective.mrml", {"--scale", "9"}), 2, "--scale: the scene's camera"},
+      },
+      folder.path());
+}
+
+// ---- scenes that Slicer wrote
+// --------------------------------------------------------------------
+
+/// The .mrml of an archive that Slicer wrote.
+std::string sceneOf(const std::filesystem::path& archive) {
+  int failure = 0;
+  zip_t* zip = zip_open(archive.c_str(), ZIP_RDONLY, &failure);
+  const std::string name = archive.stem().string() + "/" + archive.stem().string() + ".mrml";
+  zip_file_t* file = zip_fopen(zip, name.c_str(), 0);
+  std::string text(1 << 20, '\0');
+  text.resize(static_cast<std::size_t>(zip_fread(file, text.data(), text.size())));
+  zip_fclose(file);
+  zip_discard(zip);
+  return text;
+}
+
+std::string attribute(const std::string& scene, const std::string& tag, const std::string& name) {
+  const std::size_t start = scene.find("<" + tag + "\n");
+  const std::size_t value = scene.find(" " + name + "=\"", start) + name.size() + 3;
+  return scene.substr(value, scene.find('"', value) - value);
+}
+
+std::vector<double> numbersOf(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<double> numbers;
+  for (double x = 0.0; in >> x;)
+    numbers.push_back(x);
+  return numbers;
+}
+
+class SlicersOwnScenes : public testing::TestWithParam<const char*> {
+protected:
+  void SetUp() override {
+    archive =
+        std::filesystem::path(FENESTRA_DATA) / "slicer_scenes/slicer_5_2_written" / GetParam();
+    if (!std::filesystem::exists(archive))
+      GTEST_SKIP() << archive << " is absent";
+    const std::string scene = sceneOf(archive);
+    const auto vector = [&](const std::string& name) {
+      const auto n = numbersOf(attribute(scene, "Camera", name));
+      return Vector(n.at(0), n.at(1), n.at(2));
+    };
+    view = {vector("position"),
+            vector("focalPoint"),
+            vector("viewUp"),
+            attribute(scene, "Camera", "parallelProjection") == "true",
+            numbersOf(attribute(scene, "Camera", "parallelScale")).at(0),
+            numbersOf(attribute(scene, "Camera", "viewAngle")).at(0)};
+    // 128 x 128 x 34 voxels, from the scene's copy of the volume's geometry
+    const auto spacing = numbersOf(attribute(scene, "Volume", "spacing"));
+    const auto origin = numbersOf(attribute(scene, "Volume", "origin"));
+    const Vector half(64 * spacing[0], 64 * spacing[1], 17 * spacing[2]);
+    const Vector first(origin[0], origin[1], origin[2]);
+    const Vector center = first + half - 0.5 * Vector(spacing[0], spacing[1], spacing[2]);
+    boxes = {Eigen::Translation3d(center) * Eigen::Scaling(half)};
+    if (archive.stem() == "chest")
+      return;
+    const auto m = numbersOf(attribute(scene, "LinearTransform", "matrixTransformToParent"));
+    boxes[0] = mapOf({m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]}) *
+               boxes[0];
+    // Data/Volume rendering ROI.mrk.json: centre 0 20 -170 in LPS, sizes 300 260 220
+    boxes.push_back(Eigen::Translation3d(0, -20, -170) * Eigen::Scaling(150.0, 130.0, 110.0));
+  }
+
+  std::filesystem::path archive;
+  TemporaryFolder folder;
+  ViewNumbers view;
+  Boxes boxes;
+};
+
+TEST_P(SlicersOwnScenes, AreSeenAsTheirNumbersSay) {
+  expectOutline(folder, archive.string(), {}, view, boxes);
+  view.parallel = true;
+  expectOutline(folder, archive.string(), {"--projection", "orthographic"}, view, boxes);
+}
+
+INSTANTIATE_TEST_SUITE_P(Real, SlicersOwnScenes,
+                         testing::Values("chest.mrb", "chest_transformed_cropped.mrb"));
+
+} // namespace
+} // namespace fenestra
