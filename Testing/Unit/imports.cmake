@@ -4,3 +4,6 @@ find_package(ITK REQUIRED COMPONENTS
 fenestra_test(TransformFileTests TransformFileTests.cxx
   LIBRARIES fenestra_io_read fenestra_io_mrml fenestra_itk ${ITK_LIBRARIES} LABELS unit)
 target_include_directories(TransformFileTests SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
+find_package(ITK REQUIRED COMPONENTS ITKIOGDCM)
+fenestra_test(DicomSeriesTests DicomSeriesTests.cxx
+  LIBRARIES fenestra_io_read fenestra_itk ${ITK_LIBRARIES} LABELS unit)

@@ -1,0 +1,350 @@
+// DICOM series that GDCM writes here, a real one, and files that are not what they say.
+
+#include "io/DicomSeries.h"
+
+#include "MedicalFiles.h"
+#include "io/Quiet.h"
+#include "io/VolumeReader.h"
+
+#include <itkGDCMImageIO.h>
+
+#include <random>
+
+namespace fenestra {
+namespace {
+
+using Path = std::filesystem::path;
+
+/// A slice as a scanner writes it; LPS.
+struct SliceFile {
+  unsigned width = 5, height = 4;
+  Vec3 position = Vec3::Zero();
+  Mat3 axes = Mat3::Identity(); ///< columns: along a row, along a column, normal
+  double rowSpacing = 2.0, columnSpacing = 0.5;
+  std::string uid = "1.2.3", number = "7", description = "head";
+  std::string intercept = "0", slope = "1";
+  std::int16_t first = 0; ///< stored values count up from it
+  bool compress = false;  ///< as JPEG 2000, lossless
+  unsigned components = 1;
+};
+
+Path write(const Path& path, const SliceFile& slice) {
+  const unsigned width = slice.width, height = slice.height;
+  const Quiet quiet; // what is not there yet is warned of
+  const auto io = itk::GDCMImageIO::New();
+  io->SetFileName(path.string());
+  io->KeepOriginalUIDOn();
+  io->SetNumberOfDimensions(3);
+  itk::ImageIORegion region(3);
+  const unsigned sizes[] = {width, height, 1};
+  const double spacings[] = {slice.columnSpacing, slice.rowSpacing, 99.0};
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    io->SetDimensions(axis, sizes[axis]);
+    region.SetSize(axis, sizes[axis]);
+    io->SetSpacing(axis, spacings[axis]);
+    io->SetOrigin(axis, slice.position[axis]);
+    const Vec3 direction = slice.axes.col(axis);
+    io->SetDirection(axis, std::vector<double>(direction.begin(), direction.end()));
+  }
+  io->SetIORegion(region);
+  io->SetNumberOfComponents(slice.components);
+  const auto set = [&](const char* tag, const std::string& text) {
+    itk::EncapsulateMetaData<std::string>(io->GetMetaDataDictionary(), tag, text);
+  };
+  set("0008|0060", "CT");
+  set("0008|103e", slice.description);
+  set("0020|000e", slice.uid);
+  set("0020|0011", slice.number);
+  set("0028|1052", slice.intercept);
+  set("0028|1053", slice.slope);
+  set("0028|0100", "16"); // what floats are stored as
+  set("0028|0101", "16");
+  set("0028|0102", "15");
+  set("0028|0103", "1");
+  io->SetUseCompression(slice.compress);
+  if (slice.components == 3) {
+    io->SetPixelType(itk::IOPixelEnum::RGB);
+    io->SetComponentType(itk::IOComponentEnum::UCHAR);
+    io->Write(std::vector<std::uint8_t>(3 * width * height).data());
+    return path;
+  }
+  io->SetPixelType(itk::IOPixelEnum::SCALAR);
+  // What is written is rescaled, in float where that has fractions.
+  const double intercept = std::stod(slice.intercept), slope = std::stod(slice.slope);
+  std::vector<std::int16_t> whole(width * height);
+  std::vector<float> fractions(width * height);
+  for (unsigned i = 0; i < width * height; ++i) {
+    fractions[i] = static_cast<float>(slope * (slice.first + static_cast<int>(i)) + intercept);
+    whole[i] = static_cast<std::int16_t>(fractions[i]);
+  }
+  const bool isWhole = slope == std::trunc(slope);
+  io->SetComponentType(isWhole ? itk::IOComponentEnum::SHORT : itk::IOComponentEnum::FLOAT);
+  io->Write(isWhole ? static_cast<const void*>(whole.data()) : fractions.data());
+  return path;
+}
+
+/// `count` slices along the normal, in files whose names say nothing of their order.
+void writeStack(const TemporaryFolder& folder, SliceFile slice, int count, double step) {
+  const Vec3 begin = slice.position;
+  for (int i = 0; i < count; ++i) {
+    slice.position = begin + step * i * slice.axes.col(2);
+    slice.first = static_cast<std::int16_t>(100 * i);
+    write(folder / ("file" + std::to_string(i * 7 % count) + "_" + slice.number + ".dcm"), slice);
+  }
+}
+
+Volume readOnly(const Path& folder) {
+  return readDicomVolume(chooseSeries(findDicomSeries(folder), std::nullopt, folder.string()));
+}
+
+double valueAt(const Volume& volume, std::int64_t x, std::int64_t y, std::int64_t z) {
+  const auto i =
+      static_cast<std::size_t>(x + volume.grid.size.x() * (y + volume.grid.size.y() * z));
+  return std::visit([i](const auto& voxels) { return static_cast<double>(voxels[i]); },
+                    volume.voxels);
+}
+
+Mat3 oblique() {
+  return (Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()) *
+          Eigen::AngleAxisd(0.3, Vec3::UnitX()))
+      .toRotationMatrix();
+}
+
+TEST(DicomSeries, sortsSlicesAlongTheirNormal) {
+  const TemporaryFolder folder;
+  SliceFile slice{.position = {10, -20, 30}, .axes = oblique()};
+  writeStack(folder, slice, 5, 2.5);
+  folder.write("notes.txt", "not DICOM");
+  const Volume volume = readOnly(folder.path());
+  EXPECT_EQ(volume.grid.size, Size3(5, 4, 5));
+  EXPECT_TRUE(volume.warnings.empty()) << volume.warnings[0];
+  for (int z = 0; z < 5; ++z)
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 5; ++x) {
+        EXPECT_EQ(valueAt(volume, x, y, z), 100 * z + y * 5 + x);
+        const Vec3 lps = slice.position + slice.axes * Vec3(0.5 * x, 2.0 * y, 2.5 * z);
+        EXPECT_LT(
+            (volume.grid.indexToWorld * Vec3(x, y, z) - Vec3(-lps[0], -lps[1], lps[2])).norm(),
+            1e-4); // files round their numbers
+      }
+}
+
+TEST(DicomSeries, appliesRescaleAndKeepsATiltedGantry) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 3; ++i)
+    write(folder / (std::to_string(i) + ".dcm"),
+          {.position = Vec3(0, 0.7 * i, 3.0 * i), .intercept = "-1024", .slope = "2"});
+  const Volume volume = readOnly(folder.path());
+  EXPECT_EQ(volume.minimum, -1024);
+  EXPECT_EQ(volume.maximum, -1024 + 2 * 19);
+  EXPECT_TRUE(volume.grid.indexToWorld.linear().col(2).isApprox(Vec3(0, -0.7, 3.0)));
+}
+
+TEST(DicomSeries, mixesSlopes) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 3; ++i)
+    write(folder / (std::to_string(i) + ".dcm"),
+          {.position = Vec3(0, 0, i), .slope = std::vector<const char*>{"1", "0.5", "0.25"}[i]});
+  const Volume volume = readOnly(folder.path());
+  EXPECT_EQ(valueAt(volume, 4, 3, 0), 19.0);
+  EXPECT_EQ(valueAt(volume, 4, 3, 1), 9.5);
+  EXPECT_EQ(valueAt(volume, 4, 3, 2), 4.75);
+}
+
+TEST(DicomSeries, decompresses) {
+  const TemporaryFolder folder;
+  SliceFile slice{.width = 60, .height = 50, .intercept = "-1024", .first = -3, .compress = true};
+  const Path file = write(folder / "one.dcm", slice);
+  const std::string bytes = bytesOf(file);
+  ASSERT_NE(bytes.find("\xff\x4f\xff\x51"), std::string::npos); // a codestream's begin
+  const Volume volume = readDicomVolume({file}, "x");
+  for (int i = 0; i < 3000; ++i)
+    ASSERT_EQ(valueAt(volume, i % 60, i / 60, 0), i - 3 - 1024);
+  std::string wider = bytes; // its own width, beyond what is declared
+  wider[wider.find("\xff\x4f\xff\x51") + 8] = 1;
+  folder.write("wider.dcm", wider);
+  fenestra::expectRefused(folder / "wider.dcm", "PixelData: cannot be decoded",
+                          [&] { readDicomVolume({folder / "wider.dcm"}, "x"); });
+}
+
+TEST(DicomSeries, readsOneSlice) {
+  const TemporaryFolder folder;
+  const Path file = write(folder / "one.dcm", {.position = {1, 2, 3}});
+  const Volume volume = readDicomVolume({file}, "scene");
+  EXPECT_EQ(volume.grid.size, Size3(5, 4, 1));
+  EXPECT_TRUE(volume.grid.indexToWorld.translation().isApprox(Vec3(-1, -2, 3)));
+  EXPECT_EQ(volume.name, "scene");
+}
+
+template <typename Call>
+void expectRefusedFolder(const Path& folder, const std::vector<std::string>& texts, Call&& call) {
+  for (const std::string& text : texts)
+    fenestra::expectRefused(folder, text, call);
+}
+
+TEST(DicomSeries, choosesAmongSeries) {
+  const TemporaryFolder folder;
+  writeStack(folder, {}, 2, 1);
+  writeStack(folder, {.uid = "1.2.4", .number = "12", .description = "neck"}, 3, 1);
+  writeStack(folder, {.uid = "1.2.5", .number = "8", .description = "neck"}, 4, 1);
+  const auto series = findDicomSeries(folder.path());
+  ASSERT_EQ(series.size(), 3u);
+  EXPECT_EQ(series[0].number, "7");
+  EXPECT_EQ(series[1].number, "8");
+  EXPECT_EQ(series[2].number, "12");
+  EXPECT_EQ(series[2].modality, "CT");
+  const auto choose = [&](const std::optional<std::string>& selector) -> const DicomSeries& {
+    return chooseSeries(series, selector, folder.path().string());
+  };
+  EXPECT_EQ(choose("1.2.4").files.size(), 3u);
+  EXPECT_EQ(choose("8").files.size(), 4u);
+  EXPECT_EQ(choose("head").files.size(), 2u);
+  expectRefusedFolder(folder.path(),
+                      {"holds 3 DICOM series: number 7 \"head\" CT 1.2.3 (2 files); number 8",
+                       "pick one with --volume"},
+                      [&] { choose(std::nullopt); });
+  expectRefusedFolder(folder.path(), {"--volume \"neck\" can be any of number 8", "by its uid"},
+                      [&] { choose("neck"); });
+  expectRefusedFolder(folder.path(), {"--volume \"foot\" names no DICOM series"},
+                      [&] { choose("foot"); });
+}
+
+TEST(DicomSeries, looksBelowWhereThereIsNoFile) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "a");
+  std::filesystem::create_directories(folder / "b");
+  write(folder / "a/1.dcm", {});
+  write(folder / "b/2.dcm", {.position = {0, 0, 4}});
+  EXPECT_EQ(readOnly(folder.path()).grid.size.z(), 2);
+  folder.write("readme", "");
+  fenestra::expectRefused(folder.path(), "holds no DICOM series",
+                          [&] { findDicomSeries(folder.path()); });
+}
+
+void expectRefused(const Path& named, const Path& folder, const std::string& text) {
+  fenestra::expectRefused(named, text, [&] { readOnly(folder); });
+}
+
+/// Slices at these depths, in files 0.dcm, 1.dcm, ...
+void writeDepths(const TemporaryFolder& folder, const std::vector<double>& depths) {
+  for (std::size_t i = 0; i < depths.size(); ++i)
+    write(folder / (std::to_string(i) + ".dcm"), {.position = {0, 0, depths[i]}});
+}
+
+TEST(DicomSeries, refusesMissingAndRepeatedSlices) {
+  const TemporaryFolder gap, twice, drift, sideways;
+  writeDepths(gap, {0, 2, 4, 8, 10});
+  expectRefused(gap / "2.dcm", gap.path(), "is 4 mm from 3.dcm, others 2 mm; add the slices");
+  writeDepths(twice, {0, 2, 4, 2});
+  expectRefused(twice / "1.dcm", twice.path(), "lies where 3.dcm does");
+  writeDepths(drift, {0, 2, 4, 6, 8.9, 11.8, 14.7, 17.6});
+  expectRefused(drift / "3.dcm", drift.path(), "off even steps");
+  for (int i = 0; i < 3; ++i)
+    write(sideways / (std::to_string(i) + ".dcm"), {.position = Vec3(i == 1 ? 0.6 : 0, 0, i)});
+  expectRefused(sideways / "1.dcm", sideways.path(), "off even steps");
+}
+
+TEST(DicomSeries, warnsOfUnevenSlices) {
+  const TemporaryFolder folder, even;
+  writeDepths(folder, {0, 2.1, 4, 6});
+  const Volume volume = readOnly(folder.path());
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  EXPECT_EQ(volume.warnings[0], folder.path().string() + ": slices lie up to 0.1 mm off even steps "
+                                                         "of 2 mm, which are taken for theirs");
+  EXPECT_NEAR(volume.grid.spacing().z(), 2.0, 1e-12);
+  writeDepths(even, {0, 2.01, 4, 6});
+  EXPECT_TRUE(readOnly(even.path()).warnings.empty());
+}
+
+TEST(DicomSeries, refusesSlicesThatDiffer) {
+  const TemporaryFolder turned, spaced;
+  writeDepths(turned, {0, 1});
+  write(turned / "2.dcm", {.position = {0, 0, 2}, .axes = oblique()});
+  expectRefused(turned / "2.dcm", turned.path(), "ImageOrientationPatient: differs from that of 0");
+  writeDepths(spaced, {0, 1});
+  write(spaced / "2.dcm", {.position = {0, 0, 2}, .rowSpacing = 2.1});
+  expectRefused(spaced / "2.dcm", spaced.path(), "PixelSpacing: differs");
+}
+
+/// The begin of an element's value in a file's bytes; its type is implicit.
+void replace(std::string& bytes, const std::string& tag, const std::string& value) {
+  const std::size_t at = bytes.find(tag);
+  ASSERT_NE(at, std::string::npos);
+  bytes.replace(at + tag.size() + 4, value.size(), value);
+}
+
+TEST(DicomSeries, refusesWhatIsNoStackOfGreySlices) {
+  const TemporaryFolder folder;
+  const Path colored = write(folder / "rgb.dcm", {.components = 3});
+  const auto read = [](const Path& file) { return [file] { readDicomVolume({file}, "x"); }; };
+  fenestra::expectRefused(colored, "of one scalar a voxel", read(colored));
+  const std::string bytes = bytesOf(write(folder / "a.dcm", {}));
+  const auto expect = [&](const std::string& tag, const std::string& value, const char* text) {
+    std::string changed = bytes;
+    replace(changed, tag, value);
+    const Path file = folder.write("changed.dcm", changed);
+    fenestra::expectRefused(file, text, read(file));
+  };
+  using namespace std::string_literals;
+  expect("\x28\0\x10\0"s, "\xff\xff", "PixelData: is shorter than Rows");
+  expect("\x28\0\x10\0"s, "\0\0"s, "Rows or Columns: is missing");
+  expect("\x28\0\x30\0"s, "0\\0", "PixelSpacing: must be above 0 mm");
+  expect("\x20\0\x32\0"s, "x", "is missing, so nothing says where");
+  expect("\x20\0\x37\0"s, "1\\1", "must be two directions");
+  const Path half = folder.write("half.dcm", bytes.substr(0, bytes.size() - 10));
+  fenestra::expectRefused(half, "is damaged, truncated or deflated", read(half));
+  const Path none = folder.write("none.dcm", "what");
+  fenestra::expectRefused(none, "is not a DICOM file", read(none));
+  fenestra::expectRefused(folder / "absent", "the folder cannot be read",
+                          [&] { findDicomSeries(folder / "absent"); });
+}
+
+/// Whatever becomes of the bytes: read, or refused on one line.
+TEST(DicomSeries, survivesDamage) {
+  const TemporaryFolder folder;
+  const std::string whole = bytesOf(write(folder / "a.dcm", {}));
+  std::mt19937 random(11);
+  int readable = 0;
+  testing::internal::CaptureStderr();
+  for (int i = 0; i < 3000; ++i) {
+    std::string bytes = whole;
+    if (i % 8 == 0)
+      bytes.resize(133 + random() % (whole.size() - 133));
+    for (int n = 0; n <= i % 4; ++n)
+      bytes[132 + random() % (bytes.size() - 132)] = static_cast<char>(random());
+    const Path file = folder.write(std::to_string(i) + ".dcm", bytes);
+    try {
+      readDicomVolume({file}, "x");
+      ++readable;
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_GT(readable, 100);
+}
+
+/// The same head, as a series (whose rescale intercept says 0, though its air is 0) and as the
+/// volume that another program made of it, in HU.
+TEST(DicomSeries, readsARealSeries) {
+  const Path folder = Path(FENESTRA_DATA) / "head_ct_slicer_dicom";
+  if (!std::filesystem::exists(folder))
+    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+  const Volume series = readOnly(folder / "dicom");
+  const Volume expected = readVolume(folder / "ct_hu.nii.gz");
+  ASSERT_EQ(series.grid.voxelCount(), expected.grid.voxelCount());
+  const Affine toExpected = expected.grid.worldToIndex * series.grid.indexToWorld;
+  for (std::int64_t z = 0; z < series.grid.size.z(); ++z)
+    for (std::int64_t y = 0; y < series.grid.size.y(); ++y)
+      for (std::int64_t x = 0; x < series.grid.size.x(); ++x) {
+        const Vec3 place = toExpected * Size3(x, y, z).cast<double>();
+        const Vec3 voxel = place.array().round();
+        ASSERT_LT((place - voxel).norm(), 1e-3);
+        const Size3 i = voxel.cast<std::int64_t>();
+        ASSERT_TRUE((i.array() >= 0).all() && (i.array() < expected.grid.size.array()).all());
+        ASSERT_EQ(valueAt(series, x, y, z) - 1024, valueAt(expected, i.x(), i.y(), i.z()));
+      }
+}
+
+} // namespace
+} // namespace fenestra
