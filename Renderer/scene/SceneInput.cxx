@@ -1,6 +1,7 @@
 #include "scene/SceneInput.h"
 
 #include "core/Error.h"
+#include "io/DicomSeries.h"
 #include "io/SegmentationReader.h"
 #include "io/VolumeReader.h"
 #include "io/mrml/ScenePlan.h"
@@ -65,8 +66,15 @@ SceneInput loadScene(const SceneRequest& request) {
   return input;
 }
 
+Volume readVolumeOrSeries(const SceneRequest& request) {
+  if (!std::filesystem::is_directory(request.input))
+    return readVolume(request.input);
+  const std::vector<DicomSeries> series = findDicomSeries(request.input);
+  return readDicomVolume(chooseSeries(series, request.volume, request.input.string()));
+}
+
 SceneInput loadFiles(const SceneRequest& request) {
-  SceneInput input{.volume = readVolume(request.input)};
+  SceneInput input{.volume = readVolumeOrSeries(request)};
   if (!request.focus.empty())
     readFocus(request, readSegmentation(*request.segmentation), input);
   return input;

@@ -1,5 +1,7 @@
 #include "io/mrml/MrmlScene.h"
 
+#include "io/DicomSeries.h"
+#include "io/MedicalHeader.h"
 #include "io/TransferReader.h"
 #include "io/VolumeReader.h"
 #include "medium/VolumeProperty.h"
@@ -87,8 +89,10 @@ std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& nod
 
 Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
   const Affine above = toWorld(scene, node);
-  Volume volume = withFiles(scene, node, [](const std::vector<std::filesystem::path>& files) {
-    return readVolume(files.front());
+  Volume volume = withFiles(scene, node, [&](const std::vector<std::filesystem::path>& files) {
+    // A volume's file comes alone or with its samples beside it; otherwise the files are slices.
+    return medicalFormat(files.front()) ? readVolume(files.front())
+                                        : readDicomVolume(files, node.name);
   });
   volume.grid = placed(scene.document.follow(node, "storage"), volume.grid);
   volume.grid = Grid(volume.grid.size, above * volume.grid.indexToWorld);
