@@ -5,6 +5,7 @@
 #include "core/Error.h"
 #include "io/PhantomWriter.h"
 #include "phantom/Cube.h"
+#include "phantom/Foot.h"
 #include "phantom/Knee.h"
 
 #include <cstdio>
@@ -17,14 +18,15 @@ constexpr const char* group = "Phantom";
 constexpr Flag flags[] = {
     {"output", "DIR", group, "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size", "WxHxD", group,
-     "Voxels over the same field of view; N for the cube [knee 300x344x120, cube 512]"},
+     "Voxels over the same field of view; N for the cube [knee 300x344x120, foot 300x120x150, cube "
+     "512]"},
     {"edge", "MM", group, "The cube's edge [1]"},
 };
 
 const CommandSyntax syntax = {
     "phantom",
     "Makes a synthetic subject: an image, its segments, a transfer function, and scenes of them.",
-    {{"KIND", "knee (MR) or cube (the scalar is the z index)"}},
+    {{"KIND", "knee (MR), foot (CT) or cube (the scalar is the z index)"}},
     flags,
 };
 
@@ -48,6 +50,12 @@ Phantom makeKnee(const FlagValues& values) {
   return makeKneePhantom(options);
 }
 
+Phantom makeFoot(const FlagValues& values) {
+  FootOptions options;
+  options.size = sizeOf(values).value_or(options.size);
+  return makeFootPhantom(options);
+}
+
 Phantom makeCube(const FlagValues& values) {
   CubeOptions options;
   options.edge = values.number("edge", 1e-3, 1e5).value_or(options.edge);
@@ -61,9 +69,11 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
     throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
   if (kind == "knee")
     return makeKnee(values);
+  if (kind == "foot")
+    return makeFoot(values);
   if (kind == "cube")
     return makeCube(values);
-  throw usageError("KIND: '" + kind + "' is unknown; use knee or cube");
+  throw usageError("KIND: '" + kind + "' is unknown; use knee, foot or cube");
 }
 
 } // namespace

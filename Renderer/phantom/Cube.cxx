@@ -44,7 +44,7 @@ Phantom makeCubePhantom(const CubeOptions& options) {
   labels.layers.emplace_back(static_cast<std::size_t>(labels.size.prod()), std::uint8_t{1});
   phantom.segments = {{"focus", "Focus", {0.93, 0.78, 0.35}, 1, 0}};
   phantom.property = cubeProperty(options.edge);
-  phantom.towardViewer = {0.0, 1.0, 0.0};
+  phantom.towardViewer = {-0.45, 1.0, 0.4};
   return phantom;
 }
 
@@ -52,7 +52,9 @@ VolumeProperty cubeProperty(double edge) {
   VolumeProperty property;
   property.scalarOpacity = {{-greatest, 0.99}, {greatest, 0.99}};
   property.gradientOpacity = {{0, 1}, {255, 1}};
-  property.color = {{-greatest, {0, 0, 1}}, {greatest, {1, 0, 0}}};
+  // Not pure: where a component is 0, light that scatters more than once is lost.
+  property.color = {
+      {-greatest, {0.15, 0.25, 1.0}}, {0, {0.80, 0.50, 0.85}}, {greatest, {1.0, 0.20, 0.15}}};
   property.unitDistance = edge / 100.0;
   property.shade = false;
   return property;

@@ -20,8 +20,9 @@ struct CubeOptions {
 /// is less than 16 or more than 1024, or the edge is not a positive number.
 Phantom makeCubePhantom(const CubeOptions& options = {});
 
-/// Opaque within a hundredth of the edge, blue at -255 and red at 255; no shading, for the only
-/// gradients are the cube's own slices.
+/// Opaque within a hundredth of the edge, blue at -255 through purple to red at 255; no shading,
+/// for the only gradients are the cube's own slices. A .vp, which knows no unit distance, cannot
+/// say so of an edge far below 100 mm: there Fenestra's cap on opacity leaves 9.2 per mm.
 VolumeProperty cubeProperty(double edge);
 
 } // namespace fenestra

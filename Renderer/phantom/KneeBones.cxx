@@ -82,10 +82,6 @@ double trochleaShare(double angle, double distalEnd, double frontEnd) {
   return smoothStep(distalEnd, frontEnd, angle) * (1.0 - smoothStep(1.5, 2.5, angle));
 }
 
-bool inside(const Box& box, const Vec3& p) {
-  return (p.array() >= box.lower.array()).all() && (p.array() <= box.upper.array()).all();
-}
-
 /// The tibia's upper surface: a concave medial and a convex lateral plateau that fall backward, and
 /// the two spines of the eminence.
 double plateauHeight(const Vec3& p) {
@@ -182,7 +178,7 @@ double KneeBones::femurField(const Vec3& p) const {
 }
 
 double KneeBones::femur(const Vec3& point) const {
-  if (!inside(m_femurBox, point))
+  if (!contains(m_femurBox, point))
     return beyond;
   const auto field = [this](const Vec3& p) { return femurField(p); };
   return firstOrderDistance(field, point) + surfaceNoise(point, 11);
@@ -202,14 +198,14 @@ double KneeBones::tibiaField(const Vec3& p) const {
 }
 
 double KneeBones::tibia(const Vec3& point) const {
-  if (!inside(m_tibiaBox, point))
+  if (!contains(m_tibiaBox, point))
     return beyond;
   const auto field = [this](const Vec3& p) { return tibiaField(p); };
   return firstOrderDistance(field, point) + surfaceNoise(point, 21);
 }
 
 double KneeBones::fibula(const Vec3& point) const {
-  if (!inside(m_fibulaBox, point))
+  if (!contains(m_fibulaBox, point))
     return beyond;
   return m_fibulaShaft.distance(point) + surfaceNoise(point, 31);
 }
@@ -227,7 +223,7 @@ double KneeBones::patellaField(const Vec3& p) const {
 }
 
 double KneeBones::patella(const Vec3& point) const {
-  if (!inside(m_patellaBox, point))
+  if (!contains(m_patellaBox, point))
     return beyond;
   const auto field = [this](const Vec3& p) { return patellaField(p); };
   return firstOrderDistance(field, point) + surfaceNoise(point, 41);

@@ -14,6 +14,14 @@ double latticeValue(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_
   return static_cast<double>(mixBits(key) >> 11) * 0x1p-52 - 1.0;
 }
 
+/// Two independent normal deviates (Box and Muller 1958).
+Vec2 normalPair(std::uint64_t voxel) {
+  Random random(0, voxel, 0);
+  const double radius = std::sqrt(2.0 * random.exponential());
+  const double angle = 2.0 * pi * random.uniform();
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
 } // namespace
 
 double valueNoise(const Vec3& point, std::uint64_t seed) {
@@ -31,11 +39,13 @@ double valueNoise(const Vec3& point, std::uint64_t seed) {
                    std::lerp(edge(0, 1), edge(1, 1), s.y()), s.z());
 }
 
+double normalNoise(std::uint64_t voxel) {
+  return normalPair(voxel).x();
+}
+
 double ricianNoise(double signal, double sigma, std::uint64_t voxel) {
-  Random random(0, voxel, 0);
-  const double radius = sigma * std::sqrt(2.0 * random.exponential()); // Box and Muller 1958
-  const double angle = 2.0 * pi * random.uniform();
-  return std::hypot(signal + radius * std::cos(angle), radius * std::sin(angle));
+  const Vec2 noise = sigma * normalPair(voxel);
+  return std::hypot(signal + noise.x(), noise.y());
 }
 
 } // namespace fenestra

@@ -11,6 +11,9 @@ namespace fenestra {
 /// feature size; different seeds are independent fields.
 double valueNoise(const Vec3& point, std::uint64_t seed);
 
+/// Normal, of mean 0 and standard deviation 1.
+double normalNoise(std::uint64_t voxel);
+
 /// Magnitude of a signal with normal noise of standard deviation `sigma` in its two quadratures, as
 /// MR shows it (Gudbjartsson and Patz 1995, "The Rician Distribution of Noisy MRI Data").
 double ricianNoise(double signal, double sigma, std::uint64_t voxel);

@@ -71,6 +71,63 @@ Box expanded(const Box& box, double margin) {
   return {box.lower.array() - margin, box.upper.array() + margin};
 }
 
+bool contains(const Box& box, const Vec3& point) {
+  return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
+}
+
+Box united(const Box& a, const Box& b) {
+  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
+Box mapped(const Affine& map, const Box& box) {
+  Box result{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = map * box.corner(i);
+    result = united(result, {corner, corner});
+  }
+  return result;
+}
+
+double roundedBoxDistance(const Vec3& point, const Vec3& halfSize, double radius) {
+  const Vec3 beyond = point.cwiseAbs().array() - halfSize.array() + radius;
+  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0) - radius;
+}
+
+Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up) {
+  const Vec3 z = axis.normalized();
+  const Vec3 y = (up - up.dot(z) * z).normalized();
+  Affine map = Affine::Identity();
+  map.linear() << z.cross(y).transpose(), y.transpose(), z.transpose();
+  map.translation() = -(map.linear() * origin);
+  return map;
+}
+
+Solid ellipsoid(const Vec3& center, const Vec3& radii) {
+  return {[=](const Vec3& p) { return ellipsoidDistance(p, center, radii); },
+          {center - radii, center + radii}};
+}
+
+Solid block(const Affine& toShape, const Vec3& halfSize, double radius) {
+  return {[=](const Vec3& p) { return roundedBoxDistance(toShape * p, halfSize, radius); },
+          mapped(toShape.inverse(), {-halfSize, halfSize})};
+}
+
+Solid placed(const Affine& toShape, const Loft& loft) {
+  return {[=](const Vec3& p) { return loft.distance(toShape * p); },
+          mapped(toShape.inverse(), loft.box())};
+}
+
+/// A blend reaches out by a quarter of its width.
+Solid unite(const Solid& a, const Solid& b, double blend) {
+  return {[=](const Vec3& p) { return smoothUnion(a.distance(p), b.distance(p), blend); },
+          expanded(united(a.box, b.box), 0.25 * blend)};
+}
+
+Solid intersect(const Solid& a, const Solid& b, double blend) {
+  return {[=](const Vec3& p) { return smoothIntersection(a.distance(p), b.distance(p), blend); },
+          {a.box.lower.cwiseMax(b.box.lower), a.box.upper.cwiseMin(b.box.upper)}};
+}
+
 Loft::Loft(std::vector<LoftSection> sections, double squareness, double capBlend)
     : m_sections(std::move(sections)), m_squareness(squareness), m_capBlend(capBlend) {
   Vec2 lower = Vec2::Constant(infinity), upper = Vec2::Constant(-infinity);

@@ -4,6 +4,7 @@
 
 #include "core/Vector.h"
 
+#include <functional>
 #include <vector>
 
 namespace fenestra {
@@ -18,7 +19,30 @@ double smoothDifference(double a, double b, double blend);
 
 double ellipsoidDistance(const Vec3& point, const Vec3& center, const Vec3& radii);
 
+/// A box around the origin with its edges rounded.
+double roundedBoxDistance(const Vec3& point, const Vec3& halfSize, double radius);
+
 Box expanded(const Box& box, double margin);
+bool contains(const Box& box, const Vec3& point);
+/// The box around both, and around a box seen through an affine map.
+Box united(const Box& a, const Box& b);
+Box mapped(const Affine& map, const Box& box);
+
+/// From the world to a shape's own space, in which `origin` is 0, z runs along `axis`, y toward
+/// `up` and x along axis x up (a mirrored space: x is a right limb's lateral side where axis is
+/// anterior and up superior). mm stay mm.
+Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up);
+
+/// A shape with a box around it, in the world.
+struct Solid {
+  std::function<double(const Vec3&)> distance; ///< mm
+  Box box;
+};
+Solid ellipsoid(const Vec3& center, const Vec3& radii);
+/// Edges rounded by `radius`; `halfSize` along the shape's own x, y, z.
+Solid block(const Affine& toShape, const Vec3& halfSize, double radius);
+Solid unite(const Solid& a, const Solid& b, double blend);
+Solid intersect(const Solid& a, const Solid& b, double blend);
 
 /// A cross-section of a loft: an ellipse, more or less square, in the axial plane.
 struct LoftSection {
@@ -44,6 +68,9 @@ private:
   double m_squareness, m_capBlend;
   Box m_box;
 };
+
+/// A loft in a space of its own.
+Solid placed(const Affine& toShape, const Loft& loft);
 
 /// A point of a tube's axis and the tube's radius there.
 struct TubeNode {
