@@ -175,27 +175,21 @@ struct Estimates {
       throw inputError("pictures", "one has no channels error.R, error.G, error.B and samples.N; "
                                    "compare renders with all layers");
   }
+  double mean(std::size_t c, std::size_t i) const { return (*means[c])[i]; }
   double variance(std::size_t c, std::size_t i) const { return square((*errors[c])[i]); }
-  /// What the variance of a variance is in proportion to.
-  double squareByFreedom(std::size_t c, std::size_t i) const {
-    return square(variance(c, i)) / std::max(static_cast<double>((*samples)[i]) - 1.0, 1.0);
-  }
+  double count(std::size_t i) const { return (*samples)[i]; }
 };
 
 /// Sums over one tile and channel.
 struct TileSums {
-  double mean = 0.0, variance = 0.0, squareByFreedom = 0.0;
+  double mean = 0.0, variance = 0.0, samples = 0.0;
   int pixels = 0;
 
   void add(const Estimates& image, std::size_t c, std::size_t i) {
-    mean += static_cast<double>((*image.means[c])[i]);
+    mean += image.mean(c, i);
     variance += image.variance(c, i);
-    squareByFreedom += image.squareByFreedom(c, i);
+    samples += image.count(i);
     ++pixels;
-  }
-  /// Infinite where nothing varies.
-  double freedom() const {
-    return squareByFreedom > 0.0 ? square(variance) / squareByFreedom : infinity;
   }
 };
 
@@ -206,6 +200,17 @@ TileSums sumTile(const Image& image, const Estimates& estimates, std::size_t c, 
     for (int column = left; column < std::min(left + size, image.width); ++column)
       sums.add(estimates, c, static_cast<std::size_t>(row * image.width + column));
   return sums;
+}
+
+/// Of one value (agreementProbability).
+double differenceProbability(const Estimates& a, const Estimates& b, std::size_t c, std::size_t i) {
+  const double nA = a.count(i), nB = b.count(i);
+  const double mean = (nA * a.mean(c, i) + nB * b.mean(c, i)) / (nA + nB);
+  const double perSample =
+      (square(nA) * a.variance(c, i) + square(nB) * b.variance(c, i)) / (nA + nB);
+  const double paths = std::min(nA, nB) * std::min(1.0, square(mean) / perSample);
+  const double t = (a.mean(c, i) - b.mean(c, i)) / std::sqrt(perSample * (1.0 / nA + 1.0 / nB));
+  return studentTail(t, paths);
 }
 
 Rgb divergingColour(double t) {
@@ -252,15 +257,14 @@ Image tileMeans(const Image& image, int size) {
   Image result{(image.width + size - 1) / size, (image.height + size - 1) / size, {}, {}};
   for (int row = 0; row < result.height; ++row)
     for (int column = 0; column < result.width; ++column) {
-      double freedom = infinity;
+      TileSums sums;
       for (std::size_t c = 0; c < 3; ++c) {
-        const TileSums sums = sumTile(image, estimates, c, column * size, row * size, size);
+        sums = sumTile(image, estimates, c, column * size, row * size, size);
         result.channels[colourNames[c]].push_back(static_cast<float>(sums.mean / sums.pixels));
         result.channels[errorNames[c]].push_back(
             static_cast<float>(std::sqrt(sums.variance) / sums.pixels));
-        freedom = std::min(freedom, sums.freedom());
       }
-      result.channels["samples.N"].push_back(static_cast<float>(1.0 + freedom));
+      result.channels["samples.N"].push_back(static_cast<float>(sums.samples));
     }
   return result;
 }
@@ -271,14 +275,10 @@ double agreementProbability(const Image& a, const Image& b) {
   double least = 1.0, count = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < pair.pixels; ++i) {
-      const double d = pair.difference(c, i);
       if (pair.saysNothing(c, i) && pair.agrees(c, i))
         continue;
-      const double v = pair.variance(c, i);
-      const double freedom =
-          square(v) / (estimatesA.squareByFreedom(c, i) + estimatesB.squareByFreedom(c, i));
-      const double p = studentTail(d / std::sqrt(v), freedom);
-      least = std::isnan(p) ? 0.0 : std::min(least, p); // no freedom: exact
+      const double p = differenceProbability(estimatesA, estimatesB, c, i);
+      least = std::isnan(p) ? 0.0 : std::min(least, p); // exact, or not finite
       ++count;
     }
   return count == 0.0 ? 1.0 : -std::expm1(count * std::log1p(-least)); // 1 - (1 - p)^count

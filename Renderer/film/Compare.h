@@ -45,15 +45,17 @@ Comparison compareImages(const Image& a, const Image& b);
 Image differenceImage(const Image& a, const Image& b);
 
 /// Means over square tiles of `size` pixels (fewer at the right and lower border, so one tile of a
-/// great size is the whole picture): R, G, B, their standard errors, and in samples.N the degrees
-/// of freedom that these have, plus one (Satterthwaite 1946). Needs error.R, error.G, error.B and
-/// samples.N, and throws Error (input) where one is missing.
+/// great size is the whole picture): R, G, B, their standard errors, and the sum of samples.N. Needs
+/// error.R, error.G, error.B and samples.N, and throws Error (input) where one is missing.
 Image tileMeans(const Image& image, int size);
 
 /// How probable a difference as large as the largest of any R, G or B is between two renders of one
-/// scene with independent seeds: Welch's t of each value, corrected for the number of values
-/// (Šidák 1967). Exact values (see ZStatistics) that differ make it 0; so does what is not finite.
-/// Throws as tileMeans does, and for different sizes.
+/// scene with independent seeds: Student's t of each value, corrected for the number of values
+/// (Šidák 1967). The two share their variance a sample. A mean of few bright paths is skewed as a
+/// count of them is, so t has no more degrees of freedom than the shorter render would have paths,
+/// were they equally bright (mean^2 / se^2): its tails are then the heavier ones. Exact values (see
+/// ZStatistics) that differ make the probability 0; so does what is not finite. Throws as tileMeans
+/// does, and for different sizes.
 double agreementProbability(const Image& a, const Image& b);
 
 /// Takes R, G, B of `error`, a picture of standard errors, as the error channels of `image`. Throws

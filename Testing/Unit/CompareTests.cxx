@@ -239,7 +239,7 @@ TEST(TileMeans, AverageAndKnowTheirErrors) {
   EXPECT_FLOAT_EQ(tiles.find("R")->at(1), 1.0f);
   EXPECT_FLOAT_EQ(tiles.find("error.G")->at(0), 0.05f);
   EXPECT_FLOAT_EQ(tiles.find("error.G")->at(1), 0.1f);
-  EXPECT_FLOAT_EQ(tiles.find("samples.N")->at(0), 161.0f); // sixteen times ten, plus one
+  EXPECT_FLOAT_EQ(tiles.find("samples.N")->at(0), 176.0f);
   EXPECT_EQ(tileMeans(image, 1000).find("R")->size(), 1u);
   EXPECT_THROW(tileMeans(constantImage(2, 2, 1.0f), 2), Error);
 }
@@ -265,6 +265,30 @@ TEST(AgreementProbability, TakesExactValuesAtTheirWord) {
   Image other = black;
   other.channels["B"][3] = 0.5f;
   EXPECT_EQ(agreementProbability(black, other), 0.0);
-  other.channels["error.B"][3] = 0.3f; // one of few samples met something
+  other.channels["error.B"][3] = 0.5f; // one of few samples met something
   EXPECT_GT(agreementProbability(black, other), 0.05);
+}
+
+TEST(AgreementProbability, ExpectsFewBrightPathsToScatter) {
+  // Pixels that one path in two hundred makes bright, 100 and 800 samples: in 4096 pixels several
+  // have four such paths of 100, which a normal distribution would call impossible.
+  const auto sparse = [](std::uint64_t seed, int samples) {
+    Image image =
+        withSamples(withError(constantImage(64, 64, 0.0f), 0.0f), static_cast<float>(samples));
+    Random random(seed, 0, 0);
+    for (const std::string channel : {"R", "G", "B"})
+      for (std::size_t i = 0; i < 4096; ++i) {
+        double hits = 0.0;
+        for (int n = 0; n < samples; ++n)
+          hits += random.uniform() < 0.005;
+        const double mean = hits / samples;
+        image.channels[channel][i] = static_cast<float>(mean);
+        image.channels["error." + channel][i] =
+            static_cast<float>(std::sqrt(mean * (1.0 - mean) / (samples - 1)));
+      }
+    return image;
+  };
+  const Image reference = sparse(99, 800);
+  for (std::uint64_t seed = 0; seed < 10; ++seed)
+    EXPECT_GT(agreementProbability(sparse(seed, 100), reference), 0.01);
 }
