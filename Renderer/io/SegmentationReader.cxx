@@ -1,6 +1,8 @@
 #include "io/SegmentationReader.h"
 
 #include "core/Error.h"
+#include "io/ClosedSurface.h"
+#include "io/InputFile.h"
 #include "io/MedicalImage.h"
 #include "io/ShownText.h"
 
@@ -436,7 +438,9 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
   return mask;
 }
 
-Segmentation readSegmentation(const std::filesystem::path& path) {
+Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference) {
+  if (lowerExtension(path) == ".vtm")
+    return readClosedSurfaces(path, reference);
   MedicalImage image = readMedicalImage(path, Components::any);
   const std::string source = path.string();
   auto segments = SegmentFields(image.fields, source).segments(image.components);

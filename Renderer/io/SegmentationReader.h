@@ -64,7 +64,9 @@ private:
 /// segment "Segment_<value>" for each value other than 0. Where voxels lie is the file's geometry
 /// alone, which includes Segmentation_ReferenceImageExtentOffset; only in the oldest files, known
 /// by their Segmentation_Extent, it does not, and is in RAS. SegmentN_Extent is not looked at:
-/// labels say where a segment is. Throws Error (input).
-Segmentation readSegmentation(const std::filesystem::path& path);
+/// labels say where a segment is. A `.vtm` holds closed surfaces, which become labels of
+/// `reference`, the volume's grid (ClosedSurface.h); otherwise that is not looked at. Throws Error
+/// (input).
+Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr);
 
 } // namespace fenestra

@@ -7,3 +7,5 @@ target_include_directories(TransformFileTests SYSTEM PRIVATE ${ITK_INCLUDE_DIRS}
 find_package(ITK REQUIRED COMPONENTS ITKIOGDCM)
 fenestra_test(DicomSeriesTests DicomSeriesTests.cxx
   LIBRARIES fenestra_io_read fenestra_itk ${ITK_LIBRARIES} LABELS unit)
+fenestra_test(ClosedSurfaceTests ClosedSurfaceTests.cxx
+  LIBRARIES fenestra_io_read fenestra_itk ZLIB::ZLIB LABELS unit)

@@ -1,0 +1,332 @@
+// Surfaces of known shapes, in every way that VTK writes its arrays, and files that are not what
+// they say.
+
+#include "io/ClosedSurface.h"
+
+#include "MedicalFiles.h"
+#include "io/Voxelize.h"
+
+#include <zlib.h>
+
+#include <random>
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+using Path = std::filesystem::path;
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+struct Shape {
+  std::vector<Vec3> points;
+  Triangles triangles;
+};
+
+Shape box(const Vec3& lower, const Vec3& upper) {
+  Shape shape;
+  for (int i = 0; i < 8; ++i)
+    shape.points.push_back(Box{lower, upper}.corner(i));
+  shape.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return shape;
+}
+
+/// An octahedron that is divided and pushed out.
+Shape sphere(const Vec3& center, double radius, int divisions) {
+  Shape shape{
+      {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitX(), -Vec3::UnitY(), -Vec3::UnitZ()},
+      {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}}};
+  for (int i = 0; i < divisions; ++i) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [it, added] = middles.try_emplace(std::minmax(a, b), shape.points.size());
+      if (added)
+        shape.points.push_back((shape.points[a] + shape.points[b]).normalized());
+      return it->second;
+    };
+    Triangles finer;
+    for (const auto& [a, b, c] : shape.triangles) {
+      const auto ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      for (const auto& triangle : Triangles{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+        finer.push_back(triangle);
+    }
+    shape.triangles = finer;
+  }
+  for (Vec3& point : shape.points)
+    point = center + radius * point;
+  return shape;
+}
+
+// ---- files
+// --------------------------------------------------------------------------------------
+
+std::string base64(const std::string& bytes) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    unsigned group = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      group = group << 8 | (at + i < bytes.size() ? static_cast<unsigned char>(bytes[at + i]) : 0);
+    for (std::size_t i = 0; i < 4; ++i)
+      text += at + i > bytes.size() ? '=' : digits[group >> (18 - 6 * i) & 63];
+  }
+  return text;
+}
+
+enum class Writing { ascii, plain, deflated };
+
+/// What stands between an array's tags. Blocks are small, so that there are several.
+template <typename T>
+std::string encoded(const std::vector<T>& values, Writing writing) {
+  std::ostringstream text;
+  text.precision(17);
+  if (writing == Writing::ascii) {
+    for (const T value : values)
+      text << +value << ' ';
+    return text.str();
+  }
+  const std::string bytes = rawBytes(values);
+  if (writing == Writing::plain)
+    return base64(rawBytes(std::vector<std::uint64_t>{bytes.size()}) + bytes);
+  constexpr std::size_t block = 40;
+  std::vector<std::uint64_t> header = {(bytes.size() + block - 1) / block, block,
+                                       bytes.size() % block};
+  std::string packed;
+  for (std::size_t at = 0; at < bytes.size(); at += block) {
+    const std::string part = bytes.substr(at, block);
+    std::string deflated(compressBound(part.size()), '\0');
+    uLongf size = deflated.size();
+    compress(reinterpret_cast<Bytef*>(deflated.data()), &size,
+             reinterpret_cast<const Bytef*>(part.data()), part.size());
+    packed += deflated.substr(0, size);
+    header.push_back(size);
+  }
+  return base64(rawBytes(header)) + base64(packed);
+}
+
+template <typename T>
+std::string array(const std::string& type, const std::string& name, const std::vector<T>& values,
+                  Writing writing) {
+  const std::string tag = type == "String" ? "Array" : "DataArray";
+  return "<" + tag + " type=\"" + type + "\" Name=\"" + name + "\" format=\"" +
+         (writing == Writing::ascii ? "ascii" : "binary") + "\">\n  " + encoded(values, writing) +
+         "\n</" + tag + ">\n";
+}
+
+std::string textArray(const std::string& name, const std::string& text, Writing writing) {
+  std::vector<signed char> codes(text.begin(), text.end());
+  codes.push_back(0);
+  return array("String", name, codes, writing);
+}
+
+std::string surfaceText(const Shape& shape, const std::string& id, const std::string& name,
+                        Writing writing) {
+  std::vector<float> coordinates;
+  for (const Vec3& point : shape.points)
+    for (const double x : point)
+      coordinates.push_back(static_cast<float>(x));
+  std::vector<std::int64_t> corners, offsets;
+  for (const auto& triangle : shape.triangles) {
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+    offsets.push_back(static_cast<std::int64_t>(corners.size()));
+  }
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+         "byte_order=\"LittleEndian\" header_type=\"UInt64\"" +
+         std::string(writing == Writing::deflated ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+         ">\n<PolyData>\n<FieldData>\n" +
+         textArray("Segmentation_MasterRepresentation", "Closed surface", writing) +
+         textArray("Segment_ID", id, writing) + textArray("Segment_Name", name, writing) +
+         array("Float64", "Segment_Color", std::vector<double>{0.25, 0.5, 1.0}, writing) +
+         "</FieldData>\n<Piece NumberOfLines=\"0\"><Points>" +
+         array("Float32", "Points", coordinates, writing) + "</Points>\n<Polys>" +
+         array("Int64", "connectivity", corners, writing) +
+         array("Int64", "offsets", offsets, writing) +
+         "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+}
+
+Path writeBlocks(const TemporaryFolder& folder, const std::vector<std::string>& files) {
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"vtkMultiBlockDataSet\" "
+                     "version=\"1.0\"><vtkMultiBlockDataSet>\n";
+  for (const std::string& file : files)
+    text += "<DataSet index=\"0\" file=\"" + file + "\"></DataSet>\n";
+  return folder.write("s.seg.vtm", text + "</vtkMultiBlockDataSet></VTKFile>\n");
+}
+
+Path writeSegments(const TemporaryFolder& folder, const std::vector<Shape>& shapes,
+                   Writing writing = Writing::deflated) {
+  std::vector<std::string> files;
+  for (const Shape& shape : shapes) {
+    const std::string number = std::to_string(files.size());
+    files.push_back("s_" + number + ".vtp");
+    folder.write(files.back(), surfaceText(shape, "id" + number, "ségment " + number, writing));
+  }
+  return writeBlocks(folder, files);
+}
+
+// ---- tests
+// --------------------------------------------------------------------------------------
+
+Grid volumeGrid() {
+  Affine map = Affine::Identity();
+  map.linear() = Eigen::AngleAxisd(0.5, Vec3(1, 1, 2).normalized()).toRotationMatrix() *
+                 Vec3(0.5, 0.75, 1.0).asDiagonal();
+  map.translation() = Vec3(-20, 5, 3);
+  return {Size3(40, 32, 24), map};
+}
+
+TEST(ClosedSurface, takesTheVoxelsInsideInEveryEncoding) {
+  const TemporaryFolder folder;
+  const Grid grid = volumeGrid();
+  const Vec3 center = grid.worldCenter() + Vec3(0.3, -0.2, 0.1);
+  constexpr double radius = 6.0;
+  for (const Writing writing : {Writing::ascii, Writing::plain, Writing::deflated}) {
+    const Path path = writeSegments(folder, {sphere(center, radius, 5)}, writing);
+    const Segmentation segmentation = readSegmentation(path, &grid);
+    ASSERT_EQ(segmentation.segments().size(), 1u);
+    EXPECT_EQ(segmentation.segments()[0].id, "id0");
+    EXPECT_EQ(segmentation.segments()[0].name, "ségment 0");
+    EXPECT_TRUE(segmentation.segments()[0].color.isApprox(Rgb(0.25, 0.5, 1.0)));
+    const Mask mask = segmentation.mask({"ségment 0"}, grid);
+    std::int64_t inside = 0, near = 0;
+    for (int z = 0; z < grid.size.z(); ++z)
+      for (int y = 0; y < grid.size.y(); ++y)
+        for (int x = 0; x < grid.size.x(); ++x) {
+          const double distance = (grid.indexToWorld * Vec3(x, y, z) - center).norm();
+          inside += distance < radius - 0.01; // facets lie inside the sphere
+          near += std::abs(distance - radius) <= 0.01;
+        }
+    EXPECT_GT(inside, 2000);
+    EXPECT_GE(mask.count, inside);
+    EXPECT_LE(mask.count, inside + near);
+    const Vec3 middle = mask.grid.worldToIndex * center;
+    const Size3 at = middle.array().round().cast<std::int64_t>();
+    EXPECT_EQ(mask.voxels[static_cast<std::size_t>(
+                  at.x() + mask.grid.size.x() * (at.y() + mask.grid.size.y() * at.z()))],
+              1);
+  }
+}
+
+TEST(ClosedSurface, keepsOverlapsInLayers) {
+  const TemporaryFolder folder;
+  const Grid grid(Size3(20, 20, 20), Affine::Identity());
+  const Path path = writeSegments(folder, {box(Vec3(1.5, 1.5, 1.5), Vec3(9.5, 9.5, 9.5)),
+                                           box(Vec3(5.5, 5.5, 5.5), Vec3(12.5, 12.5, 12.5)),
+                                           box(Vec3(14.5, 1.5, 1.5), Vec3(16.5, 3.5, 3.5)),
+                                           {}});
+  const Segmentation segmentation = readSegmentation(path, &grid);
+  const auto& segments = segmentation.segments();
+  EXPECT_EQ(segments[0].layer, 0u);
+  EXPECT_EQ(segments[1].layer, 1u);
+  EXPECT_EQ(segments[2].layer, 0u);
+  EXPECT_EQ(segmentation.mask({"id0"}, grid).count, 8 * 8 * 8);
+  EXPECT_EQ(segmentation.mask({"id1"}, grid).count, 7 * 7 * 7);
+  EXPECT_EQ(segmentation.mask({"id2"}, grid).count, 2 * 2 * 2);
+  EXPECT_EQ(segmentation.mask({"id0", "id1"}, grid).count, 512 + 343 - 64);
+  EXPECT_THROW(segmentation.mask({"id3"}, grid), Error);
+}
+
+/// The part of a surface beyond the volume is left out, and the focus goes on over its faces.
+TEST(ClosedSurface, endsAtTheVolume) {
+  const TemporaryFolder folder;
+  const Grid grid(Size3(10, 10, 10), Affine::Identity());
+  const Path path = writeSegments(folder, {box(Vec3(-50, 2.5, 2.5), Vec3(50, 4.5, 4.5))});
+  EXPECT_EQ(readSegmentation(path, &grid).mask({"id0"}, grid).count, 10 * 2 * 2);
+  const Path away = writeSegments(folder, {box(Vec3(50, 50, 50), Vec3(60, 60, 60))});
+  fenestra::expectRefused(away, "the focus has no voxel",
+                          [&] { readSegmentation(away, &grid).mask({"id0"}, grid); });
+}
+
+TEST(ClosedSurface, makesItsOwnGridWithoutAVolume) {
+  const TemporaryFolder folder;
+  const Path path = writeSegments(folder, {box(Vec3(-10, 0, 5), Vec3(118, 64, 37))});
+  const Segmentation segmentation = readSegmentation(path);
+  const Grid& grid = segmentation.grid();
+  EXPECT_TRUE((grid.spacing().array() == 0.5).all());
+  const auto count = static_cast<double>(segmentation.mask({"id0"}, grid).count);
+  EXPECT_NEAR(count / 8.0, 128.0 * 64 * 32, 0.03 * 128 * 64 * 32);
+}
+
+/// Rows through edges and corners: each crossing counts once.
+TEST(ClosedSurface, countsEdgesOnce) {
+  const Shape onPlanes = box(Vec3(2, 2, 2), Vec3(6, 6, 6));
+  const auto runs = voxelRuns(onPlanes.points, onPlanes.triangles, Size3(10, 10, 10));
+  ASSERT_TRUE(runs);
+  EXPECT_EQ(runs->size(), 16u); // of five planes the last is outside, in y and z
+  std::mt19937 random(3);
+  for (int i = 0; i < 50; ++i) {
+    Shape shape = sphere(Vec3(8, 8, 8), 5, 3);
+    for (Vec3& point : shape.points) // corners on rows, flat triangles, turned-over ones
+      point = (point * (i % 2 ? 1.0 : 2.0)).array().round() / (i % 2 ? 1.0 : 2.0) +
+              (i % 5 == 0 ? static_cast<double>(random() % 3) : 0.0);
+    EXPECT_TRUE(voxelRuns(shape.points, shape.triangles, Size3(20, 20, 20))) << i;
+  }
+}
+
+void expectRefused(const Path& named, const Path& path, const std::string& text) {
+  fenestra::expectRefused(named, text, [&] { readSegmentation(path); });
+}
+
+TEST(ClosedSurface, refusesWhatIsNotClosed) {
+  const TemporaryFolder folder;
+  Shape open = box(Vec3(0, 0, 0), Vec3(5, 5, 5));
+  open.triangles.pop_back();
+  const Path path = writeSegments(folder, {open});
+  expectRefused(path, path, "segment \"ségment 0\": its surface has holes");
+  const Path empty = writeSegments(folder, {{}});
+  expectRefused(empty, empty, "its surfaces hold no point");
+  std::string lines = surfaceText({}, "a", "b", Writing::ascii);
+  const std::string none = "NumberOfLines=\"0\"";
+  lines.replace(lines.find(none), none.size(), "NumberOfLines=\"4\"");
+  folder.write("lines.vtp", lines);
+  expectRefused(folder / "lines.vtp", writeBlocks(folder, {"lines.vtp"}), "holds planar contours");
+}
+
+TEST(ClosedSurface, staysInItsFolder) {
+  const TemporaryFolder folder;
+  for (const char* name : {"../other.vtp", "a/../../other.vtp", "/etc/passwd", ""}) {
+    const Path path = writeBlocks(folder, {name});
+    expectRefused(path, path, "is not in the folder of the .vtm");
+  }
+  const Path path = writeBlocks(folder, {"absent.vtp"});
+  expectRefused(folder / "absent.vtp", path, "there is no such file");
+}
+
+TEST(ClosedSurface, survivesDamage) {
+  const TemporaryFolder folder;
+  std::mt19937 random(5);
+  int readable = 0;
+  testing::internal::CaptureStderr();
+  for (const Writing writing : {Writing::ascii, Writing::plain, Writing::deflated}) {
+    const std::string whole = surfaceText(sphere(Vec3(0, 0, 0), 5, 1), "id", "name", writing);
+    for (int i = 0; i < 700; ++i) {
+      std::string bytes = whole;
+      if (i % 8 == 0)
+        bytes.resize(random() % whole.size());
+      for (int n = 0; n < 1 + i % 3 && !bytes.empty(); ++n)
+        bytes[random() % bytes.size()] = static_cast<char>(random());
+      const std::string name = std::to_string(static_cast<int>(writing) * 1000 + i) + ".vtp";
+      folder.write(name, bytes);
+      try {
+        readSegmentation(writeBlocks(folder, {name}));
+        ++readable;
+      } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      }
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_GT(readable, 50);
+}
+
+/// SlicerRT's examples hold contours alone.
+TEST(ClosedSurface, refusesRealContours) {
+  const Path folder = Path(FENESTRA_DATA) / "slicer_scenes" / "slicerrt_scenes";
+  if (!std::filesystem::exists(folder))
+    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+  for (const std::string name : {"TinyPatientStructureSet", "EclipseProstate_Structures"})
+    expectRefused(folder / (name + ".seg") / (name + ".seg_0.vtp"), folder / (name + ".seg.vtm"),
+                  "holds planar contours, not a closed surface");
+}
+
+} // namespace
+} // namespace fenestra
