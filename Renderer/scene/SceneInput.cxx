@@ -22,13 +22,14 @@ void readFocus(const SceneRequest& request, const Segmentation& segmentation, Sc
 void readSceneFocus(MrmlScene& scene, const ScenePlan& plan, const SceneRequest& request,
                     SceneInput& input) {
   if (plan.segmentation)
-    return readFocus(request, readSceneSegmentation(scene, *plan.segmentation), input);
+    return readFocus(request, readSceneSegmentation(scene, *plan.segmentation, &input.volume.grid),
+                     input);
   if (!std::filesystem::exists(*request.segmentation))
     throw inputError(scene.document.source(),
                      "has no segmentation \"" + *request.segmentation +
                          "\", and there is no file of that name; fenestra inspect lists what "
                          "there is");
-  readFocus(request, readSegmentation(*request.segmentation), input);
+  readFocus(request, readSegmentation(*request.segmentation, &input.volume.grid), input);
 }
 
 void readLook(MrmlScene& scene, const ScenePlan& plan, SceneInput& input) {
@@ -76,7 +77,7 @@ Volume readVolumeOrSeries(const SceneRequest& request) {
 SceneInput loadFiles(const SceneRequest& request) {
   SceneInput input{.volume = readVolumeOrSeries(request)};
   if (!request.focus.empty())
-    readFocus(request, readSegmentation(*request.segmentation), input);
+    readFocus(request, readSegmentation(*request.segmentation, &input.volume.grid), input);
   return input;
 }
 

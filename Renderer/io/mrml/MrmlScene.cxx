@@ -100,12 +100,15 @@ Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
   return volume;
 }
 
-Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node) {
+Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const Grid* volume) {
   const Affine above = toWorld(scene, node);
+  std::optional<Grid> inNode;
+  if (volume)
+    inNode.emplace(volume->size, above.inverse() * volume->indexToWorld);
   const MrmlNode* storage = isLabelMap(node) ? scene.document.follow(node, "storage") : nullptr;
   Segmentation segmentation =
       withFiles(scene, node, [&](const std::vector<std::filesystem::path>& files) {
-        return readSegmentation(files.front());
+        return readSegmentation(files.front(), inNode ? &*inNode : nullptr);
       });
   const Grid grid = placed(storage, segmentation.grid());
   segmentation.moveTo(Grid(grid.size, above * grid.indexToWorld));

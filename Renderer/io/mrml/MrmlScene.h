@@ -46,8 +46,10 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node);
 /// with what the storage node says of it: centerImage, UseOrientationFromFile.
 Volume readSceneVolume(MrmlScene& scene, const MrmlNode& volume);
 
-/// A segmentation or a label map, in the world.
-Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node);
+/// A segmentation or a label map, in the world; closed surfaces become labels on the grid of
+/// `volume`, which is in the world, too.
+Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node,
+                                   const Grid* volume = nullptr);
 
 /// Whether each segment is shown in 3-D, by id, as the segmentation's display says; segments that
 /// it does not name are.
