@@ -15,13 +15,6 @@ struct Expectation {
   std::string refusal = {};
 };
 
-#ifdef FENESTRA_HAS_VTK
-constexpr bool hasVtk = true;
-#else
-constexpr bool hasVtk = false;
-#endif
-const std::string closedSurface = hasVtk ? "" : "closed surface";
-
 const std::vector<Expectation>& expectations() {
   static const std::string chest = "@/slicerio_segnrrd/CTChest4.nrrd ";
   static const std::string dose = "@/slicer_scenes/slicerrt_scenes/EclipseProstate_Dose.nrrd ";
@@ -81,13 +74,13 @@ const std::vector<Expectation>& expectations() {
        "slicer_scenes/slicerrt_scenes/EclipseProstate_Structures.seg/*",
        dose + "--segmentation @/slicer_scenes/slicerrt_scenes/EclipseProstate_Structures.seg.vtm "
               "--focus Bladder",
-       closedSurface},
+       "holds planar contours, not a closed surface"},
       {"slicer_scenes/slicerrt_scenes/TinyPatientCT.nrrd "
        "slicer_scenes/slicerrt_scenes/TinyPatientStructureSet.seg.vtm "
        "slicer_scenes/slicerrt_scenes/TinyPatientStructureSet.seg/*",
        tiny + "--segmentation @/slicer_scenes/slicerrt_scenes/TinyPatientStructureSet.seg.vtm "
               "--focus Tumor_Contour",
-       closedSurface},
+       "holds planar contours, not a closed surface"},
       {"slicer_scenes/slicerrt_scenes/TinyPatientDose.nrrd",
        "@/slicer_scenes/slicerrt_scenes/TinyPatientDose.nrrd"},
       {"slicer_scenes/slicerrt_scenes/EclipseProstate_Structures_ColorTable.ctbl",
