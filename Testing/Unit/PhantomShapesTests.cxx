@@ -46,6 +46,41 @@ TEST(PhantomShapes, ALoftPassesThroughItsSections) {
   }
 }
 
+TEST(PhantomShapes, ABlockIsABoxWithRoundEdgesInItsOwnAxes) {
+  // Across, up and along: x, z and y of the world.
+  const Solid solid = block(toShape({1, 2, 3}, Vec3::UnitY(), Vec3::UnitZ()), {4, 5, 6}, 2.0);
+  EXPECT_NEAR(solid.distance({1, 2, 3}), -4.0, 1e-12);
+  EXPECT_NEAR(solid.distance({8, 2, 3}), 3.0, 1e-12);
+  EXPECT_NEAR(solid.distance({1, 2, 9}), 1.0, 1e-12);
+  EXPECT_NEAR(solid.distance({1, 10, 3}), 2.0, 1e-12);
+  EXPECT_NEAR(solid.distance({5, 8, 8}), std::sqrt(12.0) - 2.0, 1e-12) << "its corner";
+  EXPECT_TRUE(solid.box.lower.isApprox(Vec3(-3, -4, -2)));
+  EXPECT_TRUE(solid.box.upper.isApprox(Vec3(5, 8, 8)));
+}
+
+TEST(PhantomShapes, APlacedLoftRunsAlongItsAxis) {
+  const Loft loft({{0, {0, 0}, {2, 3}}, {10, {0, 0}, {2, 3}}}, 0.0, 1.0);
+  const Solid solid = placed(toShape({0, 5, 0}, Vec3::UnitY(), Vec3::UnitZ()), loft);
+  EXPECT_NEAR(solid.distance({2, 10, 0}), 0.0, 1e-9);
+  EXPECT_NEAR(solid.distance({0, 10, 3}), 0.0, 1e-9);
+  EXPECT_NEAR(solid.distance({0, 17, 0}), 2.0, 1e-9);
+  EXPECT_TRUE(contains(solid.box, {2, 15, 3}));
+}
+
+TEST(PhantomNoise, NormalNoiseIsNormal) {
+  constexpr int n = 100000;
+  double mean = 0.0, square = 0.0, within = 0.0;
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const double x = normalNoise(i);
+    mean += x / n;
+    square += x * x / n;
+    within += (std::abs(x) < 1.0) / static_cast<double>(n);
+  }
+  EXPECT_NEAR(mean, 0.0, 0.015);
+  EXPECT_NEAR(square, 1.0, 0.02);
+  EXPECT_NEAR(within, 0.6827, 0.007);
+}
+
 TEST(PhantomNoise, IsAContinuousFunctionOfPositionWithinItsRange) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(0.37 * i - 300.0, -0.21 * i, 0.11 * i);

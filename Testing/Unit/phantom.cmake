@@ -1,5 +1,8 @@
 find_package(nlohmann_json REQUIRED)
+find_package(pugixml REQUIRED)
 fenestra_test(PhantomTests
-  PhantomKneeTests.cxx PhantomShapesTests.cxx PhantomWriterTests.cxx
-  LIBRARIES fenestra_phantom fenestra_io_phantom fenestra_itk nlohmann_json::nlohmann_json TBB::tbb
+  PhantomCubeTests.cxx PhantomFootTests.cxx PhantomKneeTests.cxx PhantomSceneTests.cxx
+  PhantomShapesTests.cxx PhantomWriterTests.cxx
+  LIBRARIES fenestra_phantom fenestra_io_phantom fenestra_io_read fenestra_itk
+    nlohmann_json::nlohmann_json pugixml::pugixml PkgConfig::LibZip TBB::tbb
   LABELS unit)

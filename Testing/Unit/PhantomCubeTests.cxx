@@ -1,0 +1,75 @@
+#include "core/Error.h"
+#include "phantom/Cube.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+
+namespace {
+
+const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
+  return std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+}
+
+std::vector<int> slicesOf(const Phantom& cube) {
+  const Size3& size = cube.volume.grid.size;
+  std::vector<int> slices;
+  for (std::int64_t k = 0; k < size.z(); ++k)
+    slices.push_back(voxelsOf(cube)[static_cast<std::size_t>(k * size.x() * size.y())]);
+  return slices;
+}
+
+} // namespace
+
+TEST(PhantomCube, ThePublishedOneCountsItsSlicesFromTheMiddle) {
+  const Phantom cube = makeCubePhantom();
+  EXPECT_EQ(cube.volume.grid.size, Size3(512, 512, 512));
+  const std::vector<int> slices = slicesOf(cube);
+  for (int k = 0; k < 512; ++k)
+    EXPECT_EQ(slices[static_cast<std::size_t>(k)], k < 256 ? k - 255 : k - 256);
+  EXPECT_EQ(cube.labels.size, Size3(255, 255, 391));
+  EXPECT_EQ(cube.labels.offset, Size3(128, 128, 60));
+  EXPECT_EQ(cube.volume.minimum, -255.0);
+  EXPECT_EQ(cube.volume.maximum, 255.0);
+}
+
+TEST(PhantomCube, SmallOnesSpanTheSameRangeAndKeepTheShares) {
+  const Phantom cube = makeCubePhantom({1.0, 24});
+  const std::vector<int> slices = slicesOf(cube);
+  EXPECT_EQ(slices.front(), -255);
+  EXPECT_EQ(slices.back(), 255);
+  for (std::size_t k = 0; k < 24; ++k)
+    EXPECT_EQ(slices[k], -slices[23 - k]);
+  for (std::size_t i = 0; i < voxelsOf(cube).size(); ++i)
+    ASSERT_EQ(voxelsOf(cube)[i], slices[i / 576]);
+  EXPECT_EQ(cube.labels.size, Size3(12, 12, 18));
+  EXPECT_EQ(cube.labels.offset, Size3(6, 6, 3));
+  ASSERT_EQ(cube.labels.layers.size(), 1u);
+  EXPECT_EQ(cube.labels.layers[0], std::vector<std::uint8_t>(12 * 12 * 18, 1));
+}
+
+TEST(PhantomCube, HasItsEdgeAroundTheOrigin) {
+  for (const double edge : {1.0, 512.0}) {
+    const Grid grid = makeCubePhantom({edge, 16}).volume.grid;
+    EXPECT_TRUE(grid.worldCorner(0).isApprox(Vec3::Constant(-0.5 * edge)));
+    EXPECT_TRUE(grid.worldCorner(7).isApprox(Vec3::Constant(0.5 * edge)));
+  }
+}
+
+TEST(PhantomCube, IsAsOpaqueAndAsBlueAndRedAtEveryEdge) {
+  for (const double edge : {1.0, 512.0}) {
+    const TransferFunction transfer = tabulate(cubeProperty(edge), "cube");
+    EXPECT_NEAR(transfer.extinction(17.0).value() * edge, 100.0 * std::log(100.0), 1.0);
+    const Rgb low = transfer.albedo(-255.0), high = transfer.albedo(255.0);
+    EXPECT_GT(low.z(), 10.0 * low.x());
+    EXPECT_GT(high.x(), 10.0 * high.z());
+  }
+}
+
+TEST(PhantomCube, RefusesWhatIsNoCube) {
+  EXPECT_THROW(makeCubePhantom({1.0, 15}), Error);
+  EXPECT_THROW(makeCubePhantom({1.0, 1025}), Error);
+  EXPECT_THROW(makeCubePhantom({0.0, 16}), Error);
+  EXPECT_THROW(makeCubePhantom({-1.0, 16}), Error);
+  EXPECT_THROW(makeCubePhantom({infinity, 16}), Error);
+}

@@ -1,0 +1,242 @@
+#include "core/Error.h"
+#include "io/PhantomWriter.h"
+#include "io/SegmentationReader.h"
+#include "phantom/Foot.h"
+#include "phantom/FootBones.h"
+#include "phantom/FootLayers.h"
+
+#include "TemporaryFolder.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <map>
+#include <queue>
+
+using namespace fenestra;
+
+namespace {
+
+const Phantom& smallFoot() {
+  static const Phantom foot = makeFootPhantom({{180, 72, 90}});
+  return foot;
+}
+
+const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
+  return std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+}
+
+const PhantomSegment& segmentOf(const Phantom& phantom, const std::string& id) {
+  for (const PhantomSegment& segment : phantom.segments)
+    if (segment.id == id)
+      return segment;
+  throw std::runtime_error("no segment " + id);
+}
+
+std::vector<std::size_t> voxelsIn(const Phantom& phantom, const std::string& id) {
+  const PhantomSegment& segment = segmentOf(phantom, id);
+  const auto& labels = phantom.labels.layers.at(segment.layer);
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (labels[i] == segment.label)
+      found.push_back(i);
+  return found;
+}
+
+Vec3 placeOf(const Grid& grid, std::size_t voxel) {
+  const auto at = static_cast<std::int64_t>(voxel);
+  const Size3 index(at % grid.size.x(), at / grid.size.x() % grid.size.y(),
+                    at / (grid.size.x() * grid.size.y()));
+  return grid.indexToWorld * Vec3(index.cast<double>());
+}
+
+Vec3 centroid(const Phantom& phantom, const std::string& id) {
+  Vec3 sum = Vec3::Zero();
+  const auto voxels = voxelsIn(phantom, id);
+  for (const std::size_t voxel : voxels)
+    sum += placeOf(phantom.volume.grid, voxel);
+  return sum / static_cast<double>(voxels.size());
+}
+
+double medianOf(const Phantom& phantom, const std::string& id) {
+  std::vector<std::int16_t> values;
+  for (const std::size_t voxel : voxelsIn(phantom, id))
+    values.push_back(voxelsOf(phantom)[voxel]);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::vector<std::string> boneIds() {
+  std::vector<std::string> ids;
+  const FootBones foot;
+  for (const FootBone& bone : foot.bones())
+    ids.push_back(bone.id);
+  return ids;
+}
+
+} // namespace
+
+TEST(PhantomFoot, HasTheTwentySixBonesAndTwoStumps) {
+  const std::vector<std::string> ids = boneIds();
+  ASSERT_EQ(ids.size(), 28u);
+  const auto count = [&](const std::string& part) {
+    return std::count_if(ids.begin(), ids.end(),
+                         [&](const std::string& id) { return id.find(part) != std::string::npos; });
+  };
+  for (const char* tarsal : {"calcaneus", "talus", "navicular", "cuboid", "tibia", "fibula"})
+    EXPECT_EQ(count(tarsal), 1) << tarsal;
+  EXPECT_EQ(count("cuneiform"), 3);
+  EXPECT_EQ(count("metatarsal_"), 5);
+  EXPECT_EQ(count("_phalanx_"), 14);
+  EXPECT_EQ(count("middle_phalanx_1"), 0);
+  for (const std::string& id : ids)
+    EXPECT_GT(voxelsIn(smallFoot(), id).size(), 15u) << id;
+}
+
+TEST(PhantomFoot, IsARightFootWithItsBonesInTheirPlaces) {
+  const Phantom& foot = smallFoot();
+  const auto at = [&](const char* id) { return centroid(foot, id); };
+  for (int ray = 1; ray < 5; ++ray) {
+    const std::string inner = std::to_string(ray), outer = std::to_string(ray + 1);
+    EXPECT_LT(centroid(foot, "metatarsal_" + inner).x() + 8.0,
+              centroid(foot, "metatarsal_" + outer).x())
+        << "the great toe is medial, to the left in a right foot";
+  }
+  for (int ray = 1; ray <= 5; ++ray) {
+    const std::string n = std::to_string(ray);
+    EXPECT_LT(centroid(foot, "metatarsal_" + n).y(), centroid(foot, "proximal_phalanx_" + n).y());
+    EXPECT_LT(centroid(foot, "proximal_phalanx_" + n).y(),
+              centroid(foot, "distal_phalanx_" + n).y());
+  }
+  EXPECT_GT(at("talus").z(), at("calcaneus").z() + 15.0);
+  EXPECT_GT(at("tibia").z(), at("talus").z() + 20.0);
+  EXPECT_GT(at("fibula").x(), at("tibia").x() + 15.0);
+  EXPECT_GT(at("navicular").y(), at("talus").y() + 20.0);
+  EXPECT_LT(at("navicular").x(), at("cuboid").x());
+  EXPECT_GT(at("navicular").z(), at("cuboid").z() + 8.0) << "the arch is higher medially";
+  EXPECT_LT(at("achilles_tendon").y(), at("tibia").y() - 20.0);
+}
+
+/// A joint's two bones come near each other but do not touch.
+TEST(PhantomFoot, JointsAreNarrowGaps) {
+  const FootBones bones;
+  const auto index = [&](const std::string& id) {
+    for (std::size_t i = 0; i < bones.bones().size(); ++i)
+      if (bones.bones()[i].id == id)
+        return i;
+    throw std::runtime_error(id);
+  };
+  const std::pair<const char*, const char*> joints[] = {{"tibia", "talus"},
+                                                        {"fibula", "talus"},
+                                                        {"calcaneus", "talus"},
+                                                        {"talus", "navicular"},
+                                                        {"calcaneus", "cuboid"},
+                                                        {"navicular", "medial_cuneiform"},
+                                                        {"navicular", "lateral_cuneiform"},
+                                                        {"medial_cuneiform", "metatarsal_1"},
+                                                        {"intermediate_cuneiform", "metatarsal_2"},
+                                                        {"lateral_cuneiform", "metatarsal_3"},
+                                                        {"cuboid", "metatarsal_4"},
+                                                        {"cuboid", "metatarsal_5"},
+                                                        {"metatarsal_1", "proximal_phalanx_1"},
+                                                        {"metatarsal_5", "proximal_phalanx_5"},
+                                                        {"proximal_phalanx_1", "distal_phalanx_1"},
+                                                        {"middle_phalanx_3", "distal_phalanx_3"}};
+  std::map<std::pair<std::size_t, std::size_t>, double> width;
+  double overlap = infinity;
+  for (double x = -50; x <= 50; x += 1.5)
+    for (double y = 10; y <= 260; y += 1.5)
+      for (double z = 4; z <= 100; z += 1.5) {
+        const auto distances = bones.distances({x, y, z});
+        for (const auto& [a, b] : joints) {
+          const std::size_t i = index(a), j = index(b);
+          if (distances[i] == FootBones::beyond || distances[j] == FootBones::beyond)
+            continue;
+          auto& least = width.try_emplace({i, j}, infinity).first->second;
+          least = std::min(least, distances[i] + distances[j]);
+        }
+        std::array<double, FootBones::count> sorted = distances;
+        std::nth_element(sorted.begin(), sorted.begin() + 1, sorted.end());
+        overlap = std::min(overlap, sorted[1]);
+      }
+  for (const auto& [a, b] : joints) {
+    EXPECT_GT((width[{index(a), index(b)}]), 0.5) << a << ' ' << b;
+    EXPECT_LT((width[{index(a), index(b)}]), 4.5) << a << ' ' << b;
+  }
+  EXPECT_GT(overlap, 0.0) << "no place is in two bones";
+}
+
+TEST(PhantomFoot, TheBonesSegmentIsWhatTwoHundredHounsfieldFind) {
+  const Phantom& foot = smallFoot();
+  const PhantomSegment& bones = segmentOf(foot, "bones");
+  EXPECT_EQ(bones.layer, 1u);
+  const FootBones skeleton;
+  for (std::size_t i = 0; i < voxelsOf(foot).size(); ++i) {
+    const bool found = foot.labels.layers[1][i] == bones.label;
+    ASSERT_EQ(found, voxelsOf(foot)[i] >= 200) << i;
+    if (!found || foot.labels.layers[0][i] <= FootBones::count)
+      continue;
+    const auto distances = skeleton.distances(placeOf(foot.volume.grid, i));
+    EXPECT_LT(*std::min_element(distances.begin(), distances.end()), 1.6)
+        << "soft tissue, and no bone shares the voxel";
+  }
+  const auto whole = static_cast<double>(voxelsIn(foot, "bones").size());
+  double anatomical = 0.0;
+  for (const std::string& id : boneIds())
+    anatomical += static_cast<double>(voxelsIn(foot, id).size());
+  EXPECT_GT(whole / anatomical, 0.6);
+  EXPECT_LT(whole / anatomical, 1.1);
+}
+
+TEST(PhantomFoot, TissuesHaveTheirHounsfieldUnits) {
+  const Phantom& foot = smallFoot();
+  EXPECT_NEAR(medianOf(foot, "fat"), -105.0, 15.0);
+  EXPECT_NEAR(medianOf(foot, "muscles"), 52.0, 15.0);
+  EXPECT_NEAR(medianOf(foot, "achilles_tendon"), 100.0, 20.0);
+  EXPECT_GT(medianOf(foot, "talus"), 300.0);
+  const FootLayers layers;
+  FootSite shaft = layers.site({-14.0, 168.0, 39.0});
+  EXPECT_LT(layers.signal(FootTissue::marrow, shaft), 0.0) << "a metatarsal's canal holds fat";
+  EXPECT_GT(layers.signal(FootTissue::cortex, shaft), 1200.0);
+  EXPECT_NEAR(voxelsOf(foot).front(), -1000.0, 60.0) << "air";
+}
+
+TEST(PhantomFoot, SkinCoversEveryBone) {
+  const FootLayers layers;
+  double thinnest = infinity;
+  for (double x = -54; x <= 52; x += 2.0)
+    for (double y = 0; y <= 268; y += 2.0)
+      for (double z = 2; z <= 130; z += 2.0) {
+        const FootSite s = layers.site({x, y, z});
+        if (s.bones[s.nearest] < 0.0)
+          thinnest = std::min(thinnest, -s.surface);
+      }
+  EXPECT_GT(thinnest, 2.0);
+}
+
+TEST(PhantomFoot, KeepsItsPlaceAtEverySizeAndIsTheSameOnOneThread) {
+  const FootOptions options{{48, 24, 28}};
+  const Phantom many = makeFootPhantom(options);
+  const Grid& grid = many.volume.grid;
+  EXPECT_TRUE(grid.spacing().cwiseProduct(grid.size.cast<double>()).isApprox(Vec3(280, 112, 140)));
+  EXPECT_TRUE(grid.worldCenter().isApprox(smallFoot().volume.grid.worldCenter()));
+  EXPECT_GT(grid.indexToWorld.linear().determinant(), 0.0) << "right-handed";
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Phantom single = makeFootPhantom(options);
+  EXPECT_EQ(voxelsOf(many), voxelsOf(single));
+  EXPECT_EQ(many.labels.layers, single.labels.layers);
+  EXPECT_THROW(makeFootPhantom({{48, 15, 28}}), Error);
+}
+
+TEST(PhantomFoot, BothLayersComeBackFromItsSegmentation) {
+  const TemporaryFolder folder;
+  const Phantom foot = makeFootPhantom({{48, 24, 28}});
+  writePhantom(foot, folder.path(), "foot");
+  const Segmentation segmentation = readSegmentation(folder / "foot.seg.nrrd");
+  ASSERT_EQ(segmentation.segments().size(), foot.segments.size());
+  for (const char* id : {"calcaneus", "skin", "bones"})
+    EXPECT_EQ(segmentation.mask({id}, foot.volume.grid).count,
+              static_cast<std::int64_t>(voxelsIn(foot, id).size()))
+        << id;
+}
