@@ -55,33 +55,16 @@ Error wrongValue(const Flag& flag) {
                     " " + flag.value);
 }
 
-/// What CLI11 says of a flag's value, in our words; its messages start with the flag.
+/// What CLI11 says of a flag's value, in our words; its messages start with the flag, some of them
+/// without its dashes.
 Error valueError(const CommandSyntax& syntax, const CLI::Error& error) {
   const std::string message = error.what();
   const std::size_t dashes = message.find("--");
-  if (dashes != std::string::npos) {
-    const std::size_t end = message.find_first_of(": ,", dashes);
-    if (const Flag* flag =
-            find(syntax, std::string_view(message).substr(dashes + 2, end - dashes - 2)))
-      return wrongValue(*flag);
-  }
+  const std::size_t begin = dashes == std::string::npos ? 0 : dashes + 2;
+  const std::size_t end = message.find_first_of(": ,", begin);
+  if (const Flag* flag = find(syntax, std::string_view(message).substr(begin, end - begin)))
+    return wrongValue(*flag);
   return usageError(message.substr(0, message.find('\n')) + seeHelp(syntax));
-}
-
-/// The text in lines of at most `width` characters.
-std::string wrapped(std::string_view text, std::size_t width) {
-  std::string lines;
-  std::size_t used = 0;
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(word.size() + 1, text.size()));
-    const bool fits = used + 1 + word.size() <= width;
-    if (!lines.empty())
-      lines += fits ? ' ' : '\n';
-    lines += word;
-    used = (fits ? used + 1 : 0) + word.size();
-  }
-  return lines;
 }
 
 /// A command's syntax, declared to CLI11, and where it puts what it finds.
@@ -201,6 +184,21 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 }
 
 } // namespace
+
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string lines;
+  std::size_t used = 0;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    const bool fits = used + 1 + word.size() <= width;
+    if (!lines.empty())
+      lines += fits ? ' ' : '\n';
+    lines += word;
+    used = (fits ? used + 1 : 0) + word.size();
+  }
+  return lines;
+}
 
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
   constexpr std::size_t longest = 32; // no name is longer, and a path may be

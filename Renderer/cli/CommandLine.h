@@ -13,6 +13,10 @@ namespace fenestra {
 std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
                                            int first);
 
+/// The words of a text in lines of at most `width` characters; longer words have lines of their
+/// own.
+std::string wrapped(std::string_view text, std::size_t width);
+
 /// The candidate that `word` is a likely misspelling of, or an abbreviation; empty where none is.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
 

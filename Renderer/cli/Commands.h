@@ -5,6 +5,7 @@
 namespace fenestra {
 
 int renderCommand(int argc, char** argv, int first);
+int inspectCommand(int argc, char** argv, int first);
 int compareCommand(int argc, char** argv, int first);
 int phantomCommand(int argc, char** argv, int first);
 

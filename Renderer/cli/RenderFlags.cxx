@@ -254,8 +254,8 @@ void readOutputs(const FlagValues& flags, RenderOptions& options) {
 const CommandSyntax renderSyntax = {
     "render",
     "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
-    "a clipping surface. \"render\" may be left out. Other subcommands: fenestra compare, fenestra "
-    "phantom.",
+    "a clipping surface. \"render\" may be left out. Other subcommands: fenestra inspect, fenestra "
+    "compare, fenestra phantom.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
     flags,

@@ -20,6 +20,7 @@ struct NamedCommand {
 
 constexpr NamedCommand commands[] = {
     {"render", fenestra::renderCommand},
+    {"inspect", fenestra::inspectCommand},
     {"compare", fenestra::compareCommand},
     {"phantom", fenestra::phantomCommand},
 };

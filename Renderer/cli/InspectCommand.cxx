@@ -1,0 +1,55 @@
+#include "cli/Commands.h"
+
+#include "cli/CommandLine.h"
+#include "cli/InspectReport.h"
+#include "cli/Stop.h"
+#include "core/Error.h"
+#include "io/mrml/SceneFiles.h"
+
+#include <iostream>
+
+namespace fenestra {
+namespace {
+
+constexpr const char* group = "Inspect";
+constexpr Flag flags[] = {
+    {"volume", "NAME", group, "As for render: which volume of a scene, or series of a folder"},
+    {"segmentation", "FILE|NAME", group, "As for render: a file, or a node of the scene"},
+    {"json", "", group,
+     "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
+     "views, cameras, transforms, series, others; render (what it would use), refused (why it "
+     "would not start, else null), warnings, ignored; mm, RAS, ml"},
+};
+
+const CommandSyntax syntax = {
+    "inspect",
+    "Lists what an input holds, what a render of it would use, and what it would ignore and why.",
+    {{"INPUT", "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
+               "segmentation (.seg.nrrd) or DICOM folder"}},
+    flags,
+};
+
+} // namespace
+
+int inspectCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, first);
+  if (!values)
+    return 0;
+  const StopOnSignal stopOnSignal;
+  const std::string input = *values->text("INPUT");
+  SceneRequest request;
+  request.input = input;
+  request.volume = values->text("volume");
+  request.segmentation = values->text("segmentation");
+  if (request.volume && !isSceneFile(input) && !std::filesystem::is_directory(input))
+    throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
+  const Inspection inspection = inspectInput(request);
+  std::cout << (values->has("json") ? inspectionJson(inspection, input)
+                                    : inspectionText(inspection, input))
+            << std::flush;
+  if (!std::cout)
+    throw outputError("standard output", "cannot be written; is there room?");
+  return 0;
+}
+
+} // namespace fenestra
