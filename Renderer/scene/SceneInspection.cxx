@@ -94,7 +94,7 @@ private:
       use.crop = cropUse(*m_plan->roi);
     if (m_plan->camera && !use.camera)
       if (const auto pose = readCamera(*m_plan->camera, m_unused))
-        use.camera.emplace("", "", *pose);
+        use.camera = CameraUse{"", "", *pose};
     if (m_plan->camera && use.camera) {
       use.camera->id = m_plan->camera->id;
       use.camera->name = m_plan->camera->name;
@@ -115,7 +115,7 @@ private:
       use.volume = volumeUse((*scene)->volume());
       m_grid = (*scene)->volume().grid;
       use.look = lookUse((*scene)->volume(), (*scene)->look());
-      use.camera.emplace("", "", (*scene)->camera().pose());
+      use.camera = CameraUse{"", "", (*scene)->camera().pose()};
       m_result.warnings = (*scene)->warnings();
       return;
     }
