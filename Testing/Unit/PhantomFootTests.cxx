@@ -18,7 +18,7 @@ using namespace fenestra;
 namespace {
 
 const Phantom& smallFoot() {
-  static const Phantom foot = makeFootPhantom({{180, 72, 90}});
+  static const Phantom foot = makeFootPhantom({{140, 56, 70}});
   return foot;
 }
 

@@ -11,6 +11,7 @@
 #include <pugixml.hpp>
 #include <zip.h>
 
+#include <ctime>
 #include <map>
 #include <set>
 
@@ -330,6 +331,18 @@ TEST_F(PhantomSceneFiles, TheArchiveHoldsTheSceneAndItsDataAsSlicerLaysThemOut) 
     }
   }
   EXPECT_GT(same, 250u);
+}
+
+TEST_F(PhantomSceneFiles, TheArchiveBearsNoDateOfItsOwn) {
+  const ZipFile zip(folder / "knee.mrb");
+  ASSERT_TRUE(zip.archive);
+  for (const std::string& name : zip.names()) {
+    zip_stat_t stat;
+    ASSERT_EQ(zip_stat(zip.archive, name.c_str(), 0, &stat), 0);
+    const std::tm* date = std::localtime(&stat.mtime); // zip knows no time zone
+    EXPECT_EQ(date->tm_year + 1900, 1980) << name;
+    EXPECT_EQ(date->tm_yday, 0) << name;
+  }
 }
 
 TEST_F(PhantomSceneFiles, TheFilesAreTheSameOnEveryRun) {
