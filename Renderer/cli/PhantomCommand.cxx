@@ -88,8 +88,9 @@ int phantomCommand(int argc, char** argv, int first) {
   StopOnSignal stopOnSignal;
   const Phantom phantom = makePhantom(kind, *values);
   stopOnSignal.setInstead(stopped); // the files belong together
+  const std::vector<std::string> files = writePhantom(phantom, folder, kind);
   std::cout << folder << ":";
-  for (const std::string& file : writePhantom(phantom, folder, kind))
+  for (const std::string& file : files)
     std::cout << ' ' << file;
   std::cout << ", " << phantom.segments.size() << " segments" << std::endl;
   return stopped ? stoppedStatus : 0;
