@@ -149,6 +149,7 @@ Path writeBlocks(const TemporaryFolder& folder, const std::vector<std::string>& 
                      "version=\"1.0\"><vtkMultiBlockDataSet>\n";
   for (const std::string& file : files)
     text += "<DataSet index=\"0\" file=\"" + file + "\"></DataSet>\n";
+  std::filesystem::remove(folder / "s.seg.vtm"); // quicker than writing over it
   return folder.write("s.seg.vtm", text + "</vtkMultiBlockDataSet></VTKFile>\n");
 }
 

@@ -142,9 +142,11 @@ TEST(DicomSeries, appliesRescaleAndKeepsATiltedGantry) {
 
 TEST(DicomSeries, mixesSlopes) {
   const TemporaryFolder folder;
-  for (int i = 0; i < 3; ++i)
-    write(folder / (std::to_string(i) + ".dcm"),
-          {.position = Vec3(0, 0, i), .slope = std::vector<const char*>{"1", "0.5", "0.25"}[i]});
+  int i = 0;
+  for (const char* slope : {"1", "0.5", "0.25"}) {
+    write(folder / (std::to_string(i) + ".dcm"), {.position = Vec3(0, 0, i), .slope = slope});
+    ++i;
+  }
   const Volume volume = readOnly(folder.path());
   EXPECT_EQ(valueAt(volume, 4, 3, 0), 19.0);
   EXPECT_EQ(valueAt(volume, 4, 3, 1), 9.5);
