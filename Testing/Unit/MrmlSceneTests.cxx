@@ -197,14 +197,14 @@ const std::string roiNode = R"(<MarkupsROI id="r" storageNodeRef="s"/>
 
 std::string roiJson(const std::string& system, const std::string& more = "") {
   return R"({"markups": [{"type": "ROI", )" + system + R"("center": [10, 20, 30],
-    "orientation": [0, -1, 0, -1, 0, 0, 0, 0, 1], "size": [2, 4, 6])" +
+    "orientation": [0, -1, 0, 1, 0, 0, 0, 0, 1], "size": [2, 4, 6])" +
          more + "}]}";
 }
 
 TEST(MrmlScene, readsARegionOfInterestInEitherSystem) {
   // Object axes are the columns of the orientation; LPS negates its first two rows.
-  const Affine ras = affine({0, -2, 0, 10, -1, 0, 0, 20, 0, 0, 3, 30});
-  const Affine lps = affine({0, 2, 0, -10, 1, 0, 0, -20, 0, 0, 3, 30});
+  const Affine ras = affine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30});
+  const Affine lps = affine({0, 2, 0, -10, -1, 0, 0, -20, 0, 0, 3, 30});
   const auto read = [](const std::string& system) {
     return boxOf(roiNode, {{"my roi.mrk.json", roiJson(system)}});
   };
@@ -221,7 +221,7 @@ TEST(MrmlScene, placesARegionOfInterestByItsTransform) {
       <LinearTransform id="t" matrixTransformToParent=")" +
                                turned + "\"/>",
                            {{"roi.mrk.json", roiJson(R"("coordinateSystem": "RAS", )")}});
-  expectSame(box, turnedMap * affine({0, -2, 0, 10, -1, 0, 0, 20, 0, 0, 3, 30}));
+  expectSame(box, turnedMap * affine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30}));
 }
 
 TEST(MrmlScene, readsOlderRegionsOfInterest) {
