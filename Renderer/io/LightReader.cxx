@@ -4,6 +4,7 @@
 
 #include "io/ImageReader.h"
 #include "io/JsonNode.h"
+#include "io/ShownText.h"
 
 namespace fenestra {
 namespace {
@@ -27,12 +28,20 @@ Rgb readRadiance(const JsonNode& node) {
   return {v[0], v[1], v[2]};
 }
 
+/// One that a message of one line can name.
+std::string readFileName(const JsonNode& node) {
+  const std::string name = node.text();
+  if (name.find_first_of(std::string_view("\0\n\r", 3)) != std::string::npos)
+    throw node.error("\"" + shown(name) + "\" is no file name; give one without line breaks");
+  return name;
+}
+
 Light readEnvironment(const JsonNode& node, const std::filesystem::path& folder) {
   node.allowOnly({"type", "radiance", "file"});
   EnvironmentLight light;
   const auto file = node.find("file");
   if (file)
-    light.map = readEnvironmentMap(folder / file->text());
+    light.map = readEnvironmentMap(folder / readFileName(*file));
   if (const auto radiance = file ? node.find("radiance") : node.at("radiance"))
     light.radiance = readRadiance(*radiance);
   return light;

@@ -64,6 +64,7 @@ TEST(LightReader, namesThePlaceOfWhatIsWrong) {
   refuse(R"({"type": "rectangle", )" + area +
              R"("normal": [0, 0, 1], "size": [1, 1], "frame": "eye"})",
          "lights[1].frame");
+  refuse(R"({"type": "environment", "file": "a\nb.exr"})", "lights[1].file: \"a b.exr\"");
   expectRefused("test", "has no \"lights\"", [] { parseLights("{}", "test"); });
   expectRefused("test", "unknown key \"light\"",
                 [] { parseLights(R"({"lights": [], "light": 1})", "test"); });
