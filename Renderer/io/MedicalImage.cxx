@@ -210,7 +210,7 @@ MedicalImage readThroughItk(const std::filesystem::path& path, MedicalFormat for
 } // namespace
 
 MedicalImage readMedicalImage(const std::filesystem::path& path, Components allowed) {
-  requireFile(path, "name a volume file in it (of a DICOM series, export a .nrrd or .nii.gz)");
+  requireFile(path, "name a volume file in it");
   const auto format = medicalFormat(path);
   if (!format)
     throw inputError(path.string(), "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, "
