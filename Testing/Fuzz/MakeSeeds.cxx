@@ -1,7 +1,14 @@
 // usage: MakeSeeds FOLDER: writes the seeds that are not text, into FOLDER/<target>/.
 #include "Regression/SampleFiles.h"
+#include "SceneNeighbours.h"
 #include "TemporaryFolder.h"
 #include "io/ImageWriter.h"
+#include "io/ZipWriter.h"
+
+#include <itkAffineTransform.h>
+#include <itkHDF5TransformIO.h>
+#include <itkMatlabTransformIO.h>
+#include <itkTransformFileWriter.h>
 
 #include <array>
 #include <cstdint>
@@ -78,6 +85,37 @@ void makePictures(const fs::path& corpus) {
   }
 }
 
+void makeTransforms(const fs::path& corpus) {
+  const TemporaryFolder folder;
+  const auto transform = itk::AffineTransform<double, 3>::New();
+  transform->Translate(itk::Vector<double, 3>(3.0));
+  transform->Rotate3D(itk::Vector<double, 3>(1.0), 0.3);
+  const auto save = [&](const char* digit, const std::string& name,
+                        itk::TransformIOBaseTemplate<double>* io) {
+    const auto writer = itk::TransformFileWriterTemplate<double>::New();
+    writer->SetFileName((folder / name).string());
+    writer->SetTransformIO(io);
+    writer->SetInput(transform);
+    writer->Update();
+    fenestra::save(corpus / "Transform", name, digit + bytesOf(folder / name));
+  };
+  save("0", "affine.h5", itk::HDF5TransformIOTemplate<double>::New());
+  save("2", "affine.mat", itk::MatlabTransformIOTemplate<double>::New());
+}
+
+/// The scene of Corpus/Scene with its files. deflated.mrb is the same, packed by Info-ZIP.
+void makeArchive(const fs::path& corpus) {
+  std::string scene = bytesOf(corpus / "Scene/new.mrml");
+  const std::string attribute = "fileName=\"";
+  for (std::size_t at = 0; (at = scene.find(attribute, at)) != std::string::npos;)
+    scene.insert(at += attribute.size(), "Data/");
+  std::vector<ZipEntry> entries = {{"n/n.mrml", scene}};
+  for (const auto& [name, content] : fuzzing::sceneNeighbours())
+    entries.push_back({"n/Data/" + name, content});
+  fs::create_directories(corpus / "Archive");
+  writeZip(corpus / "Archive/stored.mrb", entries);
+}
+
 } // namespace
 } // namespace fenestra
 
@@ -92,6 +130,8 @@ int main(int argc, char** argv) {
     fenestra::testing::writeTraps(traps.path(), spacing);
     fenestra::makeVolumes(argv[1], traps.path());
     fenestra::makePictures(argv[1]);
+    fenestra::makeTransforms(argv[1]);
+    fenestra::makeArchive(argv[1]);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "MakeSeeds: %s\n", error.what());

@@ -1,0 +1,45 @@
+// Slicer's archives (.mrb).
+#include "SceneInputs.h"
+
+#include <zlib.h>
+
+#include <cstring>
+
+namespace {
+
+template <typename T>
+T get(const std::string& bytes, std::size_t at) {
+  T value{};
+  if (at + sizeof(T) <= bytes.size())
+    std::memcpy(&value, &bytes[at], sizeof(T));
+  return value;
+}
+
+void put(std::string& bytes, std::size_t at, std::uint32_t value) {
+  if (at + sizeof(value) <= bytes.size())
+    std::memcpy(&bytes[at], &value, sizeof(value));
+}
+
+/// Gives stored entries the checksums of what they hold, or no mutation of that would be read.
+std::string withChecksums(std::string zip) {
+  for (std::size_t at = 0; (at = zip.find("PK\1\2", at)) != std::string::npos; at += 4) {
+    const std::uint64_t local = get<std::uint32_t>(zip, at + 42);
+    const std::uint64_t size = get<std::uint32_t>(zip, at + 20);
+    const std::uint64_t data =
+        local + 30 + get<std::uint16_t>(zip, local + 26) + get<std::uint16_t>(zip, local + 28);
+    if (get<std::uint16_t>(zip, at + 10) != 0 || data + size > zip.size())
+      continue;
+    const auto sum = static_cast<std::uint32_t>(
+        crc32(0, reinterpret_cast<const Bytef*>(zip.data() + data), static_cast<uInt>(size)));
+    put(zip, local + 14, sum);
+    put(zip, at + 16, sum);
+  }
+  return zip;
+}
+
+} // namespace
+
+FENESTRA_FUZZ(input) {
+  using namespace fenestra;
+  fuzzing::loadScene(fuzzing::asFile(withChecksums(std::string(input)), "scene.mrb"));
+}

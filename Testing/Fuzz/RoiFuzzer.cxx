@@ -1,0 +1,19 @@
+// Regions of interest (.mrk.json).
+#include "Harness.h"
+
+#include "io/mrml/MrmlScene.h"
+
+FENESTRA_FUZZ(input) {
+  using namespace fenestra;
+  static const auto scenePath =
+      fuzzing::asFile("<MRML version=\"Slicer5\" userTags=\"\">"
+                      "<MarkupsROI id=\"roi\" name=\"R\" references=\"storage:file;\"></MarkupsROI>"
+                      "<MarkupsROIJsonStorage id=\"file\" name=\"S\" fileName=\"r.mrk.json\">"
+                      "</MarkupsROIJsonStorage></MRML>",
+                      "scene.mrml");
+  fuzzing::asFile(input, "r.mrk.json");
+  static MrmlScene scene(scenePath);
+  const CropBox box = readSceneRoi(scene, *scene.document.find("roi"));
+  if (!box.worldToBox.matrix().allFinite())
+    throw std::logic_error("a box that is none");
+}
