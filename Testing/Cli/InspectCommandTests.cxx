@@ -99,7 +99,7 @@ TEST_F(InspectCommand, DescribesVolume) {
 
 TEST_F(InspectCommand, DescribesSegments) {
   const Json said = inspect({"segments.seg.nrrd"});
-  EXPECT_EQ(said["kind"], "segmentation");
+  ASSERT_EQ(said["kind"], "segmentation");
   const Json& segments = said["segmentations"][0]["segments"];
   ASSERT_EQ(segments.size(), 2u);
   EXPECT_EQ(segments[0]["id"], "A");
@@ -120,7 +120,7 @@ TEST_F(InspectCommand, TellsLabelMapsFromScans) {
   std::fill(labels.begin() + 32, labels.begin() + 48, '\7');
   folder.write("labels.nrrd", NrrdText{"4 4 4", "uint8"}.with(labels));
   const Json said = inspect({"labels.nrrd"});
-  EXPECT_EQ(said["kind"], "segmentation");
+  ASSERT_EQ(said["kind"], "segmentation");
   ASSERT_EQ(said["segmentations"][0]["segments"].size(), 2u);
   EXPECT_EQ(said["segmentations"][0]["segments"][1]["name"], "Segment_7");
   EXPECT_EQ(said["segmentations"][0]["segments"][1]["voxels"], 16);
