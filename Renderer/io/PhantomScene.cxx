@@ -117,8 +117,28 @@ pugi::xml_node addStorage(pugi::xml_node scene, const char* tag, const char* id,
   return node;
 }
 
+/// A parallel camera's pose that frames the volume's box in a square, with a margin of a twentieth.
+struct Framing {
+  Vec3 backward, up;
+  double scale; ///< half the height, mm
+
+  explicit Framing(const Phantom& phantom)
+      : backward(phantom.towardViewer.normalized()), up(Vec3::UnitZ()), scale(0.0) {
+    const Vec3 right = Vec3::UnitZ().cross(backward).normalized();
+    up = backward.cross(right);
+    const Grid& grid = phantom.volume.grid;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 offset = grid.worldCorner(i) - grid.worldCenter();
+      scale =
+          std::max({scale, 1.05 * std::abs(offset.dot(up)), 1.05 * std::abs(offset.dot(right))});
+    }
+  }
+};
+
 /// View and camera belong together by their singleton tag, which is the layout's name for them.
-void addView(pugi::xml_node scene) {
+/// Slicer makes the camera parallel by the view's render mode, and then takes its scale from the
+/// view's field of view (vtkMRMLViewDisplayableManager::UpdateRenderMode).
+void addView(pugi::xml_node scene, const Framing& framing) {
   pugi::xml_node view = addNode(scene, "View", viewId, "View1", false);
   set(view, {{"singletonTag", "1"},
              {"attributes", "MappedInLayout:1"},
@@ -134,7 +154,7 @@ void addView(pugi::xml_node scene) {
              {"rulerType", "none"},
              {"rulerColor", "white"},
              {"AxisLabels", "L;R;P;A;I;S"},
-             {"fieldOfView", "200"},
+             {"fieldOfView", text(framing.scale)},
              {"letterSize", "0.05"},
              {"boxVisible", "true"},
              {"boxColor", "1 0 1"},
@@ -151,7 +171,7 @@ void addView(pugi::xml_node scene) {
              {"rockLength", "200"},
              {"rockCount", "0"},
              {"stereoType", "NoStereo"},
-             {"renderMode", "Orthographic"}, // Slicer makes the camera parallel by this
+             {"renderMode", "Orthographic"},
              {"useDepthPeeling", "1"},
              {"gpuMemorySize", "0"},
              {"autoReleaseGraphicsResources", "false"},
@@ -163,18 +183,8 @@ void addView(pugi::xml_node scene) {
              {"linkedControl", "0"}});
 }
 
-/// As a camera that frames the volume's box in a square, with a margin of a twentieth.
-void addCamera(pugi::xml_node scene, const Phantom& phantom) {
-  const Grid& grid = phantom.volume.grid;
-  const Vec3 backward = phantom.towardViewer.normalized();
-  const Vec3 right = Vec3::UnitZ().cross(backward).normalized();
-  const Vec3 up = backward.cross(right);
+void addCamera(pugi::xml_node scene, const Grid& grid, const Framing& framing) {
   const Vec3 center = grid.worldCenter();
-  double halfHeight = 0.0;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 offset = grid.worldCorner(i) - center;
-    halfHeight = std::max({halfHeight, std::abs(offset.dot(up)), std::abs(offset.dot(right))});
-  }
   const double distance = 4.0 * grid.boundingRadius();
   const auto rounded = [&](const Vec3& v) { // no 1e-17 where 0 is meant
     return Vec3(v.unaryExpr([&](double x) { return std::abs(x) < 1e-9 * distance ? 0.0 : x; }));
@@ -182,11 +192,11 @@ void addCamera(pugi::xml_node scene, const Phantom& phantom) {
   pugi::xml_node camera = addNode(scene, "Camera", cameraId, "Camera", false);
   set(camera, {{"singletonTag", "1"},
                {"userTags", ""},
-               {"position", text(rounded(center + distance * backward))},
+               {"position", text(rounded(center + distance * framing.backward))},
                {"focalPoint", text(rounded(center))},
-               {"viewUp", text(up)},
+               {"viewUp", text(framing.up)},
                {"parallelProjection", "true"},
-               {"parallelScale", text(1.05 * halfHeight)},
+               {"parallelScale", text(framing.scale)},
                {"viewAngle", "30"},
                {"appliedTransform", "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1"}});
 }
@@ -331,8 +341,9 @@ std::string phantomScene(const Phantom& phantom, const std::string& name, const 
   set(declaration, {{"version", "1.0"}, {"encoding", "UTF-8"}});
   pugi::xml_node scene = document.append_child("MRML");
   set(scene, {{"version", "Slicer 5.2.2 31383"}, {"userTags", ""}});
-  addView(scene);
-  addCamera(scene, phantom);
+  const Framing framing(phantom);
+  addView(scene, framing);
+  addCamera(scene, phantom.volume.grid, framing);
   addVolume(scene, phantom, name, files.volume);
   addSegmentation(scene, phantom, name, files.segmentation);
   addRendering(scene, phantom, name, files.property);

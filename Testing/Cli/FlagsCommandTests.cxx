@@ -43,7 +43,7 @@ TEST_F(FlagsCommand, RefusesFlagsOfTheContractThatDoNothingYet) {
   std::vector<Refusal> refusals;
   for (const char* flag :
        {"--hole", "--ghost", "--offset", "--checkpoint", "--resume", "--xml", "--preset",
-        "--volume", "--surface", "--echo", "--returnparameterfile", "--processinformationaddress"})
+        "--surface", "--echo", "--returnparameterfile", "--processinformationaddress"})
     refusals.push_back(refusal({flag, "1"}, std::string(flag) + ": no such flag"));
   refusals.push_back(
       refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "exact"},

@@ -248,6 +248,7 @@ TEST_F(PhantomSceneFiles, TheCameraBelongsToTheViewAndFramesTheVolume) {
   EXPECT_NEAR(up.norm(), 1.0, 1e-5);
   EXPECT_GT(up.z(), 0.8);
   const double scale = numbers(camera, "parallelScale").at(0);
+  EXPECT_EQ(numbers(view, "fieldOfView").at(0), scale); // what Slicer sets the camera to
   double reach = 0.0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 offset = grid.worldCorner(i) - target;
