@@ -1,0 +1,31 @@
+// usage: MakeBaselines [CASE...]: renders the baselines of these cases, or of all.
+#include "Cases.h"
+
+#include <cstdio>
+#include <exception>
+#include <set>
+
+namespace {
+
+/// Unlike any test's.
+constexpr std::uint64_t seed = 20001;
+/// A baseline has this many times the samples of its test: its noise adds 6 % to the test's own.
+constexpr std::uint64_t moreSamples = 8;
+
+} // namespace
+
+int main(int argc, char** argv) {
+  using namespace fenestra::testing;
+  try {
+    const std::set<std::string> wanted(argv + 1, argv + argc);
+    for (const RegressionCase& c : readCases())
+      if (c.baseline == c.name && (wanted.empty() || wanted.contains(c.name))) {
+        renderCase(c, seed, moreSamples * c.samples, dataFolder(), baselinePath(c));
+        std::printf("%s\n", c.name.c_str());
+      }
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "MakeBaselines: %s\n", error.what());
+    return 4;
+  }
+}

@@ -1,0 +1,133 @@
+// Every case of cases.txt against its baseline, and proof that the comparison finds what it is for.
+#include "Cases.h"
+#include "TemporaryFolder.h"
+#include "film/Compare.h"
+#include "io/ImageReader.h"
+#include "io/ImageWriter.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <iostream>
+
+namespace fenestra::testing {
+namespace {
+
+/// FENESTRA_SEED in the environment tries another one: the baselines must not depend on it.
+std::uint64_t seed() {
+  const char* text = std::getenv("FENESTRA_SEED");
+  return text ? std::stoull(text) : 1;
+}
+
+std::string shown(const Agreement& a) {
+  std::ostringstream text;
+  text << "probability " << a.probability() << " (pixels " << a.pixels << ", tiles " << a.tiles
+       << ", mean " << a.mean << ")";
+  return text.str();
+}
+
+std::filesystem::path resultFolder(const RegressionCase& c) {
+  return std::filesystem::path(FENESTRA_REGRESSION_RESULTS) / c.name;
+}
+
+/// Writes what a person needs to see what is wrong, and says where.
+std::string errorImages(const Image& image, const Image& baseline,
+                        const std::filesystem::path& folder) {
+  const Image z = differenceImage(image, baseline);
+  writeImage(image, {}, folder / "render.png");
+  writeImage(baseline, {}, folder / "baseline.png");
+  writeImage(z, {}, folder / "z.png", "Standard");
+  writeImage(z, {}, folder / "z.exr");
+  return "see render.png, baseline.png, z.png and z.exr in " + folder.string();
+}
+
+class Regression : public ::testing::TestWithParam<RegressionCase> {};
+
+TEST_P(Regression, AgreesWithItsBaseline) {
+  const RegressionCase& c = GetParam();
+  const std::filesystem::path folder = resultFolder(c);
+  const Image image = renderCase(c, seed(), c.samples, dataFolder(), folder / "render.exr");
+  const Image baseline = readImage(baselinePath(c));
+  const Agreement result = agreement(image, baseline);
+  std::cout << c.name << ": " << shown(result) << std::endl;
+  EXPECT_TRUE(result.holds()) << shown(result) << "; " << errorImages(image, baseline, folder);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Regression, ::testing::ValuesIn(readCases()),
+                         [](const auto& info) { return info.param.name; });
+
+// ---- planted faults
+// -----------------------------------------------------------------------------
+
+/// Replaces what stands once in a file.
+void replaceIn(const std::filesystem::path& path, const std::string& from, const std::string& to) {
+  std::string bytes = bytesOf(path);
+  const std::size_t at = bytes.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  bytes.replace(at, from.size(), to);
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+struct Fault {
+  std::string name;
+  std::string inCase;
+  /// Spoils a copy of Testing/Data, or the arguments.
+  std::function<void(const std::filesystem::path& data, RegressionCase& c)> plant;
+};
+
+/// The voxels of plain.nrrd and fog.nrrd are 1.6 mm wide, and lie in x and y from 19.2 mm to
+/// -19.2 mm in LPS.
+const std::vector<Fault> faults = {
+    {"HalfVoxelShift", "plain",
+     [](const auto& data, RegressionCase&) {
+       replaceIn(data / "traps/plain.nrrd", "space origin: (19.200000000000003,",
+                 "space origin: (18.400000000000002,");
+     }},
+    {"FlippedAxis", "plain",
+     [](const auto& data, RegressionCase&) {
+       replaceIn(data / "traps/plain.nrrd", "space directions: (-1.6000000000000001,",
+                 "space directions: (1.6000000000000001,");
+       replaceIn(data / "traps/plain.nrrd", "space origin: (19.200000000000003,",
+                 "space origin: (-19.200000000000003,");
+     }},
+    {"SwappedChannels", "plain",
+     [](const auto& data, RegressionCase&) {
+       replaceIn(data / "traps/thin.json", "[140, 0.9, 0.2, 0.1]", "[140, 0.2, 0.9, 0.1]");
+     }},
+    {"ExtinctionPlus2Percent", "fog",
+     [](const auto&, RegressionCase& c) {
+       c.arguments.insert(c.arguments.end(), {"--density", "1.02"});
+     }},
+    {"ExtinctionMinus2Percent", "fog",
+     [](const auto&, RegressionCase& c) {
+       c.arguments.insert(c.arguments.end(), {"--density", "0.98"});
+     }},
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) {
+  *out << "in " << fault.inCase;
+}
+
+class PlantedFault : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(PlantedFault, IsFound) {
+  const std::vector<RegressionCase> cases = readCases();
+  const auto it = std::find_if(cases.begin(), cases.end(),
+                               [](const RegressionCase& c) { return c.name == GetParam().inCase; });
+  ASSERT_NE(it, cases.end());
+  RegressionCase spoilt = *it;
+  const TemporaryFolder data;
+  std::filesystem::copy(dataFolder() / "traps", data / "traps");
+  GetParam().plant(data.path(), spoilt);
+  const Image image =
+      renderCase(spoilt, seed(), spoilt.samples, data.path(), data / "results/render.exr");
+  const Agreement result = agreement(image, readImage(baselinePath(spoilt)));
+  std::cout << GetParam().name << ": " << shown(result) << std::endl;
+  EXPECT_FALSE(result.holds()) << shown(result);
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, PlantedFault, ::testing::ValuesIn(faults),
+                         [](const auto& info) { return info.param.name; });
+
+} // namespace
+} // namespace fenestra::testing
