@@ -6,8 +6,10 @@
 #include "io/ZipWriter.h"
 
 #include <itkAffineTransform.h>
+#include <itkGDCMImageIO.h>
 #include <itkHDF5TransformIO.h>
 #include <itkMatlabTransformIO.h>
+#include <itkMetaDataObject.h>
 #include <itkTransformFileWriter.h>
 
 #include <array>
@@ -103,6 +105,31 @@ void makeTransforms(const fs::path& corpus) {
   save("2", "affine.mat", itk::MatlabTransformIOTemplate<double>::New());
 }
 
+void makeSlices(const fs::path& corpus) {
+  fs::create_directories(corpus / "Dicom");
+  for (const bool compress : {false, true}) {
+    const auto io = itk::GDCMImageIO::New();
+    io->SetFileName((corpus / "Dicom" / (compress ? "jpeg2000.dcm" : "native.dcm")).string());
+    io->KeepOriginalUIDOn();
+    io->SetNumberOfDimensions(3);
+    itk::ImageIORegion region(3);
+    for (const unsigned axis : {0U, 1U, 2U}) {
+      io->SetDimensions(axis, axis < 2 ? 32 : 1);
+      region.SetSize(axis, axis < 2 ? 32 : 1);
+    }
+    io->SetIORegion(region);
+    io->SetPixelType(itk::IOPixelEnum::SCALAR);
+    io->SetComponentType(itk::IOComponentEnum::SHORT);
+    io->SetUseCompression(compress);
+    for (const auto& [tag, value] : {std::pair{"0008|0060", "CT"},
+                                     {"0020|000e", "1.2.3"},
+                                     {"0028|1052", "-1024"},
+                                     {"0028|1053", "1"}})
+      itk::EncapsulateMetaData<std::string>(io->GetMetaDataDictionary(), tag, value);
+    io->Write(std::array<std::int16_t, 32 * 32>{1, 2, 3}.data());
+  }
+}
+
 /// The scene of Corpus/Scene with its files. deflated.mrb is the same, packed by Info-ZIP.
 void makeArchive(const fs::path& corpus) {
   std::string scene = bytesOf(corpus / "Scene/new.mrml");
@@ -131,6 +158,7 @@ int main(int argc, char** argv) {
     fenestra::makeVolumes(argv[1], traps.path());
     fenestra::makePictures(argv[1]);
     fenestra::makeTransforms(argv[1]);
+    fenestra::makeSlices(argv[1]);
     fenestra::makeArchive(argv[1]);
     return 0;
   } catch (const std::exception& error) {

@@ -1,0 +1,18 @@
+// Closed-surface segmentations: the first byte says whether the input is the .vtm or the .vtp that
+// a whole .vtm names.
+#include "Harness.h"
+
+#include "io/SegmentationReader.h"
+
+FENESTRA_FUZZ(input) {
+  using namespace fenestra;
+  static const auto whole =
+      fuzzing::asFile("<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
+                      "<DataSet index=\"0\" file=\"s.vtp\"/></vtkMultiBlockDataSet></VTKFile>",
+                      "whole.vtm");
+  const std::string name = fuzzing::chooseName(input, std::array{"s.vtp", "s.vtm"});
+  const auto file = fuzzing::asFile(input, name);
+  const Grid reference(Size3(16, 16, 16), Affine::Identity());
+  const Segmentation read = readSegmentation(name == "s.vtm" ? file : whole, &reference);
+  read.statistics();
+}
