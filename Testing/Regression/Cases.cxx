@@ -2,7 +2,7 @@
 
 #include "Cli/Process.h"
 #include "film/Compare.h"
-#include "io/ImageReader.h"
+#include "io/pictures/ImageReader.h"
 
 #include <algorithm>
 #include <cmath>

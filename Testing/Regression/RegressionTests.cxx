@@ -2,8 +2,8 @@
 #include "Cases.h"
 #include "TemporaryFolder.h"
 #include "film/Compare.h"
-#include "io/ImageReader.h"
-#include "io/ImageWriter.h"
+#include "io/pictures/ImageReader.h"
+#include "io/pictures/ImageWriter.h"
 
 #include <gtest/gtest.h>
 

@@ -16,6 +16,7 @@ if [ $# -eq 0 ]; then
   "$binaries/MakeSamples" "$data/traps"
   "$binaries/fenestra" phantom knee --size 32x36x16 --output "$data/knee"
   "$binaries/fenestra" phantom cube --size 24 --output "$data/cube"
+  "$binaries/fenestra" phantom foot --size 48x24x28 --output "$data/foot"
 fi
 say "Baselines"
 "$binaries/MakeBaselines" "$@"
