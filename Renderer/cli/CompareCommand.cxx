@@ -5,8 +5,8 @@
 #include "cli/Stop.h"
 #include "core/Error.h"
 #include "film/Compare.h"
-#include "io/ImageReader.h"
-#include "io/ImageWriter.h"
+#include "io/pictures/ImageReader.h"
+#include "io/pictures/ImageWriter.h"
 
 #include <cstdio>
 

@@ -3,7 +3,7 @@
 #include "cli/CommandLine.h"
 #include "cli/Stop.h"
 #include "core/Error.h"
-#include "io/PhantomWriter.h"
+#include "io/phantom/PhantomWriter.h"
 #include "phantom/Cube.h"
 #include "phantom/Foot.h"
 #include "phantom/Knee.h"

@@ -9,7 +9,7 @@
 #include "cli/Version.h"
 #include "core/Error.h"
 #include "io/AtomicFile.h"
-#include "io/ImageWriter.h"
+#include "io/pictures/ImageWriter.h"
 #include "scene/Scene.h"
 
 #include <tbb/global_control.h>

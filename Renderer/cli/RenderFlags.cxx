@@ -1,8 +1,8 @@
 #include "cli/RenderFlags.h"
 
 #include "core/Error.h"
-#include "io/ImageFormat.h"
 #include "io/mrml/SceneFiles.h"
+#include "io/pictures/ImageFormat.h"
 
 #include <algorithm>
 

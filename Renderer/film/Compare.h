@@ -45,8 +45,8 @@ Comparison compareImages(const Image& a, const Image& b);
 Image differenceImage(const Image& a, const Image& b);
 
 /// Means over square tiles of `size` pixels (fewer at the right and lower border, so one tile of a
-/// great size is the whole picture): R, G, B, their standard errors, and the sum of samples.N. Needs
-/// error.R, error.G, error.B and samples.N, and throws Error (input) where one is missing.
+/// great size is the whole picture): R, G, B, their standard errors, and the sum of samples.N.
+/// Needs error.R, error.G, error.B and samples.N, and throws Error (input) where one is missing.
 Image tileMeans(const Image& image, int size);
 
 /// How probable a difference as large as the largest of any R, G or B is between two renders of one

@@ -1,6 +1,6 @@
 #include "scene/Inspection.h"
 
-#include "io/DicomSeries.h"
+#include "io/medical/DicomSeries.h"
 #include "io/mrml/SceneFiles.h"
 #include "scene/Defaults.h"
 #include "scene/InspectionParts.h"

@@ -2,7 +2,7 @@
 // What the inspections of scenes and of plain files share. For scene's own sources.
 
 #include "core/Error.h"
-#include "io/SegmentationReader.h"
+#include "io/medical/SegmentationReader.h"
 #include "scene/Inspection.h"
 #include "scene/Scene.h"
 

@@ -3,8 +3,8 @@
 #include "core/Error.h"
 #include "core/Stopwatch.h"
 #include "io/EmbeddedResources.h"
-#include "io/LightReader.h"
-#include "io/TransferReader.h"
+#include "io/looks/LightReader.h"
+#include "io/looks/TransferReader.h"
 #include "scene/Defaults.h"
 
 #include <sstream>

@@ -1,9 +1,9 @@
 #include "scene/SceneInput.h"
 
 #include "core/Error.h"
-#include "io/DicomSeries.h"
-#include "io/SegmentationReader.h"
-#include "io/VolumeReader.h"
+#include "io/medical/DicomSeries.h"
+#include "io/medical/SegmentationReader.h"
+#include "io/medical/VolumeReader.h"
 #include "io/mrml/ScenePlan.h"
 #include "medium/VolumeProperty.h"
 

@@ -1,7 +1,7 @@
 // Ctrl-C and SIGTERM: exit status 5, at once; finished passes are kept, files are whole.
 
 #include "CommandTesting.h"
-#include "io/ImageReader.h"
+#include "io/pictures/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // DICOM: the input is one slice of two; the other is whole.
 #include "Harness.h"
 
-#include "io/DicomSeries.h"
+#include "io/medical/DicomSeries.h"
 
 FENESTRA_FUZZ(input) {
   using namespace fenestra;

@@ -1,7 +1,7 @@
 // Lights.
 #include "Harness.h"
 
-#include "io/LightReader.h"
+#include "io/looks/LightReader.h"
 
 FENESTRA_FUZZ(input) {
   fenestra::parseLights(input, "lights.json");

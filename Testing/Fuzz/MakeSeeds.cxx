@@ -2,8 +2,8 @@
 #include "Regression/SampleFiles.h"
 #include "SceneNeighbours.h"
 #include "TemporaryFolder.h"
-#include "io/ImageWriter.h"
 #include "io/ZipWriter.h"
+#include "io/pictures/ImageWriter.h"
 
 #include <itkAffineTransform.h>
 #include <itkGDCMImageIO.h>

@@ -1,7 +1,7 @@
 // Pictures that are compared or shine as environments; the first byte chooses the format.
 #include "Harness.h"
 
-#include "io/ImageReader.h"
+#include "io/pictures/ImageReader.h"
 
 FENESTRA_FUZZ(input) {
   using namespace fenestra;

@@ -1,7 +1,7 @@
 // Segmentations: their metadata, and the mask of the first segments.
 #include "Harness.h"
 
-#include "io/SegmentationReader.h"
+#include "io/medical/SegmentationReader.h"
 
 FENESTRA_FUZZ(input) {
   using namespace fenestra;

@@ -2,7 +2,7 @@
 // a whole .vtm names.
 #include "Harness.h"
 
-#include "io/SegmentationReader.h"
+#include "io/medical/SegmentationReader.h"
 
 FENESTRA_FUZZ(input) {
   using namespace fenestra;

@@ -1,7 +1,7 @@
 // Transfer functions of the kind that FENESTRA_FUZZ_FILE ends like.
 #include "Harness.h"
 
-#include "io/TransferReader.h"
+#include "io/looks/TransferReader.h"
 
 FENESTRA_FUZZ(input) {
   using namespace fenestra;

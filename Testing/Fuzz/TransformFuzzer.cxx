@@ -1,7 +1,7 @@
 // Linear transform files; the first byte chooses the format.
 #include "Harness.h"
 
-#include "io/TransformFile.h"
+#include "io/transforms/TransformFile.h"
 
 FENESTRA_FUZZ(input) {
   using namespace fenestra;

@@ -2,7 +2,7 @@
 // `samples.raw`.
 #include "Harness.h"
 
-#include "io/VolumeReader.h"
+#include "io/medical/VolumeReader.h"
 
 FENESTRA_FUZZ(input) {
   using namespace fenestra;

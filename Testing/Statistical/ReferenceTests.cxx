@@ -6,8 +6,8 @@
 #include "cli/CommandLine.h"
 #include "cli/RenderFlags.h"
 #include "film/Compare.h"
-#include "io/ImageReader.h"
-#include "io/ImageWriter.h"
+#include "io/pictures/ImageReader.h"
+#include "io/pictures/ImageWriter.h"
 #include "scene/Scene.h"
 
 #include <gtest/gtest.h>

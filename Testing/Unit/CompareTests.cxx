@@ -4,7 +4,7 @@
 #include "core/Random.h"
 #include "film/Compare.h"
 #include "film/StudentT.h"
-#include "io/ImageReader.h"
+#include "io/pictures/ImageReader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // DICOM series that GDCM writes here, a real one, and files that are not what they say.
 
-#include "io/DicomSeries.h"
+#include "io/medical/DicomSeries.h"
 
 #include "MedicalFiles.h"
-#include "io/Quiet.h"
-#include "io/VolumeReader.h"
+#include "io/medical/Quiet.h"
+#include "io/medical/VolumeReader.h"
 
 #include <itkGDCMImageIO.h>
 

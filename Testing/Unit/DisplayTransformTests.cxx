@@ -1,7 +1,7 @@
 // The display views: the tone curve's properties, and alpha.
 
 #include "core/Error.h"
-#include "io/DisplayTransform.h"
+#include "io/pictures/DisplayTransform.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "core/Error.h"
 #include "io/AtomicFile.h"
 #include "io/EmbeddedResources.h"
-#include "io/ImageReader.h"
-#include "io/ImageWriter.h"
+#include "io/pictures/ImageReader.h"
+#include "io/pictures/ImageWriter.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

@@ -1,8 +1,8 @@
 // Lights from JSON, environment maps from EXR, and what is refused.
 
 #include "io/EmbeddedResources.h"
-#include "io/ImageWriter.h"
-#include "io/LightReader.h"
+#include "io/looks/LightReader.h"
+#include "io/pictures/ImageWriter.h"
 
 #include "MedicalFiles.h"
 

@@ -1,6 +1,6 @@
 #include "core/Error.h"
-#include "io/PhantomWriter.h"
-#include "io/SegmentationReader.h"
+#include "io/medical/SegmentationReader.h"
+#include "io/phantom/PhantomWriter.h"
 #include "phantom/Foot.h"
 #include "phantom/FootBones.h"
 #include "phantom/FootLayers.h"

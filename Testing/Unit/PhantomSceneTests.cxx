@@ -1,5 +1,5 @@
-#include "io/PhantomScene.h"
-#include "io/PhantomWriter.h"
+#include "io/phantom/PhantomScene.h"
+#include "io/phantom/PhantomWriter.h"
 #include "phantom/Cube.h"
 #include "phantom/Foot.h"
 #include "phantom/Knee.h"

@@ -1,5 +1,5 @@
 #include "core/Error.h"
-#include "io/PhantomWriter.h"
+#include "io/phantom/PhantomWriter.h"
 #include "phantom/Knee.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Labelmaps and Slicer segmentations, and the masks that become of their segments.
 
-#include "io/SegmentationReader.h"
-#include "io/VolumeReader.h"
+#include "io/medical/SegmentationReader.h"
+#include "io/medical/VolumeReader.h"
 
 #include "MedicalFiles.h"
 

@@ -1,6 +1,6 @@
 // Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and files that are neither.
 
-#include "io/TransferReader.h"
+#include "io/looks/TransferReader.h"
 #include "medium/VolumeProperty.h"
 
 #include "MedicalFiles.h"

@@ -1,7 +1,7 @@
 // Every linear transform that ITK writes, against what ITK itself does with a point; and files that
 // are not what they say.
 
-#include "io/TransformFile.h"
+#include "io/transforms/TransformFile.h"
 
 #include "MedicalFiles.h"
 #include "io/mrml/SceneArchive.h"

@@ -2,10 +2,10 @@
 find_package(ITK REQUIRED COMPONENTS
   ITKHDF5 ITKIOTransformHDF5 ITKIOTransformInsightLegacy ITKIOTransformMatlab)
 fenestra_test(TransformFileTests TransformFileTests.cxx
-  LIBRARIES fenestra_io_read fenestra_io_mrml fenestra_itk ${ITK_LIBRARIES} LABELS unit)
+  LIBRARIES fenestra_io_transforms fenestra_io_mrml fenestra_itk ${ITK_LIBRARIES} LABELS unit)
 target_include_directories(TransformFileTests SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
 find_package(ITK REQUIRED COMPONENTS ITKIOGDCM)
 fenestra_test(DicomSeriesTests DicomSeriesTests.cxx
-  LIBRARIES fenestra_io_read fenestra_itk ${ITK_LIBRARIES} LABELS unit)
+  LIBRARIES fenestra_io_medical fenestra_itk ${ITK_LIBRARIES} LABELS unit)
 fenestra_test(ClosedSurfaceTests ClosedSurfaceTests.cxx
-  LIBRARIES fenestra_io_read fenestra_itk ZLIB::ZLIB LABELS unit)
+  LIBRARIES fenestra_io_medical fenestra_itk ZLIB::ZLIB LABELS unit)

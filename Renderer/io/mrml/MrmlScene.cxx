@@ -1,9 +1,9 @@
 #include "io/mrml/MrmlScene.h"
 
-#include "io/DicomSeries.h"
-#include "io/MedicalHeader.h"
-#include "io/TransferReader.h"
-#include "io/VolumeReader.h"
+#include "io/looks/TransferReader.h"
+#include "io/medical/DicomSeries.h"
+#include "io/medical/MedicalHeader.h"
+#include "io/medical/VolumeReader.h"
 #include "medium/VolumeProperty.h"
 
 #include <sstream>

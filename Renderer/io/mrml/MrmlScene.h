@@ -4,7 +4,7 @@
 // node where it cannot be followed rightly.
 
 #include "camera/Camera.h"
-#include "io/SegmentationReader.h"
+#include "io/medical/SegmentationReader.h"
 #include "io/mrml/MrmlDocument.h"
 #include "io/mrml/SceneFiles.h"
 #include "medium/TransferFunction.h"

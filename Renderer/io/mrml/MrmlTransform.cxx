@@ -1,7 +1,7 @@
 // Transforms above nodes, and what is placed by them: cameras.
 
-#include "io/TransformFile.h"
 #include "io/mrml/MrmlScene.h"
+#include "io/transforms/TransformFile.h"
 
 namespace fenestra {
 namespace {

@@ -1,0 +1,335 @@
+#include "io/medical/MedicalHeader.h"
+
+#include "core/Error.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <string_view>
+
+namespace fenestra {
+namespace {
+
+constexpr std::size_t longestHeader = 16 << 20;
+/// Deflate packs at most 1032 bytes into one.
+constexpr std::uint64_t greatestRatio = 1100;
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos)
+    return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+std::vector<std::string_view> words(std::string_view text) {
+  std::vector<std::string_view> found;
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
+    found.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return found;
+}
+
+std::optional<std::int64_t> wholeNumber(std::string_view text) {
+  text = trimmed(text);
+  std::int64_t value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || end != text.data() + text.size())
+    return std::nullopt;
+  return value;
+}
+
+Error damaged(const std::filesystem::path& path, const std::string& format) {
+  return inputError(path.string(),
+                    "is not a " + format + " file, or its header is damaged; write it again");
+}
+
+/// The text header at the front of a file, line by line; it may be followed by binary samples.
+class HeaderLines {
+public:
+  explicit HeaderLines(const std::filesystem::path& path) {
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    m_text.resize(static_cast<std::size_t>(std::min<std::uintmax_t>(longestHeader, size)));
+    std::ifstream file(path, std::ios::binary);
+    file.read(m_text.data(), static_cast<std::streamsize>(m_text.size()));
+    m_text.resize(static_cast<std::size_t>(file.gcount()));
+  }
+
+  /// The next line without its end; nothing where there is none that ends within the limit.
+  std::optional<std::string_view> next() {
+    if (m_position >= m_text.size())
+      return std::nullopt;
+    const std::size_t end = m_text.find('\n', m_position);
+    if (end == std::string::npos && m_text.size() == longestHeader)
+      return std::nullopt;
+    std::string_view line(m_text);
+    line = line.substr(m_position, end == std::string::npos ? end : end - m_position);
+    m_position += line.size() + 1;
+    if (line.ends_with('\r'))
+      line.remove_suffix(1);
+    return line;
+  }
+
+  /// Of the byte after the lines read so far.
+  std::uint64_t position() const { return std::min(m_position, m_text.size()); }
+
+private:
+  std::string m_text;
+  std::size_t m_position = 0;
+};
+
+/// Data files are named relative to their header's folder.
+void addFile(const std::filesystem::path& path, std::string_view name, StoredSamples& stored) {
+  const std::filesystem::path file = path.parent_path() / std::filesystem::path(name);
+  std::error_code failed;
+  const bool plain = std::filesystem::is_regular_file(file, failed);
+  const auto bytes = plain ? std::filesystem::file_size(file, failed) : 0;
+  if (!plain || failed || name == "-")
+    throw inputError(path.string(),
+                     "data file: \"" + std::string(name.substr(0, 200)) +
+                         "\" is not a file that can be read; put it beside the header");
+  stored.files.push_back(file);
+  stored.bytes += bytes;
+}
+
+void skip(const std::filesystem::path& path, std::uint64_t offset, StoredSamples& stored) {
+  if (offset > stored.bytes)
+    throw inputError(path.string(),
+                     "is truncated: it ends before its samples begin; copy it again");
+  stored.offset = offset;
+  stored.bytes -= offset;
+}
+
+// ---- NRRD
+// ----------------------------------------------------------------------------------------
+
+using Fields = std::map<std::string, std::string>;
+
+/// ITK keeps sizes in 32 bits and hands teem a buffer of those.
+void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
+  const auto it = fields.find("sizes");
+  if (it == fields.end())
+    throw damaged(path, "NRRD");
+  for (const std::string_view word : words(it->second)) {
+    const auto size = wholeNumber(word);
+    if (!size || *size < 1 || *size > INT32_MAX)
+      throw inputError(path.string(), "sizes: each must be a whole number from 1 to 2147483647");
+  }
+}
+
+/// Without a number ITK silently takes its default.
+void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
+  for (const char* key : {"space directions", "space origin", "spacings"})
+    if (const auto it = fields.find(key);
+        it != fields.end() && lower(it->second).find("nan") != std::string::npos)
+      throw inputError(path.string(), std::string(key) + ": is not a number; mend the header");
+}
+
+void locateNrrdFiles(const std::filesystem::path& path, const Fields& fields, HeaderLines& lines,
+                     StoredSamples& stored) {
+  const auto named =
+      fields.contains("data file") ? fields.find("data file") : fields.find("datafile");
+  if (named == fields.end()) {
+    addFile(path, path.filename().string(), stored);
+    return skip(path, lines.position(), stored);
+  }
+  const std::string& name = named->second;
+  if (name.starts_with("LIST")) {
+    for (auto line = lines.next(); line; line = lines.next())
+      if (!trimmed(*line).empty())
+        addFile(path, trimmed(*line), stored);
+  } else if (name.find('%') != std::string::npos)
+    throw inputError(path.string(), "data file: numbered series of files are not read; write the "
+                                    "volume into one file");
+  else
+    addFile(path, name, stored);
+}
+
+StoredSamples locateNrrd(const std::filesystem::path& path) {
+  HeaderLines lines(path);
+  const auto magic = lines.next();
+  if (!magic || !magic->starts_with("NRRD000"))
+    throw damaged(path, "NRRD");
+  Fields fields;
+  for (auto line = lines.next(); line && !line->empty(); line = lines.next()) {
+    const std::size_t colon = line->find(": ");
+    if (colon == std::string_view::npos || line->starts_with('#'))
+      continue;
+    const std::string key = lower(std::string(line->substr(0, colon)));
+    fields[key] = trimmed(line->substr(colon + 2));
+    if ((key == "data file" || key == "datafile") && fields[key].starts_with("LIST"))
+      break; // the file names follow
+  }
+  checkNrrdSizes(path, fields);
+  checkNrrdGeometry(path, fields);
+  StoredSamples stored;
+  const std::string encoding = lower(fields["encoding"]);
+  stored.compressed = encoding != "raw" && encoding != "hex"; // a text's digit can be 8 bytes
+  locateNrrdFiles(path, fields, lines, stored);
+  const bool skips = fields.contains("line skip") || fields.contains("lineskip") ||
+                     fields.contains("byte skip") || fields.contains("byteskip");
+  stored.isStream = (encoding == "gzip" || encoding == "gz") && stored.files.size() == 1 && !skips;
+  return stored;
+}
+
+// ---- MetaImage
+// -----------------------------------------------------------------------------------
+
+/// MetaIO copies text into 255 bytes, and takes as many numbers as the dimension asks for, whether
+/// they are there or not.
+void checkMetaField(const std::filesystem::path& path, const std::string& key,
+                    std::string_view value, std::int64_t dimension) {
+  static const std::array vectors = {"DimSize",  "ElementSpacing", "ElementSize",     "Offset",
+                                     "Position", "Origin",         "CenterOfRotation"};
+  static const std::array matrices = {"TransformMatrix", "Rotation", "Orientation"};
+  const auto isOneOf = [&key](const auto& names) {
+    return std::find(names.begin(), names.end(), key) != names.end();
+  };
+  const std::size_t longest = isOneOf(matrices) || isOneOf(vectors) ? 1000 : 250;
+  if (key.size() > 200 || value.size() > longest)
+    throw inputError(path.string(), key.substr(0, 40) + ": has more than " +
+                                        std::to_string(longest) + " characters; shorten it");
+  const auto numbers = static_cast<std::int64_t>(words(value).size());
+  const std::int64_t needed = isOneOf(vectors)    ? dimension
+                              : isOneOf(matrices) ? dimension * dimension
+                                                  : 0;
+  if (numbers < needed)
+    throw inputError(path.string(), key + ": has " + std::to_string(numbers) +
+                                        " numbers; give it " + std::to_string(needed));
+}
+
+Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
+  Fields fields;
+  std::int64_t dimension = 0;
+  while (!fields.contains("ElementDataFile")) {
+    const auto line = lines.next();
+    const std::size_t equals = line ? line->find('=') : std::string_view::npos;
+    if (equals == std::string_view::npos)
+      throw damaged(path, "MetaImage");
+    const std::string key(trimmed(line->substr(0, equals)));
+    fields[key] = trimmed(line->substr(equals + 1));
+    if (key == "NDims") {
+      dimension = wholeNumber(fields[key]).value_or(0);
+      if (dimension < 1 || dimension > 10)
+        throw inputError(path.string(), "NDims: must be a whole number from 1 to 10");
+    }
+    checkMetaField(path, key, fields[key], dimension);
+  }
+  if (dimension == 0)
+    throw damaged(path, "MetaImage");
+  return fields;
+}
+
+StoredSamples locateMeta(const std::filesystem::path& path) {
+  HeaderLines lines(path);
+  Fields fields = readMetaFields(path, lines);
+  const auto isTrue = [&fields](const char* key) {
+    const std::string value = lower(fields[key]);
+    return value.starts_with('t') || value.starts_with('1') || value.starts_with('y');
+  };
+  if (fields.contains("BinaryData") && !isTrue("BinaryData"))
+    throw inputError(path.string(),
+                     "BinaryData: samples as text are not read; write them as binary");
+  const std::string& name = fields["ElementDataFile"];
+  if (name.starts_with("LIST") || name.find('%') != std::string::npos)
+    throw inputError(path.string(), "ElementDataFile: series of files are not read; write the "
+                                    "volume into one file");
+  const bool local = lower(name) == "local";
+  StoredSamples stored;
+  stored.compressed = stored.isStream = isTrue("CompressedData");
+  addFile(path, local ? path.filename().string() : name, stored);
+  const std::int64_t header = wholeNumber(fields["HeaderSize"]).value_or(0);
+  // A negative HeaderSize means: the samples end where the file ends.
+  skip(path,
+       local ? lines.position() : static_cast<std::uint64_t>(std::max<std::int64_t>(header, 0)),
+       stored);
+  return stored;
+}
+
+// ---- NIfTI
+// ---------------------------------------------------------------------------------------
+
+StoredSamples locateNifti(const std::filesystem::path& path) {
+  StoredSamples stored;
+  stored.compressed = lower(path.extension().string()) == ".gz";
+  addFile(path, path.filename().string(), stored);
+  constexpr std::uint64_t headerBytes = 348;
+  if (!stored.compressed)
+    skip(path, headerBytes, stored);
+  return stored;
+}
+
+} // namespace
+
+std::optional<MedicalFormat> medicalFormat(const std::filesystem::path& path) {
+  const std::string name = lower(path.filename().string());
+  if (name.ends_with(".nrrd") || name.ends_with(".nhdr"))
+    return MedicalFormat::nrrd;
+  if (name.ends_with(".nii") || name.ends_with(".nii.gz"))
+    return MedicalFormat::nifti;
+  if (name.ends_with(".mha") || name.ends_with(".mhd"))
+    return MedicalFormat::metaImage;
+  return std::nullopt;
+}
+
+StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat format) {
+  switch (format) {
+  case MedicalFormat::nrrd:
+    return locateNrrd(path);
+  case MedicalFormat::metaImage:
+    return locateMeta(path);
+  case MedicalFormat::nifti:
+    break;
+  }
+  return locateNifti(path);
+}
+
+void checkCapacity(const std::filesystem::path& path, const StoredSamples& stored,
+                   std::uint64_t declared) {
+  if (declared / (stored.compressed ? greatestRatio : 1) > stored.bytes)
+    throw inputError(path.string(),
+                     "is truncated: its header announces " + std::to_string(declared) +
+                         " bytes of samples, the file has " + std::to_string(stored.bytes) +
+                         (stored.compressed ? " compressed" : "") + "; copy or write it again");
+}
+
+void checkStream(const std::filesystem::path& path, const StoredSamples& stored,
+                 std::uint64_t declared) {
+  std::ifstream file(stored.files.front(), std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(stored.offset));
+  std::vector<char> input(1 << 16), output(1 << 18);
+  z_stream stream{};
+  constexpr int anyHeader = 15 + 32; // zlib's or gzip's
+  int status = inflateInit2(&stream, anyHeader);
+  while (status == Z_OK && stream.total_out <= declared) {
+    if (stream.avail_in == 0) {
+      file.read(input.data(), static_cast<std::streamsize>(input.size()));
+      stream.next_in = reinterpret_cast<Bytef*>(input.data());
+      stream.avail_in = static_cast<uInt>(file.gcount());
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(output.data());
+    stream.avail_out = static_cast<uInt>(output.size());
+    status = inflate(&stream, Z_NO_FLUSH); // without input left: Z_BUF_ERROR
+  }
+  const std::uint64_t found = stream.total_out;
+  inflateEnd(&stream);
+  if (status != Z_STREAM_END || found != declared)
+    throw inputError(path.string(),
+                     "is damaged or truncated: its compressed samples do not give the " +
+                         std::to_string(declared) +
+                         " bytes that its header announces; copy or write it again");
+}
+
+} // namespace fenestra

@@ -1,0 +1,20 @@
+#pragma once
+// Reads the samples of a NIfTI-1 file. ITK's library for that turns samples that are not finite
+// into zeros, unasked, and holds all of them twice. For io's own sources.
+
+#include "io/medical/MedicalImage.h"
+
+#include <cstddef>
+#include <filesystem>
+
+namespace fenestra {
+
+/// Throws Error (input) where there is no NIfTI-1 header of one part: what the library would
+/// complain about on the standard error stream.
+void checkNiftiHeader(const std::filesystem::path& path);
+
+/// The first `count` samples of a .nii or .nii.gz, in the machine's byte order and rescaled as the
+/// header says. Throws Error (input) where they are not there.
+Samples readNiftiSamples(const std::filesystem::path& path, std::size_t count);
+
+} // namespace fenestra

@@ -1,0 +1,458 @@
+#include "io/medical/SegmentationReader.h"
+
+#include "core/Error.h"
+#include "io/InputFile.h"
+#include "io/ShownText.h"
+#include "io/medical/ClosedSurface.h"
+#include "io/medical/MedicalImage.h"
+
+#include <charconv>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace fenestra {
+namespace {
+
+constexpr std::size_t mostSegments = 65536;
+
+// ---- labels
+// --------------------------------------------------------------------------------------
+
+template <typename Label, typename T>
+bool fits(T least, T greatest) {
+  using Limits = std::numeric_limits<Label>;
+  if constexpr (std::is_integral_v<T>)
+    return std::cmp_greater_equal(least, Limits::min()) &&
+           std::cmp_less_equal(greatest, Limits::max());
+  else
+    return least >= static_cast<T>(Limits::min()) && greatest <= static_cast<T>(Limits::max());
+}
+
+template <typename Label, typename T>
+Segmentation::Labels convert(std::vector<T>&& samples) {
+  if constexpr (std::is_same_v<Label, T>)
+    return std::move(samples);
+  else {
+    std::vector<Label> labels(samples.size());
+    std::transform(samples.begin(), samples.end(), labels.begin(),
+                   [](T x) { return static_cast<Label>(x); });
+    return labels;
+  }
+}
+
+template <typename T>
+Segmentation::Labels toLabels(std::vector<T>&& samples, const std::string& source) {
+  if constexpr (std::is_floating_point_v<T>)
+    for (const T x : samples)
+      if (x != std::trunc(x) || std::isinf(x)) // NaN is unequal, too
+        throw inputError(source, "holds values that are not whole numbers, so it is no labelmap; "
+                                 "name a segmentation");
+  const auto [least, greatest] = std::minmax_element(samples.begin(), samples.end());
+  if (fits<std::uint8_t>(*least, *greatest))
+    return convert<std::uint8_t>(std::move(samples));
+  if (fits<std::int16_t>(*least, *greatest))
+    return convert<std::int16_t>(std::move(samples));
+  // Of the floats only those below 2^31 - 1 pass, which float itself rounds up.
+  if (fits<std::int32_t>(*least, *greatest) && static_cast<double>(*greatest) < 0x1p31)
+    return convert<std::int32_t>(std::move(samples));
+  throw inputError(source, "holds label values beyond 32 bits; number its labels again");
+}
+
+/// One segment a value, in their order.
+std::vector<SegmentInfo> segmentsOf(const Segmentation::Labels& labels, const std::string& source) {
+  std::set<std::int32_t> values;
+  std::visit(
+      [&](const auto& voxels) {
+        std::int32_t last = 0;
+        for (const std::int32_t value : voxels)
+          if (value != std::exchange(last, value) && value != 0 && values.insert(value).second &&
+              values.size() > mostSegments)
+            throw inputError(source,
+                             "holds more than 65536 different values, so it is no labelmap; "
+                             "name a segmentation");
+      },
+      labels);
+  std::vector<SegmentInfo> segments;
+  for (const std::int32_t value : values) {
+    const std::string name = "Segment_" + std::to_string(value);
+    segments.push_back({.id = name, .name = name, .labelValue = value});
+  }
+  return segments;
+}
+
+// ---- Slicer's header fields
+// ----------------------------------------------------------------------
+
+std::optional<std::int32_t> wholeNumber(std::string_view text) {
+  std::int32_t value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || end != text.data() + text.size())
+    return std::nullopt;
+  return value;
+}
+
+/// The oldest files keep the geometry of the whole reference image, in RAS, and say in
+/// Segmentation_Extent which part of it their voxels are. (A bladder of such a file meets the same
+/// patient's bladder surface only so.)
+Grid placed(const Grid& grid, const std::map<std::string, std::string>& fields,
+            const std::string& source) {
+  const auto extent = fields.find("Segmentation_Extent");
+  if (extent == fields.end())
+    return grid;
+  std::istringstream numbers(extent->second); // "i0 i1 j0 j1 k0 k1"
+  Vec3 first;
+  std::int32_t lower = 0;
+  std::int32_t upper = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(numbers >> lower >> upper))
+      throw inputError(source, "Segmentation_Extent: must be six whole numbers");
+    first[axis] = lower;
+  }
+  const Affine readAsLps(Eigen::Scaling(-1.0, -1.0, 1.0));
+  return {grid.size, readAsLps * grid.indexToWorld * Eigen::Translation3d(first)};
+}
+
+class SegmentFields {
+public:
+  SegmentFields(const std::map<std::string, std::string>& fields, const std::string& source)
+      : m_fields(fields), m_source(source) {}
+
+  std::vector<SegmentInfo> segments(std::size_t layerCount) const {
+    std::vector<SegmentInfo> segments;
+    while (find(segments.size(), "ID") && segments.size() < mostSegments)
+      segments.push_back(segment(segments.size(), layerCount));
+    return segments;
+  }
+
+private:
+  static std::string key(std::size_t n, const std::string& field) {
+    return "Segment" + std::to_string(n) + "_" + field;
+  }
+
+  const std::string* find(std::size_t n, const std::string& field) const {
+    const auto it = m_fields.find(key(n, field));
+    return it == m_fields.end() ? nullptr : &it->second;
+  }
+
+  std::int32_t number(std::size_t n, const std::string& field, std::int32_t fallback) const {
+    const std::string* text = find(n, field);
+    if (!text)
+      return fallback;
+    const auto value = wholeNumber(*text);
+    if (!value)
+      throw inputError(m_source, key(n, field) + ": must be a whole number");
+    return *value;
+  }
+
+  SegmentInfo segment(std::size_t n, std::size_t layerCount) const {
+    SegmentInfo info;
+    info.id = *find(n, "ID");
+    const std::string* name = find(n, "Name");
+    info.name = name ? *name : info.id;
+    info.labelValue = number(n, "LabelValue", 1);
+    if (info.labelValue == 0)
+      throw inputError(m_source, key(n, "LabelValue") + ": 0 is the background; use another");
+    // Older files do not say: with several layers it is the segment's own.
+    const std::int32_t layer =
+        number(n, "Layer", layerCount == 1 ? 0 : static_cast<std::int32_t>(n));
+    if (std::cmp_less(layer, 0) || std::cmp_greater_equal(layer, layerCount))
+      throw inputError(m_source, key(n, "Layer") + ": is " + std::to_string(layer) +
+                                     ", but the file has " + std::to_string(layerCount) +
+                                     " layers; save it again");
+    info.layer = static_cast<std::size_t>(layer);
+    info.color = color(n, info.color);
+    return info;
+  }
+
+  /// A colour is decoration here: whatever is wrong with it, grey will do.
+  Rgb color(std::size_t n, const Rgb& fallback) const {
+    const std::string* text = find(n, "Color") ? find(n, "Color") : find(n, "DefaultColor");
+    Rgb rgb = fallback;
+    const char* at = text ? text->data() : nullptr;
+    for (int c = 0; text && c < 3; ++c) {
+      const char* const end = text->data() + text->size();
+      while (at != end && *at == ' ')
+        ++at;
+      const auto [next, failure] = std::from_chars(at, end, rgb[c]);
+      if (failure != std::errc() || !(rgb[c] >= 0.0 && rgb[c] <= 1.0))
+        return fallback;
+      at = next;
+    }
+    return rgb;
+  }
+
+  const std::map<std::string, std::string>& m_fields;
+  const std::string& m_source;
+};
+
+// ---- masks
+// ---------------------------------------------------------------------------------------
+
+/// Inclusive range of voxels; empty until one is added.
+struct Extent {
+  Size3 lower = Size3::Constant(std::numeric_limits<std::int64_t>::max());
+  Size3 upper = Size3::Constant(-1);
+
+  bool empty() const { return upper.x() < 0; }
+  void add(const Size3& voxel) {
+    lower = lower.cwiseMin(voxel);
+    upper = upper.cwiseMax(voxel);
+  }
+};
+
+/// Which faces (lower, upper) of a labelmap lie on the volume's.
+using SharedFaces = std::array<std::array<bool, 2>, 3>;
+
+/// Faces are shared where all corners are within half a voxel, with the labelmap on the inner side.
+bool isShared(const Grid& labelmap, const Grid& volume, int axis, int side) {
+  const Affine toVolume = volume.worldToIndex * labelmap.indexToWorld;
+  const Vec3 center = toVolume * labelmap.indexBox().center();
+  const Box box = volume.indexBox();
+  for (int other = 0; other < 3; ++other)
+    for (const double face : {box.lower[other], box.upper[other]}) {
+      const bool inside = face == box.lower[other] ? center[other] > face : center[other] < face;
+      bool near = inside;
+      for (int i = 0; i < 8; ++i) {
+        const bool onFace = ((i >> axis) & 1) == side;
+        const double x = (toVolume * labelmap.indexBox().corner(i))[other];
+        near = near && (!onFace || std::abs(x - face) <= 0.5);
+      }
+      if (near)
+        return true;
+    }
+  return false;
+}
+
+SharedFaces sharedFaces(const Grid& labelmap, const Grid& volume) {
+  SharedFaces shared{};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = 0; side < 2; ++side)
+      shared[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] =
+          isShared(labelmap, volume, axis, side);
+  return shared;
+}
+
+/// The focus in one labelmap: which of its voxels are chosen, and their mask.
+template <typename Label>
+class Focus {
+public:
+  Focus(const Grid& grid, std::size_t layerCount, const std::vector<Label>& labels,
+        const std::vector<SegmentInfo>& chosen)
+      : m_grid(grid), m_layerCount(layerCount), m_labels(labels), m_values(layerCount) {
+    for (const SegmentInfo& segment : chosen)
+      m_values[segment.layer].insert(segment.labelValue);
+  }
+
+  void fill(Mask& mask, const SharedFaces& shared) const {
+    const Extent extent = this->extent();
+    if (extent.empty())
+      return;
+    const Size3 origin = extent.lower.array() - 1;
+    const Size3 size = extent.upper - extent.lower + Size3::Constant(3);
+    Affine indexToWorld = m_grid.indexToWorld;
+    indexToWorld.translate(origin.cast<double>());
+    mask.grid = Grid(size, indexToWorld);
+    mask.voxels.reserve(static_cast<std::size_t>(mask.grid.voxelCount()));
+    for (std::int64_t z = 0; z < size.z(); ++z)
+      for (std::int64_t y = 0; y < size.y(); ++y)
+        for (std::int64_t x = 0; x < size.x(); ++x)
+          mask.voxels.push_back(value(origin + Size3(x, y, z), shared, mask.count));
+  }
+
+private:
+  bool isChosen(const Size3& voxel) const {
+    const auto first =
+        static_cast<std::size_t>(voxel.x() +
+                                 m_grid.size.x() * (voxel.y() + m_grid.size.y() * voxel.z())) *
+        m_layerCount;
+    for (std::size_t layer = 0; layer < m_layerCount; ++layer)
+      if (m_labels[first + layer] != 0 && m_values[layer].contains(m_labels[first + layer]))
+        return true;
+    return false;
+  }
+
+  Extent extent() const {
+    Extent extent;
+    for (std::int64_t z = 0; z < m_grid.size.z(); ++z)
+      for (std::int64_t y = 0; y < m_grid.size.y(); ++y)
+        for (std::int64_t x = 0; x < m_grid.size.x(); ++x)
+          if (isChosen({x, y, z}))
+            extent.add({x, y, z});
+    return extent;
+  }
+
+  /// Of a voxel that may lie one beyond the labelmap; counts those of the segments.
+  std::uint8_t value(Size3 voxel, const SharedFaces& shared, std::int64_t& count) const {
+    bool beyond = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t last = m_grid.size[axis] - 1;
+      if (voxel[axis] >= 0 && voxel[axis] <= last)
+        continue;
+      if (!shared[static_cast<std::size_t>(axis)][voxel[axis] < 0 ? 0 : 1])
+        return 0;
+      voxel[axis] = std::clamp<std::int64_t>(voxel[axis], 0, last);
+      beyond = true;
+    }
+    const bool chosen = isChosen(voxel);
+    count += chosen && !beyond;
+    return chosen;
+  }
+
+  const Grid& m_grid;
+  std::size_t m_layerCount;
+  const std::vector<Label>& m_labels;
+  std::vector<std::set<std::int32_t>> m_values; ///< chosen ones of each layer
+};
+
+// ---- statistics
+// ----------------------------------------------------------------------------------
+
+struct ValueStatistics {
+  std::int64_t voxels = 0;
+  Extent extent = {};
+};
+
+using StatisticsOfValues = std::map<std::int32_t, ValueStatistics>;
+
+/// Adds one layer's voxels to those of the values that are there.
+template <typename Label>
+void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_t layer,
+                 std::size_t layerCount, StatisticsOfValues& values) {
+  std::size_t at = layer;
+  std::int32_t last = 0; // labels come in runs
+  ValueStatistics* counted = nullptr;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x, at += layerCount) {
+        const std::int32_t label = labels[at];
+        if (label != std::exchange(last, label)) {
+          const auto found = values.find(label);
+          counted = found == values.end() ? nullptr : &found->second;
+        }
+        if (counted) {
+          ++counted->voxels;
+          counted->extent.add({x, y, z});
+        }
+      }
+}
+
+/// Of whole voxels, along the world's axes.
+Box worldBounds(const Grid& grid, const Extent& extent) {
+  const Box voxels{extent.lower.cast<double>().array() - 0.5,
+                   extent.upper.cast<double>().array() + 0.5};
+  Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = grid.indexToWorld * voxels.corner(i);
+    bounds.lower = bounds.lower.cwiseMin(corner);
+    bounds.upper = bounds.upper.cwiseMax(corner);
+  }
+  return bounds;
+}
+
+// ---- messages
+// ------------------------------------------------------------------------------------
+
+std::string listed(const std::vector<SegmentInfo>& segments) {
+  constexpr std::size_t most = 40;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, segments.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + shown(segments[i].id);
+    if (segments[i].name != segments[i].id)
+      text += " (" + shown(segments[i].name) + ")";
+  }
+  return text + (segments.size() > most ? ", …" : "");
+}
+
+} // namespace
+
+Segmentation::Segmentation(std::string source, Grid grid, std::size_t layerCount, Labels labels,
+                           std::vector<SegmentInfo> segments)
+    : m_source(std::move(source)),
+      m_grid(std::move(grid)),
+      m_layerCount(layerCount),
+      m_labels(std::move(labels)),
+      m_segments(std::move(segments)) {}
+
+const SegmentInfo& Segmentation::find(const std::string& selector) const {
+  const auto value = wholeNumber(selector);
+  const auto only = [&](auto&& matches) -> const SegmentInfo* {
+    std::vector<SegmentInfo> found;
+    const SegmentInfo* last = nullptr;
+    for (const SegmentInfo& segment : m_segments)
+      if (matches(segment)) {
+        found.push_back(segment);
+        last = &segment;
+      }
+    if (found.size() > 1)
+      throw inputError(m_source, "segment \"" + shown(selector) + "\" can be any of " +
+                                     listed(found) + "; name one by its id");
+    return last;
+  };
+  if (const auto* segment = only([&](const SegmentInfo& s) { return s.id == selector; }))
+    return *segment;
+  if (const auto* segment = only([&](const SegmentInfo& s) { return s.name == selector; }))
+    return *segment;
+  if (const auto* segment = only([&](const SegmentInfo& s) { return value == s.labelValue; }))
+    return *segment;
+  throw inputError(m_source, "has no segment \"" + shown(selector) + "\"; it has " +
+                                 (m_segments.empty() ? "none at all" : listed(m_segments)));
+}
+
+std::vector<SegmentStatistics> Segmentation::statistics() const {
+  std::vector<StatisticsOfValues> layers(m_layerCount);
+  for (const SegmentInfo& segment : m_segments)
+    layers[segment.layer][segment.labelValue] = {};
+  std::visit(
+      [&](const auto& labels) {
+        for (std::size_t layer = 0; layer < m_layerCount; ++layer)
+          countVoxels(labels, m_grid.size, layer, m_layerCount, layers[layer]);
+      },
+      m_labels);
+  std::vector<SegmentStatistics> statistics;
+  for (const SegmentInfo& segment : m_segments) {
+    const ValueStatistics& value = layers[segment.layer].at(segment.labelValue);
+    statistics.push_back({value.voxels, {}});
+    if (value.voxels > 0)
+      statistics.back().bounds = worldBounds(m_grid, value.extent);
+  }
+  return statistics;
+}
+
+Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& volume) const {
+  std::vector<SegmentInfo> chosen;
+  Mask mask;
+  for (const std::string& selector : selectors) {
+    chosen.push_back(find(selector));
+    mask.names.push_back(chosen.back().name);
+  }
+  const SharedFaces shared = sharedFaces(m_grid, volume);
+  std::visit(
+      [&](const auto& labels) { Focus(m_grid, m_layerCount, labels, chosen).fill(mask, shared); },
+      m_labels);
+  if (mask.count == 0)
+    throw inputError(m_source, "the focus has no voxel (" + listed(chosen) +
+                                   "); choose segments that are not empty");
+  return mask;
+}
+
+Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference) {
+  if (lowerExtension(path) == ".vtm")
+    return readClosedSurfaces(path, reference);
+  MedicalImage image = readMedicalImage(path, Components::any);
+  const std::string source = path.string();
+  auto segments = SegmentFields(image.fields, source).segments(image.components);
+  if (segments.empty() && image.components > 1)
+    throw inputError(source, "has " + std::to_string(image.components) +
+                                 " components a voxel but names no segments; name a segmentation");
+  Segmentation::Labels labels = std::visit(
+      [&source](auto& samples) { return toLabels(std::move(samples), source); }, image.samples);
+  if (segments.empty())
+    segments = segmentsOf(labels, source);
+  return {source, placed(image.grid, image.fields, source), image.components, std::move(labels),
+          std::move(segments)};
+}
+
+} // namespace fenestra

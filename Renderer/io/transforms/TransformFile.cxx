@@ -1,0 +1,83 @@
+#include "io/transforms/TransformFile.h"
+
+#include "core/Error.h"
+#include "io/InputFile.h"
+#include "io/medical/Quiet.h"
+#include "io/transforms/TransformMatrix.h"
+#include "io/transforms/TransformRecords.h"
+
+namespace fenestra {
+namespace {
+
+using Path = std::filesystem::path;
+
+/// In LPS, in the file's own sense.
+Affine composed(const Path& path, const std::vector<TransformRecord>& records) {
+  if (records.empty())
+    throwDamagedTransform(path);
+  if (records.front().type != "CompositeTransform") {
+    if (records.size() > 1)
+      throw inputError(path.string(),
+                       "holds " + std::to_string(records.size()) +
+                           " transforms and does not say how they combine; save one, "
+                           "or a composite");
+    return transformMatrix(path, records.front());
+  }
+  Affine map = Affine::Identity();
+  for (std::size_t i = 1; i < records.size(); ++i)
+    map = map * transformMatrix(path, records[i]);
+  return map;
+}
+
+void checkInvertible(const Path& path, const Affine& map) {
+  constexpr double largest = 1e9, flattest = 1e-6; // as for the geometry of images
+  const auto scales = map.linear().colwise().norm().array();
+  if (!((scales > 1.0 / largest).all() && (scales < largest).all() &&
+        (map.translation().array().abs() < largest).all() &&
+        std::abs(map.linear().colwise().normalized().determinant()) > flattest))
+    throw inputError(path.string(), "Parameters: the map cannot be inverted; save one that can");
+}
+
+std::vector<TransformRecord> readRecords(const Path& path) {
+  const std::string extension = lowerExtension(path);
+  if (extension == ".tfm" || extension == ".txt")
+    return readTransformText(path);
+  if (extension == ".h5" || extension == ".hdf5")
+    return readTransformHdf5(path);
+  if (extension == ".mat")
+    return readTransformMatlab(path);
+  for (const char* image : {".nrrd", ".nhdr", ".nii", ".gz", ".mha", ".mhd"})
+    if (extension == image)
+      throw inputError(path.string(), "is a displacement field, which is not linear; harden it in "
+                                      "Slicer (Data module, Harden transform) and save again");
+  throw inputError(path.string(), "has no known extension of a transform; name a .tfm, .txt, .h5, "
+                                  ".hdf5 or .mat file");
+}
+
+} // namespace
+
+Affine readLinearTransform(const Path& path, TransformSense sense) {
+  requireFile(path, "name a transform file in it");
+  constexpr std::uintmax_t largestFile = 64 << 20;
+  if (std::filesystem::file_size(path) > largestFile)
+    throw inputError(path.string(), "is larger than 64 MB, so it is no linear transform; harden it "
+                                    "in Slicer (Data module, Harden transform) and save again");
+  try {
+    const Quiet quiet;
+    Affine map = composed(path, readRecords(path));
+    checkInvertible(path, map);
+    if (sense == TransformSense::fromParent)
+      map = map.inverse();
+    const Eigen::DiagonalMatrix<double, 3> lpsToRas(-1.0, -1.0, 1.0); // and back
+    Affine ras;
+    ras.linear() = lpsToRas * map.linear() * lpsToRas;
+    ras.translation() = lpsToRas * map.translation();
+    return ras;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception&) { // ITK's, of matrices that are not what their class says
+    throwDamagedTransform(path);
+  }
+}
+
+} // namespace fenestra
