@@ -423,6 +423,11 @@ TEST_F(DamagedFiles, CannotClaimMoreThanTheyHold) {
   exr.replace(8, 0, std::string("note\0string\0\xff\xff\xff\x7f", 16));
   store(path("a.exr"), exr);
   EXPECT_EQ(kindOf([&] { readImage(path("a.exr")); }, "attribute"), ErrorKind::input);
+  // A list of channels that ends before its size does: OpenEXR would take what follows for an
+  // attribute.
+  exr.replace(8, 16, std::string("c\0chlist\0\x0d\0\0\0\0w\0string\0\xff\xff\xff\x7f", 26));
+  store(path("a.exr"), exr);
+  EXPECT_EQ(kindOf([&] { readImage(path("a.exr")); }, "does not fill"), ErrorKind::input);
   // A PNG's width and height are bytes 16 to 23; libpng looks at the checksum first or at them.
   std::string png = contentOf(written(renderedImage(), "a.png"));
   png.replace(16, 8, std::string("\0\0\x70\0\0\0\x70\0", 8));

@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/InputFile.h"
+#include "io/pictures/ExrHeader.h"
 #include "io/pictures/ImageFormat.h"
 
 #include <ImfChannelList.h>
@@ -46,27 +47,6 @@ void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64
 std::string firstLine(const std::exception& error) {
   const std::string text = error.what();
   return text.substr(0, text.find('\n'));
-}
-
-/// OpenEXR takes memory for an attribute of any size before it looks for its bytes. Layout of a
-/// header: "OpenEXR File Layout", openexr.com: name, type, size, value, ..., and an empty name.
-void checkExrAttributes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const auto length = static_cast<std::int64_t>(std::filesystem::file_size(path));
-  file.seekg(5); // in the version field
-  const bool severalParts = (file.get() & 0x10) != 0;
-  file.seekg(8);
-  std::string name, type;
-  do { // each part has a header, after the last comes an empty one
-    while (std::getline(file, name, '\0') && !name.empty() && std::getline(file, type, '\0')) {
-      std::uint32_t size = 0; // little endian
-      for (unsigned shift = 0; shift < 32; shift += 8)
-        size |= static_cast<std::uint32_t>(file.get() & 0xff) << shift;
-      if (!file || size > length - file.tellg())
-        throw std::runtime_error("an attribute reaches past the end");
-      file.seekg(size, std::ios::cur);
-    }
-  } while (severalParts && file.peek() > 0);
 }
 
 void checkExr(const std::filesystem::path& path, const Imf::Header& header) {
