@@ -21,7 +21,7 @@ dictionary() {
 
 # summary LOG: what libFuzzer counted.
 summary() {
-  awk -F': *' '
+  awk -F': +' '
     /^stat::number_of_executed_units/ { runs = $2 }
     /^stat::average_exec_per_sec/ { rate = $2 }
     /^stat::peak_rss_mb/ { rss = $2 }
