@@ -110,11 +110,12 @@ std::size_t threadCount(const RenderSettings& settings) {
 
 RenderResult renderWithProgress(const Scene& scene, const RenderOptions& options,
                                 RenderMonitor& monitor) {
-  const Progress progress(options.progress, options.settings,
+  const RenderSettings settings = settingsFor(options, scene.background());
+  const Progress progress(options.progress, settings,
                           static_cast<std::uint64_t>(options.scene.width) *
                               static_cast<std::uint64_t>(options.scene.height),
                           monitor);
-  return render(scene.forRender(), options.settings, monitor);
+  return render(scene.forRender(), settings, monitor);
 }
 
 void report(const RenderOptions& options, const RenderResult& result, double seconds) {
@@ -140,7 +141,7 @@ int renderCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> flags = parseCommandLine(renderSyntax, argc, argv, first);
   if (!flags)
     return 0;
-  RenderOptions options = renderOptions(*flags);
+  const RenderOptions options = renderOptions(*flags);
   RenderMonitor monitor;
   StopOnSignal stopOnSignal;
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
@@ -151,8 +152,6 @@ int renderCommand(int argc, char** argv, int first) {
   const Stopwatch total;
   RenderStats stats;
   const Scene scene(options.scene);
-  Background& background = options.settings.path.background;
-  background = options.background.value_or(scene.background().value_or(background));
   for (const std::string& warning : scene.warnings())
     std::cerr << "fenestra: warning: " << warning << '\n';
 

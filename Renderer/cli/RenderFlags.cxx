@@ -292,4 +292,10 @@ RenderOptions renderOptions(const FlagValues& flags) {
   return options;
 }
 
+RenderSettings settingsFor(const RenderOptions& options, const std::optional<Background>& scene) {
+  RenderSettings settings = options.settings;
+  settings.path.background = options.background.value_or(scene.value_or(settings.path.background));
+  return settings;
+}
+
 } // namespace fenestra

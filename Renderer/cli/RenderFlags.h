@@ -25,4 +25,8 @@ extern const CommandSyntax renderSyntax;
 /// Throws Error (usage) for values out of range and for flags that contradict each other.
 RenderOptions renderOptions(const FlagValues& flags);
 
+/// The settings with what is behind the scene: as the flags say, else as a Slicer scene says, which
+/// gives nothing for other inputs.
+RenderSettings settingsFor(const RenderOptions& options, const std::optional<Background>& scene);
+
 } // namespace fenestra

@@ -40,38 +40,13 @@ Image renderReference(const ReferenceCase& c) {
   const RenderOptions options = renderOptions(*flags);
   const Scene scene(options.scene);
   RenderMonitor monitor;
-  const RenderResult result = render(scene.forRender(), options.settings, monitor);
+  const RenderResult result =
+      render(scene.forRender(), settingsFor(options, scene.background()), monitor);
   return picture(result.film, scene.camera(), scene.clip(), options.layers);
 }
 
 bool present() {
   return std::filesystem::exists(std::string(FENESTRA_REFERENCE) + "/S1.arguments");
-}
-
-/// Means of square tiles, and their standard errors. Near the thin shells of S2 a pixel's samples
-/// are so skewed that its z has mean 0 only from thousands of samples on; a tile's has it from
-/// hundreds.
-Image tiles(const Image& image, int size) {
-  Image result{image.width / size, image.height / size, {}, {}};
-  for (const char* color : {"R", "G", "B"}) {
-    const std::string errorName = std::string("error.") + color;
-    std::vector<float>& means = result.channels[color];
-    std::vector<float>& errors = result.channels[errorName];
-    for (int row = 0; row < result.height; ++row)
-      for (int column = 0; column < result.width; ++column) {
-        double sum = 0.0;
-        double variance = 0.0;
-        for (int i = 0; i < size * size; ++i) {
-          const auto pixel = static_cast<std::size_t>((row * size + i / size) * image.width +
-                                                      column * size + i % size);
-          sum += static_cast<double>((*image.find(color))[pixel]);
-          variance += std::pow(static_cast<double>((*image.find(errorName))[pixel]), 2.0);
-        }
-        means.push_back(static_cast<float>(sum / (size * size)));
-        errors.push_back(static_cast<float>(std::sqrt(variance) / (size * size)));
-      }
-  }
-  return result;
 }
 
 /// FENESTRA_LONG=1 in the environment asks for the long version: as many samples as single pixels
@@ -90,8 +65,10 @@ TEST_P(Reference, AgreesWithinStatistics) {
   Image image = renderReference(GetParam());
   Image reference = readImage(name + "_best.exr");
   attachError(reference, readImage(name + "_best_se.exr"));
-  image = tiles(image, tile);
-  reference = tiles(reference, tile);
+  // Near the thin shells of S2 a pixel's samples are so skewed that its z has mean 0 only from
+  // thousands of samples on; a tile's has it from hundreds.
+  image = tileMeans(image, tile);
+  reference = tileMeans(reference, tile);
   const Comparison comparison = compareImages(image, reference);
   ASSERT_TRUE(comparison.z);
   // 65536 pixels or 4096 tiles, of which S2 fills three quarters: four standard errors of each.
