@@ -348,5 +348,16 @@ TEST(DicomSeries, readsARealSeries) {
       }
 }
 
+/// Inputs that ended the process inside GDCM's decoders when it ran there.
+TEST(DicomSeries, survivesStreamsThatItsDecodersDoNot) {
+  const auto corpus = Path(__FILE__).parent_path() / "../Fuzz/Corpus/Dicom";
+  const TemporaryFolder folder;
+  for (const char* name : {"jpeg2000-stream.dcm"}) {
+    std::filesystem::copy_file(corpus / name, folder / name);
+    fenestra::expectRefused(folder / name, "PixelData: cannot be decoded",
+                            [&] { readDicomVolume({folder / name}, "CT"); });
+  }
+}
+
 } // namespace
 } // namespace fenestra

@@ -1,12 +1,11 @@
 #include "io/medical/DicomPixels.h"
 
 #include "core/Error.h"
-#include "io/medical/Quiet.h"
+#include "io/Apart.h"
 
 #include <gdcmFragment.h>
 #include <gdcmImage.h>
 #include <gdcmSequenceOfFragments.h>
-#include <gdcmTrace.h>
 
 #include <fstream>
 #include <optional>
@@ -61,45 +60,61 @@ std::optional<PictureSize> codestreamSize(const std::string& bytes) {
   return std::nullopt;
 }
 
-std::string decompressed(const Path& path, const DicomHeader& h, std::ifstream& file) {
-  const Quiet quiet;
-  gdcm::Trace::WarningOff();
-  gdcm::Trace::ErrorOff();
-  const auto syntax = gdcm::TransferSyntax::GetTSType(h.transferSyntax.c_str());
-  const gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
-  std::string bytes;
+/// The compressed parts, one after the other in the file.
+std::vector<std::string> fragmentsOf(const Path& path, const DicomHeader& h, std::ifstream& file) {
+  std::vector<std::string> parts;
   for (const DicomFragment& place : h.pixels) {
     std::string part(static_cast<std::size_t>(place.length), '\0');
     file.seekg(static_cast<std::streamoff>(place.begin));
     if (!file.read(part.data(), static_cast<std::streamsize>(part.size())))
       throwUndecodable(path);
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+/// GDCM's work; false where it cannot.
+bool decode(const DicomHeader& h, const std::vector<std::string>& parts, std::uint64_t size,
+            char* voxels) {
+  const gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
+  for (const std::string& part : parts) {
     gdcm::Fragment fragment;
     fragment.SetByteValue(part.data(), static_cast<std::uint32_t>(part.size()));
     fragments->AddFragment(fragment);
-    bytes += part;
   }
-  const bool isRle = h.transferSyntax == "1.2.840.10008.1.2.5";
-  const auto size = codestreamSize(bytes);
-  if (syntax == gdcm::TransferSyntax::TS_END)
-    throwUndecodable(path);
-  if (!isRle && (!size || size->rows != h.rows || size->columns != h.columns))
-    throwUndecodable(path);
   gdcm::DataElement element(gdcm::Tag(0x7fe0, 0x0010), gdcm::VL(0xffffffff), gdcm::VR::OB);
   element.SetValue(*fragments);
   gdcm::Image image;
   image.SetNumberOfDimensions(2);
   image.SetDimension(0, h.columns);
   image.SetDimension(1, h.rows);
-  image.SetTransferSyntax(syntax);
+  image.SetTransferSyntax(gdcm::TransferSyntax::GetTSType(h.transferSyntax.c_str()));
   const auto two = [](unsigned value) { return static_cast<std::uint16_t>(value); };
   image.SetPixelFormat(
       gdcm::PixelFormat(1, two(h.bits), two(h.bitsStored), two(h.highBit), two(h.isSigned)));
   image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
   image.SetDataElement(element);
-  std::string voxels(static_cast<std::size_t>(imageBytes(h)), '\0');
-  if (image.GetBufferLength() != voxels.size() || !image.GetBuffer(voxels.data()))
+  return image.GetBufferLength() == size && image.GetBuffer(voxels);
+}
+
+std::string decompressed(const Path& path, const DicomHeader& h, std::ifstream& file) {
+  const std::vector<std::string> parts = fragmentsOf(path, h, file);
+  std::string bytes;
+  for (const std::string& part : parts)
+    bytes += part;
+  const bool isRle = h.transferSyntax == "1.2.840.10008.1.2.5";
+  const auto size = codestreamSize(bytes);
+  if (gdcm::TransferSyntax::GetTSType(h.transferSyntax.c_str()) == gdcm::TransferSyntax::TS_END)
     throwUndecodable(path);
-  return voxels;
+  if (!isRle && (!size || size->rows != h.rows || size->columns != h.columns))
+    throwUndecodable(path);
+  const std::uint64_t expected = imageBytes(h);
+  auto voxels = filledApart(static_cast<std::size_t>(expected), [&](char* place) {
+    return decode(h, parts, expected, place); // damaged streams crash it
+  });
+  if (!voxels)
+    throwUndecodable(path);
+  return std::move(*voxels);
 }
 
 // ---- stored values
