@@ -171,13 +171,13 @@ struct Estimates {
       : means(colours(image)),
         errors(findPlanes(image, errorNames)),
         samples(image.find("samples.N")) {
-    if (!complete(errors) || !samples)
-      throw inputError("pictures", "one has no channels error.R, error.G, error.B and samples.N; "
-                                   "compare renders with all layers");
+    if (!complete(errors))
+      throw inputError("pictures", "one has no channels error.R, error.G and error.B; compare "
+                                   "renders with all layers");
   }
   double mean(std::size_t c, std::size_t i) const { return (*means[c])[i]; }
   double variance(std::size_t c, std::size_t i) const { return square((*errors[c])[i]); }
-  double count(std::size_t i) const { return (*samples)[i]; }
+  double count(std::size_t i) const { return samples ? (*samples)[i] : 0.0; }
 };
 
 /// Sums over one tile and channel.
@@ -198,7 +198,9 @@ TileSums sumTile(const Image& image, const Estimates& estimates, std::size_t c, 
   TileSums sums;
   for (int row = top; row < std::min(top + size, image.height); ++row)
     for (int column = left; column < std::min(left + size, image.width); ++column)
-      sums.add(estimates, c, static_cast<std::size_t>(row * image.width + column));
+      sums.add(estimates, c,
+               static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                   static_cast<std::size_t>(column));
   return sums;
 }
 
@@ -264,7 +266,8 @@ Image tileMeans(const Image& image, int size) {
         result.channels[errorNames[c]].push_back(
             static_cast<float>(std::sqrt(sums.variance) / sums.pixels));
       }
-      result.channels["samples.N"].push_back(static_cast<float>(sums.samples));
+      if (estimates.samples)
+        result.channels["samples.N"].push_back(static_cast<float>(sums.samples));
     }
   return result;
 }
@@ -272,6 +275,8 @@ Image tileMeans(const Image& image, int size) {
 double agreementProbability(const Image& a, const Image& b) {
   const Pair pair(a, b);
   const Estimates estimatesA(a), estimatesB(b);
+  if (!estimatesA.samples || !estimatesB.samples)
+    throw inputError("pictures", "one has no channel samples.N; compare renders with all layers");
   double least = 1.0, count = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < pair.pixels; ++i) {

@@ -55,7 +55,7 @@ Image tileMeans(const Image& image, int size);
 /// count of them is, so t has no more degrees of freedom than the shorter render would have paths,
 /// were they equally bright (mean^2 / se^2): its tails are then the heavier ones. Exact values (see
 /// ZStatistics) that differ make the probability 0; so does what is not finite. Throws as tileMeans
-/// does, and for different sizes.
+/// does, and for a missing samples.N and different sizes.
 double agreementProbability(const Image& a, const Image& b);
 
 /// Takes R, G, B of `error`, a picture of standard errors, as the error channels of `image`. Throws

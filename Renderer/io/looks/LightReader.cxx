@@ -30,7 +30,7 @@ Rgb readRadiance(const JsonNode& node) {
 
 /// One that a message of one line can name.
 std::string readFileName(const JsonNode& node) {
-  const std::string name = node.text();
+  std::string name = node.text();
   if (name.find_first_of(std::string_view("\0\n\r", 3)) != std::string::npos)
     throw node.error("\"" + shown(name) + "\" is no file name; give one without line breaks");
   return name;
