@@ -9,3 +9,4 @@ fenestra_test(DicomSeriesTests DicomSeriesTests.cxx
   LIBRARIES fenestra_io_medical fenestra_itk ${ITK_LIBRARIES} LABELS unit)
 fenestra_test(ClosedSurfaceTests ClosedSurfaceTests.cxx
   LIBRARIES fenestra_io_medical fenestra_itk ZLIB::ZLIB LABELS unit)
+fenestra_test(ApartTests ApartTests.cxx LIBRARIES fenestra_io LABELS unit)
