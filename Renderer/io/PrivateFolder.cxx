@@ -64,7 +64,7 @@ void PrivateFolder::addFolder(const std::filesystem::path& folder) {
 }
 
 std::filesystem::path PrivateFolder::add(const std::filesystem::path& relative) {
-  const std::filesystem::path path = m_path / relative;
+  std::filesystem::path path = m_path / relative;
   addFolder(path.parent_path());
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (file < 0)

@@ -70,7 +70,7 @@ void writeZip(const std::filesystem::path& path, const std::vector<ZipEntry>& en
     addEntry(archive.get(), entry, path);
   if (zip_close(archive.get()) != 0)
     throw zipError(path, zip_strerror(archive.get()));
-  archive.release(); // closed: freed
+  static_cast<void>(archive.release()); // closed: freed
   file.commit();
 }
 

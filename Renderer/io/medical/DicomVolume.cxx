@@ -131,7 +131,7 @@ Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes,
   if (slices.size() == 1)
     return axes.normal();
   checkGaps(slices);
-  const Vec3 step =
+  Vec3 step =
       (slices.back().position - slices.front().position) / static_cast<double>(slices.size() - 1);
   const std::vector<double>& pixel = slices.front().header.pixelSpacing;
   double most = 0.0;
@@ -215,7 +215,7 @@ Volume readSlices(const std::vector<Path>& files, const std::string& name) {
   const Grid grid = gridOf(slices, axes, step);
   Volume volume = makeVolume(name, grid, readAll(slices));
   for (const std::string& warning : warnings)
-    volume.warnings.push_back(name + ": " + warning);
+    volume.warnings.push_back(std::string(name).append(": ").append(warning));
   return volume;
 }
 

@@ -43,7 +43,7 @@ TransformSense senseOf(const MrmlNode& node) {
 }
 
 std::optional<Affine> inlineMatrix(const MrmlScene& scene, const MrmlNode& node) {
-  if (const auto toParent = matrixOf(scene, node, "matrixTransformToParent"))
+  if (auto toParent = matrixOf(scene, node, "matrixTransformToParent"))
     return toParent;
   const auto fromParent = matrixOf(scene, node, "matrixTransformFromParent");
   return fromParent ? std::optional<Affine>(fromParent->inverse()) : std::nullopt;
