@@ -273,6 +273,13 @@ TEST(VolumeReader, refusesSizesThatTheFileCannotHold) {
   expectRefusal(meta("2000000 2000000 2000000", "CompressedData = True\n"), "truncated");
   expectRefusal(meta("100 100", ""), "DimSize");
   expectRefusal(meta("3 3 3\nNDims = 4000", ""), "NDims");
+  expectRefusal(meta("3 3 3\nNDims" + std::string(1, '\0') + " = -1\nDimSize = 1", ""), "damaged");
+  // MetaIO reads on and on after these.
+  expectRefusal(meta("3 3 3\nElementSpacing: 1 = 1", ""), "damaged");
+  expectRefusal(meta("3 3 3\nComment = a\x05"
+                     "b",
+                     ""),
+                "damaged");
   expectRefusal(meta("3 3 3\nComment = " + std::string(3000, 'c'), ""), "Comment");
   expectRefusal(meta("1 1 1\nTransformMatrix = 1 0", ""), "TransformMatrix");
   writeFile(folder / "v.nii", ramp<float>(0, 1));

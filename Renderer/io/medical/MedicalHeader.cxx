@@ -210,15 +210,30 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
                                         " numbers; give it " + std::to_string(needed));
 }
 
+bool isControl(unsigned char c) {
+  return (c < 0x20 && c != '\t' && c != '\r') || c == 0x7f;
+}
+
+/// To MetaIO a zero byte ends a key, so that it may read another one than we do.
+bool hasControls(std::string_view line) {
+  return std::any_of(line.begin(), line.end(),
+                     [](unsigned char c) { return c < 0x20 && c != '\t'; });
+}
+
 Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
   Fields fields;
   std::int64_t dimension = 0;
   while (!fields.contains("ElementDataFile")) {
     const auto line = lines.next();
     const std::size_t equals = line ? line->find('=') : std::string_view::npos;
-    if (equals == std::string_view::npos)
+    if (equals == std::string_view::npos || hasControls(trimmed(*line)))
       throw damaged(path, "MetaImage");
-    const std::string key(trimmed(line->substr(0, equals)));
+    // MetaIO takes a colon for an equals sign, and loses its way in what is no text.
+    const std::string_view name = line->substr(0, equals);
+    if (name.find(':') != std::string_view::npos ||
+        std::any_of(line->begin(), line->end(), isControl))
+      throw damaged(path, "MetaImage");
+    const std::string key(trimmed(name));
     fields[key] = trimmed(line->substr(equals + 1));
     if (key == "NDims") {
       dimension = wholeNumber(fields[key]).value_or(0);
