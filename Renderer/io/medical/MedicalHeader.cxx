@@ -210,14 +210,10 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
                                         " numbers; give it " + std::to_string(needed));
 }
 
-bool isControl(unsigned char c) {
-  return (c < 0x20 && c != '\t' && c != '\r') || c == 0x7f;
-}
-
 /// To MetaIO a zero byte ends a key, so that it may read another one than we do.
 bool hasControls(std::string_view line) {
   return std::any_of(line.begin(), line.end(),
-                     [](unsigned char c) { return c < 0x20 && c != '\t'; });
+                     [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
 }
 
 Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
@@ -228,10 +224,8 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
     const std::size_t equals = line ? line->find('=') : std::string_view::npos;
     if (equals == std::string_view::npos || hasControls(trimmed(*line)))
       throw damaged(path, "MetaImage");
-    // MetaIO takes a colon for an equals sign, and loses its way in what is no text.
     const std::string_view name = line->substr(0, equals);
-    if (name.find(':') != std::string_view::npos ||
-        std::any_of(line->begin(), line->end(), isControl))
+    if (name.find(':') != std::string_view::npos) // which MetaIO takes for an equals sign
       throw damaged(path, "MetaImage");
     const std::string key(trimmed(name));
     fields[key] = trimmed(line->substr(equals + 1));
