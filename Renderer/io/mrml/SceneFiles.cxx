@@ -89,7 +89,7 @@ bool SceneFiles::holds(const std::string& fileName) const {
 
 std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   const std::filesystem::path name = decodedUrl(fileName);
-  const std::filesystem::path file = resolved(fileName);
+  std::filesystem::path file = resolved(fileName);
   if (!m_archive) {
     if (std::error_code failed; !std::filesystem::exists(file, failed))
       throw inputError(m_source, "names " + file.string() +
