@@ -83,7 +83,7 @@ std::filesystem::path SceneFiles::resolved(const std::string& fileName) const {
 
 bool SceneFiles::holds(const std::string& fileName) const {
   std::error_code failed;
-  std::filesystem::path file = resolved(fileName);
+  const std::filesystem::path file = resolved(fileName);
   return m_archive ? m_archive->contains(file) : std::filesystem::exists(file, failed);
 }
 
