@@ -1,5 +1,6 @@
 #include "cli/CommandLine.h"
 #include "cli/InspectReport.h"
+#include "io/ShownText.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -14,13 +15,6 @@ constexpr std::size_t mostNodes = 20, mostSegments = 100; ///< listed one by one
 // ---- words
 // ---------------------------------------------------------------------------------------
 
-/// On one line: control characters become blanks.
-std::string plain(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return text;
-}
-
 bool startsCharacter(char c) { // in UTF-8
   return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
 }
@@ -31,7 +25,7 @@ std::size_t characters(const std::string& text) {
 
 /// At most `most` characters, the last ones "..." where some are left out.
 std::string clipped(std::string text, std::size_t most) {
-  text = plain(std::move(text));
+  text = oneLine(std::move(text));
   if (characters(text) <= most)
     return text;
   std::size_t end = 0;
@@ -109,7 +103,7 @@ public:
 
   /// Wrapped; the first line starts with `label`, the others as far in.
   void paragraph(const std::string& label, const std::string& text) {
-    const std::string lines = wrapped(plain(text), width - characters(label));
+    const std::string lines = wrapped(oneLine(text), width - characters(label));
     const std::string margin(characters(label), ' ');
     m_text += label;
     for (const char c : lines) {
@@ -247,7 +241,7 @@ Entry renderingEntry(const RenderingSummary& rendering) {
   if (!rendering.roi.empty())
     addRemark(entry.remark,
               (rendering.cropping ? "cropped by " : "cropping off, ") + rendering.roi);
-  entry.remark = plain(entry.remark);
+  entry.remark = oneLine(entry.remark);
   return entry;
 }
 

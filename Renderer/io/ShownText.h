@@ -1,16 +1,20 @@
 #pragma once
-// Text from files in messages: on one line, and short.
+// Text from files in messages: on one line, and short where it can be.
 
 #include <algorithm>
 #include <string>
 
 namespace fenestra {
 
-inline std::string shown(const std::string& text) {
-  std::string line = text.substr(0, 80);
+/// Control characters become blanks.
+inline std::string oneLine(std::string text) {
   std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return line;
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  return text;
+}
+
+inline std::string shown(const std::string& text) {
+  return oneLine(text.substr(0, 80));
 }
 
 } // namespace fenestra

@@ -1,6 +1,7 @@
 #include "io/mrml/MrmlDocument.h"
 
 #include "io/NumberText.h"
+#include "io/ShownText.h"
 
 #include <pugixml.hpp>
 
@@ -151,12 +152,9 @@ Error MrmlDocument::error(const MrmlNode& node, const std::string& what) const {
 }
 
 std::string shown(const MrmlNode& node) {
-  constexpr std::size_t longest = 80;
-  std::string text = node.name.substr(0, longest);
+  std::string text = shown(node.name);
   if (!node.id.empty())
-    text.append(text.empty() ? "(" : " (").append(node.id, 0, longest).append(")");
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+    text.append(text.empty() ? "(" : " (").append(shown(node.id)).append(")");
   return text;
 }
 
