@@ -63,6 +63,17 @@ TEST(SceneFiles, findsFilesInAnArchiveAndCleansUp) {
   EXPECT_FALSE(std::filesystem::exists(unpacked.parent_path().parent_path().parent_path()));
 }
 
+TEST(SceneFiles, namesFilesOnOneLine) {
+  const TemporaryFolder folder;
+  writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}});
+  SceneFiles archive(folder / "a.mrb");
+  expectRefused(folder / "a.mrb", "names a b, which it", [&] { archive.locate("a\nb"); });
+  expectRefused(folder / "a.mrb", "names ../a b, which is", [&] { archive.locate("../a\nb"); });
+  const auto scene = folder.write("a.mrml", "<MRML/>");
+  SceneFiles beside(scene);
+  expectRefused(scene, "a b, which is not there", [&] { beside.locate("a\nb"); });
+}
+
 TEST(SceneFiles, unpacksNothingBeforeItIsAskedFor) {
   const TemporaryFolder folder;
   const TemporaryFolder temporary;

@@ -1,6 +1,7 @@
 #include "io/mrml/SceneArchive.h"
 
 #include "core/Error.h"
+#include "io/ShownText.h"
 
 #include <zip.h>
 
@@ -37,8 +38,11 @@ struct SceneArchive::Zip {
   std::unique_ptr<zip_t, Close> archive;
   std::string source;
 
+  Error error(const std::filesystem::path& file, const std::string& what) const {
+    return inputError(source, oneLine(file.string()) + " in it " + what);
+  }
   Error damaged(const std::filesystem::path& file) const {
-    return inputError(source, file.string() + " in it is damaged; save the scene again");
+    return error(file, "is damaged; save the scene again");
   }
 
   zip_stat_t stat(std::uint64_t entry, const std::filesystem::path& file) const {
@@ -48,11 +52,9 @@ struct SceneArchive::Zip {
     if (zip_stat_index(archive.get(), entry, 0, &stat) != 0 || (stat.valid & needed) != needed)
       throw damaged(file);
     if (stat.encryption_method != ZIP_EM_NONE)
-      throw inputError(source,
-                       file.string() + " in it is encrypted; save the scene without a password");
+      throw error(file, "is encrypted; save the scene without a password");
     if (stat.size / greatestRatio > stat.comp_size)
-      throw inputError(source, file.string() + " in it claims more bytes than it can hold; save "
-                                               "the scene again");
+      throw error(file, "claims more bytes than it can hold; save the scene again");
     return stat;
   }
 
@@ -98,7 +100,7 @@ SceneArchive::SceneArchive(const std::filesystem::path& path)
     const std::filesystem::path file = name;
     if (leadsOut(file))
       throw inputError(m_source, "holds an entry that leads out of the archive (" +
-                                     file.string().substr(0, 80) + "); it is not Slicer's work");
+                                     shown(file.string()) + "); it is not Slicer's work");
     if (!file.empty() && file.has_filename())
       found.emplace_back(file.lexically_normal(), index);
   }
@@ -120,16 +122,19 @@ void SceneArchive::extract(const std::filesystem::path& file,
                            const std::filesystem::path& destination) const {
   const auto at = std::lower_bound(m_files.begin(), m_files.end(), file);
   const std::uint64_t entry = m_entries[static_cast<std::size_t>(at - m_files.begin())];
+  const auto noRoom = [&] {
+    return outputError(oneLine(destination.string()), "there is no room to unpack " +
+                                                          oneLine(file.string()) +
+                                                          "; set TMPDIR to a folder with more");
+  };
   std::ofstream out(destination, std::ios::binary);
   m_zip->read(entry, file, m_zip->stat(entry, file).size, [&](std::string_view chunk) {
     if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size())))
-      throw outputError(destination.string(), "there is no room to unpack " + file.string() +
-                                                  "; set TMPDIR to a folder with more");
+      throw noRoom();
   });
   out.close();
   if (!out)
-    throw outputError(destination.string(), "there is no room to unpack " + file.string() +
-                                                "; set TMPDIR to a folder with more");
+    throw noRoom();
 }
 
 std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t most) const {
@@ -137,8 +142,8 @@ std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t 
   const std::uint64_t entry = m_entries[static_cast<std::size_t>(at - m_files.begin())];
   const std::uint64_t size = m_zip->stat(entry, file).size;
   if (size > most)
-    throw inputError(m_source, file.string() + " in it is larger than " +
-                                   std::to_string(most >> 20) + " MB; save a smaller scene");
+    throw m_zip->error(file, "is larger than " + std::to_string(most >> 20) +
+                                 " MB; save a smaller scene");
   std::string text;
   m_zip->read(entry, file, size, [&](std::string_view chunk) { text += chunk; });
   return text;

@@ -2,6 +2,7 @@
 
 #include "io/InputFile.h"
 #include "io/JsonNode.h"
+#include "io/ShownText.h"
 #include "io/mrml/SceneArchive.h"
 
 #include <algorithm>
@@ -36,7 +37,7 @@ std::filesystem::path mainScene(const SceneArchive& archive, const std::filesyst
   for (const std::filesystem::path& file : closest) {
     if (file.stem() == path.stem() || file.stem() == file.parent_path().filename())
       named.push_back(file);
-    listed += (listed.empty() ? "" : ", ") + file.string();
+    listed += (listed.empty() ? "" : ", ") + oneLine(file.string());
   }
   if (named.size() == 1)
     return named.front();
@@ -92,18 +93,18 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   std::filesystem::path file = resolved(fileName);
   if (!m_archive) {
     if (std::error_code failed; !std::filesystem::exists(file, failed))
-      throw inputError(m_source, "names " + file.string() +
+      throw inputError(m_source, "names " + oneLine(file.string()) +
                                      ", which is not there; put it back, or save the scene again");
     return file;
   }
   if (const auto known = m_located.find(file); known != m_located.end())
     return known->second;
   if (name.is_absolute() || *file.begin() == "..")
-    throw inputError(m_source, "names " + name.string() +
+    throw inputError(m_source, "names " + oneLine(name.string()) +
                                    ", which is outside the archive; save the scene again");
   if (!m_archive->contains(file))
-    throw inputError(m_source,
-                     "names " + file.string() + ", which it does not hold; save the scene again");
+    throw inputError(m_source, "names " + oneLine(file.string()) +
+                                   ", which it does not hold; save the scene again");
   if (!m_unpacked)
     m_unpacked.emplace();
   const std::filesystem::path destination = m_unpacked->add(file);
