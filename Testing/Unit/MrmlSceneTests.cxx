@@ -65,6 +65,23 @@ TEST(MrmlScene, namesTheNodeWhoseFileIsMissing) {
                 [&] { readSceneVolume(scene, node(scene, "w")); });
 }
 
+TEST(MrmlScene, warnsOfAnArchivesVolumeByItsNameInTheArchive) {
+  const SceneFolder folder;
+  std::vector<float> samples(24, 0.0F);
+  samples[5] = std::nanf("");
+  writeFile(folder / "odd.nrrd", samples);
+  const auto archive = folder / "a.mrb";
+  writeArchive(archive, {{"a/a.mrml", R"(<MRML><Volume id="v" storageNodeRef="s"/>
+    <VolumeArchetypeStorage id="s" fileName="odd.nrrd"/></MRML>)"},
+                         {"a/odd.nrrd", bytesOf(folder / "odd.nrrd")}});
+  MrmlScene scene(archive);
+  const Volume volume = readSceneVolume(scene, node(scene, "v"));
+  EXPECT_EQ(volume.name, archive.string() + "/a/odd.nrrd");
+  ASSERT_EQ(volume.warnings.size(), 1U);
+  EXPECT_EQ(volume.warnings[0].find(archive.string() + "/a/odd.nrrd: 1 voxels"), 0U)
+      << volume.warnings[0];
+}
+
 TEST(MrmlScene, readsSegmentationsAndLabelMapsInTheWorld) {
   const SceneFolder folder;
   std::vector<std::uint8_t> labels(24, 0);

@@ -53,8 +53,13 @@ TEST(SceneFiles, findsFilesInAnArchiveAndCleansUp) {
         std::filesystem::status(unpacked.parent_path().parent_path().parent_path()).permissions() &
             std::filesystem::perms::others_all,
         std::filesystem::perms::none);
-    const Error known = files.asKnown(inputError(unpacked.string(), "is damaged"));
-    EXPECT_EQ(std::string(known.what()), archive.string() + "/Study/Data/a b.txt: is damaged");
+    const std::string known = archive.string() + "/Study/Data/a b.txt";
+    EXPECT_EQ(files.asKnown(unpacked.string() + ": odd"), known + ": odd");
+    expectRefused(known, "is damaged", [&] {
+      files.read({"Data/a%20b.txt"}, [](const std::vector<std::filesystem::path>& paths) {
+        throw inputError(paths.front().string(), "is damaged");
+      });
+    });
     expectRefused(archive, "outside the archive", [&] { files.locate("../../up.txt"); });
     expectRefused(archive, "outside the archive", [&] { files.locate("/etc/passwd"); });
     expectRefused(archive, "does not hold", [&] { files.locate("Data/missing.txt"); });

@@ -126,12 +126,10 @@ Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
   const std::vector<std::string> names = storedFiles(scene, roi);
   if (names.empty())
     return inlineRoi(scene, roi);
-  const std::filesystem::path file = scene.files.locate(names.front());
-  try {
+  return scene.files.read({names.front()}, [](const auto& files) {
+    const std::filesystem::path& file = files.front();
     return lowerExtension(file) == ".acsv" ? readAnnotation(file) : readMarkupsJson(file);
-  } catch (const Error& error) {
-    throw scene.files.asKnown(error);
-  }
+  });
 }
 
 } // namespace

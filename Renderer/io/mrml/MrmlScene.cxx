@@ -11,6 +11,8 @@
 namespace fenestra {
 namespace {
 
+using Paths = std::vector<std::filesystem::path>;
+
 /// What a storage node says of the geometry in a volume's file (vtkITKArchetypeImageSeriesReader).
 Grid placed(const MrmlNode* storage, const Grid& fromFile) {
   if (!storage)
@@ -26,20 +28,12 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
   return {fromFile.size, indexToWorld};
 }
 
-/// Runs a reader on the node's files, and lets its errors name them as the user does.
-template <typename Read>
-auto withFiles(MrmlScene& scene, const MrmlNode& node, Read&& read) {
-  const std::vector<std::string> names = storedFiles(scene, node);
+/// The files that hold a node's data.
+std::vector<std::string> dataFiles(const MrmlScene& scene, const MrmlNode& node) {
+  std::vector<std::string> names = storedFiles(scene, node);
   if (names.empty())
     throw scene.document.error(node, "names no file; save its data in Slicer, then the scene");
-  std::vector<std::filesystem::path> files;
-  for (const std::string& name : names)
-    files.push_back(scene.files.locate(name));
-  try {
-    return read(files);
-  } catch (const Error& error) {
-    throw scene.files.asKnown(error);
-  }
+  return names;
 }
 
 bool isOf(std::string_view word, std::initializer_list<std::string_view> words) {
@@ -89,14 +83,16 @@ std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& nod
 
 Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
   const Affine above = toWorld(scene, node);
-  Volume volume = withFiles(scene, node, [&](const std::vector<std::filesystem::path>& files) {
+  Volume volume = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
     // A volume's file comes alone or with its samples beside it; otherwise the files are slices.
     return medicalFormat(files.front()) ? readVolume(files.front())
                                         : readDicomVolume(files, node.name);
   });
+  for (std::string& warning : volume.warnings)
+    warning = scene.files.asKnown(warning);
   volume.grid = placed(scene.document.follow(node, "storage"), volume.grid);
   volume.grid = Grid(volume.grid.size, above * volume.grid.indexToWorld);
-  volume.name = node.name.empty() ? volume.name : node.name;
+  volume.name = node.name.empty() ? scene.files.asKnown(volume.name) : node.name;
   return volume;
 }
 
@@ -106,10 +102,9 @@ Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const
   if (volume)
     inNode.emplace(volume->size, above.inverse() * volume->indexToWorld);
   const MrmlNode* storage = isLabelMap(node) ? scene.document.follow(node, "storage") : nullptr;
-  Segmentation segmentation =
-      withFiles(scene, node, [&](const std::vector<std::filesystem::path>& files) {
-        return readSegmentation(files.front(), inNode ? &*inNode : nullptr);
-      });
+  Segmentation segmentation = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
+    return readSegmentation(files.front(), inNode ? &*inNode : nullptr);
+  });
   const Grid grid = placed(storage, segmentation.grid());
   segmentation.moveTo(Grid(grid.size, above * grid.indexToWorld));
   return segmentation;
@@ -143,9 +138,8 @@ TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property) {
                                          "volume property, or give --transfer");
   if (names.empty())
     return parseTransferFunction(property.attributes, inScene);
-  return withFiles(scene, property, [](const std::vector<std::filesystem::path>& files) {
-    return readTransferFunction(files.front());
-  });
+  return scene.files.read(names,
+                          [](const Paths& files) { return readTransferFunction(files.front()); });
 }
 
 std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const MrmlNode& display,

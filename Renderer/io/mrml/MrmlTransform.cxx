@@ -60,12 +60,9 @@ Affine toParent(MrmlScene& scene, const MrmlNode& node) {
       throw scene.document.error(node, "has neither a matrix nor a file; save the transform again");
     return *matrix;
   }
-  const std::filesystem::path file = scene.files.locate(names.front());
-  try {
-    return readLinearTransform(file, senseOf(node));
-  } catch (const Error& error) {
-    throw scene.files.asKnown(error);
-  }
+  return scene.files.read({names.front()}, [&](const auto& files) {
+    return readLinearTransform(files.front(), senseOf(node));
+  });
 }
 
 } // namespace

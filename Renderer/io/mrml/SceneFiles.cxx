@@ -5,8 +5,7 @@
 #include "io/ShownText.h"
 #include "io/mrml/SceneArchive.h"
 
-#include <algorithm>
-#include <vector>
+#include <string_view>
 
 namespace fenestra {
 namespace {
@@ -112,13 +111,14 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   return m_located[file] = destination;
 }
 
-Error SceneFiles::asKnown(const Error& error) const {
-  std::string line = error.what();
-  if (m_unpacked)
-    for (std::size_t at = line.find(m_unpacked->path().string()); at != std::string::npos;
-         at = line.find(m_unpacked->path().string(), at + m_source.size()))
-      line.replace(at, m_unpacked->path().string().size(), m_source);
-  return {error.kind(), line};
+std::string SceneFiles::asKnown(std::string message) const {
+  if (m_unpacked) {
+    const std::string unpacked = m_unpacked->path().string();
+    for (std::size_t at = message.find(unpacked); at != std::string::npos;
+         at = message.find(unpacked, at + m_source.size()))
+      message.replace(at, unpacked.size(), m_source);
+  }
+  return oneLine(std::move(message));
 }
 
 } // namespace fenestra

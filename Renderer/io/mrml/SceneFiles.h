@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 namespace fenestra {
 
@@ -41,8 +41,21 @@ public:
   /// Whether locate would find it.
   bool holds(const std::string& fileName) const;
 
-  /// The error with the places of unpacked files as the user knows them.
-  Error asKnown(const Error& error) const;
+  /// What `reader` makes of the paths where these files are; its errors name files as the user
+  /// knows them. Throws Error (input) as locate does.
+  template <typename Reader>
+  auto read(const std::vector<std::string>& fileNames, Reader&& reader) {
+    std::vector<std::filesystem::path> paths;
+    for (const std::string& fileName : fileNames)
+      paths.push_back(locate(fileName));
+    try {
+      return reader(paths);
+    } catch (const Error& error) {
+      throw Error(error.kind(), asKnown(error.what()));
+    }
+  }
+  /// A message with the places of unpacked files as the user knows them, on one line.
+  std::string asKnown(std::string message) const;
 
 private:
   std::filesystem::path resolved(const std::string& fileName) const;
