@@ -9,7 +9,6 @@
 #include <array>
 #include <fstream>
 #include <functional>
-#include <numeric>
 #include <string_view>
 
 namespace fenestra {
@@ -80,48 +79,35 @@ struct SceneArchive::Zip {
   }
 };
 
-SceneArchive::SceneArchive(const std::filesystem::path& path)
-    : m_source(path.string()), m_zip(std::make_unique<Zip>()) {
+SceneArchive::SceneArchive(const std::filesystem::path& path) : m_zip(std::make_unique<Zip>()) {
   int failure = 0;
-  m_zip->source = m_source;
-  m_zip->archive.reset(zip_open(path.c_str(), ZIP_RDONLY, &failure));
-  if (!m_zip->archive)
-    throw inputError(m_source, "is no whole archive; save the scene again, or name its .mrml");
-  const zip_int64_t count = zip_get_num_entries(m_zip->archive.get(), 0);
+  const std::string& source = m_zip->source = path.string();
+  zip_t* zip = zip_open(path.c_str(), ZIP_RDONLY, &failure);
+  if (!zip)
+    throw inputError(source, "is no whole archive; save the scene again, or name its .mrml");
+  m_zip->archive.reset(zip);
+  const zip_int64_t count = zip_get_num_entries(zip, 0);
   if (count > mostEntries)
-    throw inputError(m_source, "holds more than a million files; save a smaller scene");
+    throw inputError(source, "holds more than a million files; save a smaller scene");
 
-  std::vector<std::pair<std::filesystem::path, std::uint64_t>> found;
-  for (zip_int64_t entry = 0; entry < count; ++entry) {
-    const auto index = static_cast<std::uint64_t>(entry);
-    const char* name = zip_get_name(m_zip->archive.get(), index, 0);
+  for (std::uint64_t entry = 0; entry < static_cast<std::uint64_t>(count); ++entry) {
+    const char* name = zip_get_name(zip, entry, 0);
     if (!name)
-      throw inputError(m_source, "has an entry without a name; save the scene again");
+      throw inputError(source, "has an entry without a name; save the scene again");
     const std::filesystem::path file = name;
     if (leadsOut(file))
-      throw inputError(m_source, "holds an entry that leads out of the archive (" +
-                                     shown(file.string()) + "); it is not Slicer's work");
+      throw inputError(source, "holds an entry that leads out of the archive (" +
+                                   shown(file.string()) + "); it is not Slicer's work");
     if (!file.empty() && file.has_filename())
-      found.emplace_back(file.lexically_normal(), index);
-  }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (auto& [file, entry] : found) {
-    m_files.push_back(std::move(file));
-    m_entries.push_back(entry);
+      m_files.try_emplace(file.lexically_normal(), entry);
   }
 }
 
 SceneArchive::~SceneArchive() = default;
 
-bool SceneArchive::contains(const std::filesystem::path& file) const {
-  return std::binary_search(m_files.begin(), m_files.end(), file);
-}
-
 void SceneArchive::extract(const std::filesystem::path& file,
                            const std::filesystem::path& destination) const {
-  const auto at = std::lower_bound(m_files.begin(), m_files.end(), file);
-  const std::uint64_t entry = m_entries[static_cast<std::size_t>(at - m_files.begin())];
+  const std::uint64_t entry = m_files.at(file);
   const auto noRoom = [&] {
     return outputError(oneLine(destination.string()), "there is no room to unpack " +
                                                           oneLine(file.string()) +
@@ -138,8 +124,7 @@ void SceneArchive::extract(const std::filesystem::path& file,
 }
 
 std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t most) const {
-  const auto at = std::lower_bound(m_files.begin(), m_files.end(), file);
-  const std::uint64_t entry = m_entries[static_cast<std::size_t>(at - m_files.begin())];
+  const std::uint64_t entry = m_files.at(file);
   const std::uint64_t size = m_zip->stat(entry, file).size;
   if (size > most)
     throw m_zip->error(file, "is larger than " + std::to_string(most >> 20) +

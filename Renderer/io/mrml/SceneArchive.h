@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace fenestra {
 
@@ -15,12 +15,12 @@ public:
   explicit SceneArchive(const std::filesystem::path& path);
   ~SceneArchive();
 
-  /// The files in it, by normal relative path.
-  const std::vector<std::filesystem::path>& files() const { return m_files; }
-  bool contains(const std::filesystem::path& file) const;
+  /// The files in it, by normal relative path: of each its number in the archive. Of several with
+  /// one path it is the first.
+  const std::map<std::filesystem::path, std::uint64_t>& files() const { return m_files; }
 
-  /// Writes a file of the archive into an existing, empty one. Throws Error: input where the entry
-  /// is damaged, encrypted or larger than it can be, output where there is no room.
+  /// Writes one of files() into an existing, empty file. Throws Error: input where the entry is
+  /// damaged, encrypted or larger than it can be, output where there is no room.
   void extract(const std::filesystem::path& file, const std::filesystem::path& destination) const;
   /// The same into a string of at most `most` bytes.
   std::string text(const std::filesystem::path& file, std::uint64_t most) const;
@@ -28,10 +28,8 @@ public:
 private:
   struct Zip;
 
-  std::string m_source;
   std::unique_ptr<Zip> m_zip;
-  std::vector<std::filesystem::path> m_files; ///< sorted
-  std::vector<std::uint64_t> m_entries;       ///< of each file, its number in the archive
+  std::map<std::filesystem::path, std::uint64_t> m_files;
 };
 
 } // namespace fenestra

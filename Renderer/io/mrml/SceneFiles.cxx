@@ -19,7 +19,7 @@ std::ptrdiff_t depth(const std::filesystem::path& file) {
 /// Slicer takes the scene closest to the root: those deeper belong to sequences.
 std::filesystem::path mainScene(const SceneArchive& archive, const std::filesystem::path& path) {
   std::vector<std::filesystem::path> closest;
-  for (const std::filesystem::path& file : archive.files()) {
+  for (const auto& [file, entry] : archive.files()) {
     if (lowerExtension(file) != ".mrml")
       continue;
     if (!closest.empty() && depth(file) < depth(closest.front()))
@@ -84,7 +84,7 @@ std::filesystem::path SceneFiles::resolved(const std::string& fileName) const {
 bool SceneFiles::holds(const std::string& fileName) const {
   std::error_code failed;
   const std::filesystem::path file = resolved(fileName);
-  return m_archive ? m_archive->contains(file) : std::filesystem::exists(file, failed);
+  return m_archive ? m_archive->files().contains(file) : std::filesystem::exists(file, failed);
 }
 
 std::filesystem::path SceneFiles::locate(const std::string& fileName) {
@@ -101,7 +101,7 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   if (name.is_absolute() || *file.begin() == "..")
     throw inputError(m_source, "names " + oneLine(name.string()) +
                                    ", which is outside the archive; save the scene again");
-  if (!m_archive->contains(file))
+  if (!m_archive->files().contains(file))
     throw inputError(m_source, "names " + oneLine(file.string()) +
                                    ", which it does not hold; save the scene again");
   if (!m_unpacked)
