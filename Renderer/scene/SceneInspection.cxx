@@ -23,10 +23,6 @@ bool isTransform(const MrmlNode& node) {
   return node.tag.ends_with("Transform");
 }
 
-std::string layoutOf(const MrmlNode& node) {
-  return node.find("layoutName") ? node.text("layoutName") : node.text("singletonTag");
-}
-
 std::string idOf(const MrmlNode* node) {
   return node ? node->id : std::string();
 }

@@ -66,6 +66,10 @@ bool isShown(const MrmlNode& display) {
   return display.flag("visibility", true) && display.flag("visibility3D", true);
 }
 
+std::string layoutOf(const MrmlNode& viewOrCamera) {
+  return viewOrCamera.text(viewOrCamera.find("layoutName") ? "layoutName" : "singletonTag");
+}
+
 std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node) {
   std::vector<std::string> names;
   const MrmlNode* storage = scene.document.follow(node, "storage");

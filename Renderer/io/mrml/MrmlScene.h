@@ -35,6 +35,9 @@ bool isVolumeRendering(const MrmlNode& node);
 /// A display node that shows its object in 3-D views.
 bool isShown(const MrmlNode& display);
 
+/// The name by which a view and its camera find each other; older scenes have it elsewhere.
+std::string layoutOf(const MrmlNode& viewOrCamera);
+
 /// Files of a node's storage, the first one first; empty where it has none.
 std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node);
 

@@ -148,13 +148,11 @@ const MrmlNode* chooseView(const MrmlDocument& document, const MrmlNode* renderi
 const MrmlNode* cameraOf(const MrmlDocument& document, const MrmlNode* view) {
   const Nodes cameras = document.withTag("Camera");
   if (view) {
-    const std::string layout =
-        view->find("layoutName") ? view->text("layoutName") : view->text("singletonTag");
+    const std::string layout = layoutOf(*view);
     for (const MrmlNode* camera : cameras) {
-      const std::string own =
-          camera->find("layoutName") ? camera->text("layoutName") : camera->text("singletonTag");
       const std::string active = camera->text("activetag");
-      if ((!layout.empty() && own == layout) || (!active.empty() && active == view->id))
+      if ((!layout.empty() && layoutOf(*camera) == layout) ||
+          (!active.empty() && active == view->id))
         return camera;
     }
   }
