@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
 namespace fenestra {
+
+/// Bytes that a text file of any kind may have.
+inline constexpr std::uint64_t largestText = std::uint64_t{64} << 20;
 
 /// Throws Error (input) unless `path` is a file; `mend` says what to name instead of a folder.
 inline void requireFile(const std::filesystem::path& path, const std::string& mend) {

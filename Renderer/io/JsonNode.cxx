@@ -8,7 +8,6 @@
 namespace fenestra {
 namespace {
 
-constexpr std::uintmax_t largestFile = 64 << 20;
 constexpr int deepest = 64;
 
 /// How deep brackets nest outside strings.
@@ -40,8 +39,9 @@ std::string readText(const std::filesystem::path& path) {
   requireFile(path, "name a file in it");
   std::error_code failed;
   const auto size = std::filesystem::file_size(path, failed);
-  if (failed || size > largestFile)
-    throw inputError(path.string(), "has more than 64 MB; name a smaller text file");
+  if (failed || size > largestText)
+    throw inputError(path.string(), "has more than " + std::to_string(largestText >> 20) +
+                                        " MB; name a smaller text file");
   std::string text(static_cast<std::size_t>(size), '\0');
   std::ifstream file(path, std::ios::binary);
   if (!file.read(text.data(), static_cast<std::streamsize>(size)))

@@ -5,7 +5,6 @@
 #include "io/medical/SegmentationReader.h"
 #include "io/medical/VolumeReader.h"
 #include "io/mrml/ScenePlan.h"
-#include "medium/VolumeProperty.h"
 
 namespace fenestra {
 namespace {

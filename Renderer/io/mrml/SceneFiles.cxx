@@ -10,8 +10,6 @@
 namespace fenestra {
 namespace {
 
-constexpr std::uint64_t largestScene = std::uint64_t{64} << 20;
-
 std::ptrdiff_t depth(const std::filesystem::path& file) {
   return std::distance(file.begin(), file.end());
 }
@@ -67,7 +65,7 @@ SceneFiles::SceneFiles(const std::filesystem::path& path) : m_source(path.string
   if (lowerExtension(path) == ".mrb") {
     m_archive = std::make_unique<SceneArchive>(path);
     const std::filesystem::path scene = mainScene(*m_archive, path);
-    m_sceneText = m_archive->text(scene, largestScene);
+    m_sceneText = m_archive->text(scene, largestText);
     m_folder = scene.parent_path();
   } else {
     m_sceneText = readText(path);

@@ -1,8 +1,6 @@
 #include "io/mrml/ScenePlan.h"
 
 #include <algorithm>
-#include <functional>
-#include <set>
 
 namespace fenestra {
 namespace {
@@ -106,7 +104,7 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoi
   both.insert(both.end(), labelMaps.begin(), labelMaps.end());
   if (choice.segmentation)
     return named(document, both, *choice.segmentation, "segmentation");
-  if (!choice.needsSegmentation && both.size() != 1)
+  if (!choice.needsSegmentation)
     return nullptr;
   const Nodes shownOnes = those(segmentations, [&](const MrmlNode& node) {
     const MrmlNode* display = document.follow(node, "display");
