@@ -13,22 +13,21 @@ std::array<double, 2> rangeOf(const Volume& volume) {
   return {volume.minimum, volume.maximum};
 }
 
-void readFocus(const SceneRequest& request, const Segmentation& segmentation, SceneInput& input) {
-  input.focus = segmentation.mask(request.focus, input.volume.grid);
-}
-
 /// The segmentation by its name in the scene, else a file of that name.
 void readSceneFocus(MrmlScene& scene, const ScenePlan& plan, const SceneRequest& request,
                     SceneInput& input) {
-  if (plan.segmentation)
-    return readFocus(request, readSceneSegmentation(scene, *plan.segmentation, &input.volume.grid),
-                     input);
+  const Grid& volume = input.volume.grid;
+  if (plan.segmentation) {
+    const Segmentation segmentation = readSceneSegmentation(scene, *plan.segmentation, &volume);
+    input.focus = scene.files.knowingly([&] { return segmentation.mask(request.focus, volume); });
+    return;
+  }
   if (!std::filesystem::exists(*request.segmentation))
     throw inputError(scene.document.source(),
                      "has no segmentation \"" + *request.segmentation +
                          "\", and there is no file of that name; fenestra inspect lists what "
                          "there is");
-  readFocus(request, readSegmentation(*request.segmentation, &input.volume.grid), input);
+  input.focus = readSegmentation(*request.segmentation, &volume).mask(request.focus, volume);
 }
 
 void readLook(MrmlScene& scene, const ScenePlan& plan, SceneInput& input) {
@@ -75,8 +74,9 @@ Volume readVolumeOrSeries(const SceneRequest& request) {
 
 SceneInput loadFiles(const SceneRequest& request) {
   SceneInput input{.volume = readVolumeOrSeries(request)};
+  const Grid& volume = input.volume.grid;
   if (!request.focus.empty())
-    readFocus(request, readSegmentation(*request.segmentation, &input.volume.grid), input);
+    input.focus = readSegmentation(*request.segmentation, &volume).mask(request.focus, volume);
   return input;
 }
 

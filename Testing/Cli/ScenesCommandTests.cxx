@@ -273,6 +273,18 @@ TEST_F(ScenesCommand, RefusesWhatASceneDoesNotHold) {
       folder.path());
 }
 
+TEST_F(ScenesCommand, NamesTheFilesOfAnArchiveAsTheyAreThere) {
+  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
+  int failure = 0;
+  zip_t* zip = zip_open((folder / "s.mrb").c_str(), ZIP_CREATE, &failure);
+  for (const std::string name : {"s.mrml", "volume.nrrd", "segments.seg.nrrd"})
+    zip_file_add(zip, name.c_str(), zip_source_file(zip, (folder / name).c_str(), 0, -1), 0);
+  ASSERT_EQ(zip_close(zip), 0);
+  expectRefused(
+      {{"segment", {"s.mrb", "--focus", "x"}, 3, "fenestra: s.mrb/segments.seg.nrrd: has no"}},
+      folder.path());
+}
+
 // ---- scenes that Slicer wrote
 // --------------------------------------------------------------------
 

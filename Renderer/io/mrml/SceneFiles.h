@@ -41,15 +41,20 @@ public:
   /// Whether locate would find it.
   bool holds(const std::string& fileName) const;
 
-  /// What `reader` makes of the paths where these files are; its errors name files as the user
-  /// knows them. Throws Error (input) as locate does.
+  /// What `reader` makes of the paths where these files are, as knowingly does. Throws Error
+  /// (input) as locate does.
   template <typename Reader>
   auto read(const std::vector<std::string>& fileNames, Reader&& reader) {
     std::vector<std::filesystem::path> paths;
     for (const std::string& fileName : fileNames)
       paths.push_back(locate(fileName));
+    return knowingly([&] { return reader(paths); });
+  }
+  /// What `work` with files that were read makes; its errors name them as the user knows them.
+  template <typename Work>
+  auto knowingly(Work&& work) const {
     try {
-      return reader(paths);
+      return work();
     } catch (const Error& error) {
       throw Error(error.kind(), asKnown(error.what()));
     }
