@@ -4,6 +4,8 @@ namespace fenestra {
 namespace {
 
 constexpr double reflectanceAtNormal = 0.04; ///< F0 of Schlick 1994
+/// Of a narrower lobe directions in double say nothing, and its density overflows.
+constexpr double leastRoughness = 1e-6;
 
 Vec3 cosineHemisphere(const Vec2& u) {
   const double r = std::sqrt(u.x());
@@ -23,13 +25,12 @@ double PhaseScattering::pdf(const Vec3& outgoing) const {
     return 0.25 / pi;
   // 1 + g^2 - 2 g cos, written so that nothing cancels where g and cos are near 1: with unit
   // vectors 2 (1 - cos) = |a - b|^2.
-  const double chord2 = (outgoing - m_incoming).squaredNorm();
+  const double chord2 = (outgoing - m_peak).squaredNorm();
   const double d = (1.0 - m_g) * (1.0 - m_g) + m_g * chord2;
   return 0.25 / pi * (1.0 - m_g) * (1.0 + m_g) / (d * std::sqrt(d));
 }
 
-ScatterSample PhaseScattering::sample(Random& random) const {
-  const Vec2 u = random.uniform2();
+ScatterSample PhaseScattering::sample(const Vec2& u) const {
   if (m_g == 0.0)
     return {uniformDirection(u), m_albedo, 0.25 / pi};
   // cos = (1 + g^2 - ((1 - g^2) / (1 + g - 2 g u))^2) / (2 g), as 1 - cos for accuracy near 1:
@@ -40,7 +41,7 @@ ScatterSample PhaseScattering::sample(Random& random) const {
   const double cosine = std::clamp(1.0 - oneMinusCos, -1.0, 1.0);
   const double sine = std::sqrt(std::max(0.0, std::min(oneMinusCos, 2.0) * (1.0 + cosine)));
   const double phi = 2.0 * pi * u.y();
-  const Frame frame(m_incoming);
+  const Frame frame(m_peak);
   const Vec3 outgoing =
       frame.toWorld({sine * std::cos(phi), sine * std::sin(phi), cosine}).normalized();
   return {outgoing, m_albedo, pdf(outgoing)};
@@ -53,7 +54,7 @@ SurfaceScattering::SurfaceScattering(const Vec3& incoming, const Vec3& gradient,
   const double total = std::max(1.0, shading.diffuse + shading.specular);
   m_diffuse = shading.diffuse / total * albedo;
   m_specular = shading.specular / total;
-  m_roughness = std::sqrt(2.0 / (shading.power + 2.0));
+  m_roughness = std::max(leastRoughness, std::sqrt(2.0 / (shading.power + 2.0)));
   const double lambert = m_diffuse.maxCoeff();
   const double glossy = m_specular * schlick(m_viewer.z());
   m_lambertShare = lambert + glossy > 0.0 ? lambert / (lambert + glossy) : 1.0;
@@ -116,9 +117,7 @@ Vec3 SurfaceScattering::sampleVisibleNormal(const Vec2& u) const {
   return Vec3(a * n.x(), a * n.y(), std::max(1e-300, n.z())).normalized();
 }
 
-ScatterSample SurfaceScattering::sample(Random& random) const {
-  const double choice = random.uniform();
-  const Vec2 u = random.uniform2();
+ScatterSample SurfaceScattering::sample(double choice, const Vec2& u) const {
   Vec3 l;
   if (choice < m_lambertShare) {
     l = cosineHemisphere(u);

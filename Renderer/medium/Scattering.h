@@ -22,15 +22,16 @@ struct ScatterSample {
 class PhaseScattering {
 public:
   PhaseScattering(const Vec3& incoming, double g, const Rgb& albedo)
-      : m_incoming(incoming), m_g(g), m_albedo(albedo) {}
+      : m_peak(g < 0.0 ? Vec3(-incoming) : incoming), m_g(std::abs(g)), m_albedo(albedo) {}
 
   double pdf(const Vec3& outgoing) const;
   Rgb evaluate(const Vec3& outgoing) const { return m_albedo * pdf(outgoing); }
-  ScatterSample sample(Random& random) const;
+  ScatterSample sample(const Vec2& u) const;
+  ScatterSample sample(Random& random) const { return sample(random.uniform2()); }
 
 private:
-  Vec3 m_incoming;
-  double m_g;
+  Vec3 m_peak; ///< a lobe of -g around a direction is one of g around its opposite
+  double m_g;  ///< not negative
   Rgb m_albedo;
 };
 
@@ -44,7 +45,12 @@ public:
 
   double pdf(const Vec3& outgoing) const;
   Rgb evaluate(const Vec3& outgoing) const;
-  ScatterSample sample(Random& random) const;
+  /// `choice` decides on the lobe.
+  ScatterSample sample(double choice, const Vec2& u) const;
+  ScatterSample sample(Random& random) const {
+    const double choice = random.uniform();
+    return sample(choice, random.uniform2());
+  }
 
 private:
   double lambertPdf(const Vec3& l) const { return std::max(l.z(), 0.0) / pi; }
