@@ -87,9 +87,7 @@ void LightSet::chooseShares(const Vec3& center) {
     *share = floor + (1.0 - leastShare) * *share / sum;
 }
 
-std::optional<LightSample> LightSet::sample(const Vec3& point, Random& random) const {
-  double choice = random.uniform();
-  const Vec2 u = random.uniform2();
+std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, const Vec2& u) const {
   for (const PlacedAreaLight& light : m_areas) {
     if (choice < light.share)
       return light.sample(point, u);
@@ -130,6 +128,8 @@ std::optional<LightSample> LightSet::PlacedAreaLight::sample(const Vec3& point,
   }
   const Vec3 d = center + half.x() * at.x() * right + half.y() * at.y() * up - point;
   const double distance2 = d.squaredNorm();
+  if (!(distance2 >= std::numeric_limits<double>::min()))
+    return std::nullopt; // on the light: no direction
   const double distance = std::sqrt(distance2);
   const double cosine = -normal.dot(d) / distance;
   if (!(cosine > 0.0))

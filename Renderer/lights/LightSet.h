@@ -35,7 +35,12 @@ public:
   LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera);
 
   /// None where the drawn light does not reach the point, or there is no light.
-  std::optional<LightSample> sample(const Vec3& point, Random& random) const;
+  std::optional<LightSample> sample(const Vec3& point, Random& random) const {
+    const double choice = random.uniform();
+    return sample(point, choice, random.uniform2());
+  }
+  /// `choice` decides on the light.
+  std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
 
   /// Of all environments together.
   LightArrival environment(const Vec3& direction) const;
