@@ -1,0 +1,194 @@
+#pragma once
+// What the stress tests share: budgets, estimates along one ray, chords, comparing two pictures,
+// and random numbers whose draws are chosen.
+
+#include "Support.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace fenestra::testing {
+
+/// With FENESTRA_LONG in the environment, 16 times as many.
+inline int budget(int samples) {
+  static const bool isLong = std::getenv("FENESTRA_LONG") != nullptr;
+  return isLong ? 16 * samples : samples;
+}
+
+inline constexpr double largestUniform = 1.0 - 0x1p-53;
+
+/// The x with mixBits(x) = y: every step of the mixer can be undone.
+constexpr std::uint64_t unmixBits(std::uint64_t y) {
+  const auto unshift = [](std::uint64_t x, int by) {
+    std::uint64_t result = x;
+    for (int known = by; known < 64; known += by)
+      result = x ^ (result >> by);
+    return result;
+  };
+  const auto inverse = [](std::uint64_t odd) { // Newton: each step doubles the bits that are right
+    std::uint64_t x = odd;
+    for (int step = 0; step < 5; ++step)
+      x *= 2 - odd * x;
+    return x;
+  };
+  y = unshift(y, 31) * inverse(0x94d049bb133111ebULL);
+  y = unshift(y, 27) * inverse(0xbf58476d1ce4e5b9ULL);
+  return unshift(y, 30);
+}
+
+/// A Random whose `draw`-th call of bits(), counted from 1, returns `bits`; the others are as
+/// random as ever. So 0 and the largest u reach code that only takes a Random.
+inline Random randomWithDraw(int draw, std::uint64_t bits) {
+  constexpr std::uint64_t gamma = 0x9e3779b97f4a7c15ULL; // as in Random
+  const std::uint64_t state = unmixBits(bits) - static_cast<std::uint64_t>(draw) * gamma;
+  const std::uint64_t seeded = mixBits(mixBits(gamma) ^ gamma); // of seed 0, pixel 0
+  return {0, 0, (unmixBits(state) ^ seeded) - gamma};
+}
+
+/// Length of a ray inside a grid's box from t = 0 on, mm; in long double, by no code of the
+/// product.
+inline double chord(const Grid& grid, const Ray& ray) {
+  using Vector = Eigen::Matrix<long double, 3, 1>;
+  const Eigen::Matrix<long double, 3, 3> inverse =
+      grid.indexToWorld.linear().cast<long double>().inverse();
+  const Vector origin =
+      inverse * (ray.origin - Vec3(grid.indexToWorld.translation())).cast<long double>();
+  const Vector direction = inverse * ray.direction.cast<long double>();
+  long double begin = 0.0L;
+  long double end = std::numeric_limits<long double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const long double lower = -0.5L - origin[axis];
+    const long double upper = static_cast<long double>(grid.size[axis]) - 0.5L - origin[axis];
+    if (direction[axis] == 0.0L) {
+      if (lower > 0.0L || upper < 0.0L)
+        return 0.0;
+      continue;
+    }
+    const long double a = lower / direction[axis];
+    const long double b = upper / direction[axis];
+    begin = std::max(begin, std::min(a, b));
+    end = std::min(end, std::max(a, b));
+  }
+  return static_cast<double>(std::max(0.0L, end - begin));
+}
+
+/// What a ray meets in a classified volume; the volume outlives it.
+template <typename Voxel = float>
+class RayProbe {
+public:
+  RayProbe(const Volume& volume, TransferFunction transfer)
+      : m_transfer(std::move(transfer)),
+        m_majorants(volume.grid, CellRanges(volume, MajorantGrid::apronFor(m_transfer)), m_transfer,
+                    m_clip),
+        m_medium(volume.grid, std::get<std::vector<Voxel>>(volume.voxels), m_transfer),
+        m_tracker(volume.grid, m_medium, m_majorants, m_clip),
+        m_domain(volume.grid) {}
+  RayProbe(const RayProbe&) = delete;
+  RayProbe& operator=(const RayProbe&) = delete;
+
+  const Tracker<Voxel>& tracker() const { return m_tracker; }
+  const MajorantGrid& majorants() const { return m_majorants; }
+  const Medium<Voxel>& medium() const { return m_medium; }
+
+  /// Free paths and ratio tracking against a known transmittance. Both estimates lie in [0, 1], so
+  /// their variance is at most T (1 - T). Returns what `n` rays of each took.
+  Counters expectTransmittance(const Ray& ray, const Interval& range, double expected,
+                               int n) const {
+    double free = 0.0;
+    double ratio = 0.0;
+    Counters counters;
+    for (int i = 0; i < n; ++i) {
+      Random random(41, static_cast<std::uint64_t>(i), 0);
+      free += m_tracker.sampleCollision(ray, range, random, counters) == infinity ? 1.0 / n : 0.0;
+      ratio += m_tracker.transmittance(ray, range, random, counters) / n;
+    }
+    const double error = 4.0 * std::sqrt(expected * (1.0 - expected) / n) + 1e-12 * expected + 1e-9;
+    EXPECT_NEAR(free, expected, error) << ray.origin.transpose() << " | " << ray.direction;
+    EXPECT_NEAR(ratio, expected, error) << ray.origin.transpose() << " | " << ray.direction;
+    return counters;
+  }
+
+  /// The length of the ray that the walk over majorant cells covers, without gaps or overlaps, mm.
+  double walkedLength(const Ray& ray) const {
+    const Interval inside =
+        m_domain.clip(transformed(m_domain.grid().worldToIndex, ray), Interval{});
+    GridWalk walk(transformed(m_majorants.worldToCell(), ray), inside, m_majorants.cellCount());
+    if (walk.done())
+      return 0.0;
+    const double begin = walk.interval().begin;
+    double reached = begin;
+    for (; !walk.done(); walk.next()) {
+      EXPECT_EQ(walk.interval().begin, reached);
+      EXPECT_LE(walk.interval().begin, walk.interval().end);
+      reached = walk.interval().end;
+    }
+    return reached - begin;
+  }
+
+private:
+  TransferFunction m_transfer;
+  Clip m_clip;
+  MajorantGrid m_majorants;
+  Medium<Voxel> m_medium;
+  Tracker<Voxel> m_tracker;
+  Domain m_domain;
+};
+
+/// Two pictures of independent seeds that shall differ by chance alone: their means to 4 standard
+/// errors, and the sum of squared z over the pixels to 4 of its own (Wilson and Hilferty 1931).
+/// Pixels without variance in both have to be equal.
+inline void expectSamePicture(const Film& a, const Film& b) {
+  ASSERT_EQ(a.pixelCount(), b.pixelCount());
+  double difference = 0.0, variance = 0.0, chi2 = 0.0;
+  int pixels = 0;
+  for (std::size_t i = 0; i < a.pixelCount(); ++i) {
+    const double d = a.pixels()[i].mean[0] - b.pixels()[i].mean[0];
+    const double v = std::pow(a.pixels()[i].standardError()[0], 2.0) +
+                     std::pow(b.pixels()[i].standardError()[0], 2.0);
+    ASSERT_TRUE(std::isfinite(d)) << "pixel " << i;
+    if (!(v > 0.0)) {
+      ASSERT_EQ(d, 0.0) << "pixel " << i;
+      continue;
+    }
+    difference += d;
+    variance += v;
+    chi2 += d * d / v;
+    ++pixels;
+  }
+  ASSERT_GT(pixels, 0) << "nothing varies: the pictures say nothing";
+  const double spread = 2.0 / (9.0 * pixels);
+  EXPECT_LT((std::cbrt(chi2 / pixels) - (1.0 - spread)) / std::sqrt(spread), 4.0)
+      << "mean squared z " << chi2 / pixels << " over " << pixels << " pixels";
+  EXPECT_LT(std::abs(difference), 4.0 * std::sqrt(variance));
+}
+
+inline void expectEqualBits(const Film& a, const Film& b) {
+  ASSERT_EQ(a.pixelCount(), b.pixelCount());
+  for (std::size_t i = 0; i < a.pixelCount(); ++i) {
+    ASSERT_TRUE((a.pixels()[i].mean == b.pixels()[i].mean).all()) << "pixel " << i;
+    ASSERT_TRUE((a.pixels()[i].deviation == b.pixels()[i].deviation).all()) << "pixel " << i;
+  }
+}
+
+/// `samples` a pixel against an environment that shows behind the volume, too.
+inline RenderResult renderIn(const TestScene& scene, int samples, std::uint64_t seed = 1) {
+  RenderSettings settings;
+  settings.samples = static_cast<std::uint64_t>(samples);
+  settings.seed = seed;
+  settings.path.background.kind = Background::Kind::environment;
+  return scene.render(settings);
+}
+
+/// A furnace: albedo 1 in an environment of 1.
+inline void expectOne(const RenderResult& result) {
+  const Estimate estimate = imageEstimate(result.film);
+  EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-12);
+  EXPECT_LT(estimate.error, 0.02);
+}
+
+inline ScalarFunction::Knot knot(double s, double sigma_t) {
+  return {s, ScalarFunction::Value(sigma_t)};
+}
+
+} // namespace fenestra::testing
