@@ -5,6 +5,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include <algorithm>
+
 namespace fenestra {
 
 namespace {
@@ -12,64 +14,158 @@ namespace {
 /// Keeps the logarithm finite at a site, where its factor is 0.
 constexpr double tiny = 1e-300;
 
+/// lambda - phi below which two sites are not told apart: it is the least eigenvalue that they
+/// cause, and a few digits of the solution have to survive it.
+constexpr double indistinct = 1e-12;
+
+/// Squared radii beyond which the sum of the kernels loses too much to cancellation.
+constexpr double farSquared = 256.0;
+
+/// How far, in mm, the coordinates of a site may be from what they stand for.
+double roundingAt(const Vec2& site) {
+  return 8.0 * std::numeric_limits<double>::epsilon() * site.lpNorm<Eigen::Infinity>();
+}
+
 /// phi of squared distances.
 template <typename Derived>
 auto kernel(const Eigen::ArrayBase<Derived>& squared) {
   return squared * (squared + tiny).log();
 }
 
+/// K + lambda I.
+Eigen::MatrixXd kernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
+  Eigen::MatrixXd k(sites.rows(), sites.rows());
+  for (Eigen::Index i = 0; i < sites.rows(); ++i)
+    k.col(i) = kernel((sites.rowwise() - sites.row(i)).rowwise().squaredNorm().array());
+  k.diagonal().array() += lambda;
+  return k;
+}
+
+/// P.
+Eigen::MatrixX3d polynomials(const Eigen::MatrixX2d& sites) {
+  Eigen::MatrixX3d p(sites.rows(), 3);
+  p << Eigen::VectorXd::Ones(sites.rows()), sites;
+  return p;
+}
+
+using PolynomialsQr = Eigen::HouseholderQR<Eigen::MatrixX3d>;
+
+/// Q2' (K + lambda I) Q2, where the columns of Q2 span the null space of P'.
+Eigen::MatrixXd inNullSpace(const Eigen::MatrixXd& k, const PolynomialsQr& qr) {
+  Eigen::MatrixXd turned = k;
+  turned.applyOnTheLeft(qr.householderQ().adjoint());
+  turned.applyOnTheRight(qr.householderQ());
+  const Eigen::Index n = k.rows() - 3;
+  return turned.bottomRightCorner(n, n);
+}
+
+Eigen::MatrixX2d rows(const std::vector<Vec2>& points) {
+  Eigen::MatrixX2d matrix(std::ssize(points), 2);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    matrix.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+  return matrix;
+}
+
+/// Sites of the unit disc, and their values.
+struct Samples {
+  std::vector<Vec2> sites;
+  std::vector<double> values;
+};
+
+/// Sites that lambda leaves indistinct become the first of them, with their mean value: so those
+/// that stay are as far apart as they have to be.
+Samples merged(const Samples& samples, double lambda) {
+  Samples kept;
+  std::vector<double> counts;
+  for (std::size_t i = 0; i < samples.sites.size(); ++i) {
+    const auto isNear = [&, site = samples.sites[i]](const Vec2& other) {
+      const Eigen::Array<double, 1, 1> squared((site - other).squaredNorm());
+      return squared[0] < 1e-6 && lambda - kernel(squared)[0] < indistinct; // phi < 0 nearby
+    };
+    const auto found = std::ranges::find_if(kept.sites, isNear);
+    const auto at = static_cast<std::size_t>(found - kept.sites.begin());
+    if (found == kept.sites.end()) {
+      kept.sites.push_back(samples.sites[i]);
+      kept.values.push_back(0.0);
+      counts.push_back(0.0);
+    }
+    counts[at] += 1.0;
+    kept.values[at] += (samples.values[i] - kept.values[at]) / counts[at];
+  }
+  return kept;
+}
+
 } // namespace
 
 ThinPlateSpline::ThinPlateSpline(std::span<const Vec2> sites, std::span<const double> values,
                                  double smoothing) {
-  const auto count = static_cast<double>(sites.size());
-  for (const Vec2& site : sites)
-    m_center += site / count;
-  double scale = 0.0;
-  for (const Vec2& site : sites)
-    scale = std::max(scale, (site - m_center).norm());
-  m_perScale = scale > 0.0 ? 1.0 / scale : 1.0;
-  for (const Vec2& site : sites)
-    m_terms.push_back({(site - m_center) * m_perScale, 0.0});
-  fit(Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values)), smoothing);
+  if (sites.empty())
+    return;
+  Samples samples{toUnitDisc(sites), {values.begin(), values.end()}};
+  m_lambda = smoothing > 0.0 ? (1.0 - smoothing) / smoothing * m_perScale * m_perScale : infinity;
+  if (m_lambda < indistinct)
+    samples = merged(samples, m_lambda);
+  fit(samples.sites,
+      Eigen::Map<const Eigen::VectorXd>(samples.values.data(), std::ssize(samples.values)));
 }
 
-void ThinPlateSpline::fit(const Eigen::VectorXd& values, double smoothing) {
-  const Eigen::Index n = values.size();
-  Eigen::MatrixXd sites(n, 2);
-  for (Eigen::Index i = 0; i < n; ++i)
-    sites.row(i) = m_terms[static_cast<std::size_t>(i)].site.transpose();
-  Eigen::MatrixXd p(n, 3);
-  p << Eigen::VectorXd::Ones(n), sites;
+std::vector<Vec2> ThinPlateSpline::toUnitDisc(std::span<const Vec2> sites) {
+  m_origin = sites[0];
+  const auto count = static_cast<double>(sites.size());
+  Vec2 centroid = Vec2::Zero();
+  for (const Vec2& site : sites)
+    centroid += (site - m_origin) / count;
+  double scale = 0.0;
+  for (const Vec2& site : sites)
+    scale = std::max(scale, (site - m_origin - centroid).norm());
+  if (scale > std::max(roundingAt(m_origin), 1e-100)) // else they coincide
+    m_perScale = 1.0 / scale;
+  m_centroid = m_perScale * centroid;
+  std::vector<Vec2> inDisc;
+  inDisc.reserve(sites.size());
+  for (const Vec2& site : sites)
+    inDisc.push_back((site - m_origin) * m_perScale - m_centroid);
+  return inDisc;
+}
 
+void ThinPlateSpline::fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values) {
+  const Eigen::MatrixX2d u = rows(sites);
+  const Eigen::MatrixX3d p = polynomials(u);
   // The least-squares polynomial, the flattest where several are: what is left where lambda is
   // infinite or the sites do not determine a plane.
   const Eigen::BDCSVD<Eigen::MatrixXd> svd =
       Eigen::BDCSVD<Eigen::MatrixXd>(p, Eigen::ComputeThinU | Eigen::ComputeThinV)
-          .setThreshold(1e-9);
+          .setThreshold(std::max(1e-9, roundingAt(m_origin) * m_perScale));
   m_plane = svd.solve(values);
-  if (smoothing <= 0.0 || svd.rank() < 3 || n == 3) {
-    m_terms.clear();
+  const Eigen::Index n = values.size();
+  if (!std::isfinite(m_lambda) || svd.rank() < 3 || n == 3)
     return;
-  }
 
-  const double lambda = (1.0 - smoothing) / smoothing * m_perScale * m_perScale;
-  Eigen::MatrixXd k(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    k.col(i) = kernel((sites.rowwise() - sites.row(i)).rowwise().squaredNorm().array());
-  k.diagonal().array() += lambda;
-
-  // w = Q2 v, where the columns of Q2 span the null space of P'.
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(p);
-  const Eigen::MatrixXd q2 = qr.householderQ() * Eigen::MatrixXd::Identity(n, n).rightCols(n - 3);
-  const Eigen::MatrixXd system = q2.transpose() * k * q2;
-  const Eigen::VectorXd w = q2 * system.ldlt().solve(q2.transpose() * values);
+  const Eigen::MatrixXd k = kernelMatrix(u, m_lambda);
+  const PolynomialsQr qr(p);
+  Eigen::VectorXd w = qr.householderQ().adjoint() * values;
+  w.head<3>().setZero();
+  w.tail(n - 3) = inNullSpace(k, qr).ldlt().solve(w.tail(n - 3)).eval();
+  w.applyOnTheLeft(qr.householderQ());
   m_plane = svd.solve(values - k * w);
-  for (Eigen::Index i = 0; i < n; ++i)
-    m_terms[static_cast<std::size_t>(i)].weight = w[i];
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Vec2& site = sites[static_cast<std::size_t>(i)];
+    m_terms.push_back({site, w[i]});
+    m_moment += w[i] * site.squaredNorm();
+  }
+}
 
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(system, Eigen::EigenvaluesOnly);
-  m_conditionNumber = spectrum.eigenvalues()[n - 4] / spectrum.eigenvalues()[0];
+double ThinPlateSpline::conditionNumber() const {
+  if (m_terms.empty())
+    return 1.0;
+  std::vector<Vec2> sites;
+  for (const Term& term : m_terms)
+    sites.push_back(term.site);
+  const Eigen::MatrixX2d u = rows(sites);
+  const PolynomialsQr qr(polynomials(u));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(
+      inNullSpace(kernelMatrix(u, m_lambda), qr), Eigen::EigenvaluesOnly);
+  return spectrum.eigenvalues().maxCoeff() / spectrum.eigenvalues().minCoeff();
 }
 
 double ThinPlateSpline::operator()(const Vec2& x) const {
@@ -80,21 +176,42 @@ double ThinPlateSpline::operator()(const Vec2& x) const {
 
 void ThinPlateSpline::evaluateRow(std::span<const double> x, double y,
                                   std::span<double> values) const {
-  constexpr Eigen::Index most = 64; // points at a time: they stay in the first cache
-  using Points = Eigen::Array<double, Eigen::Dynamic, 1, 0, most, 1>;
-  const double v = (y - m_center.y()) * m_perScale;
-  for (Eigen::Index begin = 0; begin < std::ssize(x); begin += most) {
-    const Eigen::Index count = std::min(most, std::ssize(x) - begin);
+  const double v = (y - m_origin.y()) * m_perScale - m_centroid.y();
+  for (Eigen::Index begin = 0; begin < std::ssize(x); begin += mostPoints) {
+    const Eigen::Index count = std::min(mostPoints, std::ssize(x) - begin);
     const Points u =
-        (Eigen::Map<const Points>(x.data() + begin, count) - m_center.x()) * m_perScale;
+        (Eigen::Map<const Points>(x.data() + begin, count) - m_origin.x()) * m_perScale -
+        m_centroid.x();
+    const Points squaredNorm = u.square() + v * v;
     Points sum = m_plane[0] + m_plane[2] * v + m_plane[1] * u;
-    Points squared(count);
-    for (const Term& term : m_terms) {
-      squared = (u - term.site.x()).square() + (v - term.site.y()) * (v - term.site.y());
-      sum += term.weight * kernel(squared);
-    }
+    if ((squaredNorm <= farSquared).all())
+      sum += nearTerms(u, v);
+    else
+      sum += (squaredNorm <= farSquared).select(nearTerms(u, v), farTerms(u, v));
     Eigen::Map<Points>(values.data() + begin, count) = sum;
   }
+}
+
+ThinPlateSpline::Points ThinPlateSpline::nearTerms(const Points& u, double v) const {
+  Points sum = Points::Zero(u.size());
+  Points squared(u.size());
+  for (const Term& term : m_terms) {
+    squared = (u - term.site.x()).square() + (v - term.site.y()) * (v - term.site.y());
+    sum += term.weight * kernel(squared);
+  }
+  return sum;
+}
+
+ThinPlateSpline::Points ThinPlateSpline::farTerms(const Points& u, double v) const {
+  const Points squaredNorm = (u.square() + v * v).max(farSquared);
+  Points sum = m_moment * squaredNorm.log();
+  Points excess(u.size());
+  for (const Term& term : m_terms) {
+    const Vec2& site = term.site;
+    excess = site.squaredNorm() - 2.0 * (site.x() * u + site.y() * v);
+    sum += term.weight * (squaredNorm + excess) * (excess / squaredNorm).log1p();
+  }
+  return sum;
 }
 
 } // namespace fenestra

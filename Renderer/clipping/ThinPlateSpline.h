@@ -13,14 +13,22 @@ namespace fenestra {
 ///   (K + lambda I) w + P a = z,  P' w = 0,  lambda = (1 - p) / p,
 /// K_ij = phi(|x_i - x_j|) and P's rows (1, x_i, y_i), all in mm: MATLAB's tpaps. p = 1
 /// interpolates, p = 0 is the least-squares plane. Sites that determine no plane (fewer than three,
-/// coincident, collinear) give the least-squares line along them, or their mean.
+/// coincident, collinear to 1e-9 of their extent or to their coordinates' rounding) give the
+/// least-squares line along them, or their mean; no sites give 0.
 ///
 /// Solved in the unit disc, u = (x - c) / s. There phi(s r) = s^2 phi(r) + s^2 ln(s^2) r^2, and for
 /// weights with P' w = 0 the sum of the last term is the same at every x, so that a0 takes it in.
 /// With w' = s^2 w the system in u is (K' + lambda / s^2 I) w' + P' a' = z, with the same f.
+///
+/// Rounding: f is right to 1e-15 times the condition number, relative to |f| and to the range of
+/// the values, at any distance from the sites; tilt across nearly collinear sites is as ill defined
+/// as they are. Where all but nothing is smoothed, the f through sites much nearer to each other
+/// than the disc is wide runs away between their values, and at last is lost to rounding. Sites
+/// nearer than r with lambda / s^2 - phi(r / s) < 1e-12, so 1.9e-7 s at p = 1, therefore count as
+/// one, the first of them, with their mean value.
 class ThinPlateSpline {
 public:
-  /// Sites (mm) and values (mm), equally many and at least one; smoothing p in [0, 1].
+  /// Sites (mm) and values (mm), equally many, finite; smoothing p in [0, 1].
   ThinPlateSpline(std::span<const Vec2> sites, std::span<const double> values, double smoothing);
 
   double operator()(const Vec2& x) const;
@@ -28,8 +36,9 @@ public:
   /// f at (x[i], y) for every i.
   void evaluateRow(std::span<const double> x, double y, std::span<double> values) const;
 
-  /// Of the system that was solved, in the 2-norm; 1 where there was none to solve.
-  double conditionNumber() const { return m_conditionNumber; }
+  /// Of the system that was solved, in the 2-norm; 1 where there was none to solve. Computed anew,
+  /// at several times the cost of the fit.
+  double conditionNumber() const;
 
 private:
   struct Term {
@@ -37,13 +46,28 @@ private:
     double weight;
   };
 
-  void fit(const Eigen::VectorXd& values, double smoothing);
+  /// Points of a row at a time: they stay in the first cache.
+  static constexpr Eigen::Index mostPoints = 64;
+  using Points = Eigen::Array<double, Eigen::Dynamic, 1, 0, mostPoints, 1>;
 
-  Vec2 m_center = Vec2::Zero(); ///< mm
-  double m_perScale = 1.0;      ///< 1 / s, mm^-1
-  Vec3 m_plane = Vec3::Zero();  ///< a', in the unit disc
+  /// Chooses the unit disc and returns the sites in it.
+  std::vector<Vec2> toUnitDisc(std::span<const Vec2> sites);
+  void fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values);
+
+  /// The sum of w'_i phi(|u - u_i|).
+  Points nearTerms(const Points& u, double v) const;
+  /// The same for |u| > 1, where the terms are as large as |u|^2 ln |u|^2 and nearly cancel. With
+  /// e_i = |u - u_i|^2 - |u|^2 and P' w' = 0 the sum is m ln |u|^2 + sum w'_i (|u|^2 + e_i)
+  /// ln(1 + e_i / |u|^2), m being the moment, and its terms are no larger than 4 |u|.
+  Points farTerms(const Points& u, double v) const;
+
+  Vec2 m_origin = Vec2::Zero();   ///< mm, one of the sites: differences from it do not round
+  Vec2 m_centroid = Vec2::Zero(); ///< from the origin, in radii: c = origin + s centroid
+  double m_perScale = 1.0;        ///< 1 / s, mm^-1
+  double m_lambda = 0.0;          ///< lambda / s^2
+  Vec3 m_plane = Vec3::Zero();    ///< a', in the unit disc
+  double m_moment = 0.0;          ///< sum of w'_i |u_i|^2
   std::vector<Term> m_terms;
-  double m_conditionNumber = 1.0;
 };
 
 } // namespace fenestra

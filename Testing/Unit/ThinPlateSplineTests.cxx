@@ -1,9 +1,9 @@
 // The spline solved in the unit disc is the spline that the equations state in mm.
 
 #include "ClippingTesting.h"
+#include "SaddleSpline.h"
 #include "clipping/ThinPlateSpline.h"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 using namespace fenestra;
@@ -42,54 +42,13 @@ Data scattered(Random& random, int count, double radius) {
   return data;
 }
 
-/// The plain saddle system in mm, in extended precision: [K + lambda I, P; P', 0] [w; a] = [z; 0].
-class SaddleSpline {
-public:
-  SaddleSpline(const Data& data, double smoothing) : m_sites(data.sites) {
-    using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-    const auto n = std::ssize(data.sites);
-    Matrix system = Matrix::Zero(n + 3, n + 3);
-    Vector right = Vector::Zero(n + 3);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Vec2& site = m_sites[static_cast<std::size_t>(i)];
-      for (Eigen::Index j = 0; j < n; ++j)
-        system(i, j) = kernel(site, m_sites[static_cast<std::size_t>(j)]);
-      system(i, i) += (1.0L - smoothing) / smoothing;
-      system(i, n) = system(n, i) = 1.0L;
-      system(i, n + 1) = system(n + 1, i) = site.x();
-      system(i, n + 2) = system(n + 2, i) = site.y();
-      right[i] = data.values[static_cast<std::size_t>(i)];
-    }
-    m_solution = system.fullPivLu().solve(right);
-  }
-
-  double operator()(const Vec2& x) const {
-    const auto n = std::ssize(m_sites);
-    long double sum = m_solution[n] + m_solution[n + 1] * x.x() + m_solution[n + 2] * x.y();
-    for (Eigen::Index i = 0; i < n; ++i)
-      sum += m_solution[i] * kernel(x, m_sites[static_cast<std::size_t>(i)]);
-    return static_cast<double>(sum);
-  }
-
-private:
-  using Vector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
-
-  static long double kernel(const Vec2& a, const Vec2& b) {
-    const long double squared = (a - b).cast<long double>().squaredNorm();
-    return squared > 0.0L ? squared * std::log(squared) : 0.0L;
-  }
-
-  std::vector<Vec2> m_sites;
-  Vector m_solution;
-};
-
 TEST(ThinPlateSpline, IsTheSaddleSystemsSolutionInMillimetres) {
   Random random(1, 0, 0);
   for (const double radius : {0.5, 8.0, 100.0})
     for (const double smoothing : {0.1, 0.5, 0.9, 1.0})
       for (const Data& data : {outline(50, radius), scattered(random, 20, radius)}) {
         const ThinPlateSpline spline = data.spline(smoothing);
-        const SaddleSpline reference(data, smoothing);
+        const SaddleSpline<long double> reference(data.sites, data.values, smoothing);
         for (int i = 0; i < 50; ++i) {
           const Vec2 x = data.sites[0] + 3.0 * radius * randomPoint(random, -1, 1).head<2>();
           EXPECT_NEAR(spline(x), reference(x), 1e-9 * (1.0 + std::abs(reference(x))));
