@@ -53,10 +53,17 @@ private:
   template <typename Visit>
   void walkTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
                      Visit&& visit) const {
-    const Ray indexRay = transformed(m_domain.grid().worldToIndex, ray);
+    const Affine& worldToIndex = m_domain.grid().worldToIndex;
     // Cells may reach beyond the volume and its crop: the domain itself bounds the walk.
-    GridWalk walk(transformed(m_majorants.worldToCell(), ray), m_domain.clip(indexRay, range),
-                  m_majorants.cellCount());
+    const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
+    if (inside.empty())
+      return;
+    // Lengths count from where the ray enters: free paths keep their digits, however far away it
+    // began.
+    const Ray entering{ray.at(inside.begin), ray.direction};
+    const Ray indexRay = transformed(worldToIndex, entering);
+    GridWalk walk(transformed(m_majorants.worldToCell(), entering),
+                  {0.0, inside.end - inside.begin}, m_majorants.cellCount());
     double opticalDepth = random.exponential();
     for (; !walk.done(); walk.next()) {
       const MajorantGrid::Cell& cell = m_majorants.cell(walk.cell());
@@ -74,12 +81,12 @@ private:
           break;
         }
         t += opticalDepth / majorant;
-        double extinction = cell.cut ? keep(m_clip, ray.at(t)) : 1.0;
+        double extinction = cell.cut ? keep(m_clip, entering.at(t)) : 1.0;
         if (extinction > 0.0) {
           ++counters.lookups;
           extinction *= m_medium.extinction(indexRay.at(t));
         }
-        if (!visit(t, extinction / majorant))
+        if (!visit(inside.begin + t, extinction / majorant))
           return;
         opticalDepth = random.exponential();
       }
