@@ -1,0 +1,271 @@
+// Extinction from 1e-8 to 1e8 per mm in one volume, against closed forms and against the same scene
+// in another unit of length; and how much work the worst case is.
+
+#include "StressSupport.h"
+
+namespace fenestra::testing {
+namespace {
+
+constexpr double thinnest = 1e-8; // per mm
+constexpr double densest = 1e8;
+
+/// Extinction thinnest * 10^(16 s / last) over s in [0, last], as a table of `knots` pieces.
+TransferFunction logarithmicRamp(double last, int knots, const Rgb& albedo) {
+  std::vector<ScalarFunction::Knot> table;
+  for (int i = 0; i <= knots; ++i)
+    table.push_back(knot(last * i / knots, thinnest * std::pow(10.0, 16.0 * i / knots)));
+  return {ScalarFunction(std::move(table)), ColorFunction({{0.0, albedo}})};
+}
+
+/// Integral of a table over [from, to] inside its knots, of which no two coincide.
+double integral(const ScalarFunction& f, double from, double to) {
+  std::vector<double> ends = {from, to};
+  for (const auto& k : f.knots())
+    if (k.position > from && k.position < to)
+      ends.push_back(k.position);
+  std::sort(ends.begin(), ends.end());
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+    sum += 0.5 * (f(ends[i]).value() + f(ends[i + 1]).value()) * (ends[i + 1] - ends[i]);
+  return sum;
+}
+
+/// Voxels along z that count 0, 1, 2, ...; `across` mm wide.
+Volume layers(int count, double spacing, double across) {
+  return makeVolume(centredGrid({2, 2, count}, {across / 2.0, across / 2.0, spacing}),
+                    [](const Vec3& p) { return p.z(); });
+}
+
+// ---- along one ray
+
+struct RampCase {
+  double begin; ///< the scalar where the ray begins
+  double depth; ///< optical depth up to its end
+};
+
+class LogarithmicRamp : public ::testing::TestWithParam<RampCase> {};
+
+TEST_P(LogarithmicRamp, TransmitsAsItsIntegralSays) {
+  const auto [begin, depth] = GetParam();
+  constexpr double spacing = 0.002;
+  const Volume volume = layers(9, spacing, 0.1); // two decades a voxel
+  const RayProbe<> probe(volume, logarithmicRamp(8.0, 96, Rgb::Zero()));
+  const ScalarFunction& extinction = probe.medium().transfer().extinction;
+  double end = begin;
+  for (double step = 8.0; step > 1e-13; step *= 0.5)
+    if (end + step <= 8.0 && spacing * integral(extinction, begin, end + step) <= depth)
+      end += step;
+  const double expected = std::exp(-spacing * integral(extinction, begin, end));
+  ASSERT_NEAR(expected, std::exp(-depth), 1e-3);
+
+  const auto place = [&](double s) { return Vec3(0.01, -0.02, spacing * (s - 4.0)); };
+  const Interval range{0.0, spacing * (end - begin)};
+  probe.expectTransmittance({place(begin), Vec3::UnitZ()}, range, expected, budget(4000));
+  probe.expectTransmittance({place(end), -Vec3::UnitZ()}, range, expected, budget(4000));
+}
+
+INSTANTIATE_TEST_SUITE_P(Stretches, LogarithmicRamp,
+                         ::testing::Values(RampCase{0.0, 0.1}, RampCase{0.0, 1.0},
+                                           RampCase{0.0, 3.0}, RampCase{2.0, 1.0},
+                                           RampCase{4.0, 0.5}, RampCase{5.0, 2.0},
+                                           RampCase{6.0, 1.0}, RampCase{7.0, 0.2},
+                                           RampCase{7.0, 3.0}, RampCase{7.9, 1.0}));
+
+TEST(NullCollisions, TheThinEndOfEverythingIsClear) {
+  // Optical depth 1.6e-10 under a majorant of 1e8: the ratio may lose that, and roundoff.
+  const Volume volume = makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(0.002)),
+                                   [](const Vec3& p) { return p.x(); });
+  const RayProbe<> probe(volume, {ScalarFunction({knot(0.0, thinnest), knot(0.0, thinnest),
+                                                  knot(0.4, thinnest), knot(0.5, densest)}),
+                                  ColorFunction({{0.0, Rgb::Zero()}})});
+  // Within a quarter voxel of the lower face, where the field is clamped to 0.
+  const Ray ray{{-0.0075, 0.0, -1.0}, Vec3::UnitZ()};
+  const double tentative = densest * 0.016;
+  for (int i = 0; i < budget(4); ++i) {
+    Counters counters;
+    Random random(3, static_cast<std::uint64_t>(i), 0);
+    const double ratio = probe.tracker().transmittance(ray, {}, random, counters);
+    EXPECT_NEAR(ratio, 1.0 - 1.6e-10, 2e-10);
+    EXPECT_NEAR(static_cast<double>(counters.lookups), tentative, 6.0 * std::sqrt(tentative));
+    Random again(4, static_cast<std::uint64_t>(i), 0);
+    EXPECT_EQ(probe.tracker().sampleCollision(ray, {}, again, counters), infinity);
+  }
+}
+
+// ---- half-spaces: whatever its profile, a layered medium that lets nothing through and has one
+// albedo reflects as Chandrasekhar's half-space does
+
+struct Profile {
+  const char* name;
+  TransferFunction (*transfer)(const Rgb& albedo);
+};
+
+constexpr int depthVoxels = 33;
+constexpr double opaque = 1e6; ///< beside clear voxels 1e8 would take a minute of null collisions
+
+TransferFunction dense(const Rgb& albedo) {
+  return {ScalarFunction({knot(0.0, densest)}), ColorFunction({{0.0, albedo}})};
+}
+TransferFunction smooth(const Rgb& albedo) {
+  return logarithmicRamp(depthVoxels - 1, 400, albedo);
+}
+TransferFunction stepped(const Rgb& albedo) {
+  return {ScalarFunction({knot(0.0, thinnest), knot(20.3, thinnest), knot(20.3, opaque)}),
+          ColorFunction({{0.0, albedo}})};
+}
+/// Three thin layers of optical depth 0.3 to 0.6 between clear ones, then an opaque one.
+TransferFunction striped(const Rgb& albedo) {
+  return {ScalarFunction({knot(0.0, thinnest), knot(10.0, thinnest), knot(10.0, 2000.0),
+                          knot(10.4, 2000.0), knot(10.4, thinnest), knot(20.0, thinnest),
+                          knot(20.0, 30000.0), knot(20.04, 30000.0), knot(20.04, thinnest),
+                          knot(25.0, thinnest), knot(26.0, 1200.0), knot(27.0, thinnest),
+                          knot(30.0, thinnest), knot(30.0, 1e5)}),
+          ColorFunction({{0.0, albedo}})};
+}
+
+using ReflectanceCase = std::tuple<Profile, std::pair<double, double>>;
+class HalfSpaceProfile : public ::testing::TestWithParam<ReflectanceCase> {};
+
+TEST_P(HalfSpaceProfile, ReflectsAsChandrasekharSays) {
+  const auto& [profile, reflectance] = GetParam();
+  TestScene scene{layers(depthVoxels, 0.0005, 0.4), // 0.0165 mm deep: nothing leaves at the sides
+                  profile.transfer(Rgb::Constant(reflectance.first)),
+                  {EnvironmentLight{}},
+                  {},
+                  8,
+                  8};
+  scene.pose.position = {0.0, 0.0, -1.0}; // the thin end first
+  scene.pose.target = Vec3::Zero();
+  scene.pose.up = Vec3::UnitY();
+  scene.pose.scale = 0.001;
+  const RenderResult result = renderIn(scene, budget(250));
+  const Estimate estimate = imageEstimate(result.film);
+  EXPECT_NEAR(estimate.mean, reflectance.second, 4.0 * estimate.error + 5e-5); // four digits
+  EXPECT_LT(estimate.error, 0.005);
+  RecordProperty("lookupsPerPath", std::to_string(result.counters.lookups / result.counters.paths));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Profiles, HalfSpaceProfile,
+    ::testing::Combine(::testing::Values(Profile{"dense", dense}, Profile{"smooth", smooth},
+                                         Profile{"stepped", stepped}, Profile{"striped", striped}),
+                       ::testing::Values(std::pair(0.5, 0.1152), std::pair(0.9, 0.4149))),
+    [](const auto& info) {
+      return std::string(std::get<0>(info.param).name) +
+             (std::get<1>(info.param).first == 0.5 ? "Dark" : "Bright");
+    });
+
+// ---- whole pictures
+
+/// 8^3 voxels, 0 and 1 in turn.
+Volume checkerboard(double spacing) {
+  return makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(spacing)),
+                    [](const Vec3& p) { return std::fmod(p.x() + p.y() + p.z(), 2.0); });
+}
+
+Volume diagonalRamp(double spacing) {
+  return makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(spacing)),
+                    [](const Vec3& p) { return (p.x() + p.y() + p.z()) / 21.0; });
+}
+
+TransferFunction contrast(double high, const Rgb& albedo) {
+  return {ScalarFunction({knot(0.5, thinnest), knot(0.5, high)}), ColorFunction({{0.0, albedo}})};
+}
+
+/// Seen from a corner.
+TestScene cornerScene(Volume volume, const TransferFunction& transfer) {
+  const double radius = volume.grid.boundingRadius();
+  TestScene scene{std::move(volume), transfer, {EnvironmentLight{}}, {}, 8, 8};
+  scene.pose.position = radius * Vec3(2.0, -3.0, 1.5);
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = radius;
+  return scene;
+}
+
+TEST(ExtremeContrast, IsAFurnaceWhereNothingIsAbsorbed) {
+  for (const double high : {1.0, 1e3, 5e4}) { // an optical depth of up to 800
+    const TestScene scene = cornerScene(checkerboard(0.002), contrast(high, Rgb::Ones()));
+    expectOne(renderIn(scene, budget(high > 1e4 ? 32 : 128)));
+  }
+}
+
+using SceneMaker = TestScene (*)(double unit);
+
+/// 1 mm is `unit` mm: lengths grow with it, extinctions shrink. Powers of two change no bit.
+TestScene rampScene(double unit) {
+  return cornerScene(diagonalRamp(0.002 * unit),
+                     logarithmicRamp(1.0, 64, Rgb(0.9, 0.5, 0.0)).scaled(1.0 / unit));
+}
+TestScene checkerScene(double unit) {
+  return cornerScene(checkerboard(0.002 * unit),
+                     contrast(densest, Rgb(0.9, 0.5, 0.0)).scaled(1.0 / unit));
+}
+TestScene homogeneousScene(double unit) {
+  return cornerScene(
+      makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(unit)), [](const Vec3&) { return 1.0; }),
+      linearTransfer(0.3 / unit, Rgb(1.0, 0.9, 0.5)));
+}
+
+TEST(UnitOfLength, DoesNotChangeABitOfThePicture) {
+  struct Case {
+    SceneMaker make;
+    double unit;
+    int samples;
+  };
+  for (const auto& [make, unit, samples] :
+       {Case{rampScene, 0x1p10, 4}, Case{checkerScene, 0x1p10, 1},
+        Case{homogeneousScene, 0x1p26, 64}, Case{homogeneousScene, 0x1p-26, 64}}) {
+    TestScene scene = make(1.0);
+    scene.transfer.g = 0.3;
+    const RenderResult usual = renderIn(scene, budget(samples));
+    TestScene other = make(unit);
+    other.transfer.g = 0.3;
+    const RenderResult scaled = renderIn(other, budget(samples));
+    expectEqualBits(usual.film, scaled.film);
+    EXPECT_EQ(usual.counters.lookups, scaled.counters.lookups);
+    const Estimate estimate = imageEstimate(usual.film);
+    EXPECT_TRUE(estimate.mean > 0.0 && estimate.mean < 1.0) << estimate.mean;
+  }
+}
+
+TEST(ExtremeContrast, TakesBoundedTime) {
+  // One crossing takes at most (majorant x length) tentative collisions, and Poisson's spread.
+  const double crossing = densest * 0.016 * std::sqrt(3.0);
+  const auto greatest = static_cast<std::uint64_t>(crossing + 6.0 * std::sqrt(crossing));
+  for (const TestScene& scene : {rampScene(1.0), checkerScene(1.0)}) {
+    const RayProbe<> probe(scene.volume, scene.transfer);
+    const Camera camera(scene.pose, 8, 8);
+    std::uint64_t worst = 0;
+    for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(budget(64)); ++i) {
+      Random random(9, i, 0);
+      Counters counters;
+      const Ray ray = camera.ray(8.0 * random.uniform(), 8.0 * random.uniform());
+      probe.tracker().transmittance(ray, {}, random, counters);
+      worst = std::max(worst, counters.lookups);
+    }
+    EXPECT_LE(worst, greatest);
+    RecordProperty("worstLookupsOfARay", std::to_string(worst));
+    std::cout << "worst null collisions of a ray: " << worst
+              << ", of a path: " << renderIn(scene, 1).counters.lookups / 64 << " on average\n";
+  }
+}
+
+// A camera so far away that a free path is no longer than the spacing of doubles at the volume.
+TEST(FarCamera, SeesTheSameTransmittance) {
+  const Volume volume = makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(20.0)),
+                                   [](const Vec3& p) { return p.x() < 4.0 ? 0.0 : 1.0; });
+  // Thin where the ray passes, with a majorant 10 000 times as high.
+  const RayProbe<> probe(volume, {ScalarFunction({knot(0.4, 0.005), knot(0.5, 50.0)}),
+                                  ColorFunction({{0.0, Rgb::Zero()}})});
+  const double crossing = 160.0 * 50.0;
+  for (const double distance : {1e9, 1e12, 1e15}) {
+    const int n = budget(400);
+    const Counters counters =
+        probe.expectTransmittance({{-15.0, 0.0, -distance}, Vec3::UnitZ()}, {}, std::exp(-0.8), n);
+    EXPECT_LT(static_cast<double>(counters.lookups),
+              2.0 * n * (crossing + 6.0 * std::sqrt(crossing)));
+  }
+}
+
+} // namespace
+} // namespace fenestra::testing
