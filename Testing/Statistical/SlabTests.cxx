@@ -1,29 +1,11 @@
-// A homogeneous slab against closed forms: transmittance, and diffuse reflectance of a half-space.
+// A homogeneous slab against closed forms: transmittance, and what a half-space reflects.
 
-#include "Support.h"
-
-#include <gtest/gtest.h>
+#include "Slab.h"
 
 #include <array>
 
 namespace fenestra::testing {
 namespace {
-
-/// A slab of side x side x thickness mm, extinction 1 per mm, seen from above, z down.
-TestScene slab(double side, double thickness, const Rgb& albedo, double sigma_t = 1.0) {
-  const Grid grid = centredGrid({2, 2, 2}, {side / 2.0, side / 2.0, thickness / 2.0});
-  TestScene scene{makeVolume(grid, [](const Vec3&) { return 1.0; }),
-                  linearTransfer(sigma_t, albedo),
-                  {EnvironmentLight{}},
-                  {},
-                  8,
-                  8};
-  scene.pose.position = {0.0, 0.0, thickness};
-  scene.pose.target = Vec3::Zero();
-  scene.pose.up = Vec3::UnitY();
-  scene.pose.scale = 0.01 * side;
-  return scene;
-}
 
 class SlabTransmittance : public ::testing::TestWithParam<double> {};
 
@@ -74,25 +56,32 @@ TEST(RatioTracking, ShadowThroughASlabIsExponential) {
 
 /// Chandrasekhar's H for isotropic scattering, by iterating his integral equation
 /// 1/H(mu) = sqrt(1 - w) + w/2 ∫ mu' H(mu') / (mu + mu') dmu' (Radiative Transfer, 1960, ch. V).
-double chandrasekharH(double albedo, double mu) {
-  constexpr int n = 400;
-  std::array<double, n> h;
-  h.fill(1.0);
-  const auto node = [](int i) { return (i + 0.5) / n; };
-  const auto apply = [&](double m) {
-    double integral = 0.0;
-    for (int i = 0; i < n; ++i)
-      integral += node(i) * h[static_cast<std::size_t>(i)] / (m + node(i)) / n;
-    return 1.0 / (std::sqrt(1.0 - albedo) + 0.5 * albedo * integral);
-  };
-  for (int pass = 0; pass < 300; ++pass) {
-    std::array<double, n> next;
-    for (int i = 0; i < n; ++i)
-      next[static_cast<std::size_t>(i)] = apply(node(i));
-    h = next;
+class ChandrasekharH {
+public:
+  explicit ChandrasekharH(double albedo) : m_albedo(albedo) {
+    m_h.fill(1.0);
+    for (int pass = 0; pass < 300; ++pass) {
+      std::array<double, nodes> next;
+      for (int i = 0; i < nodes; ++i)
+        next[static_cast<std::size_t>(i)] = (*this)(node(i));
+      m_h = next;
+    }
   }
-  return apply(mu);
-}
+
+  double operator()(double mu) const {
+    double integral = 0.0;
+    for (int i = 0; i < nodes; ++i)
+      integral += node(i) * m_h[static_cast<std::size_t>(i)] / (mu + node(i)) / nodes;
+    return 1.0 / (std::sqrt(1.0 - m_albedo) + 0.5 * m_albedo * integral);
+  }
+
+private:
+  static constexpr int nodes = 400;
+  static double node(int i) { return (i + 0.5) / nodes; }
+
+  double m_albedo;
+  std::array<double, nodes> m_h;
+};
 
 struct HalfSpaceCase {
   double albedo, reflectance;
@@ -102,7 +91,7 @@ class HalfSpace : public ::testing::TestWithParam<HalfSpaceCase> {};
 
 TEST_P(HalfSpace, ReflectsAsChandrasekharSays) {
   const auto [albedo, reflectance] = GetParam();
-  EXPECT_NEAR(1.0 - std::sqrt(1.0 - albedo) * chandrasekharH(albedo, 1.0), reflectance, 2e-4);
+  EXPECT_NEAR(1.0 - std::sqrt(1.0 - albedo) * ChandrasekharH(albedo)(1.0), reflectance, 2e-4);
   TestScene scene = slab(140.0, 70.0, Rgb::Constant(albedo)); // half-width 70, thickness 70
   RenderSettings settings;
   settings.samples = albedo > 0.95 ? 400 : 1000;
@@ -114,6 +103,53 @@ TEST_P(HalfSpace, ReflectsAsChandrasekharSays) {
 INSTANTIATE_TEST_SUITE_P(Albedos, HalfSpace,
                          ::testing::Values(HalfSpaceCase{0.5, 0.1152}, HalfSpaceCase{0.9, 0.4149},
                                            HalfSpaceCase{0.99, 0.7527}));
+
+/// Nearly a half-space: what comes back from below 60 free paths is less than exp(-2 · 0.17 · 60)
+/// of it, 0.17 a free path being the slowest decay at albedo 0.99.
+constexpr double deep = 60.0;
+const Rgb halfSpaceAlbedo(0.5, 0.9, 0.99);
+constexpr double knownH = 2e-4; ///< relative, of H: its reflectances above have four digits
+
+std::array<ChandrasekharH, 3> halfSpaceH() {
+  return {ChandrasekharH(halfSpaceAlbedo[0]), ChandrasekharH(halfSpaceAlbedo[1]),
+          ChandrasekharH(halfSpaceAlbedo[2])};
+}
+
+/// Under a constant environment of 1, seen at an angle: 1 - sqrt(1 - w) H(mu), by reciprocity with
+/// the albedo of a half-space for parallel light.
+TEST(HalfSpace, ReflectsAnEnvironmentAtAnyAngle) {
+  const std::array<ChandrasekharH, 3> h = halfSpaceH();
+  std::uint64_t seed = 20;
+  for (const double mu : {0.7, 0.2}) {
+    SCOPED_TRACE(mu);
+    TestScene scene = endlessSlab(deep, halfSpaceAlbedo);
+    look(scene, downward(mu));
+    Rgb expected;
+    for (int c = 0; c < 3; ++c)
+      expected[c] = 1.0 - std::sqrt(1.0 - halfSpaceAlbedo[c]) * h[static_cast<std::size_t>(c)](mu);
+    expectMean(seen(scene, 600, seed++), expected, 0.01, knownH);
+  }
+}
+
+/// The law of diffuse reflection (Chandrasekhar, ch. III and V): under parallel light
+/// of irradiance F on a plane that faces it, I(mu) = w F / (4 pi) mu0 / (mu + mu0) H(mu) H(mu0).
+TEST(HalfSpace, ReflectsParallelLightByTheLawOfDiffuseReflection) {
+  const std::array<ChandrasekharH, 3> h = halfSpaceH();
+  std::uint64_t seed = 30;
+  for (const double mu0 : {1.0, 0.4})
+    for (const double mu : {0.9, 0.25}) {
+      SCOPED_TRACE(std::to_string(mu0) + " " + std::to_string(mu));
+      TestScene scene = endlessSlab(deep, halfSpaceAlbedo);
+      scene.lights = {
+          DirectionalLight{.direction = downward(mu0, 2.0), .irradiance = Rgb::Constant(pi)}};
+      look(scene, downward(mu));
+      Rgb expected;
+      for (int c = 0; c < 3; ++c)
+        expected[c] = 0.25 * halfSpaceAlbedo[c] * mu0 / (mu + mu0) *
+                      h[static_cast<std::size_t>(c)](mu) * h[static_cast<std::size_t>(c)](mu0);
+      expectMean(seen(scene, 600, seed++), expected, 0.01, knownH);
+    }
+}
 
 } // namespace
 } // namespace fenestra::testing

@@ -1,0 +1,52 @@
+// One scattering in a homogeneous slab under parallel light, in closed form. With thickness T in
+// free paths, light of irradiance F on a plane that faces it at mu0 to the slab's normal, and phase
+// function p,
+//   reflected:   I(mu) = w p F mu0 / (mu + mu0) (1 - exp(-T / mu - T / mu0))
+//   transmitted: I(mu) = w p F mu0 / (mu - mu0) (exp(-T / mu) - exp(-T / mu0))
+// (Chandrasekhar, Radiative Transfer, 1960, ch. IX: the first of successive scatterings).
+
+#include "Slab.h"
+
+namespace fenestra::testing {
+namespace {
+
+/// Henyey and Greenstein 1941, per steradian, by the cosine between the light's ways before and
+/// after.
+double henyeyGreenstein(double g, double cosine) {
+  return (1.0 - g * g) / (4.0 * pi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
+}
+
+class SingleScatter : public ::testing::TestWithParam<double> {};
+
+TEST_P(SingleScatter, IsAsInClosedForm) {
+  const double g = GetParam();
+  const double thickness = 1.5;
+  const Rgb albedo(1.0, 0.6, 0.2);
+  const Rgb irradiance(1.0, 2.0, 3.0);
+  TestScene scene = endlessSlab(thickness, albedo);
+  scene.transfer.g = g;
+  std::uint64_t seed = 5000 + static_cast<std::uint64_t>(100.0 * (g + 1.0));
+  for (const double mu0 : {1.0, 0.5})
+    for (const double mu : {0.95, 0.3})
+      for (const double azimuth : {0.0, 2.0})
+        for (const bool fromBelow : {false, true}) {
+          SCOPED_TRACE(std::to_string(mu0) + " " + std::to_string(mu) + " " +
+                       std::to_string(azimuth) + (fromBelow ? " transmitted" : " reflected"));
+          const Vec3 lightWay = downward(mu0);
+          const Vec3 sight = downward(fromBelow ? -mu : mu, azimuth);
+          scene.lights = {DirectionalLight{.direction = lightWay, .irradiance = irradiance}};
+          look(scene, sight);
+          const double layer =
+              fromBelow
+                  ? mu0 / (mu - mu0) * (std::exp(-thickness / mu) - std::exp(-thickness / mu0))
+                  : mu0 / (mu + mu0) * -std::expm1(-thickness / mu - thickness / mu0);
+          const Rgb expected =
+              albedo * irradiance * (henyeyGreenstein(g, lightWay.dot(-sight)) * layer);
+          expectMean(seen(scene, 1500, seed++, 1), expected, 0.012);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Anisotropies, SingleScatter, ::testing::Values(-0.9, 0.0, 0.5, 0.9));
+
+} // namespace
+} // namespace fenestra::testing

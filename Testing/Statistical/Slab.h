@@ -1,0 +1,55 @@
+#pragma once
+// A homogeneous slab with its faces across z, for tests that know what it shows. Angles are given
+// by their cosine to the z axis.
+
+#include "Anchors.h"
+
+namespace fenestra::testing {
+
+/// A slab of side x side x thickness mm, the same medium everywhere, seen from above, z down.
+inline TestScene slab(double side, double thickness, const Rgb& albedo, double sigma_t = 1.0) {
+  const Grid grid = centredGrid({2, 2, 2}, {side / 2.0, side / 2.0, thickness / 2.0});
+  TestScene scene{makeVolume(grid, [](const Vec3&) { return 1.0; }),
+                  linearTransfer(sigma_t, albedo),
+                  {EnvironmentLight{}},
+                  {},
+                  8,
+                  8};
+  scene.pose.position = {0.0, 0.0, thickness};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.up = Vec3::UnitY();
+  scene.pose.scale = 0.01 * side;
+  return scene;
+}
+
+/// As wide as infinite for all that a double can tell: what leaks through the sides of a slab a few
+/// free paths thick decays by exp(-r / (a free path's length or two)) over 10000 of them.
+inline TestScene endlessSlab(double thickness, const Rgb& albedo) {
+  TestScene scene = slab(20000.0, thickness, albedo);
+  scene.pose.scale = 1.0;
+  return scene;
+}
+
+/// A unit direction downward (upward for mu < 0).
+inline Vec3 downward(double mu, double azimuth = 0.0) {
+  const double sine = std::sqrt(1.0 - mu * mu);
+  return {sine * std::cos(azimuth), sine * std::sin(azimuth), -mu};
+}
+
+/// Turns the camera to look along `direction` at the slab's centre.
+inline void look(TestScene& scene, const Vec3& direction) {
+  scene.pose.target = Vec3::Zero();
+  scene.pose.position = -1000.0 * direction; // above the face, however oblique
+}
+
+/// What the scene's camera sees; nothing but black shines through.
+inline RgbEstimate seen(const TestScene& scene, std::uint64_t samples, std::uint64_t seed,
+                        std::uint64_t bounces = PathSettings().bounces) {
+  RenderSettings settings;
+  settings.samples = budget(samples);
+  settings.seed = seeded(seed);
+  settings.path.bounces = bounces;
+  return pictureEstimate(scene.render(settings).film);
+}
+
+} // namespace fenestra::testing
