@@ -20,7 +20,7 @@ namespace fenestra {
 /// weights with P' w = 0 the sum of the last term is the same at every x, so that a0 takes it in.
 /// With w' = s^2 w the system in u is (K' + lambda / s^2 I) w' + P' a' = z, with the same f.
 ///
-/// Rounding: f is right to 1e-15 times the condition number, relative to |f| and to the range of
+/// Rounding: f is right to 1e-14 times the condition number, relative to |f| and to the range of
 /// the values, at any distance from the sites; tilt across nearly collinear sites is as ill defined
 /// as they are. Where all but nothing is smoothed, the f through sites much nearer to each other
 /// than the disc is wide runs away between their values, and at last is lost to rounding. Sites

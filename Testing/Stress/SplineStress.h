@@ -1,0 +1,89 @@
+#pragma once
+// Sites and values for the stress of the thin plate spline, and its solution in 50 digits.
+
+#include "SaddleSpline.h"
+#include "Unit/ClippingTesting.h"
+#include "clipping/ThinPlateSpline.h"
+
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/eigen.hpp>
+
+#include <vector>
+
+namespace fenestra::testing_clipping {
+
+using FiftyDigits = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>,
+                                                  boost::multiprecision::et_off>;
+
+struct SplineData {
+  std::vector<Vec2> sites;
+  std::vector<double> values;
+
+  void add(const Vec2& site, double value) {
+    sites.push_back(site);
+    values.push_back(value);
+  }
+  ThinPlateSpline spline(double smoothing) const { return {sites, values, smoothing}; }
+  SaddleSpline<FiftyDigits> exact(double smoothing) const { return {sites, values, smoothing}; }
+
+  /// The range of the values, mm.
+  double range() const {
+    const auto [least, greatest] = std::ranges::minmax(values);
+    return greatest - least;
+  }
+  /// The greatest distance from the first site, mm.
+  double extent() const {
+    double extent = 0.0;
+    for (const Vec2& site : sites)
+      extent = std::max(extent, (site - sites[0]).norm());
+    return extent;
+  }
+};
+
+inline Vec2 inDisc(Random& random, double radius) {
+  const double angle = uniform(random, 0.0, 2.0 * pi);
+  return radius * std::sqrt(random.uniform()) * Vec2(std::cos(angle), std::sin(angle));
+}
+
+/// Sites all over a disc, values anywhere in `range` mm above 500.
+inline SplineData scattered(Random& random, int count, double radius, const Vec2& center,
+                            double range) {
+  SplineData data;
+  for (int i = 0; i < count; ++i)
+    data.add(center + inDisc(random, radius), 500.0 + range * random.uniform());
+  return data;
+}
+
+/// Eight of the sites, 1e-9 mm beside them, `near` places within three extents of them, and 10 m
+/// away all around.
+inline std::vector<Vec2> places(Random& random, const SplineData& data, int near) {
+  std::vector<Vec2> places;
+  for (std::size_t i = 0; i < data.sites.size(); i += 1 + data.sites.size() / 8) {
+    places.push_back(data.sites[i]);
+    places.push_back(data.sites[i] + Vec2(1e-9, -1e-9));
+  }
+  for (int i = 0; i < near; ++i)
+    places.push_back(data.sites[0] + inDisc(random, 3.0 * data.extent()));
+  for (int i = 0; i < 4; ++i)
+    places.push_back(data.sites[0] + 1e4 * Vec2(std::cos(1.7 * i), std::sin(1.7 * i)));
+  return places;
+}
+
+/// The norm of every bound here: the greatest |f - g| / (range of the values + |g|) over the
+/// places; infinity where f is not finite anywhere.
+template <typename F, typename G>
+double greatestError(const F& f, const G& g, const std::vector<Vec2>& places, double range) {
+  double worst = 0.0;
+  for (const Vec2& x : places) {
+    const double exact = g(x), error = std::abs(f(x) - exact);
+    worst = std::max(worst, std::isfinite(error) ? error / (range + std::abs(exact)) : infinity);
+  }
+  return worst;
+}
+
+/// What ThinPlateSpline.h promises, and no less than 1e-9.
+inline double splineBound(const ThinPlateSpline& spline) {
+  return std::max(1e-9, 1e-14 * spline.conditionNumber());
+}
+
+} // namespace fenestra::testing_clipping

@@ -1,0 +1,377 @@
+// The thin plate spline against its solution in 50 digits, on ordinary sites and on those that try
+// to break it; against what degenerate sites determine; against itself in other units, places and
+// orders. Errors are relative to |f| and the range of the values (greatestError).
+
+#include "SplineStress.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <sstream>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+constexpr std::array smoothings{0.0, 5e-324, 1e-300, 1e-12, 0.5, 1.0 - 1e-6, 1.0};
+constexpr std::array origins{0.0, 120.3, 1e6};
+
+/// p = 0 is the limit of the saddle system, which has none there: at 1e-30 it is nearer than
+/// double.
+double aboveZero(double smoothing) {
+  return std::max(smoothing, 1e-30);
+}
+
+/// The spline of `data` is the exact one of `same`, which are the same data or what they count as.
+void expectExact(const SplineData& data, const SplineData& same, double smoothing) {
+  Random random(7, 0, 0);
+  const ThinPlateSpline spline = data.spline(smoothing);
+  EXPECT_LE(greatestError(spline, same.exact(aboveZero(smoothing)), places(random, data, 8),
+                          data.range()),
+            splineBound(spline));
+}
+
+void expectExact(const SplineData& data) {
+  for (const double smoothing : smoothings) {
+    SCOPED_TRACE(smoothing);
+    expectExact(data, data, smoothing);
+  }
+}
+
+// ---- against the exact solution
+
+TEST(SplineStress, IsTheFiftyDigitSolutionOnRandomSites) {
+  Random random(1, 0, 0);
+  constexpr int cases = 240;
+  constexpr std::array ps{1e-3, 0.1, 0.5, 0.9, 1.0 - 1e-6, 1.0};
+  double worst = 0.0, worstCondition = 0.0;
+  for (int i = 0; i < cases; ++i) {
+    const double p = ps[static_cast<std::size_t>(i) % ps.size()];
+    const int count = 4 + static_cast<int>(46.999 * std::pow(random.uniform(), 2.0));
+    const double radius = 0.5 * std::pow(1000.0, random.uniform());
+    const double range = std::pow(10.0, uniform(random, -1, 3));
+    const SplineData data = scattered(random, count, radius, inDisc(random, 1e3), range);
+    const ThinPlateSpline spline = data.spline(p);
+    const double error =
+        greatestError(spline, data.exact(p), places(random, data, 6), data.range());
+    EXPECT_LE(error, 1e-9) << count << " sites, radius " << radius << ", p " << p;
+    worst = std::max(worst, error);
+    worstCondition = std::max(worstCondition, spline.conditionNumber());
+  }
+  std::printf("%d cases: worst relative error %.1e, worst condition number %.1e\n", cases, worst,
+              worstCondition);
+  RecordProperty("worstError", (std::ostringstream() << worst).str());
+}
+
+TEST(SplineStress, AThousandSitesAreSolvedToo) {
+  // In a disc of 1 mm, where the saddle system is good enough for long double.
+  Random random(2, 0, 0);
+  const SplineData data = scattered(random, 1000, 1.0, {0.3, -0.2}, 500.0);
+  const double p = 1.0 / (1.0 + 1e-4); // as p = 0.5 in a disc of 100 mm
+  const ThinPlateSpline spline = data.spline(p);
+  const SaddleSpline<long double> exact(data.sites, data.values, p);
+  EXPECT_LE(greatestError(spline, exact, places(random, data, 50), data.range()),
+            splineBound(spline));
+  const ThinPlateSpline through = data.spline(1.0);
+  double miss = 0.0;
+  for (std::size_t i = 0; i < data.sites.size(); ++i)
+    miss = std::max(miss, std::abs(through(data.sites[i]) - data.values[i]));
+  EXPECT_LE(miss, splineBound(through) * 1000.0);
+}
+
+TEST(SplineStress, ACircleOfDepthJumps) {
+  SplineData data;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 2.0 * pi * i / 40;
+    data.add(Vec2(10, 20) + 60.0 * Vec2(std::cos(angle), std::sin(angle)), i % 2 ? 1000.0 : 500.0);
+  }
+  expectExact(data);
+  for (std::size_t i = 0; i < 40; ++i)
+    data.values[i] = i < 20 ? 1000.0 : 500.0;
+  expectExact(data);
+}
+
+TEST(SplineStress, ClustersAtTwoScales) {
+  for (const double width : {1e-3, 1e-6}) {
+    Random random(3, 0, 0);
+    SplineData data, centers;
+    for (int cluster = 0; cluster < 5; ++cluster) {
+      double mean = 0.0;
+      for (int i = 0; i < 8; ++i) {
+        const Vec2 center(100.0 * (cluster % 3), 100.0 * (cluster / 3));
+        data.add(center + inDisc(random, width), 500.0 + 100.0 * cluster + random.uniform());
+        mean += data.values.back() / 8.0;
+      }
+      centers.add(data.sites[data.sites.size() - 8], mean);
+    }
+    for (const double smoothing : {0.0, 1e-12, 0.5, 1.0 - 1e-6, 1.0}) {
+      SCOPED_TRACE(std::to_string(width) + " mm, p " + std::to_string(smoothing));
+      // At p = 1 sites 1e-8 of the disc apart count as one.
+      expectExact(data, smoothing == 1.0 && width == 1e-6 ? centers : data, smoothing);
+    }
+  }
+}
+
+TEST(SplineStress, NearlyCoincidentSites) {
+  for (const double apart : {1e-3, 1e-6, 1e-9, 1e-12})
+    for (const double jump : {0.0, 1e-3, 500.0})
+      for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0 - 1e-13, 1.0}) {
+        SCOPED_TRACE(std::to_string(jump) + " mm over " + std::to_string(1e12 * apart) +
+                     "e-12 mm, p " + std::to_string(smoothing));
+        Random random(4, 0, 0);
+        SplineData data = scattered(random, 20, 60.0, {0.0, 0.0}, 40.0);
+        SplineData one = data;
+        data.add(data.sites[0] + Vec2(apart, 0.0), data.values[0] + jump);
+        one.values[0] += 0.5 * jump;
+        expectExact(data, smoothing > 1.0 - 1e-9 && apart < 1e-5 ? one : data, smoothing);
+      }
+}
+
+TEST(SplineStress, NearlyCollinearSites) {
+  for (const double breadth : {1e-3, 1e-6}) {
+    Random random(5, 0, 0);
+    SplineData data;
+    for (int i = 0; i < 30; ++i)
+      data.add({2.0 * i - 30.0, breadth * uniform(random, -1, 1)}, uniform(random, 500, 510));
+    SCOPED_TRACE(breadth);
+    expectExact(data);
+  }
+}
+
+TEST(SplineStress, SitesInNextToNoSpace) {
+  for (const double radius : {1e-3, 1e-6, 1e-12}) {
+    Random random(6, 0, 0);
+    SCOPED_TRACE(radius);
+    expectExact(scattered(random, 20, radius, {0.0, 0.0}, 10.0));
+  }
+}
+
+// ---- what degenerate sites determine
+
+TEST(SplineStress, NoSitesGiveZero) {
+  for (const double smoothing : smoothings) {
+    const ThinPlateSpline spline = SplineData{}.spline(smoothing);
+    EXPECT_EQ(spline({1e4, -3.0}), 0.0);
+    EXPECT_EQ(spline.conditionNumber(), 1.0);
+  }
+}
+
+TEST(SplineStress, OneSiteAndCoincidentSitesGiveTheirMean) {
+  for (const double smoothing : smoothings)
+    for (const double origin : origins)
+      for (const int count : {1, 2, 3, 4, 10, 50, 1000}) {
+        SplineData data;
+        for (int i = 0; i < count; ++i)
+          data.add({origin + 0.1, 0.7 - origin}, 500.0 + i);
+        const double mean = 500.0 + 0.5 * (count - 1);
+        const ThinPlateSpline spline = data.spline(smoothing);
+        for (const Vec2& off : {Vec2(0, 0), Vec2(1e-9, 0), Vec2(-30, 2), Vec2(1e4, 1e4)}) {
+          ASSERT_NEAR(spline(data.sites[0] + off), mean, 1e-12 * mean) << count;
+        }
+      }
+}
+
+TEST(SplineStress, CollinearSitesGiveTheLeastSquaresLineAlongThem) {
+  const Vec2 along = Vec2(0.3, 0.7).normalized(), across(-along.y(), along.x());
+  for (const double smoothing : smoothings)
+    for (const double origin : origins)
+      for (const double radius : {0.5, 500.0})
+        for (const int count : {2, 3, 4, 50, 1000}) {
+          Random random(8, 0, 0);
+          SplineData data;
+          long double n = 0, t = 0, tt = 0, z = 0, tz = 0;
+          for (int i = 0; i < count; ++i) {
+            const double place = radius * (2.0 * i / (count - 1) - 1.0);
+            data.add(Vec2(origin, -origin) + place * along, uniform(random, 0, 500));
+            const long double value = data.values.back();
+            n += 1, t += place, tt += place * place, z += value, tz += place * value;
+          }
+          const long double slope = (n * tz - t * z) / (n * tt - t * t);
+          const ThinPlateSpline spline = data.spline(smoothing);
+          for (const double place : {0.0, 0.3 * radius, -radius, 1e4})
+            for (const double aside : {0.0, radius, -1e4}) {
+              const auto line = static_cast<double>((z - slope * t) / n + slope * place);
+              const Vec2 x = Vec2(origin, -origin) + place * along + aside * across;
+              // Coordinates at 1e6 are rounded, those of the sites and of x.
+              const double rounded = 1e-15 * origin * (1.0 + std::hypot(place, aside) / radius);
+              ASSERT_NEAR(spline(x), line,
+                          1e-9 * (data.range() + std::abs(line)) + data.range() / radius * rounded)
+                  << count << " sites to " << radius << " mm at " << origin << ", p " << smoothing;
+            }
+        }
+}
+
+TEST(SplineStress, ThreeSitesGiveTheirPlane) {
+  for (const double smoothing : smoothings)
+    for (const double origin : origins)
+      for (const double size : {1e-3, 1.0, 1e3}) {
+        const Vec2 o(origin, -origin);
+        SplineData data;
+        data.add(o, 1.0);
+        data.add(o + Vec2(size, 0), 2.0);
+        data.add(o + Vec2(0, size), 501.0);
+        for (const Vec2& at : {Vec2(0, 0), Vec2(1, 1), Vec2(-7, 1e4)}) {
+          // The coordinates, at 1e6, are themselves rounded.
+          const Vec2 x = o + size * at, u = (x - o) / (data.sites[1].x() - o.x());
+          const double plane = 1.0 + u.x() + 500.0 * u.y();
+          const double error = 1e-9 + 1e-15 * origin / size;
+          ASSERT_NEAR(data.spline(smoothing)(x), plane, error * (500.0 + std::abs(plane)));
+        }
+      }
+}
+
+// ---- the same f in other words
+
+/// The spline of `moved` at moved(x) is the one of `data` at x.
+template <typename Map>
+void expectSame(const SplineData& data, double p, const SplineData& moved, double movedP,
+                const Map& map, double bound) {
+  Random random(9, 0, 0);
+  const ThinPlateSpline a = data.spline(p), b = moved.spline(movedP);
+  const auto atMoved = [&](const Vec2& x) { return b(map(x)); };
+  EXPECT_LE(greatestError(atMoved, a, places(random, data, 50), data.range()), bound);
+}
+
+template <typename Map>
+SplineData mapped(const SplineData& data, const Map& map) {
+  SplineData moved = data;
+  std::ranges::transform(data.sites, moved.sites.begin(), map);
+  return moved;
+}
+
+TEST(SplineStress, DoesNotDependOnTheUnit) {
+  Random random(10, 0, 0);
+  for (const int count : {5, 50, 300})
+    for (const double lambda : {0.0, 1e-3, 1.0, 1e3})
+      for (const double unit : {1e-3, 1.0 / 512.0, 25.4, 1e3}) { // mm
+        const SplineData data = scattered(random, count, 40.0, {120, -300}, 40.0);
+        const auto inUnit = [&](const Vec2& x) -> Vec2 { return x / unit; };
+        const double same = 1.0 / (1.0 + lambda / (unit * unit));
+        const double rounded = lambda > 0.0 ? 1e-16 * unit * unit / lambda : 0.0; // 1 - p is
+        expectSame(data, 1.0 / (1.0 + lambda), mapped(data, inUnit), same, inUnit, 1e-9 + rounded);
+      }
+}
+
+TEST(SplineStress, ShiftsWithItsSites) {
+  Random random(11, 0, 0);
+  SplineData data = scattered(random, 50, 40.0, {0, 0}, 40.0);
+  for (Vec2& site : data.sites) // to 2^-12 mm, so that the shift does not round
+    site = (site * 4096.0).array().round() / 4096.0;
+  for (const Vec2& by : {Vec2(1, -7), Vec2(1e3, 2e3), Vec2(-1e6, 1e6)})
+    for (const double smoothing : smoothings) {
+      const ThinPlateSpline a = data.spline(smoothing);
+      const ThinPlateSpline b =
+          mapped(data, [&](const Vec2& x) -> Vec2 { return x + by; }).spline(smoothing);
+      for (int i = 0; i < 50; ++i) {
+        const Vec2 x = (4096.0 * inDisc(random, 1e4)).array().round() / 4096.0;
+        ASSERT_NEAR(a(x), b(x + by), 1e-12 * (data.range() + std::abs(a(x)))) << by;
+      }
+    }
+}
+
+TEST(SplineStress, TurnsWithItsSites) {
+  Random random(12, 0, 0);
+  for (const double origin : origins)
+    for (const double smoothing : smoothings)
+      for (const double angle : {1e-8, 0.7, 0.5 * pi, 3.0}) {
+        const SplineData data = scattered(random, 50, 40.0, {0, 0}, 40.0);
+        const auto turn = [&](const Vec2& x) -> Vec2 {
+          return Eigen::Rotation2Dd(angle) * x + Vec2(origin, -origin);
+        };
+        // 1e6 mm away coordinates are rounded by 1e-10 mm, and so are slopes' effects on f.
+        const double bound = origin > 1e5 ? 1e-7 : 1e-9;
+        expectSame(data, smoothing, mapped(data, turn), smoothing, turn, bound);
+      }
+}
+
+TEST(SplineStress, DoesNotDependOnTheOrderOfSites) {
+  Random random(13, 0, 0);
+  for (const double smoothing : smoothings) {
+    const SplineData data = scattered(random, 50, 40.0, {120, -300}, 40.0);
+    SplineData reversed = data;
+    std::ranges::reverse(reversed.sites);
+    std::ranges::reverse(reversed.values);
+    expectSame(
+        data, smoothing, reversed, smoothing, [](const Vec2& x) { return x; }, 1e-9);
+  }
+}
+
+// ---- condition numbers
+
+/// A wavy closed curve, like a contour.
+SplineData outline(int count, double radius) {
+  SplineData data;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.0 * pi * i / count;
+    const double r = radius * (1.0 + 0.3 * std::cos(3.0 * angle));
+    data.add(r * Vec2(std::cos(angle), std::sin(angle)), std::sin(5.0 * angle));
+  }
+  return data;
+}
+
+/// By another basis of the null space of P', from its singular vectors.
+double conditionBySingularVectors(const SplineData& data, double lambda) {
+  const auto n = std::ssize(data.sites);
+  Vec2 center = Vec2::Zero();
+  for (const Vec2& site : data.sites)
+    center += site / static_cast<double>(n);
+  double s = 0.0;
+  for (const Vec2& site : data.sites)
+    s = std::max(s, (site - center).norm());
+  Eigen::MatrixXd p(n, 3), k(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Vec2 u = (data.sites[static_cast<std::size_t>(i)] - center) / s;
+    p.row(i) << 1.0, u.x(), u.y();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double r = (data.sites[static_cast<std::size_t>(j)] - center - s * u).norm() / s;
+      k(i, j) = i == j ? lambda / (s * s) : r * r * std::log(r * r);
+    }
+  }
+  const Eigen::MatrixXd basis =
+      Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::FullPivHouseholderQRPreconditioner>(
+          p, Eigen::ComputeFullU)
+          .matrixU()
+          .rightCols(n - 3);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(basis.transpose() * k * basis);
+  return spectrum.eigenvalues()[n - 4] / spectrum.eigenvalues()[0];
+}
+
+TEST(SplineStress, ConditionNumbersAreWhatTheyClaim) {
+  Random random(14, 0, 0);
+  for (const SplineData& data : {outline(50, 60.0), scattered(random, 30, 5.0, {10, 20}, 1.0)}) {
+    for (const double lambda : {0.0, 1.0}) {
+      const double expected = conditionBySingularVectors(data, lambda);
+      EXPECT_NEAR(data.spline(1.0 / (1.0 + lambda)).conditionNumber(), expected, 1e-6 * expected);
+    }
+  }
+}
+
+TEST(SplineStress, ConditionNumbersStaySmall) {
+  std::printf("condition number in the unit disc\n%10s %6s %10s %10s %10s\n", "", "N", "1 mm",
+              "100 mm", "p = 1");
+  for (const char* layout : {"outline", "disc"})
+    for (const int count : {10, 50, 200, 1000}) {
+      Random random(15, 0, 0);
+      const auto sites = [&](double radius) {
+        return *layout == 'o' ? outline(count, radius) : scattered(random, count, radius, {}, 1.0);
+      };
+      const std::array conditions{sites(1.0).spline(0.5).conditionNumber(),
+                                  sites(100.0).spline(0.5).conditionNumber(),
+                                  sites(100.0).spline(1.0).conditionNumber()};
+      std::printf("%10s %6d %10.1e %10.1e %10.1e\n", layout, count, conditions[0], conditions[1],
+                  conditions[2]);
+      RecordProperty(layout + std::to_string(count), std::to_string(conditions[1]));
+      if (count == 50 && *layout == 'o') {
+        EXPECT_LE(*std::ranges::max_element(conditions), 3e3);
+      }
+      // |phi| <= 4 ln 4 in the unit disc, so that K's norm is at most 5.6 N; outlines are 1.3 wide.
+      EXPECT_LE(conditions[0], 1.0 + 5.6 * 1.69 * count);
+      EXPECT_LE(conditions[1], 1.0 + 5.6 * 1.69 * count * 1e4);
+      EXPECT_LE(conditions[2], 5.6 * count * 1e12); // or sites would have counted as one
+    }
+}
+
+} // namespace
