@@ -28,15 +28,36 @@ CellRanges::CellRanges(const Volume& volume, int apron)
 }
 
 Size3 CellRanges::edgeFor(const Grid& grid) {
-  constexpr double cells = 1 << 18;
+  constexpr double wantedCells = 1 << 18;
   const Vec3 spacing = grid.spacing();
-  const Vec3 extent = spacing.cwiseProduct(grid.size.cast<double>());
-  const double edge = std::cbrt(extent.prod() / cells); // mm
-  Size3 voxels;
-  for (int axis = 0; axis < 3; ++axis)
-    voxels[axis] = static_cast<std::int64_t>(
-        std::clamp(std::round(edge / spacing[axis]), 1.0, static_cast<double>(grid.size[axis])));
-  return voxels;
+  const Vec3 size = grid.size.cast<double>();
+  Vec3 voxels = Vec3::Zero(); // 0 where not settled yet
+  // An axis whose voxels are longer than a cube's edge has cells of one voxel, one that is shorter
+  // than it is one cell; the others share what that leaves, or a thin slice would have a cell for
+  // every voxel.
+  for (int settled = 0; settled < 3; ++settled) {
+    double volume = 1.0; // of the open axes alone
+    double cells = wantedCells;
+    for (int axis = 0; axis < 3; ++axis)
+      if (voxels[axis] == 0.0)
+        volume *= spacing[axis] * size[axis];
+      else
+        cells /= size[axis] / voxels[axis];
+    const double edge = std::pow(volume / cells, 1.0 / (3 - settled)); // mm
+    int farthest = -1;
+    double factor = 0.0; // by which an axis' cells have to miss the cube
+    for (int axis = 0; axis < 3; ++axis)
+      if (voxels[axis] == 0.0) {
+        const double cube = edge / spacing[axis];
+        const double miss = std::max(1.0 / cube, cube / size[axis]);
+        if (miss > factor) {
+          farthest = axis;
+          factor = miss;
+        }
+      }
+    voxels[farthest] = std::clamp(std::round(edge / spacing[farthest]), 1.0, size[farthest]);
+  }
+  return voxels.cast<std::int64_t>();
 }
 
 template <typename Voxel>
