@@ -1,0 +1,188 @@
+#include "Clipping.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+
+namespace fenestra::oracle {
+namespace {
+
+/// The interpolated indicator of a mask at an index position; 0 outside its voxels.
+double indicator(const Mask& mask, const Vec3& index) {
+  double sum = 0.0;
+  const Vec3 base = index.array().floor();
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1.0;
+    bool exists = true;
+    Size3 voxel;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int upper = corner >> axis & 1;
+      const double share = index[axis] - base[axis];
+      weight *= upper == 1 ? share : 1.0 - share;
+      voxel[axis] = static_cast<std::int64_t>(base[axis]) + upper;
+      exists = exists && voxel[axis] >= 0 && voxel[axis] < mask.grid.size[axis];
+    }
+    if (exists)
+      sum +=
+          weight * mask.voxels[static_cast<std::size_t>(
+                       voxel[0] + mask.grid.size[0] * (voxel[1] + mask.grid.size[1] * voxel[2]))];
+  }
+  return sum;
+}
+
+/// The place in [low, high] at which a function with one summit there is highest.
+template <typename Function>
+double summit(const Function& f, double low, double high) {
+  for (int i = 0; i < 60; ++i) {
+    const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
+    (f(a) < f(b) ? low : high) = f(a) < f(b) ? a : b;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Where along a ray the indicator first reaches 1/2 within the volume, or infinity: sampled
+/// twenty-five times a voxel, and at every summit between samples, where a ray may graze the
+/// surface; then bisected.
+double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
+  const Affine worldToIndex = mask.grid.indexToWorld.inverse();
+  const Interval part = matter.inBox(ray.origin, ray.direction);
+  const auto level = [&](double t) {
+    const Vec3 world = ray.at(t);
+    const double share = indicator(mask, worldToIndex * world);
+    return share > 0.0 && matter.inside(world) ? share : 0.0;
+  };
+  const auto between = [&](double outside, double inside) {
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (outside + inside);
+      (level(middle) >= 0.5 ? inside : outside) = middle;
+    }
+    return inside;
+  };
+  const double step = 0.04 * mask.grid.spacing().minCoeff();
+  double before = 0.0, here = part.empty() ? 0.0 : level(part.begin);
+  if (here >= 0.5)
+    return part.begin;
+  for (double t = part.begin; t < part.end; t += step) {
+    const double next = std::min(t + step, part.end), there = level(next);
+    if (there >= 0.5)
+      return between(t, next);
+    if (here > 0.3 && here >= before && here >= there) {
+      const double top = summit(level, std::max(t - step, part.begin), next);
+      if (level(top) >= 0.5)
+        return between(std::max(t - step, part.begin), top);
+    }
+    before = here;
+    here = there;
+  }
+  return infinity;
+}
+
+/// phi(r) = r^2 ln r^2 of squared distances.
+long double phi(long double squared) {
+  return squared > 0.0L ? squared * std::log(squared) : 0.0L;
+}
+
+/// The approximating thin plate spline as design, section 2, states it: the saddle system in mm.
+class Spline {
+public:
+  explicit Spline(const DepthClip& clip) : m_sites(clip.sites) {
+    using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+    const auto n = std::ssize(m_sites);
+    Matrix system = Matrix::Zero(n + 3, n + 3);
+    Vector right = Vector::Zero(n + 3);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Vec2& site = m_sites[static_cast<std::size_t>(i)];
+      for (Eigen::Index j = 0; j < n; ++j)
+        system(i, j) = phi((site - m_sites[static_cast<std::size_t>(j)]).squaredNorm());
+      system(i, i) = (1.0L - clip.smoothing) / clip.smoothing;
+      const Eigen::Matrix<long double, 3, 1> row(1.0L, site.x(), site.y());
+      system.block(i, n, 1, 3) = row.transpose();
+      system.block(n, i, 3, 1) = row;
+      right[i] = clip.depths[static_cast<std::size_t>(i)];
+    }
+    m_solution = system.fullPivLu().solve(right);
+  }
+
+  double operator()(const Vec2& at) const {
+    const auto n = std::ssize(m_sites);
+    long double sum = m_solution[n] + m_solution[n + 1] * at.x() + m_solution[n + 2] * at.y();
+    for (Eigen::Index i = 0; i < n; ++i)
+      sum += m_solution[i] * phi((at - m_sites[static_cast<std::size_t>(i)]).squaredNorm());
+    return static_cast<double>(sum);
+  }
+
+private:
+  using Vector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
+
+  std::vector<Vec2> m_sites;
+  Vector m_solution;
+};
+
+std::vector<double> depthsOf(const DepthClip& clip, const View& view, const Matter& matter) {
+  std::optional<Spline> spline;
+  if (!clip.isCutaway)
+    spline.emplace(clip);
+  std::vector<double> depths;
+  for (const double y : clip.rows)
+    for (const double x : clip.columns) {
+      const Ray ray = view.through(x, y);
+      const double t = firstMeeting(clip.focus, matter, ray);
+      const double context = spline ? (*spline)({x, y}) : -infinity;
+      depths.push_back(t < infinity ? view.depth(ray.at(t)) : context);
+    }
+  return depths;
+}
+
+/// Where a coordinate lies among samples that rise or fall: the one before it and the share of the
+/// way to the next; beyond the ends it lies at the end.
+struct Place {
+  std::size_t before;
+  double share;
+};
+
+Place placeOf(const std::vector<double>& samples, double coordinate) {
+  const bool rises = samples.back() > samples.front();
+  std::size_t next = 1;
+  while (next + 1 < samples.size() &&
+         (rises ? samples[next] < coordinate : samples[next] > coordinate))
+    ++next;
+  if (samples.size() == 1)
+    return {0, 0.0};
+  const double share = (coordinate - samples[next - 1]) / (samples[next] - samples[next - 1]);
+  return {next - 1, std::clamp(share, 0.0, 1.0)};
+}
+
+} // namespace
+
+Clipping::Clipping(const ClipDescription& description, const View& view, const Matter& matter)
+    : m_description(description), m_view(view) {
+  if (const auto* clip = std::get_if<DepthClip>(&description))
+    m_depths = depthsOf(*clip, view, matter);
+}
+
+double Clipping::surface(const Vec2& at) const {
+  const auto& clip = std::get<DepthClip>(m_description);
+  const Place x = placeOf(clip.columns, at.x()), y = placeOf(clip.rows, at.y());
+  const auto depth = [&](std::size_t column, std::size_t row) {
+    return m_depths[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
+                    std::min(column, clip.columns.size() - 1)];
+  };
+  if (clip.isCutaway)
+    return depth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5));
+  return (1.0 - y.share) * ((1.0 - x.share) * depth(x.before, y.before) +
+                            x.share * depth(x.before + 1, y.before)) +
+         y.share * ((1.0 - x.share) * depth(x.before, y.before + 1) +
+                    x.share * depth(x.before + 1, y.before + 1));
+}
+
+double Clipping::keep(const Vec3& world) const {
+  if (std::holds_alternative<std::monostate>(m_description))
+    return 1.0;
+  if (m_view.isPerspective && m_view.depth(world) <= 0.0)
+    return 0.0;
+  if (const auto* plane = std::get_if<PlaneClip>(&m_description))
+    return (world - plane->point).dot(plane->normal) > 0.0 ? 0.0 : 1.0;
+  return m_view.depth(world) < surface(m_view.onPlane(world)) ? 0.0 : 1.0;
+}
+
+} // namespace fenestra::oracle

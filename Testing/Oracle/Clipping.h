@@ -1,0 +1,28 @@
+#pragma once
+// What a clip leaves, from its description.
+
+#include "Matter.h"
+#include "View.h"
+
+namespace fenestra::oracle {
+
+class Clipping {
+public:
+  /// For a depth clip, builds the whole buffer.
+  Clipping(const ClipDescription& description, const View& view, const Matter& matter);
+
+  /// 0 or 1.
+  double keep(const Vec3& world) const;
+
+  /// Depths of a depth clip, mm, row by row; -infinity where a cutaway removes nothing.
+  const std::vector<double>& depths() const { return m_depths; }
+
+private:
+  double surface(const Vec2& at) const;
+
+  const ClipDescription& m_description;
+  const View& m_view;
+  std::vector<double> m_depths;
+};
+
+} // namespace fenestra::oracle

@@ -1,0 +1,118 @@
+#include "Lights.h"
+
+namespace fenestra::oracle {
+namespace {
+
+/// Largest distance of a corner of the voxels' box from its middle.
+double boundingRadius(const Grid& grid, const Vec3& center) {
+  double radius = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 index = Vec3::Constant(-0.5);
+    for (int axis = 0; axis < 3; ++axis)
+      if (corner >> axis & 1)
+        index[axis] += static_cast<double>(grid.size[axis]);
+    radius = std::max(radius, (grid.indexToWorld * index - center).norm());
+  }
+  return radius;
+}
+
+PlacedArea placed(const AreaLight& light, const Grid& grid, const View& view) {
+  PlacedArea area{light.shape, light.center, light.normal,  {},
+                  light.up,    light.size,   light.radiance};
+  if (light.shape == AreaLight::Shape::disk)
+    area.size.y() = area.size.x();
+  if (light.frame == LightFrame::camera) {
+    const Vec3 middle = grid.indexToWorld * Vec3(0.5 * (grid.size.cast<double>() - Vec3::Ones()));
+    const double radius = boundingRadius(grid, middle);
+    const auto turned = [&](const Vec3& v) {
+      return Vec3(v.x() * view.right + v.y() * view.up - v.z() * view.forward);
+    };
+    area.center = middle + radius * turned(light.center);
+    area.normal = turned(light.normal);
+    area.up = turned(light.up);
+    area.size *= radius;
+  }
+  area.normal.normalize();
+  area.up = (area.up - area.up.dot(area.normal) * area.normal).normalized();
+  area.right = area.up.cross(area.normal);
+  return area;
+}
+
+Rgb radianceOf(const EnvironmentLight& light, const Vec3& direction) {
+  const EnvironmentMap& map = light.map;
+  if (map.width == 0)
+    return light.radiance;
+  const double u = 0.5 + std::atan2(direction.x(), direction.y()) / (2.0 * pi);
+  const double v = std::acos(std::clamp(direction.z(), -1.0, 1.0)) / pi;
+  const int column = std::clamp(static_cast<int>(std::floor(u * map.width)), 0, map.width - 1);
+  const int row = std::clamp(static_cast<int>(std::floor(v * map.height)), 0, map.height - 1);
+  const float* rgb = &map.rgb[3 * static_cast<std::size_t>(row * map.width + column)];
+  return light.radiance * Rgb(rgb[0], rgb[1], rgb[2]);
+}
+
+} // namespace
+
+Lights::Lights(const std::vector<Light>& lights, const Grid& volume, const View& view) {
+  for (const Light& light : lights) {
+    if (const auto* environment = std::get_if<EnvironmentLight>(&light))
+      m_environments.push_back(*environment);
+    else if (const auto* directional = std::get_if<DirectionalLight>(&light))
+      m_directionals.push_back(*directional);
+    else
+      m_areas.push_back(placed(std::get<AreaLight>(light), volume, view));
+  }
+}
+
+Rgb Lights::environment(const Vec3& direction) const {
+  Rgb sum = Rgb::Zero();
+  for (const EnvironmentLight& light : m_environments)
+    sum += radianceOf(light, direction);
+  return sum;
+}
+
+double PlacedArea::area() const {
+  return size.prod() * (shape == AreaLight::Shape::disk ? pi / 4.0 : 1.0);
+}
+
+double PlacedArea::meeting(const Ray& ray) const {
+  const double slope = ray.direction.dot(normal);
+  const double t = slope == 0.0 ? -1.0 : (center - ray.origin).dot(normal) / slope;
+  if (t <= 0.0)
+    return infinity;
+  const Vec3 from = ray.at(t) - center;
+  const double x = std::abs(from.dot(right)), y = std::abs(from.dot(up));
+  const bool isOn = shape == AreaLight::Shape::disk ? std::hypot(x, y) <= 0.5 * size.x()
+                                                    : x <= 0.5 * size.x() && y <= 0.5 * size.y();
+  return isOn ? t : infinity;
+}
+
+Rgb Lights::areas(const Ray& ray, double end) const {
+  Rgb sum = Rgb::Zero();
+  for (const PlacedArea& light : m_areas)
+    if (ray.direction.dot(light.normal) < 0.0 && light.meeting(ray) < end)
+      sum += light.radiance;
+  return sum;
+}
+
+Vec3 Lights::towardArea(const Vec3& point, Generator& generator) const {
+  const PlacedArea& light = m_areas[generator() % m_areas.size()];
+  for (;;) {
+    const double x = uniform(generator) - 0.5, y = uniform(generator) - 0.5;
+    if (light.shape == AreaLight::Shape::disk && std::hypot(x, y) > 0.5)
+      continue;
+    const Vec3 on = light.center + x * light.size.x() * light.right + y * light.size.y() * light.up;
+    return (on - point).normalized();
+  }
+}
+
+double Lights::areaDensity(const Ray& ray) const {
+  double sum = 0.0;
+  for (const PlacedArea& light : m_areas) {
+    const double t = light.meeting(ray);
+    if (t < infinity)
+      sum += t * t / (light.area() * std::abs(ray.direction.dot(light.normal)));
+  }
+  return sum / static_cast<double>(m_areas.size());
+}
+
+} // namespace fenestra::oracle

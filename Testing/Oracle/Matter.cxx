@@ -1,0 +1,131 @@
+#include "Matter.h"
+
+namespace fenestra::oracle {
+namespace {
+
+/// Knots are sorted; a step belongs to its right side.
+template <int Channels>
+auto valueAt(const PiecewiseLinear<Channels>& f, double s) {
+  const auto& knots = f.knots();
+  std::size_t right = 0; // the first knot beyond s
+  while (right < knots.size() && knots[right].position <= s)
+    ++right;
+  if (right == 0)
+    return knots.front().value;
+  if (right == knots.size())
+    return knots.back().value;
+  const auto& a = knots[right - 1];
+  const auto& b = knots[right];
+  const double share = (s - a.position) / (b.position - a.position);
+  return typename PiecewiseLinear<Channels>::Value((1.0 - share) * a.value + share * b.value);
+}
+
+double greatestKnot(const ScalarFunction& f) {
+  double greatest = 0.0;
+  for (const auto& knot : f.knots())
+    greatest = std::max(greatest, knot.value[0]);
+  return greatest;
+}
+
+std::vector<float> asFloats(const Voxels& voxels) {
+  return std::visit([](const auto& v) { return std::vector<float>(v.begin(), v.end()); }, voxels);
+}
+
+} // namespace
+
+Matter::Matter(const Volume& volume, const TransferFunction& transfer,
+               const std::optional<Affine>& crop)
+    : m_size(volume.grid.size),
+      m_worldToIndex(volume.grid.indexToWorld.inverse()),
+      m_voxels(asFloats(volume.voxels)),
+      m_transfer(transfer),
+      m_majorant(greatestKnot(transfer.extinction) *
+                 (transfer.gradientOpacity ? greatestKnot(*transfer.gradientOpacity) : 1.0)) {
+  if (crop)
+    m_worldToCrop = crop->inverse();
+}
+
+bool Matter::inside(const Vec3& world) const {
+  const Vec3 index = m_worldToIndex * world;
+  for (int axis = 0; axis < 3; ++axis)
+    if (index[axis] < -0.5 || index[axis] > static_cast<double>(m_size[axis]) - 0.5)
+      return false;
+  return !m_worldToCrop || (*m_worldToCrop * world).cwiseAbs().maxCoeff() <= 1.0;
+}
+
+/// The sum of eight voxels, each weighted by how near it is; beyond the outermost centres the point
+/// counts as being there.
+double Matter::scalarAtIndex(const Vec3& index) const {
+  Size3 base;
+  Vec3 share;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x = std::min(std::max(index[axis], 0.0), static_cast<double>(m_size[axis] - 1));
+    base[axis] = static_cast<std::int64_t>(std::floor(x));
+    share[axis] = x - std::floor(x);
+  }
+  double sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    double weight = 1.0;
+    Size3 voxel = base;
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool upper = corner >> axis & 1;
+      weight *= upper ? share[axis] : 1.0 - share[axis];
+      voxel[axis] = std::min(base[axis] + upper, m_size[axis] - 1);
+    }
+    const std::int64_t at = voxel[0] + m_size[0] * (voxel[1] + m_size[1] * voxel[2]);
+    sum += weight * static_cast<double>(m_voxels[static_cast<std::size_t>(at)]);
+  }
+  return sum;
+}
+
+double Matter::extinction(const Vec3& world) const {
+  const double sigma_t = valueAt(m_transfer.extinction, scalarAtIndex(m_worldToIndex * world))[0];
+  if (!m_transfer.gradientOpacity || sigma_t == 0.0)
+    return sigma_t;
+  return sigma_t * valueAt(*m_transfer.gradientOpacity, gradient(world).norm())[0];
+}
+
+Rgb Matter::albedo(const Vec3& world) const {
+  return valueAt(m_transfer.albedo, scalarAtIndex(m_worldToIndex * world));
+}
+
+Vec3 Matter::gradient(const Vec3& world) const {
+  const Vec3 index = m_worldToIndex * world;
+  Vec3 perVoxel;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = Vec3::Unit(axis);
+    perVoxel[axis] = (scalarAtIndex(index + step) - scalarAtIndex(index - step)) / 2.0;
+  }
+  return m_worldToIndex.linear().transpose() * perVoxel; // chain rule
+}
+
+double Matter::surfaceProbability(const Vec3& world) const {
+  if (!m_transfer.shading)
+    return 0.0;
+  const auto& knots = m_transfer.extinction.knots();
+  const double span = knots.back().position - knots.front().position;
+  const double o = 1.0 - std::exp(-extinction(world));
+  const double m = gradient(world).norm() / span;
+  return o * (1.0 - std::exp(-25.0 * std::pow(m_transfer.shading->gamma, 3.0) * m));
+}
+
+Interval Matter::inBox(const Vec3& origin, const Vec3& direction) const {
+  const Vec3 from = m_worldToIndex * origin;
+  const Vec3 along = m_worldToIndex.linear() * direction;
+  Interval part;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double lower = -0.5 - from[axis];
+    const double upper = static_cast<double>(m_size[axis]) - 0.5 - from[axis];
+    if (along[axis] == 0.0) {
+      if (lower > 0.0 || upper < 0.0)
+        return {0.0, 0.0};
+      continue;
+    }
+    const double a = lower / along[axis], b = upper / along[axis];
+    part.begin = std::max(part.begin, std::min(a, b));
+    part.end = std::min(part.end, std::max(a, b));
+  }
+  return part;
+}
+
+} // namespace fenestra::oracle

@@ -1,0 +1,163 @@
+#include "Oracle.h"
+
+#include "Clipping.h"
+#include "Lights.h"
+#include "Scatter.h"
+
+#include <tbb/parallel_for.h>
+
+#include <stdexcept>
+
+namespace fenestra::oracle {
+namespace {
+
+class Tracer {
+public:
+  explicit Tracer(const OracleScene& scene)
+      : m_scene(scene),
+        m_view(scene.pose),
+        m_matter(scene.volume, scene.transfer, scene.crop),
+        m_clipping(scene.clip, m_view, m_matter),
+        m_lights(scene.lights, scene.volume.grid, m_view) {
+    if (scene.background.kind == Background::Kind::gradient)
+      throw std::invalid_argument("the oracle has no gradient background");
+  }
+
+  /// One path through a point of the picture, in pixels from its top left corner.
+  PathEstimate path(double column, double row, Generator& generator) const {
+    const double pitch = 2.0 * m_view.halfHeight / m_scene.height;
+    Ray ray = m_view.through((column - 0.5 * m_scene.width) * pitch,
+                             (0.5 * m_scene.height - row) * pitch);
+    PathEstimate result;
+    double distance = collision(ray, generator);
+    if (distance == infinity)
+      return seenBackground(ray);
+    result.collides = true;
+    result.depth = m_view.depth(ray.at(distance));
+    result.albedo = m_matter.albedo(ray.at(distance));
+
+    Rgb weight = Rgb::Ones();
+    for (std::uint64_t scattered = 0; scattered < m_scene.bounces; ++scattered) {
+      const Vec3 point = ray.at(distance);
+      const Scatterer scatterer = collide(point, ray.direction, generator);
+      result.radiance += weight * (parallelLight(point, scatterer, generator) +
+                                   areaLight(point, scatterer, generator));
+      const Vec3 outgoing = scatterer.draw(generator);
+      weight *= scatterer.f(outgoing) / scatterer.density(outgoing);
+      if (!survives(weight, generator))
+        break;
+      ray = {point, outgoing};
+      distance = collision(ray, generator);
+      if (distance == infinity) {
+        result.radiance += weight * m_lights.environment(ray.direction);
+        break;
+      }
+    }
+    return result;
+  }
+
+  const Clipping& clipping() const { return m_clipping; }
+
+private:
+  /// Distance to the next real collision: tentative ones against one majorant for everything, each
+  /// tested where it is.
+  double collision(const Ray& ray, Generator& generator) const {
+    const double majorant = m_matter.majorant();
+    const Interval part = m_matter.inBox(ray.origin, ray.direction);
+    if (part.empty() || majorant == 0.0)
+      return infinity;
+    double t = part.begin;
+    for (;;) {
+      t += -std::log(1.0 - uniform(generator)) / majorant;
+      if (t >= part.end)
+        return infinity;
+      const Vec3 point = ray.at(t);
+      if (!m_matter.inside(point))
+        continue;
+      const double extinction = m_clipping.keep(point) * m_matter.extinction(point);
+      if (uniform(generator) * majorant < extinction)
+        return t;
+    }
+  }
+
+  PathEstimate seenBackground(const Ray& ray) const {
+    PathEstimate result;
+    if (m_scene.background.kind == Background::Kind::environment)
+      result.radiance = m_lights.environment(ray.direction);
+    else if (m_scene.background.kind == Background::Kind::color)
+      result.radiance = m_scene.background.color;
+    return result;
+  }
+
+  Scatterer collide(const Vec3& point, const Vec3& incoming, Generator& generator) const {
+    const Rgb albedo = m_matter.albedo(point);
+    if (uniform(generator) < m_matter.surfaceProbability(point))
+      return Scatterer::atSurface(incoming, albedo, m_matter.gradient(point), m_matter.shading());
+    return Scatterer::byPhase(incoming, albedo, m_matter.g());
+  }
+
+  /// What parallel lights send toward the eye from a collision: all, or nothing where a flight
+  /// toward them collides.
+  Rgb parallelLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
+    Rgb sum = Rgb::Zero();
+    for (const DirectionalLight& light : m_lights.directionals()) {
+      const Vec3 toward = -light.direction.normalized();
+      if (collision({point, toward}, generator) == infinity)
+        sum += scatterer.f(toward) * light.irradiance;
+    }
+    return sum;
+  }
+
+  /// What area lights send: one probe, drawn as often toward a light as the path itself would go,
+  /// meets them by itself.
+  Rgb areaLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
+    if (!m_lights.hasAreas())
+      return Rgb::Zero();
+    const bool isToward = uniform(generator) < 0.5;
+    const Ray probe{point,
+                    isToward ? m_lights.towardArea(point, generator) : scatterer.draw(generator)};
+    const Rgb light = m_lights.areas(probe, collision(probe, generator));
+    const double density =
+        0.5 * m_lights.areaDensity(probe) + 0.5 * scatterer.density(probe.direction);
+    return light * scatterer.f(probe.direction) / density;
+  }
+
+  /// A path of weight below 1 lives on with that probability, at weight 1.
+  static bool survives(Rgb& weight, Generator& generator) {
+    const double most = weight.maxCoeff();
+    if (most >= 1.0)
+      return true;
+    if (uniform(generator) >= most)
+      return false;
+    weight /= most;
+    return true;
+  }
+
+  const OracleScene& m_scene;
+  View m_view;
+  Matter m_matter;
+  Clipping m_clipping;
+  Lights m_lights;
+};
+
+} // namespace
+
+Estimates render(const OracleScene& scene, std::uint64_t samples, std::uint64_t seed,
+                 std::vector<double>* depths) {
+  const Tracer tracer(scene);
+  if (depths)
+    *depths = tracer.clipping().depths();
+  Estimates estimates(scene.width, scene.height, samples);
+  tbb::parallel_for(0, scene.width * scene.height, [&](int pixel) {
+    std::seed_seq words{seed & 0xffffffffU, seed >> 32U, static_cast<std::uint64_t>(pixel)};
+    Generator generator(words);
+    for (std::uint64_t i = 0; i < samples; ++i) {
+      const double column = pixel % scene.width + uniform(generator);
+      const double row = pixel / scene.width + uniform(generator);
+      estimates.pixels[static_cast<std::size_t>(pixel)].add(tracer.path(column, row, generator));
+    }
+  });
+  return estimates;
+}
+
+} // namespace fenestra::oracle

@@ -1,0 +1,14 @@
+#pragma once
+// The oracle's paths and pictures.
+
+#include "Estimates.h"
+#include "OracleScene.h"
+
+namespace fenestra::oracle {
+
+/// `samples` independent paths a pixel. `depths` takes those of a depth clip's buffer (Clipping.h).
+/// Throws std::invalid_argument for a gradient background.
+Estimates render(const OracleScene& scene, std::uint64_t samples, std::uint64_t seed,
+                 std::vector<double>* depths = nullptr);
+
+} // namespace fenestra::oracle

@@ -1,0 +1,45 @@
+#pragma once
+// What happens at a collision.
+
+#include "OracleScene.h"
+
+#include <random>
+
+namespace fenestra::oracle {
+
+using Generator = std::mt19937_64;
+
+/// Uniform in [0, 1).
+inline double uniform(Generator& generator) {
+  return static_cast<double>(generator() >> 11) * 0x1p-53;
+}
+
+/// Uniform on the sphere.
+Vec3 uniformDirection(Generator& generator);
+
+/// Henyey and Greenstein 1941, per steradian; `cosine` between the directions of travel.
+double henyeyGreenstein(double cosine, double g);
+
+/// A collision at which a path scatters by the phase function, or at a surface whose gradient is
+/// not zero. f is the factor on radiance per steradian, with albedo and, at surfaces, the cosine.
+class Scatterer {
+public:
+  static Scatterer byPhase(const Vec3& incoming, const Rgb& albedo, double g);
+  static Scatterer atSurface(const Vec3& incoming, const Rgb& albedo, const Vec3& gradient,
+                             const SurfaceShading& shading);
+
+  Rgb f(const Vec3& outgoing) const;
+  /// A direction to go on, and its density per steradian: the phase function's, or uniform on the
+  /// hemisphere from which the path came.
+  Vec3 draw(Generator& generator) const;
+  double density(const Vec3& outgoing) const;
+
+private:
+  Vec3 m_incoming;
+  Rgb m_albedo;
+  double m_g = 0.0;
+  std::optional<SurfaceShading> m_shading;
+  Vec3 m_normal = Vec3::Zero(); ///< unit, toward where the path came from
+};
+
+} // namespace fenestra::oracle

@@ -1,0 +1,41 @@
+#pragma once
+// Eye rays and view space, from the pose alone.
+
+#include "OracleScene.h"
+
+namespace fenestra::oracle {
+
+struct View {
+  Vec3 eye, right, up, forward;   ///< world
+  double targetDepth, halfHeight; ///< mm; the second on the plane through the target
+  bool isPerspective;
+
+  explicit View(const CameraPose& pose)
+      : eye(pose.position),
+        forward((pose.target - pose.position).normalized()),
+        targetDepth((pose.target - pose.position).norm()),
+        isPerspective(pose.projection == Projection::perspective) {
+    up = (pose.up - pose.up.dot(forward) * forward).normalized();
+    right = forward.cross(up);
+    halfHeight = isPerspective ? targetDepth * std::tan(pose.angle * pi / 180.0 / 2.0) : pose.scale;
+  }
+
+  /// The eye ray through (x, y), mm, of the plane through the target; unit direction.
+  Ray through(double x, double y) const {
+    const Vec3 onPlane = eye + targetDepth * forward + x * right + y * up;
+    if (isPerspective)
+      return {eye, (onPlane - eye).normalized()};
+    return {onPlane - targetDepth * forward, forward};
+  }
+
+  double depth(const Vec3& world) const { return (world - eye).dot(forward); }
+
+  /// (x, y) where the eye ray through a point meets the plane through the target.
+  Vec2 onPlane(const Vec3& world) const {
+    const Vec3 d = world - eye;
+    const double scale = isPerspective ? targetDepth / d.dot(forward) : 1.0;
+    return {scale * d.dot(right), scale * d.dot(up)};
+  }
+};
+
+} // namespace fenestra::oracle
