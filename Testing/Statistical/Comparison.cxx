@@ -1,0 +1,189 @@
+#include "Comparison.h"
+
+#include "Oracle/Oracle.h"
+#include "Significance.h"
+
+#include <algorithm>
+
+namespace fenestra::testing {
+namespace {
+
+constexpr int tileSize = 4;
+
+oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
+  oracle::Estimates estimates(film.width(), film.height(), samples);
+  for (std::size_t i = 0; i < film.pixelCount(); ++i) {
+    const PixelSums& sums = film.pixels()[i];
+    oracle::PixelEstimate& pixel = estimates.pixels[i];
+    pixel.samples = static_cast<double>(sums.samples);
+    pixel.mean = sums.mean;
+    pixel.squares = sums.deviation;
+    pixel.first =
+        oracle::FirstCollision(static_cast<double>(sums.collided), sums.depth, sums.albedo.mean()) /
+        pixel.samples;
+  }
+  return estimates;
+}
+
+/// Adds up pixels: the mean of their means.
+struct Sums {
+  Rgb mean = Rgb::Zero(), variance = Rgb::Zero();
+  oracle::FirstCollision first = oracle::FirstCollision::Zero();
+  oracle::FirstCollision firstVariance = oracle::FirstCollision::Zero();
+  double samples = 0.0, pixels = 0.0;
+
+  void add(const oracle::PixelEstimate& pixel) {
+    mean += pixel.mean;
+    variance += pixel.variance();
+    first += pixel.first;
+    firstVariance += pixel.firstVariance();
+    samples += pixel.samples;
+    pixels += 1.0;
+  }
+  Estimated channel(int c) const {
+    return {mean[c] / pixels, variance[c] / (pixels * pixels), samples};
+  }
+};
+
+/// Over a square of pixels.
+Sums sumsOf(const oracle::Estimates& picture, int left, int top, int size) {
+  Sums sums;
+  for (int row = top; row < top + size; ++row)
+    for (int column = left; column < left + size; ++column)
+      sums.add(picture.pixels[static_cast<std::size_t>(row * picture.width + column)]);
+  return sums;
+}
+
+/// The least of many probabilities, corrected for their number.
+class Least {
+public:
+  void add(const std::optional<double>& probability) {
+    if (!probability)
+      return;
+    m_least = std::min(m_least, *probability);
+    m_count += 1.0;
+  }
+  double corrected() const { return m_count > 0.0 ? sidak(m_least, m_count) : 1.0; }
+
+private:
+  double m_least = 1.0, m_count = 0.0;
+};
+
+/// Over squares of `size` pixels; `one` is called with what one channel of each says.
+template <typename One>
+double compareSquares(const Outcome& outcome, int size, One&& one) {
+  Least least;
+  int channel = outcome.combination.index;
+  for (int top = 0; top < outcome.truth.height; top += size)
+    for (int left = 0; left < outcome.truth.width; left += size) {
+      const Sums a = sumsOf(outcome.product, left, top, size);
+      const Sums b = sumsOf(outcome.truth, left, top, size);
+      for (int c = 0; c < 3; ++c)
+        least.add(welchProbability(a.channel(c), b.channel(c)));
+      ++channel;
+      if (const auto p = welchProbability(a.channel(channel % 3), b.channel(channel % 3)))
+        one(*p);
+    }
+  return least.corrected();
+}
+
+void comparePicture(Outcome& outcome) {
+  const int size = outcome.truth.width;
+  const Sums a = sumsOf(outcome.product, 0, 0, size);
+  const Sums b = sumsOf(outcome.truth, 0, 0, size);
+  Least least;
+  for (int c = 0; c < 3; ++c)
+    least.add(welchProbability(a.channel(c), b.channel(c)));
+  // First collisions are drawn alike by both, so the product's vary as the oracle's do.
+  for (int i = 0; i < 3; ++i) {
+    const double variance = b.firstVariance[i] / (b.pixels * b.pixels);
+    least.add(welchProbability({a.first[i] / a.pixels, variance, a.samples},
+                               {b.first[i] / b.pixels, variance, b.samples}));
+  }
+  outcome.picture = least.corrected();
+
+  const int channel = outcome.combination.index % 3;
+  const Estimated product = a.channel(channel), truth = b.channel(channel);
+  outcome.pictureProbability = welchProbability(product, truth);
+  const double difference = product.mean - truth.mean;
+  if (truth.mean > 0.0)
+    outcome.difference = difference / truth.mean;
+  if (outcome.pictureProbability)
+    outcome.deviate = difference / std::sqrt(product.variance + truth.variance);
+}
+
+void compareDepths(const std::vector<double>& product, const std::vector<double>& truth,
+                   Outcome& outcome) {
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double difference = std::abs(product[i] - truth[i]);
+    if (std::isinf(product[i]) && std::isinf(truth[i]))
+      continue;
+    if (difference < 0.01)
+      outcome.depthDifference = std::max(outcome.depthDifference, difference);
+    else
+      ++outcome.depthDisagreements; // focus for one of them only
+  }
+}
+
+} // namespace
+
+double Outcome::probability() const {
+  return sidak(std::min({pixels, tiles, picture}), 3.0);
+}
+
+Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings) {
+  const MatrixScene scene = matrixScene(c);
+  RenderSettings renderSettings = scene.settings;
+  renderSettings.samples = settings.samples;
+  const auto index = static_cast<std::uint64_t>(c.index);
+  renderSettings.seed = mixBits(2 * (1'000'000 * settings.seed + index));
+  const std::uint64_t oracleSeed = mixBits(2 * (1'000'000 * settings.seed + index) + 1);
+
+  std::vector<double> depths;
+  Outcome outcome{
+      .combination = c,
+      .tileProbabilities = {},
+      .pictureProbability = {},
+      .product = estimatesOf(scene.product.render(renderSettings).film, settings.samples),
+      .truth = oracle::render(scene.forOracle(), settings.samples, oracleSeed, &depths)};
+  outcome.pixels = compareSquares(outcome, 1, [](double) {});
+  outcome.tiles =
+      compareSquares(outcome, tileSize, [&](double p) { outcome.tileProbabilities.push_back(p); });
+  comparePicture(outcome);
+  compareDepths(scene.productDepths, depths, outcome);
+  return outcome;
+}
+
+std::vector<Verdict> verdicts(const std::vector<Outcome>& outcomes) {
+  Least pixels, tiles, pictures;
+  std::vector<double> tileProbabilities, pictureProbabilities;
+  double sum = 0.0;
+  for (const Outcome& c : outcomes) {
+    pixels.add(c.pixels);
+    tiles.add(c.tiles);
+    pictures.add(c.picture);
+    tileProbabilities.insert(tileProbabilities.end(), c.tileProbabilities.begin(),
+                             c.tileProbabilities.end());
+    if (c.pictureProbability) {
+      pictureProbabilities.push_back(*c.pictureProbability);
+      sum += c.deviate;
+    }
+  }
+  const auto n = static_cast<double>(outcomes.size());
+  const auto nTiles = static_cast<double>(tileProbabilities.size());
+  const auto nPictures = static_cast<double>(pictureProbabilities.size());
+  return {{"largest difference of a pixel", n, pixels.corrected()},
+          {"largest difference of a tile", n, tiles.corrected()},
+          {"largest difference of a picture", n, pictures.corrected()},
+          {"tiles' probabilities are uniform", nTiles, uniformityProbability(tileProbabilities)},
+          {"pictures' probabilities are uniform", nPictures,
+           uniformityProbability(pictureProbabilities)},
+          {"pictures' mean difference is 0", nPictures,
+           normalTail(sum / std::sqrt(std::max(nPictures, 1.0)))}};
+}
+
+double leastProbability(std::size_t count) {
+  return 1.0 - std::pow(1.0 - 1e-3, 1.0 / static_cast<double>(count));
+}
+
+} // namespace fenestra::testing

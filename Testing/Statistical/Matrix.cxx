@@ -1,0 +1,436 @@
+#include "Matrix.h"
+
+#include "clipping/ClippingSurface.h"
+
+#include <numeric>
+#include <random>
+#include <sstream>
+
+namespace fenestra::testing {
+namespace {
+
+using Generator = std::mt19937_64;
+
+double uniform(Generator& generator, double low, double high) {
+  return low + (high - low) * static_cast<double>(generator() >> 11) * 0x1p-53;
+}
+
+Vec3 randomDirection(Generator& generator) {
+  const double u = uniform(generator, 0.0, 1.0);
+  return uniformDirection({u, uniform(generator, 0.0, 1.0)});
+}
+
+// ---- the design
+// --------------------------------------------------------------------------------
+
+/// The level of a factor in combination `index`.
+int level(int factor, int index, int levels) {
+  std::vector<int> order(static_cast<std::size_t>(levels));
+  std::iota(order.begin(), order.end(), 0);
+  Generator generator(static_cast<std::uint64_t>(1000 * factor + index / levels));
+  for (std::size_t i = order.size() - 1; i > 0; --i) // as std::shuffle, alike with every library
+    std::swap(order[i], order[generator() % (i + 1)]);
+  return order[static_cast<std::size_t>(index % levels)];
+}
+
+Combination combination(int index) {
+  int factor = 0;
+  const auto next = [&](int levels) { return level(++factor, index, levels); };
+  constexpr double anisotropies[] = {-0.9, -0.4, 0.0, 0.3, 0.7, 0.9, 0.99};
+  constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
+  constexpr std::uint64_t bounces[] = {unlimited, unlimited, unlimited, 1, 3};
+  Combination c;
+  c.index = index;
+  c.view = static_cast<ViewFactor>(next(4));
+  c.clip = static_cast<ClipFactor>(next(4));
+  c.light = static_cast<LightFactor>(next(6));
+  c.g = anisotropies[next(7)];
+  c.albedo = static_cast<AlbedoFactor>(next(6));
+  c.transfer = static_cast<TransferFactor>(next(6));
+  c.isHybrid = next(3) == 0;
+  c.voxels = static_cast<VoxelFactor>(next(4));
+  c.grid = static_cast<GridFactor>(next(5));
+  c.isCropped = next(4) == 0;
+  c.background = static_cast<BackgroundFactor>(next(3));
+  c.bounces = bounces[next(5)];
+  // Parallel light reaches the eye through the phase function's peak alone: at g = 0.99 hardly a
+  // path in ten thousand shows it, and no mean of them is anywhere near normal.
+  const bool hasParallel = c.light == LightFactor::directional || c.light == LightFactor::several;
+  if (hasParallel && c.g > 0.9)
+    c.g = 0.9;
+  return c;
+}
+
+// ---- the volume
+// --------------------------------------------------------------------------------
+
+constexpr double extent = 12.0; ///< mm, about, along each axis
+
+Grid gridOf(const Combination& c, Generator& generator) {
+  const auto centred = [](const Size3& size, const Mat3& axes) {
+    Affine map = Affine::Identity();
+    map.linear() = axes;
+    map.translation() = -axes * (0.5 * (size.cast<double>() - Vec3::Ones()));
+    return Grid(size, map);
+  };
+  const auto scaled = [](double x, double y, double z) { return Mat3(Vec3(x, y, z).asDiagonal()); };
+  switch (c.grid) {
+  case GridFactor::cubes:
+    return centred({12, 11, 13}, scaled(1.0, 1.0, 1.0));
+  case GridFactor::thickSlices:
+    return centred({24, 17, 4}, scaled(0.5, 0.7, 3.0));
+  case GridFactor::turned: {
+    const Mat3 turn = Eigen::AngleAxisd(uniform(generator, 0.0, 6.0), randomDirection(generator))
+                          .toRotationMatrix();
+    return centred({14, 10, 12}, turn * scaled(0.8, 1.2, 1.0));
+  }
+  case GridFactor::shearedMirrored: {
+    Mat3 shear = Mat3::Identity();
+    shear(0, 1) = 0.3;
+    shear(1, 2) = -0.25;
+    return centred({11, 13, 9}, shear * scaled(1.0, -0.9, 1.3));
+  }
+  case GridFactor::fine: // majorant cells of several voxels
+    return centred({122, 115, 101}, scaled(0.1, 0.1, 0.12));
+  }
+  return {};
+}
+
+/// Smooth hills over the world, from 0 to 1.
+struct Hills {
+  Vec3 a, b, c;
+
+  explicit Hills(Generator& generator)
+      : a(randomDirection(generator)),
+        b(randomDirection(generator)),
+        c(randomDirection(generator)) {}
+
+  double operator()(const Vec3& p) const {
+    const double sum =
+        std::sin(0.7 * a.dot(p) + 1.0) + std::sin(1.3 * b.dot(p)) + std::sin(2.1 * c.dot(p) - 2.0);
+    return 0.5 + sum / 6.0;
+  }
+};
+
+struct Range {
+  double low, high;
+};
+
+Range rangeOf(VoxelFactor voxels) {
+  switch (voxels) {
+  case VoxelFactor::uint8:
+    return {5.0, 250.0};
+  case VoxelFactor::int16:
+    return {-1000.0, 2500.0};
+  case VoxelFactor::uint16:
+    return {1000.0, 60000.0};
+  case VoxelFactor::float32:
+    return {-0.25, 0.75};
+  }
+  return {};
+}
+
+template <typename Voxel>
+Volume volumeAs(const Grid& grid, const Range& range, Generator& generator) {
+  const Hills hills(generator);
+  return makeVolume<Voxel>(grid, [&](const Vec3& index) {
+    const double noise = uniform(generator, -0.08, 0.08);
+    const double u = std::clamp(hills(grid.indexToWorld * index) + noise, 0.0, 1.0);
+    return range.low + u * (range.high - range.low);
+  });
+}
+
+Volume volumeOf(const Combination& c, Generator& generator) {
+  const Grid grid = gridOf(c, generator);
+  const Range range = rangeOf(c.voxels);
+  switch (c.voxels) {
+  case VoxelFactor::uint8:
+    return volumeAs<std::uint8_t>(grid, range, generator);
+  case VoxelFactor::int16:
+    return volumeAs<std::int16_t>(grid, range, generator);
+  case VoxelFactor::uint16:
+    return volumeAs<std::uint16_t>(grid, range, generator);
+  case VoxelFactor::float32:
+    return volumeAs<float>(grid, range, generator);
+  }
+  return {};
+}
+
+// ---- the medium
+// --------------------------------------------------------------------------------
+
+/// Knots over [0, 1] of the scalar's range.
+ScalarFunction overRange(const Range& range, std::initializer_list<std::array<double, 2>> knots) {
+  std::vector<ScalarFunction::Knot> placed;
+  for (const auto& [u, value] : knots)
+    placed.push_back({range.low + u * (range.high - range.low), ScalarFunction::Value(value)});
+  return ScalarFunction(placed);
+}
+
+ScalarFunction extinctionOf(TransferFactor kind, const Range& range) {
+  switch (kind) {
+  case TransferFactor::step:
+    return overRange(range, {{0.0, 0.02}, {0.5, 0.02}, {0.5, 1.5}, {1.0, 1.5}});
+  case TransferFactor::spike:
+    return overRange(range, {{0.0, 0.0}, {0.45, 0.0}, {0.5, 6.0}, {0.55, 0.0}, {1.0, 0.05}});
+  case TransferFactor::nonMonotone:
+    return overRange(range,
+                     {{0.0, 0.3}, {0.25, 1.2}, {0.45, 0.0}, {0.6, 0.0}, {0.75, 1.8}, {1.0, 0.1}});
+  case TransferFactor::linear:
+  case TransferFactor::gradientOpacity:
+  case TransferFactor::steepGradientOpacity:
+    return overRange(range, {{0.0, 0.0}, {1.0, 1.2}});
+  }
+  return overRange(range, {{0.0, 0.0}});
+}
+
+ColorFunction albedoOf(AlbedoFactor kind, const Range& range) {
+  const auto grey = [](double value) { return ColorFunction({{0.0, Rgb::Constant(value)}}); };
+  switch (kind) {
+  case AlbedoFactor::black:
+    return grey(0.0);
+  case AlbedoFactor::half:
+    return grey(0.5);
+  case AlbedoFactor::nearlyOne:
+    return grey(0.999);
+  case AlbedoFactor::one:
+    return grey(1.0);
+  case AlbedoFactor::perChannel:
+    return ColorFunction({{0.0, Rgb(0.95, 0.6, 0.2)}});
+  case AlbedoFactor::byScalar: {
+    const double middle = range.low + 0.5 * (range.high - range.low);
+    return ColorFunction({{range.low, Rgb(0.1, 0.3, 0.9)},
+                          {middle, Rgb(0.9, 0.8, 0.4)},
+                          {middle, Rgb(0.3, 0.9, 0.9)},
+                          {range.high, Rgb(1.0, 0.9, 0.8)}});
+  }
+  }
+  return grey(0.0);
+}
+
+TransferFunction transferOf(const Combination& c) {
+  const Range range = rangeOf(c.voxels);
+  const double span = range.high - range.low;
+  TransferFunction transfer{extinctionOf(c.transfer, range), albedoOf(c.albedo, range)};
+  transfer.g = c.g;
+  const auto overGradient = [&](std::initializer_list<std::array<double, 2>> knots) {
+    std::vector<ScalarFunction::Knot> placed; // positions in spans per mm
+    for (const auto& [slope, value] : knots)
+      placed.push_back({slope * span, ScalarFunction::Value(value)});
+    return ScalarFunction(placed);
+  };
+  if (c.transfer == TransferFactor::gradientOpacity)
+    transfer.gradientOpacity = overGradient({{0.0, 0.2}, {0.3, 1.0}});
+  if (c.transfer == TransferFactor::steepGradientOpacity)
+    transfer.gradientOpacity = overGradient({{0.0, 0.0}, {0.1, 0.0}, {0.1, 1.0}, {0.3, 0.4}});
+  if (c.isHybrid)
+    transfer.shading = SurfaceShading{0.8, 0.3, 12.0, 0.6};
+  return transfer;
+}
+
+// ---- lights, eye, clip
+// -------------------------------------------------------------------------
+
+EnvironmentMap mapOf(Generator& generator) {
+  EnvironmentMap map{8, 4, {}};
+  for (int i = 0; i < 8 * 4 * 3; ++i)
+    map.rgb.push_back(static_cast<float>(std::max(0.0, uniform(generator, -0.3, 1.0))));
+  for (int c = 0; c < 3; ++c) // a window
+    map.rgb[static_cast<std::size_t>(3 * (8 + 5) + c)] = 2.5F;
+  return map;
+}
+
+AreaLight areaOf(AreaLight::Shape shape, LightFrame frame, Generator& generator) {
+  // In the camera's frame the unit is the bounding sphere's radius, about 10 mm.
+  const double unit = frame == LightFrame::world ? 10.0 : 1.0;
+  AreaLight light;
+  light.shape = shape;
+  light.center = 2.2 * unit * randomDirection(generator);
+  light.normal = (-light.center.normalized() + 0.3 * randomDirection(generator)).normalized();
+  light.up = randomDirection(generator);
+  light.size = unit * Vec2(3.0, 2.0);
+  light.radiance = Rgb(2.0, 1.6, 1.2);
+  light.frame = frame;
+  return light;
+}
+
+std::vector<Light> lightsOf(const Combination& c, Generator& generator) {
+  const Light parallel = DirectionalLight{randomDirection(generator), Rgb(3.0, 2.5, 2.0)};
+  const LightFrame frame = c.index % 2 == 0 ? LightFrame::world : LightFrame::camera;
+  switch (c.light) {
+  case LightFactor::constant:
+    return {EnvironmentLight{Rgb(1.0, 0.9, 0.7), {}}};
+  case LightFactor::map:
+    return {EnvironmentLight{Rgb(1.0, 0.8, 1.2), mapOf(generator)}};
+  case LightFactor::directional:
+    return {parallel};
+  case LightFactor::rectangle:
+    return {areaOf(AreaLight::Shape::rectangle, frame, generator)};
+  case LightFactor::disk:
+    return {areaOf(AreaLight::Shape::disk, frame, generator)};
+  case LightFactor::several:
+    return {EnvironmentLight{Rgb(0.2, 0.3, 0.4), {}},
+            EnvironmentLight{Rgb(0.5, 0.5, 0.5), mapOf(generator)}, parallel,
+            areaOf(AreaLight::Shape::rectangle, frame, generator)};
+  }
+  return {};
+}
+
+CameraPose poseOf(const Combination& c, Generator& generator) {
+  CameraPose pose;
+  const bool isPerspective =
+      c.view == ViewFactor::perspective || c.view == ViewFactor::perspectiveInside;
+  const bool wantsInside =
+      c.view == ViewFactor::orthographicInside || c.view == ViewFactor::perspectiveInside;
+  // A clipping surface is made for an eye that sees the focus from outside.
+  const bool isInside = wantsInside && (c.clip == ClipFactor::none || c.clip == ClipFactor::plane);
+  pose.projection = isPerspective ? Projection::perspective : Projection::orthographic;
+  pose.target = 1.5 * randomDirection(generator);
+  pose.position = pose.target + (isInside ? 3.0 : 30.0) * randomDirection(generator);
+  pose.up = randomDirection(generator);
+  pose.scale = 8.0;
+  pose.angle = isInside ? 70.0 : 30.0;
+  return pose;
+}
+
+/// Two balls, of which one has a hole right through.
+Mask focusOf() {
+  const Grid grid = centredGrid({17, 17, 17}, Vec3::Constant(0.75));
+  Mask mask{grid, {}, 0, {"balls"}};
+  for (int k = 0; k < 17; ++k)
+    for (int j = 0; j < 17; ++j)
+      for (int i = 0; i < 17; ++i) {
+        const Vec3 p = grid.indexToWorld * Vec3(i, j, k);
+        const Vec3 fromBall = p - Vec3(-1.5, 0.5, 0.0);
+        const bool isBall = fromBall.norm() < 3.2 && fromBall.head<2>().norm() > 1.0;
+        const bool isSmallBall = (p - Vec3(3.5, -1.0, 2.0)).norm() < 1.6;
+        mask.voxels.push_back(isBall || isSmallBall ? 1 : 0);
+        mask.count += mask.voxels.back();
+      }
+  return mask;
+}
+
+Affine cropOf(Generator& generator) {
+  Affine crop = Affine::Identity();
+  crop.linear() = Eigen::AngleAxisd(uniform(generator, 0.0, 6.0), randomDirection(generator))
+                      .toRotationMatrix() *
+                  Mat3(Vec3(6.5, 4.5, 7.0).asDiagonal());
+  crop.translation() = 0.5 * randomDirection(generator);
+  return crop;
+}
+
+oracle::DepthClip describeDepth(const ClippingSurface& surface, bool isCutaway, double smoothing) {
+  oracle::DepthClip clip{isCutaway, focusOf(), {}, {}, {}, {}, smoothing};
+  const DepthBuffer& buffer = *std::get<ClipDepth>(surface.clip).buffer;
+  for (std::int64_t column = 0; column < buffer.columns(); ++column)
+    clip.columns.push_back(buffer.position(column, 0).x());
+  for (std::int64_t row = 0; row < buffer.rows(); ++row)
+    clip.rows.push_back(buffer.position(0, row).y());
+  for (const ControlPoint& point : surface.controlPoints) {
+    clip.sites.push_back(point.site);
+    clip.depths.push_back(point.depth);
+  }
+  return clip;
+}
+
+void placeClip(const Combination& c, Generator& generator, MatrixScene& scene) {
+  TestScene& product = scene.product;
+  const Camera camera(product.pose, product.width, product.height);
+  if (c.clip == ClipFactor::none)
+    return;
+  if (c.clip == ClipFactor::plane) {
+    const Vec3 point = randomDirection(generator), normal = randomDirection(generator);
+    product.clip = ClipPlane{camera, point, normal};
+    scene.clip = oracle::PlaneClip{point, normal};
+    return;
+  }
+  const bool isCutaway = c.clip == ClipFactor::cutaway;
+  const double smoothing = c.index % 3 == 0 ? 0.95 : 0.5;
+  const ClippingSurface surface = buildClippingSurface(
+      camera, Domain(product.volume.grid, product.crop), focusOf(),
+      {isCutaway ? SurfaceMode::cutaway : SurfaceMode::surface, 50, smoothing});
+  product.clip = surface.clip;
+  scene.clip = describeDepth(surface, isCutaway, smoothing);
+  const DepthBuffer& buffer = *std::get<ClipDepth>(surface.clip).buffer;
+  for (std::int64_t i = 0; i < buffer.size(); ++i)
+    scene.productDepths.push_back(buffer.at(i));
+}
+
+Background backgroundOf(BackgroundFactor kind) {
+  switch (kind) {
+  case BackgroundFactor::color:
+    return {Background::Kind::color, Rgb(0.2, 0.1, 0.3)};
+  case BackgroundFactor::transparent:
+    return {Background::Kind::transparent};
+  case BackgroundFactor::environment:
+    return {Background::Kind::environment};
+  }
+  return {};
+}
+
+} // namespace
+
+std::vector<Combination> combinations(int count) {
+  std::vector<Combination> list;
+  for (int i = 0; i < count; ++i)
+    list.push_back(combination(i));
+  return list;
+}
+
+std::string describe(const Combination& c) {
+  static constexpr const char* views[] = {"orthographic", "perspective", "orthographic inside",
+                                          "perspective inside"};
+  static constexpr const char* clips[] = {"no clip", "plane", "cutaway", "surface"};
+  static constexpr const char* lights[] = {"constant",  "map",  "directional",
+                                           "rectangle", "disk", "several"};
+  static constexpr const char* albedos[] = {"0", "0.5", "0.999", "1", "per channel", "by scalar"};
+  static constexpr const char* transfers[] = {
+      "linear", "step", "spike", "non-monotone", "gradient opacity", "steep gradient opacity"};
+  static constexpr const char* voxels[] = {"uint8", "int16", "uint16", "float"};
+  static constexpr const char* grids[] = {"cubes", "thick slices", "turned", "sheared mirrored",
+                                          "fine"};
+  static constexpr const char* backgrounds[] = {"color", "transparent", "environment"};
+  const auto name = [](const auto& names, auto kind) { return names[static_cast<int>(kind)]; };
+  std::ostringstream text;
+  text << name(views, c.view) << " | " << name(clips, c.clip) << (c.isCropped ? ", cropped" : "")
+       << " | " << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo)
+       << " | " << name(transfers, c.transfer) << (c.isHybrid ? ", hybrid" : "") << " | "
+       << name(voxels, c.voxels) << " | " << name(grids, c.grid) << " | "
+       << name(backgrounds, c.background) << " | ";
+  if (c.bounces == std::numeric_limits<std::uint64_t>::max())
+    text << "any";
+  else
+    text << c.bounces;
+  return text.str();
+}
+
+MatrixScene matrixScene(const Combination& c) {
+  Generator generator(static_cast<std::uint64_t>(77000 + c.index));
+  Volume volume = volumeOf(c, generator);
+  MatrixScene scene{
+      {std::move(volume), transferOf(c), lightsOf(c, generator), poseOf(c, generator)}, {}};
+  scene.settings.path.background = backgroundOf(c.background);
+  scene.settings.path.bounces = c.bounces;
+  if (c.isCropped)
+    scene.product.crop = CropBox(cropOf(generator));
+  placeClip(c, generator, scene);
+  return scene;
+}
+
+oracle::OracleScene MatrixScene::forOracle() const {
+  std::optional<Affine> crop;
+  if (product.crop)
+    crop = product.crop->boxToWorld;
+  return {product.volume,
+          product.transfer,
+          product.lights,
+          product.pose,
+          product.width,
+          product.height,
+          clip,
+          crop,
+          settings.path.background,
+          settings.path.bounces};
+}
+
+} // namespace fenestra::testing

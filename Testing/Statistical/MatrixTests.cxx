@@ -1,0 +1,67 @@
+// The product against the oracle over the whole matrix. FENESTRA_LONG in the environment asks for
+// the long version, FENESTRA_SEED for another seed, FENESTRA_REPORT names a folder for the record.
+
+#include "Comparison.h"
+#include "Record.h"
+
+#include "film/Compare.h"
+#include "io/pictures/ImageWriter.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+namespace fenestra::testing {
+namespace {
+
+Image imageOf(const oracle::Estimates& estimates) {
+  Image image{estimates.width, estimates.height, {}, {}};
+  constexpr const char* colours[] = {"R", "G", "B"};
+  for (int c = 0; c < 3; ++c)
+    for (const oracle::PixelEstimate& pixel : estimates.pixels) {
+      image.channels[colours[c]].push_back(static_cast<float>(pixel.mean[c]));
+      image.channels[std::string("error.") + colours[c]].push_back(
+          static_cast<float>(std::sqrt(pixel.variance()[c])));
+    }
+  return image;
+}
+
+/// Writes what a person needs to see what is wrong, and says where.
+std::string errorImages(const Outcome& c) {
+  const std::filesystem::path folder =
+      std::filesystem::path(FENESTRA_MATRIX_RESULTS) / std::to_string(c.combination.index);
+  std::filesystem::create_directories(folder);
+  const Image product = imageOf(c.product), truth = imageOf(c.truth);
+  writeImage(product, {}, folder / "product.exr");
+  writeImage(truth, {}, folder / "oracle.exr");
+  writeImage(differenceImage(product, truth), {}, folder / "z.png", "Standard");
+  return "see product.exr, oracle.exr and z.png in " + folder.string();
+}
+
+TEST(Matrix, ProductAgreesWithTheOracle) {
+  const bool isLong = std::getenv("FENESTRA_LONG") != nullptr;
+  const char* seed = std::getenv("FENESTRA_SEED");
+  const MatrixSettings settings{isLong ? 1024U : 128U, seed ? std::stoull(seed) : 1};
+  const std::vector<Combination> all = combinations(isLong ? 960 : 240);
+  std::vector<Outcome> outcomes;
+  for (const Combination& c : all) {
+    outcomes.push_back(compareWithOracle(c, settings));
+    const Outcome& result = outcomes.back();
+    EXPECT_GT(result.probability(), leastProbability(all.size()))
+        << c.index << ": " << describe(c) << "\n  pixels " << result.pixels << ", tiles "
+        << result.tiles << ", picture " << result.picture << " (" << 100.0 * result.difference
+        << " %)\n  " << errorImages(result);
+    EXPECT_LT(result.depthDifference, 1e-3) << describe(c);
+    EXPECT_EQ(result.depthDisagreements, 0) << describe(c);
+  }
+  const std::vector<Verdict> results = verdicts(outcomes);
+  for (const Verdict& verdict : results) {
+    std::cout << verdict.name << ": probability " << verdict.probability << " (" << verdict.count
+              << ")\n";
+    EXPECT_GT(verdict.probability, leastProbability(results.size())) << verdict.name;
+  }
+  recordMatrix(outcomes, results, settings);
+}
+
+} // namespace
+} // namespace fenestra::testing

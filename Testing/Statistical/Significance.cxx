@@ -1,0 +1,62 @@
+#include "Significance.h"
+
+#include "film/StudentT.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fenestra::testing {
+namespace {
+
+double square(double x) {
+  return x * x;
+}
+
+} // namespace
+
+std::optional<double> welchProbability(const Estimated& a, const Estimated& b) {
+  const double difference = a.mean - b.mean;
+  const double variance = a.variance + b.variance;
+  // What summing equal numbers in another order can round to.
+  const double rounding = 1e-12 * std::max(std::abs(a.mean), std::abs(b.mean));
+  if (std::abs(difference) <= rounding && variance <= square(rounding))
+    return std::nullopt;
+  if (!(variance > 0.0) || !std::isfinite(difference))
+    return 0.0;
+  const double satterthwaite = square(variance) / (square(a.variance) / (a.samples - 1.0) +
+                                                   square(b.variance) / (b.samples - 1.0));
+  const double all = a.samples + b.samples;
+  const double mean = (a.samples * a.mean + b.samples * b.mean) / all;
+  const double perSample = (square(a.samples) * a.variance + square(b.samples) * b.variance) / all;
+  const double brightPaths =
+      std::min(a.samples, b.samples) * std::min(1.0, square(mean) / perSample);
+  return studentTail(difference / std::sqrt(variance), std::min(satterthwaite, brightPaths));
+}
+
+double sidak(double least, double count) {
+  return -std::expm1(count * std::log1p(-least));
+}
+
+double uniformityProbability(std::vector<double> probabilities) {
+  if (probabilities.empty())
+    return 1.0;
+  std::ranges::sort(probabilities);
+  const auto n = static_cast<double>(probabilities.size());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < probabilities.size(); ++i) {
+    const auto below = static_cast<double>(i);
+    distance =
+        std::max({distance, probabilities[i] - below / n, (below + 1.0) / n - probabilities[i]});
+  }
+  const double x = distance * (std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n));
+  double sum = 0.0;
+  for (int k = 1; k <= 100; ++k)
+    sum += (k % 2 == 1 ? 2.0 : -2.0) * std::exp(-2.0 * square(k * x));
+  return x < 0.2 ? 1.0 : std::clamp(sum, 0.0, 1.0);
+}
+
+double normalTail(double z) {
+  return std::erfc(std::abs(z) / std::sqrt(2.0));
+}
+
+} // namespace fenestra::testing

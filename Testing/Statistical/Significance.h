@@ -1,0 +1,34 @@
+#pragma once
+// How probable a difference is where there is none.
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace fenestra::testing {
+
+/// A mean, and how sure it is.
+struct Estimated {
+  double mean = 0.0;
+  double variance = 0.0; ///< of the mean
+  double samples = 0.0;  ///< that it is the mean of
+};
+
+/// How probable a difference as large as that between two estimates of one value is, by Welch's t
+/// (1947) with Satterthwaite's degrees of freedom. A mean of few bright paths is skewed as a count
+/// of them is, so there are no more degrees of freedom than there would be paths, were they equally
+/// bright: the tails are then the heavier ones. None where both are exact and agree; 0 where both
+/// are exact and differ, or something is not a number.
+std::optional<double> welchProbability(const Estimated& a, const Estimated& b);
+
+/// Of the least of `count` independent probabilities being this small (Šidák 1967).
+double sidak(double least, double count);
+
+/// Of probabilities that should be uniform in [0, 1] straying this far from it: Kolmogorov and
+/// Smirnov's largest distance, in Stephens' approximation (1970). 1 for none.
+double uniformityProbability(std::vector<double> probabilities);
+
+/// Two-sided, of a normal deviate.
+double normalTail(double z);
+
+} // namespace fenestra::testing
