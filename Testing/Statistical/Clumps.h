@@ -1,0 +1,49 @@
+#pragma once
+// A small volume of random voxels whose extinction is not monotone in the scalar, and pictures that
+// show all of it.
+
+#include "Anchors.h"
+
+namespace fenestra::testing {
+
+/// Absorbs by the scalar: `dark` at 0, `bright` at 1. A turned grid of unequal spacing, about 2 mm
+/// in radius; half of the light that meets it passes.
+inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
+  Grid grid = centredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
+  const Affine turn(Eigen::AngleAxisd(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
+  grid = Grid(grid.size, turn * grid.indexToWorld);
+  Random random(91, 0, 0);
+  const auto knot = [](double s, double sigma_t) {
+    return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
+  };
+  TestScene scene{makeVolume(grid, [&](const Vec3&) { return random.uniform(); }),
+                  {ScalarFunction({knot(0.0, 0.0), knot(0.3, 0.1), knot(0.45, 6.0), knot(0.5, 0.4),
+                                   knot(0.7, 0.3), knot(0.7, 1.5), knot(1.0, 0.0)}),
+                   ColorFunction({{0.0, dark}, {1.0, bright}})},
+                  {},
+                  {},
+                  8,
+                  8};
+  scene.transfer.g = g;
+  return scene;
+}
+
+/// Light scattered out of the scene's volume along -`sight`, of parallel light that travels along
+/// `light` with irradiance 1: radiance integrated over a picture plane that holds all of it, mm^2
+/// per steradian.
+inline RgbEstimate scatteredOut(TestScene& scene, const Vec3& light, const Vec3& sight,
+                                std::uint64_t samples, std::uint64_t seed) {
+  const double radius = scene.volume.grid.boundingRadius();
+  const Vec3 center = scene.volume.grid.worldCenter();
+  scene.lights = {DirectionalLight{.direction = light}};
+  scene.pose.target = center;
+  scene.pose.position = center - 2.0 * radius * sight;
+  scene.pose.up = Frame(sight).tangent;
+  scene.pose.scale = radius;
+  RenderSettings settings;
+  settings.samples = samples;
+  settings.seed = seed;
+  return pictureEstimate(scene.render(settings).film) * (4.0 * radius * radius);
+}
+
+} // namespace fenestra::testing

@@ -1,0 +1,153 @@
+// Energy: of parallel light that meets a heterogeneous volume, what comes out in all directions and
+// what is absorbed add up to what does not pass straight through.
+
+#include "Clumps.h"
+#include "StraightIntegral.h"
+
+namespace fenestra::testing {
+namespace {
+
+/// Places in a square of half edge `half` that faces `direction`, `u` in [0, 1)^2, `half` before
+/// the volume's centre.
+Ray parallelRay(const Grid& grid, const Vec3& direction, double half, const Vec2& u) {
+  const Frame frame(direction);
+  return {grid.worldCenter() - 2.0 * half * direction +
+              half * ((2.0 * u.x() - 1.0) * frame.tangent + (2.0 * u.y() - 1.0) * frame.bitangent),
+          direction};
+}
+
+/// What does not pass of light of irradiance 1: 1 - exp(-optical depth), integrated over a plane
+/// that faces it by the midpoint rule on `lines`^2 rays, mm^2.
+double stopped(const TestScene& scene, const Vec3& light, int lines) {
+  const StraightIntegral integral(scene.volume, scene.transfer);
+  const double half = scene.volume.grid.boundingRadius();
+  double sum = 0.0;
+  for (int row = 0; row < lines; ++row)
+    for (int column = 0; column < lines; ++column)
+      sum -= std::expm1(-integral.opticalDepth(
+          parallelRay(scene.volume.grid, light, half, Vec2(column + 0.5, row + 0.5) / lines)));
+  return sum * 4.0 * half * half / (lines * lines);
+}
+
+/// Light scattered into all directions: pictures along two random directions in each of many parts
+/// of the sphere of one size, which tell how much directions differ within a part.
+RgbEstimate scatteredAround(TestScene& scene, const Vec3& light, std::uint64_t seed) {
+  constexpr int rows = 20; // around the light's way
+  constexpr int columns = 12;
+  const Frame frame(light);
+  RgbEstimate sum;
+  Rgb variance = Rgb::Zero();
+  for (int part = 0; part < rows * columns; ++part) {
+    Rgb seen[2];
+    for (int i = 0; i < 2; ++i) {
+      const std::uint64_t picture = seed + static_cast<std::uint64_t>(2 * part + i);
+      Random random(picture, 0, 1);
+      const Vec2 u = random.uniform2();
+      const Vec3 way =
+          uniformDirection({(part / columns + u.x()) / rows, (part % columns + u.y()) / columns});
+      seen[i] = scatteredOut(scene, light, -frame.toWorld(way), budget(12), picture).mean;
+    }
+    sum.mean += 0.5 * (seen[0] + seen[1]);
+    variance += 0.25 * (seen[0] - seen[1]).square();
+  }
+  sum.error = variance.sqrt();
+  return sum * (4.0 * pi / (rows * columns));
+}
+
+// ---- what is absorbed, by a forward random walk of its own
+// ---------------------------------------
+
+Rgb albedoAt(const TransferFunction& transfer, double scalar) {
+  const auto& knots = transfer.albedo.knots(); // two, at 0 and 1
+  return knots[0].value + scalar * (knots[1].value - knots[0].value);
+}
+
+/// Henyey and Greenstein's cosine by inversion.
+Vec3 scattered(const Vec3& direction, double g, const Vec2& u) {
+  const double s = (1.0 - g * g) / (1.0 - g + 2.0 * g * u.x());
+  const double cosine = g == 0.0 ? 2.0 * u.x() - 1.0 : (1.0 + g * g - s * s) / (2.0 * g);
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  const double phi = 2.0 * pi * u.y();
+  const Vec3 other = direction.unitOrthogonal();
+  return (cosine * direction +
+          sine * (std::cos(phi) * other + std::sin(phi) * direction.cross(other)))
+      .normalized();
+}
+
+/// Free paths against one majorant; at each real collision a share 1 - albedo is absorbed.
+Rgb absorbedOf(const TestScene& scene, const StraightIntegral& medium, Ray ray, Random& random) {
+  double majorant = 0.0;
+  for (const auto& knot : scene.transfer.extinction.knots())
+    majorant = std::max(majorant, knot.value.value());
+  Rgb absorbed = Rgb::Zero();
+  Rgb power = Rgb::Ones();
+  while (power.maxCoeff() > 1e-4) { // what is left then is as good as nothing
+    const Interval inside = medium.inside(ray);
+    const double distance = std::max(inside.begin, 0.0) - std::log1p(-random.uniform()) / majorant;
+    if (!(distance < inside.end))
+      break;
+    ray.origin = ray.at(distance);
+    const double scalar = medium.scalar(ray.origin);
+    if (random.uniform() * majorant >= medium.extinction(scalar))
+      continue;
+    const Rgb albedo = albedoAt(scene.transfer, scalar);
+    absorbed += power * (1.0 - albedo);
+    power *= albedo;
+    ray.direction = scattered(ray.direction, scene.transfer.g, random.uniform2());
+  }
+  return absorbed;
+}
+
+/// Of light of irradiance 1, mm^2.
+RgbEstimate absorbed(const TestScene& scene, const Vec3& light, std::uint64_t seed) {
+  const StraightIntegral medium(scene.volume, scene.transfer);
+  const double half = scene.volume.grid.boundingRadius();
+  const std::uint64_t walks = budget(200000);
+  Rgb sum = Rgb::Zero();
+  Rgb squares = Rgb::Zero();
+  for (std::uint64_t i = 0; i < walks; ++i) {
+    Random random(seed, i, 2);
+    const Ray ray = parallelRay(scene.volume.grid, light, half, random.uniform2());
+    const Rgb share = absorbedOf(scene, medium, ray, random);
+    sum += share;
+    squares += share.square();
+  }
+  const auto n = static_cast<double>(walks);
+  const Rgb mean = sum / n;
+  return RgbEstimate{mean, ((squares / n - mean.square()) / n).sqrt()} * (4.0 * half * half);
+}
+
+// ---- the balance
+// ---------------------------------------------------------------------------------
+
+/// Relative error of stopped() with so many lines.
+constexpr double known = 3e-4;
+constexpr int lines = 120;
+
+const Vec3 lightWay = Vec3(0.4, -0.7, -0.5).normalized();
+
+class Energy : public ::testing::TestWithParam<double> {};
+
+TEST_P(Energy, IsConservedWhereNothingAbsorbs) {
+  TestScene scene = clumps(Rgb::Ones(), Rgb::Ones(), GetParam());
+  const double in = stopped(scene, lightWay, lines);
+  EXPECT_NEAR(stopped(scene, lightWay, 2 * lines) / in, 1.0, known);
+  const double silhouette = 4.0 * std::pow(scene.volume.grid.boundingRadius(), 2.0);
+  EXPECT_GT(in, 0.1 * silhouette) << "the medium must matter";
+  expectMean(scatteredAround(scene, lightWay, seeded(7000)), Rgb::Constant(in), 0.01, known);
+}
+
+TEST_P(Energy, ComesOutOrIsAbsorbed) {
+  TestScene scene = clumps(Rgb(0.95, 0.7, 0.9), Rgb(0.8, 0.95, 0.4), GetParam());
+  const double in = stopped(scene, lightWay, lines);
+  const RgbEstimate out = scatteredAround(scene, lightWay, seeded(8000));
+  const RgbEstimate kept = absorbed(scene, lightWay, seeded(8500));
+  EXPECT_GT((out.mean / kept.mean).minCoeff(), 0.2) << "both must matter";
+  EXPECT_LT((out.mean / kept.mean).maxCoeff(), 5.0) << "both must matter";
+  expectMean(out + kept, Rgb::Constant(in), 0.01, known);
+}
+
+INSTANTIATE_TEST_SUITE_P(Anisotropies, Energy, ::testing::Values(0.0, 0.5, -0.5));
+
+} // namespace
+} // namespace fenestra::testing
