@@ -12,6 +12,8 @@ PiecewiseLinear<Channels>::PiecewiseLinear(std::vector<Knot> knots) : m_knots(st
 
   const std::size_t bins = 4 * m_knots.size();
   m_binsPerUnit = static_cast<double>(bins) / span();
+  if (!std::isfinite(m_binsPerUnit))
+    m_binsPerUnit = 0.0; // a subnormal span: one bin for everything
   m_firstSegment.resize(bins);
   std::size_t i = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
