@@ -77,7 +77,7 @@ void writeFile(const std::filesystem::path& path, const std::vector<T>& samples,
 /// standard error stream.
 template <typename Call>
 void expectRefused(const std::filesystem::path& path, const std::string& text, Call&& call) {
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   std::string line = "(no error)";
   try {
     call();
@@ -87,7 +87,7 @@ void expectRefused(const std::filesystem::path& path, const std::string& text, C
   } catch (const std::exception& error) {
     line = std::string("(another exception) ") + error.what();
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << path;
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << path;
   EXPECT_EQ(line.find(path.string() + ": "), 0u) << line << "\n" << bytesOf(path).substr(0, 300);
   EXPECT_NE(line.find(text), std::string::npos) << line;
   EXPECT_EQ(line.find('\n'), std::string::npos) << line;

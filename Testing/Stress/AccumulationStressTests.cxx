@@ -1,0 +1,155 @@
+// A million samples a pixel: sums neither drift nor wrap.
+
+#include "StressSupport.h"
+
+namespace fenestra::testing {
+namespace {
+
+constexpr std::uint64_t million = 1'000'000;
+
+/// 2x2 pixels of a small scattering volume, bright on one side.
+TestScene smallScene() {
+  TestScene scene{makeVolume(centredGrid({3, 3, 3}, Vec3::Ones()),
+                             [](const Vec3& p) { return 0.4 + 0.1 * p.x(); }),
+                  linearTransfer(0.4, Rgb(0.9, 0.5, 0.1)),
+                  {EnvironmentLight{}},
+                  {},
+                  2,
+                  2};
+  DirectionalLight sun;
+  sun.irradiance = Rgb(1e3, 1.0, 1e-3);
+  scene.lights.emplace_back(sun);
+  scene.pose.position = {3.0, -9.0, 2.0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = 2.0;
+  return scene;
+}
+
+/// Samples first ... first + count - 1 of a pixel, as a render draws them.
+std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, std::uint64_t first,
+                                  std::uint64_t count) {
+  const Camera camera(scene.pose, scene.width, scene.height);
+  const LightSet lights(scene.lights, scene.volume.grid, camera);
+  const RayProbe<> probe(scene.volume, scene.transfer);
+  const PathSettings settings;
+  const std::atomic<bool> stop = false;
+  const PathEstimator<float> estimator(scene.volume.grid, probe.medium(), probe.tracker(), lights,
+                                       camera, scene.clip, settings, stop);
+  std::vector<PathSample> samples;
+  samples.reserve(count);
+  Counters counters;
+  const auto pixel = static_cast<std::uint64_t>(row * scene.width + column);
+  for (std::uint64_t i = first; i < first + count; ++i) {
+    Random random(7, pixel, i);
+    const Vec2 jitter = random.uniform2();
+    samples.push_back(*estimator.trace(column + jitter.x(), row + jitter.y(), random, counters));
+  }
+  return samples;
+}
+
+struct Moments {
+  long double mean = 0.0L, deviation = 0.0L; ///< of the red channel, in two passes
+};
+
+Moments twoPasses(const std::vector<PathSample>& samples) {
+  Moments moments;
+  for (const PathSample& sample : samples)
+    moments.mean += static_cast<long double>(sample.radiance[0]);
+  moments.mean /= static_cast<long double>(samples.size());
+  for (const PathSample& sample : samples) {
+    const long double d = static_cast<long double>(sample.radiance[0]) - moments.mean;
+    moments.deviation += d * d;
+  }
+  return moments;
+}
+
+TEST(AMillionSamples, AddUpAsInTwoPasses) {
+  const TestScene scene = smallScene();
+  const std::vector<PathSample> samples = samplesOf(scene, 0, 1, 0, million);
+  PixelSums sums;
+  for (const PathSample& sample : samples)
+    sums.add(sample);
+  const Moments exact = twoPasses(samples);
+  EXPECT_EQ(sums.samples, million);
+  EXPECT_NEAR(sums.mean[0] / static_cast<double>(exact.mean), 1.0, 1e-12);
+  EXPECT_NEAR(sums.deviation[0] / static_cast<double>(exact.deviation), 1.0, 1e-12);
+
+  // A large offset must not cost the variance's digits: relative to the offset's roundoff.
+  PixelSums shifted;
+  std::vector<PathSample> far = samples;
+  for (PathSample& sample : far) {
+    sample.radiance += 1e6;
+    shifted.add(sample);
+  }
+  const Moments exactFar = twoPasses(far);
+  EXPECT_NEAR(shifted.mean[0] / static_cast<double>(exactFar.mean), 1.0, 1e-12);
+  EXPECT_NEAR(shifted.deviation[0] / static_cast<double>(exactFar.deviation), 1.0, 1e-9);
+}
+
+TEST(AMillionSamples, DoNotDriftAndAreWhatARenderAdds) {
+  const TestScene scene = smallScene();
+  RenderSettings settings;
+  settings.samples = million;
+  settings.seed = 7;
+  const Film film = scene.render(settings).film;
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 2; ++column) {
+      PixelSums first, second, all;
+      for (const std::uint64_t begin : {std::uint64_t{0}, million / 2})
+        for (const PathSample& sample : samplesOf(scene, column, row, begin, million / 2)) {
+          (begin == 0 ? first : second).add(sample);
+          all.add(sample);
+        }
+      EXPECT_TRUE((film.at(column, row).mean == all.mean).all());
+      EXPECT_TRUE((film.at(column, row).deviation == all.deviation).all());
+      const Rgb difference = (first.mean - second.mean).abs();
+      const Rgb error = (first.standardError().square() + second.standardError().square()).sqrt();
+      EXPECT_TRUE((difference < 4.0 * error).all())
+          << difference.transpose() << ", errors " << error.transpose();
+    }
+}
+
+TEST(SampleCounters, DoNotWrapBeyond32Bits) {
+  constexpr std::uint64_t before = (std::uint64_t{1} << 32) - 1;
+  PixelSums sums;
+  sums.samples = before; // as after so many samples of radiance 1
+  sums.collided = before;
+  sums.mean = Rgb::Ones();
+  sums.alpha = static_cast<double>(before);
+  PathSample sample;
+  sample.radiance = Rgb::Constant(2.0);
+  sample.depth = 5.0;
+  for (int i = 0; i < 2; ++i)
+    sums.add(sample);
+  EXPECT_EQ(sums.samples, before + 2);
+  EXPECT_EQ(sums.collided, before + 2);
+  EXPECT_EQ(sums.alpha, static_cast<double>(before) + 2.0);
+  const double n = static_cast<double>(before) + 2.0;
+  EXPECT_NEAR((sums.mean[0] - 1.0) * n, 2.0, 1e-5); // roundoff of a mean of 1, times n
+  EXPECT_NEAR(sums.deviation[0], 2.0 * (n - 2.0) / n, 1e-9);
+  EXPECT_NEAR(sums.standardError()[0] * n, std::sqrt(2.0), 1e-8);
+}
+
+TEST(SampleIndices, Beyond32BitsAreNewSamples) {
+  const TestScene scene = smallScene();
+  constexpr std::uint64_t count = 20000;
+  constexpr std::uint64_t far = (std::uint64_t{1} << 32) * 3;
+  PixelSums near, beyond;
+  double product = 0.0;
+  const auto a = samplesOf(scene, 0, 0, 0, count);
+  const auto b = samplesOf(scene, 0, 0, far, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    near.add(a[i]);
+    beyond.add(b[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    product += (a[i].radiance[1] - near.mean[1]) * (b[i].radiance[1] - beyond.mean[1]);
+  }
+  const double normal = std::sqrt(near.deviation[1] * beyond.deviation[1]);
+  EXPECT_LT(std::abs(product / normal), 4.0 / std::sqrt(static_cast<double>(count)));
+  const double error = std::hypot(near.standardError()[1], beyond.standardError()[1]);
+  EXPECT_NEAR(near.mean[1], beyond.mean[1], 4.0 * error);
+}
+
+} // namespace
+} // namespace fenestra::testing

@@ -1,0 +1,176 @@
+// Cameras inside the volume, on faces and corners of voxels, of extreme angles and picture sizes,
+// against the chord of each ray; and the sharpest phase functions.
+
+#include "StressSupport.h"
+
+namespace fenestra::testing {
+namespace {
+
+constexpr double sigma = 0.25;
+
+/// 6x5x4 mm, absorbing, in an environment of 1.
+TestScene absorber(const CameraPose& pose, int width, int height) {
+  return {makeVolume(centredGrid({6, 5, 4}, Vec3::Ones()), [](const Vec3&) { return 1.0; }),
+          linearTransfer(sigma, Rgb::Zero()),
+          {EnvironmentLight{}},
+          pose,
+          width,
+          height};
+}
+
+/// Each pixel against the mean of exp(-sigma chord) over it: the sum of z^2 to 4 of its standard
+/// errors, and the sum of the differences. Samples are 0 or 1, so the variance is known.
+void expectChords(const TestScene& scene, int samples) {
+  constexpr int fine = 16;
+  const RenderResult result = renderIn(scene, samples);
+  const Camera camera(scene.pose, scene.width, scene.height);
+  double chi2 = 0.0, difference = 0.0, variance = 0.0;
+  int pixels = 0;
+  for (int row = 0; row < scene.height; ++row)
+    for (int column = 0; column < scene.width; ++column) {
+      double expected = 0.0;
+      for (int i = 0; i < fine * fine; ++i) {
+        const Ray ray = camera.ray(column + (i % fine + 0.5) / fine, row + (i / fine + 0.5) / fine);
+        expected += std::exp(-sigma * chord(scene.volume.grid, ray)) / (fine * fine);
+      }
+      const double mean = result.film.at(column, row).mean[0];
+      if (expected > 1.0 - 1e-12) {
+        ASSERT_EQ(mean, 1.0);
+        continue;
+      }
+      const double v = expected * (1.0 - expected) / samples;
+      chi2 += std::pow(mean - expected, 2.0) / v;
+      difference += mean - expected;
+      variance += v;
+      ++pixels;
+    }
+  ASSERT_GT(pixels, 0);
+  const double spread = 2.0 / (9.0 * pixels);
+  EXPECT_LT((std::cbrt(chi2 / pixels) - (1.0 - spread)) / std::sqrt(spread), 4.0)
+      << "mean squared z " << chi2 / pixels;
+  EXPECT_LT(std::abs(difference), 4.0 * std::sqrt(variance));
+}
+
+CameraPose pose(Projection projection, const Vec3& position, const Vec3& forward) {
+  CameraPose result;
+  result.projection = projection;
+  result.position = position;
+  result.target = position + 2.0 * forward;
+  result.up = std::abs(forward.normalized().z()) > 0.9 ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitZ());
+  result.scale = 2.5;
+  result.angle = 60.0;
+  return result;
+}
+
+TEST(InsideCameras, SeeTheChordBeforeThem) {
+  // Voxel centres at halves in x and z, at integers in y.
+  const Vec3 positions[] = {{0.5, 0.0, 0.5},  {0.0, 0.0, 0.0}, {0.0, 0.5, 1.0}, {0.5, 0.5, 0.5},
+                            {3.0, 0.0, 0.0},  {3.0, 2.5, 2.0}, {3.0, 2.5, 0.3}, {2.9, 2.4, 1.9},
+                            {-3.0, 0.1, 0.2}, {0.0, -2.5, 0.0}};
+  const Vec3 directions[] = {{1, 0, 0},  {-1, 0, 0},  {0, 1, 0}, {0, -1, 0},  {0, 0, 1},
+                             {0, 0, -1}, {-1, -1, 0}, {1, 1, 1}, {-1, -1, -1}};
+  for (const Projection projection : {Projection::orthographic, Projection::perspective})
+    for (const Vec3& position : positions)
+      for (const Vec3& direction : directions) {
+        const TestScene scene = absorber(pose(projection, position, direction), 8, 8);
+        const bool leaves = (position.array().abs() == Vec3(3.0, 2.5, 2.0).array() &&
+                             direction.array() * position.array().sign() > 0.0)
+                                .any();
+        SCOPED_TRACE(
+            (std::ostringstream() << position.transpose() << " | " << direction.transpose()).str());
+        if (leaves && projection == Projection::orthographic && direction.cwiseAbs().sum() == 1.0)
+          ASSERT_EQ(imageEstimate(renderIn(scene, 4).film).mean, 1.0); // nothing before it
+        else if (!leaves)
+          expectChords(scene, budget(200));
+      }
+}
+
+TEST(InsideCameras, AreInAFurnace) {
+  TestScene scene = absorber(pose(Projection::perspective, {0.5, 0.5, 0.5}, {1, 1, 1}), 12, 12);
+  scene.transfer = linearTransfer(2.0, Rgb::Ones());
+  expectOne(renderIn(scene, budget(100)));
+}
+
+TEST(FieldOfView, OfAMillionthDegreeIsAnOrthographicPicture) {
+  constexpr double angle = 1e-6;
+  CameraPose near = pose(Projection::orthographic, {20.0, -30.0, 15.0}, {-20.0, 30.0, -15.0});
+  near.target = Vec3::Zero();
+  near.scale = 4.0;
+  CameraPose far = near;
+  far.projection = Projection::perspective;
+  far.angle = angle;
+  // 4.6e8 mm away half the angle spans 4 mm.
+  far.position = near.position.normalized() * (4.0 / std::tan(angle * pi / 360.0));
+  TestScene scene = absorber(near, 16, 16);
+  scene.volume = makeVolume(scene.volume.grid, [](const Vec3& p) {
+    return 0.5 + 0.5 * std::sin(0.9 * p.x()) * std::cos(0.7 * p.y() + 0.3 * p.z());
+  });
+  scene.transfer = linearTransfer(1.5, Rgb::Constant(0.8), 0.4);
+  const RenderResult expected = renderIn(scene, budget(300), 1);
+  scene.pose = far;
+  expectSamePicture(expected.film, renderIn(scene, budget(300), 2).film);
+}
+
+TEST(FieldOfView, ExtremesSeeTheChordBeforeThem) {
+  for (const double angle : {1e-6, 1e-3, 150.0, 179.0})
+    for (const Vec3& position : {Vec3(-3.5, 0.2, 0.1), Vec3(0.1, 0.0, 0.0), Vec3(-3.0, 0.0, 0.0)}) {
+      CameraPose wide = pose(Projection::perspective, position, {1.0, 0.03, 0.02});
+      wide.angle = angle;
+      expectChords(absorber(wide, 16, 16), budget(400));
+    }
+}
+
+TEST(PictureSizes, OfOnePixelOrOneRowSeeTheChordBeforeThem) {
+  const CameraPose outside = pose(Projection::orthographic, {-9.0, 0.2, 0.1}, {1.0, 0.3, 0.2});
+  for (const auto& [width, height] :
+       {std::pair(1, 1), std::pair(1, 4096), std::pair(4096, 1), std::pair(3, 17)}) {
+    CameraPose fitted = outside;
+    fitted.scale = width > height ? 3.0 / 4096.0 : 2.0; // pixels are square
+    expectChords(absorber(fitted, width, height), budget(width * height == 1 ? 20000 : 100));
+    fitted.projection = Projection::perspective;
+    fitted.angle = width > height ? 0.02 : 40.0;
+    expectChords(absorber(fitted, width, height), budget(width * height == 1 ? 20000 : 100));
+  }
+}
+
+// ---- scattering
+
+TEST(SharpScattering, IsAFurnaceInABoundedNumberOfCollisions) {
+  for (const double g : {-0.9999, 0.9999, -0.9999999999, 0.9999999999}) {
+    TestScene scene = absorber(pose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
+    scene.transfer = linearTransfer(1.0, Rgb::Ones(), g);
+    const RenderResult result = renderIn(scene, budget(200));
+    expectOne(result);
+    // Straight on or straight back: 4 mm thick on average, a walk in one dimension.
+    const double collisions = static_cast<double>(result.counters.collisions) /
+                              static_cast<double>(result.counters.paths);
+    EXPECT_TRUE(collisions > 1.0 && collisions < 40.0) << collisions;
+  }
+}
+
+TestScene mirrors(double power) {
+  TestScene scene = absorber(pose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
+  scene.volume = makeVolume(scene.volume.grid, [](const Vec3& p) {
+    return 0.5 + 0.5 * std::sin(2.0 * p.x()) * std::cos(1.5 * p.y() + p.z());
+  });
+  scene.transfer = linearTransfer(20.0, Rgb::Ones());
+  scene.transfer.shading = SurfaceShading{0.3, 0.7, power, 5.0}; // surfaces almost everywhere
+  return scene;
+}
+
+TEST(SharpScattering, OfMirrorsReflectsNoMoreThanArrives) {
+  for (const double power : {0.0, 1e4, 1e8, 1e16, 1e300}) {
+    const Estimate estimate = imageEstimate(renderIn(mirrors(power), budget(100)).film);
+    EXPECT_LT(estimate.mean, 1.0 + 4.0 * estimate.error) << power;
+    EXPECT_GT(estimate.mean, 0.1) << power; // 0.3 diffuse, seen once, and what is behind
+  }
+}
+
+TEST(SharpScattering, OfMirrorsHasALimit) {
+  const Film sharp = renderIn(mirrors(1e6), budget(300), 1).film; // lobes of a thousandth
+  expectSamePicture(sharp, renderIn(mirrors(1e16), budget(300), 2).film);
+  expectSamePicture(sharp, renderIn(mirrors(1e300), budget(300), 3).film);
+}
+
+} // namespace
+} // namespace fenestra::testing

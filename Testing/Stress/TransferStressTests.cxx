@@ -1,0 +1,220 @@
+// Transfer functions at their extremes, and volumes of one value, against the integral of the
+// function by hand.
+
+#include "StressSupport.h"
+
+#include "medium/VolumeProperty.h"
+
+namespace fenestra::testing {
+namespace {
+
+using Knots = std::vector<ScalarFunction::Knot>;
+
+constexpr double lowest = -200.0; // scalars of the volume
+constexpr double highest = 300.0;
+
+/// 11 layers of 1 mm along z.
+Volume scalarRamp() {
+  return makeVolume<std::int16_t>(centredGrid({2, 2, 11}, Vec3::Ones()), [](const Vec3& p) {
+    return lowest + (highest - lowest) * p.z() / 10.0;
+  });
+}
+
+/// The function's value just right of s (a step belongs to its right side), from its knots in
+/// order.
+double valueAt(const Knots& knots, double s) {
+  double value = knots.front().value[0];
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    if (knots[i].position > s)
+      break;
+    value = knots[i].value[0];
+    if (i + 1 < knots.size() && knots[i + 1].position > s) {
+      const double share = (s - knots[i].position) / (knots[i + 1].position - knots[i].position);
+      value += share * (knots[i + 1].value[0] - value);
+    }
+  }
+  return value;
+}
+
+/// Its integral over the volume's scalars: trapezia between knots.
+double integral(const Knots& knots) {
+  std::vector<double> ends = {lowest, highest};
+  for (const auto& k : knots)
+    if (k.position > lowest && k.position < highest)
+      ends.push_back(k.position);
+  std::sort(ends.begin(), ends.end());
+  double sum = 0.0;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double width = ends[i + 1] - ends[i];
+    if (width > 1e-6) // linear inside: two interior points make the line
+      sum += 0.5 * width *
+             (valueAt(knots, ends[i] + 0.25 * width) + valueAt(knots, ends[i] + 0.75 * width));
+  }
+  return sum;
+}
+
+/// Of a ray along the ramp: half a voxel of either end's scalar, and 10 mm between.
+double opticalDepth(const Knots& knots) {
+  return 0.5 * valueAt(knots, lowest) + integral(knots) / (highest - lowest) * 10.0 +
+         0.5 * valueAt(knots, highest);
+}
+
+struct TransferCase {
+  const char* name;
+  Knots knots; ///< in order
+};
+
+const double next = std::nextafter(50.0, 51.0);
+
+std::vector<TransferCase> transferCases() {
+  return {
+      {"oneKnot", {knot(50, 0.1)}},
+      {"oneKnotFarOutside", {knot(1e30, 0.1)}},
+      {"allZero", {knot(-100, 0), knot(0, 0), knot(100, 0)}},
+      {"step", {knot(50, 0.05), knot(50, 0.3)}},
+      {"stepWithThreeKnots", {knot(50, 0.05), knot(50, 0.9), knot(50, 0.3)}},
+      {"stepDown", {knot(-100, 0.4), knot(50, 0.4), knot(50, 0), knot(100, 0)}},
+      {"stepsInOneVoxel",
+       {knot(20, 0), knot(20, 1), knot(25, 1), knot(25, 0), knot(30, 0), knot(30, 2), knot(32, 2),
+        knot(32, 0)}},
+      {"stepAtTheLeastScalar", {knot(lowest, 0.8), knot(lowest, 0.1)}},
+      {"stepAtTheGreatestScalar", {knot(highest, 0.1), knot(highest, 0.4)}},
+      {"stepAtAVoxel", {knot(100, 0.0), knot(100, 0.2)}},
+      {"oneUlpWide", {knot(50, 0.05), knot(next, 0.3)}},
+      {"leastSpan", {knot(0, 0.05), knot(5e-324, 0.3)}},
+      {"subnormalSpan", {knot(0, 0.05), knot(1e-310, 0.2), knot(2e-310, 0.3)}},
+      {"below", {knot(-5000, 0), knot(-4000, 0.2)}},
+      {"above", {knot(4000, 0.1), knot(5000, 0.9)}},
+      {"around", {knot(-1e30, 0.2), knot(1e30, 0.0)}},
+      {"aroundWithSpike", {knot(-1e30, 0), knot(40, 0), knot(50, 1), knot(60, 0), knot(1e30, 0)}},
+      {"descending", {knot(-200, 0.4), knot(0, 0.1), knot(300, 0)}},
+      {"negativeScalars", {knot(-150, 0), knot(-120, 0.6), knot(-50, 0)}},
+      {"narrowSpikes",
+       {knot(-37.51, 0), knot(-37.5, 100), knot(-37.49, 0), knot(212.4, 0), knot(212.5, 40),
+        knot(212.6, 0)}},
+      {"tiny", {knot(0, 1e-300), knot(100, 1e-310)}}};
+}
+
+class TransferExtremes : public ::testing::TestWithParam<TransferCase> {};
+
+TEST_P(TransferExtremes, TransmitAsTheirIntegralSays) {
+  const Volume volume = scalarRamp();
+  const double expected = std::exp(-opticalDepth(GetParam().knots));
+  Knots unsorted = GetParam().knots; // any order of places; coincident ones keep theirs
+  std::stable_sort(unsorted.begin(), unsorted.end(),
+                   [](const auto& a, const auto& b) { return a.position > b.position; });
+  for (const Knots& knots : {GetParam().knots, unsorted}) {
+    const RayProbe<std::int16_t> probe(
+        volume, {ScalarFunction(knots), ColorFunction({{0.0, Rgb::Zero()}})});
+    for (const double sign : {1.0, -1.0})
+      probe.expectTransmittance({{0.2, -0.3, -20.0 * sign}, sign * Vec3::UnitZ()}, {}, expected,
+                                budget(6000));
+  }
+}
+
+TEST_P(TransferExtremes, AreAFurnace) {
+  TestScene scene{scalarRamp(),
+                  {ScalarFunction(GetParam().knots), ColorFunction({{0.0, Rgb::Ones()}})},
+                  {EnvironmentLight{}},
+                  {},
+                  8,
+                  8};
+  scene.pose.position = {10.0, -10.0, 8.0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = 5.0;
+  const RenderResult result = renderIn(scene, budget(60));
+  expectOne(result);
+  if (std::string(GetParam().name) == "allZero") {
+    EXPECT_EQ(result.counters.lookups, 0U);
+    EXPECT_EQ(result.counters.skippedCells, result.counters.cells);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Functions, TransferExtremes, ::testing::ValuesIn(transferCases()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+// ---- Slicer's volume property
+
+struct PropertyCase {
+  const char* name;
+  std::vector<OpacityNode> opacity;
+  double unitDistance;
+};
+
+class PropertyExtremes : public ::testing::TestWithParam<PropertyCase> {};
+
+TEST_P(PropertyExtremes, TransmitAsTheFormulaSays) {
+  VolumeProperty property;
+  property.scalarOpacity = GetParam().opacity;
+  property.color = {{0.0, Rgb::Zero()}};
+  property.unitDistance = GetParam().unitDistance;
+  const Volume volume = scalarRamp();
+  const RayProbe<std::int16_t> probe(volume, tabulate(property, "test"));
+  // -ln(1 - opacity) / unit distance, opacity at most 0.9999, along 0.5 mm around scalar 50.
+  double depth = 0.0;
+  constexpr int steps = 20000;
+  for (int k = 0; k < steps; ++k) {
+    const double s = 50.0 + 50.0 * ((k + 0.5) / steps - 0.5) * 0.5;
+    const double opacity = std::min(opacityAt(property.scalarOpacity, s), 0.9999);
+    depth -= std::log1p(-opacity) / property.unitDistance * 0.5 / steps;
+  }
+  // The table's relative error is at most 1e-4.
+  ASSERT_LT(depth, 8.0);
+  probe.expectTransmittance({{0.2, -0.3, -0.25}, Vec3::UnitZ()}, {0.0, 0.5}, std::exp(-depth),
+                            budget(20000));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Properties, PropertyExtremes,
+    ::testing::Values(
+        PropertyCase{"opaque", {{0.0, 1.0}}, 1.0},
+        PropertyCase{"opaqueFromHere", {{0.0, 0.0}, {50.0, 1.0}, {100.0, 1.0}}, 1.0},
+        PropertyCase{"opaqueAtAPoint", {{0.0, 0.0}, {50.0, 1.0}, {100.0, 0.0}}, 1.0},
+        PropertyCase{"clear", {{0.0, 0.0}}, 1.0},
+        PropertyCase{"step", {{50.0, 0.1}, {50.0, 0.7}}, 1.0},
+        PropertyCase{"sharp", {{0.0, 0.1, 0.5, 1.0}, {100.0, 0.8, 0.5, 1.0}}, 1.0},
+        PropertyCase{"midpointAtItsEnd", {{40.0, 0.1, 1.0, 0.0}, {60.0, 0.8, 0.0, 0.0}}, 1.0},
+        PropertyCase{"sharpMidpoint", {{40.0, 0.1, 0.0, 0.5}, {60.0, 0.8, 0.5, 0.0}}, 1.0},
+        PropertyCase{"longUnit", {{0.0, 1.0}}, 1e30},
+        PropertyCase{"farNodes", {{-1e38, 0.3}, {1e38, 0.5}}, 1.0}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+// ---- one value everywhere
+
+template <typename Voxel>
+void expectConstantIs(double value, double sigma_t) {
+  const Volume volume =
+      makeVolume<Voxel>(centredGrid({5, 4, 3}, Vec3::Ones()), [=](const Vec3&) { return value; });
+  const TransferFunction transfer{
+      ScalarFunction({knot(-1000, 0.1), knot(0, 0.2), knot(0, 0.3), knot(300, 0.4)}),
+      ColorFunction({{0.0, Rgb::Ones()}})};
+  const RayProbe<Voxel> probe(volume, transfer);
+  probe.expectTransmittance({{-9, 0, 0}, Vec3::UnitX()}, {}, std::exp(-5.0 * sigma_t),
+                            budget(10000));
+  TestScene scene{volume, transfer, {EnvironmentLight{}}, {}, 8, 8};
+  scene.pose.position = {10.0, -10.0, 8.0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = 3.0;
+  for (const bool hybrid : {false, true}) { // no gradient: never a surface
+    if (hybrid)
+      scene.transfer.shading = SurfaceShading{};
+    expectOne(renderIn(scene, budget(60)));
+  }
+}
+
+TEST(ConstantVolumes, AreHomogeneous) {
+  expectConstantIs<std::uint8_t>(0.0, 0.3); // a step belongs to its right side
+  expectConstantIs<std::int16_t>(0.0, 0.3);
+  expectConstantIs<float>(0.0, 0.3);
+  expectConstantIs<float>(-0.0, 0.3);
+  expectConstantIs<float>(-1e-40, 0.2);
+  expectConstantIs<std::int16_t>(-1000.0, 0.1);
+  expectConstantIs<float>(-1000.0, 0.1);
+  expectConstantIs<float>(-3e38, 0.1);
+  expectConstantIs<std::uint16_t>(300.0, 0.4);
+  expectConstantIs<float>(3e38, 0.4);
+  expectConstantIs<std::int16_t>(150.0, 0.35);
+}
+
+} // namespace
+} // namespace fenestra::testing

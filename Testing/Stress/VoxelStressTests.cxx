@@ -1,0 +1,217 @@
+// Voxels that are no ordinary numbers, of every type that files have: what is read is what the
+// documented replacement gives, and it shows the picture of a file that holds just that. And how
+// much extinction a scene may have.
+
+#include "StressSupport.h"
+#include "Unit/MedicalFiles.h"
+#include "io/medical/VolumeReader.h"
+#include "scene/Scene.h"
+
+namespace fenestra::testing {
+namespace {
+
+/// 4x4x4 voxels, 1 mm.
+const FileGeometry cube{.size = {4, 4, 4}};
+
+/// Ordinary values from 0 to 94 (in steps of 1.5 where the type has them), with `odd` ones between.
+template <typename T>
+std::vector<T> samplesWith(const std::vector<T>& odd) {
+  std::vector<T> samples(64);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i] = static_cast<T>(1.5 * static_cast<double>(i * 29 % 64));
+  for (std::size_t i = 0; i < odd.size(); ++i)
+    samples[7 + 5 * i] = odd[i];
+  return samples;
+}
+
+/// NaN and -infinity become the least finite value, +infinity the greatest, and what float cannot
+/// hold its ends.
+template <typename T>
+std::vector<float> replaced(const std::vector<T>& samples) {
+  std::vector<long double> finite;
+  for (const T x : samples)
+    if (std::isfinite(static_cast<long double>(x)))
+      finite.push_back(static_cast<long double>(x));
+  const long double least = *std::min_element(finite.begin(), finite.end());
+  const long double greatest = *std::max_element(finite.begin(), finite.end());
+  constexpr long double most = std::numeric_limits<float>::max();
+  std::vector<float> result;
+  for (const T sample : samples) {
+    const auto x = static_cast<long double>(sample);
+    const long double value = std::isfinite(x) ? x : x > 0.0L ? greatest : least;
+    result.push_back(static_cast<float>(std::clamp(value, -most, most)));
+  }
+  return result;
+}
+
+/// 8x8 pixels of the whole command line's defaults, in an environment of 1.
+Film pictureOf(const std::filesystem::path& volume, const std::optional<std::string>& transfer) {
+  SceneRequest request;
+  request.input = volume;
+  request.transfer = transfer;
+  request.environment = Rgb::Ones();
+  request.width = 8;
+  request.height = 8;
+  const Scene scene(request);
+  RenderSettings settings;
+  settings.samples = static_cast<std::uint64_t>(budget(16));
+  RenderMonitor monitor;
+  return render(scene.forRender(), settings, monitor).film;
+}
+
+/// What the reader stores, and its picture, under a given look and under the default.
+template <typename T>
+void expectReplaced(const std::vector<T>& odd) {
+  const TemporaryFolder folder;
+  const std::vector<T> samples = samplesWith(odd);
+  const std::vector<float> expected = replaced(samples);
+  writeFile(folder / "odd.nrrd", samples, cube);
+  writeFile(folder / "easy.nrrd", expected, cube);
+  const Volume volume = readVolume(folder / "odd.nrrd");
+  std::visit(
+      [&](const auto& voxels) {
+        ASSERT_EQ(voxels.size(), expected.size());
+        for (std::size_t i = 0; i < expected.size(); ++i)
+          ASSERT_EQ(static_cast<double>(voxels[i]), static_cast<double>(expected[i])) << i;
+      },
+      volume.voxels);
+  const auto [least, greatest] = std::minmax_element(expected.begin(), expected.end());
+  EXPECT_EQ(volume.minimum, static_cast<double>(*least));
+  EXPECT_EQ(volume.maximum, static_cast<double>(*greatest));
+
+  const std::string look =
+      folder.write("look.json", R"({"extinction": [[-50, 0.1], [20, 0], [80, 1.5], [80, 0.4]],
+                                    "albedo": [[0, 0.9, 0.5, 0.1], [90, 0.2, 0.8, 0.9]]})");
+  for (const std::optional<std::string>& transfer :
+       {std::optional(look), std::optional<std::string>{}}) {
+    const Film film = pictureOf(folder / "odd.nrrd", transfer);
+    expectEqualBits(film, pictureOf(folder / "easy.nrrd", transfer));
+    double sum = 0.0;
+    for (const PixelSums& pixel : film.pixels()) {
+      ASSERT_TRUE((pixel.mean >= 0.0).all() && pixel.mean.isFinite().all());
+      sum += pixel.mean.sum();
+    }
+    EXPECT_GT(sum, 0.0) << "black says nothing";
+  }
+}
+
+template <typename T>
+std::vector<T> extremes() {
+  using Limits = std::numeric_limits<T>;
+  return {Limits::max(), Limits::lowest(), static_cast<T>(Limits::max() - 1),
+          static_cast<T>(Limits::lowest() + 1)};
+}
+
+TEST(OddVoxels, OfIntegersAreKeptOrRounded) {
+  expectReplaced<std::int8_t>(extremes<std::int8_t>());
+  expectReplaced<std::uint8_t>(extremes<std::uint8_t>());
+  expectReplaced<std::int16_t>(extremes<std::int16_t>());
+  expectReplaced<std::uint16_t>(extremes<std::uint16_t>());
+  expectReplaced<std::int32_t>(extremes<std::int32_t>());
+  expectReplaced<std::uint32_t>(extremes<std::uint32_t>());
+  expectReplaced<std::int64_t>(extremes<std::int64_t>());
+  expectReplaced<std::uint64_t>(extremes<std::uint64_t>());
+}
+
+template <typename T>
+void expectFloatingReplaced() {
+  using Limits = std::numeric_limits<T>;
+  const T nan = Limits::quiet_NaN(), inf = Limits::infinity(), tiny = Limits::denorm_min();
+  expectReplaced<T>({nan});
+  expectReplaced<T>({-nan, nan, nan, nan, nan});
+  expectReplaced<T>({inf});
+  expectReplaced<T>({-inf});
+  expectReplaced<T>({nan, inf, -inf});
+  expectReplaced<T>({tiny, -tiny, Limits::min(), -Limits::min(), T(-0.0)});
+  expectReplaced<T>({Limits::max()});
+  expectReplaced<T>({Limits::lowest()});
+  expectReplaced<T>({Limits::max(), Limits::lowest(), nan, inf, -inf, tiny});
+  expectReplaced<T>({T(1e30), T(-1e30), nan});
+  expectReplaced<T>({T(1e-30), nan});
+}
+
+TEST(OddVoxels, OfFloatsAreReplaced) {
+  expectFloatingReplaced<float>();
+}
+
+TEST(OddVoxels, OfDoublesAreReplaced) {
+  expectFloatingReplaced<double>();
+  expectReplaced<double>({1e-310, 1e-40, -1e-40, 1e39, -1e300});
+}
+
+TEST(OddVoxels, InAVolumeOfNothingElseAreRefusedOrConstant) {
+  const TemporaryFolder folder;
+  const double nan = std::nan("");
+  writeFile(folder / "none.nrrd", std::vector<double>(64, nan), cube);
+  expectRefused(folder / "none.nrrd", "no voxel is a finite number",
+                [&] { pictureOf(folder / "none.nrrd", {}); });
+  std::vector<double> one(64, nan);
+  one[63] = -1000.0;
+  writeFile(folder / "one.nrrd", one, cube);
+  writeFile(folder / "easy.nrrd", std::vector<double>(64, -1000.0), cube);
+  expectEqualBits(pictureOf(folder / "one.nrrd", {}), pictureOf(folder / "easy.nrrd", {}));
+}
+
+TEST(ConstantFiles, ShowTheSameHazeByDefaultWhateverTheirValue) {
+  const TemporaryFolder folder;
+  const auto shown = [&](double value) {
+    writeFile(folder / "v.nrrd", std::vector<float>(64, static_cast<float>(value)), cube);
+    return pictureOf(folder / "v.nrrd", {});
+  };
+  const Film usual = shown(100.0);
+  EXPECT_GT(usual.at(4, 4).mean.sum(), 0.0);
+  for (const double value : {0.0, -1000.0, 1e-45, 3e38, -3e38, 255.0})
+    expectEqualBits(shown(value), usual);
+}
+
+// ---- how much extinction a scene may have
+
+std::string denseLook(double extinction) {
+  std::ostringstream text;
+  text << R"({"extinction": [[0, 0], [10, )" << extinction
+       << R"(]], "albedo": [[0, 0.9, 0.9, 0.9]]})";
+  return text.str();
+}
+
+TEST(ExtinctionLimit, IsAnOpticalDepthOfTenMillion) {
+  const TemporaryFolder folder;
+  writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
+  const double limit = 1e7 / (4.0 * std::sqrt(3.0)); // across the diagonal of 4 mm
+  for (const double extinction : {1.001 * limit, 1e8, 1e30}) {
+    const auto look = folder.write("over.json", denseLook(extinction));
+    expectRefused(look, "extinction: reaches", [&] { pictureOf(folder / "v.nrrd", look); });
+  }
+  const auto look = folder.write("at.json", denseLook(0.999 * limit));
+  // Every eye ray meets a half-space of albedo 0.9 head-on: Chandrasekhar's reflectance.
+  const Estimate estimate = imageEstimate(pictureOf(folder / "v.nrrd", look));
+  EXPECT_GT(estimate.mean, 0.25); // what passes beside the volume shows black
+  SceneRequest request;
+  request.input = folder / "v.nrrd";
+  request.transfer = look;
+  request.density = 1.01;
+  expectRefused(look, "extinction: reaches", [&] { Scene scene(request); });
+}
+
+TEST(ExtinctionLimit, ReflectsAsChandrasekharSays) {
+  const TemporaryFolder folder;
+  writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
+  const auto look = folder.write("at.json", denseLook(1e6));
+  SceneRequest request;
+  request.input = folder / "v.nrrd";
+  request.transfer = look;
+  request.lights = folder.write("lights.json", R"({"lights": [{"type": "environment",
+                                                    "radiance": [1, 1, 1]}]})");
+  request.view.scale = 1.5; // inside the silhouette, seen head-on
+  request.width = 8;
+  request.height = 8;
+  const Scene scene(request);
+  RenderSettings settings;
+  settings.samples = static_cast<std::uint64_t>(budget(250));
+  RenderMonitor monitor;
+  const Estimate estimate = imageEstimate(render(scene.forRender(), settings, monitor).film);
+  EXPECT_NEAR(estimate.mean, 0.4149, 4.0 * estimate.error + 5e-5);
+  EXPECT_LT(estimate.error, 0.005);
+}
+
+} // namespace
+} // namespace fenestra::testing
