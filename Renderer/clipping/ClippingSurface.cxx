@@ -100,7 +100,8 @@ ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& optio
   surface.controlPoints = placeControlPoints(surface.focus, contours, options.controlPoints);
   ThinPlateSpline spline = splineThrough(surface.controlPoints, options.smoothing);
   surface.mismatch = mismatchOf(spline, boundarySamples(surface.focus, contours));
-  if (surface.controlPoints.size() < 3)
+  const auto asked = static_cast<std::size_t>(options.controlPoints);
+  if (surface.controlPoints.size() < std::min<std::size_t>(3, asked))
     surface.warnings.push_back("the focus covers hardly a pixel: the clipping surface is flat");
   return spline;
 }

@@ -1,3 +1,4 @@
+fenestra_test(SurfaceStressTests SurfaceStressTests.cxx LIBRARIES fenestra_clipping LABELS stress)
 # The thin plate spline against 50 digits, for which Boost's headers are enough.
 find_package(Boost 1.74)
 if(Boost_FOUND)
