@@ -7,7 +7,7 @@
 namespace fenestra::testing {
 
 /// Absorbs by the scalar: `dark` at 0, `bright` at 1. A turned grid of unequal spacing, about 2 mm
-/// in radius; half of the light that meets it passes.
+/// in radius; a third of the light that meets it passes.
 inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
   Grid grid = centredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
   const Affine turn(Eigen::AngleAxisd(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
