@@ -122,14 +122,16 @@ private:
     return light * scatterer.f(probe.direction) / density;
   }
 
-  /// A path of weight below 1 lives on with that probability, at weight 1.
+  /// Russian roulette for paths that hardly matter. (With analog absorption a dark medium would
+  /// show so few bright paths that their mean would not know its own error.)
   static bool survives(Rgb& weight, Generator& generator) {
+    constexpr double least = 0.05;
     const double most = weight.maxCoeff();
-    if (most >= 1.0)
+    if (most >= least)
       return true;
-    if (uniform(generator) >= most)
+    if (uniform(generator) * least >= most)
       return false;
-    weight /= most;
+    weight *= least / most;
     return true;
   }
 

@@ -9,27 +9,34 @@ Vec3 across(const Vec3& direction) {
   return direction.cross(axis).normalized();
 }
 
-/// The cosine about the direction of travel by inversion of Henyey and Greenstein's distribution.
-Vec3 drawHenyeyGreenstein(const Vec3& incoming, double g, Generator& generator) {
-  if (std::abs(g) < 1e-3)
-    g = std::copysign(1e-3, g); // as near as the inversion does not cancel; density() knows
+/// A unit vector at a given cosine to a direction, all around it.
+Vec3 about(const Vec3& direction, double cosine, Generator& generator) {
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  const double phi = 2.0 * pi * uniform(generator);
+  const Vec3 u = across(direction);
+  const Vec3 v = direction.cross(u);
+  return (cosine * direction + sine * std::cos(phi) * u + sine * std::sin(phi) * v).normalized();
+}
+
+/// As near to 0 as the inversion below does not cancel; a density of that g weighs it right.
+double awayFromZero(double g) {
+  return std::abs(g) < 1e-3 ? std::copysign(1e-3, g) : g;
+}
+
+/// By inversion of Henyey and Greenstein's distribution of the cosine.
+Vec3 drawHenyeyGreenstein(const Vec3& incoming, double exactG, Generator& generator) {
+  const double g = awayFromZero(exactG);
   const double inner = (1.0 - g * g) / (1.0 - g + 2.0 * g * uniform(generator));
   const double cosine = std::clamp((1.0 + g * g - inner * inner) / (2.0 * g), -1.0, 1.0);
-  const double sine = std::sqrt(1.0 - cosine * cosine);
-  const double phi = 2.0 * pi * uniform(generator);
-  const Vec3 u = across(incoming);
-  const Vec3 v = incoming.cross(u);
-  return (cosine * incoming + sine * std::cos(phi) * u + sine * std::sin(phi) * v).normalized();
+  return about(incoming, cosine, generator);
+}
+
+/// GGX's roughness squared, of a Blinn-Phong exponent.
+double roughness2(const SurfaceShading& shading) {
+  return 2.0 / (shading.power + 2.0);
 }
 
 } // namespace
-
-Vec3 uniformDirection(Generator& generator) {
-  const double z = 2.0 * uniform(generator) - 1.0;
-  const double phi = 2.0 * pi * uniform(generator);
-  const double r = std::sqrt(1.0 - z * z);
-  return {r * std::cos(phi), r * std::sin(phi), z};
-}
 
 double henyeyGreenstein(double cosine, double g) {
   return (1.0 - g * g) / (4.0 * pi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
@@ -61,10 +68,9 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
   const double cosIn = -m_incoming.dot(m_normal), cosOut = outgoing.dot(m_normal);
   if (cosOut <= 0.0 || cosIn <= 0.0)
     return Rgb::Zero();
-  const double a2 = 2.0 / (m_shading->power + 2.0);
+  const double a2 = roughness2(*m_shading);
   const Vec3 h = (outgoing - m_incoming).normalized();
-  const double cosHalf = h.dot(m_normal);
-  const double d = a2 / (pi * std::pow(cosHalf * cosHalf * (a2 - 1.0) + 1.0, 2.0));
+  const double d = facetDensity(h);
   const auto smith = [a2](double cosine) {
     return 2.0 / (1.0 + std::sqrt(1.0 + a2 * (1.0 / (cosine * cosine) - 1.0)));
   };
@@ -74,18 +80,31 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
   return (m_shading->diffuse * m_albedo / pi + m_shading->specular * glossy) / excess * cosOut;
 }
 
+double Scatterer::facetDensity(const Vec3& h) const {
+  const double a2 = roughness2(*m_shading);
+  return a2 / (pi * std::pow(std::pow(h.dot(m_normal), 2.0) * (a2 - 1.0) + 1.0, 2.0));
+}
+
 Vec3 Scatterer::draw(Generator& generator) const {
   if (!m_shading)
     return drawHenyeyGreenstein(m_incoming, m_g, generator);
-  const Vec3 direction = uniformDirection(generator);
-  return direction.dot(m_normal) < 0.0 ? Vec3(-direction) : direction;
+  const double u = uniform(generator);
+  if (uniform(generator) < 0.5)
+    return about(m_normal, std::sqrt(u), generator);
+  const double cosine = std::sqrt((1.0 - u) / (1.0 + (roughness2(*m_shading) - 1.0) * u));
+  const Vec3 h = about(m_normal, cosine, generator);
+  return m_incoming - 2.0 * m_incoming.dot(h) * h;
 }
 
 double Scatterer::density(const Vec3& outgoing) const {
-  if (m_shading)
-    return outgoing.dot(m_normal) < 0.0 ? 0.0 : 0.5 / pi;
-  const double g = std::abs(m_g) < 1e-3 ? std::copysign(1e-3, m_g) : m_g;
-  return henyeyGreenstein(m_incoming.dot(outgoing), g);
+  if (!m_shading)
+    return henyeyGreenstein(m_incoming.dot(outgoing), awayFromZero(m_g));
+  const double lambert = std::max(0.0, outgoing.dot(m_normal)) / pi;
+  Vec3 h = (outgoing - m_incoming).normalized();
+  if (h.dot(m_normal) < 0.0)
+    h = -h;
+  const double glossy = facetDensity(h) * h.dot(m_normal) / (4.0 * std::abs(outgoing.dot(h)));
+  return 0.5 * lambert + 0.5 * glossy;
 }
 
 } // namespace fenestra::oracle

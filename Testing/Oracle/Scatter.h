@@ -14,9 +14,6 @@ inline double uniform(Generator& generator) {
   return static_cast<double>(generator() >> 11) * 0x1p-53;
 }
 
-/// Uniform on the sphere.
-Vec3 uniformDirection(Generator& generator);
-
 /// Henyey and Greenstein 1941, per steradian; `cosine` between the directions of travel.
 double henyeyGreenstein(double cosine, double g);
 
@@ -29,12 +26,15 @@ public:
                              const SurfaceShading& shading);
 
   Rgb f(const Vec3& outgoing) const;
-  /// A direction to go on, and its density per steradian: the phase function's, or uniform on the
-  /// hemisphere from which the path came.
+  /// A direction to go on, and its density per steradian: the phase function's; at a surface half
+  /// the time Lambert's, else the mirror of `incoming` at a GGX microfacet (Walter et al. 2007,
+  /// eq. 35, 36 and 38).
   Vec3 draw(Generator& generator) const;
   double density(const Vec3& outgoing) const;
 
 private:
+  double facetDensity(const Vec3& h) const;
+
   Vec3 m_incoming;
   Rgb m_albedo;
   double m_g = 0.0;

@@ -125,32 +125,39 @@ void compareDepths(const std::vector<double>& product, const std::vector<double>
   }
 }
 
+std::uint64_t seedOf(const Combination& c, const MatrixSettings& settings, std::uint64_t renderer) {
+  return mixBits(2 * (1'000'000 * settings.seed + static_cast<std::uint64_t>(c.index)) + renderer);
+}
+
 } // namespace
 
 double Outcome::probability() const {
   return sidak(std::min({pixels, tiles, picture}), 3.0);
 }
 
-Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings) {
+Truth renderTruth(const Combination& c, const MatrixSettings& settings) {
+  std::vector<double> depths;
+  const oracle::Estimates picture =
+      oracle::render(matrixScene(c).forOracle(), settings.samples, seedOf(c, settings, 1), &depths);
+  return {picture, depths};
+}
+
+Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings, Truth truth) {
   const MatrixScene scene = matrixScene(c);
   RenderSettings renderSettings = scene.settings;
   renderSettings.samples = settings.samples;
-  const auto index = static_cast<std::uint64_t>(c.index);
-  renderSettings.seed = mixBits(2 * (1'000'000 * settings.seed + index));
-  const std::uint64_t oracleSeed = mixBits(2 * (1'000'000 * settings.seed + index) + 1);
-
-  std::vector<double> depths;
-  Outcome outcome{
-      .combination = c,
-      .tileProbabilities = {},
-      .pictureProbability = {},
-      .product = estimatesOf(scene.product.render(renderSettings).film, settings.samples),
-      .truth = oracle::render(scene.forOracle(), settings.samples, oracleSeed, &depths)};
+  renderSettings.seed = seedOf(c, settings, 0);
+  Outcome outcome{.combination = c,
+                  .tileProbabilities = {},
+                  .pictureProbability = {},
+                  .product =
+                      estimatesOf(scene.product.render(renderSettings).film, settings.samples),
+                  .truth = std::move(truth.picture)};
   outcome.pixels = compareSquares(outcome, 1, [](double) {});
   outcome.tiles =
       compareSquares(outcome, tileSize, [&](double p) { outcome.tileProbabilities.push_back(p); });
   comparePicture(outcome);
-  compareDepths(scene.productDepths, depths, outcome);
+  compareDepths(scene.productDepths, truth.depths, outcome);
   return outcome;
 }
 

@@ -37,7 +37,14 @@ struct Outcome {
   double probability() const;
 };
 
-Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings);
+/// What the oracle makes of a combination.
+struct Truth {
+  oracle::Estimates picture;
+  std::vector<double> depths; ///< of a depth clip's buffer, mm, row by row
+};
+
+Truth renderTruth(const Combination& c, const MatrixSettings& settings);
+Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings, Truth truth);
 
 /// A hypothesis about all combinations together, and how probable what was seen is under it.
 struct Verdict {

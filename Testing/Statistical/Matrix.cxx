@@ -170,7 +170,7 @@ ScalarFunction overRange(const Range& range, std::initializer_list<std::array<do
 ScalarFunction extinctionOf(TransferFactor kind, const Range& range) {
   switch (kind) {
   case TransferFactor::step:
-    return overRange(range, {{0.0, 0.02}, {0.5, 0.02}, {0.5, 1.5}, {1.0, 1.5}});
+    return overRange(range, {{0.0, 0.02}, {0.5, 0.02}, {0.5, 2.5}, {1.0, 2.5}});
   case TransferFactor::spike:
     return overRange(range, {{0.0, 0.0}, {0.45, 0.0}, {0.5, 6.0}, {0.55, 0.0}, {1.0, 0.05}});
   case TransferFactor::nonMonotone:
@@ -179,7 +179,7 @@ ScalarFunction extinctionOf(TransferFactor kind, const Range& range) {
   case TransferFactor::linear:
   case TransferFactor::gradientOpacity:
   case TransferFactor::steepGradientOpacity:
-    return overRange(range, {{0.0, 0.0}, {1.0, 1.2}});
+    return overRange(range, {{0.0, 0.0}, {1.0, 2.0}});
   }
   return overRange(range, {{0.0, 0.0}});
 }

@@ -45,7 +45,7 @@ TEST(Matrix, ProductAgreesWithTheOracle) {
   const std::vector<Combination> all = combinations(isLong ? 960 : 240);
   std::vector<Outcome> outcomes;
   for (const Combination& c : all) {
-    outcomes.push_back(compareWithOracle(c, settings));
+    outcomes.push_back(compareWithOracle(c, settings, renderTruth(c, settings)));
     const Outcome& result = outcomes.back();
     EXPECT_GT(result.probability(), leastProbability(all.size()))
         << c.index << ": " << describe(c) << "\n  pixels " << result.pixels << ", tiles "

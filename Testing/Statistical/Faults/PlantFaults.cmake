@@ -1,0 +1,29 @@
+# Copies concepts of the renderer with every error of faults.json in them (README.md here).
+# usage: cmake -DFROM=Renderer -DTO=folder -DFAULTS=faults.json -DCONCEPTS=a,b,... -P PlantFaults.cmake
+cmake_minimum_required(VERSION 3.25)
+
+string(REPLACE "," ";" CONCEPTS "${CONCEPTS}")
+foreach(concept ${CONCEPTS})
+  file(COPY "${FROM}/${concept}" DESTINATION "${TO}" FILES_MATCHING PATTERN "*.h" PATTERN "*.cxx")
+endforeach()
+
+file(READ "${FAULTS}" faults)
+string(JSON count LENGTH "${faults}")
+math(EXPR last "${count} - 1")
+foreach(i RANGE ${last})
+  foreach(field name file old new)
+    string(JSON ${field} GET "${faults}" ${i} ${field})
+  endforeach()
+  file(READ "${TO}/${file}" text)
+  string(FIND "${text}" "${old}" first)
+  string(FIND "${text}" "${old}" final REVERSE)
+  if(first EQUAL -1 OR NOT first EQUAL final)
+    message(FATAL_ERROR "faults.json: ${name}: its old text does not stand once in ${file}; "
+      "plant it anew")
+  endif()
+  string(REPLACE "${old}" "${new}" text "${text}")
+  if(NOT text MATCHES "#include \"Statistical/Faults/Planted.h\"")
+    string(PREPEND text "#include \"Statistical/Faults/Planted.h\"\n")
+  endif()
+  file(WRITE "${TO}/${file}" "${text}")
+endforeach()
