@@ -178,7 +178,7 @@ TEST(SplineStress, CollinearSitesGiveTheLeastSquaresLineAlongThem) {
   const Vec2 along = Vec2(0.3, 0.7).normalized(), across(-along.y(), along.x());
   for (const double smoothing : smoothings)
     for (const double origin : origins)
-      for (const double radius : {0.5, 500.0})
+      for (const double radius : {1e-3, 0.5, 500.0})
         for (const int count : {2, 3, 4, 50, 1000}) {
           Random random(8, 0, 0);
           SplineData data;
@@ -195,13 +195,25 @@ TEST(SplineStress, CollinearSitesGiveTheLeastSquaresLineAlongThem) {
             for (const double aside : {0.0, radius, -1e4}) {
               const auto line = static_cast<double>((z - slope * t) / n + slope * place);
               const Vec2 x = Vec2(origin, -origin) + place * along + aside * across;
-              // Coordinates at 1e6 are rounded, those of the sites and of x.
-              const double rounded = 1e-15 * origin * (1.0 + std::hypot(place, aside) / radius);
+              // Coordinates are rounded, those of the sites and of x, and so is a slope.
+              const double reach = std::hypot(place, aside);
+              const double rounded = 1e-15 * (origin * (1.0 + reach / radius) + reach);
               ASSERT_NEAR(spline(x), line,
                           1e-9 * (data.range() + std::abs(line)) + data.range() / radius * rounded)
                   << count << " sites to " << radius << " mm at " << origin << ", p " << smoothing;
             }
         }
+}
+
+TEST(SplineStress, SitesCollinearTo1e9OfTheirExtentAreLevelAcross) {
+  Random random(16, 0, 0);
+  SplineData data;
+  for (int i = 0; i < 30; ++i)
+    data.add({2.0 * i - 30.0, 3e-9 * uniform(random, -1, 1)}, uniform(random, 0, 500));
+  for (const double smoothing : smoothings) {
+    const ThinPlateSpline spline = data.spline(smoothing);
+    EXPECT_NEAR(spline({7.0, 1e4}), spline({7.0, 0.0}), 1e-3);
+  }
 }
 
 TEST(SplineStress, ThreeSitesGiveTheirPlane) {

@@ -234,6 +234,13 @@ TEST(SurfaceStress, AFocusThatFillsTheView) {
   const Mask everything = maskOf(cube, [](const Vec3&) { return true; });
   for (const double scale : {5.0, 15.9, 16.0, 40.0})
     expectSoundFromFront(everything, scale);
+  for (const auto projection : projections) { // the face is at -16, whichever way a ray meets it
+    const View view{anteriorCamera(projection, 50.0, 7.0, 20, 20), cube, everything};
+    const FocusDepth focus = view.surface({}).focus;
+    for (int pixel = 0; pixel < 400; ++pixel) {
+      ASSERT_NEAR(focus.depth.at(focus.depth.viewportSample(pixel % 20, pixel / 20)), 34.0, 1e-4);
+    }
+  }
   expectSoundFromFront(boxMask(cube, {-11, -9, -11}, {11, 9, 11}), 8.0);
   expectSoundFromFront(sphereMask(cube, 14.0), 3.0);
 }
