@@ -18,19 +18,34 @@ TestScene absorber(const CameraPose& pose, int width, int height) {
           height};
 }
 
+/// The eye ray through a raster position by the conventions: rows from the top, `scale` half the
+/// picture's height, `angle` all of it.
+Ray eyeRay(const CameraPose& pose, int width, int height, double column, double row) {
+  const Vec3 forward = (pose.target - pose.position).normalized();
+  const Vec3 right = forward.cross(pose.up).normalized();
+  const Vec3 up = right.cross(forward);
+  const double x = (2.0 * column - width) / height; // in half heights
+  const double y = 1.0 - 2.0 * row / height;
+  const Vec3 offset = x * right + y * up;
+  if (pose.projection == Projection::orthographic)
+    return {pose.position + pose.scale * offset, forward};
+  const double slope = std::tan(0.5 * pose.angle * pi / 180.0);
+  return {pose.position, (forward + slope * offset).normalized()};
+}
+
 /// Each pixel against the mean of exp(-sigma chord) over it: the sum of z^2 to 4 of its standard
 /// errors, and the sum of the differences. Samples are 0 or 1, so the variance is known.
 void expectChords(const TestScene& scene, int samples) {
   constexpr int fine = 16;
   const RenderResult result = renderIn(scene, samples);
-  const Camera camera(scene.pose, scene.width, scene.height);
   double chi2 = 0.0, difference = 0.0, variance = 0.0;
   int pixels = 0;
   for (int row = 0; row < scene.height; ++row)
     for (int column = 0; column < scene.width; ++column) {
       double expected = 0.0;
       for (int i = 0; i < fine * fine; ++i) {
-        const Ray ray = camera.ray(column + (i % fine + 0.5) / fine, row + (i / fine + 0.5) / fine);
+        const Ray ray = eyeRay(scene.pose, scene.width, scene.height,
+                               column + (i % fine + 0.5) / fine, row + (i / fine + 0.5) / fine);
         expected += std::exp(-sigma * chord(scene.volume.grid, ray)) / (fine * fine);
       }
       const double mean = result.film.at(column, row).mean[0];
