@@ -18,15 +18,17 @@ Vec3 about(const Vec3& direction, double cosine, Generator& generator) {
   return (cosine * direction + sine * std::cos(phi) * u + sine * std::sin(phi) * v).normalized();
 }
 
-/// As near to 0 as the inversion below does not cancel; a density of that g weighs it right.
-double awayFromZero(double g) {
-  return std::abs(g) < 1e-3 ? std::copysign(1e-3, g) : g;
+/// The inversion below cancels near 0, where 0 itself is as good: density() weighs it right.
+double invertible(double g) {
+  return std::abs(g) < 1e-3 ? 0.0 : g;
 }
 
 /// By inversion of Henyey and Greenstein's distribution of the cosine.
-Vec3 drawHenyeyGreenstein(const Vec3& incoming, double exactG, Generator& generator) {
-  const double g = awayFromZero(exactG);
-  const double inner = (1.0 - g * g) / (1.0 - g + 2.0 * g * uniform(generator));
+Vec3 drawHenyeyGreenstein(const Vec3& incoming, double g, Generator& generator) {
+  const double u = uniform(generator);
+  if (g == 0.0)
+    return about(incoming, 2.0 * u - 1.0, generator);
+  const double inner = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
   const double cosine = std::clamp((1.0 + g * g - inner * inner) / (2.0 * g), -1.0, 1.0);
   return about(incoming, cosine, generator);
 }
@@ -87,7 +89,7 @@ double Scatterer::facetDensity(const Vec3& h) const {
 
 Vec3 Scatterer::draw(Generator& generator) const {
   if (!m_shading)
-    return drawHenyeyGreenstein(m_incoming, m_g, generator);
+    return drawHenyeyGreenstein(m_incoming, invertible(m_g), generator);
   const double u = uniform(generator);
   if (uniform(generator) < 0.5)
     return about(m_normal, std::sqrt(u), generator);
@@ -98,7 +100,7 @@ Vec3 Scatterer::draw(Generator& generator) const {
 
 double Scatterer::density(const Vec3& outgoing) const {
   if (!m_shading)
-    return henyeyGreenstein(m_incoming.dot(outgoing), awayFromZero(m_g));
+    return henyeyGreenstein(m_incoming.dot(outgoing), invertible(m_g));
   const double lambert = std::max(0.0, outgoing.dot(m_normal)) / pi;
   Vec3 h = (outgoing - m_incoming).normalized();
   if (h.dot(m_normal) < 0.0)

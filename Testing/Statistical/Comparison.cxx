@@ -1,7 +1,6 @@
 #include "Comparison.h"
 
 #include "Oracle/Oracle.h"
-#include "Significance.h"
 
 #include <algorithm>
 
@@ -187,10 +186,6 @@ std::vector<Verdict> verdicts(const std::vector<Outcome>& outcomes) {
            uniformityProbability(pictureProbabilities)},
           {"pictures' mean difference is 0", nPictures,
            normalTail(sum / std::sqrt(std::max(nPictures, 1.0)))}};
-}
-
-double leastProbability(std::size_t count) {
-  return 1.0 - std::pow(1.0 - 1e-3, 1.0 / static_cast<double>(count));
 }
 
 } // namespace fenestra::testing

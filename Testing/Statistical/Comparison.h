@@ -4,6 +4,7 @@
 
 #include "Matrix.h"
 #include "Oracle/Estimates.h"
+#include "Significance.h"
 
 #include <optional>
 #include <string>
@@ -56,9 +57,5 @@ struct Verdict {
 /// Pixels, tiles, pictures; uniformity of the tiles' and the pictures' probabilities; the pictures'
 /// mean deviate.
 std::vector<Verdict> verdicts(const std::vector<Outcome>& outcomes);
-
-/// The whole suite fails once in a thousand runs by chance: so does each of `count` verdicts that
-/// is held to this.
-double leastProbability(std::size_t count);
 
 } // namespace fenestra::testing

@@ -1,11 +1,15 @@
 // The scenes of ../shared/reference against pictures that independent renderers converged, through
 // the product's own command line.
 
+#include "Oracle/Oracle.h"
+#include "Pictures.h"
+#include "Record.h"
 #include "Support.h"
 
 #include "cli/CommandLine.h"
 #include "cli/RenderFlags.h"
 #include "film/Compare.h"
+#include "io/looks/LightReader.h"
 #include "io/pictures/ImageReader.h"
 #include "io/pictures/ImageWriter.h"
 #include "scene/Scene.h"
@@ -14,6 +18,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 
 namespace fenestra::testing {
 namespace {
@@ -23,8 +28,8 @@ struct ReferenceCase {
   std::uint64_t samples;
 };
 
-/// Renders NAME.arguments, one argument a line, as `fenestra` would from that folder.
-Image renderReference(const ReferenceCase& c) {
+/// What `fenestra` makes of NAME.arguments, one argument a line, in that folder.
+RenderOptions readArguments(const ReferenceCase& c) {
   std::filesystem::current_path(FENESTRA_REFERENCE);
   std::vector<std::string> words = {"fenestra"};
   std::ifstream file(std::string(c.name) + ".arguments");
@@ -35,14 +40,30 @@ Image renderReference(const ReferenceCase& c) {
   std::vector<char*> argv;
   for (std::string& word : words)
     argv.push_back(word.data());
+  return renderOptions(
+      *parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1));
+}
 
-  const auto flags = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
-  const RenderOptions options = renderOptions(*flags);
+Image renderReference(const ReferenceCase& c) {
+  const RenderOptions options = readArguments(c);
   const Scene scene(options.scene);
   RenderMonitor monitor;
   const RenderResult result =
       render(scene.forRender(), settingsFor(options, scene.background()), monitor);
   return picture(result.film, scene.camera(), scene.clip(), options.layers);
+}
+
+oracle::Estimates renderOracle(const ReferenceCase& c) {
+  const RenderOptions options = readArguments(c);
+  const Scene scene(options.scene);
+  return oracle::render({.volume = scene.volume(),
+                         .transfer = scene.transfer(),
+                         .lights = readLights(options.scene.lights),
+                         .pose = scene.camera().pose(),
+                         .width = scene.camera().width(),
+                         .height = scene.camera().height(),
+                         .background = *options.background},
+                        c.samples, 43);
 }
 
 bool present() {
@@ -55,35 +76,78 @@ bool longVersion() {
   return std::getenv("FENESTRA_LONG") != nullptr;
 }
 
+/// A line of the report's table.
+void record(const std::string& who, const ZStatistics& z) {
+  if (const std::optional<std::filesystem::path> folder = reportFolder())
+    std::ofstream(*folder / "references.md", std::ios::app)
+        << std::setprecision(3) << "| " << who << " | " << z.count << " | " << z.mean << " | "
+        << z.deviation << " | " << z.imageMean.transpose() << " |\n";
+}
+
+/// How z of tiles may be distributed: bounds of four standard errors of each, S2 filling three
+/// quarters of its picture.
+struct Bounds {
+  int tile; ///< pixels to a side
+  double mean, deviation;
+};
+
+void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& bounds,
+                     const std::string& label) {
+  const std::string name = c.name;
+  Image reference = readImage(name + "_best.exr");
+  attachError(reference, readImage(name + "_best_se.exr"));
+  const Image tiles = tileMeans(image, bounds.tile);
+  reference = tileMeans(reference, bounds.tile);
+  const Comparison comparison = compareImages(tiles, reference);
+  ASSERT_TRUE(comparison.z);
+  EXPECT_NEAR(comparison.z->mean, 0.0, bounds.mean);
+  EXPECT_NEAR(comparison.z->deviation, 1.0, bounds.deviation);
+  EXPECT_LT(comparison.z->imageMean.abs().maxCoeff(), 3.0);
+  record(label, *comparison.z);
+  if (::testing::Test::HasFailure())
+    writeImage(differenceImage(tiles, reference), {},
+               std::filesystem::temp_directory_path() / (name + "-difference.png"), "Standard");
+}
+
 class Reference : public ::testing::TestWithParam<ReferenceCase> {};
 
 TEST_P(Reference, AgreesWithinStatistics) {
   if (!present())
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
-  const std::string name = GetParam().name;
-  const int tile = longVersion() ? 1 : 4;
-  Image image = renderReference(GetParam());
-  Image reference = readImage(name + "_best.exr");
-  attachError(reference, readImage(name + "_best_se.exr"));
   // Near the thin shells of S2 a pixel's samples are so skewed that its z has mean 0 only from
   // thousands of samples on; a tile's has it from hundreds.
-  image = tileMeans(image, tile);
-  reference = tileMeans(reference, tile);
-  const Comparison comparison = compareImages(image, reference);
-  ASSERT_TRUE(comparison.z);
-  // 65536 pixels or 4096 tiles, of which S2 fills three quarters: four standard errors of each.
-  EXPECT_NEAR(comparison.z->mean, 0.0, tile > 1 ? 0.07 : 0.02);
-  EXPECT_NEAR(comparison.z->deviation, 1.0, tile > 1 ? 0.05 : 0.03);
-  EXPECT_LT(comparison.z->imageMean.abs().maxCoeff(), 3.0);
-  if (HasFailure())
-    writeImage(differenceImage(image, reference), {},
-               std::filesystem::temp_directory_path() / (name + "-difference.png"), "Standard");
+  const Bounds bounds = longVersion() ? Bounds{1, 0.02, 0.03} : Bounds{4, 0.07, 0.05};
+  expectAgreement(renderReference(GetParam()), GetParam(), bounds,
+                  std::string("product, ") + GetParam().name);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Reference,
                          ::testing::Values(ReferenceCase{"S1", longVersion() ? 1024U : 128U},
                                            ReferenceCase{"S2", longVersion() ? 4096U : 192U}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+class OracleReference : public ::testing::TestWithParam<ReferenceCase> {};
+
+TEST_P(OracleReference, AgreesWithinStatistics) {
+  if (!present())
+    GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
+  const Bounds bounds = longVersion() ? Bounds{4, 0.07, 0.05} : Bounds{16, 0.3, 0.2};
+  expectAgreement(imageOf(renderOracle(GetParam())), GetParam(), bounds,
+                  std::string("oracle, ") + GetParam().name);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, OracleReference,
+                         ::testing::Values(ReferenceCase{"S1", longVersion() ? 128U : 4U},
+                                           ReferenceCase{"S2", longVersion() ? 128U : 4U}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+/// Albedo 1 in an environment of 1, and no weight but 1: every path says 1.
+TEST(OracleReferenceFurnace, S3hetIsOneEverywhere) {
+  if (!present())
+    GTEST_SKIP() << "no reference scenes at " << FENESTRA_REFERENCE;
+  for (const oracle::PixelEstimate& pixel : renderOracle({"S3het", 1}).pixels)
+    ASSERT_NEAR(pixel.mean[1], 1.0, 1e-9);
+}
 
 TEST(ReferenceFurnace, S3hetIsOneEverywhere) {
   if (!present())

@@ -37,6 +37,10 @@ double sidak(double least, double count) {
   return -std::expm1(count * std::log1p(-least));
 }
 
+double leastProbability(std::size_t count) {
+  return 1.0 - std::pow(1.0 - 1e-3, 1.0 / static_cast<double>(count));
+}
+
 double uniformityProbability(std::vector<double> probabilities) {
   if (probabilities.empty())
     return 1.0;

@@ -24,6 +24,10 @@ std::optional<double> welchProbability(const Estimated& a, const Estimated& b);
 /// Of the least of `count` independent probabilities being this small (Šidák 1967).
 double sidak(double least, double count);
 
+/// A suite of `count` independent probabilities, each held to this, fails once in a thousand runs
+/// by chance.
+double leastProbability(std::size_t count);
+
 /// Of probabilities that should be uniform in [0, 1] straying this far from it: Kolmogorov and
 /// Smirnov's largest distance, in Stephens' approximation (1970). 1 for none.
 double uniformityProbability(std::vector<double> probabilities);

@@ -1,0 +1,99 @@
+#include "MatrixRecord.h"
+
+#include "Record.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iomanip>
+
+namespace fenestra::testing {
+namespace {
+
+constexpr int bins = 20;
+
+using Histogram = std::array<double, bins>;
+
+Histogram histogramOf(const std::vector<double>& probabilities) {
+  Histogram histogram{};
+  for (const double p : probabilities)
+    histogram[static_cast<std::size_t>(std::min(static_cast<int>(p * bins), bins - 1))] += 1.0;
+  return histogram;
+}
+
+/// One histogram in a box of 320 x 180, with what is expected and two standard deviations about it.
+void drawHistogram(std::ostream& svg, int left, const std::vector<double>& probabilities,
+                   const std::string& title) {
+  constexpr double width = 320.0, height = 180.0, top = 40.0;
+  const Histogram histogram = histogramOf(probabilities);
+  const double expected = static_cast<double>(probabilities.size()) / bins;
+  const double spread = 2.0 * std::sqrt(expected * (1.0 - 1.0 / bins));
+  const double greatest = 1.1 * std::max(*std::ranges::max_element(histogram), expected + spread);
+  const auto y = [&](double count) { return top + height * (1.0 - count / greatest); };
+  svg << "<g transform='translate(" << left << ",0)'>\n<text x='" << width / 2
+      << "' y='24' text-anchor='middle'>" << title << "</text>\n";
+  svg << "<rect x='0' y='" << y(expected + spread) << "' width='" << width << "' height='"
+      << y(expected - spread) - y(expected + spread) << "' fill='#e8e8e8'/>\n";
+  for (int i = 0; i < bins; ++i) {
+    const double count = histogram[static_cast<std::size_t>(i)];
+    svg << "<rect x='" << (i + 0.1) * width / bins << "' y='" << y(count) << "' width='"
+        << 0.8 * width / bins << "' height='" << y(0.0) - y(count) << "' fill='#3b6ea5'/>\n";
+  }
+  svg << "<line x1='0' x2='" << width << "' y1='" << y(expected) << "' y2='" << y(expected)
+      << "' stroke='#c03030'/>\n<line x1='0' x2='" << width << "' y1='" << y(0.0) << "' y2='"
+      << y(0.0) << "' stroke='black'/>\n";
+  svg << "<text x='0' y='240'>0</text><text x='" << width
+      << "' y='240' text-anchor='end'>1</text><text x='" << width / 2
+      << "' y='240' text-anchor='middle'>probability</text>\n</g>\n";
+}
+
+void writeHistograms(const std::filesystem::path& path, const std::vector<double>& tiles,
+                     const std::vector<double>& pictures) {
+  std::ofstream svg(path);
+  svg << "<svg xmlns='http://www.w3.org/2000/svg' width='760' height='260' "
+         "font-family='sans-serif' font-size='13'>\n<rect width='760' height='260' "
+         "fill='white'/>\n";
+  drawHistogram(svg, 30, tiles, std::to_string(tiles.size()) + " tiles");
+  drawHistogram(svg, 410, pictures, std::to_string(pictures.size()) + " pictures");
+  svg << "</svg>\n";
+}
+
+} // namespace
+
+void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Verdict>& verdicts,
+                  const MatrixSettings& settings) {
+  const std::optional<std::filesystem::path> folder = reportFolder();
+  if (!folder)
+    return;
+  std::vector<double> tiles, pictures;
+  for (const Outcome& c : outcomes) {
+    tiles.insert(tiles.end(), c.tileProbabilities.begin(), c.tileProbabilities.end());
+    if (c.pictureProbability)
+      pictures.push_back(*c.pictureProbability);
+  }
+  writeHistograms(*folder / "probabilities.svg", tiles, pictures);
+
+  std::ofstream md(*folder / "matrix.md");
+  md << "## The product against the oracle\n\n"
+     << outcomes.size() << " combinations, 16 x 16 pixels, " << settings.samples
+     << " samples a pixel of each renderer, seed " << settings.seed << ".\n\n"
+     << "| hypothesis | values | probability of what was seen |\n|---|---|---|\n"
+     << std::setprecision(3);
+  for (const Verdict& verdict : verdicts)
+    md << "| " << verdict.name << " | " << verdict.count << " | " << verdict.probability << " |\n";
+  md << "\nEach is held to " << leastProbability(verdicts.size())
+     << ", so that all of them together fail once in a thousand runs by chance.\n\n"
+     << "![Histograms of the probabilities](probabilities.svg)\n\n"
+     << "Probabilities of the differences in tiles and pictures: uniform where there is no "
+        "difference but noise. Grey: two standard deviations about what is expected.\n\n"
+     << "<details><summary>All combinations</summary>\n\n"
+     << "| | view | clip | light | g | albedo | transfer function | voxels | grid | background | "
+        "bounces | difference of the picture | in errors | probability |\n"
+     << "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const Outcome& c : outcomes)
+    md << "| " << c.combination.index << " | " << describe(c.combination) << " | "
+       << 100.0 * c.difference << " % | " << c.deviate << " | " << c.probability() << " |\n";
+  md << "\n</details>\n";
+}
+
+} // namespace fenestra::testing

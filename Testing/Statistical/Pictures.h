@@ -1,0 +1,24 @@
+#pragma once
+// Estimates as pictures: for error images, and for comparisons that take pictures.
+
+#include "Oracle/Estimates.h"
+#include "film/Image.h"
+
+namespace fenestra::testing {
+
+/// R, G, B, error.R, error.G, error.B and samples.N.
+inline Image imageOf(const oracle::Estimates& estimates) {
+  Image image{estimates.width, estimates.height, {}, {}};
+  constexpr const char* colours[] = {"R", "G", "B"};
+  for (const oracle::PixelEstimate& pixel : estimates.pixels) {
+    for (int c = 0; c < 3; ++c) {
+      image.channels[colours[c]].push_back(static_cast<float>(pixel.mean[c]));
+      image.channels[std::string("error.") + colours[c]].push_back(
+          static_cast<float>(std::sqrt(pixel.variance()[c])));
+    }
+    image.channels["samples.N"].push_back(static_cast<float>(pixel.samples));
+  }
+  return image;
+}
+
+} // namespace fenestra::testing
