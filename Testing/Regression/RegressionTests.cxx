@@ -1,5 +1,6 @@
 // Every case of cases.txt against its baseline, and proof that the comparison finds what it is for.
 #include "Cases.h"
+#include "RunSettings.h"
 #include "TemporaryFolder.h"
 #include "film/Compare.h"
 #include "io/pictures/ImageReader.h"
@@ -12,12 +13,6 @@
 
 namespace fenestra::testing {
 namespace {
-
-/// FENESTRA_SEED in the environment tries another one: the baselines must not depend on it.
-std::uint64_t seed() {
-  const char* text = std::getenv("FENESTRA_SEED");
-  return text ? std::stoull(text) : 1;
-}
 
 std::string shown(const Agreement& a) {
   std::ostringstream text;
@@ -46,7 +41,7 @@ class Regression : public ::testing::TestWithParam<RegressionCase> {};
 TEST_P(Regression, AgreesWithItsBaseline) {
   const RegressionCase& c = GetParam();
   const std::filesystem::path folder = resultFolder(c);
-  const Image image = renderCase(c, seed(), c.samples, dataFolder(), folder / "render.exr");
+  const Image image = renderCase(c, seedBase(), c.samples, dataFolder(), folder / "render.exr");
   const Image baseline = readImage(baselinePath(c));
   const Agreement result = agreement(image, baseline);
   std::cout << c.name << ": " << shown(result) << std::endl;
@@ -120,7 +115,7 @@ TEST_P(PlantedFault, IsFound) {
   std::filesystem::copy(dataFolder() / "traps", data / "traps");
   GetParam().plant(data.path(), spoilt);
   const Image image =
-      renderCase(spoilt, seed(), spoilt.samples, data.path(), data / "results/render.exr");
+      renderCase(spoilt, seedBase(), spoilt.samples, data.path(), data / "results/render.exr");
   const Agreement result = agreement(image, readImage(baselinePath(spoilt)));
   std::cout << GetParam().name << ": " << shown(result) << std::endl;
   EXPECT_FALSE(result.holds()) << shown(result);

@@ -1,26 +1,12 @@
 #pragma once
-// What tests against closed forms share: budgets, seeds, and the comparison itself.
+// What tests against closed forms share: estimates, and their comparison.
 
+#include "RunSettings.h"
 #include "Support.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <string>
-
 namespace fenestra::testing {
-
-/// FENESTRA_LONG in the environment: 25 times the samples, a fifth of the error.
-inline std::uint64_t budget(std::uint64_t samples) {
-  static const bool isLong = std::getenv("FENESTRA_LONG") != nullptr;
-  return isLong ? 25 * samples : samples;
-}
-
-/// FENESTRA_SEED in the environment moves every test's seed.
-inline std::uint64_t seeded(std::uint64_t seed) {
-  static const char* const text = std::getenv("FENESTRA_SEED");
-  return seed + (text ? 1000003 * std::stoull(text) : 0);
-}
 
 struct RgbEstimate {
   Rgb mean = Rgb::Zero(), error = Rgb::Zero(); ///< error: standard, of the mean

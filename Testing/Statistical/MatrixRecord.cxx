@@ -1,6 +1,6 @@
 #include "MatrixRecord.h"
 
-#include "Record.h"
+#include "RunSettings.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 
 namespace fenestra::testing {
 
-/// matrix.md (tables) and probabilities.svg (histograms), where a report is wanted (Record.h).
+/// matrix.md (tables) and probabilities.svg (histograms), where a report is wanted (RunSettings.h).
 void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Verdict>& verdicts,
                   const MatrixSettings& settings);
 

@@ -1,9 +1,9 @@
-// The product against the oracle over the whole matrix. FENESTRA_LONG in the environment asks for
-// the long version, FENESTRA_SEED for another seed, FENESTRA_REPORT names a folder for the record.
+// The product against the oracle over the whole matrix.
 
 #include "Comparison.h"
 #include "MatrixRecord.h"
 #include "Pictures.h"
+#include "RunSettings.h"
 
 #include "film/Compare.h"
 #include "io/pictures/ImageWriter.h"
@@ -28,10 +28,9 @@ std::string errorImages(const Outcome& c) {
 }
 
 TEST(Matrix, ProductAgreesWithTheOracle) {
-  const bool isLong = std::getenv("FENESTRA_LONG") != nullptr;
-  const char* seed = std::getenv("FENESTRA_SEED");
-  const MatrixSettings settings{isLong ? 512U : 128U, seed ? std::stoull(seed) : 1};
-  const std::vector<Combination> all = combinations(isLong ? 480 : 240);
+  const MatrixSettings settings{isLongRun() ? 512U : 128U, seedBase()};
+  const std::vector<Combination> all = combinations(static_cast<int>(
+      numberFromEnvironment("FENESTRA_COMBINATIONS").value_or(isLongRun() ? 480 : 240)));
   std::vector<Outcome> outcomes;
   for (const Combination& c : all) {
     outcomes.push_back(compareWithOracle(c, settings, renderTruth(c, settings)));

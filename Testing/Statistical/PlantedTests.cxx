@@ -2,7 +2,7 @@
 
 #include "Comparison.h"
 #include "Faults/Planted.h"
-#include "Record.h"
+#include "RunSettings.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -181,7 +181,7 @@ TEST_P(Tracking, PassesWhatTheExactTransmittanceSays) {
   withTracker([&](const auto& tracker) {
     Counters counters;
     Differences passed, survived;
-    for (std::uint64_t i = 0; i < budget(100000); ++i) {
+    for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
       Random random(seeded(6), i, 0);
       const Ray ray = randomRay(m_subject.volume, random);
       // As far as a near light, or everything.
@@ -205,7 +205,7 @@ TEST_P(Tracking, DrawsCollisionsByTheExactDistribution) {
   withTracker([&](const auto& tracker) {
     Counters counters;
     std::vector<double> shares;
-    for (std::uint64_t i = 0; i < budget(100000); ++i) {
+    for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
       Random random(seeded(7), i, 0);
       const Ray ray = randomRay(m_subject.volume, random);
       const double distance = tracker.sampleCollision(ray, {}, random, counters);

@@ -1,20 +1,13 @@
 #pragma once
-// What the stress tests share: budgets, estimates along one ray, chords, comparing two pictures,
+// What the stress tests share: estimates along one ray, chords, comparing two pictures,
 // and random numbers whose draws are chosen.
 
+#include "RunSettings.h"
 #include "Support.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 namespace fenestra::testing {
-
-/// With FENESTRA_LONG in the environment, 16 times as many.
-inline int budget(int samples) {
-  static const bool isLong = std::getenv("FENESTRA_LONG") != nullptr;
-  return isLong ? 16 * samples : samples;
-}
 
 inline constexpr double largestUniform = 1.0 - 0x1p-53;
 

@@ -1,0 +1,51 @@
+#pragma once
+// What the environment asks of a run of the tests:
+//   FENESTRA_LONG          set: the long version
+//   FENESTRA_SEED          a number: other seeds
+//   FENESTRA_COMBINATIONS  a number: how many of the matrix, for slow builds
+//   FENESTRA_REPORT        a folder: leave fragments of the report there
+
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace fenestra::testing {
+
+inline bool isLongRun() {
+  static const bool isLong = std::getenv("FENESTRA_LONG") != nullptr;
+  return isLong;
+}
+
+/// Samples of a test: in the long version 16 times as many, for a quarter of the error.
+template <typename Count>
+Count budget(Count samples) {
+  return isLongRun() ? static_cast<Count>(16 * samples) : samples;
+}
+
+inline std::optional<std::uint64_t> numberFromEnvironment(const char* name) {
+  const char* text = std::getenv(name);
+  return text ? std::optional<std::uint64_t>(std::stoull(text)) : std::nullopt;
+}
+
+/// 1 where nothing else is asked for.
+inline std::uint64_t seedBase() {
+  static const std::uint64_t base = numberFromEnvironment("FENESTRA_SEED").value_or(1);
+  return base;
+}
+
+/// A test's own seed, moved by the seed base.
+inline std::uint64_t seeded(std::uint64_t seed) {
+  return seed + 1000003 * (seedBase() - 1);
+}
+
+inline std::optional<std::filesystem::path> reportFolder() {
+  const char* folder = std::getenv("FENESTRA_REPORT");
+  if (!folder)
+    return std::nullopt;
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+} // namespace fenestra::testing
