@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets with clang and runs them one after the other, each for SECONDS (5) or up to
 # FENESTRA_FUZZ_RUNS executions, from the seeds of Corpus/ and what earlier runs found (FENESTRA_FUZZ_DIR,
-# build-fuzz/fuzz), and says of each how many inputs it took. What stops a target is kept in
+# build-asan-ubsan/fuzz), and says of each how many inputs it took. What stops a target is kept in
 # FENESTRA_FUZZ_DIR/findings, and the exit status is 1. usage: run.sh [SECONDS] [TARGET...]
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"
 seconds=${1:-5}
 shift $(($# > 0 ? 1 : 0))
 here=$top/Testing/Fuzz
-build_folder=${FENESTRA_FUZZ_BUILD:-$top/build-fuzz}
+build_folder=${FENESTRA_FUZZ_BUILD:-$top/build-asan-ubsan}
 work=${FENESTRA_FUZZ_DIR:-$build_folder/fuzz}
 
 # The words that a target's inputs are made of; not every target has some.
@@ -44,7 +44,7 @@ fuzz() {
 }
 
 install_packages "${build_packages[@]}" clang libclang-rt-14-dev
-(cd "$top" && cmake --preset fuzz -B "$build_folder" >/dev/null &&
+(cd "$top" && cmake --preset asan-ubsan -B "$build_folder" >/dev/null &&
   cmake --build "$build_folder" --target fuzzers) || die "the fuzz targets do not build (see above)"
 
 targets=("$@")

@@ -19,7 +19,7 @@ struct Cube {
       {},
       16,
       16};
-  static constexpr double faceDepth = 90.0, focusDepth = 95.0;
+  static constexpr double focusDepth = 95.0;
 
   Cube() {
     scene.pose.position = {0, 100, 0};

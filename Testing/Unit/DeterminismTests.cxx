@@ -53,7 +53,7 @@ TEST(Determinism, ThreadsAndPassesChangeNoBit) {
   EXPECT_GT(once.counters.collisions, 1000U);
   settings.threads = 2;
   expectIdentical(once.film, s.render(settings).film);
-  for (const std::uint64_t passSamples : {1, 3, 20}) {
+  for (const std::uint64_t passSamples : {1U, 3U, 20U}) {
     settings.passSamples = passSamples;
     expectIdentical(once.film, s.render(settings).film);
   }

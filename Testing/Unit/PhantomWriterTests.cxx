@@ -35,7 +35,7 @@ struct PhantomFiles : testing::Test {
 
 template <typename T>
 std::vector<T> read(itk::NrrdImageIO& io) {
-  std::vector<T> values(io.GetImageSizeInPixels());
+  std::vector<T> values(static_cast<std::size_t>(io.GetImageSizeInPixels()));
   io.Read(values.data());
   return values;
 }
