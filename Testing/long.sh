@@ -8,6 +8,7 @@
 #   threads     the whole suite under ThreadSanitizer, with a oneTBB that it can see into
 #   clang       the whole suite built by clang
 #   fuzz        every fuzz target for ten minutes
+#   record      nothing but the record (only where it is named)
 # Each stage leaves a fragment in build/report; the record is made of those that are there.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
@@ -61,6 +62,7 @@ stage_seeds() {
 }
 
 stage_addresses() {
+  install_packages clang libclang-rt-14-dev
   (cd "$top" && cmake --preset asan-ubsan >/dev/null && cmake --build build-asan-ubsan)
   LSAN_OPTIONS="suppressions=$top/Testing/lsan.supp" \
     run_labels "$fragments/addresses.md" "$top/build-asan-ubsan" "${labels[@]}"
@@ -102,8 +104,11 @@ stage_clang() {
 }
 
 stage_fuzz() {
-  bash "$top/Testing/Fuzz/run.sh" 600 >"$fragments/fuzz.log" 2>&1 || say "fuzzing found something: $fragments/fuzz.log"
+  bash "$top/Testing/Fuzz/run.sh" 600 >"$fragments/fuzz.log" 2>&1 ||
+    say "fuzzing found something: $fragments/fuzz.log"
 }
+
+stage_record() { :; }
 
 # section TITLE FRAGMENT: a part of the record, where it was made.
 section() {
