@@ -21,14 +21,18 @@ using FirstCollision = Eigen::Array3d;
 
 struct PixelEstimate {
   double samples = 0.0;
-  Rgb mean = Rgb::Zero(), squares = Rgb::Zero(); ///< of radiance: mean, squared deviations
+  /// Of radiance: mean, and sums of its deviation's square and cube (Pébay 2008).
+  Rgb mean = Rgb::Zero(), squares = Rgb::Zero(), cubes = Rgb::Zero();
   FirstCollision first = FirstCollision::Zero(), firstSquares = FirstCollision::Zero();
 
   void add(const PathEstimate& path) {
     samples += 1.0;
     const Rgb before = path.radiance - mean;
-    mean += before / samples;
-    squares += before * (path.radiance - mean);
+    const Rgb step = before / samples;
+    const Rgb added = before * step * (samples - 1.0);
+    mean += step;
+    cubes += added * step * (samples - 2.0) - 3.0 * step * squares;
+    squares += added;
     const FirstCollision value(path.collides ? 1.0 : 0.0, path.depth, path.albedo.mean());
     const FirstCollision ahead = value - first;
     first += ahead / samples;

@@ -39,10 +39,24 @@ struct Sums {
     samples += pixel.samples;
     pixels += 1.0;
   }
-  Estimated channel(int c) const {
-    return {mean[c] / pixels, variance[c] / (pixels * pixels), samples};
+  Estimated channel(int c, const Rgb& skewness = Rgb::Zero()) const {
+    return {mean[c] / pixels, variance[c] / (pixels * pixels), samples, skewness[c]};
   }
 };
+
+/// Of the radiance of one path, in three channels, over a whole picture: what is rare in one pixel
+/// shows in others.
+Rgb skewnessOf(const oracle::Estimates& picture) {
+  Rgb squares = Rgb::Zero(), cubes = Rgb::Zero();
+  double samples = 0.0;
+  for (const oracle::PixelEstimate& pixel : picture.pixels) {
+    squares += pixel.squares;
+    cubes += pixel.cubes;
+    samples += pixel.samples;
+  }
+  const Rgb deviation = (squares / samples).sqrt();
+  return (squares > 0.0).select(cubes / samples / deviation.cube(), Rgb(Rgb::Zero()));
+}
 
 /// Over a square of pixels.
 Sums sumsOf(const oracle::Estimates& picture, int left, int top, int size) {
@@ -68,9 +82,10 @@ private:
   double m_least = 1.0, m_count = 0.0;
 };
 
-/// Over squares of `size` pixels; `one` is called with what one channel of each says.
-template <typename One>
-double compareSquares(const Outcome& outcome, int size, One&& one) {
+/// Over squares of `size` pixels; `visit` is called with what one channel of each says.
+template <typename Visit>
+double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
+  const Rgb skewness = skewnessOf(outcome.truth);
   Least least;
   int channel = outcome.combination.index;
   for (int top = 0; top < outcome.truth.height; top += size)
@@ -78,10 +93,10 @@ double compareSquares(const Outcome& outcome, int size, One&& one) {
       const Sums a = sumsOf(outcome.product, left, top, size);
       const Sums b = sumsOf(outcome.truth, left, top, size);
       for (int c = 0; c < 3; ++c)
-        least.add(welchProbability(a.channel(c), b.channel(c)));
-      ++channel;
-      if (const auto p = welchProbability(a.channel(channel % 3), b.channel(channel % 3)))
-        one(*p);
+        least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
+      const int one = ++channel % 3;
+      if (const auto p = welchProbability(a.channel(one), b.channel(one)))
+        visit(*p);
     }
   return least.corrected();
 }
@@ -90,9 +105,10 @@ void comparePicture(Outcome& outcome) {
   const int size = outcome.truth.width;
   const Sums a = sumsOf(outcome.product, 0, 0, size);
   const Sums b = sumsOf(outcome.truth, 0, 0, size);
+  const Rgb skewness = skewnessOf(outcome.truth);
   Least least;
   for (int c = 0; c < 3; ++c)
-    least.add(welchProbability(a.channel(c), b.channel(c)));
+    least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
   // First collisions are drawn alike by both, so the product's vary as the oracle's do.
   for (int i = 0; i < 3; ++i) {
     const double variance = b.firstVariance[i] / (b.pixels * b.pixels);

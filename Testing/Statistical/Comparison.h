@@ -24,6 +24,7 @@ struct Outcome {
   /// channels; over the picture's channels, share of paths that collide, depth and albedo.
   double pixels = 1.0, tiles = 1.0, picture = 1.0;
   /// One channel a tile, and of the picture: independent of each other, so uniform in [0, 1].
+  /// Their tails are no heavier than Welch's: few values lie there.
   std::vector<double> tileProbabilities;
   std::optional<double> pictureProbability;
   /// Of the same channel: the picture's difference over the oracle's mean, and over its own error.

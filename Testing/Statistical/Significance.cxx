@@ -30,7 +30,11 @@ std::optional<double> welchProbability(const Estimated& a, const Estimated& b) {
   const double perSample = (square(a.samples) * a.variance + square(b.samples) * b.variance) / all;
   const double brightPaths =
       std::min(a.samples, b.samples) * std::min(1.0, square(mean) / perSample);
-  return studentTail(difference / std::sqrt(variance), std::min(satterthwaite, brightPaths));
+  const auto evenPaths = [](const Estimated& e) {
+    return e.samples / std::max(square(e.skewness), 1e-9);
+  };
+  return studentTail(difference / std::sqrt(variance),
+                     std::min({satterthwaite, brightPaths, evenPaths(a), evenPaths(b)}));
 }
 
 double sidak(double least, double count) {

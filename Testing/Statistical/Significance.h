@@ -12,13 +12,14 @@ struct Estimated {
   double mean = 0.0;
   double variance = 0.0; ///< of the mean
   double samples = 0.0;  ///< that it is the mean of
+  double skewness = 0.0; ///< of one sample, where it is known
 };
 
 /// How probable a difference as large as that between two estimates of one value is, by Welch's t
 /// (1947) with Satterthwaite's degrees of freedom. A mean of few bright paths is skewed as a count
 /// of them is, so there are no more degrees of freedom than there would be paths, were they equally
-/// bright: the tails are then the heavier ones. None where both are exact and agree; 0 where both
-/// are exact and differ, or something is not a number.
+/// bright, and than n / skewness^2: the tails are then the heavier ones. None where both are exact
+/// and agree; 0 where both are exact and differ, or something is not a number.
 std::optional<double> welchProbability(const Estimated& a, const Estimated& b);
 
 /// Of the least of `count` independent probabilities being this small (Šidák 1967).
