@@ -109,9 +109,13 @@ void comparePicture(Outcome& outcome) {
   Least least;
   for (int c = 0; c < 3; ++c)
     least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
+  const double share = 0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels); // that collides
   // First collisions are drawn alike by both, so the product's vary as the oracle's do.
   for (int i = 0; i < 3; ++i) {
-    const double variance = b.firstVariance[i] / (b.pixels * b.pixels);
+    double variance = b.firstVariance[i] / (b.pixels * b.pixels);
+    if (variance ==
+        0.0) // every path of the oracle collides, or none: what the product says of that
+      variance = share * (1.0 - share) / b.samples * std::pow(b.first[i] / b.pixels, 2.0);
     least.add(welchProbability({a.first[i] / a.pixels, variance, a.samples},
                                {b.first[i] / b.pixels, variance, b.samples}));
   }
