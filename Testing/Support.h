@@ -31,6 +31,10 @@ Volume makeVolume(const Grid& grid, Function&& value) {
   return volume;
 }
 
+inline ScalarFunction::Knot knot(double s, double sigma_t) {
+  return {s, ScalarFunction::Value(sigma_t)};
+}
+
 /// Extinction sigma_t * s and one albedo.
 inline TransferFunction linearTransfer(double sigma_t, const Rgb& albedo, double g = 0.0) {
   TransferFunction transfer{

@@ -1,6 +1,6 @@
 #include "Clipping.h"
 
-#include <Eigen/LU>
+#include "SaddleSpline.h"
 
 #include <algorithm>
 
@@ -77,51 +77,13 @@ double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
   return infinity;
 }
 
-/// phi(r) = r^2 ln r^2 of squared distances.
-long double phi(long double squared) {
-  return squared > 0.0L ? squared * std::log(squared) : 0.0L;
-}
-
-/// The approximating thin plate spline as design, section 2, states it: the saddle system in mm.
-class Spline {
-public:
-  explicit Spline(const DepthClip& clip) : m_sites(clip.sites) {
-    using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-    const auto n = std::ssize(m_sites);
-    Matrix system = Matrix::Zero(n + 3, n + 3);
-    Vector right = Vector::Zero(n + 3);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Vec2& site = m_sites[static_cast<std::size_t>(i)];
-      for (Eigen::Index j = 0; j < n; ++j)
-        system(i, j) = phi((site - m_sites[static_cast<std::size_t>(j)]).squaredNorm());
-      system(i, i) = (1.0L - clip.smoothing) / clip.smoothing;
-      const Eigen::Matrix<long double, 3, 1> row(1.0L, site.x(), site.y());
-      system.block(i, n, 1, 3) = row.transpose();
-      system.block(n, i, 3, 1) = row;
-      right[i] = clip.depths[static_cast<std::size_t>(i)];
-    }
-    m_solution = system.fullPivLu().solve(right);
-  }
-
-  double operator()(const Vec2& at) const {
-    const auto n = std::ssize(m_sites);
-    long double sum = m_solution[n] + m_solution[n + 1] * at.x() + m_solution[n + 2] * at.y();
-    for (Eigen::Index i = 0; i < n; ++i)
-      sum += m_solution[i] * phi((at - m_sites[static_cast<std::size_t>(i)]).squaredNorm());
-    return static_cast<double>(sum);
-  }
-
-private:
-  using Vector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
-
-  std::vector<Vec2> m_sites;
-  Vector m_solution;
-};
+/// The spline as its equations stand.
+using Spline = testing_clipping::SaddleSpline<long double>;
 
 std::vector<double> depthsOf(const DepthClip& clip, const View& view, const Matter& matter) {
   std::optional<Spline> spline;
   if (!clip.isCutaway)
-    spline.emplace(clip);
+    spline.emplace(clip.sites, clip.depths, clip.smoothing);
   std::vector<double> depths;
   for (const double y : clip.rows)
     for (const double x : clip.columns) {

@@ -13,9 +13,6 @@ inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
   const Affine turn(Eigen::AngleAxisd(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
   grid = Grid(grid.size, turn * grid.indexToWorld);
   Random random(91, 0, 0);
-  const auto knot = [](double s, double sigma_t) {
-    return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
-  };
   TestScene scene{makeVolume(grid, [&](const Vec3&) { return random.uniform(); }),
                   {ScalarFunction({knot(0.0, 0.0), knot(0.3, 0.1), knot(0.45, 6.0), knot(0.5, 0.4),
                                    knot(0.7, 0.3), knot(0.7, 1.5), knot(1.0, 0.0)}),

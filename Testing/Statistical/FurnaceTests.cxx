@@ -26,9 +26,6 @@ Volume volumeOf(MediumKind kind) {
 
 /// Non-monotone: nothing at both ends of the range, dense in a thin band between.
 TransferFunction spikes() {
-  const auto knot = [](double s, double sigma_t) {
-    return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
-  };
   return {ScalarFunction({knot(0.0, 0.0), knot(0.45, 0.0), knot(0.5, 4.0), knot(0.55, 0.0),
                           knot(0.9, 0.0), knot(0.9, 1.5), knot(1.0, 0.2)}),
           ColorFunction({{0.0, Rgb::Ones()}})};

@@ -28,22 +28,17 @@ TestScene smallScene() {
 /// Samples first ... first + count - 1 of a pixel, as a render draws them.
 std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, std::uint64_t first,
                                   std::uint64_t count) {
-  const Camera camera(scene.pose, scene.width, scene.height);
-  const LightSet lights(scene.lights, scene.volume.grid, camera);
-  const RayProbe<> probe(scene.volume, scene.transfer);
-  const PathSettings settings;
-  const std::atomic<bool> stop = false;
-  const PathEstimator<float> estimator(scene.volume.grid, probe.medium(), probe.tracker(), lights,
-                                       camera, scene.clip, settings, stop);
   std::vector<PathSample> samples;
   samples.reserve(count);
-  Counters counters;
-  const auto pixel = static_cast<std::uint64_t>(row * scene.width + column);
-  for (std::uint64_t i = first; i < first + count; ++i) {
-    Random random(7, pixel, i);
-    const Vec2 jitter = random.uniform2();
-    samples.push_back(*estimator.trace(column + jitter.x(), row + jitter.y(), random, counters));
-  }
+  withEstimator(scene, [&](const auto& estimator) {
+    Counters counters;
+    const auto pixel = static_cast<std::uint64_t>(row * scene.width + column);
+    for (std::uint64_t i = first; i < first + count; ++i) {
+      Random random(7, pixel, i);
+      const Vec2 jitter = random.uniform2();
+      samples.push_back(*estimator.trace(column + jitter.x(), row + jitter.y(), random, counters));
+    }
+  });
   return samples;
 }
 

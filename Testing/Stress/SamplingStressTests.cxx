@@ -281,14 +281,9 @@ TEST(TrackingEnds, StayInTheRange) {
 
 /// One path whose draws end with a chosen one; its radiance and what it took.
 PathSample tracedPath(const TestScene& scene, Random random, Counters& counters) {
-  const Camera camera(scene.pose, 8, 8);
-  const LightSet lights(scene.lights, scene.volume.grid, camera);
-  const RayProbe<> probe(scene.volume, scene.transfer);
-  const PathSettings settings;
-  const std::atomic<bool> stop = false;
-  const PathEstimator<float> estimator(scene.volume.grid, probe.medium(), probe.tracker(), lights,
-                                       camera, scene.clip, settings, stop);
-  return *estimator.trace(4.0, 4.0, random, counters);
+  return withEstimator(scene, [&](const auto& estimator) {
+    return *estimator.trace(0.5 * scene.width, 0.5 * scene.height, random, counters);
+  });
 }
 
 TEST(PathEnds, AreBoundedByTheirCollisions) {

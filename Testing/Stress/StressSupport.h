@@ -128,6 +128,18 @@ private:
   Domain m_domain;
 };
 
+/// Calls `work` with the estimator of a scene's paths, as a render makes it.
+template <typename Work>
+auto withEstimator(const TestScene& scene, Work&& work) {
+  const Camera camera(scene.pose, scene.width, scene.height);
+  const LightSet lights(scene.lights, scene.volume.grid, camera);
+  const RayProbe<> probe(scene.volume, scene.transfer);
+  const PathSettings settings;
+  const std::atomic<bool> stop = false;
+  return work(PathEstimator<float>(scene.volume.grid, probe.medium(), probe.tracker(), lights,
+                                   camera, scene.clip, settings, stop));
+}
+
 /// Two pictures of independent seeds that shall differ by chance alone: their means to 4 standard
 /// errors, and the sum of squared z over the pixels to 4 of its own (Wilson and Hilferty 1931).
 /// Pixels without variance in both have to be equal.
@@ -178,10 +190,6 @@ inline void expectOne(const RenderResult& result) {
   const Estimate estimate = imageEstimate(result.film);
   EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-12);
   EXPECT_LT(estimate.error, 0.02);
-}
-
-inline ScalarFunction::Knot knot(double s, double sigma_t) {
-  return {s, ScalarFunction::Value(sigma_t)};
 }
 
 } // namespace fenestra::testing

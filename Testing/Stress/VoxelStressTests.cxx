@@ -44,19 +44,23 @@ std::vector<float> replaced(const std::vector<T>& samples) {
   return result;
 }
 
-/// 8x8 pixels of the whole command line's defaults, in an environment of 1.
+Film filmOf(SceneRequest request, int samples) {
+  request.width = 8;
+  request.height = 8;
+  const Scene scene(request);
+  RenderSettings settings;
+  settings.samples = static_cast<std::uint64_t>(budget(samples));
+  RenderMonitor monitor;
+  return render(scene.forRender(), settings, monitor).film;
+}
+
+/// The whole command line's defaults, in an environment of 1.
 Film pictureOf(const std::filesystem::path& volume, const std::optional<std::string>& transfer) {
   SceneRequest request;
   request.input = volume;
   request.transfer = transfer;
   request.environment = Rgb::Ones();
-  request.width = 8;
-  request.height = 8;
-  const Scene scene(request);
-  RenderSettings settings;
-  settings.samples = static_cast<std::uint64_t>(budget(16));
-  RenderMonitor monitor;
-  return render(scene.forRender(), settings, monitor).film;
+  return filmOf(request, 16);
 }
 
 /// What the reader stores, and its picture, under a given look and under the default.
@@ -202,13 +206,7 @@ TEST(ExtinctionLimit, ReflectsAsChandrasekharSays) {
   request.lights = folder.write("lights.json", R"({"lights": [{"type": "environment",
                                                     "radiance": [1, 1, 1]}]})");
   request.view.scale = 1.5; // inside the silhouette, seen head-on
-  request.width = 8;
-  request.height = 8;
-  const Scene scene(request);
-  RenderSettings settings;
-  settings.samples = static_cast<std::uint64_t>(budget(250));
-  RenderMonitor monitor;
-  const Estimate estimate = imageEstimate(render(scene.forRender(), settings, monitor).film);
+  const Estimate estimate = imageEstimate(filmOf(request, 250));
   EXPECT_NEAR(estimate.mean, 0.4149, 4.0 * estimate.error + 5e-5);
   EXPECT_LT(estimate.error, 0.005);
 }
