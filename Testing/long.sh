@@ -7,8 +7,9 @@
 #   addresses   the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer
 #   threads     the whole suite under ThreadSanitizer, with a oneTBB that it can see into
 #   clang       the whole suite built by clang
+# and only where they are named:
 #   fuzz        every fuzz target for ten minutes
-#   record      nothing but the record (only where it is named)
+#   record      nothing but the record
 # Each stage leaves a fragment in build/report; the record is made of those that are there.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
@@ -142,7 +143,7 @@ write_record() {
 
 mkdir -p "$fragments"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev
-[ $# -gt 0 ] || set -- accuracy seeds addresses threads clang fuzz
+[ $# -gt 0 ] || set -- accuracy seeds addresses threads clang
 for name in "$@"; do
   say "$name"
   "stage_$name"
