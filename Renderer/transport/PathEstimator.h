@@ -26,10 +26,11 @@ struct PathSettings {
   bool wantNormals = false; ///< fill PathSample::normal even where shading needs no gradient
 };
 
-template <typename Voxel>
+/// `Distances` draws free paths and estimates transmittance, with Tracker's members.
+template <typename Voxel, typename Distances = Tracker<Voxel>>
 class PathEstimator {
 public:
-  PathEstimator(const Grid& grid, const Medium<Voxel>& medium, const Tracker<Voxel>& tracker,
+  PathEstimator(const Grid& grid, const Medium<Voxel>& medium, const Distances& tracker,
                 const LightSet& lights, const Camera& camera, const Clip& clip,
                 const PathSettings& settings, const std::atomic<bool>& stop)
       : m_worldToIndex(grid.worldToIndex),
@@ -164,7 +165,7 @@ private:
 
   Affine m_worldToIndex;
   const Medium<Voxel>& m_medium;
-  const Tracker<Voxel>& m_tracker;
+  const Distances& m_tracker;
   const LightSet& m_lights;
   const Camera& m_camera;
   const Clip& m_clip;
