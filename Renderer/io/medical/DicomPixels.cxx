@@ -7,6 +7,7 @@
 #include <gdcmImage.h>
 #include <gdcmSequenceOfFragments.h>
 
+#include <cmath>
 #include <fstream>
 #include <optional>
 
@@ -185,12 +186,12 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
         "PixelData: is shorter than Rows, Columns and BitsAllocated say; export the series again");
 }
 
-Samples readDicomPixels(const Path& path, const DicomHeader& h) {
+DicomSamples readDicomPixels(const Path& path, const DicomHeader& h) {
   const std::string voxels = rawVoxels(path, h);
   const StoredValues stored(h, voxels);
   const double slope = only(h.slope, 1.0), intercept = only(h.intercept, 0.0);
   const std::size_t count = std::size_t{h.rows} * h.columns;
-  const auto fill = [&](auto values, auto value) -> Samples {
+  const auto fill = [&](auto values, auto value) -> DicomSamples {
     for (std::size_t i = 0; i < count; ++i)
       values[i] = value(stored[i]);
     return values;

@@ -2,9 +2,14 @@
 // The voxels of one DICOM slice. For io's own sources.
 
 #include "io/medical/DicomHeader.h"
-#include "io/medical/MedicalImage.h"
+
+#include <filesystem>
+#include <variant>
+#include <vector>
 
 namespace fenestra {
+
+using DicomSamples = std::variant<std::vector<std::int32_t>, std::vector<double>>;
 
 /// Throws Error (input) unless the header's numbers are those of an image, and its file can hold
 /// it.
@@ -13,6 +18,6 @@ void checkDicomPixels(const std::filesystem::path& path, const DicomHeader& head
 /// Rescaled: std::int32_t, or double where that has fractions or is larger. Takes what
 /// checkDicomPixels lets pass. What is compressed goes through GDCM's decompressors, and its
 /// codestream must be of the size that the header says. Throws Error (input).
-Samples readDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
+DicomSamples readDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
 
 } // namespace fenestra

@@ -173,28 +173,16 @@ Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step
   return {Size3(h.columns, h.rows, static_cast<std::int64_t>(slices.size())), indexToWorld};
 }
 
-/// Whole numbers stay so until a slice has fractions.
-Samples readAll(const std::vector<Slice>& slices) {
+VoxelStore readAll(const std::vector<Slice>& slices) {
   const DicomHeader& first = slices.front().header;
-  const std::size_t count = std::size_t{first.rows} * first.columns * slices.size();
-  Samples all = std::vector<std::int32_t>();
-  for (const Slice& slice : slices) {
-    const Samples one = readDicomPixels(slice.path, slice.header);
-    if (std::holds_alternative<std::vector<double>>(one) && one.index() != all.index())
-      all = std::visit(
-          [](const auto& values) -> Samples {
-            return std::vector<double>(values.begin(), values.end());
-          },
-          all);
+  VoxelStore all(std::size_t{first.rows} * first.columns * slices.size());
+  for (const Slice& slice : slices)
     std::visit(
-        [&](auto& values, const auto& more) {
-          using To = typename std::decay_t<decltype(values)>::value_type;
-          values.reserve(count);
-          for (const auto x : more)
-            values.push_back(static_cast<To>(x));
+        [&all](const auto& samples) {
+          const std::span block(samples);
+          all.append(block, survey(block));
         },
-        all, one);
-  }
+        readDicomPixels(slice.path, slice.header));
   return all;
 }
 

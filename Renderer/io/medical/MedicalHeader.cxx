@@ -2,8 +2,6 @@
 
 #include "core/Error.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -180,7 +178,13 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   locateNrrdFiles(path, fields, lines, stored);
   const bool skips = fields.contains("line skip") || fields.contains("lineskip") ||
                      fields.contains("byte skip") || fields.contains("byteskip");
-  stored.isStream = (encoding == "gzip" || encoding == "gz") && stored.files.size() == 1 && !skips;
+  const bool simple = stored.files.size() == 1 && !skips;
+  stored.isRaw = simple && encoding == "raw";
+  stored.isStream = simple && (encoding == "gzip" || encoding == "gz");
+  const std::string kind = lower(fields["kinds"]);
+  stored.isListFirst = kind.starts_with("list") || kind.starts_with("vector");
+  if (const std::string order = lower(fields["endian"]); order == "little" || order == "big")
+    stored.order = order == "big" ? std::endian::big : std::endian::little;
   return stored;
 }
 
@@ -258,9 +262,14 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
   const bool local = lower(name) == "local";
   StoredSamples stored;
   stored.compressed = stored.isStream = isTrue("CompressedData");
+  stored.order = std::endian::native;
+  for (const char* key : {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"})
+    if (fields.contains(key))
+      stored.order = isTrue(key) ? std::endian::big : std::endian::little;
   addFile(path, local ? path.filename().string() : name, stored);
   const std::int64_t header = wholeNumber(fields["HeaderSize"]).value_or(0);
   // A negative HeaderSize means: the samples end where the file ends.
+  stored.isRaw = !stored.compressed && (header == 0 || (header > 0 && !local));
   skip(path,
        local ? lines.position() : static_cast<std::uint64_t>(std::max<std::int64_t>(header, 0)),
        stored);
@@ -312,33 +321,6 @@ void checkCapacity(const std::filesystem::path& path, const StoredSamples& store
                      "is truncated: its header announces " + std::to_string(declared) +
                          " bytes of samples, the file has " + std::to_string(stored.bytes) +
                          (stored.compressed ? " compressed" : "") + "; copy or write it again");
-}
-
-void checkStream(const std::filesystem::path& path, const StoredSamples& stored,
-                 std::uint64_t declared) {
-  std::ifstream file(stored.files.front(), std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(stored.offset));
-  std::vector<char> input(1 << 16), output(1 << 18);
-  z_stream stream{};
-  constexpr int anyHeader = 15 + 32; // zlib's or gzip's
-  int status = inflateInit2(&stream, anyHeader);
-  while (status == Z_OK && stream.total_out <= declared) {
-    if (stream.avail_in == 0) {
-      file.read(input.data(), static_cast<std::streamsize>(input.size()));
-      stream.next_in = reinterpret_cast<Bytef*>(input.data());
-      stream.avail_in = static_cast<uInt>(file.gcount());
-    }
-    stream.next_out = reinterpret_cast<Bytef*>(output.data());
-    stream.avail_out = static_cast<uInt>(output.size());
-    status = inflate(&stream, Z_NO_FLUSH); // without input left: Z_BUF_ERROR
-  }
-  const std::uint64_t found = stream.total_out;
-  inflateEnd(&stream);
-  if (status != Z_STREAM_END || found != declared)
-    throw inputError(path.string(),
-                     "is damaged or truncated: its compressed samples do not give the " +
-                         std::to_string(declared) +
-                         " bytes that its header announces; copy or write it again");
 }
 
 } // namespace fenestra

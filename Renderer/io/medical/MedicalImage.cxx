@@ -5,11 +5,16 @@
 #include "io/medical/MedicalHeader.h"
 #include "io/medical/NiftiSamples.h"
 #include "io/medical/Quiet.h"
+#include "io/medical/SampleStream.h"
 
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
+
+#include <bit>
+#include <cstring>
+#include <memory>
 
 namespace fenestra {
 namespace {
@@ -101,71 +106,72 @@ std::uint64_t sampleCount(const itk::ImageIOBase& io) {
   return samples;
 }
 
-/// Refuses more samples than the files can hold.
-void checkCount(const std::filesystem::path& path, const StoredSamples& stored,
-                const itk::ImageIOBase& io) {
-  std::uint64_t declared = 0;
-  if (__builtin_mul_overflow(sampleCount(io), io.GetComponentSize(), &declared))
-    declared = UINT64_MAX;
-  checkCapacity(path, stored, declared);
-  if (stored.isStream) // MetaIO takes half a stream for a whole one, teem all but its end
-    checkStream(path, stored, declared);
-}
-
-template <typename T>
-Samples readAs(itk::ImageIOBase& io, std::size_t count) {
-  std::vector<T> samples(count);
-  io.Read(samples.data());
-  return samples;
-}
-
-Samples readSamples(const std::filesystem::path& path, itk::ImageIOBase& io, std::size_t count) {
-  itk::ImageIORegion region(io.GetNumberOfDimensions());
-  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
-    region.SetSize(axis, io.GetDimensions(axis));
-  io.SetIORegion(region);
+SampleType typeOf(const std::filesystem::path& path, const itk::ImageIOBase& io) {
   using Type = itk::IOComponentEnum;
   switch (io.GetComponentType()) {
   case Type::CHAR:
-    return readAs<std::int8_t>(io, count);
+    return std::int8_t();
   case Type::UCHAR:
-    return readAs<std::uint8_t>(io, count);
+    return std::uint8_t();
   case Type::SHORT:
-    return readAs<std::int16_t>(io, count);
+    return std::int16_t();
   case Type::USHORT:
-    return readAs<std::uint16_t>(io, count);
+    return std::uint16_t();
   case Type::INT:
-    return readAs<std::int32_t>(io, count);
+    return std::int32_t();
   case Type::UINT:
-    return readAs<std::uint32_t>(io, count);
+    return std::uint32_t();
   case Type::LONG:
   case Type::LONGLONG:
-    return readAs<std::int64_t>(io, count);
+    return std::int64_t();
   case Type::ULONG:
   case Type::ULONGLONG:
-    return readAs<std::uint64_t>(io, count);
+    return std::uint64_t();
   case Type::FLOAT:
-    return readAs<float>(io, count);
+    return float();
   case Type::DOUBLE:
-    return readAs<double>(io, count);
+    return double();
   default:
     throw inputError(path.string(),
                      "has samples of an unknown type; convert them to 16-bit integers");
   }
 }
 
-/// From one frame after the other to the components of a voxel together.
-Samples interleaved(const Samples& frames, std::size_t count) {
-  return std::visit(
-      [count](const auto& samples) -> Samples {
-        std::decay_t<decltype(samples)> together(samples.size());
-        const std::size_t voxels = samples.size() / count;
-        for (std::size_t frame = 0; frame < count; ++frame)
-          for (std::size_t voxel = 0; voxel < voxels; ++voxel)
-            together[voxel * count + frame] = samples[frame * voxels + voxel];
-        return together;
-      },
-      frames);
+/// All samples at once, in whatever encoding ITK knows.
+std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std::size_t bytes) {
+  itk::ImageIORegion region(io.GetNumberOfDimensions());
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
+    region.SetSize(axis, io.GetDimensions(axis));
+  io.SetIORegion(region);
+  const std::shared_ptr<char[]> all(new char[bytes]);
+  io.Read(all.get());
+  return [all, position = std::size_t{0}](void* to, std::size_t part) mutable {
+    std::memcpy(to, all.get() + position, part);
+    position += part;
+  };
+}
+
+/// Refuses more samples than the files can hold.
+SampleSource samplesOf(const std::filesystem::path& path, const StoredSamples& stored,
+                       itk::ImageIOBase& io) {
+  SampleSource source{.type = typeOf(path, io), .count = sampleCount(io)};
+  const std::size_t sampleBytes = std::visit([](auto x) { return sizeof(x); }, source.type);
+  std::uint64_t declared = 0;
+  if (__builtin_mul_overflow(source.count, sampleBytes, &declared))
+    declared = UINT64_MAX;
+  checkCapacity(path, stored, declared);
+  // Where a voxel's components lie apart, ITK brings them together.
+  const bool ordered = io.GetNumberOfComponents() == 1 || stored.isListFirst;
+  const bool known = sampleBytes == 1 || stored.order;
+  if (!((stored.isRaw || stored.isStream) && ordered && known)) {
+    source.read = readThroughItk(io, declared);
+    return source;
+  }
+  const auto stream = std::make_shared<SampleStream>(path, stored, declared);
+  source.swapped = sampleBytes > 1 && *stored.order != std::endian::native;
+  source.read = [stream](void* to, std::size_t bytes) { stream->read(to, bytes); };
+  source.finish = [stream] { stream->finish(); };
+  return source;
 }
 
 std::map<std::string, std::string> textFields(const itk::ImageIOBase& io) {
@@ -179,8 +185,8 @@ std::map<std::string, std::string> textFields(const itk::ImageIOBase& io) {
   return fields;
 }
 
-MedicalImage readThroughItk(const std::filesystem::path& path, MedicalFormat format,
-                            Components allowed) {
+void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
+                 const TakeSamples& take) {
   const StoredSamples stored = locateSamples(path, format); // refuses what ITK does not survive
   if (format == MedicalFormat::nifti)
     checkNiftiHeader(path);
@@ -192,31 +198,27 @@ MedicalImage readThroughItk(const std::filesystem::path& path, MedicalFormat for
   if (format != MedicalFormat::nrrd)
     allowed = Components::one;
   checkPixels(path, *io, allowed);
-  MedicalImage image{.grid = gridOf(path, *io, allowed), .components = io->GetNumberOfComponents()};
-  if (format == MedicalFormat::nifti)
-    image.samples = readNiftiSamples(path, sampleCount(*io));
-  else {
-    checkCount(path, stored, *io);
-    image.samples = readSamples(path, *io, sampleCount(*io));
-  }
-  if (framesOf(*io) > 1) {
+  MedicalImage image{.grid = gridOf(path, *io, allowed),
+                     .components = io->GetNumberOfComponents(),
+                     .frames = framesOf(*io) > 1,
+                     .fields = textFields(*io)};
+  if (image.frames)
     image.components = framesOf(*io);
-    image.samples = interleaved(image.samples, image.components);
-  }
-  image.fields = textFields(*io);
-  return image;
+  take(image, format == MedicalFormat::nifti ? niftiSamples(path, sampleCount(*io))
+                                             : samplesOf(path, stored, *io));
 }
 
 } // namespace
 
-MedicalImage readMedicalImage(const std::filesystem::path& path, Components allowed) {
+void readMedicalImage(const std::filesystem::path& path, Components allowed,
+                      const TakeSamples& take) {
   requireFile(path, "name a volume file in it");
   const auto format = medicalFormat(path);
   if (!format)
     throw inputError(path.string(), "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, "
                                     ".mha or .mhd file");
   try {
-    return readThroughItk(path, *format, allowed);
+    readChecked(path, *format, allowed, take);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -56,14 +56,6 @@ private:
   std::unique_ptr<std::remove_pointer_t<gzFile>, int (*)(gzFile)> m_file;
 };
 
-template <typename T>
-void swapBytes(T& x) {
-  std::array<char, sizeof(T)> bytes;
-  std::memcpy(bytes.data(), &x, sizeof(T));
-  std::reverse(bytes.begin(), bytes.end());
-  std::memcpy(&x, bytes.data(), sizeof(T));
-}
-
 using HeaderBytes = std::array<char, 348>;
 
 /// A field of nifti_1_header, by its offset.
@@ -135,65 +127,38 @@ Header readHeader(const std::filesystem::path& path, Stream& stream) {
   return header;
 }
 
-template <typename Rescaled, typename T>
-std::vector<Rescaled> rescaled(const std::vector<T>& samples, const Header& header) {
-  std::vector<Rescaled> result(samples.size());
-  const double slope = header.slope, intercept = header.intercept;
-  std::transform(samples.begin(), samples.end(), result.begin(), [=](T x) {
-    return static_cast<Rescaled>(slope * static_cast<double>(x) + intercept);
-  });
-  return result;
-}
-
-template <typename T>
-Samples readAs(const std::filesystem::path& path, Stream& stream, const Header& header,
-               std::size_t count) {
-  // Samples follow the header and four bytes that announce extensions.
-  const auto offset = static_cast<std::int64_t>(std::max(header.offset, 352.0f));
+/// Refuses more bytes of samples than the file can hold.
+void checkBytes(const std::filesystem::path& path, std::int64_t offset, std::uint64_t count,
+                std::uint64_t sampleBytes) {
   std::uint64_t end = 0;
-  if (__builtin_mul_overflow(count, sizeof(T), &end) ||
+  if (__builtin_mul_overflow(count, sampleBytes, &end) ||
       __builtin_add_overflow(end, static_cast<std::uint64_t>(offset) - 348, &end))
     end = UINT64_MAX;
   checkCapacity(path, locateSamples(path, MedicalFormat::nifti), end);
-  stream.seek(offset);
-  std::vector<T> samples(count);
-  stream.read(samples.data(), count * sizeof(T));
-  stream.checkEnd();
-  if (header.swapped && sizeof(T) > 1)
-    for (T& x : samples)
-      swapBytes(x);
-  if (!header.rescales())
-    return samples;
-  if constexpr (sizeof(T) <= 2)
-    return rescaled<float>(samples, header);
-  else
-    return rescaled<double>(samples, header);
 }
 
-/// Calls `use` with a zero of the samples' type.
-template <typename Use>
-auto withType(const std::filesystem::path& path, const Header& header, Use&& use) {
+SampleType typeOf(const std::filesystem::path& path, const Header& header) {
   switch (header.type) { // NIFTI_TYPE_… of nifti1.h
   case 2:
-    return use(std::uint8_t());
+    return std::uint8_t();
   case 4:
-    return use(std::int16_t());
+    return std::int16_t();
   case 8:
-    return use(std::int32_t());
+    return std::int32_t();
   case 16:
-    return use(float());
+    return float();
   case 64:
-    return use(double());
+    return double();
   case 256:
-    return use(std::int8_t());
+    return std::int8_t();
   case 512:
-    return use(std::uint16_t());
+    return std::uint16_t();
   case 768:
-    return use(std::uint32_t());
+    return std::uint32_t();
   case 1024:
-    return use(std::int64_t());
+    return std::int64_t();
   case 1280:
-    return use(std::uint64_t());
+    return std::uint64_t();
   default:
     throw inputError(path.string(), "datatype: " + std::to_string(header.type) +
                                         " is no real scalar; convert it to 16-bit integers");
@@ -204,14 +169,27 @@ auto withType(const std::filesystem::path& path, const Header& header, Use&& use
 
 void checkNiftiHeader(const std::filesystem::path& path) {
   Stream stream(path);
-  withType(path, readHeader(path, stream), [](auto) {});
+  typeOf(path, readHeader(path, stream));
 }
 
-Samples readNiftiSamples(const std::filesystem::path& path, std::size_t count) {
-  Stream stream(path);
-  const Header header = readHeader(path, stream);
-  return withType(path, header,
-                  [&]<typename T>(T) { return readAs<T>(path, stream, header, count); });
+SampleSource niftiSamples(const std::filesystem::path& path, std::size_t count) {
+  const auto stream = std::make_shared<Stream>(path);
+  const Header header = readHeader(path, *stream);
+  SampleSource source{
+      .type = typeOf(path, header),
+      .count = count,
+      .swapped = header.swapped,
+      .read = [stream](void* to, std::size_t bytes) { stream->read(to, bytes); },
+      .finish = [stream] { stream->checkEnd(); },
+  };
+  if (header.rescales())
+    source.rescaling = {header.slope, header.intercept};
+  // Samples follow the header and four bytes that announce extensions.
+  const auto offset = static_cast<std::int64_t>(std::max(header.offset, 352.0f));
+  const std::size_t sampleBytes = std::visit([](auto x) { return sizeof(x); }, source.type);
+  checkBytes(path, offset, count, sampleBytes);
+  stream->seek(offset);
+  return source;
 }
 
 } // namespace fenestra

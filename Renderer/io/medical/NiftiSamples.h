@@ -2,7 +2,7 @@
 // Reads the samples of a NIfTI-1 file. ITK's library for that turns samples that are not finite
 // into zeros, unasked, and holds all of them twice. For io's own sources.
 
-#include "io/medical/MedicalImage.h"
+#include "io/medical/SampleSource.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -13,8 +13,8 @@ namespace fenestra {
 /// complain about on the standard error stream.
 void checkNiftiHeader(const std::filesystem::path& path);
 
-/// The first `count` samples of a .nii or .nii.gz, in the machine's byte order and rescaled as the
-/// header says. Throws Error (input) where they are not there.
-Samples readNiftiSamples(const std::filesystem::path& path, std::size_t count);
+/// The first `count` samples of a .nii or .nii.gz. Throws Error (input) where they cannot be there;
+/// so does reading them where they are not.
+SampleSource niftiSamples(const std::filesystem::path& path, std::size_t count);
 
 } // namespace fenestra

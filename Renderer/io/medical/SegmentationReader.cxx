@@ -5,6 +5,7 @@
 #include "io/ShownText.h"
 #include "io/medical/ClosedSurface.h"
 #include "io/medical/MedicalImage.h"
+#include "io/medical/SampleStore.h"
 
 #include <charconv>
 #include <map>
@@ -21,44 +22,30 @@ constexpr std::size_t mostSegments = 65536;
 // ---- labels
 // --------------------------------------------------------------------------------------
 
-template <typename Label, typename T>
-bool fits(T least, T greatest) {
-  using Limits = std::numeric_limits<Label>;
-  if constexpr (std::is_integral_v<T>)
-    return std::cmp_greater_equal(least, Limits::min()) &&
-           std::cmp_less_equal(greatest, Limits::max());
-  else
-    return least >= static_cast<T>(Limits::min()) && greatest <= static_cast<T>(Limits::max());
+using LabelStore = SampleStore<std::uint8_t, std::int16_t, std::int32_t>;
+
+Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
+  const SampleSurvey& s = samples.survey();
+  if (!s.whole || !s.finite())
+    throw inputError(source, "holds values that are not whole numbers, so it is no labelmap; "
+                             "name a segmentation");
+  if (!samples.holdsAll())
+    throw inputError(source, "holds label values beyond 32 bits; number its labels again");
+  return samples.take();
 }
 
-template <typename Label, typename T>
-Segmentation::Labels convert(std::vector<T>&& samples) {
-  if constexpr (std::is_same_v<Label, T>)
-    return std::move(samples);
-  else {
-    std::vector<Label> labels(samples.size());
-    std::transform(samples.begin(), samples.end(), labels.begin(),
-                   [](T x) { return static_cast<Label>(x); });
-    return labels;
-  }
-}
-
-template <typename T>
-Segmentation::Labels toLabels(std::vector<T>&& samples, const std::string& source) {
-  if constexpr (std::is_floating_point_v<T>)
-    for (const T x : samples)
-      if (x != std::trunc(x) || std::isinf(x)) // NaN is unequal, too
-        throw inputError(source, "holds values that are not whole numbers, so it is no labelmap; "
-                                 "name a segmentation");
-  const auto [least, greatest] = std::minmax_element(samples.begin(), samples.end());
-  if (fits<std::uint8_t>(*least, *greatest))
-    return convert<std::uint8_t>(std::move(samples));
-  if (fits<std::int16_t>(*least, *greatest))
-    return convert<std::int16_t>(std::move(samples));
-  // Of the floats only those below 2^31 - 1 pass, which float itself rounds up.
-  if (fits<std::int32_t>(*least, *greatest) && static_cast<double>(*greatest) < 0x1p31)
-    return convert<std::int32_t>(std::move(samples));
-  throw inputError(source, "holds label values beyond 32 bits; number its labels again");
+/// From one frame after the other to the layers of a voxel together.
+Segmentation::Labels interleaved(const Segmentation::Labels& frames, std::size_t count) {
+  return std::visit(
+      [count](const auto& labels) -> Segmentation::Labels {
+        std::decay_t<decltype(labels)> together(labels.size());
+        const std::size_t voxels = labels.size() / count;
+        for (std::size_t frame = 0; frame < count; ++frame)
+          for (std::size_t voxel = 0; voxel < voxels; ++voxel)
+            together[voxel * count + frame] = labels[frame * voxels + voxel];
+        return together;
+      },
+      frames);
 }
 
 /// One segment a value, in their order.
@@ -441,14 +428,21 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference) {
   if (lowerExtension(path) == ".vtm")
     return readClosedSurfaces(path, reference);
-  MedicalImage image = readMedicalImage(path, Components::any);
   const std::string source = path.string();
+  MedicalImage image;
+  Segmentation::Labels labels;
+  readMedicalImage(path, Components::any, [&](const MedicalImage& read, const SampleSource& from) {
+    LabelStore samples(from.count);
+    readSamples(from, samples);
+    labels = toLabels(std::move(samples), source);
+    image = read;
+  });
+  if (image.frames)
+    labels = interleaved(labels, image.components);
   auto segments = SegmentFields(image.fields, source).segments(image.components);
   if (segments.empty() && image.components > 1)
     throw inputError(source, "has " + std::to_string(image.components) +
                                  " components a voxel but names no segments; name a segmentation");
-  Segmentation::Labels labels = std::visit(
-      [&source](auto& samples) { return toLabels(std::move(samples), source); }, image.samples);
   if (segments.empty())
     segments = segmentsOf(labels, source);
   return {source, placed(image.grid, image.fields, source), image.components, std::move(labels),

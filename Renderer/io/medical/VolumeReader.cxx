@@ -6,8 +6,14 @@
 namespace fenestra {
 
 Volume readVolume(const std::filesystem::path& path) {
-  MedicalImage image = readMedicalImage(path, Components::one);
-  return makeVolume(path.string(), image.grid, std::move(image.samples));
+  Volume volume;
+  readMedicalImage(path, Components::one,
+                   [&](const MedicalImage& image, const SampleSource& source) {
+                     VoxelStore samples(source.count);
+                     readSamples(source, samples);
+                     volume = makeVolume(path.string(), image.grid, std::move(samples));
+                   });
+  return volume;
 }
 
 } // namespace fenestra
