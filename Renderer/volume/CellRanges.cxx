@@ -1,7 +1,9 @@
 #include "volume/CellRanges.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
 
 namespace fenestra {
 namespace {
@@ -16,6 +18,36 @@ Span footprint(std::int64_t c, std::int64_t edge, std::int64_t voxels, int apron
   const std::int64_t last = (c + 1) * edge + apron;
   return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
 }
+
+/// The range of each column of some rows.
+template <typename Voxel>
+class Columns {
+public:
+  explicit Columns(std::int64_t size)
+      : m_low(static_cast<std::size_t>(size)), m_high(m_low.size()) {}
+
+  void clear() {
+    std::fill(m_low.begin(), m_low.end(), std::numeric_limits<Voxel>::max());
+    std::fill(m_high.begin(), m_high.end(), std::numeric_limits<Voxel>::lowest());
+  }
+
+  void add(const Voxel* row) {
+    Voxel* const low = m_low.data();
+    Voxel* const high = m_high.data();
+    for (std::size_t i = 0; i < m_low.size(); ++i) {
+      low[i] = std::min(low[i], row[i]);
+      high[i] = std::max(high[i], row[i]);
+    }
+  }
+
+  std::pair<Voxel, Voxel> range(const Span& span) const {
+    return {*std::min_element(m_low.begin() + span.first, m_low.begin() + span.last + 1),
+            *std::max_element(m_high.begin() + span.first, m_high.begin() + span.last + 1)};
+  }
+
+private:
+  std::vector<Voxel> m_low, m_high;
+};
 
 } // namespace
 
@@ -62,23 +94,19 @@ Size3 CellRanges::edgeFor(const Grid& grid) {
 
 template <typename Voxel>
 void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels, int apron) {
+  // A row of cells is reduced to one row of voxels first, element by element: memory is read in its
+  // order, by vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {
     const Span z = footprint(cz, m_edge.z(), grid.size.z(), apron);
+    Columns<Voxel> columns(grid.size.x());
     for (std::int64_t cy = 0; cy < m_cellCount.y(); ++cy) {
       const Span y = footprint(cy, m_edge.y(), grid.size.y(), apron);
+      columns.clear();
+      for (std::int64_t k = z.first; k <= z.last; ++k)
+        for (std::int64_t j = y.first; j <= y.last; ++j)
+          columns.add(voxels.data() + grid.size.x() * (j + grid.size.y() * k));
       for (std::int64_t cx = 0; cx < m_cellCount.x(); ++cx) {
-        const Span x = footprint(cx, m_edge.x(), grid.size.x(), apron);
-        Voxel low = voxels[static_cast<std::size_t>(
-            x.first + grid.size.x() * (y.first + grid.size.y() * z.first))];
-        Voxel high = low;
-        for (std::int64_t k = z.first; k <= z.last; ++k)
-          for (std::int64_t j = y.first; j <= y.last; ++j) {
-            const Voxel* row = voxels.data() + grid.size.x() * (j + grid.size.y() * k);
-            for (std::int64_t i = x.first; i <= x.last; ++i) {
-              low = std::min(low, row[i]);
-              high = std::max(high, row[i]);
-            }
-          }
+        const auto [low, high] = columns.range(footprint(cx, m_edge.x(), grid.size.x(), apron));
         const auto cell =
             static_cast<std::size_t>(cx + m_cellCount.x() * (cy + m_cellCount.y() * cz));
         m_low[cell] = static_cast<float>(low);
