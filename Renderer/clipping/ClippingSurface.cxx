@@ -4,7 +4,6 @@
 #include "core/Error.h"
 #include "core/Stopwatch.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -69,23 +68,89 @@ BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
   return mismatch;
 }
 
-/// The spline wherever the focus is not.
-void fill(DepthBuffer& buffer, const std::vector<Region>& regions, const ThinPlateSpline& spline) {
-  std::vector<double> x;
-  for (std::int64_t column = 0; column < buffer.columns(); ++column)
-    x.push_back(buffer.xAxis().coordinate(column));
-  tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, buffer.rows()), [&](const auto& rows) {
-    std::vector<double> depths(x.size());
-    for (std::int64_t row = rows.begin(); row < rows.end(); ++row) {
-      spline.evaluateRow(x, buffer.yAxis().coordinate(row), depths);
-      for (std::int64_t column = 0; column < buffer.columns(); ++column) {
-        const std::int64_t sample = buffer.sample(column, row);
-        if (regions[static_cast<std::size_t>(sample)] != Region::focus)
-          buffer.set(sample, depths[static_cast<std::size_t>(column)]);
+/// The spline wherever the focus is not: in tiles, which are halved where many sites are near.
+class SplineFill {
+public:
+  SplineFill(DepthBuffer& buffer, const std::vector<Region>& regions, const ThinPlateSpline& spline)
+      : m_buffer(buffer), m_regions(regions), m_spline(spline) {
+    for (std::int64_t column = 0; column < buffer.columns(); ++column)
+      m_x.push_back(buffer.xAxis().coordinate(column));
+    for (std::int64_t row = 0; row < buffer.rows(); ++row)
+      m_y.push_back(buffer.yAxis().coordinate(row));
+  }
+
+  void fill() const {
+    const std::int64_t across = (m_buffer.columns() + widest - 1) / widest;
+    const std::int64_t down = (m_buffer.rows() + widest - 1) / widest;
+    tbb::parallel_for(std::int64_t{0}, across * down, [&](std::int64_t tile) {
+      const std::int64_t column = tile % across * widest, row = tile / across * widest;
+      fill({column, row, std::min(widest, m_buffer.columns() - column),
+            std::min(widest, m_buffer.rows() - row)});
+    });
+  }
+
+private:
+  /// Samples: a first column and row, and how many.
+  struct Tile {
+    std::int64_t column, row, columns, rows;
+  };
+
+  static constexpr std::int64_t widest = ThinPlateSpline::mostColumns;
+  static constexpr std::int64_t narrowest = 8;
+  /// Kernels to evaluate one by one that cost about as much as four tiles' expansions.
+  static constexpr std::int64_t mostKernels = 2048;
+  /// mm; no more than what floats lose.
+  static constexpr double tolerance = 1e-6;
+
+  void fill(const Tile& tile) const {
+    if (isFocus(tile))
+      return;
+    const std::span x = std::span(m_x).subspan(index(tile.column), index(tile.columns));
+    const std::span y = std::span(m_y).subspan(index(tile.row), index(tile.rows));
+    const bool isHalvable = tile.columns > narrowest || tile.rows > narrowest;
+    if (isHalvable && m_spline.termsNear(x, y) * tile.columns * tile.rows > mostKernels)
+      return fillHalves(tile);
+    std::array<double, widest * widest> depths;
+    m_spline.evaluateTile(x, y, tolerance, depths);
+    for (std::int64_t row = 0; row < tile.rows; ++row)
+      for (std::int64_t column = 0; column < tile.columns; ++column) {
+        const std::int64_t sample = m_buffer.sample(tile.column + column, tile.row + row);
+        if (m_regions[index(sample)] != Region::focus)
+          m_buffer.set(sample, depths[index(row * tile.columns + column)]);
       }
+  }
+
+  void fillHalves(const Tile& tile) const {
+    Tile first = tile, second = tile;
+    if (tile.columns > tile.rows) {
+      first.columns = tile.columns / 2;
+      second.columns -= first.columns;
+      second.column += first.columns;
+    } else {
+      first.rows = tile.rows / 2;
+      second.rows -= first.rows;
+      second.row += first.rows;
     }
-  });
-}
+    fill(first);
+    fill(second);
+  }
+
+  bool isFocus(const Tile& tile) const {
+    for (std::int64_t row = tile.row; row < tile.row + tile.rows; ++row) {
+      const auto first = m_regions.begin() + m_buffer.sample(tile.column, row);
+      if (std::any_of(first, first + tile.columns, [](Region r) { return r != Region::focus; }))
+        return false;
+    }
+    return true;
+  }
+
+  static std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+  DepthBuffer& m_buffer;
+  const std::vector<Region>& m_regions;
+  const ThinPlateSpline& m_spline;
+  std::vector<double> m_x, m_y; ///< mm, of the columns and rows
+};
 
 /// Nothing is removed where the focus is not.
 void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
@@ -124,7 +189,7 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();
-    fill(*buffer, surface.focus.regions, spline);
+    SplineFill(*buffer, surface.focus.regions, spline).fill();
   }
   auto pyramid = std::make_shared<const DepthPyramid>(*buffer);
   surface.clip = ClipDepth{camera, std::move(buffer), std::move(pyramid),

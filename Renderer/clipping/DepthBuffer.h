@@ -68,6 +68,8 @@ public:
     return {m_x.coordinate(column), m_y.coordinate(row)};
   }
 
+  /// Row by row from the top, less the depth of the camera's target.
+  const std::vector<float>& depthsFromReference() const { return m_depths; }
   double at(std::int64_t sample) const { return m_reference + m_depths[index(sample)]; }
   void set(std::int64_t sample, double depth) {
     m_depths[index(sample)] = static_cast<float>(depth - m_reference);

@@ -159,7 +159,7 @@ double ThinPlateSpline::conditionNumber() const {
   if (m_terms.empty())
     return 1.0;
   std::vector<Vec2> sites;
-  for (const Term& term : m_terms)
+  for (const KernelTerm& term : m_terms)
     sites.push_back(term.site);
   const Eigen::MatrixX2d u = rows(sites);
   const PolynomialsQr qr(polynomials(u));
@@ -176,26 +176,72 @@ double ThinPlateSpline::operator()(const Vec2& x) const {
 
 void ThinPlateSpline::evaluateRow(std::span<const double> x, double y,
                                   std::span<double> values) const {
-  const double v = (y - m_origin.y()) * m_perScale - m_centroid.y();
-  for (Eigen::Index begin = 0; begin < std::ssize(x); begin += mostPoints) {
-    const Eigen::Index count = std::min(mostPoints, std::ssize(x) - begin);
+  const double v = toDiscY(y);
+  for (Eigen::Index begin = 0; begin < std::ssize(x); begin += mostColumns) {
+    const Eigen::Index count = std::min(mostColumns, std::ssize(x) - begin);
     const Points u =
         (Eigen::Map<const Points>(x.data() + begin, count) - m_origin.x()) * m_perScale -
         m_centroid.x();
     const Points squaredNorm = u.square() + v * v;
     Points sum = m_plane[0] + m_plane[2] * v + m_plane[1] * u;
     if ((squaredNorm <= farSquared).all())
-      sum += nearTerms(u, v);
+      sum += nearTerms(m_terms, u, v);
     else
-      sum += (squaredNorm <= farSquared).select(nearTerms(u, v), farTerms(u, v));
+      sum += (squaredNorm <= farSquared).select(nearTerms(m_terms, u, v), farTerms(u, v));
     Eigen::Map<Points>(values.data() + begin, count) = sum;
   }
 }
 
-ThinPlateSpline::Points ThinPlateSpline::nearTerms(const Points& u, double v) const {
+void ThinPlateSpline::evaluateTile(std::span<const double> x, std::span<const double> y,
+                                   double tolerance, std::span<double> values) const {
+  const Disc disc = discAround(x, y);
+  std::vector<KernelTerm> near = m_terms, far;
+  const auto isNear = [&](const KernelTerm& term) { return !disc.isFar(term); };
+  const auto firstFar = std::stable_partition(near.begin(), near.end(), isNear);
+  far.assign(firstFar, near.end());
+  near.erase(firstFar, near.end());
+  const double reach = disc.center.norm() + disc.radius;
+  const bool isSummable = near.empty() || reach * reach <= farSquared;
+  std::optional<LocalExpansion> expansion;
+  if (isSummable)
+    expansion = LocalExpansion::of(far, disc.center, disc.radius, tolerance);
+  if (!expansion) {
+    for (std::size_t row = 0; row < y.size(); ++row)
+      evaluateRow(x, y[row], values.subspan(row * x.size(), x.size()));
+    return;
+  }
+  expansion->addPlane(m_plane[0] + m_plane.tail<2>().dot(disc.center), m_plane[1], m_plane[2]);
+  Points u(std::ssize(x));
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    u[i] = toDiscX(x[static_cast<std::size_t>(i)]);
+  const Points fromCenter = u - disc.center.x();
+  for (std::size_t row = 0; row < y.size(); ++row) {
+    const double v = toDiscY(y[row]);
+    const auto ofRow = values.subspan(row * x.size(), x.size());
+    expansion->evaluateRow({fromCenter.data(), x.size()}, v - disc.center.y(), ofRow);
+    if (!near.empty())
+      Eigen::Map<Points>(ofRow.data(), u.size()) += nearTerms(near, u, v);
+  }
+}
+
+std::int64_t ThinPlateSpline::termsNear(std::span<const double> x,
+                                        std::span<const double> y) const {
+  const Disc disc = discAround(x, y);
+  return std::ranges::count_if(m_terms, [&](const KernelTerm& term) { return !disc.isFar(term); });
+}
+
+ThinPlateSpline::Disc ThinPlateSpline::discAround(std::span<const double> x,
+                                                  std::span<const double> y) const {
+  const Vec2 first(toDiscX(x.front()), toDiscY(y.front()));
+  const Vec2 last(toDiscX(x.back()), toDiscY(y.back()));
+  return {0.5 * (first + last), 0.5 * (last - first).norm()};
+}
+
+ThinPlateSpline::Points ThinPlateSpline::nearTerms(std::span<const KernelTerm> terms,
+                                                   const Points& u, double v) {
   Points sum = Points::Zero(u.size());
   Points squared(u.size());
-  for (const Term& term : m_terms) {
+  for (const KernelTerm& term : terms) {
     squared = (u - term.site.x()).square() + (v - term.site.y()) * (v - term.site.y());
     sum += term.weight * kernel(squared);
   }
@@ -206,7 +252,7 @@ ThinPlateSpline::Points ThinPlateSpline::farTerms(const Points& u, double v) con
   const Points squaredNorm = (u.square() + v * v).max(farSquared);
   Points sum = m_moment * squaredNorm.log();
   Points excess(u.size());
-  for (const Term& term : m_terms) {
+  for (const KernelTerm& term : m_terms) {
     const Vec2& site = term.site;
     excess = site.squaredNorm() - 2.0 * (site.x() * u + site.y() * v);
     sum += term.weight * (squaredNorm + excess) * (excess / squaredNorm).log1p();

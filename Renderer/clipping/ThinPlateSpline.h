@@ -2,8 +2,9 @@
 // The approximating thin plate spline (Duchon 1977; Wahba 1990, "Spline Models for Observational
 // Data", section 2.4) that carries the focus's depth into its surroundings.
 
-#include "core/Vector.h"
+#include "clipping/LocalExpansion.h"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -36,38 +37,58 @@ public:
   /// f at (x[i], y) for every i.
   void evaluateRow(std::span<const double> x, double y, std::span<double> values) const;
 
+  /// f at (x[i], y[j]) for every i and j, row by row, to within `tolerance` mm beyond the rounding
+  /// of f itself, at a small part of the cost: terms far from the tile are summed as one
+  /// polynomial. Where double precision is short for that, or everything is near, it does as
+  /// evaluateRow. At most mostColumns of x; x and y each ascend or descend.
+  void evaluateTile(std::span<const double> x, std::span<const double> y, double tolerance,
+                    std::span<double> values) const;
+
+  /// Terms that evaluateTile computes one by one, and so what a tile costs.
+  std::int64_t termsNear(std::span<const double> x, std::span<const double> y) const;
+
+  static constexpr Eigen::Index mostColumns = 64; ///< they stay in the first cache
+
   /// Of the system that was solved, in the 2-norm; 1 where there was none to solve. Computed anew,
   /// at several times the cost of the fit.
   double conditionNumber() const;
 
 private:
-  struct Term {
-    Vec2 site; ///< in the unit disc
-    double weight;
-  };
-
-  /// Points of a row at a time: they stay in the first cache.
-  static constexpr Eigen::Index mostPoints = 64;
-  using Points = Eigen::Array<double, Eigen::Dynamic, 1, 0, mostPoints, 1>;
+  using Points = Eigen::Array<double, Eigen::Dynamic, 1, 0, mostColumns, 1>; ///< of a row
 
   /// Chooses the unit disc and returns the sites in it.
   std::vector<Vec2> toUnitDisc(std::span<const Vec2> sites);
   void fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values);
 
+  struct Disc {
+    Vec2 center; ///< in the unit disc
+    double radius;
+
+    bool isFar(const KernelTerm& term) const {
+      return (term.site - center).norm() * LocalExpansion::farthest > radius;
+    }
+  };
+
+  /// mm to the unit disc.
+  double toDiscX(double x) const { return (x - m_origin.x()) * m_perScale - m_centroid.x(); }
+  double toDiscY(double y) const { return (y - m_origin.y()) * m_perScale - m_centroid.y(); }
+  /// Around a tile.
+  Disc discAround(std::span<const double> x, std::span<const double> y) const;
+
   /// The sum of w'_i phi(|u - u_i|).
-  Points nearTerms(const Points& u, double v) const;
+  static Points nearTerms(std::span<const KernelTerm> terms, const Points& u, double v);
   /// The same for |u| > 1, where the terms are as large as |u|^2 ln |u|^2 and nearly cancel. With
   /// e_i = |u - u_i|^2 - |u|^2 and P' w' = 0 the sum is m ln |u|^2 + sum w'_i (|u|^2 + e_i)
   /// ln(1 + e_i / |u|^2), m being the moment, and its terms are no larger than 4 |u|.
   Points farTerms(const Points& u, double v) const;
 
-  Vec2 m_origin = Vec2::Zero();   ///< mm, one of the sites: differences from it do not round
-  Vec2 m_centroid = Vec2::Zero(); ///< from the origin, in radii: c = origin + s centroid
-  double m_perScale = 1.0;        ///< 1 / s, mm^-1
-  double m_lambda = 0.0;          ///< lambda / s^2
-  Vec3 m_plane = Vec3::Zero();    ///< a', in the unit disc
-  double m_moment = 0.0;          ///< sum of w'_i |u_i|^2
-  std::vector<Term> m_terms;
+  Vec2 m_origin = Vec2::Zero();    ///< mm, one of the sites: differences from it do not round
+  Vec2 m_centroid = Vec2::Zero();  ///< from the origin, in radii: c = origin + s centroid
+  double m_perScale = 1.0;         ///< 1 / s, mm^-1
+  double m_lambda = 0.0;           ///< lambda / s^2
+  Vec3 m_plane = Vec3::Zero();     ///< a', in the unit disc
+  double m_moment = 0.0;           ///< sum of w'_i |u_i|^2
+  std::vector<KernelTerm> m_terms; ///< sites in the unit disc
 };
 
 } // namespace fenestra

@@ -126,6 +126,84 @@ TEST(ThinPlateSpline, RowsAgreeWithPoints) {
   }
 }
 
+/// The greatest difference from f over a tile of samples `pitch` mm apart.
+double greatestTileError(const ThinPlateSpline& spline, const Vec2& corner, double pitch,
+                         std::size_t columns, std::size_t rows, double tolerance) {
+  std::vector<double> x(columns), y(rows), values(columns * rows);
+  for (std::size_t i = 0; i < columns; ++i)
+    x[i] = corner.x() + pitch * static_cast<double>(i);
+  for (std::size_t i = 0; i < rows; ++i)
+    y[i] = corner.y() - pitch * static_cast<double>(i);
+  spline.evaluateTile(x, y, tolerance, values);
+  double greatest = 0.0;
+  for (std::size_t i = 0; i < values.size(); i += 1 + values.size() / 100)
+    greatest = std::max(greatest, std::abs(values[i] - spline({x[i % columns], y[i / columns]})));
+  return greatest;
+}
+
+TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
+  Random random(4, 0, 0);
+  double greatest = 0.0;
+  int trials = 0;
+  for (const double radius : {0.5, 60.0, 300.0})
+    for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0})
+      for (const int count : {2, 3, 50, 300}) {
+        Data data = scattered(random, count, radius);
+        for (double& value : data.values)
+          value *= 50.0; // jumps of 2000 mm
+        const ThinPlateSpline spline = data.spline(smoothing);
+        const double rounding = 1e-14 * spline.conditionNumber(); // of the points themselves
+        for (const double pitch : {1e-9 * radius, 1e-3 * radius, 0.01 * radius, 0.3 * radius})
+          for (const double away : {0.0, 1.0, 3.0, 30.0, 3e3})
+            for (const auto& [columns, rows] : {std::pair{64, 64}, {64, 1}, {1, 1}, {5, 13}}) {
+              const Vec2 corner = away * radius * randomPoint(random, -1, 1).head<2>();
+              const double error =
+                  greatestTileError(spline, corner, pitch, static_cast<std::size_t>(columns),
+                                    static_cast<std::size_t>(rows), 1e-6);
+              ASSERT_LE(error, 1e-6 + rounding * (2000.0 + std::abs(spline(corner))))
+                  << count << " sites to " << radius << " mm, p " << smoothing << ", " << columns
+                  << "x" << rows << " every " << pitch << " mm at " << corner.transpose();
+              greatest = std::max(greatest, smoothing == 0.5 && away < 10.0 ? error : 0.0);
+              ++trials;
+            }
+      }
+  std::printf("%d tiles: greatest deviation at p = 0.5 %.1e mm\n", trials, greatest);
+}
+
+TEST(LocalExpansion, IsTheSumOfItsTermsOrNothing) {
+  Random random(5, 0, 0);
+  const Vec2 center(0.3, -0.2);
+  const double radius = 0.4;
+  std::vector<KernelTerm> terms;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 6.0 * random.uniform(), nearest = radius / LocalExpansion::farthest;
+    const double distance = nearest * (i == 0 ? 1.0 : uniform(random, 1, 5));
+    terms.push_back(
+        {center + distance * Vec2(std::cos(angle), std::sin(angle)), uniform(random, -1, 1)});
+  }
+  for (const double tolerance : {1e-2, 1e-6, 1e-10}) {
+    const auto expansion = LocalExpansion::of(terms, center, radius, tolerance);
+    ASSERT_TRUE(expansion);
+    double greatest = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      const double angle = 6.3 * random.uniform();
+      const Vec2 from = radius * Vec2(std::cos(angle), std::sin(angle));
+      double sum = 0.0, value = 0.0;
+      for (const KernelTerm& term : terms) {
+        const double squared = (center + from - term.site).squaredNorm();
+        sum += term.weight * squared * std::log(squared);
+      }
+      expansion->evaluateRow({&from.x(), 1}, from.y(), {&value, 1});
+      greatest = std::max(greatest, std::abs(value - sum));
+    }
+    EXPECT_LE(greatest, tolerance);
+    EXPECT_GE(greatest, 1e-5 * tolerance) << "longer than it need be";
+  }
+  EXPECT_FALSE(LocalExpansion::of(terms, center, radius, 1e-16));
+  terms[0].weight = 1e12;
+  EXPECT_FALSE(LocalExpansion::of(terms, center, radius, 1e-6));
+}
+
 TEST(ThinPlateSpline, FewCoincidentOrCollinearSitesGiveWhatTheyDetermine) {
   const Data one{{{3, 4}}, {7}};
   EXPECT_NEAR(one.spline(0.5)({100, 100}), 7.0, 1e-12);
