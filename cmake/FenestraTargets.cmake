@@ -7,6 +7,9 @@ add_library(fenestra_sanitizers INTERFACE)
 if(FENESTRA_SANITIZERS)
   target_compile_options(fenestra_sanitizers INTERFACE
     -fsanitize=${FENESTRA_SANITIZERS} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  # g++ warns of what its own instrumentation hides from it.
+  target_compile_options(fenestra_sanitizers INTERFACE
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(fenestra_sanitizers INTERFACE -fsanitize=${FENESTRA_SANITIZERS})
 endif()
 

@@ -45,7 +45,7 @@ RgbEstimate scatteredAround(TestScene& scene, const Vec3& light, std::uint64_t s
       const Vec2 u = random.uniform2();
       const Vec3 way =
           uniformDirection({(part / columns + u.x()) / rows, (part % columns + u.y()) / columns});
-      seen[i] = scatteredOut(scene, light, -frame.toWorld(way), budget(12), picture).mean;
+      seen[i] = scatteredOut(scene, light, -frame.toWorld(way), budget(12UL), picture).mean;
     }
     sum.mean += 0.5 * (seen[0] + seen[1]);
     variance += 0.25 * (seen[0] - seen[1]).square();
@@ -102,7 +102,7 @@ Rgb absorbedOf(const TestScene& scene, const StraightIntegral& medium, Ray ray, 
 RgbEstimate absorbed(const TestScene& scene, const Vec3& light, std::uint64_t seed) {
   const StraightIntegral medium(scene.volume, scene.transfer);
   const double half = scene.volume.grid.boundingRadius();
-  const std::uint64_t walks = budget(200000);
+  const std::uint64_t walks = budget(200000UL);
   Rgb sum = Rgb::Zero();
   Rgb squares = Rgb::Zero();
   for (std::uint64_t i = 0; i < walks; ++i) {

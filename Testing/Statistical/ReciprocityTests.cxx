@@ -44,8 +44,8 @@ TEST_P(Reciprocity, ExchangesLightAndViewer) {
     const Vec3 a = one.normalized();
     const Vec3 b = other.normalized();
     SCOPED_TRACE(a.dot(b));
-    const RgbEstimate there = scatteredOut(scene, b, a, budget(5000), seeded(seed));
-    const RgbEstimate back = scatteredOut(scene, a, b, budget(5000), seeded(seed + 1));
+    const RgbEstimate there = scatteredOut(scene, b, a, budget(5000UL), seeded(seed));
+    const RgbEstimate back = scatteredOut(scene, a, b, budget(5000UL), seeded(seed + 1));
     const Rgb error = (there + back).error;
     seed += 2;
     for (int c = 0; c < 3; ++c) {
