@@ -142,7 +142,7 @@ write_record() {
 }
 
 mkdir -p "$fragments"
-install_packages "${build_packages[@]}" libgmock-dev libboost-dev
+install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev
 [ $# -gt 0 ] || set -- accuracy seeds addresses threads clang
 for name in "$@"; do
   say "$name"

@@ -1,0 +1,193 @@
+#pragma once
+// What others do, around the product's own path estimator: delta tracking against one majorant for
+// the whole volume, and the fixed steps of medical renderers. Both have Tracker's members.
+
+#include "render/Render.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace fenestra::benchmarks {
+
+/// The part of a ray inside the volume, entered at length 0.
+struct Crossing {
+  double start, length; ///< mm; empty where the length is not positive
+  Ray world, index;
+
+  Crossing(const Domain& domain, const Ray& ray, const Interval& range) {
+    const Affine& worldToIndex = domain.grid().worldToIndex;
+    const Interval inside = domain.clip(transformed(worldToIndex, ray), range);
+    start = inside.begin;
+    length = inside.empty() ? 0.0 : inside.end - inside.begin;
+    world = {length > 0.0 ? ray.at(start) : ray.origin, ray.direction};
+    index = transformed(worldToIndex, world);
+  }
+};
+
+/// Delta and ratio tracking (Woodcock et al. 1965; Novak et al. 2014) without a majorant grid.
+template <typename Voxel>
+class GlobalTracker {
+public:
+  GlobalTracker(const RenderScene& scene, const Medium<Voxel>& medium)
+      : m_domain(scene.volume.grid, scene.crop),
+        m_medium(medium),
+        m_clip(scene.clip),
+        m_majorant(greatestExtinction(scene)) {}
+
+  double sampleCollision(const Ray& ray, const Interval& range, Random& random,
+                         Counters& counters) const {
+    double distance = infinity;
+    visitTentative(ray, range, random, counters, [&](double t, double realShare) {
+      if (random.uniform() >= realShare)
+        return true;
+      distance = t;
+      return false;
+    });
+    return distance;
+  }
+
+  double transmittance(const Ray& ray, const Interval& range, Random& random,
+                       Counters& counters) const {
+    constexpr double rouletteBelow = 0.1;
+    double ratio = 1.0;
+    visitTentative(ray, range, random, counters, [&](double, double realShare) {
+      ratio *= std::max(0.0, 1.0 - realShare);
+      if (ratio < rouletteBelow)
+        ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
+      return ratio > 0.0;
+    });
+    return ratio;
+  }
+
+private:
+  /// Over the volume's whole range of scalars.
+  static double greatestExtinction(const RenderScene& scene) {
+    const TransferFunction& transfer = scene.transfer;
+    const double greatest =
+        transfer.extinction.range(scene.volume.minimum, scene.volume.maximum)[1];
+    return transfer.gradientOpacity ? greatest * transfer.gradientOpacity->range(0.0, infinity)[1]
+                                    : greatest;
+  }
+
+  template <typename Visit>
+  void visitTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
+                      Visit&& visit) const {
+    const Crossing crossing(m_domain, ray, range);
+    if (m_majorant == 0.0)
+      return;
+    for (double t = random.exponential() / m_majorant; t < crossing.length;
+         t += random.exponential() / m_majorant) {
+      double extinction = keep(m_clip, crossing.world.at(t));
+      if (extinction > 0.0) {
+        ++counters.lookups;
+        extinction *= m_medium.extinction(crossing.index.at(t));
+      }
+      if (!visit(crossing.start + t, extinction / m_majorant))
+        return;
+    }
+  }
+
+  Domain m_domain;
+  const Medium<Voxel>& m_medium;
+  const Clip& m_clip;
+  double m_majorant; ///< mm^-1
+};
+
+/// Fixed steps from a random start (Kroes, Post, Botha 2012, section 3, as Exposure Render steps):
+/// a path collides at the sample where the summed optical depth passes an exponential one; light is
+/// dimmed by Beer and Lambert's law over the sum, and counts as lost below 1/1000. Biased: what
+/// lies between samples is not seen, and exp(-sum) is on average more than what it estimates.
+template <typename Voxel>
+class MarchingTracker {
+public:
+  /// `step` in voxels: of the shortest edge, as medical renderers count.
+  MarchingTracker(const RenderScene& scene, const Medium<Voxel>& medium, double step)
+      : m_domain(scene.volume.grid, scene.crop),
+        m_medium(medium),
+        m_clip(scene.clip),
+        m_step(step *
+               scene.volume.grid.worldToIndex.inverse().linear().colwise().norm().minCoeff()) {}
+
+  double sampleCollision(const Ray& ray, const Interval& range, Random& random,
+                         Counters& counters) const {
+    const double wanted = random.exponential();
+    double distance = infinity;
+    march(ray, range, random, counters, [&](double t, double opticalDepth) {
+      if (opticalDepth < wanted)
+        return true;
+      distance = t;
+      return false;
+    });
+    return distance;
+  }
+
+  double transmittance(const Ray& ray, const Interval& range, Random& random,
+                       Counters& counters) const {
+    constexpr double opaque = 6.9; // ln 1000
+    double sum = 0.0;
+    march(ray, range, random, counters, [&](double, double opticalDepth) {
+      sum = opticalDepth;
+      return sum < opaque;
+    });
+    return sum < opaque ? std::exp(-sum) : 0.0;
+  }
+
+private:
+  /// Calls visit(t, optical depth up to and including the sample at t) until it returns false.
+  template <typename Visit>
+  void march(const Ray& ray, const Interval& range, Random& random, Counters& counters,
+             Visit&& visit) const {
+    const Crossing crossing(m_domain, ray, range);
+    double opticalDepth = 0.0;
+    for (double t = random.uniform() * m_step; t < crossing.length; t += m_step) {
+      if (!(keep(m_clip, crossing.world.at(t)) > 0.0))
+        continue;
+      ++counters.lookups;
+      const double extinction = m_medium.extinction(crossing.index.at(t));
+      opticalDepth += extinction * m_step;
+      if (extinction > 0.0 && !visit(crossing.start + t, opticalDepth))
+        return;
+    }
+  }
+
+  Domain m_domain;
+  const Medium<Voxel>& m_medium;
+  const Clip& m_clip;
+  double m_step; ///< mm
+};
+
+/// Settings' samples of every pixel, independent ones, by the readable estimator with the tracker
+/// that `makeTracker(medium)` gives. Stops at samples alone.
+template <typename MakeTracker>
+Film tracePicture(const RenderScene& scene, const RenderSettings& settings,
+                  MakeTracker&& makeTracker) {
+  Film film(scene.camera.width(), scene.camera.height());
+  const std::atomic<bool> stop = false;
+  const auto tracePixels = [&](const auto& estimator) {
+    tbb::parallel_for(0, film.height(), [&](int row) {
+      Counters counters;
+      for (int column = 0; column < film.width(); ++column)
+        for (std::uint64_t sample = 0; sample < settings.samples; ++sample) {
+          Random random(settings.seed, static_cast<std::uint64_t>(row * film.width() + column),
+                        sample);
+          const Vec2 jitter = random.uniform2();
+          film.at(column, row)
+              .add(*estimator.trace(column + jitter.x(), row + jitter.y(), random, counters));
+        }
+    });
+  };
+  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    std::visit(
+        [&](const auto& voxels) {
+          const Medium medium(scene.volume.grid, voxels, scene.transfer);
+          const auto tracker = makeTracker(medium);
+          tracePixels(PathEstimator(scene.volume.grid, medium, tracker, scene.lights, scene.camera,
+                                    scene.clip, settings.path, stop));
+        },
+        scene.volume.voxels);
+  });
+  return film;
+}
+
+} // namespace fenestra::benchmarks

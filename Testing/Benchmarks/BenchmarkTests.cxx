@@ -1,0 +1,184 @@
+// The benchmark measures what it says: its baselines, its numbers, and a run of the whole program
+// on small pictures. No test looks at how long something took.
+
+#include "Benchmarks/Baselines.h"
+#include "Benchmarks/Report.h"
+#include "Support.h"
+#include "TemporaryFolder.h"
+
+#include "film/Compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace fenestra::benchmarks {
+namespace {
+
+constexpr const char* samples = FENESTRA_SAMPLES; // small phantoms
+constexpr const char* foot = " {phantoms}/foot/foot.mrml --size 32x32 --background 0,0,0\n";
+constexpr const char* knee = " {phantoms}/knee/knee.mrml --focus FemoralCartilage --size 32x32 "
+                             "--background 0,0,0\n";
+
+SceneCase caseOf(const std::string& line) {
+  const TemporaryFolder folder;
+  return readScenes(folder.write("table.txt", line), {"", "", samples}).front();
+}
+
+Image renderBy(const char* mode, const Scene& scene, const RenderOptions& options,
+               std::uint64_t count, std::uint64_t seed) {
+  RenderSettings settings = settingsFor(options, scene.background());
+  settings.samples = count;
+  settings.seed = seed;
+  return imageOf(findMode(mode).render(scene.forRender(), settings), scene);
+}
+
+class UnbiasedMode : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(UnbiasedMode, AgreesWithTheReadableOne) {
+  const RenderOptions options = caseOf(std::string("knee readable") + knee).options();
+  const Scene scene(options.scene);
+  const Image image = renderBy(GetParam(), scene, options, 96, 1);
+  const Image truth = renderBy("readable", scene, options, 96, 2);
+  for (const int tile : {8, 32})
+    EXPECT_GT(agreementProbability(tileMeans(image, tile), tileMeans(truth, tile)), 1e-4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Modes, UnbiasedMode, ::testing::Values("product", "global"),
+                         [](const auto& info) { return std::string(info.param); });
+
+/// Mean of R over the picture, relative to another picture's, less 1; and one standard error.
+std::pair<double, double> biasOf(const Image& image, const Image& truth) {
+  const Image a = tileMeans(image, image.width), b = tileMeans(truth, truth.width);
+  const double mean = b.find("R")->front();
+  return {a.find("R")->front() / mean - 1.0,
+          std::hypot(a.find("error.R")->front(), b.find("error.R")->front()) / mean};
+}
+
+/// A foot in voxels of 6 mm: steps of one miss its skin.
+TEST(Marching, IsBiasedAndLessSoWithShorterSteps) {
+  const RenderOptions options = caseOf(std::string("foot readable") + foot).options();
+  const Scene scene(options.scene);
+  const Image truth = renderBy("readable", scene, options, 128, 1);
+  const auto [whole, error] = biasOf(renderBy("marching", scene, options, 128, 2), truth);
+  const auto [half, halfError] = biasOf(renderBy("marching-half", scene, options, 128, 3), truth);
+  EXPECT_GT(std::abs(whole), 4.0 * error) << whole;
+  EXPECT_LT(std::abs(half), std::abs(whole)) << half << " ± " << halfError;
+}
+
+/// Through a wall a quarter of a step thick a march sees a sample in it once in four times: the
+/// mean of what it lets through is 3/4 + exp(-sigma_t step) / 4, not exp(-sigma_t step / 4).
+TEST(Marching, ShinesThroughThinWalls) {
+  constexpr double sigma_t = 3.0;
+  const testing::TestScene parts{testing::makeVolume(testing::centredGrid({8, 8, 8}, Vec3::Ones()),
+                                                     [](const Vec3&) { return 1; }),
+                                 testing::linearTransfer(sigma_t, Rgb::Ones()),
+                                 {},
+                                 {}};
+  const Camera camera(parts.pose, 1, 1);
+  const LightSet lights({}, parts.volume.grid, camera);
+  const MajorantGrid majorants(parts.volume.grid, CellRanges(parts.volume, 0), parts.transfer, {});
+  const CropBox wall{Affine(Eigen::Scaling(4.0, 4.0, 0.125))};
+  const RenderScene scene{parts.volume, parts.transfer, majorants, lights,
+                          camera,       parts.clip,     wall};
+  const auto& voxels = std::get<std::vector<float>>(parts.volume.voxels);
+  const Medium<float> medium(parts.volume.grid, voxels, parts.transfer);
+  const MarchingTracker<float> tracker(scene, medium, 1.0);
+
+  constexpr int draws = 20000;
+  double light = 0.0, passing = 0.0;
+  Counters counters;
+  const Ray ray{{0.3, -0.2, -10.0}, Vec3::UnitZ()};
+  for (std::uint64_t i = 0; i < draws; ++i) {
+    Random random(1, 2, i);
+    light += tracker.transmittance(ray, {}, random, counters) / draws;
+    passing += (tracker.sampleCollision(ray, {}, random, counters) == infinity) * (1.0 / draws);
+  }
+  const double expected = 0.75 + 0.25 * std::exp(-sigma_t);
+  EXPECT_NEAR(light, expected, 4.0 * 0.43 / std::sqrt(draws));
+  EXPECT_NEAR(passing, expected, 4.0 * 0.43 / std::sqrt(draws));
+}
+
+/// relMSE falls as 1 / seconds, at efficiency 20.
+std::vector<Point> idealCurve(std::initializer_list<double> seconds) {
+  std::vector<Point> curve;
+  for (const double s : seconds)
+    curve.push_back({.samples = 4, .seeds = 2, .cpuSeconds = s, .relMse = 1.0 / (20.0 * s)});
+  return curve;
+}
+
+TEST(Efficiency, IsInterpolatedWhereTheCurvePasses) {
+  const auto efficiency = efficiencyNear(idealCurve({2.0, 16.0, 70.0, 300.0}), 1e-3);
+  ASSERT_TRUE(efficiency);
+  EXPECT_NEAR(efficiency->value, 20.0, 1e-9);
+  EXPECT_EQ(efficiency->relMse, 1e-3);
+}
+
+TEST(Efficiency, IsTheNearestPointsElsewhere) {
+  std::vector<Point> curve = idealCurve({2.0, 16.0});
+  curve.push_back({.samples = 16, .seeds = 1, .cpuSeconds = 40.0, .relMse = -1e-6});
+  const auto efficiency = efficiencyNear(curve, 1e-3);
+  ASSERT_TRUE(efficiency);
+  EXPECT_NEAR(efficiency->value, 20.0, 1e-9);
+  EXPECT_NEAR(efficiency->relMse, 1.0 / 320.0, 1e-12);
+  EXPECT_FALSE(efficiencyNear({curve.back()}, 1e-3));
+}
+
+TEST(CurveRecords, AreReplacedBySceneAndMode) {
+  const TemporaryFolder folder;
+  const std::vector<CurveRecord> old = {{"a", "readable", "oracle", 1e-3, idealCurve({1.0, 2.0})},
+                                        {"a", "global", "oracle", 1e-3, idealCurve({3.0})},
+                                        {"b", "", "", 0.0}};
+  writeReport(folder.path(), old, "");
+  const std::vector<CurveRecord> measured = {
+      {"b", "product", "readable", 2e-3, idealCurve({4.0})},
+      {"a", "readable", "oracle", 1e-3, idealCurve({5.0, 6.0, 7.0})}};
+  const auto all = merged(readCurves(folder.path()), measured, {"a", "b"});
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].mode, "readable");
+  EXPECT_EQ(all[0].points.size(), 3U);
+  EXPECT_EQ(all[1].mode, "global");
+  EXPECT_NEAR(all[1].points[0].cpuSeconds, 3.0, 1e-5);
+  EXPECT_EQ(all[2].scene, "b");
+  EXPECT_EQ(all[2].mode, "product");
+}
+
+/// The program itself, on three scenes of which one is not there.
+class WholeRun : public ::testing::Test {
+protected:
+  static int runProgram(const TemporaryFolder& folder) {
+    const auto table =
+        folder.write("table.txt", std::string("foot oracle") + foot + "knee readable" + knee +
+                                      "absent readable {phantoms}/absent.nrrd\n");
+    const std::string command = std::string(FENESTRA_EFFICIENCY_BENCHMARK) +
+                                " --budget 0.3 --seeds 2 --noise 0.3 --table " + table.string() +
+                                " --phantoms " + samples + " --references " +
+                                (folder / "references").string() + " --output " +
+                                (folder / "report").string() + " >/dev/null 2>&1";
+    return std::system(command.c_str());
+  }
+};
+
+TEST_F(WholeRun, HasARowOfEverySceneAndMode) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(runProgram(folder), 0);
+  const std::vector<CurveRecord> curves = readCurves(folder / "report");
+  ASSERT_EQ(curves.size(), 2 * modes().size() + 1);
+  for (const CurveRecord& curve : curves) {
+    EXPECT_EQ(curve.mode.empty(), curve.scene == "absent");
+    EXPECT_EQ(curve.points.empty(), curve.scene == "absent");
+    EXPECT_TRUE(std::isfinite(curve.referenceRelMse));
+    for (const Point& point : curve.points)
+      for (const double value :
+           {point.cpuSeconds, point.relMse, point.spread, point.bias, point.biasError})
+        EXPECT_TRUE(std::isfinite(value)) << curve.scene << ", " << curve.mode;
+  }
+  EXPECT_EQ(curves[0].reference, "oracle");
+  EXPECT_TRUE(std::filesystem::exists(folder / "references" / "foot.exr"));
+  EXPECT_NE(bytesOf(folder / "report" / "README.md").find("| absent | not present |"),
+            std::string::npos);
+  EXPECT_TRUE(bytesOf(folder / "report" / "curves.svg").ends_with("</svg>\n"));
+}
+
+} // namespace
+} // namespace fenestra::benchmarks

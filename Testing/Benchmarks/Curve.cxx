@@ -1,0 +1,116 @@
+#include "Curve.h"
+
+#include "film/Compare.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace fenestra::benchmarks {
+namespace {
+
+double cpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Of one render.
+struct Sample {
+  double cpuSeconds, relMse;
+  double bias, ownError, referenceError; ///< of the image mean, relative to the reference's
+};
+
+Sample measure(const Mode& mode, const Scene& scene, const RenderSettings& settings,
+               const Image& reference) {
+  const double before = cpuSeconds();
+  const Film film = mode.render(scene.forRender(), settings);
+  const double seconds = cpuSeconds() - before;
+  const Image image = imageOf(film, scene);
+
+  // The whole picture as one tile. Channels of one path are correlated: their mean's error is at
+  // most their errors' mean.
+  const int whole = std::max(image.width, image.height);
+  const Image mean = tileMeans(image, whole), truth = tileMeans(reference, whole);
+  Sample sample{seconds, compareImages(image, reference).relMse, 0.0, 0.0, 0.0};
+  for (const std::string channel : {"R", "G", "B"}) {
+    const double scale = 1.0 / (3.0 * truth.find(channel)->front());
+    sample.bias += scale * (mean.find(channel)->front() - truth.find(channel)->front());
+    sample.ownError += scale * mean.find("error." + channel)->front();
+    sample.referenceError += scale * truth.find("error." + channel)->front();
+  }
+  return sample;
+}
+
+Point summarise(std::uint64_t samples, const std::vector<Sample>& renders) {
+  const auto n = static_cast<double>(renders.size());
+  const auto mean = [&](auto field) {
+    return std::transform_reduce(renders.begin(), renders.end(), 0.0, std::plus<>(), field) / n;
+  };
+  Point point{.samples = samples, .seeds = static_cast<int>(renders.size())};
+  point.cpuSeconds = mean([](const Sample& s) { return s.cpuSeconds; });
+  point.relMse = mean([](const Sample& s) { return s.relMse; });
+  point.bias = mean([](const Sample& s) { return s.bias; });
+  // The reference's is the same for all seeds.
+  point.biasError = std::hypot(mean([](const Sample& s) { return s.ownError; }) / std::sqrt(n),
+                               renders.front().referenceError);
+  if (renders.size() > 1)
+    point.spread =
+        std::sqrt(mean([&](const Sample& s) { return std::pow(s.relMse - point.relMse, 2.0); }) *
+                  n / (n - 1.0));
+  return point;
+}
+
+} // namespace
+
+std::vector<Point> measureCurve(const Mode& mode, const Scene& scene,
+                                const RenderSettings& settings, const Image& reference,
+                                const CurveSettings& wanted) {
+  std::vector<Point> curve;
+  double spent = 0.0;
+  RenderSettings used = settings;
+  for (used.samples = wanted.samples;; used.samples *= 2) {
+    std::vector<Sample> renders;
+    const auto affordable = [&](double seconds) { return spent + seconds <= wanted.budget; };
+    if (!curve.empty() && !affordable(2.0 * curve.back().cpuSeconds))
+      return curve;
+    for (int seed = 0; seed < wanted.seeds; ++seed) {
+      used.seed = static_cast<std::uint64_t>(seed);
+      renders.push_back(measure(mode, scene, used, reference));
+      spent += renders.back().cpuSeconds;
+      if (!affordable(renders.back().cpuSeconds))
+        break;
+    }
+    curve.push_back(summarise(used.samples, renders));
+    if (curve.back().relMse < wanted.leastRelMse)
+      return curve;
+  }
+}
+
+std::optional<Efficiency> efficiencyNear(const std::vector<Point>& curve, double relMse) {
+  const double wanted = std::log(relMse);
+  const Point* last = nullptr;
+  std::optional<Efficiency> nearest;
+  for (const Point& point : curve) {
+    if (!(point.relMse > 0.0))
+      continue;
+    if (last && last->relMse >= relMse && point.relMse < relMse) {
+      const double share =
+          (wanted - std::log(last->relMse)) / std::log(point.relMse / last->relMse);
+      const double seconds =
+          last->cpuSeconds * std::pow(point.cpuSeconds / last->cpuSeconds, share);
+      return Efficiency{1.0 / (relMse * seconds), relMse};
+    }
+    if (!nearest ||
+        std::abs(std::log(point.relMse) - wanted) < std::abs(std::log(nearest->relMse) - wanted))
+      nearest = Efficiency{point.efficiency(), point.relMse};
+    last = &point;
+  }
+  return nearest;
+}
+
+} // namespace fenestra::benchmarks

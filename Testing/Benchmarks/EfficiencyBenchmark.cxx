@@ -1,0 +1,164 @@
+// Error against time over scenes and modes (README.md here).
+
+#include "Report.h"
+
+#include "cli/CommandLine.h"
+#include "core/Error.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <thread>
+
+namespace fenestra::benchmarks {
+namespace {
+
+constexpr const char* group = "Benchmark";
+constexpr Flag flags[] = {
+    {"scenes", "A,B,...", group, "Scenes of the table [all]"},
+    {"modes", "A,B,...", group, "Ways to render, as Modes.cxx has them [all]"},
+    {"budget", "SECONDS", group, "CPU time of one curve [60]"},
+    {"seeds", "N", group, "Renders of a point, as many as the budget allows [3]"},
+    {"threads", "K", group, "Threads of a render [all]"},
+    {"size", "WxH", group, "Pixels [as the table says]"},
+    {"noise", "E", group, "Noise of references that are made here [0.03]"},
+    {"limit", "SECONDS", group, "Time that making one may take [1800]"},
+    {"references", "DIR", group, "Where references are kept [benchmarks/references of the build]"},
+    {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
+    {"table", "FILE", group, "Table of scenes [scenes.txt beside the sources]"},
+    {"output", "DIR", group,
+     "Where the report is; what it holds of other scenes and modes stays [benchmarks/report of "
+     "the build]"},
+};
+
+const CommandSyntax syntax = {
+    "EfficiencyBenchmark", "Measures relMSE against CPU seconds.", {}, flags};
+
+struct Options {
+  std::vector<SceneCase> table;
+  std::vector<std::string> scenes;
+  std::vector<const Mode*> modes;
+  CurveSettings curve;
+  ReferenceSettings reference;
+  int threads = 0;
+  std::optional<std::pair<int, int>> size;
+  std::filesystem::path output;
+};
+
+/// WxH.
+std::optional<std::pair<int, int>> sizeOf(const FlagValues& values) {
+  const auto text = values.text("size");
+  if (!text)
+    return std::nullopt;
+  int width = 0, height = 0;
+  if (std::sscanf(text->c_str(), "%dx%d", &width, &height) != 2 || width < 1 || height < 1)
+    throw usageError("--size: expected WIDTHxHEIGHT in pixels, got '" + *text + "'");
+  return std::pair(width, height);
+}
+
+Options optionsOf(const FlagValues& values) {
+  const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
+  const auto folder = [&](const char* name, const std::filesystem::path& otherwise) {
+    return std::filesystem::path(values.text(name).value_or(otherwise.string()));
+  };
+  Options options;
+  options.table = readScenes(folder("table", FENESTRA_BENCHMARK_TABLE),
+                             {FENESTRA_REFERENCE, FENESTRA_DATA, folder("phantoms", build)});
+  options.scenes = values.list("scenes");
+  for (const std::string& name : options.scenes)
+    if (std::ranges::find(options.table, name, &SceneCase::name) == options.table.end())
+      throw usageError("--scenes: '" + name + "' is not in the table of scenes");
+  for (const std::string& name : values.list("modes"))
+    options.modes.push_back(&findMode(name));
+  if (options.modes.empty())
+    for (const Mode& mode : modes())
+      options.modes.push_back(&mode);
+  options.curve.budget = values.number("budget", 1e-3, 1e6).value_or(options.curve.budget);
+  options.curve.seeds = static_cast<int>(values.count("seeds", 1, 1000).value_or(3));
+  options.reference.noise = values.number("noise", 1e-4, 1.0).value_or(options.reference.noise);
+  options.reference.seconds = values.number("limit", 1e-3, 1e6).value_or(options.reference.seconds);
+  options.reference.folder = folder("references", build / "references");
+  options.threads = static_cast<int>(values.count("threads", 1, 1024).value_or(0));
+  options.size = sizeOf(values);
+  options.output = folder("output", build / "report");
+  return options;
+}
+
+std::vector<CurveRecord> measureScene(const SceneCase& sceneCase, const Options& options) {
+  if (!sceneCase.missing.empty()) {
+    std::cerr << sceneCase.name << ": not present: " << sceneCase.missing << std::endl;
+    return {{sceneCase.name, "", "", 0.0}};
+  }
+  RenderOptions wanted = sceneCase.options();
+  if (options.size)
+    std::tie(wanted.scene.width, wanted.scene.height) = *options.size;
+  const Scene scene(wanted.scene);
+  RenderSettings settings = settingsFor(wanted, scene.background());
+  settings.threads = options.threads;
+  const Reference reference = findReference(sceneCase, scene, settings, options.reference);
+  std::vector<CurveRecord> curves;
+  for (const Mode* mode : options.modes) {
+    curves.push_back({sceneCase.name, mode->name, reference.maker, reference.relMse,
+                      measureCurve(*mode, scene, settings, reference.image, options.curve)});
+    const Point& last = curves.back().points.back();
+    std::cout << std::setprecision(3) << sceneCase.name << ", " << mode->name << ": "
+              << last.samples << " samples, " << last.cpuSeconds << " CPU s, relMSE " << last.relMse
+              << ", bias " << 100.0 * last.bias << " ± " << 100.0 * last.biasError << " %"
+              << std::endl;
+  }
+  return curves;
+}
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name"))
+      return line.substr(line.find(':') + 2);
+  return "an unknown processor";
+}
+
+std::string notes(const Options& options) {
+  std::ostringstream out;
+  out << "Last run on " << processor() << ", " << std::thread::hardware_concurrency()
+      << " threads, with " << options.curve.budget << " CPU seconds a curve and up to "
+      << options.curve.seeds << " seeds a point.";
+  return out.str();
+}
+
+int benchmark(int argc, char** argv) {
+  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, 1);
+  if (!values)
+    return 0;
+  const Options options = optionsOf(*values);
+  std::vector<std::string> names;
+  for (const SceneCase& scene : options.table)
+    names.push_back(scene.name);
+  for (const SceneCase& scene : options.table) {
+    if (!options.scenes.empty() &&
+        std::ranges::find(options.scenes, scene.name) == options.scenes.end())
+      continue;
+    // After each scene: a run that is stopped leaves what it has.
+    writeReport(options.output,
+                merged(readCurves(options.output), measureScene(scene, options), names),
+                notes(options));
+  }
+  std::cout << (options.output / "README.md").string() << std::endl;
+  return 0;
+}
+
+} // namespace
+} // namespace fenestra::benchmarks
+
+int main(int argc, char** argv) {
+  try {
+    return fenestra::benchmarks::benchmark(argc, argv);
+  } catch (const fenestra::Error& error) {
+    std::cerr << "EfficiencyBenchmark: " << error.what() << '\n';
+    return error.exitStatus();
+  } catch (const std::exception& error) {
+    std::cerr << "EfficiencyBenchmark: " << error.what() << '\n';
+    return 1;
+  }
+}

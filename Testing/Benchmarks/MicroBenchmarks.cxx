@@ -1,0 +1,191 @@
+// The parts of a path and of the first pass, one by one, on one thread (README.md here).
+
+#include "Scenes.h"
+
+#include "clipping/ThinPlateSpline.h"
+#include "scene/Scene.h"
+#include "tracking/Tracker.h"
+
+#include <benchmark/benchmark.h>
+
+#include <tbb/global_control.h>
+
+#include <iostream>
+
+namespace fenestra::benchmarks {
+namespace {
+
+constexpr int pictureSize = 512;
+
+/// The knee with its clip, all parts of it at hand.
+struct Subject {
+  std::string label;
+  SceneRequest request;
+  SceneInput input;
+  Scene scene;
+  std::vector<ControlPoint> controlPoints;
+
+  static SceneRequest requestOf(const SceneCase& sceneCase) {
+    SceneRequest request = sceneCase.options().scene;
+    request.width = request.height = pictureSize;
+    return request;
+  }
+
+  explicit Subject(const SceneCase& sceneCase)
+      : label(sceneCase.name),
+        request(requestOf(sceneCase)),
+        input(loadInput(request)),
+        scene(request),
+        controlPoints(surface().controlPoints) {
+    const Size3& size = scene.volume().grid.size;
+    label += ", " + std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" +
+             std::to_string(size.z());
+  }
+
+  Domain domain() const { return {scene.volume().grid, input.crop}; }
+  ClippingSurface surface() const {
+    return buildClippingSurface(scene.camera(), domain(), *input.focus, {});
+  }
+};
+
+using Voxel = std::int16_t; ///< of the phantoms
+
+/// What tracking reads, and places and rays to ask about: as many as cycle through the caches.
+struct Probe {
+  static constexpr std::size_t count = 1 << 14;
+  const Subject& subject;
+  const std::vector<Voxel>& voxels = std::get<std::vector<Voxel>>(subject.scene.volume().voxels);
+  Field<Voxel> field{subject.scene.volume().grid, voxels};
+  Medium<Voxel> medium{subject.scene.volume().grid, voxels, subject.scene.transfer()};
+  RenderScene parts = subject.scene.forRender();
+  Tracker<Voxel> tracker{subject.domain(), medium, parts.majorants, parts.clip};
+  std::vector<Ray> eyeRays;
+  std::vector<Vec3> collisions; ///< world, first ones of eye rays
+  std::vector<Vec3> inside;     ///< the same, index space
+  std::vector<Ray> scattered;   ///< from there, anywhere
+  std::vector<Vec3> anywhere;   ///< index space
+  Random random{1, 2, 3};
+  Counters counters;
+
+  explicit Probe(const Subject& subjectIn) : subject(subjectIn) {
+    const Vec3 size = subject.scene.volume().grid.size.cast<double>();
+    while (collisions.size() < count) {
+      const Vec2 pixel = pictureSize * random.uniform2();
+      const Ray ray = parts.camera.ray(pixel.x(), pixel.y());
+      eyeRays.push_back(ray);
+      const double t = tracker.sampleCollision(ray, visible(parts.clip, ray), random, counters);
+      if (t < infinity) {
+        collisions.push_back(ray.at(t));
+        inside.push_back(subject.scene.volume().grid.worldToIndex * ray.at(t));
+        scattered.push_back({ray.at(t), uniformDirection(random.uniform2())});
+      }
+      const Vec2 u = random.uniform2();
+      anywhere.push_back(size.cwiseProduct(Vec3(u.x(), u.y(), random.uniform())));
+    }
+  }
+};
+
+/// Times visit(i) over i = 0 … count - 1, again and again.
+template <typename Visit>
+void cycle(benchmark::State& state, const std::string& label, std::size_t count, Visit&& visit) {
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(visit(i));
+    i = i + 1 < count ? i + 1 : 0;
+  }
+  state.SetLabel(label);
+}
+
+void addTracking(Probe& p) {
+  const auto add = [&](const char* name, std::size_t count, auto visit) {
+    benchmark::RegisterBenchmark(name, [&p, count, visit](benchmark::State& state) {
+      cycle(state, p.subject.label, count, visit);
+    });
+  };
+  add("flight/eye ray", p.eyeRays.size(), [&p](std::size_t i) {
+    const Ray& ray = p.eyeRays[i];
+    return p.tracker.sampleCollision(ray, visible(p.parts.clip, ray), p.random, p.counters);
+  });
+  add("flight/scattered ray", Probe::count, [&p](std::size_t i) {
+    return p.tracker.sampleCollision(p.scattered[i], {}, p.random, p.counters);
+  });
+  add("transmittance/scattered ray", Probe::count, [&p](std::size_t i) {
+    return p.tracker.transmittance(p.scattered[i], {}, p.random, p.counters);
+  });
+  add("look-up/anywhere", Probe::count,
+      [&p](std::size_t i) { return p.field.value(p.anywhere[i]); });
+  add("look-up/one place", 1, [&p](std::size_t i) { return p.field.value(p.anywhere[i]); });
+  add("classification/one place", 1,
+      [&p](std::size_t i) { return p.medium.extinction(p.anywhere[i]); });
+  add("classification/collisions", Probe::count,
+      [&p](std::size_t i) { return p.medium.extinction(p.inside[i]); });
+  add("gradient/collisions", Probe::count,
+      [&p](std::size_t i) { return p.field.gradient(p.inside[i]); });
+  add("clip test/collisions", Probe::count,
+      [&p](std::size_t i) { return keep(p.parts.clip, p.collisions[i]); });
+}
+
+void addFirstPass(const Subject& subject) {
+  const std::string label =
+      subject.label + ", " + std::to_string(subject.controlPoints.size()) + " control points";
+  benchmark::RegisterBenchmark("first pass/spline fit", [&, label](benchmark::State& state) {
+    std::vector<Vec2> sites;
+    std::vector<double> depths;
+    for (const ControlPoint& point : subject.controlPoints) {
+      sites.push_back(point.site);
+      depths.push_back(point.depth);
+    }
+    for (auto _ : state)
+      benchmark::DoNotOptimize(ThinPlateSpline(sites, depths, 0.5));
+    state.SetLabel(label);
+  })->Unit(benchmark::kMicrosecond);
+  const auto addStage = [&](const char* name, auto seconds) {
+    benchmark::RegisterBenchmark(name,
+                                 [&, label, seconds](benchmark::State& state) {
+                                   for (auto _ : state)
+                                     state.SetIterationTime(seconds(subject.surface()));
+                                   state.SetLabel(label + ", " + std::to_string(pictureSize) + "x" +
+                                                  std::to_string(pictureSize) + " pixels");
+                                 })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
+  };
+  addStage("first pass/focus depth", [](const ClippingSurface& s) { return s.focusSeconds; });
+  addStage("first pass/contours and spline",
+           [](const ClippingSurface& s) { return s.splineSeconds; });
+  addStage("first pass/fill", [](const ClippingSurface& s) { return s.fillSeconds; });
+  addStage("first pass/all", [](const ClippingSurface& s) {
+    return s.focusSeconds + s.splineSeconds + s.fillSeconds;
+  });
+}
+
+/// The first scene with a focus of a phantom that is there.
+SceneCase chooseScene() {
+  for (const char* phantoms : {FENESTRA_BENCHMARK_FOLDER, FENESTRA_SAMPLES})
+    for (const SceneCase& scene : readScenes(FENESTRA_BENCHMARK_TABLE, {"", "", phantoms}))
+      if (scene.name == "knee-clipped" && scene.missing.empty())
+        return scene;
+  throw std::runtime_error("there is no knee-clipped in the table of scenes, or no knee for it");
+}
+
+} // namespace
+} // namespace fenestra::benchmarks
+
+int main(int argc, char** argv) {
+  using namespace fenestra::benchmarks;
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv))
+    return 2;
+  try {
+    const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
+    const Subject subject(chooseScene());
+    Probe probe(subject);
+    addTracking(probe);
+    addFirstPass(subject);
+    benchmark::RunSpecifiedBenchmarks();
+  } catch (const std::exception& error) {
+    std::cerr << "MicroBenchmarks: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

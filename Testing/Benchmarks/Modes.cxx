@@ -1,0 +1,74 @@
+#include "Modes.h"
+
+#include "Baselines.h"
+
+#include "core/Error.h"
+
+namespace fenestra::benchmarks {
+namespace {
+
+Film renderProduct(const RenderScene& scene, const RenderSettings& settings) {
+  RenderMonitor monitor;
+  return render(scene, settings, monitor).film;
+}
+
+Film renderReadable(const RenderScene& scene, const RenderSettings& settings) {
+  return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
+    return Tracker<Voxel>(Domain(scene.volume.grid, scene.crop), medium, scene.majorants,
+                          scene.clip);
+  });
+}
+
+Film renderGlobal(const RenderScene& scene, const RenderSettings& settings) {
+  return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
+    return GlobalTracker<Voxel>(scene, medium);
+  });
+}
+
+/// `step` in voxels.
+Film renderMarching(const RenderScene& scene, const RenderSettings& settings, double step) {
+  return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
+    return MarchingTracker<Voxel>(scene, medium, step);
+  });
+}
+
+constexpr Mode table[] = {
+    {"product", "what `fenestra` does by default",
+     [](const RenderScene& scene, RenderSettings settings) {
+       return renderProduct(scene, settings);
+     }},
+    {"readable", "the scalar estimator, null collisions in a majorant grid, independent samples",
+     [](const RenderScene& scene, RenderSettings settings) {
+       return renderReadable(scene, settings);
+     }},
+    {"global", "the same, null collisions against one majorant for the whole volume",
+     [](const RenderScene& scene, RenderSettings settings) {
+       return renderGlobal(scene, settings);
+     }},
+    {"marching", "the same, fixed steps of one voxel: biased",
+     [](const RenderScene& scene, RenderSettings settings) {
+       return renderMarching(scene, settings, 1.0);
+     }},
+    {"marching-half", "the same, fixed steps of half a voxel: biased",
+     [](const RenderScene& scene, RenderSettings settings) {
+       return renderMarching(scene, settings, 0.5);
+     }},
+};
+
+} // namespace
+
+std::span<const Mode> modes() {
+  return table;
+}
+
+const Mode& findMode(const std::string& name) {
+  std::string known;
+  for (const Mode& mode : table) {
+    if (name == mode.name)
+      return mode;
+    known += (known.empty() ? "" : ", ") + std::string(mode.name);
+  }
+  throw usageError("--modes: '" + name + "' is unknown; use some of " + known);
+}
+
+} // namespace fenestra::benchmarks

@@ -1,0 +1,166 @@
+#include "References.h"
+
+#include "Modes.h"
+
+#include "Oracle/Oracle.h"
+#include "Statistical/Pictures.h"
+
+#include "core/Error.h"
+#include "core/Stopwatch.h"
+#include "film/Compare.h"
+#include "io/EmbeddedResources.h"
+#include "io/looks/LightReader.h"
+#include "io/pictures/ImageReader.h"
+#include "io/pictures/ImageWriter.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace fenestra::benchmarks {
+namespace {
+
+/// No render that is measured has them.
+constexpr std::uint64_t firstReferenceSeed = std::uint64_t{1} << 40;
+
+constexpr const char* colours[] = {"R", "G", "B"};
+
+std::vector<float>& channel(Image& image, const std::string& name) {
+  return image.channels.at(name);
+}
+
+/// Adds one more picture to the mean of `parts` pictures that are as good.
+void addPart(Image& sum, const Image& part, double parts) {
+  for (const char* name : colours) {
+    std::vector<float>& mean = channel(sum, name);
+    std::vector<float>& error = channel(sum, std::string("error.") + name);
+    const std::vector<float>& other = *part.find(name);
+    const std::vector<float>& otherError = *part.find(std::string("error.") + name);
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const auto mix = [&](double a, double b) { return (parts * a + b) / (parts + 1.0); };
+      mean[i] = static_cast<float>(mix(mean[i], other[i]));
+      error[i] = static_cast<float>(std::hypot(parts * error[i], otherError[i]) / (parts + 1.0));
+    }
+  }
+}
+
+/// Mean of independent pictures of equally many samples, each by its own seed, until it is good
+/// enough or time is up.
+template <typename RenderPart>
+Image accumulate(const ReferenceSettings& wanted, RenderPart&& renderPart) {
+  const Stopwatch watch;
+  Image sum = renderPart(firstReferenceSeed);
+  sum.channels.erase("samples.N");
+  for (std::uint64_t parts = 1; watch.seconds() < wanted.seconds; ++parts) {
+    if (Reference(sum, "").relMse <= wanted.noise * wanted.noise)
+      break;
+    addPart(sum, renderPart(firstReferenceSeed + parts), static_cast<double>(parts));
+  }
+  return sum;
+}
+
+Image byReadable(const Scene& scene, RenderSettings settings, const ReferenceSettings& wanted) {
+  settings.samples = 16;
+  return accumulate(wanted, [&](std::uint64_t seed) {
+    settings.seed = seed;
+    return imageOf(findMode("readable").render(scene.forRender(), settings), scene);
+  });
+}
+
+/// A file's, or a preset's.
+std::vector<Light> lightsOf(const std::string& name) {
+  const std::string_view preset = embeddedResource("lights/" + name + ".json");
+  return preset.empty() ? readLights(name) : parseLights(preset, name);
+}
+
+Image byOracle(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
+               const ReferenceSettings& wanted) {
+  const RenderScene parts = scene.forRender();
+  if (!std::holds_alternative<ClipNone>(parts.clip))
+    throw inputError("scenes.txt", "asks the oracle for a clipped reference; use readable");
+  const oracle::OracleScene subject{.volume = parts.volume,
+                                    .transfer = parts.transfer,
+                                    .lights = lightsOf(options.scene.lights),
+                                    .pose = parts.camera.pose(),
+                                    .width = parts.camera.width(),
+                                    .height = parts.camera.height(),
+                                    .crop = parts.crop ? std::optional(parts.crop->boxToWorld)
+                                                       : std::nullopt,
+                                    .background = settings.path.background};
+  constexpr std::uint64_t samples = 4;
+  return accumulate(wanted, [&](std::uint64_t seed) {
+    return testing::imageOf(oracle::render(subject, samples, seed));
+  });
+}
+
+std::optional<Image> readIfThere(const std::filesystem::path& path) {
+  if (path.empty() || !std::filesystem::exists(path))
+    return std::nullopt;
+  return readImage(path);
+}
+
+std::optional<Reference> independentReference(const SceneCase& sceneCase, const Scene& scene) {
+  if (sceneCase.maker != ReferenceMaker::independent)
+    return std::nullopt;
+  const std::string file = sceneCase.independent.string();
+  std::optional<Image> image = readIfThere(file + "_best.exr");
+  const std::optional<Image> errors = readIfThere(file + "_best_se.exr");
+  if (!image || !errors || image->width != scene.camera().width() ||
+      image->height != scene.camera().height())
+    return std::nullopt;
+  attachError(*image, *errors);
+  return Reference(*std::move(image), "independent");
+}
+
+/// What a kept reference has to be of.
+std::string identity(const SceneCase& sceneCase, const Scene& scene,
+                     const ReferenceSettings& wanted) {
+  std::string text = std::to_string(scene.camera().width()) + "x" +
+                     std::to_string(scene.camera().height()) + " noise " +
+                     std::to_string(wanted.noise);
+  for (const std::string& argument : sceneCase.arguments)
+    text += " " + argument;
+  return text;
+}
+
+} // namespace
+
+Reference::Reference(Image imageIn, std::string makerIn)
+    : image(std::move(imageIn)), maker(std::move(makerIn)) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const char* name : colours) {
+    const std::vector<float>& means = *image.find(name);
+    const std::vector<float>& errors = *image.find(std::string("error.") + name);
+    for (std::size_t i = 0; i < means.size(); ++i)
+      sum += std::pow(errors[i], 2.0) / (std::pow(means[i], 2.0) + 0.01);
+    count += means.size();
+  }
+  relMse = sum / static_cast<double>(count);
+}
+
+Reference findReference(const SceneCase& sceneCase, const Scene& scene,
+                        const RenderSettings& settings, const ReferenceSettings& wanted) {
+  if (std::optional<Reference> independent = independentReference(sceneCase, scene))
+    return *std::move(independent);
+  const std::string maker = sceneCase.maker == ReferenceMaker::oracle ? "oracle" : "readable";
+  const std::filesystem::path path = wanted.folder / (sceneCase.name + ".exr");
+  const std::string command = identity(sceneCase, scene, wanted);
+  if (std::optional<Image> kept = readIfThere(path))
+    if (kept->header["command"] == command && kept->header["maker"] == maker)
+      return Reference(*std::move(kept), maker);
+  Image image = sceneCase.maker == ReferenceMaker::oracle
+                    ? byOracle(sceneCase.options(), scene, settings, wanted)
+                    : byReadable(scene, settings, wanted);
+  image.header["command"] = command;
+  image.header["maker"] = maker;
+  std::filesystem::create_directories(wanted.folder);
+  writeImage(image, picturePlane(scene.camera()), path);
+  return Reference(std::move(image), maker);
+}
+
+Image imageOf(const Film& film, const Scene& scene) {
+  return picture(film, scene.camera(), scene.clip(),
+                 {.depth = false, .clip = false, .albedo = false, .normal = false});
+}
+
+} // namespace fenestra::benchmarks

@@ -1,0 +1,206 @@
+#include "Report.h"
+
+#include "core/Error.h"
+#include "io/AtomicFile.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+namespace fenestra::benchmarks {
+namespace {
+
+constexpr const char* csvHeader =
+    "scene,mode,reference,reference_relmse,samples,seeds,cpu_seconds,relmse,relmse_spread,"
+    "efficiency,bias_percent,bias_error_percent";
+constexpr const char* absent = "not present";
+
+std::string csv(const std::vector<CurveRecord>& curves) {
+  std::ostringstream out;
+  out << csvHeader << '\n' << std::setprecision(6);
+  for (const CurveRecord& curve : curves) {
+    if (curve.mode.empty())
+      out << curve.scene << ',' << absent << ",,,,,,,,,,\n";
+    for (const Point& p : curve.points)
+      out << curve.scene << ',' << curve.mode << ',' << curve.reference << ','
+          << curve.referenceRelMse << ',' << p.samples << ',' << p.seeds << ',' << p.cpuSeconds
+          << ',' << p.relMse << ',' << p.spread << ',' << p.efficiency() << ',' << 100.0 * p.bias
+          << ',' << 100.0 * p.biasError << '\n';
+  }
+  return out.str();
+}
+
+std::vector<std::string> cellsOf(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');)
+    cells.push_back(cell);
+  return cells;
+}
+
+/// In the order of csvHeader.
+void addRow(const std::vector<std::string>& cells, std::vector<CurveRecord>& curves) {
+  if (curves.empty() || curves.back().scene != cells[0] || curves.back().mode != cells[1])
+    curves.push_back({cells[0], cells[1], cells[2], std::stod(cells[3])});
+  Point point;
+  point.samples = std::stoull(cells[4]);
+  point.seeds = std::stoi(cells[5]);
+  point.cpuSeconds = std::stod(cells[6]);
+  point.relMse = std::stod(cells[7]);
+  point.spread = std::stod(cells[8]);
+  point.bias = std::stod(cells[10]) / 100.0;
+  point.biasError = std::stod(cells[11]) / 100.0;
+  curves.back().points.push_back(point);
+}
+
+const CurveRecord* find(const std::vector<CurveRecord>& curves, const std::string& scene,
+                        const std::string& mode) {
+  const auto found = std::ranges::find_if(
+      curves, [&](const CurveRecord& c) { return c.scene == scene && c.mode == mode; });
+  return found == curves.end() ? nullptr : &*found;
+}
+
+/// Each once, in their order.
+std::vector<std::string> scenesOf(const std::vector<CurveRecord>& curves) {
+  std::vector<std::string> scenes;
+  for (const CurveRecord& curve : curves)
+    if (scenes.empty() || scenes.back() != curve.scene)
+      scenes.push_back(curve.scene);
+  return scenes;
+}
+
+std::string scientific(double x) {
+  std::ostringstream out;
+  out << std::setprecision(1) << std::scientific << x;
+  return out.str();
+}
+
+std::string efficiencyCell(const CurveRecord& curve) {
+  const std::optional<Efficiency> efficiency = efficiencyNear(curve.points, quotedRelMse);
+  if (!efficiency)
+    return "no error left";
+  std::ostringstream out;
+  out << std::setprecision(3) << efficiency->value;
+  if (efficiency->relMse != quotedRelMse)
+    out << " at " << scientific(efficiency->relMse);
+  return out.str();
+}
+
+/// Of the point with the most samples.
+std::string biasCell(const CurveRecord& curve) {
+  const Point& point = curve.points.back();
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(2) << std::showpos << 100.0 * point.bias << " ± "
+      << std::noshowpos << 100.0 * point.biasError;
+  return out.str();
+}
+
+/// A row a scene: `first` of one of its curves, and `cell` of each.
+template <typename First, typename Cell>
+void writeTable(std::ostream& out, const std::vector<CurveRecord>& curves, const char* second,
+                First&& first, Cell&& cell) {
+  out << "| scene | " << second << " |";
+  for (const Mode& mode : modes())
+    out << ' ' << mode.name << " |";
+  out << "\n|---|---|";
+  for (std::size_t i = 0; i < modes().size(); ++i)
+    out << "---|";
+  for (const std::string& scene : scenesOf(curves)) {
+    const auto any = std::ranges::find(curves, scene, &CurveRecord::scene);
+    out << "\n| " << scene << " | " << (any->mode.empty() ? absent : first(*any)) << " |";
+    for (const Mode& mode : modes()) {
+      const CurveRecord* curve = find(curves, scene, mode.name);
+      out << ' ' << (curve ? cell(*curve) : "–") << " |";
+    }
+  }
+  out << "\n\n";
+}
+
+double largestSpread(const std::vector<CurveRecord>& curves) {
+  double largest = 0.0;
+  for (const CurveRecord& curve : curves)
+    for (const Point& point : curve.points)
+      largest = std::max(largest, point.spread / std::abs(point.relMse));
+  return largest;
+}
+
+std::string readme(const std::vector<CurveRecord>& curves, const std::string& notes) {
+  std::ostringstream out;
+  out << "# Error against time\n\nMade by `bash Testing/Benchmarks/run.sh`; what is measured and "
+         "how: [../README.md](../README.md). Every point: [curves.csv](curves.csv).\n\n"
+      << notes << "\n\n![relMSE over CPU seconds, a panel a scene](curves.svg)\n\n"
+      << "## Efficiency\n\n1 / (relMSE × CPU seconds) of rendering, where the curve passes relMSE "
+      << scientific(quotedRelMse) << " (interpolated in logarithms); \"at\" another one: the "
+      << "measured point nearest to that.\n\n";
+  writeTable(
+      out, curves, "reference (its relMSE)",
+      [](const CurveRecord& curve) {
+        return curve.reference + " (" + scientific(curve.referenceRelMse) + ")";
+      },
+      efficiencyCell);
+  out << "## Bias\n\nOf the image mean at the most samples measured, in percent of the "
+         "reference's, and one standard error.\n\n";
+  writeTable(
+      out, curves, "reference", [](const CurveRecord& curve) { return curve.reference; }, biasCell);
+  out << "## Modes\n\n";
+  for (const Mode& mode : modes())
+    out << "- `" << mode.name << "`: " << mode.description << '\n';
+  out << "\nThe standard deviation of relMSE over a point's seeds is at most "
+      << std::setprecision(2) << 100.0 * largestSpread(curves) << " % of it.\n";
+  return out.str();
+}
+
+} // namespace
+
+std::vector<CurveRecord> readCurves(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "curves.csv";
+  std::vector<CurveRecord> curves;
+  std::ifstream file(path);
+  std::string line;
+  if (!file || !std::getline(file, line))
+    return curves;
+  const std::size_t columns = cellsOf(csvHeader).size();
+  if (line != csvHeader)
+    throw inputError(path.string(), "has other columns; move it away, or name another --output");
+  while (std::getline(file, line)) {
+    const std::vector<std::string> cells = cellsOf(line);
+    if (cells.size() > 1 && cells[1] == absent)
+      curves.push_back({cells[0], "", "", 0.0});
+    else if (cells.size() == columns)
+      addRow(cells, curves);
+    else
+      throw inputError(path.string(), "'" + line + "': is cut off; move the file away");
+  }
+  return curves;
+}
+
+std::vector<CurveRecord> merged(const std::vector<CurveRecord>& kept,
+                                const std::vector<CurveRecord>& measured,
+                                const std::vector<std::string>& scenes) {
+  std::vector<CurveRecord> result;
+  for (const std::string& scene : scenes) {
+    const std::size_t before = result.size();
+    for (const Mode& mode : modes()) {
+      const CurveRecord* curve = find(measured, scene, mode.name);
+      curve = curve ? curve : find(kept, scene, mode.name);
+      if (curve)
+        result.push_back(*curve);
+    }
+    const CurveRecord* missing = find(measured, scene, "");
+    missing = missing ? missing : find(kept, scene, "");
+    if (missing && result.size() == before)
+      result.push_back(*missing);
+  }
+  return result;
+}
+
+void writeReport(const std::filesystem::path& folder, const std::vector<CurveRecord>& curves,
+                 const std::string& notes) {
+  std::filesystem::create_directories(folder);
+  writeFile(folder / "curves.csv", csv(curves));
+  writeFile(folder / "curves.svg", drawCurves(curves));
+  writeFile(folder / "README.md", readme(curves, notes));
+}
+
+} // namespace fenestra::benchmarks

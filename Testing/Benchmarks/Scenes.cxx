@@ -1,0 +1,135 @@
+#include "Scenes.h"
+
+#include "cli/CommandLine.h"
+#include "core/Error.h"
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace fenestra::benchmarks {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// One argument a line, as `fenestra` takes them from the file's own folder: files beside it get
+/// their whole path.
+Words readArguments(const std::filesystem::path& path) {
+  Words words;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);)
+    if (!line.empty()) {
+      const std::filesystem::path beside = path.parent_path() / line;
+      words.push_back(std::filesystem::is_regular_file(beside) ? beside.string() : line);
+    }
+  return words;
+}
+
+class Table {
+public:
+  Table(std::filesystem::path path, const Folders& folders)
+      : m_path(std::move(path)),
+        m_folders{{"{reference}", folders.reference},
+                  {"{data}", folders.data},
+                  {"{phantoms}", folders.phantoms}} {}
+
+  std::vector<SceneCase> read() {
+    std::vector<SceneCase> scenes;
+    std::ifstream file(m_path);
+    for (std::string line; std::getline(file, line);) {
+      if (line.empty() || line[0] == '#')
+        continue;
+      const Words words = split(line);
+      if (words.size() < 3)
+        throw inputError(m_path.string(), "'" + line + "': expected NAME REFERENCE ARGUMENTS");
+      if (words[1] == "=")
+        m_names[words[0]] = {words.begin() + 2, words.end()};
+      else
+        scenes.push_back(sceneOf(words));
+    }
+    if (scenes.empty())
+      throw inputError(m_path.string(), "has no scenes; it needs lines NAME REFERENCE ARGUMENTS");
+    return scenes;
+  }
+
+private:
+  /// The words of a line, each "@name" replaced by the words that it stands for.
+  Words split(const std::string& line) const {
+    Words words;
+    std::istringstream stream(line);
+    for (std::string word; stream >> word;) {
+      const auto name = m_names.find(word);
+      if (name == m_names.end())
+        words.push_back(word);
+      else
+        words.insert(words.end(), name->second.begin(), name->second.end());
+    }
+    return words;
+  }
+
+  ReferenceMaker maker(const std::string& word) const {
+    const std::map<std::string, ReferenceMaker> makers = {
+        {"independent", ReferenceMaker::independent},
+        {"oracle", ReferenceMaker::oracle},
+        {"readable", ReferenceMaker::readable}};
+    const auto found = makers.find(word);
+    if (found == makers.end())
+      throw inputError(m_path.string(),
+                       "'" + word + "': REFERENCE is independent, oracle or readable");
+    return found->second;
+  }
+
+  SceneCase sceneOf(const Words& words) const {
+    SceneCase scene;
+    scene.name = words[0];
+    scene.maker = maker(words[1]);
+    for (std::size_t i = 2; i < words.size(); ++i) {
+      const std::string word = placed(words[i], scene);
+      const std::filesystem::path path = word;
+      if (path.extension() != ".arguments") {
+        scene.arguments.push_back(word);
+        continue;
+      }
+      const Words read = readArguments(path);
+      scene.arguments.insert(scene.arguments.end(), read.begin(), read.end());
+      scene.independent = std::filesystem::path(path).replace_extension();
+    }
+    return scene;
+  }
+
+  /// A word with its folder, which is noted where it is missing.
+  std::string placed(const std::string& word, SceneCase& scene) const {
+    for (const auto& [name, folder] : m_folders)
+      if (word.starts_with(name)) {
+        const std::string path = folder.string() + word.substr(name.size());
+        if (scene.missing.empty() && !std::filesystem::exists(path))
+          scene.missing = word;
+        return path;
+      }
+    return word;
+  }
+
+  std::filesystem::path m_path;
+  std::map<std::string, std::filesystem::path> m_folders;
+  std::map<std::string, Words> m_names;
+};
+
+} // namespace
+
+RenderOptions SceneCase::options() const {
+  Words words = {"fenestra"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words)
+    argv.push_back(word.data());
+  const auto flags = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
+  if (!flags)
+    throw usageError("--scenes: " + name + " asks for help, not for a picture; mend scenes.txt");
+  return renderOptions(*flags);
+}
+
+std::vector<SceneCase> readScenes(const std::filesystem::path& table, const Folders& folders) {
+  return Table(table, folders).read();
+}
+
+} // namespace fenestra::benchmarks

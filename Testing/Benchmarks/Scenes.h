@@ -1,0 +1,36 @@
+#pragma once
+// The scenes of scenes.txt: each is a command line of `fenestra`.
+
+#include "cli/RenderFlags.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fenestra::benchmarks {
+
+/// Where the table's {reference}, {data} and {phantoms} are.
+struct Folders {
+  std::filesystem::path reference, data, phantoms;
+};
+
+enum class ReferenceMaker {
+  independent, ///< other renderers: FILE_best.exr and FILE_best_se.exr beside FILE.arguments
+  oracle,      ///< Testing/Oracle; for scenes without a clip
+  readable,    ///< the readable estimator, where the oracle would take hours
+};
+
+struct SceneCase {
+  std::string name;
+  ReferenceMaker maker = ReferenceMaker::readable;
+  std::filesystem::path independent;  ///< FILE of an independent reference
+  std::vector<std::string> arguments; ///< of `fenestra`
+  std::string missing;                ///< a file that it needs and that is not there, or empty
+
+  RenderOptions options() const; ///< Throws Error (usage).
+};
+
+/// Throws Error (input) where the table is not one.
+std::vector<SceneCase> readScenes(const std::filesystem::path& table, const Folders& folders);
+
+} // namespace fenestra::benchmarks

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# Builds Release, measures error against time over scenes and modes, and the parts one by one, and
+# writes Testing/Benchmarks/Report. Nothing else should run on the machine.
+# usage: bash Testing/Benchmarks/run.sh [--scenes A,B] [--modes A,B] [--budget CPU-SECONDS] [...]
+# All arguments are EfficiencyBenchmark's own, which --help lists; what the report holds of other
+# scenes and modes stays. FENESTRA_BUILD names another build folder.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"
+folder=${FENESTRA_BUILD:-$top/build}
+report=$top/Testing/Benchmarks/Report
+
+install_packages "${build_packages[@]}" libbenchmark-dev
+(cd "$top" && cmake --preset release -B "$folder" -DFENESTRA_BUILD_TESTS=ON >/dev/null &&
+  cmake --build "$folder" --target fenestra EfficiencyBenchmark MicroBenchmarks) ||
+  die "the build failed (see above)"
+mkdir -p "$folder/benchmarks"
+for phantom in knee foot; do
+  [ -e "$folder/benchmarks/$phantom/$phantom.mrb" ] ||
+    "$folder/bin/fenestra" phantom "$phantom" --output "$folder/benchmarks/$phantom"
+done
+
+say "Error against time"
+"$folder/bin/EfficiencyBenchmark" --output "$report" "$@"
+say "The parts, on one thread"
+"$folder/bin/MicroBenchmarks" --benchmark_format=console | tee "$folder/benchmarks/parts.txt"
+{
+  printf '# The parts, on one thread\n\nMade by `bash Testing/Benchmarks/run.sh`.\n\n```\n'
+  cat "$folder/benchmarks/parts.txt"
+  printf '```\n'
+} >"$report/parts.md"
+say "The report is $report/README.md"
