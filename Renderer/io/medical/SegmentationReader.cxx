@@ -6,6 +6,7 @@
 #include "io/medical/ClosedSurface.h"
 #include "io/medical/MedicalImage.h"
 #include "io/medical/SampleStore.h"
+#include "io/medical/SegmentMask.h"
 
 #include <charconv>
 #include <map>
@@ -175,131 +176,12 @@ private:
   const std::string& m_source;
 };
 
-// ---- masks
-// ---------------------------------------------------------------------------------------
-
-/// Inclusive range of voxels; empty until one is added.
-struct Extent {
-  Size3 lower = Size3::Constant(std::numeric_limits<std::int64_t>::max());
-  Size3 upper = Size3::Constant(-1);
-
-  bool empty() const { return upper.x() < 0; }
-  void add(const Size3& voxel) {
-    lower = lower.cwiseMin(voxel);
-    upper = upper.cwiseMax(voxel);
-  }
-};
-
-/// Which faces (lower, upper) of a labelmap lie on the volume's.
-using SharedFaces = std::array<std::array<bool, 2>, 3>;
-
-/// Faces are shared where all corners are within half a voxel, with the labelmap on the inner side.
-bool isShared(const Grid& labelmap, const Grid& volume, int axis, int side) {
-  const Affine toVolume = volume.worldToIndex * labelmap.indexToWorld;
-  const Vec3 center = toVolume * labelmap.indexBox().center();
-  const Box box = volume.indexBox();
-  for (int other = 0; other < 3; ++other)
-    for (const double face : {box.lower[other], box.upper[other]}) {
-      const bool inside = face == box.lower[other] ? center[other] > face : center[other] < face;
-      bool near = inside;
-      for (int i = 0; i < 8; ++i) {
-        const bool onFace = ((i >> axis) & 1) == side;
-        const double x = (toVolume * labelmap.indexBox().corner(i))[other];
-        near = near && (!onFace || std::abs(x - face) <= 0.5);
-      }
-      if (near)
-        return true;
-    }
-  return false;
-}
-
-SharedFaces sharedFaces(const Grid& labelmap, const Grid& volume) {
-  SharedFaces shared{};
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side)
-      shared[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] =
-          isShared(labelmap, volume, axis, side);
-  return shared;
-}
-
-/// The focus in one labelmap: which of its voxels are chosen, and their mask.
-template <typename Label>
-class Focus {
-public:
-  Focus(const Grid& grid, std::size_t layerCount, const std::vector<Label>& labels,
-        const std::vector<SegmentInfo>& chosen)
-      : m_grid(grid), m_layerCount(layerCount), m_labels(labels), m_values(layerCount) {
-    for (const SegmentInfo& segment : chosen)
-      m_values[segment.layer].insert(segment.labelValue);
-  }
-
-  void fill(Mask& mask, const SharedFaces& shared) const {
-    const Extent extent = this->extent();
-    if (extent.empty())
-      return;
-    const Size3 origin = extent.lower.array() - 1;
-    const Size3 size = extent.upper - extent.lower + Size3::Constant(3);
-    Affine indexToWorld = m_grid.indexToWorld;
-    indexToWorld.translate(origin.cast<double>());
-    mask.grid = Grid(size, indexToWorld);
-    mask.voxels.reserve(static_cast<std::size_t>(mask.grid.voxelCount()));
-    for (std::int64_t z = 0; z < size.z(); ++z)
-      for (std::int64_t y = 0; y < size.y(); ++y)
-        for (std::int64_t x = 0; x < size.x(); ++x)
-          mask.voxels.push_back(value(origin + Size3(x, y, z), shared, mask.count));
-  }
-
-private:
-  bool isChosen(const Size3& voxel) const {
-    const auto first =
-        static_cast<std::size_t>(voxel.x() +
-                                 m_grid.size.x() * (voxel.y() + m_grid.size.y() * voxel.z())) *
-        m_layerCount;
-    for (std::size_t layer = 0; layer < m_layerCount; ++layer)
-      if (m_labels[first + layer] != 0 && m_values[layer].contains(m_labels[first + layer]))
-        return true;
-    return false;
-  }
-
-  Extent extent() const {
-    Extent extent;
-    for (std::int64_t z = 0; z < m_grid.size.z(); ++z)
-      for (std::int64_t y = 0; y < m_grid.size.y(); ++y)
-        for (std::int64_t x = 0; x < m_grid.size.x(); ++x)
-          if (isChosen({x, y, z}))
-            extent.add({x, y, z});
-    return extent;
-  }
-
-  /// Of a voxel that may lie one beyond the labelmap; counts those of the segments.
-  std::uint8_t value(Size3 voxel, const SharedFaces& shared, std::int64_t& count) const {
-    bool beyond = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t last = m_grid.size[axis] - 1;
-      if (voxel[axis] >= 0 && voxel[axis] <= last)
-        continue;
-      if (!shared[static_cast<std::size_t>(axis)][voxel[axis] < 0 ? 0 : 1])
-        return 0;
-      voxel[axis] = std::clamp<std::int64_t>(voxel[axis], 0, last);
-      beyond = true;
-    }
-    const bool chosen = isChosen(voxel);
-    count += chosen && !beyond;
-    return chosen;
-  }
-
-  const Grid& m_grid;
-  std::size_t m_layerCount;
-  const std::vector<Label>& m_labels;
-  std::vector<std::set<std::int32_t>> m_values; ///< chosen ones of each layer
-};
-
 // ---- statistics
 // ----------------------------------------------------------------------------------
 
 struct ValueStatistics {
   std::int64_t voxels = 0;
-  Extent extent = {};
+  VoxelExtent extent = {};
 };
 
 using StatisticsOfValues = std::map<std::int32_t, ValueStatistics>;
@@ -321,13 +203,13 @@ void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_
         }
         if (counted) {
           ++counted->voxels;
-          counted->extent.add({x, y, z});
+          counted->extent.add({{x, y, z}, {x, y, z}});
         }
       }
 }
 
 /// Of whole voxels, along the world's axes.
-Box worldBounds(const Grid& grid, const Extent& extent) {
+Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
   const Box voxels{extent.lower.cast<double>().array() - 0.5,
                    extent.upper.cast<double>().array() + 0.5};
   Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
@@ -415,10 +297,7 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
     chosen.push_back(find(selector));
     mask.names.push_back(chosen.back().name);
   }
-  const SharedFaces shared = sharedFaces(m_grid, volume);
-  std::visit(
-      [&](const auto& labels) { Focus(m_grid, m_layerCount, labels, chosen).fill(mask, shared); },
-      m_labels);
+  fillMask(m_grid, m_layerCount, m_labels, chosen, volume, mask);
   if (mask.count == 0)
     throw inputError(m_source, "the focus has no voxel (" + listed(chosen) +
                                    "); choose segments that are not empty");
