@@ -49,25 +49,33 @@ inline std::array<double, 2> turningPoints(const Cubic& cubic) {
 }
 
 /// The root of a cubic that rises monotonically from below 0 at `low` to at least 0 at `high`:
-/// Newton's steps, bisection wherever they leave the bracket.
+/// Newton's steps from the chord's root, bisection wherever they leave the bracket.
 inline double rootBetween(const Cubic& cubic, double low, double high) {
-  double s = 0.5 * (low + high);
-  for (int step = 0; step < 100; ++step) {
+  constexpr double rounding = 1e-15; // of s, which is at most 1
+  const double atLow = cubic(low);
+  double s = low + (high - low) * (atLow / (atLow - cubic(high)));
+  for (int step = 0; step < 100 && high - low > rounding; ++step) {
     const double value = cubic(s);
     (value < 0.0 ? low : high) = s;
     const double newton = s - value / cubic.slope(s);
-    const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
-    if (std::abs(next - s) <= 1e-16)
-      break;
-    s = next;
+    if (std::abs(newton - s) <= rounding)
+      break; // before it is held against the bracket, of which s is an end
+    s = newton > low && newton < high ? newton : 0.5 * (low + high);
   }
   return s;
 }
 
 /// The least s in [0, 1] at which the cubic is not below 0; infinity where there is none.
 inline double firstNonNegative(const Cubic& cubic) {
-  if (cubic(0.0) >= 0.0)
+  const std::array<double, 4>& c = cubic.c;
+  if (c[0] >= 0.0)
     return 0.0;
+  // Bernstein's coefficients bound the cubic; it rises where they do.
+  const double b1 = c[0] + c[1] / 3.0, b2 = b1 + (c[1] + c[2]) / 3.0, b3 = cubic(1.0);
+  if (std::max({b1, b2, b3}) < 0.0)
+    return infinity;
+  if (c[0] <= b1 && b1 <= b2 && b2 <= b3)
+    return rootBetween(cubic, 0.0, 1.0);
   double low = 0.0;
   const auto [first, second] = turningPoints(cubic);
   for (const double high : {first, second, 1.0}) { // between these the cubic is monotone

@@ -1,0 +1,47 @@
+#pragma once
+// Which samples of a depth buffer can meet something at all: found from its projection, so that no
+// ray is traced for the others.
+
+#include "clipping/DepthBuffer.h"
+#include "clipping/FocusCells.h"
+#include "volume/Domain.h"
+
+#include <optional>
+
+namespace fenestra {
+
+/// For each row of a depth buffer, samples outside of which no ray meets a volume's domain.
+class DomainFootprint {
+public:
+  DomainFootprint(const Camera& camera, const Domain& domain);
+
+  /// Between two columns, the second excluded, lie all samples of the row that meet the domain:
+  /// those and a few more, or every one where the domain reaches behind the eye.
+  struct Columns {
+    std::int64_t first, end;
+  };
+  Columns columns(const DepthBuffer& buffer, std::int64_t row) const;
+
+private:
+  std::vector<Vec2> m_corners; ///< on the plane through the target, mm
+  bool m_isInFront = true;     ///< all of it; else the projection has no bounds
+};
+
+/// For each tile of samples the range of depths in which their rays can meet the focus.
+class FocusFootprint {
+public:
+  FocusFootprint(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells);
+
+  /// mm; empty where no block of the focus is seen.
+  Interval depths(std::int64_t column, std::int64_t row) const {
+    return m_tiles[static_cast<std::size_t>(column / tileSize + row / tileSize * m_across)];
+  }
+
+private:
+  static constexpr std::int64_t tileSize = 4; ///< samples
+
+  std::int64_t m_across; ///< tiles in a row
+  std::vector<Interval> m_tiles;
+};
+
+} // namespace fenestra
