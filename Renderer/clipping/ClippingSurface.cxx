@@ -99,7 +99,8 @@ private:
   static constexpr std::int64_t narrowest = 8;
   /// Kernels to evaluate one by one that cost about as much as four tiles' expansions.
   static constexpr std::int64_t mostKernels = 2048;
-  /// mm; no more than what floats lose.
+  /// mm; less than what floats lose 10 mm from the target (measured over phantoms and scans: all
+  /// depths differ from those of single rows by at most one unit of a float's last place).
   static constexpr double tolerance = 1e-6;
 
   void fill(const Tile& tile) const {

@@ -6,7 +6,7 @@
 #include "clipping/FocusCells.h"
 #include "volume/Domain.h"
 
-#include <optional>
+#include <vector>
 
 namespace fenestra {
 

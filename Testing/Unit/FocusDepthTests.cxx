@@ -162,6 +162,47 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
   }
 }
 
+/// Grids, crops and views of every kind: the eye anywhere, the volume anywhere in the picture.
+TEST(FocusDepth, RegionsAreWhatEachRayMeets) {
+  Random random(4, 0, 0);
+  const Grid grid = centredGrid({20, 24, 16}, {1.0, 0.8, 1.5});
+  const Mask mask = maskOf(grid, [&](const Vec3& p) {
+    return (p - Vec3(3, 2, -4)).norm() < 4.0 || (p + Vec3(5, 3, -2)).norm() < 1.5;
+  });
+  std::array<int, 3> count{};
+  for (int trial = 0; trial < 60; ++trial) {
+    CameraPose pose;
+    pose.projection = trial % 2 ? Projection::perspective : Projection::orthographic;
+    pose.position = uniform(random, 1, trial % 3 ? 80 : 15) * randomPoint(random, -1, 1);
+    pose.target = randomPoint(random, -15, 15);
+    pose.scale = std::pow(10.0, uniform(random, 0, 2));
+    pose.angle = uniform(random, 2, 120);
+    const Camera camera(pose, 1 + static_cast<int>(random.uniform() * 40), 21);
+    const CropBox crop(Affine(Eigen::Translation3d(randomPoint(random, -6, 6)) *
+                              Eigen::AngleAxisd(trial, randomPoint(random, -1, 1).normalized())) *
+                       Eigen::Scaling(randomPoint(random, 1, 15)));
+    const Domain volume = trial % 5 < 2 ? Domain(grid, crop) : Domain(grid);
+    const FocusDepth focus = traceFocus(camera, volume, mask);
+    const std::int64_t stride = 1 + focus.depth.rows() / 40;
+    for (std::int64_t row = 0; row < focus.depth.rows(); row += stride)
+      for (std::int64_t column = 0; column < focus.depth.columns(); column += stride) {
+        const Ray ray = camera.rayThrough(focus.depth.position(column, row));
+        const Interval inside = volume.clip(transformed(grid.worldToIndex, ray));
+        bool isFocus = false;
+        for (double t = inside.begin; t < inside.end && !isFocus; t += 0.1)
+          isFocus = indicator(mask, ray.at(t)) > 0.5 + 1e-9;
+        const Region region =
+            focus.regions[static_cast<std::size_t>(focus.depth.sample(column, row))];
+        ASSERT_EQ(region == Region::outside, inside.empty()) << trial;
+        ASSERT_TRUE(!isFocus || region == Region::focus) << trial;
+        ASSERT_EQ(region == Region::focus,
+                  focus.depth.at(focus.depth.sample(column, row)) < infinity);
+        ++count[static_cast<std::size_t>(region)];
+      }
+  }
+  EXPECT_GT(*std::ranges::min_element(count), 500);
+}
+
 TEST(FocusDepth, ARayThatStartsInsideMeetsTheFocusThere) {
   const Grid grid = centredGrid({20, 20, 20});
   const Mask mask = sphereMask(grid, 6.0);
