@@ -1,0 +1,202 @@
+// Samples on their way from a file, block by block, into the smallest type that holds them all.
+
+#include "io/medical/VolumeReader.h"
+
+#include "MedicalFiles.h"
+#include "io/medical/SampleSource.h"
+#include "io/medical/SampleStore.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace fenestra {
+namespace {
+
+constexpr std::size_t count = 600'000; // some blocks, the last one not full
+const std::string sizes = "100 100 60";
+
+using Store = SampleStore<std::uint8_t, std::int16_t, std::uint16_t, float>;
+
+/// Small whole numbers but for one, late.
+template <typename T>
+std::vector<T> samplesWith(T odd) {
+  std::vector<T> samples(count);
+  for (std::size_t i = 0; i < count; ++i)
+    samples[i] = static_cast<T>(i % 200);
+  samples[count - 100] = odd;
+  return samples;
+}
+
+template <typename T>
+Store::Vectors stored(const std::vector<T>& samples) {
+  std::size_t at = 0;
+  const SampleSource source{
+      .type = T(), .count = samples.size(), .read = [&](void* to, std::size_t bytes) {
+        std::memcpy(to, samples.data() + at, bytes);
+        at += bytes / sizeof(T);
+      }};
+  Store store(source.count);
+  readSamples(source, store);
+  const std::array<double, 2> range = store.range();
+  Store::Vectors vectors = store.take();
+  std::visit(
+      [&](const auto& values) {
+        const auto [low, high] = std::minmax_element(values.begin(), values.end());
+        EXPECT_EQ(range[0], static_cast<double>(*low));
+        EXPECT_EQ(range[1], static_cast<double>(*high));
+      },
+      vectors);
+  return vectors;
+}
+
+template <typename Kept, typename T>
+void expectKeptAs(T odd) {
+  const std::vector<T> samples = samplesWith(odd);
+  const Store::Vectors vectors = stored(samples);
+  ASSERT_TRUE(std::holds_alternative<std::vector<Kept>>(vectors)) << odd;
+  const auto& kept = std::get<std::vector<Kept>>(vectors);
+  ASSERT_EQ(kept.size(), samples.size());
+  for (std::size_t i = 0; i < count; ++i)
+    ASSERT_EQ(static_cast<double>(kept[i]), static_cast<double>(static_cast<Kept>(samples[i])))
+        << i;
+}
+
+TEST(SampleReading, widensWhatIsThereWhenALateSampleAsksForIt) {
+  expectKeptAs<std::uint8_t, std::int32_t>(255);
+  expectKeptAs<std::int16_t, std::int32_t>(-1);
+  expectKeptAs<std::int16_t, std::int32_t>(32767);
+  expectKeptAs<std::uint16_t, std::int32_t>(32768);
+  expectKeptAs<float, std::int32_t>(65536);
+  expectKeptAs<float, std::int64_t>(std::int64_t{1} << 40);
+  expectKeptAs<std::uint8_t, float>(255.0f);
+  expectKeptAs<float, float>(0.5f);
+  expectKeptAs<float, double>(0.1);
+}
+
+TEST(SampleReading, widensMoreThanOnce) {
+  std::vector<std::int32_t> samples = samplesWith<std::int32_t>(-7);
+  samples[300'000] = 40'000; // to uint16, then to float for the negative one
+  const Store::Vectors vectors = stored(samples);
+  const auto& kept = std::get<std::vector<float>>(vectors);
+  EXPECT_TRUE(std::equal(kept.begin(), kept.end(), samples.begin(), samples.end(),
+                         [](float a, std::int32_t b) { return a == static_cast<float>(b); }));
+}
+
+TEST(SampleReading, mendsWhatIsNotFiniteInAnyBlock) {
+  for (const float odd : {0.5f, 7.0f}) { // stays float; becomes integers
+    std::vector<float> samples = samplesWith(odd);
+    samples[3] = std::numeric_limits<float>::quiet_NaN();
+    samples[400'000] = std::numeric_limits<float>::infinity();
+    samples[count - 1] = -std::numeric_limits<float>::infinity();
+    const Store::Vectors vectors = stored(samples);
+    EXPECT_EQ(vectors.index(), odd == 0.5f ? 3u : 0u);
+    std::visit(
+        [&](const auto& kept) {
+          ASSERT_EQ(kept.size(), count);
+          for (std::size_t i = 0; i < count; ++i) {
+            const float expected = std::isnan(samples[i])   ? 0.0f
+                                   : std::isinf(samples[i]) ? (samples[i] > 0 ? 199.0f : 0.0f)
+                                                            : samples[i];
+            ASSERT_EQ(static_cast<float>(kept[i]), expected) << i;
+          }
+        },
+        vectors);
+  }
+}
+
+TEST(SampleReading, keepsNothingWhereNoTypeHoldsIt) {
+  SampleStore<std::uint8_t, std::int16_t> store(2);
+  const std::vector<float> samples = {1.0f, 0.5f};
+  store.append(std::span(samples), survey(std::span(samples)));
+  EXPECT_FALSE(store.holdsAll());
+}
+
+// ---- files
+// ---------------------------------------------------------------------------------------
+
+std::string compressed(const std::string& bytes, int windowBits) {
+  z_stream stream{};
+  deflateInit2(&stream, 1, Z_DEFLATED, windowBits, 8, Z_DEFAULT_STRATEGY);
+  std::string out(deflateBound(&stream, uLong(bytes.size())) + 32, '\0');
+  std::string in = bytes;
+  stream.next_in = reinterpret_cast<Bytef*>(in.data());
+  stream.avail_in = static_cast<uInt>(in.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+std::string zlib(const std::string& bytes) {
+  return compressed(bytes, 15);
+}
+std::string gzip(const std::string& bytes) {
+  return compressed(bytes, 15 + 16);
+}
+
+std::string nrrd(const std::string& encoding, const std::string& endian) {
+  return "NRRD0004\ntype: short\ndimension: 3\nsizes: " + sizes + "\nencoding: " + encoding +
+         "\nendian: " + endian + "\n\n";
+}
+
+std::string meta(const std::string& fields) {
+  return "ObjectType = Image\nNDims = 3\nDimSize = " + sizes + "\n" + fields +
+         "ElementType = MET_SHORT\nElementDataFile = LOCAL\n";
+}
+
+TEST(SampleReading, readsBothByteOrdersInEveryStorage) {
+  const std::vector<std::int16_t> samples = samplesWith<std::int16_t>(-1000);
+  std::vector<std::int16_t> swapped = samples;
+  for (std::int16_t& x : swapped)
+    x = static_cast<std::int16_t>(__builtin_bswap16(static_cast<std::uint16_t>(x)));
+  constexpr bool isLittle = std::endian::native == std::endian::little;
+  const std::string little = rawBytes(isLittle ? samples : swapped);
+  const std::string big = rawBytes(isLittle ? swapped : samples);
+  const TemporaryFolder folder;
+  for (const auto& path : {
+           folder.write("raw-little.nrrd", nrrd("raw", "little") + little),
+           folder.write("raw-big.nrrd", nrrd("raw", "big") + big),
+           folder.write("gzip-little.nrrd", nrrd("gzip", "little") + gzip(little)),
+           folder.write("gzip-big.nrrd", nrrd("gzip", "big") + gzip(big)),
+           folder.write("raw-little.mha", meta("BinaryDataByteOrderMSB = False\n") + little),
+           folder.write("raw-big.mha", meta("ElementByteOrderMSB = True\n") + big),
+           folder.write("raw-native.mha", meta("") + rawBytes(samples)),
+           folder.write("zlib-little.mha",
+                        meta("BinaryDataByteOrderMSB = 0\nCompressedData = True\n") + zlib(little)),
+           folder.write("zlib-big.mha",
+                        meta("BinaryDataByteOrderMSB = 1\nCompressedData = True\n") + zlib(big)),
+       }) {
+    const Volume volume = readVolume(path);
+    EXPECT_EQ(std::get<std::vector<std::int16_t>>(volume.voxels), samples) << path;
+    EXPECT_EQ(volume.minimum, -1000.0);
+    EXPECT_EQ(volume.maximum, 199.0);
+  }
+}
+
+TEST(SampleReading, refusesStreamsOfAnotherLength) {
+  const TemporaryFolder folder;
+  const std::string samples = rawBytes(samplesWith<std::int16_t>(-1000));
+  const auto refuse = [&](const std::string& name, const std::string& content) {
+    const auto path = folder.write(name, content);
+    expectRefused(path, "is damaged or truncated", [&] { readVolume(path); });
+  };
+  const std::string zipped = gzip(samples);
+  const std::string head = nrrd("gzip", "little");
+  refuse("short.nrrd", head + gzip(samples.substr(2)));
+  refuse("long.nrrd", head + gzip(samples + "x"));
+  refuse("cut.nrrd", head + zipped.substr(0, zipped.size() - 3));
+  std::string wrong = zipped;
+  wrong[wrong.size() - 8] = static_cast<char>(~wrong[wrong.size() - 8]); // of the checksum
+  refuse("checksum.nrrd", head + wrong);
+  refuse("cut.mha", meta("CompressedData = True\n") + zlib(samples).substr(0, 5000));
+}
+
+} // namespace
+} // namespace fenestra
