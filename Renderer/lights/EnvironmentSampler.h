@@ -19,8 +19,9 @@ public:
   /// Radiance averaged over the sphere.
   const Rgb& mean() const { return m_mean; }
 
-private:
   bool constant() const { return m_light.map.width == 0; }
+
+private:
   std::size_t texelIndex(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_light.map.width) +
            static_cast<std::size_t>(column);

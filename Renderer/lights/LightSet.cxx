@@ -61,6 +61,8 @@ void LightSet::place(const AreaLight& light, const Grid& volume, const Camera& c
 void LightSet::chooseShares(const Vec3& center) {
   std::vector<double*> shares;
   for (SharedEnvironment& environment : m_environments) {
+    if (environment.sampler.constant())
+      continue;
     environment.share = pi * brightness(environment.sampler.mean());
     shares.push_back(&environment.share);
   }
@@ -98,12 +100,18 @@ std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, co
       return LightSample{light.toward, infinity, light.irradiance, light.share, true};
     choice -= light.share;
   }
-  if (m_environments.empty())
+  const SharedEnvironment* chosen = nullptr;
+  for (const SharedEnvironment& environment : m_environments) {
+    if (environment.share == 0.0)
+      continue;
+    chosen = &environment; // the last one takes what rounding leaves
+    if (choice < environment.share)
+      break;
+    choice -= environment.share;
+  }
+  if (chosen == nullptr)
     return std::nullopt;
-  std::size_t chosen = 0;
-  while (chosen + 1 < m_environments.size() && choice >= m_environments[chosen].share)
-    choice -= m_environments[chosen++].share;
-  const Vec3 direction = m_environments[chosen].sampler.sample(u);
+  const Vec3 direction = chosen->sampler.sample(u);
   const LightArrival arrival = environment(direction);
   if (!(arrival.pdf > 0.0))
     return std::nullopt;

@@ -1,8 +1,9 @@
 #pragma once
 // The lights of a scene, ready to be sampled: next-event estimation draws from them, and directions
 // that scattering drew ask for their radiance and for the density with which sample() would have
-// drawn the same (for multiple importance sampling). Area lights are emitters only: they block
-// nothing, and an eye ray does not see them.
+// drawn the same (for multiple importance sampling). A constant environment is never drawn:
+// scattered rays find it as well, and need no second ray for it. Area lights are emitters only:
+// they block nothing, and an eye ray does not see them.
 
 #include "camera/Camera.h"
 #include "core/Random.h"
@@ -34,7 +35,7 @@ public:
   /// Lights in the camera's frame are placed around the volume's centre.
   LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera);
 
-  /// None where the drawn light does not reach the point, or there is no light.
+  /// None where the drawn light does not reach the point, or there is no light to draw.
   std::optional<LightSample> sample(const Vec3& point, Random& random) const {
     const double choice = random.uniform();
     return sample(point, choice, random.uniform2());
@@ -75,7 +76,7 @@ private:
 
   struct SharedEnvironment {
     EnvironmentSampler sampler;
-    double share;
+    double share; ///< 0: never drawn
   };
 
   void place(const AreaLight& light, const Grid& volume, const Camera& camera);

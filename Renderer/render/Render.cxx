@@ -1,6 +1,8 @@
 #include "render/Render.h"
 
 #include "core/Stopwatch.h"
+#include "transport/PathEstimator.h"
+#include "transport/PathWave.h"
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/combinable.h>
@@ -29,6 +31,25 @@ auto withMedium(const RenderScene& scene, Work&& work) {
       scene.volume.voxels);
 }
 
+/// One path after the other.
+template <typename Voxel>
+struct OneByOne {
+  PathEstimator<Voxel> estimator;
+
+  template <typename Start, typename Deliver>
+  bool trace(std::size_t count, Start&& start, Deliver&& deliver, Counters& counters) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      PathStart from = start(i);
+      const std::optional<PathSample> sample =
+          estimator.trace(from.column, from.row, from.random, counters);
+      if (!sample || estimator.stopped())
+        return false;
+      deliver(i, *sample);
+    }
+    return true;
+  }
+};
+
 /// Passes grow, so that a picture is there early and overhead stays small later; their sizes are
 /// fixed, so that a stop by noise falls on the same sample count on every machine.
 std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
@@ -40,37 +61,57 @@ std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
 
 /// Samples first … first + count - 1 of every pixel. Returns false when it was stopped before all
 /// were done.
-template <typename Estimator>
-bool renderPass(const Estimator& estimator, std::uint64_t first, std::uint64_t count,
-                std::uint64_t seed, Film& film, Counters& total, RenderMonitor& monitor) {
+/// The samples first … first + count - 1 of the pixels of a tile, counted pixel by pixel.
+class TileSamples {
+public:
+  TileSamples(const tbb::blocked_range2d<int>& tile, std::uint64_t first, std::uint64_t count)
+      : m_tile(tile), m_first(first), m_count(count) {}
+
+  std::size_t size() const {
+    return static_cast<std::size_t>(m_tile.rows().size() * m_tile.cols().size() * m_count);
+  }
+  int column(std::size_t i) const {
+    return m_tile.cols().begin() + static_cast<int>(i / m_count % m_tile.cols().size());
+  }
+  int row(std::size_t i) const {
+    return m_tile.rows().begin() + static_cast<int>(i / m_count / m_tile.cols().size());
+  }
+  PathStart start(std::size_t i, std::uint64_t seed, int width) const {
+    const auto pixel = static_cast<std::uint64_t>(row(i)) * static_cast<std::uint64_t>(width) +
+                       static_cast<std::uint64_t>(column(i));
+    Random random(seed, pixel, m_first + i % m_count);
+    const Vec2 jitter = random.uniform2();
+    return {column(i) + jitter.x(), row(i) + jitter.y(), random};
+  }
+
+private:
+  const tbb::blocked_range2d<int>& m_tile;
+  std::uint64_t m_first, m_count;
+};
+
+/// Samples first … first + count - 1 of every pixel. Returns false when it was stopped before all
+/// were done; tiles are done whole or not at all.
+template <typename Tracer>
+bool renderPass(const Tracer& tracer, std::uint64_t first, std::uint64_t count, std::uint64_t seed,
+                Film& film, Counters& total, RenderMonitor& monitor) {
   tbb::combinable<Counters> counters;
+  tbb::combinable<std::vector<PathSample>> buffers;
   std::atomic<bool> whole = true;
   const auto renderTile = [&](const tbb::blocked_range2d<int>& tile) {
-    Counters& local = counters.local();
-    for (int row = tile.rows().begin(); row < tile.rows().end(); ++row) {
-      for (int column = tile.cols().begin(); column < tile.cols().end(); ++column) {
-        const auto pixel =
-            static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(film.width()) +
-            static_cast<std::uint64_t>(column);
-        for (std::uint64_t sample = first; sample < first + count; ++sample) {
-          if (monitor.stop.load(std::memory_order_relaxed)) {
-            whole = false;
-            return;
-          }
-          Random random(seed, pixel, sample);
-          const Vec2 jitter = random.uniform2();
-          const std::optional<PathSample> path =
-              estimator.trace(column + jitter.x(), row + jitter.y(), random, local);
-          if (!path) {
-            whole = false;
-            return;
-          }
-          film.at(column, row).add(*path);
-        }
-      }
-      const auto columns = static_cast<std::uint64_t>(tile.cols().end() - tile.cols().begin());
-      monitor.paths.fetch_add(count * columns, std::memory_order_relaxed);
+    const TileSamples tileSamples(tile, first, count);
+    std::vector<PathSample>& samples = buffers.local();
+    samples.resize(tileSamples.size());
+    const auto start = [&](std::size_t i) { return tileSamples.start(i, seed, film.width()); };
+    const auto deliver = [&](std::size_t i, const PathSample& sample) { samples[i] = sample; };
+    if (monitor.stop.load(std::memory_order_relaxed) ||
+        !tracer.trace(samples.size(), start, deliver, counters.local())) {
+      whole = false;
+      return;
     }
+    // In their own order, whichever ended first.
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      film.at(tileSamples.column(i), tileSamples.row(i)).add(samples[i]);
+    monitor.paths.fetch_add(samples.size(), std::memory_order_relaxed);
   };
   constexpr int tileSize = 16;
   tbb::parallel_for(
@@ -79,8 +120,8 @@ bool renderPass(const Estimator& estimator, std::uint64_t first, std::uint64_t c
   return whole;
 }
 
-template <typename Estimator>
-RenderResult renderPasses(const Estimator& estimator, const RenderScene& scene,
+template <typename Tracer>
+RenderResult renderPasses(const Tracer& tracer, const RenderScene& scene,
                           const RenderSettings& settings, RenderMonitor& monitor) {
   RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0};
   const Stopwatch watch;
@@ -96,7 +137,7 @@ RenderResult renderPasses(const Estimator& estimator, const RenderScene& scene,
       }
       count = std::min(count, static_cast<std::uint64_t>(std::min(affordable, 1e9)));
     }
-    if (!renderPass(estimator, result.finishedSamples, count, settings.seed, result.film,
+    if (!renderPass(tracer, result.finishedSamples, count, settings.seed, result.film,
                     result.counters, monitor)) {
       result.reason = StopReason::request;
       return result;
@@ -118,10 +159,20 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
   const int cores = tbb::info::default_concurrency(); // TBB complains about more
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   return arena.execute([&] {
-    return withMedium(scene, [&](const auto& medium, const auto& tracker) {
-      const PathEstimator estimator(scene.volume.grid, medium, tracker, scene.lights, scene.camera,
-                                    scene.clip, settings.path, monitor.stop);
-      return renderPasses(estimator, scene, settings, monitor);
+    return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium,
+                                                 const Tracker<Voxel>& tracker) {
+      if (settings.transport == Transport::fast &&
+          WideTracker::serves(scene.volume, scene.transfer)) {
+        const WideTracker wide(scene.volume, scene.transfer, scene.majorants, scene.clip);
+        const PathWave<Voxel> wave(Domain(scene.volume.grid, scene.crop), medium, wide,
+                                   scene.lights, scene.camera, scene.clip, settings.path,
+                                   monitor.stop);
+        return renderPasses(wave, scene, settings, monitor);
+      }
+      const OneByOne<Voxel> readable{PathEstimator<Voxel>(scene.volume.grid, medium, tracker,
+                                                          scene.lights, scene.camera, scene.clip,
+                                                          settings.path, monitor.stop)};
+      return renderPasses(readable, scene, settings, monitor);
     });
   });
 }

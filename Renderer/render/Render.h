@@ -4,7 +4,10 @@
 
 #include "film/Film.h"
 #include "lights/LightSet.h"
+#include "tracking/Counters.h"
+#include "tracking/MajorantGrid.h"
 #include "transport/PathEstimator.h"
+#include "volume/Domain.h"
 #include "volume/Volume.h"
 
 #include <atomic>
@@ -22,6 +25,10 @@ struct RenderScene {
   std::optional<CropBox> crop = {};
 };
 
+/// How paths find their way. Both are unbiased; `fast` is `readable` where its lanes do not serve
+/// (WideTracker::serves).
+enum class Transport { fast, readable };
+
 /// Stops at the first of samples, seconds and noise.
 struct RenderSettings {
   PathSettings path;
@@ -29,6 +36,7 @@ struct RenderSettings {
   double seconds = infinity;  ///< of transport
   double noise = -1.0; ///< Film::noise() at the end of a pass, from 16 samples on; negative: never
   std::uint64_t seed = 0;
+  Transport transport = Transport::fast;
   int threads = 0;               ///< 0: all
   std::uint64_t passSamples = 0; ///< samples a pass; 0: growing passes. Never changes the picture.
 };

@@ -36,7 +36,7 @@ Corners cornersOf(const Affine& cellToWorld, const Vec3& cell) {
 
 MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
                            const TransferFunction& transfer, const Clip& clip)
-    : m_cellCount(ranges.cellCount()), m_cells(ranges.size()) {
+    : m_cellCount(ranges.cellCount()), m_edge(ranges.edge()), m_cells(ranges.size()) {
   m_worldToCell = Eigen::Scaling(ranges.edge().cast<double>().cwiseInverse().eval()) *
                   (Eigen::Translation3d(Vec3::Constant(0.5)) * grid.worldToIndex);
   const Affine cellToWorld = m_worldToCell.inverse();

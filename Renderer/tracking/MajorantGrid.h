@@ -26,12 +26,14 @@ public:
   static int apronFor(const TransferFunction& transfer) { return transfer.gradientOpacity ? 1 : 0; }
 
   const Size3& cellCount() const { return m_cellCount; }
+  /// Voxels that a cell spans.
+  const Size3& edge() const { return m_edge; }
   const Cell& cell(std::int64_t index) const { return m_cells[static_cast<std::size_t>(index)]; }
   /// World space to cell space, in which cell c covers [c, c + 1].
   const Affine& worldToCell() const { return m_worldToCell; }
 
 private:
-  Size3 m_cellCount;
+  Size3 m_cellCount, m_edge;
   Affine m_worldToCell;
   std::vector<Cell> m_cells;
 };

@@ -5,6 +5,7 @@
 #include "Matrix.h"
 #include "Oracle/Estimates.h"
 #include "Significance.h"
+#include "render/Render.h"
 
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@ namespace fenestra::testing {
 struct MatrixSettings {
   std::uint64_t samples = 128; ///< a pixel, of each renderer
   std::uint64_t seed = 1;
+  Transport transport = Transport::fast; ///< of the product
 };
 
 struct Outcome {

@@ -27,8 +27,10 @@ std::string errorImages(const Outcome& c) {
   return "see product.exr, oracle.exr and z.png in " + folder.string();
 }
 
-TEST(Matrix, ProductAgreesWithTheOracle) {
-  const MatrixSettings settings{isLongRun() ? 512U : 128U, seedBase()};
+class Matrix : public ::testing::TestWithParam<Transport> {};
+
+TEST_P(Matrix, AgreesWithTheOracle) {
+  const MatrixSettings settings{isLongRun() ? 512U : 128U, seedBase(), GetParam()};
   const std::vector<Combination> all = combinations(static_cast<int>(
       numberFromEnvironment("FENESTRA_COMBINATIONS").value_or(isLongRun() ? 480 : 240)));
   std::vector<Outcome> outcomes;
@@ -48,8 +50,15 @@ TEST(Matrix, ProductAgreesWithTheOracle) {
               << ")\n";
     EXPECT_GT(verdict.probability, leastProbability(results.size())) << verdict.name;
   }
-  recordMatrix(outcomes, results, settings);
+  if (GetParam() == Transport::fast)
+    recordMatrix(outcomes, results, settings);
 }
+
+INSTANTIATE_TEST_SUITE_P(Transports, Matrix,
+                         ::testing::Values(Transport::fast, Transport::readable),
+                         [](const auto& info) {
+                           return info.param == Transport::fast ? "fast" : "readable";
+                         });
 
 } // namespace
 } // namespace fenestra::testing

@@ -15,7 +15,8 @@ namespace {
 
 struct Fault {
   std::string name, why;
-  int foundIn = -1; ///< the first combination that shows it
+  Transport transport; ///< that shows it
+  int foundIn = -1;    ///< the first combination that shows it
   double probability = 1.0;
 };
 
@@ -23,7 +24,9 @@ std::vector<Fault> readFaults() {
   std::ifstream file(FENESTRA_FAULTS);
   std::vector<Fault> faults;
   for (const auto& entry : nlohmann::json::parse(file))
-    faults.push_back({entry.at("name"), entry.at("why")});
+    faults.push_back(
+        {entry.at("name"), entry.at("why"),
+         entry.value("transport", "fast") == "fast" ? Transport::fast : Transport::readable});
   return faults;
 }
 
@@ -48,19 +51,23 @@ void record(const std::vector<Fault>& faults) {
 
 TEST(PlantedErrors, AreAllFound) {
   constexpr int count = 240; // of the suite: what one combination has to show follows from it
-  const MatrixSettings settings;
+  MatrixSettings settings;
   std::vector<Fault> faults = readFaults();
   ASSERT_GE(faults.size(), 12U);
   for (const Combination& c : combinations(count)) {
     if (std::ranges::all_of(faults, [](const Fault& fault) { return fault.foundIn >= 0; }))
       break;
     const Truth truth = renderTruth(c, settings);
-    EXPECT_GT(compareWithOracle(c, settings, truth).probability(), leastProbability(count))
-        << "without an error planted: " << describe(c);
+    for (const Transport transport : {Transport::fast, Transport::readable}) {
+      settings.transport = transport;
+      EXPECT_GT(compareWithOracle(c, settings, truth).probability(), leastProbability(count))
+          << "without an error planted: " << describe(c);
+    }
     for (Fault& fault : faults) {
       if (fault.foundIn >= 0)
         continue;
       const Planting planting(fault.name);
+      settings.transport = fault.transport;
       const double probability = compareWithOracle(c, settings, truth).probability();
       if (probability > leastProbability(count))
         continue;

@@ -4,6 +4,8 @@
 #include "Significance.h"
 #include "StraightIntegral.h"
 
+#include "tracking/WideTracker.h"
+
 namespace fenestra::testing {
 namespace {
 
@@ -156,68 +158,190 @@ private:
   Bin m_bins[3];
 };
 
-class Tracking : public ::testing::TestWithParam<int> {
-protected:
-  /// Runs test(tracker) on the subject.
-  template <typename Test>
-  void withTracker(Test&& test) const {
-    const MajorantGrid majorants(m_subject.volume.grid, CellRanges(m_subject.volume, 0),
-                                 m_subject.transfer, ClipNone{});
-    std::visit(
-        [&](const auto& voxels) {
-          using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
-          const Medium<Voxel> medium(m_subject.volume.grid, voxels, m_subject.transfer);
-          const Clip clip;
-          test(Tracker<Voxel>(m_subject.volume.grid, medium, majorants, clip));
-        },
-        m_subject.volume.voxels);
+/// A ray to be followed, with random numbers of its own.
+struct Travel {
+  Ray ray;
+  Interval range;
+  Random random;
+};
+
+/// Follows rays one by one, or in lanes: results in the rays' order.
+class Follower {
+public:
+  virtual ~Follower() = default;
+  virtual std::vector<double> collisions(const std::vector<Travel>& travels) const = 0;
+  virtual std::vector<double> transmittances(const std::vector<Travel>& travels) const = 0;
+};
+
+template <typename Voxel>
+class ScalarFollower : public Follower {
+public:
+  ScalarFollower(const Subject& s, const std::vector<Voxel>& voxels, const MajorantGrid& majorants)
+      : m_medium(s.volume.grid, voxels, s.transfer),
+        m_tracker(s.volume.grid, m_medium, majorants, m_clip) {}
+
+  std::vector<double> collisions(const std::vector<Travel>& travels) const override {
+    std::vector<double> distances;
+    Counters counters;
+    for (Travel t : travels)
+      distances.push_back(m_tracker.sampleCollision(t.ray, t.range, t.random, counters));
+    return distances;
+  }
+  std::vector<double> transmittances(const std::vector<Travel>& travels) const override {
+    std::vector<double> ratios;
+    Counters counters;
+    for (Travel t : travels)
+      ratios.push_back(m_tracker.transmittance(t.ray, t.range, t.random, counters));
+    return ratios;
   }
 
-  Subject m_subject = subject(GetParam());
+private:
+  Medium<Voxel> m_medium;
+  Clip m_clip;
+  Tracker<Voxel> m_tracker;
+};
+
+class WideFollower : public Follower {
+public:
+  WideFollower(const Subject& s, const MajorantGrid& majorants)
+      : m_domain(s.volume.grid), m_tracker(s.volume, s.transfer, majorants, m_clip) {}
+
+  std::vector<double> collisions(const std::vector<Travel>& travels) const override {
+    return inBatches(travels, &WideTracker::sampleCollisions);
+  }
+  std::vector<double> transmittances(const std::vector<Travel>& travels) const override {
+    return inBatches(travels, &WideTracker::estimateTransmittances);
+  }
+
+private:
+  std::vector<double> inBatches(const std::vector<Travel>& travels,
+                                void (WideTracker::*follow)(RayBatch&, Counters&) const) const {
+    std::vector<double> results, begins;
+    Counters counters;
+    RayBatch rays;
+    const auto flush = [&] {
+      (m_tracker.*follow)(rays, counters);
+      for (std::size_t i = 0; i < rays.size; ++i)
+        results.push_back(static_cast<double>(rays.result[i]) +
+                          (follow == &WideTracker::sampleCollisions ? begins[i] : 0.0));
+      rays.size = 0;
+      begins.clear();
+    };
+    for (Travel t : travels) {
+      begins.push_back(addInside(rays, m_domain, t.ray, t.range,
+                                 static_cast<std::uint32_t>(t.random.bits() >> 32)));
+      if (rays.full())
+        flush();
+    }
+    flush();
+    return results;
+  }
+
+  Domain m_domain;
+  Clip m_clip;
+  WideTracker m_tracker;
+};
+
+/// A subject, and what follows its rays: "scalar", or the lanes of an instruction set.
+class Tracking : public ::testing::TestWithParam<std::tuple<int, std::string>> {
+protected:
+  void SetUp() override {
+    const std::string follower = std::get<1>(GetParam());
+    const std::vector<std::string> known = WideTracker::instructionSets();
+    m_majorants.emplace(m_subject.volume.grid, CellRanges(m_subject.volume, 0), m_subject.transfer,
+                        ClipNone{});
+    if (follower == "scalar") {
+      std::visit(
+          [&](const auto& voxels) {
+            using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
+            m_follower = std::make_unique<ScalarFollower<Voxel>>(m_subject, voxels, *m_majorants);
+          },
+          m_subject.volume.voxels);
+      return;
+    }
+    if (std::find(known.begin(), known.end(), follower) == known.end())
+      GTEST_SKIP() << "this machine has no " << follower;
+    ASSERT_TRUE(WideTracker::serves(m_subject.volume, m_subject.transfer));
+    WideTracker::useInstructionSet(follower);
+    ASSERT_EQ(WideTracker::instructionSet(), follower);
+    m_follower = std::make_unique<WideFollower>(m_subject, *m_majorants);
+  }
+  void TearDown() override {
+    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
+  }
+
+  Subject m_subject = subject(std::get<0>(GetParam()));
   StraightIntegral m_integral{m_subject.volume, m_subject.transfer};
+  std::optional<MajorantGrid> m_majorants;
+  std::unique_ptr<Follower> m_follower;
 };
 
 TEST_P(Tracking, PassesWhatTheExactTransmittanceSays) {
-  withTracker([&](const auto& tracker) {
-    Counters counters;
-    Differences passed, survived;
-    for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
-      Random random(seeded(6), i, 0);
-      const Ray ray = randomRay(m_subject.volume, random);
-      // As far as a near light, or everything.
-      const Interval inside = m_integral.inside(ray);
-      const Interval range{0.0, i % 2 == 0 ? infinity
-                                           : inside.begin +
-                                                 random.uniform() * (inside.end - inside.begin)};
-      const double expected = std::exp(-m_integral.opticalDepth(ray, range));
-      passed.add(tracker.transmittance(ray, range, random, counters), expected);
-      const bool free = tracker.sampleCollision(ray, range, random, counters) == infinity;
-      survived.add(free ? 1.0 : 0.0, expected);
-    }
-    passed.expectNone("ratio tracking");
-    survived.expectNone("survival");
-  });
+  std::vector<Travel> travels;
+  for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
+    Random random(seeded(6), i, 0);
+    const Ray ray = randomRay(m_subject.volume, random);
+    // As far as a near light, or everything.
+    const Interval inside = m_integral.inside(ray);
+    const double end =
+        i % 2 == 0 ? infinity : inside.begin + random.uniform() * (inside.end - inside.begin);
+    travels.push_back({ray, {0.0, end}, random});
+  }
+  const std::vector<double> ratios = m_follower->transmittances(travels);
+  const std::vector<double> distances = m_follower->collisions(travels);
+  Differences passed, survived;
+  for (std::size_t i = 0; i < travels.size(); ++i) {
+    const double expected = std::exp(-m_integral.opticalDepth(travels[i].ray, travels[i].range));
+    passed.add(ratios[i], expected);
+    survived.add(distances[i] == infinity ? 1.0 : 0.0, expected);
+  }
+  passed.expectNone("ratio tracking");
+  survived.expectNone("survival");
 }
 
 /// The optical depth to the collision, as a share of the rays that collide before: uniform. Where a
 /// ray passes, any share above that of all its collisions, drawn here.
 TEST_P(Tracking, DrawsCollisionsByTheExactDistribution) {
-  withTracker([&](const auto& tracker) {
-    Counters counters;
-    std::vector<double> shares;
-    for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
-      Random random(seeded(7), i, 0);
-      const Ray ray = randomRay(m_subject.volume, random);
-      const double distance = tracker.sampleCollision(ray, {}, random, counters);
-      const double passes = std::exp(-m_integral.opticalDepth(ray, {0.0, distance}));
-      shares.push_back(1.0 - (distance < infinity ? passes : random.uniform() * passes));
-    }
-    EXPECT_GT(uniformityProbability(shares), 1e-4);
-  });
+  std::vector<Travel> travels;
+  for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
+    Random random(seeded(7), i, 0);
+    const Ray ray = randomRay(m_subject.volume, random);
+    travels.push_back({ray, {}, random});
+  }
+  const std::vector<double> distances = m_follower->collisions(travels);
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < travels.size(); ++i) {
+    Random random(seeded(8), i, 0);
+    const double passes = std::exp(-m_integral.opticalDepth(travels[i].ray, {0.0, distances[i]}));
+    shares.push_back(1.0 - (distances[i] < infinity ? passes : random.uniform() * passes));
+  }
+  EXPECT_GT(uniformityProbability(shares), 1e-4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Media, Tracking, ::testing::Range(0, 5),
-                         [](const auto& info) { return std::string(subject(info.param).name); });
+/// A ray's result is its own, whatever else is in the batch.
+TEST_P(Tracking, FollowsARayTheSameWayInAnyCompany) {
+  std::vector<Travel> travels;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    Random random(9, i, 0);
+    const Ray ray = randomRay(m_subject.volume, random);
+    travels.push_back({ray, {}, random});
+  }
+  const std::vector<double> distances = m_follower->collisions(travels);
+  const std::vector<double> ratios = m_follower->transmittances(travels);
+  for (std::size_t i = 0; i < travels.size(); i += 7) {
+    EXPECT_EQ(m_follower->collisions({travels[i]}).at(0), distances[i]);
+    EXPECT_EQ(m_follower->transmittances({travels[i]}).at(0), ratios[i]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Media, Tracking,
+                         ::testing::Combine(::testing::Range(0, 5),
+                                            ::testing::Values("scalar", "AVX3", "AVX2", "SSE4",
+                                                              "SCALAR")),
+                         [](const auto& info) {
+                           return std::string(subject(std::get<0>(info.param)).name) + "_" +
+                                  std::get<1>(info.param);
+                         });
 
 } // namespace
 } // namespace fenestra::testing

@@ -1,0 +1,214 @@
+// Building what the lanes of WideTracker read.
+
+#include "tracking/WideTracker.h"
+
+#include <bit>
+
+namespace fenestra {
+namespace {
+
+float narrow(double x) {
+  return static_cast<float>(x);
+}
+
+WideScene::DepthAxis wide(const DepthAxis& axis) {
+  return {narrow(1.0 / axis.pitch),
+          narrow(axis.start),
+          static_cast<float>(axis.inside - 1),
+          static_cast<float>(axis.before),
+          narrow(1.0 / axis.factor),
+          static_cast<float>(axis.size() - 1)};
+}
+
+/// Affine map of index space: `normal` in world space, times a world point, plus `offset`.
+std::array<float, 4> row(const Grid& grid, const Vec3& normal, const Vec3& from, double offset) {
+  const Vec3 n = grid.indexToWorld.linear().transpose() * normal;
+  const double o = normal.dot(grid.indexToWorld.translation() - from) + offset;
+  return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
+}
+
+/// The least float not below `majorant` whose last bit is as asked.
+float withLastBit(float majorant, bool set) {
+  const bool isSet = (std::bit_cast<std::uint32_t>(majorant) & 1U) != 0;
+  return isSet == set ? majorant : std::nextafter(majorant, std::numeric_limits<float>::infinity());
+}
+
+/// Gives empty cells inside the border the number of empty cells around them, negated: two sweeps
+/// (Rosenfeld and Pfaltz 1966), exact for distances that count diagonals as 1. Nothing is known
+/// beyond the border.
+void findEmptyAround(const Size3& size, std::vector<float>& cells) {
+  const auto index = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    return static_cast<std::size_t>(x + size.x() * (y + size.y() * z));
+  };
+  constexpr float unknown = -1e6F;
+  const Size3 inner = size.array() - 1;
+  const auto forEachInner = [&](auto&& visit) {
+    for (std::int64_t z = 1; z < inner.z(); ++z)
+      for (std::int64_t y = 1; y < inner.y(); ++y)
+        for (std::int64_t x = 1; x < inner.x(); ++x)
+          visit(x, y, z);
+  };
+  forEachInner([&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    float& cell = cells[index(x, y, z)];
+    cell = cell > 0.0F ? cell : unknown;
+  });
+  // `side` is -1 for the neighbours that the first sweep has seen, 1 for the second's.
+  const auto relax = [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t side) {
+    float& cell = cells[index(x, y, z)];
+    if (cell > 0.0F)
+      return;
+    // Least by size: a full neighbour (positive) allows none, an empty one as many as it has, less
+    // one for the step to it and more one for itself.
+    float around = -cell;
+    const auto neighbour = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
+      const float other = cells[index(x + dx, y + dy, z + dz)];
+      around = std::min(around, other > 0.0F ? 0.0F : 1.0F - other);
+    };
+    for (std::int64_t dy = -1; dy <= 1; ++dy)
+      for (std::int64_t dx = -1; dx <= 1; ++dx)
+        neighbour(dx, dy, side);
+    for (std::int64_t dx = -1; dx <= 1; ++dx)
+      neighbour(dx, side, 0);
+    neighbour(side, 0, 0);
+    cell = -around;
+  };
+  forEachInner([&](auto x, auto y, auto z) { relax(x, y, z, -1); });
+  forEachInner([&](auto x, auto y, auto z) {
+    relax(size.x() - 1 - x, size.y() - 1 - y, size.z() - 1 - z, 1);
+  });
+}
+
+WideScene::VoxelType typeOf(const Voxels& voxels) {
+  return static_cast<WideScene::VoxelType>(voxels.index());
+}
+
+} // namespace
+
+double addInside(RayBatch& rays, const Domain& domain, const Ray& ray, const Interval& range,
+                 std::uint32_t seed) {
+  const Affine& worldToIndex = domain.grid().worldToIndex;
+  const Ray indexRay = transformed(worldToIndex, ray);
+  const Interval inside = domain.clip(indexRay, range);
+  if (inside.empty()) {
+    rays.add({Vec3::Zero(), Vec3::Ones()}, 0.0, seed);
+    return 0.0;
+  }
+  const Vec3 origin = inside.begin > 0.0 ? worldToIndex * ray.at(inside.begin) : indexRay.origin;
+  rays.add({origin, indexRay.direction}, inside.end - inside.begin, seed);
+  return inside.begin;
+}
+
+bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer) {
+  constexpr double deepest = 1e4;
+  const std::int64_t count = volume.grid.voxelCount();
+  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 ||
+      count > std::numeric_limits<std::int32_t>::max())
+    return false;
+  double greatest = 0.0;
+  for (const auto& knot : transfer.extinction.knots())
+    greatest = std::max(greatest, knot.value[0]);
+  return greatest * 2.0 * volume.grid.boundingRadius() <= deepest;
+}
+
+WideTracker::WideTracker(const Volume& volume, const TransferFunction& transfer,
+                         const MajorantGrid& majorants, const Clip& clip) {
+  m_scene.type = typeOf(volume.voxels);
+  m_scene.voxels =
+      std::visit([](const auto& v) { return static_cast<const void*>(v.data()); }, volume.voxels);
+  m_scene.voxelCount = volume.grid.voxelCount();
+  setCells(majorants, volume.grid);
+  setTable(transfer.extinction);
+  setClip(clip, volume.grid);
+}
+
+void WideTracker::setTable(const ScalarFunction& extinction) {
+  const auto& knots = extinction.knots();
+  m_scene.position = {-std::numeric_limits<float>::infinity()};
+  m_scene.value = {narrow(knots.front().value[0])};
+  m_scene.slope = {0.0F};
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    const bool last = i + 1 == knots.size();
+    const double width = last ? 0.0 : knots[i + 1].position - knots[i].position;
+    const double rise = last ? 0.0 : knots[i + 1].value[0] - knots[i].value[0];
+    m_scene.position.push_back(narrow(knots[i].position));
+    m_scene.value.push_back(narrow(knots[i].value[0]));
+    m_scene.slope.push_back(width > 0.0 ? narrow(rise / width) : 0.0F);
+  }
+  m_scene.position.push_back(std::numeric_limits<float>::infinity());
+
+  // As many bins as segments, so that few have to be tried.
+  const std::size_t bins = 2 * knots.size();
+  m_scene.binStart = narrow(knots.front().position);
+  const double span = extinction.span();
+  m_scene.binsPerUnit = span > 0.0 ? narrow(static_cast<double>(bins) / span) : 0.0F;
+  if (!std::isfinite(m_scene.binsPerUnit))
+    m_scene.binsPerUnit = 0.0F;
+  std::size_t segment = 0;
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    // One bin early: rounding must not lead past a segment.
+    const double start = knots.front().position +
+                         span * (static_cast<double>(bin) - 1.0) / static_cast<double>(bins);
+    while (static_cast<double>(m_scene.position[segment + 1]) <= start &&
+           segment + 2 < m_scene.position.size())
+      ++segment;
+    m_scene.binSegment.push_back(m_scene.binsPerUnit > 0.0F ? static_cast<std::int32_t>(segment)
+                                                            : 0);
+  }
+}
+
+void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {
+  const Size3 cells = majorants.cellCount();
+  const Size3 bordered = cells.array() + 2;
+  std::int64_t stride = 1;
+  std::int64_t cellStride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t size = grid.size[axis];
+    m_scene.axes[static_cast<std::size_t>(axis)] = {
+        static_cast<float>(size - 1),
+        static_cast<std::int32_t>(std::max<std::int64_t>(size - 2, 0)),
+        static_cast<std::int32_t>(size > 1 ? stride : 0),
+        static_cast<float>(majorants.edge()[axis]),
+        static_cast<std::int32_t>(cells[axis]),
+        static_cast<std::int32_t>(cellStride)};
+    stride *= size;
+    cellStride *= bordered[axis];
+  }
+  m_scene.cells.assign(static_cast<std::size_t>(cellStride), 0.0F);
+  for (std::int64_t z = 0; z < cells.z(); ++z)
+    for (std::int64_t y = 0; y < cells.y(); ++y)
+      for (std::int64_t x = 0; x < cells.x(); ++x) {
+        const MajorantGrid::Cell& cell = majorants.cell(x + cells.x() * (y + cells.y() * z));
+        const std::int64_t to = x + 1 + bordered.x() * (y + 1 + bordered.y() * (z + 1));
+        m_scene.cells[static_cast<std::size_t>(to)] =
+            cell.majorant > 0.0F ? withLastBit(cell.majorant, cell.cut) : 0.0F;
+      }
+  findEmptyAround(bordered, m_scene.cells);
+}
+
+void WideTracker::setClip(const Clip& clip, const Grid& grid) {
+  if (std::holds_alternative<ClipNone>(clip))
+    return;
+  const auto setCamera = [&](const Camera& camera) {
+    const Vec3& eye = camera.pose().position;
+    m_scene.perspective = camera.pose().projection == Projection::perspective;
+    m_scene.targetDepth = narrow(camera.targetDepth());
+    m_scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
+                      row(grid, camera.forward(), eye, -camera.targetDepth())};
+  };
+  if (const auto* plane = std::get_if<ClipPlane>(&clip)) {
+    m_scene.clipKind = WideScene::ClipKind::plane;
+    setCamera(plane->camera);
+    m_scene.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
+    return;
+  }
+  const auto& depth = std::get<ClipDepth>(clip);
+  m_scene.clipKind = depth.lookup == ClipDepth::Lookup::linear ? WideScene::ClipKind::depthLinear
+                                                               : WideScene::ClipKind::depthNearest;
+  setCamera(depth.camera);
+  m_scene.depthX = wide(depth.buffer->xAxis());
+  m_scene.depthY = wide(depth.buffer->yAxis());
+  m_scene.depths = depth.buffer->depthsFromReference().data();
+  m_scene.depthColumns = static_cast<std::int32_t>(depth.buffer->columns());
+}
+
+} // namespace fenestra

@@ -1,0 +1,422 @@
+#include "tracking/WideTracker.h"
+
+#include "core/Error.h"
+
+// Three instruction sets and what every machine has; the file is compiled once for each.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tracking/WideTracker.cxx"
+#include <hwy/foreach_target.h>
+// After foreach_target.h:
+#include "tracking/WideLookup-inl.h"
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+namespace {
+
+/// Lanes take new rays when this part of them has none.
+constexpr std::size_t refillShare = 4;
+/// Look-ups wait until this part of the busy lanes is at a tentative collision.
+constexpr std::size_t hitShare = 2;
+
+HWY_INLINE M both(M a, M b) {
+  return hn::And(a, b);
+}
+
+/// Random numbers of a lane: hashes of a counter that starts at the ray's seed (a mixer of 32 bits
+/// with low bias, by the Hash Prospector project).
+HWY_INLINE U nextBits(U& counter) {
+  counter = hn::Add(counter, hn::Set(bits, 0x9e3779b9U));
+  U x = counter;
+  x = hn::Mul(hn::Xor(x, hn::ShiftRight<16>(x)), hn::Set(bits, 0x21f0aaadU));
+  x = hn::Mul(hn::Xor(x, hn::ShiftRight<15>(x)), hn::Set(bits, 0x735a2d97U));
+  return hn::Xor(x, hn::ShiftRight<15>(x));
+}
+
+/// (h + 1/2) / 2^32 for h < 2^31: as precise near 0 as 32 bits can be.
+HWY_INLINE F fraction(U h) {
+  const F x = hn::ConvertTo(floats, hn::BitCast(ints, h));
+  return hn::MulAdd(x, all(0x1p-32F), all(0x1p-33F));
+}
+
+/// Uniform in (0, 1].
+HWY_INLINE F uniform(U& counter) {
+  const U h = nextBits(counter);
+  const U top = hn::Set(bits, 0x80000000U);
+  const F low = fraction(hn::AndNot(top, h));
+  const auto upper = hn::RebindMask(floats, hn::Eq(hn::And(h, top), top));
+  return hn::Add(low, hn::IfThenElseZero(upper, all(0.5F)));
+}
+
+/// Exponential with mean 1: precise near 0 and far out, as each half of the unit interval is
+/// counted from its own end.
+HWY_INLINE F exponential(U& counter) {
+  const U h = nextBits(counter);
+  const U top = hn::Set(bits, 0x80000000U);
+  const F u = fraction(hn::AndNot(top, h)); // in (0, 1/2)
+  const auto near = hn::RebindMask(floats, hn::Eq(hn::And(h, top), top));
+  const F argument = hn::IfThenElse(near, hn::Neg(u), hn::Sub(u, all(1.0F)));
+  // -log(1 - u) where the exponential is small, -log(u) where it is large.
+  const F small = hn::Log1p(floats, hn::IfThenElse(near, argument, hn::Zero(floats)));
+  const F large = hn::Log(floats, hn::IfThenElse(near, all(1.0F), u));
+  return hn::Neg(hn::IfThenElse(near, small, large));
+}
+
+/// One axis of the walk through cells.
+struct AxisWalk {
+  F origin, inverse;
+  F face;      ///< coordinate of the next face
+  F next;      ///< t there
+  F step;      ///< from one face to the next, with its sign
+  F perCell;   ///< mm from one face to the next; 0 for rays that do not move along this axis
+  F perLength; ///< faces a mm
+  I stride;
+
+  /// Enters the cell that holds `o`, the one ahead where it lies in a face; returns its part of the
+  /// linear index.
+  HWY_INLINE I enter(const WideScene::Axis& axis, F o, F direction) {
+    const F edge = all(axis.cellEdge);
+    const F zero = hn::Zero(floats);
+    const M down = hn::Lt(direction, zero);
+    const F position = hn::Div(hn::Add(o, all(0.5F)), edge);
+    const F ahead = hn::Floor(position);
+    const F behind = hn::Sub(hn::Ceil(position), all(1.0F));
+    const F last = all(static_cast<float>(axis.cells - 1));
+    const F cell = hn::Max(hn::Min(hn::IfThenElse(down, behind, ahead), last), zero);
+    origin = o;
+    inverse = hn::Div(all(1.0F), direction);
+    face = hn::MulSub(hn::IfThenElse(down, cell, hn::Add(cell, all(1.0F))), edge, all(0.5F));
+    step = hn::IfThenElse(down, hn::Neg(edge), edge);
+    perCell = hn::IfThenElseZero(moves(), hn::Abs(hn::Mul(edge, inverse)));
+    perLength = hn::Div(hn::Abs(direction), edge);
+    stride = hn::IfThenElse(hn::RebindMask(ints, down), hn::Set(ints, -axis.cellStride),
+                            hn::Set(ints, axis.cellStride));
+    findNext();
+    const I bordered = hn::Add(hn::ConvertTo(ints, cell), hn::Set(ints, 1));
+    return hn::Mul(bordered, hn::Set(ints, axis.cellStride));
+  }
+
+  /// How many faces lie at or before t, at most `most`.
+  HWY_INLINE F facesUpTo(F t, F most) const {
+    const F count = hn::Add(hn::Floor(hn::Mul(hn::Sub(t, next), perLength)), all(1.0F));
+    return hn::IfThenElseZero(hn::Ge(t, next), hn::Min(hn::Max(count, all(1.0F)), most));
+  }
+
+  /// Passes `faces` of them; returns the change of the linear index.
+  HWY_INLINE I advance(F faces) {
+    face = hn::MulAdd(faces, step, face);
+    findNext();
+    return hn::Mul(hn::ConvertTo(ints, faces), stride);
+  }
+
+private:
+  HWY_INLINE M moves() const {
+    return hn::Lt(hn::Abs(inverse), all(std::numeric_limits<float>::infinity()));
+  }
+  /// From the face's own coordinate, so that errors do not grow along the ray.
+  HWY_INLINE void findNext() {
+    const F t = hn::Mul(hn::Sub(face, origin), inverse);
+    next = hn::IfThenElse(moves(), t, all(std::numeric_limits<float>::infinity()));
+  }
+};
+
+/// The rays that the lanes follow, and which ray each lane has.
+template <typename Voxel, bool wantRatio>
+class Lanes {
+public:
+  Lanes(const WideScene& scene, RayBatch& rays, Counters& counters)
+      : m_scene(scene), m_rays(rays), m_counters(counters) {}
+
+  void run() {
+    M busy = hn::FirstN(floats, 0);
+    for (;;) {
+      busy = refill(busy);
+      if (hn::AllFalse(floats, busy))
+        break;
+      busy = follow(busy);
+    }
+    m_counters.cells += m_cells;
+    m_counters.skippedCells += m_skipped;
+    m_counters.lookups += m_lookups;
+  }
+
+private:
+  static constexpr std::size_t maxLanes = HWY_MAX_BYTES / sizeof(float);
+  struct alignas(64) Column : std::array<float, maxLanes> {};
+
+  /// Gives idle lanes the next rays, while there are any.
+  M refill(M busy) {
+    const std::size_t lanes = hn::Lanes(floats);
+    std::array<std::uint8_t, 8> packed = {};
+    hn::StoreMaskBits(floats, busy, packed.data());
+    std::uint64_t fresh = 0;
+    for (std::size_t lane = 0; lane < lanes && m_next < m_rays.size; ++lane) {
+      if (packed[lane / 8] >> (lane % 8) & 1)
+        continue;
+      fresh |= std::uint64_t{1} << lane;
+      m_ray[lane] = m_next;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        m_origin[axis][lane] = m_rays.origin[axis][m_next];
+        m_direction[axis][lane] = m_rays.direction[axis][m_next];
+      }
+      m_length[lane] = m_rays.length[m_next];
+      m_seed[lane] = m_rays.seed[m_next];
+      ++m_next;
+    }
+    if (fresh == 0)
+      return busy;
+    for (std::size_t i = 0; i < packed.size(); ++i)
+      packed[i] = static_cast<std::uint8_t>(fresh >> (8 * i));
+    const M started = hn::LoadMaskBits(floats, packed.data());
+    start(started);
+    return hn::Or(busy, started);
+  }
+
+  void start(M which) {
+    const auto take = [&](auto& old, const auto& now) {
+      old = hn::IfThenElse(hn::RebindMask(hn::DFromV<std::decay_t<decltype(now)>>(), which), now,
+                           old);
+    };
+    AxisWalk entered[3];
+    I cell = hn::Zero(ints);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      cell = hn::Add(cell, entered[axis].enter(m_scene.axes[axis],
+                                               hn::Load(floats, m_origin[axis].data()),
+                                               hn::Load(floats, m_direction[axis].data())));
+      AxisWalk& walk = m_walk[axis];
+      take(walk.origin, entered[axis].origin);
+      take(walk.inverse, entered[axis].inverse);
+      take(walk.face, entered[axis].face);
+      take(walk.step, entered[axis].step);
+      take(walk.next, entered[axis].next);
+      take(walk.perCell, entered[axis].perCell);
+      take(walk.perLength, entered[axis].perLength);
+      take(walk.stride, entered[axis].stride);
+    }
+    take(m_cell, cell);
+    take(m_content, hn::GatherIndex(floats, m_scene.cells.data(), m_cell));
+    take(m_t, hn::Zero(floats));
+    take(m_end, hn::Load(floats, m_length.data()));
+    take(m_ratio, all(1.0F));
+    U counter = hn::Load(bits, m_seed.data());
+    const F depth = exponential(counter);
+    take(m_counter, counter);
+    take(m_depth, depth);
+  }
+
+  /// Until enough lanes are idle. Returns those that are still busy.
+  M follow(M busy) {
+    const std::size_t lanes = hn::Lanes(floats);
+    const std::size_t enough =
+        m_next < m_rays.size ? lanes - std::max<std::size_t>(1, lanes / refillShare) : 0;
+    M hit = hn::FirstN(floats, 0); // lanes at a tentative collision
+    for (;;) {
+      std::size_t count = hn::CountTrue(floats, busy);
+      if (count <= enough)
+        break;
+      while (cross(busy, hit) && hn::CountTrue(floats, hit) * hitShare < count)
+        count = hn::CountTrue(floats, busy);
+      if (!hn::AllFalse(floats, hit))
+        collide(busy, hit);
+    }
+    return busy;
+  }
+
+  /// Lanes that have no collision in their cell leave it; from an empty one they jump over all the
+  /// empty cells around it. Returns whether any did.
+  HWY_INLINE bool cross(M& busy, M& hit) {
+    const F zero = hn::Zero(floats);
+    const F around = hn::Max(hn::Neg(m_content), zero);
+    const auto leave = [&](const AxisWalk& w) { return hn::MulAdd(around, w.perCell, w.next); };
+    const F x = leave(m_walk[0]);
+    const F y = leave(m_walk[1]);
+    const F z = leave(m_walk[2]);
+    const F toFace = hn::Min(hn::Min(x, y), z);
+    const F stop = hn::Min(toFace, m_end);
+    const F toStop = hn::Mul(hn::Max(hn::Sub(stop, m_t), zero), hn::Max(m_content, zero));
+    hit = both(busy, hn::Lt(m_depth, toStop));
+    const M crossing = hn::AndNot(hit, busy);
+    if (hn::AllFalse(floats, crossing))
+      return false;
+    m_cells += hn::CountTrue(floats, crossing);
+    m_skipped += hn::CountTrue(floats, both(crossing, hn::Le(m_content, zero)));
+    m_depth = hn::IfThenElse(crossing, hn::Sub(m_depth, toStop), m_depth);
+    m_t = hn::IfThenElse(crossing, hn::Max(stop, m_t), m_t);
+    const M ended = both(crossing, hn::Ge(toFace, m_end));
+    if (!hn::AllFalse(floats, ended))
+      finish(ended, wantRatio ? m_ratio : all(std::numeric_limits<float>::infinity()), busy);
+    const M going = hn::AndNot(ended, crossing);
+    const M throughX = hn::Eq(x, toFace);
+    const M throughY = hn::AndNot(throughX, hn::Eq(y, toFace));
+    const M throughZ = hn::Not(hn::Or(throughX, throughY));
+    const F all1 = hn::Add(around, all(1.0F));
+    const bool jumps = !hn::AllFalse(floats, both(going, hn::Gt(around, zero)));
+    const auto pass = [&](AxisWalk& walk, M through) {
+      F faces = hn::IfThenElseZero(through, all1);
+      if (jumps)
+        faces = hn::IfThenElse(through, all1, walk.facesUpTo(toFace, around));
+      m_cell = hn::Add(m_cell, walk.advance(hn::IfThenElseZero(going, faces)));
+    };
+    pass(m_walk[0], throughX);
+    pass(m_walk[1], throughY);
+    pass(m_walk[2], throughZ);
+    m_content = hn::GatherIndex(floats, m_scene.cells.data(), m_cell);
+    return true;
+  }
+
+  /// Tentative collisions: real ones end a flight, all of them thin a transmittance.
+  HWY_INLINE void collide(M& busy, M hit) {
+    const F majorant = hn::IfThenElse(hit, m_content, all(1.0F));
+    m_t = hn::IfThenElse(hit, hn::Add(m_t, hn::Div(m_depth, majorant)), m_t);
+    const auto at = [&](std::size_t axis) {
+      return hn::MulAdd(m_t, hn::Load(floats, m_direction[axis].data()), m_walk[axis].origin);
+    };
+    const Point point{at(0), at(1), at(2)};
+    m_lookups += hn::CountTrue(floats, hit);
+    F extinction = extinctionOf(m_scene, scalarAt<Voxel>(m_scene, point));
+    const U one = hn::Set(bits, 1);
+    const M cut =
+        both(hit, hn::RebindMask(floats, hn::Eq(hn::And(hn::BitCast(bits, m_content), one), one)));
+    if (!hn::AllFalse(floats, cut))
+      extinction = hn::IfThenZeroElse(hn::AndNot(kept(m_scene, point), cut), extinction);
+    const F share = hn::Div(extinction, majorant);
+
+    U counter = m_counter;
+    const F u = uniform(counter);
+    if constexpr (wantRatio) {
+      constexpr float rouletteBelow = 0.1F;
+      const F thinned = hn::Mul(m_ratio, hn::Max(hn::Sub(all(1.0F), share), hn::Zero(floats)));
+      const M little = hn::Lt(thinned, all(rouletteBelow));
+      const F survived =
+          hn::IfThenElseZero(hn::Lt(hn::Mul(u, all(rouletteBelow)), thinned), all(rouletteBelow));
+      m_ratio = hn::IfThenElse(hit, hn::IfThenElse(little, survived, thinned), m_ratio);
+      const M blocked = both(hit, hn::Le(m_ratio, hn::Zero(floats)));
+      if (!hn::AllFalse(floats, blocked))
+        finish(blocked, m_ratio, busy);
+    } else {
+      const M real = both(hit, hn::Lt(u, share));
+      if (!hn::AllFalse(floats, real))
+        finish(real, m_t, busy);
+    }
+    const F depth = exponential(counter);
+    m_depth = hn::IfThenElse(hit, depth, m_depth);
+    m_counter = hn::IfThenElse(hn::RebindMask(bits, hit), counter, m_counter);
+  }
+
+  /// Hands in the results of lanes and makes them idle.
+  HWY_INLINE void finish(M which, F result, M& busy) {
+    alignas(64) std::array<float, maxLanes> results;
+    hn::Store(result, floats, results.data());
+    std::array<std::uint8_t, 8> packed = {};
+    hn::StoreMaskBits(floats, which, packed.data());
+    for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
+      if (packed[lane / 8] >> (lane % 8) & 1)
+        m_rays.result[m_ray[lane]] = results[lane];
+    busy = hn::AndNot(which, busy);
+  }
+
+  const WideScene& m_scene;
+  RayBatch& m_rays;
+  Counters& m_counters;
+  std::size_t m_next = 0; ///< the first ray that no lane has had
+  std::array<std::size_t, maxLanes> m_ray = {};
+  Column m_origin[3] = {}, m_direction[3] = {}, m_length = {};
+  alignas(64) std::array<std::uint32_t, maxLanes> m_seed = {};
+  std::uint64_t m_cells = 0, m_skipped = 0, m_lookups = 0;
+
+  AxisWalk m_walk[3] = {idleWalk(), idleWalk(), idleWalk()};
+  I m_cell = hn::Zero(ints);      ///< in the bordered array
+  F m_content = hn::Zero(floats); ///< of the cell (WideScene::cells)
+  F m_t = hn::Zero(floats);       ///< mm
+  F m_end = hn::Zero(floats);     ///< mm
+  F m_depth = hn::Zero(floats);   ///< optical depth to the next tentative collision
+  F m_ratio = hn::Zero(floats);
+  U m_counter = hn::Zero(bits);
+
+  static AxisWalk idleWalk() {
+    const F zero = hn::Zero(floats);
+    return {zero, zero, zero, zero, zero, zero, zero, hn::Zero(ints)};
+  }
+};
+
+template <bool wantRatio>
+void followAll(const WideScene& scene, RayBatch& rays, Counters& counters) {
+  switch (scene.type) {
+  case WideScene::VoxelType::uint8:
+    return Lanes<std::uint8_t, wantRatio>(scene, rays, counters).run();
+  case WideScene::VoxelType::int16:
+    return Lanes<std::int16_t, wantRatio>(scene, rays, counters).run();
+  case WideScene::VoxelType::uint16:
+    return Lanes<std::uint16_t, wantRatio>(scene, rays, counters).run();
+  case WideScene::VoxelType::float32:
+    return Lanes<float, wantRatio>(scene, rays, counters).run();
+  }
+}
+
+void flyAll(const WideScene& scene, RayBatch& rays, Counters& counters) {
+  followAll<false>(scene, rays, counters);
+}
+void seeAll(const WideScene& scene, RayBatch& rays, Counters& counters) {
+  followAll<true>(scene, rays, counters);
+}
+const char* nameOfTarget() {
+  return hwy::TargetName(HWY_TARGET);
+}
+
+} // namespace
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fenestra {
+
+HWY_EXPORT(flyAll);
+HWY_EXPORT(seeAll);
+HWY_EXPORT(nameOfTarget);
+
+void WideTracker::sampleCollisions(RayBatch& rays, Counters& counters) const {
+  HWY_DYNAMIC_DISPATCH(flyAll)(m_scene, rays, counters);
+}
+
+void WideTracker::estimateTransmittances(RayBatch& rays, Counters& counters) const {
+  HWY_DYNAMIC_DISPATCH(seeAll)(m_scene, rays, counters);
+}
+
+namespace {
+
+/// Bits of the sets that program and machine have, pinned or not.
+std::int64_t knownSets() {
+  static const std::int64_t known = hwy::SupportedTargets() & HWY_TARGETS;
+  return known;
+}
+
+} // namespace
+
+std::vector<std::string> WideTracker::instructionSets() {
+  std::vector<std::string> names;
+  for (std::int64_t left = knownSets(); left != 0; left &= left - 1) // the best has the lowest bit
+    names.emplace_back(hwy::TargetName(left & -left));
+  return names;
+}
+
+std::string WideTracker::instructionSet() {
+  return HWY_DYNAMIC_DISPATCH(nameOfTarget)();
+}
+
+void WideTracker::useInstructionSet(const std::string& name) {
+  std::string choices;
+  for (std::int64_t left = knownSets(); left != 0; left &= left - 1) {
+    const std::int64_t set = left & -left;
+    if (name == hwy::TargetName(set)) {
+      hwy::SetSupportedTargetsForTest(set);
+      return;
+    }
+    choices.append(choices.empty() ? "" : ", ").append(hwy::TargetName(set));
+  }
+  throw usageError(name + ": not an instruction set of this machine, which has " + choices);
+}
+
+} // namespace fenestra
+#endif
