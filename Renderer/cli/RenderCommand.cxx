@@ -11,6 +11,7 @@
 #include "io/AtomicFile.h"
 #include "io/pictures/ImageWriter.h"
 #include "scene/Scene.h"
+#include "tracking/WideTracker.h"
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -63,7 +64,7 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderSettin
          << (perspective ? pose.angle : pose.scale) << " --position=" << text(pose.position)
          << " --target=" << text(pose.target) << " --up=" << text(pose.up);
   return {{"version", versionText},
-          {"target", targetText},
+          {"target", processorText + ("-" + result.target)},
           {"seed", std::to_string(settings.seed)},
           {"samples", std::to_string(result.finishedSamples)},
           {"camera", camera.str()},
@@ -142,6 +143,8 @@ int renderCommand(int argc, char** argv, int first) {
   if (!flags)
     return 0;
   const RenderOptions options = renderOptions(*flags);
+  if (const char* pinned = std::getenv("FENESTRA_INSTRUCTIONS"))
+    WideTracker::useInstructionSet(pinned);
   RenderMonitor monitor;
   StopOnSignal stopOnSignal;
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,

@@ -167,7 +167,9 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
         const PathWave<Voxel> wave(Domain(scene.volume.grid, scene.crop), medium, wide,
                                    scene.lights, scene.camera, scene.clip, settings.path,
                                    monitor.stop);
-        return renderPasses(wave, scene, settings, monitor);
+        RenderResult result = renderPasses(wave, scene, settings, monitor);
+        result.target = WideTracker::instructionSet();
+        return result;
       }
       const OneByOne<Voxel> readable{PathEstimator<Voxel>(scene.volume.grid, medium, tracker,
                                                           scene.lights, scene.camera, scene.clip,

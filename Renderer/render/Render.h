@@ -11,6 +11,7 @@
 #include "volume/Volume.h"
 
 #include <atomic>
+#include <string>
 
 namespace fenestra {
 
@@ -55,6 +56,8 @@ struct RenderResult {
   Counters counters;
   StopReason reason = StopReason::samples;
   std::uint64_t finishedSamples = 0; ///< that every pixel has; after a request some may have more
+  /// What pictures are bit-identical within: "scalar", or the lanes' instruction set.
+  std::string target = "scalar";
 };
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,

@@ -157,7 +157,7 @@ void WideTracker::setTable(const ScalarFunction& extinction) {
 }
 
 void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {
-  const Size3 cells = majorants.cellCount();
+  const Size3& cells = majorants.cellCount();
   const Size3 bordered = cells.array() + 2;
   std::int64_t stride = 1;
   std::int64_t cellStride = 1;

@@ -415,7 +415,8 @@ void WideTracker::useInstructionSet(const std::string& name) {
     }
     choices.append(choices.empty() ? "" : ", ").append(hwy::TargetName(set));
   }
-  throw usageError(name + ": not an instruction set of this machine, which has " + choices);
+  throw usageError("FENESTRA_INSTRUCTIONS: " + name +
+                   " is no instruction set of this machine, which has " + choices);
 }
 
 } // namespace fenestra

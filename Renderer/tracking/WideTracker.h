@@ -121,8 +121,9 @@ public:
   static std::vector<std::string> instructionSets();
   /// The one in use: the best, unless another was pinned.
   static std::string instructionSet();
-  /// Pins one of instructionSets(), for the whole process; throws Error (usage) for any other. Not
-  /// while rays are followed.
+  /// Pins one of instructionSets(), for the whole process (the command line does it on behalf of
+  /// the environment variable FENESTRA_INSTRUCTIONS); throws Error (usage) for any other. Not while
+  /// rays are followed.
   static void useInstructionSet(const std::string& name);
 
 private:

@@ -59,6 +59,19 @@ TEST_F(RendersCommand, WritesEveryFormatAndComparesThemWithThemselves) {
   EXPECT_EQ(*linear.find("Z"), *readImage(folder / "a-Z.nrrd").find("Z"));
 }
 
+TEST_F(RendersCommand, CanBePinnedToAnInstructionSet) {
+  ::setenv("FENESTRA_INSTRUCTIONS", "SCALAR", 1);
+  const std::string target = rendered({}).header.at("target");
+  ::setenv("FENESTRA_INSTRUCTIONS", "MMX", 1);
+  const Outcome refused =
+      run({"volume.nrrd", "--size", "16x16", "--samples", "2", "--output", "refused.exr"},
+          folder.path());
+  ::unsetenv("FENESTRA_INSTRUCTIONS");
+  EXPECT_TRUE(target.ends_with("-SCALAR")) << target;
+  EXPECT_EQ(refused.status, 2) << refused.err;
+  EXPECT_NE(refused.err.find("FENESTRA_INSTRUCTIONS: MMX"), std::string::npos) << refused.err;
+}
+
 TEST_F(RendersCommand, WritesTheLayersAskedForAndTheHeader) {
   const Image all = rendered({});
   for (const char* name : {"R", "A", "Z", "albedo.G", "normal.Y", "error.B", "samples.N"})

@@ -86,6 +86,8 @@ TEST(AMillionSamples, DoNotDriftAndAreWhatARenderAdds) {
   RenderSettings settings;
   settings.samples = million;
   settings.seed = 7;
+  const Film fast = scene.render(settings).film;
+  settings.transport = Transport::readable;
   const Film film = scene.render(settings).film;
   for (int row = 0; row < 2; ++row)
     for (int column = 0; column < 2; ++column) {
@@ -101,6 +103,9 @@ TEST(AMillionSamples, DoNotDriftAndAreWhatARenderAdds) {
       const Rgb error = (first.standardError().square() + second.standardError().square()).sqrt();
       EXPECT_TRUE((difference < 4.0 * error).all())
           << difference.transpose() << ", errors " << error.transpose();
+      const Rgb other = (fast.at(column, row).mean - all.mean).abs();
+      EXPECT_TRUE((other < 4.0 * std::sqrt(2.0) * all.standardError()).all())
+          << other.transpose() << ", error of each " << all.standardError().transpose();
     }
 }
 

@@ -245,7 +245,8 @@ TEST(LightEnds, GiveUnitDirectionsAndFiniteContributions) {
 TEST(LightEnds, ALightInTheVolumesCentreLeavesUsableShares) {
   AreaLight light = areaLight(AreaLight::Shape::disk, 1.0);
   light.center = unitGrid.worldCenter();
-  const LightSet set({light, EnvironmentLight{}}, unitGrid, camera());
+  const EnvironmentLight sky{Rgb::Ones(), {2, 1, std::vector<float>(6, 1.0F)}};
+  const LightSet set({light, sky}, unitGrid, camera());
   EXPECT_NEAR(set.environment(Vec3::UnitX()).pdf, 0.5 * 0.25 / pi, 1e-12);
 }
 

@@ -49,7 +49,7 @@ public:
   /// greatest for +infinity. Leaves nothing behind.
   Vectors take() {
     if (!m_survey.finite()) {
-      std::visit([this](auto& samples) { mend(samples); }, m_samples);
+      std::visit([this](auto& samples) { this->mend(samples); }, m_samples);
       m_survey.notANumber = m_survey.infinite = 0;
       if (const std::size_t needed = smallest(); needed != m_index)
         change(needed);
