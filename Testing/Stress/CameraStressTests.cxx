@@ -34,8 +34,9 @@ Ray eyeRay(const CameraPose& pose, int width, int height, double column, double 
 }
 
 /// Each pixel against the mean of exp(-sigma chord) over it: the sum of z^2 to 4 of its standard
-/// errors, and the sum of the differences. Samples are 0 or 1, so the variance is known. The mean is
-/// that of a raster of rays, finer where more samples would see its error at the box's silhouette.
+/// errors, and the sum of the differences. Samples are 0 or 1, so the variance is known. The mean
+/// is that of a raster of rays, finer where more samples would see its error at the box's
+/// silhouette.
 void expectChords(const TestScene& scene, int samples) {
   const int fine = isLongRun() ? 128 : 16;
   const RenderResult result = renderIn(scene, samples);
