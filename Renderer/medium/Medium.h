@@ -30,11 +30,18 @@ public:
 
   /// `wantGradient` asks for it even where shading does not.
   Matter matter(const Vec3& index, bool wantGradient) const {
-    Matter m{m_transfer.albedo(m_field.value(index)), Vec3::Zero(), 0.0};
+    const bool oneAlbedo = m_transfer.albedo.knots().size() == 1;
+    const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
+    Matter m{m_transfer.albedo(scalar), Vec3::Zero(), 0.0};
     if (wantGradient || m_transfer.shading)
       m.gradient = m_field.gradient(index);
-    if (m_transfer.shading)
-      m.surfaceProbability = surfaceProbability(extinction(index), m.gradient.norm());
+    if (m_transfer.shading) {
+      const double slope = m.gradient.norm();
+      double sigma_t = m_transfer.extinction(scalar).value();
+      if (m_transfer.gradientOpacity)
+        sigma_t *= (*m_transfer.gradientOpacity)(slope).value();
+      m.surfaceProbability = surfaceProbability(sigma_t, slope);
+    }
     return m;
   }
 

@@ -59,8 +59,6 @@ std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
   return std::min(wanted, settings.samples - done);
 }
 
-/// Samples first … first + count - 1 of every pixel. Returns false when it was stopped before all
-/// were done.
 /// The samples first … first + count - 1 of the pixels of a tile, counted pixel by pixel.
 class TileSamples {
 public:

@@ -40,39 +40,64 @@ struct Point {
   F x, y, z;
 };
 
-/// A voxel and its neighbour along x.
-struct Pair {
-  F near, far;
+/// The voxels around a point: four rows along x, `near` where they begin, `far` one voxel on.
+struct Corners {
+  F near[4], far[4];
 };
+using Rows = std::array<I, 4>; ///< index of each row's beginning
 
-HWY_INLINE Pair pairAt(const WideScene& scene, const float* voxels, I index) {
+HWY_INLINE Corners cornersAt(const WideScene& scene, const float* voxels, const Rows& rows) {
   (void)scene;
-  return {hn::GatherIndex(floats, voxels, index), hn::GatherIndex(floats, voxels + 1, index)};
+  Corners c;
+  // All rows first: what has to come from afar is then under way together.
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    c.near[i] = hn::GatherIndex(floats, voxels, rows[i]);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    c.far[i] = hn::GatherIndex(floats, voxels + 1, rows[i]);
+  return c;
 }
-HWY_INLINE Pair pairAt(const WideScene& scene, const std::int16_t* voxels, I index) {
-  (void)scene;
-  const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels),
-                                  hn::ShiftLeft<1>(index));
-  return {hn::ConvertTo(floats, hn::ShiftRight<16>(hn::ShiftLeft<16>(both))),
-          hn::ConvertTo(floats, hn::ShiftRight<16>(both))};
+
+/// Of 16 bits: one gather takes both voxels; `lower` and `upper` make floats of them.
+template <typename Voxel, typename Lower, typename Upper>
+HWY_INLINE Corners cornersInPairs(const Voxel* voxels, const Rows& rows, Lower&& lower,
+                                  Upper&& upper) {
+  Corners c;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels),
+                                    hn::ShiftLeft<1>(rows[i]));
+    c.near[i] = hn::ConvertTo(floats, lower(both));
+    c.far[i] = hn::ConvertTo(floats, upper(both));
+  }
+  return c;
 }
-HWY_INLINE Pair pairAt(const WideScene& scene, const std::uint16_t* voxels, I index) {
+HWY_INLINE Corners cornersAt(const WideScene& scene, const std::int16_t* voxels, const Rows& rows) {
   (void)scene;
-  const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels),
-                                  hn::ShiftLeft<1>(index));
+  return cornersInPairs(
+      voxels, rows, [](I both) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(both)); },
+      [](I both) { return hn::ShiftRight<16>(both); });
+}
+HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint16_t* voxels,
+                             const Rows& rows) {
+  (void)scene;
   const I low = hn::Set(ints, 0xffff);
-  return {hn::ConvertTo(floats, hn::And(both, low)),
-          hn::ConvertTo(floats, hn::And(hn::ShiftRight<16>(both), low))};
+  return cornersInPairs(
+      voxels, rows, [&](I both) { return hn::And(both, low); },
+      [&](I both) { return hn::And(hn::ShiftRight<16>(both), low); });
 }
-HWY_INLINE Pair pairAt(const WideScene& scene, const std::uint8_t* voxels, I index) {
-  // Four bytes are read: not beyond the last voxel.
-  const I from = hn::Min(index, hn::Set(ints, static_cast<std::int32_t>(scene.voxelCount - 4)));
-  const I shift = hn::ShiftLeft<3>(hn::Sub(index, from));
-  const I four = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels), from);
+HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint8_t* voxels, const Rows& rows) {
+  Corners c;
   const I low = hn::Set(ints, 0xff);
-  const I both = hn::Shr(four, shift);
-  return {hn::ConvertTo(floats, hn::And(both, low)),
-          hn::ConvertTo(floats, hn::And(hn::ShiftRight<8>(both), low))};
+  const I lastFour = hn::Set(ints, static_cast<std::int32_t>(scene.voxelCount - 4));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    // Four bytes are read: not beyond the last voxel.
+    const I from = hn::Min(rows[i], lastFour);
+    const I shift = hn::ShiftLeft<3>(hn::Sub(rows[i], from));
+    const I four = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels), from);
+    const I both = hn::Shr(four, shift);
+    c.near[i] = hn::ConvertTo(floats, hn::And(both, low));
+    c.far[i] = hn::ConvertTo(floats, hn::And(hn::ShiftRight<8>(both), low));
+  }
+  return c;
 }
 
 /// The scalar, trilinear between voxel centres and clamped in the outer half voxel.
@@ -94,12 +119,10 @@ HWY_INLINE F scalarAt(const WideScene& scene, const Point& p) {
   const I up = hn::Set(ints, scene.axes[1].stride);
   const I deep = hn::Set(ints, scene.axes[2].stride);
   const I at = hn::Add(ix, hn::Add(hn::Mul(iy, up), hn::Mul(iz, deep)));
-  const Pair a = pairAt(scene, voxels, at);
-  const Pair b = pairAt(scene, voxels, hn::Add(at, up));
-  const Pair c = pairAt(scene, voxels, hn::Add(at, deep));
-  const Pair d = pairAt(scene, voxels, hn::Add(hn::Add(at, up), deep));
-  const F low = lerp(lerp(a.near, a.far, fx), lerp(b.near, b.far, fx), fy);
-  const F high = lerp(lerp(c.near, c.far, fx), lerp(d.near, d.far, fx), fy);
+  const I above = hn::Add(at, deep);
+  const Corners c = cornersAt(scene, voxels, Rows{at, hn::Add(at, up), above, hn::Add(above, up)});
+  const F low = lerp(lerp(c.near[0], c.far[0], fx), lerp(c.near[1], c.far[1], fx), fy);
+  const F high = lerp(lerp(c.near[2], c.far[2], fx), lerp(c.near[3], c.far[3], fx), fy);
   return lerp(low, high, fz);
 }
 

@@ -37,40 +37,47 @@ public:
   bool trace(std::size_t count, Start&& start, Deliver&& deliver, Counters& counters) const {
     counters.paths += count;
     Batch batch;
-    for (std::size_t next = 0; next < count || !batch.paths.empty();) {
+    std::size_t next = 0;
+    const auto begun = [&] {
+      const PathStart from = start(next);
+      return Slot{m_steps.begin(from.column, from.row, from.random), next++};
+    };
+    while (next < count && batch.slots.size() < RayBatch::capacity)
+      batch.slots.push_back(begun());
+    for (;;) {
       if (m_stop.load(std::memory_order_relaxed))
         return false;
-      for (; next < count && batch.paths.size() < RayBatch::capacity; ++next) {
-        const PathStart from = start(next);
-        batch.paths.push_back({m_steps.begin(from.column, from.row, from.random), next});
-      }
       fly(batch, counters);
+      if (batch.flying.empty())
+        return true;
       scatter(batch, counters);
       look(batch, counters);
-      std::erase_if(batch.paths, [&](const Numbered& path) {
-        if (path.going)
-          return false;
-        deliver(path.number, path.path.sample);
-        return true;
-      });
+      for (Slot* slot : batch.flying) {
+        if (slot->going)
+          continue;
+        deliver(slot->number, slot->path.sample);
+        if (next < count)
+          *slot = begun();
+      }
     }
-    return true;
   }
 
 private:
-  struct Numbered {
+  /// A place for a path; the next one takes it when the path has ended.
+  struct Slot {
     Path path;
     std::size_t number;
     bool going = true;
     double begin = 0.0; ///< mm along its ray to where the batch's ray begins
   };
   struct Light {
-    std::size_t path; ///< of the batch
+    Slot* slot;
     ShadowRay ray;
   };
   struct Batch {
-    std::vector<Numbered> paths;
-    std::vector<Light> lights; ///< that the paths sampled
+    std::vector<Slot> slots;
+    std::vector<Slot*> flying; ///< whose paths are on their way
+    std::vector<Light> lights; ///< that those sampled
     RayBatch rays;             ///< the paths', then the lights'
   };
 
@@ -80,35 +87,38 @@ private:
 
   void fly(Batch& batch, Counters& counters) const {
     batch.rays.size = 0;
-    for (Numbered& path : batch.paths)
-      path.begin = add(batch.rays, path.path.ray, path.path.range, path.path.random);
+    batch.flying.clear();
+    for (Slot& slot : batch.slots)
+      if (slot.going) {
+        slot.begin = add(batch.rays, slot.path.ray, slot.path.range, slot.path.random);
+        batch.flying.push_back(&slot);
+      }
     m_tracker.sampleCollisions(batch.rays, counters);
   }
 
   void scatter(Batch& batch, Counters& counters) const {
     batch.lights.clear();
-    for (std::size_t i = 0; i < batch.paths.size(); ++i) {
-      Numbered& path = batch.paths[i];
-      const double distance = path.begin + static_cast<double>(batch.rays.result[i]);
-      path.going = m_steps.arrive(path.path, distance);
-      if (!path.going)
+    for (std::size_t i = 0; i < batch.flying.size(); ++i) {
+      Slot& slot = *batch.flying[i];
+      const double distance = slot.begin + static_cast<double>(batch.rays.result[i]);
+      slot.going = m_steps.arrive(slot.path, distance);
+      if (!slot.going)
         continue;
       ++counters.collisions;
-      if (const std::optional<ShadowRay> light = m_steps.scatter(path.path, distance))
-        batch.lights.push_back({i, *light});
-      path.going = !PathSteps<Voxel>::ended(path.path);
+      if (const std::optional<ShadowRay> light = m_steps.scatter(slot.path, distance))
+        batch.lights.push_back({&slot, *light});
+      slot.going = !PathSteps<Voxel>::ended(slot.path);
     }
   }
 
   void look(Batch& batch, Counters& counters) const {
     batch.rays.size = 0;
     for (const Light& light : batch.lights)
-      add(batch.rays, light.ray.ray, {0.0, light.ray.distance},
-          batch.paths[light.path].path.random);
+      add(batch.rays, light.ray.ray, {0.0, light.ray.distance}, light.slot->path.random);
     m_tracker.estimateTransmittances(batch.rays, counters);
     for (std::size_t i = 0; i < batch.lights.size(); ++i) {
       const Light& light = batch.lights[i];
-      batch.paths[light.path].path.sample.radiance +=
+      light.slot->path.sample.radiance +=
           light.ray.radiance * static_cast<double>(batch.rays.result[i]);
     }
   }

@@ -5,4 +5,4 @@ fenestra_test(PhantomTests
   PhantomShapesTests.cxx PhantomWriterTests.cxx
   LIBRARIES fenestra_phantom fenestra_io_phantom fenestra_io_medical fenestra_io_looks fenestra_itk
     nlohmann_json::nlohmann_json pugixml::pugixml PkgConfig::LibZip TBB::tbb
-  LABELS unit WHOLE)
+  LABELS unit slow WHOLE)
