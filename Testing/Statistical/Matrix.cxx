@@ -64,8 +64,6 @@ Combination combination(int index) {
 // ---- the volume
 // --------------------------------------------------------------------------------
 
-constexpr double extent = 12.0; ///< mm, about, along each axis
-
 Grid gridOf(const Combination& c, Generator& generator) {
   const auto centred = [](const Size3& size, const Mat3& axes) {
     Affine map = Affine::Identity();
