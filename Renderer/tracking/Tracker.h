@@ -10,6 +10,34 @@
 
 namespace fenestra {
 
+/// What tentative collisions mean, whoever finds them: `walk(visit)` calls visit(t, share of it
+/// that is real) at each, until it returns false. The first real one's t, or infinity.
+template <typename Walk>
+double firstRealCollision(Walk&& walk, Random& random) {
+  double distance = infinity;
+  walk([&](double t, double realShare) {
+    if (random.uniform() >= realShare)
+      return true; // a null collision
+    distance = t;
+    return false;
+  });
+  return distance;
+}
+
+/// Ratio tracking (Novak et al. 2014), with Russian roulette where little is left.
+template <typename Walk>
+double ratioTracked(Walk&& walk, Random& random) {
+  constexpr double rouletteBelow = 0.1;
+  double ratio = 1.0;
+  walk([&](double, double realShare) {
+    ratio *= std::max(0.0, 1.0 - realShare);
+    if (ratio < rouletteBelow)
+      ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
+    return ratio > 0.0;
+  });
+  return ratio;
+}
+
 /// A view: medium, majorants and clip outlive it. Rays are in world space, unit direction.
 template <typename Voxel>
 class Tracker {
@@ -21,29 +49,15 @@ public:
   /// Distance (mm) to the next real collision within `range`, or infinity.
   double sampleCollision(const Ray& ray, const Interval& range, Random& random,
                          Counters& counters) const {
-    double distance = infinity;
-    walkTentative(ray, range, random, counters, [&](double t, double realShare) {
-      if (random.uniform() >= realShare)
-        return true; // a null collision
-      distance = t;
-      return false;
-    });
-    return distance;
+    const auto walk = [&](auto&& visit) { walkTentative(ray, range, random, counters, visit); };
+    return firstRealCollision(walk, random);
   }
 
-  /// Unbiased estimate of the transmittance over `range`: ratio tracking (Novak et al. 2014), with
-  /// Russian roulette where little is left.
+  /// Unbiased estimate of the transmittance over `range`.
   double transmittance(const Ray& ray, const Interval& range, Random& random,
                        Counters& counters) const {
-    constexpr double rouletteBelow = 0.1;
-    double ratio = 1.0;
-    walkTentative(ray, range, random, counters, [&](double, double realShare) {
-      ratio *= std::max(0.0, 1.0 - realShare);
-      if (ratio < rouletteBelow)
-        ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
-      return ratio > 0.0;
-    });
-    return ratio;
+    const auto walk = [&](auto&& visit) { walkTentative(ray, range, random, counters, visit); };
+    return ratioTracked(walk, random);
   }
 
 private:

@@ -57,8 +57,7 @@ void findEmptyAround(const Size3& size, std::vector<float>& cells) {
     float& cell = cells[index(x, y, z)];
     if (cell > 0.0F)
       return;
-    // Least by size: a full neighbour (positive) allows none, an empty one as many as it has, less
-    // one for the step to it and more one for itself.
+    // A full neighbour (positive) allows none, an empty one itself and as many as are around it.
     float around = -cell;
     const auto neighbour = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
       const float other = cells[index(x + dx, y + dy, z + dz)];
@@ -136,7 +135,7 @@ void WideTracker::setTable(const ScalarFunction& extinction) {
   }
   m_scene.position.push_back(std::numeric_limits<float>::infinity());
 
-  // As many bins as segments, so that few have to be tried.
+  // More bins than segments, so that few have to be tried.
   const std::size_t bins = 2 * knots.size();
   m_scene.binStart = narrow(knots.front().position);
   const double span = extinction.span();

@@ -57,9 +57,8 @@ HWY_INLINE F exponential(U& counter) {
   const U top = hn::Set(bits, 0x80000000U);
   const F u = fraction(hn::AndNot(top, h)); // in (0, 1/2)
   const auto near = hn::RebindMask(floats, hn::Eq(hn::And(h, top), top));
-  const F argument = hn::IfThenElse(near, hn::Neg(u), hn::Sub(u, all(1.0F)));
   // -log(1 - u) where the exponential is small, -log(u) where it is large.
-  const F small = hn::Log1p(floats, hn::IfThenElse(near, argument, hn::Zero(floats)));
+  const F small = hn::Log1p(floats, hn::IfThenElseZero(near, hn::Neg(u)));
   const F large = hn::Log(floats, hn::IfThenElse(near, all(1.0F), u));
   return hn::Neg(hn::IfThenElse(near, small, large));
 }

@@ -49,6 +49,7 @@ struct RayBatch {
 
 /// What the lanes read: plain numbers and pointers, in float and index space. Built by WideTracker.
 struct WideScene {
+  /// In the order of Voxels' alternatives.
   enum class VoxelType { uint8, int16, uint16, float32 };
   /// Cells and voxels along one axis.
   struct Axis {
@@ -83,13 +84,12 @@ struct WideScene {
 
   ClipKind clipKind = ClipKind::none;
   bool perspective = false;
-  /// Rows of the map from index space to view space, depth less `referenceDepth`; for a plane the
-  /// last row is its distance, positive where it removes.
+  /// Rows of the map from index space to view space, depth counted from the target.
   std::array<std::array<float, 4>, 3> toView = {};
-  std::array<float, 4> toPlane = {};
-  float targetDepth = 0.0F, referenceDepth = 0.0F;
+  std::array<float, 4> toPlane = {}; ///< distance from a plane, positive where it removes
+  float targetDepth = 0.0F;
   DepthAxis depthX = {}, depthY = {};
-  const float* depths = nullptr; ///< less `referenceDepth`
+  const float* depths = nullptr; ///< counted from the target
   std::int32_t depthColumns = 0;
 };
 

@@ -36,27 +36,14 @@ public:
 
   double sampleCollision(const Ray& ray, const Interval& range, Random& random,
                          Counters& counters) const {
-    double distance = infinity;
-    visitTentative(ray, range, random, counters, [&](double t, double realShare) {
-      if (random.uniform() >= realShare)
-        return true;
-      distance = t;
-      return false;
-    });
-    return distance;
+    const auto walk = [&](auto&& visit) { visitTentative(ray, range, random, counters, visit); };
+    return firstRealCollision(walk, random);
   }
 
   double transmittance(const Ray& ray, const Interval& range, Random& random,
                        Counters& counters) const {
-    constexpr double rouletteBelow = 0.1;
-    double ratio = 1.0;
-    visitTentative(ray, range, random, counters, [&](double, double realShare) {
-      ratio *= std::max(0.0, 1.0 - realShare);
-      if (ratio < rouletteBelow)
-        ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
-      return ratio > 0.0;
-    });
-    return ratio;
+    const auto walk = [&](auto&& visit) { visitTentative(ray, range, random, counters, visit); };
+    return ratioTracked(walk, random);
   }
 
 private:

@@ -12,13 +12,6 @@ Film renderProduct(const RenderScene& scene, const RenderSettings& settings) {
   return render(scene, settings, monitor).film;
 }
 
-Film renderReadable(const RenderScene& scene, const RenderSettings& settings) {
-  return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
-    return Tracker<Voxel>(Domain(scene.volume.grid, scene.crop), medium, scene.majorants,
-                          scene.clip);
-  });
-}
-
 Film renderGlobal(const RenderScene& scene, const RenderSettings& settings) {
   return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
     return GlobalTracker<Voxel>(scene, medium);
@@ -39,7 +32,8 @@ constexpr Mode table[] = {
      }},
     {"readable", "the scalar estimator, null collisions in a majorant grid, independent samples",
      [](const RenderScene& scene, RenderSettings settings) {
-       return renderReadable(scene, settings);
+       settings.transport = Transport::readable;
+       return renderProduct(scene, settings);
      }},
     {"global", "the same, null collisions against one majorant for the whole volume",
      [](const RenderScene& scene, RenderSettings settings) {

@@ -181,21 +181,23 @@ public:
         m_tracker(s.volume.grid, m_medium, majorants, m_clip) {}
 
   std::vector<double> collisions(const std::vector<Travel>& travels) const override {
-    std::vector<double> distances;
-    Counters counters;
-    for (Travel t : travels)
-      distances.push_back(m_tracker.sampleCollision(t.ray, t.range, t.random, counters));
-    return distances;
+    return oneByOne(travels, &Tracker<Voxel>::sampleCollision);
   }
   std::vector<double> transmittances(const std::vector<Travel>& travels) const override {
-    std::vector<double> ratios;
-    Counters counters;
-    for (Travel t : travels)
-      ratios.push_back(m_tracker.transmittance(t.ray, t.range, t.random, counters));
-    return ratios;
+    return oneByOne(travels, &Tracker<Voxel>::transmittance);
   }
 
 private:
+  using Follow = double (Tracker<Voxel>::*)(const Ray&, const Interval&, Random&, Counters&) const;
+
+  std::vector<double> oneByOne(const std::vector<Travel>& travels, Follow follow) const {
+    std::vector<double> results;
+    Counters counters;
+    for (Travel t : travels)
+      results.push_back((m_tracker.*follow)(t.ray, t.range, t.random, counters));
+    return results;
+  }
+
   Medium<Voxel> m_medium;
   Clip m_clip;
   Tracker<Voxel> m_tracker;
