@@ -99,12 +99,12 @@ private:
 
   Size3 m_cells;
   Vec3 m_origin;
-  Vec3 m_inverse; ///< 1 / direction
-  Vec3 m_face;    ///< coordinate of the next face in each axis
-  Vec3 m_next;    ///< t there
-  Size3 m_coordinates;
-  Size3 m_ahead; ///< cells still to come in each axis
-  Size3 m_step, m_stride;
+  Vec3 m_inverse = Vec3::Zero(); ///< 1 / direction
+  Vec3 m_face = Vec3::Zero();    ///< coordinate of the next face in each axis
+  Vec3 m_next = Vec3::Zero();    ///< t there
+  Size3 m_coordinates = Size3::Zero();
+  Size3 m_ahead = Size3::Zero(); ///< cells still to come in each axis
+  Size3 m_step = Size3::Zero(), m_stride = Size3::Zero();
   std::int64_t m_cell = 0;
   Interval m_interval;
   double m_end; ///< of the walk
