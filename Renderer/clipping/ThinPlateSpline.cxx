@@ -133,8 +133,8 @@ void ThinPlateSpline::fit(const std::vector<Vec2>& sites, const Eigen::VectorXd&
   const Eigen::MatrixX3d p = polynomials(u);
   // The least-squares polynomial, the flattest where several are: what is left where lambda is
   // infinite or the sites do not determine a plane.
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd =
-      Eigen::BDCSVD<Eigen::MatrixXd>(p, Eigen::ComputeThinU | Eigen::ComputeThinV)
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd =
+      Eigen::JacobiSVD<Eigen::MatrixXd>(p, Eigen::ComputeThinU | Eigen::ComputeThinV)
           .setThreshold(std::max(1e-9, roundingAt(m_origin) * m_perScale));
   m_plane = svd.solve(values);
   const Eigen::Index n = values.size();
