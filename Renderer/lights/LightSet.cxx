@@ -100,6 +100,10 @@ std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, co
       return LightSample{light.toward, infinity, light.irradiance, light.share, true};
     choice -= light.share;
   }
+  return sampleEnvironment(choice, u);
+}
+
+std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2& u) const {
   const SharedEnvironment* chosen = nullptr;
   for (const SharedEnvironment& environment : m_environments) {
     if (environment.share == 0.0)
@@ -127,8 +131,20 @@ LightArrival LightSet::environment(const Vec3& direction) const {
   return sum;
 }
 
-std::optional<LightSample> LightSet::PlacedAreaLight::sample(const Vec3& point,
-                                                             const Vec2& u) const {
+Rgb LightSet::constantEnvironment() const {
+  Rgb sum = Rgb::Zero();
+  for (const SharedEnvironment& environment : m_environments)
+    if (environment.sampler.constant())
+      sum += environment.sampler.mean();
+  return sum;
+}
+
+bool LightSet::hasMaps() const {
+  return std::any_of(m_environments.begin(), m_environments.end(),
+                     [](const SharedEnvironment& e) { return !e.sampler.constant(); });
+}
+
+std::optional<LightSample> PlacedAreaLight::sample(const Vec3& point, const Vec2& u) const {
   Vec2 at = 2.0 * u - Vec2::Ones();
   if (shape == AreaLight::Shape::disk) {
     const double phi = 2.0 * pi * u.y();
@@ -145,7 +161,7 @@ std::optional<LightSample> LightSet::PlacedAreaLight::sample(const Vec3& point,
   return LightSample{d / distance, distance, radiance, share * distance2 / (area * cosine), false};
 }
 
-std::optional<LightArrival> LightSet::PlacedAreaLight::arrival(const Ray& ray, double end) const {
+std::optional<LightArrival> PlacedAreaLight::arrival(const Ray& ray, double end) const {
   const double cosine = -normal.dot(ray.direction);
   if (!(cosine > 0.0))
     return std::nullopt;

@@ -30,6 +30,24 @@ struct LightArrival {
   double pdf = 0.0;
 };
 
+/// An area light in the world.
+struct PlacedAreaLight {
+  AreaLight::Shape shape;
+  Vec3 center, normal, right, up; ///< right, up: unit edges' directions
+  Vec2 half;                      ///< half edges, or the radius (twice), mm
+  double area;                    ///< mm^2
+  Rgb radiance;
+  double share; ///< chance that LightSet::sample() takes this light
+
+  std::optional<LightSample> sample(const Vec3& point, const Vec2& u) const;
+  std::optional<LightArrival> arrival(const Ray& ray, double end) const;
+};
+struct PlacedDirectionalLight {
+  Vec3 toward; ///< from the scene to the light
+  Rgb irradiance;
+  double share;
+};
+
 class LightSet {
 public:
   /// Lights in the camera's frame are placed around the volume's centre.
@@ -42,6 +60,9 @@ public:
   }
   /// `choice` decides on the light.
   std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
+
+  /// Of an environment, where there is one to draw.
+  std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
   /// Of all environments together.
   LightArrival environment(const Vec3& direction) const;
@@ -56,24 +77,14 @@ public:
     return sum;
   }
 
+  const std::vector<PlacedAreaLight>& areas() const { return m_areas; }
+  const std::vector<PlacedDirectionalLight>& directionals() const { return m_directionals; }
+  /// The constant environments' radiance together.
+  Rgb constantEnvironment() const;
+  /// Whether there are environments that are not constant.
+  bool hasMaps() const;
+
 private:
-  struct PlacedAreaLight {
-    AreaLight::Shape shape;
-    Vec3 center, normal, right, up; ///< right, up: unit edges' directions
-    Vec2 half;                      ///< half edges, or the radius (twice), mm
-    double area;                    ///< mm^2
-    Rgb radiance;
-    double share; ///< chance that sample() takes this light
-
-    std::optional<LightSample> sample(const Vec3& point, const Vec2& u) const;
-    std::optional<LightArrival> arrival(const Ray& ray, double end) const;
-  };
-  struct PlacedDirectionalLight {
-    Vec3 toward; ///< from the scene to the light
-    Rgb irradiance;
-    double share;
-  };
-
   struct SharedEnvironment {
     EnvironmentSampler sampler;
     double share; ///< 0: never drawn

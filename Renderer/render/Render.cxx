@@ -160,11 +160,14 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
     return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium,
                                                  const Tracker<Voxel>& tracker) {
       if (settings.transport == Transport::fast &&
-          WideTracker::serves(scene.volume, scene.transfer)) {
-        const WideTracker wide(scene.volume, scene.transfer, scene.majorants, scene.clip);
-        const PathWave<Voxel> wave(Domain(scene.volume.grid, scene.crop), medium, wide,
-                                   scene.lights, scene.camera, scene.clip, settings.path,
-                                   monitor.stop);
+          WideTracker::serves(scene.volume, scene.transfer) && WideEvents::serves(scene.transfer)) {
+        const Domain domain(scene.volume.grid, scene.crop);
+        const WideTracker wide(scene.volume, domain, scene.transfer, scene.majorants, scene.clip);
+        const WideEvents events(wide.scene(),
+                                EventScene(scene.volume.grid, scene.transfer, scene.lights,
+                                           settings.path.bounces, settings.path.wantNormals));
+        const EyeRays eye(scene.camera, scene.clip, scene.lights, settings.path.background);
+        const PathWave wave(domain, wide, events, eye, monitor.stop);
         RenderResult result = renderPasses(wave, scene, settings, monitor);
         result.target = WideTracker::instructionSet();
         return result;

@@ -8,37 +8,12 @@
 #define FENESTRA_WIDE_LOOKUP_INL_H
 #endif
 
-#include "tracking/WideTracker.h"
-
-#include <hwy/highway.h>
+#include "tracking/WideScene.h"
+// After foreach_target.h:
+#include "core/Lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::ScalableTag<float>;
-using Ints = hn::RebindToSigned<Floats>;
-using Bits = hn::RebindToUnsigned<Floats>;
-using F = hn::Vec<Floats>;
-using I = hn::Vec<Ints>;
-using U = hn::Vec<Bits>;
-using M = hn::Mask<Floats>;
-
-inline constexpr Floats floats{};
-inline constexpr Ints ints{};
-inline constexpr Bits bits{};
-
-HWY_INLINE F all(float x) {
-  return hn::Set(floats, x);
-}
-HWY_INLINE F lerp(F a, F b, F f) {
-  return hn::MulAdd(hn::Sub(b, a), f, a);
-}
-
-struct Point {
-  F x, y, z;
-};
 
 /// The voxels around a point: four rows along x, `near` where they begin, `far` one voxel on.
 struct Corners {
@@ -126,13 +101,18 @@ HWY_INLINE F scalarAt(const WideScene& scene, const Point& p) {
   return lerp(low, high, fz);
 }
 
-/// Extinction (mm^-1) of a scalar.
-HWY_INLINE F extinctionOf(const WideScene& scene, F s) {
-  const auto lastBin = static_cast<float>(scene.binSegment.size() - 1);
-  const F bin = hn::Mul(hn::Sub(s, all(scene.binStart)), all(scene.binsPerUnit));
+/// A scalar's place in a table.
+struct Segment {
+  I index;
+  F beyondStart; ///< scalar units from the segment's start; not finite in the first one
+};
+
+HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
+  const auto lastBin = static_cast<float>(table.binSegment.size() - 1);
+  const F bin = hn::Mul(hn::Sub(s, all(table.binStart)), all(table.binsPerUnit));
   const I inTable = hn::ConvertTo(ints, hn::Max(hn::Min(bin, all(lastBin)), hn::Zero(floats)));
-  I segment = hn::GatherIndex(ints, scene.binSegment.data(), inTable);
-  const float* next = scene.position.data() + 1;
+  I segment = hn::GatherIndex(ints, table.binSegment.data(), inTable);
+  const float* next = table.position.data() + 1;
   for (;;) {
     const M beyond = hn::Ge(s, hn::GatherIndex(floats, next, segment));
     if (hn::AllFalse(floats, beyond))
@@ -140,18 +120,48 @@ HWY_INLINE F extinctionOf(const WideScene& scene, F s) {
     segment =
         hn::IfThenElse(hn::RebindMask(ints, beyond), hn::Add(segment, hn::Set(ints, 1)), segment);
   }
-  const F slope = hn::GatherIndex(floats, scene.slope.data(), segment);
-  const F value = hn::GatherIndex(floats, scene.value.data(), segment);
-  const F from = hn::GatherIndex(floats, scene.position.data(), segment);
-  // Constant segments may begin at -infinity.
-  const F rise =
-      hn::IfThenZeroElse(hn::Eq(slope, hn::Zero(floats)), hn::Mul(hn::Sub(s, from), slope));
-  return hn::Max(hn::Add(value, rise), hn::Zero(floats));
+  return {segment, hn::Sub(s, hn::GatherIndex(floats, table.position.data(), segment))};
 }
 
-HWY_INLINE F apply(const std::array<float, 4>& row, const Point& p) {
-  return hn::MulAdd(all(row[0]), p.x,
-                    hn::MulAdd(all(row[1]), p.y, hn::MulAdd(all(row[2]), p.z, all(row[3]))));
+/// A channel's value there; not negative.
+HWY_INLINE F valueIn(const WideTable::Channel& channel, const Segment& at) {
+  const F slope = hn::GatherIndex(floats, channel.slope.data(), at.index);
+  const F value = hn::GatherIndex(floats, channel.value.data(), at.index);
+  // Constant segments may begin at -infinity.
+  const F rise =
+      hn::IfThenZeroElse(hn::Eq(slope, hn::Zero(floats)), hn::Mul(at.beyondStart, slope));
+  return notBelow0(hn::Add(value, rise));
+}
+
+/// Extinction (mm^-1) of a scalar.
+HWY_INLINE F extinctionOf(const WideScene& scene, F s) {
+  return valueIn(scene.extinction.channels[0], segmentOf(scene.extinction, s));
+}
+
+/// How far a ray inside [lower, upper]^3 goes until it leaves; 0 where rounding put it outside.
+HWY_INLINE F toFaces(const F3& lower, const F3& upper, const F3& origin, const F3& direction) {
+  const auto along = [](F low, F high, F o, F d) {
+    const F zero = hn::Zero(floats);
+    const F face = hn::IfThenElse(hn::Lt(d, zero), low, high);
+    const F t = hn::Div(hn::Sub(face, o), d);
+    return hn::IfThenElse(hn::Eq(d, zero), all(std::numeric_limits<float>::infinity()), t);
+  };
+  const F x = along(lower.x, upper.x, origin.x, direction.x);
+  const F y = along(lower.y, upper.y, origin.y, direction.y);
+  const F z = along(lower.z, upper.z, origin.z, direction.z);
+  return notBelow0(hn::Min(hn::Min(x, y), z));
+}
+
+/// mm to where a ray from inside leaves the domain; index space, t in mm.
+HWY_INLINE F lengthInside(const WideScene& scene, const F3& origin, const F3& direction) {
+  const F toBox = toFaces(all3(scene.lower), all3(scene.upper), origin, direction);
+  if (!scene.cropped)
+    return toBox;
+  const F one = all(1.0F);
+  const F minusOne = all(-1.0F);
+  const F toCrop = toFaces({minusOne, minusOne, minusOne}, {one, one, one},
+                           mapPoint(scene.toCrop, origin), mapDirection(scene.toCrop, direction));
+  return hn::Min(toBox, toCrop);
 }
 
 /// Continuous index of a coordinate in mm among a depth buffer's samples (DepthAxis::index).

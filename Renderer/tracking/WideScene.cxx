@@ -7,10 +7,6 @@
 namespace fenestra {
 namespace {
 
-float narrow(double x) {
-  return static_cast<float>(x);
-}
-
 WideScene::DepthAxis wide(const DepthAxis& axis) {
   return {narrow(1.0 / axis.pitch),
           narrow(axis.start),
@@ -83,17 +79,17 @@ WideScene::VoxelType typeOf(const Voxels& voxels) {
 
 } // namespace
 
-double addInside(RayBatch& rays, const Domain& domain, const Ray& ray, const Interval& range,
-                 std::uint32_t seed) {
+double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
+                 const Interval& range, std::uint32_t seed) {
   const Affine& worldToIndex = domain.grid().worldToIndex;
   const Ray indexRay = transformed(worldToIndex, ray);
   const Interval inside = domain.clip(indexRay, range);
   if (inside.empty()) {
-    rays.add({Vec3::Zero(), Vec3::Ones()}, 0.0, seed);
+    rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0, seed);
     return 0.0;
   }
   const Vec3 origin = inside.begin > 0.0 ? worldToIndex * ray.at(inside.begin) : indexRay.origin;
-  rays.add({origin, indexRay.direction}, inside.end - inside.begin, seed);
+  rays.set(i, {origin, indexRay.direction}, inside.end - inside.begin, seed);
   return inside.begin;
 }
 
@@ -109,50 +105,27 @@ bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer)
   return greatest * 2.0 * volume.grid.boundingRadius() <= deepest;
 }
 
-WideTracker::WideTracker(const Volume& volume, const TransferFunction& transfer,
-                         const MajorantGrid& majorants, const Clip& clip) {
+WideTracker::WideTracker(const Volume& volume, const Domain& domain,
+                         const TransferFunction& transfer, const MajorantGrid& majorants,
+                         const Clip& clip) {
   m_scene.type = typeOf(volume.voxels);
   m_scene.voxels =
       std::visit([](const auto& v) { return static_cast<const void*>(v.data()); }, volume.voxels);
   m_scene.voxelCount = volume.grid.voxelCount();
   setCells(majorants, volume.grid);
-  setTable(transfer.extinction);
+  m_scene.extinction = WideTable(transfer.extinction);
+  setDomain(domain);
   setClip(clip, volume.grid);
 }
 
-void WideTracker::setTable(const ScalarFunction& extinction) {
-  const auto& knots = extinction.knots();
-  m_scene.position = {-std::numeric_limits<float>::infinity()};
-  m_scene.value = {narrow(knots.front().value[0])};
-  m_scene.slope = {0.0F};
-  for (std::size_t i = 0; i < knots.size(); ++i) {
-    const bool last = i + 1 == knots.size();
-    const double width = last ? 0.0 : knots[i + 1].position - knots[i].position;
-    const double rise = last ? 0.0 : knots[i + 1].value[0] - knots[i].value[0];
-    m_scene.position.push_back(narrow(knots[i].position));
-    m_scene.value.push_back(narrow(knots[i].value[0]));
-    m_scene.slope.push_back(width > 0.0 ? narrow(rise / width) : 0.0F);
-  }
-  m_scene.position.push_back(std::numeric_limits<float>::infinity());
-
-  // More bins than segments, so that few have to be tried.
-  const std::size_t bins = 2 * knots.size();
-  m_scene.binStart = narrow(knots.front().position);
-  const double span = extinction.span();
-  m_scene.binsPerUnit = span > 0.0 ? narrow(static_cast<double>(bins) / span) : 0.0F;
-  if (!std::isfinite(m_scene.binsPerUnit))
-    m_scene.binsPerUnit = 0.0F;
-  std::size_t segment = 0;
-  for (std::size_t bin = 0; bin < bins; ++bin) {
-    // One bin early: rounding must not lead past a segment.
-    const double start = knots.front().position +
-                         span * (static_cast<double>(bin) - 1.0) / static_cast<double>(bins);
-    while (static_cast<double>(m_scene.position[segment + 1]) <= start &&
-           segment + 2 < m_scene.position.size())
-      ++segment;
-    m_scene.binSegment.push_back(m_scene.binsPerUnit > 0.0F ? static_cast<std::int32_t>(segment)
-                                                            : 0);
-  }
+void WideTracker::setDomain(const Domain& domain) {
+  const Box& box = domain.box();
+  m_scene.lower = narrow3(box.lower);
+  m_scene.upper = narrow3(box.upper);
+  const Affine* toCrop = domain.toCrop();
+  m_scene.cropped = toCrop != nullptr;
+  if (toCrop)
+    m_scene.toCrop = affineRows(*toCrop);
 }
 
 void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {

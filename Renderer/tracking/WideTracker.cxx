@@ -9,9 +9,6 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include "tracking/WideLookup-inl.h"
-
-#include <hwy/contrib/math/math-inl.h>
-#include <hwy/highway.h>
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
@@ -20,48 +17,6 @@ namespace {
 constexpr std::size_t refillShare = 4;
 /// Look-ups wait until this part of the busy lanes is at a tentative collision.
 constexpr std::size_t hitShare = 2;
-
-HWY_INLINE M both(M a, M b) {
-  return hn::And(a, b);
-}
-
-/// Random numbers of a lane: hashes of a counter that starts at the ray's seed (a mixer of 32 bits
-/// with low bias, by the Hash Prospector project).
-HWY_INLINE U nextBits(U& counter) {
-  counter = hn::Add(counter, hn::Set(bits, 0x9e3779b9U));
-  U x = counter;
-  x = hn::Mul(hn::Xor(x, hn::ShiftRight<16>(x)), hn::Set(bits, 0x21f0aaadU));
-  x = hn::Mul(hn::Xor(x, hn::ShiftRight<15>(x)), hn::Set(bits, 0x735a2d97U));
-  return hn::Xor(x, hn::ShiftRight<15>(x));
-}
-
-/// (h + 1/2) / 2^32 for h < 2^31: as precise near 0 as 32 bits can be.
-HWY_INLINE F fraction(U h) {
-  const F x = hn::ConvertTo(floats, hn::BitCast(ints, h));
-  return hn::MulAdd(x, all(0x1p-32F), all(0x1p-33F));
-}
-
-/// Uniform in (0, 1].
-HWY_INLINE F uniform(U& counter) {
-  const U h = nextBits(counter);
-  const U top = hn::Set(bits, 0x80000000U);
-  const F low = fraction(hn::AndNot(top, h));
-  const auto upper = hn::RebindMask(floats, hn::Eq(hn::And(h, top), top));
-  return hn::Add(low, hn::IfThenElseZero(upper, all(0.5F)));
-}
-
-/// Exponential with mean 1: precise near 0 and far out, as each half of the unit interval is
-/// counted from its own end.
-HWY_INLINE F exponential(U& counter) {
-  const U h = nextBits(counter);
-  const U top = hn::Set(bits, 0x80000000U);
-  const F u = fraction(hn::AndNot(top, h)); // in (0, 1/2)
-  const auto near = hn::RebindMask(floats, hn::Eq(hn::And(h, top), top));
-  // -log(1 - u) where the exponential is small, -log(u) where it is large.
-  const F small = hn::Log1p(floats, hn::IfThenElseZero(near, hn::Neg(u)));
-  const F large = hn::Log(floats, hn::IfThenElse(near, all(1.0F), u));
-  return hn::Neg(hn::IfThenElse(near, small, large));
-}
 
 /// One axis of the walk through cells.
 struct AxisWalk {
@@ -143,7 +98,7 @@ public:
 
 private:
   static constexpr std::size_t maxLanes = HWY_MAX_BYTES / sizeof(float);
-  struct alignas(64) Column : std::array<float, maxLanes> {};
+  struct alignas(64) OfLanes : std::array<float, maxLanes> {};
 
   /// Gives idle lanes the next rays, while there are any.
   M refill(M busy) {
@@ -245,7 +200,7 @@ private:
     m_t = hn::IfThenElse(crossing, hn::Max(stop, m_t), m_t);
     const M ended = both(crossing, hn::Ge(toFace, m_end));
     if (!hn::AllFalse(floats, ended))
-      finish(ended, wantRatio ? m_ratio : all(std::numeric_limits<float>::infinity()), busy);
+      finish(ended, wantRatio ? m_ratio : all(std::numeric_limits<float>::infinity()), zero, busy);
     const M going = hn::AndNot(ended, crossing);
     const M throughX = hn::Eq(x, toFace);
     const M throughY = hn::AndNot(throughX, hn::Eq(y, toFace));
@@ -274,7 +229,8 @@ private:
     };
     const Point point{at(0), at(1), at(2)};
     m_lookups += hn::CountTrue(floats, hit);
-    F extinction = extinctionOf(m_scene, scalarAt<Voxel>(m_scene, point));
+    const F scalar = scalarAt<Voxel>(m_scene, point);
+    F extinction = extinctionOf(m_scene, scalar);
     const U one = hn::Set(bits, 1);
     const M cut =
         both(hit, hn::RebindMask(floats, hn::Eq(hn::And(hn::BitCast(bits, m_content), one), one)));
@@ -293,11 +249,11 @@ private:
       m_ratio = hn::IfThenElse(hit, hn::IfThenElse(little, survived, thinned), m_ratio);
       const M blocked = both(hit, hn::Le(m_ratio, hn::Zero(floats)));
       if (!hn::AllFalse(floats, blocked))
-        finish(blocked, m_ratio, busy);
+        finish(blocked, m_ratio, scalar, busy);
     } else {
       const M real = both(hit, hn::Lt(u, share));
       if (!hn::AllFalse(floats, real))
-        finish(real, m_t, busy);
+        finish(real, m_t, scalar, busy);
     }
     const F depth = exponential(counter);
     m_depth = hn::IfThenElse(hit, depth, m_depth);
@@ -305,14 +261,19 @@ private:
   }
 
   /// Hands in the results of lanes and makes them idle.
-  HWY_INLINE void finish(M which, F result, M& busy) {
-    alignas(64) std::array<float, maxLanes> results;
+  HWY_INLINE void finish(M which, F result, F scalar, M& busy) {
+    OfLanes results, scalars;
     hn::Store(result, floats, results.data());
+    if constexpr (!wantRatio)
+      hn::Store(scalar, floats, scalars.data());
     std::array<std::uint8_t, 8> packed = {};
     hn::StoreMaskBits(floats, which, packed.data());
     for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
-      if (packed[lane / 8] >> (lane % 8) & 1)
+      if (packed[lane / 8] >> (lane % 8) & 1) {
         m_rays.result[m_ray[lane]] = results[lane];
+        if constexpr (!wantRatio)
+          m_rays.scalar[m_ray[lane]] = scalars[lane];
+      }
     busy = hn::AndNot(which, busy);
   }
 
@@ -321,7 +282,7 @@ private:
   Counters& m_counters;
   std::size_t m_next = 0; ///< the first ray that no lane has had
   std::array<std::size_t, maxLanes> m_ray = {};
-  Column m_origin[3] = {}, m_direction[3] = {}, m_length = {};
+  OfLanes m_origin[3] = {}, m_direction[3] = {}, m_length = {};
   alignas(64) std::array<std::uint32_t, maxLanes> m_seed = {};
   std::uint64_t m_cells = 0, m_skipped = 0, m_lookups = 0;
 

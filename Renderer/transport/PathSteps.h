@@ -10,12 +10,11 @@
 // (next-event estimation) and combined with what the scattered ray itself meets by the balance
 // heuristic (Veach 1997, eq. 9.8).
 
-#include "clipping/Clip.h"
 #include "film/Film.h"
 #include "lights/LightSet.h"
 #include "medium/Medium.h"
 #include "medium/Scattering.h"
-#include "transport/Background.h"
+#include "transport/EyeRays.h"
 
 #include <optional>
 
@@ -26,6 +25,9 @@ struct PathSettings {
   std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max(); ///< scatterings, at most
   bool wantNormals = false; ///< fill PathSample::normal even where shading needs no gradient
 };
+
+/// Russian roulette decides on paths whose greatest weight is below this.
+inline constexpr double rouletteBelow = 0.5;
 
 /// A path under way: the ray that it travels next, and what it has gathered.
 struct Path {
@@ -55,14 +57,13 @@ public:
       : m_worldToIndex(grid.worldToIndex),
         m_medium(medium),
         m_lights(lights),
-        m_camera(camera),
-        m_clip(clip),
+        m_eye(camera, clip, lights, settings.background),
         m_settings(settings) {}
 
   /// A path through raster position (column, row).
   Path begin(double column, double row, const Random& random) const {
-    const Ray ray = m_camera.ray(column, row);
-    return {random, row, ray, visible(m_clip, ray)};
+    const Ray ray = m_eye.ray(column, row);
+    return {random, row, ray, m_eye.range(ray)};
   }
 
   /// The path's ray has its next collision after `distance` mm, or none (infinity). Gathers what
@@ -71,7 +72,7 @@ public:
     if (path.bounces > 0)
       path.sample.radiance += path.weight * arriving(path.ray, distance, path.scatterPdf);
     else if (distance == infinity)
-      escape(path);
+      path.sample = m_eye.escaped(path.row, path.ray);
     return distance < infinity && path.bounces < m_settings.bounces;
   }
 
@@ -98,29 +99,9 @@ public:
   static bool ended(const Path& path) { return !(path.weight.maxCoeff() > 0.0); }
 
 private:
-  /// An eye ray that met nothing shows the background: one colour over a whole row of pixels, so
-  /// that where a sample falls inside its pixel adds no noise.
-  void escape(Path& path) const {
-    const Background& background = m_settings.background;
-    switch (background.kind) {
-    case Background::Kind::color:
-      path.sample.radiance = background.color;
-      break;
-    case Background::Kind::gradient:
-      path.sample.radiance = background.at(1.0 - (std::floor(path.row) + 0.5) / m_camera.height());
-      break;
-    case Background::Kind::transparent:
-      path.sample.alpha = 0.0;
-      break;
-    case Background::Kind::environment:
-      path.sample.radiance = m_lights.environment(path.ray.direction).radiance;
-      break;
-    }
-  }
-
   void recordFirst(Path& path, double distance, const Matter& matter) const {
     PathSample& sample = path.sample;
-    sample.depth = distance * m_camera.depthPerLength(path.ray);
+    sample.depth = m_eye.depth(path.ray, distance);
     sample.albedo = matter.albedo;
     const double slope = matter.gradient.norm();
     if (slope > 0.0)
@@ -163,7 +144,6 @@ private:
 
   /// Russian roulette on what the path can still contribute.
   static void roulette(Path& path) {
-    constexpr double rouletteBelow = 0.5;
     const double most = path.weight.maxCoeff();
     if (most >= rouletteBelow)
       return;
@@ -177,8 +157,7 @@ private:
   Affine m_worldToIndex;
   const Medium<Voxel>& m_medium;
   const LightSet& m_lights;
-  const Camera& m_camera;
-  const Clip& m_clip;
+  EyeRays m_eye;
   const PathSettings& m_settings;
 };
 

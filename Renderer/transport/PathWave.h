@@ -1,11 +1,9 @@
 #pragma once
 // Many paths at once, for speed: all of a batch fly, then all scatter, then all look at their
-// lights, and paths that have ended make room for new ones. Events are PathSteps'; distances come
-// from WideTracker. A path depends on its own random numbers alone, so its sample is the same
-// whichever others it travels with.
+// lights, and paths that have ended make room for new ones. A path depends on its own random
+// numbers alone, so its sample is the same whichever others it travels with.
 
-#include "tracking/WideTracker.h"
-#include "transport/PathSteps.h"
+#include "transport/WideEvents.h"
 #include "volume/Domain.h"
 
 #include <atomic>
@@ -19,113 +17,103 @@ struct PathStart {
   Random random;
 };
 
-template <typename Voxel>
 class PathWave {
 public:
   /// A view of all that it is given.
-  PathWave(const Domain& domain, const Medium<Voxel>& medium, const WideTracker& tracker,
-           const LightSet& lights, const Camera& camera, const Clip& clip,
-           const PathSettings& settings, const std::atomic<bool>& stop)
-      : m_domain(domain),
-        m_steps(domain.grid(), medium, lights, camera, clip, settings),
-        m_tracker(tracker),
-        m_stop(stop) {}
+  PathWave(const Domain& domain, const WideTracker& tracker, const WideEvents& events,
+           const EyeRays& eye, const std::atomic<bool>& stop)
+      : m_domain(domain), m_tracker(tracker), m_events(events), m_eye(eye), m_stop(stop) {}
 
   /// Traces paths start(0) … start(count - 1), and hands in deliver(i, sample) of each, in any
   /// order. Returns false where `stop` became true before all had ended.
   template <typename Start, typename Deliver>
   bool trace(std::size_t count, Start&& start, Deliver&& deliver, Counters& counters) const {
     counters.paths += count;
-    Batch batch;
+    Batch batch{};
     std::size_t next = 0;
-    const auto begun = [&] {
+    const auto begin = [&](std::size_t place) {
       const PathStart from = start(next);
-      return Slot{m_steps.begin(from.column, from.row, from.random), next++};
+      this->begin(batch, place, from);
+      batch.origins[place].number = next++;
     };
-    while (next < count && batch.slots.size() < RayBatch::capacity)
-      batch.slots.push_back(begun());
-    for (;;) {
+    std::size_t& size = batch.paths.rays.size;
+    while (next < count && size < RayBatch::capacity)
+      begin(size++);
+    while (size > 0) {
       if (m_stop.load(std::memory_order_relaxed))
         return false;
-      fly(batch, counters);
-      if (batch.flying.empty())
-        return true;
-      scatter(batch, counters);
+      m_tracker.sampleCollisions(batch.paths.rays, counters);
+      m_events.scatter(batch.paths, batch.lights, counters);
       look(batch, counters);
-      for (Slot* slot : batch.flying) {
-        if (slot->going)
-          continue;
-        deliver(slot->number, slot->path.sample);
-        if (next < count)
-          *slot = begun();
+      // The last first: what moves into a gap has not ended.
+      for (std::size_t i = batch.paths.endedCount; i-- > 0;) {
+        const std::size_t place = batch.paths.ended[i];
+        deliver(batch.origins[place].number, sample(batch, place));
+        if (next < count) {
+          begin(place);
+        } else if (place != --size) {
+          batch.paths.move(size, place);
+          batch.origins[place] = batch.origins[size];
+        }
       }
     }
+    return true;
   }
 
 private:
-  /// A place for a path; the next one takes it when the path has ended.
-  struct Slot {
-    Path path;
-    std::size_t number;
-    bool going = true;
-    double begin = 0.0; ///< mm along its ray to where the batch's ray begins
-  };
-  struct Light {
-    Slot* slot;
-    ShadowRay ray;
+  /// A path's eye ray.
+  struct Origin {
+    std::size_t number = 0;
+    double row = 0.0;
+    Ray ray;
+    double begin = 0.0; ///< mm along it to where the batch's ray begins
   };
   struct Batch {
-    std::vector<Slot> slots;
-    std::vector<Slot*> flying; ///< whose paths are on their way
-    std::vector<Light> lights; ///< that those sampled
-    RayBatch rays;             ///< the paths', then the lights'
+    PathBatch paths;
+    LightBatch lights;
+    std::array<Origin, RayBatch::capacity> origins;
   };
 
-  double add(RayBatch& rays, const Ray& ray, const Interval& range, Random& random) const {
-    return addInside(rays, m_domain, ray, range, static_cast<std::uint32_t>(random.bits() >> 32));
-  }
-
-  void fly(Batch& batch, Counters& counters) const {
-    batch.rays.size = 0;
-    batch.flying.clear();
-    for (Slot& slot : batch.slots)
-      if (slot.going) {
-        slot.begin = add(batch.rays, slot.path.ray, slot.path.range, slot.path.random);
-        batch.flying.push_back(&slot);
-      }
-    m_tracker.sampleCollisions(batch.rays, counters);
-  }
-
-  void scatter(Batch& batch, Counters& counters) const {
-    batch.lights.clear();
-    for (std::size_t i = 0; i < batch.flying.size(); ++i) {
-      Slot& slot = *batch.flying[i];
-      const double distance = slot.begin + static_cast<double>(batch.rays.result[i]);
-      slot.going = m_steps.arrive(slot.path, distance);
-      if (!slot.going)
-        continue;
-      ++counters.collisions;
-      if (const std::optional<ShadowRay> light = m_steps.scatter(slot.path, distance))
-        batch.lights.push_back({&slot, *light});
-      slot.going = !PathSteps<Voxel>::ended(slot.path);
-    }
+  void begin(Batch& batch, std::size_t place, PathStart from) const {
+    const Ray ray = m_eye.ray(from.column, from.row);
+    batch.paths.begin(place, ray.direction, from.random.bits());
+    const auto seed = static_cast<std::uint32_t>(from.random.bits() >> 32);
+    const double begins = setInside(batch.paths.rays, place, m_domain, ray, m_eye.range(ray), seed);
+    batch.origins[place] = {0, from.row, ray, begins};
   }
 
   void look(Batch& batch, Counters& counters) const {
-    batch.rays.size = 0;
-    for (const Light& light : batch.lights)
-      add(batch.rays, light.ray.ray, {0.0, light.ray.distance}, light.slot->path.random);
-    m_tracker.estimateTransmittances(batch.rays, counters);
-    for (std::size_t i = 0; i < batch.lights.size(); ++i) {
-      const Light& light = batch.lights[i];
-      light.slot->path.sample.radiance +=
-          light.ray.radiance * static_cast<double>(batch.rays.result[i]);
-    }
+    LightBatch& lights = batch.lights;
+    m_tracker.estimateTransmittances(lights.rays, counters);
+    for (std::size_t i = 0; i < lights.rays.size; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        batch.paths.radiance[c][lights.path[i]] += lights.radiance[c][i] * lights.rays.result[i];
+  }
+
+  PathSample sample(const Batch& batch, std::size_t place) const {
+    const Origin& origin = batch.origins[place];
+    const PathBatch& paths = batch.paths;
+    if (paths.bounces[place] == 0) // escaped, unless it must not scatter at all
+      return std::isinf(paths.rays.result[place]) ? m_eye.escaped(origin.row, origin.ray)
+                                                  : PathSample{};
+    const auto triple = [&](const std::array<Column<float>, 3>& columns) {
+      return Eigen::Array3f(columns[0][place], columns[1][place], columns[2][place])
+          .cast<double>()
+          .eval();
+    };
+    PathSample sample;
+    sample.radiance = triple(paths.radiance);
+    sample.albedo = triple(paths.firstAlbedo);
+    sample.normal = triple(paths.firstNormal);
+    const double distance = origin.begin + static_cast<double>(paths.firstDistance[place]);
+    sample.depth = m_eye.depth(origin.ray, distance);
+    return sample;
   }
 
   Domain m_domain;
-  PathSteps<Voxel> m_steps;
   const WideTracker& m_tracker;
+  const WideEvents& m_events;
+  const EyeRays& m_eye;
   const std::atomic<bool>& m_stop;
 };
 

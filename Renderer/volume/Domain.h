@@ -24,6 +24,11 @@ public:
   Domain(const Grid& grid, const std::optional<CropBox>& crop = {});
 
   const Grid& grid() const { return m_grid; }
+  /// Of the grid, in index space.
+  const Box& box() const { return m_box; }
+  /// From index space to the one where the cropping box is [-1, 1]^3; none where nothing is
+  /// cropped.
+  const Affine* toCrop() const { return m_crop ? &m_crop->fromIndex : nullptr; }
 
   /// The part of `range` in which a ray, in index space, is inside. One interval, as both boxes
   /// are convex; a ray that lies exactly in a face counts as inside.
@@ -43,7 +48,7 @@ private:
   };
 
   Grid m_grid;
-  Box m_box; ///< of the grid, in index space
+  Box m_box;
   std::optional<Crop> m_crop;
 };
 

@@ -206,7 +206,7 @@ private:
 class WideFollower : public Follower {
 public:
   WideFollower(const Subject& s, const MajorantGrid& majorants)
-      : m_domain(s.volume.grid), m_tracker(s.volume, s.transfer, majorants, m_clip) {}
+      : m_domain(s.volume.grid), m_tracker(s.volume, m_domain, s.transfer, majorants, m_clip) {}
 
   std::vector<double> collisions(const std::vector<Travel>& travels) const override {
     return inBatches(travels, &WideTracker::sampleCollisions);
@@ -230,7 +230,7 @@ private:
       begins.clear();
     };
     for (Travel t : travels) {
-      begins.push_back(addInside(rays, m_domain, t.ray, t.range,
+      begins.push_back(setInside(rays, rays.size++, m_domain, t.ray, t.range,
                                  static_cast<std::uint32_t>(t.random.bits() >> 32)));
       if (rays.full())
         flush();

@@ -1,0 +1,55 @@
+#pragma once
+// What the lanes' events read beside WideScene: scatterers and lights, in float.
+
+#include "core/Narrow.h"
+#include "lights/LightSet.h"
+#include "medium/TransferFunction.h"
+#include "medium/WideTable.h"
+#include "volume/Grid.h"
+
+#include <vector>
+
+namespace fenestra {
+
+/// "Local" is world axes around the volume's centre: mm that keep their digits wherever it lies.
+struct EventScene {
+  using Triple = std::array<float, 3>;
+  struct Area {
+    bool disk;
+    Triple center, normal; ///< local
+    Triple right, up;      ///< half edges (mm), or the radius
+    float perRight, perUp; ///< 1 / their squared lengths
+    float area;            ///< mm^2
+    Triple radiance;
+    float share;
+  };
+  struct Directional {
+    Triple toward, irradiance;
+    float share;
+  };
+
+  /// Whether floats suffice: no lobe narrower than directions in float resolve.
+  static bool serves(const TransferFunction& transfer);
+
+  EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
+             std::uint64_t mostBounces, bool normalsWanted);
+
+  WideTable albedo;
+  float g;
+  bool hybrid; ///< shading
+  float diffuse, specular, roughness;
+  float surfaceRate; ///< of Medium's surface probability: 25 gamma^3 / span
+  bool wantNormals;
+  std::int32_t bounces; ///< scatterings, at most
+
+  std::vector<Area> areas;
+  std::vector<Directional> directionals;
+  Triple constantEnvironment;
+  const LightSet* maps; ///< asked for environments that are not constant; null where none is
+
+  AffineRows toLocal;                   ///< from index space; directions: from index space per mm
+  AffineRows localToIndex;              ///< directions
+  AffineRows indexDifferenceToGradient; ///< differences over two voxels, to scalar units per mm
+};
+
+} // namespace fenestra
