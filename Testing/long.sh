@@ -65,7 +65,7 @@ stage_seeds() {
 stage_addresses() {
   install_packages clang libclang-rt-14-dev
   (cd "$top" && cmake --preset asan-ubsan >/dev/null && cmake --build build-asan-ubsan)
-  LSAN_OPTIONS="suppressions=$top/Testing/lsan.supp" \
+  LSAN_OPTIONS="suppressions=$top/Testing/lsan.supp" FENESTRA_COMBINATIONS=40 \
     run_labels "$fragments/addresses.md" "$top/build-asan-ubsan" "${labels[@]}"
 }
 

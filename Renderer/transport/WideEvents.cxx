@@ -101,13 +101,13 @@ private:
 
     const WidePhase phase(m_scene, at.incoming, at.albedo);
     const bool surfaces = !hn::AllFalse(floats, at.surface);
-    const WideSurface surface(m_scene, at.incoming, at.gradient, at.albedo);
+    const auto surface = [&] { return WideSurface(m_scene, at.incoming, at.gradient, at.albedo); };
     if (m_lights.some())
       sampleLights(i, at, draws, [&](const F3& toward) {
         const Scattered s = phase.toward(toward);
         if (!surfaces)
           return s;
-        const Scattered o = surface.toward(toward);
+        const Scattered o = surface().toward(toward);
         return Scattered{select(at.surface, o.factor, s.factor),
                          hn::IfThenElse(at.surface, o.pdf, s.pdf)};
       });
@@ -117,7 +117,7 @@ private:
     const F v = draws.uniform();
     ScatterDraw drawn = phase.draw(u, v);
     if (surfaces) {
-      const ScatterDraw other = surface.draw(choice, u, v);
+      const ScatterDraw other = surface().draw(choice, u, v);
       drawn = {select(at.surface, other.outgoing, drawn.outgoing),
                select(at.surface, other.weight, drawn.weight),
                hn::IfThenElse(at.surface, other.pdf, drawn.pdf)};
