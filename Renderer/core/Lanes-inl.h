@@ -11,6 +11,7 @@
 
 #include "core/Narrow.h"
 
+#include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -40,6 +41,16 @@ HWY_INLINE M both(M a, M b) {
 HWY_INLINE M noLane() {
   return hn::FirstN(floats, 0);
 }
+/// Calls visit(lane) for those of `which`.
+template <typename Visit>
+HWY_INLINE void forEachLane(M which, Visit&& visit) {
+  std::array<std::uint8_t, 8> packed = {};
+  hn::StoreMaskBits(floats, which, packed.data());
+  for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
+    if (packed[lane / 8] >> (lane % 8) & 1)
+      visit(lane);
+}
+
 HWY_INLINE F lerp(F a, F b, F f) {
   return hn::MulAdd(hn::Sub(b, a), f, a);
 }

@@ -75,10 +75,13 @@ HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint8_t* voxels,
   return c;
 }
 
-/// The scalar, trilinear between voxel centres and clamped in the outer half voxel.
-template <typename Voxel>
-HWY_INLINE F scalarAt(const WideScene& scene, const Point& p) {
-  const auto* voxels = static_cast<const Voxel*>(scene.voxels);
+/// A point among voxel centres, clamped in the outer half voxel.
+struct Place {
+  I first;      ///< index of the lowest of the eight voxels around it
+  F3 fractions; ///< from there
+};
+
+HWY_INLINE Place placeOf(const WideScene& scene, const Point& p) {
   const auto cell = [&](std::size_t axis, F x, F& fraction) {
     const WideScene::Axis& a = scene.axes[axis];
     // In this order a NaN becomes 0.
@@ -87,18 +90,48 @@ HWY_INLINE F scalarAt(const WideScene& scene, const Point& p) {
     fraction = hn::Sub(inside, hn::ConvertTo(floats, index));
     return index;
   };
-  F fx, fy, fz;
-  const I ix = cell(0, p.x, fx);
-  const I iy = cell(1, p.y, fy);
-  const I iz = cell(2, p.z, fz);
+  Place place;
+  const I x = cell(0, p.x, place.fractions.x);
+  const I y = cell(1, p.y, place.fractions.y);
+  const I z = cell(2, p.z, place.fractions.z);
+  place.first = hn::Add(x, hn::Add(hn::Mul(y, hn::Set(ints, scene.axes[1].stride)),
+                                   hn::Mul(z, hn::Set(ints, scene.axes[2].stride))));
+  return place;
+}
+
+/// Asks for the voxels around the places of all lanes to be brought near.
+template <typename Voxel>
+HWY_INLINE void prefetch(const WideScene& scene, const Place& place) {
+  const auto* voxels = static_cast<const Voxel*>(scene.voxels);
+  alignas(64) std::array<std::int32_t, HWY_MAX_BYTES / sizeof(std::int32_t)> first;
+  hn::Store(place.first, ints, first.data());
+  const std::int32_t up = scene.axes[1].stride;
+  const std::int32_t deep = scene.axes[2].stride;
+  for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane) {
+    const Voxel* v = voxels + first[lane];
+    hwy::Prefetch(v);
+    hwy::Prefetch(v + up);
+    hwy::Prefetch(v + deep);
+    hwy::Prefetch(v + up + deep);
+  }
+}
+
+/// The scalar, trilinear between voxel centres.
+template <typename Voxel>
+HWY_INLINE F scalarAt(const WideScene& scene, const Place& place) {
+  const auto* voxels = static_cast<const Voxel*>(scene.voxels);
   const I up = hn::Set(ints, scene.axes[1].stride);
-  const I deep = hn::Set(ints, scene.axes[2].stride);
-  const I at = hn::Add(ix, hn::Add(hn::Mul(iy, up), hn::Mul(iz, deep)));
-  const I above = hn::Add(at, deep);
-  const Corners c = cornersAt(scene, voxels, Rows{at, hn::Add(at, up), above, hn::Add(above, up)});
+  const I above = hn::Add(place.first, hn::Set(ints, scene.axes[2].stride));
+  const Corners c = cornersAt(
+      scene, voxels, Rows{place.first, hn::Add(place.first, up), above, hn::Add(above, up)});
+  const auto& [fx, fy, fz] = place.fractions;
   const F low = lerp(lerp(c.near[0], c.far[0], fx), lerp(c.near[1], c.far[1], fx), fy);
   const F high = lerp(lerp(c.near[2], c.far[2], fx), lerp(c.near[3], c.far[3], fx), fy);
   return lerp(low, high, fz);
+}
+template <typename Voxel>
+HWY_INLINE F scalarAt(const WideScene& scene, const Point& p) {
+  return scalarAt<Voxel>(scene, placeOf(scene, p));
 }
 
 /// A scalar's place in a table.

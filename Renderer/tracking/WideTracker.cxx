@@ -76,24 +76,45 @@ private:
   }
 };
 
-/// The rays that the lanes follow, and which ray each lane has.
+/// The rays of a batch that nobody has followed yet.
+struct Queue {
+  RayBatch& rays;
+  std::size_t next = 0;
+
+  bool empty() const { return next == rays.size; }
+};
+
+/// As many rays as there are lanes, followed together.
 template <typename Voxel, bool wantRatio>
 class Lanes {
 public:
-  Lanes(const WideScene& scene, RayBatch& rays, Counters& counters)
-      : m_scene(scene), m_rays(rays), m_counters(counters) {}
+  Lanes(const WideScene& scene, Queue& queue)
+      : m_scene(scene), m_queue(queue), m_rays(queue.rays) {}
 
-  void run() {
-    M busy = hn::FirstN(floats, 0);
-    for (;;) {
-      busy = refill(busy);
-      if (hn::AllFalse(floats, busy))
-        break;
-      busy = follow(busy);
+  /// A step ahead for all: collisions that were found in the step before, then cells. Returns
+  /// whether there was a ray to follow.
+  bool step() {
+    if (m_due)
+      collide();
+    const std::size_t lanes = hn::Lanes(floats);
+    std::size_t count = hn::CountTrue(floats, m_busy);
+    if (count + std::max<std::size_t>(1, lanes / refillShare) <= lanes && !m_queue.empty()) {
+      refill();
+      count = hn::CountTrue(floats, m_busy);
     }
-    m_counters.cells += m_cells;
-    m_counters.skippedCells += m_skipped;
-    m_counters.lookups += m_lookups;
+    if (count == 0)
+      return false;
+    const bool crossed = cross();
+    m_due = !crossed || hn::CountTrue(floats, m_hit) * hitShare >= count;
+    if (m_due)
+      stop();
+    return true;
+  }
+
+  void addTo(Counters& counters) const {
+    counters.cells += m_cells;
+    counters.skippedCells += m_skipped;
+    counters.lookups += m_lookups;
   }
 
 private:
@@ -101,31 +122,29 @@ private:
   struct alignas(64) OfLanes : std::array<float, maxLanes> {};
 
   /// Gives idle lanes the next rays, while there are any.
-  M refill(M busy) {
+  void refill() {
     const std::size_t lanes = hn::Lanes(floats);
     std::array<std::uint8_t, 8> packed = {};
-    hn::StoreMaskBits(floats, busy, packed.data());
+    hn::StoreMaskBits(floats, m_busy, packed.data());
     std::uint64_t fresh = 0;
-    for (std::size_t lane = 0; lane < lanes && m_next < m_rays.size; ++lane) {
+    for (std::size_t lane = 0; lane < lanes && !m_queue.empty(); ++lane) {
       if (packed[lane / 8] >> (lane % 8) & 1)
         continue;
       fresh |= std::uint64_t{1} << lane;
-      m_ray[lane] = m_next;
+      const std::size_t ray = m_queue.next++;
+      m_ray[lane] = ray;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        m_origin[axis][lane] = m_rays.origin[axis][m_next];
-        m_direction[axis][lane] = m_rays.direction[axis][m_next];
+        m_origin[axis][lane] = m_rays.origin[axis][ray];
+        m_direction[axis][lane] = m_rays.direction[axis][ray];
       }
-      m_length[lane] = m_rays.length[m_next];
-      m_seed[lane] = m_rays.seed[m_next];
-      ++m_next;
+      m_length[lane] = m_rays.length[ray];
+      m_seed[lane] = m_rays.seed[ray];
     }
-    if (fresh == 0)
-      return busy;
     for (std::size_t i = 0; i < packed.size(); ++i)
       packed[i] = static_cast<std::uint8_t>(fresh >> (8 * i));
     const M started = hn::LoadMaskBits(floats, packed.data());
     start(started);
-    return hn::Or(busy, started);
+    m_busy = hn::Or(m_busy, started);
   }
 
   void start(M which) {
@@ -160,27 +179,9 @@ private:
     take(m_depth, depth);
   }
 
-  /// Until enough lanes are idle. Returns those that are still busy.
-  M follow(M busy) {
-    const std::size_t lanes = hn::Lanes(floats);
-    const std::size_t enough =
-        m_next < m_rays.size ? lanes - std::max<std::size_t>(1, lanes / refillShare) : 0;
-    M hit = hn::FirstN(floats, 0); // lanes at a tentative collision
-    for (;;) {
-      std::size_t count = hn::CountTrue(floats, busy);
-      if (count <= enough)
-        break;
-      while (cross(busy, hit) && hn::CountTrue(floats, hit) * hitShare < count)
-        count = hn::CountTrue(floats, busy);
-      if (!hn::AllFalse(floats, hit))
-        collide(busy, hit);
-    }
-    return busy;
-  }
-
   /// Lanes that have no collision in their cell leave it; from an empty one they jump over all the
   /// empty cells around it. Returns whether any did.
-  HWY_INLINE bool cross(M& busy, M& hit) {
+  HWY_INLINE bool cross() {
     const F zero = hn::Zero(floats);
     const F around = hn::Max(hn::Neg(m_content), zero);
     const auto leave = [&](const AxisWalk& w) { return hn::MulAdd(around, w.perCell, w.next); };
@@ -190,8 +191,8 @@ private:
     const F toFace = hn::Min(hn::Min(x, y), z);
     const F stop = hn::Min(toFace, m_end);
     const F toStop = hn::Mul(hn::Max(hn::Sub(stop, m_t), zero), hn::Max(m_content, zero));
-    hit = both(busy, hn::Lt(m_depth, toStop));
-    const M crossing = hn::AndNot(hit, busy);
+    m_hit = both(m_busy, hn::Lt(m_depth, toStop));
+    const M crossing = hn::AndNot(m_hit, m_busy);
     if (hn::AllFalse(floats, crossing))
       return false;
     m_cells += hn::CountTrue(floats, crossing);
@@ -200,7 +201,7 @@ private:
     m_t = hn::IfThenElse(crossing, hn::Max(stop, m_t), m_t);
     const M ended = both(crossing, hn::Ge(toFace, m_end));
     if (!hn::AllFalse(floats, ended))
-      finish(ended, wantRatio ? m_ratio : all(std::numeric_limits<float>::infinity()), zero, busy);
+      finish(ended, wantRatio ? m_ratio : all(std::numeric_limits<float>::infinity()), zero);
     const M going = hn::AndNot(ended, crossing);
     const M throughX = hn::Eq(x, toFace);
     const M throughY = hn::AndNot(throughX, hn::Eq(y, toFace));
@@ -220,22 +221,32 @@ private:
     return true;
   }
 
-  /// Tentative collisions: real ones end a flight, all of them thin a transmittance.
-  HWY_INLINE void collide(M& busy, M hit) {
-    const F majorant = hn::IfThenElse(hit, m_content, all(1.0F));
-    m_t = hn::IfThenElse(hit, hn::Add(m_t, hn::Div(m_depth, majorant)), m_t);
+  /// Lanes with a collision in their cell go there.
+  HWY_INLINE void stop() {
+    m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_content)), m_t);
+    m_place = placeOf(m_scene, point());
+    prefetch<Voxel>(m_scene, m_place);
+  }
+
+  HWY_INLINE Point point() const {
     const auto at = [&](std::size_t axis) {
       return hn::MulAdd(m_t, hn::Load(floats, m_direction[axis].data()), m_walk[axis].origin);
     };
-    const Point point{at(0), at(1), at(2)};
+    return {at(0), at(1), at(2)};
+  }
+
+  /// Tentative collisions: real ones end a flight, all of them thin a transmittance.
+  HWY_INLINE void collide() {
+    const M hit = m_hit;
+    const F majorant = hn::IfThenElse(hit, m_content, all(1.0F));
     m_lookups += hn::CountTrue(floats, hit);
-    const F scalar = scalarAt<Voxel>(m_scene, point);
+    const F scalar = scalarAt<Voxel>(m_scene, m_place);
     F extinction = extinctionOf(m_scene, scalar);
     const U one = hn::Set(bits, 1);
     const M cut =
         both(hit, hn::RebindMask(floats, hn::Eq(hn::And(hn::BitCast(bits, m_content), one), one)));
     if (!hn::AllFalse(floats, cut))
-      extinction = hn::IfThenZeroElse(hn::AndNot(kept(m_scene, point), cut), extinction);
+      extinction = hn::IfThenZeroElse(hn::AndNot(kept(m_scene, point()), cut), extinction);
     const F share = hn::Div(extinction, majorant);
 
     U counter = m_counter;
@@ -249,11 +260,11 @@ private:
       m_ratio = hn::IfThenElse(hit, hn::IfThenElse(little, survived, thinned), m_ratio);
       const M blocked = both(hit, hn::Le(m_ratio, hn::Zero(floats)));
       if (!hn::AllFalse(floats, blocked))
-        finish(blocked, m_ratio, scalar, busy);
+        finish(blocked, m_ratio, scalar);
     } else {
       const M real = both(hit, hn::Lt(u, share));
       if (!hn::AllFalse(floats, real))
-        finish(real, m_t, scalar, busy);
+        finish(real, m_t, scalar);
     }
     const F depth = exponential(counter);
     m_depth = hn::IfThenElse(hit, depth, m_depth);
@@ -261,7 +272,7 @@ private:
   }
 
   /// Hands in the results of lanes and makes them idle.
-  HWY_INLINE void finish(M which, F result, F scalar, M& busy) {
+  HWY_INLINE void finish(M which, F result, F scalar) {
     OfLanes results, scalars;
     hn::Store(result, floats, results.data());
     if constexpr (!wantRatio)
@@ -274,13 +285,15 @@ private:
         if constexpr (!wantRatio)
           m_rays.scalar[m_ray[lane]] = scalars[lane];
       }
-    busy = hn::AndNot(which, busy);
+    m_busy = hn::AndNot(which, m_busy);
   }
 
   const WideScene& m_scene;
+  Queue& m_queue;
   RayBatch& m_rays;
-  Counters& m_counters;
-  std::size_t m_next = 0; ///< the first ray that no lane has had
+  M m_busy = noLane();
+  M m_hit = noLane(); ///< at a tentative collision
+  bool m_due = false; ///< these are to be looked at before anything else
   std::array<std::size_t, maxLanes> m_ray = {};
   OfLanes m_origin[3] = {}, m_direction[3] = {}, m_length = {};
   alignas(64) std::array<std::uint32_t, maxLanes> m_seed = {};
@@ -294,6 +307,7 @@ private:
   F m_depth = hn::Zero(floats);   ///< optical depth to the next tentative collision
   F m_ratio = hn::Zero(floats);
   U m_counter = hn::Zero(bits);
+  Place m_place{hn::Zero(ints), {m_t, m_t, m_t}}; ///< of the collisions
 
   static AxisWalk idleWalk() {
     const F zero = hn::Zero(floats);
@@ -301,17 +315,33 @@ private:
   }
 };
 
+/// Two sets of lanes take turns: while one waits for memory, the other computes.
+template <typename Voxel, bool wantRatio>
+void followBatch(const WideScene& scene, RayBatch& rays, Counters& counters) {
+  Queue queue{rays};
+  Lanes<Voxel, wantRatio> one(scene, queue), other(scene, queue);
+  bool oneBusy = true, otherBusy = true;
+  while (oneBusy || otherBusy) {
+    if (oneBusy)
+      oneBusy = one.step();
+    if (otherBusy)
+      otherBusy = other.step();
+  }
+  one.addTo(counters);
+  other.addTo(counters);
+}
+
 template <bool wantRatio>
 void followAll(const WideScene& scene, RayBatch& rays, Counters& counters) {
   switch (scene.type) {
   case WideScene::VoxelType::uint8:
-    return Lanes<std::uint8_t, wantRatio>(scene, rays, counters).run();
+    return followBatch<std::uint8_t, wantRatio>(scene, rays, counters);
   case WideScene::VoxelType::int16:
-    return Lanes<std::int16_t, wantRatio>(scene, rays, counters).run();
+    return followBatch<std::int16_t, wantRatio>(scene, rays, counters);
   case WideScene::VoxelType::uint16:
-    return Lanes<std::uint16_t, wantRatio>(scene, rays, counters).run();
+    return followBatch<std::uint16_t, wantRatio>(scene, rays, counters);
   case WideScene::VoxelType::float32:
-    return Lanes<float, wantRatio>(scene, rays, counters).run();
+    return followBatch<float, wantRatio>(scene, rays, counters);
   }
 }
 

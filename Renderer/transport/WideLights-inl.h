@@ -29,16 +29,6 @@ struct alignas(64) OneByOne : std::array<float, HWY_MAX_BYTES / sizeof(float)> {
   F vector() const { return hn::Load(floats, data()); }
 };
 
-/// Calls visit(lane) for those of `which`.
-template <typename Visit>
-HWY_INLINE void forEachLane(M which, Visit&& visit) {
-  std::array<std::uint8_t, 8> packed = {};
-  hn::StoreMaskBits(floats, which, packed.data());
-  for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
-    if (packed[lane / 8] >> (lane % 8) & 1)
-      visit(lane);
-}
-
 class WideLights {
 public:
   explicit HWY_INLINE WideLights(const EventScene& scene) : m_scene(scene) {}
