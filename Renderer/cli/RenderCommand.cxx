@@ -127,8 +127,12 @@ void report(const RenderOptions& options, const RenderResult& result, double sec
   std::ostringstream line;
   line.precision(3);
   line << files << ": " << options.scene.width << "x" << options.scene.height << " pixels, "
-       << result.finishedSamples
-       << (result.finishedSamples == 1 ? " sample each" : " samples each");
+       << result.finishedSamples << (result.finishedSamples == 1 ? " sample" : " samples");
+  const SampleCounts counts = result.film.sampleCounts();
+  if (counts.least == counts.greatest)
+    line << " each";
+  else
+    line << " a pixel (" << counts.least << " to " << counts.greatest << ")";
   if (noise < infinity)
     line << ", noise " << noise;
   line << ", " << seconds << " s"

@@ -58,7 +58,9 @@ constexpr Flag flags[] = {
      "Stop at N samples a pixel [64 unless seconds or noise are given]"},
     {"seconds", "T", qualityGroup,
      "Stop after T seconds of rendering, but not before one sample a pixel"},
-    {"noise", "E", qualityGroup, "Stop when the relative noise is at most E, for example 0.03"},
+    {"noise", "E", qualityGroup,
+     "Stop when the relative noise is at most E, for example 0.03; noisier pixels get more "
+     "samples"},
     {"bounces", "B", qualityGroup, "Scatterings a path, at most (biased) [unlimited]"},
     {"seed", "S", qualityGroup, "Random seed [0]"},
     {"threads", "K", qualityGroup, "Threads, at most one a core [all]"},

@@ -7,22 +7,6 @@
 namespace fenestra {
 namespace {
 
-struct SampleCounts {
-  std::uint64_t least = 0, greatest = 0;
-  double mean = 0.0;
-};
-
-SampleCounts sampleCounts(const Film& film) {
-  SampleCounts counts{std::numeric_limits<std::uint64_t>::max(), 0, 0.0};
-  for (const PixelSums& pixel : film.pixels()) {
-    counts.least = std::min(counts.least, pixel.samples);
-    counts.greatest = std::max(counts.greatest, pixel.samples);
-    counts.mean += static_cast<double>(pixel.samples);
-  }
-  counts.mean /= static_cast<double>(film.pixelCount());
-  return counts;
-}
-
 double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
 }
@@ -32,7 +16,7 @@ double seconds(const timeval& t) {
 std::string statsJson(const RenderStats& stats, const RenderResult& result) {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
-  const SampleCounts samples = sampleCounts(result.film);
+  const SampleCounts samples = result.film.sampleCounts();
   const Counters& c = result.counters;
   const double noise = result.film.noise();
 

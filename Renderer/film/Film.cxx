@@ -10,6 +10,7 @@ void PixelSums::add(const PathSample& sample) {
   alpha += sample.alpha;
   albedo += sample.albedo;
   normal += sample.normal;
+  scatterings += sample.scatterings;
   if (sample.depth < infinity) {
     depth += sample.depth;
     ++collided;
@@ -31,6 +32,17 @@ double Film::noise() const {
     sum += (pixel.standardError().square() / (pixel.mean.square() + 0.01)).sum();
   }
   return std::sqrt(sum / (3.0 * static_cast<double>(m_pixels.size())));
+}
+
+SampleCounts Film::sampleCounts() const {
+  SampleCounts counts{std::numeric_limits<std::uint64_t>::max(), 0, 0.0};
+  for (const PixelSums& pixel : m_pixels) {
+    counts.least = std::min(counts.least, pixel.samples);
+    counts.greatest = std::max(counts.greatest, pixel.samples);
+    counts.mean += static_cast<double>(pixel.samples);
+  }
+  counts.mean /= static_cast<double>(m_pixels.size());
+  return counts;
 }
 
 } // namespace fenestra

@@ -15,6 +15,7 @@ struct PathSample {
   double depth = infinity;    ///< of the first collision, mm in view space; infinity where none
   Rgb albedo = Rgb::Zero();   ///< at the first collision
   Vec3 normal = Vec3::Zero(); ///< unit, world axes, at the first collision; zero where none
+  double scatterings = 0.0;   ///< of the path: what it cost
 };
 
 /// Running sums of one pixel, in double. Samples are added in their own order, so that the sums do
@@ -28,10 +29,17 @@ struct PixelSums {
   std::uint64_t collided = 0;
   Rgb albedo = Rgb::Zero();
   Vec3 normal = Vec3::Zero();
+  double scatterings = 0.0;
 
   void add(const PathSample& sample);
   /// Standard error of the mean radiance; 0 below two samples.
   Rgb standardError() const;
+};
+
+/// Of a pixel.
+struct SampleCounts {
+  std::uint64_t least = 0, greatest = 0;
+  double mean = 0.0;
 };
 
 /// Row 0 is the top row.
@@ -52,6 +60,7 @@ public:
   /// sqrt(mean over pixels and channels of se^2 / (x^2 + 0.01)); infinity below two samples a
   /// pixel.
   double noise() const;
+  SampleCounts sampleCounts() const;
 
 private:
   std::size_t index(int column, int row) const {

@@ -1,6 +1,7 @@
 #include "render/Render.h"
 
 #include "core/Stopwatch.h"
+#include "render/SamplePlan.h"
 #include "transport/PathEstimator.h"
 #include "transport/PathWave.h"
 
@@ -51,55 +52,78 @@ struct OneByOne {
 };
 
 /// Passes grow, so that a picture is there early and overhead stays small later; their sizes are
-/// fixed, so that a stop by noise falls on the same sample count on every machine.
-std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
+/// fixed, so that a stop by noise falls on the same sample count on every machine. The last before
+/// a noise target is as small as the noise so far says, variance falling as one over the samples.
+std::uint64_t passSize(std::uint64_t done, double noise, const RenderSettings& settings) {
   constexpr std::uint64_t largest = 16;
-  const std::uint64_t grown = std::clamp<std::uint64_t>(done, 1, largest);
-  const std::uint64_t wanted = settings.passSamples > 0 ? settings.passSamples : grown;
-  return std::min(wanted, settings.samples - done);
+  std::uint64_t size =
+      settings.passSamples > 0 ? settings.passSamples : std::clamp<std::uint64_t>(done, 1, largest);
+  if (settings.noise > 0.0 && done < leastForNoise)
+    size = std::min(size, leastForNoise - done); // the pilot is the same for all pass sizes
+  if (settings.noise > 0.0 && done >= leastForNoise) {
+    const double missing =
+        static_cast<double>(done) * (std::pow(noise / settings.noise, 2.0) - 1.0);
+    size = std::min(size, static_cast<std::uint64_t>(std::max(1.0, std::min(missing, 1e6))));
+  }
+  return std::min(size, settings.samples - done);
 }
 
-/// The samples first … first + count - 1 of the pixels of a tile, counted pixel by pixel.
+/// The samples of a tile's pixels that one stage of the plan has and the one before has not,
+/// counted pixel by pixel.
 class TileSamples {
 public:
-  TileSamples(const tbb::blocked_range2d<int>& tile, std::uint64_t first, std::uint64_t count)
-      : m_tile(tile), m_first(first), m_count(count) {}
+  TileSamples(const tbb::blocked_range2d<int>& tile, const SamplePlan::Stage& from,
+              const SamplePlan::Stage& to, int width)
+      : m_tile(tile), m_width(width) {
+    for (int row = tile.rows().begin(); row < tile.rows().end(); ++row)
+      for (int column = tile.cols().begin(); column < tile.cols().end(); ++column) {
+        const std::size_t pixel = this->pixel(column, row);
+        for (std::uint64_t sample = from.count(pixel); sample < to.count(pixel); ++sample)
+          m_samples.push_back({column, row, sample});
+      }
+  }
 
-  std::size_t size() const {
-    return static_cast<std::size_t>(m_tile.rows().size() * m_tile.cols().size() * m_count);
-  }
-  int column(std::size_t i) const {
-    return m_tile.cols().begin() + static_cast<int>(i / m_count % m_tile.cols().size());
-  }
-  int row(std::size_t i) const {
-    return m_tile.rows().begin() + static_cast<int>(i / m_count / m_tile.cols().size());
-  }
-  PathStart start(std::size_t i, std::uint64_t seed, int width) const {
-    const auto pixel = static_cast<std::uint64_t>(row(i)) * static_cast<std::uint64_t>(width) +
-                       static_cast<std::uint64_t>(column(i));
-    Random random(seed, pixel, m_first + i % m_count);
+  std::size_t size() const { return m_samples.size(); }
+  PathStart start(std::size_t i, std::uint64_t seed) const {
+    const Sample& sample = m_samples[i];
+    Random random(seed, pixel(sample.column, sample.row), sample.number);
     const Vec2 jitter = random.uniform2();
-    return {column(i) + jitter.x(), row(i) + jitter.y(), random};
+    return {sample.column + jitter.x(), sample.row + jitter.y(), random};
+  }
+  /// To whose pixel sample i belongs.
+  PixelSums& sums(std::size_t i, Film& film) const {
+    return film.at(m_samples[i].column, m_samples[i].row);
   }
 
 private:
+  struct Sample {
+    int column, row;
+    std::uint64_t number;
+  };
+
+  std::size_t pixel(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_width) +
+           static_cast<std::size_t>(column);
+  }
+
   const tbb::blocked_range2d<int>& m_tile;
-  std::uint64_t m_first, m_count;
+  int m_width;
+  std::vector<Sample> m_samples;
 };
 
-/// Samples first … first + count - 1 of every pixel. Returns false when it was stopped before all
-/// were done; tiles are done whole or not at all.
+/// What one stage of the plan has beyond the one before. Returns false when it was stopped before
+/// all was done; tiles are done whole or not at all.
 template <typename Tracer>
-bool renderPass(const Tracer& tracer, std::uint64_t first, std::uint64_t count, std::uint64_t seed,
-                Film& film, Counters& total, RenderMonitor& monitor) {
+bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
+                std::uint64_t seed, Film& film, Counters& total, RenderMonitor& monitor) {
   tbb::combinable<Counters> counters;
   tbb::combinable<std::vector<PathSample>> buffers;
   std::atomic<bool> whole = true;
   const auto renderTile = [&](const tbb::blocked_range2d<int>& tile) {
-    const TileSamples tileSamples(tile, first, count);
+    const TileSamples tileSamples(tile, from, to, film.width());
     std::vector<PathSample>& samples = buffers.local();
     samples.resize(tileSamples.size());
-    const auto start = [&](std::size_t i) { return tileSamples.start(i, seed, film.width()); };
+    const auto start = [&](std::size_t i) { return tileSamples.start(i, seed); };
     const auto deliver = [&](std::size_t i, const PathSample& sample) { samples[i] = sample; };
     if (monitor.stop.load(std::memory_order_relaxed) ||
         !tracer.trace(samples.size(), start, deliver, counters.local())) {
@@ -108,7 +132,7 @@ bool renderPass(const Tracer& tracer, std::uint64_t first, std::uint64_t count, 
     }
     // In their own order, whichever ended first.
     for (std::size_t i = 0; i < samples.size(); ++i)
-      film.at(tileSamples.column(i), tileSamples.row(i)).add(samples[i]);
+      tileSamples.sums(i, film).add(samples[i]);
     monitor.paths.fetch_add(samples.size(), std::memory_order_relaxed);
   };
   constexpr int tileSize = 16;
@@ -118,34 +142,43 @@ bool renderPass(const Tracer& tracer, std::uint64_t first, std::uint64_t count, 
   return whole;
 }
 
+/// How many samples the time that is left allows, by the time that those so far took.
+std::uint64_t affordable(double seconds, std::uint64_t done, const RenderSettings& settings) {
+  if (!(settings.seconds < infinity) || done == 0)
+    return std::numeric_limits<std::uint64_t>::max();
+  const double perSample = seconds / static_cast<double>(done);
+  return static_cast<std::uint64_t>(std::clamp((settings.seconds - seconds) / perSample, 0.0, 1e9));
+}
+
 template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const RenderScene& scene,
                           const RenderSettings& settings, RenderMonitor& monitor) {
   RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0};
   const Stopwatch watch;
+  SamplePlan plan;
   while (result.finishedSamples < settings.samples) {
-    std::uint64_t count = passSize(result.finishedSamples, settings);
-    if (settings.seconds < infinity && result.finishedSamples > 0) {
-      const double elapsed = watch.seconds();
-      const double perSample = elapsed / static_cast<double>(result.finishedSamples);
-      const double affordable = (settings.seconds - elapsed) / perSample;
-      if (affordable < 1.0) {
-        result.reason = StopReason::seconds;
-        return result;
-      }
-      count = std::min(count, static_cast<std::uint64_t>(std::min(affordable, 1e9)));
+    const std::uint64_t done = result.finishedSamples;
+    const std::uint64_t count = std::min(passSize(done, monitor.noise, settings),
+                                         affordable(watch.seconds(), done, settings));
+    if (count == 0) {
+      result.reason = StopReason::seconds;
+      return result;
     }
-    if (!renderPass(tracer, result.finishedSamples, count, settings.seed, result.film,
+    if (!renderPass(tracer, plan.at(done), plan.at(done + count), settings.seed, result.film,
                     result.counters, monitor)) {
       result.reason = StopReason::request;
       return result;
     }
     result.finishedSamples += count;
     monitor.noise = result.film.noise();
-    if (result.finishedSamples >= leastForNoise && monitor.noise <= settings.noise) {
+    if (result.finishedSamples < leastForNoise)
+      continue;
+    if (monitor.noise <= settings.noise) {
       result.reason = StopReason::noise;
       return result;
     }
+    if (settings.noise > 0.0 && done < leastForNoise)
+      plan = SamplePlan(result.film);
   }
   return result;
 }

@@ -30,10 +30,11 @@ struct RenderScene {
 /// (WideTracker::serves).
 enum class Transport { fast, readable };
 
-/// Stops at the first of samples, seconds and noise.
+/// Stops at the first of samples, seconds and noise. Toward a noise target, pixels that are noisier
+/// get more samples than others, after a pilot of 16 (SamplePlan); else all get the same number.
 struct RenderSettings {
   PathSettings path;
-  std::uint64_t samples = 64; ///< a pixel, at most
+  std::uint64_t samples = 64; ///< a pixel, at most; on average
   double seconds = infinity;  ///< of transport
   double noise = -1.0; ///< Film::noise() at the end of a pass, from 16 samples on; negative: never
   std::uint64_t seed = 0;
@@ -55,7 +56,7 @@ struct RenderResult {
   Film film;
   Counters counters;
   StopReason reason = StopReason::samples;
-  std::uint64_t finishedSamples = 0; ///< that every pixel has; after a request some may have more
+  std::uint64_t finishedSamples = 0; ///< a pixel, on average; after a request some may have more
   /// What pictures are bit-identical within: "scalar", or the lanes' instruction set.
   std::string target = "scalar";
 };

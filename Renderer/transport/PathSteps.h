@@ -93,6 +93,7 @@ public:
     path.ray = {point, scattered.outgoing};
     path.range = {};
     ++path.bounces;
+    path.sample.scatterings += 1.0;
     return light;
   }
 

@@ -107,6 +107,7 @@ private:
     sample.normal = triple(paths.firstNormal);
     const double distance = origin.begin + static_cast<double>(paths.firstDistance[place]);
     sample.depth = m_eye.depth(origin.ray, distance);
+    sample.scatterings = static_cast<double>(paths.bounces[place]);
     return sample;
   }
 

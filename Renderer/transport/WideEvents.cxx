@@ -112,7 +112,7 @@ private:
                          hn::IfThenElse(at.surface, o.pdf, s.pdf)};
       });
 
-    const F choice = surfaces ? draws.uniform() : all(0.0F);
+    const F choice = m_scene.hybrid ? draws.uniform() : all(0.0F); // whatever its neighbours do
     const F u = draws.uniform();
     const F v = draws.uniform();
     ScatterDraw drawn = phase.draw(u, v);

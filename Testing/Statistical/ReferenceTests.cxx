@@ -26,6 +26,7 @@ namespace {
 struct ReferenceCase {
   const char* name;
   std::uint64_t samples;
+  double noise = 0.0; ///< the target, where there is one
 };
 
 /// What `fenestra` makes of NAME.arguments, one argument a line, in that folder.
@@ -37,6 +38,8 @@ RenderOptions readArguments(const ReferenceCase& c) {
     if (!line.empty())
       words.push_back(line);
   words.insert(words.end(), {"--samples", std::to_string(c.samples), "--seed", "42"});
+  if (c.noise > 0.0)
+    words.insert(words.end(), {"--noise", std::to_string(c.noise)});
   std::vector<char*> argv;
   for (std::string& word : words)
     argv.push_back(word.data());
@@ -119,6 +122,23 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Reference,
                          ::testing::Values(ReferenceCase{"S1", isLongRun() ? 1024U : 128U},
                                            ReferenceCase{"S2", isLongRun() ? 4096U : 192U}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+class NoiseTarget : public ::testing::TestWithParam<ReferenceCase> {};
+
+TEST_P(NoiseTarget, IsTheTrueErrorWithinAFifth) {
+  if (!present())
+    GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
+  const ReferenceCase& c = GetParam();
+  Image reference = readImage(std::string(FENESTRA_REFERENCE) + "/" + c.name + "_best.exr");
+  const Image image = renderReference(c);
+  attachError(reference, readImage(std::string(c.name) + "_best_se.exr"));
+  EXPECT_NEAR(std::sqrt(compareImages(image, reference).relMse), c.noise, 0.2 * c.noise);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, NoiseTarget,
+                         ::testing::Values(ReferenceCase{"S1", 1U << 20, 0.1},
+                                           ReferenceCase{"S1", 1U << 20, 0.07},
+                                           ReferenceCase{"S2", 1U << 20, 0.05}));
 
 class OracleReference : public ::testing::TestWithParam<ReferenceCase> {};
 

@@ -1,0 +1,44 @@
+#pragma once
+// How a picture's samples are shared out among its pixels.
+
+#include "film/Film.h"
+
+namespace fenestra {
+
+/// Either all pixels get the same number, or, after a pilot, more where the picture is noisier: the
+/// mean of se^2 / (x^2 + 0.01), what Film::noise() states, is least for the time that it takes
+/// where each pixel's share is proportional to s = sqrt(variance / (x^2 + 0.01) / cost of a path).
+///
+/// A pixel's s is taken from the pilot samples of the pixels around it, never from its own. So the
+/// number of its samples does not depend on their values, and their mean is unbiased, those of the
+/// pilot included. (When to stop depends on the noise of the picture, so on each pixel by one part
+/// in as many as there are.)
+class SamplePlan {
+public:
+  /// The same number for all.
+  SamplePlan() = default;
+  /// The pilot has the same number of samples, at least two, in every pixel.
+  explicit SamplePlan(const Film& pilot);
+
+  /// A stage of the plan: `mean` samples a pixel, on average.
+  class Stage {
+  public:
+    /// Samples of a pixel; never fewer than in a stage with a smaller mean.
+    std::uint64_t count(std::size_t pixel) const;
+
+  private:
+    friend class SamplePlan;
+    const SamplePlan* m_plan;
+    std::uint64_t m_mean;
+    double m_perNoise = 0.0; ///< samples for s = 1
+  };
+  Stage at(std::uint64_t mean) const;
+
+private:
+  std::uint64_t m_pilot = 0;
+  std::vector<float> m_noise;    ///< s of each pixel; none: all the same
+  std::vector<float> m_sorted;   ///< s, least first
+  std::vector<double> m_sumFrom; ///< of m_sorted, from each to the end
+};
+
+} // namespace fenestra

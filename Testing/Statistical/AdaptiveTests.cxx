@@ -1,0 +1,106 @@
+// Rendering toward a noise target shares samples out by what a pilot shows. Over many seeds its
+// mean is that of pictures with the same number everywhere.
+
+#include "RunSettings.h"
+#include "Support.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+/// A small bright light beside a ball in the dark: few paths find it by themselves, so that the
+/// samples of a pixel are as skewed as they come.
+TestScene skewedScene() {
+  const Grid grid = centredGrid({12, 12, 12}, {1.0, 1.0, 1.0});
+  const Vec3 centre(5.5, 5.5, 5.5);
+  TestScene s{
+      makeVolume(grid, [&](const Vec3& p) { return (p - centre).norm() < 4.0 ? 1.0 : 0.0; }),
+      linearTransfer(1.0, Rgb(0.95, 0.6, 0.3), 0.7),
+      {EnvironmentLight{.radiance = Rgb::Constant(0.05)},
+       AreaLight{.center = {0, 0, 8},
+                 .normal = -Vec3::UnitZ(),
+                 .size = {1, 1},
+                 .radiance = Rgb::Constant(100.0)}},
+      {},
+      16,
+      16};
+  s.pose.position = {0, -30, 0};
+  s.pose.target = Vec3::Zero();
+  s.pose.scale = 6.0;
+  return s;
+}
+
+struct Moments {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+
+  void add(double x) {
+    sum += x;
+    squares += x * x;
+    ++count;
+  }
+  double mean() const { return sum / count; }
+  double variance() const { return (squares / count - mean() * mean()) / (count - 1.0); }
+};
+
+constexpr int tile = 4;
+
+/// Of the mean over each tile, seed by seed.
+std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, int seeds,
+                               std::uint64_t firstSeed) {
+  std::vector<Moments> tiles(static_cast<std::size_t>(scene.width * scene.height / (tile * tile)));
+  for (int seed = 0; seed < seeds; ++seed) {
+    settings.seed = seeded(firstSeed + static_cast<std::uint64_t>(seed));
+    const Film film = scene.render(settings).film;
+    std::size_t i = 0;
+    for (int top = 0; top < film.height(); top += tile)
+      for (int left = 0; left < film.width(); left += tile) {
+        double sum = 0.0;
+        for (int pixel = 0; pixel < tile * tile; ++pixel)
+          sum += film.at(left + pixel % tile, top + pixel / tile).mean.mean();
+        tiles[i++].add(sum / (tile * tile));
+      }
+  }
+  return tiles;
+}
+
+TEST(AdaptiveSampling, HasNoBias) {
+  const TestScene scene = skewedScene();
+  const int seeds = budget(300);
+  RenderSettings adaptive;
+  adaptive.samples = 1U << 20;
+  adaptive.noise = 0.12;
+  RenderSettings uniform;
+  uniform.samples = 48;
+  const std::vector<Moments> a = tilesOver(scene, adaptive, seeds, 0);
+  const std::vector<Moments> b = tilesOver(scene, uniform, seeds, 100000);
+  double difference = 0.0, variance = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = a[i].mean() - b[i].mean();
+    const double v = a[i].variance() + b[i].variance();
+    EXPECT_LT(std::abs(d), 4.5 * std::sqrt(v) + 1e-9) << "tile " << i;
+    difference += d;
+    variance += v;
+  }
+  EXPECT_LT(std::abs(difference), 4.0 * std::sqrt(variance));
+}
+
+TEST(AdaptiveSampling, SharesOutAndStopsAtItsTarget) {
+  RenderSettings settings;
+  settings.samples = 1U << 20;
+  settings.noise = 0.08;
+  const RenderResult result = skewedScene().render(settings);
+  EXPECT_EQ(result.reason, StopReason::noise);
+  EXPECT_LE(result.film.noise(), settings.noise);
+  EXPECT_GT(result.film.noise(), 0.9 * settings.noise);
+  std::uint64_t least = 1U << 20, most = 0;
+  for (const PixelSums& pixel : result.film.pixels()) {
+    least = std::min(least, pixel.samples);
+    most = std::max(most, pixel.samples);
+  }
+  EXPECT_GE(least, 16U);
+  EXPECT_GT(most, 2 * least);
+}
+
+} // namespace
+} // namespace fenestra::testing

@@ -1,0 +1,103 @@
+#include "render/SamplePlan.h"
+
+#include "core/Random.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+constexpr std::uint64_t pilotSamples = 16;
+
+/// A pilot whose pixels are 0.5 on average and deviate by `deviation(column, row)`.
+template <typename Deviation>
+Film pilotOf(int width, int height, Deviation&& deviation, double scatterings = 1.0) {
+  Film film(width, height);
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column)
+      for (std::uint64_t i = 0; i < pilotSamples; ++i) {
+        PathSample sample;
+        const double side = i % 2 == 0 ? 1.0 : -1.0;
+        sample.radiance = Rgb::Constant(0.5 + side * deviation(column, row));
+        sample.scatterings = scatterings;
+        film.at(column, row).add(sample);
+      }
+  return film;
+}
+
+/// Noisy on the left, quiet on the right.
+double leftDeviation(int column, int) {
+  return column < 32 ? 0.4 : 0.1;
+}
+
+double meanCount(const SamplePlan::Stage& stage, std::size_t pixels) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < pixels; ++i)
+    sum += static_cast<double>(stage.count(i));
+  return sum / static_cast<double>(pixels);
+}
+
+TEST(SamplePlan, WithoutAPilotGivesAllPixelsTheSame) {
+  const SamplePlan plan;
+  for (const std::uint64_t mean : {0U, 1U, 1000U})
+    for (const std::size_t pixel : {std::size_t{0}, std::size_t{12345}})
+      EXPECT_EQ(plan.at(mean).count(pixel), mean);
+}
+
+TEST(SamplePlan, SharesAreProportionalToTheNoise) {
+  const Film pilot = pilotOf(64, 64, leftDeviation);
+  const SamplePlan plan(pilot);
+  const SamplePlan::Stage stage = plan.at(1000);
+  EXPECT_NEAR(meanCount(stage, pilot.pixelCount()), 1000.0, 1.0);
+  const auto left = static_cast<double>(stage.count(64 * 30 + 10));
+  const auto right = static_cast<double>(stage.count(64 * 30 + 50));
+  EXPECT_NEAR(left / right, 4.0, 0.02);
+}
+
+TEST(SamplePlan, ACostlyPathCountsLess) {
+  Film pilot = pilotOf(64, 64, [](int, int) { return 0.3; });
+  for (int row = 0; row < 64; ++row)
+    for (int column = 0; column < 32; ++column)
+      pilot.at(column, row).scatterings *= 4.0;
+  const SamplePlan plan(pilot);
+  const SamplePlan::Stage stage = plan.at(1000);
+  EXPECT_LT(stage.count(64 * 30 + 10), stage.count(64 * 30 + 50));
+}
+
+TEST(SamplePlan, GivesEveryPixelThePilotAndNeverTakesBack) {
+  const Film pilot = pilotOf(64, 64, leftDeviation);
+  const SamplePlan plan(pilot);
+  for (const std::uint64_t mean : {1U, 7U, 16U})
+    EXPECT_EQ(plan.at(mean).count(0), mean) << "a stage of the pilot";
+  for (std::size_t pixel = 0; pixel < pilot.pixelCount(); pixel += 97) {
+    std::uint64_t before = 0;
+    for (std::uint64_t mean = 0; mean < 200; mean += 3) {
+      const std::uint64_t count = plan.at(mean).count(pixel);
+      EXPECT_GE(count, before);
+      EXPECT_GE(count, std::min(mean, pilotSamples));
+      before = count;
+    }
+  }
+}
+
+/// But for what its share of the whole picture's noise changes: a 1 / 4096.
+TEST(SamplePlan, APixelsOwnSamplesDoNotDecideOnTheirNumber) {
+  const SamplePlan plain(pilotOf(64, 64, leftDeviation));
+  const SamplePlan other(pilotOf(64, 64, [](int column, int row) {
+    return column == 10 && row == 30 ? 4.0 : leftDeviation(column, row);
+  }));
+  const std::size_t pixel = 64 * 30 + 10;
+  const auto own = static_cast<double>(plain.at(1000).count(pixel));
+  EXPECT_NEAR(static_cast<double>(other.at(1000).count(pixel)), own, 0.03 * own);
+  EXPECT_GT(static_cast<double>(other.at(1000).count(pixel + 1)), 1.2 * own) << "its neighbour's";
+}
+
+TEST(SamplePlan, PicturesWithoutNoiseOrNeighboursAreSharedOutEvenly) {
+  const SamplePlan quiet(pilotOf(8, 8, [](int, int) { return 0.0; }));
+  EXPECT_EQ(quiet.at(100).count(5), 100U);
+  const SamplePlan single(pilotOf(1, 1, leftDeviation));
+  EXPECT_EQ(single.at(100).count(0), 100U);
+}
+
+} // namespace
+} // namespace fenestra::testing
