@@ -46,20 +46,30 @@ stage_accuracy() {
     run_labels "$fragments/accuracy.md" "$top/build" statistical stress regression
 }
 
+# seed_row SEED: a row of the table, in $rows/SEED.
+seed_row() {
+  local held=yes out
+  out=$(FENESTRA_SEED=$1 "$top/build/bin/MatrixTests" --gtest_filter='*fast') || held=no
+  printf '| %s | %s%s |\n' "$1" \
+    "$(sed -n 's/.*: probability \([^ ]*\) .*/\1 | /p' <<<"$out" | tr -d '\n')" "$held" >"$rows/$1"
+}
+
 stage_seeds() {
   build release -DFENESTRA_BUILD_TESTS=ON
+  local rows
+  rows=$(mktemp -d)
+  export -f seed_row
+  seq 20 | top=$top rows=$rows xargs -P "$(nproc)" -I{} bash -c 'seed_row {}'
   {
     printf '| seed base | %s | all hold |\n|---|---|---|---|---|---|---|---|\n' \
       'pixel | tile | picture | tiles uniform | pictures uniform | mean is 0'
-    local seed held out
+    local seed
     for seed in $(seq 20); do
-      held=yes
-      out=$(FENESTRA_SEED=$seed "$top/build/bin/MatrixTests" --gtest_filter='*fast') || held=no
-      printf '| %s | %s%s |\n' "$seed" \
-        "$(sed -n 's/.*: probability \([^ ]*\) .*/\1 | /p' <<<"$out" | tr -d '\n')" "$held"
+      cat "$rows/$seed"
     done
   } >"$fragments/seeds.md.new"
   mv "$fragments/seeds.md.new" "$fragments/seeds.md"
+  rm -r "$rows"
 }
 
 stage_addresses() {

@@ -74,7 +74,7 @@ class TileSamples {
 public:
   TileSamples(const tbb::blocked_range2d<int>& tile, const SamplePlan::Stage& from,
               const SamplePlan::Stage& to, int width)
-      : m_tile(tile), m_width(width) {
+      : m_width(width) {
     for (int row = tile.rows().begin(); row < tile.rows().end(); ++row)
       for (int column = tile.cols().begin(); column < tile.cols().end(); ++column) {
         const std::size_t pixel = this->pixel(column, row);
@@ -106,7 +106,6 @@ private:
            static_cast<std::size_t>(column);
   }
 
-  const tbb::blocked_range2d<int>& m_tile;
   int m_width;
   std::vector<Sample> m_samples;
 };
