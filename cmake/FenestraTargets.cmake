@@ -13,6 +13,20 @@ if(FENESTRA_SANITIZERS)
   target_link_options(fenestra_sanitizers INTERFACE -fsanitize=${FENESTRA_SANITIZERS})
 endif()
 
+# fenestra_lanes(sources...): sources that Highway compiles once for each instruction set. No multiply
+# and add may be fused that is not written so: a lane's result must not depend on what was inlined
+# around it. Sanitizers see lanes that are emulated (what gathers read is then checked), and nothing
+# else of them: it would take clang a quarter of an hour.
+function(fenestra_lanes)
+  set(options -ffp-contract=off)
+  if(FENESTRA_SANITIZERS)
+    list(APPEND options -DHWY_COMPILE_ONLY_EMU128
+      $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=undefined,fuzzer-no-link>)
+  endif()
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_OPTIONS "${options}" SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # fenestra_library(NAME [sources...] [PUBLIC libraries...] [PRIVATE libraries...])
 # A concept of the renderer: the target fenestra_NAME, header-only where it has no sources.
 # Headers are included as "NAME/Header.h".

@@ -52,20 +52,26 @@ struct OneByOne {
 };
 
 /// Passes grow, so that a picture is there early and overhead stays small later; their sizes are
-/// fixed, so that a stop by noise falls on the same sample count on every machine. The last before
-/// a noise target is as small as the noise so far says, variance falling as one over the samples.
-std::uint64_t passSize(std::uint64_t done, double noise, const RenderSettings& settings) {
+/// fixed, so that a stop by noise falls on the same sample count on every machine.
+std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
   constexpr std::uint64_t largest = 16;
-  std::uint64_t size =
-      settings.passSamples > 0 ? settings.passSamples : std::clamp<std::uint64_t>(done, 1, largest);
-  if (settings.noise > 0.0 && done < leastForNoise)
-    size = std::min(size, leastForNoise - done); // the pilot is the same for all pass sizes
-  if (settings.noise > 0.0 && done >= leastForNoise) {
-    const double missing =
-        static_cast<double>(done) * (std::pow(noise / settings.noise, 2.0) - 1.0);
-    size = std::min(size, static_cast<std::uint64_t>(std::max(1.0, std::min(missing, 1e6))));
-  }
-  return std::min(size, settings.samples - done);
+  const std::uint64_t grown = std::clamp<std::uint64_t>(done, 1, largest);
+  const std::uint64_t wanted = settings.passSamples > 0 ? settings.passSamples : grown;
+  return std::min(wanted, settings.samples - done);
+}
+
+/// The same toward a noise target. The pilot ends with the same sample whatever the passes are.
+/// Passes grow anew after it, for some pixels may get far more than the mean, and the last is as
+/// small as the noise so far says, variance falling as one over the samples.
+std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan& plan,
+                              const RenderSettings& settings) {
+  if (done < leastForNoise)
+    return std::min(passSize(done, settings), leastForNoise - done);
+  constexpr double mostInOnePixel = 256.0;
+  const double missing = static_cast<double>(done) * (std::pow(noise / settings.noise, 2.0) - 1.0);
+  const double room = mostInOnePixel / plan.at(done + 1).greatestShare();
+  const auto most = static_cast<std::uint64_t>(std::max(1.0, std::min(missing, room)));
+  return std::min({passSize(done - leastForNoise, settings), settings.samples - done, most});
 }
 
 /// The samples of a tile's pixels that one stage of the plan has and the one before has not,
@@ -78,7 +84,8 @@ public:
     for (int row = tile.rows().begin(); row < tile.rows().end(); ++row)
       for (int column = tile.cols().begin(); column < tile.cols().end(); ++column) {
         const std::size_t pixel = this->pixel(column, row);
-        for (std::uint64_t sample = from.count(pixel); sample < to.count(pixel); ++sample)
+        const std::uint64_t end = to.count(pixel);
+        for (std::uint64_t sample = from.count(pixel); sample < end; ++sample)
           m_samples.push_back({column, row, sample});
       }
   }
@@ -136,29 +143,48 @@ bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const Sampl
   };
   constexpr int tileSize = 16;
   tbb::parallel_for(
-      tbb::blocked_range2d<int>(0, film.height(), tileSize, 0, film.width(), tileSize), renderTile);
+      tbb::blocked_range2d<int>(0, film.height(), tileSize, 0, film.width(), tileSize), renderTile,
+      tbb::simple_partitioner()); // a tile's samples are all kept until it ends
   counters.combine_each([&](const Counters& local) { total += local; });
   return whole;
 }
 
-/// How many samples the time that is left allows, by the time that those so far took.
-std::uint64_t affordable(double seconds, std::uint64_t done, const RenderSettings& settings) {
-  if (!(settings.seconds < infinity) || done == 0)
-    return std::numeric_limits<std::uint64_t>::max();
-  const double perSample = seconds / static_cast<double>(done);
-  return static_cast<std::uint64_t>(std::clamp((settings.seconds - seconds) / perSample, 0.0, 1e9));
-}
+/// What passes take.
+class Pace {
+public:
+  explicit Pace(double secondsInAll) : m_secondsInAll(secondsInAll) {}
+
+  void passed(std::uint64_t samples) {
+    const double now = m_watch.seconds();
+    m_perSample = (now - m_last) / static_cast<double>(samples);
+    m_last = now;
+  }
+  /// How many samples the time that is left allows, if they take what the last ones took.
+  std::uint64_t affordable() const {
+    if (!(m_secondsInAll < infinity) || m_perSample == 0.0)
+      return std::numeric_limits<std::uint64_t>::max();
+    const double left = m_secondsInAll - m_watch.seconds();
+    return static_cast<std::uint64_t>(std::clamp(left / m_perSample, 0.0, 1e9));
+  }
+
+private:
+  double m_secondsInAll;
+  Stopwatch m_watch;
+  double m_last = 0.0, m_perSample = 0.0;
+};
 
 template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const RenderScene& scene,
                           const RenderSettings& settings, RenderMonitor& monitor) {
   RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0};
-  const Stopwatch watch;
+  const bool towardNoise = settings.noise > 0.0;
+  Pace pace(settings.seconds);
   SamplePlan plan;
   while (result.finishedSamples < settings.samples) {
     const std::uint64_t done = result.finishedSamples;
-    const std::uint64_t count = std::min(passSize(done, monitor.noise, settings),
-                                         affordable(watch.seconds(), done, settings));
+    const std::uint64_t size = towardNoise ? passTowardNoise(done, monitor.noise, plan, settings)
+                                           : passSize(done, settings);
+    const std::uint64_t count = std::min(size, pace.affordable());
     if (count == 0) {
       result.reason = StopReason::seconds;
       return result;
@@ -168,15 +194,16 @@ RenderResult renderPasses(const Tracer& tracer, const RenderScene& scene,
       result.reason = StopReason::request;
       return result;
     }
+    pace.passed(count);
     result.finishedSamples += count;
     monitor.noise = result.film.noise();
-    if (result.finishedSamples < leastForNoise)
+    if (!towardNoise || result.finishedSamples < leastForNoise)
       continue;
     if (monitor.noise <= settings.noise) {
       result.reason = StopReason::noise;
       return result;
     }
-    if (settings.noise > 0.0 && done < leastForNoise)
+    if (result.finishedSamples == leastForNoise)
       plan = SamplePlan(result.film);
   }
   return result;
@@ -192,7 +219,8 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
     return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium,
                                                  const Tracker<Voxel>& tracker) {
       if (settings.transport == Transport::fast &&
-          WideTracker::serves(scene.volume, scene.transfer) && WideEvents::serves(scene.transfer)) {
+          WideTracker::serves(scene.volume, scene.transfer) &&
+          EventScene::serves(scene.volume.grid, scene.transfer, scene.lights)) {
         const Domain domain(scene.volume.grid, scene.crop);
         const WideTracker wide(scene.volume, domain, scene.transfer, scene.majorants, scene.clip);
         const WideEvents events(wide.scene(),

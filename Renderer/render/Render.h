@@ -27,7 +27,7 @@ struct RenderScene {
 };
 
 /// How paths find their way. Both are unbiased; `fast` is `readable` where its lanes do not serve
-/// (WideTracker::serves).
+/// (WideTracker::serves, EventScene::serves).
 enum class Transport { fast, readable };
 
 /// Stops at the first of samples, seconds and noise. Toward a noise target, pixels that are noisier

@@ -2,8 +2,10 @@
 
 #include "core/Random.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
-#include <numeric>
 
 namespace fenestra {
 namespace {
@@ -24,7 +26,7 @@ double cost(const PixelSums& pixel) {
   return beginning + pixel.scatterings / static_cast<double>(pixel.samples);
 }
 
-/// The mean over the pixels around one, without itself; 0 where there are none.
+/// The mean over the pixels around one, without itself.
 double around(const std::vector<double>& values, int width, int height, int column, int row) {
   double sum = 0.0;
   int count = -1;
@@ -35,7 +37,7 @@ double around(const std::vector<double>& values, int width, int height, int colu
         sum += values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                       static_cast<std::size_t>(x)];
     }
-  return count > 0 ? sum / count : 0.0;
+  return sum / count;
 }
 
 /// Uniform in [0, 1), one for each pixel.
@@ -46,22 +48,27 @@ double ditherOf(std::size_t pixel) {
 } // namespace
 
 SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.pixels().front().samples) {
+  if (pilot.pixelCount() < leastPixels)
+    return;
   std::vector<double> variances, costs;
   for (const PixelSums& pixel : pilot.pixels()) {
     variances.push_back(relativeVariance(pixel));
     costs.push_back(cost(pixel));
   }
-  m_noise.reserve(variances.size());
-  double sum = 0.0;
-  for (int row = 0; row < pilot.height(); ++row)
+  m_noise.resize(variances.size());
+  tbb::parallel_for(0, pilot.height(), [&](int row) {
     for (int column = 0; column < pilot.width(); ++column) {
       const auto here = [&](const std::vector<double>& values) {
         return around(values, pilot.width(), pilot.height(), column, row);
       };
-      const double s = std::sqrt(here(variances) / std::max(here(costs), 1e-3));
-      m_noise.push_back(static_cast<float>(s));
-      sum += s;
+      m_noise[static_cast<std::size_t>(row) * static_cast<std::size_t>(pilot.width()) +
+              static_cast<std::size_t>(column)] =
+          static_cast<float>(std::sqrt(here(variances) / here(costs)));
     }
+  });
+  double sum = 0.0;
+  for (const float s : m_noise)
+    sum += static_cast<double>(s);
   if (!(sum > 0.0) || !std::isfinite(sum)) {
     m_noise.clear();
     return;
@@ -70,7 +77,7 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.pixels().front().sampl
   for (float& s : m_noise)
     s = std::max(s, least);
   m_sorted = m_noise;
-  std::ranges::sort(m_sorted);
+  tbb::parallel_sort(m_sorted.begin(), m_sorted.end());
   m_sumFrom.resize(m_sorted.size() + 1);
   for (std::size_t i = m_sorted.size(); i-- > 0;)
     m_sumFrom[i] = m_sumFrom[i + 1] + static_cast<double>(m_sorted[i]);
@@ -108,6 +115,13 @@ std::uint64_t SamplePlan::Stage::count(std::size_t pixel) const {
     return m_mean;
   const double share = m_perNoise * static_cast<double>(m_plan->m_noise[pixel]);
   return std::max(m_plan->m_pilot, static_cast<std::uint64_t>(share + ditherOf(pixel)));
+}
+
+double SamplePlan::Stage::greatestShare() const {
+  if (!(m_perNoise > 0.0))
+    return 1.0;
+  const double most = m_perNoise * static_cast<double>(m_plan->m_sorted.back());
+  return std::max(1.0, most / static_cast<double>(m_mean));
 }
 
 } // namespace fenestra

@@ -11,12 +11,16 @@ namespace fenestra {
 ///
 /// A pixel's s is taken from the pilot samples of the pixels around it, never from its own. So the
 /// number of its samples does not depend on their values, and their mean is unbiased, those of the
-/// pilot included. (When to stop depends on the noise of the picture, so on each pixel by one part
-/// in as many as there are.)
+/// pilot included; but for what its samples change of all pixels' sum of s, and of the noise at
+/// which rendering stops: parts of one in the number of pixels. Pictures too small for that to be
+/// nothing get the same number everywhere.
 class SamplePlan {
 public:
   /// The same number for all.
   SamplePlan() = default;
+  /// The same number for all below this many pixels.
+  static constexpr std::size_t leastPixels = 2048;
+
   /// The pilot has the same number of samples, at least two, in every pixel.
   explicit SamplePlan(const Film& pilot);
 
@@ -25,6 +29,8 @@ public:
   public:
     /// Samples of a pixel; never fewer than in a stage with a smaller mean.
     std::uint64_t count(std::size_t pixel) const;
+    /// Of any pixel, over the mean: 1 or more.
+    double greatestShare() const;
 
   private:
     friend class SamplePlan;

@@ -141,6 +141,7 @@ struct Segment {
 };
 
 HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
+  s = hn::Min(s, all(std::numeric_limits<float>::max())); // interpolation can overflow
   const auto lastBin = static_cast<float>(table.binSegment.size() - 1);
   const F bin = hn::Mul(hn::Sub(s, all(table.binStart)), all(table.binsPerUnit));
   const I inTable = hn::ConvertTo(ints, hn::Max(hn::Min(bin, all(lastBin)), hn::Zero(floats)));

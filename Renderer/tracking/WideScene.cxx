@@ -96,8 +96,11 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
 bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer) {
   constexpr double deepest = 1e4;
   const std::int64_t count = volume.grid.voxelCount();
-  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 ||
-      count > std::numeric_limits<std::int32_t>::max())
+  // Lanes address bytes of 16-bit voxels, else voxels, by 32 bits.
+  const bool twoBytes = std::holds_alternative<std::vector<std::int16_t>>(volume.voxels) ||
+                        std::holds_alternative<std::vector<std::uint16_t>>(volume.voxels);
+  const std::int64_t most = std::numeric_limits<std::int32_t>::max() / (twoBytes ? 2 : 1);
+  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most)
     return false;
   double greatest = 0.0;
   for (const auto& knot : transfer.extinction.knots())

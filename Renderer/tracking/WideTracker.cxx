@@ -1,9 +1,8 @@
 #include "tracking/WideTracker.h"
 
 #include "core/Error.h"
+#include "core/LaneTargets.h"
 
-// Three instruction sets and what every machine has; the file is compiled once for each.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tracking/WideTracker.cxx"
 #include <hwy/foreach_target.h>
@@ -277,14 +276,11 @@ private:
     hn::Store(result, floats, results.data());
     if constexpr (!wantRatio)
       hn::Store(scalar, floats, scalars.data());
-    std::array<std::uint8_t, 8> packed = {};
-    hn::StoreMaskBits(floats, which, packed.data());
-    for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
-      if (packed[lane / 8] >> (lane % 8) & 1) {
-        m_rays.result[m_ray[lane]] = results[lane];
-        if constexpr (!wantRatio)
-          m_rays.scalar[m_ray[lane]] = scalars[lane];
-      }
+    forEachLane(which, [&](std::size_t lane) {
+      m_rays.result[m_ray[lane]] = results[lane];
+      if constexpr (!wantRatio)
+        m_rays.scalar[m_ray[lane]] = scalars[lane];
+    });
     m_busy = hn::AndNot(which, m_busy);
   }
 

@@ -25,11 +25,19 @@ double roughnessOf(const SurfaceShading& shading) {
 
 } // namespace
 
-bool EventScene::serves(const TransferFunction& transfer) {
+bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
+                        const LightSet& lights) {
   constexpr double leastRoughness = 1e-2;
   constexpr double greatestG = 0.9999;
+  constexpr double farthest = 1e15; // mm; squares of it and areas are far from a float's end
+  constexpr double brightest = 1e20;
+  const auto fits = [&](const PlacedAreaLight& light) {
+    return (light.center - grid.worldCenter()).norm() < farthest &&
+           light.half.maxCoeff() < farthest && light.radiance.maxCoeff() < brightest;
+  };
   return std::abs(transfer.g) <= greatestG &&
-         !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness);
+         !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness) &&
+         std::all_of(lights.areas().begin(), lights.areas().end(), fits);
 }
 
 EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
@@ -41,7 +49,7 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
       specular(0.0F),
       roughness(1.0F),
       surfaceRate(0.0F),
-      wantNormals(normalsWanted),
+      wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
           std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
       constantEnvironment(narrow3(lights.constantEnvironment())),
@@ -52,14 +60,16 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
     diffuse = narrow(shading.diffuse / total);
     specular = narrow(shading.specular / total);
     roughness = narrow(roughnessOf(shading));
-    surfaceRate = narrow(25.0 * std::pow(shading.gamma, 3) / transfer.extinction.span());
+    surfaceRate = narrow(25.0 * std::pow(shading.gamma, 3));
   }
   Affine local = grid.indexToWorld;
   local.translation() -= grid.worldCenter();
   toLocal = affineRows(local);
   localToIndex = affineRows(Affine(grid.worldToIndex.linear()));
+  const double span = transfer.extinction.span();
+  const double scale = 0.5 / (span > 0.0 ? span : 1.0);
   indexDifferenceToGradient =
-      affineRows(Affine(Mat3(0.5 * grid.worldToIndex.linear().transpose())));
+      affineRows(Affine(Mat3(scale * grid.worldToIndex.linear().transpose())));
   for (const PlacedAreaLight& light : lights.areas())
     areas.push_back(narrowArea(light, grid.worldCenter()));
   for (const PlacedDirectionalLight& light : lights.directionals())

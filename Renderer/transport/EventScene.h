@@ -28,8 +28,9 @@ struct EventScene {
     float share;
   };
 
-  /// Whether floats suffice: no lobe narrower than directions in float resolve.
-  static bool serves(const TransferFunction& transfer);
+  /// Whether floats suffice: no lobe narrower than directions in float resolve, and no light so far
+  /// or bright that its square has no float.
+  static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights);
 
   EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
              std::uint64_t mostBounces, bool normalsWanted);
@@ -38,7 +39,7 @@ struct EventScene {
   float g;
   bool hybrid; ///< shading
   float diffuse, specular, roughness;
-  float surfaceRate; ///< of Medium's surface probability: 25 gamma^3 / span
+  float surfaceRate; ///< of Medium's surface probability: 25 gamma^3
   bool wantNormals;
   std::int32_t bounces; ///< scatterings, at most
 
@@ -47,9 +48,10 @@ struct EventScene {
   Triple constantEnvironment;
   const LightSet* maps; ///< asked for environments that are not constant; null where none is
 
-  AffineRows toLocal;                   ///< from index space; directions: from index space per mm
-  AffineRows localToIndex;              ///< directions
-  AffineRows indexDifferenceToGradient; ///< differences over two voxels, to scalar units per mm
+  AffineRows toLocal;      ///< points, from index space
+  AffineRows localToIndex; ///< directions
+  /// Differences over two voxels, to parts of the transfer function's span per mm.
+  AffineRows indexDifferenceToGradient;
 };
 
 } // namespace fenestra

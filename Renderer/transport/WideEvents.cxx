@@ -1,6 +1,6 @@
 #include "transport/WideEvents.h"
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#include "core/LaneTargets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transport/WideEvents.cxx"
 #include <hwy/foreach_target.h>

@@ -40,8 +40,6 @@ struct LightBatch {
 /// A view: what it is made of outlives it.
 class WideEvents {
 public:
-  static bool serves(const TransferFunction& transfer) { return EventScene::serves(transfer); }
-
   WideEvents(const WideScene& volume, EventScene scene)
       : m_volume(volume), m_scene(std::move(scene)) {}
 

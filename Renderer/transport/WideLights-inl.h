@@ -23,9 +23,9 @@ struct LightDraw {
 };
 
 /// One number a lane, to be handled one by one.
-struct alignas(64) OneByOne : std::array<float, HWY_MAX_BYTES / sizeof(float)> {
-  OneByOne() = default;
-  explicit OneByOne(F v) { hn::Store(v, floats, data()); }
+struct alignas(64) LaneNumbers : std::array<float, HWY_MAX_BYTES / sizeof(float)> {
+  LaneNumbers() = default;
+  explicit LaneNumbers(F v) { hn::Store(v, floats, data()); }
   F vector() const { return hn::Load(floats, data()); }
 };
 
@@ -106,14 +106,14 @@ private:
   }
 
   void drawMaps(M which, F choice, F u, F v, LightDraw& drawn) const {
-    const OneByOne choices(choice), us(u), vs(v);
-    OneByOne direction[3] = {OneByOne(drawn.direction.x), OneByOne(drawn.direction.y),
-                             OneByOne(drawn.direction.z)};
-    OneByOne radiance[3] = {OneByOne(drawn.radiance.x), OneByOne(drawn.radiance.y),
-                            OneByOne(drawn.radiance.z)};
-    OneByOne pdf(drawn.pdf);
+    const LaneNumbers choices(choice), us(u), vs(v);
+    LaneNumbers direction[3] = {LaneNumbers(drawn.direction.x), LaneNumbers(drawn.direction.y),
+                                LaneNumbers(drawn.direction.z)};
+    LaneNumbers radiance[3] = {LaneNumbers(drawn.radiance.x), LaneNumbers(drawn.radiance.y),
+                               LaneNumbers(drawn.radiance.z)};
+    LaneNumbers pdf(drawn.pdf);
     forEachLane(which, [&](std::size_t lane) {
-      const auto number = [&](const OneByOne& x) { return static_cast<double>(x[lane]); };
+      const auto number = [&](const LaneNumbers& x) { return static_cast<double>(x[lane]); };
       const std::optional<LightSample> light =
           m_scene.maps->sampleEnvironment(number(choices), {number(us), number(vs)});
       if (!light)
@@ -140,8 +140,8 @@ private:
     if (hn::AllFalse(floats, met))
       return {zero, zero, zero};
     const F3 d = origin + t * direction - all3(light.center);
-    const F x2 = hn::Mul(square(dot(d, all3(light.right))), square(all(light.perRight)));
-    const F y2 = hn::Mul(square(dot(d, all3(light.up))), square(all(light.perUp)));
+    const F x2 = square(hn::Mul(dot(d, all3(light.right)), all(light.perRight)));
+    const F y2 = square(hn::Mul(dot(d, all3(light.up)), all(light.perUp)));
     const F one = all(1.0F);
     met = both(met, hn::Le(light.disk ? hn::Add(x2, y2) : hn::Max(x2, y2), one));
     const F pdf = hn::Div(hn::Mul(all(light.share), square(t)), hn::Mul(all(light.area), cosine));
@@ -151,10 +151,10 @@ private:
 
   F3 fromMaps(M escaped, const F3& direction, F scatterPdf) const {
     const F zero = hn::Zero(floats);
-    const OneByOne x(direction.x), y(direction.y), z(direction.z), pdf(scatterPdf);
-    OneByOne r(zero), g(zero), b(zero);
+    const LaneNumbers x(direction.x), y(direction.y), z(direction.z), pdf(scatterPdf);
+    LaneNumbers r(zero), g(zero), b(zero);
     forEachLane(escaped, [&](std::size_t lane) {
-      const auto number = [&](const OneByOne& v) { return static_cast<double>(v[lane]); };
+      const auto number = [&](const LaneNumbers& v) { return static_cast<double>(v[lane]); };
       const LightArrival arrival = m_scene.maps->environment({number(x), number(y), number(z)});
       const Rgb sum = arrival.radiance * (number(pdf) / (number(pdf) + arrival.pdf));
       r[lane] = narrow(sum[0]);

@@ -84,9 +84,9 @@ public:
         m_viewer(m_frame.toLocal(-incoming)),
         m_diffuse(all(scene.diffuse) * albedo) {
     const F lambert = greatest(m_diffuse);
-    const F both = hn::MulAdd(all(m_specular), schlick(m_viewer.z), lambert);
-    const M some = hn::Gt(both, hn::Zero(floats));
-    m_lambertShare = hn::IfThenElse(some, hn::Div(lambert, both), all(1.0F));
+    const F sum = hn::MulAdd(all(m_specular), schlick(m_viewer.z), lambert);
+    const M some = hn::Gt(sum, hn::Zero(floats));
+    m_lambertShare = hn::IfThenElse(some, hn::Div(lambert, sum), all(1.0F));
   }
 
   HWY_INLINE Scattered toward(const F3& outgoing) const {

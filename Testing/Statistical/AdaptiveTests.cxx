@@ -23,8 +23,8 @@ TestScene skewedScene() {
                  .size = {1, 1},
                  .radiance = Rgb::Constant(100.0)}},
       {},
-      16,
-      16};
+      64,
+      64};
   s.pose.position = {0, -30, 0};
   s.pose.target = Vec3::Zero();
   s.pose.scale = 6.0;
@@ -43,7 +43,7 @@ struct Moments {
   double variance() const { return (squares / count - mean() * mean()) / (count - 1.0); }
 };
 
-constexpr int tile = 4;
+constexpr int tile = 16;
 
 /// Of the mean over each tile, seed by seed.
 std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, int seeds,
@@ -66,12 +66,12 @@ std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, 
 
 TEST(AdaptiveSampling, HasNoBias) {
   const TestScene scene = skewedScene();
-  const int seeds = budget(300);
+  const int seeds = budget(24);
   RenderSettings adaptive;
   adaptive.samples = 1U << 20;
-  adaptive.noise = 0.12;
+  adaptive.noise = 0.05;
   RenderSettings uniform;
-  uniform.samples = 48;
+  uniform.samples = 40;
   const std::vector<Moments> a = tilesOver(scene, adaptive, seeds, 0);
   const std::vector<Moments> b = tilesOver(scene, uniform, seeds, 100000);
   double difference = 0.0, variance = 0.0;
@@ -88,7 +88,7 @@ TEST(AdaptiveSampling, HasNoBias) {
 TEST(AdaptiveSampling, SharesOutAndStopsAtItsTarget) {
   RenderSettings settings;
   settings.samples = 1U << 20;
-  settings.noise = 0.08;
+  settings.noise = 0.03;
   const RenderResult result = skewedScene().render(settings);
   EXPECT_EQ(result.reason, StopReason::noise);
   EXPECT_LE(result.film.noise(), settings.noise);

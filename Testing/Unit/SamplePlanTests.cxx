@@ -52,6 +52,7 @@ TEST(SamplePlan, SharesAreProportionalToTheNoise) {
   const auto left = static_cast<double>(stage.count(64 * 30 + 10));
   const auto right = static_cast<double>(stage.count(64 * 30 + 50));
   EXPECT_NEAR(left / right, 4.0, 0.02);
+  EXPECT_NEAR(stage.greatestShare(), left / 1000.0, 0.01);
 }
 
 TEST(SamplePlan, ACostlyPathCountsLess) {
@@ -80,7 +81,7 @@ TEST(SamplePlan, GivesEveryPixelThePilotAndNeverTakesBack) {
   }
 }
 
-/// But for what its share of the whole picture's noise changes: a 1 / 4096.
+/// But for what they change of all pixels' noise together.
 TEST(SamplePlan, APixelsOwnSamplesDoNotDecideOnTheirNumber) {
   const SamplePlan plain(pilotOf(64, 64, leftDeviation));
   const SamplePlan other(pilotOf(64, 64, [](int column, int row) {
@@ -92,11 +93,14 @@ TEST(SamplePlan, APixelsOwnSamplesDoNotDecideOnTheirNumber) {
   EXPECT_GT(static_cast<double>(other.at(1000).count(pixel + 1)), 1.2 * own) << "its neighbour's";
 }
 
-TEST(SamplePlan, PicturesWithoutNoiseOrNeighboursAreSharedOutEvenly) {
-  const SamplePlan quiet(pilotOf(8, 8, [](int, int) { return 0.0; }));
+TEST(SamplePlan, QuietAndTinyPicturesAreSharedOutEvenly) {
+  const SamplePlan quiet(pilotOf(64, 64, [](int, int) { return 0.0; }));
   EXPECT_EQ(quiet.at(100).count(5), 100U);
-  const SamplePlan single(pilotOf(1, 1, leftDeviation));
-  EXPECT_EQ(single.at(100).count(0), 100U);
+  EXPECT_EQ(quiet.at(100).greatestShare(), 1.0);
+  for (const int size : {1, 2, 32}) {
+    const SamplePlan tiny(pilotOf(size, size, [](int column, int) { return 0.1 + column; }));
+    EXPECT_EQ(tiny.at(100).count(0), 100U);
+  }
 }
 
 } // namespace
