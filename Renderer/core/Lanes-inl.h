@@ -126,11 +126,6 @@ HWY_INLINE F3 mapDirection(const AffineRows& map, const F3& d) {
   return {row(map[0]), row(map[1]), row(map[2])};
 }
 
-/// Three columns of numbers, from one lane's number on.
-HWY_INLINE F3 load3(const float* x, const float* y, const float* z) {
-  return {hn::LoadU(floats, x), hn::LoadU(floats, y), hn::LoadU(floats, z)};
-}
-
 /// A mixer of 32 bits with low bias (the Hash Prospector project).
 HWY_INLINE U mixBits(U x) {
   x = hn::Mul(hn::Xor(x, hn::ShiftRight<16>(x)), hn::Set(bits, 0x21f0aaadU));

@@ -96,7 +96,7 @@ private:
     if (paths.bounces[place] == 0) // escaped, unless it must not scatter at all
       return std::isinf(paths.rays.result[place]) ? m_eye.escaped(origin.row, origin.ray)
                                                   : PathSample{};
-    const auto triple = [&](const std::array<Column<float>, 3>& columns) {
+    const auto triple = [&](const Columns3& columns) {
       return Eigen::Array3f(columns[0][place], columns[1][place], columns[2][place])
           .cast<double>()
           .eval();

@@ -23,10 +23,11 @@ struct Draws {
   HWY_INLINE F uniform() { return uniformOf(nextBits()); }
 };
 
-HWY_INLINE F3 loadFrom(const std::array<Column<float>, 3>& columns, std::size_t i) {
-  return load3(&columns[0][i], &columns[1][i], &columns[2][i]);
+HWY_INLINE F3 loadFrom(const Columns3& columns, std::size_t i) {
+  return {hn::LoadU(floats, &columns[0][i]), hn::LoadU(floats, &columns[1][i]),
+          hn::LoadU(floats, &columns[2][i])};
 }
-HWY_INLINE void storeTo(std::array<Column<float>, 3>& columns, std::size_t i, const F3& v) {
+HWY_INLINE void storeTo(Columns3& columns, std::size_t i, const F3& v) {
   hn::StoreU(v.x, floats, &columns[0][i]);
   hn::StoreU(v.y, floats, &columns[1][i]);
   hn::StoreU(v.z, floats, &columns[2][i]);
@@ -174,7 +175,7 @@ private:
       const F before = hn::LoadU(floats, &column[i]);
       hn::StoreU(hn::IfThenElse(at.first, now, before), floats, &column[i]);
     };
-    const auto keep3 = [&](const F3& now, std::array<Column<float>, 3>& columns) {
+    const auto keep3 = [&](const F3& now, Columns3& columns) {
       keep(now.x, columns[0]);
       keep(now.y, columns[1]);
       keep(now.z, columns[2]);
@@ -212,7 +213,7 @@ private:
     const auto put = [&](F x, Column<float>& column) {
       hn::StoreU(hn::Compress(x, arrives), floats, &column[to]);
     };
-    const auto put3 = [&](const F3& x, std::array<Column<float>, 3>& columns) {
+    const auto put3 = [&](const F3& x, Columns3& columns) {
       put(x.x, columns[0]);
       put(x.y, columns[1]);
       put(x.z, columns[2]);
@@ -307,7 +308,7 @@ void PathBatch::begin(std::size_t i, const Vec3& worldDirection, std::uint64_t r
 
 void PathBatch::move(std::size_t from, std::size_t to) {
   const auto one = [&](auto& column) { column[to] = column[from]; };
-  const auto three = [&](std::array<Column<float>, 3>& columns) {
+  const auto three = [&](Columns3& columns) {
     for (Column<float>& column : columns)
       one(column);
   };

@@ -10,16 +10,16 @@ namespace fenestra {
 
 /// Paths under way: what `Path` holds for one, as a structure of arrays.
 struct PathBatch {
-  RayBatch rays;                          ///< that they travel next, and where they collide
-  std::array<Column<float>, 3> direction; ///< of their rays, world axes, unit
-  std::array<Column<float>, 3> weight, radiance;
+  RayBatch rays;      ///< that they travel next, and where they collide
+  Columns3 direction; ///< of their rays, world axes, unit
+  Columns3 weight, radiance;
   Column<float> scatterPdf;
   Column<std::int32_t> bounces;
   Column<std::uint32_t> key, counter; ///< of their random numbers
 
   /// Of the first collision.
   Column<float> firstDistance;
-  std::array<Column<float>, 3> firstAlbedo, firstNormal;
+  Columns3 firstAlbedo, firstNormal;
 
   std::size_t endedCount = 0;
   Column<std::uint32_t> ended; ///< which of them
@@ -33,7 +33,7 @@ struct PathBatch {
 /// Light on its way to paths: `radiance` arrives, times the transmittance of the ray.
 struct LightBatch {
   RayBatch rays;
-  std::array<Column<float>, 3> radiance;
+  Columns3 radiance;
   Column<std::uint32_t> path;
 };
 
