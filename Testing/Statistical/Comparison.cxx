@@ -14,7 +14,7 @@ oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& sums = film.pixels()[i];
     oracle::PixelEstimate& pixel = estimates.pixels[i];
-    pixel.samples = static_cast<double>(sums.samples);
+    pixel.samples = static_cast<double>(samples); // a certain pixel's would all be alike
     pixel.mean = sums.mean;
     pixel.squares = sums.deviation;
     pixel.first =
@@ -95,7 +95,8 @@ double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
       for (int c = 0; c < 3; ++c)
         least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
       const int one = ++channel % 3;
-      if (const auto p = welchProbability(a.channel(one), b.channel(one)))
+      const auto p = welchProbability(a.channel(one), b.channel(one));
+      if (p && isEven(b.channel(one, skewness)))
         visit(*p);
     }
   return least.corrected();
@@ -123,12 +124,14 @@ void comparePicture(Outcome& outcome) {
 
   const int channel = outcome.combination.index % 3;
   const Estimated product = a.channel(channel), truth = b.channel(channel);
-  outcome.pictureProbability = welchProbability(product, truth);
+  const std::optional<double> probability = welchProbability(product, truth);
   const double difference = product.mean - truth.mean;
   if (truth.mean > 0.0)
     outcome.difference = difference / truth.mean;
-  if (outcome.pictureProbability)
+  if (probability)
     outcome.deviate = difference / std::sqrt(product.variance + truth.variance);
+  if (isEven(b.channel(channel, skewness)))
+    outcome.pictureProbability = probability;
 }
 
 void compareDepths(const std::vector<double>& product, const std::vector<double>& truth,

@@ -25,8 +25,8 @@ struct Outcome {
   /// How probable the largest difference is: over all pixels and channels; over all tiles and
   /// channels; over the picture's channels, share of paths that collide, depth and albedo.
   double pixels = 1.0, tiles = 1.0, picture = 1.0;
-  /// One channel a tile, and of the picture: independent of each other, so uniform in [0, 1].
-  /// Their tails are no heavier than Welch's: few values lie there.
+  /// One channel a tile, and of the picture: independent of each other, so uniform in [0, 1]. Only
+  /// of even paths (isEven): others' are too rarely near 0 or 1.
   std::vector<double> tileProbabilities;
   std::optional<double> pictureProbability;
   /// Of the same channel: the picture's difference over the oracle's mean, and over its own error.

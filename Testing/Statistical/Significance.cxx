@@ -37,6 +37,10 @@ std::optional<double> welchProbability(const Estimated& a, const Estimated& b) {
                      std::min({satterthwaite, brightPaths, evenPaths(a), evenPaths(b)}));
 }
 
+bool isEven(const Estimated& e) {
+  return e.samples >= 100.0 * square(e.skewness);
+}
+
 double sidak(double least, double count) {
   return -std::expm1(count * std::log1p(-least));
 }
