@@ -188,6 +188,12 @@ int renderCommand(int argc, char** argv, int first) {
     stats.stages.focus += coverageSeconds;
     stats.mismatch = scene.mismatch();
     stats.warnings = scene.warnings();
+    stats.files = scene.files();
+    const MajorantGrid& majorants = scene.forRender().majorants;
+    stats.cells = majorants.size();
+    stats.emptyCells = majorants.emptyCount();
+    if (scene.focus())
+      stats.focusVoxels = scene.focus()->grid.voxelCount();
     stats.write = write.seconds();
     stats.total = total.seconds();
     writeFile(*options.stats, statsJson(stats, result));

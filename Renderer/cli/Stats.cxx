@@ -31,6 +31,10 @@ std::string statsJson(const RenderStats& stats, const RenderResult& result) {
   json["lookups"] = c.lookups;
   json["skippedFraction"] =
       c.cells > 0 ? static_cast<double>(c.skippedCells) / static_cast<double>(c.cells) : 0.0;
+  json["shadowRays"] = c.shadowRays;
+  json["gradients"] = c.gradients;
+  json["cells"] = {{"all", stats.cells}, {"empty", stats.emptyCells}};
+  json["emptyPixels"] = samples.certainPixels;
   json["samplesPerPixel"] = {
       {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
   json["noise"] = noise < infinity ? nlohmann::ordered_json(noise) : nullptr;
@@ -40,6 +44,9 @@ std::string statsJson(const RenderStats& stats, const RenderResult& result) {
         {"mean", stats.mismatch->mean}, {"p95", stats.mismatch->p95}, {"max", stats.mismatch->max}};
   if (stats.focusCoverage)
     json["focusCoverage"] = *stats.focusCoverage;
+  if (stats.focusVoxels)
+    json["focusVoxels"] = *stats.focusVoxels;
+  json["filesRead"] = stats.files;
   json["warnings"] = stats.warnings;
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }

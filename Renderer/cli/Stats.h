@@ -14,10 +14,15 @@ struct RenderStats {
   double transport = 0.0, write = 0.0, total = 0.0; ///< wall-clock seconds
   std::optional<double> focusCoverage = {};
   std::optional<BoundaryMismatch> mismatch = {};
+  std::size_t cells = 0, emptyCells = 0;        ///< of the majorant grid
+  std::optional<std::int64_t> focusVoxels = {}; ///< of the labelmap, as far as it was kept
+  std::vector<std::string> files = {};          ///< that were read
   std::vector<std::string> warnings = {};
 };
 
-/// JSON text with the contract's keys.
+/// JSON text with the contract's keys, and counters that show what was left out: shadowRays,
+/// gradients, emptyPixels (certain from one sample, and not in samplesPerPixel), cells,
+/// focusVoxels, filesRead.
 std::string statsJson(const RenderStats& stats, const RenderResult& result);
 
 } // namespace fenestra

@@ -1,5 +1,7 @@
 #include "clipping/Footprints.h"
 
+#include "camera/BoxProjection.h"
+
 namespace fenestra {
 
 namespace {
@@ -59,27 +61,12 @@ FocusFootprint::FocusFootprint(const Camera& camera, const DepthBuffer& buffer,
     : m_across((buffer.columns() + tileSize - 1) / tileSize) {
   const std::int64_t down = (buffer.rows() + tileSize - 1) / tileSize;
   m_tiles.assign(static_cast<std::size_t>(m_across * down), {infinity, -infinity});
-  Affine blockToView = cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize});
-  Mat3 toView;
-  toView << camera.right().transpose(), camera.up().transpose(), camera.forward().transpose();
-  blockToView.translation() = camera.toView(blockToView.translation());
-  blockToView.linear() = toView * blockToView.linear();
-  // Half the extent of any block, and far more than rounding.
-  const Vec3 half = 0.5001 * blockToView.linear().cwiseAbs().rowwise().sum() +
-                    Vec3::Constant(1e-12 * blockToView.translation().norm());
+  const BoxProjection blocks(camera,
+                             cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize}));
   cells.visitOccupied([&](const Size3& block) {
-    const Vec3 center = blockToView * (block.cast<double>().array() + 0.5).matrix();
-    const Interval depths{center.z() - half.z(), center.z() + half.z()};
+    const auto [depths, lower, upper] = blocks.of(block);
     if (depths.end < 0.0)
       return;
-    Vec2 lower = Vec2::Constant(-infinity), upper = Vec2::Constant(infinity);
-    if (depths.begin > 0.0 || camera.pose().projection == Projection::orthographic) {
-      const double atBegin = perDepth(camera, depths.begin), atEnd = perDepth(camera, depths.end);
-      lower = center.head<2>() - half.head<2>();
-      upper = center.head<2>() + half.head<2>();
-      lower = (lower * atBegin).cwiseMin(lower * atEnd).eval();
-      upper = (upper * atBegin).cwiseMax(upper * atEnd).eval();
-    }
     const auto [left, right] = samplesAround(buffer.xAxis(), lower.x(), upper.x());
     const auto [top, bottom] = samplesAround(buffer.yAxis(), lower.y(), upper.y());
     for (std::int64_t row = top / tileSize; row <= bottom / tileSize; ++row)

@@ -27,6 +27,8 @@ Rgb PixelSums::standardError() const {
 double Film::noise() const {
   double sum = 0.0;
   for (const PixelSums& pixel : m_pixels) {
+    if (pixel.isCertain)
+      continue;
     if (pixel.samples < 2)
       return infinity;
     sum += (pixel.standardError().square() / (pixel.mean.square() + 0.01)).sum();
@@ -35,13 +37,18 @@ double Film::noise() const {
 }
 
 SampleCounts Film::sampleCounts() const {
-  SampleCounts counts{std::numeric_limits<std::uint64_t>::max(), 0, 0.0};
+  SampleCounts counts{std::numeric_limits<std::uint64_t>::max(), 0, 0.0, 0};
+  for (const PixelSums& pixel : m_pixels)
+    counts.certainPixels += pixel.isCertain ? 1 : 0;
+  const bool allCertain = counts.certainPixels == m_pixels.size();
   for (const PixelSums& pixel : m_pixels) {
+    if (pixel.isCertain && !allCertain)
+      continue;
     counts.least = std::min(counts.least, pixel.samples);
     counts.greatest = std::max(counts.greatest, pixel.samples);
     counts.mean += static_cast<double>(pixel.samples);
   }
-  counts.mean /= static_cast<double>(m_pixels.size());
+  counts.mean /= static_cast<double>(m_pixels.size() - (allCertain ? 0 : counts.certainPixels));
   return counts;
 }
 

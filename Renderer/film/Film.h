@@ -30,16 +30,18 @@ struct PixelSums {
   Rgb albedo = Rgb::Zero();
   Vec3 normal = Vec3::Zero();
   double scatterings = 0.0;
+  bool isCertain = false; ///< more samples would be equal to the one that there is
 
   void add(const PathSample& sample);
-  /// Standard error of the mean radiance; 0 below two samples.
+  /// Standard error of the mean radiance; 0 below two samples, where it is certain rightly so.
   Rgb standardError() const;
 };
 
-/// Of a pixel.
+/// Of the pixels that are not certain; of all where all are.
 struct SampleCounts {
   std::uint64_t least = 0, greatest = 0;
   double mean = 0.0;
+  std::size_t certainPixels = 0;
 };
 
 /// Row 0 is the top row.
@@ -58,7 +60,7 @@ public:
   const std::vector<PixelSums>& pixels() const { return m_pixels; }
 
   /// sqrt(mean over pixels and channels of se^2 / (x^2 + 0.01)); infinity below two samples a
-  /// pixel.
+  /// pixel that is not certain.
   double noise() const;
   SampleCounts sampleCounts() const;
 

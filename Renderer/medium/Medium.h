@@ -28,12 +28,13 @@ public:
     return sigma_t * (*m_transfer.gradientOpacity)(m_field.gradient(index).norm()).value();
   }
 
+  bool needsGradient(bool wantGradient) const { return wantGradient || m_transfer.shading; }
   /// `wantGradient` asks for it even where shading does not.
   Matter matter(const Vec3& index, bool wantGradient) const {
     const bool oneAlbedo = m_transfer.albedo.knots().size() == 1;
     const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
     Matter m{m_transfer.albedo(scalar), Vec3::Zero(), 0.0};
-    if (wantGradient || m_transfer.shading)
+    if (needsGradient(wantGradient))
       m.gradient = m_field.gradient(index);
     if (m_transfer.shading) {
       const double slope = m.gradient.norm();

@@ -1,6 +1,7 @@
 #include "render/Render.h"
 
 #include "core/Stopwatch.h"
+#include "render/EmptyPixels.h"
 #include "render/SamplePlan.h"
 #include "transport/PathEstimator.h"
 #include "transport/PathWave.h"
@@ -79,18 +80,23 @@ std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan
 class TileSamples {
 public:
   TileSamples(const tbb::blocked_range2d<int>& tile, const SamplePlan::Stage& from,
-              const SamplePlan::Stage& to, int width)
+              const SamplePlan::Stage& to, const EmptyPixels& empty, int width)
       : m_width(width) {
     for (int row = tile.rows().begin(); row < tile.rows().end(); ++row)
       for (int column = tile.cols().begin(); column < tile.cols().end(); ++column) {
         const std::size_t pixel = this->pixel(column, row);
+        const std::uint64_t begin = from.count(pixel);
         const std::uint64_t end = to.count(pixel);
-        for (std::uint64_t sample = from.count(pixel); sample < end; ++sample)
+        m_planned += end - begin;
+        const std::uint64_t enough = empty.contains(column, row) ? 1 : end;
+        for (std::uint64_t sample = begin; sample < std::min(end, enough); ++sample)
           m_samples.push_back({column, row, sample});
       }
   }
 
   std::size_t size() const { return m_samples.size(); }
+  /// As many as there would be if no pixel were empty.
+  std::uint64_t planned() const { return m_planned; }
   PathStart start(std::size_t i, std::uint64_t seed) const {
     const Sample& sample = m_samples[i];
     Random random(seed, pixel(sample.column, sample.row), sample.number);
@@ -114,6 +120,7 @@ private:
   }
 
   int m_width;
+  std::uint64_t m_planned = 0;
   std::vector<Sample> m_samples;
 };
 
@@ -121,12 +128,13 @@ private:
 /// all was done; tiles are done whole or not at all.
 template <typename Tracer>
 bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
-                std::uint64_t seed, Film& film, Counters& total, RenderMonitor& monitor) {
+                const EmptyPixels& empty, std::uint64_t seed, Film& film, Counters& total,
+                RenderMonitor& monitor) {
   tbb::combinable<Counters> counters;
   tbb::combinable<std::vector<PathSample>> buffers;
   std::atomic<bool> whole = true;
   const auto renderTile = [&](const tbb::blocked_range2d<int>& tile) {
-    const TileSamples tileSamples(tile, from, to, film.width());
+    const TileSamples tileSamples(tile, from, to, empty, film.width());
     std::vector<PathSample>& samples = buffers.local();
     samples.resize(tileSamples.size());
     const auto start = [&](std::size_t i) { return tileSamples.start(i, seed); };
@@ -139,7 +147,7 @@ bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const Sampl
     // In their own order, whichever ended first.
     for (std::size_t i = 0; i < samples.size(); ++i)
       tileSamples.sums(i, film).add(samples[i]);
-    monitor.paths.fetch_add(samples.size(), std::memory_order_relaxed);
+    monitor.paths.fetch_add(tileSamples.planned(), std::memory_order_relaxed);
   };
   constexpr int tileSize = 16;
   tbb::parallel_for(
@@ -147,6 +155,11 @@ bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const Sampl
       tbb::simple_partitioner()); // a tile's samples are all kept until it ends
   counters.combine_each([&](const Counters& local) { total += local; });
   return whole;
+}
+
+/// Whether all eye rays through a pixel that meet nothing show the same.
+bool isConstantInPixels(const Background& background, const LightSet& lights) {
+  return background.kind != Background::Kind::environment || !lights.hasMaps();
 }
 
 /// What passes take.
@@ -177,6 +190,12 @@ template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const RenderScene& scene,
                           const RenderSettings& settings, RenderMonitor& monitor) {
   RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0};
+  const EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
+                                ? EmptyPixels(scene.camera, scene.majorants)
+                                : EmptyPixels();
+  for (int row = 0; row < result.film.height(); ++row)
+    for (int column = 0; column < result.film.width(); ++column)
+      result.film.at(column, row).isCertain = empty.contains(column, row);
   const bool towardNoise = settings.noise > 0.0;
   Pace pace(settings.seconds);
   SamplePlan plan;
@@ -189,7 +208,7 @@ RenderResult renderPasses(const Tracer& tracer, const RenderScene& scene,
       result.reason = StopReason::seconds;
       return result;
     }
-    if (!renderPass(tracer, plan.at(done), plan.at(done + count), settings.seed, result.film,
+    if (!renderPass(tracer, plan.at(done), plan.at(done + count), empty, settings.seed, result.film,
                     result.counters, monitor)) {
       result.reason = StopReason::request;
       return result;

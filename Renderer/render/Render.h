@@ -46,7 +46,7 @@ struct RenderSettings {
 /// What a running render tells other threads, and how they stop it.
 struct RenderMonitor {
   std::atomic<bool> stop = false;
-  std::atomic<std::uint64_t> paths = 0; ///< finished so far
+  std::atomic<std::uint64_t> paths = 0; ///< finished so far, or found to be needless
   std::atomic<double> noise = infinity; ///< at the end of the last pass
 };
 
@@ -56,7 +56,9 @@ struct RenderResult {
   Film film;
   Counters counters;
   StopReason reason = StopReason::samples;
-  std::uint64_t finishedSamples = 0; ///< a pixel, on average; after a request some may have more
+  /// A pixel, on average over those that are not certain from one (PixelSums::isCertain); after a
+  /// request some may have more.
+  std::uint64_t finishedSamples = 0;
   /// What pictures are bit-identical within: "scalar", or the lanes' instruction set.
   std::string target = "scalar";
 };

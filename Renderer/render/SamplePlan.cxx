@@ -16,6 +16,8 @@ constexpr int reach = 2; ///< pixels to each side that are asked
 
 /// Variance of one sample over (x^2 + 0.01), the mean of the channels.
 double relativeVariance(const PixelSums& pixel) {
+  if (pixel.isCertain)
+    return 0.0;
   const Rgb variance = pixel.deviation / static_cast<double>(pixel.samples - 1);
   return (variance / (pixel.mean.square() + 0.01)).mean();
 }
@@ -47,8 +49,9 @@ double ditherOf(std::size_t pixel) {
 
 } // namespace
 
-SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.pixels().front().samples) {
-  if (pilot.pixelCount() < leastPixels)
+SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().greatest) {
+  const std::size_t uncertain = pilot.pixelCount() - pilot.sampleCounts().certainPixels;
+  if (uncertain < leastPixels)
     return;
   std::vector<double> variances, costs;
   for (const PixelSums& pixel : pilot.pixels()) {
@@ -61,6 +64,8 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.pixels().front().sampl
       const auto here = [&](const std::vector<double>& values) {
         return around(values, pilot.width(), pilot.height(), column, row);
       };
+      if (pilot.at(column, row).isCertain)
+        continue;
       m_noise[static_cast<std::size_t>(row) * static_cast<std::size_t>(pilot.width()) +
               static_cast<std::size_t>(column)] =
           static_cast<float>(std::sqrt(here(variances) / here(costs)));
@@ -73,10 +78,13 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.pixels().front().sampl
     m_noise.clear();
     return;
   }
-  const auto least = static_cast<float>(leastNoise * sum / static_cast<double>(m_noise.size()));
-  for (float& s : m_noise)
-    s = std::max(s, least);
-  m_sorted = m_noise;
+  const auto least = static_cast<float>(leastNoise * sum / static_cast<double>(uncertain));
+  m_sorted.reserve(uncertain);
+  for (std::size_t i = 0; i < m_noise.size(); ++i)
+    if (!pilot.pixels()[i].isCertain) {
+      m_noise[i] = std::max(m_noise[i], least);
+      m_sorted.push_back(m_noise[i]);
+    }
   tbb::parallel_sort(m_sorted.begin(), m_sorted.end());
   m_sumFrom.resize(m_sorted.size() + 1);
   for (std::size_t i = m_sorted.size(); i-- > 0;)

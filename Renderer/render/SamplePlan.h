@@ -21,7 +21,8 @@ public:
   /// The same number for all below this many pixels.
   static constexpr std::size_t leastPixels = 2048;
 
-  /// The pilot has the same number of samples, at least two, in every pixel.
+  /// The pilot has the same number of samples, at least two, in every pixel that is not certain.
+  /// Those that are count as if they were not there.
   explicit SamplePlan(const Film& pilot);
 
   /// A stage of the plan: `mean` samples a pixel, on average.
@@ -42,8 +43,8 @@ public:
 
 private:
   std::uint64_t m_pilot = 0;
-  std::vector<float> m_noise;    ///< s of each pixel; none: all the same
-  std::vector<float> m_sorted;   ///< s, least first
+  std::vector<float> m_noise;    ///< s of each pixel, 0 of certain ones; none: all the same
+  std::vector<float> m_sorted;   ///< s of those that are not certain, least first
   std::vector<double> m_sumFrom; ///< of m_sorted, from each to the end
 };
 

@@ -80,9 +80,9 @@ FileVolume inspectVolume(const SceneRequest& request) {
     return result;
   }
   std::optional<Error> unreadable; // what kept the scene from being made may come later
-  if (const auto input = attempted([&] { return loadInput(request); }, unreadable)) {
+  if (const auto input = attempted([&] { return loadVolume(request); }, unreadable)) {
     describeVolume(input->volume);
-    result.warnings = input->warnings;
+    result.warnings = input->volume.warnings;
   }
   return result;
 }

@@ -15,6 +15,8 @@ enum class ClipMode { none, plane, cutaway, surface };
 
 struct PlaneRequest {
   Vec3 origin, normal; ///< RAS mm; what the normal points at is removed
+
+  bool operator==(const PlaneRequest&) const = default;
 };
 
 struct ClipRequest {
@@ -22,6 +24,8 @@ struct ClipRequest {
   std::optional<PlaneRequest> plane = {};
   int controlPoints = 50;
   double smoothing = 0.5; ///< p of the approximating thin plate spline
+
+  bool operator==(const ClipRequest&) const = default;
 };
 
 /// Where the eye is: a named direction, or a pose of which unset parts are derived from the scene.
@@ -34,6 +38,8 @@ struct ViewRequest {
 
   /// The camera of a Slicer scene applies, with what else is set here changed.
   bool followsScene() const { return !name && !position; }
+
+  bool operator==(const ViewRequest&) const = default;
 };
 
 struct SceneRequest {

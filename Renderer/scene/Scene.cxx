@@ -83,63 +83,118 @@ std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera
   return depths;
 }
 
+template <typename T>
+bool same(const T& a, const T& b) {
+  return a == b;
+}
+bool same(const std::optional<Rgb>& a, const std::optional<Rgb>& b) {
+  return a.has_value() == b.has_value() && (!a || (*a == *b).all());
+}
+
+bool dependsOnCamera(const Light& light) {
+  const auto* area = std::get_if<AreaLight>(&light);
+  return area && area->frame == LightFrame::camera;
+}
+
 } // namespace
 
 Scene::Scene(const SceneRequest& request) {
-  const std::vector<Light> lights =
-      requestedLights(request); // small files first: errors come early
-  load(request);
-  placeCamera(request);
-  m_lights.emplace(lights, m_volume.grid, *m_camera);
-  buildClip(request);
-  classify();
+  make(request, nullptr);
 }
 
-void Scene::load(const SceneRequest& request) {
-  const Stopwatch watch;
-  if (request.transfer)
+Scene Scene::changed(const SceneRequest& request) const {
+  Scene scene = *this;
+  scene.m_seconds = {};
+  scene.m_made = {};
+  scene.make(request, &m_request);
+  return scene;
+}
+
+void Scene::make(const SceneRequest& request, const SceneRequest* before) {
+  using R = SceneRequest;
+  const auto differs = [&](auto... members) {
+    return !before || (!same(request.*members, before->*members) || ...);
+  };
+  const bool newLights = differs(&R::lights, &R::environment, &R::environmentMap);
+  if (newLights) // small files first: errors come early
+    m_lightList = std::make_shared<const std::vector<Light>>(requestedLights(request));
+
+  m_made.volume = differs(&R::input, &R::volume);
+  m_made.focus = m_made.volume || differs(&R::segmentation, &R::focus);
+  m_made.transfer = m_made.volume || differs(&R::transfer, &R::shift, &R::density);
+  const Stopwatch loading;
+  if (m_made.transfer && request.transfer)
     m_transfer = namedTransfer(*request.transfer);
-  SceneInput input = loadInput(request);
-  m_volume = std::move(input.volume);
-  m_focus = std::move(input.focus);
-  m_crop = input.crop;
-  m_sceneCamera = input.camera;
-  m_background = input.background;
-  m_warnings = input.warnings;
-  if (domain().indexCorners().empty())
-    m_warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");
-  chooseTransfer(request, input);
-  m_seconds.load = watch.seconds();
+  if (m_made.volume)
+    m_volume = std::make_shared<const VolumeInput>(loadVolume(request));
+  if (m_made.volume || !sameSettings(request, *before))
+    m_settings = loadSettings(request, volume());
+  if (m_made.focus)
+    readFocus(request);
+  if (m_made.transfer)
+    chooseTransfer(request);
+  m_seconds.load = loading.seconds();
+
+  m_made.camera = m_made.focus || differs(&R::view, &R::width, &R::height);
+  if (m_made.camera)
+    placeCamera(request);
+  m_made.lights = m_made.volume || newLights ||
+                  (m_made.camera && std::ranges::any_of(*m_lightList, dependsOnCamera));
+  if (m_made.lights)
+    m_lights = std::make_shared<const LightSet>(*m_lightList, volume().grid, *m_camera);
+  m_made.clip = m_made.camera || differs(&R::clip, &R::measureCoverage);
+  if (m_made.clip)
+    buildClip(request);
+
+  const Stopwatch classifying;
+  const int apron = MajorantGrid::apronFor(*m_transfer);
+  m_made.ranges = m_made.volume || m_ranges->apron() != apron;
+  if (m_made.ranges)
+    m_ranges = std::make_shared<const CellRanges>(volume(), apron);
+  m_made.majorants = m_made.ranges || m_made.transfer || m_made.clip;
+  if (m_made.majorants)
+    m_majorants =
+        std::make_shared<const MajorantGrid>(volume().grid, *m_ranges, *m_transfer, m_clip);
+  m_seconds.classify = classifying.seconds();
+  m_request = request;
 }
 
-/// The request's, else the scene's, else what suits the volume.
-void Scene::chooseTransfer(const SceneRequest& request, const SceneInput& input) {
-  m_look = request.transfer.value_or(input.transferName);
-  if (!m_transfer && input.transfer)
-    m_transfer = input.transfer;
+void Scene::readFocus(const SceneRequest& request) {
+  std::optional<FocusInput> focus = loadFocus(request, volume().grid);
+  m_focus = focus ? std::make_shared<const FocusInput>(std::move(*focus)) : nullptr;
+}
+
+/// The request's (it is read), else the scene's, else what suits the volume.
+void Scene::chooseTransfer(const SceneRequest& request) {
+  m_look = request.transfer.value_or(m_settings.transferName);
+  if (!request.transfer)
+    m_transfer = m_settings.transfer;
   if (!m_transfer) {
-    const std::optional<std::string> preset = transferPresetFor(m_volume);
+    const std::optional<std::string> preset = transferPresetFor(volume());
     m_look = preset.value_or("by the volume's range");
-    m_transfer = preset ? namedTransfer(*preset) : relativeTransfer(m_volume);
+    m_transfer = preset ? namedTransfer(*preset) : relativeTransfer(volume());
   }
   m_transfer = m_transfer->shifted(request.shift).scaled(request.density);
-  checkExtinction(*m_transfer, m_volume, request.transfer.value_or(m_volume.name));
-  if (m_transfer->shading && m_volume.minimum == m_volume.maximum)
-    throw inputError(m_volume.name,
+  checkExtinction(*m_transfer, volume(), request.transfer.value_or(volume().name));
+  if (m_transfer->shading && volume().minimum == volume().maximum)
+    throw inputError(volume().name,
                      "every voxel has the same value, so there is no gradient for the transfer "
                      "function's shading; use one with shading off (\"shading\": \"volume\")");
 }
 
 void Scene::placeCamera(const SceneRequest& request) {
-  const CameraPose pose = m_sceneCamera
-                              ? adjustedView(request.view, *m_sceneCamera)
-                              : frameView(request.view, domain(), m_focus ? &*m_focus : nullptr,
-                                          request.width, request.height);
+  const CameraPose pose =
+      m_settings.camera ? adjustedView(request.view, *m_settings.camera)
+                        : frameView(request.view, domain(), focus(), request.width, request.height);
   m_camera.emplace(pose, request.width, request.height);
 }
 
 void Scene::buildClip(const SceneRequest& request) {
-  const ClipMode mode = request.clip.mode.value_or(m_focus ? ClipMode::surface : ClipMode::none);
+  m_clip = ClipNone();
+  m_focusDepth.clear();
+  m_mismatch.reset();
+  m_clipWarnings.clear();
+  const ClipMode mode = request.clip.mode.value_or(focus() ? ClipMode::surface : ClipMode::none);
   switch (mode) {
   case ClipMode::cutaway:
     return buildDepthClip(SurfaceMode::cutaway, request.clip);
@@ -151,15 +206,15 @@ void Scene::buildClip(const SceneRequest& request) {
   case ClipMode::none:
     break;
   }
-  if (!m_focus || !request.measureCoverage)
+  if (!focus() || !request.measureCoverage)
     return;
   const Stopwatch watch;
-  m_focusDepth = viewportDepths(traceFocus(*m_camera, domain(), *m_focus), *m_camera);
+  m_focusDepth = viewportDepths(traceFocus(*m_camera, domain(), *focus()), *m_camera);
   m_seconds.focus = watch.seconds();
 }
 
 void Scene::buildDepthClip(SurfaceMode mode, const ClipRequest& request) {
-  ClippingSurface surface = buildClippingSurface(*m_camera, domain(), *m_focus,
+  ClippingSurface surface = buildClippingSurface(*m_camera, domain(), *focus(),
                                                  {mode, request.controlPoints, request.smoothing});
   m_focusDepth = viewportDepths(surface.focus, *m_camera);
   m_clip = std::move(surface.clip);
@@ -168,14 +223,32 @@ void Scene::buildDepthClip(SurfaceMode mode, const ClipRequest& request) {
   m_seconds.focus = surface.focusSeconds;
   m_seconds.spline = surface.splineSeconds;
   m_seconds.fill = surface.fillSeconds;
-  m_warnings.insert(m_warnings.end(), surface.warnings.begin(), surface.warnings.end());
+  m_clipWarnings = surface.warnings;
 }
 
-void Scene::classify() {
-  const Stopwatch watch;
-  const CellRanges ranges(m_volume, MajorantGrid::apronFor(*m_transfer));
-  m_majorants.emplace(m_volume.grid, ranges, *m_transfer, m_clip);
-  m_seconds.classify = watch.seconds();
+std::vector<std::string> Scene::warnings() const {
+  std::vector<std::string> warnings = volume().warnings;
+  warnings.insert(warnings.end(), m_settings.warnings.begin(), m_settings.warnings.end());
+  if (domain().indexCorners().empty())
+    warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");
+  warnings.insert(warnings.end(), m_clipWarnings.begin(), m_clipWarnings.end());
+  return warnings;
+}
+
+std::vector<std::string> Scene::files() const {
+  std::vector<std::string> files = m_volume->files;
+  files.insert(files.end(), m_settings.files.begin(), m_settings.files.end());
+  if (m_focus)
+    files.insert(files.end(), m_focus->files.begin(), m_focus->files.end());
+  if (m_request.transfer && preset("transfer", *m_request.transfer).empty())
+    files.push_back(*m_request.transfer);
+  if (preset("lights", m_request.lights).empty())
+    files.push_back(m_request.lights);
+  if (m_request.environmentMap)
+    files.push_back(m_request.environmentMap->string());
+  std::ranges::sort(files);
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
 }
 
 } // namespace fenestra

@@ -1,7 +1,8 @@
 #pragma once
-// From a request to everything that transport needs, in stages that each depend on the ones before:
-// load, camera, lights, clip, classify. A picture that changes one thing redoes only what follows
-// it.
+// From a request to everything that transport needs, in stages that each depend on those before:
+// volume, focus, transfer function, camera, lights, clip, ranges of cells, majorants. A scene is a
+// value that never changes; another request makes a scene that shares with it whatever does not
+// depend on what is different.
 
 #include "clipping/ClippingSurface.h"
 #include "lights/LightSet.h"
@@ -10,9 +11,17 @@
 
 namespace fenestra {
 
-/// Wall-clock seconds by stage, as the stats report them.
+/// Wall-clock seconds by stage, as the stats report them; 0 for stages that were shared.
 struct StageSeconds {
   double load = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0;
+};
+
+/// The stages that were made for a scene, and not shared with the one before.
+struct StagesMade {
+  bool volume = false, focus = false, transfer = false, camera = false, lights = false,
+       clip = false, ranges = false, majorants = false;
+
+  bool operator==(const StagesMade&) const = default;
 };
 
 class Scene {
@@ -21,10 +30,16 @@ public:
   /// Error.
   explicit Scene(const SceneRequest& request);
 
+  /// What Scene(request) would be, but only stages that depend on what differs from this scene's
+  /// request are made. Files are taken not to have changed. Throws Error.
+  Scene changed(const SceneRequest& request) const;
+
   RenderScene forRender() const {
-    return {m_volume, *m_transfer, *m_majorants, *m_lights, *m_camera, m_clip, m_crop};
+    return {volume(), *m_transfer, *m_majorants, *m_lights, *m_camera, m_clip, m_settings.crop};
   }
-  const Volume& volume() const { return m_volume; }
+  const Volume& volume() const { return m_volume->volume; }
+  /// The mask of the focus; null where there is none.
+  const Mask* focus() const { return m_focus ? &m_focus->mask : nullptr; }
   const TransferFunction& transfer() const { return *m_transfer; }
   /// Which transfer function it is: a file, a preset, or that it follows the volume's range.
   const std::string& look() const { return m_look; }
@@ -36,35 +51,41 @@ public:
   /// How far the spline misses the focus's boundary; nothing in the other clip modes.
   const std::optional<BoundaryMismatch>& mismatch() const { return m_mismatch; }
   const StageSeconds& seconds() const { return m_seconds; }
-  const std::vector<std::string>& warnings() const { return m_warnings; }
+  const StagesMade& made() const { return m_made; }
+  std::vector<std::string> warnings() const;
+  /// Files that were read, for this scene or for those that it shares stages with.
+  std::vector<std::string> files() const;
   /// What a Slicer scene shows where no ray meets anything; nothing for other inputs.
-  const std::optional<Background>& background() const { return m_background; }
+  const std::optional<Background>& background() const { return m_settings.background; }
 
 private:
-  void load(const SceneRequest& request);
-  void chooseTransfer(const SceneRequest& request, const SceneInput& input);
+  /// `before`: the request that the stages so far were made for; null where there are none.
+  void make(const SceneRequest& request, const SceneRequest* before);
+  void readFocus(const SceneRequest& request);
+  void chooseTransfer(const SceneRequest& request);
   void placeCamera(const SceneRequest& request);
   void buildClip(const SceneRequest& request);
   void buildDepthClip(SurfaceMode mode, const ClipRequest& request);
-  void classify();
 
-  Domain domain() const { return {m_volume.grid, m_crop}; }
+  Domain domain() const { return {volume().grid, m_settings.crop}; }
 
-  Volume m_volume;
-  std::optional<CropBox> m_crop;
-  std::optional<CameraPose> m_sceneCamera;
-  std::optional<Background> m_background;
-  std::optional<Mask> m_focus;
+  SceneRequest m_request;
+  std::shared_ptr<const VolumeInput> m_volume;
+  SceneSettings m_settings;
+  std::shared_ptr<const FocusInput> m_focus;
   std::optional<TransferFunction> m_transfer;
   std::string m_look;
   std::optional<Camera> m_camera;
-  std::optional<LightSet> m_lights;
+  std::shared_ptr<const std::vector<Light>> m_lightList; ///< as they were read
+  std::shared_ptr<const LightSet> m_lights;
   Clip m_clip;
   std::vector<double> m_focusDepth;
   std::optional<BoundaryMismatch> m_mismatch;
-  std::optional<MajorantGrid> m_majorants;
+  std::vector<std::string> m_clipWarnings;
+  std::shared_ptr<const CellRanges> m_ranges;
+  std::shared_ptr<const MajorantGrid> m_majorants;
   StageSeconds m_seconds;
-  std::vector<std::string> m_warnings;
+  StagesMade m_made;
 };
 
 } // namespace fenestra

@@ -13,31 +13,19 @@ std::array<double, 2> rangeOf(const Volume& volume) {
   return {volume.minimum, volume.maximum};
 }
 
-/// The segmentation by its name in the scene, else a file of that name.
-void readSceneFocus(MrmlScene& scene, const ScenePlan& plan, const SceneRequest& request,
-                    SceneInput& input) {
-  const Grid& volume = input.volume.grid;
-  if (plan.segmentation) {
-    const Segmentation segmentation = readSceneSegmentation(scene, *plan.segmentation, &volume);
-    input.focus = scene.files.knowingly([&] { return segmentation.mask(request.focus, volume); });
-    return;
-  }
-  if (!std::filesystem::exists(*request.segmentation))
-    throw inputError(scene.document.source(),
-                     "has no segmentation \"" + *request.segmentation +
-                         "\", and there is no file of that name; fenestra inspect lists what "
-                         "there is");
-  input.focus = readSegmentation(*request.segmentation, &volume).mask(request.focus, volume);
+ScenePlan planFor(const MrmlScene& scene, const SceneRequest& request) {
+  return planRender(scene.document, {request.volume, request.segmentation, !request.focus.empty()});
 }
 
-void readLook(MrmlScene& scene, const ScenePlan& plan, SceneInput& input) {
+void readLook(MrmlScene& scene, const ScenePlan& plan, const Volume& volume,
+              SceneSettings& settings) {
   if (plan.followed) {
-    input.transfer = followedDisplay(*plan.rendering, *plan.followed, rangeOf(input.volume));
-    input.transferName = "the volume's window and level";
+    settings.transfer = followedDisplay(*plan.rendering, *plan.followed, rangeOf(volume));
+    settings.transferName = "the volume's window and level";
   }
-  if (!input.transfer && plan.property) {
-    input.transfer = readSceneProperty(scene, *plan.property);
-    input.transferName = plan.property->name;
+  if (!settings.transfer && plan.property) {
+    settings.transfer = readSceneProperty(scene, *plan.property);
+    settings.transferName = plan.property->name;
   }
 }
 
@@ -46,47 +34,81 @@ Background backgroundOf(const MrmlNode& view) {
   return Background::gradient(colors.bottom, colors.top);
 }
 
-SceneInput loadScene(const SceneRequest& request) {
+VolumeInput volumeInScene(const SceneRequest& request) {
   MrmlScene scene(request.input);
-  const ScenePlan plan =
-      planRender(scene.document, {request.volume, request.segmentation, !request.focus.empty()});
-  SceneInput input{.volume = readSceneVolume(scene, *plan.volume)};
-  if (!request.transfer)
-    readLook(scene, plan, input);
-  if (plan.roi)
-    input.crop = readSceneRoi(scene, *plan.roi);
-  if (!request.focus.empty())
-    readSceneFocus(scene, plan, request, input);
-  if (plan.camera && request.view.followsScene())
-    input.camera = readSceneCamera(scene, *plan.camera);
-  if (plan.view)
-    input.background = backgroundOf(*plan.view);
-  input.warnings = plan.warnings;
-  return input;
+  const ScenePlan plan = planFor(scene, request);
+  Volume volume = readSceneVolume(scene, *plan.volume);
+  return {std::move(volume), scene.files.filesRead()};
 }
 
-Volume readVolumeOrSeries(const SceneRequest& request) {
+VolumeInput volumeInFiles(const SceneRequest& request) {
   if (!std::filesystem::is_directory(request.input))
-    return readVolume(request.input);
-  const std::vector<DicomSeries> series = findDicomSeries(request.input);
-  return readDicomVolume(chooseSeries(series, request.volume, request.input.string()));
+    return {readVolume(request.input), {request.input.string()}};
+  const std::vector<DicomSeries> all = findDicomSeries(request.input);
+  const DicomSeries& series = chooseSeries(all, request.volume, request.input.string());
+  VolumeInput input{readDicomVolume(series)};
+  for (const auto& file : series.files)
+    input.files.push_back(file.string());
+  return input;
 }
 
-SceneInput loadFiles(const SceneRequest& request) {
-  SceneInput input{.volume = readVolumeOrSeries(request)};
-  const Grid& volume = input.volume.grid;
-  if (!request.focus.empty())
-    input.focus = readSegmentation(*request.segmentation, &volume).mask(request.focus, volume);
-  return input;
+/// A segmentation file, whatever the input is.
+FocusInput focusInFile(const SceneRequest& request, const Grid& volume) {
+  return {readSegmentation(*request.segmentation, &volume).mask(request.focus, volume),
+          {*request.segmentation}};
+}
+
+/// The segmentation by its name in the scene, else a file of that name.
+FocusInput focusInScene(const SceneRequest& request, const Grid& volume) {
+  MrmlScene scene(request.input);
+  const ScenePlan plan = planFor(scene, request);
+  if (plan.segmentation) {
+    const Segmentation segmentation = readSceneSegmentation(scene, *plan.segmentation, &volume);
+    Mask mask = scene.files.knowingly([&] { return segmentation.mask(request.focus, volume); });
+    return {std::move(mask), scene.files.filesRead()};
+  }
+  if (!std::filesystem::exists(*request.segmentation))
+    throw inputError(scene.document.source(),
+                     "has no segmentation \"" + *request.segmentation +
+                         "\", and there is no file of that name; fenestra inspect lists what "
+                         "there is");
+  return focusInFile(request, volume);
 }
 
 } // namespace
 
-SceneInput loadInput(const SceneRequest& request) {
-  SceneInput input = isSceneFile(request.input) ? loadScene(request) : loadFiles(request);
-  input.warnings.insert(input.warnings.begin(), input.volume.warnings.begin(),
-                        input.volume.warnings.end());
-  return input;
+VolumeInput loadVolume(const SceneRequest& request) {
+  return isSceneFile(request.input) ? volumeInScene(request) : volumeInFiles(request);
+}
+
+SceneSettings loadSettings(const SceneRequest& request, const Volume& volume) {
+  SceneSettings settings;
+  if (!isSceneFile(request.input))
+    return settings;
+  MrmlScene scene(request.input);
+  const ScenePlan plan = planFor(scene, request);
+  if (!request.transfer)
+    readLook(scene, plan, volume, settings);
+  if (plan.roi)
+    settings.crop = readSceneRoi(scene, *plan.roi);
+  if (plan.camera && request.view.followsScene())
+    settings.camera = readSceneCamera(scene, *plan.camera);
+  if (plan.view)
+    settings.background = backgroundOf(*plan.view);
+  settings.warnings = plan.warnings;
+  settings.files = scene.files.filesRead();
+  return settings;
+}
+
+bool sameSettings(const SceneRequest& a, const SceneRequest& b) {
+  return a.transfer.has_value() == b.transfer.has_value() &&
+         a.view.followsScene() == b.view.followsScene();
+}
+
+std::optional<FocusInput> loadFocus(const SceneRequest& request, const Grid& volume) {
+  if (request.focus.empty())
+    return std::nullopt;
+  return isSceneFile(request.input) ? focusInScene(request, volume) : focusInFile(request, volume);
 }
 
 } // namespace fenestra

@@ -1,6 +1,7 @@
 #pragma once
 // What a request's files hold, whatever they are: a volume, a DICOM folder, or a Slicer scene with
-// all that was set up in it.
+// all that was set up in it. Three parts, so that a changed request reads only what it changes;
+// each throws Error.
 
 #include "camera/Camera.h"
 #include "medium/TransferFunction.h"
@@ -15,11 +16,15 @@
 
 namespace fenestra {
 
-struct SceneInput {
+struct VolumeInput {
   Volume volume;
-  std::optional<Mask> focus = {};
+  std::vector<std::string> files = {}; ///< that were read
+};
+VolumeInput loadVolume(const SceneRequest& request);
 
-  // Of a Slicer scene; each is nothing where the scene does not say, or the request says otherwise.
+/// Of a Slicer scene, beside its volume; each is nothing where the scene does not say, or the
+/// request says otherwise.
+struct SceneSettings {
   std::optional<TransferFunction> transfer = {};
   std::string transferName = {};
   std::optional<CropBox> crop = {};
@@ -27,9 +32,17 @@ struct SceneInput {
   std::optional<Background> background = {};
 
   std::vector<std::string> warnings = {};
+  std::vector<std::string> files = {}; ///< that were read
 };
+SceneSettings loadSettings(const SceneRequest& request, const Volume& volume);
+/// Whether loadSettings reads the same for both, of one scene.
+bool sameSettings(const SceneRequest& a, const SceneRequest& b);
 
-/// Reads what the request needs. Throws Error.
-SceneInput loadInput(const SceneRequest& request);
+struct FocusInput {
+  Mask mask;
+  std::vector<std::string> files; ///< that were read
+};
+/// The segments that the request asks for; nothing where it asks for none.
+std::optional<FocusInput> loadFocus(const SceneRequest& request, const Grid& volume);
 
 } // namespace fenestra

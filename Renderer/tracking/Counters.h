@@ -11,6 +11,8 @@ struct Counters {
   std::uint64_t lookups = 0;      ///< of the extinction
   std::uint64_t cells = 0;        ///< majorant cells walked through
   std::uint64_t skippedCells = 0; ///< of them, those with majorant 0
+  std::uint64_t shadowRays = 0;
+  std::uint64_t gradients = 0; ///< that were needed, at collisions
 
   Counters& operator+=(const Counters& o) {
     paths += o.paths;
@@ -18,6 +20,8 @@ struct Counters {
     lookups += o.lookups;
     cells += o.cells;
     skippedCells += o.skippedCells;
+    shadowRays += o.shadowRays;
+    gradients += o.gradients;
     return *this;
   }
 };

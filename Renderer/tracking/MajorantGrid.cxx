@@ -62,4 +62,9 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
   });
 }
 
+std::size_t MajorantGrid::emptyCount() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(m_cells, [](const Cell& cell) { return cell.majorant == 0.0F; }));
+}
+
 } // namespace fenestra

@@ -26,6 +26,9 @@ public:
   static int apronFor(const TransferFunction& transfer) { return transfer.gradientOpacity ? 1 : 0; }
 
   const Size3& cellCount() const { return m_cellCount; }
+  std::size_t size() const { return m_cells.size(); }
+  /// How many have majorant 0.
+  std::size_t emptyCount() const;
   /// Voxels that a cell spans.
   const Size3& edge() const { return m_edge; }
   const Cell& cell(std::int64_t index) const { return m_cells[static_cast<std::size_t>(index)]; }

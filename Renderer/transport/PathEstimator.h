@@ -33,10 +33,13 @@ public:
       if (!m_steps.arrive(path, distance))
         break;
       ++counters.collisions;
-      if (const std::optional<ShadowRay> light = m_steps.scatter(path, distance))
-        path.sample.radiance +=
-            light->radiance *
-            m_tracker.transmittance(light->ray, {0.0, light->distance}, path.random, counters);
+      const std::optional<ShadowRay> light = m_steps.scatter(path, distance, counters);
+      if (!light)
+        continue;
+      ++counters.shadowRays;
+      path.sample.radiance +=
+          light->radiance *
+          m_tracker.transmittance(light->ray, {0.0, light->distance}, path.random, counters);
     }
     return path.sample;
   }

@@ -13,6 +13,7 @@
 #include "lights/LightSet.h"
 #include "medium/Medium.h"
 #include "medium/Scattering.h"
+#include "tracking/Counters.h"
 #include "transport/EyeRays.h"
 
 #include <optional>
@@ -77,10 +78,12 @@ public:
 
   /// The path collides after `distance` mm: samples a light, and where the path goes on; sets its
   /// new ray. A weight of zero ends it.
-  std::optional<ShadowRay> scatter(Path& path, double distance) const {
+  std::optional<ShadowRay> scatter(Path& path, double distance, Counters& counters) const {
     const Vec3 point = path.ray.at(distance);
     const bool first = path.bounces == 0;
-    const Matter matter = m_medium.matter(m_worldToIndex * point, first && m_settings.wantNormals);
+    const bool wantGradient = first && m_settings.wantNormals;
+    counters.gradients += m_medium.needsGradient(wantGradient) ? 1 : 0;
+    const Matter matter = m_medium.matter(m_worldToIndex * point, wantGradient);
     if (first)
       recordFirst(path, distance, matter);
     const Scattering scattering = chooseScattering(path.ray.direction, matter, path.random);

@@ -50,13 +50,14 @@ public:
   Events(const WideScene& volume, const EventScene& scene, PathBatch& paths, LightBatch& lights)
       : m_volume(volume), m_scene(scene), m_paths(paths), m_out(lights), m_lights(scene) {}
 
-  /// Returns how many collided.
-  std::size_t run() {
+  void run(Counters& counters) {
     m_out.rays.size = 0;
     m_paths.endedCount = 0;
     for (std::size_t i = 0; i < m_paths.rays.size; i += hn::Lanes(floats))
       step(i);
-    return m_collisions;
+    counters.collisions += m_collisions;
+    counters.gradients += m_gradients;
+    counters.shadowRays += m_out.rays.size;
   }
 
 private:
@@ -139,8 +140,10 @@ private:
                   noLane()};
     at.albedo = albedoOf(at.scalar);
     const bool recorded = m_scene.wantNormals && !hn::AllFalse(floats, first);
-    if (m_scene.hybrid || recorded)
+    if (m_scene.hybrid || recorded) {
       at.gradient = gradientAt(index);
+      m_gradients += hn::CountTrue(floats, m_scene.hybrid ? going : first);
+    }
     if (m_scene.hybrid) {
       const F slope = hn::Sqrt(dot(at.gradient, at.gradient));
       const auto missing = [](F x) { return hn::Neg(hn::Expm1(floats, hn::Neg(x))); };
@@ -263,22 +266,21 @@ private:
   PathBatch& m_paths;
   LightBatch& m_out;
   WideLights m_lights;
-  std::size_t m_collisions = 0;
+  std::size_t m_collisions = 0, m_gradients = 0;
 };
 
-std::size_t scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& paths,
-                       LightBatch& lights) {
+void scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& paths,
+                LightBatch& lights, Counters& counters) {
   switch (volume.type) {
   case WideScene::VoxelType::uint8:
-    return Events<std::uint8_t>(volume, scene, paths, lights).run();
+    return Events<std::uint8_t>(volume, scene, paths, lights).run(counters);
   case WideScene::VoxelType::int16:
-    return Events<std::int16_t>(volume, scene, paths, lights).run();
+    return Events<std::int16_t>(volume, scene, paths, lights).run(counters);
   case WideScene::VoxelType::uint16:
-    return Events<std::uint16_t>(volume, scene, paths, lights).run();
+    return Events<std::uint16_t>(volume, scene, paths, lights).run(counters);
   case WideScene::VoxelType::float32:
-    break;
+    return Events<float>(volume, scene, paths, lights).run(counters);
   }
-  return Events<float>(volume, scene, paths, lights).run();
 }
 
 } // namespace
@@ -291,7 +293,7 @@ namespace fenestra {
 HWY_EXPORT(scatterAll);
 
 void WideEvents::scatter(PathBatch& paths, LightBatch& lights, Counters& counters) const {
-  counters.collisions += HWY_DYNAMIC_DISPATCH(scatterAll)(m_volume, m_scene, paths, lights);
+  HWY_DYNAMIC_DISPATCH(scatterAll)(m_volume, m_scene, paths, lights, counters);
 }
 
 void PathBatch::begin(std::size_t i, const Vec3& worldDirection, std::uint64_t randomBits) {

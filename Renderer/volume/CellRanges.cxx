@@ -52,11 +52,12 @@ private:
 } // namespace
 
 CellRanges::CellRanges(const Volume& volume, int apron)
-    : m_edge(edgeFor(volume.grid)),
+    : m_apron(apron),
+      m_edge(edgeFor(volume.grid)),
       m_cellCount((volume.grid.size.array() + m_edge.array() - 1) / m_edge.array()),
       m_low(static_cast<std::size_t>(m_cellCount.prod())),
       m_high(m_low.size()) {
-  std::visit([&](const auto& voxels) { fill(volume.grid, voxels, apron); }, volume.voxels);
+  std::visit([&](const auto& voxels) { fill(volume.grid, voxels); }, volume.voxels);
 }
 
 Size3 CellRanges::edgeFor(const Grid& grid) {
@@ -93,20 +94,20 @@ Size3 CellRanges::edgeFor(const Grid& grid) {
 }
 
 template <typename Voxel>
-void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels, int apron) {
+void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels) {
   // A row of cells is reduced to one row of voxels first, element by element: memory is read in its
   // order, by vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {
-    const Span z = footprint(cz, m_edge.z(), grid.size.z(), apron);
+    const Span z = footprint(cz, m_edge.z(), grid.size.z(), m_apron);
     Columns<Voxel> columns(grid.size.x());
     for (std::int64_t cy = 0; cy < m_cellCount.y(); ++cy) {
-      const Span y = footprint(cy, m_edge.y(), grid.size.y(), apron);
+      const Span y = footprint(cy, m_edge.y(), grid.size.y(), m_apron);
       columns.clear();
       for (std::int64_t k = z.first; k <= z.last; ++k)
         for (std::int64_t j = y.first; j <= y.last; ++j)
           columns.add(voxels.data() + grid.size.x() * (j + grid.size.y() * k));
       for (std::int64_t cx = 0; cx < m_cellCount.x(); ++cx) {
-        const auto [low, high] = columns.range(footprint(cx, m_edge.x(), grid.size.x(), apron));
+        const auto [low, high] = columns.range(footprint(cx, m_edge.x(), grid.size.x(), m_apron));
         const auto cell =
             static_cast<std::size_t>(cx + m_cellCount.x() * (cy + m_cellCount.y() * cz));
         m_low[cell] = static_cast<float>(low);

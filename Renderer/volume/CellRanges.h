@@ -16,6 +16,7 @@ public:
   /// a quarter of a million of them, so that thick slices do not make long cells with loose bounds.
   static Size3 edgeFor(const Grid& grid);
 
+  int apron() const { return m_apron; }
   const Size3& edge() const { return m_edge; }
   const Size3& cellCount() const { return m_cellCount; }
   std::size_t size() const { return m_low.size(); }
@@ -24,8 +25,9 @@ public:
 
 private:
   template <typename Voxel>
-  void fill(const Grid& grid, const std::vector<Voxel>& voxels, int apron);
+  void fill(const Grid& grid, const std::vector<Voxel>& voxels);
 
+  int m_apron;
   Size3 m_edge, m_cellCount;
   std::vector<float> m_low, m_high; ///< exact: every storage type fits a float
 };

@@ -21,7 +21,6 @@ constexpr int pictureSize = 512;
 struct Subject {
   std::string label;
   SceneRequest request;
-  SceneInput input;
   Scene scene;
   std::vector<ControlPoint> controlPoints;
 
@@ -34,7 +33,6 @@ struct Subject {
   explicit Subject(const SceneCase& sceneCase)
       : label(sceneCase.name),
         request(requestOf(sceneCase)),
-        input(loadInput(request)),
         scene(request),
         controlPoints(surface().controlPoints) {
     const Size3& size = scene.volume().grid.size;
@@ -42,9 +40,9 @@ struct Subject {
              std::to_string(size.z());
   }
 
-  Domain domain() const { return {scene.volume().grid, input.crop}; }
+  Domain domain() const { return {scene.volume().grid, scene.forRender().crop}; }
   ClippingSurface surface() const {
-    return buildClippingSurface(scene.camera(), domain(), *input.focus, {});
+    return buildClippingSurface(scene.camera(), domain(), *scene.focus(), {});
   }
 };
 

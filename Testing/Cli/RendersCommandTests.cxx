@@ -92,6 +92,41 @@ TEST_F(RendersCommand, WritesTheLayersAskedForAndTheHeader) {
     EXPECT_EQ(samples, 2.0f);
 }
 
+TEST_F(RendersCommand, CountsWhatTheSceneNeedsAndNoMore) {
+  folder.write("sky.json", R"({"lights": [{"type": "environment", "radiance": [1, 1, 1]}]})");
+  folder.write("haze.json",
+               R"({"extinction": [[0, 0], [63, 0.5]], "albedo": [[0, 0.8, 0.8, 0.8]]})");
+  const auto counted = [&](const Arguments& more) {
+    Arguments arguments = {"--transfer", "haze.json", "--layers", "color",
+                           "--output",   "s.exr",     "--stats",  "s.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(renderWith(arguments).status, 0);
+    return stats("s.json");
+  };
+  const nlohmann::json little = counted(
+      {"--lights", "sky.json", "--background", "0,0,0", "--view", "anterior", "--scale", "40"});
+  EXPECT_EQ(little["filesRead"], (nlohmann::json{"haze.json", "sky.json", "volume.nrrd"}));
+  EXPECT_EQ(little["shadowRays"], 0);
+  EXPECT_EQ(little["gradients"], 0);
+  EXPECT_FALSE(little.contains("focusVoxels"));
+  EXPECT_GT(little["emptyPixels"], 0);
+  EXPECT_EQ(little["samplesPerPixel"]["min"], 2);
+  EXPECT_EQ(little["paths"].get<int>(), 2 * 256 - little["emptyPixels"].get<int>());
+  EXPECT_EQ(little["cells"]["empty"], 0);
+
+  const nlohmann::json lit = counted({"--layers", "normal"});
+  EXPECT_EQ(lit["filesRead"], (nlohmann::json{"haze.json", "volume.nrrd"}));
+  EXPECT_GT(lit["shadowRays"], 0);
+  EXPECT_GT(lit["gradients"], 0);
+  EXPECT_LE(lit["gradients"], lit["collisions"]);
+
+  const nlohmann::json focused =
+      counted({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--clip", "cutaway"});
+  EXPECT_EQ(focused["focusVoxels"], 27) << "one, and a margin";
+  EXPECT_EQ(focused["filesRead"],
+            (nlohmann::json{"haze.json", "segments.seg.nrrd", "volume.nrrd"}));
+}
+
 TEST_F(RendersCommand, SameSeedSamePictureWhateverTheThreads) {
   const Image one = rendered({"--threads", "1", "--seed", "7"});
   const Image two = rendered({"--threads", "2", "--seed", "7"});

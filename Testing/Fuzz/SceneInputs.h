@@ -10,12 +10,13 @@ namespace fenestra::fuzzing {
 inline void loadScene(const std::filesystem::path& path) {
   SceneRequest request;
   request.input = path;
-  const SceneInput input = loadInput(request);
-  if (!input.volume.grid.indexToWorld.matrix().allFinite() ||
-      (input.crop && !input.crop->worldToBox.matrix().allFinite()))
+  const Volume volume = loadVolume(request).volume;
+  const SceneSettings settings = loadSettings(request, volume);
+  if (!volume.grid.indexToWorld.matrix().allFinite() ||
+      (settings.crop && !settings.crop->worldToBox.matrix().allFinite()))
     throw std::logic_error("a place that is none");
   request.focus = {"A"};
-  loadInput(request);
+  loadFocus(request, volume.grid);
 }
 
 } // namespace fenestra::fuzzing

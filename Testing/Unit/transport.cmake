@@ -2,5 +2,5 @@ fenestra_test(MediumTests PiecewiseLinearTests.cxx MajorantGridTests.cxx VolumeT
   LIBRARIES fenestra_tracking LABELS unit)
 fenestra_test(ScatteringTests ScatteringTests.cxx LIBRARIES fenestra_medium LABELS unit)
 fenestra_test(LightTests LightSetTests.cxx LIBRARIES fenestra_lights LABELS unit)
-fenestra_test(RenderTests BackgroundTests.cxx CoverageTests.cxx FilmTests.cxx DeterminismTests.cxx SamplePlanTests.cxx LIBRARIES fenestra_render LABELS unit)
-fenestra_test(SceneTests DefaultsTests.cxx LIBRARIES fenestra_scene LABELS unit)
+fenestra_test(RenderTests BackgroundTests.cxx CoverageTests.cxx EmptyPixelsTests.cxx FilmTests.cxx DeterminismTests.cxx SamplePlanTests.cxx LIBRARIES fenestra_render LABELS unit)
+fenestra_test(SceneTests DefaultsTests.cxx SceneChangeTests.cxx LIBRARIES fenestra_scene fenestra_itk LABELS unit)

@@ -92,7 +92,7 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
     if (std::error_code failed; !std::filesystem::exists(file, failed))
       throw inputError(m_source, "names " + oneLine(file.string()) +
                                      ", which is not there; put it back, or save the scene again");
-    return file;
+    return m_located[file] = file;
   }
   if (const auto known = m_located.find(file); known != m_located.end())
     return known->second;
@@ -107,6 +107,13 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   const std::filesystem::path destination = m_unpacked->add(file);
   m_archive->extract(file, destination);
   return m_located[file] = destination;
+}
+
+std::vector<std::string> SceneFiles::filesRead() const {
+  std::vector<std::string> files = {m_source};
+  for (const auto& [file, place] : m_located)
+    files.push_back(m_archive ? m_source + "/" + file.string() : file.string());
+  return files;
 }
 
 std::string SceneFiles::asKnown(std::string message) const {

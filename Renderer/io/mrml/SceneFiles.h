@@ -41,6 +41,9 @@ public:
   /// Whether locate would find it.
   bool holds(const std::string& fileName) const;
 
+  /// The scene itself and the files that were located, as the user knows them.
+  std::vector<std::string> filesRead() const;
+
   /// What `reader` makes of the paths where these files are, as knowingly does. Throws Error
   /// (input) as locate does.
   template <typename Reader>
@@ -70,7 +73,7 @@ private:
   std::filesystem::path m_folder; ///< of the .mrml, in the archive where there is one
   std::unique_ptr<SceneArchive> m_archive;
   std::optional<PrivateFolder> m_unpacked;
-  std::map<std::filesystem::path, std::filesystem::path> m_located;
+  std::map<std::filesystem::path, std::filesystem::path> m_located; ///< as named, and where it is
 };
 
 } // namespace fenestra

@@ -1,0 +1,130 @@
+// A changed request makes the scene that it would make from nothing, and only what depends on it.
+
+#include "scene/Scene.h"
+
+#include "MedicalFiles.h"
+
+#include <functional>
+
+namespace fenestra {
+namespace {
+
+struct Change {
+  std::string name;
+  std::function<void(SceneRequest&)> apply;
+  StagesMade made;
+};
+
+/// A ball in a box of 16^3 voxels, and two labels in it.
+class SceneChange : public ::testing::TestWithParam<Change> {
+protected:
+  SceneChange() {
+    std::vector<std::int16_t> voxels;
+    std::vector<std::uint8_t> labels;
+    for (int z = 0; z < edge; ++z)
+      for (int y = 0; y < edge; ++y)
+        for (int x = 0; x < edge; ++x) {
+          const double radius = (Vec3(x, y, z) - Vec3::Constant(7.5)).norm();
+          voxels.push_back(static_cast<std::int16_t>(radius < 6.0 ? 100.0 + 5.0 * x : 0.0));
+          labels.push_back(radius < 2.0 ? 1 : radius < 3.0 && x > 7 ? 2 : 0);
+        }
+    FileGeometry geometry;
+    geometry.size = {edge, edge, edge};
+    writeFile(folder / "volume.nrrd", voxels, geometry);
+    writeFile(folder / "labels.nrrd", labels, geometry);
+    folder.write("lamp.json", R"({"lights": [{"type": "environment", "radiance": [1, 1, 1]}]})");
+    folder.write("ramp.json",
+                 R"({"extinction": [[0, 0], [200, 0.2]], "albedo": [[0, 0.8, 0.6, 0.4]]})");
+
+    request.input = folder / "volume.nrrd";
+    request.segmentation = folder / "labels.nrrd";
+    request.focus = {"1"};
+    request.transfer = folder / "ramp.json";
+    request.width = request.height = 16;
+  }
+
+  static Film picture(const Scene& scene) {
+    RenderSettings settings;
+    settings.samples = 2;
+    RenderMonitor monitor;
+    return render(scene.forRender(), settings, monitor).film;
+  }
+
+  static constexpr int edge = 16;
+  TemporaryFolder folder;
+  SceneRequest request;
+};
+
+TEST_P(SceneChange, MakesWhatDependsOnItAndNothingElse) {
+  const Scene before(request);
+  GetParam().apply(request);
+  if (request.lights == "lamp.json")
+    request.lights = folder / "lamp.json";
+  const Scene changed = before.changed(request);
+  EXPECT_EQ(changed.made(), GetParam().made);
+
+  const Scene fromNothing(request);
+  EXPECT_EQ(fromNothing.made(), (StagesMade{true, true, true, true, true, true, true, true}));
+  EXPECT_EQ(changed.files(), fromNothing.files());
+  EXPECT_EQ(changed.warnings(), fromNothing.warnings());
+  EXPECT_EQ(changed.look(), fromNothing.look());
+  EXPECT_EQ(changed.focusDepth(), fromNothing.focusDepth());
+  const Film expected = picture(fromNothing);
+  const Film film = picture(changed);
+  for (std::size_t i = 0; i < film.pixelCount(); ++i)
+    ASSERT_TRUE((film.pixels()[i].mean == expected.pixels()[i].mean).all()) << "pixel " << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SceneChange,
+    ::testing::Values(
+        Change{"Nothing", [](SceneRequest&) {}, {}},
+        Change{"Camera",
+               [](SceneRequest& r) { r.view.name = "left"; },
+               {.camera = true, .lights = true, .clip = true, .majorants = true}},
+        Change{"Size",
+               [](SceneRequest& r) { r.width = 24; },
+               {.camera = true, .lights = true, .clip = true, .majorants = true}},
+        Change{"Focus",
+               [](SceneRequest& r) { r.focus = {"2"}; },
+               {.focus = true, .camera = true, .lights = true, .clip = true, .majorants = true}},
+        Change{"NoFocus",
+               [](SceneRequest& r) { r.focus.clear(); },
+               {.focus = true, .camera = true, .lights = true, .clip = true, .majorants = true}},
+        Change{"Transfer",
+               [](SceneRequest& r) { r.density = 2.0; },
+               {.transfer = true, .majorants = true}},
+        Change{"TransferByTheVolume",
+               [](SceneRequest& r) { r.transfer.reset(); },
+               {.transfer = true, .majorants = true}},
+        Change{"Lights", [](SceneRequest& r) { r.lights = "lamp.json"; }, {.lights = true}},
+        Change{"Environment",
+               [](SceneRequest& r) { r.environment = Rgb(1.0, 0.5, 0.2); },
+               {.lights = true}},
+        Change{"Clip",
+               [](SceneRequest& r) { r.clip.mode = ClipMode::cutaway; },
+               {.clip = true, .majorants = true}},
+        Change{"Volume",
+               [](SceneRequest& r) { r.input = *r.segmentation; },
+               {true, true, true, true, true, true, true, true}}),
+    [](const auto& info) { return info.param.name; });
+
+TEST_F(SceneChange, LightsThatTheCameraDoesNotCarryStayWhereTheyAre) {
+  request.lights = folder / "lamp.json";
+  const Scene before(request);
+  request.view.name = "left";
+  EXPECT_FALSE(before.changed(request).made().lights);
+}
+
+TEST_F(SceneChange, ARefusedChangeLeavesTheSceneAsItWas) {
+  const Scene before(request);
+  const Film expected = picture(before);
+  SceneRequest refused = request;
+  refused.focus = {"9"};
+  EXPECT_THROW(before.changed(refused), Error);
+  EXPECT_EQ(picture(before).at(8, 8).mean.sum(), expected.at(8, 8).mean.sum());
+  EXPECT_EQ(before.changed(request).made(), StagesMade());
+}
+
+} // namespace
+} // namespace fenestra
