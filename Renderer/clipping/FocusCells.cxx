@@ -1,7 +1,6 @@
 #include "clipping/FocusCells.h"
 
-#include "clipping/CellCubic.h"
-#include "volume/GridWalk.h"
+#include "core/Error.h"
 
 #include <tbb/parallel_for.h>
 
@@ -9,110 +8,130 @@
 #include <cstring>
 
 namespace fenestra {
-
 namespace {
 
-double meetingInCell(unsigned corners, const Ray& ray, const Size3& cell,
-                     const Interval& interval) {
-  std::array<double, 8> level;
-  for (unsigned i = 0; i < 8; ++i)
-    level[i] = (corners >> i & 1U ? 1.0 : 0.0) - 0.5;
-  const double length = interval.end - interval.begin;
-  const Vec3 from = ray.at(interval.begin) - cell.cast<double>();
-  const double s = firstNonNegative(cellCubic(level, from, ray.direction * length));
-  return interval.begin + s * length;
+constexpr std::int64_t edge = FocusCells::blockSize;
+constexpr std::int64_t corners = edge + 1; ///< voxels along an edge of a block
+
+/// The mask's voxels around blocks of cells.
+class Voxels {
+public:
+  explicit Voxels(const Mask& mask) : m_voxels(mask.voxels.data()), m_size(mask.grid.size) {}
+
+  /// Of two neighbours along x each, for the four cells of a block's row: bits 0 and 1 of a byte a
+  /// cell, the first one lowest. Voxel `y`, `z`; 0 outside the mask.
+  std::uint32_t pairs(std::int64_t blockX, std::int64_t y, std::int64_t z) const {
+    if (y < 0 || z < 0 || y >= m_size.y() || z >= m_size.z())
+      return 0;
+    const std::int64_t first = blockX * edge - 1;
+    const std::uint8_t* row = m_voxels + m_size.x() * (y + m_size.y() * z);
+    std::uint64_t word = 0; // of little-endian bytes
+    if (first >= 0 && first + 8 <= m_size.x()) {
+      std::memcpy(&word, row + first, sizeof(word));
+    } else {
+      const std::int64_t end = std::min(first + corners, m_size.x());
+      for (std::int64_t x = std::max<std::int64_t>(first, 0); x < end; ++x)
+        word |= std::uint64_t{row[x]} << (8 * (x - first));
+    }
+    return static_cast<std::uint32_t>(word | word >> 7);
+  }
+
+private:
+  const std::uint8_t* m_voxels;
+  Size3 m_size;
+};
+
+/// Which blocks of a layer, x fastest, have a voxel of the mask at any corner of their cells: row
+/// by row, the voxels of all rows at a row of blocks' corners, or-ed, and then block by block.
+std::vector<std::uint8_t> occupied(const Mask& mask, const Size3& blocks, std::int64_t blockZ) {
+  const Size3& size = mask.grid.size;
+  const auto range = [&](std::int64_t block, int axis) { // first and end
+    return std::pair(std::max<std::int64_t>(0, block * edge - 1),
+                     std::min(size[axis], (block + 1) * edge));
+  };
+  std::vector<std::uint8_t> result(static_cast<std::size_t>(blocks.x() * blocks.y()));
+  std::vector<std::uint8_t> any(static_cast<std::size_t>(size.x()));
+  const auto [firstZ, endZ] = range(blockZ, 2);
+  for (std::int64_t by = 0; by < blocks.y(); ++by) {
+    std::ranges::fill(any, std::uint8_t{0});
+    const auto [firstY, endY] = range(by, 1);
+    for (std::int64_t z = firstZ; z < endZ; ++z)
+      for (std::int64_t y = firstY; y < endY; ++y)
+        std::transform(any.begin(), any.end(), mask.voxels.data() + size.x() * (y + size.y() * z),
+                       any.begin(), std::bit_or<>());
+    for (std::int64_t bx = 0; bx < blocks.x(); ++bx) {
+      const auto [first, end] = range(bx, 0);
+      result[static_cast<std::size_t>(bx + blocks.x() * by)] =
+          std::any_of(any.begin() + first, any.begin() + end, std::identity());
+    }
+  }
+  return result;
 }
 
 } // namespace
 
 FocusCells::FocusCells(const Mask& mask)
-    : m_voxels(mask.voxels.data()),
-      m_size(mask.grid.size),
-      m_count(m_size.array() + 1),
+    : m_count(mask.grid.size.array() + 1),
       m_blocks((m_count.array() + blockSize - 1) / blockSize),
       m_worldToCell(Eigen::Translation3d(Vec3::Ones()) * mask.grid.worldToIndex) {
-  markBlocks();
+  const std::int64_t bytes = m_blocks.prod() * static_cast<std::int64_t>(sizeof(BlockCorners));
+  if (bytes > std::numeric_limits<std::int32_t>::max())
+    throw inputError("focus", "its segments span more than 2^31 voxels; crop the segmentation");
+  m_blockCorners.resize(static_cast<std::size_t>(m_blocks.prod()), noBlock);
+  m_corners = {BlockCorners{}, BlockCorners{}};
+  m_corners[wholeBlock].fill(0xff);
+  std::vector<std::vector<BlockCorners>> layers(static_cast<std::size_t>(m_blocks.z()));
+  tbb::parallel_for(std::int64_t{0}, m_blocks.z(), [&](std::int64_t z) {
+    layers[static_cast<std::size_t>(z)] = cornersOfLayer(mask, z);
+  });
+  const std::size_t perLayer = static_cast<std::size_t>(m_blocks.x() * m_blocks.y());
+  for (std::size_t z = 0; z < layers.size(); ++z) {
+    // Counted from the layer's own first one so far.
+    const auto before = static_cast<std::int32_t>(m_corners.size());
+    for (std::size_t i = z * perLayer; i < (z + 1) * perLayer; ++i)
+      if (m_blockCorners[i] < 0)
+        m_blockCorners[i] = before - 1 - m_blockCorners[i];
+    m_corners.insert(m_corners.end(), layers[z].begin(), layers[z].end());
+  }
+  m_corners.emplace_back(); // lanes read four bytes where they need one
 }
 
-/// Row by row: the voxels of all rows at a row of blocks' corners, or-ed, and then block by block.
-void FocusCells::markBlocks() {
-  m_occupied.assign(static_cast<std::size_t>(m_blocks.prod()), 0);
-  const auto corners = [this](std::int64_t block, int axis) { // first and end
-    return std::pair(std::max<std::int64_t>(0, block * blockSize - 1),
-                     std::min(m_size[axis], (block + 1) * blockSize));
-  };
-  tbb::parallel_for(std::int64_t{0}, m_blocks.z(), [&](std::int64_t bz) {
-    std::vector<std::uint8_t> any(static_cast<std::size_t>(m_size.x()));
-    for (std::int64_t by = 0; by < m_blocks.y(); ++by) {
-      std::ranges::fill(any, std::uint8_t{0});
-      const auto [firstZ, endZ] = corners(bz, 2);
-      const auto [firstY, endY] = corners(by, 1);
-      for (std::int64_t z = firstZ; z < endZ; ++z)
-        for (std::int64_t y = firstY; y < endY; ++y)
-          std::transform(any.begin(), any.end(), row(y, z), any.begin(), std::bit_or<>());
-      std::uint8_t* const blocks =
-          &m_occupied[static_cast<std::size_t>(m_blocks.x() * (by + m_blocks.y() * bz))];
-      for (std::int64_t bx = 0; bx < m_blocks.x(); ++bx) {
-        const auto [first, end] = corners(bx, 0);
-        blocks[bx] = std::any_of(any.begin() + first, any.begin() + end, std::identity());
+/// Those of a layer that are not all alike; the layer's blocks refer to them by -1, -2 and so on.
+std::vector<FocusCells::BlockCorners> FocusCells::cornersOfLayer(const Mask& mask, std::int64_t z) {
+  const Voxels voxels(mask);
+  const std::vector<std::uint8_t> isOccupied = occupied(mask, m_blocks, z);
+  std::vector<BlockCorners> result;
+  for (std::int64_t y = 0; y < m_blocks.y(); ++y)
+    for (std::int64_t x = 0; x < m_blocks.x(); ++x) {
+      const std::int64_t inLayer = x + m_blocks.x() * y;
+      if (!isOccupied[static_cast<std::size_t>(inLayer)])
+        continue;
+      std::array<std::array<std::uint32_t, corners>, corners> pairs;
+      for (std::int64_t k = 0; k < corners; ++k)
+        for (std::int64_t j = 0; j < corners; ++j)
+          pairs[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
+              voxels.pairs(x, y * edge + j - 1, z * edge + k - 1);
+      BlockCorners block;
+      bool isWhole = true;
+      for (std::size_t k = 0; k < edge; ++k)
+        for (std::size_t j = 0; j < edge; ++j) {
+          const std::uint32_t mask2 = 0x03030303U;
+          const std::uint32_t row = (pairs[k][j] & mask2) | (pairs[k][j + 1] & mask2) << 2 |
+                                    (pairs[k + 1][j] & mask2) << 4 |
+                                    (pairs[k + 1][j + 1] & mask2) << 6;
+          isWhole = isWhole && row == 0xffffffffU;
+          std::memcpy(&block[edge * (j + edge * k)], &row, sizeof(row));
+        }
+      std::int32_t& where =
+          m_blockCorners[static_cast<std::size_t>(inLayer + m_blocks.x() * m_blocks.y() * z)];
+      if (isWhole) {
+        where = wholeBlock;
+      } else {
+        result.push_back(block);
+        where = -static_cast<std::int32_t>(result.size());
       }
     }
-  });
-}
-
-double FocusCells::firstMeeting(const Ray& world, const Interval& range) const {
-  constexpr int mostTogether = 4; // blocks: a ray through the focus ends in one of the first
-  const Ray ray = transformed(m_worldToCell, world);
-  const Ray blockRay{ray.origin / blockSize, ray.direction / blockSize};
-  for (GridWalk block(blockRay, range, m_blocks); !block.done();) {
-    if (!isOccupied(block.cell())) {
-      block.next();
-      continue;
-    }
-    Interval occupied = block.interval();
-    for (int i = 0; i < mostTogether && !block.done() && isOccupied(block.cell()); ++i) {
-      occupied.end = block.interval().end;
-      block.next();
-    }
-    const double t = meetingInCells(ray, occupied);
-    if (t < infinity)
-      return t;
-  }
-  return infinity;
-}
-
-/// The first meeting of a ray in cell space.
-double FocusCells::meetingInCells(const Ray& ray, const Interval& range) const {
-  for (GridWalk cell(ray, range, m_count); !cell.done(); cell.next()) {
-    const unsigned corners = cornerBits(cell.coordinates());
-    if (corners == 0)
-      continue;
-    const double t = meetingInCell(corners, ray, cell.coordinates(), cell.interval());
-    if (t < infinity)
-      return t;
-  }
-  return infinity;
-}
-
-/// Bit i: the indicator at corner i of a cell (x fastest).
-unsigned FocusCells::cornerBits(const Size3& cell) const {
-  unsigned bits = 0;
-  if (cell.minCoeff() > 0 && (cell.array() < m_size.array()).all()) {
-    const std::uint8_t* corner = row(cell.y() - 1, cell.z() - 1) + cell.x() - 1;
-    const std::int64_t up = m_size.x(), back = m_size.x() * m_size.y();
-    unsigned bit = 0;
-    for (const std::uint8_t* edge : {corner, corner + up, corner + back, corner + back + up}) {
-      bits |= unsigned{edge[0]} << bit | unsigned{edge[1]} << (bit + 1);
-      bit += 2;
-    }
-    return bits;
-  }
-  for (int i = 0; i < 8; ++i) { // those outside the mask are 0
-    const Size3 voxel = cell + Size3((i & 1) - 1, (i >> 1 & 1) - 1, (i >> 2) - 1);
-    if (voxel.minCoeff() >= 0 && (voxel.array() < m_size.array()).all())
-      bits |= unsigned{row(voxel.y(), voxel.z())[voxel.x()]} << i;
-  }
-  return bits;
+  return result;
 }
 
 } // namespace fenestra

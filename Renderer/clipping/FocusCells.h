@@ -3,25 +3,50 @@
 
 #include "volume/Mask.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace fenestra {
 
+/// Rays that are followed together, in the space of FocusCells; a structure of arrays.
+struct FocusRays {
+  static constexpr std::size_t capacity = 256;
+  using Column = std::array<double, capacity + 8>; ///< and room for whole vectors
+
+  std::size_t size = 0;
+  alignas(64) std::array<Column, 3> origin{}, direction{};
+  alignas(64) Column begin{}, end{}; ///< of the range that is looked at; it lies inside the cells
+  alignas(64) Column meeting{};      ///< what was found
+
+  bool full() const { return size == capacity; }
+};
+
 /// Dual cells: cell c lies between the voxel centres c - 1 and c of each axis, so that the
 /// outermost cells hold the fall to 0 outside the mask's grid. In cell space it fills [c, c + 1].
-/// Blocks of cells are the unit in which empty ones are left out. The mask has to stay alive.
+/// Cells come in blocks of 4^3; a block that holds any of the mask, and not all, keeps one byte a
+/// cell, so that a block is one line of the cache.
 class FocusCells {
 public:
   static constexpr std::int64_t blockSize = 4; ///< cells
 
+  /// Throws Error (input) for masks of more than 2^31 voxels.
   explicit FocusCells(const Mask& mask);
 
+  const Affine& worldToCell() const { return m_worldToCell; }
   Affine cellToWorld() const { return m_worldToCell.inverse(); }
+  /// All cells.
+  Box box() const { return {Vec3::Zero(), m_count.cast<double>()}; }
 
-  /// The least t in the range at which a world ray is in the mask (indicator >= 0.5), else
-  /// infinity.
-  double firstMeeting(const Ray& world, const Interval& range) const;
+  /// The least t in each ray's range at which it is in the mask (indicator >= 0.5), else infinity.
+  void findMeetings(FocusRays& rays) const;
+
+  /// What walks read: of each block which corners it has, and these, 64 bytes each.
+  struct Layout {
+    const std::int32_t* blocks;
+    const std::uint8_t* corners;
+    Size3 cellCount, blockCount;
+  };
 
   /// Calls back with each block, block (i, j, k) filling [i, i + 1]... of cell space / blockSize,
   /// that has a voxel of the mask at any corner of its cells.
@@ -31,25 +56,22 @@ public:
     for (std::int64_t z = 0; z < m_blocks.z(); ++z)
       for (std::int64_t y = 0; y < m_blocks.y(); ++y)
         for (std::int64_t x = 0; x < m_blocks.x(); ++x)
-          if (m_occupied[block++])
+          if (m_blockCorners[block++] != noBlock)
             visit(Size3(x, y, z));
   }
 
 private:
-  void markBlocks();
-  bool isOccupied(std::int64_t block) const { return m_occupied[static_cast<std::size_t>(block)]; }
-  double meetingInCells(const Ray& ray, const Interval& range) const;
-  unsigned cornerBits(const Size3& cell) const;
-  const std::uint8_t* row(std::int64_t y, std::int64_t z) const {
-    return m_voxels + m_size.x() * (y + m_size.y() * z);
-  }
+  /// Of each cell of a block, x fastest, the indicator at its eight corners, a bit each, x fastest.
+  using BlockCorners = std::array<std::uint8_t, blockSize * blockSize * blockSize>;
+  static constexpr std::int32_t noBlock = 0, wholeBlock = 1; ///< blocks with all bits alike
 
-  const std::uint8_t* m_voxels;
-  Size3 m_size;   ///< voxels
+  std::vector<BlockCorners> cornersOfLayer(const Mask& mask, std::int64_t z);
+
   Size3 m_count;  ///< cells
   Size3 m_blocks; ///< blocks of cells
   Affine m_worldToCell;
-  std::vector<std::uint8_t> m_occupied;
+  std::vector<std::int32_t> m_blockCorners; ///< of each block, which of m_corners
+  std::vector<BlockCorners> m_corners;
 };
 
 } // namespace fenestra

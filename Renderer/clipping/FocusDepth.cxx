@@ -7,6 +7,50 @@
 #include <tbb/parallel_for.h>
 
 namespace fenestra {
+namespace {
+
+/// Samples whose rays are traced together.
+class FocusBatch {
+public:
+  FocusBatch(const FocusCells& cells, FocusDepth& result) : m_cells(cells), m_result(result) {}
+
+  void add(std::int64_t sample, const Ray& world, const Interval& range, double depthPerLength) {
+    const Ray ray = transformed(m_cells.worldToCell(), world);
+    const Interval inside = m_cells.box().clip(ray, range);
+    if (inside.empty())
+      return;
+    const std::size_t i = m_rays.size++;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      m_rays.origin[axis][i] = ray.origin[static_cast<int>(axis)];
+      m_rays.direction[axis][i] = ray.direction[static_cast<int>(axis)];
+    }
+    m_rays.begin[i] = inside.begin;
+    m_rays.end[i] = inside.end;
+    m_samples[i] = sample;
+    m_depthPerLength[i] = depthPerLength;
+    if (m_rays.full())
+      trace();
+  }
+
+  void trace() {
+    m_cells.findMeetings(m_rays);
+    for (std::size_t i = 0; i < m_rays.size; ++i)
+      if (m_rays.meeting[i] < infinity) {
+        m_result.depth.set(m_samples[i], m_rays.meeting[i] * m_depthPerLength[i]);
+        m_result.regions[static_cast<std::size_t>(m_samples[i])] = Region::focus;
+      }
+    m_rays.size = 0;
+  }
+
+private:
+  const FocusCells& m_cells;
+  FocusDepth& m_result;
+  FocusRays m_rays;
+  std::array<std::int64_t, FocusRays::capacity> m_samples;
+  FocusRays::Column m_depthPerLength;
+};
+
+} // namespace
 
 FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus) {
   FocusDepth result{DepthBuffer(camera, volume.grid()), {}};
@@ -22,35 +66,32 @@ FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& fo
   const auto meetsVolume = [&](std::int64_t column, std::int64_t row) {
     return !inVolume(camera.rayThrough(depth.position(column, row))).empty();
   };
-  const auto traceSample = [&](std::int64_t column, std::int64_t row) {
-    const Interval depths = focusFootprint.depths(column, row);
-    if (depths.empty())
-      return Region::context;
-    const Ray ray = camera.rayThrough(depth.position(column, row));
-    const double depthPerLength = camera.depthPerLength(ray);
-    Interval range = inVolume(ray);
-    range.begin = std::max(range.begin, depths.begin / depthPerLength);
-    range.end = std::min(range.end, depths.end / depthPerLength);
-    const double t = cells.firstMeeting(ray, range);
-    if (!(t < infinity))
-      return Region::context;
-    depth.set(depth.sample(column, row), t * depthPerLength);
-    return Region::focus;
-  };
-  const auto traceRow = [&](std::int64_t row) {
+  const auto traceRow = [&](std::int64_t row, FocusBatch& batch) {
     // The domain is convex: all between two samples that meet it do.
     auto [first, end] = domainFootprint.columns(depth, row);
     while (first < end && !meetsVolume(first, row))
       ++first;
     while (first < end && !meetsVolume(end - 1, row))
       --end;
-    for (std::int64_t column = first; column < end; ++column)
-      result.regions[static_cast<std::size_t>(depth.sample(column, row))] =
-          traceSample(column, row);
+    for (std::int64_t column = first; column < end; ++column) {
+      const std::int64_t sample = depth.sample(column, row);
+      result.regions[static_cast<std::size_t>(sample)] = Region::context;
+      const Interval depths = focusFootprint.depths(column, row);
+      if (depths.empty())
+        continue;
+      const Ray ray = camera.rayThrough(depth.position(column, row));
+      const double depthPerLength = camera.depthPerLength(ray);
+      Interval range = inVolume(ray);
+      range.begin = std::max(range.begin, depths.begin / depthPerLength);
+      range.end = std::min(range.end, depths.end / depthPerLength);
+      batch.add(sample, ray, range, depthPerLength);
+    }
   };
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, depth.rows()), [&](const auto& rows) {
+    FocusBatch batch(cells, result);
     for (std::int64_t row = rows.begin(); row < rows.end(); ++row)
-      traceRow(row);
+      traceRow(row, batch);
+    batch.trace();
   });
   return result;
 }

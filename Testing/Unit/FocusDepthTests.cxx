@@ -2,8 +2,12 @@
 
 #include "ClippingTesting.h"
 #include "clipping/CellCubic.h"
+#include "core/LaneTargets.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
+
+#include <optional>
 
 using namespace fenestra;
 using namespace fenestra::testing_clipping;
@@ -136,6 +140,35 @@ void compareWithMarching(const Camera& camera, const Domain& volume, const Mask&
       }
     }
   EXPECT_GT(hits, 50);
+}
+
+TEST(FocusDepth, IsTheSameInEveryInstructionSet) {
+  const Grid grid = centredGrid({70, 61, 52}, {1.0, 0.7, 1.3});
+  const Mask mask = maskOf(grid, [](const Vec3& p) { // two shells, one inside the other
+    return std::abs(p.norm() - 18.0) < 2.0 || std::abs((p - Vec3(3, 2, 1)).norm() - 9.0) < 1.5;
+  });
+  CameraPose pose;
+  pose.position = {40.0, -90.0, 25.0};
+  pose.target = {1.0, 2.0, 3.0};
+  for (const auto projection : {Projection::orthographic, Projection::perspective}) {
+    pose.projection = projection;
+    pose.scale = 25.0;
+    const Camera camera(pose, 90, 70);
+    std::optional<FocusDepth> first;
+    for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1) {
+      SCOPED_TRACE(hwy::TargetName(left & -left));
+      hwy::SetSupportedTargetsForTest(left & -left);
+      const FocusDepth focus = traceFocus(camera, grid, mask);
+      if (!first)
+        first = focus;
+      EXPECT_EQ(focus.regions, first->regions);
+      for (std::int64_t i = 0; i < focus.depth.size(); ++i)
+        if (focus.regions[static_cast<std::size_t>(i)] == Region::focus) {
+          ASSERT_NEAR(focus.depth.at(i), first->depth.at(i), 1e-5); // a float's last place
+        }
+      hwy::SetSupportedTargetsForTest(0);
+    }
+  }
 }
 
 TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {

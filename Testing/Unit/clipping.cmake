@@ -5,5 +5,5 @@ fenestra_test(ClippingTests
   FocusDepthTests.cxx
   GridWalkTests.cxx
   ThinPlateSplineTests.cxx
-  LIBRARIES fenestra_clipping
+  LIBRARIES fenestra_clipping hwy::hwy
   LABELS unit)
