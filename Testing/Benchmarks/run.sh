@@ -11,7 +11,8 @@ report=$top/Testing/Benchmarks/Report
 
 install_packages "${build_packages[@]}" libbenchmark-dev
 (cd "$top" && cmake --preset release -B "$folder" -DFENESTRA_BUILD_TESTS=ON >/dev/null &&
-  cmake --build "$folder" --target fenestra EfficiencyBenchmark MicroBenchmarks) ||
+  cmake --build "$folder" --target fenestra EfficiencyBenchmark MicroBenchmarks \
+    ChangeBenchmark) ||
   die "the build failed (see above)"
 mkdir -p "$folder/benchmarks"
 for phantom in knee foot; do
@@ -28,4 +29,11 @@ say "The parts, on one thread"
   cat "$folder/benchmarks/parts.txt"
   printf '```\n'
 } >"$report/parts.md"
+say "From a change to the first new sample"
+{
+  printf '# From a change to the first new sample, by the clock\n\n'
+  printf 'The knee at 256 × 256. Made by `bash Testing/Benchmarks/run.sh`.\n\n'
+  "$folder/bin/ChangeBenchmark" TibialCartilage "$folder/benchmarks/knee/knee.mrml" \
+    --focus FemoralCartilage --size 256x256
+} >"$report/changes.md"
 say "The report is $report/README.md"
