@@ -1,10 +1,12 @@
 #pragma once
 // What the environment asks of a run of the tests:
 //   FENESTRA_LONG          set: the long version
+//   FENESTRA_BRIEF         a number: divides how many samples are drawn, for slow builds
 //   FENESTRA_SEED          a number: other seeds
 //   FENESTRA_COMBINATIONS  a number: how many of the matrix, for slow builds
 //   FENESTRA_REPORT        a folder: leave fragments of the report there
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -18,15 +20,18 @@ inline bool isLongRun() {
   return isLong;
 }
 
-/// Samples of a test: in the long version 16 times as many, for a quarter of the error.
-template <typename Count>
-Count budget(Count samples) {
-  return isLongRun() ? static_cast<Count>(16 * samples) : samples;
-}
-
 inline std::optional<std::uint64_t> numberFromEnvironment(const char* name) {
   const char* text = std::getenv(name);
   return text ? std::optional<std::uint64_t>(std::stoull(text)) : std::nullopt;
+}
+
+/// Samples of a test: in the long version 16 times as many, for a quarter of the error.
+template <typename Count>
+Count budget(Count samples) {
+  static const std::uint64_t brief =
+      std::max<std::uint64_t>(1, numberFromEnvironment("FENESTRA_BRIEF").value_or(1));
+  const auto whole = static_cast<std::uint64_t>(samples) * (isLongRun() ? 16 : 1);
+  return static_cast<Count>((whole + brief - 1) / brief);
 }
 
 /// 1 where nothing else is asked for.
