@@ -7,6 +7,7 @@
 //   FENESTRA_REPORT        a folder: leave fragments of the report there
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -25,13 +26,22 @@ inline std::optional<std::uint64_t> numberFromEnvironment(const char* name) {
   return text ? std::optional<std::uint64_t>(std::stoull(text)) : std::nullopt;
 }
 
+inline std::uint64_t brevity() {
+  static const std::uint64_t brevity =
+      std::max<std::uint64_t>(1, numberFromEnvironment("FENESTRA_BRIEF").value_or(1));
+  return brevity;
+}
+
 /// Samples of a test: in the long version 16 times as many, for a quarter of the error.
 template <typename Count>
 Count budget(Count samples) {
-  static const std::uint64_t brief =
-      std::max<std::uint64_t>(1, numberFromEnvironment("FENESTRA_BRIEF").value_or(1));
   const auto whole = static_cast<std::uint64_t>(samples) * (isLongRun() ? 16 : 1);
-  return static_cast<Count>((whole + brief - 1) / brief);
+  return static_cast<Count>((whole + brevity() - 1) / brevity());
+}
+
+/// The greatest error that a test allows itself, lest it find nothing: wider in a brief run.
+inline double allowedError(double error) {
+  return error * std::sqrt(static_cast<double>(brevity()));
 }
 
 /// 1 where nothing else is asked for.

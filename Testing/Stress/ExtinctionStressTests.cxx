@@ -141,7 +141,7 @@ TEST_P(HalfSpaceProfile, ReflectsAsChandrasekharSays) {
   const RenderResult result = renderIn(scene, budget(250));
   const Estimate estimate = imageEstimate(result.film);
   EXPECT_NEAR(estimate.mean, reflectance.second, 4.0 * estimate.error + 5e-5); // four digits
-  EXPECT_LT(estimate.error, 0.005);
+  EXPECT_LT(estimate.error, allowedError(0.005));
   RecordProperty("lookupsPerPath", std::to_string(result.counters.lookups / result.counters.paths));
 }
 
