@@ -99,7 +99,7 @@ bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer)
   // Lanes address bytes of 16-bit voxels, else voxels, by 32 bits.
   const bool twoBytes = std::holds_alternative<std::vector<std::int16_t>>(volume.voxels) ||
                         std::holds_alternative<std::vector<std::uint16_t>>(volume.voxels);
-  const std::int64_t most = std::numeric_limits<std::int32_t>::max() / (twoBytes ? 2 : 1);
+  const std::int64_t most = std::int64_t{1} << (twoBytes ? 30 : 31);
   if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most)
     return false;
   double greatest = 0.0;
