@@ -130,14 +130,7 @@ private:
       if (packed[lane / 8] >> (lane % 8) & 1)
         continue;
       fresh |= std::uint64_t{1} << lane;
-      const std::size_t ray = m_queue.next++;
-      m_ray[lane] = ray;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        m_origin[axis][lane] = m_rays.origin[axis][ray];
-        m_direction[axis][lane] = m_rays.direction[axis][ray];
-      }
-      m_length[lane] = m_rays.length[ray];
-      m_seed[lane] = m_rays.seed[ray];
+      m_ray[lane] = static_cast<std::int32_t>(m_queue.next++);
     }
     for (std::size_t i = 0; i < packed.size(); ++i)
       packed[i] = static_cast<std::uint8_t>(fresh >> (8 * i));
@@ -151,12 +144,17 @@ private:
       old = hn::IfThenElse(hn::RebindMask(hn::DFromV<std::decay_t<decltype(now)>>(), which), now,
                            old);
     };
+    const I ray = hn::Load(ints, m_ray.data());
+    const auto ofRays = [&](const Column<float>& column) {
+      return hn::GatherIndex(floats, column.data(), ray);
+    };
     AxisWalk entered[3];
     I cell = hn::Zero(ints);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      cell = hn::Add(cell, entered[axis].enter(m_scene.axes[axis],
-                                               hn::Load(floats, m_origin[axis].data()),
-                                               hn::Load(floats, m_direction[axis].data())));
+      const F direction = ofRays(m_rays.direction[axis]);
+      take(m_direction[axis], direction);
+      cell = hn::Add(
+          cell, entered[axis].enter(m_scene.axes[axis], ofRays(m_rays.origin[axis]), direction));
       AxisWalk& walk = m_walk[axis];
       take(walk.origin, entered[axis].origin);
       take(walk.inverse, entered[axis].inverse);
@@ -170,9 +168,9 @@ private:
     take(m_cell, cell);
     take(m_content, hn::GatherIndex(floats, m_scene.cells.data(), m_cell));
     take(m_t, hn::Zero(floats));
-    take(m_end, hn::Load(floats, m_length.data()));
+    take(m_end, ofRays(m_rays.length));
     take(m_ratio, all(1.0F));
-    U counter = hn::Load(bits, m_seed.data());
+    U counter = hn::GatherIndex(bits, m_rays.seed.data(), ray);
     const F depth = exponential(counter);
     take(m_counter, counter);
     take(m_depth, depth);
@@ -229,7 +227,7 @@ private:
 
   HWY_INLINE Point point() const {
     const auto at = [&](std::size_t axis) {
-      return hn::MulAdd(m_t, hn::Load(floats, m_direction[axis].data()), m_walk[axis].origin);
+      return hn::MulAdd(m_t, m_direction[axis], m_walk[axis].origin);
     };
     return {at(0), at(1), at(2)};
   }
@@ -277,9 +275,10 @@ private:
     if constexpr (!wantRatio)
       hn::Store(scalar, floats, scalars.data());
     forEachLane(which, [&](std::size_t lane) {
-      m_rays.result[m_ray[lane]] = results[lane];
+      const auto ray = static_cast<std::size_t>(m_ray[lane]);
+      m_rays.result[ray] = results[lane];
       if constexpr (!wantRatio)
-        m_rays.scalar[m_ray[lane]] = scalars[lane];
+        m_rays.scalar[ray] = scalars[lane];
     });
     m_busy = hn::AndNot(which, m_busy);
   }
@@ -290,17 +289,16 @@ private:
   M m_busy = noLane();
   M m_hit = noLane(); ///< at a tentative collision
   bool m_due = false; ///< these are to be looked at before anything else
-  std::array<std::size_t, maxLanes> m_ray = {};
-  OfLanes m_origin[3] = {}, m_direction[3] = {}, m_length = {};
-  alignas(64) std::array<std::uint32_t, maxLanes> m_seed = {};
+  alignas(64) std::array<std::int32_t, maxLanes> m_ray = {};
   std::uint64_t m_cells = 0, m_skipped = 0, m_lookups = 0;
 
   AxisWalk m_walk[3] = {idleWalk(), idleWalk(), idleWalk()};
   I m_cell = hn::Zero(ints);      ///< in the bordered array
   F m_content = hn::Zero(floats); ///< of the cell (WideScene::cells)
-  F m_t = hn::Zero(floats);       ///< mm
-  F m_end = hn::Zero(floats);     ///< mm
-  F m_depth = hn::Zero(floats);   ///< optical depth to the next tentative collision
+  F m_direction[3] = {hn::Zero(floats), hn::Zero(floats), hn::Zero(floats)};
+  F m_t = hn::Zero(floats);     ///< mm
+  F m_end = hn::Zero(floats);   ///< mm
+  F m_depth = hn::Zero(floats); ///< optical depth to the next tentative collision
   F m_ratio = hn::Zero(floats);
   U m_counter = hn::Zero(bits);
   Place m_place{hn::Zero(ints), {m_t, m_t, m_t}}; ///< of the collisions
