@@ -1,5 +1,5 @@
 #pragma once
-// A trilinear function along a ray through one cell, which is a cubic, and where it first reaches
+// A cubic, which a trilinear function is along a ray through one cell, and where it first reaches
 // 0.
 
 #include "core/Vector.h"
@@ -15,24 +15,6 @@ struct Cubic {
   double operator()(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
   double slope(double s) const { return c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]); }
 };
-
-/// The trilinear function of a unit cell's corner values (x fastest), from `from` at s = 0 to
-/// `from + along` at s = 1.
-inline Cubic cellCubic(const std::array<double, 8>& v, const Vec3& from, const Vec3& along) {
-  // a + x bx + y by + z bz + x y cxy + x z cxz + y z cyz + x y z d
-  const Vec3 b(v[1] - v[0], v[2] - v[0], v[4] - v[0]);
-  const double cxy = v[3] - v[2] - b.x();
-  const double cxz = v[5] - v[4] - b.x();
-  const double cyz = v[6] - v[4] - b.y();
-  const double d = v[7] - v[6] - v[5] + v[4] - cxy;
-  const auto [x, y, z] = std::array{from.x(), from.y(), from.z()};
-  const auto [u, w, q] = std::array{along.x(), along.y(), along.z()};
-  return {{v[0] + b.dot(from) + x * y * cxy + x * z * cxz + y * z * cyz + x * y * z * d,
-           b.dot(along) + (x * w + y * u) * cxy + (x * q + z * u) * cxz + (y * q + z * w) * cyz +
-               (x * y * q + x * w * z + u * y * z) * d,
-           u * w * cxy + u * q * cxz + w * q * cyz + (x * w * q + u * y * q + u * w * z) * d,
-           u * w * q * d}};
-}
 
 /// Where the cubic's slope changes sign in (0, 1), ascending; 1 stands for "nowhere".
 inline std::array<double, 2> turningPoints(const Cubic& cubic) {

@@ -247,7 +247,8 @@ private:
     const D x = from(m_axes[0]), y = from(m_axes[1]), z = from(m_axes[2]);
     const D u = along(m_axes[0]), w = along(m_axes[1]), q = along(m_axes[2]);
 
-    // As in cellCubic.
+    // The indicator is a + x bx + y by + z bz + x y cxy + x z cxz + y z cyz + x y z d, and along
+    // the ray x becomes x + s u, y + s w, z + s q with s in [0, 1].
     const D bx = hn::Sub(v[1], v[0]), by = hn::Sub(v[2], v[0]), bz = hn::Sub(v[4], v[0]);
     const D cxy = hn::Sub(hn::Sub(v[3], v[2]), bx);
     const D cxz = hn::Sub(hn::Sub(v[5], v[4]), bx);

@@ -2,6 +2,7 @@
 
 #include "ClippingTesting.h"
 #include "clipping/CellCubic.h"
+#include "clipping/FocusCells.h"
 #include "core/LaneTargets.h"
 
 #include <gtest/gtest.h>
@@ -40,17 +41,51 @@ double depthAt(const FocusDepth& focus, const Vec2& position) {
   return focus.depth.nearest(position);
 }
 
-TEST(CellCubic, IsTheTrilinearFunctionAlongTheRay) {
+TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
+  Random random(5, 0, 0);
+  const Grid grid({3, 3, 3}, Affine::Identity());
+  int met = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.4; });
+    const FocusCells cells(mask);
+    FocusRays rays;
+    std::vector<Ray> worldRays;
+    while (worldRays.size() < 50) {
+      const Vec3 origin = randomPoint(random, -4.0, 6.0);
+      const Ray world{origin, (randomPoint(random, -0.5, 2.5) - origin).normalized()};
+      const Ray ray = transformed(cells.worldToCell(), world);
+      const Interval inside = cells.box().clip(ray, {});
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        rays.origin[axis][rays.size] = ray.origin[static_cast<int>(axis)];
+        rays.direction[axis][rays.size] = ray.direction[static_cast<int>(axis)];
+      }
+      rays.begin[rays.size] = inside.begin;
+      rays.end[rays.size] = inside.end;
+      ++rays.size;
+      worldRays.push_back(world);
+    }
+    cells.findMeetings(rays);
+    for (std::size_t i = 0; i < rays.size; ++i) {
+      const double meeting = rays.meeting[i];
+      if (meeting < infinity && meeting > rays.begin[i]) {
+        ++met;
+        EXPECT_NEAR(indicator(mask, worldRays[i].at(meeting)), 0.5, 1e-12);
+      }
+      for (double t = rays.begin[i]; t < std::min(rays.end[i], meeting - 1e-9); t += 0.01) {
+        ASSERT_LT(indicator(mask, worldRays[i].at(t)), 0.5 + 1e-12);
+      }
+    }
+  }
+  EXPECT_GT(met, 500);
+}
+
+TEST(CellCubic, KnowsItsSlope) {
   Random random(1, 0, 0);
   for (int trial = 0; trial < 10000; ++trial) {
-    std::array<double, 8> corners;
-    for (double& corner : corners)
-      corner = uniform(random, -1, 1);
-    const Vec3 from = randomPoint(random, 0, 1);
-    const Vec3 along = randomPoint(random, -1, 1);
-    const Cubic cubic = cellCubic(corners, from, along);
+    Cubic cubic;
+    for (double& c : cubic.c)
+      c = uniform(random, -1, 1);
     const double s = random.uniform();
-    EXPECT_NEAR(cubic(s), trilinear(corners, from + s * along), 1e-14);
     const double step = 1e-5;
     EXPECT_NEAR(cubic.slope(s), (cubic(s + step) - cubic(s - step)) / (2 * step), 1e-8);
   }
