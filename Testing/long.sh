@@ -7,46 +7,53 @@
 #   addresses   the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer
 #   threads     the whole suite under ThreadSanitizer, with a oneTBB that it can see into
 #   clang       the whole suite built by clang
-# and only where they are named:
+# and only where it is named:
 #   fuzz        every fuzz target for ten minutes
-#   record      nothing but the record
-# Each stage leaves a fragment in build/report; the record is made of those that are there.
+# Each stage writes a file of its own there and leaves the others as they are; logs of what failed
+# are in build/report.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
-fragments=$top/build/report
 record=$top/Testing/Report
+logs=$top/build/report
 labels=(unit statistical stress regression cli)
 
-# run_labels FRAGMENT FOLDER LABEL...: runs tests by label and writes a table of what came of them.
+# in_record FILE COMMAND...: the file of the record becomes what the command prints.
+in_record() {
+  local file=$record/$1
+  shift
+  "$@" >"$file.tmp"
+  mv "$file.tmp" "$file"
+}
+
+# run_labels TITLE FOLDER LABEL...: runs tests by label and prints a table of what came of them.
 # `without` may hold an expression of tests to leave out.
 without=
 run_labels() {
-  local fragment=$1 folder=$2 failed=0
+  local title=$1 folder=$2
   shift 2
-  {
-    printf '| tests | passed | skipped | failed | seconds |\n|---|---|---|---|---|\n'
-    local label log start
-    for label in "$@"; do
-      log=$(mktemp)
-      start=$SECONDS
-      ctest --test-dir "$folder" -L "^$label\$" ${without:+-E "$without"} -j"$(nproc)" \
-        --output-on-failure >"$log" 2>&1 || failed=1
-      printf '| %s | %s | %s | %s | %s |\n' "$label" "$(grep -c '   Passed ' "$log")" \
-        "$(grep -c '\*\*\*Skipped' "$log")" "$(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$log")" \
-        $((SECONDS - start))
-      [ "$failed" -eq 0 ] || cp "$log" "$fragments/$(basename "$fragment" .md)-$label.log"
-      rm -f "$log"
-    done
-  } >"$fragment.new"
-  mv "$fragment.new" "$fragment"
-  [ "$failed" -eq 0 ] || say "some tests failed: see $fragment and the logs beside it"
+  printf '# %s\n\n' "$title"
+  printf '| tests | passed | skipped | failed | seconds |\n|---|---|---|---|---|\n'
+  local label start log
+  for label in "$@"; do
+    log=$logs/$(basename "$folder")-$label.log
+    start=$SECONDS
+    ctest --test-dir "$folder" -L "^$label\$" ${without:+-E "$without"} -j"$(nproc)" \
+      --output-on-failure >"$log" 2>&1 || say "some $label tests failed: see $log" >&2
+    printf '| %s | %s | %s | %s | %s |\n' "$label" "$(grep -c '   Passed ' "$log")" \
+      "$(grep -c '\*\*\*Skipped' "$log")" "$(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$log")" \
+      $((SECONDS - start))
+  done
 }
 
 stage_accuracy() {
   build release -DFENESTRA_BUILD_TESTS=ON
-  rm -f "$fragments/references.md"
-  FENESTRA_LONG=1 FENESTRA_REPORT=$fragments \
-    run_labels "$fragments/accuracy.md" "$top/build" statistical stress regression
+  {
+    printf '# Pictures converged by independent renderers\n\n'
+    printf '| who, scene | values | mean of z | deviation of z | image means in errors |\n|---|---|---|---|---|\n'
+  } >"$record/references.md"
+  FENESTRA_LONG=1 FENESTRA_REPORT=$record in_record accuracy.md \
+    run_labels 'Statistical, stress and regression tests with long budgets' "$top/build" \
+    statistical stress regression
 }
 
 # seed_row SEED: a row of the table, in $rows/SEED.
@@ -63,28 +70,31 @@ stage_seeds() {
   rows=$(mktemp -d)
   export -f seed_row
   seq 20 | top=$top rows=$rows xargs -P "$(nproc)" -I{} bash -c 'seed_row {}'
-  {
+  print_seeds() {
+    printf '# Twenty seed bases of the short matrix\n\n'
     printf '| seed base | %s | all hold |\n|---|---|---|---|---|---|---|---|\n' \
       'pixel | tile | picture | tiles uniform | pictures uniform | mean is 0'
     local seed
     for seed in $(seq 20); do
       cat "$rows/$seed"
     done
-  } >"$fragments/seeds.md.new"
-  mv "$fragments/seeds.md.new" "$fragments/seeds.md"
+  }
+  in_record seeds.md print_seeds
   rm -r "$rows"
 }
 
 # Sanitizers look at what is computed, not at its error: a fourth of the samples, a tenth of the
 # matrix, and nothing of the renderer's copy with errors planted in it.
 planted=^PlantedErrors
+smaller=', brief: a fourth of the samples, 24 combinations, without planted errors'
 
 stage_addresses() {
   local without=$planted
   install_packages clang libclang-rt-14-dev
   (cd "$top" && cmake --preset asan-ubsan >/dev/null && cmake --build build-asan-ubsan)
   LSAN_OPTIONS="suppressions=$top/Testing/lsan.supp" FENESTRA_BRIEF=4 FENESTRA_COMBINATIONS=24 \
-    run_labels "$fragments/addresses.md" "$top/build-asan-ubsan" "${labels[@]}"
+    in_record addresses.md run_labels "AddressSanitizer and UndefinedBehaviorSanitizer$smaller" \
+    "$top/build-asan-ubsan" "${labels[@]}"
 }
 
 # A oneTBB under ThreadSanitizer: what Debian ships hides how its threads wait for each other. Says
@@ -113,59 +123,26 @@ stage_threads() {
   local tbb
   tbb=$(seen_tbb)
   LD_LIBRARY_PATH=$tbb TSAN_OPTIONS=halt_on_error=1 FENESTRA_BRIEF=4 FENESTRA_COMBINATIONS=24 \
-    run_labels "$fragments/threads.md" "$top/build-tsan" "${labels[@]}"
+    in_record threads.md run_labels "ThreadSanitizer$smaller" "$top/build-tsan" "${labels[@]}"
 }
 
 stage_clang() {
   install_packages clang
   (cd "$top" && cmake --preset dev -B build-clang -DCMAKE_CXX_COMPILER=clang++ >/dev/null &&
     cmake --build build-clang)
-  run_labels "$fragments/clang.md" "$top/build-clang" "${labels[@]}"
+  in_record clang.md run_labels 'clang' "$top/build-clang" "${labels[@]}"
 }
 
 stage_fuzz() {
-  bash "$top/Testing/Fuzz/run.sh" 600 >"$fragments/fuzz.log" 2>&1 ||
-    say "fuzzing found something: $fragments/fuzz.log"
+  bash "$top/Testing/Fuzz/run.sh" 600 >"$logs/fuzz.log" 2>&1 ||
+    say "fuzzing found something: $logs/fuzz.log"
 }
 
-stage_record() { :; }
-
-# section TITLE FRAGMENT: a part of the record, where it was made.
-section() {
-  [ -e "$fragments/$2" ] || return 0
-  printf '\n## %s\n\n' "$1"
-  cat "$fragments/$2"
-}
-
-write_record() {
-  mkdir -p "$record"
-  {
-    printf '# How far Fenestra can be trusted: the record\n\n'
-    printf 'Made by `bash Testing/long.sh`. What the tests are: [Statistical](../Statistical/README.md),'
-    printf ' [the oracle](../Oracle/README.md), [planted errors](../Statistical/Faults/README.md),'
-    printf ' [stress](../Stress/README.md).\n'
-    section 'Long version' accuracy.md
-    [ ! -e "$fragments/matrix.md" ] || { printf '\n'; cat "$fragments/matrix.md"; }
-    section 'Twenty seed bases of the short matrix' seeds.md
-    [ ! -e "$fragments/faults.md" ] || { printf '\n'; cat "$fragments/faults.md"; }
-    if [ -e "$fragments/references.md" ]; then
-      printf '\n## Pictures converged by independent renderers\n\n'
-      printf '| who, scene | values | mean of z | deviation of z | image means in errors |\n|---|---|---|---|---|\n'
-      sort -u "$fragments/references.md"
-    fi
-    section 'AddressSanitizer and UndefinedBehaviorSanitizer' addresses.md
-    section 'ThreadSanitizer' threads.md
-    section 'clang' clang.md
-  } >"$record/README.md"
-  [ ! -e "$fragments/probabilities.svg" ] || cp "$fragments/probabilities.svg" "$record"
-}
-
-mkdir -p "$fragments"
+mkdir -p "$logs"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev
 [ $# -gt 0 ] || set -- accuracy seeds addresses threads clang
 for name in "$@"; do
   say "$name"
   "stage_$name"
-  write_record
 done
 say "The record is $record/README.md"

@@ -69,9 +69,9 @@ TEST(AdaptiveSampling, HasNoBias) {
   const int seeds = std::max(8, budget(24)); // fewer say little of their own spread
   RenderSettings adaptive;
   adaptive.samples = 1U << 20;
-  adaptive.noise = 0.05;
+  adaptive.noise = allowedError(0.05);
   RenderSettings uniform;
-  uniform.samples = 40;
+  uniform.samples = budget(40U);
   const std::vector<Moments> a = tilesOver(scene, adaptive, seeds, 0);
   const std::vector<Moments> b = tilesOver(scene, uniform, seeds, 100000);
   double difference = 0.0, variance = 0.0;
@@ -88,7 +88,7 @@ TEST(AdaptiveSampling, HasNoBias) {
 TEST(AdaptiveSampling, SharesOutAndStopsAtItsTarget) {
   RenderSettings settings;
   settings.samples = 1U << 20;
-  settings.noise = 0.03;
+  settings.noise = allowedError(0.03);
   const RenderResult result = skewedScene().render(settings);
   EXPECT_EQ(result.reason, StopReason::noise);
   EXPECT_LE(result.film.noise(), settings.noise);

@@ -74,7 +74,7 @@ void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Verdic
   writeHistograms(*folder / "probabilities.svg", tiles, pictures);
 
   std::ofstream md(*folder / "matrix.md");
-  md << "## The product against the oracle\n\n"
+  md << "# The product against the oracle\n\n"
      << outcomes.size() << " combinations, 16 x 16 pixels, " << settings.samples
      << " samples a pixel of each renderer, seed " << settings.seed << ".\n\n"
      << "| hypothesis | values | probability of what was seen |\n|---|---|---|\n"

@@ -41,7 +41,7 @@ void record(const std::vector<Fault>& faults) {
   if (!folder)
     return;
   std::ofstream md(*folder / "faults.md");
-  md << "## Planted errors\n\nEach is planted in a copy of the renderer and looked for in the "
+  md << "# Planted errors\n\nEach is planted in a copy of the renderer and looked for in the "
         "matrix, one combination after the other, until one disagrees with the oracle.\n\n"
         "| planted | found in combination | probability there |\n|---|---|---|\n";
   for (const Fault& fault : faults)
