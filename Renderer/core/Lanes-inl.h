@@ -11,6 +11,9 @@
 
 #include "core/Narrow.h"
 
+#include <bit>
+#include <cstdint>
+
 #include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
@@ -41,14 +44,20 @@ HWY_INLINE M both(M a, M b) {
 HWY_INLINE M noLane() {
   return hn::FirstN(floats, 0);
 }
+/// One bit a lane, and back.
+HWY_INLINE std::uint64_t bitsOf(M m) {
+  std::uint64_t packed = 0;
+  hn::StoreMaskBits(floats, m, reinterpret_cast<std::uint8_t*>(&packed));
+  return packed;
+}
+HWY_INLINE M maskOf(std::uint64_t packed) {
+  return hn::LoadMaskBits(floats, reinterpret_cast<const std::uint8_t*>(&packed));
+}
 /// Calls visit(lane) for those of `which`.
 template <typename Visit>
 HWY_INLINE void forEachLane(M which, Visit&& visit) {
-  std::array<std::uint8_t, 8> packed = {};
-  hn::StoreMaskBits(floats, which, packed.data());
-  for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
-    if (packed[lane / 8] >> (lane % 8) & 1)
-      visit(lane);
+  for (std::uint64_t left = bitsOf(which); left != 0; left &= left - 1)
+    visit(static_cast<std::size_t>(std::countr_zero(left)));
 }
 
 HWY_INLINE F lerp(F a, F b, F f) {
@@ -156,6 +165,26 @@ HWY_INLINE F uniform(U& counter) {
   return uniformOf(nextBits(counter));
 }
 
+/// The logarithm of a positive number that is not subnormal, to a float's last place (the
+/// polynomial of Cephes' logf).
+HWY_INLINE F logOf(F x) {
+  const I raw = hn::BitCast(ints, x);
+  const I root = hn::Set(ints, 0x3f3504f3); // of 1/2: the mantissa goes from there to twice that
+  const I power = hn::ShiftRight<23>(hn::Sub(raw, root));
+  const F mantissa = hn::BitCast(floats, hn::Sub(raw, hn::ShiftLeft<23>(power)));
+  const F e = hn::ConvertTo(floats, power);
+  const F f = hn::Sub(mantissa, all(1.0F));
+  F p = all(7.0376836292E-2F);
+  for (const float c : {-1.1514610310E-1F, 1.1676998740E-1F, -1.2420140846E-1F, 1.4249322787E-1F,
+                        -1.6668057665E-1F, 2.0000714765E-1F, -2.4999993993E-1F, 3.3333331174E-1F})
+    p = hn::MulAdd(p, f, all(c));
+  const F f2 = hn::Mul(f, f);
+  F low = hn::Mul(hn::Mul(p, f), f2);
+  low = hn::MulAdd(e, all(-2.12194440E-4F), low);
+  low = hn::NegMulAdd(all(0.5F), f2, low);
+  return hn::MulAdd(e, all(0.693359375F), hn::Add(f, low));
+}
+
 /// Exponential with mean 1: precise near 0 and far out, as each half of the unit interval is
 /// counted from its own end.
 HWY_INLINE F exponential(U& counter) {
@@ -164,9 +193,10 @@ HWY_INLINE F exponential(U& counter) {
   const F u = fraction(hn::AndNot(top, h)); // in (0, 1/2)
   const auto near = hn::RebindMask(floats, hn::Eq(hn::And(h, top), top));
   // -log(1 - u) where the exponential is small, -log(u) where it is large.
-  const F small = hn::Log1p(floats, hn::IfThenElseZero(near, hn::Neg(u)));
-  const F large = hn::Log(floats, hn::IfThenElse(near, all(1.0F), u));
-  return hn::Neg(hn::IfThenElse(near, small, large));
+  const F one = all(1.0F);
+  const F x = hn::IfThenElse(near, hn::Sub(one, u), u);
+  const F lost = hn::IfThenElseZero(near, hn::Sub(hn::Sub(one, x), u)); // of 1 - u, in rounding
+  return hn::Neg(hn::Add(logOf(x), lost));
 }
 
 /// Cosine and sine of an angle in turns, 0 <= turns <= 1, to 1e-7: Taylor's series in the quarter

@@ -12,13 +12,13 @@ WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
     position.push_back(narrow(knot.position));
   position.push_back(std::numeric_limits<float>::infinity());
   for (int c = 0; c < Channels; ++c) {
-    Channel channel{{narrow(knots.front().value[c])}, {0.0F}};
+    Channel channel{{narrow(knots.front().value[c]), 0.0F}};
     for (std::size_t i = 0; i < knots.size(); ++i) {
       const bool last = i + 1 == knots.size();
       const double width = last ? 0.0 : knots[i + 1].position - knots[i].position;
       const double rise = last ? 0.0 : knots[i + 1].value[c] - knots[i].value[c];
-      channel.value.push_back(narrow(knots[i].value[c]));
-      channel.slope.push_back(width > 0.0 ? narrow(rise / width) : 0.0F);
+      channel.push_back(
+          {narrow(knots[i].value[c]), width > 0.0 ? narrow(rise / width) : 0.0F});
     }
     channels.push_back(std::move(channel));
   }

@@ -8,12 +8,14 @@
 
 namespace fenestra {
 
-/// In segment i a channel is value[i] + slope[i] (s - position[i]), from position[i] to
-/// position[i + 1]; the first segment begins at -infinity, the last has no end.
+/// In segment i a channel is value + slope (s - position[i]), from position[i] to position[i + 1];
+/// the first segment begins at -infinity, the last has no end. What is wanted together lies
+/// together: lanes take two floats at a time.
 struct WideTable {
-  struct Channel {
-    std::vector<float> value, slope;
+  struct Line {
+    float value, slope;
   };
+  using Channel = std::vector<Line>;
   std::vector<float> position;
   std::vector<std::int32_t> binSegment; ///< for equal bins from binStart on: the first candidate
   float binStart = 0.0F, binsPerUnit = 0.0F;

@@ -15,62 +15,100 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-/// The voxels around a point: four rows along x, `near` where they begin, `far` one voxel on.
-struct Corners {
-  F near[4], far[4];
+/// Two floats that lie together, of each lane.
+struct Pairs {
+  F first, second;
 };
-using Rows = std::array<I, 4>; ///< index of each row's beginning
 
-HWY_INLINE Corners cornersAt(const WideScene& scene, const float* voxels, const Rows& rows) {
-  (void)scene;
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE Pairs loadPairs(const float* memory, const std::int32_t* index) {
+  return {hn::Set(floats, memory[*index]), hn::Set(floats, memory[*index + 1])};
+}
+#else
+/// Two floats, as one number, from each of `count` places.
+template <std::size_t count>
+HWY_INLINE auto loadEach(const float* memory, const std::int32_t* index) {
+  constexpr hn::CappedTag<std::int64_t, count> d;
+  if constexpr (count == 1)
+    return hn::LoadU(d, reinterpret_cast<const std::int64_t*>(memory + *index));
+  else
+    return hn::Combine(d, loadEach<count / 2>(memory, index + count / 2),
+                       loadEach<count / 2>(memory, index));
+}
+
+/// memory[i] and memory[i + 1] for each i of an array. Loads one by one are less work for the
+/// processor than gathers, once the indices are in memory.
+HWY_INLINE Pairs loadPairs(const float* memory, const std::int32_t* index) {
+  constexpr std::size_t half = hn::MaxLanes(floats) / 2;
+  const F low = hn::BitCast(floats, loadEach<half>(memory, index));
+  const F high = hn::BitCast(floats, loadEach<half>(memory, index + half));
+  return {hn::ConcatEven(floats, high, low), hn::ConcatOdd(floats, high, low)};
+}
+#endif
+
+/// Indices as numbers in memory.
+struct alignas(64) Indices : std::array<std::int32_t, HWY_MAX_BYTES / sizeof(std::int32_t)> {
+  explicit HWY_INLINE Indices(I index) { hn::Store(index, ints, data()); }
+};
+
+/// The voxels around a point: four rows along x, where `first` begins and `second` goes on.
+using Corners = std::array<Pairs, 4>;
+
+/// How far each row's beginning is from the first one's, in voxels.
+HWY_INLINE std::array<std::int32_t, 4> rowsOf(const WideScene& scene) {
+  const std::int32_t up = scene.axes[1].stride;
+  const std::int32_t deep = scene.axes[2].stride;
+  return {0, up, deep, deep + up};
+}
+
+HWY_INLINE Corners cornersAt(const WideScene& scene, const float* voxels, I first) {
   Corners c;
-  // All rows first: what has to come from afar is then under way together.
+  const std::array<std::int32_t, 4> rows = rowsOf(scene);
+  const Indices index(first);
   for (std::size_t i = 0; i < rows.size(); ++i)
-    c.near[i] = hn::GatherIndex(floats, voxels, rows[i]);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    c.far[i] = hn::GatherIndex(floats, voxels + 1, rows[i]);
+    c[i] = loadPairs(voxels + rows[i], index.data());
   return c;
 }
 
 /// Of 16 bits: one gather takes both voxels; `lower` and `upper` make floats of them.
 template <typename Voxel, typename Lower, typename Upper>
-HWY_INLINE Corners cornersInPairs(const Voxel* voxels, const Rows& rows, Lower&& lower,
-                                  Upper&& upper) {
+HWY_INLINE Corners cornersInPairs(const WideScene& scene, const Voxel* voxels, I first,
+                                  Lower&& lower, Upper&& upper) {
   Corners c;
+  const std::array<std::int32_t, 4> rows = rowsOf(scene);
+  const I offset = hn::ShiftLeft<1>(first);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels),
-                                    hn::ShiftLeft<1>(rows[i]));
-    c.near[i] = hn::ConvertTo(floats, lower(both));
-    c.far[i] = hn::ConvertTo(floats, upper(both));
+    const I both =
+        hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels + rows[i]), offset);
+    c[i] = {hn::ConvertTo(floats, lower(both)), hn::ConvertTo(floats, upper(both))};
   }
   return c;
 }
-HWY_INLINE Corners cornersAt(const WideScene& scene, const std::int16_t* voxels, const Rows& rows) {
-  (void)scene;
+HWY_INLINE Corners cornersAt(const WideScene& scene, const std::int16_t* voxels, I first) {
   return cornersInPairs(
-      voxels, rows, [](I both) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(both)); },
+      scene, voxels, first, [](I both) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(both)); },
       [](I both) { return hn::ShiftRight<16>(both); });
 }
-HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint16_t* voxels,
-                             const Rows& rows) {
-  (void)scene;
+HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint16_t* voxels, I first) {
   const I low = hn::Set(ints, 0xffff);
   return cornersInPairs(
-      voxels, rows, [&](I both) { return hn::And(both, low); },
+      scene, voxels, first, [&](I both) { return hn::And(both, low); },
       [&](I both) { return hn::And(hn::ShiftRight<16>(both), low); });
 }
-HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint8_t* voxels, const Rows& rows) {
+HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint8_t* voxels, I first) {
   Corners c;
+  const std::array<std::int32_t, 4> rows = rowsOf(scene);
   const I low = hn::Set(ints, 0xff);
   const I lastFour = hn::Set(ints, static_cast<std::int32_t>(scene.voxelCount - 4));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     // Four bytes are read: not beyond the last voxel.
-    const I from = hn::Min(rows[i], lastFour);
-    const I shift = hn::ShiftLeft<3>(hn::Sub(rows[i], from));
+    const I row = hn::Add(first, hn::Set(ints, rows[i]));
+    const I from = hn::Min(row, lastFour);
+    const I shift = hn::ShiftLeft<3>(hn::Sub(row, from));
     const I four = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels), from);
     const I both = hn::Shr(four, shift);
-    c.near[i] = hn::ConvertTo(floats, hn::And(both, low));
-    c.far[i] = hn::ConvertTo(floats, hn::And(hn::ShiftRight<8>(both), low));
+    c[i] = {hn::ConvertTo(floats, hn::And(both, low)),
+            hn::ConvertTo(floats, hn::And(hn::ShiftRight<8>(both), low))};
   }
   return c;
 }
@@ -103,8 +141,7 @@ HWY_INLINE Place placeOf(const WideScene& scene, const Point& p) {
 template <typename Voxel>
 HWY_INLINE void prefetch(const WideScene& scene, const Place& place) {
   const auto* voxels = static_cast<const Voxel*>(scene.voxels);
-  alignas(64) std::array<std::int32_t, HWY_MAX_BYTES / sizeof(std::int32_t)> first;
-  hn::Store(place.first, ints, first.data());
+  const Indices first(place.first);
   const std::int32_t up = scene.axes[1].stride;
   const std::int32_t deep = scene.axes[2].stride;
   for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane) {
@@ -119,14 +156,11 @@ HWY_INLINE void prefetch(const WideScene& scene, const Place& place) {
 /// The scalar, trilinear between voxel centres.
 template <typename Voxel>
 HWY_INLINE F scalarAt(const WideScene& scene, const Place& place) {
-  const auto* voxels = static_cast<const Voxel*>(scene.voxels);
-  const I up = hn::Set(ints, scene.axes[1].stride);
-  const I above = hn::Add(place.first, hn::Set(ints, scene.axes[2].stride));
-  const Corners c = cornersAt(
-      scene, voxels, Rows{place.first, hn::Add(place.first, up), above, hn::Add(above, up)});
+  const Corners c = cornersAt(scene, static_cast<const Voxel*>(scene.voxels), place.first);
   const auto& [fx, fy, fz] = place.fractions;
-  const F low = lerp(lerp(c.near[0], c.far[0], fx), lerp(c.near[1], c.far[1], fx), fy);
-  const F high = lerp(lerp(c.near[2], c.far[2], fx), lerp(c.near[3], c.far[3], fx), fy);
+  const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, fx); };
+  const F low = lerp(along(c[0]), along(c[1]), fy);
+  const F high = lerp(along(c[2]), along(c[3]), fy);
   return lerp(low, high, fz);
 }
 template <typename Voxel>
@@ -146,21 +180,20 @@ HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
   const F bin = hn::Mul(hn::Sub(s, all(table.binStart)), all(table.binsPerUnit));
   const I inTable = hn::ConvertTo(ints, hn::Max(hn::Min(bin, all(lastBin)), hn::Zero(floats)));
   I segment = hn::GatherIndex(ints, table.binSegment.data(), inTable);
-  const float* next = table.position.data() + 1;
   for (;;) {
-    const M beyond = hn::Ge(s, hn::GatherIndex(floats, next, segment));
+    const Pairs ends = loadPairs(table.position.data(), Indices(segment).data());
+    const M beyond = hn::Ge(s, ends.second);
     if (hn::AllFalse(floats, beyond))
-      break;
+      return {segment, hn::Sub(s, ends.first)};
     segment =
         hn::IfThenElse(hn::RebindMask(ints, beyond), hn::Add(segment, hn::Set(ints, 1)), segment);
   }
-  return {segment, hn::Sub(s, hn::GatherIndex(floats, table.position.data(), segment))};
 }
 
 /// A channel's value there; not negative.
 HWY_INLINE F valueIn(const WideTable::Channel& channel, const Segment& at) {
-  const F slope = hn::GatherIndex(floats, channel.slope.data(), at.index);
-  const F value = hn::GatherIndex(floats, channel.value.data(), at.index);
+  const Indices index(hn::ShiftLeft<1>(at.index));
+  const auto [value, slope] = loadPairs(&channel[0].value, index.data());
   // Constant segments may begin at -infinity.
   const F rise =
       hn::IfThenZeroElse(hn::Eq(slope, hn::Zero(floats)), hn::Mul(at.beyondStart, slope));

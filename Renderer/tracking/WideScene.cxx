@@ -23,10 +23,17 @@ std::array<float, 4> row(const Grid& grid, const Vec3& normal, const Vec3& from,
   return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
 }
 
-/// The least float not below `majorant` whose last bit is as asked.
-float withLastBit(float majorant, bool set) {
-  const bool isSet = (std::bit_cast<std::uint32_t>(majorant) & 1U) != 0;
-  return isSet == set ? majorant : std::nextafter(majorant, std::numeric_limits<float>::infinity());
+/// The least half a float not below `majorant` whose last bit is as asked.
+std::uint16_t upperHalf(float majorant, bool lastBit) {
+  const auto whole = std::bit_cast<std::uint32_t>(majorant);
+  std::uint32_t half = (whole >> 16) + ((whole & 0xffffU) != 0 ? 1U : 0U);
+  half += (half & 1U) != (lastBit ? 1U : 0U) ? 1U : 0U;
+  return static_cast<std::uint16_t>(half);
+}
+
+/// Of the number of empty cells around one, negated; never more of them.
+std::uint16_t upperHalf(float minusAround) {
+  return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(minusAround) >> 16);
 }
 
 /// Gives empty cells inside the border the number of empty cells around them, negated: two sweeps
@@ -143,21 +150,27 @@ void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {
         static_cast<std::int32_t>(std::max<std::int64_t>(size - 2, 0)),
         static_cast<std::int32_t>(size > 1 ? stride : 0),
         static_cast<float>(majorants.edge()[axis]),
+        narrow(1.0 / static_cast<double>(majorants.edge()[axis])),
         static_cast<std::int32_t>(cells[axis]),
         static_cast<std::int32_t>(cellStride)};
     stride *= size;
     cellStride *= bordered[axis];
   }
-  m_scene.cells.assign(static_cast<std::size_t>(cellStride), 0.0F);
+  std::vector<float> around(static_cast<std::size_t>(cellStride), 0.0F);
+  m_scene.cells.assign(around.size() + 1, 0);
   for (std::int64_t z = 0; z < cells.z(); ++z)
     for (std::int64_t y = 0; y < cells.y(); ++y)
       for (std::int64_t x = 0; x < cells.x(); ++x) {
         const MajorantGrid::Cell& cell = majorants.cell(x + cells.x() * (y + cells.y() * z));
-        const std::int64_t to = x + 1 + bordered.x() * (y + 1 + bordered.y() * (z + 1));
-        m_scene.cells[static_cast<std::size_t>(to)] =
-            cell.majorant > 0.0F ? withLastBit(cell.majorant, cell.cut) : 0.0F;
+        const auto to =
+            static_cast<std::size_t>(x + 1 + bordered.x() * (y + 1 + bordered.y() * (z + 1)));
+        around[to] = cell.majorant;
+        m_scene.cells[to] = cell.majorant > 0.0F ? upperHalf(cell.majorant, cell.cut) : 0;
       }
-  findEmptyAround(bordered, m_scene.cells);
+  findEmptyAround(bordered, around);
+  for (std::size_t i = 0; i < around.size(); ++i)
+    if (m_scene.cells[i] == 0)
+      m_scene.cells[i] = upperHalf(around[i]);
 }
 
 void WideTracker::setClip(const Clip& clip, const Grid& grid) {

@@ -19,6 +19,7 @@ struct WideScene {
     std::int32_t lastCell;   ///< of the last pair of voxels that interpolation may begin with
     std::int32_t stride;     ///< voxels to the next in this axis, 0 where there is none
     float cellEdge;          ///< voxels
+    float cellsPerVoxel;     ///< 1 / cellEdge
     std::int32_t cells;      ///< without the border
     std::int32_t cellStride; ///< of the cells, in their bordered array
   };
@@ -40,10 +41,12 @@ struct WideScene {
 
   WideTable extinction; ///< mm^-1 over the scalar
 
-  /// The majorants' cells, with a border of empty ones around them. Positive: the majorant (mm^-1),
-  /// its last bit set where keep is to be asked. Otherwise the cell is empty, and so are as many
-  /// more to every side, diagonals included, as the value is below 0.
-  std::vector<float> cells;
+  /// The majorants' cells, with a border of empty ones around them: the upper halves of floats, as
+  /// lanes cross more cells than they fetch voxels, and these should stay in the cache. Positive:
+  /// the majorant (mm^-1), rounded up, its last bit set where keep is to be asked. Otherwise the
+  /// cell is empty, and so are as many more to every side, diagonals included, as the value is
+  /// below 0. One more at the end, for lanes read two at a time.
+  std::vector<std::uint16_t> cells;
 
   ClipKind clipKind = ClipKind::none;
   bool perspective = false;

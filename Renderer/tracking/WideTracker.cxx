@@ -14,8 +14,8 @@ namespace {
 
 /// Lanes take new rays when this part of them has none.
 constexpr std::size_t refillShare = 4;
-/// Look-ups wait until this part of the busy lanes is at a tentative collision.
-constexpr std::size_t hitShare = 2;
+/// Look-ups wait until all busy lanes but this part of them are at a tentative collision.
+constexpr std::size_t crossingShare = 3;
 
 /// One axis of the walk through cells.
 struct AxisWalk {
@@ -31,9 +31,10 @@ struct AxisWalk {
   /// linear index.
   HWY_INLINE I enter(const WideScene::Axis& axis, F o, F direction) {
     const F edge = all(axis.cellEdge);
+    const F perEdge = all(axis.cellsPerVoxel);
     const F zero = hn::Zero(floats);
     const M down = hn::Lt(direction, zero);
-    const F position = hn::Div(hn::Add(o, all(0.5F)), edge);
+    const F position = hn::Mul(hn::Add(o, all(0.5F)), perEdge);
     const F ahead = hn::Floor(position);
     const F behind = hn::Sub(hn::Ceil(position), all(1.0F));
     const F last = all(static_cast<float>(axis.cells - 1));
@@ -43,7 +44,7 @@ struct AxisWalk {
     face = hn::MulSub(hn::IfThenElse(down, cell, hn::Add(cell, all(1.0F))), edge, all(0.5F));
     step = hn::IfThenElse(down, hn::Neg(edge), edge);
     perCell = hn::IfThenElseZero(moves(), hn::Abs(hn::Mul(edge, inverse)));
-    perLength = hn::Div(hn::Abs(direction), edge);
+    perLength = hn::Mul(hn::Abs(direction), perEdge);
     stride = hn::IfThenElse(hn::RebindMask(ints, down), hn::Set(ints, -axis.cellStride),
                             hn::Set(ints, axis.cellStride));
     findNext();
@@ -98,13 +99,17 @@ public:
     const std::size_t lanes = hn::Lanes(floats);
     std::size_t count = hn::CountTrue(floats, m_busy);
     if (count + std::max<std::size_t>(1, lanes / refillShare) <= lanes && !m_queue.empty()) {
+      handIn();
       refill();
       count = hn::CountTrue(floats, m_busy);
     }
-    if (count == 0)
+    if (count == 0) {
+      handIn();
       return false;
+    }
     const bool crossed = cross();
-    m_due = !crossed || hn::CountTrue(floats, m_hit) * hitShare >= count;
+    const std::size_t hits = hn::CountTrue(floats, m_hit);
+    m_due = !crossed || (count - hits) * crossingShare <= count;
     if (m_due)
       stop();
     return true;
@@ -122,31 +127,31 @@ private:
 
   /// Gives idle lanes the next rays, while there are any.
   void refill() {
-    const std::size_t lanes = hn::Lanes(floats);
-    std::array<std::uint8_t, 8> packed = {};
-    hn::StoreMaskBits(floats, m_busy, packed.data());
+    const std::size_t first = m_queue.next;
     std::uint64_t fresh = 0;
-    for (std::size_t lane = 0; lane < lanes && !m_queue.empty(); ++lane) {
-      if (packed[lane / 8] >> (lane % 8) & 1)
-        continue;
+    alignas(64) std::array<std::int32_t, maxLanes> rank = {};
+    forEachLane(hn::Not(m_busy), [&](std::size_t lane) {
+      if (m_queue.empty())
+        return;
       fresh |= std::uint64_t{1} << lane;
-      m_ray[lane] = static_cast<std::int32_t>(m_queue.next++);
-    }
-    for (std::size_t i = 0; i < packed.size(); ++i)
-      packed[i] = static_cast<std::uint8_t>(fresh >> (8 * i));
-    const M started = hn::LoadMaskBits(floats, packed.data());
-    start(started);
+      rank[lane] = static_cast<std::int32_t>(m_queue.next - first);
+      m_ray[lane] = static_cast<std::uint32_t>(m_queue.next++);
+    });
+    const M started = maskOf(fresh);
+    start(started, first, hn::Load(ints, rank.data()));
     m_busy = hn::Or(m_busy, started);
   }
 
-  void start(M which) {
+  /// Lanes of `which` take rays `first + rank`: neighbours, so that whole vectors are loaded.
+  HWY_INLINE void start(M which, std::size_t first, I rank) {
     const auto take = [&](auto& old, const auto& now) {
       old = hn::IfThenElse(hn::RebindMask(hn::DFromV<std::decay_t<decltype(now)>>(), which), now,
                            old);
     };
-    const I ray = hn::Load(ints, m_ray.data());
-    const auto ofRays = [&](const Column<float>& column) {
-      return hn::GatherIndex(floats, column.data(), ray);
+    const auto ofRays = [&](const auto& column) {
+      using Number = typename std::decay_t<decltype(column)>::value_type;
+      constexpr hn::Rebind<Number, Floats> d;
+      return hn::TableLookupLanes(hn::LoadU(d, &column[first]), hn::IndicesFromVec(d, rank));
     };
     AxisWalk entered[3];
     I cell = hn::Zero(ints);
@@ -166,11 +171,11 @@ private:
       take(walk.stride, entered[axis].stride);
     }
     take(m_cell, cell);
-    take(m_content, hn::GatherIndex(floats, m_scene.cells.data(), m_cell));
+    take(m_content, contentOf(m_cell));
     take(m_t, hn::Zero(floats));
     take(m_end, ofRays(m_rays.length));
     take(m_ratio, all(1.0F));
-    U counter = hn::GatherIndex(bits, m_rays.seed.data(), ray);
+    U counter = ofRays(m_rays.seed);
     const F depth = exponential(counter);
     take(m_counter, counter);
     take(m_depth, depth);
@@ -197,8 +202,9 @@ private:
     m_depth = hn::IfThenElse(crossing, hn::Sub(m_depth, toStop), m_depth);
     m_t = hn::IfThenElse(crossing, hn::Max(stop, m_t), m_t);
     const M ended = both(crossing, hn::Ge(toFace, m_end));
-    if (!hn::AllFalse(floats, ended))
-      finish(ended, wantRatio ? m_ratio : all(std::numeric_limits<float>::infinity()), zero);
+    if constexpr (!wantRatio)
+      m_t = hn::IfThenElse(ended, all(std::numeric_limits<float>::infinity()), m_t);
+    finish(ended);
     const M going = hn::AndNot(ended, crossing);
     const M throughX = hn::Eq(x, toFace);
     const M throughY = hn::AndNot(throughX, hn::Eq(y, toFace));
@@ -214,7 +220,7 @@ private:
     pass(m_walk[0], throughX);
     pass(m_walk[1], throughY);
     pass(m_walk[2], throughZ);
-    m_content = hn::GatherIndex(floats, m_scene.cells.data(), m_cell);
+    m_content = contentOf(m_cell);
     return true;
   }
 
@@ -223,6 +229,13 @@ private:
     m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_content)), m_t);
     m_place = placeOf(m_scene, point());
     prefetch<Voxel>(m_scene, m_place);
+  }
+
+  /// The halves of floats that are stored become floats.
+  HWY_INLINE F contentOf(I cell) const {
+    const auto* cells = reinterpret_cast<const std::int32_t*>(m_scene.cells.data());
+    return hn::BitCast(floats,
+                       hn::ShiftLeft<16>(hn::GatherOffset(ints, cells, hn::ShiftLeft<1>(cell))));
   }
 
   HWY_INLINE Point point() const {
@@ -239,9 +252,9 @@ private:
     m_lookups += hn::CountTrue(floats, hit);
     const F scalar = scalarAt<Voxel>(m_scene, m_place);
     F extinction = extinctionOf(m_scene, scalar);
-    const U one = hn::Set(bits, 1);
-    const M cut =
-        both(hit, hn::RebindMask(floats, hn::Eq(hn::And(hn::BitCast(bits, m_content), one), one)));
+    const U last = hn::Set(bits, 0x10000U); // of the half
+    const M cut = both(
+        hit, hn::RebindMask(floats, hn::Eq(hn::And(hn::BitCast(bits, m_content), last), last)));
     if (!hn::AllFalse(floats, cut))
       extinction = hn::IfThenZeroElse(hn::AndNot(kept(m_scene, point()), cut), extinction);
     const F share = hn::Div(extinction, majorant);
@@ -255,41 +268,44 @@ private:
       const F survived =
           hn::IfThenElseZero(hn::Lt(hn::Mul(u, all(rouletteBelow)), thinned), all(rouletteBelow));
       m_ratio = hn::IfThenElse(hit, hn::IfThenElse(little, survived, thinned), m_ratio);
-      const M blocked = both(hit, hn::Le(m_ratio, hn::Zero(floats)));
-      if (!hn::AllFalse(floats, blocked))
-        finish(blocked, m_ratio, scalar);
+      finish(both(hit, hn::Le(m_ratio, hn::Zero(floats))));
     } else {
       const M real = both(hit, hn::Lt(u, share));
-      if (!hn::AllFalse(floats, real))
-        finish(real, m_t, scalar);
+      m_scalar = hn::IfThenElse(real, scalar, m_scalar);
+      finish(real);
     }
     const F depth = exponential(counter);
     m_depth = hn::IfThenElse(hit, depth, m_depth);
     m_counter = hn::IfThenElse(hn::RebindMask(bits, hit), counter, m_counter);
   }
 
-  /// Hands in the results of lanes and makes them idle.
-  HWY_INLINE void finish(M which, F result, F scalar) {
-    OfLanes results, scalars;
-    hn::Store(result, floats, results.data());
-    if constexpr (!wantRatio)
-      hn::Store(scalar, floats, scalars.data());
-    forEachLane(which, [&](std::size_t lane) {
-      const auto ray = static_cast<std::size_t>(m_ray[lane]);
-      m_rays.result[ray] = results[lane];
-      if constexpr (!wantRatio)
-        m_rays.scalar[ray] = scalars[lane];
-    });
+  /// Makes lanes idle; they keep their results.
+  HWY_INLINE void finish(M which) {
+    m_ended = hn::Or(m_ended, which);
     m_busy = hn::AndNot(which, m_busy);
+  }
+
+  /// What lanes have found becomes the results of their rays.
+  HWY_INLINE void handIn() {
+    OfLanes results, scalars;
+    hn::Store(wantRatio ? m_ratio : m_t, floats, results.data());
+    hn::Store(m_scalar, floats, scalars.data());
+    forEachLane(m_ended, [&](std::size_t lane) {
+      m_rays.result[m_ray[lane]] = results[lane];
+      if constexpr (!wantRatio)
+        m_rays.scalar[m_ray[lane]] = scalars[lane];
+    });
+    m_ended = noLane();
   }
 
   const WideScene& m_scene;
   Queue& m_queue;
   RayBatch& m_rays;
   M m_busy = noLane();
-  M m_hit = noLane(); ///< at a tentative collision
-  bool m_due = false; ///< these are to be looked at before anything else
-  alignas(64) std::array<std::int32_t, maxLanes> m_ray = {};
+  M m_ended = noLane(); ///< these have results to hand in
+  M m_hit = noLane();   ///< at a tentative collision
+  bool m_due = false;   ///< these are to be looked at before anything else
+  std::array<std::uint32_t, maxLanes> m_ray = {};
   std::uint64_t m_cells = 0, m_skipped = 0, m_lookups = 0;
 
   AxisWalk m_walk[3] = {idleWalk(), idleWalk(), idleWalk()};
@@ -300,6 +316,7 @@ private:
   F m_end = hn::Zero(floats);   ///< mm
   F m_depth = hn::Zero(floats); ///< optical depth to the next tentative collision
   F m_ratio = hn::Zero(floats);
+  F m_scalar = hn::Zero(floats); ///< at a real collision
   U m_counter = hn::Zero(bits);
   Place m_place{hn::Zero(ints), {m_t, m_t, m_t}}; ///< of the collisions
 

@@ -25,12 +25,12 @@ namespace fenestra {
 /// One number for each of the rays that are followed together, and room for as many lanes as there
 /// may be, so that whole vectors can be read and written.
 template <typename T>
-struct alignas(64) Column : std::array<T, 256 + 16> {};
+struct alignas(64) Column : std::array<T, 512 + 16> {};
 using Columns3 = std::array<Column<float>, 3>;
 
 /// Rays that are followed together; a structure of arrays.
 struct RayBatch {
-  static constexpr std::size_t capacity = 256;
+  static constexpr std::size_t capacity = 512;
 
   std::size_t size = 0;
   Columns3 origin;            ///< index space, inside the domain

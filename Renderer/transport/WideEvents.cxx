@@ -157,7 +157,7 @@ private:
   HWY_INLINE F3 albedoOf(F scalar) const {
     const auto& channels = m_scene.albedo.channels;
     if (m_scene.albedo.position.size() == 3) // one knot
-      return {all(channels[0].value[0]), all(channels[1].value[0]), all(channels[2].value[0])};
+      return {all(channels[0][0].value), all(channels[1][0].value), all(channels[2][0].value)};
     const Segment segment = segmentOf(m_scene.albedo, scalar);
     return {valueIn(channels[0], segment), valueIn(channels[1], segment),
             valueIn(channels[2], segment)};
