@@ -3,10 +3,9 @@
 #include "core/Stopwatch.h"
 #include "render/EmptyPixels.h"
 #include "render/SamplePlan.h"
+#include "render/TileStream.h"
 #include "transport/PathEstimator.h"
-#include "transport/PathWave.h"
 
-#include <tbb/blocked_range2d.h>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -38,15 +37,14 @@ template <typename Voxel>
 struct OneByOne {
   PathEstimator<Voxel> estimator;
 
-  template <typename Start, typename Deliver>
-  bool trace(std::size_t count, Start&& start, Deliver&& deliver, Counters& counters) const {
-    for (std::size_t i = 0; i < count; ++i) {
-      PathStart from = start(i);
+  template <typename Source>
+  bool trace(Source& source, std::size_t /*atOnce*/, Counters& counters) const {
+    while (std::optional<PathStart> from = source.next()) {
       const std::optional<PathSample> sample =
-          estimator.trace(from.column, from.row, from.random, counters);
+          estimator.trace(from->column, from->row, from->random, counters);
       if (!sample || estimator.stopped())
         return false;
-      deliver(i, *sample);
+      source.deliver(from->ticket, *sample);
     }
     return true;
   }
@@ -75,86 +73,28 @@ std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan
   return std::min({passSize(done - leastForNoise, settings), settings.samples - done, most});
 }
 
-/// The samples of a tile's pixels that one stage of the plan has and the one before has not,
-/// counted pixel by pixel.
-class TileSamples {
-public:
-  TileSamples(const tbb::blocked_range2d<int>& tile, const SamplePlan::Stage& from,
-              const SamplePlan::Stage& to, const EmptyPixels& empty, int width)
-      : m_width(width) {
-    for (int row = tile.rows().begin(); row < tile.rows().end(); ++row)
-      for (int column = tile.cols().begin(); column < tile.cols().end(); ++column) {
-        const std::size_t pixel = this->pixel(column, row);
-        const std::uint64_t begin = from.count(pixel);
-        const std::uint64_t end = to.count(pixel);
-        m_planned += end - begin;
-        const std::uint64_t enough = empty.contains(column, row) ? 1 : end;
-        for (std::uint64_t sample = begin; sample < std::min(end, enough); ++sample)
-          m_samples.push_back({column, row, sample});
-      }
-  }
-
-  std::size_t size() const { return m_samples.size(); }
-  /// As many as there would be if no pixel were empty.
-  std::uint64_t planned() const { return m_planned; }
-  PathStart start(std::size_t i, std::uint64_t seed) const {
-    const Sample& sample = m_samples[i];
-    Random random(seed, pixel(sample.column, sample.row), sample.number);
-    const Vec2 jitter = random.uniform2();
-    return {sample.column + jitter.x(), sample.row + jitter.y(), random};
-  }
-  /// To whose pixel sample i belongs.
-  PixelSums& sums(std::size_t i, Film& film) const {
-    return film.at(m_samples[i].column, m_samples[i].row);
-  }
-
-private:
-  struct Sample {
-    int column, row;
-    std::uint64_t number;
-  };
-
-  std::size_t pixel(int column, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_width) +
-           static_cast<std::size_t>(column);
-  }
-
-  int m_width;
-  std::uint64_t m_planned = 0;
-  std::vector<Sample> m_samples;
-};
-
 /// What one stage of the plan has beyond the one before. Returns false when it was stopped before
 /// all was done; tiles are done whole or not at all.
 template <typename Tracer>
 bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
                 const EmptyPixels& empty, std::uint64_t seed, Film& film, Counters& total,
                 RenderMonitor& monitor) {
+  Pass pass(from, to, empty, seed, film, monitor.paths);
+  const int threads = tbb::this_task_arena::max_concurrency();
+  // So many that all threads come to have some, and their tails are short.
+  const std::size_t atOnce =
+      std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)));
   tbb::combinable<Counters> counters;
-  tbb::combinable<std::vector<PathSample>> buffers;
-  std::atomic<bool> whole = true;
-  const auto renderTile = [&](const tbb::blocked_range2d<int>& tile) {
-    const TileSamples tileSamples(tile, from, to, empty, film.width());
-    std::vector<PathSample>& samples = buffers.local();
-    samples.resize(tileSamples.size());
-    const auto start = [&](std::size_t i) { return tileSamples.start(i, seed); };
-    const auto deliver = [&](std::size_t i, const PathSample& sample) { samples[i] = sample; };
-    if (monitor.stop.load(std::memory_order_relaxed) ||
-        !tracer.trace(samples.size(), start, deliver, counters.local())) {
-      whole = false;
-      return;
-    }
-    // In their own order, whichever ended first.
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      tileSamples.sums(i, film).add(samples[i]);
-    monitor.paths.fetch_add(tileSamples.planned(), std::memory_order_relaxed);
-  };
-  constexpr int tileSize = 16;
   tbb::parallel_for(
-      tbb::blocked_range2d<int>(0, film.height(), tileSize, 0, film.width(), tileSize), renderTile,
-      tbb::simple_partitioner()); // a tile's samples are all kept until it ends
+      0, threads,
+      [&](int) {
+        TileStream stream(pass);
+        if (!monitor.stop.load(std::memory_order_relaxed))
+          tracer.trace(stream, atOnce, counters.local());
+      },
+      tbb::simple_partitioner());
   counters.combine_each([&](const Counters& local) { total += local; });
-  return whole;
+  return pass.whole();
 }
 
 /// Whether all eye rays through a pixel that meet nothing show the same.

@@ -7,14 +7,17 @@
 #include "volume/Domain.h"
 
 #include <atomic>
-#include <vector>
+#include <memory>
+#include <optional>
 
 namespace fenestra {
 
-/// Where a path begins: raster position, and its random numbers from there on.
+/// Where a path begins: raster position, its random numbers from there on, and a name under which
+/// its sample is handed in.
 struct PathStart {
   double column, row;
   Random random;
+  std::uint64_t ticket;
 };
 
 class PathWave {
@@ -24,36 +27,35 @@ public:
            const EyeRays& eye, const std::atomic<bool>& stop)
       : m_domain(domain), m_tracker(tracker), m_events(events), m_eye(eye), m_stop(stop) {}
 
-  /// Traces paths start(0) … start(count - 1), and hands in deliver(i, sample) of each, in any
-  /// order. Returns false where `stop` became true before all had ended.
-  template <typename Start, typename Deliver>
-  bool trace(std::size_t count, Start&& start, Deliver&& deliver, Counters& counters) const {
-    counters.paths += count;
-    Batch batch{};
-    std::size_t next = 0;
+  /// Traces all paths that source.next() gives, at most `atOnce` together, and hands in
+  /// source.deliver(ticket, sample) of each, in any order. Returns false where `stop` became true
+  /// before all had ended.
+  template <typename Source>
+  bool trace(Source& source, std::size_t atOnce, Counters& counters) const {
+    const auto batch = std::make_unique<Batch>();
     const auto begin = [&](std::size_t place) {
-      const PathStart from = start(next);
-      this->begin(batch, place, from);
-      batch.origins[place].number = next++;
+      const std::optional<PathStart> from = source.next();
+      if (from)
+        this->begin(*batch, place, *from);
+      counters.paths += from ? 1 : 0;
+      return from.has_value();
     };
-    std::size_t& size = batch.paths.rays.size;
-    while (next < count && size < RayBatch::capacity)
-      begin(size++);
+    std::size_t& size = batch->paths.rays.size;
+    while (size < std::min(atOnce, RayBatch::capacity) && begin(size))
+      ++size;
     while (size > 0) {
       if (m_stop.load(std::memory_order_relaxed))
         return false;
-      m_tracker.sampleCollisions(batch.paths.rays, counters);
-      m_events.scatter(batch.paths, batch.lights, counters);
-      look(batch, counters);
+      m_tracker.sampleCollisions(batch->paths.rays, counters);
+      m_events.scatter(batch->paths, batch->lights, counters);
+      look(*batch, counters);
       // The last first: what moves into a gap has not ended.
-      for (std::size_t i = batch.paths.endedCount; i-- > 0;) {
-        const std::size_t place = batch.paths.ended[i];
-        deliver(batch.origins[place].number, sample(batch, place));
-        if (next < count) {
-          begin(place);
-        } else if (place != --size) {
-          batch.paths.move(size, place);
-          batch.origins[place] = batch.origins[size];
+      for (std::size_t i = batch->paths.endedCount; i-- > 0;) {
+        const std::size_t place = batch->paths.ended[i];
+        source.deliver(batch->origins[place].ticket, sample(*batch, place));
+        if (!begin(place) && place != --size) {
+          batch->paths.move(size, place);
+          batch->origins[place] = batch->origins[size];
         }
       }
     }
@@ -63,7 +65,7 @@ public:
 private:
   /// A path's eye ray.
   struct Origin {
-    std::size_t number = 0;
+    std::uint64_t ticket = 0;
     double row = 0.0;
     Ray ray;
     double begin = 0.0; ///< mm along it to where the batch's ray begins
@@ -79,7 +81,7 @@ private:
     batch.paths.begin(place, ray.direction, from.random.bits());
     const auto seed = static_cast<std::uint32_t>(from.random.bits() >> 32);
     const double begins = setInside(batch.paths.rays, place, m_domain, ray, m_eye.range(ray), seed);
-    batch.origins[place] = {0, from.row, ray, begins};
+    batch.origins[place] = {from.ticket, from.row, ray, begins};
   }
 
   void look(Batch& batch, Counters& counters) const {
