@@ -17,8 +17,7 @@ WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
       const bool last = i + 1 == knots.size();
       const double width = last ? 0.0 : knots[i + 1].position - knots[i].position;
       const double rise = last ? 0.0 : knots[i + 1].value[c] - knots[i].value[c];
-      channel.push_back(
-          {narrow(knots[i].value[c]), width > 0.0 ? narrow(rise / width) : 0.0F});
+      channel.push_back({narrow(knots[i].value[c]), width > 0.0 ? narrow(rise / width) : 0.0F});
     }
     channels.push_back(std::move(channel));
   }
