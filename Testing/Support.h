@@ -2,12 +2,23 @@
 // Small scenes and statistics that tests share.
 
 #include "render/Render.h"
+#include "tracking/WideTracker.h"
 
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
 namespace fenestra::testing {
+
+/// Programs that include this run on the instruction set that FENESTRA_INSTRUCTIONS names, as
+/// `fenestra` does, or end where the machine does not have it.
+inline const bool instructionSetIsPinned = [] {
+  const char* name = std::getenv("FENESTRA_INSTRUCTIONS");
+  if (name)
+    WideTracker::useInstructionSet(name);
+  return name != nullptr;
+}();
 
 /// A grid centred at the origin, axes along RAS.
 inline Grid centredGrid(const Size3& size, const Vec3& spacing) {

@@ -2,13 +2,14 @@
 # The long version of everything that checks, and its record: Testing/Report. An hour or several.
 # usage: bash Testing/long.sh [STAGE...]
 # Stages, in this order where none is named:
-#   accuracy    Release: the statistical, stress and regression tests with long budgets
-#   seeds       the short matrix with twenty seed bases
-#   addresses   the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer
-#   threads     the whole suite under ThreadSanitizer, with a oneTBB that it can see into
-#   clang       the whole suite built by clang
+#   accuracy      Release: the statistical, stress and regression tests with long budgets
+#   seeds         the short matrix with twenty seed bases
+#   instructions  the statistical tests, planted errors among them, on every instruction set
+#   addresses     the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer
+#   threads       the whole suite under ThreadSanitizer, with a oneTBB that it can see into
+#   clang         the whole suite built by clang
 # and only where it is named:
-#   fuzz        every fuzz target for ten minutes
+#   fuzz          every fuzz target for ten minutes
 # Each stage writes a file of its own there and leaves the others as they are; logs of what failed
 # are in build/report.
 set -euo pipefail
@@ -25,6 +26,12 @@ in_record() {
   mv "$file.tmp" "$file"
 }
 
+# counts LOG START: cells of a table: what passed, was skipped, failed, and seconds since START.
+counts() {
+  printf '%s | %s | %s | %s' "$(grep -c '   Passed ' "$1")" "$(grep -c '\*\*\*Skipped' "$1")" \
+    "$(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$1")" $((SECONDS - $2))
+}
+
 # run_labels TITLE FOLDER LABEL...: runs tests by label and prints a table of what came of them.
 # `without` may hold an expression of tests to leave out.
 without=
@@ -39,9 +46,7 @@ run_labels() {
     start=$SECONDS
     ctest --test-dir "$folder" -L "^$label\$" ${without:+-E "$without"} -j"$(nproc)" \
       --output-on-failure >"$log" 2>&1 || say "some $label tests failed: see $log" >&2
-    printf '| %s | %s | %s | %s | %s |\n' "$label" "$(grep -c '   Passed ' "$log")" \
-      "$(grep -c '\*\*\*Skipped' "$log")" "$(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$log")" \
-      $((SECONDS - start))
+    printf '| %s | %s |\n' "$label" "$(counts "$log" "$start")"
   done
 }
 
@@ -81,6 +86,26 @@ stage_seeds() {
   }
   in_record seeds.md print_seeds
   rm -r "$rows"
+}
+
+# run_instructions SET...: prints a table of the statistical tests on each that the machine has.
+run_instructions() {
+  printf '# The statistical tests on every instruction set\n\n'
+  printf '| instructions | passed | skipped | failed | seconds |\n|---|---|---|---|---|\n'
+  local name start log
+  for name in "$@"; do
+    FENESTRA_INSTRUCTIONS=$name "$top/build/bin/CropTests" >/dev/null 2>&1 || continue
+    log=$logs/instructions-$name.log
+    start=$SECONDS
+    FENESTRA_INSTRUCTIONS=$name ctest --test-dir "$top/build" -L '^statistical$' -j"$(nproc)" \
+      --output-on-failure >"$log" 2>&1 || say "some tests failed on $name: see $log" >&2
+    printf '| %s | %s |\n' "$name" "$(counts "$log" "$start")"
+  done
+}
+
+stage_instructions() {
+  build release -DFENESTRA_BUILD_TESTS=ON
+  in_record instructions.md run_instructions AVX3 AVX2 SSE4 SCALAR
 }
 
 # Sanitizers look at what is computed, not at its error: a fourth of the samples, a tenth of the
@@ -140,7 +165,7 @@ stage_fuzz() {
 
 mkdir -p "$logs"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev
-[ $# -gt 0 ] || set -- accuracy seeds addresses threads clang
+[ $# -gt 0 ] || set -- accuracy seeds instructions addresses threads clang
 for name in "$@"; do
   say "$name"
   "stage_$name"
