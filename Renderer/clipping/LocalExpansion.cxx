@@ -118,18 +118,7 @@ void LocalExpansion::evaluateRow(std::span<const double> x, double y,
   Eigen::Array<double, Eigen::Dynamic, 1, 0, longest + 2, 1> row = m_coefficients.col(length - 1);
   for (Eigen::Index b = length - 2; b >= 0; --b)
     row = row * (y * perRadius) + m_coefficients.col(b);
-
-  constexpr Eigen::Index lanes = 8; // they stay in registers
-  using Lanes = Eigen::Array<double, lanes, 1>;
-  for (Eigen::Index begin = 0; begin < std::ssize(x); begin += lanes) {
-    const Eigen::Index count = std::min(lanes, std::ssize(x) - begin);
-    Lanes tau = Lanes::Zero();
-    tau.head(count) = Eigen::Map<const Eigen::ArrayXd>(x.data() + begin, count) * perRadius;
-    Lanes sum = Lanes::Constant(row[length - 1]);
-    for (Eigen::Index a = length - 2; a >= 0; --a)
-      sum = sum * tau + row[a];
-    Eigen::Map<Eigen::ArrayXd>(values.data() + begin, count) = sum.head(count);
-  }
+  evaluatePolynomial({row.data(), static_cast<std::size_t>(length)}, perRadius, x, values);
 }
 
 } // namespace fenestra

@@ -3,19 +3,13 @@
 // outside of (as the local expansions of Greengard and Rokhlin 1987, "A Fast Algorithm for Particle
 // Simulations", for the biharmonic kernel).
 
-#include "core/Vector.h"
+#include "clipping/KernelSums.h"
 
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace fenestra {
-
-/// w phi(|u - site|), phi(r) = r^2 ln r^2.
-struct KernelTerm {
-  Vec2 site;
-  double weight;
-};
 
 /// Where u = center + radius * tau, |tau| <= 1, and with d = site - center, e = radius / d as
 /// complex numbers, |e| < 1,

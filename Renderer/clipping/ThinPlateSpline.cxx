@@ -32,6 +32,11 @@ auto kernel(const Eigen::ArrayBase<Derived>& squared) {
   return squared * (squared + tiny).log();
 }
 
+template <typename Array>
+auto spanOf(Array& array) {
+  return std::span(array.data(), static_cast<std::size_t>(array.size()));
+}
+
 /// K + lambda I.
 Eigen::MatrixXd kernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
   Eigen::MatrixXd k(sites.rows(), sites.rows());
@@ -184,11 +189,11 @@ void ThinPlateSpline::evaluateRow(std::span<const double> x, double y,
         m_centroid.x();
     const Points squaredNorm = u.square() + v * v;
     Points sum = m_plane[0] + m_plane[2] * v + m_plane[1] * u;
-    if ((squaredNorm <= farSquared).all())
-      sum += nearTerms(m_terms, u, v);
-    else
-      sum += (squaredNorm <= farSquared).select(nearTerms(m_terms, u, v), farTerms(u, v));
-    Eigen::Map<Points>(values.data() + begin, count) = sum;
+    Points near = sum;
+    addKernels(m_terms, spanOf(u), v, spanOf(near));
+    if (!(squaredNorm <= farSquared).all())
+      near = (squaredNorm <= farSquared).select(near, sum + farTerms(u, v));
+    Eigen::Map<Points>(values.data() + begin, count) = near;
   }
 }
 
@@ -219,8 +224,7 @@ void ThinPlateSpline::evaluateTile(std::span<const double> x, std::span<const do
     const double v = toDiscY(y[row]);
     const auto ofRow = values.subspan(row * x.size(), x.size());
     expansion->evaluateRow({fromCenter.data(), x.size()}, v - disc.center.y(), ofRow);
-    if (!near.empty())
-      Eigen::Map<Points>(ofRow.data(), u.size()) += nearTerms(near, u, v);
+    addKernels(near, spanOf(u), v, ofRow);
   }
 }
 
@@ -235,17 +239,6 @@ ThinPlateSpline::Disc ThinPlateSpline::discAround(std::span<const double> x,
   const Vec2 first(toDiscX(x.front()), toDiscY(y.front()));
   const Vec2 last(toDiscX(x.back()), toDiscY(y.back()));
   return {0.5 * (first + last), 0.5 * (last - first).norm()};
-}
-
-ThinPlateSpline::Points ThinPlateSpline::nearTerms(std::span<const KernelTerm> terms,
-                                                   const Points& u, double v) {
-  Points sum = Points::Zero(u.size());
-  Points squared(u.size());
-  for (const KernelTerm& term : terms) {
-    squared = (u - term.site.x()).square() + (v - term.site.y()) * (v - term.site.y());
-    sum += term.weight * kernel(squared);
-  }
-  return sum;
 }
 
 ThinPlateSpline::Points ThinPlateSpline::farTerms(const Points& u, double v) const {

@@ -75,11 +75,10 @@ private:
   /// Around a tile.
   Disc discAround(std::span<const double> x, std::span<const double> y) const;
 
-  /// The sum of w'_i phi(|u - u_i|).
-  static Points nearTerms(std::span<const KernelTerm> terms, const Points& u, double v);
-  /// The same for |u| > 1, where the terms are as large as |u|^2 ln |u|^2 and nearly cancel. With
-  /// e_i = |u - u_i|^2 - |u|^2 and P' w' = 0 the sum is m ln |u|^2 + sum w'_i (|u|^2 + e_i)
-  /// ln(1 + e_i / |u|^2), m being the moment, and its terms are no larger than 4 |u|.
+  /// The sum of w'_i phi(|u - u_i|) for |u| > 1, where the terms are as large as |u|^2 ln |u|^2 and
+  /// nearly cancel. With e_i = |u - u_i|^2 - |u|^2 and P' w' = 0 the sum is m ln |u|^2 +
+  /// sum w'_i (|u|^2 + e_i) ln(1 + e_i / |u|^2), m being the moment, and its terms are no larger
+  /// than 4 |u|.
   Points farTerms(const Points& u, double v) const;
 
   Vec2 m_origin = Vec2::Zero();    ///< mm, one of the sites: differences from it do not round
