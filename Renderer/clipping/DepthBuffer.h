@@ -70,6 +70,8 @@ public:
 
   /// Row by row from the top, less the depth of the camera's target.
   const std::vector<float>& depthsFromReference() const { return m_depths; }
+  /// That depth.
+  double reference() const { return m_reference; }
   double at(std::int64_t sample) const { return m_reference + m_depths[index(sample)]; }
   void set(std::int64_t sample, double depth) {
     m_depths[index(sample)] = static_cast<float>(depth - m_reference);

@@ -20,27 +20,37 @@ struct SampleRange {
 
 } // namespace
 
-DepthPyramid::DepthPyramid(const DepthBuffer& buffer) {
-  const auto halve = [](std::int64_t columns, std::int64_t rows, const auto& bounds) {
-    Level level{(columns + 1) / 2, (rows + 1) / 2, {}};
-    level.bounds.reserve(static_cast<std::size_t>(level.columns * level.rows));
-    for (std::int64_t row = 0; row < rows; row += 2)
-      for (std::int64_t column = 0; column < columns; column += 2) {
-        Bounds block;
-        for (std::int64_t r = row; r < std::min(row + 2, rows); ++r)
-          for (std::int64_t c = column; c < std::min(column + 2, columns); ++c)
-            block.include(bounds(r * columns + c));
-        level.bounds.push_back(block);
-      }
-    return level;
+/// Of columns * rows entries; below(i) is entry i.
+template <typename Below>
+DepthPyramid::Level DepthPyramid::halved(std::int64_t columns, std::int64_t rows,
+                                         const Below& below) {
+  Level level{(columns + 1) / 2, (rows + 1) / 2, {}};
+  level.extremes.reserve(static_cast<std::size_t>(level.columns * level.rows));
+  const auto both = [](const Extremes& a, const Extremes& b) {
+    return Extremes{std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
   };
-  m_levels.push_back(halve(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
-    return Bounds{buffer.at(sample), buffer.at(sample)};
+  for (std::int64_t row = 0; row < rows; row += 2) {
+    const std::int64_t upper = row * columns;
+    const std::int64_t lower = std::min(row + 1, rows - 1) * columns;
+    for (std::int64_t column = 0; column < columns; column += 2) {
+      const std::int64_t next = std::min(column + 1, columns - 1);
+      level.extremes.push_back(both(both(below(upper + column), below(upper + next)),
+                                    both(below(lower + column), below(lower + next))));
+    }
+  }
+  return level;
+}
+
+DepthPyramid::DepthPyramid(const DepthBuffer& buffer) {
+  const std::vector<float>& depths = buffer.depthsFromReference();
+  m_levels.push_back(halved(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
+    const float depth = depths[static_cast<std::size_t>(sample)];
+    return Extremes{depth, depth};
   }));
-  while (m_levels.back().bounds.size() > 1) {
+  while (m_levels.back().extremes.size() > 1) {
     const Level& below = m_levels.back();
-    m_levels.push_back(halve(below.columns, below.rows, [&](std::int64_t entry) {
-      return below.bounds[static_cast<std::size_t>(entry)];
+    m_levels.push_back(halved(below.columns, below.rows, [&](std::int64_t entry) {
+      return below.extremes[static_cast<std::size_t>(entry)];
     }));
   }
 }
@@ -56,11 +66,16 @@ DepthPyramid::Bounds DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2&
       static_cast<std::ptrdiff_t>(std::bit_width(static_cast<std::uint64_t>(longest)));
   const std::ptrdiff_t l = std::clamp<std::ptrdiff_t>(bits - 2, 1, std::ssize(m_levels));
   const Level& level = m_levels[static_cast<std::size_t>(l - 1)];
-  Bounds result;
+  Extremes extremes{std::numeric_limits<float>::infinity(),
+                    -std::numeric_limits<float>::infinity()};
   for (std::int64_t row = rows.first >> l; row <= rows.last >> l; ++row)
-    for (std::int64_t column = columns.first >> l; column <= columns.last >> l; ++column)
-      result.include(level.bounds[static_cast<std::size_t>(row * level.columns + column)]);
-  return result;
+    for (std::int64_t column = columns.first >> l; column <= columns.last >> l; ++column) {
+      const Extremes& entry =
+          level.extremes[static_cast<std::size_t>(row * level.columns + column)];
+      extremes.least = std::min(extremes.least, entry.least);
+      extremes.greatest = std::max(extremes.greatest, entry.greatest);
+    }
+  return {buffer.reference() + extremes.least, buffer.reference() + extremes.greatest};
 }
 
 } // namespace fenestra

@@ -13,12 +13,7 @@ public:
   explicit DepthPyramid(const DepthBuffer& buffer);
 
   struct Bounds {
-    double least = infinity, greatest = -infinity; ///< mm
-
-    void include(const Bounds& other) {
-      least = std::min(least, other.least);
-      greatest = std::max(greatest, other.greatest);
-    }
+    double least, greatest; ///< mm
   };
 
   /// Bounds of what the buffer returns, interpolated or not, anywhere in the rectangle between two
@@ -26,10 +21,18 @@ public:
   Bounds bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const;
 
 private:
+  /// As the buffer keeps them: less the depth of the camera's target.
+  struct Extremes {
+    float least, greatest;
+  };
   struct Level {
     std::int64_t columns, rows;
-    std::vector<Bounds> bounds;
+    std::vector<Extremes> extremes;
   };
+
+  template <typename Below>
+  static Level halved(std::int64_t columns, std::int64_t rows, const Below& below);
+
   std::vector<Level> m_levels;
 };
 

@@ -50,6 +50,20 @@ private:
   FocusRays::Column m_depthPerLength;
 };
 
+/// Whether nothing of the focus reaches out of the volume or its crop.
+bool isInside(const FocusCells& cells, const Domain& volume) {
+  const Affine toIndex = volume.grid().worldToIndex * cells.cellToWorld();
+  const Box box = cells.box();
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] = (corner >> axis & 1 ? box.upper : box.lower)[axis];
+    if (!volume.contains(toIndex * p))
+      return false;
+  }
+  return true;
+}
+
 } // namespace
 
 FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus) {
@@ -59,6 +73,7 @@ FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& fo
   const FocusCells cells(focus);
   const FocusFootprint focusFootprint(camera, depth, cells);
   const DomainFootprint domainFootprint(camera, volume);
+  const bool isWhole = isInside(cells, volume);
 
   const auto inVolume = [&](const Ray& ray) {
     return volume.clip(transformed(volume.grid().worldToIndex, ray));
@@ -81,7 +96,7 @@ FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& fo
         continue;
       const Ray ray = camera.rayThrough(depth.position(column, row));
       const double depthPerLength = camera.depthPerLength(ray);
-      Interval range = inVolume(ray);
+      Interval range = isWhole ? Interval{} : inVolume(ray);
       range.begin = std::max(range.begin, depths.begin / depthPerLength);
       range.end = std::min(range.end, depths.end / depthPerLength);
       batch.add(sample, ray, range, depthPerLength);

@@ -37,6 +37,15 @@ public:
     return m_crop ? m_crop->box.clip(transformed(m_crop->fromIndex, indexRay), inside) : inside;
   }
 
+  /// Whether a point in index space lies inside, not in a face.
+  bool contains(const Vec3& indexPoint) const {
+    const auto isIn = [](const Box& box, const Vec3& p) {
+      return (p.array() > box.lower.array()).all() && (p.array() < box.upper.array()).all();
+    };
+    return isIn(m_box, indexPoint) &&
+           (!m_crop || isIn(m_crop->box, m_crop->fromIndex * indexPoint));
+  }
+
   /// Points in index space whose convex hull is the domain (to rounding), some of them more than
   /// once. None where the boxes do not meet.
   std::vector<Vec3> indexCorners() const;
