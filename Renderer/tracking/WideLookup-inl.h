@@ -157,11 +157,11 @@ HWY_INLINE void prefetch(const WideScene& scene, const Place& place) {
 template <typename Voxel>
 HWY_INLINE F scalarAt(const WideScene& scene, const Place& place) {
   const Corners c = cornersAt(scene, static_cast<const Voxel*>(scene.voxels), place.first);
-  const auto& [fx, fy, fz] = place.fractions;
-  const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, fx); };
-  const F low = lerp(along(c[0]), along(c[1]), fy);
-  const F high = lerp(along(c[2]), along(c[3]), fy);
-  return lerp(low, high, fz);
+  const F3& f = place.fractions;
+  const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, f.x); };
+  const F low = lerp(along(c[0]), along(c[1]), f.y);
+  const F high = lerp(along(c[2]), along(c[3]), f.y);
+  return lerp(low, high, f.z);
 }
 template <typename Voxel>
 HWY_INLINE F scalarAt(const WideScene& scene, const Point& p) {
