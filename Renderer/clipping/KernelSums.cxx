@@ -2,6 +2,9 @@
 
 #include "core/LaneTargets.h"
 
+#include <algorithm>
+#include <array>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "clipping/KernelSums.cxx"
 #include <hwy/foreach_target.h>
@@ -29,10 +32,13 @@ HWY_INLINE void transform(std::span<const double> x, std::span<double> values,
                &values[i]);
   if (i == x.size())
     return;
-  const auto rest = hn::FirstN(doubles, x.size() - i);
-  const D there =
-      function(hn::MaskedLoad(rest, doubles, &x[i]), hn::MaskedLoad(rest, doubles, &values[i]));
-  hn::BlendedStore(there, rest, doubles, &values[i]);
+  // Not every instruction set can load a part of a vector.
+  alignas(64) std::array<double, HWY_MAX_BYTES / sizeof(double)> restOfX{}, rest{};
+  std::copy(x.begin() + static_cast<std::ptrdiff_t>(i), x.end(), restOfX.begin());
+  std::copy_n(&values[i], x.size() - i, rest.begin());
+  hn::Store(function(hn::Load(doubles, restOfX.data()), hn::Load(doubles, rest.data())), doubles,
+            rest.data());
+  std::copy_n(rest.begin(), x.size() - i, &values[i]);
 }
 
 void addKernelsInLanes(std::span<const KernelTerm> terms, std::span<const double> u, double v,
