@@ -54,13 +54,9 @@ private:
 bool isInside(const FocusCells& cells, const Domain& volume) {
   const Affine toIndex = volume.grid().worldToIndex * cells.cellToWorld();
   const Box box = cells.box();
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 p;
-    for (int axis = 0; axis < 3; ++axis)
-      p[axis] = (corner >> axis & 1 ? box.upper : box.lower)[axis];
-    if (!volume.contains(toIndex * p))
+  for (int corner = 0; corner < 8; ++corner)
+    if (!volume.contains(toIndex * box.corner(corner)))
       return false;
-  }
   return true;
 }
 

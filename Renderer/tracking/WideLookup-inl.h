@@ -142,15 +142,10 @@ template <typename Voxel>
 HWY_INLINE void prefetch(const WideScene& scene, const Place& place) {
   const auto* voxels = static_cast<const Voxel*>(scene.voxels);
   const Indices first(place.first);
-  const std::int32_t up = scene.axes[1].stride;
-  const std::int32_t deep = scene.axes[2].stride;
-  for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane) {
-    const Voxel* v = voxels + first[lane];
-    hwy::Prefetch(v);
-    hwy::Prefetch(v + up);
-    hwy::Prefetch(v + deep);
-    hwy::Prefetch(v + up + deep);
-  }
+  const std::array<std::int32_t, 4> rows = rowsOf(scene);
+  for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
+    for (const std::int32_t row : rows)
+      hwy::Prefetch(voxels + first[lane] + row);
 }
 
 /// The scalar, trilinear between voxel centres.
