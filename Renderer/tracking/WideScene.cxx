@@ -2,8 +2,6 @@
 
 #include "tracking/WideTracker.h"
 
-#include <bit>
-
 namespace fenestra {
 namespace {
 
@@ -21,63 +19,6 @@ std::array<float, 4> row(const Grid& grid, const Vec3& normal, const Vec3& from,
   const Vec3 n = grid.indexToWorld.linear().transpose() * normal;
   const double o = normal.dot(grid.indexToWorld.translation() - from) + offset;
   return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
-}
-
-/// The least half a float not below `majorant` whose last bit is as asked.
-std::uint16_t upperHalf(float majorant, bool lastBit) {
-  const auto whole = std::bit_cast<std::uint32_t>(majorant);
-  std::uint32_t half = (whole >> 16) + ((whole & 0xffffU) != 0 ? 1U : 0U);
-  half += (half & 1U) != (lastBit ? 1U : 0U) ? 1U : 0U;
-  return static_cast<std::uint16_t>(half);
-}
-
-/// Of the number of empty cells around one, negated; never more of them.
-std::uint16_t upperHalf(float minusAround) {
-  return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(minusAround) >> 16);
-}
-
-/// Gives empty cells inside the border the number of empty cells around them, negated: two sweeps
-/// (Rosenfeld and Pfaltz 1966), exact for distances that count diagonals as 1. Nothing is known
-/// beyond the border.
-void findEmptyAround(const Size3& size, std::vector<float>& cells) {
-  const auto index = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-    return static_cast<std::size_t>(x + size.x() * (y + size.y() * z));
-  };
-  constexpr float unknown = -1e6F;
-  const Size3 inner = size.array() - 1;
-  const auto forEachInner = [&](auto&& visit) {
-    for (std::int64_t z = 1; z < inner.z(); ++z)
-      for (std::int64_t y = 1; y < inner.y(); ++y)
-        for (std::int64_t x = 1; x < inner.x(); ++x)
-          visit(x, y, z);
-  };
-  forEachInner([&](std::int64_t x, std::int64_t y, std::int64_t z) {
-    float& cell = cells[index(x, y, z)];
-    cell = cell > 0.0F ? cell : unknown;
-  });
-  // `side` is -1 for the neighbours that the first sweep has seen, 1 for the second's.
-  const auto relax = [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t side) {
-    float& cell = cells[index(x, y, z)];
-    if (cell > 0.0F)
-      return;
-    // A full neighbour (positive) allows none, an empty one itself and as many as are around it.
-    float around = -cell;
-    const auto neighbour = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
-      const float other = cells[index(x + dx, y + dy, z + dz)];
-      around = std::min(around, other > 0.0F ? 0.0F : 1.0F - other);
-    };
-    for (std::int64_t dy = -1; dy <= 1; ++dy)
-      for (std::int64_t dx = -1; dx <= 1; ++dx)
-        neighbour(dx, dy, side);
-    for (std::int64_t dx = -1; dx <= 1; ++dx)
-      neighbour(dx, side, 0);
-    neighbour(side, 0, 0);
-    cell = -around;
-  };
-  forEachInner([&](auto x, auto y, auto z) { relax(x, y, z, -1); });
-  forEachInner([&](auto x, auto y, auto z) {
-    relax(size.x() - 1 - x, size.y() - 1 - y, size.z() - 1 - z, 1);
-  });
 }
 
 WideScene::VoxelType typeOf(const Voxels& voxels) {
@@ -151,26 +92,14 @@ void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {
         static_cast<std::int32_t>(size > 1 ? stride : 0),
         static_cast<float>(majorants.edge()[axis]),
         narrow(1.0 / static_cast<double>(majorants.edge()[axis])),
-        static_cast<std::int32_t>(cells[axis]),
-        static_cast<std::int32_t>(cellStride)};
+        static_cast<float>(cells[axis]),
+        std::nextafter(static_cast<float>(cells[axis]), 0.0F),
+        static_cast<float>(cellStride)};
+    m_scene.firstCell += static_cast<float>(cellStride);
     stride *= size;
     cellStride *= bordered[axis];
   }
-  std::vector<float> around(static_cast<std::size_t>(cellStride), 0.0F);
-  m_scene.cells.assign(around.size() + 1, 0);
-  for (std::int64_t z = 0; z < cells.z(); ++z)
-    for (std::int64_t y = 0; y < cells.y(); ++y)
-      for (std::int64_t x = 0; x < cells.x(); ++x) {
-        const MajorantGrid::Cell& cell = majorants.cell(x + cells.x() * (y + cells.y() * z));
-        const auto to =
-            static_cast<std::size_t>(x + 1 + bordered.x() * (y + 1 + bordered.y() * (z + 1)));
-        around[to] = cell.majorant;
-        m_scene.cells[to] = cell.majorant > 0.0F ? upperHalf(cell.majorant, cell.cut) : 0;
-      }
-  findEmptyAround(bordered, around);
-  for (std::size_t i = 0; i < around.size(); ++i)
-    if (m_scene.cells[i] == 0)
-      m_scene.cells[i] = upperHalf(around[i]);
+  m_scene.cells = WideCells(majorants);
 }
 
 void WideTracker::setClip(const Clip& clip, const Grid& grid) {

@@ -3,6 +3,7 @@
 
 #include "core/Narrow.h"
 #include "medium/WideTable.h"
+#include "tracking/WideCells.h"
 
 #include <cstdint>
 #include <vector>
@@ -15,13 +16,14 @@ struct WideScene {
   enum class VoxelType { uint8, int16, uint16, float32 };
   /// Cells and voxels along one axis.
   struct Axis {
-    float last;              ///< index of the last voxel
-    std::int32_t lastCell;   ///< of the last pair of voxels that interpolation may begin with
-    std::int32_t stride;     ///< voxels to the next in this axis, 0 where there is none
-    float cellEdge;          ///< voxels
-    float cellsPerVoxel;     ///< 1 / cellEdge
-    std::int32_t cells;      ///< without the border
-    std::int32_t cellStride; ///< of the cells, in their bordered array
+    float last;            ///< index of the last voxel
+    std::int32_t lastCell; ///< of the last pair of voxels that interpolation may begin with
+    std::int32_t stride;   ///< voxels to the next in this axis, 0 where there is none
+    float cellEdge;        ///< voxels
+    float cellsPerVoxel;   ///< 1 / cellEdge
+    float cells;           ///< how many, without the border
+    float insideCells;     ///< the greatest number below that
+    float cellStride;      ///< of the cells, in their bordered array
   };
   /// The clipping depth's samples along one axis (clipping/DepthBuffer.h).
   struct DepthAxis {
@@ -41,12 +43,8 @@ struct WideScene {
 
   WideTable extinction; ///< mm^-1 over the scalar
 
-  /// The majorants' cells, with a border of empty ones around them: the upper halves of floats, as
-  /// lanes cross more cells than they fetch voxels, and these should stay in the cache. Positive:
-  /// the majorant (mm^-1), rounded up, its last bit set where keep is to be asked. Otherwise the
-  /// cell is empty, and so are as many more to every side, diagonals included, as the value is
-  /// below 0. One more at the end, for lanes read two at a time.
-  std::vector<std::uint16_t> cells;
+  WideCells cells;        ///< fewer than 2^24
+  float firstCell = 0.0F; ///< its place there, beyond the border
 
   ClipKind clipKind = ClipKind::none;
   bool perspective = false;

@@ -17,62 +17,66 @@ constexpr std::size_t refillShare = 4;
 /// Look-ups wait until all busy lanes but this part of them are at a tentative collision.
 constexpr std::size_t crossingShare = 3;
 
-/// One axis of the walk through cells.
+/// One axis of the walk through cells, in units of their edge, and mirrored where the ray goes
+/// down, so that all rays go up.
 struct AxisWalk {
-  F origin, inverse;
-  F face;      ///< coordinate of the next face
-  F next;      ///< t there
-  F step;      ///< from one face to the next, with its sign
-  F perCell;   ///< mm from one face to the next; 0 for rays that do not move along this axis
-  F perLength; ///< faces a mm
-  I stride;
+  F origin, direction; ///< direction a mm, not negative
+  F inverse;           ///< of direction; infinity for rays that do not move along this axis
+  F cell;              ///< where the ray is; a whole number
+  M mirrored;
 
-  /// Enters the cell that holds `o`, the one ahead where it lies in a face; returns its part of the
-  /// linear index.
-  HWY_INLINE I enter(const WideScene::Axis& axis, F o, F direction) {
-    const F edge = all(axis.cellEdge);
+  /// A ray enters the cell that holds its origin, the one ahead where it lies in a face.
+  static HWY_INLINE AxisWalk entered(const WideScene::Axis& axis, F origin, F direction) {
     const F perEdge = all(axis.cellsPerVoxel);
-    const F zero = hn::Zero(floats);
-    const M down = hn::Lt(direction, zero);
-    const F position = hn::Mul(hn::Add(o, all(0.5F)), perEdge);
-    const F ahead = hn::Floor(position);
-    const F behind = hn::Sub(hn::Ceil(position), all(1.0F));
-    const F last = all(static_cast<float>(axis.cells - 1));
-    const F cell = hn::Max(hn::Min(hn::IfThenElse(down, behind, ahead), last), zero);
-    origin = o;
-    inverse = hn::Div(all(1.0F), direction);
-    face = hn::MulSub(hn::IfThenElse(down, cell, hn::Add(cell, all(1.0F))), edge, all(0.5F));
-    step = hn::IfThenElse(down, hn::Neg(edge), edge);
-    perCell = hn::IfThenElseZero(moves(), hn::Abs(hn::Mul(edge, inverse)));
-    perLength = hn::Mul(hn::Abs(direction), perEdge);
-    stride = hn::IfThenElse(hn::RebindMask(ints, down), hn::Set(ints, -axis.cellStride),
-                            hn::Set(ints, axis.cellStride));
-    findNext();
-    const I bordered = hn::Add(hn::ConvertTo(ints, cell), hn::Set(ints, 1));
-    return hn::Mul(bordered, hn::Set(ints, axis.cellStride));
+    // Not in the last face: rays along it have cells ahead, as all have.
+    const F at = hn::Max(
+        hn::Min(hn::MulAdd(origin, perEdge, all(0.5F * axis.cellsPerVoxel)), all(axis.insideCells)),
+        hn::Zero(floats));
+    const F along = hn::Mul(direction, perEdge);
+    AxisWalk w;
+    w.direction = hn::Abs(along);
+    const M moves = hn::Ge(w.direction, all(std::numeric_limits<float>::min()));
+    w.direction = hn::IfThenElseZero(moves, w.direction);
+    w.inverse = hn::Div(all(1.0F), w.direction);
+    w.mirrored = both(moves, hn::Lt(along, hn::Zero(floats)));
+    w.origin = hn::IfThenElse(w.mirrored, hn::Sub(all(axis.cells), at), at);
+    w.cell = hn::Min(hn::Floor(w.origin), all(axis.cells - 1.0F));
+    return w;
   }
 
-  /// How many faces lie at or before t, at most `most`.
-  HWY_INLINE F facesUpTo(F t, F most) const {
-    const F count = hn::Add(hn::Floor(hn::Mul(hn::Sub(t, next), perLength)), all(1.0F));
-    return hn::IfThenElseZero(hn::Ge(t, next), hn::Min(hn::Max(count, all(1.0F)), most));
+  HWY_INLINE void takeFrom(const AxisWalk& other, M which) {
+    origin = hn::IfThenElse(which, other.origin, origin);
+    direction = hn::IfThenElse(which, other.direction, direction);
+    inverse = hn::IfThenElse(which, other.inverse, inverse);
+    cell = hn::IfThenElse(which, other.cell, cell);
+    mirrored = hn::Or(both(which, other.mirrored), hn::AndNot(which, mirrored));
   }
 
-  /// Passes `faces` of them; returns the change of the linear index.
-  HWY_INLINE I advance(F faces) {
-    face = hn::MulAdd(faces, step, face);
-    findNext();
-    return hn::Mul(hn::ConvertTo(ints, faces), stride);
+  /// mm to the face where the ray leaves its cell and `beyond` - 1 more.
+  HWY_INLINE F toFace(F beyond) const {
+    return hn::Mul(hn::Sub(hn::Add(cell, beyond), origin), inverse);
   }
 
-private:
-  HWY_INLINE M moves() const {
-    return hn::Lt(hn::Abs(inverse), all(std::numeric_limits<float>::infinity()));
+  /// Goes to the cell that the ray enters at `t`: `beyond` further where it goes `through` a face
+  /// of this axis. Elsewhere less far, and never back, so that rounding cannot keep it from going
+  /// on.
+  HWY_INLINE void advance(M which, M through, F t, F reach, F beyond) {
+    const F there = hn::Floor(hn::MulAdd(t, direction, origin));
+    const F within = hn::Min(hn::Max(there, cell), hn::Add(cell, reach));
+    const F entered = hn::IfThenElse(through, hn::Add(cell, beyond), within);
+    cell = hn::IfThenElse(which, entered, cell);
   }
-  /// From the face's own coordinate, so that errors do not grow along the ray.
-  HWY_INLINE void findNext() {
-    const F t = hn::Mul(hn::Sub(face, origin), inverse);
-    next = hn::IfThenElse(moves(), t, all(std::numeric_limits<float>::infinity()));
+
+  /// The cell's number along the axis.
+  HWY_INLINE F number(const WideScene::Axis& axis) const {
+    return hn::IfThenElse(mirrored, hn::Sub(all(axis.cells - 1.0F), cell), cell);
+  }
+
+  /// Coordinate at t, index space.
+  HWY_INLINE F at(F t, const WideScene::Axis& axis) const {
+    const F mirroredAt = hn::MulAdd(t, direction, origin);
+    const F cells = hn::IfThenElse(mirrored, hn::Sub(all(axis.cells), mirroredAt), mirroredAt);
+    return hn::MulSub(cells, all(axis.cellEdge), all(0.5F));
   }
 };
 
@@ -153,25 +157,11 @@ private:
       constexpr hn::Rebind<Number, Floats> d;
       return hn::TableLookupLanes(hn::LoadU(d, &column[first]), hn::IndicesFromVec(d, rank));
     };
-    AxisWalk entered[3];
-    I cell = hn::Zero(ints);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const F direction = ofRays(m_rays.direction[axis]);
-      take(m_direction[axis], direction);
-      cell = hn::Add(
-          cell, entered[axis].enter(m_scene.axes[axis], ofRays(m_rays.origin[axis]), direction));
-      AxisWalk& walk = m_walk[axis];
-      take(walk.origin, entered[axis].origin);
-      take(walk.inverse, entered[axis].inverse);
-      take(walk.face, entered[axis].face);
-      take(walk.step, entered[axis].step);
-      take(walk.next, entered[axis].next);
-      take(walk.perCell, entered[axis].perCell);
-      take(walk.perLength, entered[axis].perLength);
-      take(walk.stride, entered[axis].stride);
-    }
-    take(m_cell, cell);
-    take(m_content, contentOf(m_cell));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      m_walk[axis].takeFrom(AxisWalk::entered(m_scene.axes[axis], ofRays(m_rays.origin[axis]),
+                                              ofRays(m_rays.direction[axis])),
+                            which);
+    enterCells();
     take(m_t, hn::Zero(floats));
     take(m_end, ofRays(m_rays.length));
     take(m_ratio, all(1.0F));
@@ -181,24 +171,23 @@ private:
     take(m_depth, depth);
   }
 
-  /// Lanes that have no collision in their cell leave it; from an empty one they jump over all the
-  /// empty cells around it. Returns whether any did.
+  /// Lanes that have no collision in their cell, or in as many around it as its majorant reaches,
+  /// leave them all. Returns whether any did.
   HWY_INLINE bool cross() {
     const F zero = hn::Zero(floats);
-    const F around = hn::Max(hn::Neg(m_content), zero);
-    const auto leave = [&](const AxisWalk& w) { return hn::MulAdd(around, w.perCell, w.next); };
-    const F x = leave(m_walk[0]);
-    const F y = leave(m_walk[1]);
-    const F z = leave(m_walk[2]);
+    const F beyond = hn::Add(m_reach, all(1.0F));
+    const F x = m_walk[0].toFace(beyond);
+    const F y = m_walk[1].toFace(beyond);
+    const F z = m_walk[2].toFace(beyond);
     const F toFace = hn::Min(hn::Min(x, y), z);
     const F stop = hn::Min(toFace, m_end);
-    const F toStop = hn::Mul(hn::Max(hn::Sub(stop, m_t), zero), hn::Max(m_content, zero));
+    const F toStop = hn::Mul(hn::Max(hn::Sub(stop, m_t), zero), m_majorant);
     m_hit = both(m_busy, hn::Lt(m_depth, toStop));
     const M crossing = hn::AndNot(m_hit, m_busy);
     if (hn::AllFalse(floats, crossing))
       return false;
     m_cells += hn::CountTrue(floats, crossing);
-    m_skipped += hn::CountTrue(floats, both(crossing, hn::Le(m_content, zero)));
+    m_skipped += hn::CountTrue(floats, both(crossing, hn::Eq(m_majorant, zero)));
     m_depth = hn::IfThenElse(crossing, hn::Sub(m_depth, toStop), m_depth);
     m_t = hn::IfThenElse(crossing, hn::Max(stop, m_t), m_t);
     const M ended = both(crossing, hn::Ge(toFace, m_end));
@@ -209,52 +198,56 @@ private:
     const M throughX = hn::Eq(x, toFace);
     const M throughY = hn::AndNot(throughX, hn::Eq(y, toFace));
     const M throughZ = hn::Not(hn::Or(throughX, throughY));
-    const F all1 = hn::Add(around, all(1.0F));
-    const bool jumps = !hn::AllFalse(floats, both(going, hn::Gt(around, zero)));
-    const auto pass = [&](AxisWalk& walk, M through) {
-      F faces = hn::IfThenElseZero(through, all1);
-      if (jumps)
-        faces = hn::IfThenElse(through, all1, walk.facesUpTo(toFace, around));
-      m_cell = hn::Add(m_cell, walk.advance(hn::IfThenElseZero(going, faces)));
-    };
-    pass(m_walk[0], throughX);
-    pass(m_walk[1], throughY);
-    pass(m_walk[2], throughZ);
-    m_content = contentOf(m_cell);
+    m_walk[0].advance(going, throughX, toFace, m_reach, beyond);
+    m_walk[1].advance(going, throughY, toFace, m_reach, beyond);
+    m_walk[2].advance(going, throughZ, toFace, m_reach, beyond);
+    enterCells();
     return true;
   }
 
   /// Lanes with a collision in their cell go there.
   HWY_INLINE void stop() {
-    m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_content)), m_t);
+    m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_majorant)), m_t);
     m_place = placeOf(m_scene, point());
     prefetch<Voxel>(m_scene, m_place);
   }
 
-  /// The halves of floats that are stored become floats.
-  HWY_INLINE F contentOf(I cell) const {
-    const auto* cells = reinterpret_cast<const std::int32_t*>(m_scene.cells.data());
-    return hn::BitCast(floats,
-                       hn::ShiftLeft<16>(hn::GatherOffset(ints, cells, hn::ShiftLeft<1>(cell))));
+  /// Reads the codes of the lanes' cells (WideCells::cell).
+  HWY_INLINE void enterCells() {
+    const auto* codes = reinterpret_cast<const std::int32_t*>(m_scene.cells.codes.data());
+    const auto& axes = m_scene.axes;
+    // Fewer than 2^24 cells: exact.
+    const F place =
+        hn::MulAdd(m_walk[2].number(axes[2]), all(axes[2].cellStride),
+                   hn::MulAdd(m_walk[1].number(axes[1]), all(axes[1].cellStride),
+                              hn::Add(m_walk[0].number(axes[0]), all(m_scene.firstCell))));
+    const I offset = hn::ShiftLeft<1>(hn::ConvertTo(ints, place));
+    m_code = hn::ShiftLeft<16>(hn::GatherOffset(ints, codes, offset));
+    const auto filled = hn::Gt(m_code, hn::Zero(ints));
+    constexpr int toMajorant = 16 + WideCells::reachBits + 1 - WideCells::majorantShift;
+    const I majorant = hn::Add(hn::And(hn::ShiftRight<toMajorant>(m_code),
+                                       hn::Set(ints, 0x7ff << WideCells::majorantShift)),
+                               hn::Set(ints, static_cast<std::int32_t>(m_scene.cells.bias)));
+    m_majorant = hn::BitCast(floats, hn::IfThenElseZero(filled, majorant));
+    const I reach = hn::And(hn::ShiftRight<17>(m_code), hn::Set(ints, WideCells::mostReach));
+    m_reach = hn::IfThenElse(hn::RebindMask(floats, filled), hn::ConvertTo(floats, reach),
+                             hn::Neg(hn::BitCast(floats, m_code)));
   }
 
   HWY_INLINE Point point() const {
-    const auto at = [&](std::size_t axis) {
-      return hn::MulAdd(m_t, m_direction[axis], m_walk[axis].origin);
-    };
-    return {at(0), at(1), at(2)};
+    return {m_walk[0].at(m_t, m_scene.axes[0]), m_walk[1].at(m_t, m_scene.axes[1]),
+            m_walk[2].at(m_t, m_scene.axes[2])};
   }
 
   /// Tentative collisions: real ones end a flight, all of them thin a transmittance.
   HWY_INLINE void collide() {
     const M hit = m_hit;
-    const F majorant = hn::IfThenElse(hit, m_content, all(1.0F));
+    const F majorant = hn::IfThenElse(hit, m_majorant, all(1.0F));
     m_lookups += hn::CountTrue(floats, hit);
     const F scalar = scalarAt<Voxel>(m_scene, m_place);
     F extinction = extinctionOf(m_scene, scalar);
-    const U last = hn::Set(bits, 0x10000U); // of the half
-    const M cut = both(
-        hit, hn::RebindMask(floats, hn::Eq(hn::And(hn::BitCast(bits, m_content), last), last)));
+    const I last = hn::Set(ints, 0x10000); // of the code
+    const M cut = both(hit, hn::RebindMask(floats, hn::TestBit(m_code, last)));
     if (!hn::AllFalse(floats, cut))
       extinction = hn::IfThenZeroElse(hn::AndNot(kept(m_scene, point()), cut), extinction);
     const F share = hn::Div(extinction, majorant);
@@ -309,12 +302,12 @@ private:
   std::uint64_t m_cells = 0, m_skipped = 0, m_lookups = 0;
 
   AxisWalk m_walk[3] = {idleWalk(), idleWalk(), idleWalk()};
-  I m_cell = hn::Zero(ints);      ///< in the bordered array
-  F m_content = hn::Zero(floats); ///< of the cell (WideScene::cells)
-  F m_direction[3] = {hn::Zero(floats), hn::Zero(floats), hn::Zero(floats)};
-  F m_t = hn::Zero(floats);     ///< mm
-  F m_end = hn::Zero(floats);   ///< mm
-  F m_depth = hn::Zero(floats); ///< optical depth to the next tentative collision
+  I m_code = hn::Zero(ints);       ///< of the cell (WideCells), in the upper half
+  F m_majorant = hn::Zero(floats); ///< mm^-1
+  F m_reach = hn::Zero(floats);    ///< cells
+  F m_t = hn::Zero(floats);        ///< mm
+  F m_end = hn::Zero(floats);      ///< mm
+  F m_depth = hn::Zero(floats);    ///< optical depth to the next tentative collision
   F m_ratio = hn::Zero(floats);
   F m_scalar = hn::Zero(floats); ///< at a real collision
   U m_counter = hn::Zero(bits);
@@ -322,7 +315,7 @@ private:
 
   static AxisWalk idleWalk() {
     const F zero = hn::Zero(floats);
-    return {zero, zero, zero, zero, zero, zero, zero, hn::Zero(ints)};
+    return {zero, zero, zero, zero, noLane()};
   }
 };
 

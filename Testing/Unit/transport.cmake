@@ -1,4 +1,4 @@
-fenestra_test(MediumTests PiecewiseLinearTests.cxx MajorantGridTests.cxx VolumeTests.cxx
+fenestra_test(MediumTests PiecewiseLinearTests.cxx MajorantGridTests.cxx WideCellsTests.cxx VolumeTests.cxx
   LIBRARIES fenestra_tracking LABELS unit)
 fenestra_test(ScatteringTests ScatteringTests.cxx LIBRARIES fenestra_medium LABELS unit)
 fenestra_test(LightTests LightSetTests.cxx LIBRARIES fenestra_lights LABELS unit)

@@ -1,0 +1,122 @@
+#include "tracking/WideCells.h"
+
+#include "core/Random.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+namespace {
+
+constexpr std::int64_t edge = 96;
+
+/// mm^-1 at a voxel.
+using Extinction = double (*)(const Vec3&);
+
+/// Cells of a volume of 1 mm voxels whose scalars are extinctions.
+MajorantGrid cellsOf(Extinction extinction, const Clip& clip = ClipNone{}) {
+  const Grid grid(Size3(edge, edge, edge), Affine::Identity());
+  std::vector<float> voxels;
+  for (std::int64_t z = 0; z < edge; ++z)
+    for (std::int64_t y = 0; y < edge; ++y)
+      for (std::int64_t x = 0; x < edge; ++x)
+        voxels.push_back(static_cast<float>(extinction(Size3(x, y, z).cast<double>())));
+  Volume volume{grid, std::move(voxels), 0.0, 0.0, "", {}};
+  computeRange(volume);
+  const ScalarFunction identity(
+      {{0.0, ScalarFunction::Value(0.0)}, {1e6, ScalarFunction::Value(1e6)}});
+  const TransferFunction transfer{.extinction = identity,
+                                  .albedo = ColorFunction({{0.0, Rgb::Ones()}})};
+  return {grid, CellRanges(volume, 0), transfer, clip};
+}
+
+struct Walk {
+  MajorantGrid majorants;
+  WideCells wide{majorants};
+  Size3 count = majorants.cellCount();
+  float greatest = 0.0F;
+
+  const MajorantGrid::Cell& narrow(const Size3& c) const {
+    return majorants.cell(c.x() + count.x() * (c.y() + count.y() * c.z()));
+  }
+  WideCells::Cell cell(const Size3& c) const {
+    return wide.cell(static_cast<std::size_t>(
+        c.x() + 1 + (count.x() + 2) * (c.y() + 1 + (count.y() + 2) * (c.z() + 1))));
+  }
+  explicit Walk(MajorantGrid of) : majorants(std::move(of)) {
+    forEach([&](const Size3& c) { greatest = std::max(greatest, narrow(c).majorant); });
+  }
+  template <typename Visit>
+  void forEach(const Size3& from, const Size3& to, Visit&& visit) const {
+    const Size3 low = from.cwiseMax(Size3::Zero());
+    const Size3 high = to.cwiseMin(count - Size3::Ones());
+    for (std::int64_t z = low.z(); z <= high.z(); ++z)
+      for (std::int64_t y = low.y(); y <= high.y(); ++y)
+        for (std::int64_t x = low.x(); x <= high.x(); ++x)
+          visit(Size3(x, y, z));
+  }
+  template <typename Visit>
+  void forEach(Visit&& visit) const {
+    forEach(Size3::Zero(), count, visit);
+  }
+};
+
+/// What a cell says of those that it reaches holds; of one in sixteen.
+void expectBounds(const Walk& walk) {
+  walk.forEach([&](const Size3& c) {
+    if ((c.x() + 3 * c.y() + 7 * c.z()) % 16 != 0)
+      return;
+    const WideCells::Cell cell = walk.cell(c);
+    const MajorantGrid::Cell& own = walk.narrow(c);
+    ASSERT_EQ(cell.majorant == 0.0F, own.majorant == 0.0F) << c.transpose();
+    ASSERT_EQ(cell.cut, own.cut) << c.transpose();
+    if (cell.reach == 0) { // six bits, rounded up, from the greatest down
+      ASSERT_LE(cell.majorant, own.majorant * 1.016F + walk.greatest * 1e-8F) << c.transpose();
+    }
+    const Size3 around = Size3::Constant(static_cast<std::int64_t>(cell.reach));
+    walk.forEach(c - around, c + around, [&](const Size3& other) {
+      ASSERT_GE(cell.majorant, walk.narrow(other).majorant)
+          << c.transpose() << ", " << other.transpose();
+      ASSERT_TRUE(other == c || !walk.narrow(other).cut)
+          << c.transpose() << ", " << other.transpose();
+    });
+  });
+}
+
+/// Dense in a ball, thin mist below it, nothing above.
+double ballInMist(const Vec3& p) {
+  const bool inBall = (p - Vec3::Constant(0.5 * edge)).norm() < 0.2 * edge;
+  const double mist = p.z() < 0.6 * edge ? 1e-3 * (1.0 + p.x() / edge) : 0.0;
+  return inBall ? 2.0 + std::sin(p.y()) : mist;
+}
+
+TEST(WideCells, BoundWhatTheyReach) {
+  const Walk walk{cellsOf(ballInMist)};
+  expectBounds(walk);
+  EXPECT_GT(walk.cell(Size3::Constant(4)).reach, 3U) << "mist";
+  EXPECT_EQ(walk.cell(walk.count / 2).reach, 0U) << "the ball";
+  const WideCells::Cell above = walk.cell({5, 5, walk.count.z() - 2});
+  EXPECT_EQ(above.majorant, 0.0F);
+  EXPECT_GT(above.reach, 0U);
+}
+
+TEST(WideCells, ReachNoCellThatClippingCuts) {
+  const CameraPose pose{
+      .position = {0.0, 0.0, -200.0}, .target = Vec3::Zero(), .up = Vec3::UnitY()};
+  const ClipPlane plane{Camera(pose, 8, 8), Vec3::Constant(0.5 * edge), Vec3(1.0, 2.0, 3.0)};
+  const Walk walk{cellsOf(ballInMist, plane)};
+  expectBounds(walk);
+  int cut = 0;
+  walk.forEach([&](const Size3& c) {
+    cut += walk.cell(c).cut ? 1 : 0;
+    EXPECT_TRUE(!walk.cell(c).cut || walk.cell(c).reach == 0) << c.transpose();
+  });
+  EXPECT_GT(cut, 100);
+}
+
+TEST(WideCells, HoldExtinctionsOfAllSizes) {
+  const Walk walk{cellsOf([](const Vec3& p) { return std::pow(10.0, 0.4 * p.x() - 33.0); })};
+  expectBounds(walk);
+}
+
+} // namespace
+} // namespace fenestra::testing
