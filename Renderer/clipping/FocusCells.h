@@ -45,7 +45,7 @@ public:
   struct Layout {
     const std::int32_t* blocks;
     const std::uint8_t* corners;
-    Size3 cellCount, blockCount;
+    Size3 blockCount;
   };
 
   /// Calls back with each block, block (i, j, k) filling [i, i + 1]... of cell space / blockSize,

@@ -9,14 +9,45 @@
 namespace fenestra {
 namespace {
 
+/// The camera's eye rays in the cells' space: each is found there, and none transformed.
+class CellRays {
+public:
+  CellRays(const Camera& camera, const FocusCells& cells)
+      : m_orthographic(camera.pose().projection == Projection::orthographic),
+        m_targetDepth(camera.targetDepth()),
+        m_eye(cells.worldToCell() * camera.pose().position),
+        m_right(cells.worldToCell().linear() * camera.right()),
+        m_up(cells.worldToCell().linear() * camera.up()),
+        m_forward(cells.worldToCell().linear() * camera.forward()) {}
+
+  struct EyeRay {
+    Ray ray; ///< its parameter in world mm
+    double depthPerLength;
+  };
+  /// As Camera::rayThrough.
+  EyeRay through(const Vec2& plane) const {
+    const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
+    if (m_orthographic)
+      return {{m_eye + offset, m_forward}, 1.0};
+    const double perLength = 1.0 / std::sqrt(plane.squaredNorm() + m_targetDepth * m_targetDepth);
+    return {{m_eye, perLength * (offset + m_targetDepth * m_forward)}, m_targetDepth * perLength};
+  }
+
+private:
+  bool m_orthographic;
+  double m_targetDepth;
+  Vec3 m_eye, m_right, m_up, m_forward;
+};
+
 /// Samples whose rays are traced together.
 class FocusBatch {
 public:
-  FocusBatch(const FocusCells& cells, FocusDepth& result) : m_cells(cells), m_result(result) {}
+  FocusBatch(const FocusCells& cells, FocusDepth& result)
+      : m_cells(cells), m_box(cells.box()), m_result(result) {}
 
-  void add(std::int64_t sample, const Ray& world, const Interval& range, double depthPerLength) {
-    const Ray ray = transformed(m_cells.worldToCell(), world);
-    const Interval inside = m_cells.box().clip(ray, range);
+  /// A ray of the cells' space.
+  void add(std::int64_t sample, const Ray& ray, const Interval& range, double depthPerLength) {
+    const Interval inside = m_box.clip(ray, range);
     if (inside.empty())
       return;
     const std::size_t i = m_rays.size++;
@@ -44,6 +75,7 @@ public:
 
 private:
   const FocusCells& m_cells;
+  Box m_box;
   FocusDepth& m_result;
   FocusRays m_rays;
   std::array<std::int64_t, FocusRays::capacity> m_samples;
@@ -70,6 +102,7 @@ FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& fo
   const FocusFootprint focusFootprint(camera, depth, cells);
   const DomainFootprint domainFootprint(camera, volume);
   const bool isWhole = isInside(cells, volume);
+  const CellRays cellRays(camera, cells);
 
   const auto inVolume = [&](const Ray& ray) {
     return volume.clip(transformed(volume.grid().worldToIndex, ray));
@@ -90,9 +123,9 @@ FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& fo
       const Interval depths = focusFootprint.depths(column, row);
       if (depths.empty())
         continue;
-      const Ray ray = camera.rayThrough(depth.position(column, row));
-      const double depthPerLength = camera.depthPerLength(ray);
-      Interval range = isWhole ? Interval{} : inVolume(ray);
+      const Vec2 position = depth.position(column, row);
+      const auto [ray, depthPerLength] = cellRays.through(position);
+      Interval range = isWhole ? Interval{} : inVolume(camera.rayThrough(position));
       range.begin = std::max(range.begin, depths.begin / depthPerLength);
       range.end = std::min(range.end, depths.end / depthPerLength);
       batch.add(sample, ray, range, depthPerLength);

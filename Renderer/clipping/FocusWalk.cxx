@@ -38,59 +38,60 @@ HWY_INLINE M isNot0(I x) {
   return hn::Ne(hn::PromoteTo(doubles, x), hn::Zero(doubles));
 }
 
-/// One axis of the rays' walk.
+/// One axis of the rays' walk, mirrored where a ray goes down, so that all go up. All blocks are
+/// whole.
 struct Axis {
-  D origin, direction, inverse;
-  M up, moves;
-  D cell, last; ///< where the rays are; the last cell
-  D low, face;  ///< of the cell, or of the block where that is empty; and its face ahead
+  D origin, direction; ///< the direction is not negative
+  D inverse;           ///< of the direction; infinity for rays that do not move along this axis
+  D cell;              ///< where the rays are
+  D face;              ///< of the cell, or of its block where that is empty, ahead
+  M mirrored;
+  double cells; ///< a multiple of a block's
 
-  Axis(D o, D d, D t, std::int64_t cells)
-      : origin(o),
-        direction(d),
-        inverse(hn::Div(all(1.0), d)),
-        up(hn::Gt(d, hn::Zero(doubles))),
-        moves(hn::Lt(hn::Abs(inverse), all(infinity))),
-        cell(hn::Zero(doubles)),
-        last(all(static_cast<double>(cells - 1))),
-        low(cell),
-        face(cell) {
-    cell = hn::Max(hn::Min(cellAt(t), last), hn::Zero(doubles));
+  Axis(D o, D d, D t, std::int64_t blocks)
+      : direction(hn::Abs(d)),
+        inverse(hn::Div(all(1.0), direction)),
+        face(hn::Zero(doubles)),
+        mirrored(hn::Lt(d, hn::Zero(doubles))),
+        cells(static_cast<double>(blocks * FocusCells::blockSize)) {
+    origin = hn::IfThenElse(mirrored, hn::Sub(all(cells), o), o);
+    cell = hn::Max(hn::Min(cellAt(t), all(cells - 1.0)), hn::Zero(doubles));
   }
 
-  /// The next face's t, infinity for the outer ones: a walk ends with its range.
+  /// The next face's t, infinity for the last one: a walk ends with its range.
   HWY_INLINE D findFace(M emptyBlock) {
     constexpr double edge = FocusCells::blockSize;
-    low = hn::IfThenElse(emptyBlock, hn::Mul(hn::Floor(hn::Mul(cell, all(1.0 / edge))), all(edge)),
-                         cell);
-    const D size = hn::IfThenElse(emptyBlock, all(edge), all(1.0));
-    face = hn::Add(low, hn::IfThenElseZero(up, size));
-    const M inner =
-        hn::Or(hn::And(up, hn::Le(face, last)), hn::AndNot(up, hn::Gt(face, hn::Zero(doubles))));
-    const D t = hn::Mul(hn::Sub(face, origin), inverse);
-    return hn::IfThenElse(hn::And(moves, inner), t, all(infinity));
+    const D block = hn::Floor(hn::Mul(cell, all(1.0 / edge)));
+    face = hn::IfThenElse(emptyBlock, hn::MulAdd(block, all(edge), all(edge)),
+                          hn::Add(cell, all(1.0)));
+    const M inner = hn::And(hn::Lt(face, all(cells)), hn::Lt(inverse, all(infinity)));
+    return hn::IfThenElse(inner, hn::Mul(hn::Sub(face, origin), inverse), all(infinity));
   }
 
-  /// The cell at t, which is on the face ahead where `through` says so, else in the same cell or
-  /// block.
-  HWY_INLINE D cellAfter(M through, M emptyBlock, D t) const {
-    constexpr double edge = FocusCells::blockSize;
-    const D ahead = hn::IfThenElse(up, face, hn::Sub(face, all(1.0)));
-    const D highest = hn::Min(hn::Add(low, all(edge - 1.0)), last);
-    const D there = hn::Min(hn::Max(cellAt(t), low), highest);
-    const D onward = hn::IfThenElse(up, hn::Max(there, cell), hn::Min(there, cell));
-    return hn::IfThenElse(through, ahead, hn::IfThenElse(emptyBlock, onward, cell));
+  /// Walks that go on are at t: beyond the face ahead where `through` says so, else before it, and
+  /// never back.
+  HWY_INLINE void advance(M which, M through, D t) {
+    const D before = hn::Min(hn::Max(cellAt(t), cell), hn::Sub(face, all(1.0)));
+    cell = hn::IfThenElse(which, hn::IfThenElse(through, face, before), cell);
   }
 
-  HWY_INLINE D position(D t) const { return hn::Add(origin, hn::Mul(t, direction)); }
+  /// The cell's own number.
+  HWY_INLINE D number() const {
+    return hn::IfThenElse(mirrored, hn::Sub(all(cells - 1.0), cell), cell);
+  }
+  /// Where the ray is in the cell itself, from 0 to 1; and how far it goes in `length`.
+  HWY_INLINE D fractionAt(D t) const {
+    const D f = hn::Sub(position(t), cell);
+    return hn::IfThenElse(mirrored, hn::Sub(all(1.0), f), f);
+  }
+  HWY_INLINE D along(D length) const {
+    const D d = hn::Mul(direction, length);
+    return hn::IfThenElse(mirrored, hn::Neg(d), d);
+  }
 
 private:
-  /// Just after t.
-  HWY_INLINE D cellAt(D t) const {
-    const D at = position(t);
-    const M down = hn::Lt(direction, hn::Zero(doubles));
-    return hn::IfThenElse(down, hn::Sub(hn::Ceil(at), all(1.0)), hn::Floor(at));
-  }
+  HWY_INLINE D position(D t) const { return hn::Add(origin, hn::Mul(t, direction)); }
+  HWY_INLINE D cellAt(D t) const { return hn::Floor(position(t)); }
 };
 
 constexpr std::size_t mostLanes = HWY_MAX_BYTES / sizeof(double);
@@ -184,14 +185,14 @@ public:
   Axis axis(std::size_t a) const {
     return {hn::Load(doubles, &m_rays.origin[a][m_first]),
             hn::Load(doubles, &m_rays.direction[a][m_first]), m_t,
-            m_cells.cellCount[static_cast<int>(a)]};
+            m_cells.blockCount[static_cast<int>(a)]};
   }
 
   /// Into the next cell or block.
   HWY_INLINE void step() {
-    const I x = hn::DemoteTo(ints, m_axes[0].cell);
-    const I y = hn::DemoteTo(ints, m_axes[1].cell);
-    const I z = hn::DemoteTo(ints, m_axes[2].cell);
+    const I x = hn::DemoteTo(ints, m_axes[0].number());
+    const I y = hn::DemoteTo(ints, m_axes[1].number());
+    const I z = hn::DemoteTo(ints, m_axes[2].number());
     const auto linear = [](I a, I b, I c, std::int64_t countA, std::int64_t countB) {
       return hn::Add(a, hn::Mul(allInts(countA), hn::Add(b, hn::Mul(allInts(countB), c))));
     };
@@ -222,12 +223,9 @@ public:
     const M throughX = hn::Eq(toX, out);
     const M throughY = hn::AndNot(throughX, hn::Eq(toY, out));
     const M throughZ = hn::Not(hn::Or(throughX, throughY));
-    const auto move = [&](Axis& axis, M through) { // walks that have ended stay where they are
-      axis.cell = hn::IfThenElse(m_busy, axis.cellAfter(through, empty, exit), axis.cell);
-    };
-    move(m_axes[0], throughX);
-    move(m_axes[1], throughY);
-    move(m_axes[2], throughZ);
+    m_axes[0].advance(m_busy, throughX, exit);
+    m_axes[1].advance(m_busy, throughY, exit);
+    m_axes[2].advance(m_busy, throughZ, exit);
     m_t = exit;
   }
 
@@ -242,10 +240,9 @@ private:
     const std::array<D, 8> v = {value(0), value(1), value(2), value(3),
                                 value(4), value(5), value(6), value(7)};
     const D length = hn::Sub(exit, m_t);
-    const auto from = [&](const Axis& axis) { return hn::Sub(axis.position(m_t), axis.cell); };
-    const auto along = [&](const Axis& axis) { return hn::Mul(axis.direction, length); };
-    const D x = from(m_axes[0]), y = from(m_axes[1]), z = from(m_axes[2]);
-    const D u = along(m_axes[0]), w = along(m_axes[1]), q = along(m_axes[2]);
+    const D x = m_axes[0].fractionAt(m_t), u = m_axes[0].along(length);
+    const D y = m_axes[1].fractionAt(m_t), w = m_axes[1].along(length);
+    const D z = m_axes[2].fractionAt(m_t), q = m_axes[2].along(length);
 
     // The indicator is a + x bx + y by + z bz + x y cxy + x z cxz + y z cyz + x y z d, and along
     // the ray x becomes x + s u, y + s w, z + s q with s in [0, 1].
@@ -348,7 +345,7 @@ HWY_EXPORT(walkAll);
 
 void FocusCells::findMeetings(FocusRays& rays) const {
   std::fill_n(rays.meeting.begin(), rays.size, infinity);
-  const Layout cells{m_blockCorners.data(), m_corners.front().data(), m_count, m_blocks};
+  const Layout cells{m_blockCorners.data(), m_corners.front().data(), m_blocks};
   HWY_DYNAMIC_DISPATCH(walkAll)(cells, rays);
 }
 
