@@ -15,41 +15,47 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
+/// Indices as numbers in memory.
+struct alignas(64) Indices : std::array<std::int32_t, HWY_MAX_BYTES / sizeof(std::int32_t)> {
+  explicit HWY_INLINE Indices(I index) { hn::Store(index, ints, data()); }
+};
+
+/// A number from each of `count` places, which need not be aligned to it. Loads one by one are less
+/// work for the processor than gathers, once the indices are in memory.
+template <typename Number, std::size_t count, typename Element>
+HWY_INLINE auto loadEach(const Element* memory, const std::int32_t* index) {
+  constexpr hn::CappedTag<Number, count> d;
+  if constexpr (count == 1)
+    return hn::LoadU(d, reinterpret_cast<const Number*>(memory + *index));
+#if HWY_TARGET != HWY_SCALAR
+  else
+    return hn::Combine(d, loadEach<Number, count / 2>(memory, index + count / 2),
+                       loadEach<Number, count / 2>(memory, index));
+#endif
+}
+
+/// 32 bits from memory[i] on for each i.
+template <typename Element>
+HWY_INLINE I loadInts(const Element* memory, const Indices& index) {
+  return loadEach<std::int32_t, hn::MaxLanes(ints)>(memory, index.data());
+}
+
 /// Two floats that lie together, of each lane.
 struct Pairs {
   F first, second;
 };
 
+/// memory[i] and memory[i + 1] for each i.
+HWY_INLINE Pairs loadPairs(const float* memory, const Indices& index) {
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE Pairs loadPairs(const float* memory, const std::int32_t* index) {
-  return {hn::Set(floats, memory[*index]), hn::Set(floats, memory[*index + 1])};
-}
+  return {hn::Set(floats, memory[index[0]]), hn::Set(floats, memory[index[0] + 1])};
 #else
-/// Two floats, as one number, from each of `count` places.
-template <std::size_t count>
-HWY_INLINE auto loadEach(const float* memory, const std::int32_t* index) {
-  constexpr hn::CappedTag<std::int64_t, count> d;
-  if constexpr (count == 1)
-    return hn::LoadU(d, reinterpret_cast<const std::int64_t*>(memory + *index));
-  else
-    return hn::Combine(d, loadEach<count / 2>(memory, index + count / 2),
-                       loadEach<count / 2>(memory, index));
-}
-
-/// memory[i] and memory[i + 1] for each i of an array. Loads one by one are less work for the
-/// processor than gathers, once the indices are in memory.
-HWY_INLINE Pairs loadPairs(const float* memory, const std::int32_t* index) {
   constexpr std::size_t half = hn::MaxLanes(floats) / 2;
-  const F low = hn::BitCast(floats, loadEach<half>(memory, index));
-  const F high = hn::BitCast(floats, loadEach<half>(memory, index + half));
+  const F low = hn::BitCast(floats, loadEach<std::int64_t, half>(memory, index.data()));
+  const F high = hn::BitCast(floats, loadEach<std::int64_t, half>(memory, index.data() + half));
   return {hn::ConcatEven(floats, high, low), hn::ConcatOdd(floats, high, low)};
-}
 #endif
-
-/// Indices as numbers in memory.
-struct alignas(64) Indices : std::array<std::int32_t, HWY_MAX_BYTES / sizeof(std::int32_t)> {
-  explicit HWY_INLINE Indices(I index) { hn::Store(index, ints, data()); }
-};
+}
 
 /// The voxels around a point: four rows along x, where `first` begins and `second` goes on.
 using Corners = std::array<Pairs, 4>;
@@ -66,20 +72,19 @@ HWY_INLINE Corners cornersAt(const WideScene& scene, const float* voxels, I firs
   const std::array<std::int32_t, 4> rows = rowsOf(scene);
   const Indices index(first);
   for (std::size_t i = 0; i < rows.size(); ++i)
-    c[i] = loadPairs(voxels + rows[i], index.data());
+    c[i] = loadPairs(voxels + rows[i], index);
   return c;
 }
 
-/// Of 16 bits: one gather takes both voxels; `lower` and `upper` make floats of them.
+/// Of 16 bits: 32 take both voxels; `lower` and `upper` make floats of them.
 template <typename Voxel, typename Lower, typename Upper>
 HWY_INLINE Corners cornersInPairs(const WideScene& scene, const Voxel* voxels, I first,
                                   Lower&& lower, Upper&& upper) {
   Corners c;
   const std::array<std::int32_t, 4> rows = rowsOf(scene);
-  const I offset = hn::ShiftLeft<1>(first);
+  const Indices index(first);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const I both =
-        hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels + rows[i]), offset);
+    const I both = loadInts(voxels + rows[i], index);
     c[i] = {hn::ConvertTo(floats, lower(both)), hn::ConvertTo(floats, upper(both))};
   }
   return c;
@@ -105,7 +110,7 @@ HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint8_t* voxels,
     const I row = hn::Add(first, hn::Set(ints, rows[i]));
     const I from = hn::Min(row, lastFour);
     const I shift = hn::ShiftLeft<3>(hn::Sub(row, from));
-    const I four = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(voxels), from);
+    const I four = loadInts(voxels, Indices(from));
     const I both = hn::Shr(four, shift);
     c[i] = {hn::ConvertTo(floats, hn::And(both, low)),
             hn::ConvertTo(floats, hn::And(hn::ShiftRight<8>(both), low))};
@@ -176,7 +181,7 @@ HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
   const I inTable = hn::ConvertTo(ints, hn::Max(hn::Min(bin, all(lastBin)), hn::Zero(floats)));
   I segment = hn::GatherIndex(ints, table.binSegment.data(), inTable);
   for (;;) {
-    const Pairs ends = loadPairs(table.position.data(), Indices(segment).data());
+    const Pairs ends = loadPairs(table.position.data(), Indices(segment));
     const M beyond = hn::Ge(s, ends.second);
     if (hn::AllFalse(floats, beyond))
       return {segment, hn::Sub(s, ends.first)};
@@ -187,8 +192,7 @@ HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
 
 /// A channel's value there; not negative.
 HWY_INLINE F valueIn(const WideTable::Channel& channel, const Segment& at) {
-  const Indices index(hn::ShiftLeft<1>(at.index));
-  const auto [value, slope] = loadPairs(&channel[0].value, index.data());
+  const auto [value, slope] = loadPairs(&channel[0].value, Indices(hn::ShiftLeft<1>(at.index)));
   // Constant segments may begin at -infinity.
   const F rise =
       hn::IfThenZeroElse(hn::Eq(slope, hn::Zero(floats)), hn::Mul(at.beyondStart, slope));

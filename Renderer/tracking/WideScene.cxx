@@ -44,10 +44,7 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
 bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer) {
   constexpr double deepest = 1e4;
   const std::int64_t count = volume.grid.voxelCount();
-  // Lanes address bytes of 16-bit voxels, else voxels, by 32 bits.
-  const bool twoBytes = std::holds_alternative<std::vector<std::int16_t>>(volume.voxels) ||
-                        std::holds_alternative<std::vector<std::uint16_t>>(volume.voxels);
-  const std::int64_t most = std::int64_t{1} << (twoBytes ? 30 : 31);
+  constexpr std::int64_t most = std::int64_t{1} << 31; // indices of 32 bits
   if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most)
     return false;
   double greatest = 0.0;

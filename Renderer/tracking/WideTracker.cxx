@@ -214,15 +214,14 @@ private:
 
   /// Reads the codes of the lanes' cells (WideCells::cell).
   HWY_INLINE void enterCells() {
-    const auto* codes = reinterpret_cast<const std::int32_t*>(m_scene.cells.codes.data());
     const auto& axes = m_scene.axes;
     // Fewer than 2^24 cells: exact.
     const F place =
         hn::MulAdd(m_walk[2].number(axes[2]), all(axes[2].cellStride),
                    hn::MulAdd(m_walk[1].number(axes[1]), all(axes[1].cellStride),
                               hn::Add(m_walk[0].number(axes[0]), all(m_scene.firstCell))));
-    const I offset = hn::ShiftLeft<1>(hn::ConvertTo(ints, place));
-    m_code = hn::ShiftLeft<16>(hn::GatherOffset(ints, codes, offset));
+    const Indices index(hn::ConvertTo(ints, place));
+    m_code = hn::ShiftLeft<16>(loadInts(m_scene.cells.codes.data(), index));
     const auto filled = hn::Gt(m_code, hn::Zero(ints));
     constexpr int toMajorant = 16 + WideCells::reachBits + 1 - WideCells::majorantShift;
     const I majorant = hn::Add(hn::And(hn::ShiftRight<toMajorant>(m_code),

@@ -61,8 +61,8 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
 class WideTracker {
 public:
   /// Whether floats suffice and every part of the medium is known to the lanes: no gradient
-  /// opacity, at least two voxels along x, at most 2^31 of them (2^30 of 16 bits), and an optical
-  /// depth across the volume of at most 1e4.
+  /// opacity, at least two voxels along x, at most 2^31 of them, and an optical depth
+  /// across the volume of at most 1e4.
   static bool serves(const Volume& volume, const TransferFunction& transfer);
 
   /// A view: volume and clip outlive it.
