@@ -1,6 +1,7 @@
 // keep, visible and keptIn say the same; the surface meets the focus; errors name their mend.
 
 #include "ClippingTesting.h"
+#include "RunSettings.h"
 #include "clipping/ClippingSurface.h"
 #include "core/Error.h"
 
@@ -91,7 +92,7 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
     for (const double distance : {12.0, 120.0, 1e5}) {
       const Camera camera = obliqueCamera(projection, distance, 96);
       for (const Clip& clip : everyClip(camera))
-        for (int i = 0; i < 3000; ++i) {
+        for (int i = 0; i < fenestra::testing::budget(3000); ++i) {
           const Ray ray = camera.ray(uniform(random, 0, 96), uniform(random, 0, 96));
           const Interval seen = visible(clip, ray);
           const double step = 1e-6 * (1.0 + 1e-4 * distance);
@@ -122,7 +123,7 @@ TEST(Clip, BoxesAreKeptOrRemovedAsTheirPointsAre) {
       const auto clips = everyClip(camera);
       for (std::size_t c = 0; c < clips.size(); ++c) {
         int found = 0, empty = 0, foundWhole = 0, whole = 0;
-        for (int trial = 0; trial < 20000; ++trial) {
+        for (int trial = 0; trial < fenestra::testing::budget(20000); ++trial) {
           const Vec3 center = randomPoint(random, -35, 35);
           const Vec3 half =
               Vec3::Constant(0.2) + std::pow(random.uniform(), 4) * randomPoint(random, 0, 20);

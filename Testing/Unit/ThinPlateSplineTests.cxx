@@ -1,6 +1,7 @@
 // The spline solved in the unit disc is the spline that the equations state in mm.
 
 #include "ClippingTesting.h"
+#include "RunSettings.h"
 #include "SaddleSpline.h"
 #include "clipping/ThinPlateSpline.h"
 
@@ -144,7 +145,7 @@ double greatestTileError(const ThinPlateSpline& spline, const Vec2& corner, doub
 TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
   Random random(4, 0, 0);
   double greatest = 0.0;
-  int trials = 0;
+  std::uint64_t trials = 0; // a brief run makes some of them
   for (const double radius : {0.5, 60.0, 300.0})
     for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0})
       for (const int count : {2, 3, 50, 300}) {
@@ -157,6 +158,8 @@ TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
           for (const double away : {0.0, 1.0, 3.0, 30.0, 3e3})
             for (const auto& [columns, rows] : {std::pair{64, 64}, {64, 1}, {1, 1}, {5, 13}}) {
               const Vec2 corner = away * radius * randomPoint(random, -1, 1).head<2>();
+              if (++trials % fenestra::testing::brevity() != 0)
+                continue;
               const double error =
                   greatestTileError(spline, corner, pitch, static_cast<std::size_t>(columns),
                                     static_cast<std::size_t>(rows), 1e-6);
@@ -164,10 +167,9 @@ TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
                   << count << " sites to " << radius << " mm, p " << smoothing << ", " << columns
                   << "x" << rows << " every " << pitch << " mm at " << corner.transpose();
               greatest = std::max(greatest, smoothing == 0.5 && away < 10.0 ? error : 0.0);
-              ++trials;
             }
       }
-  std::printf("%d tiles: greatest deviation at p = 0.5 %.1e mm\n", trials, greatest);
+  std::printf("greatest deviation at p = 0.5: %.1e mm\n", greatest);
 }
 
 TEST(LocalExpansion, IsTheSumOfItsTermsOrNothing) {
