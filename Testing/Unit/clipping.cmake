@@ -4,6 +4,7 @@ fenestra_test(ClippingTests
   DepthBufferTests.cxx
   FocusDepthTests.cxx
   GridWalkTests.cxx
+  KernelSumsTests.cxx
   ThinPlateSplineTests.cxx
   LIBRARIES fenestra_clipping hwy::hwy
   LABELS unit)
