@@ -6,6 +6,9 @@ install_packages clang-format clang-tidy
 cd "$top"
 say "clang-format"
 git ls-files '*.h' '*.cxx' | xargs clang-format --dry-run --Werror || die "run clang-format -i on the files above"
+twice=$(git ls-files 'Renderer/*.h' | xargs grep -hoE '^(struct|class) \w+( final)?( :| \{)' | awk '{ print $2 }' |
+  sort | uniq -d)
+[ -z "$twice" ] || die "two types have one name, which the linker takes for one: $twice"
 say "clang-tidy"
 # A folder's sources at once: what they include is parsed once. One instruction set is enough: the
 # lanes' sources are the same for all.

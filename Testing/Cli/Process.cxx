@@ -1,10 +1,12 @@
 #include "Process.h"
 
+#include "RunSettings.h"
 #include "core/Stopwatch.h"
 
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <stdexcept>
 #include <thread>
 
@@ -14,6 +16,11 @@
 
 namespace fenestra {
 namespace {
+
+/// Seconds that a process is waited for.
+double longest() {
+  return 30.0 * static_cast<double>(testing::brevity());
+}
 
 /// A position of its own, for the child and the reader share one otherwise.
 std::string content(int file) {
@@ -70,13 +77,14 @@ bool Process::waitUntilHandling(int signal) const {
       10.0);
 }
 
-bool Process::waitForOutput(const std::string& text) const {
-  return waitUntil([&] { return content(m_out).find(text) != std::string::npos; }, 10.0);
+bool Process::waitForOutput(const std::string& expression) const {
+  const std::regex wanted(expression);
+  return waitUntil([&] { return std::regex_search(content(m_out), wanted); }, longest());
 }
 
-Outcome Process::wait(double limit) {
+Outcome Process::wait() {
   const Stopwatch watch;
-  waitUntil([] { return false; }, limit);
+  waitUntil([] { return false; }, longest());
   Outcome outcome;
   outcome.seconds = watch.seconds();
   if (running()) {

@@ -27,10 +27,11 @@ public:
   void send(int signal) const;
   /// Until the process handles `signal` itself; false after ten seconds or at its end.
   bool waitUntilHandling(int signal) const;
-  /// Until its standard output has `text` on it; false after ten seconds or at its end.
-  bool waitForOutput(const std::string& text) const;
-  /// Until its end, and kills it after `limit` seconds.
-  Outcome wait(double limit = 30.0);
+  /// Until its standard output has what matches a regular expression; false after as long as wait()
+  /// waits, or at its end.
+  bool waitForOutput(const std::string& expression) const;
+  /// Until its end, and kills it after 30 seconds; slow builds have more (FENESTRA_BRIEF).
+  Outcome wait();
 
 private:
   bool running() const;

@@ -335,7 +335,8 @@ void addRoi(pugi::xml_node scene, const Phantom& phantom, const std::string& fil
 
 } // namespace
 
-std::string phantomScene(const Phantom& phantom, const std::string& name, const SceneFiles& files) {
+std::string phantomScene(const Phantom& phantom, const std::string& name,
+                         const PhantomFileNames& files) {
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   set(declaration, {{"version", "1.0"}, {"encoding", "UTF-8"}});

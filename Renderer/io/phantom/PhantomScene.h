@@ -8,7 +8,7 @@
 namespace fenestra {
 
 /// The names of a scene's files, relative to its folder or absolute; not encoded.
-struct SceneFiles {
+struct PhantomFileNames {
   std::string volume, segmentation, property, roi;
 };
 
@@ -16,7 +16,8 @@ struct SceneFiles {
 /// MarkupsROI, each with its storage and display; GPU volume rendering of the volume, not cropped;
 /// and view 1 with its camera, parallel, which frames the volume from where
 /// Phantom::towardViewer says. World is RAS; numbers have six digits, as Slicer's.
-std::string phantomScene(const Phantom& phantom, const std::string& name, const SceneFiles& files);
+std::string phantomScene(const Phantom& phantom, const std::string& name,
+                         const PhantomFileNames& files);
 
 /// The text of the region of interest's .mrk.json: the box that the volume's voxels fill, in LPS.
 std::string phantomRoi(const Phantom& phantom);

@@ -91,7 +91,7 @@ void writeSegmentation(const std::filesystem::path& path, const Phantom& phantom
 
 /// A scene for the archive, whose data have a folder of their own, and around it all that it names.
 void writeArchive(const Phantom& phantom, const std::filesystem::path& directory,
-                  const std::string& name, const SceneFiles& files) {
+                  const std::string& name, const PhantomFileNames& files) {
   const auto data = [](const std::string& file) { return "Data/" + file; };
   const std::string scene = phantomScene(
       phantom, name,
@@ -112,7 +112,8 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   if (error)
     throw outputError(directory.string(), "cannot be made: " + error.message() +
                                               "; name a folder that you may write to");
-  const SceneFiles files{name + ".nrrd", name + ".seg.nrrd", name + ".vp", name + "-roi.mrk.json"};
+  const PhantomFileNames files{name + ".nrrd", name + ".seg.nrrd", name + ".vp",
+                               name + "-roi.mrk.json"};
   const std::string json = name + ".vp.json", scene = name + ".mrml";
   const Volume& volume = phantom.volume;
   writeVolume(directory / files.volume, phantom);
