@@ -1,6 +1,7 @@
 // Ctrl-C and SIGTERM: exit status 5, at once; finished passes are kept, files are whole.
 
 #include "CommandTesting.h"
+#include "RunSettings.h"
 #include "io/pictures/ImageReader.h"
 
 #include <nlohmann/json.hpp>
@@ -12,11 +13,12 @@
 namespace fenestra {
 namespace {
 
-constexpr double soon = 2.0; ///< seconds; about 0.1 on an idle machine
+/// Seconds; about 0.1 on an idle machine, and more in slow builds.
+const double soon = 2.0 * static_cast<double>(testing::brevity());
 
-class SignalsCommand : public SmallScene, public testing::WithParamInterface<int> {};
+class SignalsCommand : public SmallScene, public ::testing::WithParamInterface<int> {};
 
-INSTANTIATE_TEST_SUITE_P(Both, SignalsCommand, testing::Values(SIGINT, SIGTERM),
+INSTANTIATE_TEST_SUITE_P(Both, SignalsCommand, ::testing::Values(SIGINT, SIGTERM),
                          [](const auto& info) {
                            return info.param == SIGINT ? "Interrupt" : "Terminate";
                          });
