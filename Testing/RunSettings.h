@@ -32,11 +32,17 @@ inline std::uint64_t brevity() {
   return brevity;
 }
 
+/// Samples of a test that has no long version.
+template <typename Count>
+Count briefly(Count samples) {
+  const auto whole = static_cast<std::uint64_t>(samples);
+  return static_cast<Count>((whole + brevity() - 1) / brevity());
+}
+
 /// Samples of a test: in the long version 16 times as many, for a quarter of the error.
 template <typename Count>
 Count budget(Count samples) {
-  const auto whole = static_cast<std::uint64_t>(samples) * (isLongRun() ? 16 : 1);
-  return static_cast<Count>((whole + brevity() - 1) / brevity());
+  return static_cast<Count>(briefly(static_cast<std::uint64_t>(samples) * (isLongRun() ? 16 : 1)));
 }
 
 /// The greatest error that a test allows itself, lest it find nothing: wider in a brief run.

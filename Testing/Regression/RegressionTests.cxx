@@ -41,8 +41,8 @@ class Regression : public ::testing::TestWithParam<RegressionCase> {};
 TEST_P(Regression, AgreesWithItsBaseline) {
   const RegressionCase& c = GetParam();
   const std::filesystem::path folder = resultFolder(c);
-  const std::uint64_t samples = (c.samples + brevity() - 1) / brevity();
-  const Image image = renderCase(c, seedBase(), samples, dataFolder(), folder / "render.exr");
+  const Image image =
+      renderCase(c, seedBase(), briefly(c.samples), dataFolder(), folder / "render.exr");
   const Image baseline = readImage(baselinePath(c));
   const Agreement result = agreement(image, baseline);
   std::cout << c.name << ": " << shown(result) << std::endl;
