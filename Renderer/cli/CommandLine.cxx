@@ -109,6 +109,7 @@ private:
         ->type_name(flag.value)
         ->group(flag.group)
         ->expected(1)
+        ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   }
 
@@ -128,7 +129,7 @@ private:
   }
 
   FlagValues values() const {
-    FlagValues values;
+    FlagValues values(m_syntax.flags);
     for (const Positional& positional : m_syntax.positionals) {
       const std::string& found = m_positionals.at(positional.name);
       if (m_app.count(positional.name) == 0)

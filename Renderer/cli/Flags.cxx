@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <sstream>
+#include <stdexcept>
 
 namespace fenestra {
 namespace {
@@ -46,6 +47,22 @@ std::string shortNumber(double x) {
 
 } // namespace
 
+const Flag* FlagValues::find(const std::string& name) const {
+  const auto it = std::find_if(m_flags.begin(), m_flags.end(),
+                               [&](const Flag& flag) { return flag.name == name; });
+  return it == m_flags.end() ? nullptr : &*it;
+}
+
+const Flag& FlagValues::flag(const std::string& name) const {
+  if (const Flag* flag = find(name))
+    return *flag;
+  throw std::logic_error("--" + name + " is not in the table");
+}
+
+bool FlagValues::differs(const std::string& name) const {
+  return has(name) && text(name) != flag(name).standard;
+}
+
 std::optional<std::string> FlagValues::text(const std::string& name) const {
   const auto it = m_values.find(name);
   if (it == m_values.end())
@@ -60,11 +77,11 @@ std::vector<std::string> FlagValues::texts(const std::string& name) const {
   return it == m_values.end() ? std::vector<std::string>() : it->second;
 }
 
-std::optional<double> FlagValues::number(const std::string& name, double least,
-                                         double greatest) const {
+std::optional<double> FlagValues::number(const std::string& name) const {
   const auto given = text(name);
   if (!given)
     return std::nullopt;
+  const auto [kind, least, greatest, words] = flag(name).takes;
   const auto value = parseNumber(*given);
   if (!value || *value < least || *value > greatest)
     throw badValue(name, "a number from " + shortNumber(least) + " to " + shortNumber(greatest),
@@ -72,18 +89,18 @@ std::optional<double> FlagValues::number(const std::string& name, double least,
   return value;
 }
 
-std::optional<std::uint64_t> FlagValues::count(const std::string& name, std::uint64_t least,
-                                               std::uint64_t greatest) const {
+std::optional<std::uint64_t> FlagValues::count(const std::string& name) const {
   const auto given = text(name);
   if (!given)
     return std::nullopt;
+  const auto [kind, least, greatest, words] = flag(name).takes;
   std::uint64_t value = 0;
   const char* last = given->data() + given->size();
   const auto [end, error] = std::from_chars(given->data(), last, value);
-  if (error != std::errc() || end != last || value < least || value > greatest)
+  const auto comparable = static_cast<double>(value);
+  if (error != std::errc() || end != last || comparable < least || comparable > greatest)
     throw badValue(
-        name, "a whole number from " + std::to_string(least) + " to " + std::to_string(greatest),
-        *given);
+        name, "a whole number from " + shortNumber(least) + " to " + shortNumber(greatest), *given);
   return value;
 }
 
@@ -110,9 +127,9 @@ std::optional<Vec3> FlagValues::triple(const std::string& name) const {
   return Vec3((*values)[0], (*values)[1], (*values)[2]);
 }
 
-std::optional<std::string> FlagValues::word(const std::string& name,
-                                            const std::vector<std::string>& words) const {
+std::optional<std::string> FlagValues::word(const std::string& name) const {
   auto given = text(name);
+  const std::vector<std::string> words = splitAt(flag(name).takes.words, '|');
   if (!given || std::find(words.begin(), words.end(), *given) != words.end())
     return given;
   std::string known;
@@ -130,6 +147,35 @@ std::vector<std::string> FlagValues::list(const std::string& name) const {
       all.push_back(part);
     }
   return all;
+}
+
+std::string FlagValues::echo() const {
+  std::string lines;
+  for (const auto& [name, values] : m_values)
+    for (const std::string& value : values)
+      lines += name + ": " + (value.empty() ? "yes" : value) + '\n';
+  return lines;
+}
+
+std::vector<std::string> FlagValues::arguments() const {
+  std::vector<std::string> arguments;
+  for (const auto& [name, values] : m_values)
+    for (const std::string& value : values)
+      if (!find(name)) // a positional one
+        arguments.push_back(value);
+      else
+        arguments.push_back("--" + name + (value.empty() ? "" : "=" + value));
+  return arguments;
+}
+
+std::vector<std::string> splitAt(std::string_view text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text)
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
 }
 
 } // namespace fenestra

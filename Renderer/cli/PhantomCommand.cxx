@@ -17,10 +17,13 @@ namespace {
 constexpr const char* group = "Phantom";
 constexpr Flag flags[] = {
     {"output", "DIR", group, "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
-    {"size", "WxHxD", group,
+    {"size",
+     "WxHxD",
+     group,
      "Voxels over the same field of view; N for the cube [knee 300x344x120, foot 300x120x150, cube "
-     "512]"},
-    {"edge", "MM", group, "The cube's edge [1]"},
+     "512]",
+     {Takes::Kind::text, 16, 1024}}, // of the cube
+    {"edge", "MM", group, "The cube's edge [1]", Takes::number(1e-3, 1e5)},
 };
 
 const CommandSyntax syntax = {
@@ -58,8 +61,8 @@ Phantom makeFoot(const FlagValues& values) {
 
 Phantom makeCube(const FlagValues& values) {
   CubeOptions options;
-  options.edge = values.number("edge", 1e-3, 1e5).value_or(options.edge);
-  if (const auto size = values.count("size", 16, 1024))
+  options.edge = values.number("edge").value_or(options.edge);
+  if (const auto size = values.count("size"))
     options.size = static_cast<std::int64_t>(*size);
   return makeCubePhantom(options);
 }

@@ -14,63 +14,98 @@ constexpr const char* clipGroup = "What is clipped";
 constexpr const char* viewGroup = "View";
 constexpr const char* lookGroup = "Look";
 constexpr const char* qualityGroup = "Quality";
-constexpr const char* outputGroup = "Output";
+constexpr const char* outputGroup = "More";
+constexpr const char* slicerGroup = "3D Slicer's own";
+
+constexpr double unlimited = 0x1p40; // samples, scatterings
 
 constexpr Flag flags[] = {
-    {"volume", "NAME", sceneGroup,
-     "Which volume of a scene (name or id), or which series of a DICOM folder [as in Slicer]"},
     {"segmentation", "FILE|NAME", sceneGroup,
-     "Segments: a .seg.nrrd, any label map, or a node of the scene [the scene's]"},
+     "Segments: a .seg.nrrd, any label map, or a node of the scene [the scene's]", Takes::labels()},
     {"focus", "A,B,...", sceneGroup,
      "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,); may be "
-     "repeated"},
+     "repeated",
+     Takes::list()},
+    {"output", "FILE", sceneGroup,
+     "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "
+     "repeated [INPUT.png]",
+     Takes::picture()},
     {"clip", "MODE", clipGroup,
-     "none, plane, cutaway or surface [surface with a focus, else none]"},
-    {"boundary", "KIND", clipGroup, "How the surface meets the focus: spline (the paper's)"},
-    {"controlpoints", "N", clipGroup, "Control points of the spline, 3 to 1000 [50]"},
+     "none, plane, cutaway, surface, or auto: surface with a focus, else none [auto]",
+     Takes::word("auto|none|plane|cutaway|surface"), "auto"},
+    {"boundary", "KIND", clipGroup, "How the surface meets the focus: spline (the paper's)",
+     Takes::word("spline"), "spline"},
+    {"controlpoints", "N", clipGroup, "Control points of the spline, 3 to 1000 [50]",
+     Takes::whole(3, 1000), "50"},
     {"smoothing", "P", clipGroup,
-     "Spline's p in mm, from 0 (a plane) to 1 (through the points) [0.5]"},
+     "Spline's p in mm, from 0 (a plane) to 1 (through the points) [0.5]", Takes::number(0.0, 1.0),
+     "0.5"},
     {"plane", "OX,OY,OZ,NX,NY,NZ", clipGroup,
-     "Clip plane in RAS mm; what the normal points at is removed"},
+     "Clip plane in RAS mm; what the normal points at is removed", Takes::numbers()},
     {"view", "NAME", viewGroup,
-     "anterior, posterior, left, right, superior or inferior [the scene's camera, else anterior]"},
-    {"position", "R,A,S", viewGroup, "Eye, mm"},
-    {"target", "R,A,S", viewGroup, "Point looked at, mm [centre of the focus, else of the volume]"},
-    {"up", "R,A,S", viewGroup, "Direction that is up in the picture"},
+     "anterior, posterior, left, right, superior or inferior [the scene's camera, else anterior]",
+     Takes::word("anterior|posterior|left|right|superior|inferior"), "anterior"},
+    {"position", "R,A,S", viewGroup, "Eye, mm", Takes::numbers()},
+    {"target", "R,A,S", viewGroup, "Point looked at, mm [centre of the focus, else of the volume]",
+     Takes::numbers()},
+    {"up", "R,A,S", viewGroup, "Direction that is up in the picture", Takes::numbers()},
     {"projection", "KIND", viewGroup,
-     "orthographic or perspective [the scene's, else orthographic]"},
-    {"scale", "MM", viewGroup, "Orthographic: half the picture's height [frames the focus]"},
+     "orthographic or perspective [the scene's, else orthographic]",
+     Takes::word("orthographic|perspective"), "orthographic"},
+    {"scale", "MM", viewGroup, "Orthographic: half the picture's height [frames the focus]",
+     Takes::number(1e-9, 1e9)},
     {"angle", "DEGREES", viewGroup,
-     "Perspective: full vertical angle [30, or less to frame the focus]"},
+     "Perspective: full vertical angle [30, or less to frame the focus]",
+     Takes::number(1e-6, 179.0)},
     {"transfer", "FILE|PRESET", lookGroup,
      "Transfer function: .vp, .vp.json, Fenestra .json, ct-soft or ct-bone [the scene's, else by "
      "modality]"},
-    {"shift", "X", lookGroup, "Moves the transfer function along the scalar [0]"},
-    {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000 [1]"},
-    {"lights", "FILE|PRESET", lookGroup, "Lights: .json, studio, headlight or soft [studio]"},
+    {"shift", "X", lookGroup, "Moves the transfer function along the scalar [0]",
+     Takes::number(-1e30, 1e30), "0"},
+    {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000 [1]",
+     Takes::number(0.0, 1000.0), "1"},
+    {"lights",
+     "FILE|PRESET",
+     lookGroup,
+     "Lights: .json, studio, headlight or soft [studio]",
+     {},
+     "studio"},
     {"environment", "R,G,B|FILE", lookGroup,
      "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own"},
     {"background", "R,G,B|KIND", lookGroup,
      "Linear colour (the photographic tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
      "white), transparent or environment [the scene's, else 0,0,0]"},
-    {"size", "WxH", qualityGroup, "Pixels [512x512]"},
+    {"size", "WxH", qualityGroup, "Pixels [512x512]", {}, "512x512"},
     {"samples", "N", qualityGroup,
-     "Stop at N samples a pixel [64 unless seconds or noise are given]"},
+     "Stop at N samples a pixel [64 unless seconds or noise are given]",
+     Takes::whole(1, unlimited)},
     {"seconds", "T", qualityGroup,
-     "Stop after T seconds of rendering, but not before one sample a pixel"},
+     "Stop after T seconds of rendering, but not before one sample a pixel",
+     Takes::number(1e-3, 1e9)},
     {"noise", "E", qualityGroup,
      "Stop when the relative noise is at most E, for example 0.03; noisier pixels get more "
-     "samples"},
-    {"bounces", "B", qualityGroup, "Scatterings a path, at most (biased) [unlimited]"},
-    {"seed", "S", qualityGroup, "Random seed [0]"},
-    {"threads", "K", qualityGroup, "Threads, at most one a core [all]"},
-    {"output", "FILE", outputGroup,
-     "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "
-     "repeated [INPUT.png]"},
+     "samples",
+     Takes::number(1e-6, 1e6)},
+    {"bounces", "B", qualityGroup, "Scatterings a path, at most (biased) [unlimited]",
+     Takes::whole(0, unlimited)},
+    {"seed", "S", qualityGroup, "Random seed [0]", Takes::whole(0, 0x1p64), "0"},
+    {"threads", "K", qualityGroup, "Threads, at most one a core; 0 is all [0]",
+     Takes::whole(0, 1024), "0"},
+    {"volume", "NAME", outputGroup,
+     "Which volume of a scene (name or id), or which series of a DICOM folder [as in Slicer]"},
     {"layers", "L,...", outputGroup,
-     "Channels of an .exr: color, depth, clip, albedo, normal, error, samples [all]"},
-    {"stats", "FILE", outputGroup, "Times, counts and measures as .json"},
-    {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none [auto]"},
+     "Channels of an .exr: color, depth, clip, albedo, normal, error, samples; of a .nrrd: color, "
+     "depth (a file of its own) [all]",
+     Takes::list(), "color"},
+    {"stats", "FILE", outputGroup, "Times, counts and measures as .json", Takes::report()},
+    {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none [auto]",
+     Takes::word("auto|bar|xml|none"), "auto"},
+    {"xml", "", slicerGroup, "Describe the flags to 3D Slicer, and exit", Takes::slicersOwn()},
+    {"echo", "", slicerGroup, "Print the flags as they were understood", Takes::slicersOwn()},
+    {"returnparameterfile", "FILE", slicerGroup, "Write what the render reached, a line each",
+     Takes::slicersOwn()},
+    {"processinformationaddress", "ADDRESS", slicerGroup,
+     "For modules inside Slicer's process: ignored", Takes::slicersOwn()},
 };
 
 ClipMode clipMode(const std::string& word) {
@@ -82,18 +117,19 @@ ClipMode clipMode(const std::string& word) {
 }
 
 void refuseTogether(const FlagValues& flags, const char* a, const char* b) {
-  if (flags.has(a) && flags.has(b))
+  if (flags.differs(a) && flags.differs(b))
     throw usageError(std::string("--") + a + " and --" + b + " contradict each other; give one");
 }
 
 ClipRequest clipRequest(const FlagValues& flags) {
   ClipRequest clip;
-  if (const auto word = flags.word("clip", {"none", "plane", "cutaway", "surface"}))
+  const auto word = flags.word("clip");
+  if (flags.differs("clip"))
     clip.mode = clipMode(*word);
-  flags.word("boundary", {"spline"});
-  if (const auto n = flags.count("controlpoints", 3, 1000))
+  flags.word("boundary");
+  if (const auto n = flags.count("controlpoints"))
     clip.controlPoints = static_cast<int>(*n);
-  clip.smoothing = flags.number("smoothing", 0.0, 1.0).value_or(clip.smoothing);
+  clip.smoothing = flags.number("smoothing").value_or(clip.smoothing);
   if (const auto p = flags.numbers("plane", 6)) {
     const Vec3 normal((*p)[3], (*p)[4], (*p)[5]);
     if (normal.isZero(0.0))
@@ -110,7 +146,7 @@ ClipRequest clipRequest(const FlagValues& flags) {
   if (mode != ClipMode::plane && clip.plane)
     throw usageError("--plane: only --clip plane uses it; add --clip plane, or drop it");
   for (const char* name : {"boundary", "controlpoints", "smoothing"})
-    if (mode != ClipMode::surface && flags.has(name))
+    if (mode != ClipMode::surface && flags.differs(name))
       throw usageError(std::string("--") + name + ": only --clip surface uses it; drop it");
   return clip;
 }
@@ -118,15 +154,14 @@ ClipRequest clipRequest(const FlagValues& flags) {
 ViewRequest viewRequest(const FlagValues& flags, bool sceneCamera) {
   refuseTogether(flags, "view", "position");
   ViewRequest view;
-  if (const auto word = flags.word("projection", {"orthographic", "perspective"}))
+  if (const auto word = flags.word("projection"))
     view.projection = *word == "perspective" ? Projection::perspective : Projection::orthographic;
-  view.name =
-      flags.word("view", {"anterior", "posterior", "left", "right", "superior", "inferior"});
+  view.name = flags.word("view");
   view.position = flags.triple("position");
   view.target = flags.triple("target");
   view.up = flags.triple("up");
-  view.scale = flags.number("scale", 1e-9, 1e9);
-  view.angle = flags.number("angle", 1e-6, 179.0);
+  view.scale = flags.number("scale");
+  view.angle = flags.number("angle");
   // Where a scene's camera may apply, its projection is known only later.
   if (sceneCamera && !view.projection && view.followsScene())
     return view;
@@ -156,6 +191,9 @@ void readSize(const FlagValues& flags, SceneRequest& scene) {
 
 bool isExr(const std::filesystem::path& path) {
   return imageFormat(path) == ImageFormat::exr;
+}
+bool isNrrd(const std::filesystem::path& path) {
+  return imageFormat(path) == ImageFormat::nrrd;
 }
 
 /// Linear R,G,B; `otherwise` says what else the flag takes.
@@ -193,21 +231,20 @@ std::optional<Background> background(const FlagValues& flags) {
 }
 
 RenderSettings renderSettings(const FlagValues& flags) {
-  constexpr std::uint64_t unlimited = std::uint64_t{1} << 40;
   RenderSettings settings;
   const bool otherStop = flags.has("seconds") || flags.has("noise");
-  settings.samples =
-      flags.count("samples", 1, unlimited).value_or(otherStop ? unlimited : settings.samples);
-  settings.seconds = flags.number("seconds", 1e-3, 1e9).value_or(settings.seconds);
-  settings.noise = flags.number("noise", 1e-6, 1e6).value_or(settings.noise);
-  settings.seed = flags.count("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(0);
-  settings.threads = static_cast<int>(flags.count("threads", 1, 1024).value_or(0));
-  settings.path.bounces = flags.count("bounces", 0, unlimited).value_or(settings.path.bounces);
+  settings.samples = flags.count("samples").value_or(
+      otherStop ? static_cast<std::uint64_t>(unlimited) : settings.samples);
+  settings.seconds = flags.number("seconds").value_or(settings.seconds);
+  settings.noise = flags.number("noise").value_or(settings.noise);
+  settings.seed = flags.count("seed").value_or(0);
+  settings.threads = static_cast<int>(flags.count("threads").value_or(0));
+  settings.path.bounces = flags.count("bounces").value_or(settings.path.bounces);
   return settings;
 }
 
 ProgressMode progressMode(const FlagValues& flags) {
-  const std::string word = flags.word("progress", {"auto", "bar", "xml", "none"}).value_or("auto");
+  const std::string word = flags.word("progress").value_or("auto");
   if (word == "bar")
     return ProgressMode::bar;
   if (word == "xml")
@@ -243,8 +280,9 @@ void readOutputs(const FlagValues& flags, RenderOptions& options) {
   options.scene.measureCoverage = options.stats.has_value();
   options.layers = layerSet(flags.list("layers"));
   const auto exrs = std::count_if(options.outputs.begin(), options.outputs.end(), isExr);
-  if (exrs == 0 && flags.has("layers"))
-    throw usageError("--layers: only an .exr has them; add --output FILE.exr");
+  const auto nrrds = std::count_if(options.outputs.begin(), options.outputs.end(), isNrrd);
+  if (exrs + nrrds == 0 && flags.differs("layers"))
+    throw usageError("--layers: only .exr and .nrrd have them; add --output FILE.exr");
   for (const std::filesystem::path& path : options.outputs)
     if (!options.layers.color && !isExr(path))
       throw usageError("--layers: " + path.string() + " needs color; add it, or write .exr alone");
@@ -257,7 +295,7 @@ const CommandSyntax renderSyntax = {
     "render",
     "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
     "a clipping surface. \"render\" may be left out. Other subcommands: fenestra inspect, fenestra "
-    "compare, fenestra phantom.",
+    "compare, fenestra phantom, fenestra serve.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
     flags,
@@ -278,8 +316,8 @@ RenderOptions renderOptions(const FlagValues& flags) {
   if (scene.segmentation && scene.focus.empty())
     throw usageError("--segmentation: only --focus uses it; add --focus A,B,...");
   scene.transfer = flags.text("transfer");
-  scene.shift = flags.number("shift", -1e30, 1e30).value_or(0.0);
-  scene.density = flags.number("density", 0.0, 1000.0).value_or(1.0);
+  scene.shift = flags.number("shift").value_or(0.0);
+  scene.density = flags.number("density").value_or(1.0);
   scene.lights = flags.text("lights").value_or(scene.lights);
   readEnvironment(flags, scene);
   scene.view = viewRequest(flags, isScene);
@@ -290,7 +328,10 @@ RenderOptions renderOptions(const FlagValues& flags) {
   options.background = background(flags);
   options.inputs = inputFiles(flags);
   readOutputs(flags, options);
+  options.returnValues = flags.text("returnparameterfile");
   options.progress = progressMode(flags);
+  if (options.returnValues && options.progress == ProgressMode::automatic)
+    options.progress = ProgressMode::xml;
   return options;
 }
 

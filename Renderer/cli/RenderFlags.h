@@ -17,6 +17,9 @@ struct RenderOptions {
   std::vector<std::filesystem::path> outputs; ///< at least one
   LayerSet layers;
   std::optional<std::filesystem::path> stats = {};
+  /// Slicer runs this program, listens to its standard output, and takes every word on the other
+  /// one for an error.
+  std::optional<std::filesystem::path> returnValues = {};
   ProgressMode progress = ProgressMode::automatic;
 };
 

@@ -19,12 +19,14 @@ constexpr const char* group = "Benchmark";
 constexpr Flag flags[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
     {"modes", "A,B,...", group, "Ways to render, as Modes.cxx has them [all]"},
-    {"budget", "SECONDS", group, "CPU time of one curve [60]"},
-    {"seeds", "N", group, "Renders of a point, as many as the budget allows [3]"},
-    {"threads", "K", group, "Threads of a render [all]"},
+    {"budget", "SECONDS", group, "CPU time of one curve [60]", Takes::number(1e-3, 1e6)},
+    {"seeds", "N", group, "Renders of a point, as many as the budget allows [3]",
+     Takes::whole(1, 1000)},
+    {"threads", "K", group, "Threads of a render [all]", Takes::whole(1, 1024)},
     {"size", "WxH", group, "Pixels [as the table says]"},
-    {"noise", "E", group, "Noise of references that are made here [0.03]"},
-    {"limit", "SECONDS", group, "Time that making one may take [1800]"},
+    {"noise", "E", group, "Noise of references that are made here [0.03]",
+     Takes::number(1e-4, 1.0)},
+    {"limit", "SECONDS", group, "Time that making one may take [1800]", Takes::number(1e-3, 1e6)},
     {"references", "DIR", group, "Where references are kept [benchmarks/references of the build]"},
     {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
     {"table", "FILE", group, "Table of scenes [scenes.txt beside the sources]"},
@@ -75,12 +77,12 @@ Options optionsOf(const FlagValues& values) {
   if (options.modes.empty())
     for (const Mode& mode : modes())
       options.modes.push_back(&mode);
-  options.curve.budget = values.number("budget", 1e-3, 1e6).value_or(options.curve.budget);
-  options.curve.seeds = static_cast<int>(values.count("seeds", 1, 1000).value_or(3));
-  options.reference.noise = values.number("noise", 1e-4, 1.0).value_or(options.reference.noise);
-  options.reference.seconds = values.number("limit", 1e-3, 1e6).value_or(options.reference.seconds);
+  options.curve.budget = values.number("budget").value_or(options.curve.budget);
+  options.curve.seeds = static_cast<int>(values.count("seeds").value_or(3));
+  options.reference.noise = values.number("noise").value_or(options.reference.noise);
+  options.reference.seconds = values.number("limit").value_or(options.reference.seconds);
   options.reference.folder = folder("references", build / "references");
-  options.threads = static_cast<int>(values.count("threads", 1, 1024).value_or(0));
+  options.threads = static_cast<int>(values.count("threads").value_or(0));
   options.size = sizeOf(values);
   options.output = folder("output", build / "report");
   return options;

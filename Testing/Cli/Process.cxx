@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -28,27 +29,34 @@ std::string content(int file) {
   return {std::istreambuf_iterator<char>(stream.rdbuf()), {}};
 }
 
-[[noreturn]] void become(const Arguments& arguments, const std::filesystem::path& folder, int out,
-                         int err) {
+[[noreturn]] void become(const Arguments& arguments, const std::filesystem::path& folder, int in,
+                         int out, int err) {
   std::vector<char*> words = {const_cast<char*>(FENESTRA_EXECUTABLE)};
   for (const std::string& argument : arguments)
     words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  if (::chdir(folder.c_str()) == 0 && ::dup2(out, STDOUT_FILENO) >= 0 &&
-      ::dup2(err, STDERR_FILENO) >= 0)
+  if (::chdir(folder.c_str()) == 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
+      ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(err, STDERR_FILENO) >= 0)
     ::execv(FENESTRA_EXECUTABLE, words.data());
   ::_exit(127);
 }
 
 } // namespace
 
-Process::Process(const Arguments& arguments, const std::filesystem::path& folder)
+Process::Process(const Arguments& arguments, const std::filesystem::path& folder, Reader reader)
     : m_out(::memfd_create("out", MFD_CLOEXEC)), m_err(::memfd_create("err", MFD_CLOEXEC)) {
+  int in[2], unread[2];
+  if (m_out < 0 || m_err < 0 || ::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(unread, O_CLOEXEC) != 0)
+    throw std::runtime_error("no files for a process");
+  ::close(unread[0]);
   m_id = ::fork();
-  if (m_id < 0 || m_out < 0 || m_err < 0)
+  if (m_id < 0)
     throw std::runtime_error("no process");
   if (m_id == 0)
-    become(arguments, folder, m_out, m_err);
+    become(arguments, folder, in[0], reader == Reader::test ? m_out : unread[1], m_err);
+  ::close(in[0]);
+  ::close(unread[1]);
+  m_in = in[1];
 }
 
 Process::~Process() {
@@ -56,8 +64,24 @@ Process::~Process() {
     ::kill(m_id, SIGKILL);
     ::waitpid(m_id, nullptr, 0);
   }
+  closeInput();
   ::close(m_out);
   ::close(m_err);
+}
+
+void Process::write(const std::string& text) const {
+  if (::write(m_in, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+    throw std::runtime_error("a process does not read");
+}
+
+void Process::closeInput() {
+  if (m_in >= 0)
+    ::close(m_in);
+  m_in = -1;
+}
+
+std::string Process::output() const {
+  return content(m_out);
 }
 
 void Process::send(int signal) const {

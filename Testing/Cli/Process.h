@@ -16,20 +16,28 @@ struct Outcome {
   double seconds = 0.0; ///< waited for
 };
 
+/// Who reads a process's standard output.
+enum class Reader { test, nobody };
+
 /// `fenestra arguments…`, running in `folder` from construction on; killed by the destructor.
 class Process {
 public:
-  Process(const Arguments& arguments, const std::filesystem::path& folder);
+  Process(const Arguments& arguments, const std::filesystem::path& folder,
+          Reader reader = Reader::test);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
   void send(int signal) const;
+  /// To its standard input.
+  void write(const std::string& text) const;
+  void closeInput();
   /// Until the process handles `signal` itself; false after ten seconds or at its end.
   bool waitUntilHandling(int signal) const;
   /// Until its standard output has what matches a regular expression; false after as long as wait()
   /// waits, or at its end.
   bool waitForOutput(const std::string& expression) const;
+  std::string output() const; ///< so far
   /// Until its end, and kills it after 30 seconds; slow builds have more (FENESTRA_BRIEF).
   Outcome wait();
 
@@ -38,6 +46,7 @@ private:
   bool waitUntil(const std::function<bool()>& condition, double limit) const;
 
   int m_id = 0;
+  int m_in = -1;              ///< of a pipe
   int m_out = -1, m_err = -1; ///< files in memory
   mutable int m_waitStatus = 0;
   mutable bool m_ended = false;

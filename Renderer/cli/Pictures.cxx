@@ -1,0 +1,108 @@
+#include "cli/Pictures.h"
+
+#include "cli/OutputFiles.h"
+#include "cli/Version.h"
+#include "core/Error.h"
+#include "io/AtomicFile.h"
+#include "io/pictures/ImageWriter.h"
+
+#include <sstream>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+/// As a shell takes it back.
+std::string quoted(const std::string& argument) {
+  const char* const plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
+    return argument;
+  std::string result(1, '\'');
+  for (const char c : argument)
+    if (c == '\'')
+      result += "'\\''";
+    else
+      result += c;
+  result += '\'';
+  return result;
+}
+
+std::string text(const Vec3& v) {
+  std::ostringstream out;
+  out.precision(17);
+  out << v.x() << ',' << v.y() << ',' << v.z();
+  return out.str();
+}
+
+std::map<std::string, std::string> header(const Scene& scene, const RenderSettings& settings,
+                                          const RenderResult& result, const std::string& command) {
+  const CameraPose& pose = scene.camera().pose();
+  const bool perspective = pose.projection == Projection::perspective;
+  std::ostringstream camera;
+  camera.precision(17);
+  camera << (perspective ? "--projection perspective --angle "
+                         : "--projection orthographic --scale ")
+         << (perspective ? pose.angle : pose.scale) << " --position=" << text(pose.position)
+         << " --target=" << text(pose.target) << " --up=" << text(pose.up);
+  return {{"version", versionText},
+          {"target", processorText + ("-" + result.target)},
+          {"seed", std::to_string(settings.seed)},
+          {"samples", std::to_string(result.finishedSamples)},
+          {"camera", camera.str()},
+          {"look", scene.look()},
+          {"command", command}};
+}
+
+/// Linux grants memory that it does not have, and ends the process when it is used.
+void checkMemory(const SceneRequest& scene) {
+  constexpr double bytesPerPixel = 2.0 * sizeof(PixelSums); // the film, and its channels as written
+  constexpr double gigabyte = 1e9;
+  const double needed = bytesPerPixel * scene.width * scene.height;
+  const double there =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  if (needed <= there)
+    return;
+  std::ostringstream line;
+  line.precision(3);
+  line << "a picture of " << scene.width << "x" << scene.height << " pixels takes "
+       << needed / gigabyte << " GB of memory, this machine has " << there / gigabyte
+       << "; choose a smaller one";
+  throw outputError("--size", line.str());
+}
+
+} // namespace
+
+void checkOutputs(const RenderOptions& options) {
+  std::vector<std::filesystem::path> results;
+  for (const std::filesystem::path& path : options.outputs)
+    for (const std::filesystem::path& file : imageFiles(path))
+      results.push_back(file);
+  for (const auto& file : {options.stats, options.returnValues})
+    if (file)
+      results.push_back(*file);
+  checkDistinct(options.inputs, results);
+  for (const std::filesystem::path& path : options.outputs)
+    checkImagePath(path);
+  for (const auto& file : {options.stats, options.returnValues})
+    if (file)
+      checkWritable(*file);
+  checkMemory(options.scene);
+}
+
+std::string shellCommand(const std::vector<std::string>& arguments) {
+  std::string line = "fenestra";
+  for (const std::string& argument : arguments)
+    line.append(" ").append(quoted(argument));
+  return line;
+}
+
+void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
+                   const std::string& command) {
+  Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
+  image.header = header(scene, options.settings, result, command);
+  for (const std::filesystem::path& path : options.outputs)
+    writeImage(image, picturePlane(scene.camera()), path);
+}
+
+} // namespace fenestra
