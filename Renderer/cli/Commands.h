@@ -8,5 +8,6 @@ int renderCommand(int argc, char** argv, int first);
 int inspectCommand(int argc, char** argv, int first);
 int compareCommand(int argc, char** argv, int first);
 int phantomCommand(int argc, char** argv, int first);
+int serveCommand(int argc, char** argv, int first);
 
 } // namespace fenestra

@@ -19,10 +19,9 @@ struct NamedCommand {
 };
 
 constexpr NamedCommand commands[] = {
-    {"render", fenestra::renderCommand},
-    {"inspect", fenestra::inspectCommand},
-    {"compare", fenestra::compareCommand},
-    {"phantom", fenestra::phantomCommand},
+    {"render", fenestra::renderCommand},   {"inspect", fenestra::inspectCommand},
+    {"compare", fenestra::compareCommand}, {"phantom", fenestra::phantomCommand},
+    {"serve", fenestra::serveCommand},
 };
 
 /// A word alone that is nearly a subcommand and no file is meant as one.

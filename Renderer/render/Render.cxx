@@ -127,9 +127,9 @@ private:
 };
 
 template <typename Tracer>
-RenderResult renderPasses(const Tracer& tracer, const RenderScene& scene,
+RenderResult renderPasses(const Tracer& tracer, const std::string& target, const RenderScene& scene,
                           const RenderSettings& settings, RenderMonitor& monitor) {
-  RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0};
+  RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0, target};
   const EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
                                 ? EmptyPixels(scene.camera, scene.majorants)
                                 : EmptyPixels();
@@ -148,6 +148,8 @@ RenderResult renderPasses(const Tracer& tracer, const RenderScene& scene,
       result.reason = StopReason::seconds;
       return result;
     }
+    if (done > 0 && monitor.between)
+      monitor.between(result);
     if (!renderPass(tracer, plan.at(done), plan.at(done + count), empty, settings.seed, result.film,
                     result.counters, monitor)) {
       result.reason = StopReason::request;
@@ -187,14 +189,12 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                                            settings.path.bounces, settings.path.wantNormals));
         const EyeRays eye(scene.camera, scene.clip, scene.lights, settings.path.background);
         const PathWave wave(domain, wide, events, eye, monitor.stop);
-        RenderResult result = renderPasses(wave, scene, settings, monitor);
-        result.target = WideTracker::instructionSet();
-        return result;
+        return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor);
       }
       const OneByOne<Voxel> readable{PathEstimator<Voxel>(scene.volume.grid, medium, tracker,
                                                           scene.lights, scene.camera, scene.clip,
                                                           settings.path, monitor.stop)};
-      return renderPasses(readable, scene, settings, monitor);
+      return renderPasses(readable, "scalar", scene, settings, monitor);
     });
   });
 }

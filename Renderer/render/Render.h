@@ -11,6 +11,7 @@
 #include "volume/Volume.h"
 
 #include <atomic>
+#include <functional>
 #include <string>
 
 namespace fenestra {
@@ -43,11 +44,15 @@ struct RenderSettings {
   std::uint64_t passSamples = 0; ///< samples a pass; 0: growing passes. Never changes the picture.
 };
 
-/// What a running render tells other threads, and how they stop it.
+struct RenderResult;
+
+/// What a running render tells others, and how they stop it.
 struct RenderMonitor {
   std::atomic<bool> stop = false;
   std::atomic<std::uint64_t> paths = 0; ///< finished so far, or found to be needless
   std::atomic<double> noise = infinity; ///< at the end of the last pass
+  /// Called between two passes with what there is by then; the render waits.
+  std::function<void(const RenderResult&)> between = {};
 };
 
 enum class StopReason { samples, seconds, noise, request };

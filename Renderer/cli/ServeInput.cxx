@@ -1,0 +1,175 @@
+#include "cli/ServeInput.h"
+
+#include "cli/CommandLine.h"
+#include "cli/Stop.h"
+#include "core/Error.h"
+#include "io/PrivateFolder.h"
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t longestLine = 1 << 20;
+
+/// What the process is from its start to its end.
+constexpr std::string_view fixedFlags[] = {"output",
+                                           "layers",
+                                           "stats",
+                                           "threads",
+                                           "progress",
+                                           "returnparameterfile",
+                                           "processinformationaddress",
+                                           "echo",
+                                           "xml"};
+
+/// A value as the command line has it.
+std::string valueText(const std::string& name, const json& value) {
+  if (value.is_string())
+    return value.get<std::string>();
+  if (value.is_number())
+    return value.dump();
+  throw usageError(name + ": expected a text, a number or a list of them");
+}
+
+/// A list's items, commas in them kept apart from those between them.
+std::string listText(const std::string& name, const json& list) {
+  std::string text;
+  for (const json& item : list) {
+    text += text.empty() ? "" : ",";
+    for (const char c : valueText(name, item))
+      text += c == ',' ? std::string("\\,") : std::string(1, c);
+  }
+  return text;
+}
+
+} // namespace
+
+bool ServeAnswers::say(const nlohmann::ordered_json& answer) {
+  const std::string line = answer.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+  const std::lock_guard lock(m_mutex);
+  return std::fwrite(line.data(), 1, line.size(), stdout) == line.size() &&
+         std::fflush(stdout) == 0;
+}
+
+bool ServeAnswers::error(const json& id, const std::string& message) {
+  return say({{"event", "error"}, {"id", id}, {"message", message}});
+}
+
+void applyChange(const json& change, FlagValues& flags) {
+  if (!change.is_object())
+    throw usageError("expected a JSON object of flags, as {\"view\": \"left\"}");
+  std::vector<std::string_view> names;
+  for (const Flag& flag : renderSyntax.flags)
+    names.push_back(flag.name);
+  FlagValues result = flags;
+  for (const auto& [name, value] : change.items()) {
+    if (name == "id")
+      continue;
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      const std::string_view likely = nearest(name, names);
+      throw usageError(name + ": no such flag" +
+                       (likely.empty() ? "" : "; did you mean " + std::string(likely) + "?"));
+    }
+    if (std::find(std::begin(fixedFlags), std::end(fixedFlags), name) != std::end(fixedFlags))
+      throw usageError(name + ": cannot change while serving; start another server");
+    result.remove(name);
+    const std::string text = value.is_null()    ? ""
+                             : value.is_array() ? listText(name, value)
+                                                : valueText(name, value);
+    if (!text.empty())
+      result.add(name, text);
+  }
+  renderOptions(result); // throws where they cannot be together
+  flags = result;
+}
+
+ServeInput::ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers)
+    : m_monitor(monitor), m_answers(answers), m_wish{start} {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM})
+    sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr); // for threads of this one, too
+  std::signal(SIGPIPE, SIG_IGN);
+  m_signals = ::signalfd(-1, &signals, SFD_CLOEXEC);
+  m_thread = std::thread([this] { read(); });
+  m_thread.detach(); // ends with the process
+}
+
+ServeWish ServeInput::next(std::uint64_t seen) {
+  std::unique_lock lock(m_mutex);
+  m_changed.wait(lock, [&] { return m_wish.number > seen; });
+  m_monitor.stop = false;
+  return m_wish;
+}
+
+void ServeInput::takeBack(const ServeWish& refused, const FlagValues& shown) {
+  const std::lock_guard lock(m_mutex);
+  if (m_wish.number == refused.number)
+    m_wish.flags = shown;
+}
+
+void ServeInput::read() {
+  std::string line;
+  bool tooLong = false;
+  for (;;) {
+    std::array<pollfd, 2> files = {pollfd{STDIN_FILENO, POLLIN, 0}, pollfd{m_signals, POLLIN, 0}};
+    ::poll(files.data(), files.size(), -1);
+    if (files[1].revents != 0)
+      end(stoppedStatus);
+    std::array<char, 4096> part;
+    const ssize_t size = ::read(STDIN_FILENO, part.data(), part.size());
+    if (size <= 0)
+      end(0);
+    for (const char c : std::string_view(part.data(), static_cast<std::size_t>(size))) {
+      if (c != '\n') {
+        tooLong = tooLong || line.size() == longestLine;
+        if (!tooLong)
+          line += c;
+        continue;
+      }
+      if (tooLong)
+        m_answers.error(nullptr, "a line of more than a million characters");
+      else if (line.find_first_not_of(" \t\r") != std::string::npos)
+        takeLine(line);
+      line.clear();
+      tooLong = false;
+    }
+  }
+}
+
+void ServeInput::takeLine(const std::string& line) {
+  json id = nullptr;
+  try {
+    const json change = json::parse(line);
+    if (change.is_object() && change.contains("id"))
+      id = change["id"];
+    const std::lock_guard lock(m_mutex);
+    applyChange(change, m_wish.flags);
+    m_wish.id = id;
+    m_wish.since = Stopwatch();
+    ++m_wish.number;
+    m_monitor.stop = true;
+  } catch (const json::exception&) {
+    m_answers.error(id, "not JSON; expected one object of flags a line, as {\"view\": \"left\"}");
+  } catch (const Error& error) {
+    m_answers.error(id, error.what());
+  }
+  m_changed.notify_one();
+}
+
+void ServeInput::end(int status) {
+  const std::unique_lock lock = writing();
+  removePrivateFolders();
+  ::_exit(status);
+}
+
+} // namespace fenestra

@@ -1,0 +1,184 @@
+// `fenestra serve`: changes in, pictures out; what it does with bad lines, and how it ends.
+
+#include "CommandTesting.h"
+#include "RunSettings.h"
+#include "io/pictures/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+
+namespace fenestra {
+namespace {
+
+using nlohmann::json;
+
+/// Seconds; about 0.1 on an idle machine, and more in slow builds.
+const double soon = 2.0 * static_cast<double>(testing::brevity());
+
+class ServeCommand : public SmallScene {
+protected:
+  static Arguments serving(const std::string& size = "16x16", const std::string& samples = "4") {
+    return {"serve", "volume.nrrd", "--size", size, "--samples", samples, "--output", "a.exr"};
+  }
+
+  static std::vector<json> answers(const Process& process) {
+    std::vector<json> all;
+    std::istringstream lines(process.output());
+    for (std::string line; std::getline(lines, line);)
+      all.push_back(json::parse(line));
+    return all;
+  }
+  /// Waits for the last picture of a change.
+  static bool waitForPicture(const Process& process, const std::string& id) {
+    return process.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
+  }
+  /// Waits for the refusal of a change.
+  static bool waitForError(const Process& process, const std::string& id,
+                           const std::string& message) {
+    return process.waitForOutput("\"error\",\"id\":" + id + ",\"message\":\"[^\n]*" + message);
+  }
+
+  /// The picture that `fenestra volume.nrrd …` makes with these flags.
+  Image rendered(const Arguments& flags) const {
+    Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "4", "--output", "b.exr"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    EXPECT_EQ(run(all, folder.path()).status, 0);
+    return readImage(folder / "b.exr");
+  }
+  void expectShown(const Arguments& flags) const {
+    EXPECT_EQ(readImage(folder / "a.exr").channels, rendered(flags).channels);
+  }
+};
+
+TEST_F(ServeCommand, PicturesAreThoseOfTheCommandLine) {
+  Process process(serving(), folder.path());
+  ASSERT_TRUE(waitForPicture(process, "null")) << process.output();
+  expectShown({});
+  const std::vector<std::pair<std::string, Arguments>> changes = {
+      {R"({"id": 1, "view": "left"})", {"--view", "left"}},
+      {R"({"id": 2, "seed": 3, "density": 2.5})",
+       {"--view", "left", "--seed", "3", "--density", "2.5"}},
+      {R"({"id": 3, "view": null, "seed": null, "segmentation": "segments.seg.nrrd",
+           "focus": ["Bone, left"]})",
+       {"--density", "2.5", "--segmentation", "segments.seg.nrrd", "--focus", "Bone\\, left"}},
+      {R"({"id": 4, "clip": "none", "density": "", "size": "8x8"})",
+       {"--segmentation", "segments.seg.nrrd", "--focus", "A", "--clip", "none", "--size", "8x8"}},
+      {R"({"id": 5, "size": "16x16", "environment": [1, 0.5, 0]})",
+       {"--segmentation", "segments.seg.nrrd", "--focus", "A", "--clip", "none", "--environment",
+        "1,0.5,0"}},
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    std::string line = changes[i].first;
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    process.write(line + "\n");
+    ASSERT_TRUE(waitForPicture(process, std::to_string(i + 1))) << process.output();
+    Arguments flags = changes[i].second;
+    if (std::find(flags.begin(), flags.end(), "8x8") != flags.end()) {
+      EXPECT_EQ(readImage(folder / "a.exr").width, 8);
+      continue;
+    }
+    expectShown(flags);
+  }
+  process.closeInput();
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(ServeCommand, TheHeaderRepeatsThePicture) {
+  Process process(serving(), folder.path());
+  process.write("{\"id\": 1, \"view\": \"left\", \"seed\": 5}\n");
+  ASSERT_TRUE(waitForPicture(process, "1")) << process.output();
+  const std::string command = readImage(folder / "a.exr").header.at("command");
+  EXPECT_TRUE(command.starts_with("fenestra volume.nrrd ")) << command;
+  EXPECT_NE(command.find(" --seed=5"), std::string::npos) << command;
+  EXPECT_NE(command.find(" --view=left"), std::string::npos) << command;
+}
+
+TEST_F(ServeCommand, PicturesRefineAndGiveWay) {
+  Process process(serving("256x256", "1000000"), folder.path());
+  ASSERT_TRUE(process.waitForOutput("\"done\":false[^\n]*\n[^\n]*\"done\":false[^\n]*\n"));
+  const std::vector<json> refined = answers(process);
+  ASSERT_GE(refined.size(), 2u);
+  EXPECT_LT(refined[0]["samples"], refined[1]["samples"]);
+  EXPECT_EQ(refined[0]["files"], json::array({"a.exr"}));
+  process.write(
+      "{\"id\": \"left\", \"view\": \"left\"}\n{\"id\": \"up\", \"view\": \"superior\"}\n");
+  ASSERT_TRUE(process.waitForOutput("\"picture\",\"id\":\"up\"")) << process.output();
+  for (const json& answer : answers(process))
+    EXPECT_EQ(answer["event"], "picture");
+}
+
+TEST_F(ServeCommand, BadLinesChangeNothing) {
+  Process process(serving(), folder.path());
+  ASSERT_TRUE(waitForPicture(process, "null"));
+  const std::vector<std::array<std::string, 3>> lines = {
+      {"{\"view\"", "null", "not JSON"},
+      {"[1, 2]", "null", "expected a JSON object"},
+      {"\xff\xfe", "null", "not JSON"},
+      {R"({"id": 1, "veiw": "left"})", "1", "veiw: no such flag; did you mean view"},
+      {R"({"id": 2, "view": "top"})", "2", "--view: expected anterior"},
+      {R"({"id": 3, "view": {}})", "3", "view: expected a text"},
+      {R"({"id": 4, "output": "b.png"})", "4", "output: cannot change"},
+      {R"({"id": 5, "focus": "A"})", "5", "--focus: needs --segmentation"},
+      {R"({"id": 6, "segmentation": "missing.nrrd", "focus": "A"})", "6", "missing.nrrd"},
+      {R"({"id": 7, "segmentation": "segments.seg.nrrd", "focus": "C"})", "7", "C"},
+      {R"({"id": 8, "size": "0x0"})", "8", "--size"},
+      {"{\"id\": 9, \"lights\": \"" + std::string(1 << 20, 'x') + "\"}", "null",
+       "more than a million"},
+      {R"({"id": 10, "samples": 1e999})", "null", "not JSON"},
+      {"", "", ""},
+  };
+  for (const auto& [line, id, message] : lines) {
+    process.write(line + "\n");
+    EXPECT_TRUE(message.empty() || waitForError(process, id, message))
+        << line.substr(0, 99) << process.output();
+  }
+  process.write("{\"id\": 99, \"view\": \"left\"}\n");
+  ASSERT_TRUE(waitForPicture(process, "99")) << process.output();
+  expectShown({"--view", "left"}); // and nothing of what was refused
+}
+
+TEST_F(ServeCommand, EndsWithItsInput) {
+  for (const char* samples : {"1", "1000000"}) {
+    Process process(serving("16x16", samples), folder.path());
+    ASSERT_TRUE(process.waitForOutput("picture"));
+    process.closeInput();
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_LT(outcome.seconds, soon);
+    EXPECT_EQ(filesIn(folder.path()).size(), 3u); // two inputs, the picture
+  }
+}
+
+TEST_F(ServeCommand, EndsOnSignals) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Process process(serving("16x16", "1000000"), folder.path());
+    ASSERT_TRUE(process.waitForOutput("picture"));
+    process.send(signal);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 5);
+    EXPECT_LT(outcome.seconds, soon);
+    EXPECT_EQ(filesIn(folder.path()).size(), 3u);
+  }
+}
+
+TEST_F(ServeCommand, EndsWhenNobodyListens) {
+  Process process(serving(), folder.path(), Reader::nobody);
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_NE(outcome.err.find("nobody reads"), std::string::npos) << outcome.err;
+}
+
+TEST_F(ServeCommand, RefusesWhatRenderRefuses) {
+  expectRefused(
+      {{"no input", {"serve"}, 2, "INPUT: is missing"},
+       {"missing", {"serve", "missing.nrrd"}, 3, "missing.nrrd"},
+       {"stats", {"serve", "volume.nrrd", "--stats", "a.json"}, 2, "--stats: serve tells"}},
+      folder.path());
+}
+
+} // namespace
+} // namespace fenestra
