@@ -36,7 +36,7 @@ Image renderBy(const char* mode, const Scene& scene, const RenderOptions& option
 class UnbiasedMode : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(UnbiasedMode, AgreesWithTheReadableOne) {
-  const RenderOptions options = caseOf(std::string("knee readable") + knee).options();
+  const RenderOptions options = caseOf(std::string("knee product") + knee).options();
   const Scene scene(options.scene);
   const Image image = renderBy(GetParam(), scene, options, 96, 1);
   const Image truth = renderBy("readable", scene, options, 96, 2);
@@ -44,7 +44,7 @@ TEST_P(UnbiasedMode, AgreesWithTheReadableOne) {
     EXPECT_GT(agreementProbability(tileMeans(image, tile), tileMeans(truth, tile)), 1e-4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, UnbiasedMode, ::testing::Values("product", "global"),
+INSTANTIATE_TEST_SUITE_P(Modes, UnbiasedMode, ::testing::Values("product", "adaptive", "global"),
                          [](const auto& info) { return std::string(info.param); });
 
 /// Mean of R over the picture, relative to another picture's, less 1; and one standard error.
@@ -57,7 +57,7 @@ std::pair<double, double> biasOf(const Image& image, const Image& truth) {
 
 /// A foot in voxels of 6 mm: steps of one miss its skin.
 TEST(Marching, IsBiasedAndLessSoWithShorterSteps) {
-  const RenderOptions options = caseOf(std::string("foot readable") + foot).options();
+  const RenderOptions options = caseOf(std::string("foot product") + foot).options();
   const Scene scene(options.scene);
   const Image truth = renderBy("readable", scene, options, 128, 1);
   const auto [whole, error] = biasOf(renderBy("marching", scene, options, 128, 2), truth);
@@ -174,8 +174,8 @@ class WholeRun : public ::testing::Test {
 protected:
   static int runProgram(const TemporaryFolder& folder) {
     const auto table =
-        folder.write("table.txt", std::string("foot oracle") + foot + "knee readable" + knee +
-                                      "absent readable {phantoms}/absent.nrrd\n");
+        folder.write("table.txt", std::string("foot oracle") + foot + "knee product" + knee +
+                                      "absent product {phantoms}/absent.nrrd\n");
     const std::string command = std::string(FENESTRA_EFFICIENCY_BENCHMARK) +
                                 " --budget 0.3 --seeds 2 --noise 0.3 --table " + table.string() +
                                 " --phantoms " + samples + " --references " +

@@ -30,6 +30,12 @@ constexpr Mode table[] = {
      [](const RenderScene& scene, RenderSettings settings) {
        return renderProduct(scene, settings);
      }},
+    {"adaptive",
+     "the same toward a noise target: noisier pixels get more samples, after a pilot of 16",
+     [](const RenderScene& scene, RenderSettings settings) {
+       settings.noise = 1e-6; // never reached: the number of samples ends it
+       return renderProduct(scene, settings);
+     }},
     {"readable", "the scalar estimator, null collisions in a majorant grid, independent samples",
      [](const RenderScene& scene, RenderSettings settings) {
        settings.transport = Transport::readable;

@@ -58,11 +58,11 @@ Image accumulate(const ReferenceSettings& wanted, RenderPart&& renderPart) {
   return sum;
 }
 
-Image byReadable(const Scene& scene, RenderSettings settings, const ReferenceSettings& wanted) {
+Image byProduct(const Scene& scene, RenderSettings settings, const ReferenceSettings& wanted) {
   settings.samples = 16;
   return accumulate(wanted, [&](std::uint64_t seed) {
     settings.seed = seed;
-    return imageOf(findMode("readable").render(scene.forRender(), settings), scene);
+    return imageOf(findMode("product").render(scene.forRender(), settings), scene);
   });
 }
 
@@ -76,7 +76,7 @@ Image byOracle(const RenderOptions& options, const Scene& scene, const RenderSet
                const ReferenceSettings& wanted) {
   const RenderScene parts = scene.forRender();
   if (!std::holds_alternative<ClipNone>(parts.clip))
-    throw inputError("scenes.txt", "asks the oracle for a clipped reference; use readable");
+    throw inputError("scenes.txt", "asks the oracle for a clipped reference; use product");
   const oracle::OracleScene subject{.volume = parts.volume,
                                     .transfer = parts.transfer,
                                     .lights = lightsOf(options.scene.lights),
@@ -142,7 +142,7 @@ Reference findReference(const SceneCase& sceneCase, const Scene& scene,
                         const RenderSettings& settings, const ReferenceSettings& wanted) {
   if (std::optional<Reference> independent = independentReference(sceneCase, scene))
     return *std::move(independent);
-  const std::string maker = sceneCase.maker == ReferenceMaker::oracle ? "oracle" : "readable";
+  const std::string maker = sceneCase.maker == ReferenceMaker::oracle ? "oracle" : "product";
   const std::filesystem::path path = wanted.folder / (sceneCase.name + ".exr");
   const std::string command = identity(sceneCase, scene, wanted);
   if (std::optional<Image> kept = readIfThere(path))
@@ -150,7 +150,7 @@ Reference findReference(const SceneCase& sceneCase, const Scene& scene,
       return Reference(*std::move(kept), maker);
   Image image = sceneCase.maker == ReferenceMaker::oracle
                     ? byOracle(sceneCase.options(), scene, settings, wanted)
-                    : byReadable(scene, settings, wanted);
+                    : byProduct(scene, settings, wanted);
   image.header["command"] = command;
   image.header["maker"] = maker;
   std::filesystem::create_directories(wanted.folder);

@@ -71,11 +71,11 @@ private:
     const std::map<std::string, ReferenceMaker> makers = {
         {"independent", ReferenceMaker::independent},
         {"oracle", ReferenceMaker::oracle},
-        {"readable", ReferenceMaker::readable}};
+        {"product", ReferenceMaker::product}};
     const auto found = makers.find(word);
     if (found == makers.end())
       throw inputError(m_path.string(),
-                       "'" + word + "': REFERENCE is independent, oracle or readable");
+                       "'" + word + "': REFERENCE is independent, oracle or product");
     return found->second;
   }
 

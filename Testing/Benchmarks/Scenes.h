@@ -17,12 +17,12 @@ struct Folders {
 enum class ReferenceMaker {
   independent, ///< other renderers: FILE_best.exr and FILE_best_se.exr beside FILE.arguments
   oracle,      ///< Testing/Oracle; for scenes without a clip
-  readable,    ///< the readable estimator, where the oracle would take hours
+  product,     ///< the renderer itself with other seeds, where the oracle would take hours
 };
 
 struct SceneCase {
   std::string name;
-  ReferenceMaker maker = ReferenceMaker::readable;
+  ReferenceMaker maker = ReferenceMaker::product;
   std::filesystem::path independent;  ///< FILE of an independent reference
   std::vector<std::string> arguments; ///< of `fenestra`
   std::string missing;                ///< a file that it needs and that is not there, or empty
