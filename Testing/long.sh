@@ -16,7 +16,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
 record=$top/Testing/Report
 logs=$top/build/report
-labels=(unit statistical stress regression cli)
+labels=(unit statistical stress regression cli slicer)
 
 # in_record FILE COMMAND...: the file of the record becomes what the command prints.
 in_record() {
@@ -167,7 +167,7 @@ stage_fuzz() {
 }
 
 mkdir -p "$logs"
-install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev
+install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev
 [ $# -gt 0 ] || set -- accuracy seeds instructions addresses threads clang
 for name in "$@"; do
   say "$name"

@@ -1,0 +1,64 @@
+#include "qFenestraPreview.h"
+
+#include <QJsonArray>
+#include <QJsonDocument>
+
+qFenestraPreview::qFenestraPreview(QObject* parent) : QObject(parent) {
+  constexpr int resting = 60;
+  m_rest.setSingleShot(true);
+  m_rest.setInterval(resting);
+  connect(&m_rest, &QTimer::timeout, this, &qFenestraPreview::tell);
+  connect(&m_child, &qFenestraProgram::said, this, &qFenestraPreview::hear);
+  connect(&m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
+}
+
+void qFenestraPreview::start(const QString& program, const QStringList& arguments,
+                             const QString& folder) {
+  stop();
+  m_told = 0;
+  m_child.run(program, QStringList{"serve"} + arguments, folder);
+}
+
+void qFenestraPreview::stop() {
+  m_rest.stop();
+  m_changes = {};
+  if (!running())
+    return;
+  constexpr int grace = 150;
+  m_child.closeWriteChannel(); // a server ends with its input
+  m_child.stop(grace);
+  m_child.waitForFinished(2 * grace);
+}
+
+void qFenestraPreview::change(const QJsonObject& flags) {
+  for (auto flag = flags.begin(); flag != flags.end(); ++flag)
+    m_changes[flag.key()] = flag.value();
+  m_rest.start();
+}
+
+void qFenestraPreview::tell() {
+  if (!running() || m_changes.isEmpty())
+    return;
+  m_changes["id"] = ++m_told;
+  m_child.write(QJsonDocument(m_changes).toJson(QJsonDocument::Compact) + '\n');
+  m_changes = {};
+}
+
+void qFenestraPreview::hear(const QString& line) {
+  const QJsonObject answer = QJsonDocument::fromJson(line.toUtf8()).object();
+  if (answer["id"].toInt(0) != m_told)
+    return;
+  if (answer["event"] == "error")
+    emit refused(answer["message"].toString());
+  if (answer["event"] != "picture")
+    return;
+  qFenestraPicture picture;
+  const QJsonArray files = answer["files"].toArray();
+  for (const QJsonValue& file : files)
+    picture.files << file.toString();
+  picture.samples = answer["samples"].toInt();
+  picture.noise = answer["noise"].toDouble(-1.0);
+  picture.seconds = answer["seconds"].toDouble();
+  picture.done = answer["done"].toBool();
+  emit refreshed(picture);
+}

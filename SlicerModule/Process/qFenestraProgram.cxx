@@ -1,0 +1,126 @@
+#include "qFenestraProgram.h"
+
+#include <QTimer>
+
+#ifdef Q_OS_LINUX
+#include <csignal>
+#include <sys/prctl.h>
+#endif
+
+namespace {
+
+/// In the child, between fork and exec: it gets a signal when its parent ends, even by a crash.
+void endWithParent() {
+#ifdef Q_OS_LINUX
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+#endif
+}
+
+/// The renderer's own line, without its name.
+QString lastLine(const QString& text) {
+  QString line = text.trimmed().section('\n', -1);
+  const QString name = QStringLiteral("fenestra: ");
+  if (line.startsWith(name))
+    line.remove(0, name.size());
+  return line;
+}
+
+} // namespace
+
+qFenestraProgram::qFenestraProgram(QObject* parent) : QProcess(parent) {
+  setProcessEnvironment(isolated(QProcessEnvironment::systemEnvironment()));
+#if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
+  setChildProcessModifier(endWithParent);
+#endif
+  connect(this, &QProcess::readyReadStandardOutput, this, &qFenestraProgram::readLines);
+  connect(this, &QProcess::errorOccurred, this, [this](QProcess::ProcessError error) {
+    if (error != QProcess::FailedToStart)
+      return;
+    const qFenestraOutcome outcome = {
+        qFenestraOutcome::Kind::failed,
+        tr("The renderer could not be started. Is the Fenestra extension installed whole?"),
+        QStringLiteral("%1: %2").arg(program(), errorString())};
+    // Not while start() is under way: who hears it may start again.
+    QMetaObject::invokeMethod(
+        this, [this, outcome] { finish(outcome); }, Qt::QueuedConnection);
+  });
+  connect(this, QOverload<int, QProcess::ExitStatus>::of(&QProcess::finished), this,
+          [this](int code, QProcess::ExitStatus status) {
+            readLines();
+            finish(outcomeOf(code, status));
+          });
+}
+
+qFenestraProgram::~qFenestraProgram() {
+  disconnect();
+  if (state() == QProcess::NotRunning)
+    return;
+  constexpr int grace = 200;
+  terminate();
+  if (!waitForFinished(grace)) {
+    kill();
+    waitForFinished();
+  }
+}
+
+#if QT_VERSION < QT_VERSION_CHECK(6, 0, 0)
+void qFenestraProgram::setupChildProcess() {
+  endWithParent();
+}
+#endif
+
+void qFenestraProgram::run(const QString& program, const QStringList& arguments,
+                           const QString& folder) {
+  m_stopped = false;
+  m_ended = false;
+  setWorkingDirectory(folder);
+  start(program, arguments);
+}
+
+void qFenestraProgram::stop(int grace) {
+  if (state() == QProcess::NotRunning)
+    return;
+  m_stopped = true;
+  terminate();
+  const auto id = processId();
+  QTimer::singleShot(grace, this, [this, id] {
+    if (processId() == id)
+      kill();
+  });
+}
+
+QProcessEnvironment qFenestraProgram::isolated(QProcessEnvironment environment) {
+  for (const char* name : {"LD_LIBRARY_PATH", "LD_PRELOAD", "DYLD_LIBRARY_PATH", "PYTHONHOME",
+                           "PYTHONPATH", "QT_PLUGIN_PATH", "ITK_AUTOLOAD_PATH"})
+    environment.remove(name);
+  return environment;
+}
+
+void qFenestraProgram::readLines() {
+  setReadChannel(QProcess::StandardOutput);
+  while (canReadLine())
+    emit said(QString::fromUtf8(readLine()).trimmed());
+}
+
+void qFenestraProgram::finish(const qFenestraOutcome& outcome) {
+  if (m_ended)
+    return;
+  m_ended = true;
+  emit ended(outcome);
+}
+
+qFenestraOutcome qFenestraProgram::outcomeOf(int code, QProcess::ExitStatus status) {
+  constexpr int stoppedOnRequest = 5; // the renderer's exit status
+  using Kind = qFenestraOutcome::Kind;
+  const QString errors = QString::fromUtf8(readAllStandardError());
+  if (m_stopped || (status == QProcess::NormalExit && code == stoppedOnRequest))
+    return {Kind::stopped, {}, errors};
+  if (status == QProcess::CrashExit)
+    return {Kind::failed,
+            tr("The renderer ended unexpectedly. If the computer ran out of memory, try a smaller "
+               "picture, or crop the volume."),
+            errors};
+  if (code != 0)
+    return {Kind::failed, lastLine(errors), errors};
+  return {Kind::done, {}, errors};
+}

@@ -1,0 +1,305 @@
+// Renders and previews as the extension runs them, with the renderer itself: what is heard of them,
+// and how they end.
+
+#include "RunSettings.h"
+#include "TemporaryFolder.h"
+
+#include "qFenestraPreview.h"
+#include "qFenestraQueue.h"
+
+#include <QCoreApplication>
+#include <QElapsedTimer>
+#include <QEventLoop>
+#include <QFileInfo>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <functional>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+using Kind = qFenestraOutcome::Kind;
+
+const QString program = FENESTRA_EXECUTABLE;
+const int longest = 30000 * static_cast<int>(testing::brevity()); ///< milliseconds
+const int soon = 1000 * static_cast<int>(testing::brevity());     ///< 200 on an idle machine
+
+/// Runs the event loop until something holds; false after `longest`.
+bool waitFor(const std::function<bool()>& condition) {
+  QElapsedTimer watch;
+  watch.start();
+  while (!condition()) {
+    if (watch.elapsed() > longest)
+      return false;
+    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  }
+  return true;
+}
+
+class SlicerProcess : public ::testing::Test {
+protected:
+  SlicerProcess() {
+    std::string samples;
+    for (char value = 0; value < 64; ++value)
+      samples += {value, 0};
+    folder.write("volume.nrrd",
+                 "NRRD0004\ntype: int16\ndimension: 3\nspace: left-posterior-superior\n"
+                 "sizes: 4 4 4\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n"
+                 "endian: little\nencoding: raw\n\n" +
+                     samples);
+  }
+
+  QString path() const { return QString::fromStdString(folder.path().string()); }
+  bool exists(const char* name) const { return std::filesystem::exists(folder / name); }
+  qFenestraJob job(int id, const QStringList& more = {}) const {
+    return {id, QStringList{"volume.nrrd", "--size", "16x16"} + more, path()};
+  }
+
+  TemporaryFolder folder;
+};
+
+struct Ended {
+  int id;
+  qFenestraOutcome outcome;
+};
+
+/// What a queue told.
+struct Heard {
+  std::vector<int> started;
+  std::vector<double> parts;
+  std::vector<Ended> ended;
+
+  explicit Heard(qFenestraQueue& queue) {
+    QObject::connect(&queue, &qFenestraQueue::started, [this](int id) { started.push_back(id); });
+    QObject::connect(&queue, &qFenestraQueue::progressed,
+                     [this](int, double part) { parts.push_back(part); });
+    QObject::connect(&queue, &qFenestraQueue::ended,
+                     [this](int id, const qFenestraOutcome& outcome) {
+                       ended.push_back({id, outcome});
+                     });
+  }
+};
+
+TEST_F(SlicerProcess, RendersOneAfterTheOther) {
+  qFenestraQueue queue(program);
+  const Heard heard(queue);
+  for (int id = 1; id <= 3; ++id)
+    queue.add(job(id, {"--samples", "4", "--output", QString("%1.png").arg(id)}));
+  EXPECT_EQ(queue.waiting(), 2);
+  ASSERT_TRUE(waitFor([&] { return heard.ended.size() == 3; }));
+  EXPECT_EQ(heard.started, (std::vector<int>{1, 2, 3}));
+  for (int id = 1; id <= 3; ++id) {
+    const Ended& ended = heard.ended[static_cast<std::size_t>(id - 1)];
+    EXPECT_EQ(ended.id, id);
+    EXPECT_EQ(ended.outcome.kind, Kind::done) << ended.outcome.details.toStdString();
+    EXPECT_TRUE(exists(QString("%1.png").arg(id).toUtf8().constData()));
+  }
+  ASSERT_FALSE(heard.parts.empty());
+  EXPECT_EQ(heard.parts.back(), 1.0);
+}
+
+TEST_F(SlicerProcess, StoppingKeepsWhatThereIs) {
+  qFenestraQueue queue(program);
+  const Heard heard(queue);
+  queue.add(job(1, {"--samples", "3000000", "--output", "long.png"}));
+  queue.add(job(2, {"--output", "never.png"}));
+  queue.add(job(3, {"--samples", "1", "--output", "after.png"}));
+  ASSERT_TRUE(waitFor([&] { return !heard.parts.empty() && heard.parts.back() > 0.0; }));
+  queue.stop(2);
+  queue.stop(1);
+  QElapsedTimer watch;
+  watch.start();
+  ASSERT_TRUE(waitFor([&] { return heard.ended.size() >= 2; }));
+  std::cout << "stopped within " << watch.elapsed() << " ms\n";
+  EXPECT_LT(watch.elapsed(), soon);
+  ASSERT_TRUE(waitFor([&] { return heard.ended.size() == 3; }));
+  EXPECT_EQ(heard.ended[0].id, 2);
+  EXPECT_EQ(heard.ended[1].id, 1);
+  EXPECT_EQ(heard.ended[1].outcome.kind, Kind::stopped);
+  EXPECT_TRUE(exists("long.png"));
+  EXPECT_FALSE(exists("never.png"));
+  EXPECT_TRUE(exists("after.png"));
+}
+
+TEST_F(SlicerProcess, SaysWhatIsWrong) {
+  qFenestraQueue queue(program);
+  const Heard heard(queue);
+  queue.add({1, {"missing.nrrd"}, path()});
+  queue.add(job(2, {"--samples", "none"}));
+  ASSERT_TRUE(waitFor([&] { return heard.ended.size() == 2; }));
+  for (const Ended& ended : heard.ended)
+    EXPECT_EQ(ended.outcome.kind, Kind::failed);
+  EXPECT_TRUE(heard.ended[0].outcome.message.startsWith("missing.nrrd: "))
+      << heard.ended[0].outcome.message.toStdString();
+  EXPECT_TRUE(heard.ended[1].outcome.message.startsWith("--samples: "));
+  EXPECT_TRUE(heard.ended[1].outcome.details.startsWith("fenestra: --samples: "));
+}
+
+TEST_F(SlicerProcess, AMissingRendererIsToldOnceAndHoldsNothingUp) {
+  qFenestraQueue queue(path() + "/nowhere/fenestra");
+  const Heard heard(queue);
+  queue.add(job(1));
+  queue.add(job(2));
+  ASSERT_TRUE(waitFor([&] { return heard.ended.size() == 2; }));
+  for (const Ended& ended : heard.ended) {
+    EXPECT_EQ(ended.outcome.kind, Kind::failed);
+    EXPECT_TRUE(ended.outcome.message.contains("could not be started"));
+    EXPECT_TRUE(ended.outcome.details.contains("nowhere"));
+  }
+}
+
+TEST_F(SlicerProcess, ACrashIsNoEndOfTheWorld) {
+  qFenestraProgram child;
+  std::vector<qFenestraOutcome> outcomes;
+  QObject::connect(&child, &qFenestraProgram::ended,
+                   [&](const qFenestraOutcome& outcome) { outcomes.push_back(outcome); });
+  child.run(program, job(1, {"--samples", "100000000"}).arguments, path());
+  ASSERT_TRUE(child.waitForStarted());
+  ::kill(static_cast<pid_t>(child.processId()), SIGKILL); // as the system does for lack of memory
+  ASSERT_TRUE(waitFor([&] { return !outcomes.empty(); }));
+  EXPECT_EQ(outcomes[0].kind, Kind::failed);
+  EXPECT_TRUE(outcomes[0].message.contains("memory"));
+}
+
+TEST_F(SlicerProcess, ReadsProgressAndNothingElse) {
+  EXPECT_EQ(qFenestraQueue::progressIn("<filter-progress>0.25</filter-progress>"), 0.25);
+  EXPECT_EQ(qFenestraQueue::progressIn("<filter-progress>7</filter-progress>"), 1.0);
+  for (const char* line :
+       {"", "0.5", "<filter-progress>", "<filter-progress>x</filter-progress>",
+        "<filter-progress>-1</filter-progress>", "<filter-progress>nan</filter-progress>",
+        "<filter-progress></filter-progress>", "<filter-start>", "</filter-progress>"})
+    EXPECT_EQ(qFenestraQueue::progressIn(line), -1.0) << line;
+}
+
+TEST_F(SlicerProcess, ChildrenDoNotSeeSlicersLibraries) {
+  QProcessEnvironment slicers;
+  slicers.insert("LD_LIBRARY_PATH", "/opt/slicer/lib");
+  slicers.insert("QT_PLUGIN_PATH", "/opt/slicer/plugins");
+  slicers.insert("HOME", "/home/somebody");
+  const QProcessEnvironment environment = qFenestraProgram::isolated(slicers);
+  EXPECT_EQ(environment.keys(), QStringList{"HOME"});
+}
+
+/// A child outlives neither its object nor, by the signal that it asked for, its parent.
+TEST_F(SlicerProcess, NoChildIsLeftBehind) {
+  qint64 id = 0;
+  {
+    qFenestraProgram child;
+    child.run(program, job(1, {"--samples", "100000000"}).arguments, path());
+    ASSERT_TRUE(child.waitForStarted());
+    id = child.processId();
+  }
+  EXPECT_NE(::kill(static_cast<pid_t>(id), 0), 0);
+
+  int tell[2];
+  ASSERT_EQ(::pipe(tell), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) { // a Slicer that crashes
+    qFenestraProgram child;
+    child.run(program, job(1, {"--samples", "100000000"}).arguments, path());
+    child.waitForStarted();
+    const pid_t grandchild = static_cast<pid_t>(child.processId());
+    [[maybe_unused]] const auto written = ::write(tell[1], &grandchild, sizeof grandchild);
+    ::kill(::getpid(), SIGKILL);
+  }
+  pid_t orphan = 0;
+  ASSERT_EQ(::read(tell[0], &orphan, sizeof orphan), static_cast<ssize_t>(sizeof orphan));
+  ::close(tell[0]);
+  ::close(tell[1]);
+  ::waitpid(parent, nullptr, 0);
+  ASSERT_GT(orphan, 0);
+  const auto gone = [&] {
+    QFile status(QString("/proc/%1/stat").arg(orphan)); // a zombie of nobody's is gone as well
+    return !status.open(QIODevice::ReadOnly) || status.readAll().contains(") Z ");
+  };
+  EXPECT_TRUE(waitFor(gone));
+}
+
+class SlicerPreview : public SlicerProcess {
+protected:
+  SlicerPreview() {
+    QObject::connect(&preview, &qFenestraPreview::refreshed,
+                     [this](const qFenestraPicture& picture) { pictures.push_back(picture); });
+    QObject::connect(&preview, &qFenestraPreview::refused,
+                     [this](const QString& message) { refusals << message; });
+    QObject::connect(&preview, &qFenestraPreview::ended,
+                     [this](const qFenestraOutcome& outcome) { outcomes.push_back(outcome); });
+  }
+
+  void start(const char* samples) {
+    preview.start(program,
+                  {"volume.nrrd", "--size", "16x16", "--samples", samples, "--output", "p.png"},
+                  path());
+  }
+  bool waitForDone() {
+    return waitFor([this] { return !pictures.empty() && pictures.back().done; });
+  }
+
+  qFenestraPreview preview;
+  std::vector<qFenestraPicture> pictures;
+  QStringList refusals;
+  std::vector<qFenestraOutcome> outcomes;
+};
+
+TEST_F(SlicerPreview, FollowsChangesWhenHandsRest) {
+  start("8");
+  ASSERT_TRUE(waitForDone());
+  EXPECT_EQ(pictures.back().samples, 8);
+  EXPECT_EQ(pictures.back().files, QStringList{"p.png"});
+  EXPECT_TRUE(exists("p.png"));
+  pictures.clear();
+  // A hand that moves: one change is told, the last of each kind.
+  for (const char* view : {"left", "right", "superior"}) {
+    preview.change({{"view", view}});
+    preview.change({{"samples", 4}});
+  }
+  ASSERT_TRUE(waitForDone());
+  EXPECT_EQ(pictures.back().samples, 4);
+  for (const qFenestraPicture& picture : pictures)
+    EXPECT_LE(picture.samples, 4);
+  EXPECT_TRUE(refusals.isEmpty());
+}
+
+TEST_F(SlicerPreview, ARefusalLeavesWhatIsShown) {
+  start("2");
+  ASSERT_TRUE(waitForDone());
+  preview.change({{"focus", "Femur"}});
+  ASSERT_TRUE(waitFor([this] { return !refusals.isEmpty(); }));
+  EXPECT_TRUE(refusals[0].contains("--focus")) << refusals[0].toStdString();
+  pictures.clear();
+  preview.change({{"view", "left"}});
+  ASSERT_TRUE(waitForDone());
+  EXPECT_TRUE(preview.running());
+}
+
+TEST_F(SlicerPreview, StopsAtOnce) {
+  start("100000000");
+  ASSERT_TRUE(waitFor([this] { return !pictures.empty(); }));
+  QElapsedTimer watch;
+  watch.start();
+  preview.stop();
+  std::cout << "stopped within " << watch.elapsed() << " ms\n";
+  EXPECT_LT(watch.elapsed(), soon);
+  EXPECT_FALSE(preview.running());
+  ASSERT_EQ(outcomes.size(), 1u);
+  EXPECT_EQ(outcomes[0].kind, Kind::stopped);
+}
+
+TEST_F(SlicerPreview, SaysWhyItCannotBegin) {
+  preview.start(program, {"missing.nrrd"}, path());
+  ASSERT_TRUE(waitFor([this] { return !outcomes.empty(); }));
+  EXPECT_EQ(outcomes[0].kind, Kind::failed);
+  EXPECT_TRUE(outcomes[0].message.startsWith("missing.nrrd: "));
+}
+
+} // namespace
+} // namespace fenestra
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  const QCoreApplication application(argc, argv);
+  return RUN_ALL_TESTS();
+}
