@@ -2,6 +2,8 @@
 
 #include "cli/CommandLine.h"
 #include "cli/InspectReport.h"
+#include "cli/RenderFlags.h"
+#include "cli/SceneFlags.h"
 #include "cli/Stop.h"
 #include "core/Error.h"
 #include "io/mrml/SceneFiles.h"
@@ -37,13 +39,20 @@ int inspectCommand(int argc, char** argv, int first) {
     return 0;
   const StopOnSignal stopOnSignal;
   const std::string input = *values->text("INPUT");
+  FlagValues given(renderSyntax.flags);
+  for (const char* name : {"INPUT", "volume", "segmentation"})
+    if (const auto value = values->text(name))
+      given.add(name, *value);
+  const FlagValues flags = withSceneFlags(given);
   SceneRequest request;
   request.input = input;
-  request.volume = values->text("volume");
-  request.segmentation = values->text("segmentation");
+  request.volume = flags.text("volume");
+  request.segmentation = flags.text("segmentation");
   if (request.volume && !isSceneFile(input) && !std::filesystem::is_directory(input))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
-  const Inspection inspection = inspectInput(request);
+  Inspection inspection = inspectInput(request);
+  if (inspection.render)
+    inspection.render->stored = sceneArguments(given, flags);
   std::cout << (values->has("json") ? inspectionJson(inspection, input)
                                     : inspectionText(inspection, input))
             << std::flush;

@@ -175,6 +175,7 @@ Json renderJson(const RenderUse& use) {
   });
   json["segmentation"] = orNull(use.segmentation);
   json["segmentationProblem"] = orNull(use.segmentationProblem);
+  json["stored"] = use.stored;
   return json;
 }
 

@@ -29,7 +29,7 @@ std::string inspectionText(const Inspection& inspection, const std::string& inpu
 ///     [id]},
 ///       look {source ("volumeProperty" | "volumeDisplay" | "preset" | "range"), id, name},
 ///       crop {id, name, edges, center}, camera {id, name, projection, ...}, background {view,
-///       bottom, top}, segmentation, segmentationProblem
+///       bottom, top}, segmentation, segmentationProblem, stored [argument]
 ///     refused: null, or the line that a render ends in
 ///     warnings [line], ignored [line]
 ///

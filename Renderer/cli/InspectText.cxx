@@ -348,11 +348,16 @@ void showUse(Page& page, const RenderUse& use) {
     page.paragraph("  segmentation  ", "open: " + use.segmentationProblem);
   else if (!use.segmentation.empty())
     page.paragraph("  segmentation  ", use.segmentation + ", with --focus");
+  std::string stored;
+  for (const std::string& argument : use.stored)
+    stored += (stored.empty() ? "" : " ") + argument;
+  if (!stored.empty())
+    page.paragraph("  as rendered   ", stored);
 }
 
 bool isEmpty(const RenderUse& use) {
   return !use.volume && !use.look && !use.crop && !use.camera && !use.background &&
-         use.segmentation.empty() && use.segmentationProblem.empty();
+         use.segmentation.empty() && use.segmentationProblem.empty() && use.stored.empty();
 }
 
 void showRender(Page& page, const Inspection& inspection) {

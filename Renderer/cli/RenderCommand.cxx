@@ -5,6 +5,7 @@
 #include "cli/Pictures.h"
 #include "cli/Progress.h"
 #include "cli/RenderFlags.h"
+#include "cli/SceneFlags.h"
 #include "cli/SlicerModule.h"
 #include "cli/Stats.h"
 #include "cli/Stop.h"
@@ -56,12 +57,13 @@ int renderCommand(int argc, char** argv, int first) {
     std::cout << slicerDescription(renderSyntax) << std::flush;
     return 0;
   }
-  const std::optional<FlagValues> flags = parseCommandLine(renderSyntax, argc, argv, first);
-  if (!flags)
+  const std::optional<FlagValues> given = parseCommandLine(renderSyntax, argc, argv, first);
+  if (!given)
     return 0;
-  if (flags->has("echo"))
-    std::cout << flags->echo() << std::flush;
-  const RenderOptions options = renderOptions(*flags);
+  const FlagValues flags = withSceneFlags(*given);
+  if (flags.has("echo"))
+    std::cout << flags.echo() << std::flush;
+  const RenderOptions options = renderOptions(flags);
   const MachineUse machine(options.settings);
   RenderMonitor monitor;
   StopOnSignal stopOnSignal;

@@ -5,6 +5,7 @@
 #include "cli/Commands.h"
 #include "cli/Machine.h"
 #include "cli/Pictures.h"
+#include "cli/SceneFlags.h"
 #include "cli/ServeInput.h"
 #include "core/Error.h"
 #include "core/Stopwatch.h"
@@ -121,17 +122,18 @@ private:
 } // namespace
 
 int serveCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> flags = parseCommandLine(syntax, argc, argv, first);
-  if (!flags)
+  const std::optional<FlagValues> given = parseCommandLine(syntax, argc, argv, first);
+  if (!given)
     return 0;
   for (const char* name : {"stats", "returnparameterfile", "progress", "xml", "echo"})
-    if (flags->has(name))
+    if (given->has(name))
       throw usageError(std::string("--") + name + ": serve tells all on standard output; drop it");
-  const RenderOptions options = renderOptions(*flags);
+  const FlagValues flags = withSceneFlags(*given);
+  const RenderOptions options = renderOptions(flags);
   const MachineUse machine(options.settings);
   checkOutputs(options);
   // Lives as long as the process, as its reading thread does.
-  Server& server = *new Server(*flags);
+  Server& server = *new Server(flags);
   try {
     server.run();
   } catch (const Unheard&) {

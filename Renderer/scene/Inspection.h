@@ -119,6 +119,7 @@ struct RenderUse {
   std::optional<BackgroundUse> background = {};
   std::string segmentation = {};        ///< a focus is looked for in it: an id, or a file
   std::string segmentationProblem = {}; ///< why that is open
+  std::vector<std::string> stored = {}; ///< flags that the scene has from Fenestra's extension
 };
 
 enum class InputKind { scene, volume, segmentation, dicom };

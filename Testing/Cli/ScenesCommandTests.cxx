@@ -239,6 +239,53 @@ TEST_F(ScenesCommand, FindsTheFocusInTheScenesSegmentationOrInAFile) {
   EXPECT_NE(file.err.find("cannot be seen"), std::string::npos) << file.err;
 }
 
+/// What the extension stores with a picture makes it again; flags that are given win, with all of
+/// their kind.
+TEST_F(ScenesCommand, RepeatsThePictureThatTheSceneStores) {
+  const std::string plain = scene(R"(parallelProjection="true" parallelScale="4")", false);
+  std::string stored = plain;
+  stored.insert(stored.find("</MRML>"), R"(
+      <FenestraRender id="f1" name="earlier" view="left" size="8x8"/>
+      <FenestraRender id="f2" name="now" references="volume:v;segmentation:s;" focus="A"
+        clip="cutaway" position="3,-30,6" target="2,-2,1" up="0.1,0,1" scale="3" size="16x16"
+        noise="0.5" samples="40" seed="9" density="2" output="elsewhere.png" threads="one"/>)");
+  folder.write("plain.mrml", plain);
+  folder.write("stored.mrml", stored);
+  const auto rendered = [&](const std::string& input, const Arguments& flags) {
+    Arguments all = {input, "--output", "a.exr"};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const Outcome outcome = run(all, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return readImage(folder / "a.exr").channels;
+  };
+  const Arguments looks = {"--size", "16x16", "--seed", "9", "--density", "2"};
+  const auto with = [&](Arguments flags) {
+    flags.insert(flags.end(), looks.begin(), looks.end());
+    return flags;
+  };
+  const Arguments focus = {"--segmentation", "s", "--focus", "A", "--clip", "cutaway"};
+  const Arguments eye = {"--position", "3,-30,6", "--target", "2,-2,1",
+                         "--up",       "0.1,0,1", "--scale",  "3"};
+  Arguments everything = with({"--noise", "0.5", "--samples", "40"});
+  everything.insert(everything.end(), focus.begin(), focus.end());
+  Arguments viewed = everything;
+  everything.insert(everything.end(), eye.begin(), eye.end());
+  EXPECT_EQ(rendered("stored.mrml", {}), rendered("plain.mrml", everything));
+  viewed.insert(viewed.end(), {"--view", "left"});
+  EXPECT_EQ(rendered("stored.mrml", {"--view", "left"}), rendered("plain.mrml", viewed));
+  Arguments fewer = with({"--samples", "3", "--clip", "none"});
+  fewer.insert(fewer.end(), eye.begin(), eye.end());
+  fewer.insert(fewer.end(), {"--segmentation", "s", "--focus", "A"});
+  EXPECT_EQ(rendered("stored.mrml", {"--samples", "3", "--clip", "none"}),
+            rendered("plain.mrml", fewer));
+  EXPECT_FALSE(std::filesystem::exists(folder / "elsewhere.png"));
+
+  const Outcome inspected = run({"inspect", "stored.mrml"}, folder.path());
+  EXPECT_NE(inspected.out.find("as rendered   --clip=cutaway --density=2 --focus=A"),
+            std::string::npos)
+      << inspected.out;
+}
+
 TEST_F(ScenesCommand, RefusesWhatASceneDoesNotHold) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   folder.write("perspective.mrml", scene(R"(viewAngle="16")", false));

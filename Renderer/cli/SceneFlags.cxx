@@ -1,0 +1,67 @@
+#include "cli/SceneFlags.h"
+
+#include "cli/RenderFlags.h"
+#include "io/mrml/MrmlScene.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+/// Flags that decide one thing together; any other flag decides by itself.
+const std::vector<std::vector<std::string>> kinds = {
+    {"view", "position", "target", "up", "projection", "scale", "angle"},
+    {"clip", "boundary", "controlpoints", "smoothing", "plane"},
+    {"samples", "seconds", "noise"},
+    {"focus", "segmentation"},
+    {"lights", "environment"},
+};
+
+bool decides(const FlagValues& given, const std::string& name) {
+  const auto has = [&](const std::string& flag) { return given.has(flag); };
+  for (const std::vector<std::string>& kind : kinds)
+    if (std::find(kind.begin(), kind.end(), name) != kind.end())
+      return std::any_of(kind.begin(), kind.end(), has);
+  return has(name);
+}
+
+/// What a picture does not depend on is not stored.
+bool isStored(const Flag& flag) {
+  static const std::vector<std::string> others = {"output", "layers", "stats", "threads",
+                                                  "progress"};
+  return flag.takes.kind != Takes::Kind::slicersOwn &&
+         std::find(others.begin(), others.end(), flag.name) == others.end();
+}
+
+} // namespace
+
+FlagValues withSceneFlags(const FlagValues& given) {
+  FlagValues merged = given;
+  const std::filesystem::path input = *given.text("INPUT");
+  if (!isSceneFile(input))
+    return merged;
+  const MrmlScene scene(input);
+  const std::vector<const MrmlNode*> nodes = scene.document.withTag("FenestraRender");
+  if (nodes.empty())
+    return merged;
+  const MrmlNode& node = *nodes.back();
+  for (const Flag& flag : renderSyntax.flags) {
+    const std::string name = flag.name;
+    const bool isNode = name == "volume" || name == "segmentation";
+    const std::string value = isNode ? node.referenced(name) : node.text(name);
+    if (isStored(flag) && !value.empty() && !decides(given, name))
+      merged.add(name, value);
+  }
+  return merged;
+}
+
+std::vector<std::string> sceneArguments(const FlagValues& given, const FlagValues& merged) {
+  const std::vector<std::string> before = given.arguments();
+  std::vector<std::string> stored;
+  for (const std::string& argument : merged.arguments())
+    if (std::find(before.begin(), before.end(), argument) == before.end())
+      stored.push_back(argument);
+  return stored;
+}
+
+} // namespace fenestra

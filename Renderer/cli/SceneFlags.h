@@ -1,0 +1,18 @@
+#pragma once
+// Flags that come with a Slicer scene: the extension keeps what a picture was made with in a node
+// of the scene, <FenestraRender focus="Femur" clip="surface" ...
+// references="volume:ID;segmentation:ID;">, so that rendering the scene makes the picture again.
+
+#include "cli/Flags.h"
+
+namespace fenestra {
+
+/// Flags of `fenestra render` with what the scene named by INPUT stores; of several nodes the last
+/// counts. Flags that are given win: any of the view, of clipping, or of when to stop replaces all
+/// stored ones of its kind. Other inputs change nothing. Throws Error (input) for a damaged scene.
+FlagValues withSceneFlags(const FlagValues& given);
+
+/// The stored ones among them, as arguments.
+std::vector<std::string> sceneArguments(const FlagValues& given, const FlagValues& merged);
+
+} // namespace fenestra
