@@ -49,14 +49,16 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
       return extinction;
     return extinction * greatest(*transfer.gradientOpacity, 0.0, gradientBound(grid, high - low));
   };
+  const auto keptOf = [&](const Vec3& cell) {
+    return std::holds_alternative<ClipNone>(clip) ? Kept::all
+                                                  : keptIn(clip, cornersOf(cellToWorld, cell));
+  };
   tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
       for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {
         const auto cell = static_cast<std::size_t>(x + m_cellCount.x() * (y + m_cellCount.y() * z));
         const double majorant = bound(cell);
-        const Kept kept = majorant > 0.0
-                              ? keptIn(clip, cornersOf(cellToWorld, Size3(x, y, z).cast<double>()))
-                              : Kept::none;
+        const Kept kept = majorant > 0.0 ? keptOf(Size3(x, y, z).cast<double>()) : Kept::none;
         m_cells[cell] = {kept == Kept::none ? 0.0F : roundedUp(majorant), kept == Kept::some};
       }
   });
