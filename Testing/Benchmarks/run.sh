@@ -22,6 +22,10 @@ done
 
 say "Error against time"
 "$folder/bin/EfficiencyBenchmark" --output "$report" "$@"
+# The table of efficiencies stands in the project's README, too.
+sed -n '/^## Efficiency/,/^## Bias/{/^|/p}' "$report/README.md" >"$folder/benchmarks/speed.md"
+sed -i -e "/^<!-- speed: /,/^<!-- end of speed/{/^|/d}" \
+  -e "/^<!-- speed: /r $folder/benchmarks/speed.md" "$top/README.md"
 say "The parts, on one thread"
 "$folder/bin/MicroBenchmarks" --benchmark_format=console | tee "$folder/benchmarks/parts.txt"
 {
