@@ -42,7 +42,7 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
 }
 
 bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer) {
-  constexpr double deepest = 1e4;
+  constexpr double deepest = 1e5; // rounding moves a collision by 0.6 % of a free path, at most
   const std::int64_t count = volume.grid.voxelCount();
   constexpr std::int64_t most = std::int64_t{1} << 31; // indices of 32 bits
   if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most)

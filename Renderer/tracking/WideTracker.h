@@ -62,7 +62,7 @@ class WideTracker {
 public:
   /// Whether floats suffice and every part of the medium is known to the lanes: no gradient
   /// opacity, at least two voxels along x, at most 2^31 of them, and an optical depth
-  /// across the volume of at most 1e4.
+  /// across the volume of at most 1e5.
   static bool serves(const Volume& volume, const TransferFunction& transfer);
 
   /// A view: volume and clip outlive it.

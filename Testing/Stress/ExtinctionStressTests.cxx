@@ -123,6 +123,13 @@ TransferFunction striped(const Rgb& albedo) {
           ColorFunction({{0.0, albedo}})};
 }
 
+/// As deep as lanes serve, from clear to opaque.
+constexpr double deepestOfLanes = 1.6e5;
+TransferFunction deep(const Rgb& albedo) {
+  return {ScalarFunction({knot(0.0, 0.0), knot(depthVoxels - 1, deepestOfLanes)}),
+          ColorFunction({{0.0, albedo}})};
+}
+
 using ReflectanceCase = std::tuple<Profile, std::pair<double, double>>;
 class HalfSpaceProfile : public ::testing::TestWithParam<ReflectanceCase> {};
 
@@ -148,12 +155,20 @@ TEST_P(HalfSpaceProfile, ReflectsAsChandrasekharSays) {
 INSTANTIATE_TEST_SUITE_P(
     Profiles, HalfSpaceProfile,
     ::testing::Combine(::testing::Values(Profile{"dense", dense}, Profile{"smooth", smooth},
-                                         Profile{"stepped", stepped}, Profile{"striped", striped}),
+                                         Profile{"stepped", stepped}, Profile{"striped", striped},
+                                         Profile{"deep", deep}),
                        ::testing::Values(std::pair(0.5, 0.1152), std::pair(0.9, 0.4149))),
     [](const auto& info) {
       return std::string(std::get<0>(info.param).name) +
              (std::get<1>(info.param).first == 0.5 ? "Dark" : "Bright");
     });
+
+TEST(HalfSpace, LanesServeTheDeepOneAndNoDeeper) {
+  const Volume volume = layers(depthVoxels, 0.0005, 0.4);
+  EXPECT_TRUE(WideTracker::serves(volume, deep(Rgb::Ones())));
+  EXPECT_FALSE(WideTracker::serves(volume, deep(Rgb::Ones()).scaled(1.2)));
+  EXPECT_FALSE(WideTracker::serves(volume, stepped(Rgb::Ones())));
+}
 
 // ---- whole pictures
 
