@@ -97,6 +97,7 @@ public:
     } catch (const CLI::Error& error) {
       throw valueError(m_syntax, error);
     }
+    refuseMissingValues(); // before the words that they have made extra
     refuseExtras();
     return values();
   }
@@ -119,6 +120,15 @@ private:
                   wrapped(flag.text, page - column))
         ->group(flag.group)
         ->disable_flag_override();
+  }
+
+  /// A flag in the place of another one's value.
+  void refuseMissingValues() const {
+    for (const Flag& flag : m_syntax.flags)
+      if (const auto given = m_flags.find(flag.name); given != m_flags.end())
+        for (const std::string& value : given->second)
+          if (value.starts_with("--"))
+            throw wrongValue(flag);
   }
 
   void refuseExtras() const {
@@ -149,8 +159,6 @@ private:
 
   void addValues(const Flag& flag, FlagValues& values) const {
     for (const std::string& value : m_flags.at(flag.name)) {
-      if (value.starts_with("--"))
-        throw wrongValue(flag);
       if (value.empty())
         throw usageError(std::string("--") + flag.name + ": its value is empty; write --" +
                          flag.name + " " + flag.value);
