@@ -133,7 +133,7 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
   for (std::size_t i = 0; i < at.count(); ++i)
     if (cut[i]) // is walked alone
       bounds[i] = std::numeric_limits<float>::infinity();
-  // A cell that does not gain by one more is taken not to gain by two.
+  // A cell that gains neither by one more nor by two is taken not to gain by three.
   std::atomic<bool> some = true;
   for (std::uint32_t reach = 1; some && reach <= WideCells::mostReach; ++reach) {
     some = false;
@@ -141,14 +141,14 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
     const auto step = static_cast<float>(stepCost / (edge * (0.7 + reach)));
     at.forEachInParallel([&](auto x, auto y, auto z) {
       const std::size_t i = at.index(x, y, z);
-      if (majorants[i] == 0.0F || best.cells[i] + 1U != reach)
+      if (majorants[i] == 0.0F || best.cells[i] + 2U < reach)
         return;
+      some.store(true, std::memory_order_relaxed);
       const float here = bounds[i] - sums.mean(x, y, z, reach) + step;
       if (here < least[i]) {
         least[i] = here;
         best.bound[i] = bounds[i];
         best.cells[i] = static_cast<std::uint8_t>(reach);
-        some.store(true, std::memory_order_relaxed);
       }
     });
   }
