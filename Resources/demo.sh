@@ -18,7 +18,7 @@ fi
 
 # The femoral cartilage from in front and a little below, with its two lesions.
 scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
-  --focus "Femoral cartilage" --position=-15,200,-90 --size 512x512 --noise 0.04)
+  --focus "Femoral cartilage" --position=-15,200,-90 --size 512x512 --samples 32)
 
 render() { # MODE [flags]
   local mode=$1
