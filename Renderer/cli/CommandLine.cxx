@@ -16,12 +16,6 @@ std::string seeHelp(const CommandSyntax& syntax) {
   return std::string(" (fenestra ") + syntax.name + " --help lists what there is)";
 }
 
-const Flag* find(const CommandSyntax& syntax, std::string_view name) {
-  const auto it = std::find_if(syntax.flags.begin(), syntax.flags.end(),
-                               [name](const Flag& flag) { return flag.name == name; });
-  return it == syntax.flags.end() ? nullptr : &*it;
-}
-
 Error unknownFlag(const CommandSyntax& syntax, std::string_view given) {
   given = given.substr(0, given.find('='));
   std::vector<std::string_view> names = {"help", "version"};
@@ -62,7 +56,8 @@ Error valueError(const CommandSyntax& syntax, const CLI::Error& error) {
   const std::size_t dashes = message.find("--");
   const std::size_t begin = dashes == std::string::npos ? 0 : dashes + 2;
   const std::size_t end = message.find_first_of(": ,", begin);
-  if (const Flag* flag = find(syntax, std::string_view(message).substr(begin, end - begin)))
+  if (const Flag* flag =
+          findFlag(syntax.flags, std::string_view(message).substr(begin, end - begin)))
     return wrongValue(*flag);
   return usageError(message.substr(0, message.find('\n')) + seeHelp(syntax));
 }

@@ -39,22 +39,22 @@ Error badValue(const std::string& flag, const std::string& expected, const std::
   return usageError("--" + flag + ": expected " + expected + ", got '" + got + "'");
 }
 
+} // namespace
+
+const Flag* findFlag(std::span<const Flag> flags, std::string_view name) {
+  const auto it = std::find_if(flags.begin(), flags.end(),
+                               [name](const Flag& flag) { return flag.name == name; });
+  return it == flags.end() ? nullptr : &*it;
+}
+
 std::string shortNumber(double x) {
   std::ostringstream out;
   out << x;
   return out.str();
 }
 
-} // namespace
-
-const Flag* FlagValues::find(const std::string& name) const {
-  const auto it = std::find_if(m_flags.begin(), m_flags.end(),
-                               [&](const Flag& flag) { return flag.name == name; });
-  return it == m_flags.end() ? nullptr : &*it;
-}
-
 const Flag& FlagValues::flag(const std::string& name) const {
-  if (const Flag* flag = find(name))
+  if (const Flag* flag = findFlag(m_flags, name))
     return *flag;
   throw std::logic_error("--" + name + " is not in the table");
 }
@@ -161,7 +161,7 @@ std::vector<std::string> FlagValues::arguments() const {
   std::vector<std::string> arguments;
   for (const auto& [name, values] : m_values)
     for (const std::string& value : values)
-      if (!find(name)) // a positional one
+      if (!findFlag(m_flags, name)) // a positional one
         arguments.push_back(value);
       else
         arguments.push_back("--" + name + (value.empty() ? "" : "=" + value));

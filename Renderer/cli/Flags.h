@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fenestra {
@@ -101,12 +102,17 @@ public:
   void remove(const std::string& name) { m_values.erase(name); }
 
 private:
-  const Flag* find(const std::string& name) const;
   const Flag& flag(const std::string& name) const;
 
   std::span<const Flag> m_flags;
   std::map<std::string, std::vector<std::string>> m_values;
 };
+
+/// The flag of that name; null where there is none.
+const Flag* findFlag(std::span<const Flag> flags, std::string_view name);
+
+/// Six digits at most.
+std::string shortNumber(double x);
 
 /// The parts of a text between separators; at least one.
 std::vector<std::string> splitAt(std::string_view text, char separator);

@@ -301,6 +301,12 @@ const CommandSyntax renderSyntax = {
     flags,
 };
 
+bool shapesPicture(const Flag& flag) {
+  static constexpr std::string_view others[] = {"output", "layers", "stats", "threads", "progress"};
+  return flag.takes.kind != Takes::Kind::slicersOwn &&
+         std::find(std::begin(others), std::end(others), flag.name) == std::end(others);
+}
+
 RenderOptions renderOptions(const FlagValues& flags) {
   RenderOptions options;
   SceneRequest& scene = options.scene;

@@ -25,6 +25,9 @@ struct RenderOptions {
 
 extern const CommandSyntax renderSyntax;
 
+/// Whether the picture depends on the flag, and not only its files or how the process works.
+bool shapesPicture(const Flag& flag);
+
 /// Throws Error (usage) for values out of range and for flags that contradict each other.
 RenderOptions renderOptions(const FlagValues& flags);
 

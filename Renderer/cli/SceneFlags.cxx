@@ -25,14 +25,6 @@ bool decides(const FlagValues& given, const std::string& name) {
   return has(name);
 }
 
-/// What a picture does not depend on is not stored.
-bool isStored(const Flag& flag) {
-  static const std::vector<std::string> others = {"output", "layers", "stats", "threads",
-                                                  "progress"};
-  return flag.takes.kind != Takes::Kind::slicersOwn &&
-         std::find(others.begin(), others.end(), flag.name) == others.end();
-}
-
 } // namespace
 
 FlagValues withSceneFlags(const FlagValues& given) {
@@ -49,7 +41,7 @@ FlagValues withSceneFlags(const FlagValues& given) {
     const std::string name = flag.name;
     const bool isNode = name == "volume" || name == "segmentation";
     const std::string value = isNode ? node.referenced(name) : node.text(name);
-    if (isStored(flag) && !value.empty() && !decides(given, name))
+    if (shapesPicture(flag) && !value.empty() && !decides(given, name))
       merged.add(name, value);
   }
   return merged;

@@ -19,17 +19,6 @@ using nlohmann::json;
 
 constexpr std::size_t longestLine = 1 << 20;
 
-/// What the process is from its start to its end.
-constexpr std::string_view fixedFlags[] = {"output",
-                                           "layers",
-                                           "stats",
-                                           "threads",
-                                           "progress",
-                                           "returnparameterfile",
-                                           "processinformationaddress",
-                                           "echo",
-                                           "xml"};
-
 /// A value as the command line has it.
 std::string valueText(const std::string& name, const json& value) {
   if (value.is_string())
@@ -73,12 +62,13 @@ void applyChange(const json& change, FlagValues& flags) {
   for (const auto& [name, value] : change.items()) {
     if (name == "id")
       continue;
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
+    const Flag* flag = findFlag(renderSyntax.flags, name);
+    if (!flag) {
       const std::string_view likely = nearest(name, names);
       throw usageError(name + ": no such flag" +
                        (likely.empty() ? "" : "; did you mean " + std::string(likely) + "?"));
     }
-    if (std::find(std::begin(fixedFlags), std::end(fixedFlags), name) != std::end(fixedFlags))
+    if (!shapesPicture(*flag))
       throw usageError(name + ": cannot change while serving; start another server");
     result.remove(name);
     const std::string text = value.is_null()    ? ""

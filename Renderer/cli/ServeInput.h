@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include <condition_variable>
-#include <functional>
 #include <mutex>
 #include <thread>
 

@@ -14,12 +14,6 @@ void addText(pugi::xml_node parent, const char* name, const std::string& text) {
   parent.append_child(name).text().set(text.c_str());
 }
 
-std::string shortest(double x) {
-  std::ostringstream out;
-  out << x;
-  return out.str();
-}
-
 /// The flag's own name, so that panel and command line can be told from each other.
 std::string labelOf(const std::string& name) {
   std::string label = name;
@@ -68,8 +62,8 @@ void addConstraints(pugi::xml_node parameter, const Flag& flag, const std::strin
   if ((!whole && type != "double") || greatest - least > widest)
     return;
   pugi::xml_node constraints = parameter.append_child("constraints");
-  addText(constraints, "minimum", shortest(least));
-  addText(constraints, "maximum", shortest(greatest));
+  addText(constraints, "minimum", shortNumber(least));
+  addText(constraints, "maximum", shortNumber(greatest));
   addText(constraints, "step", whole ? "1" : "0.01");
 }
 
