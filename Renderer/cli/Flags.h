@@ -23,6 +23,7 @@ struct Takes {
     word,      ///< one of few
     labels,    ///< a segmentation, which is read
     picture,   ///< a picture, which is written
+    surface,   ///< a mesh, which is written
     report,    ///< a text file, which is written
     slicersOwn ///< a flag that every program of Slicer's has and none describes
   };
@@ -34,6 +35,7 @@ struct Takes {
   static constexpr Takes numbers() { return {Kind::numbers}; }
   static constexpr Takes labels() { return {Kind::labels}; }
   static constexpr Takes picture() { return {Kind::picture}; }
+  static constexpr Takes surface() { return {Kind::surface}; }
   static constexpr Takes report() { return {Kind::report}; }
   static constexpr Takes slicersOwn() { return {Kind::slicersOwn}; }
   static constexpr Takes number(double least, double greatest) {

@@ -5,6 +5,7 @@
 #include "core/Error.h"
 #include "io/AtomicFile.h"
 #include "io/pictures/ImageWriter.h"
+#include "io/surfaces/SurfaceWriter.h"
 
 #include <sstream>
 #include <unistd.h>
@@ -78,12 +79,14 @@ void checkOutputs(const RenderOptions& options) {
   for (const std::filesystem::path& path : options.outputs)
     for (const std::filesystem::path& file : imageFiles(path))
       results.push_back(file);
-  for (const auto& file : {options.stats, options.returnValues})
+  for (const auto& file : {options.surface, options.stats, options.returnValues})
     if (file)
       results.push_back(*file);
   checkDistinct(options.inputs, results);
   for (const std::filesystem::path& path : options.outputs)
     checkImagePath(path);
+  if (options.surface)
+    checkSurfacePath(*options.surface);
   for (const auto& file : {options.stats, options.returnValues})
     if (file)
       checkWritable(*file);
@@ -103,6 +106,8 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
   image.header = header(scene, options.settings, result, command);
   for (const std::filesystem::path& path : options.outputs)
     writeImage(image, picturePlane(scene.camera()), path);
+  if (options.surface)
+    writeSurface(surfaceMesh(std::get<ClipDepth>(scene.clip()), scene.domain()), *options.surface);
 }
 
 } // namespace fenestra

@@ -13,8 +13,8 @@ void checkOutputs(const RenderOptions& options);
 /// `fenestra arguments…` as a shell takes it back.
 std::string shellCommand(const std::vector<std::string>& arguments);
 
-/// All of options.outputs, each with `command` and whatever else repeats it in its header. Throws
-/// Error (output).
+/// All of options.outputs, each with `command` and whatever else repeats it in its header, and
+/// options.surface. Throws Error (output).
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
                    const std::string& command);
 

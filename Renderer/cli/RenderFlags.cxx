@@ -97,6 +97,10 @@ constexpr Flag flags[] = {
      "Channels of an .exr: color, depth, clip, albedo, normal, error, samples; of a .nrrd: color, "
      "depth (a file of its own) [all]",
      Takes::list(), "color"},
+    {"surface", "FILE", outputGroup,
+     "Clipping surface as triangles, RAS mm (--clip surface or cutaway): .vtp .ply (with depths) "
+     ".stl",
+     Takes::surface()},
     {"stats", "FILE", outputGroup, "Times, counts and measures as .json", Takes::report()},
     {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none [auto]",
      Takes::word("auto|bar|xml|none"), "auto"},
@@ -271,11 +275,24 @@ std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
   return files;
 }
 
+/// Of a clip that is a depth buffer.
+std::optional<std::filesystem::path> surfaceFile(const FlagValues& flags,
+                                                 const SceneRequest& scene) {
+  const auto file = flags.text("surface");
+  const ClipMode mode =
+      scene.clip.mode.value_or(scene.focus.empty() ? ClipMode::none : ClipMode::surface);
+  if (file && mode != ClipMode::surface && mode != ClipMode::cutaway)
+    throw usageError("--surface: only --clip surface and cutaway have one; add --focus A,B,... "
+                     "without another --clip, or drop it");
+  return file;
+}
+
 void readOutputs(const FlagValues& flags, RenderOptions& options) {
   for (const std::string& file : flags.texts("output"))
     options.outputs.emplace_back(file);
   if (options.outputs.empty())
     options.outputs.push_back(defaultOutput(options.scene.input));
+  options.surface = surfaceFile(flags, options.scene);
   options.stats = flags.text("stats");
   options.scene.measureCoverage = options.stats.has_value();
   options.layers = layerSet(flags.list("layers"));
@@ -302,7 +319,8 @@ const CommandSyntax renderSyntax = {
 };
 
 bool shapesPicture(const Flag& flag) {
-  static constexpr std::string_view others[] = {"output", "layers", "stats", "threads", "progress"};
+  static constexpr std::string_view others[] = {"output", "layers",  "surface",
+                                                "stats",  "threads", "progress"};
   return flag.takes.kind != Takes::Kind::slicersOwn &&
          std::find(std::begin(others), std::end(others), flag.name) == std::end(others);
 }

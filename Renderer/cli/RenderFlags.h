@@ -16,6 +16,7 @@ struct RenderOptions {
   std::vector<std::filesystem::path> inputs;  ///< files named as such, presets aside
   std::vector<std::filesystem::path> outputs; ///< at least one
   LayerSet layers;
+  std::optional<std::filesystem::path> surface = {}; ///< with a clip by depth alone
   std::optional<std::filesystem::path> stats = {};
   /// Slicer runs this program, listens to its standard output, and takes every word on the other
   /// one for an error.

@@ -128,6 +128,8 @@ int serveCommand(int argc, char** argv, int first) {
   for (const char* name : {"stats", "returnparameterfile", "progress", "xml", "echo"})
     if (given->has(name))
       throw usageError(std::string("--") + name + ": serve tells all on standard output; drop it");
+  if (given->has("surface"))
+    throw usageError("--surface: serve writes pictures alone; write it with fenestra render");
   const FlagValues flags = withSceneFlags(*given);
   const RenderOptions options = renderOptions(flags);
   const MachineUse machine(options.settings);

@@ -35,6 +35,7 @@ const char* typeOf(const Flag& flag) {
   case Takes::Kind::labels:
   case Takes::Kind::picture:
     return "image";
+  case Takes::Kind::surface:
   case Takes::Kind::report:
     return "file";
   case Takes::Kind::list:
@@ -67,6 +68,12 @@ void addConstraints(pugi::xml_node parameter, const Flag& flag, const std::strin
   addText(constraints, "step", whole ? "1" : "0.01");
 }
 
+bool isWritten(const Flag& flag) {
+  const Takes::Kind kind = flag.takes.kind;
+  return kind == Takes::Kind::picture || kind == Takes::Kind::surface ||
+         kind == Takes::Kind::report;
+}
+
 void addFlag(pugi::xml_node group, const Flag& flag) {
   const std::string type = typeOf(flag);
   pugi::xml_node parameter = group.append_child(type.c_str());
@@ -76,6 +83,8 @@ void addFlag(pugi::xml_node group, const Flag& flag) {
     parameter.append_attribute("type") = "vector";
     parameter.append_attribute("fileExtensions") = ".nrrd";
   }
+  if (flag.takes.kind == Takes::Kind::surface)
+    parameter.append_attribute("fileExtensions") = ".vtp,.ply,.stl";
   if (flag.takes.kind == Takes::Kind::report)
     parameter.append_attribute("fileExtensions") = ".json";
   addText(parameter, "name", flag.name);
@@ -84,7 +93,7 @@ void addFlag(pugi::xml_node group, const Flag& flag) {
   addText(parameter, "description", flag.text);
   if (flag.takes.kind == Takes::Kind::labels)
     addText(parameter, "channel", "input");
-  if (flag.takes.kind == Takes::Kind::picture || flag.takes.kind == Takes::Kind::report)
+  if (isWritten(flag))
     addText(parameter, "channel", "output");
   if (*flag.standard != 0)
     addText(parameter, "default", flag.standard);

@@ -21,6 +21,13 @@ inline Vec3 toBuffer(const Camera& camera, const Vec3& world) {
   return view;
 }
 
+/// The world point that toBuffer takes to (x, y) and this depth: the eye ray through (x, y) has it
+/// there.
+inline Vec3 fromBuffer(const Camera& camera, const Vec3& at) {
+  const Ray ray = camera.rayThrough(at.head<2>());
+  return ray.at(at.z() / camera.depthPerLength(ray));
+}
+
 /// In perspective every clip but ClipNone removes what is not in front of the eye.
 inline bool behindEye(const Camera& camera, double depth) {
   return camera.pose().projection == Projection::perspective && !(depth > 0.0);

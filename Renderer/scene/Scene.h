@@ -38,6 +38,8 @@ public:
     return {volume(), *m_transfer, *m_majorants, *m_lights, *m_camera, m_clip, m_settings.crop};
   }
   const Volume& volume() const { return m_volume->volume; }
+  /// The volume's box, or what a Slicer scene's cropping box leaves of it.
+  Domain domain() const { return {volume().grid, m_settings.crop}; }
   /// The mask of the focus; null where there is none.
   const Mask* focus() const { return m_focus ? &m_focus->mask : nullptr; }
   const TransferFunction& transfer() const { return *m_transfer; }
@@ -66,8 +68,6 @@ private:
   void placeCamera(const SceneRequest& request);
   void buildClip(const SceneRequest& request);
   void buildDepthClip(SurfaceMode mode, const ClipRequest& request);
-
-  Domain domain() const { return {volume().grid, m_settings.crop}; }
 
   SceneRequest m_request;
   std::shared_ptr<const VolumeInput> m_volume;

@@ -41,8 +41,7 @@ TEST_F(FlagsCommand, RefusesWhatItDoesNotKnow) {
 
 TEST_F(FlagsCommand, RefusesFlagsOfTheContractThatDoNothingYet) {
   std::vector<Refusal> refusals;
-  for (const char* flag :
-       {"--hole", "--ghost", "--offset", "--checkpoint", "--resume", "--preset", "--surface"})
+  for (const char* flag : {"--hole", "--ghost", "--offset", "--checkpoint", "--resume", "--preset"})
     refusals.push_back(refusal({flag, "1"}, std::string(flag) + ": no such flag"));
   refusals.push_back(
       refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "exact"},
@@ -146,6 +145,10 @@ TEST_F(FlagsCommand, RefusesContradictions) {
           withFocus({"--clip", "none", "--smoothing", "1"}, "--smoothing: only --clip surface"),
           withFocus({"--clip", "cutaway", "--smoothing", "1"}, "--smoothing: only --clip surface"),
           refusal({"--controlpoints", "9"}, "--controlpoints: only --clip surface uses it"),
+          refusal({"--surface", "a.vtp"}, "--surface: only --clip surface and cutaway have one"),
+          withFocus({"--clip", "none", "--surface", "a.vtp"}, "--surface: only --clip surface"),
+          withFocus({"--clip", "plane", "--plane", "0,0,0,0,0,1", "--surface", "a.vtp"},
+                    "--surface: only --clip surface"),
           refusal({"--position", "1,2,3", "--target", "1,2,3"}, "two different finite points"),
           refusal({"--position", "0,0,9", "--target", "0,0,0", "--up", "0,0,1"}, "--up: must not"),
           refusal({"--up", "0,0,0"}, "--up: must not be zero"),
@@ -187,6 +190,7 @@ TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
         "threads",
         "output",
         "layers",
+        "surface",
         "stats",
         "progress",
         "xml",

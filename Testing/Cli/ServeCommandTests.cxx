@@ -176,7 +176,8 @@ TEST_F(ServeCommand, RefusesWhatRenderRefuses) {
   expectRefused(
       {{"no input", {"serve"}, 2, "INPUT: is missing"},
        {"missing", {"serve", "missing.nrrd"}, 3, "missing.nrrd"},
-       {"stats", {"serve", "volume.nrrd", "--stats", "a.json"}, 2, "--stats: serve tells"}},
+       {"stats", {"serve", "volume.nrrd", "--stats", "a.json"}, 2, "--stats: serve tells"},
+       {"surface", {"serve", "volume.nrrd", "--surface", "a.vtp"}, 2, "--surface: serve writes"}},
       folder.path());
 }
 

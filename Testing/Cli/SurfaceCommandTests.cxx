@@ -1,0 +1,137 @@
+// `--surface`: the clipping surface as a mesh, of what it is refused for, and what is left behind.
+
+#include "CommandTesting.h"
+#include "io/pictures/ImageReader.h"
+
+#include <pugixml.hpp>
+
+#include <cmath>
+#include <cstring>
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+const Arguments knee = {"knee/knee.nrrd", "--segmentation",   "knee/knee.seg.nrrd",
+                        "--focus",        "FemoralCartilage", "--size",
+                        "48x40",          "--samples",        "1"};
+
+Arguments kneeWith(const Arguments& more) {
+  Arguments all = knee;
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+/// x, y, z and depth of every vertex of a .ply as Fenestra writes it, and how many faces.
+struct PlyContent {
+  std::vector<std::array<float, 4>> vertices;
+  std::size_t faces = 0;
+};
+
+PlyContent readPly(const std::filesystem::path& path) {
+  const std::string bytes = bytesOf(path);
+  const auto numberAfter = [&](const std::string& words) {
+    return std::stoul(bytes.substr(bytes.find(words) + words.size(), 9));
+  };
+  PlyContent content;
+  content.vertices.resize(numberAfter("element vertex "));
+  content.faces = numberAfter("element face ");
+  const std::string last = "end_header\n";
+  const std::size_t begin = bytes.find(last) + last.size();
+  EXPECT_EQ(bytes.size(), begin + 16 * content.vertices.size() + 13 * content.faces);
+  std::memcpy(content.vertices.data(), bytes.data() + begin, 16 * content.vertices.size());
+  return content;
+}
+
+class SurfaceCommand : public testing::TestWithParam<const char*> {
+protected:
+  /// In a folder with the knee.
+  Outcome rendered(const Arguments& more) const { return run(kneeWith(more), kneeFolder().path()); }
+  std::string in(const std::string& name) const { return (folder / name).string(); }
+
+  TemporaryFolder folder;
+};
+
+TEST_P(SurfaceCommand, WritesTheSameMeshInEveryFormat) {
+  const auto to = [&](const std::string& name) {
+    return Arguments{"--clip", GetParam(), "--output", in("a.exr"), "--surface", in(name)};
+  };
+  for (const char* name : {"a.ply", "a.vtp", "a.STL"}) {
+    const Outcome outcome = rendered(to(name));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+  }
+  EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a.exr", "a.ply", "a.vtp", "a.STL"}));
+
+  const PlyContent ply = readPly(folder / "a.ply");
+  EXPECT_GT(ply.faces, 100u);
+  pugi::xml_document vtp;
+  ASSERT_TRUE(vtp.load_file(in("a.vtp").c_str()));
+  const pugi::xml_node piece = vtp.select_node("/VTKFile/PolyData/Piece").node();
+  EXPECT_EQ(piece.attribute("NumberOfPoints").as_ullong(), ply.vertices.size());
+  EXPECT_EQ(piece.attribute("NumberOfPolys").as_ullong(), ply.faces);
+  EXPECT_TRUE(vtp.select_node("//PointData/DataArray[@Name='depth']"));
+  EXPECT_EQ(std::filesystem::file_size(folder / "a.STL"), 84 + 50 * ply.faces);
+}
+
+TEST_P(SurfaceCommand, LiesWhereThePicturesClipChannelHasIt) {
+  ASSERT_EQ(rendered({"--clip", GetParam(), "--view", "left", "--scale", "30", "--output",
+                      in("a.exr"), "--surface", in("a.ply")})
+                .status,
+            0);
+  const Image image = readImage(folder / "a.exr");
+  const std::vector<float>& clip = image.channels.at("clip.Z");
+  std::istringstream camera(image.header.at("camera"));
+  std::array<double, 3> eye{};
+  for (std::string word; camera >> word;)
+    if (word.starts_with("--position="))
+      std::sscanf(word.c_str(), "--position=%lf,%lf,%lf", &eye[0], &eye[1], &eye[2]);
+  // Seen from the left, depth grows along +R, columns along -A and rows along -S, 1.5 mm a pixel.
+  std::size_t inside = 0;
+  for (const auto& [x, y, z, depth] : readPly(folder / "a.ply").vertices) {
+    EXPECT_NEAR(x, eye[0] + depth, 1e-3);
+    const double column = (eye[1] - y) / 1.5 + 23.5, row = (eye[2] - z) / 1.5 + 19.5;
+    if (column < -0.1 || column > 47.1 || row < -0.1 || row > 39.1)
+      continue;
+    ++inside;
+    const auto pixel = static_cast<std::size_t>(std::lround(row) * 48 + std::lround(column));
+    EXPECT_NEAR(column, std::round(column), 1e-3);
+    EXPECT_NEAR(row, std::round(row), 1e-3);
+    EXPECT_NEAR(clip[pixel], depth, 1e-3);
+  }
+  EXPECT_GT(inside, 50u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Clips, SurfaceCommand, testing::Values("surface", "cutaway"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST(SurfaceCommandLine, RefusesWhatCannotBe) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory_symlink(kneeFolder() / "knee", folder / "knee");
+  std::filesystem::create_directory(folder / "folder.vtp");
+  const auto to = [](const std::string& file) { return kneeWith({"--surface", file}); };
+  const std::string known = "has no known extension; name a file .vtp, .ply or .stl";
+  const std::string only = "--surface: only --clip surface and cutaway have one; add --focus";
+  expectRefused(
+      {
+          {"another ending", to("a.obj"), 2, "--surface a.obj: " + known},
+          {"no ending", to("a"), 2, known},
+          {"no clip", kneeWith({"--surface", "a.vtp", "--clip", "none"}), 2, only},
+          {"no focus", {"knee/knee.nrrd", "--surface", "a.vtp"}, 2, only},
+          {"a missing folder", to("missing/a.vtp"), 4, "missing/a.vtp: cannot be written: "},
+          {"no permission", to("/proc/a.ply"), 4, "/proc/a.ply: cannot be written: "},
+          {"a folder", to("folder.vtp"), 4, "folder.vtp: is a folder"},
+          {"over the stats", kneeWith({"--surface", "a.vtp", "--stats", "./a.vtp"}), 2,
+           "a.vtp: would be written twice"},
+          {"over an input",
+           {"knee/knee.nrrd", "--segmentation", "knee/bone.vtp", "--focus", "1", "--surface",
+            "knee/bone.vtp"},
+           2,
+           "knee/bone.vtp: would replace an input file"},
+          {"twice", kneeWith({"--surface", "a.vtp", "--surface", "b.vtp"}), 2, "more than once"},
+      },
+      folder.path());
+}
+
+} // namespace
+} // namespace fenestra

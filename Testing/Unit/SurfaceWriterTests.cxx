@@ -1,0 +1,180 @@
+// Surfaces as files: what is in them, read back here.
+
+#include "core/Error.h"
+#include "io/medical/VtkSurface.h"
+#include "io/surfaces/SurfaceWriter.h"
+
+#include "TemporaryFolder.h"
+
+#include <gtest/gtest.h>
+#include <pugixml.hpp>
+
+#include <cstring>
+#include <set>
+
+namespace fenestra {
+namespace {
+
+/// Two triangles of four points.
+SurfaceMesh roof() {
+  SurfaceMesh mesh;
+  mesh.points = {{-1.5, 2.0, 100.125}, {3.0, 4.1, -5.0}, {1e-3, 0.0, 7.0}, {1234.5678, 8.0, 9.0}};
+  mesh.depths = {10.5f, 11.25f, 0.1f, 300.0f};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+/// Takes numbers off the front of a file's bytes.
+class Bytes {
+public:
+  explicit Bytes(std::string bytes) : m_bytes(std::move(bytes)) {}
+
+  std::string line() {
+    const std::size_t end = m_bytes.find('\n', m_at);
+    std::string text = m_bytes.substr(m_at, end - m_at);
+    m_at = end + 1;
+    return text;
+  }
+  std::string text(std::size_t size) {
+    m_at += size;
+    return m_bytes.substr(m_at - size, size);
+  }
+  template <typename T>
+  T take() {
+    T value{};
+    std::memcpy(&value, text(sizeof value).data(), sizeof value);
+    return value;
+  }
+  Vec3 vector() {
+    const auto x = take<float>(), y = take<float>(), z = take<float>();
+    return {x, y, z};
+  }
+  std::size_t left() const { return m_bytes.size() - m_at; }
+
+private:
+  std::string m_bytes;
+  std::size_t m_at = 0;
+};
+
+/// Of base64 digits, whole bytes alone.
+std::string decoded(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned bits = 0, count = 0;
+  for (const char c : text.substr(0, text.find('='))) {
+    bits = bits << 6 | static_cast<unsigned>(digits.find(c));
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes += static_cast<char>(bits >> count & 0xff);
+    }
+  }
+  return bytes;
+}
+
+bool near(const Vec3& a, const Vec3& b) {
+  return (a - b).norm() <= 1e-6 * b.norm();
+}
+
+TEST(SurfaceWriter, VtpHasEveryDigitAndTheDepths) {
+  const TemporaryFolder folder;
+  const SurfaceMesh mesh = roof();
+  writeSurface(mesh, folder / "roof.vtp");
+  const VtkSurface read = readVtkSurface(folder / "roof.vtp");
+  EXPECT_EQ(read.points, mesh.points);
+  EXPECT_EQ(read.triangles, mesh.triangles);
+  EXPECT_EQ(read.texts.at("SPACE"), "RAS");
+
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_file((folder / "roof.vtp").c_str()));
+  const pugi::xml_node array =
+      document.select_node("/VTKFile/PolyData/Piece/PointData/DataArray[@Name='depth']").node();
+  EXPECT_STREQ(array.attribute("type").value(), "Float32");
+  Bytes bytes(decoded(array.text().get()));
+  EXPECT_EQ(bytes.take<std::uint64_t>(), 16u);
+  for (const float depth : mesh.depths)
+    EXPECT_EQ(bytes.take<float>(), depth);
+  EXPECT_EQ(bytes.left(), 0u);
+}
+
+TEST(SurfaceWriter, PlyHasTheDepthsOfItsVertices) {
+  const TemporaryFolder folder;
+  const SurfaceMesh mesh = roof();
+  writeSurface(mesh, folder / "ROOF.PLY");
+  Bytes file(bytesOf(folder / "ROOF.PLY"));
+  for (const char* line :
+       {"ply", "format binary_little_endian 1.0", "comment SPACE=RAS", "element vertex 4",
+        "property float x", "property float y", "property float z", "property float depth",
+        "element face 2", "property list uchar int vertex_indices", "end_header"})
+    EXPECT_EQ(file.line(), line);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(near(file.vector(), mesh.points[i])) << i;
+    EXPECT_EQ(file.take<float>(), mesh.depths[i]);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    EXPECT_EQ(file.take<std::uint8_t>(), 3);
+    for (const std::uint32_t point : triangle)
+      EXPECT_EQ(file.take<std::uint32_t>(), point);
+  }
+  EXPECT_EQ(file.left(), 0u);
+}
+
+TEST(SurfaceWriter, StlHasUnitNormals) {
+  const TemporaryFolder folder;
+  const SurfaceMesh mesh = roof();
+  writeSurface(mesh, folder / "roof.stl");
+  Bytes file(bytesOf(folder / "roof.stl"));
+  const std::string header = file.text(80);
+  EXPECT_FALSE(header.starts_with("solid")) << "which text files start with";
+  EXPECT_NE(header.find("SPACE=RAS"), std::string::npos);
+  ASSERT_EQ(file.take<std::uint32_t>(), 2u);
+  for (const auto& triangle : mesh.triangles) {
+    const Vec3 normal = file.vector();
+    std::array<Vec3, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      corners[i] = file.vector();
+      EXPECT_TRUE(near(corners[i], mesh.points[triangle[i]]));
+    }
+    const Vec3 expected = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    EXPECT_LT((normal - expected).norm(), 1e-5);
+    EXPECT_EQ(file.take<std::uint16_t>(), 0);
+  }
+  EXPECT_EQ(file.left(), 0u);
+}
+
+TEST(SurfaceWriter, EqualSurfacesGiveEqualBytesAndEmptyOnesAFile) {
+  const TemporaryFolder folder;
+  for (const std::string ending : {".vtp", ".ply", ".stl"}) {
+    writeSurface(roof(), folder / ("a" + ending));
+    writeSurface(roof(), folder / ("b" + ending));
+    EXPECT_EQ(bytesOf(folder / ("a" + ending)), bytesOf(folder / ("b" + ending)));
+    writeSurface({}, folder / ("none" + ending));
+    EXPECT_FALSE(bytesOf(folder / ("none" + ending)).empty());
+  }
+  EXPECT_TRUE(readVtkSurface(folder / "none.vtp").points.empty());
+}
+
+TEST(SurfaceWriter, RefusesOtherEndingsAndFoldersThatAreNotThere) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::string& name, ErrorKind kind, const std::string& text) {
+    const auto expectError = [&](const auto& call) {
+      try {
+        call();
+        FAIL() << name;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), kind);
+        EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+      }
+    };
+    expectError([&] { writeSurface(roof(), folder / name); });
+    expectError([&] { checkSurfacePath(folder / name); });
+  };
+  refused("a.obj", ErrorKind::usage, "a.obj: has no known extension; name a file .vtp");
+  refused("a", ErrorKind::usage, "has no known extension");
+  refused("missing/a.vtp", ErrorKind::output, "missing/a.vtp: cannot be written: ");
+  checkSurfacePath(folder / "a.stl");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+} // namespace
+} // namespace fenestra
