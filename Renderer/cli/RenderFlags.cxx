@@ -1,6 +1,7 @@
 #include "cli/RenderFlags.h"
 
 #include "core/Error.h"
+#include "io/looks/LightReader.h"
 #include "io/mrml/SceneFiles.h"
 #include "io/pictures/ImageFormat.h"
 
@@ -65,9 +66,9 @@ constexpr Flag flags[] = {
     {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000 [1]",
      Takes::number(0.0, 1000.0), "1"},
     {"lights",
-     "FILE|PRESET",
+     "FILE|PRESET|JSON",
      lookGroup,
-     "Lights: .json, studio, headlight or soft [studio]",
+     "Lights: .json, studio, headlight, soft, or the text of a .json itself, {...} [studio]",
      {},
      "studio"},
     {"environment", "R,G,B|FILE", lookGroup,
@@ -269,9 +270,11 @@ std::filesystem::path defaultOutput(const std::filesystem::path& input) {
 
 std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
   std::vector<std::filesystem::path> files;
-  for (const char* name : {"INPUT", "segmentation", "transfer", "lights", "environment"})
+  for (const char* name : {"INPUT", "segmentation", "transfer", "environment"})
     if (const auto file = flags.text(name))
       files.emplace_back(*file);
+  if (const auto lights = flags.text("lights"); lights && !isLightText(*lights))
+    files.emplace_back(*lights);
   return files;
 }
 

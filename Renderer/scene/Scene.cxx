@@ -35,15 +35,18 @@ TransferFunction namedTransfer(const std::string& name) {
   return readTransferFunction(name);
 }
 
-std::vector<Light> requestedLights(const SceneRequest& request) {
-  std::vector<Light> lights;
-  if (const std::string_view text = preset("lights", request.lights); !text.empty())
-    lights = parseLights(text, request.lights);
-  else if (!std::filesystem::exists(request.lights))
-    throw unknownPreset("lights", "lights", request.lights);
-  else
-    lights = readLights(request.lights);
+std::vector<Light> namedLights(const std::string& name) {
+  if (isLightText(name))
+    return parseLights(name, "--lights");
+  if (const std::string_view text = preset("lights", name); !text.empty())
+    return parseLights(text, name);
+  if (!std::filesystem::exists(name))
+    throw unknownPreset("lights", "lights", name);
+  return readLights(name);
+}
 
+std::vector<Light> requestedLights(const SceneRequest& request) {
+  std::vector<Light> lights = namedLights(request.lights);
   if (request.environment || request.environmentMap) {
     std::erase_if(lights,
                   [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l); });
@@ -242,7 +245,7 @@ std::vector<std::string> Scene::files() const {
     files.insert(files.end(), m_focus->files.begin(), m_focus->files.end());
   if (m_request.transfer && preset("transfer", *m_request.transfer).empty())
     files.push_back(*m_request.transfer);
-  if (preset("lights", m_request.lights).empty())
+  if (!isLightText(m_request.lights) && preset("lights", m_request.lights).empty())
     files.push_back(m_request.lights);
   if (m_request.environmentMap)
     files.push_back(m_request.environmentMap->string());

@@ -130,6 +130,22 @@ TEST_F(RendersCommand, CountsWhatTheSceneNeedsAndNoMore) {
             (nlohmann::json{"haze.json", "segments.seg.nrrd", "volume.nrrd"}));
 }
 
+TEST_F(RendersCommand, TakesLightsAsAFileOrAsItsText) {
+  rendered({"--background", "1,2,3"});
+  std::filesystem::create_directory(folder / "maps");
+  std::filesystem::rename(folder / "picture.exr", folder / "maps/sky.exr");
+  const std::string text = R"({"lights": [{"type": "environment", "file": "maps/sky.exr"},
+    {"type": "rectangle", "frame": "camera", "center": [-1.5, 1.7, 2.4], "normal": [1.5, -1.7, -2],
+     "up": [0, 1, 0], "size": [1.4, 1.4], "radiance": [15, 10, 5]}]})";
+  folder.write("lights.json", text);
+  const Image file = rendered({"--lights", "lights.json"});
+  EXPECT_EQ(file.channels, rendered({"--lights", text, "--stats", "s.json"}).channels);
+  EXPECT_EQ(stats("s.json")["filesRead"], nlohmann::json::array({"volume.nrrd"}));
+  EXPECT_NE(file.channels, rendered({}).channels);
+  const std::string longerThanPaths = text + std::string(5000, ' ');
+  EXPECT_EQ(file.channels, rendered({"--lights=" + longerThanPaths}).channels);
+}
+
 TEST_F(RendersCommand, SameSeedSamePictureWhateverTheThreads) {
   const Image one = rendered({"--threads", "1", "--seed", "7"});
   const Image two = rendered({"--threads", "2", "--seed", "7"});

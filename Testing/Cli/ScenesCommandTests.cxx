@@ -248,7 +248,10 @@ TEST_F(ScenesCommand, RepeatsThePictureThatTheSceneStores) {
       <FenestraRender id="f1" name="earlier" view="left" size="8x8"/>
       <FenestraRender id="f2" name="now" references="volume:v;segmentation:s;" focus="A"
         clip="cutaway" position="3,-30,6" target="2,-2,1" up="0.1,0,1" scale="3" size="16x16"
-        noise="0.5" samples="40" seed="9" density="2" output="elsewhere.png" threads="one"/>)");
+        noise="0.5" samples="40" seed="9" density="2"
+        lights="{&quot;lights&quot;: [{&quot;type&quot;: &quot;environment&quot;,
+          &quot;radiance&quot;: [1, 2, 1]}]}"
+        output="elsewhere.png" threads="one"/>)");
   folder.write("plain.mrml", plain);
   folder.write("stored.mrml", stored);
   const auto rendered = [&](const std::string& input, const Arguments& flags) {
@@ -258,7 +261,11 @@ TEST_F(ScenesCommand, RepeatsThePictureThatTheSceneStores) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return readImage(folder / "a.exr").channels;
   };
-  const Arguments looks = {"--size", "16x16", "--seed", "9", "--density", "2"};
+  const Arguments looks = {
+      "--size",    "16x16",
+      "--seed",    "9",
+      "--density", "2",
+      "--lights",  R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})"};
   const auto with = [&](Arguments flags) {
     flags.insert(flags.end(), looks.begin(), looks.end());
     return flags;

@@ -67,6 +67,9 @@ TEST_F(ServeCommand, PicturesAreThoseOfTheCommandLine) {
       {R"({"id": 5, "size": "16x16", "environment": [1, 0.5, 0]})",
        {"--segmentation", "segments.seg.nrrd", "--focus", "A", "--clip", "none", "--environment",
         "1,0.5,0"}},
+      {R"({"id": 6, "environment": null, "focus": null, "segmentation": null, "clip": null,
+           "lights": "{\"lights\": [{\"type\": \"environment\", \"radiance\": [1, 2, 3]}]}"})",
+       {"--lights", R"({"lights": [{"type": "environment", "radiance": [1, 2, 3]}]})"}},
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     std::string line = changes[i].first;

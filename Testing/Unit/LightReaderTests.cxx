@@ -95,6 +95,13 @@ TEST(LightReader, readsEnvironmentMapsBesideTheirFile) {
   EXPECT_EQ(light.radiance[0], 2.0);
 }
 
+TEST(LightReader, tellsTextFromNames) {
+  EXPECT_TRUE(isLightText(R"({"lights": []})"));
+  EXPECT_TRUE(isLightText("{"));
+  for (const char* name : {"", "studio", "lights.json", "./{.json", " {}"})
+    EXPECT_FALSE(isLightText(name)) << name;
+}
+
 TEST(LightReader, refusesMapsThatAreNone) {
   const TemporaryFolder folder;
   const auto path = folder / "sky.exr";

@@ -98,6 +98,11 @@ INSTANTIATE_TEST_SUITE_P(
                [](SceneRequest& r) { r.transfer.reset(); },
                {.transfer = true, .majorants = true}},
         Change{"Lights", [](SceneRequest& r) { r.lights = "lamp.json"; }, {.lights = true}},
+        Change{"LightsAsText",
+               [](SceneRequest& r) {
+                 r.lights = R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})";
+               },
+               {.lights = true}},
         Change{"Environment",
                [](SceneRequest& r) { r.environment = Rgb(1.0, 0.5, 0.2); },
                {.lights = true}},
@@ -114,6 +119,19 @@ TEST_F(SceneChange, LightsThatTheCameraDoesNotCarryStayWhereTheyAre) {
   const Scene before(request);
   request.view.name = "left";
   EXPECT_FALSE(before.changed(request).made().lights);
+}
+
+TEST_F(SceneChange, LightsAreTheirTextAsTheyAreItsFile) {
+  request.lights = folder / "lamp.json";
+  const Scene file(request);
+  request.lights = bytesOf(request.lights);
+  const Scene text(request);
+  const Film expected = picture(file), film = picture(text);
+  for (std::size_t i = 0; i < film.pixelCount(); ++i)
+    ASSERT_TRUE((film.pixels()[i].mean == expected.pixels()[i].mean).all()) << "pixel " << i;
+  std::vector<std::string> files = file.files();
+  std::erase(files, (folder / "lamp.json").string());
+  EXPECT_EQ(text.files(), files);
 }
 
 TEST_F(SceneChange, ARefusedChangeLeavesTheSceneAsItWas) {
