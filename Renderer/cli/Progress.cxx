@@ -97,7 +97,11 @@ void Progress::show(bool last) {
 }
 
 void Progress::showTags(double done, bool last) const {
-  std::printf("<filter-progress>%.4f</filter-progress>\n", done);
+  std::string comment;
+  for (const std::string& field : reached())
+    comment += (comment.empty() ? "" : ", ") + field;
+  std::printf("<filter-progress>%.4f</filter-progress>\n<filter-comment>%s</filter-comment>\n",
+              done, comment.c_str());
   if (last)
     std::printf("<filter-end>\n<filter-name>fenestra</filter-name>\n<filter-time>%.2f"
                 "</filter-time>\n</filter-end>\n",
@@ -105,16 +109,22 @@ void Progress::showTags(double done, bool last) const {
   std::fflush(stdout);
 }
 
-void Progress::showBar(double done) const {
-  const double seconds = m_watch.seconds();
+std::vector<std::string> Progress::reached() const {
   const double samples = static_cast<double>(m_monitor.paths) / m_pixels;
   const double noise = m_monitor.noise;
-  const double left = done > 0.0 ? seconds * (1.0 - done) / done : infinity;
   std::vector<std::string> fields = {
-      formatted("%3.0f %%", 100.0 * done), clock(left) + " left",
       formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples)};
   if (noise < infinity)
     fields.push_back(formatted("noise %.3f", noise));
+  return fields;
+}
+
+void Progress::showBar(double done) const {
+  const double seconds = m_watch.seconds();
+  const double left = done > 0.0 ? seconds * (1.0 - done) / done : infinity;
+  std::vector<std::string> fields = {formatted("%3.0f %%", 100.0 * done), clock(left) + " left"};
+  for (const std::string& field : reached())
+    fields.push_back(field);
 
   // A line that wraps cannot be taken back: what does not fit is left out, the bar first.
   constexpr std::size_t longest = 24;

@@ -6,7 +6,9 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
+#include <vector>
 
 namespace fenestra {
 
@@ -26,6 +28,8 @@ private:
   void show(bool last);
   void showTags(double done, bool last) const;
   void showBar(double done) const;
+  /// Samples and noise, in words.
+  std::vector<std::string> reached() const;
   /// The nearest to its end of samples, seconds and noise, in [0, 1].
   double fraction(double seconds) const;
 

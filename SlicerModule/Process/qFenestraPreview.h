@@ -28,6 +28,8 @@ public:
   void start(const QString& program, const QStringList& arguments, const QString& folder);
   void stop();
   bool running() const { return m_child.state() != QProcess::NotRunning; }
+  /// Its files are relative to this folder.
+  QString folder() const { return m_child.workingDirectory(); }
 
   /// Flags and their values as `fenestra serve` takes them; later ones win.
   void change(const QJsonObject& flags);

@@ -2,12 +2,28 @@
 
 #include <algorithm>
 
+namespace {
+
+/// The text of a line that is one of Slicer's tags; empty for other lines.
+QString inside(const QString& line, const char* tag) {
+  const QString begin = QStringLiteral("<filter-%1>").arg(tag);
+  const QString end = QStringLiteral("</filter-%1>").arg(tag);
+  if (!line.startsWith(begin) || !line.endsWith(end))
+    return {};
+  return line.mid(begin.size(), line.size() - begin.size() - end.size());
+}
+
+} // namespace
+
 qFenestraQueue::qFenestraQueue(const QString& program, QObject* parent)
     : QObject(parent), m_program(program) {
   connect(&m_child, &qFenestraProgram::said, this, [this](const QString& line) {
     const double part = progressIn(line);
     if (part >= 0.0)
       emit progressed(m_current, part);
+    const QString comment = commentIn(line);
+    if (!comment.isEmpty())
+      emit commented(m_current, comment);
   });
   connect(&m_child, &qFenestraProgram::ended, this, [this](const qFenestraOutcome& outcome) {
     const int id = m_current;
@@ -36,14 +52,13 @@ void qFenestraQueue::stop(int id) {
 }
 
 double qFenestraQueue::progressIn(const QString& line) {
-  const QString begin = QStringLiteral("<filter-progress>");
-  const QString end = QStringLiteral("</filter-progress>");
-  if (!line.startsWith(begin) || !line.endsWith(end))
-    return -1.0;
   bool isNumber = false;
-  const double part =
-      line.mid(begin.size(), line.size() - begin.size() - end.size()).toDouble(&isNumber);
+  const double part = inside(line, "progress").toDouble(&isNumber);
   return isNumber && part >= 0.0 ? std::min(part, 1.0) : -1.0;
+}
+
+QString qFenestraQueue::commentIn(const QString& line) {
+  return inside(line, "comment");
 }
 
 void qFenestraQueue::startNext() {

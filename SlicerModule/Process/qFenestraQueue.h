@@ -27,10 +27,13 @@ public:
 
   /// The part that is done, of a line that the renderer says; -1 where it says something else.
   static double progressIn(const QString& line);
+  /// What it has reached, in words; empty where it says something else.
+  static QString commentIn(const QString& line);
 
 signals:
   void started(int id);
   void progressed(int id, double part);
+  void commented(int id, const QString& reached);
   void ended(int id, const qFenestraOutcome& outcome);
 
 private:

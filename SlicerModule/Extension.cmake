@@ -1,0 +1,54 @@
+# The loadable module, the renderer as a command line module, and the package of both.
+set(EXTENSION_NAME Fenestra)
+set(EXTENSION_HOMEPAGE "https://github.com/fenestra-render/SlicerFenestra#readme")
+set(EXTENSION_CATEGORY "Rendering")
+set(EXTENSION_CONTRIBUTORS "The Fenestra authors")
+set(EXTENSION_DESCRIPTION "Photorealistic pictures of a volume in which nothing hides the segments of interest: a smooth clipping surface through the focus, continued into its surroundings, rendered by an unbiased Monte Carlo path tracer.")
+set(EXTENSION_ICONURL "https://raw.githubusercontent.com/fenestra-render/SlicerFenestra/main/SlicerModule/Resources/Icons/Fenestra.png")
+set(EXTENSION_SCREENSHOTURLS "https://raw.githubusercontent.com/fenestra-render/SlicerFenestra/main/Resources/pictures/slicer-result.png")
+set(EXTENSION_DEPENDS "NA")
+set(EXTENSION_README_FILE "${PROJECT_SOURCE_DIR}/README.md")
+set(EXTENSION_LICENSE_FILE "${PROJECT_SOURCE_DIR}/LICENSE")
+
+set(BUILD_TESTING ${FENESTRA_BUILD_TESTS})
+set(CMAKE_CXX_STANDARD 17) # what Slicer is built with; the renderer is not part of this scope
+find_package(Slicer REQUIRED)
+include(${Slicer_USE_FILE})
+
+set(MODULE_NAME Fenestra)
+set(MODULE_TITLE "Fenestra")
+string(TOUPPER ${MODULE_NAME} MODULE_NAME_UPPER)
+add_subdirectory(MRML)
+add_subdirectory(Logic)
+
+set(module_classes qSlicerFenestraModule qSlicerFenestraModuleWidget qSlicerFenestraPanel
+  qSlicerFenestraSession)
+set(module_sources qSlicerFenestraLights.cxx qSlicerFenestraLights.h)
+set(module_moc)
+foreach(class ${module_classes})
+  list(APPEND module_sources ${class}.cxx ${class}.h)
+  list(APPEND module_moc ${class}.h)
+endforeach()
+slicerMacroBuildLoadableModule(
+  NAME ${MODULE_NAME}
+  TITLE ${MODULE_TITLE}
+  EXPORT_DIRECTIVE "Q_SLICER_QTMODULES_${MODULE_NAME_UPPER}_EXPORT"
+  INCLUDE_DIRECTORIES ${CMAKE_CURRENT_SOURCE_DIR}/Logic ${CMAKE_CURRENT_BINARY_DIR}/Logic
+                      ${CMAKE_CURRENT_SOURCE_DIR}/MRML ${CMAKE_CURRENT_BINARY_DIR}/MRML
+  SRCS ${module_sources}
+  MOC_SRCS ${module_moc}
+  TARGET_LIBRARIES vtkSlicer${MODULE_NAME}ModuleLogic FenestraProcess FenestraScene
+  RESOURCES Resources/qSlicerFenestraModule.qrc
+  WITH_GENERIC_TESTS)
+
+# Libraries that the module links are exported with it.
+set_property(GLOBAL APPEND PROPERTY Slicer_TARGETS
+  FenestraProcess FenestraScene fenestra_sanitizers fenestra_warnings)
+
+include(Package.cmake)
+if(BUILD_TESTING)
+  add_subdirectory(Testing)
+endif()
+
+include(${Slicer_EXTENSION_GENERATE_CONFIG})
+include(${Slicer_EXTENSION_CPACK})

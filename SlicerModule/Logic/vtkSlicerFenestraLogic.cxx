@@ -1,0 +1,310 @@
+#include "vtkSlicerFenestraLogic.h"
+
+#include "vtkMRMLFenestraRenderNode.h"
+#include "vtkSlicerFenestraSnapshot.h"
+
+#include <vtkMRMLApplicationLogic.h>
+#include <vtkMRMLCameraNode.h>
+#include <vtkMRMLLayoutNode.h>
+#include <vtkMRMLModelDisplayNode.h>
+#include <vtkMRMLModelNode.h>
+#include <vtkMRMLScalarVolumeDisplayNode.h>
+#include <vtkMRMLScalarVolumeNode.h>
+#include <vtkMRMLScene.h>
+#include <vtkMRMLSegmentationNode.h>
+#include <vtkMRMLSliceCompositeNode.h>
+#include <vtkMRMLSliceLogic.h>
+#include <vtkMRMLSliceNode.h>
+#include <vtkMRMLVectorVolumeNode.h>
+#include <vtkMRMLViewNode.h>
+
+#include <vtkImageData.h>
+#include <vtkImageExtractComponents.h>
+#include <vtkImageFlip.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPNGReader.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <sstream>
+
+vtkStandardNewMacro(vtkSlicerFenestraLogic);
+
+namespace {
+using Node = vtkMRMLFenestraRenderNode;
+
+constexpr int ResultLayout = 5617; // above all of Slicer's own
+constexpr const char* ResultLayoutXml =
+    "<layout type=\"horizontal\" split=\"true\">"
+    "<item splitSize=\"600\"><view class=\"vtkMRMLSliceNode\" singletontag=\"Fenestra\">"
+    "<property name=\"orientation\" action=\"default\">Axial</property>"
+    "<property name=\"viewlabel\" action=\"default\">F</property>"
+    "<property name=\"viewcolor\" action=\"default\">#6FB1C8</property></view></item>"
+    "<item splitSize=\"400\"><view class=\"vtkMRMLViewNode\" singletontag=\"1\">"
+    "<property name=\"viewlabel\" action=\"default\">1</property></view></item></layout>";
+
+std::string number(double value) {
+  std::ostringstream text;
+  text.precision(17);
+  text << value;
+  return text.str();
+}
+
+std::string triple(const double* values) {
+  return number(values[0]) + "," + number(values[1]) + "," + number(values[2]);
+}
+
+vtkSmartPointer<vtkImageData> ToVtk(const FenestraScene::Image& image) {
+  vtkNew<vtkImageData> copy;
+  copy->SetDimensions(static_cast<int>(image.size[0]), static_cast<int>(image.size[1]),
+                      static_cast<int>(image.size[2]));
+  copy->AllocateScalars(VTK_FLOAT, static_cast<int>(image.components));
+  std::memcpy(copy->GetScalarPointer(), image.data.get(), image.bytes());
+  return copy;
+}
+
+FenestraScene::Image ReadFloats(const std::string& file) {
+  FenestraScene::Image image = FenestraScene::readNrrd(file);
+  if (image.type != "float" || image.size[2] != 1)
+    throw FenestraScene::FileError(file + ": is not a picture of the renderer's");
+  return image;
+}
+
+/// Row 0 at the top, as in the renderer's volumes, and without transparency.
+vtkSmartPointer<vtkImageData> ReadPicture(const std::string& file) {
+  vtkNew<vtkPNGReader> reader;
+  reader->SetFileName(file.c_str());
+  vtkNew<vtkImageFlip> flip;
+  flip->SetInputConnection(reader->GetOutputPort());
+  flip->SetFilteredAxis(1);
+  vtkNew<vtkImageExtractComponents> colours;
+  colours->SetInputConnection(flip->GetOutputPort());
+  colours->SetComponents(0, 1, 2);
+  colours->Update();
+  return colours->GetOutput();
+}
+
+/// A grey window over what is finite.
+void ShowFinite(vtkMRMLVolumeNode* volume, const FenestraScene::Image& depth) {
+  auto* display = vtkMRMLScalarVolumeDisplayNode::SafeDownCast(volume->GetDisplayNode());
+  const auto* values = static_cast<const float*>(depth.data.get());
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (size_t i = 0; i < depth.bytes() / sizeof(float); ++i)
+    if (std::isfinite(values[i])) {
+      least = std::min<double>(least, values[i]);
+      greatest = std::max<double>(greatest, values[i]);
+    }
+  if (!display || !(least < greatest))
+    return;
+  display->AutoWindowLevelOff();
+  display->SetWindowLevelMinMax(least, greatest);
+}
+} // namespace
+
+vtkSlicerFenestraLogic::vtkSlicerFenestraLogic() = default;
+vtkSlicerFenestraLogic::~vtkSlicerFenestraLogic() = default;
+
+void vtkSlicerFenestraLogic::PrintSelf(ostream& os, vtkIndent indent) {
+  Superclass::PrintSelf(os, indent);
+}
+
+void vtkSlicerFenestraLogic::RegisterNodes() {
+  if (this->GetMRMLScene())
+    this->GetMRMLScene()->RegisterNodeClass(vtkSmartPointer<Node>::New());
+}
+
+Node* vtkSlicerFenestraLogic::GetSettings() {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  if (!scene)
+    return nullptr;
+  if (vtkMRMLNode* node = scene->GetSingletonNode("Settings", "vtkMRMLFenestraRenderNode"))
+    return Node::SafeDownCast(node);
+  vtkNew<Node> node;
+  node->SetName("Fenestra settings");
+  node->SetSingletonTag("Settings");
+  node->SetHideFromEditors(true);
+  node->SetFlags(
+      {{"samples", "256"}, {"noise", "0.04"}, {"size", "512x512"}, {"background", "0,0,0"}});
+  return Node::SafeDownCast(scene->AddNode(node));
+}
+
+Node* vtkSlicerFenestraLogic::AddRender(Node* settings) {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  vtkMRMLNode* volume = settings->GetNodeReference(Node::VolumeRole);
+  const std::string name = std::string(volume ? volume->GetName() : "Volume") + " render";
+  auto* render = Node::SafeDownCast(scene->AddNewNodeByClass(
+      "vtkMRMLFenestraRenderNode", scene->GenerateUniqueName(name.c_str())));
+  for (const char* role : {Node::VolumeRole, Node::SegmentationRole, Node::ViewRole})
+    render->SetNodeReferenceID(role, settings->GetNodeReferenceID(role));
+  for (const std::string& attribute : settings->GetAttributeNames())
+    render->SetAttribute(attribute.c_str(), settings->GetAttribute(attribute.c_str()));
+  render->SetFlags(this->GetFlags(settings));
+  return render;
+}
+
+FenestraScene::Contents vtkSlicerFenestraLogic::Snapshot(Node* render) {
+  auto* volume = vtkMRMLScalarVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
+  auto* segmentation =
+      vtkMRMLSegmentationNode::SafeDownCast(render->GetNodeReference(Node::SegmentationRole));
+  FenestraScene::Contents contents;
+  vtkSlicerFenestraSnapshot::TakeVolume(volume, contents);
+  vtkSlicerFenestraSnapshot::TakeRendering(volume, contents);
+  contents.flags = this->GetFlags(render);
+  if (!segmentation && !render->GetFocus().empty())
+    throw vtkSlicerFenestraComplaint("The segmentation that holds the focus is gone. Choose one.");
+  if (segmentation)
+    vtkSlicerFenestraSnapshot::TakeSegmentation(segmentation, render->GetFocus(), contents);
+  return contents;
+}
+
+vtkMRMLCameraNode* vtkSlicerFenestraLogic::GetFollowedCamera(Node* render) {
+  auto* view = vtkMRMLViewNode::SafeDownCast(render->GetNodeReference(Node::ViewRole));
+  if (!view || !render->GetFlag("view").empty() || !render->GetFlag("position").empty())
+    return nullptr;
+  std::vector<vtkMRMLNode*> cameras;
+  this->GetMRMLScene()->GetNodesByClass("vtkMRMLCameraNode", cameras);
+  for (vtkMRMLNode* node : cameras) {
+    auto* camera = vtkMRMLCameraNode::SafeDownCast(node);
+    if (camera->GetLayoutName() && view->GetLayoutName() &&
+        std::strcmp(camera->GetLayoutName(), view->GetLayoutName()) == 0)
+      return camera;
+  }
+  return nullptr;
+}
+
+std::map<std::string, std::string> vtkSlicerFenestraLogic::GetFlags(Node* render) {
+  std::map<std::string, std::string> flags = render->GetFlags();
+  if (vtkMRMLCameraNode* camera = this->GetFollowedCamera(render))
+    for (const auto& [name, value] : GetCameraFlags(camera))
+      flags[name] = value;
+  return flags;
+}
+
+std::map<std::string, std::string>
+vtkSlicerFenestraLogic::GetCameraFlags(vtkMRMLCameraNode* camera) {
+  std::map<std::string, std::string> flags = {{"position", triple(camera->GetPosition())},
+                                              {"target", triple(camera->GetFocalPoint())},
+                                              {"up", triple(camera->GetViewUp())}};
+  const bool parallel = camera->GetParallelProjection() != 0;
+  flags["projection"] = parallel ? "orthographic" : "perspective";
+  if (parallel)
+    flags["scale"] = number(camera->GetParallelScale());
+  else
+    flags["angle"] = number(camera->GetViewAngle());
+  return flags;
+}
+
+bool vtkSlicerFenestraLogic::HasSurface(const std::map<std::string, std::string>& flags) {
+  const auto clip = flags.find("clip");
+  const std::string mode = clip == flags.end() ? "" : clip->second;
+  if (mode.empty() || mode == "auto")
+    return flags.count("focus") > 0;
+  return mode == "surface" || mode == "cutaway";
+}
+
+std::vector<std::string> vtkSlicerFenestraLogic::GetOutputArguments(bool withSurface) {
+  std::vector<std::string> arguments = {"--output", "picture.png",
+                                        "--output", "radiance.nrrd",
+                                        "--layers", "color,depth,clip,albedo,error,samples"};
+  if (withSurface)
+    arguments.insert(arguments.end(), {"--surface", "surface.vtp"});
+  return arguments;
+}
+
+vtkSlicerFenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
+  vtkSlicerFenestraResult result;
+  result.radiance = ReadFloats(folder + "/radiance.nrrd");
+  result.depth = ReadFloats(folder + "/radiance-Z.nrrd");
+  result.picture = ReadPicture(folder + "/picture.png");
+  const std::string surface = folder + "/surface.vtp";
+  if (std::filesystem::exists(surface)) {
+    vtkNew<vtkXMLPolyDataReader> reader;
+    reader->SetFileName(surface.c_str());
+    reader->Update();
+    result.surface = reader->GetOutput();
+  }
+  return result;
+}
+
+vtkMRMLVolumeNode* vtkSlicerFenestraLogic::AddVolume(Node* render, const char* className,
+                                                     const char* role, vtkImageData* image,
+                                                     const FenestraScene::Matrix& ijkToRas) {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  const std::string name = std::string(render->GetName()) + " " + role;
+  auto* volume = vtkMRMLVolumeNode::SafeDownCast(
+      scene->AddNewNodeByClass(className, scene->GenerateUniqueName(name.c_str())));
+  vtkNew<vtkMatrix4x4> matrix;
+  matrix->DeepCopy(ijkToRas.data());
+  volume->SetIJKToRASMatrix(matrix);
+  volume->SetAndObserveImageData(image);
+  volume->CreateDefaultDisplayNodes();
+  render->SetNodeReferenceID(role, volume->GetID());
+  return volume;
+}
+
+void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  const std::string name = std::string(render->GetName()) + " " + Node::SurfaceRole;
+  auto* model = vtkMRMLModelNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLModelNode", scene->GenerateUniqueName(name.c_str())));
+  model->SetAndObservePolyData(surface);
+  model->CreateDefaultDisplayNodes();
+  vtkMRMLDisplayNode* display = model->GetDisplayNode();
+  display->SetColor(0.44, 0.69, 0.78);
+  display->SetOpacity(0.5);
+  display->SetVisibility(false); // it lies in front of what the user looks at
+  render->SetNodeReferenceID(Node::SurfaceRole, model->GetID());
+}
+
+void vtkSlicerFenestraLogic::AddResult(Node* render, const vtkSlicerFenestraResult& result) {
+  this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, result.picture,
+                  result.radiance.ijkToRas);
+  this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::RadianceRole, ToVtk(result.radiance),
+                  result.radiance.ijkToRas);
+  vtkMRMLVolumeNode* depth = this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
+                                             ToVtk(result.depth), result.depth.ijkToRas);
+  ShowFinite(depth, result.depth);
+  if (result.surface && result.surface->GetNumberOfPoints() > 0)
+    this->AddSurface(render, result.surface);
+}
+
+void vtkSlicerFenestraLogic::ShowResult(Node* render) {
+  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  auto* layout = vtkMRMLLayoutNode::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLLayoutNode"));
+  if (!picture || !layout)
+    return;
+  if (!layout->IsLayoutDescription(ResultLayout))
+    layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
+  layout->SetViewArrangement(ResultLayout);
+
+  auto* slice =
+      vtkMRMLSliceNode::SafeDownCast(scene->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
+  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
+  vtkMRMLSliceLogic* logic = slice && application ? application->GetSliceLogic(slice) : nullptr;
+  if (!logic)
+    return;
+  vtkMRMLSliceCompositeNode* composite = logic->GetSliceCompositeNode();
+  composite->SetBackgroundVolumeID(picture->GetID());
+  composite->SetForegroundVolumeID(nullptr);
+  composite->SetLabelVolumeID(nullptr);
+  // As the eye saw it: the picture's rows run to the right, its columns down.
+  double directions[3][3];
+  picture->GetIJKToRASDirections(directions);
+  const double centre[3] = {0.0, 0.0, 0.0};
+  vtkNew<vtkMatrix4x4> toRas;
+  for (int row = 0; row < 3; ++row) {
+    toRas->SetElement(row, 0, directions[row][0]);
+    toRas->SetElement(row, 1, -directions[row][1]);
+    toRas->SetElement(row, 2, -directions[row][2]);
+    toRas->SetElement(row, 3, centre[row]);
+  }
+  slice->GetSliceToRAS()->DeepCopy(toRas);
+  slice->UpdateMatrices();
+  logic->FitSliceToBackground(-1, -1);
+}

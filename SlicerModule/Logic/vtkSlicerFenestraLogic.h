@@ -1,0 +1,91 @@
+#ifndef __vtkSlicerFenestraLogic_h
+#define __vtkSlicerFenestraLogic_h
+
+#include <vtkSlicerModuleLogic.h>
+
+#include <vtkSmartPointer.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "FenestraSceneFiles.h"
+#include "vtkSlicerFenestraModuleLogicExport.h"
+
+class vtkImageData;
+class vtkMRMLCameraNode;
+class vtkMRMLFenestraRenderNode;
+class vtkMRMLScalarVolumeNode;
+class vtkMRMLSegmentationNode;
+class vtkMRMLVolumeNode;
+class vtkPolyData;
+
+/// What a render left, read from its files.
+struct vtkSlicerFenestraResult {
+  FenestraScene::Image radiance;         ///< linear RGBA, where the picture lies in the world
+  FenestraScene::Image depth;            ///< mm from the eye; infinite where nothing is
+  vtkSmartPointer<vtkImageData> picture; ///< display colours, row 0 at the top
+  vtkSmartPointer<vtkPolyData> surface;  ///< the clipping surface, RAS; none where none clips
+};
+
+/// What a user can mend, in one sentence that says how.
+struct vtkSlicerFenestraComplaint : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// \brief Between Slicer's scene and the renderer's files.
+///
+/// Nothing here waits: writing and reading files is for other threads (FenestraScene::Writer,
+/// ReadResult), taking what they need and adding what they bring is quick.
+class VTK_SLICER_FENESTRA_MODULE_LOGIC_EXPORT vtkSlicerFenestraLogic : public vtkSlicerModuleLogic {
+public:
+  static vtkSlicerFenestraLogic* New();
+  vtkTypeMacro(vtkSlicerFenestraLogic, vtkSlicerModuleLogic);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// The settings that the panel edits; made where there are none. A singleton of the scene;
+  /// renders are copies of it.
+  vtkMRMLFenestraRenderNode* GetSettings();
+  /// A node of its own for a render, with the settings as they are now: what a 3-D view's camera
+  /// looked at is a fixed view from now on.
+  vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings);
+
+  /// Everything that the renderer needs, without a copy of the voxels; throws
+  /// vtkSlicerFenestraComplaint.
+  FenestraScene::Contents Snapshot(vtkMRMLFenestraRenderNode* render);
+  /// The node's flags, with those of its 3-D view's camera where nothing else says where to look
+  /// from.
+  std::map<std::string, std::string> GetFlags(vtkMRMLFenestraRenderNode* render);
+  static std::map<std::string, std::string> GetCameraFlags(vtkMRMLCameraNode* camera);
+  /// The camera of the node's 3-D view; none where the flags fix a view.
+  vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
+
+  /// Of a render into `folder`, under the names of GetOutputArguments. Throws
+  /// FenestraScene::FileError. For any thread.
+  static vtkSlicerFenestraResult ReadResult(const std::string& folder);
+  /// Flags that make a render leave what ReadResult reads.
+  static std::vector<std::string> GetOutputArguments(bool withSurface);
+  /// Whether a clipping surface comes with these flags.
+  static bool HasSurface(const std::map<std::string, std::string>& flags);
+
+  /// Adds the result's nodes and lets the render refer to them.
+  void AddResult(vtkMRMLFenestraRenderNode* render, const vtkSlicerFenestraResult& result);
+  /// Shows the render's picture beside a 3-D view, in a layout of the module's own.
+  void ShowResult(vtkMRMLFenestraRenderNode* render);
+
+protected:
+  vtkSlicerFenestraLogic();
+  ~vtkSlicerFenestraLogic() override;
+  vtkSlicerFenestraLogic(const vtkSlicerFenestraLogic&) = delete;
+  void operator=(const vtkSlicerFenestraLogic&) = delete;
+
+  void RegisterNodes() override;
+
+private:
+  void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);
+  vtkMRMLVolumeNode* AddVolume(vtkMRMLFenestraRenderNode* render, const char* className,
+                               const char* role, vtkImageData* image,
+                               const FenestraScene::Matrix& ijkToRas);
+};
+
+#endif

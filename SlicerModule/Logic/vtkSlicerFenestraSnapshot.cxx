@@ -1,0 +1,284 @@
+#include "vtkSlicerFenestraSnapshot.h"
+
+#include "vtkSlicerFenestraLogic.h"
+
+#include <vtkMRMLDisplayNode.h>
+#include <vtkMRMLMarkupsROINode.h>
+#include <vtkMRMLScalarVolumeNode.h>
+#include <vtkMRMLSegmentationNode.h>
+#include <vtkMRMLTransformNode.h>
+#include <vtkMRMLVolumePropertyNode.h>
+#include <vtkMRMLVolumePropertyStorageNode.h>
+#include <vtkMRMLVolumeRenderingDisplayNode.h>
+
+#include <vtkOrientedImageData.h>
+#include <vtkOrientedImageDataResample.h>
+#include <vtkSegment.h>
+#include <vtkSegmentation.h>
+#include <vtkSegmentationConverter.h>
+
+#include <vtkDataArray.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtksys/SystemTools.hxx>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace {
+using Complaint = vtkSlicerFenestraComplaint;
+
+std::string Quoted(vtkMRMLNode* node) {
+  return std::string("\"") + (node->GetName() ? node->GetName() : "") + "\"";
+}
+
+std::string NrrdType(int scalarType) {
+  switch (scalarType) {
+  case VTK_CHAR:
+  case VTK_SIGNED_CHAR:
+    return "int8";
+  case VTK_UNSIGNED_CHAR:
+    return "uint8";
+  case VTK_SHORT:
+    return "int16";
+  case VTK_UNSIGNED_SHORT:
+    return "uint16";
+  case VTK_INT:
+    return "int32";
+  case VTK_UNSIGNED_INT:
+    return "uint32";
+  case VTK_LONG:
+    return sizeof(long) == 8 ? "int64" : "int32";
+  case VTK_UNSIGNED_LONG:
+    return sizeof(long) == 8 ? "uint64" : "uint32";
+  case VTK_LONG_LONG:
+    return "int64";
+  case VTK_UNSIGNED_LONG_LONG:
+    return "uint64";
+  case VTK_FLOAT:
+    return "float";
+  case VTK_DOUBLE:
+    return "double";
+  default:
+    return {};
+  }
+}
+
+FenestraScene::Matrix ToMatrix(vtkMatrix4x4* matrix) {
+  FenestraScene::Matrix copy;
+  std::copy_n(matrix->GetData(), 16, copy.begin());
+  return copy;
+}
+
+/// The image's array, which its new owner keeps alive; `ijkToRas` is of index 0, which an image's
+/// extent need not begin with.
+FenestraScene::Image Shared(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
+  FenestraScene::Image shared;
+  vtkSmartPointer<vtkDataArray> array = image->GetPointData()->GetScalars();
+  int extent[6];
+  image->GetExtent(extent);
+  shared.type = NrrdType(array->GetDataType());
+  shared.ijkToRas = ToMatrix(ijkToRas);
+  for (int axis = 0; axis < 3; ++axis) {
+    shared.size[axis] = static_cast<size_t>(extent[2 * axis + 1] - extent[2 * axis] + 1);
+    for (int row = 0; row < 3; ++row)
+      shared.ijkToRas[4 * row + 3] += extent[2 * axis] * ijkToRas->GetElement(row, axis);
+  }
+  const void* voxels = array->GetVoidPointer(0);
+  shared.data = std::shared_ptr<const void>(voxels, [array](const void*) {});
+  return shared;
+}
+
+FenestraScene::Matrix ToWorld(vtkMRMLTransformableNode* node) {
+  vtkMRMLTransformNode* transform = node->GetParentTransformNode();
+  if (!transform)
+    return FenestraScene::identity;
+  if (!transform->IsTransformToWorldLinear())
+    throw Complaint(Quoted(node) + " is under a transform that bends space. Harden that transform "
+                                   "(Data module, right click), then try again.");
+  vtkNew<vtkMatrix4x4> toWorld;
+  transform->GetMatrixTransformToWorld(toWorld);
+  return ToMatrix(toWorld);
+}
+
+std::string Key(vtkObject* object, const char* id, const FenestraScene::Image& image) {
+  std::ostringstream key;
+  key << id << ' ' << object->GetMTime() << ' ' << image.data.get();
+  for (const double element : image.ijkToRas)
+    key << ' ' << element;
+  return key.str();
+}
+
+vtkMRMLVolumeRenderingDisplayNode* RenderingOf(vtkMRMLScalarVolumeNode* volume) {
+  vtkMRMLVolumeRenderingDisplayNode* first = nullptr;
+  for (int i = 0; i < volume->GetNumberOfDisplayNodes(); ++i)
+    if (auto* display =
+            vtkMRMLVolumeRenderingDisplayNode::SafeDownCast(volume->GetNthDisplayNode(i))) {
+      if (display->GetVisibility())
+        return display;
+      first = first ? first : display;
+    }
+  return first;
+}
+
+/// As Slicer itself would save it: its storage knows what this version's properties hold.
+void TakeProperty(vtkMRMLVolumePropertyNode* property, FenestraScene::Contents& contents) {
+  vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own is not to look as if it were saved
+  copy->Copy(property);
+  const auto storage = vtkSmartPointer<vtkMRMLStorageNode>::Take(copy->CreateDefaultStorageNode());
+  const std::string ending = std::string(".") + storage->GetDefaultWriteFileExtension();
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("fenestra-property-" + std::to_string(reinterpret_cast<std::uintptr_t>(&contents)) + ending);
+  storage->SetFileName(file.string().c_str());
+  const bool written = storage->WriteData(copy) != 0;
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  if (!written || text.str().empty())
+    throw Complaint("The volume rendering's settings could not be written to the temporary folder. "
+                    "Is the disk full?");
+  contents.property = text.str();
+  contents.propertyEnding = ending;
+}
+
+void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, FenestraScene::Contents& contents) {
+  auto* roi = vtkMRMLMarkupsROINode::SafeDownCast(display->GetROINode());
+  if (!roi)
+    throw Complaint(
+        "The volume rendering is cropped by a region of interest of an old kind. Create "
+        "a new one in the Volume Rendering module, or turn cropping off.");
+  vtkMatrix4x4* axes = roi->GetObjectToWorldMatrix();
+  double size[3];
+  roi->GetSize(size);
+  std::ostringstream text;
+  text.precision(17);
+  const auto list = [&text](const char* name, std::initializer_list<double> values) {
+    text << ",\"" << name << "\":[";
+    const char* separator = "";
+    for (const double value : values)
+      text << separator << value, separator = ",";
+    text << ']';
+  };
+  const auto at = [axes](int row, int column) { return axes->GetElement(row, column); };
+  text << R"({"markups":[{"type":"ROI","coordinateSystem":"RAS","roiType":"Box")";
+  list("center", {at(0, 3), at(1, 3), at(2, 3)});
+  list("orientation",
+       {at(0, 0), at(0, 1), at(0, 2), at(1, 0), at(1, 1), at(1, 2), at(2, 0), at(2, 1), at(2, 2)});
+  list("size", {size[0], size[1], size[2]});
+  text << ",\"insideOut\":" << (roi->GetInsideOut() ? "true" : "false") << "}]}";
+  contents.crop.push_back({text.str(), FenestraScene::identity});
+}
+
+/// Segments as labels; of surfaces, in a copy that the scene does not see.
+vtkSmartPointer<vtkSegmentation> WithLabels(vtkMRMLSegmentationNode* node) {
+  const std::string labels = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
+  vtkSmartPointer<vtkSegmentation> segmentation = node->GetSegmentation();
+  if (segmentation->ContainsRepresentation(labels))
+    return segmentation;
+  const auto copy = vtkSmartPointer<vtkSegmentation>::New();
+  copy->DeepCopy(segmentation);
+  if (!copy->CreateRepresentation(labels))
+    throw Complaint(Quoted(node) +
+                    " could not be made a labelmap. Create its binary labelmap in the "
+                    "Segmentations module, then try again.");
+  return copy;
+}
+
+bool IsEmpty(vtkOrientedImageData* labels) {
+  return !labels || labels->IsEmpty() || !labels->GetPointData()->GetScalars() ||
+         labels->GetNumberOfPoints() == 0;
+}
+
+/// A layer on the lattice of the first one; where its own is another, its nearest labels there.
+FenestraScene::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* first) {
+  vtkSmartPointer<vtkOrientedImageData> image = labels;
+  if (!vtkOrientedImageDataResample::DoGeometriesMatch(labels, first)) {
+    image = vtkSmartPointer<vtkOrientedImageData>::New();
+    vtkOrientedImageDataResample::ResampleOrientedImageToReferenceOrientedImage(labels, first,
+                                                                                image, false, true);
+  }
+  vtkNew<vtkMatrix4x4> ijkToRas;
+  image->GetImageToWorldMatrix(ijkToRas);
+  FenestraScene::Layer layer;
+  layer.labels = Shared(image, ijkToRas);
+  int extent[6];
+  image->GetExtent(extent);
+  layer.begin = {extent[0], extent[2], extent[4]};
+  return layer;
+}
+
+} // namespace
+
+void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
+                                           FenestraScene::Contents& contents) {
+  if (!volume)
+    throw Complaint("There is no volume to render. Load one, or choose one above.");
+  vtkImageData* image = volume->GetImageData();
+  if (!image || !image->GetPointData()->GetScalars() || image->GetNumberOfPoints() == 0)
+    throw Complaint("The volume " + Quoted(volume) + " has no voxels. Choose another one.");
+  if (image->GetNumberOfScalarComponents() != 1)
+    throw Complaint("The volume " + Quoted(volume) +
+                    " has several values a voxel. Choose one with a single value.");
+  vtkNew<vtkMatrix4x4> ijkToRas;
+  volume->GetIJKToRASMatrix(ijkToRas);
+  contents.volume = Shared(image, ijkToRas);
+  if (contents.volume.type.empty())
+    throw Complaint("The volume " + Quoted(volume) + " has voxels of an unknown type.");
+  contents.volumeKey = Key(image, volume->GetID(), contents.volume);
+  contents.volumeToWorld = ToWorld(volume);
+}
+
+void vtkSlicerFenestraSnapshot::TakeRendering(vtkMRMLScalarVolumeNode* volume,
+                                              FenestraScene::Contents& contents) {
+  vtkMRMLVolumeRenderingDisplayNode* display = RenderingOf(volume);
+  if (!display)
+    return;
+  if (vtkMRMLVolumePropertyNode* property = display->GetVolumePropertyNode())
+    TakeProperty(property, contents);
+  if (display->GetCroppingEnabled() && display->GetROINode())
+    TakeRoi(display, contents);
+}
+
+void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
+                                                 const std::vector<std::string>& focus,
+                                                 FenestraScene::Contents& contents) {
+  using FenestraScene::Segment;
+  const vtkSmartPointer<vtkSegmentation> segmentation = WithLabels(node);
+  const std::string name = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
+  FenestraScene::Segmentation& taken = contents.segmentation;
+  std::ostringstream key;
+  key << node->GetID();
+  vtkOrientedImageData* first = nullptr;
+  for (int i = 0; i < segmentation->GetNumberOfLayers(name); ++i) {
+    auto* labels = vtkOrientedImageData::SafeDownCast(segmentation->GetLayerDataObject(i, name));
+    if (IsEmpty(labels))
+      continue;
+    first = first ? first : labels;
+    for (const std::string& id : segmentation->GetSegmentIDsForLayer(i, name)) {
+      vtkSegment* segment = segmentation->GetSegment(id);
+      taken.segments.push_back({id, segment->GetName() ? segment->GetName() : id,
+                                segment->GetLabelValue(), taken.layers.size()});
+      key << '\n' << id << ' ' << segment->GetLabelValue() << ' ' << taken.segments.back().name;
+    }
+    taken.layers.push_back(ToLayer(labels, first));
+    key << '\n' << Key(labels, "", taken.layers.back().labels);
+  }
+  for (const std::string& id : focus) {
+    const auto isIt = [&id](const Segment& segment) { return segment.id == id; };
+    vtkSegment* segment = segmentation->GetSegment(id);
+    if (!segment)
+      throw Complaint("The segment \"" + id + "\" is gone. Choose another focus.");
+    if (std::none_of(taken.segments.begin(), taken.segments.end(), isIt))
+      throw Complaint("The segment \"" + std::string(segment->GetName()) +
+                      "\" is empty. Paint it, or choose another focus.");
+  }
+  contents.segmentationKey =
+      segmentation == node->GetSegmentation()
+          ? key.str()
+          : node->GetID() + (" " + std::to_string(node->GetSegmentation()->GetMTime()));
+  taken.toWorld = ToWorld(node);
+}

@@ -1,0 +1,171 @@
+#include "FenestraImage.h"
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+namespace FenestraScene {
+namespace {
+
+bool littleEndian() {
+  const std::uint16_t one = 1;
+  unsigned char first = 0;
+  std::memcpy(&first, &one, 1);
+  return first == 1;
+}
+
+/// NRRD is left-posterior-superior where Slicer is right-anterior-superior.
+double lps(const Matrix& matrix, std::size_t row, std::size_t column) {
+  const double value = matrix[4 * row + column];
+  return row < 2 && value != 0.0 ? -value : value;
+}
+
+std::string point(const Matrix& matrix, std::size_t column) {
+  std::ostringstream text;
+  text.precision(17);
+  text << '(' << lps(matrix, 0, column) << ',' << lps(matrix, 1, column) << ','
+       << lps(matrix, 2, column) << ')';
+  return text.str();
+}
+
+std::string header(const Image& image) {
+  const bool list = image.components > 1;
+  std::ostringstream text;
+  text << "NRRD0005\ntype: " << image.type << "\ndimension: " << (list ? 4 : 3)
+       << "\nspace: left-posterior-superior\nsizes:";
+  if (list)
+    text << ' ' << image.components;
+  for (const std::size_t size : image.size)
+    text << ' ' << size;
+  text << "\nspace directions:" << (list ? " none" : "");
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    text << ' ' << point(image.ijkToRas, axis);
+  text << "\nkinds:" << (list ? " list" : "")
+       << " domain domain domain\nendian: " << (littleEndian() ? "little" : "big")
+       << "\nencoding: raw\nspace origin: " << point(image.ijkToRas, 3) << '\n';
+  for (const auto& [key, value] : image.fields)
+    text << key << ":=" << value << '\n';
+  text << '\n';
+  return text.str();
+}
+
+FileError failed(const std::filesystem::path& file, const std::string& why) {
+  return FileError(file.string() + ": " + why);
+}
+
+/// "(a,b,c)" of LPS to a column of RAS.
+void readPoint(const std::string& text, Matrix& matrix, std::size_t column) {
+  std::istringstream in(text);
+  char mark = 0;
+  for (std::size_t row = 0; row < 3; ++row) {
+    double value = 0.0;
+    if (!(in >> mark >> value))
+      throw std::invalid_argument("needs three numbers in each of its directions");
+    matrix[4 * row + column] = row < 2 && value != 0.0 ? -value : value;
+  }
+}
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> all;
+  for (std::string word; in >> word;)
+    all.push_back(word);
+  return all;
+}
+
+std::string field(const std::map<std::string, std::string>& fields, const std::string& name) {
+  const auto found = fields.find(name);
+  if (found == fields.end())
+    throw std::invalid_argument("has no field " + name);
+  return found->second;
+}
+
+Image described(const std::map<std::string, std::string>& fields) {
+  Image image;
+  image.type = field(fields, "type") == "float" ? "float" : field(fields, "type");
+  std::vector<std::string> sizes = words(field(fields, "sizes"));
+  std::vector<std::string> directions = words(field(fields, "space directions"));
+  if (sizes.size() == 4 && directions.size() == 4) {
+    image.components = std::stoul(sizes.front());
+    sizes.erase(sizes.begin());
+    directions.erase(directions.begin());
+  }
+  if (sizes.size() != 3 || directions.size() != 3)
+    throw std::invalid_argument("must have three dimensions");
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    image.size[axis] = std::stoul(sizes[axis]);
+    readPoint(directions[axis], image.ijkToRas, axis);
+  }
+  readPoint(field(fields, "space origin"), image.ijkToRas, 3);
+  const bool order =
+      bytesOf(image.type) == 1 || field(fields, "endian") == (littleEndian() ? "little" : "big");
+  if (field(fields, "encoding") != "raw" || bytesOf(image.type) == 0 || !order)
+    throw std::invalid_argument("is not raw in this machine's order");
+  return image;
+}
+
+} // namespace
+
+std::size_t bytesOf(const std::string& type) {
+  static const std::map<std::string, std::size_t> sizes = {
+      {"int8", 1},   {"uint8", 1},  {"signed char", 1},  {"unsigned char", 1},  {"uchar", 1},
+      {"int16", 2},  {"uint16", 2}, {"short", 2},        {"unsigned short", 2}, {"int32", 4},
+      {"uint32", 4}, {"int", 4},    {"unsigned int", 4}, {"int64", 8},          {"uint64", 8},
+      {"float", 4},  {"double", 8}};
+  const auto found = sizes.find(type);
+  return found == sizes.end() ? 0 : found->second;
+}
+
+std::size_t Image::bytes() const {
+  return bytesOf(type) * components * size[0] * size[1] * size[2];
+}
+
+void writeNrrd(const Image& image, const std::filesystem::path& file) {
+  std::filesystem::path partial = file;
+  partial += ".part";
+  {
+    std::ofstream out(partial, std::ios::binary);
+    out << header(image);
+    out.write(static_cast<const char*>(image.data.get()),
+              static_cast<std::streamsize>(image.bytes()));
+    out.close();
+    if (!out) {
+      std::error_code ignored;
+      std::filesystem::remove(partial, ignored);
+      throw failed(file, "could not be written; is the disk full?");
+    }
+  }
+  std::filesystem::rename(partial, file);
+}
+
+Image readNrrd(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  if (!std::getline(in, line) || line.compare(0, 4, "NRRD") != 0)
+    throw failed(file, "is not a NRRD file");
+  std::map<std::string, std::string> fields;
+  while (std::getline(in, line) && !line.empty()) {
+    const std::size_t colon = line.find(": ");
+    if (line.front() != '#' && colon != std::string::npos)
+      fields[line.substr(0, colon)] = line.substr(colon + 2);
+  }
+  try {
+    Image image = described(fields);
+    const auto begin = in.tellg();
+    const std::uintmax_t rest =
+        std::filesystem::file_size(file) - static_cast<std::uintmax_t>(begin);
+    if (!in || rest != image.bytes())
+      throw std::invalid_argument("does not end where its header says");
+    const std::shared_ptr<char[]> data(new char[image.bytes()]);
+    if (!in.read(data.get(), static_cast<std::streamsize>(image.bytes())))
+      throw std::invalid_argument("ends too soon");
+    image.data = std::shared_ptr<const void>(data, data.get());
+    return image;
+  } catch (const std::logic_error& error) { // numbers that are none, too
+    throw failed(file, error.what());
+  }
+}
+
+} // namespace FenestraScene

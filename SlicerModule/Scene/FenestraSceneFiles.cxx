@@ -1,0 +1,296 @@
+#include "FenestraSceneFiles.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+
+#ifndef _WIN32
+#include <cerrno>
+#include <csignal>
+#include <unistd.h>
+#endif
+
+namespace FenestraScene {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    switch (c) {
+    case '&':
+      out += "&amp;";
+      break;
+    case '<':
+      out += "&lt;";
+      break;
+    case '>':
+      out += "&gt;";
+      break;
+    case '"':
+      out += "&quot;";
+      break;
+    case '\n':
+      out += "&#10;";
+      break;
+    case '\t':
+      out += "&#9;";
+      break;
+    case '\r':
+      out += "&#13;";
+      break;
+    default:
+      out += c;
+    }
+  return out;
+}
+
+std::string numbers(const Matrix& matrix) {
+  std::ostringstream text;
+  text.precision(17);
+  for (std::size_t i = 0; i < matrix.size(); ++i)
+    text << (i == 0 ? "" : " ") << matrix[i];
+  return text.str();
+}
+
+void writeText(const std::string& text, const std::filesystem::path& file) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out)
+    throw FileError(file.string() + ": could not be written; is the disk full?");
+}
+
+/// A scene's text, a node after the other.
+class Nodes {
+public:
+  using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+  void add(const std::string& tag, const std::string& id, const Attributes& attributes) {
+    m_text << " <" << tag << " id=\"" << id << "\" name=\"" << id << '"';
+    for (const auto& [name, value] : attributes)
+      if (!value.empty())
+        m_text << ' ' << name << "=\"" << escaped(value) << '"';
+    m_text << "></" << tag << ">\n";
+  }
+  /// Returns the reference to put with others; none for the identity.
+  std::string addTransform(const std::string& id, const Matrix& toWorld) {
+    if (toWorld == identity)
+      return {};
+    add("LinearTransform", id, {{"matrixTransformToParent", numbers(toWorld)}});
+    return "transform:" + id + ";";
+  }
+  std::string text() const {
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<MRML version=\"Slicer 5.2\" "
+           "userTags=\"\">\n" +
+           m_text.str() + "</MRML>\n";
+  }
+
+private:
+  std::ostringstream m_text;
+};
+
+void addVolume(Nodes& nodes, const Contents& contents) {
+  std::string references = nodes.addTransform("VolumeToWorld", contents.volumeToWorld);
+  references += "storage:VolumeStorage;";
+  if (!contents.property.empty() || !contents.crop.empty()) {
+    std::string rendering;
+    if (!contents.property.empty()) {
+      nodes.add("VolumePropertyStorage", "PropertyStorage",
+                {{"fileName", "property" + contents.propertyEnding}});
+      nodes.add("VolumeProperty", "Property", {{"references", "storage:PropertyStorage;"}});
+      rendering = "volumeProperty:Property;";
+    }
+    if (!contents.crop.empty())
+      rendering += "roi:Roi;";
+    nodes.add("GPURayCastVolumeRendering", "Rendering",
+              {{"visibility", "true"},
+               {"croppingEnabled", contents.crop.empty() ? "0" : "1"},
+               {"references", rendering}});
+    references += "display:Rendering;";
+  }
+  nodes.add("VolumeArchetypeStorage", "VolumeStorage",
+            {{"fileName", "volume.nrrd"}, {"UseOrientationFromFile", "1"}});
+  nodes.add("Volume", "Volume", {{"references", references}});
+}
+
+std::string sceneText(const Contents& contents) {
+  Nodes nodes;
+  if (!contents.crop.empty()) {
+    const std::string transform = nodes.addTransform("RoiToWorld", contents.crop.front().toWorld);
+    nodes.add("MarkupsROIJsonStorage", "RoiStorage", {{"fileName", "roi.mrk.json"}});
+    nodes.add("MarkupsROI", "Roi", {{"references", transform + "storage:RoiStorage;"}});
+  }
+  addVolume(nodes, contents);
+  std::string shown = "volume:Volume;";
+  const Segmentation& segmentation = contents.segmentation;
+  if (!segmentation.segments.empty()) {
+    const std::string transform = nodes.addTransform("SegmentationToWorld", segmentation.toWorld);
+    nodes.add("SegmentationStorage", "SegmentationStorage",
+              {{"fileName", "segmentation.seg.nrrd"}});
+    nodes.add("Segmentation", "Segmentation",
+              {{"references", transform + "storage:SegmentationStorage;"}});
+    shown += "segmentation:Segmentation;";
+  }
+  Nodes::Attributes flags(contents.flags.begin(), contents.flags.end());
+  flags.emplace_back("references", shown);
+  nodes.add("FenestraRender", "Render", flags);
+  return nodes.text();
+}
+
+/// Line ends would end a NRRD field.
+std::string oneLine(std::string text) {
+  for (char& c : text)
+    if (c == '\n' || c == '\r')
+      c = ' ';
+  return text;
+}
+
+Image withSegmentFields(const Segmentation& segmentation) {
+  Image image = composed(segmentation.layers);
+  image.fields["Segmentation_MasterRepresentation"] = "Binary labelmap";
+  std::ostringstream extent;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    extent << (axis == 0 ? "" : " ") << 0 << ' ' << image.size[axis] - 1;
+  for (std::size_t i = 0; i < segmentation.segments.size(); ++i) {
+    const Segment& segment = segmentation.segments[i];
+    const std::string prefix = "Segment" + std::to_string(i) + "_";
+    image.fields[prefix + "ID"] = oneLine(segment.id);
+    image.fields[prefix + "Name"] = oneLine(segment.name);
+    image.fields[prefix + "LabelValue"] = std::to_string(segment.label);
+    image.fields[prefix + "Layer"] = std::to_string(segment.layer);
+    image.fields[prefix + "Extent"] = extent.str();
+  }
+  return image;
+}
+
+/// A layer's values into its component of a larger box.
+template <typename From, typename To>
+void place(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
+  const auto* in = static_cast<const From*>(layer.labels.data.get());
+  std::array<std::size_t, 3> shift{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    shift[axis] = static_cast<std::size_t>(layer.begin[axis] - begin[axis]);
+  const auto& size = layer.labels.size;
+  for (std::size_t k = 0; k < size[2]; ++k)
+    for (std::size_t j = 0; j < size[1]; ++j) {
+      const std::size_t row = (k + shift[2]) * box.size[1] + j + shift[1];
+      To* to = out + (row * box.size[0] + shift[0]) * box.components;
+      for (std::size_t i = 0; i < size[0]; ++i)
+        to[i * box.components] = static_cast<To>(*in++);
+    }
+}
+
+template <typename To>
+void placeAs(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
+  const std::string& type = layer.labels.type;
+  if (type == "uint8")
+    place<std::uint8_t>(layer, box, begin, out);
+  else if (type == "int8")
+    place<std::int8_t>(layer, box, begin, out);
+  else if (type == "int16")
+    place<std::int16_t>(layer, box, begin, out);
+  else if (type == "uint16")
+    place<std::uint16_t>(layer, box, begin, out);
+  else if (type == "int32")
+    place<std::int32_t>(layer, box, begin, out);
+  else
+    throw FileError("the segmentation: labels must be whole numbers, but are " + type);
+}
+
+template <typename To>
+std::shared_ptr<const void> composedData(const std::vector<Layer>& layers, const Image& box,
+                                         const std::array<long, 3>& begin) {
+  const auto data = std::make_shared<std::vector<To>>(box.bytes() / sizeof(To));
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    placeAs(layers[i], box, begin, data->data() + i);
+  return {data, data->data()};
+}
+
+} // namespace
+
+Image composed(const std::vector<Layer>& layers) {
+  if (layers.empty())
+    return {};
+  if (layers.size() == 1)
+    return layers.front().labels;
+  std::array<long, 3> begin = layers.front().begin;
+  std::array<long, 3> end = begin;
+  bool bytes = true;
+  for (const Layer& layer : layers)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      begin[axis] = std::min(begin[axis], layer.begin[axis]);
+      end[axis] =
+          std::max(end[axis], layer.begin[axis] + static_cast<long>(layer.labels.size[axis]));
+      bytes = bytes && layer.labels.type == "uint8";
+    }
+  Image box = layers.front().labels;
+  box.type = bytes ? "uint8" : "int32";
+  box.components = layers.size();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.size[axis] = static_cast<std::size_t>(end[axis] - begin[axis]);
+    const auto shift = static_cast<double>(begin[axis] - layers.front().begin[axis]);
+    for (std::size_t row = 0; row < 3; ++row)
+      box.ijkToRas[4 * row + 3] += shift * box.ijkToRas[4 * row + axis];
+  }
+  box.data = bytes ? composedData<std::uint8_t>(layers, box, begin)
+                   : composedData<std::int32_t>(layers, box, begin);
+  return box;
+}
+
+void Writer::writeOrLink(const Image& image, const std::string& key, Kept& kept,
+                         const std::filesystem::path& file) {
+  std::error_code failed;
+  if (!key.empty() && key == kept.key)
+    std::filesystem::create_hard_link(kept.file, file, failed);
+  if (key.empty() || key != kept.key || failed) {
+    writeNrrd(image, file);
+    kept.key.clear();
+    const std::filesystem::path copy = m_folder / ("kept-" + file.filename().string());
+    std::filesystem::remove(copy, failed);
+    std::filesystem::create_hard_link(file, copy, failed);
+    if (!failed)
+      kept = {key, copy};
+  }
+}
+
+std::filesystem::path Writer::write(const Contents& contents) {
+  const std::filesystem::path folder = m_folder / std::to_string(++m_written);
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  writeOrLink(contents.volume, contents.volumeKey, m_volume, folder / "volume.nrrd");
+  if (!contents.segmentation.segments.empty())
+    writeOrLink(withSegmentFields(contents.segmentation), contents.segmentationKey, m_segmentation,
+                folder / "segmentation.seg.nrrd");
+  if (!contents.property.empty())
+    writeText(contents.property, folder / ("property" + contents.propertyEnding));
+  if (!contents.crop.empty())
+    writeText(contents.crop.front().markup, folder / "roi.mrk.json");
+  writeText(sceneText(contents), folder / "scene.mrml");
+  return folder / "scene.mrml";
+}
+
+void removeAbandoned(const std::filesystem::path& folder, const std::string& prefix) {
+#ifndef _WIN32
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    const std::string name = entry.path().filename().string();
+    if (name.compare(0, prefix.size(), prefix) != 0)
+      continue;
+    std::size_t end = prefix.size();
+    while (end < name.size() && end < prefix.size() + 9 &&
+           std::isdigit(static_cast<unsigned char>(name[end])) != 0)
+      ++end;
+    if (end == prefix.size() || end == name.size() || name[end] != '-')
+      continue;
+    const int process = std::stoi(name.substr(prefix.size(), end - prefix.size()));
+    if (::kill(process, 0) != 0 && errno == ESRCH)
+      std::filesystem::remove_all(entry.path(), failed);
+  }
+#else
+  (void)folder, (void)prefix;
+#endif
+}
+
+} // namespace FenestraScene

@@ -1,0 +1,59 @@
+#pragma once
+// What the tests inside Slicer share.
+
+#include <vtkMRMLCoreTestingMacros.h>
+
+#include <vtkImageData.h>
+#include <vtkMRMLScalarVolumeNode.h>
+#include <vtkMRMLScene.h>
+#include <vtkMRMLSegmentationNode.h>
+#include <vtkNew.h>
+#include <vtkOrientedImageData.h>
+#include <vtkSegmentation.h>
+
+#include <cmath>
+#include <string>
+
+namespace FenestraTesting {
+
+/// A ball of 100 in air, radius 10 of 32 voxels a side, 1 mm.
+inline void fillBall(vtkImageData* image, int type, double value) {
+  image->SetDimensions(32, 32, 32);
+  image->AllocateScalars(type, 1);
+  for (int k = 0; k < 32; ++k)
+    for (int j = 0; j < 32; ++j)
+      for (int i = 0; i < 32; ++i) {
+        const double r =
+            std::sqrt((i - 16.0) * (i - 16) + (j - 16.0) * (j - 16) + (k - 16.0) * (k - 16));
+        image->SetScalarComponentFromDouble(i, j, k, 0, r < 10.0 ? value : 0.0);
+      }
+}
+
+inline vtkMRMLScalarVolumeNode* addVolume(vtkMRMLScene* scene) {
+  vtkNew<vtkImageData> image;
+  fillBall(image, VTK_SHORT, 100.0);
+  auto* volume = vtkMRMLScalarVolumeNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLScalarVolumeNode", "Ball"));
+  volume->SetAndObserveImageData(image);
+  volume->SetOrigin(-16.0, -16.0, -16.0);
+  return volume;
+}
+
+/// The ball as a segment "Ball", and an empty one, "Nothing".
+inline vtkMRMLSegmentationNode* addSegmentation(vtkMRMLScene* scene) {
+  vtkNew<vtkOrientedImageData> labels;
+  fillBall(labels, VTK_UNSIGNED_CHAR, 1.0);
+  labels->SetOrigin(-16.0, -16.0, -16.0);
+  auto* node = vtkMRMLSegmentationNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLSegmentationNode", "Segmentation"));
+#if Slicer_VERSION_MAJOR > 5 || (Slicer_VERSION_MAJOR == 5 && Slicer_VERSION_MINOR >= 4)
+  node->SetSourceRepresentationToBinaryLabelmap();
+#else
+  node->SetMasterRepresentationToBinaryLabelmap();
+#endif
+  node->AddSegmentFromBinaryLabelmapRepresentation(labels, "Ball");
+  node->GetSegmentation()->AddEmptySegment("Nothing", "Nothing");
+  return node;
+}
+
+} // namespace FenestraTesting

@@ -1,0 +1,202 @@
+// The whole path but the panel: a scene, a preview, renders, and their results in the scene, the
+// same bit for bit as those of the command line on the scene as Slicer saves it.
+// Arguments: the renderer, a folder for files.
+
+#include "FenestraTesting.h"
+
+#include "qSlicerFenestraSession.h"
+#include "vtkMRMLFenestraRenderNode.h"
+
+#include <QApplication>
+#include <QDir>
+#include <QElapsedTimer>
+#include <QProcess>
+
+#include <vtkMRMLModelNode.h>
+#include <vtkMRMLStorageNode.h>
+#include <vtkMRMLVectorVolumeNode.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include <cstring>
+
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+using Kind = qFenestraOutcome::Kind;
+
+/// What a session said.
+struct Heard {
+  explicit Heard(qSlicerFenestraSession& session) {
+    QObject::connect(&session, &qSlicerFenestraSession::ended, &session,
+                     [this](Node* node, const qFenestraOutcome& outcome) {
+                       ++ended;
+                       render = node;
+                       last = outcome;
+                     });
+    QObject::connect(&session, &qSlicerFenestraSession::previewed, &session,
+                     [this](const QImage& picture, const qFenestraPicture&) {
+                       ++previews;
+                       preview = picture;
+                     });
+    QObject::connect(&session, &qSlicerFenestraSession::previewRefused, &session,
+                     [this](const QString& message) { refused = message; });
+    QObject::connect(&session, &qSlicerFenestraSession::progressed, &session,
+                     [this](Node*, double, double) { ++progress; });
+  }
+  int ended = 0, previews = 0, progress = 0;
+  Node* render = nullptr;
+  qFenestraOutcome last;
+  QImage preview;
+  QString refused;
+};
+
+template <typename Condition>
+bool waitFor(Condition&& condition) {
+  QElapsedTimer watch;
+  watch.start();
+  while (!condition() && watch.elapsed() < 60000)
+    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  return condition();
+}
+
+/// A node's data and the node that says where they are, as Slicer saves them.
+void store(vtkMRMLScene* scene, vtkMRMLStorableNode* node, const QString& file) {
+  const auto storage = vtkSmartPointer<vtkMRMLStorageNode>::Take(node->CreateDefaultStorageNode());
+  storage->SetFileName(file.toUtf8().constData());
+  scene->AddNode(storage);
+  node->SetAndObserveStorageNodeID(storage->GetID());
+  storage->WriteData(node);
+}
+
+int compareWithCommandLine(vtkMRMLScene* scene, Node* render, const QString& program,
+                           const QString& folder) {
+  std::vector<vtkMRMLNode*> nodes;
+  scene->GetNodesByClass("vtkMRMLStorableNode", nodes);
+  for (vtkMRMLNode* node : nodes)
+    if (node->IsA("vtkMRMLScalarVolumeNode") || node->IsA("vtkMRMLSegmentationNode"))
+      store(scene, vtkMRMLStorableNode::SafeDownCast(node),
+            folder + "/" + node->GetName() +
+                (node->IsA("vtkMRMLSegmentationNode") ? ".seg.nrrd" : ".nrrd"));
+  const QString file = folder + "/scene.mrml";
+  scene->SetRootDirectory(folder.toUtf8().constData());
+  scene->SetURL(file.toUtf8().constData());
+  CHECK_INT(scene->Commit(), 1);
+  QProcess child;
+  child.setWorkingDirectory(folder);
+  child.start(program, {file, "--output", "line.nrrd", "--progress", "none"});
+  CHECK_BOOL(child.waitForFinished(60000), true);
+  if (child.exitCode() != 0)
+    std::cerr << child.readAllStandardError().toStdString();
+  CHECK_INT(child.exitCode(), 0);
+
+  const FenestraScene::Image line = FenestraScene::readNrrd((folder + "/line.nrrd").toStdString());
+  auto* radiance =
+      vtkMRMLVectorVolumeNode::SafeDownCast(render->GetNodeReference(Node::RadianceRole));
+  CHECK_NOT_NULL(radiance);
+  const size_t bytes = static_cast<size_t>(radiance->GetImageData()->GetNumberOfPoints()) * 16;
+  CHECK_BOOL(line.bytes() == bytes, true);
+  CHECK_INT(std::memcmp(line.data.get(), radiance->GetImageData()->GetScalarPointer(), bytes), 0);
+  return EXIT_SUCCESS;
+}
+
+int checkResult(vtkMRMLScene* scene, Node* render) {
+  for (const char* role : {Node::PictureRole, Node::RadianceRole, Node::DepthRole}) {
+    auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(role));
+    CHECK_NOT_NULL(volume);
+    CHECK_INT(volume->GetImageData()->GetDimensions()[0], 48);
+    CHECK_NOT_NULL(volume->GetDisplayNode());
+  }
+  auto* surface = vtkMRMLModelNode::SafeDownCast(render->GetNodeReference(Node::SurfaceRole));
+  CHECK_NOT_NULL(surface);
+  CHECK_BOOL(surface->GetPolyData()->GetNumberOfCells() > 0, true);
+  CHECK_BOOL(std::string(render->GetDescription()).find("samples") != std::string::npos, true);
+  CHECK_NOT_NULL(scene);
+  return EXIT_SUCCESS;
+}
+
+} // namespace
+
+int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
+  QApplication application(argc, argv);
+  if (argc < 3)
+    return EXIT_FAILURE;
+  const QString program = argv[1];
+  const QString folder = QString(argv[2]) + "/session";
+  QDir(folder).removeRecursively();
+  QDir().mkpath(folder);
+  vtkNew<vtkMRMLScene> scene;
+  vtkNew<vtkSlicerFenestraLogic> logic;
+  logic->SetMRMLScene(scene);
+  Node* settings = logic->GetSettings();
+  settings->SetNodeReferenceID(Node::VolumeRole, FenestraTesting::addVolume(scene)->GetID());
+  vtkMRMLSegmentationNode* segmentation = FenestraTesting::addSegmentation(scene);
+  settings->SetNodeReferenceID(Node::SegmentationRole, segmentation->GetID());
+  settings->SetFlags({{"samples", "8"},
+                      {"size", "48x40"},
+                      {"transfer", "ct-soft"},
+                      {"view", "left"},
+                      {"background", "0,0,0"}});
+  std::vector<std::string> ids;
+  segmentation->GetSegmentation()->GetSegmentIDs(ids);
+
+  qSlicerFenestraSession session(logic, program);
+  Heard heard(session);
+  session.setPreviewSize({32, 32});
+  session.preview(settings);
+  CHECK_BOOL(waitFor([&] { return heard.previews > 0; }), true);
+  CHECK_INT(heard.preview.width(), 32);
+  const int before = heard.previews;
+  const QImage unclipped = heard.preview;
+  settings->SetFocus({ids[0]});
+  session.refresh();
+  CHECK_BOOL(waitFor([&] { return heard.previews > before; }), true);
+
+  // Two renders, one after the other.
+  Node* first = session.render(settings);
+  CHECK_NOT_NULL(first);
+  settings->SetFlag("seed", "5");
+  CHECK_NOT_NULL(session.render(settings));
+  CHECK_INT(session.waiting(), 1);
+  CHECK_BOOL(waitFor([&] { return heard.ended == 2; }), true);
+  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::done));
+  CHECK_EXIT_SUCCESS(checkResult(scene, first));
+  CHECK_BOOL(session.fileOf(first, "exr").isEmpty(), false);
+  Node* second = heard.render;
+  CHECK_STD_STRING(second->GetFlag("seed"), "5");
+  CHECK_EXIT_SUCCESS(compareWithCommandLine(scene, second, program, folder));
+
+  // Stopped: what there is is kept, soon.
+  settings->SetFlag("samples", "100000000");
+  Node* long_ = session.render(settings);
+  heard.progress = 0;
+  CHECK_BOOL(waitFor([&] { return heard.progress > 3; }), true);
+  QElapsedTimer watch;
+  watch.start();
+  session.stop();
+  CHECK_BOOL(waitFor([&] { return heard.ended == 3; }), true);
+  std::cout << "Stopped after " << watch.elapsed() << " ms\n";
+  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::stopped));
+  CHECK_POINTER(heard.render, long_);
+
+  // Failures leave no node behind.
+  const int nodes = scene->GetNumberOfNodes();
+  settings->SetFocus({ids[1]}); // empty
+  session.render(settings);
+  CHECK_BOOL(waitFor([&] { return heard.ended == 4; }), true);
+  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::failed));
+  std::cout << heard.last.message.toStdString() << '\n';
+  CHECK_NULL(heard.render);
+  settings->SetFocus({ids[0]});
+  settings->SetFlags({{"size", "0x0"}});
+  session.render(settings);
+  CHECK_BOOL(waitFor([&] { return heard.ended == 5; }), true);
+  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::failed));
+  CHECK_INT(scene->GetNumberOfNodes(), nodes);
+  qSlicerFenestraSession without(logic, "/nowhere/fenestra");
+  Heard other(without);
+  CHECK_NULL(without.render(settings));
+  CHECK_BOOL(other.last.message.contains("missing"), true);
+  CHECK_INT(scene->GetNumberOfNodes(), nodes);
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,119 @@
+// What the renderer is handed, and what a user is told.
+
+#include "FenestraTesting.h"
+
+#include "vtkMRMLFenestraRenderNode.h"
+#include "vtkSlicerFenestraLogic.h"
+
+#include <vtkMRMLBSplineTransformNode.h>
+#include <vtkMRMLCameraNode.h>
+#include <vtkMRMLLinearTransformNode.h>
+#include <vtkMRMLViewNode.h>
+#include <vtkMatrix4x4.h>
+#include <vtkPointData.h>
+#include <vtkTransform.h>
+
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+
+/// What is said where something is missing; empty where nothing is.
+std::string complaint(vtkSlicerFenestraLogic* logic, Node* node) {
+  try {
+    logic->Snapshot(node);
+    return {};
+  } catch (const vtkSlicerFenestraComplaint& said) {
+    return said.what();
+  }
+}
+
+bool has(const std::string& text, const char* part) {
+  return text.find(part) != std::string::npos;
+}
+
+int testCamera(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settings) {
+  auto* view = vtkMRMLViewNode::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLViewNode", "View"));
+  auto* camera =
+      vtkMRMLCameraNode::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLCameraNode", "Camera"));
+  view->SetLayoutName("1");
+  camera->SetLayoutName("1");
+  camera->SetPosition(0.1, -200.0, 0.3);
+  camera->SetFocalPoint(0.0, 0.0, 0.0);
+  camera->SetParallelProjection(1);
+  camera->SetParallelScale(1.0 / 3.0);
+  settings->SetNodeReferenceID(Node::ViewRole, view->GetID());
+  CHECK_POINTER(logic->GetFollowedCamera(settings), camera);
+  auto flags = logic->GetFlags(settings);
+  CHECK_STD_STRING(flags["projection"], "orthographic");
+  CHECK_DOUBLE(std::stod(flags["scale"]), 1.0 / 3.0); // every digit
+  CHECK_BOOL(flags.count("angle") == 0, true);
+  camera->SetParallelProjection(0);
+  flags = logic->GetFlags(settings);
+  CHECK_STD_STRING(flags["angle"], "30");
+  // A render's view is fixed.
+  Node* render = logic->AddRender(settings);
+  CHECK_NULL(logic->GetFollowedCamera(render));
+  CHECK_STD_STRING(render->GetFlag("position"), flags["position"]);
+  settings->SetFlag("view", "left");
+  CHECK_NULL(logic->GetFollowedCamera(settings));
+  CHECK_BOOL(logic->GetFlags(settings).count("position") == 0, true);
+  return EXIT_SUCCESS;
+}
+
+int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settings) {
+  CHECK_BOOL(has(complaint(logic, settings), "no volume"), true);
+  vtkMRMLScalarVolumeNode* volume = FenestraTesting::addVolume(scene);
+  settings->SetNodeReferenceID(Node::VolumeRole, volume->GetID());
+  CHECK_STD_STRING(complaint(logic, settings), "");
+  FenestraScene::Contents contents = logic->Snapshot(settings);
+  CHECK_STD_STRING(contents.volume.type, "int16");
+  CHECK_BOOL(contents.volume.data.get() == volume->GetImageData()->GetScalarPointer(), true);
+  CHECK_BOOL(contents.property.empty(), true);
+  const std::string key = contents.volumeKey;
+  CHECK_STD_STRING(logic->Snapshot(settings).volumeKey, key);
+  volume->GetImageData()->GetPointData()->GetScalars()->Modified();
+  CHECK_BOOL(logic->Snapshot(settings).volumeKey != key, true);
+
+  vtkMRMLSegmentationNode* segmentation = FenestraTesting::addSegmentation(scene);
+  settings->SetNodeReferenceID(Node::SegmentationRole, segmentation->GetID());
+  std::vector<std::string> ids;
+  segmentation->GetSegmentation()->GetSegmentIDs(ids);
+  settings->SetFocus({ids[0]});
+  contents = logic->Snapshot(settings);
+  CHECK_BOOL(contents.segmentation.segments.empty(), false);
+  CHECK_STD_STRING(contents.segmentation.segments[0].name, "Ball");
+  settings->SetFocus({"gone"});
+  CHECK_BOOL(has(complaint(logic, settings), "gone"), true);
+  settings->SetFocus({ids[0]});
+
+  vtkNew<vtkMatrix4x4> shift;
+  shift->SetElement(0, 3, 12.5);
+  auto* transform = vtkMRMLLinearTransformNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLLinearTransformNode", "Shift"));
+  transform->SetMatrixTransformToParent(shift);
+  segmentation->SetAndObserveTransformNodeID(transform->GetID());
+  CHECK_DOUBLE(logic->Snapshot(settings).segmentation.toWorld[3], 12.5);
+  auto* bending = scene->AddNewNodeByClass("vtkMRMLBSplineTransformNode", "Bending");
+  volume->SetAndObserveTransformNodeID(bending->GetID());
+  CHECK_BOOL(has(complaint(logic, settings), "Harden"), true);
+  volume->SetAndObserveTransformNodeID(nullptr);
+  return EXIT_SUCCESS;
+}
+
+} // namespace
+
+int vtkSlicerFenestraLogicTest1(int, char*[]) {
+  vtkNew<vtkMRMLScene> scene;
+  vtkNew<vtkSlicerFenestraLogic> logic;
+  EXERCISE_BASIC_OBJECT_METHODS(logic.GetPointer());
+  logic->SetMRMLScene(scene);
+  Node* settings = logic->GetSettings();
+  CHECK_NOT_NULL(settings);
+  CHECK_POINTER(logic->GetSettings(), settings);
+  CHECK_EXIT_SUCCESS(testSubject(scene, logic, settings));
+  CHECK_EXIT_SUCCESS(testCamera(scene, logic, settings));
+  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}}), true);
+  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}, {"clip", "none"}}), false);
+  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({}), false);
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,285 @@
+#include "qSlicerFenestraTour.h"
+
+#include "qSlicerFenestraModuleWidget.h"
+#include "vtkMRMLFenestraRenderNode.h"
+
+#include <qMRMLNodeComboBox.h>
+#include <qSlicerApplication.h>
+#include <qSlicerCoreIOManager.h>
+#include <qSlicerLayoutManager.h>
+#include <qSlicerModuleManager.h>
+#include <qSlicerModuleSelectorToolBar.h>
+
+#include <vtkCamera.h>
+#include <vtkImageData.h>
+#include <vtkMRMLCameraNode.h>
+#include <vtkMRMLScene.h>
+#include <vtkMRMLVolumeNode.h>
+
+#include <QAbstractButton>
+#include <QFile>
+#include <QJsonDocument>
+#include <QLabel>
+#include <QListWidget>
+#include <QMainWindow>
+#include <QScreen>
+#include <QStyle>
+#include <QStyleOptionViewItem>
+#include <QTest>
+
+#include <cstring>
+#include <iostream>
+
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+
+QByteArray radianceOf(Node* render) {
+  auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::RadianceRole));
+  if (!volume)
+    return {};
+  return QByteArray(static_cast<const char*>(volume->GetImageData()->GetScalarPointer()),
+                    static_cast<int>(volume->GetImageData()->GetNumberOfPoints()) * 16);
+}
+
+} // namespace
+
+qSlicerFenestraPulse::qSlicerFenestraPulse() {
+  m_watch.start();
+  constexpr int interval = 5;
+  QObject::connect(&m_timer, &QTimer::timeout,
+                   [this] { m_longest = std::max(m_longest, m_watch.restart() - interval); });
+  m_timer.setTimerType(Qt::PreciseTimer);
+  m_timer.start(interval);
+}
+
+qSlicerFenestraTour::qSlicerFenestraTour(const QString& report) : m_report(report) {}
+
+bool qSlicerFenestraTour::run() {
+  m_window = qSlicerApplication::application()->mainWindow();
+  m_window->showMaximized();
+  settle(1000);
+  photograph("1-start");
+  struct Step {
+    const char* name;
+    bool (qSlicerFenestraTour::*run)();
+  };
+  const Step steps[] = {
+      {"load", &qSlicerFenestraTour::loadPhantom},       {"open", &qSlicerFenestraTour::openModule},
+      {"choose", &qSlicerFenestraTour::chooseCartilage}, {"turn", &qSlicerFenestraTour::turnCamera},
+      {"render", &qSlicerFenestraTour::render},          {"stop", &qSlicerFenestraTour::stopRender},
+      {"repeat", &qSlicerFenestraTour::saveAndRepeat}};
+  bool good = true;
+  for (const Step& step : steps) {
+    good = good && (this->*step.run)();
+    if (!good) {
+      m_figures["failed"] = step.name;
+      photograph("failed");
+      break;
+    }
+  }
+  m_figures["slicer"] = qSlicerApplication::application()->applicationVersion();
+  QFile file(m_report + "/tour.json");
+  if (file.open(QIODevice::WriteOnly))
+    file.write(QJsonDocument(m_figures).toJson());
+  return good;
+}
+
+bool qSlicerFenestraTour::loadPhantom() {
+  if (!qSlicerApplication::application()->coreIOManager()->loadScene(m_report + "/knee/knee.mrml"))
+    return false;
+  settle(2000);
+  photograph("2-loaded");
+  return true;
+}
+
+bool qSlicerFenestraTour::openModule() {
+  auto* selector = m_window->findChild<qSlicerModuleSelectorToolBar*>();
+  if (!selector)
+    return false;
+  selector->selectModule("Fenestra");
+  settle(500);
+  m_panel = m_window->findChild<qSlicerFenestraModuleWidget*>();
+  if (!m_panel)
+    return false;
+  QObject::connect(m_panel->session(), &qSlicerFenestraSession::previewed, m_panel,
+                   [this] { ++m_previews; });
+  QObject::connect(m_panel->session(), &qSlicerFenestraSession::ended, m_panel,
+                   [this] { ++m_ended; });
+  if (!waitFor([this] { return m_previews > 0; }))
+    return false;
+  settle(1500);
+  photograph("3-opened");
+  return true;
+}
+
+/// With the mouse, on the check box of its row.
+bool qSlicerFenestraTour::chooseCartilage() {
+  auto* list = m_panel->findChild<QListWidget*>("FocusList");
+  const QList<QListWidgetItem*> items = list->findItems("cartilage", Qt::MatchContains);
+  if (items.isEmpty())
+    return false;
+  m_pulse.start();
+  QElapsedTimer watch;
+  const int before = m_previews;
+  for (QListWidgetItem* item : items) {
+    list->scrollToItem(item);
+    const QRect row = list->visualItemRect(item);
+    watch.start();
+    QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, {row.left() + 10, row.center().y()});
+    if (item->checkState() != Qt::Checked)
+      return false;
+  }
+  if (!waitFor([&] { return m_previews > before; }))
+    return false;
+  m_figures["previewAfterFocusMs"] = static_cast<int>(watch.elapsed());
+  settle(3000);
+  m_figures["longestPauseWhilePreviewingMs"] = m_pulse.longest();
+  photograph("4-focus");
+  return true;
+}
+
+bool qSlicerFenestraTour::turnCamera() {
+  auto* camera = vtkMRMLCameraNode::SafeDownCast(
+      qSlicerApplication::application()->mrmlScene()->GetFirstNodeByClass("vtkMRMLCameraNode"));
+  int slowest = 0;
+  for (int turn = 0; turn < 5; ++turn) {
+    settle(300);
+    const int before = m_previews;
+    QElapsedTimer watch;
+    watch.start();
+    camera->GetCamera()->Azimuth(10.0);
+    camera->GetCamera()->Elevation(3.0);
+    if (!waitFor([&] { return m_previews > before; }))
+      return false;
+    slowest = std::max(slowest, static_cast<int>(watch.elapsed()));
+  }
+  m_figures["previewAfterTurnMs"] = slowest;
+  settle(3000);
+  photograph("5-turned");
+  return true;
+}
+
+bool qSlicerFenestraTour::render() {
+  const int before = m_ended;
+  m_pulse.start();
+  if (!click("RenderButton"))
+    return false;
+  settle(1500);
+  m_figures["longestPauseWhileRenderingMs"] = m_pulse.longest();
+  photograph("6-rendering");
+  if (!waitFor([&] { return m_ended > before; }, 300000))
+    return false;
+  m_figures["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
+  settle(2500);
+  photograph("7-result");
+  return lastRender() && !radianceOf(lastRender()).isEmpty();
+}
+
+bool qSlicerFenestraTour::stopRender() {
+  auto* settings =
+      Node::SafeDownCast(qSlicerApplication::application()->mrmlScene()->GetSingletonNode(
+          "Settings", "vtkMRMLFenestraRenderNode"));
+  const std::map<std::string, std::string> flags = settings->GetFlags();
+  std::map<std::string, std::string> endless = flags;
+  endless["samples"] = "1000000";
+  endless.erase("noise");
+  settings->SetFlags(endless);
+  const int before = m_ended;
+  if (!click("RenderButton"))
+    return false;
+  settle(3000);
+  m_pulse.start();
+  QElapsedTimer watch;
+  watch.start();
+  auto* session = m_panel->session();
+  int after = -1;
+  const auto heard = QObject::connect(session, &qSlicerFenestraSession::renderStopped,
+                                      [&] { after = static_cast<int>(watch.elapsed()); });
+  if (!click("StopButton") || !waitFor([&] { return m_ended > before; }))
+    return false;
+  QObject::disconnect(heard);
+  m_figures["stoppedAfterMs"] = after;
+  settings->SetFlags(flags);
+  settle(1000);
+  return lastRender() != nullptr;
+}
+
+bool qSlicerFenestraTour::saveAndRepeat() {
+  vtkMRMLScene* scene = qSlicerApplication::application()->mrmlScene();
+  std::vector<vtkMRMLNode*> renders;
+  scene->GetNodesByClass("vtkMRMLFenestraRenderNode", renders);
+  Node* first = nullptr;
+  for (vtkMRMLNode* node : renders)
+    if (!first && !node->GetSingletonTag())
+      first = Node::SafeDownCast(node);
+  if (!first)
+    return false;
+  const QByteArray before = radianceOf(first);
+  const std::string name = first->GetName();
+  qSlicerIO::IOProperties properties;
+  const QString file = m_report + "/saved.mrb";
+  properties["fileName"] = file;
+  auto* io = qSlicerApplication::application()->coreIOManager();
+  if (!io->saveNodes("SceneFile", properties))
+    return false;
+  scene->Clear(false);
+  settle(1000);
+  photograph("8-closed");
+  if (!io->loadScene(file))
+    return false;
+  settle(2000);
+  auto* again = Node::SafeDownCast(scene->GetFirstNodeByName(name.c_str()));
+  if (!again)
+    return false;
+  m_figures["readBack"] = radianceOf(again) == before;
+  auto* chooser = m_panel->findChild<qMRMLNodeComboBox*>("RendersBox");
+  chooser->setCurrentNode(again);
+  settle(500);
+  photograph("9-reloaded");
+  const int ended = m_ended;
+  if (!click("RepeatButton") || !waitFor([&] { return m_ended > ended; }, 300000))
+    return false;
+  settle(2000);
+  photograph("10-repeated");
+  m_figures["repeatedBitForBit"] = radianceOf(lastRender()) == before;
+  return m_figures["repeatedBitForBit"].toBool() && m_figures["readBack"].toBool();
+}
+
+// ---- hands and eyes
+
+bool qSlicerFenestraTour::click(const char* button) {
+  auto* found = m_panel->findChild<QAbstractButton*>(button);
+  if (!found || !found->isEnabled())
+    return false;
+  QTest::mouseClick(found, Qt::LeftButton);
+  return true;
+}
+
+bool qSlicerFenestraTour::waitFor(const std::function<bool()>& condition, int milliseconds) {
+  QElapsedTimer watch;
+  watch.start();
+  while (!condition() && watch.elapsed() < milliseconds)
+    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  return condition();
+}
+
+void qSlicerFenestraTour::settle(int milliseconds) {
+  waitFor([] { return false; }, milliseconds);
+}
+
+void qSlicerFenestraTour::photograph(const char* name) {
+  m_window->screen()->grabWindow(m_window->winId()).save(QString("%1/%2.png").arg(m_report, name));
+  std::cout << "tour: " << name << std::endl;
+}
+
+Node* qSlicerFenestraTour::lastRender() const {
+  std::vector<vtkMRMLNode*> renders;
+  qSlicerApplication::application()->mrmlScene()->GetNodesByClass("vtkMRMLFenestraRenderNode",
+                                                                  renders);
+  Node* last = nullptr;
+  for (vtkMRMLNode* node : renders)
+    if (!node->GetSingletonTag() && node->GetNodeReference(Node::PictureRole))
+      last = Node::SafeDownCast(node);
+  return last;
+}

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# The tutorial in a real Slicer on a virtual screen. usage: tour.sh SLICER MODULES FENESTRA REPORT
+# Leaves pictures and tour.json in REPORT; fails where a step does, or where Slicer logs a warning
+# that names Fenestra.
+set -euo pipefail
+slicer=$1 modules=$2 fenestra=$3 report=$4
+rm -rf "$report"
+mkdir -p "$report/home/.config"
+"$fenestra" phantom knee --output "$report/knee" >/dev/null
+commands=$(dirname "$modules")/cli-modules
+slicer_libraries=$(dirname "$slicer")/../lib/Slicer-$("$slicer" --version 2>/dev/null | grep -oE '[0-9]+\.[0-9]+' | head -1)
+export LD_LIBRARY_PATH="$modules:$slicer_libraries/qt-loadable-modules:$slicer_libraries/cli-modules${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+export HOME="$report/home" FENESTRA_TOUR="$report"
+settings="$HOME/.config/NA-MIC"
+mkdir -p "$settings"
+printf '[MainWindow]\nDontShowDisclaimerMessage=1024\nDontConfirmExit=1024\nDontConfirmSceneSave=1024\n' >"$settings/Slicer.ini"
+status=0
+timeout 800 xvfb-run -a -s "-screen 0 1600x1000x24" "$slicer" --no-splash \
+  --additional-module-paths "$modules" "$commands" --verbose-module-discovery \
+  >"$report/slicer.log" 2>&1 || status=$?
+cat "$report/tour.json" || true
+if [ "$status" -ne 0 ]; then
+  tail -n 30 "$report/slicer.log"
+  exit "$status"
+fi
+if grep -iE '(warning|error).*fenestra|fenestra.*(warning|error)' "$report/slicer.log"; then
+  echo "Slicer's log has the above to say" >&2
+  exit 1
+fi

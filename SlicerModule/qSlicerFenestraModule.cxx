@@ -1,0 +1,64 @@
+#include "qSlicerFenestraModule.h"
+
+#include "qSlicerFenestraModuleWidget.h"
+#include "vtkSlicerFenestraLogic.h"
+
+#include <QDir>
+#include <QFileInfo>
+
+qSlicerFenestraModule::qSlicerFenestraModule(QObject* parent) : Superclass(parent) {}
+
+qSlicerFenestraModule::~qSlicerFenestraModule() = default;
+
+QString qSlicerFenestraModule::helpText() const {
+  return tr("Photorealistic pictures of a volume in which nothing hides the anatomy of interest. "
+            "Choose a volume, a segmentation and the segments to show; a smooth surface through "
+            "them clips what lies in front. See the <a "
+            "href=\"https://github.com/fenestra-render/SlicerFenestra#readme\">tutorial</a>.");
+}
+
+QString qSlicerFenestraModule::acknowledgementText() const {
+  return tr(
+      "After the paper \"Volumetric Clipping Surface: Un-occluded Visualization of Structures "
+      "Preserving Depth Cues into Surrounding Organs\". For research and teaching; not a "
+      "medical device.");
+}
+
+QStringList qSlicerFenestraModule::contributors() const {
+  return {tr("The Fenestra authors")};
+}
+
+QIcon qSlicerFenestraModule::icon() const {
+  return QIcon(":/Icons/Fenestra.png");
+}
+
+QStringList qSlicerFenestraModule::categories() const {
+  return {"Rendering"};
+}
+
+QStringList qSlicerFenestraModule::dependencies() const {
+  return {"Cameras", "Markups", "Segmentations", "VolumeRendering", "Volumes"};
+}
+
+QStringList qSlicerFenestraModule::associatedNodeTypes() const {
+  return {"vtkMRMLFenestraRenderNode"};
+}
+
+/// Beside this library, where Slicer finds it as a command line module, too.
+QString qSlicerFenestraModule::program() const {
+  const QDir folder = QFileInfo(this->path()).dir();
+#ifdef Q_OS_WIN
+  const QString name = QStringLiteral("fenestra.exe");
+#else
+  const QString name = QStringLiteral("fenestra");
+#endif
+  return QDir::cleanPath(folder.filePath("../cli-modules/" + name));
+}
+
+qSlicerAbstractModuleRepresentation* qSlicerFenestraModule::createWidgetRepresentation() {
+  return new qSlicerFenestraModuleWidget;
+}
+
+vtkMRMLAbstractLogic* qSlicerFenestraModule::createLogic() {
+  return vtkSlicerFenestraLogic::New();
+}

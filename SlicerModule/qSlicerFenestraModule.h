@@ -1,0 +1,39 @@
+#ifndef __qSlicerFenestraModule_h
+#define __qSlicerFenestraModule_h
+
+#include <qSlicerLoadableModule.h>
+
+#include "qSlicerFenestraModuleExport.h"
+
+/// The module: what Slicer shows of it, and its parts.
+class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraModule : public qSlicerLoadableModule {
+  Q_OBJECT
+  Q_PLUGIN_METADATA(IID "org.slicer.modules.loadable.qSlicerLoadableModule/1.0");
+  Q_INTERFACES(qSlicerLoadableModule);
+
+public:
+  typedef qSlicerLoadableModule Superclass;
+  explicit qSlicerFenestraModule(QObject* parent = nullptr);
+  ~qSlicerFenestraModule() override;
+
+  qSlicerGetTitleMacro(QTMODULE_TITLE);
+  QString helpText() const override;
+  QString acknowledgementText() const override;
+  QStringList contributors() const override;
+  QIcon icon() const override;
+  QStringList categories() const override;
+  QStringList dependencies() const override;
+  QStringList associatedNodeTypes() const override;
+
+  /// The renderer that comes with this module.
+  QString program() const;
+
+protected:
+  qSlicerAbstractModuleRepresentation* createWidgetRepresentation() override;
+  vtkMRMLAbstractLogic* createLogic() override;
+
+private:
+  Q_DISABLE_COPY(qSlicerFenestraModule);
+};
+
+#endif

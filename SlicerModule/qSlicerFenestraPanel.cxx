@@ -1,0 +1,261 @@
+#include "qSlicerFenestraPanel.h"
+
+#include <ctkCollapsibleButton.h>
+#include <ctkSliderWidget.h>
+#include <qMRMLNodeComboBox.h>
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QProgressBar>
+#include <QPushButton>
+#include <QSpinBox>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+namespace {
+
+struct Choice {
+  QString text, data;
+};
+
+QComboBox* choices(const QString& name, const QList<Choice>& all, const QString& help) {
+  auto* box = new QComboBox;
+  box->setObjectName(name);
+  box->setToolTip(help);
+  for (const Choice& choice : all)
+    box->addItem(choice.text, choice.data);
+  return box;
+}
+
+QLabel* words(const QString& name) {
+  auto* label = new QLabel;
+  label->setObjectName(name);
+  label->setWordWrap(true);
+  label->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  return label;
+}
+
+QPushButton* button(const QString& name, const QString& text, const QString& help) {
+  auto* one = new QPushButton(text);
+  one->setObjectName(name);
+  one->setToolTip(help);
+  return one;
+}
+
+QDoubleSpinBox* limit(const QString& name, double greatest, int decimals, const QString& suffix) {
+  auto* box = new QDoubleSpinBox;
+  box->setObjectName(name);
+  box->setRange(0.0, greatest);
+  box->setDecimals(decimals);
+  box->setSuffix(suffix);
+  box->setSpecialValueText(QObject::tr("no limit"));
+  return box;
+}
+
+} // namespace
+
+qSlicerFenestraPanel::qSlicerFenestraPanel(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  buildSubject(layout);
+  buildPreview(layout);
+  buildRender(layout);
+  buildView(layout);
+  buildQuality(layout);
+  buildResults(layout);
+  layout->addStretch(1);
+}
+
+QFormLayout* qSlicerFenestraPanel::section(QVBoxLayout* layout, const QString& title,
+                                           bool collapsed) {
+  auto* one = new ctkCollapsibleButton(title);
+  one->setCollapsed(collapsed);
+  one->setObjectName(title);
+  layout->addWidget(one);
+  return new QFormLayout(one);
+}
+
+qMRMLNodeComboBox* qSlicerFenestraPanel::nodes(const QString& type, const QString& name) {
+  auto* box = new qMRMLNodeComboBox;
+  box->setObjectName(name);
+  box->setNodeTypes({type});
+  box->setAddEnabled(false);
+  box->setRemoveEnabled(false);
+  box->setRenameEnabled(false);
+  connect(this, SIGNAL(mrmlSceneChanged(vtkMRMLScene*)), box, SLOT(setMRMLScene(vtkMRMLScene*)));
+  return box;
+}
+
+void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
+  QFormLayout* form = section(layout, tr("What to show"), false);
+  sample = button("SampleButton", tr("Load a sample knee"),
+                  tr("A synthetic knee with its segments, made on this computer"));
+  form->addRow(sample);
+  volume = nodes("vtkMRMLScalarVolumeNode", "VolumeBox");
+  volume->setNoneEnabled(true);
+  volume->setHideChildNodeTypes({"vtkMRMLLabelMapVolumeNode"});
+  form->addRow(tr("Volume:"), volume);
+  segmentation = nodes("vtkMRMLSegmentationNode", "SegmentationBox");
+  segmentation->setNoneEnabled(true);
+  form->addRow(tr("Segmentation:"), segmentation);
+  focus = new QListWidget;
+  focus->setObjectName("FocusList");
+  focus->setToolTip(tr("Segments that nothing hides"));
+  focus->setMaximumHeight(150);
+  form->addRow(tr("Focus:"), focus);
+  clip = choices("ClipBox",
+                 {{tr("Smooth surface through the focus"), ""},
+                  {tr("Cut away in front of the focus"), "cutaway"},
+                  {tr("Nothing"), "none"}},
+                 tr("What is clipped, so that the focus shows"));
+  form->addRow(tr("Clip:"), clip);
+}
+
+void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
+  showPreview = new QCheckBox(tr("Preview"));
+  showPreview->setObjectName("PreviewBox");
+  showPreview->setChecked(true);
+  layout->addWidget(showPreview);
+  preview = new QLabel;
+  preview->setObjectName("PreviewLabel");
+  preview->setAlignment(Qt::AlignCenter);
+  preview->setMinimumSize(256, 256);
+  preview->setStyleSheet("background: black; color: gray");
+  layout->addWidget(preview);
+  previewState = words("PreviewStateLabel");
+  layout->addWidget(previewState);
+}
+
+void qSlicerFenestraPanel::buildRender(QVBoxLayout* layout) {
+  auto* row = new QHBoxLayout;
+  render = button("RenderButton", tr("Render"), tr("Adds the picture to the scene"));
+  stop = button("StopButton", tr("Stop"), tr("Ends the render, and keeps what there is"));
+  stop->setEnabled(false);
+  row->addWidget(render, 2);
+  row->addWidget(stop, 1);
+  layout->addLayout(row);
+  progress = new QProgressBar;
+  progress->setObjectName("ProgressBar");
+  progress->setRange(0, 1000);
+  progress->hide();
+  layout->addWidget(progress);
+  state = words("StateLabel");
+  layout->addWidget(state);
+  details = new QToolButton;
+  details->setObjectName("DetailsButton");
+  details->setText(tr("Details"));
+  details->setCheckable(true);
+  details->hide();
+  layout->addWidget(details);
+  detailsText = words("DetailsLabel");
+  detailsText->hide();
+  layout->addWidget(detailsText);
+  connect(details, &QToolButton::toggled, detailsText, &QLabel::setVisible);
+}
+
+void qSlicerFenestraPanel::buildView(QVBoxLayout* layout) {
+  QFormLayout* form = section(layout, tr("View and light"), false);
+  view = choices("ViewBox",
+                 {{tr("As in the 3D view"), ""},
+                  {tr("From anterior"), "anterior"},
+                  {tr("From posterior"), "posterior"},
+                  {tr("From left"), "left"},
+                  {tr("From right"), "right"},
+                  {tr("From superior"), "superior"},
+                  {tr("From inferior"), "inferior"}},
+                 tr("Where the picture is taken from"));
+  form->addRow(tr("View:"), view);
+  view3D = nodes("vtkMRMLViewNode", "View3DBox");
+  follow = new QCheckBox(tr("live"));
+  follow->setObjectName("FollowBox");
+  follow->setChecked(true);
+  follow->setToolTip(tr("The preview follows the 3D view as you turn it"));
+  auto* row = new QHBoxLayout;
+  row->addWidget(view3D, 1);
+  row->addWidget(follow);
+  form->addRow(tr("3D view:"), row);
+  transfer = choices("TransferBox",
+                     {{tr("As in Volume Rendering"), ""},
+                      {tr("CT: soft tissue"), "ct-soft"},
+                      {tr("CT: bone"), "ct-bone"}},
+                     tr("Colours and opacities; set up your own in the Volume Rendering module"));
+  form->addRow(tr("Tissue colours:"), transfer);
+  rig = choices("RigBox",
+                {{tr("Studio"), "studio"}, {tr("Headlight"), "headlight"}, {tr("Soft"), "soft"}},
+                tr("Where light comes from"));
+  form->addRow(tr("Lights:"), rig);
+  const QString names[4] = {tr("Key:"), tr("Fill:"), tr("Rim:"), tr("Environment:")};
+  for (int i = 0; i < 4; ++i) {
+    strengths[i] = new ctkSliderWidget;
+    strengths[i]->setObjectName(QString("Strength%1").arg(i));
+    strengths[i]->setRange(0.0, 300.0);
+    strengths[i]->setDecimals(0);
+    strengths[i]->setSuffix(" %");
+    strengths[i]->setValue(100.0);
+    form->addRow(names[i], strengths[i]);
+  }
+  background = choices("BackgroundBox",
+                       {{tr("Black"), "0,0,0"},
+                        {tr("Grey"), "0.1,0.1,0.1"},
+                        {tr("White"), "100,100,100"},
+                        {tr("Transparent"), "transparent"}},
+                       tr("Behind the volume"));
+  form->addRow(tr("Background:"), background);
+}
+
+void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
+  QFormLayout* form = section(layout, tr("Quality"), true);
+  quality = choices("QualityBox",
+                    {{tr("Draft"), "16 0 0"},
+                     {tr("Good"), "256 0.04 0"},
+                     {tr("Final"), "4096 0.015 0"},
+                     {tr("Custom"), ""}},
+                    tr("A render ends at the first of its limits"));
+  form->addRow(tr("Quality:"), quality);
+  samples = new QSpinBox;
+  samples->setObjectName("SamplesBox");
+  samples->setRange(1, 1000000);
+  form->addRow(tr("Samples a pixel:"), samples);
+  noise = limit("NoiseBox", 1.0, 3, {});
+  noise->setSingleStep(0.005);
+  form->addRow(tr("Noise:"), noise);
+  seconds = limit("SecondsBox", 86400.0, 0, tr(" s"));
+  form->addRow(tr("Time:"), seconds);
+  auto* row = new QHBoxLayout;
+  for (QSpinBox** box : {&width, &height}) {
+    *box = new QSpinBox;
+    (*box)->setRange(16, 8192);
+    (*box)->setSingleStep(64);
+    row->addWidget(*box, 1);
+    if (box == &width)
+      row->addWidget(new QLabel(QString::fromUtf8("\u00d7")));
+  }
+  width->setObjectName("WidthBox");
+  height->setObjectName("HeightBox");
+  form->addRow(tr("Size in pixels:"), row);
+}
+
+void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
+  QFormLayout* form = section(layout, tr("Pictures"), false);
+  renders = nodes("vtkMRMLFenestraRenderNode", "RendersBox");
+  renders->setNoneEnabled(true);
+  renders->setRemoveEnabled(true);
+  renders->setRenameEnabled(true);
+  form->addRow(tr("Picture:"), renders);
+  description = words("DescriptionLabel");
+  form->addRow(description);
+  auto* row = new QHBoxLayout;
+  show = button("ShowButton", tr("Show"), tr("In a view beside the 3D view"));
+  repeat = button("RepeatButton", tr("Repeat"), tr("Renders with the same settings again"));
+  save = button("SaveButton", tr("Save as..."),
+                tr("A .png to look at, or an .exr with all that "
+                   "was computed"));
+  for (QPushButton* one : {show, repeat, save})
+    row->addWidget(one);
+  form->addRow(row);
+}

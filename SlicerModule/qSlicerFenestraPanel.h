@@ -1,0 +1,80 @@
+#ifndef __qSlicerFenestraPanel_h
+#define __qSlicerFenestraPanel_h
+
+#include <QWidget>
+
+class ctkSliderWidget;
+class qMRMLNodeComboBox;
+class QCheckBox;
+class QComboBox;
+class QDoubleSpinBox;
+class QFormLayout;
+class QLabel;
+class QListWidget;
+class QProgressBar;
+class QPushButton;
+class QSpinBox;
+class QToolButton;
+class QVBoxLayout;
+class vtkMRMLScene;
+
+/// The module's widgets from top to bottom, and nothing that they do.
+class qSlicerFenestraPanel : public QWidget {
+  Q_OBJECT
+
+public:
+  explicit qSlicerFenestraPanel(QWidget* parent = nullptr);
+
+  QPushButton* sample;
+  qMRMLNodeComboBox* volume;
+  qMRMLNodeComboBox* segmentation;
+  QListWidget* focus;
+  QComboBox* clip;
+
+  QComboBox* view; ///< data: the flag's word; empty: a 3-D view's camera
+  qMRMLNodeComboBox* view3D;
+  QCheckBox* follow; ///< the 3-D view's camera, live
+  QComboBox* transfer;
+  QComboBox* rig;
+  ctkSliderWidget* strengths[4]; ///< per cent: key, fill, rim, environment
+  QComboBox* background;
+
+  QComboBox* quality; ///< data: "samples noise seconds"; none: as the boxes say
+  QSpinBox* samples;
+  QDoubleSpinBox* noise;   ///< 0: no limit
+  QDoubleSpinBox* seconds; ///< 0: no limit
+  QSpinBox* width;
+  QSpinBox* height;
+
+  QCheckBox* showPreview;
+  QLabel* preview;
+  QLabel* previewState;
+
+  QPushButton* render;
+  QPushButton* stop;
+  QProgressBar* progress;
+  QLabel* state;
+  QToolButton* details;
+  QLabel* detailsText;
+
+  qMRMLNodeComboBox* renders;
+  QLabel* description;
+  QPushButton* show;
+  QPushButton* repeat;
+  QPushButton* save;
+
+signals:
+  void mrmlSceneChanged(vtkMRMLScene* scene);
+
+private:
+  void buildSubject(QVBoxLayout* layout);
+  void buildPreview(QVBoxLayout* layout);
+  void buildView(QVBoxLayout* layout);
+  void buildQuality(QVBoxLayout* layout);
+  void buildRender(QVBoxLayout* layout);
+  void buildResults(QVBoxLayout* layout);
+  QFormLayout* section(QVBoxLayout* layout, const QString& title, bool collapsed);
+  qMRMLNodeComboBox* nodes(const QString& type, const QString& name);
+};
+
+#endif

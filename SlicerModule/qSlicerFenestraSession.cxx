@@ -1,0 +1,343 @@
+#include "qSlicerFenestraSession.h"
+
+#include <QCoreApplication>
+#include <QDir>
+#include <QFile>
+#include <QFileInfo>
+#include <QJsonDocument>
+
+#include <vtkImageData.h>
+#include <vtkMRMLScene.h>
+#include <vtkPolyData.h>
+
+#include <sstream>
+
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+using Kind = qFenestraOutcome::Kind;
+
+QString prefix() {
+  return QStringLiteral("fenestra-slicer-");
+}
+
+QString folderTemplate() {
+  const QString temporary = QDir::tempPath();
+  FenestraScene::removeAbandoned(temporary.toStdString(), prefix().toStdString());
+  return QStringLiteral("%1/%2%3-XXXXXX")
+      .arg(temporary, prefix())
+      .arg(QCoreApplication::applicationPid());
+}
+
+qFenestraOutcome failure(const QString& message, const QString& details = {}) {
+  return {Kind::failed, message, details};
+}
+
+/// What a preview must load anew when it changes.
+std::string dataOf(const FenestraScene::Contents& contents) {
+  std::ostringstream text;
+  text.precision(17);
+  text << contents.volumeKey << '\n' << contents.segmentationKey << '\n';
+  for (const double element : contents.volumeToWorld)
+    text << element << ' ';
+  for (const double element : contents.segmentation.toWorld)
+    text << element << ' ';
+  for (const FenestraScene::Roi& roi : contents.crop)
+    text << roi.markup;
+  return text.str();
+}
+
+QString statsLine(const QString& folder) {
+  QFile file(folder + "/stats.json");
+  if (!file.open(QIODevice::ReadOnly))
+    return {};
+  const QJsonObject stats = QJsonDocument::fromJson(file.readAll()).object();
+  return QObject::tr("%1 samples a pixel, noise %2, %3 s")
+      .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
+      .arg(stats["noise"].toDouble(), 0, 'g', 2)
+      .arg(stats["seconds"].toObject()["total"].toDouble(), 0, 'f', 1);
+}
+
+} // namespace
+
+qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
+                                               const QString& program, QObject* parent)
+    : QObject(parent),
+      m_logic(logic),
+      m_program(program),
+      m_folder(folderTemplate()),
+      m_writer(std::make_shared<FenestraScene::Writer>(m_folder.path().toStdString())),
+      m_queue(program) {
+  m_worker.setMaxThreadCount(1);
+  constexpr int interval = 60; // milliseconds: what a drag of the mouse does is not all told
+  m_soon.setSingleShot(true);
+  m_soon.setInterval(interval);
+  m_preview.setDelay(0);
+  connect(&m_soon, &QTimer::timeout, this, &qSlicerFenestraSession::follow);
+  connect(&m_preview, &qFenestraPreview::refreshed, this, &qSlicerFenestraSession::showPreview);
+  connect(&m_preview, &qFenestraPreview::refused, this, &qSlicerFenestraSession::previewRefused);
+  connect(&m_preview, &qFenestraPreview::ended, this, [this](const qFenestraOutcome& outcome) {
+    if (outcome.kind == Kind::failed)
+      emit previewRefused(outcome.message);
+  });
+  connect(&m_queue, &qFenestraQueue::started, this, [this](int id) {
+    m_watch.start();
+    emit started(m_renders[id].node);
+  });
+  connect(&m_queue, &qFenestraQueue::progressed, this, [this](int id, double part) {
+    emit progressed(m_renders[id].node, part, static_cast<double>(m_watch.elapsed()) / 1000.0);
+  });
+  connect(&m_queue, &qFenestraQueue::commented, this,
+          [this](int, const QString& words) { emit reached(words); });
+  connect(&m_queue, &qFenestraQueue::ended, this, &qSlicerFenestraSession::finishRender);
+}
+
+qSlicerFenestraSession::~qSlicerFenestraSession() {
+  disconnect(&m_queue, nullptr, this, nullptr);
+  disconnect(&m_preview, nullptr, this, nullptr);
+  m_preview.stop();
+  m_worker.clear();
+  m_worker.waitForDone();
+}
+
+void qSlicerFenestraSession::work(const std::function<void()>& job) {
+  m_worker.start(QRunnable::create(job));
+}
+
+/// In the main thread; not at all where this is gone by then.
+void qSlicerFenestraSession::later(const std::function<void()>& job) {
+  QMetaObject::invokeMethod(this, job, Qt::QueuedConnection);
+}
+
+void qSlicerFenestraSession::write(
+    const FenestraScene::Contents& contents,
+    const std::function<void(const QString& scene, const QString& failure)>& then) {
+  const auto shared = std::make_shared<FenestraScene::Contents>(contents);
+  work([this, shared, then] {
+    QString scene, message;
+    try {
+      scene = QString::fromStdString(m_writer->write(*shared).string());
+    } catch (const std::exception& error) {
+      message = QString::fromUtf8(error.what());
+    }
+    later([scene, message, then] { then(scene, message); });
+  });
+}
+
+// ---- renders
+
+vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings) {
+  FenestraScene::Contents contents;
+  try {
+    if (!QFileInfo(m_program).isExecutable())
+      throw vtkSlicerFenestraComplaint(
+          "The renderer is missing. Install the Fenestra extension again.");
+    contents = m_logic->Snapshot(settings);
+  } catch (const vtkSlicerFenestraComplaint& complaint) {
+    emit ended(nullptr, failure(QString::fromUtf8(complaint.what()), m_program));
+    return nullptr;
+  }
+  m_preview.stop();
+  Node* node = m_logic->AddRender(settings);
+  const int id = ++m_last;
+  m_renders[id].node = node;
+  const bool withSurface = vtkSlicerFenestraLogic::HasSurface(contents.flags);
+  write(contents, [this, id, withSurface](const QString& scene, const QString& message) {
+    Render& render = m_renders[id];
+    if (!message.isEmpty())
+      return endRender(id, failure(tr("The volume could not be handed to the renderer. Is the "
+                                      "disk with the temporary files full?"),
+                                   message));
+    if (render.stopped)
+      return endRender(id, {Kind::stopped, {}, {}});
+    render.folder = QFileInfo(scene).absolutePath();
+    QStringList arguments = {scene, "--stats", "stats.json"};
+    for (const std::string& argument : vtkSlicerFenestraLogic::GetOutputArguments(withSurface))
+      arguments << QString::fromStdString(argument);
+    m_queue.add({id, arguments, render.folder});
+  });
+  return node;
+}
+
+void qSlicerFenestraSession::stop() {
+  if (!m_renders.isEmpty()) {
+    m_renders.first().stopped = true;
+    m_queue.stop(m_renders.firstKey());
+  }
+}
+
+void qSlicerFenestraSession::stopAll() {
+  const QList<int> ids = m_renders.keys();
+  for (auto id = ids.rbegin(); id != ids.rend(); ++id) {
+    m_renders[*id].stopped = true;
+    m_queue.stop(*id);
+  }
+}
+
+void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcome) {
+  const QString folder = m_renders[id].folder;
+  emit renderStopped();
+  if (outcome.kind == Kind::failed || !QFileInfo::exists(folder + "/radiance.nrrd"))
+    return endRender(id, outcome);
+  work([this, id, outcome, folder] {
+    const auto result = std::make_shared<vtkSlicerFenestraResult>();
+    QString message;
+    try {
+      *result = vtkSlicerFenestraLogic::ReadResult(folder.toStdString());
+    } catch (const std::exception& error) {
+      message = QString::fromUtf8(error.what());
+    }
+    later([this, id, outcome, folder, result, message] {
+      Node* node = m_renders[id].node;
+      if (!message.isEmpty())
+        return endRender(id, failure(tr("The picture could not be read back."), message));
+      if (node && node->GetScene()) { // the user may have closed the scene
+        m_logic->AddResult(node, *result);
+        node->SetDescription(statsLine(folder).toUtf8().constData());
+        m_folders[node->GetID()] = folder;
+      }
+      endRender(id, outcome);
+    });
+  });
+}
+
+void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) {
+  const Render render = m_renders.take(id);
+  vtkSmartPointer<Node> node = render.node.GetPointer();
+  const bool kept = node && node->GetNodeReference(Node::PictureRole);
+  for (const char* file : {"scene.mrml", "volume.nrrd", "segmentation.seg.nrrd", "roi.mrk.json"})
+    if (!render.folder.isEmpty())
+      QFile::remove(render.folder + "/" + file);
+  if (!kept && !render.folder.isEmpty())
+    QDir(render.folder).removeRecursively();
+  if (node && !kept && node->GetScene())
+    node->GetScene()->RemoveNode(node);
+  emit ended(kept ? node.GetPointer() : nullptr, outcome);
+  if (!rendering())
+    refresh();
+}
+
+void qSlicerFenestraSession::makeSample(
+    const std::function<void(const QString& scene, const QString& failure)>& then) {
+  const QString folder = m_folder.filePath("sample");
+  auto* maker = new qFenestraProgram(this);
+  connect(maker, &qFenestraProgram::ended, this,
+          [maker, folder, then](const qFenestraOutcome& outcome) {
+            maker->deleteLater();
+            const bool made = outcome.kind == Kind::done;
+            then(made ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
+          });
+  maker->run(m_program, {"phantom", "knee", "--output", folder}, m_folder.path());
+}
+
+QString qSlicerFenestraSession::fileOf(Node* render, const QString& ending) const {
+  const QString folder = render ? m_folders.value(render->GetID()) : QString();
+  const QString file = folder + "/picture." + ending;
+  return !folder.isEmpty() && QFileInfo::exists(file) ? file : QString();
+}
+
+// ---- preview
+
+void qSlicerFenestraSession::preview(Node* settings) {
+  m_previewed = settings;
+  if (settings)
+    refresh();
+  else
+    m_preview.stop();
+}
+
+void qSlicerFenestraSession::setPreviewSize(const QSize& size) {
+  m_previewSize = size;
+  refresh();
+}
+
+void qSlicerFenestraSession::refresh() {
+  if (m_previewed && !m_soon.isActive())
+    m_soon.start();
+}
+
+void qSlicerFenestraSession::follow() {
+  if (!m_previewed || !m_previewed->GetScene() || rendering())
+    return;
+  if (m_starting)
+    return m_soon.start(); // what changed meanwhile is told then
+  try {
+    const FenestraScene::Contents contents = m_logic->Snapshot(m_previewed);
+    if (!m_preview.running() || dataOf(contents) != m_shownData)
+      return startPreview(contents);
+    tellPreview(previewFlags(contents));
+  } catch (const vtkSlicerFenestraComplaint& complaint) {
+    emit previewRefused(QString::fromUtf8(complaint.what()));
+  }
+}
+
+void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& contents) {
+  m_starting = true;
+  m_shownData = dataOf(contents);
+  FenestraScene::Contents bare = contents;
+  bare.flags.clear(); // they are told
+  m_shownProperty.clear();
+  const QJsonObject flags = previewFlags(contents);
+  write(bare, [this, flags](const QString& scene, const QString& message) {
+    m_starting = false;
+    if (!message.isEmpty() || !m_previewed)
+      return message.isEmpty() ? void() : emit previewRefused(message);
+    QStringList arguments = {scene, "--output", "preview.png"};
+    for (auto flag = flags.begin(); flag != flags.end(); ++flag)
+      if (flag.value().isString())
+        arguments << "--" + flag.key() << flag.value().toString();
+    m_told = flags;
+    if (!rendering())
+      m_preview.start(m_program, arguments, QFileInfo(scene).absolutePath());
+  });
+}
+
+/// All flags of a node; null: not given.
+QJsonObject qSlicerFenestraSession::previewFlags(const FenestraScene::Contents& contents) {
+  std::map<std::string, std::string> flags = contents.flags;
+  for (const char* name : {"seconds", "noise", "seed", "samples"})
+    flags.erase(name);
+  flags["noise"] = "0.03";
+  flags["size"] =
+      QString("%1x%2").arg(m_previewSize.width()).arg(m_previewSize.height()).toStdString();
+  if (flags.count("transfer") == 0 && !contents.property.empty()) {
+    const QString file = QString("%1/property-%2%3")
+                             .arg(m_folder.path())
+                             .arg(m_properties + (contents.property == m_shownProperty ? 0 : 1))
+                             .arg(QString::fromStdString(contents.propertyEnding));
+    if (contents.property != m_shownProperty) {
+      ++m_properties;
+      m_shownProperty = contents.property;
+      QFile out(file);
+      if (!out.open(QIODevice::WriteOnly) ||
+          out.write(QByteArray::fromStdString(contents.property)) < 0)
+        throw vtkSlicerFenestraComplaint("The transfer function could not be written. Is the disk "
+                                         "with the temporary files full?");
+    }
+    flags["transfer"] = file.toStdString();
+  }
+  QJsonObject all;
+  for (const std::string& name : Node::GetFlagNames()) {
+    const auto flag = flags.find(name);
+    all[QString::fromStdString(name)] = flag == flags.end()
+                                            ? QJsonValue(QJsonValue::Null)
+                                            : QJsonValue(QString::fromStdString(flag->second));
+  }
+  return all;
+}
+
+void qSlicerFenestraSession::tellPreview(const QJsonObject& flags) {
+  QJsonObject changed;
+  for (auto flag = flags.begin(); flag != flags.end(); ++flag)
+    if (m_told.value(flag.key()) != flag.value())
+      changed[flag.key()] = flag.value();
+  m_told = flags;
+  if (!changed.isEmpty())
+    m_preview.change(changed);
+}
+
+void qSlicerFenestraSession::showPreview(const qFenestraPicture& picture) {
+  const QImage image(m_preview.folder() + "/" + picture.files.value(0));
+  if (!image.isNull())
+    emit previewed(image, picture);
+}

@@ -1,0 +1,117 @@
+#ifndef __qSlicerFenestraSession_h
+#define __qSlicerFenestraSession_h
+
+#include "FenestraSceneFiles.h"
+#include "qFenestraPreview.h"
+#include "qFenestraQueue.h"
+#include "qSlicerFenestraModuleExport.h"
+
+#include <QElapsedTimer>
+#include <QImage>
+#include <QMap>
+#include <QPointer>
+#include <QTemporaryDir>
+#include <QThreadPool>
+#include <QTimer>
+
+#include <functional>
+#include <memory>
+
+#include "vtkMRMLFenestraRenderNode.h"
+#include "vtkSlicerFenestraLogic.h"
+#include <vtkWeakPointer.h>
+
+/// \brief What the panel has done: one preview that follows the settings, and renders one after the
+/// other.
+///
+/// Files are written and read in a thread of its own, below a private folder that goes with it;
+/// the scene is touched in the main thread alone. While a render is under way there is no preview,
+/// which would take its time.
+class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject {
+  Q_OBJECT
+
+public:
+  qSlicerFenestraSession(vtkSlicerFenestraLogic* logic, const QString& program,
+                         QObject* parent = nullptr);
+  ~qSlicerFenestraSession() override;
+
+  /// Adds a render of the settings to the scene and to the queue. Null where something is missing:
+  /// `ended` says what.
+  vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings);
+  /// Ends the render under way, which keeps what it has.
+  void stop();
+  /// Forgets all that waits, too.
+  void stopAll();
+  bool rendering() const { return !m_renders.isEmpty(); }
+  int waiting() const { return rendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
+
+  /// Shows the settings as they are from now on, or no more where there are none.
+  void preview(vtkMRMLFenestraRenderNode* settings);
+  /// Something may have changed: settings, camera, volume, segments, transfer function.
+  void refresh();
+  void setPreviewSize(const QSize& size);
+
+  /// Makes the renderer's synthetic knee, and then tells its scene's path, or what failed.
+  void makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
+
+  /// The picture of a render as it was written, or empty where this session did not make it.
+  QString fileOf(vtkMRMLFenestraRenderNode* render, const QString& ending) const;
+
+signals:
+  void previewed(const QImage& picture, const qFenestraPicture& what);
+  /// A sentence for the user; what was shown stays.
+  void previewRefused(const QString& message);
+  void started(vtkMRMLFenestraRenderNode* render);
+  /// `part` of the work, after `seconds`.
+  void progressed(vtkMRMLFenestraRenderNode* render, double part, double seconds);
+  /// Samples and noise of the render under way, in words.
+  void reached(const QString& words);
+  /// The process of the render under way is no more; its result is still to be read.
+  void renderStopped();
+  /// With its result in the scene, where there is one.
+  void ended(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
+
+private:
+  struct Render {
+    vtkWeakPointer<vtkMRMLFenestraRenderNode> node;
+    QString folder; ///< empty until it is written
+    bool stopped = false;
+  };
+
+  void work(const std::function<void()>& job);
+  void later(const std::function<void()>& job);
+  void write(const FenestraScene::Contents& contents,
+             const std::function<void(const QString& scene, const QString& failure)>& then);
+  void finishRender(int id, const qFenestraOutcome& outcome);
+  void endRender(int id, const qFenestraOutcome& outcome);
+
+  void follow();
+  void startPreview(const FenestraScene::Contents& contents);
+  QJsonObject previewFlags(const FenestraScene::Contents& contents);
+  void tellPreview(const QJsonObject& flags);
+  void showPreview(const qFenestraPicture& picture);
+
+  vtkSlicerFenestraLogic* m_logic;
+  QString m_program;
+  QTemporaryDir m_folder;
+  std::shared_ptr<FenestraScene::Writer> m_writer; ///< the working thread's
+  QThreadPool m_worker;
+
+  qFenestraQueue m_queue;
+  QMap<int, Render> m_renders;      ///< under way and waiting
+  QMap<QString, QString> m_folders; ///< of the renders that this session made, by node
+  QElapsedTimer m_watch;
+  int m_last = 0;
+
+  qFenestraPreview m_preview;
+  QTimer m_soon; ///< several changes at once are one
+  vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed;
+  QSize m_previewSize{256, 256};
+  std::string m_shownData; ///< what the preview's scene holds
+  std::string m_shownProperty;
+  QJsonObject m_told;
+  bool m_starting = false;
+  int m_properties = 0;
+};
+
+#endif
