@@ -47,6 +47,16 @@ std::string dataOf(const FenestraScene::Contents& contents) {
   return text.str();
 }
 
+/// What the renderer said, without the names of files that only this session knows.
+QString inWords(QString message, const QString& folder) {
+  const int colon = message.indexOf(": ");
+  if (colon > 0 && message.startsWith(folder))
+    message.remove(0, colon + 2);
+  if (!message.isEmpty())
+    message[0] = message[0].toUpper();
+  return message;
+}
+
 QString statsLine(const QString& folder) {
   QFile file(folder + "/stats.json");
   if (!file.open(QIODevice::ReadOnly))
@@ -75,10 +85,12 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   m_preview.setDelay(0);
   connect(&m_soon, &QTimer::timeout, this, &qSlicerFenestraSession::follow);
   connect(&m_preview, &qFenestraPreview::refreshed, this, &qSlicerFenestraSession::showPreview);
-  connect(&m_preview, &qFenestraPreview::refused, this, &qSlicerFenestraSession::previewRefused);
+  connect(&m_preview, &qFenestraPreview::refused, this, [this](const QString& message) {
+    emit previewRefused(inWords(message, m_folder.path()));
+  });
   connect(&m_preview, &qFenestraPreview::ended, this, [this](const qFenestraOutcome& outcome) {
     if (outcome.kind == Kind::failed)
-      emit previewRefused(outcome.message);
+      emit previewRefused(inWords(outcome.message, m_folder.path()));
   });
   connect(&m_queue, &qFenestraQueue::started, this, [this](int id) {
     m_watch.start();
@@ -212,7 +224,8 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
     QDir(render.folder).removeRecursively();
   if (node && !kept && node->GetScene())
     node->GetScene()->RemoveNode(node);
-  emit ended(kept ? node.GetPointer() : nullptr, outcome);
+  emit ended(kept ? node.GetPointer() : nullptr,
+             {outcome.kind, inWords(outcome.message, m_folder.path()), outcome.details});
   if (!rendering())
     refresh();
 }

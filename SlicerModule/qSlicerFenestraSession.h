@@ -47,8 +47,6 @@ public:
 
   /// Shows the settings as they are from now on, or no more where there are none.
   void preview(vtkMRMLFenestraRenderNode* settings);
-  /// Something may have changed: settings, camera, volume, segments, transfer function.
-  void refresh();
   void setPreviewSize(const QSize& size);
 
   /// Makes the renderer's synthetic knee, and then tells its scene's path, or what failed.
@@ -56,6 +54,10 @@ public:
 
   /// The picture of a render as it was written, or empty where this session did not make it.
   QString fileOf(vtkMRMLFenestraRenderNode* render, const QString& ending) const;
+
+public slots:
+  /// Something may have changed: settings, camera, volume, segments, transfer function.
+  void refresh();
 
 signals:
   void previewed(const QImage& picture, const qFenestraPicture& what);

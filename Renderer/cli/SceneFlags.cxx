@@ -44,6 +44,8 @@ FlagValues withSceneFlags(const FlagValues& given) {
     if (shapesPicture(flag) && !value.empty() && !decides(given, name))
       merged.add(name, value);
   }
+  if (!merged.has("focus") && !given.has("segmentation")) // which one was chosen does not matter
+    merged.remove("segmentation");
   return merged;
 }
 

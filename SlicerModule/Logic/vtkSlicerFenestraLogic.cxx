@@ -208,9 +208,9 @@ bool vtkSlicerFenestraLogic::HasSurface(const std::map<std::string, std::string>
 }
 
 std::vector<std::string> vtkSlicerFenestraLogic::GetOutputArguments(bool withSurface) {
-  std::vector<std::string> arguments = {"--output", "picture.png",
-                                        "--output", "radiance.nrrd",
-                                        "--layers", "color,depth,clip,albedo,error,samples"};
+  std::vector<std::string> arguments = {
+      "--output", "picture.png",   "--output", "picture.exr",
+      "--output", "radiance.nrrd", "--layers", "color,depth,clip,albedo,error,samples"};
   if (withSurface)
     arguments.insert(arguments.end(), {"--surface", "surface.vtp"});
   return arguments;

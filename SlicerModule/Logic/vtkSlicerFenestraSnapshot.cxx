@@ -127,7 +127,8 @@ vtkMRMLVolumeRenderingDisplayNode* RenderingOf(vtkMRMLScalarVolumeNode* volume) 
 void TakeProperty(vtkMRMLVolumePropertyNode* property, FenestraScene::Contents& contents) {
   vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own is not to look as if it were saved
   copy->Copy(property);
-  const auto storage = vtkSmartPointer<vtkMRMLStorageNode>::Take(copy->CreateDefaultStorageNode());
+  const auto storage =
+      vtkSmartPointer<vtkMRMLStorageNode>::Take(property->CreateDefaultStorageNode());
   const std::string ending = std::string(".") + storage->GetDefaultWriteFileExtension();
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() /

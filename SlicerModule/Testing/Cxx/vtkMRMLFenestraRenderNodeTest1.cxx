@@ -12,8 +12,8 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   EXERCISE_ALL_BASIC_MRML_METHODS(node.GetPointer());
 
   vtkNew<vtkMRMLScene> scene;
-  scene->RegisterNodeClass(node);
-  auto* first = Node::SafeDownCast(scene->AddNode(node));
+  scene->RegisterNodeClass(vtkSmartPointer<Node>::New());
+  auto* first = Node::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLFenestraRenderNode", "Render"));
   vtkMRMLScalarVolumeNode* volume = FenestraTesting::addVolume(scene);
   const std::string awkward =
       R"({"lights": [{"type": "environment", "radiance": [1, 2, 3]}]} <&> 'é')";
@@ -31,6 +31,7 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   scene->SetSaveToXMLString(1);
   scene->Commit();
   const std::string text = scene->GetSceneXMLString();
+  std::cout << text;
   vtkNew<vtkMRMLScene> again;
   again->RegisterNodeClass(vtkSmartPointer<Node>::New());
   again->SetLoadFromXMLString(1);

@@ -8,7 +8,7 @@ rm -rf "$report"
 mkdir -p "$report/home/.config"
 "$fenestra" phantom knee --output "$report/knee" >/dev/null
 commands=$(dirname "$modules")/cli-modules
-slicer_libraries=$(dirname "$slicer")/../lib/Slicer-$("$slicer" --version 2>/dev/null | grep -oE '[0-9]+\.[0-9]+' | head -1)
+slicer_libraries=$(echo "$(dirname "$slicer")"/../lib/Slicer-*)
 export LD_LIBRARY_PATH="$modules:$slicer_libraries/qt-loadable-modules:$slicer_libraries/cli-modules${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 export HOME="$report/home" FENESTRA_TOUR="$report"
 settings="$HOME/.config/NA-MIC"
