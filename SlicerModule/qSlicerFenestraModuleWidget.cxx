@@ -476,6 +476,9 @@ void qSlicerFenestraModuleWidget::say(const QString& message, const QString& det
 void qSlicerFenestraModuleWidget::updateButtons() {
   const bool hasVolume = m_settings && m_settings->GetNodeReference(Node::VolumeRole);
   m_panel->render->setEnabled(hasVolume);
+  m_panel->sample->setVisible(!hasVolume);
+  if (!hasVolume)
+    m_panel->preview->setText(tr("Load a volume, or the sample knee"));
   m_panel->stop->setEnabled(m_session->rendering());
   Node* render = chosen();
   const bool hasPicture = render && render->GetNodeReference(Node::PictureRole);

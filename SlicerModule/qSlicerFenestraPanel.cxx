@@ -62,9 +62,9 @@ QDoubleSpinBox* limit(const QString& name, double greatest, int decimals, const 
 qSlicerFenestraPanel::qSlicerFenestraPanel(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  buildSubject(layout);
   buildPreview(layout);
   buildRender(layout);
+  buildSubject(layout);
   buildView(layout);
   buildQuality(layout);
   buildResults(layout);
@@ -212,7 +212,7 @@ void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
   QFormLayout* form = section(layout, tr("Quality"), true);
   quality = choices("QualityBox",
                     {{tr("Draft"), "16 0 0"},
-                     {tr("Good"), "256 0.04 0"},
+                     {tr("Good"), "256 0.05 0"},
                      {tr("Final"), "4096 0.015 0"},
                      {tr("Custom"), ""}},
                     tr("A render ends at the first of its limits"));

@@ -106,8 +106,14 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
   image.header = header(scene, options.settings, result, command);
   for (const std::filesystem::path& path : options.outputs)
     writeImage(image, picturePlane(scene.camera()), path);
-  if (options.surface)
+}
+
+std::future<void> startSurface(const RenderOptions& options, const Scene& scene) {
+  if (!options.surface)
+    return std::async(std::launch::deferred, [] {});
+  return std::async(std::launch::async, [&options, &scene] {
     writeSurface(surfaceMesh(std::get<ClipDepth>(scene.clip()), scene.domain()), *options.surface);
+  });
 }
 
 } // namespace fenestra

@@ -76,11 +76,13 @@ int renderCommand(int argc, char** argv, int first) {
     (options.returnValues ? std::cout : std::cerr) << "fenestra: warning: " << warning << '\n';
 
   stopOnSignal.setInstead(monitor.stop);
+  std::future<void> surface = startSurface(options, scene); // so that a stop need not wait for it
   const Stopwatch transport;
   const RenderResult result = renderWithProgress(scene, options, monitor);
   stats.transport = transport.seconds();
+  surface.get();
   if (result.finishedSamples == 0) {
-    std::cerr << "fenestra: stopped on request before the first pass; nothing was written\n";
+    std::cerr << "fenestra: stopped on request before the first pass; no picture was written\n";
     return stoppedStatus;
   }
 

@@ -129,7 +129,7 @@ Node* vtkSlicerFenestraLogic::GetSettings() {
   node->SetSingletonTag("Settings");
   node->SetHideFromEditors(true);
   node->SetFlags(
-      {{"samples", "256"}, {"noise", "0.04"}, {"size", "512x512"}, {"background", "0,0,0"}});
+      {{"samples", "256"}, {"noise", "0.05"}, {"size", "512x512"}, {"background", "0,0,0"}});
   return Node::SafeDownCast(scene->AddNode(node));
 }
 
@@ -208,9 +208,9 @@ bool vtkSlicerFenestraLogic::HasSurface(const std::map<std::string, std::string>
 }
 
 std::vector<std::string> vtkSlicerFenestraLogic::GetOutputArguments(bool withSurface) {
-  std::vector<std::string> arguments = {
-      "--output", "picture.png",   "--output", "picture.exr",
-      "--output", "radiance.nrrd", "--layers", "color,depth,clip,albedo,error,samples"};
+  // Layers that take long to pack would make a stop wait.
+  std::vector<std::string> arguments = {"--output", "picture.png",   "--output", "picture.exr",
+                                        "--output", "radiance.nrrd", "--layers", "color,depth"};
   if (withSurface)
     arguments.insert(arguments.end(), {"--surface", "surface.vtp"});
   return arguments;
@@ -261,9 +261,27 @@ void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
   render->SetNodeReferenceID(Node::SurfaceRole, model->GetID());
 }
 
+/// A slice view of the picture's plane is not to show segments and models that lie in it: the
+/// picture is moved toward the eye, beyond the volume.
+FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
+                                                            const FenestraScene::Matrix& ijkToRas) {
+  auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
+  FenestraScene::Matrix moved = ijkToRas;
+  if (!volume)
+    return moved;
+  double bounds[6];
+  volume->GetRASBounds(bounds);
+  const double diagonal =
+      std::hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]);
+  const double length = std::hypot(ijkToRas[2], ijkToRas[6], ijkToRas[10]);
+  for (int row = 0; row < 3; ++row)
+    moved[4 * row + 3] -= 2.0 * diagonal / length * ijkToRas[4 * row + 2];
+  return moved;
+}
+
 void vtkSlicerFenestraLogic::AddResult(Node* render, const vtkSlicerFenestraResult& result) {
   this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, result.picture,
-                  result.radiance.ijkToRas);
+                  this->BesideAnatomy(render, result.radiance.ijkToRas));
   this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::RadianceRole, ToVtk(result.radiance),
                   result.radiance.ijkToRas);
   vtkMRMLVolumeNode* depth = this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
@@ -296,7 +314,10 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   // As the eye saw it: the picture's rows run to the right, its columns down.
   double directions[3][3];
   picture->GetIJKToRASDirections(directions);
-  const double centre[3] = {0.0, 0.0, 0.0};
+  double bounds[6];
+  picture->GetSliceBounds(bounds, nullptr);
+  const double centre[3] = {0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]),
+                            0.5 * (bounds[4] + bounds[5])};
   vtkNew<vtkMatrix4x4> toRas;
   for (int row = 0; row < 3; ++row) {
     toRas->SetElement(row, 0, directions[row][0]);

@@ -82,6 +82,8 @@ protected:
   void RegisterNodes() override;
 
 private:
+  FenestraScene::Matrix BesideAnatomy(vtkMRMLFenestraRenderNode* render,
+                                      const FenestraScene::Matrix& ijkToRas);
   void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);
   vtkMRMLVolumeNode* AddVolume(vtkMRMLFenestraRenderNode* render, const char* className,
                                const char* role, vtkImageData* image,

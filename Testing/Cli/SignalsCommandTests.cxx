@@ -58,7 +58,7 @@ TEST_P(SignalsCommand, WritesNothingBeforeTheFirstPass) {
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.seconds, soon);
   EXPECT_EQ(outcome.err,
-            "fenestra: stopped on request before the first pass; nothing was written\n");
+            "fenestra: stopped on request before the first pass; no picture was written\n");
   EXPECT_EQ(filesIn(kneeFolder().path()), before);
 }
 

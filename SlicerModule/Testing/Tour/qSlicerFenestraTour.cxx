@@ -57,7 +57,7 @@ qSlicerFenestraTour::qSlicerFenestraTour(const QString& report) : m_report(repor
 
 bool qSlicerFenestraTour::run() {
   m_window = qSlicerApplication::application()->mainWindow();
-  m_window->showMaximized();
+  m_window->setGeometry(m_window->screen()->geometry()); // there may be nobody to maximize it
   settle(1000);
   photograph("1-start");
   struct Step {
