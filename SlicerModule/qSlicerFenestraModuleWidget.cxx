@@ -30,6 +30,7 @@
 #include <QProgressBar>
 #include <QPushButton>
 #include <QSpinBox>
+#include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -123,7 +124,7 @@ void qSlicerFenestraModuleWidget::connectPanel() {
   connect(panel.repeat, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::repeat);
   connect(panel.show, &QPushButton::clicked, this, [this] {
     if (chosen())
-      fenestra()->ShowResult(chosen());
+      showResult(chosen());
   });
   connect(panel.save, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::save);
 }
@@ -415,6 +416,16 @@ void qSlicerFenestraModuleWidget::render() {
   updateButtons();
 }
 
+/// Twice: a view that the layout has just made takes the picture when it has its size.
+void qSlicerFenestraModuleWidget::showResult(Node* render) {
+  fenestra()->ShowResult(render);
+  const vtkWeakPointer<Node> shown = render;
+  QTimer::singleShot(0, this, [this, shown] {
+    if (shown && shown->GetScene())
+      fenestra()->ShowResult(shown);
+  });
+}
+
 void qSlicerFenestraModuleWidget::repeat() {
   Node* render = chosen();
   if (!render || !m_settings)
@@ -461,7 +472,7 @@ void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& 
             .arg(QString::fromUtf8(render->GetDescription() ? render->GetDescription() : "")));
   if (render) {
     m_panel->renders->setCurrentNode(render);
-    fenestra()->ShowResult(render);
+    showResult(render);
   }
   updateButtons();
 }

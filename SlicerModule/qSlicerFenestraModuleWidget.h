@@ -67,6 +67,7 @@ private:
   void showPicture(const QImage& picture, const qFenestraPicture& what);
   void onProgress(double part, double seconds);
   void onEnded(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
+  void showResult(vtkMRMLFenestraRenderNode* render);
   void updateButtons();
 
   qSlicerFenestraPanel* m_panel = nullptr;

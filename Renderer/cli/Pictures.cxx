@@ -104,8 +104,14 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
                    const std::string& command) {
   Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
   image.header = header(scene, options.settings, result, command);
+  // All at once: what packs one does not keep another waiting.
+  std::vector<std::future<void>> files;
   for (const std::filesystem::path& path : options.outputs)
-    writeImage(image, picturePlane(scene.camera()), path);
+    files.push_back(std::async(std::launch::async, [&image, &scene, &path] {
+      writeImage(image, picturePlane(scene.camera()), path);
+    }));
+  for (std::future<void>& file : files)
+    file.get();
 }
 
 std::future<void> startSurface(const RenderOptions& options, const Scene& scene) {

@@ -8,26 +8,32 @@ qFenestraPreview::qFenestraPreview(QObject* parent) : QObject(parent) {
   m_rest.setSingleShot(true);
   m_rest.setInterval(resting);
   connect(&m_rest, &QTimer::timeout, this, &qFenestraPreview::tell);
-  connect(&m_child, &qFenestraProgram::said, this, &qFenestraPreview::hear);
-  connect(&m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
 }
 
 void qFenestraPreview::start(const QString& program, const QStringList& arguments,
                              const QString& folder) {
   stop();
   m_told = 0;
-  m_child.run(program, QStringList{"serve"} + arguments, folder);
+  m_child = new qFenestraProgram(this);
+  connect(m_child, &qFenestraProgram::said, this, &qFenestraPreview::hear);
+  connect(m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
+  m_child->run(program, QStringList{"serve"} + arguments, folder);
 }
 
 void qFenestraPreview::stop() {
   m_rest.stop();
   m_changes = {};
-  if (!running())
+  if (!m_child)
     return;
+  qFenestraProgram* const child = m_child;
+  m_child = nullptr;
+  disconnect(child, nullptr, this, nullptr);
+  if (child->state() == QProcess::NotRunning)
+    return child->deleteLater();
+  connect(child, &qFenestraProgram::ended, child, &QObject::deleteLater);
   constexpr int grace = 150;
-  m_child.closeWriteChannel(); // a server ends with its input
-  m_child.stop(grace);
-  m_child.waitForFinished(2 * grace);
+  child->closeWriteChannel(); // a server ends with its input
+  child->stop(grace);
 }
 
 void qFenestraPreview::change(const QJsonObject& flags) {
@@ -40,7 +46,7 @@ void qFenestraPreview::tell() {
   if (!running() || m_changes.isEmpty())
     return;
   m_changes["id"] = ++m_told;
-  m_child.write(QJsonDocument(m_changes).toJson(QJsonDocument::Compact) + '\n');
+  m_child->write(QJsonDocument(m_changes).toJson(QJsonDocument::Compact) + '\n');
   m_changes = {};
 }
 

@@ -24,12 +24,13 @@ public:
   /// Milliseconds without another change before one is told.
   void setDelay(int milliseconds) { m_rest.setInterval(milliseconds); }
 
-  /// `fenestra serve arguments…`; a preview under way ends first.
+  /// `fenestra serve arguments…`; a preview under way ends.
   void start(const QString& program, const QStringList& arguments, const QString& folder);
+  /// Does not wait: the child ends by itself, unheard, and with this at the latest.
   void stop();
-  bool running() const { return m_child.state() != QProcess::NotRunning; }
+  bool running() const { return m_child && m_child->state() != QProcess::NotRunning; }
   /// Its files are relative to this folder.
-  QString folder() const { return m_child.workingDirectory(); }
+  QString folder() const { return m_child ? m_child->workingDirectory() : QString(); }
 
   /// Flags and their values as `fenestra serve` takes them; later ones win.
   void change(const QJsonObject& flags);
@@ -45,7 +46,7 @@ private:
   void tell();
   void hear(const QString& line);
 
-  qFenestraProgram m_child;
+  qFenestraProgram* m_child = nullptr; ///< null: none is heard
   QTimer m_rest;
   QJsonObject m_changes; ///< not told yet
   int m_told = 0;        ///< changes so far

@@ -37,6 +37,7 @@ private:
   bool openModule();
   bool chooseCartilage();
   bool turnCamera();
+  int slowestTurn();
   bool render();
   bool stopRender();
   bool saveAndRepeat();
