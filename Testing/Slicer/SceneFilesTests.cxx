@@ -1,0 +1,117 @@
+// Scenes that the extension writes for the renderer, read back and rendered.
+
+#include "TemporaryFolder.h"
+
+#include "FenestraSceneFiles.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <numeric>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+FenestraScene::Image ramp(std::array<std::size_t, 3> size) {
+  FenestraScene::Image image;
+  image.type = "int16";
+  image.size = size;
+  const auto values = std::make_shared<std::vector<std::int16_t>>(size[0] * size[1] * size[2]);
+  std::iota(values->begin(), values->end(), std::int16_t(-3));
+  image.data = std::shared_ptr<const void>(values, values->data());
+  image.ijkToRas = {0.1, 0, 0, 1.0 / 3.0, 0, 2, 0, -7, 0, 0, 3, 1e-9, 0, 0, 0, 1};
+  return image;
+}
+
+FenestraScene::Layer block(std::array<long, 3> begin, std::uint8_t value) {
+  FenestraScene::Layer layer;
+  layer.labels.type = "uint8";
+  layer.labels.size = {2, 2, 2};
+  const auto values = std::make_shared<std::vector<std::uint8_t>>(8, value);
+  layer.labels.data = std::shared_ptr<const void>(values, values->data());
+  layer.begin = begin;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    layer.labels.ijkToRas[4 * axis + 3] = static_cast<double>(begin[axis]);
+  return layer;
+}
+
+TEST(SlicerSceneFiles, AnImageComesBackAsItWas) {
+  const TemporaryFolder folder;
+  const FenestraScene::Image image = ramp({3, 4, 5});
+  FenestraScene::writeNrrd(image, folder / "image.nrrd");
+  const FenestraScene::Image again = FenestraScene::readNrrd(folder / "image.nrrd");
+  EXPECT_EQ(again.type, image.type);
+  EXPECT_EQ(again.size, image.size);
+  EXPECT_EQ(again.ijkToRas, image.ijkToRas); // every digit
+  ASSERT_EQ(again.bytes(), image.bytes());
+  EXPECT_EQ(std::memcmp(again.data.get(), image.data.get(), image.bytes()), 0);
+}
+
+TEST(SlicerSceneFiles, DamagedImagesAreRefused) {
+  const TemporaryFolder folder;
+  FenestraScene::writeNrrd(ramp({3, 4, 5}), folder / "image.nrrd");
+  std::filesystem::resize_file(folder / "image.nrrd",
+                               std::filesystem::file_size(folder / "image.nrrd") - 1);
+  EXPECT_THROW(FenestraScene::readNrrd(folder / "image.nrrd"), FenestraScene::FileError);
+  folder.write("empty.nrrd", "");
+  folder.write("other.nrrd", "NRRD0004\ntype: float\n\n");
+  EXPECT_THROW(FenestraScene::readNrrd(folder / "empty.nrrd"), FenestraScene::FileError);
+  EXPECT_THROW(FenestraScene::readNrrd(folder / "other.nrrd"), FenestraScene::FileError);
+  EXPECT_THROW(FenestraScene::writeNrrd(ramp({1, 1, 1}), folder / "none" / "image.nrrd"),
+               FenestraScene::FileError);
+}
+
+TEST(SlicerSceneFiles, LayersLieWhereTheyAre) {
+  const FenestraScene::Image both =
+      FenestraScene::composed({block({0, 0, 0}, 1), block({1, -1, 0}, 2)});
+  EXPECT_EQ(both.components, 2u);
+  EXPECT_EQ(both.size, (std::array<std::size_t, 3>{3, 3, 2}));
+  EXPECT_EQ(both.ijkToRas[7], -1.0);
+  const auto* labels = static_cast<const std::uint8_t*>(both.data.get());
+  const auto at = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t layer) {
+    return int(labels[((k * 3 + j) * 3 + i) * 2 + layer]);
+  };
+  EXPECT_EQ(at(0, 1, 0, 0), 1);
+  EXPECT_EQ(at(0, 0, 0, 0), 0);
+  EXPECT_EQ(at(1, 0, 0, 1), 2);
+  EXPECT_EQ(at(0, 1, 0, 1), 0);
+  EXPECT_EQ(at(1, 1, 1, 0), 1); // both overlap
+  EXPECT_EQ(at(1, 1, 1, 1), 2);
+}
+
+TEST(SlicerSceneFiles, WhatDidNotChangeIsLinked) {
+  const TemporaryFolder folder;
+  FenestraScene::Writer writer(folder.path());
+  FenestraScene::Contents contents;
+  contents.volume = ramp({3, 4, 5});
+  contents.volumeKey = "a";
+  contents.flags = {{"lights", "{\"a\": \"<&>\"}"}};
+  const auto first = writer.write(contents);
+  const auto second = writer.write(contents);
+  EXPECT_TRUE(std::filesystem::equivalent(first.parent_path() / "volume.nrrd",
+                                          second.parent_path() / "volume.nrrd"));
+  contents.volumeKey = "b";
+  const auto third = writer.write(contents);
+  EXPECT_FALSE(std::filesystem::equivalent(first.parent_path() / "volume.nrrd",
+                                           third.parent_path() / "volume.nrrd"));
+  std::ifstream file(first);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_NE(text.find("lights=\"{&quot;a&quot;: &quot;&lt;&amp;&gt;&quot;}\""), std::string::npos)
+      << text;
+}
+
+TEST(SlicerSceneFiles, FoldersOfTheDeadAreRemoved) {
+  const TemporaryFolder folder;
+  const std::string own = "x-" + std::to_string(::getpid()) + "-a";
+  for (const std::string& name : {own, std::string("x-999999999-a"), std::string("x--a")})
+    std::filesystem::create_directory(folder / name);
+  FenestraScene::removeAbandoned(folder.path(), "x-");
+  EXPECT_TRUE(std::filesystem::exists(folder / own));
+  EXPECT_TRUE(std::filesystem::exists(folder / "x--a"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "x-999999999-a"));
+}
+
+} // namespace
+} // namespace fenestra
