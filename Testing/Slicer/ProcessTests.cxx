@@ -284,8 +284,9 @@ TEST_F(SlicerPreview, StopsAtOnce) {
   std::cout << "stopped within " << watch.elapsed() << " ms\n";
   EXPECT_LT(watch.elapsed(), soon);
   EXPECT_FALSE(preview.running());
-  ASSERT_EQ(outcomes.size(), 1u);
-  EXPECT_EQ(outcomes[0].kind, Kind::stopped);
+  // The child ends by itself, unheard.
+  EXPECT_TRUE(waitFor([this] { return preview.findChildren<qFenestraProgram*>().isEmpty(); }));
+  EXPECT_TRUE(outcomes.empty());
 }
 
 TEST_F(SlicerPreview, SaysWhyItCannotBegin) {
