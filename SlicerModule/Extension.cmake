@@ -22,7 +22,7 @@ add_subdirectory(MRML)
 add_subdirectory(Logic)
 
 set(module_classes qSlicerFenestraModule qSlicerFenestraModuleWidget qSlicerFenestraPanel
-  qSlicerFenestraSession)
+  qSlicerFenestraSession qSlicerFenestraSettings)
 set(module_sources qSlicerFenestraLights.cxx qSlicerFenestraLights.h)
 set(module_moc)
 foreach(class ${module_classes})

@@ -9,8 +9,8 @@
 #include "qSlicerFenestraSession.h"
 
 class qSlicerFenestraPanel;
+class qSlicerFenestraSettings;
 class vtkMRMLFenestraRenderNode;
-class vtkMRMLNode;
 
 /// \brief The module's panel at work: settings live in a node of the scene; the panel shows and
 /// edits that node, and the session follows it.
@@ -39,43 +39,27 @@ public slots:
 protected:
   void setup() override;
 
-protected slots:
-  void onSceneReset();
-  void onVolumeChosen(vtkMRMLNode* node);
-  void onSegmentationChosen(vtkMRMLNode* node);
-  void onPictureChosen(vtkMRMLNode* node);
-  void onDataChanged();
-  void showSegments();
-  void showSettings();
-  void takeSettings();
-  void takeQuality();
+private slots:
+  void useScene();
+  void updateButtons();
   void save();
 
 private:
   vtkSlicerFenestraLogic* fenestra() const;
-  vtkMRMLFenestraRenderNode* settings() const { return m_settings; }
   vtkMRMLFenestraRenderNode* chosen() const;
   void connectPanel();
   void connectSession();
-  void useScene();
-  void chooseDefaults();
-  void watch(const char* role, vtkMRMLNode* node);
-  void watchCamera();
-  void takeView(std::map<std::string, std::string>& flags);
-  void showQuality(const std::map<std::string, std::string>& flags);
+  void preview();
   void say(const QString& message, const QString& details = {});
   void showPicture(const QImage& picture, const qFenestraPicture& what);
   void onProgress(double part, double seconds);
   void onEnded(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
   void showResult(vtkMRMLFenestraRenderNode* render);
-  void updateButtons();
 
   qSlicerFenestraPanel* m_panel = nullptr;
+  qSlicerFenestraSettings* m_settings = nullptr;
   qSlicerFenestraSession* m_session = nullptr;
-  vtkWeakPointer<vtkMRMLFenestraRenderNode> m_settings;
-  vtkWeakPointer<vtkMRMLNode> m_volume, m_segmentation, m_camera;
-  QString m_reached;      ///< of the render under way, in words
-  bool m_showing = false; ///< the panel is being set, not used
+  QString m_reached; ///< of the render under way, in words
 };
 
 #endif

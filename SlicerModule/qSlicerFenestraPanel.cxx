@@ -47,6 +47,13 @@ QPushButton* button(const QString& name, const QString& text, const QString& hel
   return one;
 }
 
+QSpinBox* number(const QString& name, int least, int greatest) {
+  auto* box = new QSpinBox;
+  box->setObjectName(name);
+  box->setRange(least, greatest);
+  return box;
+}
+
 QDoubleSpinBox* limit(const QString& name, double greatest, int decimals, const QString& suffix) {
   auto* box = new QDoubleSpinBox;
   box->setObjectName(name);
@@ -217,9 +224,7 @@ void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
                      {tr("Custom"), ""}},
                     tr("A render ends at the first of its limits"));
   form->addRow(tr("Quality:"), quality);
-  samples = new QSpinBox;
-  samples->setObjectName("SamplesBox");
-  samples->setRange(1, 1000000);
+  samples = number("SamplesBox", 1, 1000000);
   form->addRow(tr("Samples a pixel:"), samples);
   noise = limit("NoiseBox", 1.0, 3, {});
   noise->setSingleStep(0.005);
@@ -227,16 +232,11 @@ void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
   seconds = limit("SecondsBox", 86400.0, 0, tr(" s"));
   form->addRow(tr("Time:"), seconds);
   auto* row = new QHBoxLayout;
-  for (QSpinBox** box : {&width, &height}) {
-    *box = new QSpinBox;
-    (*box)->setRange(16, 8192);
-    (*box)->setSingleStep(64);
-    row->addWidget(*box, 1);
-    if (box == &width)
-      row->addWidget(new QLabel(QString::fromUtf8("\u00d7")));
-  }
-  width->setObjectName("WidthBox");
-  height->setObjectName("HeightBox");
+  width = number("WidthBox", 16, 8192);
+  height = number("HeightBox", 16, 8192);
+  row->addWidget(width, 1);
+  row->addWidget(new QLabel(QString::fromUtf8("\u00d7")));
+  row->addWidget(height, 1);
   form->addRow(tr("Size in pixels:"), row);
 }
 
@@ -253,8 +253,7 @@ void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
   show = button("ShowButton", tr("Show"), tr("In a view beside the 3D view"));
   repeat = button("RepeatButton", tr("Repeat"), tr("Renders with the same settings again"));
   save = button("SaveButton", tr("Save as..."),
-                tr("A .png to look at, or an .exr with all that "
-                   "was computed"));
+                tr("A .png to look at, or an .exr with linear colour and depth"));
   for (QPushButton* one : {show, repeat, save})
     row->addWidget(one);
   form->addRow(row);

@@ -1,6 +1,7 @@
 #include "qSlicerFenestraSession.h"
 
 #include <QCoreApplication>
+#include <QCryptographicHash>
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
@@ -57,6 +58,20 @@ QString inWords(QString message, const QString& folder) {
   return message;
 }
 
+/// Of the picture's shape, and quickly made.
+std::string previewSize(const std::string& size) {
+  const QStringList words = QString::fromStdString(size).split('x');
+  const QSize one = QSize(words.value(0, "512").toInt(), words.value(1, "512").toInt())
+                        .scaled(256, 256, Qt::KeepAspectRatio)
+                        .expandedTo({16, 16});
+  return QString("%1x%2").arg(one.width()).arg(one.height()).toStdString();
+}
+
+void removeFolder(const QString& folder) {
+  if (!folder.isEmpty())
+    QDir(folder).removeRecursively();
+}
+
 QString statsLine(const QString& folder) {
   QFile file(folder + "/stats.json");
   if (!file.open(QIODevice::ReadOnly))
@@ -76,7 +91,7 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
       m_logic(logic),
       m_program(program),
       m_folder(folderTemplate()),
-      m_writer(std::make_shared<FenestraScene::Writer>(m_folder.path().toStdString())),
+      m_writer(m_folder.path().toStdString()),
       m_queue(program) {
   m_worker.setMaxThreadCount(1);
   constexpr int interval = 60; // milliseconds: what a drag of the mouse does is not all told
@@ -128,7 +143,7 @@ void qSlicerFenestraSession::write(
   work([this, shared, then] {
     QString scene, message;
     try {
-      scene = QString::fromStdString(m_writer->write(*shared).string());
+      scene = QString::fromStdString(m_writer.write(*shared).string());
     } catch (const std::exception& error) {
       message = QString::fromUtf8(error.what());
     }
@@ -178,14 +193,6 @@ void qSlicerFenestraSession::stop() {
   }
 }
 
-void qSlicerFenestraSession::stopAll() {
-  const QList<int> ids = m_renders.keys();
-  for (auto id = ids.rbegin(); id != ids.rend(); ++id) {
-    m_renders[*id].stopped = true;
-    m_queue.stop(*id);
-  }
-}
-
 void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcome) {
   const QString folder = m_renders[id].folder;
   emit renderStopped();
@@ -220,8 +227,8 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
   for (const char* file : {"scene.mrml", "volume.nrrd", "segmentation.seg.nrrd", "roi.mrk.json"})
     if (!render.folder.isEmpty())
       QFile::remove(render.folder + "/" + file);
-  if (!kept && !render.folder.isEmpty())
-    QDir(render.folder).removeRecursively();
+  if (!kept)
+    removeFolder(render.folder);
   if (node && !kept && node->GetScene())
     node->GetScene()->RemoveNode(node);
   emit ended(kept ? node.GetPointer() : nullptr,
@@ -259,11 +266,6 @@ void qSlicerFenestraSession::preview(Node* settings) {
     m_preview.stop();
 }
 
-void qSlicerFenestraSession::setPreviewSize(const QSize& size) {
-  m_previewSize = size;
-  refresh();
-}
-
 void qSlicerFenestraSession::refresh() {
   if (m_previewed && !m_soon.isActive())
     m_soon.start();
@@ -289,7 +291,6 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
   m_shownData = dataOf(contents);
   FenestraScene::Contents bare = contents;
   bare.flags.clear(); // they are told
-  m_shownProperty.clear();
   const QJsonObject flags = previewFlags(contents);
   write(bare, [this, flags](const QString& scene, const QString& message) {
     m_starting = false;
@@ -300,35 +301,24 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
       if (flag.value().isString())
         arguments << "--" + flag.key() << flag.value().toString();
     m_told = flags;
-    if (!rendering())
-      m_preview.start(m_program, arguments, QFileInfo(scene).absolutePath());
+    const QString folder = QFileInfo(scene).absolutePath();
+    if (rendering())
+      return removeFolder(folder);
+    m_preview.start(m_program, arguments, folder);
+    removeFolder(m_previewFolder);
+    m_previewFolder = folder;
   });
 }
 
 /// All flags of a node; null: not given.
-QJsonObject qSlicerFenestraSession::previewFlags(const FenestraScene::Contents& contents) {
+QJsonObject qSlicerFenestraSession::previewFlags(const FenestraScene::Contents& contents) const {
   std::map<std::string, std::string> flags = contents.flags;
-  for (const char* name : {"seconds", "noise", "seed", "samples"})
+  for (const char* name : {"seconds", "seed", "samples"})
     flags.erase(name);
   flags["noise"] = "0.03";
-  flags["size"] =
-      QString("%1x%2").arg(m_previewSize.width()).arg(m_previewSize.height()).toStdString();
-  if (flags.count("transfer") == 0 && !contents.property.empty()) {
-    const QString file = QString("%1/property-%2%3")
-                             .arg(m_folder.path())
-                             .arg(m_properties + (contents.property == m_shownProperty ? 0 : 1))
-                             .arg(QString::fromStdString(contents.propertyEnding));
-    if (contents.property != m_shownProperty) {
-      ++m_properties;
-      m_shownProperty = contents.property;
-      QFile out(file);
-      if (!out.open(QIODevice::WriteOnly) ||
-          out.write(QByteArray::fromStdString(contents.property)) < 0)
-        throw vtkSlicerFenestraComplaint("The transfer function could not be written. Is the disk "
-                                         "with the temporary files full?");
-    }
-    flags["transfer"] = file.toStdString();
-  }
+  flags["size"] = previewSize(flags["size"]);
+  if (flags.count("transfer") == 0 && !contents.property.empty())
+    flags["transfer"] = propertyFile(contents).toStdString();
   QJsonObject all;
   for (const std::string& name : Node::GetFlagNames()) {
     const auto flag = flags.find(name);
@@ -337,6 +327,18 @@ QJsonObject qSlicerFenestraSession::previewFlags(const FenestraScene::Contents& 
                                             : QJsonValue(QString::fromStdString(flag->second));
   }
   return all;
+}
+
+/// Named after what is in it: another transfer function is another file.
+QString qSlicerFenestraSession::propertyFile(const FenestraScene::Contents& contents) const {
+  const QByteArray text = QByteArray::fromStdString(contents.property);
+  const QString name = QCryptographicHash::hash(text, QCryptographicHash::Sha1).toHex();
+  QFile file(m_folder.filePath(name + QString::fromStdString(contents.propertyEnding)));
+  if (file.size() != text.size() &&
+      (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size()))
+    throw vtkSlicerFenestraComplaint("The transfer function could not be written. Is the disk "
+                                     "with the temporary files full?");
+  return file.fileName();
 }
 
 void qSlicerFenestraSession::tellPreview(const QJsonObject& flags) {

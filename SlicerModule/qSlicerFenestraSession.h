@@ -9,13 +9,11 @@
 #include <QElapsedTimer>
 #include <QImage>
 #include <QMap>
-#include <QPointer>
 #include <QTemporaryDir>
 #include <QThreadPool>
 #include <QTimer>
 
 #include <functional>
-#include <memory>
 
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
@@ -40,14 +38,11 @@ public:
   vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings);
   /// Ends the render under way, which keeps what it has.
   void stop();
-  /// Forgets all that waits, too.
-  void stopAll();
   bool rendering() const { return !m_renders.isEmpty(); }
   int waiting() const { return rendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 
   /// Shows the settings as they are from now on, or no more where there are none.
   void preview(vtkMRMLFenestraRenderNode* settings);
-  void setPreviewSize(const QSize& size);
 
   /// Makes the renderer's synthetic knee, and then tells its scene's path, or what failed.
   void makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
@@ -76,8 +71,8 @@ signals:
 private:
   struct Render {
     vtkWeakPointer<vtkMRMLFenestraRenderNode> node;
-    QString folder; ///< empty until it is written
-    bool stopped = false;
+    QString folder;       ///< empty until it is written
+    bool stopped = false; ///< before it was written
   };
 
   void work(const std::function<void()>& job);
@@ -89,14 +84,15 @@ private:
 
   void follow();
   void startPreview(const FenestraScene::Contents& contents);
-  QJsonObject previewFlags(const FenestraScene::Contents& contents);
+  QJsonObject previewFlags(const FenestraScene::Contents& contents) const;
+  QString propertyFile(const FenestraScene::Contents& contents) const;
   void tellPreview(const QJsonObject& flags);
   void showPreview(const qFenestraPicture& picture);
 
   vtkSlicerFenestraLogic* m_logic;
   QString m_program;
   QTemporaryDir m_folder;
-  std::shared_ptr<FenestraScene::Writer> m_writer; ///< the working thread's
+  FenestraScene::Writer m_writer; ///< the working thread's
   QThreadPool m_worker;
 
   qFenestraQueue m_queue;
@@ -108,12 +104,10 @@ private:
   qFenestraPreview m_preview;
   QTimer m_soon; ///< several changes at once are one
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed;
-  QSize m_previewSize{256, 256};
   std::string m_shownData; ///< what the preview's scene holds
-  std::string m_shownProperty;
+  QString m_previewFolder;
   QJsonObject m_told;
   bool m_starting = false;
-  int m_properties = 0;
 };
 
 #endif

@@ -7,7 +7,7 @@ namespace fenestra {
 namespace {
 
 /// Samples of an axis, the first and the last among them.
-struct SampleRange {
+struct MeshedSamples {
   std::int64_t first = std::numeric_limits<std::int64_t>::max();
   std::int64_t last = -1;
 
@@ -58,7 +58,7 @@ private:
 
   /// As many as may be, of those around all that are points; returns whether there are any.
   bool chooseSamples() {
-    SampleRange columns, rows;
+    MeshedSamples columns, rows;
     for (std::int64_t row = 0; row < m_buffer.rows(); ++row) {
       const DomainFootprint::Columns seen = m_footprint[static_cast<std::size_t>(row)];
       for (std::int64_t column = seen.first; column < seen.end; ++column)

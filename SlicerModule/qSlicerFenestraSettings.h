@@ -1,0 +1,71 @@
+#ifndef __qSlicerFenestraSettings_h
+#define __qSlicerFenestraSettings_h
+
+#include <ctkVTKObject.h>
+
+#include <QObject>
+#include <QString>
+
+#include <map>
+#include <string>
+
+#include "vtkMRMLFenestraRenderNode.h"
+#include <vtkWeakPointer.h>
+
+class qSlicerFenestraPanel;
+class vtkMRMLNode;
+class vtkSlicerFenestraLogic;
+
+/// \brief Keeps a node of settings and the panel's choices the same: what one says, the other
+/// shows.
+///
+/// It also watches what the settings name: volume, segmentation and camera.
+class qSlicerFenestraSettings : public QObject {
+  Q_OBJECT
+  QVTK_OBJECT
+
+public:
+  /// Both outlive this.
+  qSlicerFenestraSettings(qSlicerFenestraPanel* panel, vtkSlicerFenestraLogic* logic,
+                          QObject* parent = nullptr);
+
+  /// Of the scene's settings, with defaults for what they leave open; null: none.
+  void use(vtkMRMLFenestraRenderNode* node);
+  vtkMRMLFenestraRenderNode* node() const { return m_node; }
+  /// Those of a render, to render it again.
+  void copy(vtkMRMLFenestraRenderNode* render);
+
+signals:
+  /// The settings, or something that they name.
+  void changed();
+
+private slots:
+  void show();
+  void showSegments();
+  void take();
+  void takeQuality();
+  void takeVolume(vtkMRMLNode* node);
+  void takeSegmentation(vtkMRMLNode* node);
+  void onDataChanged();
+
+private:
+  using Flags = std::map<std::string, std::string>;
+
+  void connectPanel();
+  void chooseDefaults();
+  void watch(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRMLNode* node);
+  void watchCamera();
+  void showView(const Flags& flags);
+  void showLights(const Flags& flags);
+  void showQuality(const Flags& flags);
+  void takeView(Flags& flags);
+  void takeLights(Flags& flags);
+
+  qSlicerFenestraPanel* m_panel;
+  vtkSlicerFenestraLogic* m_logic;
+  vtkWeakPointer<vtkMRMLFenestraRenderNode> m_node;
+  vtkWeakPointer<vtkMRMLNode> m_volume, m_segmentation, m_camera; ///< watched
+  bool m_showing = false; ///< the panel is being set, not used
+};
+
+#endif
