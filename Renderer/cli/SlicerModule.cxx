@@ -133,7 +133,7 @@ std::string slicerDescription(const CommandSyntax& syntax) {
   declaration.append_attribute("encoding") = "utf-8";
   pugi::xml_node module = document.append_child("executable");
   addText(module, "category", "Rendering");
-  addText(module, "title", "Fenestra");
+  addText(module, "title", "Fenestra (command line)");
   addText(module, "description", syntax.summary);
   addText(module, "version", versionText);
   addText(module, "contributor", "The Fenestra developers");

@@ -152,12 +152,11 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
 
   qSlicerFenestraSession session(logic, program);
   Heard heard(session);
-  session.setPreviewSize({32, 32});
   session.preview(settings);
   CHECK_BOOL(waitFor([&] { return heard.previews > 0; }), true);
-  CHECK_INT(heard.preview.width(), 32);
+  CHECK_INT(heard.preview.width(), 256); // of the picture's shape
+  CHECK_INT(heard.preview.height(), 213);
   const int before = heard.previews;
-  const QImage unclipped = heard.preview;
   settings->SetFocus({ids[0]});
   session.refresh();
   CHECK_BOOL(waitFor([&] { return heard.previews > before; }), true);

@@ -5,6 +5,8 @@
 
 #include <qMRMLNodeComboBox.h>
 #include <qSlicerApplication.h>
+#include <qSlicerCLIModule.h>
+#include <qSlicerCLIModuleWidget.h>
 #include <qSlicerCoreIOManager.h>
 #include <qSlicerLayoutManager.h>
 #include <qSlicerModuleManager.h>
@@ -13,9 +15,11 @@
 #include <vtkCamera.h>
 #include <vtkImageData.h>
 #include <vtkMRMLCameraNode.h>
+#include <vtkMRMLCommandLineModuleNode.h>
 #include <vtkMRMLDisplayNode.h>
 #include <vtkMRMLScene.h>
 #include <vtkMRMLVolumeNode.h>
+#include <vtkSlicerCLIModuleLogic.h>
 
 #include <QAbstractButton>
 #include <QComboBox>
@@ -66,11 +70,14 @@ bool qSlicerFenestraTour::run() {
     const char* name;
     bool (qSlicerFenestraTour::*run)();
   };
-  const Step steps[] = {
-      {"load", &qSlicerFenestraTour::loadPhantom},       {"open", &qSlicerFenestraTour::openModule},
-      {"choose", &qSlicerFenestraTour::chooseCartilage}, {"turn", &qSlicerFenestraTour::turnCamera},
-      {"render", &qSlicerFenestraTour::render},          {"stop", &qSlicerFenestraTour::stopRender},
-      {"repeat", &qSlicerFenestraTour::saveAndRepeat}};
+  const Step steps[] = {{"load", &qSlicerFenestraTour::loadPhantom},
+                        {"open", &qSlicerFenestraTour::openModule},
+                        {"choose", &qSlicerFenestraTour::chooseCartilage},
+                        {"turn", &qSlicerFenestraTour::turnCamera},
+                        {"render", &qSlicerFenestraTour::render},
+                        {"stop", &qSlicerFenestraTour::stopRender},
+                        {"repeat", &qSlicerFenestraTour::saveAndRepeat},
+                        {"command", &qSlicerFenestraTour::runCommand}};
   bool good = true;
   for (const Step& step : steps) {
     good = good && (this->*step.run)();
@@ -268,6 +275,47 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   photograph("10-repeated");
   m_figures["repeatedBitForBit"] = radianceOf(lastRender()) == before;
   return m_figures["repeatedBitForBit"].toBool() && m_figures["readBack"].toBool();
+}
+
+/// The renderer as a command line module, in the panel that Slicer makes of its description.
+bool qSlicerFenestraTour::runCommand() {
+  auto* application = qSlicerApplication::application();
+  auto* module = dynamic_cast<qSlicerCLIModule*>(application->moduleManager()->module("fenestra"));
+  if (!module)
+    return false;
+  vtkMRMLScene* scene = application->mrmlScene();
+  vtkMRMLCommandLineModuleNode* node =
+      vtkSlicerCLIModuleLogic::SafeDownCast(module->logic())->CreateNodeInScene();
+  auto* output = vtkMRMLVolumeNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLVectorVolumeNode", "Knee by the command line"));
+  node->SetParameterAsNode("inputVolume", scene->GetFirstNodeByName("knee"));
+  node->SetParameterAsNode("segmentation", scene->GetFirstNodeByClass("vtkMRMLSegmentationNode"));
+  node->SetParameterAsString("focus", "Femoral cartilage");
+  node->SetParameterAsNode("output", output);
+  node->SetParameterAsInt("samples", 16);
+  node->SetParameterAsString("size", "256x256");
+  m_window->findChild<qSlicerModuleSelectorToolBar*>()->selectModule("fenestra");
+  settle(500);
+  auto* panel = m_window->findChild<qSlicerCLIModuleWidget*>();
+  if (!panel)
+    return false;
+  panel->setCurrentCommandLineModuleNode(node);
+  settle(500);
+  auto* apply = panel->findChild<QAbstractButton*>("ApplyPushButton");
+  if (!apply || !apply->isEnabled())
+    return false;
+  QTest::mouseClick(apply, Qt::LeftButton);
+  const auto over = [node] {
+    return !node->IsBusy() && (node->GetStatus() & vtkMRMLCommandLineModuleNode::Completed) != 0;
+  };
+  if (!waitFor(over))
+    return false;
+  settle(2000);
+  photograph("11-command");
+  m_figures["commandLineModule"] = node->GetStatusString();
+  vtkImageData* image = output->GetImageData();
+  return node->GetStatus() == vtkMRMLCommandLineModuleNode::Completed &&
+         node->GetErrorText().empty() && image && image->GetDimensions()[0] == 256;
 }
 
 // ---- hands and eyes

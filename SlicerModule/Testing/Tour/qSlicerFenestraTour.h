@@ -41,6 +41,7 @@ private:
   bool render();
   bool stopRender();
   bool saveAndRepeat();
+  bool runCommand();
 
   bool click(const char* button);
   bool waitFor(const std::function<bool()>& condition, int milliseconds = 60000);

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The tutorial in a real Slicer on a virtual screen. usage: tour.sh SLICER MODULES FENESTRA REPORT
-# FENESTRA_TOUR_QUALITY: 0 draft, 1 good, 2 final. Leaves pictures and tour.json in REPORT; fails where a step does, or where Slicer logs a warning
-# that names Fenestra.
+# FENESTRA_TOUR_QUALITY: 0 draft, 1 good, 2 final. Leaves pictures and tour.json in REPORT; fails
+# where a step does, or where Slicer logs a warning that names Fenestra.
 set -euo pipefail
 slicer=$1 modules=$2 fenestra=$3 report=$4
 rm -rf "$report"
