@@ -145,12 +145,14 @@ void qSlicerFenestraModuleWidget::render() {
 }
 
 /// Twice: a view that the layout has just made takes the picture when it has its size.
-void qSlicerFenestraModuleWidget::showResult(Node* render) {
-  fenestra()->ShowResult(render);
+void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
   const vtkWeakPointer<Node> shown = render;
-  QTimer::singleShot(0, this, [this, shown] {
-    if (shown && shown->GetScene())
-      fenestra()->ShowResult(shown);
+  QTimer::singleShot(0, this, [this, shown, times] {
+    if (!shown || !shown->GetScene())
+      return;
+    fenestra()->ShowResult(shown);
+    if (times > 1)
+      showResult(shown, times - 1);
   });
 }
 
@@ -193,11 +195,10 @@ void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& 
   else
     say((outcome.kind == qFenestraOutcome::Kind::stopped ? tr("Stopped: %1.") : tr("Done: %1."))
             .arg(QString::fromUtf8(render->GetDescription() ? render->GetDescription() : "")));
-  if (render) {
+  if (render)
     m_panel->renders->setCurrentNode(render);
-    showResult(render);
-  }
   updateButtons();
+  showResult(render);
 }
 
 void qSlicerFenestraModuleWidget::say(const QString& message, const QString& details) {

@@ -54,7 +54,7 @@ private:
   void showPicture(const QImage& picture, const qFenestraPicture& what);
   void onProgress(double part, double seconds);
   void onEnded(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
-  void showResult(vtkMRMLFenestraRenderNode* render);
+  void showResult(vtkMRMLFenestraRenderNode* render, int times = 2);
 
   qSlicerFenestraPanel* m_panel = nullptr;
   qSlicerFenestraSettings* m_settings = nullptr;

@@ -8,8 +8,10 @@
 #include <QJsonDocument>
 
 #include <vtkImageData.h>
+#include <vtkMRMLApplicationLogic.h>
 #include <vtkMRMLScene.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 
 #include <sstream>
 
@@ -71,6 +73,22 @@ void removeFolder(const QString& folder) {
   if (!folder.isEmpty())
     QDir(folder).removeRecursively();
 }
+
+/// The views are drawn once, after all that is added.
+struct Paused {
+  explicit Paused(vtkMRMLApplicationLogic* logic) : application(logic) {
+    if (application)
+      application->PauseRender();
+  }
+  ~Paused() {
+    if (application)
+      application->ResumeRender();
+  }
+  Paused(const Paused&) = delete;
+  Paused& operator=(const Paused&) = delete;
+
+  vtkSmartPointer<vtkMRMLApplicationLogic> application;
+};
 
 QString statsLine(const QString& folder) {
   QFile file(folder + "/stats.json");
@@ -206,18 +224,32 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
     } catch (const std::exception& error) {
       message = QString::fromUtf8(error.what());
     }
-    later([this, id, outcome, folder, result, message] {
-      Node* node = m_renders[id].node;
+    later([this, id, outcome, result, message] {
       if (!message.isEmpty())
         return endRender(id, failure(tr("The picture could not be read back."), message));
-      if (node && node->GetScene()) { // the user may have closed the scene
-        m_logic->AddResult(node, *result);
-        node->SetDescription(statsLine(folder).toUtf8().constData());
-        m_folders[node->GetID()] = folder;
-      }
-      endRender(id, outcome);
+      const auto paused = std::make_shared<Paused>(m_logic->GetMRMLApplicationLogic());
+      addResult(id, outcome, [this, result, paused](Node* node, int step) {
+        m_logic->AddResult(node, *result, step);
+      });
     });
   });
+}
+
+/// A step at a time, with the event loop in between, in which the user may close the scene.
+void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
+                                       const std::function<void(Node*, int)>& add, int step) {
+  Node* node = m_renders[id].node;
+  const bool open = node && node->GetScene();
+  if (open && step < vtkSlicerFenestraLogic::ResultSteps) {
+    add(node, step);
+    return later([this, id, outcome, add, step] { addResult(id, outcome, add, step + 1); });
+  }
+  if (open) {
+    const QString folder = m_renders[id].folder;
+    node->SetDescription(statsLine(folder).toUtf8().constData());
+    m_folders[node->GetID()] = folder;
+  }
+  endRender(id, outcome);
 }
 
 void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) {

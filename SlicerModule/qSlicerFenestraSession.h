@@ -80,6 +80,8 @@ private:
   void write(const FenestraScene::Contents& contents,
              const std::function<void(const QString& scene, const QString& failure)>& then);
   void finishRender(int id, const qFenestraOutcome& outcome);
+  void addResult(int id, const qFenestraOutcome& outcome,
+                 const std::function<void(vtkMRMLFenestraRenderNode*, int)>& add, int step = 0);
   void endRender(int id, const qFenestraOutcome& outcome);
 
   void follow();

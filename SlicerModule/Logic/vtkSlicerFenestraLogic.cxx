@@ -279,15 +279,19 @@ FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
   return moved;
 }
 
-void vtkSlicerFenestraLogic::AddResult(Node* render, const vtkSlicerFenestraResult& result) {
-  this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, result.picture,
-                  this->BesideAnatomy(render, result.radiance.ijkToRas));
-  this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::RadianceRole, ToVtk(result.radiance),
-                  result.radiance.ijkToRas);
-  vtkMRMLVolumeNode* depth = this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
-                                             ToVtk(result.depth), result.depth.ijkToRas);
-  ShowFinite(depth, result.depth);
-  if (result.surface && result.surface->GetNumberOfPoints() > 0)
+void vtkSlicerFenestraLogic::AddResult(Node* render, const vtkSlicerFenestraResult& result,
+                                       int step) {
+  if (step == 0)
+    this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, result.picture,
+                    this->BesideAnatomy(render, result.radiance.ijkToRas));
+  if (step == 1)
+    this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::RadianceRole, ToVtk(result.radiance),
+                    result.radiance.ijkToRas);
+  if (step == 2)
+    ShowFinite(this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
+                               ToVtk(result.depth), result.depth.ijkToRas),
+               result.depth);
+  if (step == 3 && result.surface && result.surface->GetNumberOfPoints() > 0)
     this->AddSurface(render, result.surface);
 }
 

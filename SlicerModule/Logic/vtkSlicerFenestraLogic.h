@@ -68,8 +68,11 @@ public:
   /// Whether a clipping surface comes with these flags.
   static bool HasSurface(const std::map<std::string, std::string>& flags);
 
-  /// Adds the result's nodes and lets the render refer to them.
-  void AddResult(vtkMRMLFenestraRenderNode* render, const vtkSlicerFenestraResult& result);
+  /// Adds the result's nodes and lets the render refer to them: a node each step, from 0, for the
+  /// application can answer its user in between.
+  void AddResult(vtkMRMLFenestraRenderNode* render, const vtkSlicerFenestraResult& result,
+                 int step);
+  static constexpr int ResultSteps = 4;
   /// Shows the render's picture beside a 3-D view, in a layout of the module's own.
   void ShowResult(vtkMRMLFenestraRenderNode* render);
 

@@ -150,24 +150,24 @@ bool qSlicerFenestraTour::chooseCartilage() {
 
 /// Without and with Slicer's own volume rendering, which takes long where no graphics card draws.
 bool qSlicerFenestraTour::turnCamera() {
-  std::vector<vtkMRMLNode*> displays;
-  qSlicerApplication::application()->mrmlScene()->GetNodesByClass(
-      "vtkMRMLVolumeRenderingDisplayNode", displays);
-  const auto setVisible = [&displays](bool visible) {
-    for (vtkMRMLNode* display : displays)
-      vtkMRMLDisplayNode::SafeDownCast(display)->SetVisibility(visible);
-  };
-  setVisible(false);
-  settle(1000);
+  showVolumeRendering(false);
   const int alone = slowestTurn();
   m_figures["previewAfterTurnMs"] = alone;
-  setVisible(true);
-  settle(1000);
+  showVolumeRendering(true);
   const int beside = slowestTurn();
   m_figures["previewAfterTurnBesideVolumeRenderingMs"] = beside;
   settle(3000);
   photograph("5-turned");
   return alone >= 0 && beside >= 0;
+}
+
+void qSlicerFenestraTour::showVolumeRendering(bool visible) {
+  std::vector<vtkMRMLNode*> displays;
+  qSlicerApplication::application()->mrmlScene()->GetNodesByClass(
+      "vtkMRMLVolumeRenderingDisplayNode", displays);
+  for (vtkMRMLNode* display : displays)
+    vtkMRMLDisplayNode::SafeDownCast(display)->SetVisibility(visible);
+  settle(1000);
 }
 
 int qSlicerFenestraTour::slowestTurn() {
@@ -193,11 +193,9 @@ bool qSlicerFenestraTour::render() {
     quality->setCurrentIndex(qEnvironmentVariableIntValue("FENESTRA_TOUR_QUALITY"));
   settle(1000);
   const int before = m_ended;
-  m_pulse.start();
   if (!click("RenderButton"))
     return false;
   settle(1500);
-  m_figures["longestPauseWhileRenderingMs"] = m_pulse.longest();
   photograph("6-rendering");
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
@@ -207,7 +205,9 @@ bool qSlicerFenestraTour::render() {
   return lastRender() && !radianceOf(lastRender()).isEmpty();
 }
 
+/// Without Slicer's own volume rendering: the pauses are the module's.
 bool qSlicerFenestraTour::stopRender() {
+  showVolumeRendering(false);
   auto* settings =
       Node::SafeDownCast(qSlicerApplication::application()->mrmlScene()->GetSingletonNode(
           "Settings", "vtkMRMLFenestraRenderNode"));
@@ -217,9 +217,11 @@ bool qSlicerFenestraTour::stopRender() {
   endless.erase("noise");
   settings->SetFlags(endless);
   const int before = m_ended;
+  m_pulse.start();
   if (!click("RenderButton"))
     return false;
   settle(3000);
+  m_figures["longestPauseWhileRenderingMs"] = m_pulse.longest();
   m_pulse.start();
   QElapsedTimer watch;
   watch.start();
@@ -231,8 +233,10 @@ bool qSlicerFenestraTour::stopRender() {
     return false;
   QObject::disconnect(heard);
   m_figures["stoppedAfterMs"] = after;
-  settings->SetFlags(flags);
   settle(1000);
+  m_figures["longestPauseWithResultMs"] = m_pulse.longest();
+  settings->SetFlags(flags);
+  showVolumeRendering(true);
   return lastRender() != nullptr;
 }
 
@@ -324,7 +328,9 @@ bool qSlicerFenestraTour::click(const char* button) {
   auto* found = m_panel->findChild<QAbstractButton*>(button);
   if (!found || !found->isEnabled())
     return false;
-  QTest::mouseClick(found, Qt::LeftButton);
+  QTest::mousePress(found, Qt::LeftButton);
+  settle(50); // as a finger does
+  QTest::mouseRelease(found, Qt::LeftButton);
   return true;
 }
 

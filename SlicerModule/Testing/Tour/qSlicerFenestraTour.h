@@ -38,6 +38,7 @@ private:
   bool chooseCartilage();
   bool turnCamera();
   int slowestTurn();
+  void showVolumeRendering(bool visible);
   bool render();
   bool stopRender();
   bool saveAndRepeat();
