@@ -89,6 +89,7 @@ void qSlicerFenestraModuleWidget::connectSession() {
           &QLabel::setText);
   connect(m_session, &qSlicerFenestraSession::started, this, [this](Node*) {
     m_reached.clear();
+    m_told.invalidate();
     say(tr("Rendering..."));
     updateButtons();
   });
@@ -173,7 +174,12 @@ void qSlicerFenestraModuleWidget::showPicture(const QImage& picture, const qFene
                                      .arg(what.seconds, 0, 'f', 1));
 }
 
+/// Now and then: where no graphics card draws Slicer's window, a change in it takes a while.
 void qSlicerFenestraModuleWidget::onProgress(double part, double seconds) {
+  constexpr int interval = 500; // milliseconds
+  if (m_told.isValid() && m_told.elapsed() < interval)
+    return;
+  m_told.start();
   m_panel->progress->show();
   m_panel->progress->setValue(static_cast<int>(1000.0 * part));
   QString line = tr("%1 so far").arg(duration(seconds));

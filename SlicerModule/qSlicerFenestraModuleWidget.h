@@ -59,7 +59,8 @@ private:
   qSlicerFenestraPanel* m_panel = nullptr;
   qSlicerFenestraSettings* m_settings = nullptr;
   qSlicerFenestraSession* m_session = nullptr;
-  QString m_reached; ///< of the render under way, in words
+  QString m_reached;    ///< of the render under way, in words
+  QElapsedTimer m_told; ///< since progress was last shown
 };
 
 #endif
