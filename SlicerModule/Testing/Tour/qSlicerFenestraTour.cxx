@@ -200,7 +200,7 @@ bool qSlicerFenestraTour::render() {
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
   m_figures["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
-  settle(2500);
+  settle(8000); // volume rendering in a new view takes long where no graphics card draws
   photograph("7-result");
   return lastRender() && !radianceOf(lastRender()).isEmpty();
 }
