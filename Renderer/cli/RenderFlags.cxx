@@ -34,8 +34,10 @@ constexpr Flag flags[] = {
     {"clip", "MODE", clipGroup,
      "none, plane, cutaway, surface, or auto: surface with a focus, else none [auto]",
      Takes::word("auto|none|plane|cutaway|surface"), "auto"},
-    {"boundary", "KIND", clipGroup, "How the surface meets the focus: spline (the paper's)",
-     Takes::word("spline"), "spline"},
+    {"boundary", "KIND", clipGroup,
+     "How the surface leaves the focus: spline (the paper's) or exact (with its depth and slope at "
+     "every point) [spline]",
+     Takes::word("spline|exact"), "spline"},
     {"controlpoints", "N", clipGroup, "Control points of the spline, 3 to 1000 [50]",
      Takes::whole(3, 1000), "50"},
     {"smoothing", "P", clipGroup,
@@ -131,7 +133,8 @@ ClipRequest clipRequest(const FlagValues& flags) {
   const auto word = flags.word("clip");
   if (flags.differs("clip"))
     clip.mode = clipMode(*word);
-  flags.word("boundary");
+  if (const auto boundary = flags.word("boundary"))
+    clip.boundary = *boundary == "exact" ? Boundary::exact : Boundary::spline;
   if (const auto n = flags.count("controlpoints"))
     clip.controlPoints = static_cast<int>(*n);
   clip.smoothing = flags.number("smoothing").value_or(clip.smoothing);
@@ -153,6 +156,9 @@ ClipRequest clipRequest(const FlagValues& flags) {
   for (const char* name : {"boundary", "controlpoints", "smoothing"})
     if (mode != ClipMode::surface && flags.differs(name))
       throw usageError(std::string("--") + name + ": only --clip surface uses it; drop it");
+  for (const char* name : {"controlpoints", "smoothing"})
+    if (clip.boundary == Boundary::exact && flags.differs(name))
+      throw usageError(std::string("--") + name + ": only --boundary spline uses it; drop it");
   return clip;
 }
 

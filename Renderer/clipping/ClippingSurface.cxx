@@ -1,5 +1,6 @@
 #include "clipping/ClippingSurface.h"
 
+#include "clipping/SmoothFill.h"
 #include "clipping/ThinPlateSpline.h"
 #include "core/Error.h"
 #include "core/Stopwatch.h"
@@ -7,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 
 namespace fenestra {
 
@@ -52,12 +54,9 @@ ThinPlateSpline splineThrough(const std::vector<ControlPoint>& points, double sm
   return {sites, depths, smoothing};
 }
 
-BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
-                            const std::vector<ControlPoint>& samples) {
-  std::vector<double> misses;
-  misses.reserve(samples.size());
-  for (const ControlPoint& sample : samples)
-    misses.push_back(std::abs(spline(sample.site) - sample.depth));
+BoundaryMismatch summarized(std::vector<double> misses) {
+  if (misses.empty())
+    return {};
   std::ranges::sort(misses);
   const auto count = static_cast<double>(misses.size());
   BoundaryMismatch mismatch;
@@ -66,6 +65,37 @@ BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
   mismatch.p95 = misses[static_cast<std::size_t>(0.95 * (count - 1.0))];
   mismatch.max = misses.back();
   return mismatch;
+}
+
+BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
+                            const std::vector<ControlPoint>& samples) {
+  std::vector<double> misses;
+  misses.reserve(samples.size());
+  for (const ControlPoint& sample : samples)
+    misses.push_back(std::abs(spline(sample.site) - sample.depth));
+  return summarized(std::move(misses));
+}
+
+/// Of the filled buffer, across each crossing that has two samples beyond it.
+BoundaryMismatch mismatchOf(const DepthBuffer& buffer, const FocusDepth& focus,
+                            const std::vector<Contour>& contours) {
+  constexpr std::array<std::array<int, 2>, 4> sides = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+  const auto isInside = [&](std::int64_t column, std::int64_t row) {
+    return column >= 0 && row >= 0 && column < buffer.columns() && row < buffer.rows();
+  };
+  std::vector<double> misses;
+  for (const Contour& contour : contours)
+    for (const Crossing& crossing : contour) {
+      const auto [x, y] = sides[crossing.side];
+      const std::int64_t column = crossing.column + 2 * x, row = crossing.row + 2 * y;
+      if (!isInside(column, row) || focus.isFocus(column, row))
+        continue;
+      const double near = buffer.at(buffer.sample(column - x, row - y));
+      const double far = buffer.at(buffer.sample(column, row));
+      const double own = buffer.at(buffer.sample(crossing.column, crossing.row));
+      misses.push_back(std::abs(2.0 * near - far - own));
+    }
+  return summarized(std::move(misses));
 }
 
 /// The spline wherever the focus is not: in tiles, which are halved where many sites are near.
@@ -153,6 +183,12 @@ private:
   std::vector<double> m_x, m_y; ///< mm, of the columns and rows
 };
 
+/// mm within which a surface with an exact boundary loses the focus's slope: a part of the volume's
+/// size that keeps it inside the volume's depths.
+double levellingLength(const Domain& volume) {
+  return 0.05 * (volume.grid().worldCorner(7) - volume.grid().worldCorner(0)).norm();
+}
+
 /// Nothing is removed where the focus is not.
 void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
   for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
@@ -187,6 +223,9 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   const bool isCutaway = options.mode == SurfaceMode::cutaway;
   if (isCutaway) {
     fillCutaway(*buffer, surface.focus.regions);
+  } else if (options.boundary == Boundary::exact) {
+    fillSmoothly(*buffer, surface.focus.regions, levellingLength(volume));
+    surface.mismatch = mismatchOf(*buffer, surface.focus, traceContours(surface.focus));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();

@@ -15,13 +15,22 @@ enum class SurfaceMode {
   surface, ///< the volumetric clipping surface: the cut continues into the focus's surroundings
 };
 
+/// How a surface continues from the focus into its surroundings.
+enum class Boundary {
+  spline, ///< the paper's: a thin plate spline through some control points
+  exact,  ///< from every point of the focus's boundary, with the focus's slope (SmoothFill.h)
+};
+
 struct SurfaceOptions {
   SurfaceMode mode = SurfaceMode::surface;
   int controlPoints = 50; ///< on the focus's contours, 1 to 1000
   double smoothing = 0.5; ///< p of the thin plate spline, 0 to 1
+  Boundary boundary = Boundary::spline;
 };
 
-/// |f(x) - z| in mm over the focus samples on the contours: how far the spline misses their depth.
+/// |f(x) - z| in mm over the focus samples on the contours: how far the surface around the focus,
+/// continued to them, misses their depth. f is the spline, or the line through the two samples
+/// beyond the contour.
 struct BoundaryMismatch {
   double mean = 0.0, p95 = 0.0, max = 0.0;
 };
@@ -29,7 +38,7 @@ struct BoundaryMismatch {
 struct ClippingSurface {
   Clip clip;                                 ///< a ClipDepth
   FocusDepth focus;                          ///< over the samples of the clip's buffer
-  std::vector<ControlPoint> controlPoints{}; ///< empty for a cutaway, as is the mismatch
+  std::vector<ControlPoint> controlPoints{}; ///< of a spline only
   BoundaryMismatch mismatch{};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
   std::vector<std::string> warnings{};

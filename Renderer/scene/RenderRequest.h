@@ -2,6 +2,7 @@
 // What a user asks for: plain data, filled by the command line (and whoever else drives a render).
 
 #include "camera/Camera.h"
+#include "clipping/ClippingSurface.h"
 #include "render/Render.h"
 
 #include <filesystem>
@@ -22,6 +23,7 @@ struct PlaneRequest {
 struct ClipRequest {
   std::optional<ClipMode> mode = {}; ///< by default `surface` when there is a focus, else `none`
   std::optional<PlaneRequest> plane = {};
+  Boundary boundary = Boundary::spline;
   int controlPoints = 50;
   double smoothing = 0.5; ///< p of the approximating thin plate spline
 

@@ -217,8 +217,9 @@ void Scene::buildClip(const SceneRequest& request) {
 }
 
 void Scene::buildDepthClip(SurfaceMode mode, const ClipRequest& request) {
-  ClippingSurface surface = buildClippingSurface(*m_camera, domain(), *focus(),
-                                                 {mode, request.controlPoints, request.smoothing});
+  ClippingSurface surface =
+      buildClippingSurface(*m_camera, domain(), *focus(),
+                           {mode, request.controlPoints, request.smoothing, request.boundary});
   m_focusDepth = viewportDepths(surface.focus, *m_camera);
   m_clip = std::move(surface.clip);
   if (mode == SurfaceMode::surface)

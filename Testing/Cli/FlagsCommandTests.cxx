@@ -44,8 +44,8 @@ TEST_F(FlagsCommand, RefusesFlagsOfTheContractThatDoNothingYet) {
   for (const char* flag : {"--hole", "--ghost", "--offset", "--checkpoint", "--resume", "--preset"})
     refusals.push_back(refusal({flag, "1"}, std::string(flag) + ": no such flag"));
   refusals.push_back(
-      refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "exact"},
-              "--boundary: expected spline, got 'exact'"));
+      refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "smooth"},
+              "--boundary: expected spline or exact, got 'smooth'"));
   expectRefused(refusals, folder.path());
 }
 

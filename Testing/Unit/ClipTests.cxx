@@ -207,6 +207,34 @@ TEST(ClippingSurface, AFlatFocusContinuesAsItsPlane) {
   }
 }
 
+/// An axis-aligned cube has an answer: the plane of its front face.
+TEST(ClippingSurface, AnExactBoundaryContinuesAFlatFocusAsItsPlane) {
+  const Model model;
+  const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 80, 80);
+  const ClippingSurface surface =
+      buildClippingSurface(camera, model.volume, model.focus, {.boundary = Boundary::exact});
+  EXPECT_TRUE(surface.controlPoints.empty());
+  EXPECT_LT(surface.mismatch.max, 1e-4);
+  const auto& buffer = *std::get<ClipDepth>(surface.clip).buffer;
+  for (std::int64_t i = 0; i < buffer.size(); ++i) {
+    EXPECT_NEAR(buffer.at(i), 184.0, 1e-3);
+  }
+}
+
+TEST(ClippingSurface, AnExactBoundaryIsNearerToTheFocusThanASpline) {
+  const Shell shell;
+  for (const auto projection : projections) {
+    const Camera camera = obliqueCamera(projection, 120.0, 160);
+    const auto missOf = [&](Boundary boundary) {
+      return buildClippingSurface(camera, shell.volume, shell.focus, {.boundary = boundary})
+          .mismatch;
+    };
+    const BoundaryMismatch spline = missOf(Boundary::spline), exact = missOf(Boundary::exact);
+    EXPECT_LT(exact.mean, spline.mean);
+    EXPECT_LT(exact.p95, spline.p95);
+  }
+}
+
 TEST(ClippingSurface, LeavesTheFocusWithinItsStatedMismatch) {
   const Shell shell;
   for (const auto projection : projections) {

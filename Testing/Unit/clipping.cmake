@@ -5,6 +5,7 @@ fenestra_test(ClippingTests
   FocusDepthTests.cxx
   GridWalkTests.cxx
   KernelSumsTests.cxx
+  SmoothFillTests.cxx
   SurfaceMeshTests.cxx
   ThinPlateSplineTests.cxx
   LIBRARIES fenestra_clipping hwy::hwy

@@ -1,0 +1,129 @@
+// The exact boundary's continuation against what is known of it: constants, the plate under tension
+// along a straight edge, jumps of depth.
+
+#include "ClippingTesting.h"
+#include "clipping/SmoothFill.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+/// A buffer of 100 mm, and which of its samples are focus, at which depth.
+struct Sheet {
+  Camera camera;
+  DepthBuffer buffer;
+  std::vector<Region> regions;
+
+  using Depth = std::function<std::optional<double>(const Vec2&)>;
+
+  Sheet(int pixels, const Depth& focus, double across = 100.0)
+      : camera(anteriorCamera(Projection::orthographic, 300.0, 0.5 * across, pixels, pixels)),
+        buffer(camera, centredGrid({100, 100, 100})),
+        regions(static_cast<std::size_t>(buffer.size()), Region::context) {
+    for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
+      if (const auto depth = focus(at(sample))) {
+        buffer.set(sample, *depth);
+        regions[static_cast<std::size_t>(sample)] = Region::focus;
+      }
+  }
+
+  Vec2 at(std::int64_t sample) const {
+    return buffer.position(sample % buffer.columns(), sample / buffer.columns());
+  }
+  bool isFocus(std::int64_t sample) const {
+    return regions[static_cast<std::size_t>(sample)] == Region::focus;
+  }
+};
+
+TEST(SmoothFill, ContinuesAConstantDepthWithIt) {
+  Sheet sheet(200,
+              [](const Vec2& x) { return x.norm() < 20.0 ? std::optional(290.0) : std::nullopt; });
+  fillSmoothly(sheet.buffer, sheet.regions, 10.0);
+  for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample)
+    EXPECT_NEAR(sheet.buffer.at(sample), 290.0, 1e-4);
+}
+
+/// u'''' = u'' / length² with u(0) = 0, u'(0) = slope, and level at the buffer's end.
+class StraightEdge : public testing::TestWithParam<std::pair<double, double>> {};
+
+TEST_P(StraightEdge, IsThePlateUnderTension) {
+  const auto [slope, length] = GetParam();
+  for (const int pixels : {64, 128, 256, 512}) {
+    Sheet sheet(pixels, [slope = slope](const Vec2& x) {
+      return x.x() < -20.0 ? std::optional(300.0 + slope * (x.x() + 20.0)) : std::nullopt;
+    });
+    double edge = -100.0, end = 0.0; // the focus's last sample, and the buffer's
+    for (std::int64_t column = 0; column < sheet.buffer.columns(); ++column)
+      (sheet.isFocus(column) ? edge : end) = sheet.at(column).x();
+    const double range = (end - edge) / length;
+    fillSmoothly(sheet.buffer, sheet.regions, length);
+    const double given = std::clamp(slope, -steepestBoundary, steepestBoundary);
+    double worst = 0.0;
+    for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
+      const double x = (sheet.at(sample).x() - edge) / length;
+      const double expected =
+          300.0 + slope * (edge + 20.0) +
+          given * length * (std::cosh(range) - std::cosh(range - x)) / std::sinh(range);
+      if (!sheet.isFocus(sample))
+        worst = std::max(worst, std::abs(sheet.buffer.at(sample) - expected));
+    }
+    EXPECT_LT(worst, 0.08 * std::abs(given) * length) << pixels;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Slopes, StraightEdge,
+                         testing::Values(std::pair{0.5, 5.0}, std::pair{-0.9, 10.0},
+                                         std::pair{7.0, 10.0}, std::pair{0.2, 20.0}));
+
+TEST(SmoothFill, LeavesACurvedBoundaryWithItsSlope) {
+  Sheet sheet(512, [](const Vec2& x) {
+    return x.norm() < 20.0 ? std::optional(300.0 + 0.01 * x.squaredNorm()) : std::nullopt;
+  });
+  fillSmoothly(sheet.buffer, sheet.regions, 10.0);
+  const double pitch = sheet.camera.pixelPitch();
+  for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
+    const double r = sheet.at(sample).norm();
+    if (!sheet.isFocus(sample) && r < 20.0 + 3.0 * pitch) {
+      EXPECT_NEAR(sheet.buffer.at(sample), 304.0 + 0.4 * (r - 20.0), 0.05) << r;
+    }
+  }
+}
+
+TEST(SmoothFill, DoesNotRingWhereTheDepthJumps) {
+  Sheet sheet(256, [](const Vec2& x) -> std::optional<double> {
+    if (x.norm() >= 20.0)
+      return std::nullopt;
+    return x.y() < 0.0 ? 270.0 : 330.0;
+  });
+  fillSmoothly(sheet.buffer, sheet.regions, 10.0);
+  for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
+    EXPECT_GT(sheet.buffer.at(sample), 270.0 - 6.0);
+    EXPECT_LT(sheet.buffer.at(sample), 330.0 + 6.0);
+  }
+}
+
+/// Beyond a small viewport samples are coarser; a sheet of one column or row is one, too.
+TEST(SmoothFill, ServesAnyShapeOfBuffer) {
+  for (const double across : {100.0, 30.0})
+    for (const int pixels : {1, 2, 33, 100}) {
+      Sheet sheet(
+          pixels, [](const Vec2& x) { return std::optional(280.0 + 0.5 * x.x()); }, across);
+      std::int64_t free = 0;
+      for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample)
+        if (sheet.at(sample).norm() > 0.3 * across && sample > 0) {
+          sheet.regions[static_cast<std::size_t>(sample)] = Region::context;
+          sheet.buffer.set(sample, infinity);
+          ++free;
+        }
+      fillSmoothly(sheet.buffer, sheet.regions, 5.0);
+      for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample)
+        ASSERT_NEAR(sheet.buffer.at(sample), 280.0, 60.0) << across << ' ' << pixels << ' ' << free;
+    }
+}
+
+} // namespace
