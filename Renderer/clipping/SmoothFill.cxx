@@ -34,7 +34,6 @@ public:
   std::size_t size() const { return m_at.size(); }
   /// From sample i to the next, mm.
   double spacing(std::size_t i) const { return std::abs(m_at[i + 1] - m_at[i]); }
-  double extent() const { return std::abs(m_at.back() - m_at.front()); }
   FillAxis halved() const {
     std::vector<double> coarse;
     for (std::size_t i = 0; i < m_at.size(); i += 2)
@@ -97,6 +96,8 @@ public:
   std::size_t columns() const { return m_x.size(); }
   std::size_t rows() const { return m_y.size(); }
   bool isSmall() const { return std::max(columns(), rows()) <= 8; }
+  /// Whether it can be solved directly in little time and memory.
+  bool isSolvable() const { return columns() * rows() <= 8192; }
   /// mm, where the samples are densest.
   double pitch() const { return 1.0 / std::sqrt(0.5 * std::max(m_x.greatest(), m_y.greatest())); }
 
@@ -228,7 +229,7 @@ public:
     // Adds `factor` times the curvature at a sample to an equation.
     const auto addCurvature = [&](int row, std::size_t at, double factor) {
       const auto add = [&](std::size_t neighbour, double weight) {
-        if (weight != 0.0 && m_free[neighbour] != 0.0f)
+        if (m_free[neighbour] != 0.0f)
           entries.emplace_back(row, unknown[neighbour], factor * weight);
         else
           right[row] -= factor * weight * m_depth[neighbour];
@@ -452,7 +453,8 @@ void fillSmoothly(DepthBuffer& buffer, const std::vector<Region>& regions, doubl
   levels.back().trimFocus();
   levels.back().continueBoundary(length);
   // A coarser level would not see the plate bend.
-  while (!levels.back().isSmall() && levels.back().pitch() < 0.25 * length)
+  while (!levels.back().isSmall() &&
+         (levels.back().pitch() < 0.25 * length || !levels.back().isSolvable()))
     levels.push_back(levels.back().halved());
   constexpr int fewest = 24;
   levels.back().solve(length);
