@@ -8,7 +8,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 
 namespace fenestra {
 
@@ -79,14 +78,13 @@ BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
 /// Of the filled buffer, across each crossing that has two samples beyond it.
 BoundaryMismatch mismatchOf(const DepthBuffer& buffer, const FocusDepth& focus,
                             const std::vector<Contour>& contours) {
-  constexpr std::array<std::array<int, 2>, 4> sides = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
   const auto isInside = [&](std::int64_t column, std::int64_t row) {
     return column >= 0 && row >= 0 && column < buffer.columns() && row < buffer.rows();
   };
   std::vector<double> misses;
   for (const Contour& contour : contours)
     for (const Crossing& crossing : contour) {
-      const auto [x, y] = sides[crossing.side];
+      const auto [x, y] = outward(crossing);
       const std::int64_t column = crossing.column + 2 * x, row = crossing.row + 2 * y;
       if (!isInside(column, row) || focus.isFocus(column, row))
         continue;

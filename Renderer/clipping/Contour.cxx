@@ -7,12 +7,8 @@ namespace fenestra {
 
 namespace {
 
-struct Step {
-  std::int32_t column, row;
-};
-
 /// Toward the neighbour on each side; side + 1 turns from columns to rows.
-constexpr std::array<Step, 4> steps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+constexpr std::array<SampleStep, 4> steps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
 constexpr std::uint8_t turned(int side, int quarters) {
   return static_cast<std::uint8_t>((side + quarters) & 3);
@@ -21,8 +17,8 @@ constexpr std::uint8_t turned(int side, int quarters) {
 /// The crossing that follows on the contour. In the square of samples ahead, with the focus sample
 /// and its outside neighbour behind, the contour goes by the two samples in front.
 Crossing following(const FocusDepth& focus, const Crossing& crossing) {
-  const Step out = steps[crossing.side];
-  const Step ahead = steps[turned(crossing.side, 1)];
+  const SampleStep out = outward(crossing);
+  const SampleStep ahead = steps[turned(crossing.side, 1)];
   const std::int32_t column = crossing.column + ahead.column;
   const std::int32_t row = crossing.row + ahead.row;
   if (focus.isFocus(column + out.column, row + out.row)) // also where they touch only diagonally
@@ -66,6 +62,10 @@ void visitSegments(const DepthBuffer& buffer, const std::vector<Contour>& contou
 
 } // namespace
 
+SampleStep outward(const Crossing& crossing) {
+  return steps[crossing.side];
+}
+
 std::vector<Contour> traceContours(const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
   std::vector<std::uint8_t> visited(static_cast<std::size_t>(buffer.size())); // a bit for each side
@@ -95,7 +95,7 @@ std::vector<Contour> traceContours(const FocusDepth& focus) {
 }
 
 Vec2 position(const DepthBuffer& buffer, const Crossing& crossing) {
-  const Step out = steps[crossing.side];
+  const SampleStep out = outward(crossing);
   return 0.5 * (buffer.position(crossing.column, crossing.row) +
                 buffer.position(crossing.column + out.column, crossing.row + out.row));
 }

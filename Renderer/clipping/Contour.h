@@ -16,6 +16,14 @@ struct Crossing {
   bool operator==(const Crossing&) const = default;
 };
 
+/// From a sample to one beside it.
+struct SampleStep {
+  std::int32_t column, row;
+};
+
+/// Toward the neighbour on a crossing's side.
+SampleStep outward(const Crossing& crossing);
+
 /// A closed loop: each crossing is followed by its neighbour on the contour, the last by the first.
 using Contour = std::vector<Crossing>;
 
