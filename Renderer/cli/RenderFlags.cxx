@@ -1,5 +1,7 @@
 #include "cli/RenderFlags.h"
 
+#include "cli/ClipFlags.h"
+
 #include "core/Error.h"
 #include "io/looks/LightReader.h"
 #include "io/mrml/SceneFiles.h"
@@ -31,9 +33,15 @@ constexpr Flag flags[] = {
      "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "
      "repeated [INPUT.png]",
      Takes::picture()},
+    {"margin", "MM,...", clipGroup,
+     "Grows the focus's segments, or shrinks them (negative): one for all, or one each [0]",
+     Takes::numbers()},
+    {"labelsmoothing", "MM", clipGroup,
+     "Smooths the focus's labels by a Gaussian of this deviation, against stair steps [0]",
+     Takes::number(0.0, 100.0), "0"},
     {"clip", "MODE", clipGroup,
-     "none, plane, cutaway, surface, or auto: surface with a focus, else none [auto]",
-     Takes::word("auto|none|plane|cutaway|surface"), "auto"},
+     "none, plane, hole, cutaway, ghost, surface, or auto: surface with a focus, else none [auto]",
+     Takes::word("auto|none|plane|hole|cutaway|ghost|surface"), "auto"},
     {"boundary", "KIND", clipGroup,
      "How the surface leaves the focus: spline (the paper's) or exact (with its depth and slope at "
      "every point) [spline]",
@@ -44,7 +52,25 @@ constexpr Flag flags[] = {
      "Spline's p in mm, from 0 (a plane) to 1 (through the points) [0.5]", Takes::number(0.0, 1.0),
      "0.5"},
     {"plane", "OX,OY,OZ,NX,NY,NZ", clipGroup,
-     "Clip plane in RAS mm; what the normal points at is removed", Takes::numbers()},
+     "Clip plane in RAS mm; what the normal points at is removed [the focus's best plane]",
+     Takes::numbers()},
+    {"hole", "SHAPE", clipGroup, "Shape of --clip hole: box, cylinder or sphere [cylinder]",
+     Takes::word("box|cylinder|sphere"), "cylinder"},
+    {"holemargin", "MM", clipGroup, "How much wider than the focus a hole is [5]",
+     Takes::number(0.0, 1e6), "5"},
+    {"ghost", "SHARE", clipGroup, "Share of the extinction that --clip ghost leaves, 0 to 1 [0.1]",
+     Takes::number(0.0, 1.0), "0.1"},
+    {"offset", "MM", clipGroup,
+     "Moves the cut away from the eye, into the focus, or toward it (negative) [0]",
+     Takes::number(-1e6, 1e6), "0"},
+    {"soft", "MM", clipGroup, "Matter comes back gradually over this depth behind the cut [0]",
+     Takes::number(0.0, 1e6), "0"},
+    {"contextdensity", "F", clipGroup,
+     "Multiplies the extinction of everything that is not focus, 0 to 1 [1]",
+     Takes::number(0.0, 1.0), "1"},
+    {"contextsaturation", "S", clipGroup,
+     "Colour of everything that is not focus, from 0 (grey) to 1 (as it is) [1]",
+     Takes::number(0.0, 1.0), "1"},
     {"view", "NAME", viewGroup,
      "anterior, posterior, left, right, superior or inferior [the scene's camera, else anterior]",
      Takes::word("anterior|posterior|left|right|superior|inferior"), "anterior"},
@@ -115,51 +141,9 @@ constexpr Flag flags[] = {
      "For modules inside Slicer's process: ignored", Takes::slicersOwn()},
 };
 
-ClipMode clipMode(const std::string& word) {
-  if (word == "none")
-    return ClipMode::none;
-  if (word == "plane")
-    return ClipMode::plane;
-  return word == "cutaway" ? ClipMode::cutaway : ClipMode::surface;
-}
-
 void refuseTogether(const FlagValues& flags, const char* a, const char* b) {
   if (flags.differs(a) && flags.differs(b))
     throw usageError(std::string("--") + a + " and --" + b + " contradict each other; give one");
-}
-
-ClipRequest clipRequest(const FlagValues& flags) {
-  ClipRequest clip;
-  const auto word = flags.word("clip");
-  if (flags.differs("clip"))
-    clip.mode = clipMode(*word);
-  if (const auto boundary = flags.word("boundary"))
-    clip.boundary = *boundary == "exact" ? Boundary::exact : Boundary::spline;
-  if (const auto n = flags.count("controlpoints"))
-    clip.controlPoints = static_cast<int>(*n);
-  clip.smoothing = flags.number("smoothing").value_or(clip.smoothing);
-  if (const auto p = flags.numbers("plane", 6)) {
-    const Vec3 normal((*p)[3], (*p)[4], (*p)[5]);
-    if (normal.isZero(0.0))
-      throw usageError("--plane: the normal NX,NY,NZ must not be zero");
-    clip.plane = PlaneRequest{Vec3((*p)[0], (*p)[1], (*p)[2]), normal.stableNormalized()};
-  }
-
-  const bool hasFocus = flags.has("focus");
-  const ClipMode mode = clip.mode.value_or(hasFocus ? ClipMode::surface : ClipMode::none);
-  if (!hasFocus && (mode == ClipMode::surface || mode == ClipMode::cutaway))
-    throw usageError("--clip: " + *flags.text("clip") + " needs a focus; add --focus");
-  if (mode == ClipMode::plane && !clip.plane)
-    throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ");
-  if (mode != ClipMode::plane && clip.plane)
-    throw usageError("--plane: only --clip plane uses it; add --clip plane, or drop it");
-  for (const char* name : {"boundary", "controlpoints", "smoothing"})
-    if (mode != ClipMode::surface && flags.differs(name))
-      throw usageError(std::string("--") + name + ": only --clip surface uses it; drop it");
-  for (const char* name : {"controlpoints", "smoothing"})
-    if (clip.boundary == Boundary::exact && flags.differs(name))
-      throw usageError(std::string("--") + name + ": only --boundary spline uses it; drop it");
-  return clip;
 }
 
 ViewRequest viewRequest(const FlagValues& flags, bool sceneCamera) {
@@ -288,11 +272,9 @@ std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
 std::optional<std::filesystem::path> surfaceFile(const FlagValues& flags,
                                                  const SceneRequest& scene) {
   const auto file = flags.text("surface");
-  const ClipMode mode =
-      scene.clip.mode.value_or(scene.focus.empty() ? ClipMode::none : ClipMode::surface);
-  if (file && mode != ClipMode::surface && mode != ClipMode::cutaway)
-    throw usageError("--surface: only --clip surface and cutaway have one; add --focus A,B,... "
-                     "without another --clip, or drop it");
+  if (file && !isDepthClip(scene.clip.modeWith(!scene.focus.empty())))
+    throw usageError("--surface: --clip none and plane have none; add --focus A,B,... without "
+                     "another --clip, or drop it");
   return file;
 }
 
@@ -355,6 +337,7 @@ RenderOptions renderOptions(const FlagValues& flags) {
   readEnvironment(flags, scene);
   scene.view = viewRequest(flags, isScene);
   scene.clip = clipRequest(flags);
+  scene.focusLook = focusRequest(flags);
   readSize(flags, scene);
 
   options.settings = renderSettings(flags);

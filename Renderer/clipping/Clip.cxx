@@ -10,11 +10,11 @@ namespace {
 /// anyone sees.
 constexpr double slack = 1e-6;
 
-Interval visiblePart(const ClipNone&, const Ray&) {
+Interval behindPart(const ClipNone&, const Ray&) {
   return {};
 }
 
-Interval visiblePart(const ClipPlane& clip, const Ray& eyeRay) {
+Interval behindPart(const ClipPlane& clip, const Ray& eyeRay) {
   const double above = (eyeRay.origin - clip.point).dot(clip.normal); // the removed side is > 0
   const double slope = eyeRay.direction.dot(clip.normal);
   if (slope > 0.0)
@@ -24,7 +24,7 @@ Interval visiblePart(const ClipPlane& clip, const Ray& eyeRay) {
   return above > 0.0 ? Interval{0.0, 0.0} : Interval{};
 }
 
-Interval visiblePart(const ClipDepth& clip, const Ray& eyeRay) {
+Interval behindPart(const ClipDepth& clip, const Ray& eyeRay) {
   const double depthPerLength = clip.camera.depthPerLength(eyeRay);
   // Any point of the ray has its (x, y); at the target's depth rounding matters least.
   const Vec3 point = eyeRay.at(clip.camera.targetDepth() / depthPerLength);
@@ -32,32 +32,43 @@ Interval visiblePart(const ClipDepth& clip, const Ray& eyeRay) {
   return {std::max(0.0, depth / depthPerLength), infinity};
 }
 
+/// Where a box lies between two parts of space.
+enum class Side { inside, across, outside };
+
+/// Of a box that is at a distance of `least` to `greatest` behind the surface, mm; in perspective
+/// it lies on some side of the eye.
+Kept keptBehind(const ClipEdge& edge, double least, double greatest, Side inFrontOfEye) {
+  if (inFrontOfEye == Side::outside)
+    return Kept::none;
+  if (inFrontOfEye == Side::inside && least > edge.softness + slack)
+    return Kept::all;
+  if (greatest < -slack)
+    return {edge.ghost, inFrontOfEye == Side::inside || edge.isHard()};
+  return Kept::some;
+}
+
+/// What of a stretch of depths, mm, lies in front of the eye.
+Side inFrontOfEye(const Camera& camera, double nearest, double farthest) {
+  if (behindEye(camera, farthest + slack))
+    return Side::outside;
+  return behindEye(camera, nearest - slack) ? Side::across : Side::inside;
+}
+
 Kept keptBox(const ClipNone&, const Corners&) {
   return Kept::all;
 }
 
-/// What of a stretch of depths, mm, lies in front of the eye.
-Kept inFrontOfEye(const Camera& camera, double nearest, double farthest) {
-  if (behindEye(camera, farthest + slack))
-    return Kept::none;
-  return behindEye(camera, nearest - slack) ? Kept::some : Kept::all;
-}
-
 Kept keptBox(const ClipPlane& clip, const Corners& corners) {
-  const double margin = slack * clip.normal.norm();
-  double lowest = infinity, highest = -infinity, nearest = infinity, farthest = -infinity;
+  double least = infinity, greatest = -infinity, nearest = infinity, farthest = -infinity;
   for (const Vec3& corner : corners) {
-    const double height = (corner - clip.point).dot(clip.normal); // the removed side is > 0
+    const double behind = clip.behind(corner);
     const double depth = clip.camera.toView(corner).z();
-    lowest = std::min(lowest, height);
-    highest = std::max(highest, height);
+    least = std::min(least, behind);
+    greatest = std::max(greatest, behind);
     nearest = std::min(nearest, depth);
     farthest = std::max(farthest, depth);
   }
-  const Kept inFront = inFrontOfEye(clip.camera, nearest, farthest);
-  if (inFront == Kept::none || lowest > margin)
-    return Kept::none;
-  return inFront == Kept::all && highest < -margin ? Kept::all : Kept::some;
+  return keptBehind(clip.edge, least, greatest, inFrontOfEye(clip.camera, nearest, farthest));
 }
 
 Kept keptBox(const ClipDepth& clip, const Corners& corners) {
@@ -70,23 +81,33 @@ Kept keptBox(const ClipDepth& clip, const Corners& corners) {
     nearest = std::min(nearest, at.z());
     farthest = std::max(farthest, at.z());
   }
-  const Kept inFront = inFrontOfEye(clip.camera, nearest, farthest);
-  if (inFront == Kept::none)
+  const Side side = inFrontOfEye(clip.camera, nearest, farthest);
+  if (side == Side::outside)
     return Kept::none;
-  if (inFront == Kept::some) { // its projection has no bounds
+  if (side == Side::across) { // its projection has no bounds
     lower.setConstant(-infinity);
     upper.setConstant(infinity);
   }
   const DepthPyramid::Bounds surface = clip.pyramid->bounds(*clip.buffer, lower, upper);
-  if (farthest + slack < surface.least)
-    return Kept::none;
-  return inFront == Kept::all && nearest - slack > surface.greatest ? Kept::all : Kept::some;
+  return keptBehind(clip.edge, nearest - surface.greatest, farthest - surface.least, side);
 }
 
 } // namespace
 
+Interval behindSurface(const Clip& clip, const Ray& eyeRay) {
+  return std::visit([&](const auto& kind) { return behindPart(kind, eyeRay); }, clip);
+}
+
 Interval visible(const Clip& clip, const Ray& eyeRay) {
-  return std::visit([&](const auto& kind) { return visiblePart(kind, eyeRay); }, clip);
+  const bool isHard = std::visit(
+      [](const auto& kind) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, ClipNone>)
+          return true;
+        else
+          return kind.edge.isHard();
+      },
+      clip);
+  return isHard ? behindSurface(clip, eyeRay) : Interval{};
 }
 
 Kept keptIn(const Clip& clip, const Corners& corners) {

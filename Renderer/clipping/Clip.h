@@ -1,6 +1,6 @@
 #pragma once
 // What is removed from view, and the parts of rays and boxes that are. A clip multiplies the
-// extinction by keep(point), 0 or 1.
+// extinction by keep(point), from 0 to 1.
 
 #include "camera/Camera.h"
 #include "clipping/DepthBuffer.h"
@@ -33,13 +33,34 @@ inline bool behindEye(const Camera& camera, double depth) {
   return camera.pose().projection == Projection::perspective && !(depth > 0.0);
 }
 
+/// How keep goes from what is removed to what is not.
+struct ClipEdge {
+  double ghost = 0.0;    ///< keep of what is removed: 0, or a small share, a float's value
+  double softness = 0.0; ///< mm behind the surface over which keep rises to 1, linearly
+
+  /// keep at a distance behind the surface, mm.
+  double operator()(double behind) const {
+    if (behind < 0.0)
+      return ghost;
+    return behind < softness ? ghost + (1.0 - ghost) * (behind / softness) : 1.0;
+  }
+  /// Nothing is kept in front of the surface.
+  bool isHard() const { return ghost == 0.0; }
+
+  bool operator==(const ClipEdge&) const = default;
+};
+
 struct ClipNone {};
 
 /// Removes the half-space that the normal points at.
 struct ClipPlane {
   Camera camera;
   Vec3 point;  ///< world mm
-  Vec3 normal; ///< world, not zero
+  Vec3 normal; ///< world, not zero; unit where the edge is soft
+  ClipEdge edge = {};
+
+  /// mm behind the plane.
+  double behind(const Vec3& world) const { return (point - world).dot(normal); }
 };
 
 /// Removes what is nearer to the eye than a depth buffer.
@@ -50,6 +71,7 @@ struct ClipDepth {
   std::shared_ptr<const DepthBuffer> buffer; ///< -infinity where nothing is removed (nearest only)
   std::shared_ptr<const DepthPyramid> pyramid; ///< of the buffer
   Lookup lookup = Lookup::linear;
+  ClipEdge edge = {};
 
   /// The depth at (x, y), mm, below which everything is removed.
   double surface(const Vec2& position) const {
@@ -59,7 +81,7 @@ struct ClipDepth {
 
 using Clip = std::variant<ClipNone, ClipPlane, ClipDepth>;
 
-/// What remains of the extinction at a world point: 0 or 1.
+/// What remains of the extinction at a world point: a share from 0 to 1.
 inline double keep(const ClipNone&, const Vec3&) {
   return 1.0;
 }
@@ -67,31 +89,42 @@ inline double keep(const ClipNone&, const Vec3&) {
 inline double keep(const ClipPlane& clip, const Vec3& world) {
   if (behindEye(clip.camera, clip.camera.toView(world).z()))
     return 0.0;
-  return (world - clip.point).dot(clip.normal) > 0.0 ? 0.0 : 1.0;
+  return clip.edge(clip.behind(world));
 }
 
 inline double keep(const ClipDepth& clip, const Vec3& world) {
   const Vec3 at = toBuffer(clip.camera, world);
   if (behindEye(clip.camera, at.z()))
     return 0.0;
-  return at.z() < clip.surface(at.head<2>()) ? 0.0 : 1.0;
+  return clip.edge(at.z() - clip.surface(at.head<2>()));
 }
 
 inline double keep(const Clip& clip, const Vec3& world) {
   return std::visit([&](const auto& kind) { return keep(kind, world); }, clip);
 }
 
-/// The part of an eye ray, t >= 0, in which keep is 1: one interval, for every kind of clip. An eye
-/// ray may start at its begin and need not look beyond its end.
+/// The part of an eye ray, t >= 0, that lies behind the clip's surface: one interval, for every
+/// kind of clip. With a hard edge nothing else of the ray is kept.
+Interval behindSurface(const Clip& clip, const Ray& eyeRay);
+
+/// The part of an eye ray, t >= 0, outside of which keep is 0: an eye ray may start at its begin
+/// and need not look beyond its end.
 Interval visible(const Clip& clip, const Ray& eyeRay);
 
 /// World corners of a box, in any order.
 using Corners = std::array<Vec3, 8>;
 
-enum class Kept { none, some, all };
+/// What is known of keep in the convex hull of some corners.
+struct Kept {
+  double most;    ///< it is nowhere more
+  bool isUniform; ///< it is that everywhere; may be false where it is so, too
 
-/// `none` only where keep is 0 everywhere in the convex hull of the corners, `all` only where it is
-/// 1 everywhere; `some` may be returned then, too.
+  static const Kept none, some, all;
+
+  bool operator==(const Kept&) const = default;
+};
+inline constexpr Kept Kept::none{0.0, true}, Kept::some{1.0, false}, Kept::all{1.0, true};
+
 Kept keptIn(const Clip& clip, const Corners& corners);
 
 } // namespace fenestra

@@ -20,6 +20,12 @@ void check(const SurfaceOptions& options) {
     throw usageError("--smoothing: must be from 0 to 1");
 }
 
+/// Of the clip's buffer, mm away from the eye.
+void move(DepthBuffer& buffer, double offset) {
+  for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
+    buffer.set(sample, buffer.at(sample) + offset);
+}
+
 std::string nameOf(const Mask& focus) {
   std::string names = "focus";
   for (const std::string& name : focus.names)
@@ -27,13 +33,7 @@ std::string nameOf(const Mask& focus) {
   return names;
 }
 
-/// Throws where no sample meets the focus; true where one inside the viewport does.
-bool inPicture(const FocusDepth& focus, const Mask& mask) {
-  if (std::ranges::find(focus.regions, Region::focus) == focus.regions.end())
-    throw inputError(
-        nameOf(mask),
-        "cannot be seen: it lies outside the volume or its cropping box, behind the eye, or "
-        "is smaller than a pixel; choose another --focus or view");
+bool inPicture(const FocusDepth& focus) {
   const DepthAxis& x = focus.depth.xAxis();
   const DepthAxis& y = focus.depth.yAxis();
   for (std::int64_t row = y.before; row < y.before + y.inside; ++row)
@@ -208,19 +208,29 @@ ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& optio
 
 } // namespace
 
+void requireVisible(const FocusDepth& focus, const Mask& mask) {
+  if (std::ranges::find(focus.regions, Region::focus) == focus.regions.end())
+    throw inputError(
+        nameOf(mask),
+        "cannot be seen: it lies outside the volume or its cropping box, behind the eye, or "
+        "is smaller than a pixel; choose another --focus or view");
+}
+
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                      const SurfaceOptions& options) {
   check(options);
   Stopwatch stopwatch;
   ClippingSurface surface{.clip = {}, .focus = traceFocus(camera, volume, focus)};
-  if (!inPicture(surface.focus, focus))
+  requireVisible(surface.focus, focus);
+  if (!inPicture(surface.focus))
     surface.warnings.push_back(nameOf(focus) + " lies outside the picture");
   surface.focusSeconds = stopwatch.lap();
 
   auto buffer = std::make_shared<DepthBuffer>(surface.focus.depth);
-  const bool isCutaway = options.mode == SurfaceMode::cutaway;
-  if (isCutaway) {
+  if (options.mode == SurfaceMode::cutaway) {
     fillCutaway(*buffer, surface.focus.regions);
+  } else if (options.mode == SurfaceMode::hole) {
+    fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
     fillSmoothly(*buffer, surface.focus.regions, levellingLength(volume));
     surface.mismatch = mismatchOf(*buffer, surface.focus, traceContours(surface.focus));
@@ -229,9 +239,12 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
     surface.splineSeconds = stopwatch.lap();
     SplineFill(*buffer, surface.focus.regions, spline).fill();
   }
+  if (options.offset != 0.0)
+    move(*buffer, options.offset);
   auto pyramid = std::make_shared<const DepthPyramid>(*buffer);
-  surface.clip = ClipDepth{camera, std::move(buffer), std::move(pyramid),
-                           isCutaway ? ClipDepth::Lookup::nearest : ClipDepth::Lookup::linear};
+  const auto lookup =
+      options.mode == SurfaceMode::surface ? ClipDepth::Lookup::linear : ClipDepth::Lookup::nearest;
+  surface.clip = ClipDepth{camera, std::move(buffer), std::move(pyramid), lookup, options.edge};
   surface.fillSeconds = stopwatch.lap();
   return surface;
 }

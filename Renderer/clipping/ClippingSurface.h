@@ -4,6 +4,7 @@
 #include "clipping/Clip.h"
 #include "clipping/Contour.h"
 #include "clipping/FocusDepth.h"
+#include "clipping/Hole.h"
 
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ namespace fenestra {
 enum class SurfaceMode {
   cutaway, ///< removes what is in front of the focus only
   surface, ///< the volumetric clipping surface: the cut continues into the focus's surroundings
+  hole,    ///< a channel from the eye to the focus
 };
 
 /// How a surface continues from the focus into its surroundings.
@@ -26,6 +28,9 @@ struct SurfaceOptions {
   int controlPoints = 50; ///< on the focus's contours, 1 to 1000
   double smoothing = 0.5; ///< p of the thin plate spline, 0 to 1
   Boundary boundary = Boundary::spline;
+  HoleOptions hole = {};
+  double offset = 0.0; ///< mm that the surface is moved away from the eye, or toward it (negative)
+  ClipEdge edge = {};
 };
 
 /// |f(x) - z| in mm over the focus samples on the contours: how far the surface around the focus,
@@ -43,6 +48,9 @@ struct ClippingSurface {
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
   std::vector<std::string> warnings{};
 };
+
+/// Throws Error (input) where no sample meets the focus.
+void requireVisible(const FocusDepth& focus, const Mask& mask);
 
 /// Throws Error (usage) for options out of range and Error (input) where no ray meets the focus.
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,

@@ -16,22 +16,23 @@ constexpr std::int64_t corners = edge + 1; ///< voxels along an edge of a block
 /// The mask's voxels around blocks of cells.
 class Voxels {
 public:
-  explicit Voxels(const Mask& mask) : m_voxels(mask.voxels.data()), m_size(mask.grid.size) {}
+  explicit Voxels(const Mask& mask)
+      : m_voxels(mask.voxels.data()), m_size(mask.grid.size), m_half(mask.half()) {}
 
-  /// Of two neighbours along x each, for the four cells of a block's row: bits 0 and 1 of a byte a
-  /// cell, the first one lowest. Voxel `y`, `z`; 0 outside the mask.
+  /// Whether they are in the mask, of two neighbours along x each, for the four cells of a block's
+  /// row: bits 0 and 1 of a byte a cell, the first one lowest. Voxel `y`, `z`; 0 outside the mask.
   std::uint32_t pairs(std::int64_t blockX, std::int64_t y, std::int64_t z) const {
     if (y < 0 || z < 0 || y >= m_size.y() || z >= m_size.z())
       return 0;
     const std::int64_t first = blockX * edge - 1;
     const std::uint8_t* row = m_voxels + m_size.x() * (y + m_size.y() * z);
-    std::uint64_t word = 0; // of little-endian bytes
-    if (first >= 0 && first + 8 <= m_size.x()) {
+    std::uint64_t word = 0; // of little-endian bytes, 0 or 1
+    if (m_half == 1 && first >= 0 && first + 8 <= m_size.x()) {
       std::memcpy(&word, row + first, sizeof(word));
     } else {
       const std::int64_t end = std::min(first + corners, m_size.x());
       for (std::int64_t x = std::max<std::int64_t>(first, 0); x < end; ++x)
-        word |= std::uint64_t{row[x]} << (8 * (x - first));
+        word |= std::uint64_t{row[x] >= m_half} << (8 * (x - first));
     }
     return static_cast<std::uint32_t>(word | word >> 7);
   }
@@ -39,10 +40,11 @@ public:
 private:
   const std::uint8_t* m_voxels;
   Size3 m_size;
+  std::uint8_t m_half;
 };
 
 /// Which blocks of a layer, x fastest, have a voxel of the mask at any corner of their cells: row
-/// by row, the voxels of all rows at a row of blocks' corners, or-ed, and then block by block.
+/// by row, the greatest of all rows' voxels at a row of blocks' corners, and then block by block.
 std::vector<std::uint8_t> occupied(const Mask& mask, const Size3& blocks, std::int64_t blockZ) {
   const Size3& size = mask.grid.size;
   const auto range = [&](std::int64_t block, int axis) { // first and end
@@ -50,19 +52,20 @@ std::vector<std::uint8_t> occupied(const Mask& mask, const Size3& blocks, std::i
                      std::min(size[axis], (block + 1) * edge));
   };
   std::vector<std::uint8_t> result(static_cast<std::size_t>(blocks.x() * blocks.y()));
-  std::vector<std::uint8_t> any(static_cast<std::size_t>(size.x()));
+  std::vector<std::uint8_t> most(static_cast<std::size_t>(size.x()));
   const auto [firstZ, endZ] = range(blockZ, 2);
   for (std::int64_t by = 0; by < blocks.y(); ++by) {
-    std::ranges::fill(any, std::uint8_t{0});
+    std::ranges::fill(most, std::uint8_t{0});
     const auto [firstY, endY] = range(by, 1);
     for (std::int64_t z = firstZ; z < endZ; ++z)
       for (std::int64_t y = firstY; y < endY; ++y)
-        std::transform(any.begin(), any.end(), mask.voxels.data() + size.x() * (y + size.y() * z),
-                       any.begin(), std::bit_or<>());
+        std::transform(most.begin(), most.end(), mask.voxels.data() + size.x() * (y + size.y() * z),
+                       most.begin(), [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
     for (std::int64_t bx = 0; bx < blocks.x(); ++bx) {
       const auto [first, end] = range(bx, 0);
       result[static_cast<std::size_t>(bx + blocks.x() * by)] =
-          std::any_of(any.begin() + first, any.begin() + end, std::identity());
+          std::any_of(most.begin() + first, most.begin() + end,
+                      [&](std::uint8_t voxel) { return voxel >= mask.half(); });
     }
   }
   return result;
@@ -93,6 +96,8 @@ FocusCells::FocusCells(const Mask& mask)
         m_blockCorners[i] = before - 1 - m_blockCorners[i];
     m_corners.insert(m_corners.end(), layers[z].begin(), layers[z].end());
   }
+  if (mask.full != 1)
+    m_smooth = &mask;
   m_corners.emplace_back(); // lanes read four bytes where they need one
 }
 

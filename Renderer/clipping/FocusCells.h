@@ -30,7 +30,8 @@ class FocusCells {
 public:
   static constexpr std::int64_t blockSize = 4; ///< cells
 
-  /// Throws Error (input) for masks of more than 2^31 voxels.
+  /// A view of a smoothed mask, which outlives it. Throws Error (input) for masks of more than 2^31
+  /// voxels.
   explicit FocusCells(const Mask& mask);
 
   const Affine& worldToCell() const { return m_worldToCell; }
@@ -46,6 +47,7 @@ public:
     const std::int32_t* blocks;
     const std::uint8_t* corners;
     Size3 blockCount;
+    const Mask* smooth; ///< whose voxels say more than the corners; null where they do not
   };
 
   /// Calls back with each block, block (i, j, k) filling [i, i + 1]... of cell space / blockSize,
@@ -61,7 +63,8 @@ public:
   }
 
 private:
-  /// Of each cell of a block, x fastest, the indicator at its eight corners, a bit each, x fastest.
+  /// Of each cell of a block, x fastest, whether the indicator at its eight corners is at least
+  /// 0.5, a bit each, x fastest. A cell without any is not met.
   using BlockCorners = std::array<std::uint8_t, blockSize * blockSize * blockSize>;
   static constexpr std::int32_t noBlock = 0, wholeBlock = 1; ///< blocks with all bits alike
 
@@ -72,6 +75,7 @@ private:
   Affine m_worldToCell;
   std::vector<std::int32_t> m_blockCorners; ///< of each block, which of m_corners
   std::vector<BlockCorners> m_corners;
+  const Mask* m_smooth = nullptr; ///< the mask itself, where its voxels are not 0 and 1 alone
 };
 
 } // namespace fenestra

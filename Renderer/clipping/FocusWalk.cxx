@@ -237,8 +237,10 @@ private:
       const I bit = hn::And(corners, allInts(1 << i));
       return hn::IfThenElse(isNot0(bit), all(0.5), all(-0.5));
     };
-    const std::array<D, 8> v = {value(0), value(1), value(2), value(3),
-                                value(4), value(5), value(6), value(7)};
+    std::array<D, 8> v = {value(0), value(1), value(2), value(3),
+                          value(4), value(5), value(6), value(7)};
+    if (m_cells.smooth)
+      readSmooth(which, v);
     const D length = hn::Sub(exit, m_t);
     const D x = m_axes[0].fractionAt(m_t), u = m_axes[0].along(length);
     const D y = m_axes[1].fractionAt(m_t), w = m_axes[1].along(length);
@@ -282,6 +284,32 @@ private:
     const M rises = hn::And(hn::And(hn::Lt(c0, hn::Zero(doubles)), hn::Ge(b3, hn::Zero(doubles))),
                             hn::And(hn::And(hn::Le(c0, b1), hn::Le(b1, b2)), hn::Le(b2, b3)));
     solve(possible, {c0, c1, c2, c3}, rises, length);
+  }
+
+  /// The indicator - 1/2 at the corners of the cells that some walks are in, from the mask itself.
+  void readSmooth(M which, std::array<D, 8>& values) const {
+    const Mask& mask = *m_cells.smooth;
+    const Size3& size = mask.grid.size;
+    std::array<Lane, 3> cells;
+    for (std::size_t a = 0; a < 3; ++a)
+      hn::Store(m_axes[a].number(), doubles, cells[a].data());
+    std::array<Lane, 8> corners = {};
+    for (unsigned left = bitsOf(which); left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      const Size3 cell(static_cast<std::int64_t>(cells[0][lane]),
+                       static_cast<std::int64_t>(cells[1][lane]),
+                       static_cast<std::int64_t>(cells[2][lane]));
+      for (std::size_t i = 0; i < 8; ++i) {
+        const auto [dx, dy, dz] = std::array{i & 1U, i >> 1U & 1U, i >> 2U};
+        const Size3 voxel = cell + Size3(dx, dy, dz) - Size3::Ones();
+        const bool isThere = (voxel.array() >= 0).all() && (voxel.array() < size.array()).all();
+        const std::size_t at = static_cast<std::size_t>(
+            isThere ? voxel.x() + size.x() * (voxel.y() + size.y() * voxel.z()) : 0);
+        corners[i][lane] = (isThere ? mask.voxels[at] / static_cast<double>(mask.full) : 0.0) - 0.5;
+      }
+    }
+    for (std::size_t i = 0; i < 8; ++i)
+      values[i] = hn::Load(doubles, corners[i].data());
   }
 
   /// Cubics that rise all the way, to 0 or beyond it, meet it: where, is found later for many at
@@ -345,7 +373,7 @@ HWY_EXPORT(walkAll);
 
 void FocusCells::findMeetings(FocusRays& rays) const {
   std::fill_n(rays.meeting.begin(), rays.size, infinity);
-  const Layout cells{m_blockCorners.data(), m_corners.front().data(), m_blocks};
+  const Layout cells{m_blockCorners.data(), m_corners.front().data(), m_blocks, m_smooth};
   HWY_DYNAMIC_DISPATCH(walkAll)(cells, rays);
 }
 

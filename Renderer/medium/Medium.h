@@ -1,8 +1,11 @@
 #pragma once
 // The classified volume at a point: what tracking and the estimator ask of it.
 
+#include "medium/ContextStyle.h"
 #include "medium/TransferFunction.h"
 #include "volume/Volume.h"
+
+#include <optional>
 
 namespace fenestra {
 
@@ -13,16 +16,22 @@ struct Matter {
   double surfaceProbability; ///< chance that the path scatters at a surface here
 };
 
-/// A view: volume and transfer function outlive it. Points are in index space.
+/// A view: volume, transfer function and style outlive it. Points are in index space.
 template <typename Voxel>
 class Medium {
 public:
-  Medium(const Grid& grid, const std::vector<Voxel>& voxels, const TransferFunction& transfer)
-      : m_field(grid, voxels), m_transfer(transfer) {}
+  Medium(const Grid& grid, const std::vector<Voxel>& voxels, const TransferFunction& transfer,
+         const ContextStyle* style = nullptr)
+      : m_field(grid, voxels), m_transfer(transfer) {
+    if (style)
+      m_context.emplace(*style, grid);
+  }
 
   /// Extinction in mm^-1.
   double extinction(const Vec3& index) const {
-    const double sigma_t = m_transfer.extinction(m_field.value(index)).value();
+    double sigma_t = m_transfer.extinction(m_field.value(index)).value();
+    if (sigma_t != 0.0 && m_context && !m_context->isFocus(index))
+      sigma_t *= m_context->style().extinction;
     if (sigma_t == 0.0 || !m_transfer.gradientOpacity)
       return sigma_t;
     return sigma_t * (*m_transfer.gradientOpacity)(m_field.gradient(index).norm()).value();
@@ -34,6 +43,8 @@ public:
     const bool oneAlbedo = m_transfer.albedo.knots().size() == 1;
     const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
     Matter m{m_transfer.albedo(scalar), Vec3::Zero(), 0.0};
+    if (m_context && !m_context->isFocus(index))
+      m.albedo = m_context->style().paled(m.albedo);
     if (needsGradient(wantGradient))
       m.gradient = m_field.gradient(index);
     if (m_transfer.shading) {
@@ -63,6 +74,7 @@ private:
 
   Field<Voxel> m_field;
   const TransferFunction& m_transfer;
+  std::optional<StyledContext> m_context;
 };
 
 } // namespace fenestra

@@ -24,7 +24,7 @@ auto withMedium(const RenderScene& scene, Work&& work) {
   return std::visit(
       [&](const auto& voxels) {
         using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
-        const Medium<Voxel> medium(scene.volume.grid, voxels, scene.transfer);
+        const Medium<Voxel> medium(scene.volume.grid, voxels, scene.transfer, scene.style);
         const Tracker<Voxel> tracker(Domain(scene.volume.grid, scene.crop), medium, scene.majorants,
                                      scene.clip);
         return work(medium, tracker);
@@ -183,7 +183,8 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
           WideTracker::serves(scene.volume, scene.transfer) &&
           EventScene::serves(scene.volume.grid, scene.transfer, scene.lights)) {
         const Domain domain(scene.volume.grid, scene.crop);
-        const WideTracker wide(scene.volume, domain, scene.transfer, scene.majorants, scene.clip);
+        const WideTracker wide(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
+                               scene.style);
         const WideEvents events(wide.scene(),
                                 EventScene(scene.volume.grid, scene.transfer, scene.lights,
                                            settings.path.bounces, settings.path.wantNormals));
@@ -211,10 +212,11 @@ double focusCoverage(const RenderScene& scene, const std::vector<double>& focusD
       const int row = static_cast<int>(pixel / static_cast<std::size_t>(width));
       const Ray ray = scene.camera.ray(column + 0.5, row + 0.5);
       const double focus = focusDepth[pixel] / scene.camera.depthPerLength(ray);
-      const Interval range = visible(scene.clip, ray);
+      const Interval behind = behindSurface(scene.clip, ray);
       const double rounding = 0.5 * scene.camera.pixelPitch();
-      if (range.empty() || range.begin > focus + rounding || range.end < focus - rounding)
+      if (behind.empty() || behind.begin > focus + rounding || behind.end < focus - rounding)
         return; // the focus itself is cut away
+      const Interval range = visible(scene.clip, ray);
       Random random(seed, pixel, 0);
       Counters counters;
       shown[pixel] = tracker.transmittance(ray, {range.begin, focus}, random, counters);

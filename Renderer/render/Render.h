@@ -25,6 +25,7 @@ struct RenderScene {
   const Camera& camera;
   const Clip& clip;
   std::optional<CropBox> crop = {};
+  const ContextStyle* style = nullptr; ///< of what is not focus; null where it looks as it is
 };
 
 /// How paths find their way. Both are unbiased; `fast` is `readable` where its lanes do not serve

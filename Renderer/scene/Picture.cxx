@@ -25,14 +25,14 @@ double meanDepth(const PixelSums& pixel) {
   return pixel.collided > 0 ? pixel.depth / static_cast<double>(pixel.collided) : infinity;
 }
 
-/// Depth at which the eye ray of each pixel's centre enters what is kept, mm; infinity where
-/// nothing is.
+/// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity where
+/// nothing lies behind it.
 Plane clipPlane(const Camera& camera, const Clip& clip) {
   Plane result;
   for (int row = 0; row < camera.height(); ++row)
     for (int column = 0; column < camera.width(); ++column) {
       const Ray ray = camera.ray(column + 0.5, row + 0.5);
-      const Interval range = visible(clip, ray);
+      const Interval range = behindSurface(clip, ray);
       const double start = range.empty() ? infinity : range.begin * camera.depthPerLength(ray);
       result.push_back(static_cast<float>(start));
     }

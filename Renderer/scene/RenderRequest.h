@@ -3,6 +3,7 @@
 
 #include "camera/Camera.h"
 #include "clipping/ClippingSurface.h"
+#include "io/medical/MaskShaping.h"
 #include "render/Render.h"
 
 #include <filesystem>
@@ -12,7 +13,12 @@
 
 namespace fenestra {
 
-enum class ClipMode { none, plane, cutaway, surface };
+enum class ClipMode { none, plane, cutaway, surface, hole, ghost };
+
+/// Those that are a depth buffer, and need a focus for it.
+constexpr bool isDepthClip(ClipMode mode) {
+  return mode != ClipMode::none && mode != ClipMode::plane;
+}
 
 struct PlaneRequest {
   Vec3 origin, normal; ///< RAS mm; what the normal points at is removed
@@ -22,12 +28,31 @@ struct PlaneRequest {
 
 struct ClipRequest {
   std::optional<ClipMode> mode = {}; ///< by default `surface` when there is a focus, else `none`
-  std::optional<PlaneRequest> plane = {};
+  std::optional<PlaneRequest> plane = {}; ///< by default the focus's own (FocusPlane.h)
   Boundary boundary = Boundary::spline;
   int controlPoints = 50;
   double smoothing = 0.5; ///< p of the approximating thin plate spline
+  HoleOptions hole = {};
+  double ghost = 0.1;    ///< share of the extinction left in front of the surface, in mode `ghost`
+  double offset = 0.0;   ///< mm that the cut is moved away from the eye
+  double softness = 0.0; ///< mm behind the cut over which matter comes back
+
+  ClipMode modeWith(bool focus) const {
+    return mode.value_or(focus ? ClipMode::surface : ClipMode::none);
+  }
 
   bool operator==(const ClipRequest&) const = default;
+};
+
+/// How the focus's labels become its mask, and what the rest looks like.
+struct FocusRequest {
+  MaskShaping shaping = {};
+  double contextExtinction = 1.0; ///< multiplies the extinction outside the focus, 0 to 1
+  double contextSaturation = 1.0; ///< of the colours there, 0 to 1
+
+  bool isStyled() const { return contextExtinction != 1.0 || contextSaturation != 1.0; }
+
+  bool operator==(const FocusRequest&) const = default;
 };
 
 /// Where the eye is: a named direction, or a pose of which unset parts are derived from the scene.
@@ -60,6 +85,7 @@ struct SceneRequest {
   ClipRequest clip;
   int width = 512, height = 512;
   bool measureCoverage = false; ///< trace the focus even where no clip needs it
+  FocusRequest focusLook = {};
 };
 
 } // namespace fenestra

@@ -123,7 +123,8 @@ void Scene::make(const SceneRequest& request, const SceneRequest* before) {
     m_lightList = std::make_shared<const std::vector<Light>>(requestedLights(request));
 
   m_made.volume = differs(&R::input, &R::volume);
-  m_made.focus = m_made.volume || differs(&R::segmentation, &R::focus);
+  m_made.focus = m_made.volume || differs(&R::segmentation, &R::focus) ||
+                 (before && request.focusLook.shaping != before->focusLook.shaping);
   m_made.transfer = m_made.volume || differs(&R::transfer, &R::shift, &R::density);
   const Stopwatch loading;
   if (m_made.transfer && request.transfer)
@@ -154,10 +155,13 @@ void Scene::make(const SceneRequest& request, const SceneRequest* before) {
   m_made.ranges = m_made.volume || m_ranges->apron() != apron;
   if (m_made.ranges)
     m_ranges = std::make_shared<const CellRanges>(volume(), apron);
-  m_made.majorants = m_made.ranges || m_made.transfer || m_made.clip;
+  const bool newStyle = m_made.focus || differs(&R::focusLook);
+  if (newStyle)
+    styleContext(request.focusLook);
+  m_made.majorants = m_made.ranges || m_made.transfer || m_made.clip || newStyle;
   if (m_made.majorants)
-    m_majorants =
-        std::make_shared<const MajorantGrid>(volume().grid, *m_ranges, *m_transfer, m_clip);
+    m_majorants = std::make_shared<const MajorantGrid>(volume().grid, *m_ranges, *m_transfer,
+                                                       m_clip, style());
   m_seconds.classify = classifying.seconds();
   m_request = request;
 }
@@ -192,37 +196,61 @@ void Scene::placeCamera(const SceneRequest& request) {
   m_camera.emplace(pose, request.width, request.height);
 }
 
+void Scene::styleContext(const FocusRequest& request) {
+  m_style.reset();
+  if (m_focus && request.isStyled())
+    m_style = ContextStyle{std::shared_ptr<const Mask>(m_focus, &m_focus->mask),
+                           request.contextExtinction, request.contextSaturation};
+}
+
 void Scene::buildClip(const SceneRequest& request) {
   m_clip = ClipNone();
   m_focusDepth.clear();
   m_mismatch.reset();
   m_clipWarnings.clear();
-  const ClipMode mode = request.clip.mode.value_or(focus() ? ClipMode::surface : ClipMode::none);
-  switch (mode) {
-  case ClipMode::cutaway:
-    return buildDepthClip(SurfaceMode::cutaway, request.clip);
-  case ClipMode::surface:
-    return buildDepthClip(SurfaceMode::surface, request.clip);
-  case ClipMode::plane:
-    m_clip = ClipPlane{*m_camera, request.clip.plane->origin, request.clip.plane->normal};
-    break;
-  case ClipMode::none:
-    break;
+  const ClipMode mode = request.clip.modeWith(focus() != nullptr);
+  if (isDepthClip(mode))
+    return buildDepthClip(mode, request.clip);
+  std::optional<FocusDepth> depth;
+  const bool wantsPlane = mode == ClipMode::plane && !request.clip.plane;
+  if (focus() && (wantsPlane || request.measureCoverage)) {
+    const Stopwatch watch;
+    depth = traceFocus(*m_camera, domain(), *focus());
+    m_focusDepth = viewportDepths(*depth, *m_camera);
+    m_seconds.focus = watch.seconds();
   }
-  if (!focus() || !request.measureCoverage)
-    return;
-  const Stopwatch watch;
-  m_focusDepth = viewportDepths(traceFocus(*m_camera, domain(), *focus()), *m_camera);
-  m_seconds.focus = watch.seconds();
+  if (mode == ClipMode::plane)
+    m_clip = placedPlane(request.clip, depth);
 }
 
-void Scene::buildDepthClip(SurfaceMode mode, const ClipRequest& request) {
-  ClippingSurface surface =
-      buildClippingSurface(*m_camera, domain(), *focus(),
-                           {mode, request.controlPoints, request.smoothing, request.boundary});
+ClipPlane Scene::placedPlane(const ClipRequest& request,
+                             const std::optional<FocusDepth>& depth) const {
+  if (!request.plane)
+    requireVisible(*depth, *focus());
+  ClipPlane plane = request.plane
+                        ? ClipPlane{*m_camera, request.plane->origin, request.plane->normal}
+                        : focusPlane(*m_camera, *depth);
+  plane.point += request.offset * m_camera->forward();
+  plane.edge = {0.0, request.softness};
+  return plane;
+}
+
+void Scene::buildDepthClip(ClipMode mode, const ClipRequest& request) {
+  const bool isSurface = mode == ClipMode::surface || mode == ClipMode::ghost;
+  const bool isGhost = mode == ClipMode::ghost;
+  SurfaceOptions options;
+  options.mode = isSurface ? SurfaceMode::surface
+                           : (mode == ClipMode::hole ? SurfaceMode::hole : SurfaceMode::cutaway);
+  options.controlPoints = request.controlPoints;
+  options.smoothing = request.smoothing;
+  options.boundary = request.boundary;
+  options.hole = request.hole;
+  options.offset = request.offset;
+  options.edge = {isGhost ? double{static_cast<float>(request.ghost)} : 0.0, request.softness};
+  ClippingSurface surface = buildClippingSurface(*m_camera, domain(), *focus(), options);
   m_focusDepth = viewportDepths(surface.focus, *m_camera);
   m_clip = std::move(surface.clip);
-  if (mode == SurfaceMode::surface)
+  if (isSurface)
     m_mismatch = surface.mismatch;
   m_seconds.focus = surface.focusSeconds;
   m_seconds.spline = surface.splineSeconds;

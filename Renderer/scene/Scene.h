@@ -5,6 +5,7 @@
 // depend on what is different.
 
 #include "clipping/ClippingSurface.h"
+#include "clipping/FocusPlane.h"
 #include "lights/LightSet.h"
 #include "scene/RenderRequest.h"
 #include "scene/SceneInput.h"
@@ -35,7 +36,8 @@ public:
   Scene changed(const SceneRequest& request) const;
 
   RenderScene forRender() const {
-    return {volume(), *m_transfer, *m_majorants, *m_lights, *m_camera, m_clip, m_settings.crop};
+    return {volume(),  *m_transfer, *m_majorants,    *m_lights,
+            *m_camera, m_clip,      m_settings.crop, style()};
   }
   const Volume& volume() const { return m_volume->volume; }
   /// The volume's box, or what a Slicer scene's cropping box leaves of it.
@@ -47,6 +49,8 @@ public:
   const std::string& look() const { return m_look; }
   const Camera& camera() const { return *m_camera; }
   const Clip& clip() const { return m_clip; }
+  /// How what is not focus differs; null where it looks as it is.
+  const ContextStyle* style() const { return m_style ? &*m_style : nullptr; }
   /// Depth of the focus at each pixel's centre, mm, infinity where it is missed; empty without a
   /// focus, and in the clip modes none and plane unless coverage is to be measured.
   const std::vector<double>& focusDepth() const { return m_focusDepth; }
@@ -67,7 +71,10 @@ private:
   void chooseTransfer(const SceneRequest& request);
   void placeCamera(const SceneRequest& request);
   void buildClip(const SceneRequest& request);
-  void buildDepthClip(SurfaceMode mode, const ClipRequest& request);
+  void styleContext(const FocusRequest& request);
+  /// `depth` of the focus is needed where the request names no plane.
+  ClipPlane placedPlane(const ClipRequest& request, const std::optional<FocusDepth>& depth) const;
+  void buildDepthClip(ClipMode mode, const ClipRequest& request);
 
   SceneRequest m_request;
   std::shared_ptr<const VolumeInput> m_volume;
@@ -79,6 +86,7 @@ private:
   std::shared_ptr<const std::vector<Light>> m_lightList; ///< as they were read
   std::shared_ptr<const LightSet> m_lights;
   Clip m_clip;
+  std::optional<ContextStyle> m_style;
   std::vector<double> m_focusDepth;
   std::optional<BoundaryMismatch> m_mismatch;
   std::vector<std::string> m_clipWarnings;

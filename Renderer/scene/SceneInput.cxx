@@ -54,7 +54,8 @@ VolumeInput volumeInFiles(const SceneRequest& request) {
 
 /// A segmentation file, whatever the input is.
 FocusInput focusInFile(const SceneRequest& request, const Grid& volume) {
-  return {readSegmentation(*request.segmentation, &volume).mask(request.focus, volume),
+  return {readSegmentation(*request.segmentation, &volume)
+              .mask(request.focus, volume, request.focusLook.shaping),
           {*request.segmentation}};
 }
 
@@ -64,7 +65,8 @@ FocusInput focusInScene(const SceneRequest& request, const Grid& volume) {
   const ScenePlan plan = planFor(scene, request);
   if (plan.segmentation) {
     const Segmentation segmentation = readSceneSegmentation(scene, *plan.segmentation, &volume);
-    Mask mask = scene.files.knowingly([&] { return segmentation.mask(request.focus, volume); });
+    Mask mask = scene.files.knowingly(
+        [&] { return segmentation.mask(request.focus, volume, request.focusLook.shaping); });
     return {std::move(mask), scene.files.filesRead()};
   }
   if (!std::filesystem::exists(*request.segmentation))

@@ -32,10 +32,21 @@ Corners cornersOf(const Affine& cellToWorld, const Vec3& cell) {
   return corners;
 }
 
+/// The most that a style leaves of the extinction in a cell.
+double greatestFactor(const ContextStyle& style, const Affine& cellToWorld, const Vec3& cell) {
+  Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (const Vec3& corner : cornersOf(cellToWorld, cell)) {
+    const Vec3 index = style.focus->grid.worldToIndex * corner;
+    box = {box.lower.cwiseMin(index), box.upper.cwiseMax(index)};
+  }
+  return meetsMask(*style.focus, box) ? 1.0 : style.extinction;
+}
+
 } // namespace
 
 MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
-                           const TransferFunction& transfer, const Clip& clip)
+                           const TransferFunction& transfer, const Clip& clip,
+                           const ContextStyle* style)
     : m_cellCount(ranges.cellCount()), m_edge(ranges.edge()), m_cells(ranges.size()) {
   m_worldToCell = Eigen::Scaling(ranges.edge().cast<double>().cwiseInverse().eval()) *
                   (Eigen::Translation3d(Vec3::Constant(0.5)) * grid.worldToIndex);
@@ -57,9 +68,15 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
     for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
       for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {
         const auto cell = static_cast<std::size_t>(x + m_cellCount.x() * (y + m_cellCount.y() * z));
-        const double majorant = bound(cell);
-        const Kept kept = majorant > 0.0 ? keptOf(Size3(x, y, z).cast<double>()) : Kept::none;
-        m_cells[cell] = {kept == Kept::none ? 0.0F : roundedUp(majorant), kept == Kept::some};
+        double majorant = bound(cell);
+        bool isCut = false;
+        if (majorant > 0.0) {
+          const Vec3 lower = Size3(x, y, z).cast<double>();
+          const Kept kept = keptOf(lower);
+          majorant *= kept.most * (style ? greatestFactor(*style, cellToWorld, lower) : 1.0);
+          isCut = majorant > 0.0 && !(kept.isUniform && kept.most == 1.0);
+        }
+        m_cells[cell] = {roundedUp(majorant), isCut};
       }
   });
 }

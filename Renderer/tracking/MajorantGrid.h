@@ -4,6 +4,7 @@
 // skipped.
 
 #include "clipping/Clip.h"
+#include "medium/ContextStyle.h"
 #include "medium/TransferFunction.h"
 #include "volume/CellRanges.h"
 
@@ -18,9 +19,10 @@ public:
 
   /// The majorant is the transfer function's greatest value over the cell's whole range of scalars
   /// (not at its maximum: opacity need not grow with the scalar), times the greatest gradient
-  /// opacity that the range allows. `ranges` needs the apron that apronFor() says.
+  /// opacity that the range allows, times the most that the clip and a style leave in the cell.
+  /// `ranges` needs the apron that apronFor() says.
   MajorantGrid(const Grid& grid, const CellRanges& ranges, const TransferFunction& transfer,
-               const Clip& clip);
+               const Clip& clip, const ContextStyle* style = nullptr);
 
   /// Central differences read one voxel further.
   static int apronFor(const TransferFunction& transfer) { return transfer.gradientOpacity ? 1 : 0; }

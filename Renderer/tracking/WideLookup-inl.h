@@ -61,15 +61,15 @@ HWY_INLINE Pairs loadPairs(const float* memory, const Indices& index) {
 using Corners = std::array<Pairs, 4>;
 
 /// How far each row's beginning is from the first one's, in voxels.
-HWY_INLINE std::array<std::int32_t, 4> rowsOf(const WideScene& scene) {
-  const std::int32_t up = scene.axes[1].stride;
-  const std::int32_t deep = scene.axes[2].stride;
+HWY_INLINE std::array<std::int32_t, 4> rowsOf(const WideField& field) {
+  const std::int32_t up = field.axes[1].stride;
+  const std::int32_t deep = field.axes[2].stride;
   return {0, up, deep, deep + up};
 }
 
-HWY_INLINE Corners cornersAt(const WideScene& scene, const float* voxels, I first) {
+HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, I first) {
   Corners c;
-  const std::array<std::int32_t, 4> rows = rowsOf(scene);
+  const std::array<std::int32_t, 4> rows = rowsOf(field);
   const Indices index(first);
   for (std::size_t i = 0; i < rows.size(); ++i)
     c[i] = loadPairs(voxels + rows[i], index);
@@ -78,10 +78,10 @@ HWY_INLINE Corners cornersAt(const WideScene& scene, const float* voxels, I firs
 
 /// Of 16 bits: 32 take both voxels; `lower` and `upper` make floats of them.
 template <typename Voxel, typename Lower, typename Upper>
-HWY_INLINE Corners cornersInPairs(const WideScene& scene, const Voxel* voxels, I first,
+HWY_INLINE Corners cornersInPairs(const WideField& field, const Voxel* voxels, I first,
                                   Lower&& lower, Upper&& upper) {
   Corners c;
-  const std::array<std::int32_t, 4> rows = rowsOf(scene);
+  const std::array<std::int32_t, 4> rows = rowsOf(field);
   const Indices index(first);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const I both = loadInts(voxels + rows[i], index);
@@ -89,22 +89,22 @@ HWY_INLINE Corners cornersInPairs(const WideScene& scene, const Voxel* voxels, I
   }
   return c;
 }
-HWY_INLINE Corners cornersAt(const WideScene& scene, const std::int16_t* voxels, I first) {
+HWY_INLINE Corners cornersAt(const WideField& field, const std::int16_t* voxels, I first) {
   return cornersInPairs(
-      scene, voxels, first, [](I both) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(both)); },
+      field, voxels, first, [](I both) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(both)); },
       [](I both) { return hn::ShiftRight<16>(both); });
 }
-HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint16_t* voxels, I first) {
+HWY_INLINE Corners cornersAt(const WideField& field, const std::uint16_t* voxels, I first) {
   const I low = hn::Set(ints, 0xffff);
   return cornersInPairs(
-      scene, voxels, first, [&](I both) { return hn::And(both, low); },
+      field, voxels, first, [&](I both) { return hn::And(both, low); },
       [&](I both) { return hn::And(hn::ShiftRight<16>(both), low); });
 }
-HWY_INLINE Corners cornersAt(const WideScene& scene, const std::uint8_t* voxels, I first) {
+HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels, I first) {
   Corners c;
-  const std::array<std::int32_t, 4> rows = rowsOf(scene);
+  const std::array<std::int32_t, 4> rows = rowsOf(field);
   const I low = hn::Set(ints, 0xff);
-  const I lastFour = hn::Set(ints, static_cast<std::int32_t>(scene.voxelCount - 4));
+  const I lastFour = hn::Set(ints, static_cast<std::int32_t>(field.count - 4));
   for (std::size_t i = 0; i < rows.size(); ++i) {
     // Four bytes are read: not beyond the last voxel.
     const I row = hn::Add(first, hn::Set(ints, rows[i]));
@@ -124,9 +124,9 @@ struct Place {
   F3 fractions; ///< from there
 };
 
-HWY_INLINE Place placeOf(const WideScene& scene, const Point& p) {
+HWY_INLINE Place placeOf(const WideField& field, const Point& p) {
   const auto cell = [&](std::size_t axis, F x, F& fraction) {
-    const WideScene::Axis& a = scene.axes[axis];
+    const WideField::Axis& a = field.axes[axis];
     // In this order a NaN becomes 0.
     const F inside = hn::Max(hn::Min(x, all(a.last)), hn::Zero(floats));
     const I index = hn::Min(hn::ConvertTo(ints, inside), hn::Set(ints, a.lastCell));
@@ -137,17 +137,17 @@ HWY_INLINE Place placeOf(const WideScene& scene, const Point& p) {
   const I x = cell(0, p.x, place.fractions.x);
   const I y = cell(1, p.y, place.fractions.y);
   const I z = cell(2, p.z, place.fractions.z);
-  place.first = hn::Add(x, hn::Add(hn::Mul(y, hn::Set(ints, scene.axes[1].stride)),
-                                   hn::Mul(z, hn::Set(ints, scene.axes[2].stride))));
+  place.first = hn::Add(x, hn::Add(hn::Mul(y, hn::Set(ints, field.axes[1].stride)),
+                                   hn::Mul(z, hn::Set(ints, field.axes[2].stride))));
   return place;
 }
 
 /// Asks for the voxels around the places of all lanes to be brought near.
 template <typename Voxel>
-HWY_INLINE void prefetch(const WideScene& scene, const Place& place) {
-  const auto* voxels = static_cast<const Voxel*>(scene.voxels);
+HWY_INLINE void prefetch(const WideField& field, const Place& place) {
+  const auto* voxels = static_cast<const Voxel*>(field.voxels);
   const Indices first(place.first);
-  const std::array<std::int32_t, 4> rows = rowsOf(scene);
+  const std::array<std::int32_t, 4> rows = rowsOf(field);
   for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
     for (const std::int32_t row : rows)
       hwy::Prefetch(voxels + first[lane] + row);
@@ -155,8 +155,8 @@ HWY_INLINE void prefetch(const WideScene& scene, const Place& place) {
 
 /// The scalar, trilinear between voxel centres.
 template <typename Voxel>
-HWY_INLINE F scalarAt(const WideScene& scene, const Place& place) {
-  const Corners c = cornersAt(scene, static_cast<const Voxel*>(scene.voxels), place.first);
+HWY_INLINE F scalarAt(const WideField& field, const Place& place) {
+  const Corners c = cornersAt(field, static_cast<const Voxel*>(field.voxels), place.first);
   const F3& f = place.fractions;
   const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, f.x); };
   const F low = lerp(along(c[0]), along(c[1]), f.y);
@@ -164,8 +164,8 @@ HWY_INLINE F scalarAt(const WideScene& scene, const Place& place) {
   return lerp(low, high, f.z);
 }
 template <typename Voxel>
-HWY_INLINE F scalarAt(const WideScene& scene, const Point& p) {
-  return scalarAt<Voxel>(scene, placeOf(scene, p));
+HWY_INLINE F scalarAt(const WideField& field, const Point& p) {
+  return scalarAt<Voxel>(field, placeOf(field, p));
 }
 
 /// A scalar's place in a table.
@@ -239,8 +239,14 @@ HWY_INLINE F depthIndex(const WideScene::DepthAxis& axis, F coordinate) {
   return hn::Max(hn::Min(index, all(axis.last)), hn::Zero(floats));
 }
 
-/// Where clipping removes nothing (clipping/Clip.h's keep, for all its kinds).
-inline M kept(const WideScene& scene, const Point& p) {
+/// Where a style leaves everything as it is.
+HWY_INLINE M isFocus(const WideScene::Context& context, const Point& p) {
+  return hn::Ge(scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)),
+                all(context.level));
+}
+
+/// What clipping keeps (clipping/Clip.h's keep, for all its kinds).
+inline F keep(const WideScene& scene, const Point& p) {
   const F depth = apply(scene.toView[2], p); // from the target
   F scale = all(1.0F);
   M before = hn::Lt(depth, depth); // the eye: none
@@ -249,8 +255,15 @@ inline M kept(const WideScene& scene, const Point& p) {
     before = hn::Le(fromEye, hn::Zero(floats));
     scale = hn::Div(all(scene.targetDepth), fromEye);
   }
+  const auto edge = [&](F behind) {
+    const F zero = hn::Zero(floats), one = all(1.0F), ghost = all(scene.ghost);
+    const F rise =
+        scene.perSoftness > 0.0F ? hn::Min(hn::Mul(behind, all(scene.perSoftness)), one) : one;
+    const F share = hn::IfThenElse(hn::Lt(behind, zero), ghost, lerp(ghost, one, rise));
+    return hn::IfThenElse(before, zero, share);
+  };
   if (scene.clipKind == WideScene::ClipKind::plane)
-    return hn::Not(hn::Or(before, hn::Gt(apply(scene.toPlane, p), hn::Zero(floats))));
+    return edge(hn::Neg(apply(scene.toPlane, p)));
   const F column = depthIndex(scene.depthX, hn::Mul(apply(scene.toView[0], p), scale));
   const F row = depthIndex(scene.depthY, hn::Mul(apply(scene.toView[1], p), scale));
   const I columns = hn::Set(ints, scene.depthColumns);
@@ -272,7 +285,7 @@ inline M kept(const WideScene& scene, const Point& p) {
     };
     surface = lerp(lerp(at(c0, r0), at(c1, r0), fc), lerp(at(c0, r1), at(c1, r1), fc), fr);
   }
-  return hn::Not(hn::Or(before, hn::Lt(depth, surface)));
+  return edge(hn::Sub(depth, surface));
 }
 
 } // namespace fenestra::HWY_NAMESPACE

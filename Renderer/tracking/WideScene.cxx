@@ -21,6 +21,20 @@ std::array<float, 4> row(const Grid& grid, const Vec3& normal, const Vec3& from,
   return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
 }
 
+WideField fieldOf(const void* voxels, const Grid& grid) {
+  WideField field{voxels, grid.voxelCount()};
+  std::int64_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t size = grid.size[axis];
+    field.axes[static_cast<std::size_t>(axis)] = {
+        static_cast<float>(size - 1),
+        static_cast<std::int32_t>(std::max<std::int64_t>(size - 2, 0)),
+        static_cast<std::int32_t>(size > 1 ? stride : 0)};
+    stride *= size;
+  }
+  return field;
+}
+
 WideScene::VoxelType typeOf(const Voxels& voxels) {
   return static_cast<WideScene::VoxelType>(voxels.index());
 }
@@ -55,15 +69,17 @@ bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer)
 
 WideTracker::WideTracker(const Volume& volume, const Domain& domain,
                          const TransferFunction& transfer, const MajorantGrid& majorants,
-                         const Clip& clip) {
+                         const Clip& clip, const ContextStyle* style) {
   m_scene.type = typeOf(volume.voxels);
-  m_scene.voxels =
-      std::visit([](const auto& v) { return static_cast<const void*>(v.data()); }, volume.voxels);
-  m_scene.voxelCount = volume.grid.voxelCount();
-  setCells(majorants, volume.grid);
+  m_scene.field = fieldOf(
+      std::visit([](const auto& v) { return static_cast<const void*>(v.data()); }, volume.voxels),
+      volume.grid);
+  setCells(majorants);
   m_scene.extinction = WideTable(transfer.extinction);
   setDomain(domain);
   setClip(clip, volume.grid);
+  if (style)
+    setContext(*style, volume.grid);
 }
 
 void WideTracker::setDomain(const Domain& domain) {
@@ -76,24 +92,16 @@ void WideTracker::setDomain(const Domain& domain) {
     m_scene.toCrop = affineRows(*toCrop);
 }
 
-void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {
+void WideTracker::setCells(const MajorantGrid& majorants) {
   const Size3& cells = majorants.cellCount();
   const Size3 bordered = cells.array() + 2;
-  std::int64_t stride = 1;
   std::int64_t cellStride = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t size = grid.size[axis];
     m_scene.axes[static_cast<std::size_t>(axis)] = {
-        static_cast<float>(size - 1),
-        static_cast<std::int32_t>(std::max<std::int64_t>(size - 2, 0)),
-        static_cast<std::int32_t>(size > 1 ? stride : 0),
         static_cast<float>(majorants.edge()[axis]),
-        narrow(1.0 / static_cast<double>(majorants.edge()[axis])),
-        static_cast<float>(cells[axis]),
-        std::nextafter(static_cast<float>(cells[axis]), 0.0F),
-        static_cast<float>(cellStride)};
+        narrow(1.0 / static_cast<double>(majorants.edge()[axis])), static_cast<float>(cells[axis]),
+        std::nextafter(static_cast<float>(cells[axis]), 0.0F), static_cast<float>(cellStride)};
     m_scene.firstCell += static_cast<float>(cellStride);
-    stride *= size;
     cellStride *= bordered[axis];
   }
   m_scene.cells = WideCells(majorants);
@@ -109,8 +117,13 @@ void WideTracker::setClip(const Clip& clip, const Grid& grid) {
     m_scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
                       row(grid, camera.forward(), eye, -camera.targetDepth())};
   };
+  const auto setEdge = [&](const ClipEdge& edge) {
+    m_scene.ghost = narrow(edge.ghost);
+    m_scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
+  };
   if (const auto* plane = std::get_if<ClipPlane>(&clip)) {
     m_scene.clipKind = WideScene::ClipKind::plane;
+    setEdge(plane->edge);
     setCamera(plane->camera);
     m_scene.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
     return;
@@ -118,11 +131,20 @@ void WideTracker::setClip(const Clip& clip, const Grid& grid) {
   const auto& depth = std::get<ClipDepth>(clip);
   m_scene.clipKind = depth.lookup == ClipDepth::Lookup::linear ? WideScene::ClipKind::depthLinear
                                                                : WideScene::ClipKind::depthNearest;
+  setEdge(depth.edge);
   setCamera(depth.camera);
   m_scene.depthX = wide(depth.buffer->xAxis());
   m_scene.depthY = wide(depth.buffer->yAxis());
   m_scene.depths = depth.buffer->depthsFromReference().data();
   m_scene.depthColumns = static_cast<std::int32_t>(depth.buffer->columns());
+}
+
+void WideTracker::setContext(const ContextStyle& style, const Grid& grid) {
+  const Mask& focus = *style.focus;
+  m_scene.context = {fieldOf(focus.voxels.data(), focus.grid),
+                     affineRows(focus.grid.worldToIndex * grid.indexToWorld),
+                     0.5F * static_cast<float>(focus.full), narrow(style.extinction),
+                     narrow(style.saturation)};
 }
 
 } // namespace fenestra

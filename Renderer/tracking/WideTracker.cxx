@@ -208,8 +208,8 @@ private:
   /// Lanes with a collision in their cell go there.
   HWY_INLINE void stop() {
     m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_majorant)), m_t);
-    m_place = placeOf(m_scene, point());
-    prefetch<Voxel>(m_scene, m_place);
+    m_place = placeOf(m_scene.field, point());
+    prefetch<Voxel>(m_scene.field, m_place);
   }
 
   /// Reads the codes of the lanes' cells (WideCells::cell).
@@ -243,12 +243,15 @@ private:
     const M hit = m_hit;
     const F majorant = hn::IfThenElse(hit, m_majorant, all(1.0F));
     m_lookups += hn::CountTrue(floats, hit);
-    const F scalar = scalarAt<Voxel>(m_scene, m_place);
+    const F scalar = scalarAt<Voxel>(m_scene.field, m_place);
     F extinction = extinctionOf(m_scene, scalar);
     const I last = hn::Set(ints, 0x10000); // of the code
     const M cut = both(hit, hn::RebindMask(floats, hn::TestBit(m_code, last)));
     if (!hn::AllFalse(floats, cut))
-      extinction = hn::IfThenZeroElse(hn::AndNot(kept(m_scene, point()), cut), extinction);
+      extinction = hn::IfThenElse(cut, hn::Mul(extinction, keep(m_scene, point())), extinction);
+    if (m_scene.context)
+      extinction = hn::IfThenElse(isFocus(*m_scene.context, point()), extinction,
+                                  hn::Mul(extinction, all(m_scene.context->extinction)));
     const F share = hn::Div(extinction, majorant);
 
     U counter = m_counter;

@@ -65,9 +65,9 @@ public:
   /// across the volume of at most 1e5.
   static bool serves(const Volume& volume, const TransferFunction& transfer);
 
-  /// A view: volume and clip outlive it.
+  /// A view: volume, clip and style outlive it.
   WideTracker(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
-              const MajorantGrid& majorants, const Clip& clip);
+              const MajorantGrid& majorants, const Clip& clip, const ContextStyle* style = nullptr);
 
   const WideScene& scene() const { return m_scene; }
 
@@ -90,8 +90,9 @@ public:
 
 private:
   void setDomain(const Domain& domain);
-  void setCells(const MajorantGrid& majorants, const Grid& grid);
+  void setCells(const MajorantGrid& majorants);
   void setClip(const Clip& clip, const Grid& grid);
+  void setContext(const ContextStyle& style, const Grid& grid);
 
   WideScene m_scene;
 };

@@ -139,6 +139,8 @@ private:
                   {zero, zero, zero},
                   noLane()};
     at.albedo = albedoOf(at.scalar);
+    if (m_volume.context)
+      at.albedo = paled(*m_volume.context, index, at.albedo);
     const bool recorded = m_scene.wantNormals && !hn::AllFalse(floats, first);
     if (m_scene.hybrid || recorded) {
       at.gradient = gradientAt(index);
@@ -163,9 +165,17 @@ private:
             valueIn(channels[2], segment)};
   }
 
+  /// As ContextStyle::paled, outside the focus.
+  HWY_INLINE F3 paled(const WideScene::Context& context, const F3& index, const F3& albedo) const {
+    const F grey = dot(albedo, {all(0.2126F), all(0.7152F), all(0.0722F)});
+    const auto channel = [&](F x) { return lerp(grey, x, all(context.saturation)); };
+    return select(isFocus(context, index), albedo,
+                  F3{channel(albedo.x), channel(albedo.y), channel(albedo.z)});
+  }
+
   F3 gradientAt(const F3& p) const {
     const F one = all(1.0F);
-    const auto value = [&](F x, F y, F z) { return scalarAt<Voxel>(m_volume, {x, y, z}); };
+    const auto value = [&](F x, F y, F z) { return scalarAt<Voxel>(m_volume.field, {x, y, z}); };
     const F3 difference{
         hn::Sub(value(hn::Add(p.x, one), p.y, p.z), value(hn::Sub(p.x, one), p.y, p.z)),
         hn::Sub(value(p.x, hn::Add(p.y, one), p.z), value(p.x, hn::Sub(p.y, one), p.z)),

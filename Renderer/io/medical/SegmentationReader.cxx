@@ -290,17 +290,32 @@ std::vector<SegmentStatistics> Segmentation::statistics() const {
   return statistics;
 }
 
-Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& volume) const {
+Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& volume,
+                        const MaskShaping& shaping) const {
+  if (shaping.margins.size() > 1 && shaping.margins.size() != selectors.size())
+    throw usageError("--margin: give one for all segments of --focus, or one each");
   std::vector<SegmentInfo> chosen;
-  Mask mask;
-  for (const std::string& selector : selectors) {
+  for (const std::string& selector : selectors)
     chosen.push_back(find(selector));
-    mask.names.push_back(chosen.back().name);
-  }
-  fillMask(m_grid, m_layerCount, m_labels, chosen, volume, mask);
+  const auto maskOf = [&](const std::vector<SegmentInfo>& segments) {
+    Mask mask;
+    for (const SegmentInfo& segment : segments)
+      mask.names.push_back(segment.name);
+    fillMask(m_grid, m_layerCount, m_labels, segments, volume, mask);
+    if (mask.count == 0)
+      throw inputError(m_source, "the focus has no voxel (" + listed(segments) +
+                                     "); choose segments that are not empty");
+    return mask;
+  };
+  if (shaping == MaskShaping()) // at once
+    return maskOf(chosen);
+  std::vector<Mask> masks;
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    masks.push_back(grown(maskOf({chosen[i]}), shaping.margin(i), volume));
+  Mask mask = smoothed(united(masks), shaping.smoothing, volume);
   if (mask.count == 0)
-    throw inputError(m_source, "the focus has no voxel (" + listed(chosen) +
-                                   "); choose segments that are not empty");
+    throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (" +
+                                   listed(chosen) + "); choose less");
   return mask;
 }
 

@@ -2,6 +2,7 @@
 // Reads segmentations and makes the focus of some of their segments.
 
 #include "core/Vector.h"
+#include "io/medical/MaskShaping.h"
 #include "volume/Mask.h"
 
 #include <array>
@@ -47,8 +48,10 @@ public:
   /// The union of the segments that the selectors name, each by id, else by name, else by label
   /// value; cropped, and continued over the faces that the labelmap shares with `volume`, as Mask.h
   /// says. A face is shared where it is parallel to a face of the volume and within half a voxel of
-  /// it. Throws Error (input) where a selector names no segment or several, or no voxel is chosen.
-  Mask mask(const std::vector<std::string>& selectors, const Grid& volume) const;
+  /// it. Throws Error (input) where a selector names no segment or several, or no voxel is chosen
+  /// or left by `shaping`.
+  Mask mask(const std::vector<std::string>& selectors, const Grid& volume,
+            const MaskShaping& shaping = {}) const;
 
 private:
   const SegmentInfo& find(const std::string& selector) const;
