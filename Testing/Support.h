@@ -64,15 +64,17 @@ struct TestScene {
   int width = 16, height = 16;
   Clip clip = {};
   std::optional<CropBox> crop = {};
+  std::optional<ContextStyle> style = {};
 
   RenderResult render(const RenderSettings& settings) const {
     const Camera camera(pose, width, height);
     const LightSet lightSet(lights, volume.grid, camera);
     const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
-    const MajorantGrid majorants(volume.grid, ranges, transfer, clip);
+    const ContextStyle* const styled = style ? &*style : nullptr;
+    const MajorantGrid majorants(volume.grid, ranges, transfer, clip, styled);
     RenderMonitor monitor;
-    return fenestra::render({volume, transfer, majorants, lightSet, camera, clip, crop}, settings,
-                            monitor);
+    return fenestra::render({volume, transfer, majorants, lightSet, camera, clip, crop, styled},
+                            settings, monitor);
   }
 };
 

@@ -86,19 +86,17 @@ int renderCommand(int argc, char** argv, int first) {
     return stoppedStatus;
   }
 
-  if (options.stats && !scene.focusDepth().empty()) {
+  if (options.stats) {
     const Stopwatch focus;
-    stats.focusCoverage =
-        focusCoverage(scene.forRender(), scene.focusDepth(), options.settings.seed);
-    stats.stages.focus = focus.seconds();
+    stats.focus = measureFocus(scene, options.settings.seed);
+    stats.measure = focus.seconds();
   }
   const Stopwatch write;
   writePictures(options, scene, result, shellCommand({argv + 1, argv + argc}));
   if (options.stats) {
-    const double coverageSeconds = stats.stages.focus;
     stats.stages = scene.seconds();
-    stats.stages.focus += coverageSeconds;
     stats.mismatch = scene.mismatch();
+    stats.boundary = scene.boundary();
     stats.warnings = scene.warnings();
     stats.files = scene.files();
     const MajorantGrid& majorants = scene.forRender().majorants;

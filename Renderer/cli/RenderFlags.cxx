@@ -285,7 +285,7 @@ void readOutputs(const FlagValues& flags, RenderOptions& options) {
     options.outputs.push_back(defaultOutput(options.scene.input));
   options.surface = surfaceFile(flags, options.scene);
   options.stats = flags.text("stats");
-  options.scene.measureCoverage = options.stats.has_value();
+  options.scene.measure = options.stats.has_value();
   options.layers = layerSet(flags.list("layers"));
   const auto exrs = std::count_if(options.outputs.begin(), options.outputs.end(), isExr);
   const auto nrrds = std::count_if(options.outputs.begin(), options.outputs.end(), isNrrd);

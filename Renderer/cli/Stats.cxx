@@ -11,6 +11,30 @@ double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
 }
 
+nlohmann::ordered_json jsonOf(const Distribution& values) {
+  return {{"mean", values.mean}, {"p95", values.p95}, {"max", values.max}};
+}
+
+/// What the clip is worth.
+void addClip(nlohmann::ordered_json& json, const RenderStats& stats) {
+  if (stats.mismatch)
+    json["boundaryMismatchMm"] = jsonOf(*stats.mismatch);
+  if (stats.boundary && stats.boundary->crossings > 0) {
+    json["boundaryGapMm"] = jsonOf(stats.boundary->gap);
+    json["boundarySlopeJump"] = jsonOf(stats.boundary->slopeJump);
+    json["boundaryDepthJumps"] = stats.boundary->depthJumps;
+  }
+  if (!stats.focus)
+    return;
+  json["focusCoverage"] = stats.focus->coverage;
+  json["focusKept"] = stats.focus->kept;
+  json["focusCoverageUnclipped"] = stats.focus->withoutClip;
+  if (stats.focus->light)
+    json["focusLight"] = *stats.focus->light;
+  if (stats.focus->contextRemoved)
+    json["contextRemoved"] = *stats.focus->contextRemoved;
+}
+
 } // namespace
 
 std::string statsJson(const RenderStats& stats, const RenderResult& result) {
@@ -24,7 +48,8 @@ std::string statsJson(const RenderStats& stats, const RenderResult& result) {
   json["seconds"] = {{"load", stats.stages.load},   {"classify", stats.stages.classify},
                      {"focus", stats.stages.focus}, {"spline", stats.stages.spline},
                      {"fill", stats.stages.fill},   {"transport", stats.transport},
-                     {"write", stats.write},        {"total", stats.total}};
+                     {"measure", stats.measure},    {"write", stats.write},
+                     {"total", stats.total}};
   json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   json["paths"] = c.paths;
   json["collisions"] = c.collisions;
@@ -39,11 +64,7 @@ std::string statsJson(const RenderStats& stats, const RenderResult& result) {
       {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
   json["noise"] = noise < infinity ? nlohmann::ordered_json(noise) : nullptr;
   json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
-  if (stats.mismatch)
-    json["boundaryMismatchMm"] = {
-        {"mean", stats.mismatch->mean}, {"p95", stats.mismatch->p95}, {"max", stats.mismatch->max}};
-  if (stats.focusCoverage)
-    json["focusCoverage"] = *stats.focusCoverage;
+  addClip(json, stats);
   if (stats.focusVoxels)
     json["focusVoxels"] = *stats.focusVoxels;
   json["filesRead"] = stats.files;

@@ -1,7 +1,7 @@
 #pragma once
 // The stats file: what a render did and how long each stage took.
 
-#include "scene/Scene.h"
+#include "scene/Measures.h"
 
 #include <filesystem>
 #include <optional>
@@ -11,9 +11,10 @@ namespace fenestra {
 
 struct RenderStats {
   StageSeconds stages;
-  double transport = 0.0, write = 0.0, total = 0.0; ///< wall-clock seconds
-  std::optional<double> focusCoverage = {};
+  double transport = 0.0, measure = 0.0, write = 0.0, total = 0.0; ///< wall-clock seconds
+  std::optional<FocusReport> focus = {};
   std::optional<BoundaryMismatch> mismatch = {};
+  std::optional<BoundaryMeasures> boundary = {};
   std::size_t cells = 0, emptyCells = 0;        ///< of the majorant grid
   std::optional<std::int64_t> focusVoxels = {}; ///< of the labelmap, as far as it was kept
   std::vector<std::string> files = {};          ///< that were read
@@ -22,7 +23,9 @@ struct RenderStats {
 
 /// JSON text with the contract's keys, and counters that show what was left out: shadowRays,
 /// gradients, emptyPixels (certain from one sample, and not in samplesPerPixel), cells,
-/// focusVoxels, filesRead.
+/// focusVoxels, filesRead. What the clip is worth, beside boundaryMismatchMm and focusCoverage:
+/// boundaryGapMm, boundarySlopeJump, boundaryDepthJumps, focusKept, focusCoverageUnclipped,
+/// focusLight, contextRemoved (BoundaryMeasures, FocusReport).
 std::string statsJson(const RenderStats& stats, const RenderResult& result);
 
 } // namespace fenestra

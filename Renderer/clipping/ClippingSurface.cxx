@@ -53,26 +53,13 @@ ThinPlateSpline splineThrough(const std::vector<ControlPoint>& points, double sm
   return {sites, depths, smoothing};
 }
 
-BoundaryMismatch summarized(std::vector<double> misses) {
-  if (misses.empty())
-    return {};
-  std::ranges::sort(misses);
-  const auto count = static_cast<double>(misses.size());
-  BoundaryMismatch mismatch;
-  for (const double miss : misses)
-    mismatch.mean += miss / count;
-  mismatch.p95 = misses[static_cast<std::size_t>(0.95 * (count - 1.0))];
-  mismatch.max = misses.back();
-  return mismatch;
-}
-
 BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
                             const std::vector<ControlPoint>& samples) {
   std::vector<double> misses;
   misses.reserve(samples.size());
   for (const ControlPoint& sample : samples)
     misses.push_back(std::abs(spline(sample.site) - sample.depth));
-  return summarized(std::move(misses));
+  return Distribution::of(std::move(misses));
 }
 
 /// Of the filled buffer, across each crossing that has two samples beyond it.
@@ -93,7 +80,7 @@ BoundaryMismatch mismatchOf(const DepthBuffer& buffer, const FocusDepth& focus,
       const double own = buffer.at(buffer.sample(crossing.column, crossing.row));
       misses.push_back(std::abs(2.0 * near - far - own));
     }
-  return summarized(std::move(misses));
+  return Distribution::of(std::move(misses));
 }
 
 /// The spline wherever the focus is not: in tiles, which are halved where many sites are near.

@@ -1,6 +1,7 @@
 #pragma once
 // The first pass of the method: from a view and a focus to the clip that shows it.
 
+#include "clipping/BoundaryMeasures.h"
 #include "clipping/Clip.h"
 #include "clipping/Contour.h"
 #include "clipping/FocusDepth.h"
@@ -36,9 +37,7 @@ struct SurfaceOptions {
 /// |f(x) - z| in mm over the focus samples on the contours: how far the surface around the focus,
 /// continued to them, misses their depth. f is the spline, or the line through the two samples
 /// beyond the contour.
-struct BoundaryMismatch {
-  double mean = 0.0, p95 = 0.0, max = 0.0;
-};
+using BoundaryMismatch = Distribution;
 
 struct ClippingSurface {
   Clip clip;                                 ///< a ClipDepth

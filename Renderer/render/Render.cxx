@@ -4,6 +4,7 @@
 #include "render/EmptyPixels.h"
 #include "render/SamplePlan.h"
 #include "render/TileStream.h"
+#include "render/WithMedium.h"
 #include "transport/PathEstimator.h"
 
 #include <tbb/combinable.h>
@@ -17,20 +18,6 @@ namespace {
 
 /// A noise estimate from fewer samples a pixel is too uncertain to stop by.
 constexpr std::uint64_t leastForNoise = 16;
-
-/// Dispatches once on the volume's storage type.
-template <typename Work>
-auto withMedium(const RenderScene& scene, Work&& work) {
-  return std::visit(
-      [&](const auto& voxels) {
-        using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
-        const Medium<Voxel> medium(scene.volume.grid, voxels, scene.transfer, scene.style);
-        const Tracker<Voxel> tracker(Domain(scene.volume.grid, scene.crop), medium, scene.majorants,
-                                     scene.clip);
-        return work(medium, tracker);
-      },
-      scene.volume.voxels);
-}
 
 /// One path after the other.
 template <typename Voxel>
@@ -197,36 +184,6 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                                                           settings.path, monitor.stop)};
       return renderPasses(readable, "scalar", scene, settings, monitor);
     });
-  });
-}
-
-double focusCoverage(const RenderScene& scene, const std::vector<double>& focusDepth,
-                     std::uint64_t seed) {
-  const int width = scene.camera.width();
-  return withMedium(scene, [&](const auto&, const auto& tracker) {
-    std::vector<double> shown(focusDepth.size(), 0.0);
-    const auto show = [&](std::size_t pixel) {
-      if (!(focusDepth[pixel] < infinity))
-        return;
-      const int column = static_cast<int>(pixel % static_cast<std::size_t>(width));
-      const int row = static_cast<int>(pixel / static_cast<std::size_t>(width));
-      const Ray ray = scene.camera.ray(column + 0.5, row + 0.5);
-      const double focus = focusDepth[pixel] / scene.camera.depthPerLength(ray);
-      const Interval behind = behindSurface(scene.clip, ray);
-      const double rounding = 0.5 * scene.camera.pixelPitch();
-      if (behind.empty() || behind.begin > focus + rounding || behind.end < focus - rounding)
-        return; // the focus itself is cut away
-      const Interval range = visible(scene.clip, ray);
-      Random random(seed, pixel, 0);
-      Counters counters;
-      shown[pixel] = tracker.transmittance(ray, {range.begin, focus}, random, counters);
-    };
-    tbb::parallel_for(std::size_t{0}, focusDepth.size(), show);
-    const auto pixels = std::count_if(focusDepth.begin(), focusDepth.end(),
-                                      [](double depth) { return depth < infinity; });
-    return pixels > 0
-               ? std::accumulate(shown.begin(), shown.end(), 0.0) / static_cast<double>(pixels)
-               : 0.0;
   });
 }
 

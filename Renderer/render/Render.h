@@ -72,10 +72,4 @@ struct RenderResult {
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                     RenderMonitor& monitor);
 
-/// Mean over eye rays through pixel centres with a finite focus depth (mm in view space, row by row
-/// from the top) of the transmittance from where the ray starts to the focus: the share of the
-/// focus's pixels shown unoccluded. A focus point that clipping removes counts as not shown.
-double focusCoverage(const RenderScene& scene, const std::vector<double>& focusDepth,
-                     std::uint64_t seed);
-
 } // namespace fenestra

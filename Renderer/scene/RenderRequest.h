@@ -84,7 +84,7 @@ struct SceneRequest {
   ViewRequest view;
   ClipRequest clip;
   int width = 512, height = 512;
-  bool measureCoverage = false; ///< trace the focus even where no clip needs it
+  bool measure = false; ///< what the clip is worth: the focus is traced even where no clip needs it
   FocusRequest focusLook = {};
 };
 

@@ -146,7 +146,7 @@ void Scene::make(const SceneRequest& request, const SceneRequest* before) {
                   (m_made.camera && std::ranges::any_of(*m_lightList, dependsOnCamera));
   if (m_made.lights)
     m_lights = std::make_shared<const LightSet>(*m_lightList, volume().grid, *m_camera);
-  m_made.clip = m_made.camera || differs(&R::clip, &R::measureCoverage);
+  m_made.clip = m_made.camera || differs(&R::clip, &R::measure);
   if (m_made.clip)
     buildClip(request);
 
@@ -207,13 +207,14 @@ void Scene::buildClip(const SceneRequest& request) {
   m_clip = ClipNone();
   m_focusDepth.clear();
   m_mismatch.reset();
+  m_boundary.reset();
   m_clipWarnings.clear();
   const ClipMode mode = request.clip.modeWith(focus() != nullptr);
   if (isDepthClip(mode))
-    return buildDepthClip(mode, request.clip);
+    return buildDepthClip(mode, request.clip, request.measure);
   std::optional<FocusDepth> depth;
   const bool wantsPlane = mode == ClipMode::plane && !request.clip.plane;
-  if (focus() && (wantsPlane || request.measureCoverage)) {
+  if (focus() && (wantsPlane || request.measure)) {
     const Stopwatch watch;
     depth = traceFocus(*m_camera, domain(), *focus());
     m_focusDepth = viewportDepths(*depth, *m_camera);
@@ -221,6 +222,8 @@ void Scene::buildClip(const SceneRequest& request) {
   }
   if (mode == ClipMode::plane)
     m_clip = placedPlane(request.clip, depth);
+  if (depth && request.measure && mode == ClipMode::plane)
+    m_boundary = measureBoundary(m_clip, domain(), *depth);
 }
 
 ClipPlane Scene::placedPlane(const ClipRequest& request,
@@ -235,7 +238,7 @@ ClipPlane Scene::placedPlane(const ClipRequest& request,
   return plane;
 }
 
-void Scene::buildDepthClip(ClipMode mode, const ClipRequest& request) {
+void Scene::buildDepthClip(ClipMode mode, const ClipRequest& request, bool measure) {
   const bool isSurface = mode == ClipMode::surface || mode == ClipMode::ghost;
   const bool isGhost = mode == ClipMode::ghost;
   SurfaceOptions options;
@@ -250,6 +253,8 @@ void Scene::buildDepthClip(ClipMode mode, const ClipRequest& request) {
   ClippingSurface surface = buildClippingSurface(*m_camera, domain(), *focus(), options);
   m_focusDepth = viewportDepths(surface.focus, *m_camera);
   m_clip = std::move(surface.clip);
+  if (measure)
+    m_boundary = measureBoundary(m_clip, domain(), surface.focus);
   if (isSurface)
     m_mismatch = surface.mismatch;
   m_seconds.focus = surface.focusSeconds;

@@ -52,10 +52,13 @@ public:
   /// How what is not focus differs; null where it looks as it is.
   const ContextStyle* style() const { return m_style ? &*m_style : nullptr; }
   /// Depth of the focus at each pixel's centre, mm, infinity where it is missed; empty without a
-  /// focus, and in the clip modes none and plane unless coverage is to be measured.
+  /// focus, and in the clip modes none and plane unless the clip is to be measured.
   const std::vector<double>& focusDepth() const { return m_focusDepth; }
   /// How far the spline misses the focus's boundary; nothing in the other clip modes.
   const std::optional<BoundaryMismatch>& mismatch() const { return m_mismatch; }
+  /// How the context meets the focus's outline, where it is to be measured.
+  const std::optional<BoundaryMeasures>& boundary() const { return m_boundary; }
+  const CellRanges& ranges() const { return *m_ranges; }
   const StageSeconds& seconds() const { return m_seconds; }
   const StagesMade& made() const { return m_made; }
   std::vector<std::string> warnings() const;
@@ -74,7 +77,7 @@ private:
   void styleContext(const FocusRequest& request);
   /// `depth` of the focus is needed where the request names no plane.
   ClipPlane placedPlane(const ClipRequest& request, const std::optional<FocusDepth>& depth) const;
-  void buildDepthClip(ClipMode mode, const ClipRequest& request);
+  void buildDepthClip(ClipMode mode, const ClipRequest& request, bool measure);
 
   SceneRequest m_request;
   std::shared_ptr<const VolumeInput> m_volume;
@@ -89,6 +92,7 @@ private:
   std::optional<ContextStyle> m_style;
   std::vector<double> m_focusDepth;
   std::optional<BoundaryMismatch> m_mismatch;
+  std::optional<BoundaryMeasures> m_boundary;
   std::vector<std::string> m_clipWarnings;
   std::shared_ptr<const CellRanges> m_ranges;
   std::shared_ptr<const MajorantGrid> m_majorants;

@@ -80,19 +80,102 @@ double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
 /// The spline as its equations stand.
 using Spline = testing_clipping::SaddleSpline<long double>;
 
+/// Where the eye meets the focus.
+struct Meeting {
+  Vec2 onPlane;
+  Vec3 world;
+  double depth;
+};
+
+/// The depths that a hole has beside the focus.
+class Hole {
+public:
+  Hole(const HoleDescription& description, const View& view, const std::vector<Meeting>& meetings)
+      : m_description(description), m_view(view) {
+    const bool isBall = description.shape == HoleDescription::Shape::sphere;
+    for (const Meeting& meeting : meetings) {
+      m_bottom = std::max(m_bottom, meeting.depth);
+      const Vec3 at = isBall ? meeting.world : Vec3(meeting.onPlane.x(), meeting.onPlane.y(), 0.0);
+      m_lower = m_lower.cwiseMin(at);
+      m_upper = m_upper.cwiseMax(at);
+    }
+    m_center = 0.5 * (m_lower + m_upper);
+    for (const Meeting& meeting : meetings) {
+      const Vec3 at = isBall ? meeting.world : Vec3(meeting.onPlane.x(), meeting.onPlane.y(), 0.0);
+      m_radius = std::max(m_radius, (at - m_center).norm());
+    }
+    m_radius += description.margin;
+  }
+
+  double depth(double x, double y) const {
+    if (m_description.shape == HoleDescription::Shape::sphere)
+      return bowl(m_view.through(x, y));
+    const Vec3 at(x, y, 0.0);
+    const bool isInBox =
+        std::abs(x - m_center.x()) <= m_center.x() - m_lower.x() + m_description.margin &&
+        std::abs(y - m_center.y()) <= m_center.y() - m_lower.y() + m_description.margin;
+    const bool isInside = m_description.shape == HoleDescription::Shape::box
+                              ? isInBox
+                              : (at - m_center).norm() <= m_radius;
+    return isInside ? m_bottom : -infinity;
+  }
+
+private:
+  /// The far solution of |origin + t direction - center| = radius.
+  double bowl(const Ray& ray) const {
+    const Vec3 from = ray.origin - m_center;
+    const double a = ray.direction.squaredNorm(), b = 2.0 * from.dot(ray.direction),
+                 c = from.squaredNorm() - m_radius * m_radius;
+    const double discriminant = b * b - 4.0 * a * c;
+    if (discriminant < 0.0)
+      return -infinity;
+    return m_view.depth(ray.at((-b + std::sqrt(discriminant)) / (2.0 * a)));
+  }
+
+  const HoleDescription& m_description;
+  const View& m_view;
+  Vec3 m_lower = Vec3::Constant(infinity), m_upper = Vec3::Constant(-infinity), m_center;
+  double m_radius = 0.0, m_bottom = -infinity;
+};
+
 std::vector<double> depthsOf(const DepthClip& clip, const View& view, const Matter& matter) {
-  std::optional<Spline> spline;
-  if (!clip.isCutaway)
-    spline.emplace(clip.sites, clip.depths, clip.smoothing);
   std::vector<double> depths;
+  std::vector<Meeting> meetings;
   for (const double y : clip.rows)
     for (const double x : clip.columns) {
       const Ray ray = view.through(x, y);
       const double t = firstMeeting(clip.focus, matter, ray);
-      const double context = spline ? (*spline)({x, y}) : -infinity;
-      depths.push_back(t < infinity ? view.depth(ray.at(t)) : context);
+      depths.push_back(t < infinity ? view.depth(ray.at(t)) : infinity);
+      if (t < infinity)
+        meetings.push_back({Vec2(x, y), ray.at(t), depths.back()});
+    }
+  std::optional<Spline> spline;
+  std::optional<Hole> hole;
+  if (clip.hole)
+    hole.emplace(*clip.hole, view, meetings);
+  else if (!clip.isCutaway && clip.given.empty())
+    spline.emplace(clip.sites, clip.depths, clip.smoothing);
+  std::size_t sample = 0;
+  for (const double y : clip.rows)
+    for (const double x : clip.columns) {
+      double& depth = depths[sample];
+      if (depth == infinity && !clip.given.empty())
+        depth = clip.given[sample];
+      else if (depth == infinity)
+        depth = (spline ? (*spline)({x, y}) : hole ? hole->depth(x, y) : -infinity) + clip.offset;
+      else
+        depth += clip.offset;
+      ++sample;
     }
   return depths;
+}
+
+double kept(const Edge& edge, double behind) {
+  if (behind < 0.0)
+    return edge.ghost;
+  if (edge.softness == 0.0)
+    return 1.0;
+  return edge.ghost + (1.0 - edge.ghost) * std::min(1.0, behind / edge.softness);
 }
 
 /// Where a coordinate lies among samples that rise or fall: the one before it and the share of the
@@ -116,6 +199,10 @@ Place placeOf(const std::vector<double>& samples, double coordinate) {
 
 } // namespace
 
+double indicatorAt(const Mask& mask, const Vec3& world) {
+  return indicator(mask, mask.grid.indexToWorld.inverse() * world);
+}
+
 Clipping::Clipping(const ClipDescription& description, const View& view, const Matter& matter)
     : m_description(description), m_view(view) {
   if (const auto* clip = std::get_if<DepthClip>(&description))
@@ -129,7 +216,7 @@ double Clipping::surface(const Vec2& at) const {
     return m_depths[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
                     std::min(column, clip.columns.size() - 1)];
   };
-  if (clip.isCutaway)
+  if (clip.hasSteps())
     return depth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5));
   return (1.0 - y.share) * ((1.0 - x.share) * depth(x.before, y.before) +
                             x.share * depth(x.before + 1, y.before)) +
@@ -143,8 +230,9 @@ double Clipping::keep(const Vec3& world) const {
   if (m_view.isPerspective && m_view.depth(world) <= 0.0)
     return 0.0;
   if (const auto* plane = std::get_if<PlaneClip>(&m_description))
-    return (world - plane->point).dot(plane->normal) > 0.0 ? 0.0 : 1.0;
-  return m_view.depth(world) < surface(m_view.onPlane(world)) ? 0.0 : 1.0;
+    return kept(plane->edge, (plane->point - world).dot(plane->normal));
+  return kept(std::get<DepthClip>(m_description).edge,
+              m_view.depth(world) - surface(m_view.onPlane(world)));
 }
 
 } // namespace fenestra::oracle

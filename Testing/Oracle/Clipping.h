@@ -6,12 +6,15 @@
 
 namespace fenestra::oracle {
 
+/// The interpolated indicator of a mask at a world point; 0 outside its voxels.
+double indicatorAt(const Mask& mask, const Vec3& world);
+
 class Clipping {
 public:
   /// For a depth clip, builds the whole buffer.
   Clipping(const ClipDescription& description, const View& view, const Matter& matter);
 
-  /// 0 or 1.
+  /// 0 to 1.
   double keep(const Vec3& world) const;
 
   /// Depths of a depth clip, mm, row by row; -infinity where a cutaway removes nothing.

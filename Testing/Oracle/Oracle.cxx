@@ -34,7 +34,7 @@ public:
       return seenBackground(ray);
     result.collides = true;
     result.depth = m_view.depth(ray.at(distance));
-    result.albedo = m_matter.albedo(ray.at(distance));
+    result.albedo = albedo(ray.at(distance));
 
     Rgb weight = Rgb::Ones();
     for (std::uint64_t scattered = 0; scattered < m_scene.bounces; ++scattered) {
@@ -74,7 +74,8 @@ private:
       const Vec3 point = ray.at(t);
       if (!m_matter.inside(point))
         continue;
-      const double extinction = m_clipping.keep(point) * m_matter.extinction(point);
+      const double extinction =
+          m_clipping.keep(point) * thinning(point) * m_matter.extinction(point);
       if (uniform(generator) * majorant < extinction)
         return t;
     }
@@ -90,10 +91,24 @@ private:
   }
 
   Scatterer collide(const Vec3& point, const Vec3& incoming, Generator& generator) const {
-    const Rgb albedo = m_matter.albedo(point);
     if (uniform(generator) < m_matter.surfaceProbability(point))
-      return Scatterer::atSurface(incoming, albedo, m_matter.gradient(point), m_matter.shading());
-    return Scatterer::byPhase(incoming, albedo, m_matter.g());
+      return Scatterer::atSurface(incoming, albedo(point), m_matter.gradient(point),
+                                  m_matter.shading());
+    return Scatterer::byPhase(incoming, albedo(point), m_matter.g());
+  }
+
+  bool isStyled(const Vec3& point) const {
+    return m_scene.style && indicatorAt(m_scene.style->focus, point) < 0.5;
+  }
+  double thinning(const Vec3& point) const {
+    return isStyled(point) ? m_scene.style->extinction : 1.0;
+  }
+  Rgb albedo(const Vec3& point) const {
+    const Rgb own = m_matter.albedo(point);
+    if (!isStyled(point))
+      return own;
+    const Rgb grey = Rgb::Constant(own.matrix().dot(Vec3(0.2126, 0.7152, 0.0722)));
+    return m_scene.style->saturation * own + (1.0 - m_scene.style->saturation) * grey;
   }
 
   /// What parallel lights send toward the eye from a collision: all, or nothing where a flight

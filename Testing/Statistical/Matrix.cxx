@@ -42,7 +42,7 @@ Combination combination(int index) {
   Combination c;
   c.index = index;
   c.view = static_cast<ViewFactor>(next(4));
-  c.clip = static_cast<ClipFactor>(next(4));
+  c.clip = static_cast<ClipFactor>(next(6));
   c.light = static_cast<LightFactor>(next(6));
   c.g = anisotropies[next(7)];
   c.albedo = static_cast<AlbedoFactor>(next(6));
@@ -53,6 +53,10 @@ Combination combination(int index) {
   c.isCropped = next(4) == 0;
   c.background = static_cast<BackgroundFactor>(next(3));
   c.bounces = bounces[next(5)];
+  c.edge = static_cast<EdgeFactor>(next(4));
+  c.style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // none as often as all others
+  constexpr double offsets[] = {0.0, 0.7, -0.7};
+  c.offset = offsets[next(3)];
   // Parallel light reaches the eye through the phase function's peak alone: at g = 0.99 hardly a
   // path in ten thousand shows it, and no mean of them is anywhere near normal.
   const bool hasParallel = c.light == LightFactor::directional || c.light == LightFactor::several;
@@ -317,8 +321,14 @@ Affine cropOf(Generator& generator) {
   return crop;
 }
 
-oracle::DepthClip describeDepth(const ClippingSurface& surface, bool isCutaway, double smoothing) {
-  oracle::DepthClip clip{isCutaway, focusOf(), {}, {}, {}, {}, smoothing};
+oracle::DepthClip describeDepth(const Combination& c, const ClippingSurface& surface,
+                                const SurfaceOptions& options) {
+  oracle::DepthClip clip;
+  clip.isCutaway = c.clip == ClipFactor::cutaway;
+  clip.focus = focusOf();
+  clip.smoothing = options.smoothing;
+  clip.offset = options.offset;
+  clip.edge = {options.edge.ghost, options.edge.softness};
   const DepthBuffer& buffer = *std::get<ClipDepth>(surface.clip).buffer;
   for (std::int64_t column = 0; column < buffer.columns(); ++column)
     clip.columns.push_back(buffer.position(column, 0).x());
@@ -328,7 +338,32 @@ oracle::DepthClip describeDepth(const ClippingSurface& surface, bool isCutaway, 
     clip.sites.push_back(point.site);
     clip.depths.push_back(point.depth);
   }
+  if (c.clip == ClipFactor::hole)
+    clip.hole = {static_cast<oracle::HoleDescription::Shape>(options.hole.shape),
+                 options.hole.margin};
+  if (c.clip == ClipFactor::exactSurface)
+    for (std::int64_t i = 0; i < buffer.size(); ++i)
+      clip.given.push_back(buffer.at(i));
   return clip;
+}
+
+ClipEdge edgeOf(EdgeFactor factor) {
+  const bool isGhost = factor == EdgeFactor::ghost || factor == EdgeFactor::softGhost;
+  const bool isSoft = factor == EdgeFactor::soft || factor == EdgeFactor::softGhost;
+  return {isGhost ? 0.25 : 0.0, isSoft ? 1.5 : 0.0};
+}
+
+SurfaceOptions surfaceOptions(const Combination& c) {
+  SurfaceOptions options;
+  options.mode = c.clip == ClipFactor::cutaway ? SurfaceMode::cutaway
+                 : c.clip == ClipFactor::hole  ? SurfaceMode::hole
+                                               : SurfaceMode::surface;
+  options.smoothing = c.index % 3 == 0 ? 0.95 : 0.5;
+  options.boundary = c.clip == ClipFactor::exactSurface ? Boundary::exact : Boundary::spline;
+  options.hole = {static_cast<HoleShape>(c.index % 3), 0.5};
+  options.offset = c.offset;
+  options.edge = edgeOf(c.edge);
+  return options;
 }
 
 void placeClip(const Combination& c, Generator& generator, MatrixScene& scene) {
@@ -338,20 +373,28 @@ void placeClip(const Combination& c, Generator& generator, MatrixScene& scene) {
     return;
   if (c.clip == ClipFactor::plane) {
     const Vec3 point = randomDirection(generator), normal = randomDirection(generator);
-    product.clip = ClipPlane{camera, point, normal};
-    scene.clip = oracle::PlaneClip{point, normal};
+    const ClipEdge edge = edgeOf(c.edge);
+    product.clip = ClipPlane{camera, point, normal, edge};
+    scene.clip = oracle::PlaneClip{point, normal, {edge.ghost, edge.softness}};
     return;
   }
-  const bool isCutaway = c.clip == ClipFactor::cutaway;
-  const double smoothing = c.index % 3 == 0 ? 0.95 : 0.5;
-  const ClippingSurface surface = buildClippingSurface(
-      camera, Domain(product.volume.grid, product.crop), focusOf(),
-      {isCutaway ? SurfaceMode::cutaway : SurfaceMode::surface, 50, smoothing});
+  const SurfaceOptions options = surfaceOptions(c);
+  const ClippingSurface surface =
+      buildClippingSurface(camera, Domain(product.volume.grid, product.crop), focusOf(), options);
   product.clip = surface.clip;
-  scene.clip = describeDepth(surface, isCutaway, smoothing);
+  scene.clip = describeDepth(c, surface, options);
   const DepthBuffer& buffer = *std::get<ClipDepth>(surface.clip).buffer;
   for (std::int64_t i = 0; i < buffer.size(); ++i)
     scene.productDepths.push_back(buffer.at(i));
+}
+
+void styleContext(StyleFactor factor, MatrixScene& scene) {
+  if (factor == StyleFactor::none)
+    return;
+  const double extinction = factor == StyleFactor::pale ? 1.0 : 0.3;
+  const double saturation = factor == StyleFactor::thin ? 1.0 : 0.2;
+  scene.style = {focusOf(), extinction, saturation};
+  scene.product.style = {std::make_shared<const Mask>(focusOf()), extinction, saturation};
 }
 
 Background backgroundOf(BackgroundFactor kind) {
@@ -378,7 +421,11 @@ std::vector<Combination> combinations(int count) {
 std::string describe(const Combination& c) {
   static constexpr const char* views[] = {"orthographic", "perspective", "orthographic inside",
                                           "perspective inside"};
-  static constexpr const char* clips[] = {"no clip", "plane", "cutaway", "surface"};
+  static constexpr const char* clips[] = {"no clip", "plane",         "cutaway",
+                                          "surface", "exact surface", "hole"};
+  static constexpr const char* edges[] = {"", ", ghost", ", soft", ", soft ghost"};
+  static constexpr const char* styles[] = {"", ", thin context", ", pale context",
+                                           ", thin pale context"};
   static constexpr const char* lights[] = {"constant",  "map",  "directional",
                                            "rectangle", "disk", "several"};
   static constexpr const char* albedos[] = {"0", "0.5", "0.999", "1", "per channel", "by scalar"};
@@ -390,9 +437,14 @@ std::string describe(const Combination& c) {
   static constexpr const char* backgrounds[] = {"color", "transparent", "environment"};
   const auto name = [](const auto& names, auto kind) { return names[static_cast<int>(kind)]; };
   std::ostringstream text;
-  text << name(views, c.view) << " | " << name(clips, c.clip) << (c.isCropped ? ", cropped" : "")
-       << " | " << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo)
-       << " | " << name(transfers, c.transfer) << (c.isHybrid ? ", hybrid" : "") << " | "
+  text << name(views, c.view) << " | " << name(clips, c.clip);
+  if (c.clip != ClipFactor::none)
+    text << name(edges, c.edge);
+  if (c.clip > ClipFactor::plane && c.offset != 0.0)
+    text << (c.offset < 0.0 ? ", nearer" : ", deeper");
+  text << name(styles, c.style) << (c.isCropped ? ", cropped" : "") << " | "
+       << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo) << " | "
+       << name(transfers, c.transfer) << (c.isHybrid ? ", hybrid" : "") << " | "
        << name(voxels, c.voxels) << " | " << name(grids, c.grid) << " | "
        << name(backgrounds, c.background) << " | ";
   if (c.bounces == std::numeric_limits<std::uint64_t>::max())
@@ -412,6 +464,7 @@ MatrixScene matrixScene(const Combination& c) {
   if (c.isCropped)
     scene.product.crop = CropBox(cropOf(generator));
   placeClip(c, generator, scene);
+  styleContext(c.style, scene);
   return scene;
 }
 
@@ -428,7 +481,8 @@ oracle::OracleScene MatrixScene::forOracle() const {
           clip,
           crop,
           settings.path.background,
-          settings.path.bounces};
+          settings.path.bounces,
+          style};
 }
 
 } // namespace fenestra::testing

@@ -15,7 +15,11 @@
 namespace fenestra::testing {
 
 enum class ViewFactor { orthographic, perspective, orthographicInside, perspectiveInside };
-enum class ClipFactor { none, plane, cutaway, surface };
+enum class ClipFactor { none, plane, cutaway, surface, exactSurface, hole };
+/// How sharp a clip's edge is.
+enum class EdgeFactor { sharp, ghost, soft, softGhost };
+/// What is not focus looks like.
+enum class StyleFactor { none, thin, pale, thinAndPale };
 enum class LightFactor { constant, map, directional, rectangle, disk, several };
 enum class AlbedoFactor { black, half, nearlyOne, one, perChannel, byScalar };
 enum class TransferFactor {
@@ -44,6 +48,9 @@ struct Combination {
   bool isCropped = false;
   BackgroundFactor background{};
   std::uint64_t bounces = 0; ///< the greatest number: unlimited
+  EdgeFactor edge{};
+  StyleFactor style{};
+  double offset = 0.0; ///< of the clip, mm
 };
 
 /// The first `count` of an endless list.
@@ -57,6 +64,7 @@ struct MatrixScene {
   TestScene product;
   RenderSettings settings; ///< background and bounces
   oracle::ClipDescription clip = {};
+  std::optional<oracle::StyleDescription> style = {};
   /// Of a depth clip's buffer, mm, row by row: to be compared with the oracle's.
   std::vector<double> productDepths = {};
 

@@ -2,6 +2,8 @@
 
 #include "Support.h"
 
+#include "render/FocusMeasures.h"
+
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -37,8 +39,8 @@ struct Cube {
     const LightSet lights(scene.lights, scene.volume.grid, camera);
     const CellRanges ranges(scene.volume, 0);
     const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, clip);
-    return focusCoverage({scene.volume, scene.transfer, majorants, lights, camera, clip},
-                         std::vector<double>(256, focusDepth), 1);
+    const RenderScene clipped{scene.volume, scene.transfer, majorants, lights, camera, clip};
+    return focusCoverage(clipped, FocusPoints(clipped, std::vector<double>(256, focusDepth)), 1);
   }
 };
 

@@ -1,4 +1,5 @@
 fenestra_test(ClippingTests
+  ClipKindTests.cxx
   ClipTests.cxx
   ContourTests.cxx
   DepthBufferTests.cxx

@@ -1,0 +1,273 @@
+// Soft edges and ghosts, holes, planes that place themselves, and how the context's outline is
+// measured: against geometry.
+
+#include "ClippingTesting.h"
+#include "clipping/BoundaryMeasures.h"
+#include "clipping/ClippingSurface.h"
+#include "clipping/FocusPlane.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+constexpr std::array projections{Projection::orthographic, Projection::perspective};
+
+/// A ball of radius 12 mm in the middle of a cube of 80 mm, seen from 100 mm in front of it.
+struct Ball {
+  Grid volume = centredGrid({80, 80, 80});
+  Mask focus = maskOf(volume, [](const Vec3& p) { return p.norm() < 12.0; });
+  Camera camera;
+
+  explicit Ball(Projection projection) : camera(anteriorCamera(projection, 100, 40, 161, 161)) {}
+
+  ClippingSurface surface(const SurfaceOptions& options) const {
+    return buildClippingSurface(camera, volume, focus, options);
+  }
+  /// keep at a depth on the eye ray through (x, y) on the plane through the target.
+  double keepAt(const Clip& clip, double x, double y, double depth) const {
+    return keep(clip, fromBuffer(camera, Vec3(x, y, depth)));
+  }
+};
+
+TEST(ClipEdge, RisesLinearlyFromTheGhostBehindTheSurface) {
+  const ClipEdge sharp, ghost{0.25, 0.0}, soft{0.0, 4.0}, both{0.2, 4.0};
+  EXPECT_EQ(sharp(-1e-9), 0.0);
+  EXPECT_EQ(sharp(0.0), 1.0);
+  EXPECT_EQ(ghost(-3.0), 0.25);
+  EXPECT_EQ(ghost(0.0), 1.0);
+  EXPECT_EQ(soft(-1.0), 0.0);
+  EXPECT_DOUBLE_EQ(soft(1.0), 0.25);
+  EXPECT_EQ(soft(4.0), 1.0);
+  EXPECT_DOUBLE_EQ(both(0.0), 0.2);
+  EXPECT_DOUBLE_EQ(both(2.0), 0.6);
+  EXPECT_EQ(both(infinity), 1.0);
+}
+
+TEST(ClipEdge, AGhostIsSeenFromTheEyeOn) {
+  const Ball ball(Projection::perspective);
+  SurfaceOptions options;
+  options.edge.ghost = 0.125;
+  const Clip clip = ball.surface(options).clip;
+  EXPECT_EQ(ball.keepAt(clip, 0, 0, 50.0), 0.125);
+  EXPECT_EQ(ball.keepAt(clip, 0, 0, 95.0), 1.0);
+  EXPECT_EQ(keep(clip, ball.camera.pose().position - ball.camera.forward()), 0.0);
+  const Ray ray = ball.camera.rayThrough({0.0, 0.0});
+  EXPECT_EQ(visible(clip, ray).begin, 0.0);
+  EXPECT_NEAR(behindSurface(clip, ray).begin, 88.0, 0.3);
+}
+
+TEST(ClipEdge, BoxesBoundWhatIsKeptInThem) {
+  Random random(3, 0, 0);
+  for (const Projection projection : projections) {
+    const Ball ball(projection);
+    std::vector<Clip> clips;
+    for (const ClipEdge& edge : {ClipEdge{0.25, 0.0}, ClipEdge{0.0, 6.0}, ClipEdge{0.25, 6.0}}) {
+      clips.push_back(ClipPlane{ball.camera, {0, -5, 0}, Vec3(0.3, -1, 0.2).normalized(), edge});
+      for (const SurfaceMode mode : {SurfaceMode::surface, SurfaceMode::hole}) {
+        SurfaceOptions options;
+        options.mode = mode;
+        options.edge = edge;
+        clips.push_back(ball.surface(options).clip);
+      }
+    }
+    for (const Clip& clip : clips) {
+      int below1 = 0, uniformly = 0;
+      for (int trial = 0; trial < 2000; ++trial) {
+        const Vec3 lower = randomPoint(random, -40, 36);
+        const Box box{lower, lower + std::pow(random.uniform(), 3) * randomPoint(random, 0, 30)};
+        Corners corners;
+        for (int i = 0; i < 8; ++i)
+          corners[static_cast<std::size_t>(i)] = box.corner(i);
+        const Kept verdict = keptIn(clip, corners);
+        for (int i = 0; i < 30; ++i) {
+          const Vec3 share = randomPoint(random, 0, 1);
+          const double kept =
+              keep(clip, box.lower + share.cwiseProduct(Vec3(box.upper - box.lower)));
+          ASSERT_LE(kept, verdict.most);
+          if (verdict.isUniform)
+            ASSERT_EQ(kept, verdict.most);
+        }
+        below1 += verdict.most < 1.0;
+        uniformly += verdict.isUniform;
+      }
+      EXPECT_GT(below1, 200) << "not merely cautious";
+      EXPECT_GT(uniformly, 200);
+    }
+  }
+}
+
+TEST(Clip, AnOffsetMovesTheWholeSurfaceAlongTheView) {
+  const Ball ball(Projection::orthographic);
+  SurfaceOptions options;
+  const auto plain = std::get<ClipDepth>(ball.surface(options).clip);
+  options.offset = -2.5;
+  const auto moved = std::get<ClipDepth>(ball.surface(options).clip);
+  for (std::int64_t i = 0; i < plain.buffer->size(); ++i)
+    ASSERT_NEAR(moved.buffer->at(i), plain.buffer->at(i) - 2.5, 1e-4);
+}
+
+class Holes : public testing::TestWithParam<Projection> {};
+
+TEST_P(Holes, ABoxIsFlatAtTheFocusFarthestVisiblePointAndWiderByItsMargin) {
+  const Ball ball(GetParam());
+  SurfaceOptions options;
+  options.mode = SurfaceMode::hole;
+  options.hole = {HoleShape::box, 6.0};
+  const ClippingSurface surface = ball.surface(options);
+  double half = 0.0, bottom = 0.0;
+  const DepthBuffer& depth = surface.focus.depth;
+  for (std::int64_t row = 0; row < depth.rows(); ++row)
+    for (std::int64_t column = 0; column < depth.columns(); ++column)
+      if (surface.focus.isFocus(column, row)) {
+        half = std::max(half, depth.position(column, row).x());
+        bottom = std::max(bottom, depth.at(depth.sample(column, row)));
+      }
+  EXPECT_NEAR(half, 12.0, 0.6);
+  const auto below = [&](double x, double y, double z) {
+    return ball.keepAt(surface.clip, x, y, z);
+  };
+  const double inside = half + 5.0, outside = half + 7.0;
+  for (const double sign : {-1.0, 1.0}) {
+    EXPECT_EQ(below(sign * inside, inside, bottom - 0.01), 0.0) << "a box has corners";
+    EXPECT_EQ(below(sign * inside, inside, bottom + 0.01), 1.0);
+    EXPECT_EQ(below(sign * outside, 0, 70.0), 1.0);
+    EXPECT_EQ(below(0, sign * outside, 70.0), 1.0);
+  }
+  EXPECT_EQ(below(0, 0, 89.0), 1.0) << "the focus itself stays";
+  EXPECT_EQ(below(0, 0, 87.0), 0.0);
+}
+
+TEST_P(Holes, ACylinderIsRound) {
+  const Ball ball(GetParam());
+  SurfaceOptions options;
+  options.mode = SurfaceMode::hole;
+  options.hole = {HoleShape::cylinder, 6.0};
+  const Clip clip = ball.surface(options).clip;
+  EXPECT_EQ(ball.keepAt(clip, 17.0, 0, 80.0), 0.0);
+  EXPECT_EQ(ball.keepAt(clip, 13.0, 13.0, 80.0), 1.0);
+  EXPECT_EQ(ball.keepAt(clip, 19.5, 0, 80.0), 1.0);
+}
+
+TEST_P(Holes, ASphereLeavesABowl) {
+  const Ball ball(GetParam());
+  SurfaceOptions options;
+  options.mode = SurfaceMode::hole;
+  options.hole = {HoleShape::sphere, 8.0};
+  const Clip clip = ball.surface(options).clip;
+  // The ball that was pushed in holds the visible half, or less, of the focus: it is found again
+  // from its bottom along three rays.
+  const auto& depth = std::get<ClipDepth>(clip);
+  const auto bottom = [&](double x, double y) {
+    return fromBuffer(ball.camera, Vec3(x, y, depth.surface({x, y})));
+  };
+  const Vec3 a = bottom(14.0, 0), b = bottom(-14.0, 0), c = bottom(0, 15.0), d = bottom(0, -16.0);
+  Mat3 chords;
+  chords << (b - a).transpose(), (c - a).transpose(), (d - a).transpose();
+  const Vec3 right(0.5 * (b.squaredNorm() - a.squaredNorm()),
+                   0.5 * (c.squaredNorm() - a.squaredNorm()),
+                   0.5 * (d.squaredNorm() - a.squaredNorm()));
+  const Vec3 center = chords.inverse() * right;
+  EXPECT_NEAR(center.x(), 0.0, 0.5);
+  EXPECT_NEAR(center.z(), 0.0, 0.5);
+  EXPECT_GT((a - center).norm(), 12.0 + 7.0);
+  EXPECT_LT((a - center).norm(), 15.0 + 8.0);
+  EXPECT_EQ(ball.keepAt(clip, 30.0, 0, 70.0), 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Projections, Holes, testing::ValuesIn(projections));
+
+TEST(FocusPlane, IsThePlaneOfAFlatFocus) {
+  const Grid volume = centredGrid({80, 80, 80});
+  const Vec3 normal = Vec3(0.3, -1.0, 0.2).normalized();
+  const Mask focus = maskOf(volume, [&](const Vec3& p) {
+    return std::abs(p.dot(normal)) < 4.0 && (p - p.dot(normal) * normal).norm() < 20.0;
+  });
+  for (const Projection projection : projections) {
+    const Camera camera = anteriorCamera(projection, 150, 40, 128, 128);
+    const ClipPlane plane = focusPlane(camera, traceFocus(camera, volume, focus));
+    EXPECT_GT(plane.normal.dot(normal), std::cos(2.0 * pi / 180.0));
+    // Of the slab it is the side that the eye sees, to half a voxel.
+    EXPECT_NEAR(plane.point.dot(normal), 4.0, 0.6);
+    EXPECT_LT(plane.normal.dot(camera.forward()), 0.0);
+  }
+}
+
+TEST(FocusPlane, FacesTheEyeWhereThereIsOneSample) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 150, 40, 3, 3);
+  const Grid volume = centredGrid({80, 80, 80});
+  const Mask focus = boxMask(volume, {-3, -3, -3}, {3, 3, 3});
+  const ClipPlane plane = focusPlane(camera, traceFocus(camera, volume, focus));
+  EXPECT_LT((plane.normal + camera.forward()).norm(), 1e-9);
+}
+
+/// A cuboid focus whose front face is at a depth of 84 mm, in a cube whose face is at 60 mm.
+struct Cuboid {
+  Grid volume = centredGrid({80, 80, 80});
+  Mask focus = boxMask(volume, {-16, -16, -24}, {16, 16, 24});
+  Camera camera = anteriorCamera(Projection::orthographic, 100, 40, 160, 160);
+};
+
+TEST(BoundaryMeasures, AreTheHeightOfTheCliffsOfACutaway) {
+  const Cuboid model;
+  const ClippingSurface surface =
+      buildClippingSurface(model.camera, model.volume, model.focus, {.mode = SurfaceMode::cutaway});
+  const BoundaryMeasures measures = measureBoundary(surface.clip, model.volume, surface.focus);
+  const DepthBuffer& depth = surface.focus.depth;
+  const double front = depth.at(depth.viewportSample(80, 80));
+  EXPECT_NEAR(measures.gap.mean, front - 60.0, 1e-4);
+  EXPECT_NEAR(measures.gap.max, front - 60.0, 1e-4);
+  EXPECT_NEAR(measures.slopeJump.max, 0.0, 1e-3);
+  EXPECT_EQ(measures.depthJumps, 0.0);
+  EXPECT_GT(measures.crossings, 100U);
+}
+
+TEST(BoundaryMeasures, AreNothingWhereTheSurfaceIsThePlaneOfTheFocus) {
+  const Cuboid model;
+  for (const Boundary boundary : {Boundary::spline, Boundary::exact}) {
+    SurfaceOptions options;
+    options.boundary = boundary;
+    const ClippingSurface surface =
+        buildClippingSurface(model.camera, model.volume, model.focus, options);
+    const BoundaryMeasures measures = measureBoundary(surface.clip, model.volume, surface.focus);
+    EXPECT_LT(measures.gap.max, 1e-3);
+    EXPECT_LT(measures.slopeJump.max, 1e-3);
+  }
+}
+
+TEST(BoundaryMeasures, AreATiltedPlanesDistanceAndSlope) {
+  const Cuboid model;
+  const FocusDepth focus = traceFocus(model.camera, model.volume, model.focus);
+  const double front = focus.depth.at(focus.depth.viewportSample(80, 80));
+  // Depth front + 0.25 x over the view: 0 to 4 mm from the face along its outline.
+  const Vec3 through = fromBuffer(model.camera, Vec3(0, 0, front));
+  const Vec3 normal = 0.25 * model.camera.right() - model.camera.forward();
+  const Clip clip = ClipPlane{model.camera, through, normal.normalized()};
+  const BoundaryMeasures measures = measureBoundary(clip, model.volume, focus);
+  EXPECT_NEAR(measures.gap.max, 4.0, 0.15);
+  EXPECT_NEAR(measures.gap.mean, 0.5 * (4.0 + 2.0), 0.15) << "4 on two sides, 0 to 4 on the others";
+  EXPECT_NEAR(measures.slopeJump.max, 0.25, 1e-3);
+  EXPECT_NEAR(measures.slopeJump.mean, 0.125, 0.01) << "along x only";
+}
+
+TEST(BoundaryMeasures, CountTheFocusOwnJumpsApart) {
+  const Grid volume = centredGrid({80, 80, 80});
+  // The right half lies 10 mm deeper.
+  const Mask focus = maskOf(volume, [](const Vec3& p) {
+    return std::abs(p.x()) < 16.0 && std::abs(p.z()) < 16.0 &&
+           std::abs(p.y() - (p.x() > 0.0 ? 10.0 : 0.0)) < 6.0;
+  });
+  const Camera camera = anteriorCamera(Projection::orthographic, 100, 40, 160, 160);
+  SurfaceOptions options;
+  options.boundary = Boundary::exact;
+  const ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);
+  const BoundaryMeasures measures = measureBoundary(surface.clip, volume, surface.focus);
+  // Two samples to each side of the jump, above and below.
+  EXPECT_NEAR(measures.depthJumps * static_cast<double>(measures.crossings), 4.0, 4.0);
+  EXPECT_GT(measures.depthJumps, 0.0);
+  EXPECT_LT(measures.gap.max, 3.0);
+}
+
+} // namespace

@@ -1,0 +1,133 @@
+// Margins and smooth labels, against balls and slabs.
+
+#include "ClippingTesting.h"
+#include "clipping/FocusDepth.h"
+#include "core/Error.h"
+#include "io/medical/SegmentationReader.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+const Grid volume = centredGrid({61, 61, 41}, {1.0, 1.0, 1.5});
+
+/// As readers make them: cropped to the segment, and a voxel more.
+Mask ball(double radius) {
+  return maskOf(centredGrid({33, 33, 25}, {1.0, 1.0, 1.5}),
+                [&](const Vec3& p) { return p.norm() <= radius; });
+}
+
+double millimetres3(const Mask& mask) {
+  return static_cast<double>(mask.count) * mask.grid.spacing().prod();
+}
+
+double ballOf(double radius) {
+  return 4.0 / 3.0 * pi * radius * radius * radius;
+}
+
+TEST(MaskShaping, GrowsABallByItsMargin) {
+  for (const double margin : {1.5, 4.0, 9.0}) {
+    const Mask grownBall = grown(ball(10.0), margin, volume);
+    // Voxel centres within the margin of voxel centres: half a voxel's uncertainty.
+    EXPECT_GT(millimetres3(grownBall), ballOf(10.0 + margin - 0.7));
+    EXPECT_LT(millimetres3(grownBall), ballOf(10.0 + margin + 0.5));
+    EXPECT_LT(grownBall.grid.worldCenter().norm(), 1e-9);
+  }
+}
+
+TEST(MaskShaping, ShrinksABallByItsMargin) {
+  const Mask shrunk = grown(ball(10.0), -3.0, volume);
+  EXPECT_GT(millimetres3(shrunk), ballOf(10.0 - 3.0 - 1.0));
+  EXPECT_LT(millimetres3(shrunk), ballOf(10.0 - 3.0 + 0.7));
+  EXPECT_EQ(grown(ball(10.0), -30.0, volume).count, 0);
+}
+
+TEST(MaskShaping, ReachesAVoxelBeyondTheVolumeAtMost) {
+  const Mask all = grown(ball(10.0), 1000.0, volume);
+  EXPECT_TRUE((all.grid.size.array() <= volume.size.array() + 4).all());
+  EXPECT_EQ(all.count, all.grid.voxelCount());
+}
+
+TEST(MaskShaping, KeepsAFocusThatTheVolumeCutsWholeThere) {
+  // Its outermost voxels along x are focus: it goes on beyond.
+  const Mask slab = maskOf(centredGrid({61, 21, 21}), [](const Vec3& p) {
+    return std::abs(p.y()) < 6.5 && std::abs(p.z()) < 6.5;
+  });
+  const Mask shrunk = grown(slab, -2.0, volume);
+  EXPECT_EQ(shrunk.count, 61 * 9 * 9);
+}
+
+TEST(MaskShaping, UnitesSegmentsWhereverTheirVoxelsLie) {
+  const auto box = [](const Vec3& lower, const Vec3& upper) {
+    const Grid whole = centredGrid({40, 40, 40});
+    return boxMask(whole, lower, upper);
+  };
+  const Mask a = grown(box({-10, -10, -10}, {-5, -5, -5}), 1.0, volume);
+  const Mask b = box({5, 5, 5}, {9, 9, 9});
+  const Mask both = united({a, b});
+  EXPECT_EQ(both.count, a.count + b.count);
+  EXPECT_EQ(both.names.size(), 2U);
+  EXPECT_EQ(united({a, a}).count, a.count);
+}
+
+/// Greatest distance of the visible surface from a sphere of `radius`, over its middle.
+double stairs(const Mask& mask, double radius) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 100, 20, 128, 128);
+  const FocusDepth focus = traceFocus(camera, volume, mask);
+  std::vector<double> misses;
+  for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
+    for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
+      const Vec2 at = focus.depth.position(column, row);
+      if (at.norm() < 0.5 * radius)
+        misses.push_back(100.0 - std::sqrt(radius * radius - at.squaredNorm()) -
+                         focus.depth.at(focus.depth.sample(column, row)));
+    }
+  const auto [least, greatest] = std::ranges::minmax(misses);
+  return greatest - least;
+}
+
+TEST(MaskShaping, SmoothingTakesTheStairsAndLeavesTheSurface) {
+  const double radius = 12.0;
+  const Mask steps = ball(radius), smooth = smoothed(steps, 1.2, volume);
+  EXPECT_EQ(smooth.full, 255);
+  EXPECT_GT(stairs(steps, radius), 0.5);
+  EXPECT_LT(stairs(smooth, radius), 0.25);
+  // A ball shrinks by deviation^2 / radius.
+  EXPECT_NEAR(std::cbrt(millimetres3(smooth) / ballOf(1.0)),
+              std::cbrt(millimetres3(steps) / ballOf(1.0)) - 1.44 / radius, 0.12);
+}
+
+TEST(MaskShaping, AFlatFaceStaysWhereItIs) {
+  const Mask box = boxMask(centredGrid({60, 60, 40}), {-20, -9, -15}, {20, 9, 15});
+  const Camera camera = anteriorCamera(Projection::orthographic, 100, 20, 64, 64);
+  const auto depth = [&](const Mask& mask) {
+    const FocusDepth focus = traceFocus(camera, volume, mask);
+    return focus.depth.at(focus.depth.viewportSample(32, 32));
+  };
+  EXPECT_NEAR(depth(smoothed(box, 1.0, volume)), depth(box), 0.01) << "a byte's rounding";
+}
+
+TEST(MaskShaping, ASegmentationTakesAMarginForEachSegment) {
+  const Grid grid = centredGrid({40, 40, 40});
+  std::vector<std::uint8_t> labels;
+  for (std::int64_t z = 0; z < 40; ++z)
+    for (std::int64_t y = 0; y < 40; ++y)
+      for (std::int64_t x = 0; x < 40; ++x)
+        labels.push_back(x == 10 && y == 20 && z == 20 ? 1 : x == 30 && y == 20 && z == 20 ? 2 : 0);
+  const Segmentation segmentation("test", grid, 1, labels, {{"a", "A", 1}, {"b", "B", 2}});
+  const auto count = [&](const MaskShaping& shaping) {
+    return segmentation.mask({"A", "B"}, grid, shaping).count;
+  };
+  EXPECT_EQ(count({}), 2);
+  EXPECT_EQ(count({{1.0}}), 14);
+  EXPECT_EQ(count({{0.0, 1.0}}), 8);
+  EXPECT_EQ(count({{1.5, 1.0}}), 19 + 7);
+  EXPECT_THROW(count({{1.0, 2.0, 3.0}}), Error);
+  EXPECT_THROW(count({{-1.0}}), Error) << "nothing is left";
+  EXPECT_THROW(count({{}, 5.0}), Error) << "nothing is left";
+}
+
+} // namespace
