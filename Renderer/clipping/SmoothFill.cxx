@@ -1,58 +1,19 @@
 #include "clipping/SmoothFill.h"
 
-#include <Eigen/SparseLU>
+#include "clipping/FillAxis.h"
+#include "clipping/SampleTiles.h"
+
+#include <Eigen/SparseCholesky>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace fenestra {
 
 namespace {
-
-/// Weights of the two neighbours in a second derivative along an axis.
-struct Stencil {
-  float before, after;
-};
-
-/// Samples of one axis: where they are, and the stencils there. At the ends the slope is 0.
-class FillAxis {
-public:
-  explicit FillAxis(std::vector<double> coordinates) : m_at(std::move(coordinates)) {
-    const std::size_t last = m_at.size() - 1;
-    for (std::size_t i = 0; i <= last; ++i) {
-      const double before = i == 0 ? 0.0 : spacing(i - 1);
-      const double after = i == last ? 0.0 : spacing(i);
-      const double width = i == 0 ? after : i == last ? before : 0.5 * (before + after);
-      m_before.push_back(weight(width * before));
-      m_after.push_back(weight(width * after));
-      m_greatest = std::max(m_greatest, double{m_before[i]} + m_after[i]);
-    }
-  }
-
-  std::size_t size() const { return m_at.size(); }
-  /// From sample i to the next, mm.
-  double spacing(std::size_t i) const { return std::abs(m_at[i + 1] - m_at[i]); }
-  FillAxis halved() const {
-    std::vector<double> coarse;
-    for (std::size_t i = 0; i < m_at.size(); i += 2)
-      coarse.push_back(0.5 * (m_at[i] + m_at[std::min(i + 1, m_at.size() - 1)]));
-    return FillAxis(std::move(coarse));
-  }
-
-  Stencil stencil(std::size_t i) const { return {m_before[i], m_after[i]}; }
-  const float* before() const { return m_before.data(); }
-  const float* after() const { return m_after.data(); }
-  double greatest() const { return m_greatest; } ///< sum of a stencil
-
-private:
-  static float weight(double area) { return area > 0.0 ? static_cast<float>(1.0 / area) : 0.0f; }
-
-  std::vector<double> m_at;
-  std::vector<float> m_before, m_after; ///< of the stencils
-  double m_greatest = 0.0;
-};
 
 /// L along a row, of arrays that lie apart from each other.
 struct RowStencil {
@@ -149,7 +110,7 @@ public:
   void continueBoundary(double length) {
     const std::vector<float> own = m_depth;
     std::vector<std::uint8_t> known(m_depth.size(), 0);
-    findBoundary(stiffest);
+    findBoundary();
     std::vector<std::size_t> front, next;
     for (const float free : {0.0f, 1.0f}) { // into the focus first: slopes out of it begin there
       front.clear();
@@ -175,37 +136,72 @@ public:
     }
   }
 
-  /// Linear between the centres of the coarser samples.
+  /// The free samples, cubic between the centres of the coarser ones.
   void start(const FillLevel& coarse) {
+    // Weights of the coarse samples from two before to two behind a sample's own, for a sample in
+    // its first half; in its second half they are mirrored.
+    constexpr float weights[] = {-5.0f / 128, 35.0f / 128, 105.0f / 128, -7.0f / 128};
     forRows([&](std::size_t row) {
-      const auto near = [](std::size_t i) { return i / 2; };
-      const auto far = [](std::size_t i, std::size_t count) {
-        return i % 2 == 1 ? std::min(i / 2 + 1, count - 1) : std::max<std::size_t>(i / 2, 1) - 1;
+      const std::size_t count = coarse.columns();
+      const auto beside = [](std::size_t i, std::ptrdiff_t step, std::size_t size) {
+        const auto at = static_cast<std::ptrdiff_t>(i) + step;
+        return static_cast<std::size_t>(
+            std::clamp<std::ptrdiff_t>(at, 0, static_cast<std::ptrdiff_t>(size) - 1));
       };
-      const std::size_t j = near(row), l = far(row, coarse.rows());
-      for (std::size_t column = 0; column < columns(); ++column)
-        if (isFree(column, row)) {
-          const std::size_t i = near(column), k = far(column, coarse.columns());
-          depth(column, row) = 0.5625f * coarse.depth(i, j) + 0.0625f * coarse.depth(k, l) +
-                               0.1875f * (coarse.depth(k, j) + coarse.depth(i, l));
-        }
+      std::vector<float> across(count + 4); // with two of a margin
+      for (std::ptrdiff_t i = 0; i < 4; ++i) {
+        const std::ptrdiff_t step = row % 2 == 0 ? i - 2 : 2 - i;
+        const float weight = weights[i];
+        const float* const from =
+            &coarse.m_depth[coarse.index(0, beside(row / 2, step, coarse.rows()))];
+        for (std::size_t k = 0; k < count; ++k)
+          across[k + 2] += weight * from[k];
+      }
+      across[0] = across[1] = across[2];
+      across[count + 2] = across[count + 3] = across[count + 1];
+      const float* const free = &m_free[index(0, row)];
+      float* const depth = &m_depth[index(0, row)];
+      for (std::size_t k = 0; k < columns() / 2; ++k) {
+        const float* const at = &across[k];
+        const float first =
+            weights[0] * at[0] + weights[1] * at[1] + weights[2] * at[2] + weights[3] * at[3];
+        const float second =
+            weights[3] * at[1] + weights[2] * at[2] + weights[1] * at[3] + weights[0] * at[4];
+        depth[2 * k] += free[2 * k] * (first - depth[2 * k]);
+        depth[2 * k + 1] += free[2 * k + 1] * (second - depth[2 * k + 1]);
+      }
+      if (columns() % 2 == 1 && free[columns() - 1] != 0.0f)
+        depth[columns() - 1] = across[count + 1];
     });
   }
 
-  /// `steps` of Chebyshev's iteration for  L L u - L u / length² = 0  at the free samples.
+  /// `steps` of Chebyshev's iteration for  L L u - L u / length² = 0  at the free samples near the
+  /// boundary: away from it the coarser level's surface is as good.
   void relax(double length, int steps) {
-    findBoundary(stiffest);
+    stiffen(stiffest);
+    SampleTiles tiles(columns(), rows());
+    for (const Edge& edge : m_edges)
+      tiles.markAround(edge.at % m_stride - 1, edge.at / m_stride - 1);
+    const std::vector<SampleRun> moved = tiles.runs(0), curved = tiles.runs(1);
     const double tension = 1.0 / (length * length);
     const double high = highest(tension);
     const double low = high / (0.25 * steps * steps);
     const double centre = 0.5 * (high + low), radius = 0.5 * (high - low);
-    std::vector<float> curvature(m_depth.size(), 0.0f), change(m_depth.size(), 0.0f);
+    // Only what is near is touched.
+    const auto curvature = std::make_unique_for_overwrite<float[]>(m_depth.size());
+    const auto change = std::make_unique_for_overwrite<float[]>(m_depth.size());
+    for (const SampleRun& run : curved) // stencils reach a sample further
+      for (const std::size_t row : {run.row, run.row + 1, run.row + 2}) {
+        const std::size_t first = row * m_stride + run.begin;
+        std::fill_n(&curvature[first], run.end - run.begin + 2, 0.0f);
+        std::fill_n(&change[first], run.end - run.begin + 2, 0.0f);
+      }
     double rho = radius / centre;
     double keep = 0.0, step = 1.0 / centre;
     for (int i = 0; i < steps; ++i) {
-      curve(curvature);
-      move(curvature, change, static_cast<float>(tension), static_cast<float>(keep),
-           static_cast<float>(step));
+      curve(curved, curvature.get());
+      move(moved, curvature.get(), change.get(), static_cast<float>(tension),
+           static_cast<float>(keep), static_cast<float>(step));
       const double next = 1.0 / (2.0 * centre / radius - rho);
       keep = next * rho;
       step = 2.0 * next / radius;
@@ -215,7 +211,7 @@ public:
 
   /// The solution itself; for a few thousand samples.
   void solve(double length) {
-    findBoundary(1e6f);
+    stiffen(1e6f);
     std::vector<int> unknown(m_depth.size(), -1);
     int count = 0;
     forFree([&](std::size_t at) { unknown[at] = count++; });
@@ -226,12 +222,14 @@ public:
       edgeAt[edge.at] = &edge;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
     std::vector<Eigen::Triplet<double>> entries;
-    // Adds `factor` times the curvature at a sample to an equation.
+    // Adds `factor` times the curvature at a sample to an equation. Of the matrix, which is
+    // symmetric, one half is enough.
     const auto addCurvature = [&](int row, std::size_t at, double factor) {
       const auto add = [&](std::size_t neighbour, double weight) {
-        if (m_free[neighbour] != 0.0f)
-          entries.emplace_back(row, unknown[neighbour], factor * weight);
-        else
+        if (unknown[neighbour] >= 0) {
+          if (unknown[neighbour] <= row)
+            entries.emplace_back(row, unknown[neighbour], factor * weight);
+        } else
           right[row] -= factor * weight * m_depth[neighbour];
       };
       if (const Edge* const edge = edgeAt[at]) {
@@ -253,17 +251,18 @@ public:
       add(at, -sum);
     };
     forFree([&](std::size_t at) {
+      const double area = this->area(at);
       double sum = 1.0 / (length * length);
       forWeights(at, [&](std::size_t neighbour, double weight) {
-        addCurvature(unknown[at], neighbour, weight);
+        addCurvature(unknown[at], neighbour, area * weight);
         sum += weight;
       });
-      addCurvature(unknown[at], at, -sum);
+      addCurvature(unknown[at], at, -area * sum);
     });
     Eigen::SparseMatrix<double> matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
     const Eigen::VectorXd depths =
-        Eigen::SparseLU<Eigen::SparseMatrix<double>>(matrix).solve(right);
+        Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
     forFree([&](std::size_t at) { m_depth[at] = static_cast<float>(depths[unknown[at]]); });
   }
 
@@ -282,6 +281,11 @@ private:
     for (std::size_t at = 0; at < m_free.size(); ++at)
       if (m_free[at] != 0.0f)
         function(at);
+  }
+
+  /// mm². Times it, L is symmetric.
+  double area(std::size_t at) const {
+    return m_x.width(at % m_stride - 1) * m_y.width(at / m_stride - 1);
   }
 
   /// Of a sample: each neighbour and its weight in L.
@@ -342,16 +346,23 @@ private:
     return (row + 1) * m_stride + column + 1;
   }
 
-  /// `stiffness`: the most that a boundary may be stiffer than the plate.
-  void findBoundary(float stiffness) {
-    m_edges.clear();
-    for (std::size_t row = 0; row < rows(); ++row)
-      for (std::size_t column = 0; column < columns(); ++column) {
-        const std::size_t at = index(column, row);
-        if (m_free[at] == 0.0f &&
-            m_free[at - 1] + m_free[at + 1] + m_free[at - m_stride] + m_free[at + m_stride] > 0.0f)
-          m_edges.push_back(edge(column, row, stiffness));
-      }
+  /// The focus samples beside free ones.
+  void findBoundary() {
+    const auto stride = static_cast<std::ptrdiff_t>(m_stride);
+    for (std::size_t row = 0; row < rows(); ++row) {
+      const float* free = &m_free[index(0, row)];
+      for (std::size_t column = 0; column < columns(); ++column, ++free)
+        if (free[0] == 0.0f && free[-1] + free[1] + free[-stride] + free[stride] > 0.0f)
+          m_edges.push_back({index(column, row), 0.0f, 0.0f, 0.0f, 0.0f, 0.0f});
+    }
+  }
+
+  /// `stiffness`: the most that the boundary may be stiffer than the plate.
+  void stiffen(float stiffness) {
+    if (m_edges.empty())
+      findBoundary();
+    for (Edge& each : m_edges)
+      each = edge(each.at % m_stride - 1, each.at / m_stride - 1, stiffness);
   }
 
   Edge edge(std::size_t column, std::size_t row, float stiffness) const {
@@ -390,11 +401,20 @@ private:
     });
   }
 
+  /// Neighbouring runs are short: a thread does several.
+  template <typename Function>
+  static void forRuns(const std::vector<SampleRun>& runs, const Function& function) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), 256), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i)
+        function(runs[i]);
+    });
+  }
+
   /// L of the depths.
-  void curve(std::vector<float>& curvature) const {
-    forRows([&](std::size_t row) {
-      const std::size_t first = index(0, row);
-      curveRow(rowStencil(row), &m_depth[first], &curvature[first]);
+  void curve(const std::vector<SampleRun>& runs, float* curvature) const {
+    forRuns(runs, [&](const SampleRun& run) {
+      const std::size_t first = index(run.begin, run.row);
+      curveRow(rowStencil(run), &m_depth[first], curvature + first);
     });
     for (const Edge& edge : m_edges) {
       const float* const depth = &m_depth[edge.at];
@@ -404,18 +424,18 @@ private:
     }
   }
 
-  void move(const std::vector<float>& curvature, std::vector<float>& change, float tension,
-            float keep, float step) {
-    forRows([&](std::size_t row) {
-      const std::size_t first = index(0, row);
-      moveRow(rowStencil(row), &curvature[first], &m_free[first], tension, keep, step,
-              &change[first], &m_depth[first]);
+  void move(const std::vector<SampleRun>& runs, const float* curvature, float* change,
+            float tension, float keep, float step) {
+    forRuns(runs, [&](const SampleRun& run) {
+      const std::size_t first = index(run.begin, run.row);
+      moveRow(rowStencil(run), curvature + first, &m_free[first], tension, keep, step,
+              change + first, &m_depth[first]);
     });
   }
 
-  RowStencil rowStencil(std::size_t row) const {
-    return {m_x.before(), m_x.after(), m_y.stencil(row), columns(),
-            static_cast<std::ptrdiff_t>(m_stride)};
+  RowStencil rowStencil(const SampleRun& run) const {
+    return {m_x.before() + run.begin, m_x.after() + run.begin, m_y.stencil(run.row),
+            run.end - run.begin, static_cast<std::ptrdiff_t>(m_stride)};
   }
 
   FillAxis m_x, m_y;

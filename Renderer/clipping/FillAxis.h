@@ -1,0 +1,56 @@
+#pragma once
+// One axis of a level of the exact fill: where its samples are, and what second derivatives weigh.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace fenestra {
+
+/// Weights of the two neighbours in a second derivative along an axis.
+struct Stencil {
+  float before, after;
+};
+
+/// Samples of one axis: where they are, and the stencils there. At the ends the slope is 0.
+class FillAxis {
+public:
+  explicit FillAxis(std::vector<double> coordinates) : m_at(std::move(coordinates)) {
+    const std::size_t last = m_at.size() - 1;
+    for (std::size_t i = 0; i <= last; ++i) {
+      const double before = i == 0 ? 0.0 : spacing(i - 1);
+      const double after = i == last ? 0.0 : spacing(i);
+      const double width = i == 0 ? after : i == last ? before : 0.5 * (before + after);
+      m_before.push_back(weight(width * before));
+      m_after.push_back(weight(width * after));
+      m_width.push_back(width > 0.0 ? width : 1.0);
+      m_greatest = std::max(m_greatest, double{m_before[i]} + m_after[i]);
+    }
+  }
+
+  std::size_t size() const { return m_at.size(); }
+  /// From sample i to the next, mm.
+  double spacing(std::size_t i) const { return std::abs(m_at[i + 1] - m_at[i]); }
+  FillAxis halved() const {
+    std::vector<double> coarse;
+    for (std::size_t i = 0; i < m_at.size(); i += 2)
+      coarse.push_back(0.5 * (m_at[i] + m_at[std::min(i + 1, m_at.size() - 1)]));
+    return FillAxis(std::move(coarse));
+  }
+
+  Stencil stencil(std::size_t i) const { return {m_before[i], m_after[i]}; }
+  const float* before() const { return m_before.data(); }
+  const float* after() const { return m_after.data(); }
+  double greatest() const { return m_greatest; }           ///< sum of a stencil
+  double width(std::size_t i) const { return m_width[i]; } ///< of sample i, mm
+
+private:
+  static float weight(double area) { return area > 0.0 ? static_cast<float>(1.0 / area) : 0.0f; }
+
+  std::vector<double> m_at, m_width;
+  std::vector<float> m_before, m_after; ///< of the stencils
+  double m_greatest = 0.0;
+};
+
+} // namespace fenestra
