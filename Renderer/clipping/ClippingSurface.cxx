@@ -62,24 +62,12 @@ BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
   return Distribution::of(std::move(misses));
 }
 
-/// Of the filled buffer, across each crossing that has two samples beyond it.
-BoundaryMismatch mismatchOf(const DepthBuffer& buffer, const FocusDepth& focus,
-                            const std::vector<Contour>& contours) {
-  const auto isInside = [&](std::int64_t column, std::int64_t row) {
-    return column >= 0 && row >= 0 && column < buffer.columns() && row < buffer.rows();
-  };
+/// Of the filled buffer, on the rays between the samples of the outline.
+BoundaryMismatch mismatchOf(const DepthBuffer& buffer, const std::vector<Meeting>& meetings) {
   std::vector<double> misses;
-  for (const Contour& contour : contours)
-    for (const Crossing& crossing : contour) {
-      const auto [x, y] = outward(crossing);
-      const std::int64_t column = crossing.column + 2 * x, row = crossing.row + 2 * y;
-      if (!isInside(column, row) || focus.isFocus(column, row))
-        continue;
-      const double near = buffer.at(buffer.sample(column - x, row - y));
-      const double far = buffer.at(buffer.sample(column, row));
-      const double own = buffer.at(buffer.sample(crossing.column, crossing.row));
-      misses.push_back(std::abs(2.0 * near - far - own));
-    }
+  misses.reserve(meetings.size());
+  for (const Meeting& meeting : meetings)
+    misses.push_back(std::max(0.0, meeting.depth - buffer.depth(meeting.position)));
   return Distribution::of(std::move(misses));
 }
 
@@ -181,6 +169,17 @@ void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
       buffer.set(sample, -infinity);
 }
 
+/// The rim is part of what the surface around the focus starts from.
+void fillExactly(DepthBuffer& buffer, const FocusDepth& focus, const std::vector<RimDepth>& rim,
+                 double length) {
+  std::vector<Region> given = focus.regions;
+  for (const RimDepth& sample : rim) {
+    buffer.set(sample.sample, sample.depth);
+    given[static_cast<std::size_t>(sample.sample)] = Region::focus;
+  }
+  fillSmoothly(buffer, given, length);
+}
+
 /// The spline of the focus's outline, and what it is judged by.
 ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& options) {
   const std::vector<Contour> contours = traceContours(surface.focus);
@@ -207,7 +206,8 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
                                      const SurfaceOptions& options) {
   check(options);
   Stopwatch stopwatch;
-  ClippingSurface surface{.clip = {}, .focus = traceFocus(camera, volume, focus)};
+  const FocusTracer tracer(camera, volume, focus);
+  ClippingSurface surface{.clip = {}, .focus = tracer.depths()};
   requireVisible(surface.focus, focus);
   if (!inPicture(surface.focus))
     surface.warnings.push_back(nameOf(focus) + " lies outside the picture");
@@ -219,8 +219,9 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   } else if (options.mode == SurfaceMode::hole) {
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
-    fillSmoothly(*buffer, surface.focus.regions, levellingLength(volume));
-    surface.mismatch = mismatchOf(*buffer, surface.focus, traceContours(surface.focus));
+    const Rim rim = tracer.rim(surface.focus);
+    fillExactly(*buffer, surface.focus, rim.samples, levellingLength(volume));
+    surface.mismatch = mismatchOf(*buffer, rim.meetings);
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();

@@ -34,9 +34,9 @@ struct SurfaceOptions {
   ClipEdge edge = {};
 };
 
-/// |f(x) - z| in mm over the focus samples on the contours: how far the surface around the focus,
-/// continued to them, misses their depth. f is the spline, or the line through the two samples
-/// beyond the contour.
+/// mm. Of a spline f, |f(x) - z| over the focus samples on the contours: how far it misses their
+/// depth. Of an exact boundary, how far the surface stands in front of the focus on rays between
+/// the samples where the focus ends; at the samples it does not.
 using BoundaryMismatch = Distribution;
 
 struct ClippingSurface {

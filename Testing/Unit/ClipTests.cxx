@@ -203,7 +203,8 @@ TEST(ClippingSurface, AFlatFocusContinuesAsItsPlane) {
     const ClippingSurface surface =
         buildClippingSurface(camera, model.volume, model.focus, {.boundary = boundary});
     EXPECT_EQ(surface.controlPoints.size(), boundary == Boundary::spline ? 50U : 0U);
-    EXPECT_LT(surface.mismatch.max, 1e-4);
+    // Between samples the cube's edges are rounded by up to half a voxel.
+    EXPECT_LT(surface.mismatch.max, boundary == Boundary::spline ? 1e-4 : 0.501);
     const auto& buffer = *std::get<ClipDepth>(surface.clip).buffer;
     for (std::int64_t i = 0; i < buffer.size(); ++i) {
       EXPECT_NEAR(buffer.at(i), 184.0, 1e-3);

@@ -6,6 +6,7 @@ fenestra_test(ClippingTests
   FocusDepthTests.cxx
   GridWalkTests.cxx
   KernelSumsTests.cxx
+  RimTests.cxx
   SmoothFillTests.cxx
   SurfaceMeshTests.cxx
   ThinPlateSplineTests.cxx
