@@ -1,0 +1,107 @@
+// The clipping surface's boundary, checked independently on twelve views of a knee, a liver and a
+// vertebra; prints the table that Testing/Report keeps.
+//
+//     BoundaryCheck [PIXELS [VIEWS]]     (512 a side, 12 views)
+
+#include "BoundaryMeasure.h"
+#include "Subjects.h"
+#include "TemporaryFolder.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+
+namespace fenestra::accuracy {
+namespace {
+
+/// The worst of some views, for the summary.
+struct Worst {
+  double jumpShare = 0.0, rayJumpShare = 0.0, strict = 1.0, halfVoxel = 1.0, halfVoxelSmooth = 1.0;
+  Distances gap, cut;
+
+  static void widen(Distances& worst, const Distances& other) {
+    worst = {std::max(worst.mean, other.mean), std::max(worst.p95, other.p95),
+             std::max(worst.max, other.max)};
+  }
+  void add(const BoundaryMeasure& measure) {
+    jumpShare = std::max(jumpShare, measure.jumpShare);
+    rayJumpShare = std::max(rayJumpShare, measure.rayJumpShare);
+    strict = std::min(strict, measure.strict);
+    halfVoxel = std::min(halfVoxel, measure.halfVoxel);
+    halfVoxelSmooth = std::min(halfVoxelSmooth, measure.halfVoxelSmooth);
+    widen(gap, measure.gap);
+    widen(cut, measure.cut);
+  }
+};
+
+/// A row's end: what Worst and BoundaryMeasure have in common.
+template <typename Figures>
+void printFigures(const Figures& f) {
+  std::printf(
+      " %.1f %% | %.3f | %.3f | %.3f | %.3f | %.3f | %.2f %% | %.2f %% | %.1f %% | %.3f %% |\n",
+      100.0 * f.jumpShare, f.gap.mean, f.gap.p95, f.gap.max, f.cut.p95, f.cut.max, 100.0 * f.strict,
+      100.0 * f.halfVoxel, 100.0 * f.rayJumpShare, 100.0 * f.halfVoxelSmooth);
+}
+
+constexpr const char* figureTitles =
+    " jumps | gap mean | p95 | max | cut p95 | max | shown to 0.2 mm | to half a voxel | rays at "
+    "jumps | shown elsewhere |\n";
+constexpr const char* figureRule = "---|---|---|---|---|---|---|---|---|---|\n";
+
+constexpr const char* boundaries[] = {"spline", "exact"};
+
+void sweep(const Subject& subject, int size, int views, const std::filesystem::path& folder) {
+  const FocusField field(readIndicator(subject));
+  std::printf("\n## %s\n\n| view | boundary | outline |%s|---|---|---|%s", subject.name.c_str(),
+              figureTitles, figureRule);
+  Worst worst[2];
+  for (int number = 0; number < views; ++number) {
+    const View view = viewAround(field, number, views, size);
+    const FocusView focus(field, view);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const BoundaryMeasure measure =
+          focus.measure(clipDepths(subject, view, boundaries[i], folder));
+      worst[i].add(measure);
+      std::printf("| %d° | %s | %.0f |", 360 * number / views, boundaries[i],
+                  measure.outlinePoints);
+      printFigures(measure);
+      std::fflush(stdout);
+    }
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::printf("| worst | %s | |", boundaries[i]);
+    printFigures(worst[i]);
+  }
+}
+
+void sweepAll(int size, int views) {
+  const TemporaryFolder folder;
+  const char* const named = std::getenv("FENESTRA_DATA");
+  const std::filesystem::path data = named ? named : FENESTRA_DATA;
+  const auto torso = data / "torso_ct_ccth_a01", abdomen = data / "abdomen_ct_totalseg";
+  const Subject subjects[] = {
+      makeKnee(folder.path(), ""),
+      {"liver", torso / "ct.nii.gz", torso / "seg_totalsegmentator_rtstruct.nii.gz", "1", 1},
+      {"vertebra", abdomen / "ct.nii.gz", abdomen / "seg_multiorgan.nii.gz", "20", 20}};
+  for (const Subject& subject : subjects)
+    if (std::filesystem::exists(subject.labelmap))
+      sweep(subject, size, views, folder.path());
+    else
+      std::printf("\n## %s\n\nSkipped: no real data.\n", subject.name.c_str());
+}
+
+} // namespace
+} // namespace fenestra::accuracy
+
+int main(int argc, char** argv) {
+  try {
+    fenestra::accuracy::sweepAll(argc > 1 ? std::atoi(argv[1]) : 512,
+                                 argc > 2 ? std::atoi(argv[2]) : 12);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+}

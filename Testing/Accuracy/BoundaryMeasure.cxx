@@ -1,0 +1,173 @@
+#include "BoundaryMeasure.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fenestra::accuracy {
+
+namespace {
+
+constexpr std::size_t raysAcrossPixel = 4;
+
+/// In [0, 1), from nothing but a number (splitmix64).
+double jitter(std::uint64_t number) {
+  std::uint64_t x = (number + 1) * 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
+}
+
+/// Four pixel centres around a raster position, and how far it is from the first.
+struct Cell {
+  std::size_t first;
+  double x, y;
+
+  Cell(const Vec2& raster, int size) {
+    const double last = size - 1.0;
+    const double column = std::clamp(raster.x() - 0.5, 0.0, last);
+    const double row = std::clamp(raster.y() - 0.5, 0.0, last);
+    const double left = std::min(std::floor(column), last - 1.0);
+    const double top = std::min(std::floor(row), last - 1.0);
+    first = static_cast<std::size_t>(top) * static_cast<std::size_t>(size) +
+            static_cast<std::size_t>(left);
+    x = column - left;
+    y = row - top;
+  }
+};
+
+double linear(const std::vector<float>& depths, const Vec2& raster, int size) {
+  const Cell cell(raster, size);
+  const auto at = [&](std::size_t step) { return double{depths[cell.first + step]}; };
+  const auto width = static_cast<std::size_t>(size);
+  return (1.0 - cell.y) * ((1.0 - cell.x) * at(0) + cell.x * at(1)) +
+         cell.y * ((1.0 - cell.x) * at(width) + cell.x * at(width + 1));
+}
+
+Distances summary(std::vector<double> values) {
+  Distances result;
+  if (values.empty())
+    return result;
+  std::ranges::sort(values);
+  for (const double value : values)
+    result.mean += value / static_cast<double>(values.size());
+  result.p95 = values[static_cast<std::size_t>(0.95 * static_cast<double>(values.size() - 1))];
+  result.max = values.back();
+  return result;
+}
+
+} // namespace
+
+FocusView::FocusView(const FocusField& field, const View& view)
+    : m_field(field),
+      m_view(view),
+      m_across(raysAcrossPixel * static_cast<std::size_t>(view.size)) {
+  traceRays();
+  traceOutline();
+}
+
+double FocusView::depthThrough(const Vec2& raster) const {
+  const View::EyeRay ray = m_view.through(raster);
+  return ray.depthPerLength * m_field.firstMeeting(ray.origin, ray.direction);
+}
+
+Vec2 FocusView::rayAt(std::size_t ray) const {
+  const auto column = static_cast<double>(ray % m_across);
+  const auto row = static_cast<double>(ray / m_across);
+  return Vec2(column + jitter(2 * ray), row + jitter(2 * ray + 1)) / double{raysAcrossPixel};
+}
+
+void FocusView::traceRays() {
+  const auto size = static_cast<std::size_t>(m_view.size);
+  m_centres.resize(size * size);
+  tbb::parallel_for(std::size_t{0}, size, [&](std::size_t row) {
+    for (std::size_t column = 0; column < size; ++column)
+      m_centres[row * size + column] =
+          depthThrough(Vec2(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5));
+  });
+  m_rays.resize(m_across * m_across);
+  tbb::parallel_for(std::size_t{0}, m_across, [&](std::size_t row) {
+    for (std::size_t ray = row * m_across; ray < (row + 1) * m_across; ++ray)
+      m_rays[ray] = depthThrough(rayAt(ray));
+  });
+}
+
+void FocusView::traceOutline() {
+  const auto look = [&](std::size_t a, std::size_t b) {
+    const bool aIn = m_rays[a] < infinity, bIn = m_rays[b] < infinity;
+    if (aIn != bIn)
+      m_outline.push_back(aIn ? edgeBetween(a, b) : edgeBetween(b, a));
+  };
+  for (std::size_t row = 0; row + 1 < m_across; ++row)
+    for (std::size_t column = 0; column + 1 < m_across; ++column) {
+      const std::size_t ray = row * m_across + column;
+      look(ray, ray + 1);
+      look(ray, ray + m_across);
+    }
+}
+
+FocusView::Point FocusView::edgeBetween(std::size_t in, std::size_t out) const {
+  Point inner{rayAt(in), m_rays[in]};
+  Vec2 outer = rayAt(out);
+  for (int i = 0; i < 16; ++i) {
+    const Vec2 middle = 0.5 * (inner.raster + outer);
+    if (const double depth = depthThrough(middle); depth < infinity)
+      inner = {middle, depth};
+    else
+      outer = middle;
+  }
+  return inner;
+}
+
+bool FocusView::isAtJump(const Point& point) const {
+  const auto size = static_cast<std::size_t>(m_view.size);
+  const Cell cell(point.raster, m_view.size);
+  double least = point.depth, greatest = point.depth;
+  for (const std::size_t step : {std::size_t{0}, std::size_t{1}, size, size + 1})
+    if (const double depth = m_centres[cell.first + step]; depth < infinity) {
+      least = std::min(least, depth);
+      greatest = std::max(greatest, depth);
+    }
+  return greatest - least > jumpDepth;
+}
+
+BoundaryMeasure FocusView::measure(const std::vector<float>& depths) const {
+  BoundaryMeasure result;
+  std::vector<double> gaps, cuts;
+  for (const Point& point : m_outline)
+    if (!isAtJump(point)) {
+      const double kept = point.depth - linear(depths, point.raster, m_view.size);
+      gaps.push_back(std::max(0.0, kept));
+      cuts.push_back(std::max(0.0, -kept));
+    }
+  result.outlinePoints = static_cast<double>(m_outline.size());
+  result.jumpShare = 1.0 - static_cast<double>(gaps.size()) / result.outlinePoints;
+  result.gap = summary(std::move(gaps));
+  result.cut = summary(std::move(cuts));
+
+  double jumps = 0.0, halfVoxelSmooth = 0.0;
+  for (std::size_t ray = 0; ray < m_rays.size(); ++ray)
+    if (m_rays[ray] < infinity) {
+      const Vec2 raster = rayAt(ray);
+      const double kept = m_rays[ray] - linear(depths, raster, m_view.size);
+      const bool isJump = isAtJump({raster, m_rays[ray]});
+      const bool isShown = kept <= 0.5 * m_field.longestEdge();
+      result.rays += 1.0;
+      result.strict += kept <= strictTolerance ? 1.0 : 0.0;
+      result.halfVoxel += isShown ? 1.0 : 0.0;
+      jumps += isJump ? 1.0 : 0.0;
+      halfVoxelSmooth += isShown && !isJump ? 1.0 : 0.0;
+    }
+  result.strict /= result.rays;
+  result.halfVoxel /= result.rays;
+  result.halfVoxelSmooth = halfVoxelSmooth / (result.rays - jumps);
+  result.rayJumpShare = jumps / result.rays;
+  for (std::size_t i = 0; i < m_centres.size(); ++i)
+    if (m_centres[i] < infinity)
+      result.centreDifference =
+          std::max(result.centreDifference, std::abs(m_centres[i] - double{depths[i]}));
+  return result;
+}
+
+} // namespace fenestra::accuracy

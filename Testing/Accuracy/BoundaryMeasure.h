@@ -1,0 +1,70 @@
+#pragma once
+// How a clipping surface meets the focus: on jittered rays, four by four to a pixel.
+//
+// What the surface is between pixel centres is its contract: linear in each axis. What the focus is
+// there, rays tell (FocusField.h).
+// - A ray on the focus is unoccluded where nothing, to a tolerance, is kept in front of it: where
+// the
+//   surface is not nearer to the eye than the focus.
+// - The gap is measured on the outline, found between each ray that meets the focus and a neighbour
+//   that does not, by bisection: how far the surface stands in front of the focus there. Where it
+//   lies behind, the focus is cut and is shown from the surface on, so the two still meet; how deep
+//   that cut is is told beside it.
+// - A depth jump is a difference of over 2 mm among the focus's depths at the four pixel centres
+//   around and at the ray itself: one depth per pixel cannot follow it. Shares with and without are
+//   told.
+
+#include "FocusField.h"
+#include "Views.h"
+
+namespace fenestra::accuracy {
+
+constexpr double jumpDepth = 2.0;       ///< mm
+constexpr double strictTolerance = 0.2; ///< mm of what may be kept in front of an unoccluded focus
+
+struct Distances {
+  double mean = 0.0, p95 = 0.0, max = 0.0; ///< mm
+};
+
+struct BoundaryMeasure {
+  double outlinePoints = 0.0;
+  double jumpShare = 0.0; ///< of the outline's points, left out of `gap` and `cut`
+  Distances gap, cut;
+  double rays = 0.0;      ///< on the focus
+  double strict = 0.0;    ///< share unoccluded, to strictTolerance
+  double halfVoxel = 0.0; ///< to half of the labelmap's longest voxel edge, as it knows no better
+  double rayJumpShare = 0.0;     ///< of the rays
+  double halfVoxelSmooth = 0.0;  ///< as halfVoxel, of rays without a depth jump
+  double centreDifference = 0.0; ///< mm, at most, of the two depths at pixel centres on the focus
+};
+
+/// What is known of a view before any surface is.
+class FocusView {
+public:
+  FocusView(const FocusField& field, const View& view);
+
+  /// `depths` are the surface's at pixel centres, mm from the eye's plane, row 0 at the top.
+  BoundaryMeasure measure(const std::vector<float>& depths) const;
+
+private:
+  struct Point {
+    Vec2 raster;
+    double depth;
+  };
+
+  double depthThrough(const Vec2& raster) const;
+  Vec2 rayAt(std::size_t ray) const;
+  void traceRays();
+  void traceOutline();
+  Point edgeBetween(std::size_t in, std::size_t out) const;
+  bool isAtJump(const Point& point) const;
+
+  const FocusField& m_field;
+  View m_view;
+  std::size_t m_across;          ///< rays in a row
+  std::vector<double> m_centres; ///< depth of the focus at pixel centres, infinite where it is not
+  std::vector<double> m_rays;    ///< the same of the rays
+  std::vector<Point> m_outline;
+};
+
+} // namespace fenestra::accuracy

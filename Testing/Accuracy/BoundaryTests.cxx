@@ -1,0 +1,72 @@
+// A knee's clipping surface, as the executable makes it, against rays of the test's own.
+
+#include "BoundaryMeasure.h"
+#include "Subjects.h"
+#include "TemporaryFolder.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+using namespace fenestra::accuracy;
+
+namespace {
+
+/// A ball of 20 voxels' radius: where rays meet it is known to what its voxels make of it.
+TEST(FocusField, MeetsABall) {
+  Indicator ball{Size3(50, 50, 50), Affine::Identity(), {}};
+  const Vec3 centre(24.0, 25.0, 26.0);
+  for (int z = 0; z < 50; ++z)
+    for (int y = 0; y < 50; ++y)
+      for (int x = 0; x < 50; ++x)
+        ball.voxels.push_back((Vec3(x, y, z) - centre).norm() <= 20.0 ? 1 : 0);
+  const FocusField field(ball);
+  EXPECT_LT((field.centre() - centre).norm(), 1e-12);
+  EXPECT_NEAR(field.radius(), 20.0, 1e-12);
+  for (int i = -24; i <= 24; ++i) {
+    const double height = i;
+    const double met = field.firstMeeting({-100.0, 25.0, 26.0 + height}, Vec3::UnitX());
+    if (std::abs(height) > 21.0) {
+      EXPECT_EQ(met, infinity);
+    } else if (std::abs(height) < 19.0) {
+      EXPECT_NEAR(met, 124.0 - std::sqrt(400.0 - height * height), 1.0);
+    }
+  }
+}
+
+/// Along an axis the level 0.5 between two voxels is half way.
+TEST(FocusField, MeetsABoxAtItsFace) {
+  Indicator box{Size3(8, 8, 8), Affine::Identity(), std::vector<std::uint8_t>(512, 0)};
+  for (std::size_t z = 2; z < 6; ++z)
+    for (std::size_t y = 2; y < 6; ++y)
+      for (std::size_t x = 2; x < 6; ++x)
+        box.voxels[(z * 8 + y) * 8 + x] = 1;
+  const FocusField field(box);
+  EXPECT_NEAR(field.firstMeeting({3.3, 4.2, -10.0}, Vec3::UnitZ()), 11.5, 1e-9);
+  EXPECT_NEAR(field.firstMeeting({3.3, 4.2, 20.0}, -Vec3::UnitZ()), 14.5, 1e-9);
+  EXPECT_EQ(field.firstMeeting({3.3, 6.2, -10.0}, Vec3::UnitZ()), infinity);
+}
+
+TEST(Boundary, MeetsTheFocusOfAKnee) {
+  const TemporaryFolder folder;
+  const Subject knee = makeKnee(folder.path(), "150x172x60");
+  const FocusField field(readIndicator(knee));
+  for (const int number : {0, 1}) {
+    SCOPED_TRACE(number);
+    View view = viewAround(field, number, 12, 256);
+    view.isPerspective = number == 1;
+    const FocusView focus(field, view);
+    const BoundaryMeasure spline = focus.measure(clipDepths(knee, view, "spline", folder.path()));
+    const BoundaryMeasure exact = focus.measure(clipDepths(knee, view, "exact", folder.path()));
+    for (const BoundaryMeasure& measure : {spline, exact}) {
+      EXPECT_GT(measure.rays, 1e5);
+      EXPECT_LT(measure.centreDifference, 1e-3);
+    }
+    EXPECT_LT(exact.gap.mean, 0.3 * spline.gap.mean);
+    EXPECT_LT(exact.gap.p95, 0.3 * spline.gap.p95);
+    EXPECT_LT(exact.gap.p95, 2.0 * view.halfHeight / view.size); // a pixel
+    EXPECT_GT(exact.halfVoxelSmooth, 0.998);
+    EXPECT_GT(exact.halfVoxelSmooth, spline.halfVoxelSmooth);
+  }
+}
+
+} // namespace

@@ -1,0 +1,178 @@
+#include "FocusField.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace fenestra::accuracy {
+
+namespace {
+
+constexpr std::uint8_t farthest = 12; ///< cells that are looked at around one
+constexpr double step = 1.0 / 16.0;   ///< in voxels, of the fastest axis
+
+/// The bound between no (t = a) and yes (t = b).
+template <typename Predicate>
+double bisected(double a, double b, const Predicate& predicate) {
+  for (int i = 0; i < 48; ++i) {
+    const double middle = 0.5 * (a + b);
+    (predicate(middle) ? b : a) = middle;
+  }
+  return b;
+}
+
+/// Each value becomes the least of it and its neighbours', across corners, too.
+void spreadLeast(std::vector<std::uint8_t>& values, const Size3& size) {
+  const std::int64_t strides[] = {1, size.x(), size.x() * size.y()};
+  std::vector<std::uint8_t> old;
+  for (int axis = 0; axis < 3; ++axis) {
+    old = values;
+    const std::int64_t stride = strides[axis];
+    for (std::int64_t i = 0; i < size.prod(); ++i) {
+      const std::int64_t along = i / stride % size[axis];
+      std::uint8_t least = old[static_cast<std::size_t>(i)];
+      if (along > 0)
+        least = std::min(least, old[static_cast<std::size_t>(i - stride)]);
+      if (along + 1 < size[axis])
+        least = std::min(least, old[static_cast<std::size_t>(i + stride)]);
+      values[static_cast<std::size_t>(i)] = least;
+    }
+  }
+}
+
+} // namespace
+
+FocusField::FocusField(const Indicator& indicator) {
+  const Size3& size = indicator.size;
+  const auto voxel = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    return indicator.voxels[static_cast<std::size_t>((z * size.y() + y) * size.x() + x)];
+  };
+  Size3 low = size, high = -Size3::Ones();
+  const auto forVoxels = [&](const auto& visit) {
+    for (std::int64_t z = 0; z < size.z(); ++z)
+      for (std::int64_t y = 0; y < size.y(); ++y)
+        for (std::int64_t x = 0; x < size.x(); ++x)
+          if (voxel(x, y, z) != 0)
+            visit(Size3(x, y, z));
+  };
+  forVoxels([&](const Size3& at) {
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  });
+  if ((high.array() < 0).any())
+    throw std::runtime_error("the focus is empty");
+  m_centre = indicator.indexToWorld * (0.5 * (low + high).cast<double>());
+  forVoxels([&](const Size3& at) {
+    m_radius = std::max(m_radius, (indicator.indexToWorld * at.cast<double>() - m_centre).norm());
+  });
+  low = (low - Size3::Constant(2)).cwiseMax(Size3::Zero());
+  high = (high + Size3::Constant(2)).cwiseMin(size - Size3::Ones());
+  m_size = high - low + Size3::Ones();
+  m_cells = m_size + Size3::Ones();
+  for (std::int64_t z = low.z(); z <= high.z(); ++z)
+    for (std::int64_t y = low.y(); y <= high.y(); ++y)
+      for (std::int64_t x = low.x(); x <= high.x(); ++x)
+        m_voxels.push_back(voxel(x, y, z));
+  m_lower = Vec3::Constant(-0.5);
+  m_upper = m_size.cast<double>() - Vec3::Constant(0.5);
+  m_worldToIndex = (indicator.indexToWorld * Eigen::Translation3d(low.cast<double>())).inverse();
+  markEmptiness();
+  m_longestEdge = indicator.indexToWorld.linear().colwise().norm().maxCoeff();
+}
+
+void FocusField::markEmptiness() {
+  m_emptiness.assign(static_cast<std::size_t>(m_cells.prod()), farthest);
+  for (std::int64_t z = 0; z < m_cells.z(); ++z)
+    for (std::int64_t y = 0; y < m_cells.y(); ++y)
+      for (std::int64_t x = 0; x < m_cells.x(); ++x)
+        for (int corner = 0; corner < 8; ++corner) {
+          const Size3 at = (Size3(x, y, z) - Size3(corner & 1, corner >> 1 & 1, corner >> 2))
+                               .cwiseMax(Size3::Zero())
+                               .cwiseMin(m_size - Size3::Ones());
+          if (m_voxels[static_cast<std::size_t>((at.z() * m_size.y() + at.y()) * m_size.x() +
+                                                at.x())] != 0)
+            m_emptiness[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
+        }
+  // After as many rounds each knows how far away the nearest cell is that holds something.
+  std::vector<std::uint8_t> reached = m_emptiness;
+  for (std::uint8_t round = 1; round < farthest; ++round) {
+    spreadLeast(reached, m_cells);
+    for (std::size_t i = 0; i < reached.size(); ++i)
+      if (reached[i] == 0 && m_emptiness[i] == farthest)
+        m_emptiness[i] = round;
+  }
+}
+
+std::size_t FocusField::cell(const Vec3& index) const {
+  const Size3 at = (index.array() + 1.0).floor().matrix().cast<std::int64_t>();
+  const Size3 in = at.cwiseMax(Size3::Zero()).cwiseMin(m_cells - Size3::Ones());
+  return static_cast<std::size_t>((in.z() * m_cells.y() + in.y()) * m_cells.x() + in.x());
+}
+
+double FocusField::at(const Vec3& index) const {
+  const Vec3 in = index.cwiseMax(Vec3::Zero()).cwiseMin((m_size - Size3::Ones()).cast<double>());
+  const Size3 low = in.array().floor().matrix().cast<std::int64_t>();
+  const Size3 high = (low + Size3::Ones()).cwiseMin(m_size - Size3::Ones());
+  const Vec3 f = in - low.cast<double>();
+  const auto voxel = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    return double{
+        m_voxels[static_cast<std::size_t>((z * m_size.y() + y) * m_size.x() + x)] != 0 ? 1.0 : 0.0};
+  };
+  const auto row = [&](std::int64_t y, std::int64_t z) {
+    return (1.0 - f.x()) * voxel(low.x(), y, z) + f.x() * voxel(high.x(), y, z);
+  };
+  const auto layer = [&](std::int64_t z) {
+    return (1.0 - f.y()) * row(low.y(), z) + f.y() * row(high.y(), z);
+  };
+  return (1.0 - f.z()) * layer(low.z()) + f.z() * layer(high.z());
+}
+
+double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const {
+  const Vec3 o = m_worldToIndex * origin;
+  const Vec3 d = m_worldToIndex.linear() * direction;
+  double t = 0.0, end = infinity;
+  for (int axis = 0; axis < 3; ++axis)
+    if (d[axis] != 0.0) {
+      const double a = (m_lower[axis] - o[axis]) / d[axis], b = (m_upper[axis] - o[axis]) / d[axis];
+      t = std::max(t, std::min(a, b));
+      end = std::min(end, std::max(a, b));
+    } else if (o[axis] < m_lower[axis] || o[axis] > m_upper[axis]) {
+      return infinity;
+    }
+  const auto value = [&](double s) { return at(o + s * d); };
+  const auto isInAt = [&](double s) { return value(s) >= 0.5; };
+  const double voxel = 1.0 / d.cwiseAbs().maxCoeff(); // mm
+  const double stride = step * voxel;
+  // The last two places looked at, and what was there: between them and a third, what is less than
+  // a step long in the focus shows as a maximum.
+  double before = t, last = t, valueBefore = 0.0, valueLast = 0.0;
+  for (bool isFirst = true; t <= end; isFirst = false) {
+    const std::uint8_t empty = m_emptiness[cell(o + t * d)];
+    double here = 0.0;
+    if (empty == 0) {
+      here = value(t);
+      if (here >= 0.5)
+        return isFirst ? t : bisected(last, t, isInAt);
+      if (valueLast > 0.4 && valueLast >= here && valueLast >= valueBefore) {
+        double a = before, b = t;
+        for (int i = 0; i < 40; ++i) {
+          const double third = (b - a) / 3.0;
+          if (value(a + third) < value(b - third))
+            a += third;
+          else
+            b -= third;
+        }
+        if (isInAt(0.5 * (a + b)))
+          return bisected(before, 0.5 * (a + b), isInAt);
+      }
+    }
+    before = last;
+    valueBefore = valueLast;
+    last = t;
+    valueLast = here;
+    t += empty > 1 ? (empty - 1) * voxel : stride;
+  }
+  return infinity;
+}
+
+} // namespace fenestra::accuracy

@@ -1,0 +1,36 @@
+#pragma once
+// Cameras of the boundary check: what --position, --target, --up and --scale or --angle mean, by
+// the check's own arithmetic.
+
+#include "core/Vector.h"
+
+#include <string>
+#include <vector>
+
+namespace fenestra::accuracy {
+
+/// A square picture. Raster positions are in pixels, (0, 0) the top left corner of the picture.
+struct View {
+  Vec3 position, target, up;
+  bool isPerspective = false;
+  double halfHeight = 1.0; ///< of what is seen on the plane through the target, mm
+  int size = 1;            ///< pixels a side
+
+  struct EyeRay {
+    Vec3 origin, direction; ///< a unit vector
+    double depthPerLength;
+  };
+  EyeRay through(const Vec2& raster) const {
+    const Vec3 forward = (target - position).normalized();
+    const Vec3 right = forward.cross(up).normalized();
+    const Vec3 upward = right.cross(forward);
+    const Vec3 onPlane = target + halfHeight * (2.0 * raster.x() / size - 1.0) * right +
+                         halfHeight * (1.0 - 2.0 * raster.y() / size) * upward;
+    if (!isPerspective)
+      return {onPlane - (target - position).norm() * forward, forward, 1.0};
+    const Vec3 direction = (onPlane - position).normalized();
+    return {position, direction, direction.dot(forward)};
+  }
+};
+
+} // namespace fenestra::accuracy
