@@ -72,8 +72,9 @@ constexpr Flag flags[] = {
      "Colour of everything that is not focus, from 0 (grey) to 1 (as it is) [1]",
      Takes::number(0.0, 1.0), "1"},
     {"view", "NAME", viewGroup,
-     "anterior, posterior, left, right, superior or inferior [the scene's camera, else anterior]",
-     Takes::word("anterior|posterior|left|right|superior|inferior"), "anterior"},
+     "anterior, posterior, left, right, superior, inferior, or auto: the direction that shows most "
+     "of the focus, least foreshortened, with least removed [the scene's camera, else anterior]",
+     Takes::word("anterior|posterior|left|right|superior|inferior|auto"), "anterior"},
     {"position", "R,A,S", viewGroup, "Eye, mm", Takes::numbers()},
     {"target", "R,A,S", viewGroup, "Point looked at, mm [centre of the focus, else of the volume]",
      Takes::numbers()},
@@ -152,6 +153,8 @@ ViewRequest viewRequest(const FlagValues& flags, bool sceneCamera) {
   if (const auto word = flags.word("projection"))
     view.projection = *word == "perspective" ? Projection::perspective : Projection::orthographic;
   view.name = flags.word("view");
+  if (view.isAutomatic() && !flags.has("focus"))
+    throw usageError("--view: auto looks for a focus; add --focus A,B,..., or name a direction");
   view.position = flags.triple("position");
   view.target = flags.triple("target");
   view.up = flags.triple("up");
@@ -303,7 +306,7 @@ const CommandSyntax renderSyntax = {
     "render",
     "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
     "a clipping surface. \"render\" may be left out. Other subcommands: fenestra inspect, fenestra "
-    "compare, fenestra phantom, fenestra serve.",
+    "compare, fenestra phantom, fenestra serve, fenestra turntable.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
     flags,

@@ -7,18 +7,20 @@
 namespace fenestra {
 namespace {
 
-struct AnatomicalView {
-  Vec3 fromTarget; ///< where the viewer stands, RAS
-  Vec3 up;
-};
-
-const std::map<std::string, AnatomicalView>& anatomicalViews() {
-  static const std::map<std::string, AnatomicalView> views = {
+ViewDirection namedView(const std::string& name, const std::optional<ViewDirection>& automatic) {
+  static const std::map<std::string, ViewDirection> views = {
       {"anterior", {Vec3::UnitY(), Vec3::UnitZ()}}, {"posterior", {-Vec3::UnitY(), Vec3::UnitZ()}},
       {"right", {Vec3::UnitX(), Vec3::UnitZ()}},    {"left", {-Vec3::UnitX(), Vec3::UnitZ()}},
       {"superior", {Vec3::UnitZ(), Vec3::UnitY()}}, {"inferior", {-Vec3::UnitZ(), Vec3::UnitY()}},
   };
-  return views;
+  if (name == "auto" && automatic)
+    return *automatic;
+  const auto known = views.find(name);
+  if (known == views.end())
+    throw usageError("--view: '" + name +
+                     "' is unknown; use anterior, posterior, left, right, superior, inferior, or "
+                     "auto with a focus");
+  return known->second;
 }
 
 /// Quantiles of the voxels' values, from at most about a million of them.
@@ -142,15 +144,11 @@ TransferFunction relativeTransfer(const Volume& volume) {
 }
 
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
-                     int height) {
+                     int height, const std::optional<ViewDirection>& automatic) {
   constexpr double surroundings = 1.6; // how much more than the focus is framed
   constexpr double margin = 1.05;      // around the whole volume
   constexpr double defaultAngle = 30.0;
-  const std::string name = view.name.value_or("anterior");
-  const auto known = anatomicalViews().find(name);
-  if (known == anatomicalViews().end())
-    throw usageError("--view: '" + name +
-                     "' is unknown; use anterior, posterior, left, right, superior or inferior");
+  const ViewDirection named = namedView(view.name.value_or("anterior"), automatic);
 
   const Grid& grid = domain.grid();
   const Domain volume = domain.indexCorners().empty() ? Domain(grid) : domain;
@@ -159,10 +157,9 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   pose.angle = view.angle.value_or(defaultAngle);
   pose.target = view.target.value_or(focus ? focus->grid.worldCenter() : centerOf(volume));
   const Vec3 back =
-      view.position ? Vec3((*view.position - pose.target).normalized()) : known->second.fromTarget;
-  pose.up = view.up.value_or(std::abs(back.dot(known->second.up)) > 0.999 * back.norm()
-                                 ? Vec3(Vec3::UnitY())
-                                 : known->second.up);
+      view.position ? Vec3((*view.position - pose.target).normalized()) : named.fromTarget;
+  pose.up = view.up.value_or(
+      std::abs(back.dot(named.up)) > 0.999 * back.norm() ? Vec3(Vec3::UnitY()) : named.up);
   const Vec3 right = pose.up.cross(back).normalized();
   const Vec3 up = back.cross(right);
 

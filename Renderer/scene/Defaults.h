@@ -4,6 +4,7 @@
 
 #include "camera/Camera.h"
 #include "medium/TransferFunction.h"
+#include "scene/AutomaticView.h"
 #include "scene/RenderRequest.h"
 #include "volume/Domain.h"
 #include "volume/Mask.h"
@@ -22,9 +23,10 @@ TransferFunction relativeTransfer(const Volume& volume);
 
 /// The pose that a view request means for this volume and focus: named views look along the
 /// patient's axes at the focus (else the volume, or what a crop leaves of it), and what is framed
-/// is the focus with its surroundings. Throws Error (usage) for an unknown view name.
+/// is the focus with its surroundings. `automatic` is what the name auto means. Throws Error
+/// (usage) for an unknown view name.
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
-                     int height);
+                     int height, const std::optional<ViewDirection>& automatic = {});
 
 /// A scene's camera with what the request states of it. Throws Error (usage) where --scale or
 /// --angle is for the other projection.

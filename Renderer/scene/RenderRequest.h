@@ -58,13 +58,15 @@ struct FocusRequest {
 /// Where the eye is: a named direction, or a pose of which unset parts are derived from the scene.
 struct ViewRequest {
   std::optional<Projection> projection = {}; ///< by default the scene's, else orthographic
-  std::optional<std::string> name = {}; ///< anterior, posterior, left, right, superior, inferior
+  /// anterior, posterior, left, right, superior, inferior; auto: AutomaticView.h, with a focus
+  std::optional<std::string> name = {};
   std::optional<Vec3> position = {}, target = {}, up = {};
   std::optional<double> scale = {}; ///< orthographic: half the viewport's height, mm
   std::optional<double> angle = {}; ///< perspective: full vertical angle, degrees
 
   /// The camera of a Slicer scene applies, with what else is set here changed.
   bool followsScene() const { return !name && !position; }
+  bool isAutomatic() const { return name == "auto"; }
 
   bool operator==(const ViewRequest&) const = default;
 };
@@ -86,6 +88,8 @@ struct SceneRequest {
   int width = 512, height = 512;
   bool measure = false; ///< what the clip is worth: the focus is traced even where no clip needs it
   FocusRequest focusLook = {};
+  /// A clipping surface is steadied over so many degrees to both sides (clipping/SteadySurface.h).
+  double steadyDegrees = 0.0;
 };
 
 } // namespace fenestra

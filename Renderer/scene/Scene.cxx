@@ -1,5 +1,6 @@
 #include "scene/Scene.h"
 
+#include "clipping/SteadySurface.h"
 #include "core/Error.h"
 #include "core/Stopwatch.h"
 #include "io/EmbeddedResources.h"
@@ -139,14 +140,17 @@ void Scene::make(const SceneRequest& request, const SceneRequest* before) {
     chooseTransfer(request);
   m_seconds.load = loading.seconds();
 
-  m_made.camera = m_made.focus || differs(&R::view, &R::width, &R::height);
+  if (m_made.focus || m_made.transfer)
+    m_automaticView.reset();
+  m_made.camera = m_made.focus || differs(&R::view, &R::width, &R::height) ||
+                  (request.view.isAutomatic() && m_made.transfer);
   if (m_made.camera)
     placeCamera(request);
   m_made.lights = m_made.volume || newLights ||
                   (m_made.camera && std::ranges::any_of(*m_lightList, dependsOnCamera));
   if (m_made.lights)
     m_lights = std::make_shared<const LightSet>(*m_lightList, volume().grid, *m_camera);
-  m_made.clip = m_made.camera || differs(&R::clip, &R::measure);
+  m_made.clip = m_made.camera || differs(&R::clip, &R::measure, &R::steadyDegrees);
   if (m_made.clip)
     buildClip(request);
 
@@ -190,9 +194,12 @@ void Scene::chooseTransfer(const SceneRequest& request) {
 }
 
 void Scene::placeCamera(const SceneRequest& request) {
-  const CameraPose pose =
-      m_settings.camera ? adjustedView(request.view, *m_settings.camera)
-                        : frameView(request.view, domain(), focus(), request.width, request.height);
+  if (request.view.isAutomatic() && focus() && !m_automaticView)
+    m_automaticView = automaticView(ViewScorer(volume(), domain(), *m_transfer, *focus()));
+  const CameraPose pose = m_settings.camera
+                              ? adjustedView(request.view, *m_settings.camera)
+                              : frameView(request.view, domain(), focus(), request.width,
+                                          request.height, m_automaticView);
   m_camera.emplace(pose, request.width, request.height);
 }
 
@@ -211,7 +218,7 @@ void Scene::buildClip(const SceneRequest& request) {
   m_clipWarnings.clear();
   const ClipMode mode = request.clip.modeWith(focus() != nullptr);
   if (isDepthClip(mode))
-    return buildDepthClip(mode, request.clip, request.measure);
+    return buildDepthClip(mode, request);
   std::optional<FocusDepth> depth;
   const bool wantsPlane = mode == ClipMode::plane && !request.clip.plane;
   if (focus() && (wantsPlane || request.measure)) {
@@ -238,7 +245,8 @@ ClipPlane Scene::placedPlane(const ClipRequest& request,
   return plane;
 }
 
-void Scene::buildDepthClip(ClipMode mode, const ClipRequest& request, bool measure) {
+void Scene::buildDepthClip(ClipMode mode, const SceneRequest& scene) {
+  const ClipRequest& request = scene.clip;
   const bool isSurface = mode == ClipMode::surface || mode == ClipMode::ghost;
   const bool isGhost = mode == ClipMode::ghost;
   SurfaceOptions options;
@@ -250,10 +258,11 @@ void Scene::buildDepthClip(ClipMode mode, const ClipRequest& request, bool measu
   options.hole = request.hole;
   options.offset = request.offset;
   options.edge = {isGhost ? double{static_cast<float>(request.ghost)} : 0.0, request.softness};
-  ClippingSurface surface = buildClippingSurface(*m_camera, domain(), *focus(), options);
+  ClippingSurface surface =
+      buildSteadySurface(*m_camera, domain(), *focus(), options, scene.steadyDegrees);
   m_focusDepth = viewportDepths(surface.focus, *m_camera);
   m_clip = std::move(surface.clip);
-  if (measure)
+  if (scene.measure)
     m_boundary = measureBoundary(m_clip, domain(), surface.focus);
   if (isSurface)
     m_mismatch = surface.mismatch;

@@ -7,6 +7,7 @@
 #include "clipping/ClippingSurface.h"
 #include "clipping/FocusPlane.h"
 #include "lights/LightSet.h"
+#include "scene/AutomaticView.h"
 #include "scene/RenderRequest.h"
 #include "scene/SceneInput.h"
 
@@ -77,7 +78,7 @@ private:
   void styleContext(const FocusRequest& request);
   /// `depth` of the focus is needed where the request names no plane.
   ClipPlane placedPlane(const ClipRequest& request, const std::optional<FocusDepth>& depth) const;
-  void buildDepthClip(ClipMode mode, const ClipRequest& request, bool measure);
+  void buildDepthClip(ClipMode mode, const SceneRequest& scene);
 
   SceneRequest m_request;
   std::shared_ptr<const VolumeInput> m_volume;
@@ -85,6 +86,7 @@ private:
   std::shared_ptr<const FocusInput> m_focus;
   std::optional<TransferFunction> m_transfer;
   std::string m_look;
+  std::optional<ViewDirection> m_automaticView; ///< once it was asked for
   std::optional<Camera> m_camera;
   std::shared_ptr<const std::vector<Light>> m_lightList; ///< as they were read
   std::shared_ptr<const LightSet> m_lights;

@@ -26,7 +26,7 @@ TEST_F(FlagsCommand, RefusesWhatItDoesNotKnow) {
           {"render alone", {"render"}, 2, "INPUT: is missing"},
           {"render misspelt", {"rendr", "volume.nrrd"}, 2, "did you mean fenestra render?"},
           {"compare misspelt", {"comprae", "a", "b"}, 2, "did you mean fenestra compare?"},
-          {"subcommand of later", {"turntable", "volume.nrrd"}, 2, "one argument too many"},
+          {"subcommand of later", {"merge", "volume.nrrd"}, 2, "one argument too many"},
           {"two volumes", {"volume.nrrd", "other.nrrd"}, 2, "'other.nrrd': one argument too many"},
           refusal({"--sample", "3"}, "--sample: no such flag; did you mean --samples?"),
           refusal({"--smaples", "3"}, "did you mean --samples?"),
@@ -114,6 +114,7 @@ TEST_F(FlagsCommand, RefusesUnknownWords) {
   expectRefused(
       {
           refusal({"--view", "top"}, "--view: expected anterior"),
+          refusal({"--view", "auto"}, "--view: auto looks for a focus; add --focus"),
           refusal({"--projection", "fisheye"},
                   "--projection: expected orthographic or perspective"),
           refusal({"--clip", "hole"},

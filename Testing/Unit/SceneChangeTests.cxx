@@ -82,6 +82,12 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Camera",
                [](SceneRequest& r) { r.view.name = "left"; },
                {.camera = true, .lights = true, .clip = true, .majorants = true}},
+        Change{"AutomaticView",
+               [](SceneRequest& r) { r.view.name = "auto"; },
+               {.camera = true, .lights = true, .clip = true, .majorants = true}},
+        Change{"Steadiness",
+               [](SceneRequest& r) { r.steadyDegrees = 5.0; },
+               {.clip = true, .majorants = true}},
         Change{"Size",
                [](SceneRequest& r) { r.width = 24; },
                {.camera = true, .lights = true, .clip = true, .majorants = true}},
@@ -113,6 +119,24 @@ INSTANTIATE_TEST_SUITE_P(
                [](SceneRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),
     [](const auto& info) { return info.param.name; });
+
+TEST_F(SceneChange, AnAutomaticViewFollowsFocusAndTransferFunction) {
+  request.view.name = "auto";
+  const Scene before(request);
+  const auto expectAsFromNothing = [&](const Scene& changed) {
+    EXPECT_EQ(changed.camera().pose().position, Scene(request).camera().pose().position);
+  };
+  request.density = 3.0;
+  const Scene denser = before.changed(request);
+  EXPECT_TRUE(denser.made().camera);
+  expectAsFromNothing(denser);
+  request.width = 40;
+  const Scene wider = denser.changed(request);
+  EXPECT_LT((wider.camera().forward() - denser.camera().forward()).norm(), 1e-12);
+  expectAsFromNothing(wider);
+  request.focus = {"2"};
+  expectAsFromNothing(wider.changed(request));
+}
 
 TEST_F(SceneChange, LightsThatTheCameraDoesNotCarryStayWhereTheyAre) {
   request.lights = folder / "lamp.json";

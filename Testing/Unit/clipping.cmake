@@ -8,6 +8,7 @@ fenestra_test(ClippingTests
   KernelSumsTests.cxx
   RimTests.cxx
   SmoothFillTests.cxx
+  SurfaceChangeTests.cxx
   SurfaceMeshTests.cxx
   ThinPlateSplineTests.cxx
   LIBRARIES fenestra_clipping hwy::hwy

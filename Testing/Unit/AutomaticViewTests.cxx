@@ -1,0 +1,143 @@
+// --view auto: what it sees of analytic bodies, and that it stays where it is.
+
+#include "scene/AutomaticView.h"
+
+#include "Support.h"
+#include "core/Random.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+namespace fenestra::testing {
+namespace {
+
+/// A cube of 60 mm that the context fills, thin enough to be seen through.
+class ViewOfCube : public ::testing::Test {
+protected:
+  const Grid grid = centredGrid({30, 30, 30}, {2.0, 2.0, 2.0});
+  const TransferFunction transfer = linearTransfer(0.01, Rgb::Constant(0.8));
+  Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
+
+  /// Voxels of 1 mm whose centres the predicate holds for, in the cube.
+  template <typename Predicate>
+  static Mask focusWhere(const Predicate& predicate) {
+    Mask mask;
+    mask.grid = centredGrid({60, 60, 60}, {1.0, 1.0, 1.0});
+    mask.names = {"A"};
+    for (std::int64_t z = 0; z < 60; ++z)
+      for (std::int64_t y = 0; y < 60; ++y)
+        for (std::int64_t x = 0; x < 60; ++x) {
+          const Vec3 center = mask.grid.indexToWorld * Size3(x, y, z).cast<double>();
+          mask.voxels.push_back(predicate(center) ? 1 : 0);
+        }
+    return mask;
+  }
+
+  ViewScorer scorer(const Mask& focus) const { return {volume, grid, transfer, focus}; }
+  ViewDirection viewOf(const Mask& focus) const { return automaticView(scorer(focus)); }
+};
+
+double degreesBetween(const Vec3& a, const Vec3& b) {
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / pi;
+}
+
+/// Three ellipsoids of different sizes, like a bone with its processes.
+bool inLump(const Vec3& p) {
+  const auto inside = [&](const Vec3& center, const Vec3& radii) {
+    return (p - center).cwiseQuotient(radii).squaredNorm() <= 1.0;
+  };
+  return inside({2, 8, -3}, {12, 5, 9}) || inside({-8, 12, 4}, {5, 4, 11}) ||
+         inside({9, 4, 8}, {4, 7, 4});
+}
+
+TEST_F(ViewOfCube, ScoresABallAsItsClosedFormSays) {
+  constexpr double radius = 15.0, edge = 60.0, disc = pi * radius * radius;
+  const Mask ball = focusWhere([](const Vec3& p) { return p.norm() <= radius; });
+  const ViewScorer score = scorer(ball);
+  // In front of the ball's near half, and beside it of the plane at that half's mean depth.
+  const double inFront = disc * (edge / 2.0 - 2.0 / 3.0 * radius);
+  const double beside = (edge * edge - disc) * (edge / 2.0 - 2.0 / 3.0 * radius);
+  const double context = std::pow(edge, 3.0) - 4.0 / 3.0 * disc * radius;
+  for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)}) {
+    const ViewScore seen = score(axis, 16384);
+    EXPECT_NEAR(seen.area, disc, 0.02 * disc) << "of voxels";
+    EXPECT_NEAR(seen.removed, (inFront + beside) / context, 0.01);
+  }
+  const double front = score(Vec3::UnitY(), 16384).score;
+  EXPECT_NEAR(score(-Vec3::UnitY(), 16384).score, front * 0.95 / 1.05, 0.01 * front);
+  EXPECT_NEAR(score(Vec3::UnitZ(), 16384).score, front * 0.9 / 1.05, 0.01 * front);
+}
+
+TEST_F(ViewOfCube, ShowsASlabFromTheFaceThatItIsNear) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const Mask slab = focusWhere([&](const Vec3& p) {
+        const double height = side * p[axis];
+        return height > 20.0 && height < 24.0 && (p - p[axis] * Vec3::Unit(axis)).norm() < 15.0;
+      });
+      const ViewDirection view = viewOf(slab);
+      EXPECT_LT(degreesBetween(view.fromTarget, side * Vec3::Unit(axis)), 8.0)
+          << "axis " << axis << ", side " << side << ": " << view.fromTarget.transpose();
+      EXPECT_EQ(view.up, axis == 2 ? Vec3::UnitY() : Vec3::UnitZ());
+      EXPECT_NEAR(view.fromTarget.norm(), 1.0, 1e-12);
+    }
+}
+
+TEST_F(ViewOfCube, ShowsADiscFlatOnFromTheUsualSide) {
+  for (const Vec3& normal : {Vec3(0, 1, 0), Vec3(1, 2, 0.5), Vec3(-2, 1, 1), Vec3(1, 1, -1)}) {
+    const Vec3 unit = normal.normalized();
+    const Mask disc = focusWhere([&](const Vec3& p) {
+      return std::abs(p.dot(unit)) < 2.0 && (p - p.dot(unit) * unit).norm() < 20.0;
+    });
+    EXPECT_LT(degreesBetween(viewOf(disc).fromTarget, unit), 10.0) << normal.transpose();
+  }
+}
+
+TEST_F(ViewOfCube, LooksThroughAirRatherThanThroughTissue) {
+  volume = makeVolume(grid, [](const Vec3& index) { return index.y() > 14.5 ? 1.0 : 0.0; });
+  const Mask ball = focusWhere([](const Vec3& p) { return p.norm() <= 10.0; });
+  EXPECT_LT(viewOf(ball).fromTarget.y(), -0.7) << "from posterior, against the habit";
+}
+
+TEST_F(ViewOfCube, MovesLittleForAFocusThatDiffersLittle) {
+  const Vec3 own = viewOf(focusWhere(inLump)).fromTarget;
+  const auto angle = [&](const auto& predicate) {
+    return degreesBetween(own, viewOf(focusWhere(predicate)).fromTarget);
+  };
+  EXPECT_LT(angle([](const Vec3& p) { return inLump(p + Vec3(0.4, -0.3, 0.3)); }), 3.0) << "moved";
+  EXPECT_LT(angle([](const Vec3& p) { return inLump(1.07 * p); }), 3.0) << "smaller";
+  EXPECT_LT(angle([](const Vec3& p) {
+              return inLump(p) || inLump(p + Vec3::UnitX()) || inLump(p - Vec3::UnitY());
+            }),
+            4.0)
+      << "dilated";
+  EXPECT_LT(angle([](const Vec3& p) {
+              const Vec3 voxel = p + Vec3::Constant(29.5);
+              const double number = voxel.x() + 60.0 * voxel.y() + 3600.0 * voxel.z();
+              const auto noise = static_cast<std::uint64_t>(number + 0.5);
+              return inLump(p) && mixBits(noise) % 20 != 0;
+            }),
+            4.0)
+      << "with holes";
+  EXPECT_LT(
+      angle([](const Vec3& p) { return inLump(Vec3((p.array() / 2.0).floor() * 2.0 + 1.0)); }),
+      12.0)
+      << "at half the resolution, of parts 8 mm wide";
+}
+
+TEST_F(ViewOfCube, IsTheSameForAnyNumberOfThreads) {
+  const Mask lump = focusWhere(inLump);
+  const Vec3 many = viewOf(lump).fromTarget;
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(viewOf(lump).fromTarget, many);
+}
+
+TEST_F(ViewOfCube, LooksFromAnteriorAtWhatCannotBeSeen) {
+  Mask nothing;
+  nothing.grid = centredGrid({3, 3, 3}, {1.0, 1.0, 1.0});
+  nothing.voxels.assign(27, 0);
+  EXPECT_EQ(viewOf(nothing).fromTarget, Vec3::UnitY());
+}
+
+} // namespace
+} // namespace fenestra::testing

@@ -1,0 +1,141 @@
+// A clipping surface on a turntable: what its changes are measured to be, and how they are
+// steadied.
+
+#include "ClippingTesting.h"
+#include "camera/Turn.h"
+#include "clipping/SteadySurface.h"
+#include "clipping/SurfaceChange.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
+  CameraPose pose;
+  pose.target = {1, 2, 3};
+  pose.position = {1, 102, 43}; // anterior, and above
+  pose.up = {0, 0, 2};
+  EXPECT_TRUE(turnedAroundTarget(pose, 90.0).position.isApprox(Vec3(-99, 2, 43)));
+  EXPECT_TRUE(turnedAroundTarget(pose, -180.0).position.isApprox(Vec3(1, -98, 43)));
+  EXPECT_EQ(turnedAroundTarget(pose, 0.0).position, pose.position);
+  EXPECT_EQ(turnedAroundTarget(pose, 77.0).target, pose.target);
+  EXPECT_EQ(turnedAroundTarget(pose, 77.0).up, pose.up);
+}
+
+/// A picture of 4 x 4 pixels of 1 mm with a level surface at the target's depth, all of it context.
+SeenSurface levelSurface() {
+  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 2.0, 4, 4);
+  return {camera, std::vector<Region>(16, Region::context), std::vector<double>(16, 100.0)};
+}
+
+TEST(SurfaceChange, IsPerDegreeOverPixelsThatStayContext) {
+  SeenSurface before = levelSurface(), after = levelSurface();
+  for (std::size_t pixel = 0; pixel < 16; ++pixel)
+    after.depths[pixel] += pixel < 4 ? 3.0 : -1.0;
+  before.regions[4] = Region::focus;
+  after.regions[5] = Region::outside;
+  after.depths[4] = after.depths[5] = 1e6; // neither counts
+  const SurfaceChange change = changeBetween(before, after, Vec3::UnitZ(), -2.0);
+  EXPECT_DOUBLE_EQ(change.mean, (4 * 1.5 + 10 * 0.5) / 14.0);
+  EXPECT_DOUBLE_EQ(change.p95, 1.5);
+  EXPECT_DOUBLE_EQ(change.max, 1.5);
+}
+
+TEST(SurfaceChange, IsMeasuredAgainstTheFocussOwnSpeed) {
+  SeenSurface before = levelSurface(), after = levelSurface();
+  after.regions[3] = Region::focus; // the top right pixel, 1.5 mm to the right and above
+  after.depths[3] = 98.0;           // and 2 mm nearer to the eye: 2.5 mm from the axis
+  after.depths[8] = 101.0;
+  const SurfaceChange change = changeBetween(before, after, Vec3(0, 0, 7), 1.0);
+  EXPECT_NEAR(change.focus, 2.5 * pi / 180.0, 1e-12);
+  EXPECT_DOUBLE_EQ(change.max, 1.0);
+  EXPECT_DOUBLE_EQ(change.excess(), 1.0 - change.focus);
+  EXPECT_EQ(changeBetween(before, before, Vec3::UnitZ(), 1.0).excess(), 0.0);
+  EXPECT_EQ(changeBetween(before, before, Vec3::UnitZ(), 1.0).focus, 0.0) << "no focus is seen";
+}
+
+/// Balls of 7 and 5 mm that come out from behind each other, in a block, and cameras around them.
+class TurnedBalls : public ::testing::Test {
+protected:
+  const Grid grid = centredGrid({80, 80, 40});
+  const Mask balls = maskOf(grid, [](const Vec3& p) {
+    return (p - Vec3(0, -14, 0)).norm() <= 7.0 || (p - Vec3(0, 16, 4)).norm() <= 5.0;
+  });
+  SurfaceOptions options{.boundary = Boundary::exact};
+
+  static Camera cameraAt(double degrees) {
+    const Camera first = anteriorCamera(Projection::orthographic, 200.0, 30.0, 60, 60);
+    return {turnedAroundTarget(first.pose(), degrees), 60, 60};
+  }
+  ClippingSurface surfaceAt(double degrees, double steady) const {
+    return buildSteadySurface(cameraAt(degrees), grid, balls, options, steady);
+  }
+  SeenSurface seenAt(double degrees, double steady) const {
+    const ClippingSurface surface = surfaceAt(degrees, steady);
+    std::vector<double> focus;
+    for (int row = 0; row < 60; ++row)
+      for (int column = 0; column < 60; ++column)
+        focus.push_back(surface.focus.depth.at(surface.focus.depth.viewportSample(column, row)));
+    return seenSurface(std::get<ClipDepth>(surface.clip), focus, grid);
+  }
+  double greatestP95(double steady) const {
+    constexpr double step = 4.0;
+    double greatest = 0.0;
+    SeenSurface before = seenAt(0.0, steady);
+    for (double degrees = step; degrees <= 40.0; degrees += step) {
+      SeenSurface after = seenAt(degrees, steady);
+      greatest = std::max(greatest, changeBetween(before, after, Vec3::UnitZ(), step).p95);
+      before = std::move(after);
+    }
+    return greatest;
+  }
+};
+
+TEST_F(TurnedBalls, AreSeenWithTheDepthsOfTheSurface) {
+  const SeenSurface seen = seenAt(0.0, 0.0);
+  // The near ball's foremost point, in the middle of the picture, and no further focus beside it.
+  EXPECT_EQ(seen.regions[30 * 60 + 30], Region::focus);
+  EXPECT_NEAR(seen.depths[30 * 60 + 30], 200.0 - 14.0 - 7.0, 0.5);
+  EXPECT_EQ(seen.regions[30 * 60 + 2], Region::context);
+}
+
+TEST_F(TurnedBalls, KeepTheirOwnSurfaceWithoutSteadying) {
+  const auto depths = [&](double steady, SurfaceMode mode) {
+    options.mode = mode;
+    return std::get<ClipDepth>(surfaceAt(20.0, steady).clip).buffer->depthsFromReference();
+  };
+  options.mode = SurfaceMode::surface;
+  EXPECT_EQ(depths(0.0, SurfaceMode::surface),
+            std::get<ClipDepth>(buildClippingSurface(cameraAt(20.0), grid, balls, options).clip)
+                .buffer->depthsFromReference());
+  EXPECT_EQ(depths(8.0, SurfaceMode::cutaway), depths(0.0, SurfaceMode::cutaway));
+  EXPECT_NE(depths(8.0, SurfaceMode::surface), depths(0.0, SurfaceMode::surface));
+}
+
+TEST_F(TurnedBalls, AreMetByASteadySurfaceAsByTheirOwn) {
+  const ClippingSurface own = surfaceAt(20.0, 0.0), steady = surfaceAt(20.0, 8.0);
+  const DepthBuffer& a = *std::get<ClipDepth>(own.clip).buffer;
+  const DepthBuffer& b = *std::get<ClipDepth>(steady.clip).buffer;
+  int beside = 0;
+  for (std::int64_t row = 0; row < a.rows(); ++row)
+    for (std::int64_t column = 0; column < a.columns(); ++column) {
+      const double difference = std::abs(a.at(a.sample(column, row)) - b.at(b.sample(column, row)));
+      if (own.focus.isFocus(column, row)) {
+        EXPECT_EQ(difference, 0.0);
+      } else if (own.focus.isFocus(column - 1, row) || own.focus.isFocus(column + 1, row)) {
+        EXPECT_LT(difference, 0.25) << "one sample away, of 8 mm that it takes";
+        ++beside;
+      }
+    }
+  EXPECT_GT(beside, 20);
+}
+
+TEST_F(TurnedBalls, ComeOutFromBehindEachOtherMoreSlowly) {
+  const double sudden = greatestP95(0.0), steady = greatestP95(8.0);
+  EXPECT_LT(steady, 0.6 * sudden) << sudden << " mm per degree";
+}
+
+} // namespace
