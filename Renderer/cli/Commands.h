@@ -9,5 +9,6 @@ int inspectCommand(int argc, char** argv, int first);
 int compareCommand(int argc, char** argv, int first);
 int phantomCommand(int argc, char** argv, int first);
 int serveCommand(int argc, char** argv, int first);
+int turntableCommand(int argc, char** argv, int first);
 
 } // namespace fenestra

@@ -40,11 +40,12 @@ std::size_t columns() {
 } // namespace
 
 Progress::Progress(ProgressMode mode, const RenderSettings& settings, std::uint64_t pixels,
-                   const RenderMonitor& monitor)
+                   const RenderMonitor& monitor, const FrameCount& frames)
     : m_mode(mode),
       m_settings(settings),
       m_pixels(static_cast<double>(pixels)),
-      m_monitor(monitor) {
+      m_monitor(monitor),
+      m_frames(frames) {
   if (m_mode == ProgressMode::automatic)
     m_mode = ::isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::none;
   if (m_mode == ProgressMode::xml) {
@@ -67,6 +68,12 @@ Progress::~Progress() {
   m_thread.join();
 }
 
+void Progress::nextFrame() {
+  const std::lock_guard lock(m_mutex);
+  ++m_frame;
+  m_frameWatch = Stopwatch();
+}
+
 void Progress::run() {
   std::unique_lock lock(m_mutex);
   while (!m_wake.wait_for(lock, std::chrono::milliseconds(100), [this] { return m_done; }))
@@ -74,10 +81,15 @@ void Progress::run() {
   show(true);
 }
 
-double Progress::fraction(double seconds) const {
+double Progress::fraction() const {
+  const double toDo = m_frames.all - m_frames.finished;
+  return toDo > 0.0 ? std::min(1.0, (m_frame + frameFraction()) / toDo) : 1.0;
+}
+
+double Progress::frameFraction() const {
   const double paths = static_cast<double>(m_monitor.paths);
   double most = paths / (static_cast<double>(m_settings.samples) * m_pixels);
-  most = std::max(most, seconds / m_settings.seconds);
+  most = std::max(most, m_frameWatch.seconds() / m_settings.seconds);
   const double noise = m_monitor.noise;
   if (m_settings.noise > 0.0 && noise > 0.0) // variance falls as one over the samples
     most = std::max(most, std::pow(m_settings.noise / noise, 2.0));
@@ -85,7 +97,7 @@ double Progress::fraction(double seconds) const {
 }
 
 void Progress::show(bool last) {
-  const double now = last && !m_monitor.stop ? 1.0 : fraction(m_watch.seconds());
+  const double now = last && !m_monitor.stop ? 1.0 : fraction();
   m_fraction = std::max(m_fraction, now);
   if (m_mode == ProgressMode::xml)
     return showTags(m_fraction, last);
@@ -112,8 +124,13 @@ void Progress::showTags(double done, bool last) const {
 std::vector<std::string> Progress::reached() const {
   const double samples = static_cast<double>(m_monitor.paths) / m_pixels;
   const double noise = m_monitor.noise;
-  std::vector<std::string> fields = {
-      formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples)};
+  std::vector<std::string> fields;
+  if (m_frames.all > 1)
+    fields.push_back("frame " +
+                     std::to_string(std::min(m_frames.finished + m_frame + 1, m_frames.all)) +
+                     " of " + std::to_string(m_frames.all));
+  fields.push_back(
+      formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
   if (noise < infinity)
     fields.push_back(formatted("noise %.3f", noise));
   return fields;

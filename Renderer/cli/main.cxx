@@ -21,7 +21,7 @@ struct NamedCommand {
 constexpr NamedCommand commands[] = {
     {"render", fenestra::renderCommand},   {"inspect", fenestra::inspectCommand},
     {"compare", fenestra::compareCommand}, {"phantom", fenestra::phantomCommand},
-    {"serve", fenestra::serveCommand},
+    {"serve", fenestra::serveCommand},     {"turntable", fenestra::turntableCommand},
 };
 
 /// A word alone that is nearly a subcommand and no file is meant as one.

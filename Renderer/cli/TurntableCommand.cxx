@@ -1,0 +1,189 @@
+// `fenestra turntable`: a rotation as numbered frames. A scene is made once; of each frame only
+// what depends on the camera (Scene::changed).
+
+#include "cli/CommandLine.h"
+#include "cli/Commands.h"
+#include "cli/Machine.h"
+#include "cli/OutputFiles.h"
+#include "cli/Pictures.h"
+#include "cli/Progress.h"
+#include "cli/SceneFlags.h"
+#include "cli/Stop.h"
+#include "cli/TurntableRecord.h"
+#include "io/AtomicFile.h"
+#include "scene/Scene.h"
+
+#include <iostream>
+#include <set>
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+/// Frame by frame, those that are not finished.
+class Turntable {
+public:
+  Turntable(const TurntableOptions& options, TurntableRecord& record, RenderMonitor& monitor,
+            std::string command)
+      : m_options(options),
+        m_record(record),
+        m_monitor(monitor),
+        m_command(std::move(command)),
+        m_before(record.finishedCount()),
+        m_scene(options.render.scene),
+        m_start(m_scene.camera().pose()) {}
+
+  int rendered() const { return m_record.finishedCount() - m_before; }
+
+  void run() {
+    m_record.write();
+    const RenderOptions& render = m_options.render;
+    const RenderSettings settings = settingsFor(render, m_scene.background());
+    Progress progress(render.progress, settings,
+                      static_cast<std::uint64_t>(render.scene.width) *
+                          static_cast<std::uint64_t>(render.scene.height),
+                      m_monitor, {m_before, m_options.frames});
+    for (int frame = 0; frame < m_options.frames; ++frame) {
+      if (m_record.isFinished(frame))
+        continue;
+      if (!renderFrame(frame, settings))
+        return;
+      m_monitor.paths = 0;
+      m_monitor.noise = infinity;
+      progress.nextFrame();
+    }
+  }
+
+  /// Seconds, changes of the surface, warnings.
+  std::string statsJson(double seconds) const {
+    nlohmann::ordered_json json = {{"frames", m_options.frames},
+                                   {"finished", m_record.finishedCount()},
+                                   {"rendered", rendered()},
+                                   {"degrees", m_options.degrees},
+                                   {"seconds", seconds}};
+    if (!m_record.changes().empty())
+      json["surfaceChangeMmPerDegree"] = changesJson();
+    json["warnings"] = m_warnings;
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  }
+
+private:
+  /// Returns whether it is finished, and not stopped.
+  bool renderFrame(int frame, const RenderSettings& settings) {
+    const std::optional<SurfaceChange> change = turnTo(frame);
+    const RenderResult result = render(m_scene.forRender(), settings, m_monitor);
+    if (result.reason == StopReason::request)
+      return false;
+    writePictures(frameOptions(m_options, frame), m_scene, result, m_command);
+    m_record.finish(frame, change);
+    return true;
+  }
+
+  Scene sceneAt(double degrees) const {
+    return m_scene.changed(turnedRequest(m_options.render.scene, m_start, degrees));
+  }
+
+  /// How the clipping surface has changed since the frame before.
+  std::optional<SurfaceChange> turnTo(int frame) {
+    const double step = m_options.angle(1), angle = m_options.angle(frame);
+    const bool follows = frame > 0 || m_options.isClosed();
+    if (follows && m_surfaceFrame != frame - 1)
+      m_surface = seen(sceneAt(angle - step));
+    m_scene = sceneAt(angle);
+    for (const std::string& warning : m_scene.warnings())
+      if (m_warnings.insert(warning).second)
+        std::cerr << "fenestra: warning: " << warning << '\n';
+    const std::optional<SeenSurface> before = std::move(m_surface);
+    m_surface = seen(m_scene);
+    m_surfaceFrame = frame;
+    if (!follows || !before || !m_surface || step == 0.0)
+      return std::nullopt;
+    return changeBetween(*before, *m_surface, m_start.up, step);
+  }
+
+  /// Nothing where the clip is no surface.
+  static std::optional<SeenSurface> seen(const Scene& scene) {
+    const auto* clip = std::get_if<ClipDepth>(&scene.clip());
+    if (!clip || clip->lookup != ClipDepth::Lookup::linear)
+      return std::nullopt;
+    return seenSurface(*clip, scene.focusDepth(), scene.domain());
+  }
+
+  nlohmann::ordered_json changesJson() const {
+    SurfaceChange all;
+    double excess = 0.0;
+    for (const auto& [frame, change] : m_record.changes()) {
+      all.mean += change.mean / static_cast<double>(m_record.changes().size());
+      all.p95 = std::max(all.p95, change.p95);
+      all.max = std::max(all.max, change.max);
+      all.focus = std::max(all.focus, change.focus);
+      excess = std::max(excess, change.excess());
+    }
+    nlohmann::ordered_json json = changeJson(all);
+    json["excess"] = excess;
+    return json;
+  }
+
+  const TurntableOptions& m_options;
+  TurntableRecord& m_record;
+  RenderMonitor& m_monitor;
+  std::string m_command;
+  int m_before; ///< finished
+  Scene m_scene;
+  CameraPose m_start;
+  std::optional<SeenSurface> m_surface; ///< of the frame:
+  int m_surfaceFrame = -2;              ///< none so far
+  std::set<std::string> m_warnings;
+};
+
+/// Before the long work: that frames cost no input, and can be written.
+void checkFrames(const TurntableOptions& options, const TurntableRecord& record) {
+  checkOutputs(frameOptions(options, 0));
+  for (int frame = 0; frame < options.frames; ++frame) {
+    std::vector<std::filesystem::path> files = frameFiles(options, frame);
+    for (const auto& file : {std::optional(record.path()), options.render.stats})
+      if (file)
+        files.push_back(*file);
+    checkDistinct(options.render.inputs, files);
+  }
+  checkWritable(record.path());
+}
+
+void report(const TurntableOptions& options, const TurntableRecord& record, int rendered,
+            double seconds) {
+  const bool isWhole = record.finishedCount() == options.frames;
+  std::ostringstream line;
+  line.precision(3);
+  line << framePath(options.render.outputs.front(), 0).string() << " to "
+       << framePath(options.render.outputs.front(), options.frames - 1).filename().string() << ": "
+       << record.finishedCount() << " of " << options.frames << " frames, " << rendered
+       << " rendered now, " << seconds << " s"
+       << (isWhole ? "" : " (stopped on request; the same command goes on)");
+  std::cout << line.str() << std::endl;
+}
+
+} // namespace
+
+int turntableCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> given = parseCommandLine(turntableSyntax(), argc, argv, first);
+  if (!given)
+    return 0;
+  const FlagValues flags = withSceneFlags(*given);
+  const TurntableOptions options = turntableOptions(flags);
+  const MachineUse machine(options.render.settings);
+  TurntableRecord record(options, flags);
+  RenderMonitor monitor;
+  StopOnSignal stopOnSignal;
+  checkFrames(options, record);
+
+  const Stopwatch total;
+  Turntable turntable(options, record, monitor, shellCommand({argv + 1, argv + argc}));
+  stopOnSignal.setInstead(monitor.stop); // a frame under way is given up
+  turntable.run();
+  if (options.render.stats)
+    writeFile(*options.render.stats, turntable.statsJson(total.seconds()));
+  report(options, record, turntable.rendered(), total.seconds());
+  return record.finishedCount() == options.frames ? 0 : stoppedStatus;
+}
+
+} // namespace fenestra

@@ -1,0 +1,47 @@
+#pragma once
+// What of a turntable is finished, in a file beside its frames, so that the same command goes on
+// where it was stopped and another one does not mix its frames with these.
+
+#include "cli/TurntableFrames.h"
+#include "clipping/SurfaceChange.h"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace fenestra {
+
+class TurntableRecord {
+public:
+  /// Reads the record that there is for these flags; with options.restart as if there were none.
+  /// Throws Error: usage where it, or any of the frames, is of something else; input where it is
+  /// damaged.
+  TurntableRecord(const TurntableOptions& options, const FlagValues& flags);
+
+  const std::filesystem::path& path() const { return m_path; }
+  int finishedCount() const;
+  /// Recorded, and all its files are there.
+  bool isFinished(int frame) const { return m_finished[static_cast<std::size_t>(frame)]; }
+  /// From the frame before, where there is a clipping surface; of all that are recorded.
+  const std::map<int, SurfaceChange>& changes() const { return m_changes; }
+
+  /// Frames can only be told from others' once this is written. Throws Error (output).
+  void write() const;
+  /// The frame's files are there. Throws Error (output).
+  void finish(int frame, const std::optional<SurfaceChange>& change);
+
+private:
+  void read(const TurntableOptions& options);
+  /// Frames that no record tells of.
+  void refuseOthers(const TurntableOptions& options) const;
+
+  std::filesystem::path m_path;
+  nlohmann::json m_request;
+  std::vector<bool> m_finished;
+  std::map<int, SurfaceChange> m_changes;
+};
+
+/// As it is recorded, and in the statistics.
+nlohmann::ordered_json changeJson(const SurfaceChange& change);
+
+} // namespace fenestra

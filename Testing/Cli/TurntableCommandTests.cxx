@@ -1,0 +1,217 @@
+// `fenestra turntable`: its frames are what render makes, and none is made twice. And --view auto,
+// as the first of them may be chosen.
+
+#include "CommandTesting.h"
+#include "io/pictures/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
+
+class TurntableCommand : public SmallScene {
+protected:
+  /// `fenestra turntable volume.nrrd` of the segment A, four frames of 16x16 pixels and 2 samples
+  /// a pixel.
+  static Arguments turntable(const Arguments& more) {
+    Arguments all = {"turntable", "volume.nrrd", "--size", "16x16", "--frames", "4"};
+    all.insert(all.end(), focus.begin(), focus.end());
+    if (std::find(more.begin(), more.end(), "--samples") == more.end())
+      all.insert(all.end(), {"--samples", "2"});
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  Outcome turn(const Arguments& more) const { return run(turntable(more), folder.path()); }
+
+  static std::string frame(int number) { return "turn_000" + std::to_string(number) + ".exr"; }
+  /// The flags of its camera, as its header has them.
+  Arguments cameraOf(const std::string& file) const {
+    std::istringstream words(readImage(folder / file).header.at("camera"));
+    Arguments flags;
+    for (std::string word; words >> word;)
+      flags.push_back(word);
+    return flags;
+  }
+  /// One of these flags' three numbers.
+  Vec3 vectorOf(const std::string& file, const std::string& flag) const {
+    for (const std::string& word : cameraOf(file))
+      if (word.starts_with(flag)) {
+        std::istringstream numbers(word.substr(flag.size()));
+        Vec3 v;
+        char comma = 0;
+        numbers >> v.x() >> comma >> v.y() >> comma >> v.z();
+        return v;
+      }
+    throw std::runtime_error(file + " has no " + flag);
+  }
+  /// From its target.
+  Vec3 toEye(const std::string& file) const {
+    return (vectorOf(file, "--position=") - vectorOf(file, "--target=")).normalized();
+  }
+  nlohmann::json record() const {
+    return nlohmann::json::parse(bytesOf(folder / "turn.turntable.json"));
+  }
+};
+
+TEST_F(TurntableCommand, MakesFramesAsRenderMakesThem) {
+  const Outcome outcome =
+      turn({"--output", "turn.exr", "--output", "turn.png", "--output", "turn.nrrd", "--boundary",
+            "exact", "--steady", "0", "--stats", "all.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(outcome.out.starts_with("turn_0000.exr to turn_0003.exr: 4 of 4 frames"))
+      << outcome.out;
+  for (int i = 0; i < 4; ++i) {
+    for (const char* ending : {".png", ".nrrd", "-Z.nrrd"})
+      EXPECT_TRUE(std::filesystem::exists(folder / ("turn_000" + std::to_string(i) + ending)));
+    Arguments arguments = {"--output", "single.exr", "--boundary", "exact"};
+    for (const Arguments& more : {focus, cameraOf(frame(i))})
+      arguments.insert(arguments.end(), more.begin(), more.end());
+    ASSERT_EQ(renderWith(arguments).status, 0);
+    const Image single = readImage(folder / "single.exr"), turned = readImage(folder / frame(i));
+    EXPECT_EQ(single.channels, turned.channels) << i;
+    EXPECT_EQ(single.header.at("camera"), turned.header.at("camera"));
+  }
+  EXPECT_NE(readImage(folder / frame(0)).channels, readImage(folder / frame(1)).channels);
+  const auto stats = nlohmann::json::parse(bytesOf(folder / "all.json"));
+  EXPECT_EQ(stats["rendered"], 4);
+  EXPECT_GT(stats["surfaceChangeMmPerDegree"]["max"], 0.0);
+  EXPECT_EQ(filesIn(folder.path()).size(),
+            2U + 4 * 4 + 3); // inputs, frames, one picture, two .json
+}
+
+TEST_F(TurntableCommand, GoesAroundTheTargetFromTheViewThatIsAskedFor) {
+  ASSERT_EQ(turn({"--output", "turn.exr", "--view", "anterior", "--degrees", "-180"}).status, 0);
+  EXPECT_LT((toEye(frame(0)) - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((toEye(frame(2)) - Vec3::UnitX()).norm(), 1e-12) << "clockwise, to the patient's right";
+  EXPECT_LT((toEye(frame(3)) - Vec3(1, -1, 0).normalized()).norm(), 1e-12);
+  EXPECT_EQ(vectorOf(frame(0), "--target="), vectorOf(frame(3), "--target="));
+}
+
+TEST_F(TurntableCommand, MakesOnlyWhatIsMissing) {
+  ASSERT_EQ(turn({"--output", "turn.exr"}).status, 0);
+  const Image lost = readImage(folder / frame(2));
+  std::map<int, std::filesystem::file_time_type> written;
+  for (const int kept : {0, 1, 3})
+    written[kept] = std::filesystem::last_write_time(folder / frame(kept));
+  std::filesystem::remove(folder / frame(2));
+  const Outcome outcome = turn({"--output", "turn.exr", "--threads", "1"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("4 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
+  for (const auto& [kept, when] : written)
+    EXPECT_EQ(std::filesystem::last_write_time(folder / frame(kept)), when) << kept;
+  EXPECT_EQ(readImage(folder / frame(2)).channels, lost.channels);
+  EXPECT_EQ(record()["finished"].size(), 4U);
+}
+
+TEST_F(TurntableCommand, GoesOnAfterAnInterruptionBitForBit) {
+  Arguments arguments = turntable({"--output", "turn.exr", "--samples", "60"});
+  *std::find(arguments.begin(), arguments.end(), "16x16") = "64x64";
+  {
+    Arguments watched = arguments;
+    watched.insert(watched.end(), {"--progress", "xml"});
+    Process process(watched, folder.path());
+    ASSERT_TRUE(process.waitForOutput("frame 2 of 4, "));
+    process.send(SIGINT);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    EXPECT_NE(outcome.out.find("(stopped on request; the same command goes on)"), std::string::npos)
+        << outcome.out;
+  }
+  const auto finished = record()["finished"].size();
+  ASSERT_GE(finished, 1U);
+  ASSERT_LT(finished, 4U);
+  EXPECT_EQ(filesIn(folder.path()).size(), 2 + finished + 1) << "no frame is left half-written";
+  std::map<int, std::string> before;
+  for (int i = 0; i < static_cast<int>(finished); ++i)
+    before[i] = bytesOf(folder / frame(i));
+
+  const Outcome rest = run(arguments, folder.path());
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_NE(rest.out.find(std::to_string(4 - finished) + " rendered now"), std::string::npos);
+  for (const auto& [i, bytes] : before)
+    EXPECT_EQ(bytesOf(folder / frame(i)), bytes) << i;
+  const nlohmann::json resumed = record();
+  Arguments whole = arguments;
+  *std::find(whole.begin(), whole.end(), "turn.exr") = "whole.exr";
+  ASSERT_EQ(run(whole, folder.path()).status, 0);
+  for (int i = 0; i < 4; ++i)
+    EXPECT_EQ(readImage(folder / ("whole_000" + std::to_string(i) + ".exr")).channels,
+              readImage(folder / frame(i)).channels)
+        << i;
+  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "whole.turntable.json"))["finished"],
+            resumed["finished"])
+      << "and the surface's changes between them";
+}
+
+TEST_F(TurntableCommand, MixesNoFramesOfDifferentTurntables) {
+  ASSERT_EQ(turn({"--output", "turn.exr"}).status, 0);
+  folder.write("frame_0001.png", "mine");
+  folder.write("damaged.turntable.json", "{\"request\": 7}");
+  expectRefused(
+      {
+          {"other samples", turntable({"--output", "turn.exr", "--samples", "3"}), 2,
+           "turn.turntable.json: is of another turntable (--samples=2 there, --samples=3 here); "
+           "choose another --output, or add --restart"},
+          {"other seed", turntable({"--output", "turn.exr", "--seed", "3"}), 2,
+           "another turntable (--seed=3 here)"},
+          {"others' frame", turntable({"--output", "frame.png"}), 2,
+           "frame_0001.png: is there, and no frame.turntable.json tells what it is of"},
+          {"damaged", turntable({"--output", "damaged.png"}), 3, "damaged.turntable.json: "},
+      },
+      folder.path());
+  const Outcome again = turn({"--output", "turn.exr", "--seed", "3", "--restart"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.out.find("4 rendered now"), std::string::npos) << again.out;
+  EXPECT_EQ(readImage(folder / frame(1)).header.at("seed"), "3");
+
+  folder.write("segments.seg.nrrd", segments() + " ");
+  const Outcome changed = turn({"--output", "turn.exr", "--seed", "3"});
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_NE(changed.err.find("segments.seg.nrrd has changed since"), std::string::npos)
+      << changed.err;
+}
+
+TEST_F(TurntableCommand, RefusesWhatIsForOnePicture) {
+  folder.write("volume_0002.nrrd", bytesOf(folder / "volume.nrrd"));
+  expectRefused(
+      {
+          {"surface", turntable({"--surface", "a.vtp"}), 2, "--surface: is for a single picture"},
+          {"xml", turntable({"--xml"}), 2, "--xml: is for a single picture"},
+          {"no frames", turntable({"--steady", "50"}), 2,
+           "--steady: expected a number from 0 to 45"},
+          {"unknown", turntable({"--frame", "3"}), 2, "did you mean --frames?"},
+          {"an input",
+           {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd"},
+           2,
+           "volume_0002.nrrd: is there"},
+          {"an input anew",
+           {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd", "--restart"},
+           2,
+           "volume_0002.nrrd: would replace an input file"},
+          {"auto without a focus",
+           {"turntable", "volume.nrrd", "--view", "auto"},
+           2,
+           "--view: auto looks for a focus"},
+      },
+      folder.path());
+}
+
+TEST_F(TurntableCommand, BeginsWithTheViewThatShowsTheFocusBest) {
+  ASSERT_EQ(turn({"--output", "turn.exr", "--view", "auto"}).status, 0);
+  for (const char* size : {"16x16", "48x32"}) {
+    const std::string file = std::string(size) + ".exr";
+    Arguments arguments = {"volume.nrrd", "--view", "auto",     "--samples", "1",
+                           "--size",      size,     "--output", file};
+    arguments.insert(arguments.end(), focus.begin(), focus.end());
+    ASSERT_EQ(run(arguments, folder.path()).status, 0);
+    EXPECT_LT((toEye(file) - toEye(frame(0))).norm(), 1e-12) << "whatever the picture's size";
+  }
+}
+
+} // namespace
+} // namespace fenestra
