@@ -5,6 +5,7 @@
 #include "core/Error.h"
 #include "io/phantom/PhantomWriter.h"
 #include "phantom/Cube.h"
+#include "phantom/Fetus.h"
 #include "phantom/Foot.h"
 #include "phantom/Knee.h"
 
@@ -20,8 +21,8 @@ constexpr Flag flags[] = {
     {"size",
      "WxHxD",
      group,
-     "Voxels over the same field of view; N for the cube [knee 300x344x120, foot 300x120x150, cube "
-     "512]",
+     "Voxels over the same field of view; N for the cube [knee 300x344x120, foot 300x120x150, "
+     "fetus 160x160x160, cube 512]",
      {Takes::Kind::text, 16, 1024}}, // of the cube
     {"edge", "MM", group, "The cube's edge [1]", Takes::number(1e-3, 1e5)},
 };
@@ -29,7 +30,7 @@ constexpr Flag flags[] = {
 const CommandSyntax syntax = {
     "phantom",
     "Makes a synthetic subject: an image, its segments, a transfer function, and scenes of them.",
-    {{"KIND", "knee (MR), foot (CT) or cube (the scalar is the z index)"}},
+    {{"KIND", "knee (MR), foot (CT), fetus (ultrasound) or cube (the scalar is the z index)"}},
     flags,
 };
 
@@ -59,6 +60,12 @@ Phantom makeFoot(const FlagValues& values) {
   return makeFootPhantom(options);
 }
 
+Phantom makeFetus(const FlagValues& values) {
+  FetusOptions options;
+  options.size = sizeOf(values).value_or(options.size);
+  return makeFetusPhantom(options);
+}
+
 Phantom makeCube(const FlagValues& values) {
   CubeOptions options;
   options.edge = values.number("edge").value_or(options.edge);
@@ -74,9 +81,11 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
     return makeKnee(values);
   if (kind == "foot")
     return makeFoot(values);
+  if (kind == "fetus")
+    return makeFetus(values);
   if (kind == "cube")
     return makeCube(values);
-  throw usageError("KIND: '" + kind + "' is unknown; use knee, foot or cube");
+  throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");
 }
 
 } // namespace

@@ -36,7 +36,7 @@ std::string text(const Vec3& v) {
   return out.str();
 }
 
-std::map<std::string, std::string> header(const Scene& scene, const RenderSettings& settings,
+std::map<std::string, std::string> header(const Scene& scene, const RenderOptions& options,
                                           const RenderResult& result, const std::string& command) {
   const CameraPose& pose = scene.camera().pose();
   const bool perspective = pose.projection == Projection::perspective;
@@ -46,13 +46,16 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderSettin
                          : "--projection orthographic --scale ")
          << (perspective ? pose.angle : pose.scale) << " --position=" << text(pose.position)
          << " --target=" << text(pose.target) << " --up=" << text(pose.up);
-  return {{"version", versionText},
-          {"target", processorText + ("-" + result.target)},
-          {"seed", std::to_string(settings.seed)},
-          {"samples", std::to_string(result.finishedSamples)},
-          {"camera", camera.str()},
-          {"look", scene.look()},
-          {"command", command}};
+  std::map<std::string, std::string> entries = {{"version", versionText},
+                                                {"target", processorText + ("-" + result.target)},
+                                                {"seed", std::to_string(options.settings.seed)},
+                                                {"samples", std::to_string(result.finishedSamples)},
+                                                {"camera", camera.str()},
+                                                {"look", scene.look()},
+                                                {"command", command}};
+  if (options.preset)
+    entries["preset"] = *options.preset;
+  return entries;
 }
 
 /// Linux grants memory that it does not have, and ends the process when it is used.
@@ -103,7 +106,7 @@ std::string shellCommand(const std::vector<std::string>& arguments) {
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
                    const std::string& command) {
   Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
-  image.header = header(scene, options.settings, result, command);
+  image.header = header(scene, options, result, command);
   // All at once: what packs one does not keep another waiting.
   std::vector<std::future<void>> files;
   for (const std::filesystem::path& path : options.outputs)

@@ -3,6 +3,7 @@
 #include "cli/CommandLine.h"
 #include "cli/Machine.h"
 #include "cli/Pictures.h"
+#include "cli/PresetFlags.h"
 #include "cli/Progress.h"
 #include "cli/RenderFlags.h"
 #include "cli/SceneFlags.h"
@@ -60,9 +61,9 @@ int renderCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(renderSyntax, argc, argv, first);
   if (!given)
     return 0;
-  const FlagValues flags = withSceneFlags(*given);
-  if (flags.has("echo"))
-    std::cout << flags.echo() << std::flush;
+  const PresetFlags flags = withPreset(withSceneFlags(*given));
+  if (given->has("echo"))
+    std::cout << flags.flags.echo() << std::flush;
   const RenderOptions options = renderOptions(flags);
   const MachineUse machine(options.settings);
   RenderMonitor monitor;
@@ -97,6 +98,7 @@ int renderCommand(int argc, char** argv, int first) {
     stats.stages = scene.seconds();
     stats.mismatch = scene.mismatch();
     stats.boundary = scene.boundary();
+    stats.preset = options.preset;
     stats.warnings = scene.warnings();
     stats.files = scene.files();
     const MajorantGrid& majorants = scene.forRender().majorants;

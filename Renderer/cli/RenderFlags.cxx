@@ -3,7 +3,7 @@
 #include "cli/ClipFlags.h"
 
 #include "core/Error.h"
-#include "io/looks/LightReader.h"
+#include "io/looks/LookText.h"
 #include "io/mrml/SceneFiles.h"
 #include "io/pictures/ImageFormat.h"
 
@@ -29,6 +29,10 @@ constexpr Flag flags[] = {
      "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,); may be "
      "repeated",
      Takes::list()},
+    {"preset", "NAME|FILE|auto", sceneGroup,
+     "Focus, look, view and clip of an anatomy in one: brain-surface, brain-tumour, fetal-face, "
+     "foot-bones, heart, knee-cartilage, liver, lungs, spine, a .json, or auto (by the segments' "
+     "names); other flags win over it"},
     {"output", "FILE", sceneGroup,
      "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "
      "repeated [INPUT.png]",
@@ -87,8 +91,9 @@ constexpr Flag flags[] = {
     {"angle", "DEGREES", viewGroup,
      "Perspective: full vertical angle [30, or less to frame the focus]",
      Takes::number(1e-6, 179.0)},
-    {"transfer", "FILE|PRESET", lookGroup,
-     "Transfer function: .vp, .vp.json, Fenestra .json, ct-soft or ct-bone [the scene's, else by "
+    {"transfer", "FILE|PRESET|JSON", lookGroup,
+     "Transfer function: .vp, .vp.json, Fenestra .json or its text, a preset such as ct-soft, or a "
+     "volume property of the scene or of 3D Slicer by name, such as CT-AAA [the scene's, else by "
      "modality]"},
     {"shift", "X", lookGroup, "Moves the transfer function along the scalar [0]",
      Takes::number(-1e30, 1e30), "0"},
@@ -263,11 +268,9 @@ std::filesystem::path defaultOutput(const std::filesystem::path& input) {
 
 std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
   std::vector<std::filesystem::path> files;
-  for (const char* name : {"INPUT", "segmentation", "transfer", "environment"})
-    if (const auto file = flags.text(name))
+  for (const char* name : {"INPUT", "segmentation", "preset", "transfer", "lights", "environment"})
+    if (const auto file = flags.text(name); file && !isLookText(*file))
       files.emplace_back(*file);
-  if (const auto lights = flags.text("lights"); lights && !isLightText(*lights))
-    files.emplace_back(*lights);
   return files;
 }
 
@@ -319,6 +322,11 @@ bool shapesPicture(const Flag& flag) {
          std::find(std::begin(others), std::end(others), flag.name) == std::end(others);
 }
 
+bool shapesLook(const Flag& flag) {
+  const std::string_view group = flag.group;
+  return group == clipGroup || group == viewGroup || group == lookGroup;
+}
+
 RenderOptions renderOptions(const FlagValues& flags) {
   RenderOptions options;
   SceneRequest& scene = options.scene;
@@ -331,8 +339,10 @@ RenderOptions renderOptions(const FlagValues& flags) {
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   if (!scene.focus.empty() && !scene.segmentation && !isScene)
     throw usageError("--focus: needs --segmentation FILE to find segments in");
+  options.preset = flags.text("preset");
   if (scene.segmentation && scene.focus.empty())
-    throw usageError("--segmentation: only --focus uses it; add --focus A,B,...");
+    throw usageError(
+        "--segmentation: only --focus and --preset use it; add --focus A,B,... or --preset auto");
   scene.transfer = flags.text("transfer");
   scene.shift = flags.number("shift").value_or(0.0);
   scene.density = flags.number("density").value_or(1.0);

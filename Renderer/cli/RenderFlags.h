@@ -22,12 +22,16 @@ struct RenderOptions {
   /// one for an error.
   std::optional<std::filesystem::path> returnValues = {};
   ProgressMode progress = ProgressMode::automatic;
+  std::optional<std::string> preset = {}; ///< the organ preset's name
 };
 
 extern const CommandSyntax renderSyntax;
 
 /// Whether the picture depends on the flag, and not only its files or how the process works.
 bool shapesPicture(const Flag& flag);
+
+/// Whether the flag is of clipping, view or look: what an organ preset may say.
+bool shapesLook(const Flag& flag);
 
 /// Throws Error (usage) for values out of range and for flags that contradict each other.
 RenderOptions renderOptions(const FlagValues& flags);

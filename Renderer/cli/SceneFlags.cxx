@@ -1,6 +1,6 @@
 #include "cli/SceneFlags.h"
 
-#include "cli/RenderFlags.h"
+#include "cli/PresetFlags.h"
 #include "io/mrml/MrmlScene.h"
 
 #include <algorithm>
@@ -37,11 +37,12 @@ FlagValues withSceneFlags(const FlagValues& given) {
   if (nodes.empty())
     return merged;
   const MrmlNode& node = *nodes.back();
+  const FlagValues deciding = withPreset(given).flags;
   for (const Flag& flag : renderSyntax.flags) {
     const std::string name = flag.name;
     const bool isNode = name == "volume" || name == "segmentation";
     const std::string value = isNode ? node.referenced(name) : node.text(name);
-    if (shapesPicture(flag) && !value.empty() && !decides(given, name))
+    if (shapesPicture(flag) && !value.empty() && !decides(deciding, name))
       merged.add(name, value);
   }
   if (!merged.has("focus") && !given.has("segmentation")) // which one was chosen does not matter

@@ -9,7 +9,8 @@ namespace fenestra {
 
 /// Flags of `fenestra render` with what the scene named by INPUT stores; of several nodes the last
 /// counts. Flags that are given win: any of the view, of clipping, or of when to stop replaces all
-/// stored ones of its kind. Other inputs change nothing. Throws Error (input) for a damaged scene.
+/// stored ones of its kind, and a preset that is given those that it says. Other inputs change
+/// nothing. Throws Error (input) for a damaged scene.
 FlagValues withSceneFlags(const FlagValues& given);
 
 /// The stored ones among them, as arguments.

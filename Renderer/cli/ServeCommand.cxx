@@ -5,6 +5,7 @@
 #include "cli/Commands.h"
 #include "cli/Machine.h"
 #include "cli/Pictures.h"
+#include "cli/PresetFlags.h"
 #include "cli/SceneFlags.h"
 #include "cli/ServeInput.h"
 #include "core/Error.h"
@@ -35,7 +36,7 @@ public:
 
   /// Until the process ends, or nobody listens. Throws Error where there is no first scene.
   void run() {
-    m_options = renderOptions(m_shown.flags);
+    m_options = renderOptions(withPreset(m_shown.flags));
     m_scene.emplace(m_options->scene);
     ServeWish wish = m_shown;
     for (;;) {
@@ -51,7 +52,7 @@ private:
   /// there is something to render.
   bool change(const ServeWish& wish) {
     try {
-      const RenderOptions options = renderOptions(wish.flags);
+      const RenderOptions options = renderOptions(withPreset(wish.flags));
       checkOutputs(options);
       m_scene = m_scene->changed(options.scene);
       m_options = options;
@@ -131,7 +132,7 @@ int serveCommand(int argc, char** argv, int first) {
   if (given->has("surface"))
     throw usageError("--surface: serve writes pictures alone; write it with fenestra render");
   const FlagValues flags = withSceneFlags(*given);
-  const RenderOptions options = renderOptions(flags);
+  const RenderOptions options = renderOptions(withPreset(flags));
   const MachineUse machine(options.settings);
   checkOutputs(options);
   // Lives as long as the process, as its reading thread does.

@@ -1,6 +1,7 @@
 #include "cli/ServeInput.h"
 
 #include "cli/CommandLine.h"
+#include "cli/PresetFlags.h"
 #include "cli/Stop.h"
 #include "core/Error.h"
 #include "io/PrivateFolder.h"
@@ -77,7 +78,7 @@ void applyChange(const json& change, FlagValues& flags) {
     if (!text.empty())
       result.add(name, text);
   }
-  renderOptions(result); // throws where they cannot be together
+  renderOptions(withPreset(result)); // throws where they cannot be together
   flags = result;
 }
 

@@ -67,6 +67,8 @@ std::string statsJson(const RenderStats& stats, const RenderResult& result) {
   addClip(json, stats);
   if (stats.focusVoxels)
     json["focusVoxels"] = *stats.focusVoxels;
+  if (stats.preset)
+    json["preset"] = *stats.preset;
   json["filesRead"] = stats.files;
   json["warnings"] = stats.warnings;
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

@@ -19,11 +19,12 @@ struct RenderStats {
   std::optional<std::int64_t> focusVoxels = {}; ///< of the labelmap, as far as it was kept
   std::vector<std::string> files = {};          ///< that were read
   std::vector<std::string> warnings = {};
+  std::optional<std::string> preset = {}; ///< an organ preset's name
 };
 
 /// JSON text with the contract's keys, and counters that show what was left out: shadowRays,
 /// gradients, emptyPixels (certain from one sample, and not in samplesPerPixel), cells,
-/// focusVoxels, filesRead. What the clip is worth, beside boundaryMismatchMm and focusCoverage:
+/// focusVoxels, filesRead, preset. What the clip is worth, beside boundaryMismatchMm and focusCoverage:
 /// boundaryGapMm, boundarySlopeJump, boundaryDepthJumps, focusKept, focusCoverageUnclipped,
 /// focusLight, contextRemoved (BoundaryMeasures, FocusReport).
 std::string statsJson(const RenderStats& stats, const RenderResult& result);

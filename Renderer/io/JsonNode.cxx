@@ -1,6 +1,7 @@
 #include "io/JsonNode.h"
 
 #include "io/InputFile.h"
+#include "io/ShownText.h"
 
 #include <algorithm>
 #include <fstream>
@@ -127,6 +128,20 @@ JsonNode JsonNode::at(const std::string& key) const {
   if (!node)
     throw error("has no \"" + key + "\"; add it");
   return *node;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
+  if (!m_value->is_object())
+    throw error("must be an object, {…}");
+  std::vector<std::pair<std::string, JsonNode>> nodes;
+  for (const auto& [key, value] : m_value->items())
+    nodes.emplace_back(
+        key, JsonNode(value, m_source, (m_place.empty() ? "" : m_place + ".") + shown(key)));
+  return nodes;
+}
+
+std::string JsonNode::json() const {
+  return m_value->dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {

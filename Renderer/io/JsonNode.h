@@ -28,6 +28,8 @@ public:
       : JsonNode(document, std::move(source), "") {}
 
   bool isNumber() const { return m_value->is_number(); }
+  bool isArray() const { return m_value->is_array(); }
+  bool isObject() const { return m_value->is_object(); }
   bool boolean() const;
   std::string text() const;
   double number() const;
@@ -41,7 +43,12 @@ public:
   /// Of an object.
   std::optional<JsonNode> find(const std::string& key) const;
   JsonNode at(const std::string& key) const;
+  /// Keys and values, in the keys' order.
+  std::vector<std::pair<std::string, JsonNode>> members() const;
   void allowOnly(std::initializer_list<std::string_view> keys) const;
+
+  /// The value as JSON again, on one line.
+  std::string json() const;
 
   /// Names the file and the place.
   Error error(const std::string& mend) const;

@@ -110,17 +110,26 @@ Extent seen(const Domain& domain, const Vec3& right, const Vec3& up) {
 } // namespace
 
 std::optional<std::string> transferPresetFor(const Volume& volume) {
+  return suits(Modality::ct, volume) ? std::optional<std::string>("ct-soft") : std::nullopt;
+}
+
+bool suits(Modality modality, const Volume& volume) {
   // Air, or padding beyond it (-2000, -8192, -32768 occur), and bone.
   const bool hounsfield = volume.minimum <= -500.0 && volume.maximum >= 200.0;
-  return hounsfield ? std::optional<std::string>("ct-soft") : std::nullopt;
+  return hounsfield == (modality == Modality::ct);
+}
+
+std::array<double, 2> usualRange(const Volume& volume) {
+  const std::vector<double> levels = quantiles(volume, {0.005, 0.995});
+  return {levels[0], levels[1] > levels[0] ? levels[1] : volume.maximum};
 }
 
 TransferFunction relativeTransfer(const Volume& volume) {
   const double unit =
       100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm
-  const std::vector<double> levels = quantiles(volume, {0.005, 0.995});
-  const double low = levels[0];
-  const double high = levels[1] > low ? levels[1] : volume.maximum;
+  const std::array<double, 2> range = usualRange(volume);
+  const double low = range[0];
+  const double high = range[1];
   if (!(high > low))
     return {ScalarFunction({{low, ScalarFunction::Value(0.02 * unit)}}),
             ColorFunction({{low, Rgb(0.9, 0.85, 0.8)}})};

@@ -15,6 +15,14 @@ namespace fenestra {
 /// The name of a transfer preset for CT in Hounsfield units, nothing for any other volume.
 std::optional<std::string> transferPresetFor(const Volume& volume);
 
+/// Whether a transfer function for that modality can suit the volume: one of Hounsfield units does
+/// not suit others, nor the other way round.
+bool suits(Modality modality, const Volume& volume);
+
+/// The least and greatest value that are usual: percentiles 0.5 and 99.5 of the voxels; low < high
+/// but for a constant volume.
+std::array<double, 2> usualRange(const Volume& volume);
+
 /// A look for volumes without an absolute scale (MR, ultrasound, stored values): from transparent
 /// at the background's level to opaque at the 99.5th percentile, dark red-brown through tissue to
 /// ivory. Extinction is relative to the volume's size. A constant volume gets a uniform haze

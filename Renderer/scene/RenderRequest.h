@@ -3,6 +3,7 @@
 
 #include "camera/Camera.h"
 #include "clipping/ClippingSurface.h"
+#include "io/looks/PresetReader.h"
 #include "io/medical/MaskShaping.h"
 #include "render/Render.h"
 
@@ -90,6 +91,9 @@ struct SceneRequest {
   FocusRequest focusLook = {};
   /// A clipping surface is steadied over so many degrees to both sides (clipping/SteadySurface.h).
   double steadyDegrees = 0.0;
+  /// What `transfer` was made for, where an organ preset chose it: a volume that is known to be
+  /// something else gets the look that suits it, and a warning.
+  std::optional<Modality> transferFor = {};
 };
 
 } // namespace fenestra

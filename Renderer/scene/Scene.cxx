@@ -3,9 +3,8 @@
 #include "clipping/SteadySurface.h"
 #include "core/Error.h"
 #include "core/Stopwatch.h"
-#include "io/EmbeddedResources.h"
 #include "io/looks/LightReader.h"
-#include "io/looks/TransferReader.h"
+#include "io/looks/LookText.h"
 #include "scene/Defaults.h"
 
 #include <sstream>
@@ -13,52 +12,38 @@
 namespace fenestra {
 namespace {
 
-/// What `name` means under Resources/<kind>/: the text of a preset, empty where there is none.
-std::string_view preset(const std::string& kind, const std::string& name) {
-  return embeddedResource(kind + "/" + name + ".json");
-}
-
-/// A name without a dot is a preset's; so is no file's.
-Error unknownPreset(const std::string& flag, const std::string& kind, const std::string& name) {
-  std::string known;
-  for (const std::string& path : embeddedResourceNames(kind + "/"))
-    known += (known.empty() ? "" : ", ") +
-             path.substr(kind.size() + 1, path.size() - kind.size() - 1 - std::strlen(".json"));
-  return inputError(name, "no such file, and no preset of that name; --" + flag +
-                              " takes a file or one of " + known);
-}
-
-TransferFunction namedTransfer(const std::string& name) {
-  if (const std::string_view text = preset("transfer", name); !text.empty())
-    return parseTransferFunction(text, name);
-  if (!std::filesystem::exists(name))
-    throw unknownPreset("transfer", "transfer", name);
-  return readTransferFunction(name);
-}
-
-std::vector<Light> namedLights(const std::string& name) {
-  if (isLightText(name))
-    return parseLights(name, "--lights");
-  if (const std::string_view text = preset("lights", name); !text.empty())
-    return parseLights(text, name);
-  if (!std::filesystem::exists(name))
-    throw unknownPreset("lights", "lights", name);
-  return readLights(name);
-}
-
-std::vector<Light> requestedLights(const SceneRequest& request) {
-  std::vector<Light> lights = namedLights(request.lights);
+NamedLights requestedLights(const SceneRequest& request) {
+  NamedLights named = namedLights(request.lights);
   if (request.environment || request.environmentMap) {
-    std::erase_if(lights,
+    std::erase_if(named.lights,
                   [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l); });
     EnvironmentLight environment;
     if (request.environment)
       environment.radiance = *request.environment;
     else
       environment.map = readEnvironmentMap(*request.environmentMap);
-    lights.emplace_back(environment);
+    named.lights.emplace_back(environment);
   }
-  return lights;
+  return named;
+}
+
+TransferFunction fitted(const TransferLook& look, const Volume& volume) {
+  if (!look.relative)
+    return look.function;
+  const auto [low, high] = usualRange(volume);
+  return look.over(low, high);
+}
+
+std::string nameOf(Modality modality) {
+  switch (modality) {
+  case Modality::ct:
+    return "CT";
+  case Modality::mr:
+    return "MR";
+  case Modality::us:
+    break;
+  }
+  return "ultrasound";
 }
 
 /// Null collisions take time in proportion to the greatest extinction: without a limit a file could
@@ -120,16 +105,19 @@ void Scene::make(const SceneRequest& request, const SceneRequest* before) {
     return !before || (!same(request.*members, before->*members) || ...);
   };
   const bool newLights = differs(&R::lights, &R::environment, &R::environmentMap);
-  if (newLights) // small files first: errors come early
-    m_lightList = std::make_shared<const std::vector<Light>>(requestedLights(request));
+  if (newLights) { // small files first: errors come early
+    NamedLights named = requestedLights(request);
+    m_lightList = std::make_shared<const std::vector<Light>>(std::move(named.lights));
+    m_lightFile = std::move(named.file);
+  }
 
   m_made.volume = differs(&R::input, &R::volume);
   m_made.focus = m_made.volume || differs(&R::segmentation, &R::focus) ||
                  (before && request.focusLook.shaping != before->focusLook.shaping);
-  m_made.transfer = m_made.volume || differs(&R::transfer, &R::shift, &R::density);
+  m_made.transfer = m_made.volume || differs(&R::transfer, &R::transferFor, &R::shift, &R::density);
   const Stopwatch loading;
   if (m_made.transfer && request.transfer)
-    m_transfer = namedTransfer(*request.transfer);
+    m_named = namedTransfer(*request.transfer, request.input);
   if (m_made.volume)
     m_volume = std::make_shared<const VolumeInput>(loadVolume(request));
   if (m_made.volume || !sameSettings(request, *before))
@@ -177,16 +165,28 @@ void Scene::readFocus(const SceneRequest& request) {
 
 /// The request's (it is read), else the scene's, else what suits the volume.
 void Scene::chooseTransfer(const SceneRequest& request) {
-  m_look = request.transfer.value_or(m_settings.transferName);
-  if (!request.transfer)
+  m_lookWarnings.clear();
+  const bool unsuitable = request.transferFor && !suits(*request.transferFor, volume());
+  if (!request.transfer) {
+    m_look = m_settings.transferName;
     m_transfer = m_settings.transfer;
+  } else if (unsuitable) {
+    m_transfer.reset();
+    m_lookWarnings.push_back("the preset's transfer function is made for " +
+                             nameOf(*request.transferFor) +
+                             ", and the volume is none; it gets a look of its own, else name one "
+                             "with --transfer");
+  } else {
+    m_look = isLookText(*request.transfer) ? "--transfer" : *request.transfer;
+    m_transfer = fitted(m_named->look, volume());
+  }
   if (!m_transfer) {
     const std::optional<std::string> preset = transferPresetFor(volume());
     m_look = preset.value_or("by the volume's range");
-    m_transfer = preset ? namedTransfer(*preset) : relativeTransfer(volume());
+    m_transfer = preset ? namedTransfer(*preset, {}).look.function : relativeTransfer(volume());
   }
   m_transfer = m_transfer->shifted(request.shift).scaled(request.density);
-  checkExtinction(*m_transfer, volume(), request.transfer.value_or(volume().name));
+  checkExtinction(*m_transfer, volume(), request.transfer ? m_look : volume().name);
   if (m_transfer->shading && volume().minimum == volume().maximum)
     throw inputError(volume().name,
                      "every voxel has the same value, so there is no gradient for the transfer "
@@ -275,6 +275,7 @@ void Scene::buildDepthClip(ClipMode mode, const SceneRequest& scene) {
 std::vector<std::string> Scene::warnings() const {
   std::vector<std::string> warnings = volume().warnings;
   warnings.insert(warnings.end(), m_settings.warnings.begin(), m_settings.warnings.end());
+  warnings.insert(warnings.end(), m_lookWarnings.begin(), m_lookWarnings.end());
   if (domain().indexCorners().empty())
     warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");
   warnings.insert(warnings.end(), m_clipWarnings.begin(), m_clipWarnings.end());
@@ -286,10 +287,10 @@ std::vector<std::string> Scene::files() const {
   files.insert(files.end(), m_settings.files.begin(), m_settings.files.end());
   if (m_focus)
     files.insert(files.end(), m_focus->files.begin(), m_focus->files.end());
-  if (m_request.transfer && preset("transfer", *m_request.transfer).empty())
-    files.push_back(*m_request.transfer);
-  if (!isLightText(m_request.lights) && preset("lights", m_request.lights).empty())
-    files.push_back(m_request.lights);
+  if (m_request.transfer && !m_named->file.empty())
+    files.push_back(m_named->file);
+  if (!m_lightFile.empty())
+    files.push_back(m_lightFile);
   if (m_request.environmentMap)
     files.push_back(m_request.environmentMap->string());
   std::ranges::sort(files);

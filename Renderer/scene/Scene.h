@@ -8,6 +8,7 @@
 #include "clipping/FocusPlane.h"
 #include "lights/LightSet.h"
 #include "scene/AutomaticView.h"
+#include "scene/NamedLooks.h"
 #include "scene/RenderRequest.h"
 #include "scene/SceneInput.h"
 
@@ -84,11 +85,14 @@ private:
   std::shared_ptr<const VolumeInput> m_volume;
   SceneSettings m_settings;
   std::shared_ptr<const FocusInput> m_focus;
+  std::optional<NamedTransfer> m_named; ///< as the request names it
   std::optional<TransferFunction> m_transfer;
   std::string m_look;
   std::optional<ViewDirection> m_automaticView; ///< once it was asked for
+  std::vector<std::string> m_lookWarnings;
   std::optional<Camera> m_camera;
   std::shared_ptr<const std::vector<Light>> m_lightList; ///< as they were read
+  std::string m_lightFile;                               ///< empty where they are of no file
   std::shared_ptr<const LightSet> m_lights;
   Clip m_clip;
   std::optional<ContextStyle> m_style;

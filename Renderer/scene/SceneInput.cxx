@@ -6,6 +6,8 @@
 #include "io/medical/VolumeReader.h"
 #include "io/mrml/ScenePlan.h"
 
+#include <algorithm>
+
 namespace fenestra {
 namespace {
 
@@ -105,6 +107,26 @@ SceneSettings loadSettings(const SceneRequest& request, const Volume& volume) {
 bool sameSettings(const SceneRequest& a, const SceneRequest& b) {
   return a.transfer.has_value() == b.transfer.has_value() &&
          a.view.followsScene() == b.view.followsScene();
+}
+
+std::optional<SegmentNames> loadSegmentNames(const SceneRequest& request) {
+  const auto inFile = [&request]() -> std::optional<SegmentNames> {
+    if (!request.segmentation)
+      return std::nullopt;
+    return SegmentNames{*request.segmentation, readSegmentInfos(*request.segmentation)};
+  };
+  if (!isSceneFile(request.input))
+    return inFile();
+  MrmlScene scene(request.input);
+  const bool holdsAny = std::ranges::any_of(scene.document.nodes(), [](const MrmlNode& node) {
+    return node.tag == "Segmentation" || isLabelMap(node);
+  });
+  const ScenePlan plan =
+      planRender(scene.document, {request.volume, request.segmentation, holdsAny});
+  if (!plan.segmentation)
+    return inFile();
+  return SegmentNames{scene.document.source() + ": " + shown(*plan.segmentation),
+                      readSceneSegmentInfos(scene, *plan.segmentation)};
 }
 
 std::optional<FocusInput> loadFocus(const SceneRequest& request, const Grid& volume) {

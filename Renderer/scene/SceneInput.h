@@ -4,6 +4,7 @@
 // each throws Error.
 
 #include "camera/Camera.h"
+#include "io/medical/SegmentationReader.h"
 #include "medium/TransferFunction.h"
 #include "scene/RenderRequest.h"
 #include "volume/Domain.h"
@@ -42,6 +43,15 @@ struct FocusInput {
   Mask mask;
   std::vector<std::string> files; ///< that were read
 };
+/// The names of all segments among which a focus would be looked for, without their labels.
+struct SegmentNames {
+  std::string source;                ///< names the segmentation in messages
+  std::vector<SegmentInfo> segments; ///< empty where they have no names
+};
+/// Nothing where there is no segmentation. Of the request the input, the volume and the
+/// segmentation count.
+std::optional<SegmentNames> loadSegmentNames(const SceneRequest& request);
+
 /// The segments that the request asks for; nothing where it asks for none.
 std::optional<FocusInput> loadFocus(const SceneRequest& request, const Grid& volume);
 

@@ -2,6 +2,7 @@
 
 #include "io/EmbeddedResources.h"
 #include "io/looks/LightReader.h"
+#include "io/looks/LookText.h"
 #include "io/pictures/ImageWriter.h"
 
 #include "MedicalFiles.h"
@@ -96,10 +97,10 @@ TEST(LightReader, readsEnvironmentMapsBesideTheirFile) {
 }
 
 TEST(LightReader, tellsTextFromNames) {
-  EXPECT_TRUE(isLightText(R"({"lights": []})"));
-  EXPECT_TRUE(isLightText("{"));
+  EXPECT_TRUE(isLookText(R"({"lights": []})"));
+  EXPECT_TRUE(isLookText("{"));
   for (const char* name : {"", "studio", "lights.json", "./{.json", " {}"})
-    EXPECT_FALSE(isLightText(name)) << name;
+    EXPECT_FALSE(isLookText(name)) << name;
 }
 
 TEST(LightReader, refusesMapsThatAreNone) {

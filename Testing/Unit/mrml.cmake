@@ -1,4 +1,4 @@
-foreach(idea MrmlDocument MrmlScene SceneFiles ScenePlan)
+foreach(idea MrmlDocument MrmlScene SceneFiles ScenePlan SlicerPresets)
   fenestra_test(${idea}Tests ${idea}Tests.cxx
     LIBRARIES fenestra_io_mrml fenestra_itk PkgConfig::LibZip LABELS unit)
 endforeach()

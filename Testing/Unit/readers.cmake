@@ -9,3 +9,5 @@ fenestra_test(LightReaderTests LightReaderTests.cxx
   LIBRARIES fenestra_io_looks fenestra_io_pictures fenestra_resources fenestra_itk LABELS unit)
 fenestra_test(MaskShapingTests MaskShapingTests.cxx
   LIBRARIES fenestra_io_medical fenestra_clipping LABELS unit)
+fenestra_test(PresetReaderTests PresetReaderTests.cxx
+  LIBRARIES fenestra_io_looks fenestra_resources fenestra_itk LABELS unit)

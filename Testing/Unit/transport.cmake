@@ -3,5 +3,7 @@ fenestra_test(MediumTests PiecewiseLinearTests.cxx MajorantGridTests.cxx WideCel
 fenestra_test(ScatteringTests ScatteringTests.cxx LIBRARIES fenestra_medium LABELS unit)
 fenestra_test(LightTests LightSetTests.cxx LIBRARIES fenestra_lights LABELS unit)
 fenestra_test(RenderTests BackgroundTests.cxx CoverageTests.cxx EmptyPixelsTests.cxx FilmTests.cxx DeterminismTests.cxx SamplePlanTests.cxx LIBRARIES fenestra_render LABELS unit)
+fenestra_test(OrganPresetsTests OrganPresetsTests.cxx
+  LIBRARIES fenestra_scene fenestra_resources fenestra_itk LABELS unit)
 fenestra_test(SceneTests AutomaticViewTests.cxx DefaultsTests.cxx SceneChangeTests.cxx
   LIBRARIES fenestra_scene fenestra_itk TBB::tbb LABELS unit)

@@ -17,11 +17,6 @@ std::vector<Light> readLights(const std::filesystem::path& path);
 /// The same from text; files are relative to the working directory. `source` names it in messages.
 std::vector<Light> parseLights(std::string_view json, const std::string& source);
 
-/// Whether what names lights is no name but their JSON itself.
-inline bool isLightText(std::string_view lights) {
-  return lights.starts_with('{');
-}
-
 /// R, G, B of an EXR, latitude-longitude. Throws Error (input), also where a value is negative or
 /// not finite.
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path);

@@ -43,8 +43,15 @@ bool isHybrid(const JsonNode& shading) {
   return text == "hybrid";
 }
 
-TransferFunction readOwn(const JsonNode& root) {
-  root.allowOnly({"extinction", "albedo", "g", "shading"});
+bool isRelative(const JsonNode& scalars) {
+  const std::string text = scalars.text();
+  if (text != "absolute" && text != "relative")
+    throw scalars.error("must be \"absolute\" or \"relative\"");
+  return text == "relative";
+}
+
+TransferLook readOwn(const JsonNode& root) {
+  root.allowOnly({"scalars", "extinction", "albedo", "g", "shading"});
   TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largest),
                             .albedo = readCurve<3>(root.at("albedo"), 1.0)};
   if (const auto g = root.find("g")) {
@@ -54,7 +61,22 @@ TransferFunction readOwn(const JsonNode& root) {
   }
   if (const auto shading = root.find("shading"); shading && isHybrid(*shading))
     transfer.shading = SurfaceShading();
-  return transfer;
+  const auto scalars = root.find("scalars");
+  return {std::move(transfer), scalars && isRelative(*scalars)};
+}
+
+template <int Channels>
+PiecewiseLinear<Channels> stretched(const PiecewiseLinear<Channels>& f, double low, double high) {
+  auto knots = f.knots();
+  for (auto& knot : knots)
+    knot.position = low + knot.position * (high - low);
+  return PiecewiseLinear<Channels>(std::move(knots));
+}
+
+TransferFunction absolute(TransferLook look, const std::string& source) {
+  if (look.relative)
+    throw inputError(source, "scalars: are relative to a volume; name one of absolute scalars");
+  return std::move(look.function);
 }
 
 // ---- Slicer's .vp.json
@@ -236,12 +258,25 @@ VolumeProperty readPropertyLines(std::string_view content, const std::string& so
 
 } // namespace
 
-TransferFunction parseTransferFunction(std::string_view json, const std::string& source) {
+TransferFunction TransferLook::over(double low, double high) const {
+  TransferFunction result = function;
+  if (relative) {
+    result.extinction = stretched(function.extinction, low, high);
+    result.albedo = stretched(function.albedo, low, high);
+  }
+  return result;
+}
+
+TransferLook parseTransferLook(std::string_view json, const std::string& source) {
   const nlohmann::json document = parseJson(json, source);
   const JsonNode root(document, source);
   if (root.find("volumeProperties"))
-    return tabulate(readSlicer(root), source);
+    return {tabulate(readSlicer(root), source)};
   return readOwn(root);
+}
+
+TransferFunction parseTransferFunction(std::string_view json, const std::string& source) {
+  return absolute(parseTransferLook(json, source), source);
 }
 
 TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
@@ -250,14 +285,18 @@ TransferFunction parseTransferFunction(const std::map<std::string, std::string>&
                   source);
 }
 
-TransferFunction readTransferFunction(const std::filesystem::path& path) {
+TransferLook readTransferLook(const std::filesystem::path& path) {
   const std::string source = path.string();
   const std::string extension = lowerExtension(path);
   if (extension != ".vp" && extension != ".json")
     throw inputError(source, "is no transfer function; name a .vp, .vp.json or .json file");
   const std::string text = readText(path);
-  return extension == ".vp" ? tabulate(readPropertyLines(text, source), source)
-                            : parseTransferFunction(text, source);
+  return extension == ".vp" ? TransferLook{tabulate(readPropertyLines(text, source), source)}
+                            : parseTransferLook(text, source);
+}
+
+TransferFunction readTransferFunction(const std::filesystem::path& path) {
+  return absolute(readTransferLook(path), path.string());
 }
 
 } // namespace fenestra

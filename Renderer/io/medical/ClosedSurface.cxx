@@ -3,6 +3,7 @@
 #include "core/Error.h"
 #include "io/InputFile.h"
 #include "io/ShownText.h"
+#include "io/medical/SegmentTags.h"
 #include "io/medical/Voxelize.h"
 #include "io/medical/VtkSurface.h"
 
@@ -51,6 +52,7 @@ SegmentInfo infoOf(const VtkSurface& surface, std::size_t index) {
   info.name = text("Segment_Name", "Segment " + std::to_string(index));
   info.id = text("Segment_ID", info.name);
   info.labelValue = static_cast<std::int32_t>(index + 1);
+  readTerminology(text("Segment_Tags", ""), info);
   for (const char* key : {"Segment_DefaultColor", "Segment_Color"}) {
     const auto found = surface.numbers.find(key);
     if (found != surface.numbers.end() && found->second.size() == 3)
@@ -182,6 +184,14 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
   }
   const std::size_t count = layers.count();
   return {path.string(), grid, count, std::move(layers).together(), std::move(segments)};
+}
+
+std::vector<SegmentInfo> readClosedSurfaceInfos(const Path& path) {
+  requireFile(path, "name a .vtm file in it");
+  std::vector<SegmentInfo> infos;
+  for (Surface& surface : surfacesOf(path))
+    infos.push_back(std::move(surface.info));
+  return infos;
 }
 
 } // namespace fenestra

@@ -12,4 +12,7 @@ namespace fenestra {
 /// holes, damaged files.
 Segmentation readClosedSurfaces(const std::filesystem::path& path, const Grid* reference);
 
+/// What names its segments.
+std::vector<SegmentInfo> readClosedSurfaceInfos(const std::filesystem::path& path);
+
 } // namespace fenestra

@@ -7,6 +7,7 @@
 #include "io/medical/MedicalImage.h"
 #include "io/medical/SampleStore.h"
 #include "io/medical/SegmentMask.h"
+#include "io/medical/SegmentTags.h"
 
 #include <charconv>
 #include <map>
@@ -152,6 +153,8 @@ private:
                                      " layers; save it again");
     info.layer = static_cast<std::size_t>(layer);
     info.color = color(n, info.color);
+    if (const std::string* tags = find(n, "Tags"))
+      readTerminology(*tags, info);
     return info;
   }
 
@@ -317,6 +320,17 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
     throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (" +
                                    listed(chosen) + "); choose less");
   return mask;
+}
+
+std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path) {
+  if (lowerExtension(path) == ".vtm")
+    return readClosedSurfaceInfos(path);
+  const std::string source = path.string();
+  std::vector<SegmentInfo> segments;
+  readMedicalImage(path, Components::any, [&](const MedicalImage& image, const SampleSource&) {
+    segments = SegmentFields(image.fields, source).segments(image.components);
+  });
+  return segments;
 }
 
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference) {

@@ -19,6 +19,9 @@ struct SegmentInfo {
   std::int32_t labelValue = 1; ///< never 0, which is the background
   std::size_t layer = 0;
   Rgb color = Rgb::Constant(0.5); ///< display-encoded, as Slicer has it
+  /// What it is and, where that is said, in which part of the body: terminology codes as Slicer
+  /// tags them, like "SCT^39607008".
+  std::string type = {}, region = {};
 };
 
 struct SegmentStatistics {
@@ -71,5 +74,9 @@ private:
 /// `reference`, the volume's grid (ClosedSurface.h); otherwise that is not looked at. Throws Error
 /// (input).
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr);
+
+/// What names the segments of such a file, without reading its labels; empty where the file says
+/// nothing of segments, as a labelmap. Throws Error (input).
+std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path);
 
 } // namespace fenestra

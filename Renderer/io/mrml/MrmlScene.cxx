@@ -114,6 +114,11 @@ Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const
   return segmentation;
 }
 
+std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node) {
+  return scene.files.read(dataFiles(scene, node),
+                          [](const Paths& files) { return readSegmentInfos(files.front()); });
+}
+
 std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node) {
   std::map<std::string, bool> visible;
   const MrmlNode* display = scene.document.follow(node, "display");

@@ -54,6 +54,9 @@ Volume readSceneVolume(MrmlScene& scene, const MrmlNode& volume);
 Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node,
                                    const Grid* volume = nullptr);
 
+/// What names its segments, without their labels; empty where the file names none.
+std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node);
+
 /// Whether each segment is shown in 3-D, by id, as the segmentation's display says; segments that
 /// it does not name are.
 std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node);

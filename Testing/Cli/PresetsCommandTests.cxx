@@ -1,0 +1,275 @@
+// Organ presets and Slicer's presets by name, through the command line.
+
+#include "CommandTesting.h"
+#include "io/pictures/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <sstream>
+
+namespace fenestra {
+namespace {
+
+/// `fenestra knee.nrrd …` in the folder of the knee, at 16x16 pixels and 2 samples a pixel.
+Outcome renderKnee(const Arguments& arguments, const std::string& input = "knee/knee.nrrd") {
+  Arguments all = {input, "--size", "16x16", "--samples", "2", "--output", "preset.exr"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return run(all, kneeFolder().path());
+}
+
+Arguments withSegments(const Arguments& arguments) {
+  Arguments all = {"--segmentation", "knee/knee.seg.nrrd"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return all;
+}
+
+/// The lines that --echo prints.
+std::set<std::string> echoed(Arguments arguments, const std::string& input = "knee/knee.nrrd") {
+  arguments.push_back("--echo");
+  const Outcome outcome = renderKnee(arguments, input);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  std::istringstream text(outcome.out);
+  std::set<std::string> lines;
+  for (std::string line; std::getline(text, line);)
+    lines.insert(line);
+  return lines;
+}
+
+bool has(const std::set<std::string>& lines, const std::string& start) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const std::string& line) { return line.starts_with(start); });
+}
+
+Image picture() {
+  return readImage(kneeFolder() / "preset.exr");
+}
+
+TEST(PresetsCommand, OneNameStandsForFocusLookViewAndClip) {
+  const auto lines = echoed(withSegments({"--preset", "knee-cartilage", "--stats", "s.json"}));
+  for (const char* line : {"preset: knee-cartilage", "focus: FemoralCartilage",
+                           "focus: TibialCartilage", "transfer: mr-knee", "clip: surface"})
+    EXPECT_TRUE(lines.contains(line)) << line;
+  const Image byPreset = picture();
+  EXPECT_EQ(byPreset.header.at("preset"), "knee-cartilage");
+  EXPECT_EQ(byPreset.header.at("look"), "mr-knee");
+  const auto stats = nlohmann::json::parse(bytesOf(kneeFolder() / "s.json"));
+  EXPECT_EQ(stats.at("preset"), "knee-cartilage");
+
+  Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
+  for (const std::string& line : lines)
+    for (const char* flag : {"transfer", "lights", "view", "clip", "boundary"})
+      if (line.starts_with(std::string(flag) + ": "))
+        written.insert(written.end(),
+                       {std::string("--") + flag, line.substr(std::string(flag).size() + 2)});
+  EXPECT_GE(written.size(), 12u);
+  ASSERT_EQ(renderKnee(withSegments(written)).status, 0);
+  EXPECT_EQ(picture().channels, byPreset.channels);
+  EXPECT_FALSE(picture().header.contains("preset"));
+}
+
+TEST(PresetsCommand, FlagsWinOverThePreset) {
+  const auto lines =
+      echoed(withSegments({"--preset", "knee-cartilage", "--view", "superior", "--clip", "cutaway",
+                           "--transfer", "ct-bone", "--focus", "Femur", "--scale", "70"}));
+  for (const char* line : {"view: superior", "clip: cutaway", "transfer: ct-bone", "focus: Femur",
+                           "scale: 70", "lights: studio", "preset: knee-cartilage"})
+    EXPECT_TRUE(lines.contains(line)) << line;
+  EXPECT_FALSE(has(lines, "boundary"));
+  EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
+  // One that the preset's surface cannot have, too.
+  const auto others = echoed(withSegments(
+      {"--preset", "knee-cartilage", "--controlpoints", "20", "--position", "0,300,0"}));
+  EXPECT_TRUE(others.contains("clip: surface"));
+  EXPECT_FALSE(has(others, "boundary"));
+  EXPECT_FALSE(has(others, "view"));
+}
+
+/// Slicer's panel hands over all flags, most with their standard values.
+TEST(PresetsCommand, InSlicersPanelTheStandardSaysNothing) {
+  const auto lines = echoed(withSegments({"--preset", "knee-cartilage", "--clip", "auto",
+                                          "--boundary", "spline", "--controlpoints", "50",
+                                          "--lights", "soft", "--returnparameterfile", "r.txt"}));
+  EXPECT_TRUE(lines.contains("clip: surface"));
+  EXPECT_TRUE(lines.contains("boundary: exact"));
+  EXPECT_TRUE(lines.contains("lights: soft"));
+}
+
+TEST(PresetsCommand, AutoGoesByTheSegmentsNames) {
+  EXPECT_TRUE(echoed(withSegments({"--preset", "auto"})).contains("preset: knee-cartilage"));
+  EXPECT_TRUE(echoed(withSegments({"--preset", "auto", "--focus", "Tibial cartilage"}))
+                  .contains("focus: Tibial cartilage"));
+  EXPECT_TRUE(echoed({"--preset", "auto"}, "knee/knee.mrb").contains("preset: knee-cartilage"));
+}
+
+TEST(PresetsCommand, WithoutASegmentationItIsALookAndAView) {
+  const auto lines = echoed({"--preset", "knee-cartilage"});
+  EXPECT_TRUE(lines.contains("transfer: mr-knee"));
+  EXPECT_FALSE(has(lines, "focus"));
+  EXPECT_FALSE(has(lines, "clip"));
+}
+
+/// The clip and the look are meant for another volume: what was asked for is shown all the same.
+TEST(PresetsCommand, ALookForAnotherModalityGivesWay) {
+  const Outcome outcome = renderKnee(withSegments({"--preset", "liver", "--focus", "Femur"}));
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("made for CT, and the volume is none"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(picture().header.at("look"), "by the volume's range");
+  EXPECT_EQ(
+      renderKnee(withSegments({"--preset", "liver", "--focus", "Femur", "--transfer", "mr-knee"}))
+          .err,
+      "");
+}
+
+TEST(PresetsCommand, AUsersPresetIsAFile) {
+  const TemporaryFolder& folder = kneeFolder();
+  folder.write("menisci.json", R"({"title": "Menisci", "modality": "MR",
+    "focus": {"names": ["menisc*"]}, "flags": {"view": "superior", "transfer":
+      {"scalars": "relative", "extinction": [[0, 0], [1, 1]], "albedo": [[0, 1, 0.5, 0.5]]}}})");
+  const auto lines = echoed(withSegments({"--preset", "menisci.json"}));
+  EXPECT_TRUE(lines.contains("preset: menisci"));
+  EXPECT_TRUE(has(lines, "focus: "));
+  EXPECT_TRUE(has(lines, "transfer: {"));
+}
+
+TEST(PresetsCommand, RefusalsNameWhatThereIs) {
+  const TemporaryFolder& folder = kneeFolder();
+  folder.write("values.nrrd", NrrdText{.type = "uint8"}.with(std::string(64, '\1')));
+  folder.write("size.json", R"({"title": "", "focus": {"names": ["a"]}, "modality": "MR",
+                               "flags": {"size": "9x9"}})");
+  folder.write("brackets.json", "{");
+  folder.write("modality.json", R"({"title": "", "focus": {"names": ["a"]}, "modality": "PET",
+                                    "flags": {}})");
+  const auto refused = [](const std::string& name, Arguments arguments, int status,
+                          const std::string& text) {
+    arguments.insert(arguments.begin(), "knee/knee.nrrd");
+    return Refusal{name, arguments, status, text};
+  };
+  expectRefused(
+      {
+          refused("unknown", withSegments({"--preset", "spleen"}), 3,
+                  "spleen: no such file, and no preset of that name; --preset takes auto, a file, "
+                  "or one of brain-surface, brain-tumour"),
+          refused("no such segment", withSegments({"--preset", "liver"}), 3,
+                  "knee.seg.nrrd: --preset liver: none of its segments is one (Femur, Tibia"),
+          refused("values alone", {"--segmentation", "values.nrrd", "--preset", "liver"}, 3,
+                  "have no names, only values; say which are meant with --focus"),
+          refused("auto by values", {"--segmentation", "values.nrrd", "--preset", "auto"}, 3,
+                  "have no names, only values; name a preset"),
+          refused("auto by nothing", {"--preset", "auto"}, 2, "add --segmentation FILE"),
+          refused("auto unknown", withSegments({"--preset", "auto", "--focus", "Femur"}), 3,
+                  "no preset knows a segment of it (Femur)"),
+          refused("not a look", withSegments({"--preset", "size.json", "--focus", "1"}), 3,
+                  "size.json: flags: \"size\" is no flag of clipping, view or look"),
+          refused("not JSON", withSegments({"--preset", "brackets.json"}), 3,
+                  "brackets.json: is not JSON"),
+          refused("modality", withSegments({"--preset", "modality.json"}), 3,
+                  "modality.json: modality: must be"),
+          refused("twice", withSegments({"--preset", "liver", "--preset", "auto"}), 2,
+                  "--preset: is given more than once"),
+      },
+      folder.path());
+}
+
+/// What was stored with a scene, and what is asked for now.
+TEST(PresetsCommand, APresetThatIsGivenWinsOverWhatASceneStores) {
+  const TemporaryFolder& folder = kneeFolder();
+  const std::string scene = bytesOf(folder / "knee/knee.mrml");
+  const auto stored = [&](const std::string& flags) {
+    std::string text = scene;
+    text.insert(text.find("</MRML>"), "<FenestraRender id=\"f1\" " + flags + "/>");
+    folder.write("knee/stored.mrml", text);
+    return std::string("knee/stored.mrml");
+  };
+  const auto given = echoed({"--preset", "knee-cartilage"},
+                            stored(R"(view="left" transfer="ct-bone" focus="Femur" seed="7")"));
+  EXPECT_TRUE(given.contains("transfer: mr-knee"));
+  EXPECT_TRUE(given.contains("focus: FemoralCartilage"));
+  EXPECT_TRUE(given.contains("seed: 7"));
+  EXPECT_FALSE(given.contains("view: left"));
+  const auto kept = echoed({}, stored(R"(preset="knee-cartilage" view="superior")"));
+  EXPECT_TRUE(kept.contains("transfer: mr-knee"));
+  EXPECT_TRUE(kept.contains("view: superior"));
+  EXPECT_TRUE(kept.contains("focus: FemoralCartilage"));
+}
+
+TEST(PresetsCommand, AServerTakesAPresetAndTakesItBack) {
+  const TemporaryFolder& folder = kneeFolder();
+  Process process({"serve", "knee/knee.nrrd", "--size", "16x16", "--samples", "2", "--output",
+                   "served.exr", "--view", "superior"},
+                  folder.path());
+  const auto shown = [&](const std::string& id) {
+    return process.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
+  };
+  ASSERT_TRUE(shown("null")) << process.output();
+  const Image plain = readImage(folder / "served.exr");
+  process.write(R"({"id": 1, "segmentation": "knee/knee.seg.nrrd", "preset": "auto"})"
+                "\n");
+  ASSERT_TRUE(shown("1")) << process.output();
+  const Image preset = readImage(folder / "served.exr");
+  EXPECT_EQ(preset.header.at("preset"), "knee-cartilage");
+  ASSERT_EQ(renderKnee(withSegments({"--preset", "knee-cartilage", "--view", "superior"})).status,
+            0);
+  EXPECT_EQ(picture().channels, preset.channels);
+  process.write(R"({"id": 2, "preset": "spleen"})"
+                "\n");
+  EXPECT_TRUE(process.waitForOutput("\"error\",\"id\":2")) << process.output();
+  process.write(R"({"id": 3, "segmentation": null, "preset": null})"
+                "\n");
+  ASSERT_TRUE(shown("3")) << process.output();
+  EXPECT_EQ(readImage(folder / "served.exr").channels, plain.channels);
+  process.closeInput();
+  EXPECT_EQ(process.wait().status, 0);
+}
+
+// ---- Slicer's presets
+// ----------------------------------------------------------------------------
+
+/// A Slicer for the time of a test.
+class SlicerHome {
+public:
+  explicit SlicerHome(const std::filesystem::path& folder) {
+    const auto place = folder / "share" / "Slicer-5.8" / "qt-loadable-modules" / "VolumeRendering";
+    std::filesystem::create_directories(place);
+    std::ofstream(place / "presets.xml")
+        << R"(<MRML><VolumeProperty name="CT-Mine" scalarOpacity="4 0 0 500 0.9"
+              gradientOpacity="4 0 1 255 1" colorTransfer="8 0 1 0 0 500 1 1 1" shade="1"/></MRML>)";
+    ::setenv("SLICER_HOME", folder.c_str(), 1);
+  }
+  ~SlicerHome() { ::unsetenv("SLICER_HOME"); }
+  SlicerHome(const SlicerHome&) = delete;
+  SlicerHome& operator=(const SlicerHome&) = delete;
+};
+
+TEST(PresetsCommand, SlicersPresetsAreKnownByName) {
+  const TemporaryFolder home;
+  {
+    const SlicerHome slicer(home.path());
+    const Outcome outcome = renderKnee({"--transfer", "CT-Mine"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(picture().header.at("look"), "CT-Mine");
+    const Outcome unknown = renderKnee({"--transfer", "CT-Other"});
+    EXPECT_EQ(unknown.status, 3);
+    EXPECT_NE(unknown.err.find("of Slicer CT-Mine"), std::string::npos) << unknown.err;
+    EXPECT_NE(unknown.err.find("ct-soft"), std::string::npos) << unknown.err;
+  }
+  const Outcome gone = renderKnee({"--transfer", "CT-Mine"});
+  EXPECT_EQ(gone.status, 3);
+  EXPECT_NE(gone.err.find("SLICER_HOME"), std::string::npos) << gone.err;
+}
+
+TEST(PresetsCommand, AScenesVolumePropertiesAreKnownByName) {
+  const Outcome usual = renderKnee({}, "knee/knee.mrb");
+  ASSERT_EQ(usual.status, 0) << usual.err;
+  const Image before = picture();
+  const Outcome named = renderKnee({"--transfer", "knee property"}, "knee/knee.mrb");
+  EXPECT_EQ(named.status, 0) << named.err;
+  EXPECT_EQ(picture().channels, before.channels);
+  const Outcome unknown = renderKnee({"--transfer", "other property"}, "knee/knee.mrb");
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_NE(unknown.err.find("of the scene knee property"), std::string::npos) << unknown.err;
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,12 @@
+// Organ presets, and a name that their patterns are held against.
+#include "Harness.h"
+
+#include "io/looks/PresetReader.h"
+
+FENESTRA_FUZZ(input) {
+  const fenestra::OrganPreset preset = fenestra::parsePreset(input, "preset.json");
+  for (const std::string& pattern : preset.focus.names)
+    if (!fenestra::matchesName(pattern, pattern) && pattern.find_first_of("*?") == pattern.npos &&
+        fenestra::matchesName("*", pattern))
+      throw std::logic_error("a name that is not itself");
+}

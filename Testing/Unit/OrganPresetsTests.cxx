@@ -1,0 +1,149 @@
+// Which segments a preset takes for its focus, and which preset is taken for segments.
+
+#include "io/EmbeddedResources.h"
+#include "scene/Defaults.h"
+#include "scene/NamedLooks.h"
+#include "scene/OrganPresets.h"
+
+#include "MedicalFiles.h"
+#include "Support.h"
+
+namespace fenestra {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+SegmentInfo segment(const std::string& name, const std::string& type = "",
+                    const std::string& region = "") {
+  SegmentInfo info;
+  info.id = info.name = name;
+  info.type = type;
+  info.region = region;
+  return info;
+}
+
+std::vector<SegmentInfo> segments(const Texts& names) {
+  std::vector<SegmentInfo> infos;
+  for (const std::string& name : names)
+    infos.push_back(segment(name));
+  return infos;
+}
+
+Texts namesOf(const std::vector<SegmentInfo>& infos) {
+  Texts names;
+  for (const SegmentInfo& info : infos)
+    names.push_back(info.name);
+  return names;
+}
+
+OrganPreset preset(const std::string& name, Modality modality, const FocusPatterns& focus,
+                   const Texts& before = {}) {
+  return {.name = name, .title = name, .modality = modality, .focus = focus, .before = before};
+}
+
+TEST(OrganPresets, takesAllSegmentsThatNamesOrCodesSay) {
+  const FocusPatterns patterns{{"lung*"}, {"nodule"}, {"SCT^39607008", "SCT^4147007~SCT^39607008"}};
+  const std::vector<SegmentInfo> all = {segment("heart", "SCT^80891009"),
+                                        segment("left lung"),
+                                        segment("Segment_6", "SCT^39607008"),
+                                        segment("lung nodule"),
+                                        segment("A", "SCT^4147007", "SCT^39607008"),
+                                        segment("B", "SCT^4147007", "SCT^12738006"),
+                                        segment("C", "SCT^396070081"),
+                                        segment("D", "SCT^4147007")};
+  EXPECT_EQ(namesOf(focusOf(patterns, all)), (Texts{"left lung", "Segment_6", "A"}));
+}
+
+TEST(OrganPresets, fitsWhatTheSegmentsMean) {
+  const std::vector<OrganPreset> presets = {
+      preset("liver", Modality::ct, {{"liver"}}),
+      preset("brain", Modality::mr, {{"brain"}}),
+      preset("tumour", Modality::mr, {{"tumo*r"}}, {"brain"}),
+      preset("head-ct", Modality::ct, {{"brain"}}),
+  };
+  const auto fit = [&](const Texts& names, Modality known) {
+    return fittingPreset(presets, segments(names), "s.seg.nrrd",
+                         [known](Modality modality) { return modality == known; })
+        .name;
+  };
+  EXPECT_EQ(fit({"Liver", "Spleen"}, Modality::ct), "liver");
+  EXPECT_EQ(fit({"brain"}, Modality::mr), "brain");
+  EXPECT_EQ(fit({"brain"}, Modality::ct), "head-ct");
+  EXPECT_EQ(fit({"brain", "Tumor"}, Modality::mr), "tumour");
+  const auto refuse = [&](const Texts& names, const std::string& text) {
+    expectRefused("s.seg.nrrd", text, [&] { fit(names, Modality::mr); });
+  };
+  refuse({"Spleen", "Kidney"}, "no preset knows a segment of it (Spleen, Kidney)");
+  EXPECT_EQ(fit({"brain", "tumour", "liver"}, Modality::mr), "tumour");
+}
+
+TEST(OrganPresets, listsThoseThatFitWhereSeveralDo) {
+  const std::vector<OrganPreset> presets = {preset("liver", Modality::ct, {{"liver"}}),
+                                            preset("heart", Modality::ct, {{"heart"}})};
+  expectRefused("s", "several presets fit, liver (liver), heart (heart)", [&] {
+    fittingPreset(presets, segments({"liver", "heart"}), "s", [](Modality) -> bool {
+      throw std::logic_error("the modality says nothing here");
+    });
+  });
+}
+
+/// Names as TotalSegmentator, Slicer's terminology and usual label lists have them.
+TEST(OrganPresets, theProgramsOwnKnowUsualNames) {
+  const std::vector<std::pair<std::string, Texts>> meant = {
+      {"liver", {"liver", "Liver", "Liver_1"}},
+      {"heart", {"heart", "heart_myocardium", "heart_atrium_left", "Left Ventricle"}},
+      {"spine",
+       {"vertebrae_L5", "vertebrae_C1", "lumbar vertebral column", "sacrum", "Vertebra T12"}},
+      {"lungs",
+       {"lung_upper_lobe_left", "right lung", "Lungs", "trachea", "lung_trachea_bronchia"}},
+      {"foot-bones",
+       {"Calcaneus", "calcaneus", "Metatarsal 1", "metatarsals_feet", "phalanges_feet",
+        "Medial cuneiform"}},
+      {"knee-cartilage", {"Femoral cartilage", "FemoralCartilage", "tibial cartilage"}},
+      {"brain-surface", {"Brain", "brain_left_hemisphere"}},
+      {"brain-tumour", {"tumor", "Tumour core", "enhancing_tumor", "Glioblastoma"}},
+      {"fetal-face", {"Fetal face", "face", "fetus"}},
+  };
+  for (const auto& [name, organs] : meant) {
+    const OrganPreset own = namedPreset(name);
+    for (const std::string& organ : organs) {
+      EXPECT_EQ(focusOf(own.focus, segments({organ})).size(), 1u) << name << ": " << organ;
+      for (const auto& [other, unused] : meant)
+        if (other != name)
+          EXPECT_TRUE(focusOf(namedPreset(other).focus, segments({organ})).empty())
+              << other << ": " << organ;
+    }
+  }
+  for (const char* none : {"spinal_cord", "brainstem", "liver_vessels", "lung_nodule", "rib_left_7",
+                           "costal_cartilages", "phalanges_hand", "portal_vein_and_splenic_vein",
+                           "iliac_vena_left", "hip_left", "skin"})
+    for (const auto& [name, organs] : meant)
+      EXPECT_TRUE(focusOf(namedPreset(name).focus, segments({none})).empty())
+          << name << ": " << none;
+}
+
+TEST(OrganPresets, aVolumesRangeSaysWhetherItIsCt) {
+  const Grid grid = testing::centredGrid({10, 10, 10}, Vec3::Ones());
+  const auto volume = [&](double low, double high) {
+    return testing::makeVolume<std::int16_t>(
+        grid, [&](const Vec3& i) { return low + (high - low) * i.x() / 9.0; });
+  };
+  EXPECT_TRUE(suits(Modality::ct, volume(-1000, 1500)));
+  EXPECT_FALSE(suits(Modality::ct, volume(0, 255)));
+  EXPECT_FALSE(suits(Modality::mr, volume(-1000, 1500)));
+  EXPECT_TRUE(suits(Modality::mr, volume(0, 255)));
+  EXPECT_TRUE(suits(Modality::us, volume(0, 255)));
+}
+
+/// 100 000 values from 0 to 99 999, each once: percentiles are known.
+TEST(OrganPresets, whatIsUsualIsBetweenThePercentiles) {
+  const Volume volume =
+      testing::makeVolume(testing::centredGrid({100, 100, 10}, Vec3::Ones()),
+                          [](const Vec3& i) { return i.x() + 100.0 * i.y() + 10000.0 * i.z(); });
+  const auto [low, high] = usualRange(volume);
+  EXPECT_NEAR(low, 500.0, 1.0);
+  EXPECT_NEAR(high, 99500.0, 1.0);
+}
+
+} // namespace
+} // namespace fenestra

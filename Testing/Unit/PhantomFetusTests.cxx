@@ -1,0 +1,103 @@
+// The synthetic fetus: what its segments hold, what hides the face, and that it is always the same.
+
+#include "core/Error.h"
+#include "phantom/Fetus.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+using namespace fenestra;
+
+namespace {
+
+const Phantom& smallFetus() {
+  static const Phantom fetus = makeFetusPhantom({{64, 64, 64}});
+  return fetus;
+}
+
+const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
+  return std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+}
+
+std::size_t countOf(std::uint8_t label) {
+  const auto& labels = smallFetus().labels.layers.front();
+  return static_cast<std::size_t>(std::count(labels.begin(), labels.end(), label));
+}
+
+TEST(PhantomFetus, ValuesAreEightBitsOfUltrasound) {
+  const auto& voxels = voxelsOf(smallFetus());
+  EXPECT_GE(*std::min_element(voxels.begin(), voxels.end()), 0);
+  EXPECT_LE(*std::max_element(voxels.begin(), voxels.end()), 255);
+  EXPECT_GT(*std::max_element(voxels.begin(), voxels.end()), 150);
+}
+
+/// The head is about an ellipsoid of 35 x 43 x 36 mm, with face, jaw and neck.
+TEST(PhantomFetus, SegmentsAreAsLargeAsTheirAnatomy) {
+  const double voxel = std::pow(112.0 / 64.0, 3.0) / 1000.0; // ml
+  ASSERT_EQ(smallFetus().segments.size(), 3u);
+  const double head = voxel * static_cast<double>(countOf(1));
+  EXPECT_GT(head, 220.0);
+  EXPECT_LT(head, 420.0);
+  for (const std::uint8_t label : {2, 3})
+    EXPECT_GT(countOf(label), 100u) << int(label);
+  EXPECT_GT(countOf(0), countOf(1) / 2); // fluid around it
+}
+
+/// From in front, a ray to any part of the face meets the uterine wall first.
+TEST(PhantomFetus, TheWallHidesTheFace) {
+  const Phantom& fetus = smallFetus();
+  const auto& labels = fetus.labels.layers.front();
+  const Size3& size = fetus.volume.grid.size;
+  int columns = 0;
+  int hidden = 0;
+  for (std::int64_t k = 0; k < size.z(); ++k)
+    for (std::int64_t i = 0; i < size.x(); ++i) {
+      bool wall = false;
+      for (std::int64_t j = 0; j < size.y(); ++j) { // from anterior
+        const auto label = labels[static_cast<std::size_t>(i + size.x() * (j + size.y() * k))];
+        wall = wall || label == 3;
+        if (label == 1) {
+          ++columns;
+          hidden += wall;
+          break;
+        }
+      }
+    }
+  EXPECT_GT(columns, 500);
+  EXPECT_EQ(hidden, columns);
+}
+
+TEST(PhantomFetus, SpeckleIsNoLargerThanTissue) {
+  const Phantom& fetus = smallFetus();
+  const auto& labels = fetus.labels.layers.front();
+  const auto& voxels = voxelsOf(fetus);
+  double sum = 0.0;
+  double squares = 0.0;
+  double fluid = 0.0;
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    if (labels[i] == 1) {
+      sum += voxels[i];
+      squares += static_cast<double>(voxels[i]) * voxels[i];
+    } else if (labels[i] == 0) {
+      fluid += voxels[i];
+    }
+  const auto count = static_cast<double>(countOf(1));
+  const double mean = sum / count;
+  const double deviation = std::sqrt(squares / count - mean * mean);
+  EXPECT_GT(mean, 5.0 * fluid / static_cast<double>(countOf(0)));
+  EXPECT_GT(deviation, 0.1 * mean);
+  EXPECT_LT(deviation, 0.6 * mean);
+}
+
+TEST(PhantomFetus, IsTheSameOnEveryRunAndAnyNumberOfThreads) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Phantom again = makeFetusPhantom({{64, 64, 64}});
+  EXPECT_EQ(voxelsOf(again), voxelsOf(smallFetus()));
+  EXPECT_EQ(again.labels.layers, smallFetus().labels.layers);
+}
+
+TEST(PhantomFetus, RefusesSizesBeyondItsLimits) {
+  EXPECT_THROW(makeFetusPhantom({{8, 64, 64}}), Error);
+}
+
+} // namespace

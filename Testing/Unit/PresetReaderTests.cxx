@@ -1,0 +1,116 @@
+// Organ presets: what their files say, what is refused, and which names a pattern matches.
+
+#include "io/EmbeddedResources.h"
+#include "io/looks/PresetReader.h"
+#include "io/looks/TransferReader.h"
+
+#include "MedicalFiles.h"
+
+namespace fenestra {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+TEST(PresetReader, readsEveryField) {
+  const OrganPreset preset = parsePreset(
+      R"({"title": "A spleen", "modality": "CT", "before": ["liver"], "tested": "no",
+          "focus": {"names": ["spleen"], "except": ["accessory"], "codes": ["SCT^78961009"]},
+          "flags": {"view": "left", "density": 2.5, "background": [0.5, 1, 0],
+                    "transfer": {"extinction": [[0, 1]], "albedo": [[0, 1, 1, 1]]}}})",
+      "some/spleen.json");
+  EXPECT_EQ(preset.name, "spleen");
+  EXPECT_EQ(preset.title, "A spleen");
+  EXPECT_EQ(preset.modality, Modality::ct);
+  EXPECT_EQ(preset.focus.names, Texts{"spleen"});
+  EXPECT_EQ(preset.focus.except, Texts{"accessory"});
+  EXPECT_EQ(preset.focus.codes, Texts{"SCT^78961009"});
+  EXPECT_EQ(preset.before, Texts{"liver"});
+  EXPECT_EQ(preset.tested, "no");
+  const std::vector<std::pair<std::string, std::string>> flags = {
+      {"background", "0.5,1,0"},
+      {"density", "2.5"},
+      {"transfer", R"({"albedo":[[0,1,1,1]],"extinction":[[0,1]]})"},
+      {"view", "left"}};
+  EXPECT_EQ(preset.flags, flags);
+}
+
+TEST(PresetReader, namesThePlaceOfWhatIsWrong) {
+  const auto refuse = [](const std::string& json, const std::string& text) {
+    expectRefused("test", text, [&] { parsePreset(json, "test"); });
+  };
+  const std::string t = R"("title": "T", )", m = R"("modality": "MR", )";
+  const std::string f = R"("focus": {"names": ["a"]}, )", g = R"("flags": {})";
+  EXPECT_NO_THROW(parsePreset("{" + t + m + f + g + "}", "test"));
+  refuse("{" + m + f + g + "}", "has no \"title\"");
+  refuse("{" + t + f + g + "}", "has no \"modality\"");
+  refuse("{" + t + m + g + "}", "has no \"focus\"");
+  refuse("{" + t + R"("modality": "MR", "focus": {"names": ["a"]}})", "has no \"flags\"");
+  refuse("{" + t + m + f + g + R"(, "colour": 1})", "unknown key \"colour\"");
+  refuse("{" + t + R"("modality": "PET", )" + f + g + "}", "modality: must be \"CT\"");
+  refuse("{" + t + m + R"("focus": {"except": ["a"]}, )" + g + "}", "focus: has neither");
+  refuse("{" + t + m + R"("focus": {"names": "a"}, )" + g + "}", "focus.names: must be an array");
+  refuse("{" + t + m + R"("focus": {"names": ["a", ""]}, )" + g + "}", "focus.names[1]: must have");
+  refuse("{" + t + m + R"("focus": {"names": [7]}, )" + g + "}",
+         "focus.names[0]: must be a string");
+  for (const char* code : {"39607008", "SCT^", "^39607008", "SCT^3~", "SCT^3~4", "SCT^3^Lung"})
+    refuse("{" + t + m + R"("focus": {"codes": ["SCT^1", ")" + std::string(code) + R"("]}, )" + g +
+               "}",
+           "focus.codes[1]: must be a code");
+  refuse("{" + t + m + f + R"("flags": {"view": true}})", "flags.view: must be a string");
+  refuse("{" + t + m + f + R"("flags": {"view": [1, "a"]}})", "flags.view[1]: must be a number");
+  refuse("{" + t + m + f + R"("flags": {"new\nline": null}})", "flags.new line: must be a string");
+  refuse("[]", "must be an object");
+  refuse("{", "is not JSON");
+}
+
+TEST(PresetReader, matchesWordsInAnyCaseAndSpelling) {
+  for (const char* name : {"lung", "Left Lung", "lung_upper_lobe_left", "LungRight", "LUNG-R",
+                           "right.lung", "  lung  ", "LeftLungMask"})
+    EXPECT_TRUE(matchesName("lung", name)) << name;
+  for (const char* name : {"", "lungs", "plunge", "lunge", "Segment_1", "lu ng"})
+    EXPECT_FALSE(matchesName("lung", name)) << name;
+  EXPECT_TRUE(matchesName("lung*", "lungs"));
+  EXPECT_TRUE(matchesName("*vertebra*", "CervicalVertebrae"));
+  EXPECT_TRUE(matchesName("gr?y matter", "Cerebral Grey_Matter (left)"));
+  EXPECT_TRUE(matchesName("gr?y matter", "gray-matter"));
+  EXPECT_FALSE(matchesName("gr?y matter", "matter, grey"));
+  EXPECT_FALSE(matchesName("gr?y matter", "grey dark matter"));
+  EXPECT_TRUE(matchesName("a*b*c", "axxbyyc"));
+  EXPECT_FALSE(matchesName("a*b*c", "axxbyyd"));
+  EXPECT_TRUE(matchesName("Leber*", "leberlappen"));
+  EXPECT_TRUE(matchesName("h\xc3\xa4nde", "linke h\xc3\xa4nde")); // bytes beyond ASCII are letters
+  EXPECT_FALSE(matchesName("", "lung"));
+  EXPECT_FALSE(matchesName("-", "lung"));
+}
+
+/// Time would grow as a power of the number of stars if each were tried everywhere.
+TEST(PresetReader, matchesPatternsOfManyStarsInNoTime) {
+  std::string stars;
+  for (int i = 0; i < 60; ++i)
+    stars += "a*";
+  EXPECT_FALSE(matchesName(stars + "b", std::string(1000, 'a')));
+  EXPECT_TRUE(matchesName(stars, std::string(1000, 'a')));
+}
+
+TEST(PresetReader, readsEveryPresetThatTravelsWithTheProgram) {
+  const auto files = embeddedResourceNames("presets/");
+  EXPECT_GE(files.size(), 9u);
+  for (const std::string& file : files) {
+    SCOPED_TRACE(file);
+    const OrganPreset preset = parsePreset(embeddedResource(file), file);
+    EXPECT_FALSE(preset.title.empty());
+    EXPECT_FALSE(preset.tested.empty());
+    for (const std::string& other : preset.before)
+      EXPECT_FALSE(embeddedResource("presets/" + other + ".json").empty()) << other;
+    for (const auto& [flag, value] : preset.flags)
+      if (flag == "transfer") {
+        // Of MR and ultrasound nobody knows the scalars.
+        const TransferLook look =
+            parseTransferLook(embeddedResource("transfer/" + value + ".json"), value);
+        EXPECT_EQ(look.relative, preset.modality != Modality::ct);
+      }
+  }
+}
+
+} // namespace
+} // namespace fenestra

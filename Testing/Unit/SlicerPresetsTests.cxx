@@ -1,0 +1,98 @@
+// The presets of a 3D Slicer that is there: where they are looked for, and what is read.
+
+#include "io/mrml/SlicerPresets.h"
+
+#include "MedicalFiles.h"
+
+#include <cstdlib>
+
+namespace fenestra {
+namespace {
+
+constexpr const char* presetsText = R"(<?xml version="1.0" encoding="UTF-8"?>
+<MRML>
+  <VolumeProperty name="CT-Mine" scalarOpacity="4 0 0 100 0.5" gradientOpacity="4 0 1 255 1"
+    colorTransfer="8 0 0 0 0 100 1 1 1" shade="1" effectiveRange="0 0 1 2"/>
+  <VolumeProperty name="Broken" scalarOpacity="3 0 0 100" colorTransfer="4 0 1 1 1"/>
+</MRML>)";
+
+/// An environment variable for the time of a test.
+class Environment {
+public:
+  Environment(const char* name, const std::string& value) : m_name(name) {
+    if (const char* before = std::getenv(name))
+      m_before = before;
+    ::setenv(name, value.c_str(), 1);
+  }
+  ~Environment() { m_before ? ::setenv(m_name, m_before->c_str(), 1) : ::unsetenv(m_name); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+private:
+  const char* m_name;
+  std::optional<std::string> m_before;
+};
+
+/// A folder as Slicer installs it.
+std::filesystem::path installed(const TemporaryFolder& folder, const std::string& home,
+                                const std::string& version) {
+  const auto place =
+      folder / home / "share" / ("Slicer-" + version) / "qt-loadable-modules" / "VolumeRendering";
+  std::filesystem::create_directories(place);
+  std::ofstream(place / "presets.xml") << presetsText;
+  std::ofstream(folder / home / "Slicer") << "launcher";
+  return place / "presets.xml";
+}
+
+TEST(SlicerPresets, areFoundWhereTheEnvironmentSays) {
+  const TemporaryFolder folder;
+  const auto presets = installed(folder, "home", "5.8");
+  const Environment path("PATH", "/nowhere");
+  {
+    const Environment home("SLICER_HOME", (folder / "home").string());
+    EXPECT_EQ(findSlicerPresets(), presets);
+  }
+  const Environment home("SLICER_HOME", (folder / "none").string());
+  EXPECT_FALSE(findSlicerPresets());
+}
+
+TEST(SlicerPresets, areFoundBesideTheLauncherInThePath) {
+  const TemporaryFolder folder;
+  const auto presets = installed(folder, "home", "5.8");
+  std::filesystem::create_directory(folder / "bin");
+  std::filesystem::create_symlink(folder / "home" / "Slicer", folder / "bin" / "Slicer");
+  const Environment home("SLICER_HOME", "");
+  const Environment path("PATH", "/nowhere::" + (folder / "bin").string());
+  ASSERT_TRUE(findSlicerPresets());
+  EXPECT_TRUE(std::filesystem::equivalent(*findSlicerPresets(), presets));
+}
+
+TEST(SlicerPresets, areReadByName) {
+  const TemporaryFolder folder;
+  const SlicerPresets presets(folder.write("presets.xml", presetsText));
+  EXPECT_EQ(presets.names(), (std::vector<std::string>{"CT-Mine", "Broken"}));
+  EXPECT_FALSE(presets.find("CT-Other"));
+  const auto function = presets.find("CT-Mine");
+  ASSERT_TRUE(function);
+  EXPECT_NEAR(function->extinction(50)[0], -std::log(0.75), 1e-3); // opacity 0.25 over 1 mm
+  EXPECT_TRUE(function->shading);
+  expectRefused(folder / "presets.xml", "VolumeProperty Broken: scalarOpacity",
+                [&] { presets.find("Broken"); });
+}
+
+TEST(SlicerPresets, allOfARealSlicerCanBeRead) {
+  const std::filesystem::path file =
+      std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_core" / "presets.xml";
+  if (!std::filesystem::exists(file))
+    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+  const SlicerPresets presets(file);
+  EXPECT_EQ(presets.names().size(), 31u);
+  for (const std::string& name : presets.names()) {
+    const auto function = presets.find(name);
+    ASSERT_TRUE(function) << name;
+    EXPECT_GT(function->extinction.range(-4000, 70000)[1], 0.0) << name;
+  }
+}
+
+} // namespace
+} // namespace fenestra
