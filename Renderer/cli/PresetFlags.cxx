@@ -28,9 +28,16 @@ bool isOfClipping(const std::string& name) {
          std::string_view(findFlag(renderSyntax.flags, "clip")->group);
 }
 
+/// What a mode of clipping has of its own; the focus has the others in any mode.
+bool isOfAMode(const std::string& name) {
+  constexpr std::string_view ofTheFocus[] = {"margin", "labelsmoothing", "contextdensity",
+                                             "contextsaturation"};
+  return isOfClipping(name) && std::ranges::find(ofTheFocus, name) == std::end(ofTheFocus);
+}
+
 bool decides(const FlagValues& given, const std::string& name) {
   const auto has = [&](const std::string& flag) { return isGiven(given, flag); };
-  if (isOfClipping(name) && has("clip"))
+  if (isOfAMode(name) && has("clip"))
     return true;
   for (const std::vector<std::string>& flags : alternatives)
     if (std::ranges::find(flags, name) != flags.end())

@@ -15,7 +15,7 @@ struct PresetFlags {
 /// Flags of `fenestra render` with those of their preset, whose own name stands for "auto" then:
 /// as a focus all segments that the preset knows, from the segmentation that a render would read;
 /// without a segmentation, nothing is clipped. Flags that are given win, as does a mode of clipping
-/// over all the preset says of clipping. Throws Error (usage or input), where the segments are
+/// over all the preset says of modes. Throws Error (usage or input), where the segments are
 /// other ones, too.
 PresetFlags withPreset(const FlagValues& given);
 

@@ -237,35 +237,6 @@ TEST(SegmentationReader, refusesWhatIsNoSegmentation) {
   refuse("Segment0_LabelValue");
 }
 
-TEST(SegmentationReader, readsWhatSegmentsAreWithoutTheirLabels) {
-  const TemporaryFolder folder;
-  FileGeometry geometry;
-  describe(geometry, 0, "a", "left lung", "1", "0");
-  describe(geometry, 1, "b", "mass", "2", "0");
-  describe(geometry, 2, "c", "untold", "3", "0");
-  geometry.fields["Segment0_Tags"] =
-      "Segmentation.Status:inprogress|TerminologyEntry:Segmentation category and type - 3D Slicer "
-      "General Anatomy list~SCT^123037004^Anatomical Structure~SCT^39607008^Lung~SCT^7771000^Left~"
-      "Anatomic codes - DICOM master list~^^~^^|";
-  geometry.fields["Segment1_Tags"] =
-      "TerminologyEntry:L~SCT^49755003^Altered~SCT^4147007^Mass~^^~A~SCT^12738006^Brain~^^";
-  geometry.fields["Segment2_Tags"] = "TerminologyEntry:~^|x";
-  writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
-  const auto infos = readSegmentInfos(folder / "s.seg.nrrd");
-  ASSERT_EQ(infos.size(), 3u);
-  EXPECT_EQ(infos[0].name, "left lung");
-  EXPECT_EQ(infos[0].type, "SCT^39607008");
-  EXPECT_EQ(infos[0].region, "");
-  EXPECT_EQ(infos[1].type, "SCT^4147007");
-  EXPECT_EQ(infos[1].region, "SCT^12738006");
-  EXPECT_EQ(infos[2].type, "");
-  EXPECT_EQ(readSegmentation(folder / "s.seg.nrrd").segments()[1].region, "SCT^12738006");
-  writeFile(folder / "labels.nrrd", std::vector<std::uint8_t>(24, 1));
-  EXPECT_TRUE(readSegmentInfos(folder / "labels.nrrd").empty());
-  expectRefused(folder / "none.seg.nrrd", "no such file",
-                [&] { readSegmentInfos(folder / "none.seg.nrrd"); });
-}
-
 // ---- what Slicer's files have been known to hold
 // ----------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
 fenestra_test(VolumePropertyTests VolumePropertyTests.cxx LIBRARIES fenestra_medium LABELS unit)
 fenestra_test(VolumeReaderTests VolumeReaderTests.cxx
   LIBRARIES fenestra_io_medical fenestra_itk LABELS unit)
-fenestra_test(SegmentationReaderTests SegmentationReaderTests.cxx
+fenestra_test(SegmentationReaderTests SegmentationReaderTests.cxx SegmentTagsTests.cxx
   LIBRARIES fenestra_io_medical fenestra_itk LABELS unit)
 fenestra_test(TransferReaderTests TransferReaderTests.cxx
   LIBRARIES fenestra_io_looks fenestra_itk LABELS unit)

@@ -1,0 +1,44 @@
+// What Slicer's tags say of segments, which is read without their labels.
+
+#include "io/medical/SegmentationReader.h"
+
+#include "MedicalFiles.h"
+
+namespace fenestra {
+namespace {
+
+TEST(SegmentTags, sayWhatSegmentsAreWithoutTheirLabels) {
+  const TemporaryFolder folder;
+  FileGeometry geometry;
+  for (const auto& [number, name] : {std::pair("0", "left lung"), {"1", "mass"}, {"2", "untold"}}) {
+    const std::string segment = std::string("Segment") + number;
+    geometry.fields[segment + "_ID"] = number;
+    geometry.fields[segment + "_Name"] = name;
+    geometry.fields[segment + "_LabelValue"] = "1";
+    geometry.fields[segment + "_Layer"] = "0";
+  }
+  geometry.fields["Segment0_Tags"] =
+      "Segmentation.Status:inprogress|TerminologyEntry:Segmentation category and type - 3D Slicer "
+      "General Anatomy list~SCT^123037004^Anatomical Structure~SCT^39607008^Lung~SCT^7771000^Left~"
+      "Anatomic codes - DICOM master list~^^~^^|";
+  geometry.fields["Segment1_Tags"] =
+      "TerminologyEntry:L~SCT^49755003^Altered~SCT^4147007^Mass~^^~A~SCT^12738006^Brain~^^";
+  geometry.fields["Segment2_Tags"] = "TerminologyEntry:~^|x";
+  writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
+  const auto infos = readSegmentInfos(folder / "s.seg.nrrd");
+  ASSERT_EQ(infos.size(), 3u);
+  EXPECT_EQ(infos[0].name, "left lung");
+  EXPECT_EQ(infos[0].type, "SCT^39607008");
+  EXPECT_EQ(infos[0].region, "");
+  EXPECT_EQ(infos[1].type, "SCT^4147007");
+  EXPECT_EQ(infos[1].region, "SCT^12738006");
+  EXPECT_EQ(infos[2].type, "");
+  EXPECT_EQ(readSegmentation(folder / "s.seg.nrrd").segments()[1].region, "SCT^12738006");
+  writeFile(folder / "labels.nrrd", std::vector<std::uint8_t>(24, 1));
+  EXPECT_TRUE(readSegmentInfos(folder / "labels.nrrd").empty());
+  expectRefused(folder / "none.seg.nrrd", "no such file",
+                [&] { readSegmentInfos(folder / "none.seg.nrrd"); });
+}
+
+} // namespace
+} // namespace fenestra
