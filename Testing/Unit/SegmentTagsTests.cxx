@@ -10,10 +10,11 @@ namespace {
 TEST(SegmentTags, sayWhatSegmentsAreWithoutTheirLabels) {
   const TemporaryFolder folder;
   FileGeometry geometry;
-  for (const auto& [number, name] : {std::pair("0", "left lung"), {"1", "mass"}, {"2", "untold"}}) {
-    const std::string segment = std::string("Segment") + number;
-    geometry.fields[segment + "_ID"] = number;
-    geometry.fields[segment + "_Name"] = name;
+  const std::vector<std::string> names = {"left lung", "mass", "untold"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string segment = "Segment" + std::to_string(i);
+    geometry.fields[segment + "_ID"] = std::to_string(i);
+    geometry.fields[segment + "_Name"] = names[i];
     geometry.fields[segment + "_LabelValue"] = "1";
     geometry.fields[segment + "_Layer"] = "0";
   }
