@@ -43,6 +43,11 @@ public:
     return {(column - 0.5 * m_width) * m_pixelPitch, (0.5 * m_height - row) * m_pixelPitch};
   }
 
+  /// The raster position (column, row) of (x, y) on that plane.
+  Vec2 toRaster(const Vec2& plane) const {
+    return {plane.x() / m_pixelPitch + 0.5 * m_width, 0.5 * m_height - plane.y() / m_pixelPitch};
+  }
+
   /// The eye ray through (x, y) of the plane through the target.
   Ray rayThrough(const Vec2& plane) const {
     const Vec3 offset = plane.x() * m_right + plane.y() * m_up;

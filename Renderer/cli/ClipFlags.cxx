@@ -20,30 +20,29 @@ HoleShape holeShape(const std::string& word) {
   return word == "sphere" ? HoleShape::sphere : HoleShape::cylinder;
 }
 
-/// A flag that only some modes use.
-struct ModeFlag {
-  const char* name;
+/// Flags that only some modes use.
+struct ModeFlags {
+  std::vector<const char*> names;
   std::vector<ClipMode> modes;
-  const char* which; ///< the modes, in words
+  const char* rule;
 };
 
 void refuseUnused(const FlagValues& flags, ClipMode mode, Boundary boundary) {
   using enum ClipMode;
-  static const std::vector<ModeFlag> all = {
-      {"plane", {plane}, "--clip plane"},
-      {"hole", {hole}, "--clip hole"},
-      {"holemargin", {hole}, "--clip hole"},
-      {"ghost", {ghost}, "--clip ghost"},
-      {"boundary", {surface, ghost}, "--clip surface and ghost"},
-      {"controlpoints", {surface, ghost}, "--clip surface and ghost"},
-      {"smoothing", {surface, ghost}, "--clip surface and ghost"},
-      {"offset", {plane, hole, cutaway, surface, ghost}, "a --clip other than none"},
-      {"soft", {plane, hole, cutaway, surface, ghost}, "a --clip other than none"}};
-  for (const ModeFlag& flag : all)
-    if (flags.differs(flag.name) && std::ranges::find(flag.modes, mode) == flag.modes.end())
-      throw usageError(std::string("--") + flag.name + ": only " + flag.which +
-                       (flag.modes.size() > 3 ? " uses it; add one, or drop it"
-                                              : " use it; add it, or drop this"));
+  static const std::vector<ModeFlags> all = {
+      {{"plane"}, {plane}, "only --clip plane uses it; add --clip plane, or drop it"},
+      {{"hole", "holemargin"}, {hole}, "only --clip hole uses it; add --clip hole, or drop it"},
+      {{"ghost"}, {ghost}, "only --clip ghost uses it; add --clip ghost, or drop it"},
+      {{"boundary", "controlpoints", "smoothing"},
+       {surface, ghost},
+       "only --clip surface and ghost use it; drop it"},
+      {{"offset", "soft"},
+       {plane, hole, cutaway, surface, ghost},
+       "without a clip there is nothing to change; drop it"}};
+  for (const ModeFlags& some : all)
+    for (const char* name : some.names)
+      if (flags.differs(name) && std::ranges::find(some.modes, mode) == some.modes.end())
+        throw usageError(std::string("--") + name + ": " + some.rule);
   for (const char* name : {"controlpoints", "smoothing"})
     if (boundary == Boundary::exact && flags.differs(name))
       throw usageError(std::string("--") + name + ": only --boundary spline uses it; drop it");

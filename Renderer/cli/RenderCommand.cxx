@@ -98,6 +98,8 @@ int renderCommand(int argc, char** argv, int first) {
     stats.stages = scene.seconds();
     stats.mismatch = scene.mismatch();
     stats.boundary = scene.boundary();
+    for (const ControlPoint& point : scene.controlPoints())
+      stats.controlPoints.push_back(scene.camera().toRaster(point.site));
     stats.preset = options.preset;
     stats.warnings = scene.warnings();
     stats.files = scene.files();

@@ -24,6 +24,8 @@ void addClip(nlohmann::ordered_json& json, const RenderStats& stats) {
     json["boundarySlopeJump"] = jsonOf(stats.boundary->slopeJump);
     json["boundaryDepthJumps"] = stats.boundary->depthJumps;
   }
+  for (const Vec2& point : stats.controlPoints)
+    json["controlPoints"].push_back({point.x(), point.y()});
   if (!stats.focus)
     return;
   json["focusCoverage"] = stats.focus->coverage;

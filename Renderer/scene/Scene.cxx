@@ -215,6 +215,7 @@ void Scene::buildClip(const SceneRequest& request) {
   m_focusDepth.clear();
   m_mismatch.reset();
   m_boundary.reset();
+  m_controlPoints.clear();
   m_clipWarnings.clear();
   const ClipMode mode = request.clip.modeWith(focus() != nullptr);
   if (isDepthClip(mode))
@@ -270,6 +271,7 @@ void Scene::buildDepthClip(ClipMode mode, const SceneRequest& scene) {
   m_seconds.spline = surface.splineSeconds;
   m_seconds.fill = surface.fillSeconds;
   m_clipWarnings = surface.warnings;
+  m_controlPoints = std::move(surface.controlPoints);
 }
 
 std::vector<std::string> Scene::warnings() const {

@@ -60,6 +60,8 @@ public:
   const std::optional<BoundaryMismatch>& mismatch() const { return m_mismatch; }
   /// How the context meets the focus's outline, where it is to be measured.
   const std::optional<BoundaryMeasures>& boundary() const { return m_boundary; }
+  /// Of a spline; empty for other clips.
+  const std::vector<ControlPoint>& controlPoints() const { return m_controlPoints; }
   const CellRanges& ranges() const { return *m_ranges; }
   const StageSeconds& seconds() const { return m_seconds; }
   const StagesMade& made() const { return m_made; }
@@ -99,6 +101,7 @@ private:
   std::vector<double> m_focusDepth;
   std::optional<BoundaryMismatch> m_mismatch;
   std::optional<BoundaryMeasures> m_boundary;
+  std::vector<ControlPoint> m_controlPoints;
   std::vector<std::string> m_clipWarnings;
   std::shared_ptr<const CellRanges> m_ranges;
   std::shared_ptr<const MajorantGrid> m_majorants;

@@ -111,7 +111,7 @@ TEST(SurfaceCommandLine, RefusesWhatCannotBe) {
   std::filesystem::create_directory(folder / "folder.vtp");
   const auto to = [](const std::string& file) { return kneeWith({"--surface", file}); };
   const std::string known = "has no known extension; name a file .vtp, .ply or .stl";
-  const std::string only = "--surface: only --clip surface and cutaway have one; add --focus";
+  const std::string only = "--surface: --clip none and plane have none; add --focus";
   expectRefused(
       {
           {"another ending", to("a.obj"), 2, "--surface a.obj: " + known},

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ranges>
 #include <set>
 
 using namespace fenestra;
@@ -30,9 +31,24 @@ struct View {
 
 // ---- what holds of every surface
 
-/// Focus samples keep their depth; others have the spline of the control points, or, in a cutaway,
-/// nothing to remove.
-void expectDepths(const ClippingSurface& surface, const SurfaceOptions& options) {
+/// Between the nearest and the farthest depth of the focus, and a length that slopes may carry it.
+void expectBounded(double depth, const ClippingSurface& surface, const View& view) {
+  double least = infinity, greatest = -infinity;
+  for (const double focus :
+       std::views::iota(std::int64_t{0}, surface.focus.depth.size()) |
+           std::views::transform([&](std::int64_t i) { return surface.focus.depth.at(i); }))
+    if (focus < infinity) {
+      least = std::min(least, focus);
+      greatest = std::max(greatest, focus);
+    }
+  const double reach = 2.0 * view.volume.boundingRadius();
+  ASSERT_GE(depth, least - reach);
+  ASSERT_LE(depth, greatest + reach);
+}
+
+/// Focus samples keep their depth; others have the spline of the control points, or some finite
+/// depth that is not far away, or, in a cutaway and beside a hole, nothing to remove.
+void expectDepths(const View& view, const ClippingSurface& surface, const SurfaceOptions& options) {
   const auto& clip = std::get<ClipDepth>(surface.clip);
   std::vector<Vec2> sites;
   std::vector<double> depths;
@@ -57,6 +73,9 @@ void expectDepths(const ClippingSurface& surface, const SurfaceOptions& options)
       ASSERT_EQ(surface.focus.depth.at(i), infinity);
       if (options.mode == SurfaceMode::cutaway) {
         ASSERT_EQ(buffer.at(i), -infinity);
+      } else if (options.mode == SurfaceMode::hole || options.boundary == Boundary::exact) {
+        if (options.mode == SurfaceMode::surface || buffer.at(i) > -infinity)
+          expectBounded(buffer.at(i), surface, view);
       } else {
         const double f = spline(buffer.position(column, row));
         ASSERT_TRUE(std::isfinite(buffer.at(i)));
@@ -168,8 +187,8 @@ void expectFocusShown(const View& view, const ClippingSurface& surface) {
 
 void expectSound(const View& view, const SurfaceOptions& options) {
   const ClippingSurface surface = view.surface(options);
-  expectDepths(surface, options);
-  if (options.mode == SurfaceMode::surface)
+  expectDepths(view, surface, options);
+  if (options.mode == SurfaceMode::surface && options.boundary == Boundary::spline)
     expectControlPoints(surface, options);
   expectKeepEverywhere(view, surface.clip);
   expectVisible(view, surface.clip);
@@ -177,11 +196,49 @@ void expectSound(const View& view, const SurfaceOptions& options) {
   expectFocusShown(view, surface);
 }
 
-/// In both modes, at every smoothing, with few and many control points; large buffers take long.
+/// With every edge and however far it is moved: keep is a share, never less than the ghost in front
+/// of the eye, and boxes bound it.
+void expectEdges(const View& view) {
+  Random random(4, 0, 0);
+  const double radius = view.volume.boundingRadius();
+  for (const ClipEdge& edge : {ClipEdge{0.3, 0.0}, ClipEdge{1.0, 0.0}, ClipEdge{0.0, 1e-12},
+                               ClipEdge{0.3, radius}, ClipEdge{0.0, 1e12}})
+    for (const double offset : {0.0, -1e5, 1e5}) {
+      SurfaceOptions options;
+      options.boundary = Boundary::exact;
+      options.offset = offset;
+      options.edge = edge;
+      const Clip clip = view.surface(options).clip;
+      for (int i = 0; i < 100; ++i) {
+        const Vec3 lower = view.volume.worldCenter() + radius * randomPoint(random, -1, 1);
+        const Box box{lower, lower + radius * std::pow(random.uniform(), 4.0) * Vec3::Ones()};
+        Corners corners;
+        for (int corner = 0; corner < 8; ++corner)
+          corners[static_cast<std::size_t>(corner)] = box.corner(corner);
+        const Kept verdict = keptIn(clip, corners);
+        for (int point = 0; point < 8; ++point) {
+          const Vec3 at =
+              lower + Vec3(box.upper - lower).cwiseProduct(randomPoint(random, 0.0, 1.0));
+          const double kept = keep(clip, at);
+          const bool isBehind = behindEye(view.camera, view.camera.toView(at).z());
+          ASSERT_GE(kept, isBehind ? 0.0 : edge.ghost);
+          ASSERT_LE(kept, verdict.most);
+          ASSERT_TRUE(!verdict.isUniform || kept == verdict.most);
+        }
+      }
+    }
+}
+
+/// In every mode, at every smoothing, with few and many control points; large buffers take long.
 void expectSound(const View& view) {
   if (DepthBuffer(view.camera, view.volume).size() > 40'000)
     return expectSound(view, {.controlPoints = 30, .smoothing = 1.0});
   expectSound(view, {.mode = SurfaceMode::cutaway});
+  expectSound(view, {.boundary = Boundary::exact});
+  for (const HoleShape shape : {HoleShape::box, HoleShape::cylinder, HoleShape::sphere})
+    for (const double margin : {0.0, 5.0})
+      expectSound(view, {.mode = SurfaceMode::hole, .hole = {shape, margin}});
+  expectEdges(view);
   for (const double smoothing : smoothings)
     for (const int points : {1, 3, 50, 300}) {
       SCOPED_TRACE("p " + std::to_string(smoothing) + ", points " + std::to_string(points));
