@@ -94,7 +94,7 @@ bool isInside(const FocusCells& cells, const Domain& volume) {
   return true;
 }
 
-/// A square of four neighbouring samples, some of them focus; where the focus ends between them.
+/// A square of four neighbouring samples, some of them focus and some not.
 class RimCell {
 public:
   static constexpr int probesAcross = 3;
@@ -111,10 +111,6 @@ public:
       }
   }
 
-  bool straddlesOutline() const {
-    const auto count = std::ranges::count(m_isFocus, true);
-    return count > 0 && count < 4;
-  }
   /// mm on the plane through the target; probes keep off the samples.
   Vec2 probe(int number) const {
     const Vec2 low = m_buffer.position(m_column, m_row);
@@ -166,6 +162,22 @@ private:
   std::array<double, 4> m_depths{};
   double m_greatest = -infinity; ///< of the samples of the focus
 };
+
+std::vector<RimCell> rimCells(const FocusDepth& focus) {
+  const DepthBuffer& buffer = focus.depth;
+  std::vector<RimCell> cells;
+  for (std::int64_t row = 0; row + 1 < buffer.rows(); ++row) {
+    const Region* const above = &focus.regions[static_cast<std::size_t>(buffer.sample(0, row))];
+    const Region* const below = above + buffer.columns();
+    const auto inColumn = [&](std::int64_t column) {
+      return (above[column] == Region::focus) + (below[column] == Region::focus);
+    };
+    for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column)
+      if (const int count = inColumn(column) + inColumn(column + 1); count > 0 && count < 4)
+        cells.emplace_back(focus, column, row);
+  }
+  return cells;
+}
 
 /// The part of a world ray in the volume's domain.
 Interval inVolume(const Domain& volume, const Ray& ray) {
@@ -228,12 +240,7 @@ FocusDepth FocusTracer::depths() const {
 }
 
 Rim FocusTracer::rim(const FocusDepth& focus) const {
-  const DepthBuffer& buffer = focus.depth;
-  std::vector<RimCell> cells;
-  for (std::int64_t row = 0; row + 1 < buffer.rows(); ++row)
-    for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column)
-      if (const RimCell cell(focus, column, row); cell.straddlesOutline())
-        cells.push_back(cell);
+  const std::vector<RimCell> cells = rimCells(focus);
   std::vector<double> met(cells.size() * RimCell::probes, infinity);
   const CellRays cellRays(m_camera, *m_cells);
   const auto meet = [&met](std::int64_t probe, double depth) {

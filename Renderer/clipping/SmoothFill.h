@@ -14,12 +14,12 @@
 //
 // Solved from coarse to fine. The coarsest samples that still see the plate bend, a quarter to half
 // a length apart, are solved directly; each finer level takes the coarser one's surface and relaxes
-// what that could not hold by Chebyshev's iteration, the coarser, the longer. A coarse sample may
-// lie across the boundary: its data are the boundary continued to its centre, and only the part of
-// it that is not focus is bent. That is linear in the samples. Against the solution in closed form,
-// along a straight edge, it is right to 8 % of slope * length at any resolution (Testing/Unit);
-// what is left is in how far away the surface levels off, for value and slope at the boundary are
-// of the finest level.
+// near the boundary what that could not hold, by Chebyshev's iteration, the coarser, the longer. A
+// coarse sample may lie across the boundary: its data are the boundary continued to its centre, and
+// only the part of it that is not focus is bent. That is linear in the samples. Against the
+// solution in closed form, along a straight edge, it is right to 8 % of slope * length at any
+// resolution (Testing/Unit); what is left is in how far away the surface levels off, for value and
+// slope at the boundary are of the finest level.
 
 #include "clipping/FocusDepth.h"
 

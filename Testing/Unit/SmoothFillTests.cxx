@@ -107,6 +107,30 @@ TEST(SmoothFill, DoesNotRingWhereTheDepthJumps) {
   }
 }
 
+/// A jump is as steep as the samples beside the boundary, and the gentler the farther away.
+TEST(SmoothFill, EasesAJumpWithTheDistanceFromIt) {
+  Sheet sheet(256, [](const Vec2& x) -> std::optional<double> {
+    if (std::abs(x.x()) >= 20.0)
+      return std::nullopt;
+    return x.y() < 0.0 ? 270.0 : 330.0;
+  });
+  fillSmoothly(sheet.buffer, sheet.regions, 10.0);
+  const auto steepestStepAt = [&](double x) {
+    const auto column = static_cast<std::int64_t>(std::ceil(sheet.buffer.xAxis().index(x)));
+    double steepest = 0.0;
+    for (std::int64_t row = 1; row < sheet.buffer.rows(); ++row)
+      steepest =
+          std::max(steepest, std::abs(sheet.buffer.at(sheet.buffer.sample(column, row)) -
+                                      sheet.buffer.at(sheet.buffer.sample(column, row - 1))));
+    return steepest;
+  };
+  EXPECT_NEAR(steepestStepAt(19.0), 60.0, 1e-3);
+  EXPECT_GT(steepestStepAt(20.2), 10.0);
+  EXPECT_LT(steepestStepAt(22.0), 15.0);
+  EXPECT_LT(steepestStepAt(25.0), 6.0);
+  EXPECT_LT(steepestStepAt(30.0), 0.7 * steepestStepAt(25.0));
+}
+
 /// Beyond a small viewport samples are coarser; a sheet of one column or row is one, too.
 TEST(SmoothFill, ServesAnyShapeOfBuffer) {
   for (const double across : {100.0, 30.0})
