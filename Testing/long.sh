@@ -10,6 +10,8 @@
 #   clang         the whole suite built by clang
 # and only where it is named:
 #   fuzz          every fuzz target for ten minutes
+#   boundary      the clipping surface's boundary on sub-pixel rays; what its record says of the
+#                 figures is written by hand
 # Each stage writes a file of its own there and leaves the others as they are; logs of what failed
 # are in build/report.
 set -euo pipefail
@@ -159,6 +161,13 @@ stage_clang() {
   (cd "$top" && cmake --preset dev -B build-clang -DCMAKE_CXX_COMPILER=clang++ >/dev/null &&
     cmake --build build-clang)
   in_record clang.md run_labels 'clang' "$top/build-clang" "${labels[@]}"
+}
+
+stage_boundary() {
+  (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target BoundaryCheck)
+  (sed '/^## /,$d' "$record/boundary.md" && "$top/build/bin/BoundaryCheck" 256 12) \
+    >"$record/boundary.md.tmp"
+  mv "$record/boundary.md.tmp" "$record/boundary.md"
 }
 
 stage_fuzz() {
