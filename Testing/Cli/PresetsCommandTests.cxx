@@ -58,11 +58,11 @@ TEST(PresetsCommand, OneNameStandsForFocusLookViewAndClip) {
 
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
   for (const std::string& line : lines)
-    for (const char* flag : {"transfer", "lights", "view", "clip", "boundary"})
+    for (const char* flag : {"transfer", "lights", "view", "clip", "boundary", "labelsmoothing"})
       if (line.starts_with(std::string(flag) + ": "))
         written.insert(written.end(),
                        {std::string("--") + flag, line.substr(std::string(flag).size() + 2)});
-  EXPECT_GE(written.size(), 12u);
+  EXPECT_GE(written.size(), 14u);
   ASSERT_EQ(renderKnee(withSegments(written)).status, 0);
   EXPECT_EQ(picture().channels, byPreset.channels);
   EXPECT_FALSE(picture().header.contains("preset"));
@@ -76,6 +76,7 @@ TEST(PresetsCommand, FlagsWinOverThePreset) {
                            "scale: 70", "lights: studio", "preset: knee-cartilage"})
     EXPECT_TRUE(lines.contains(line)) << line;
   EXPECT_FALSE(has(lines, "boundary"));
+  EXPECT_TRUE(has(lines, "labelsmoothing")); // the focus's own in any mode
   EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
   // One that the preset's surface cannot have, too.
   const auto others = echoed(withSegments(
