@@ -41,7 +41,7 @@ TEST_F(FlagsCommand, RefusesWhatItDoesNotKnow) {
 
 TEST_F(FlagsCommand, RefusesFlagsOfTheContractThatDoNothingYet) {
   std::vector<Refusal> refusals;
-  for (const char* flag : {"--hole", "--ghost", "--offset", "--checkpoint", "--resume", "--preset"})
+  for (const char* flag : {"--hole", "--ghost", "--offset", "--checkpoint", "--resume"})
     refusals.push_back(refusal({flag, "1"}, std::string(flag) + ": no such flag"));
   refusals.push_back(
       refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "smooth"},
