@@ -98,8 +98,8 @@ TEST(PresetsCommand, InSlicersPanelTheStandardSaysNothing) {
 
 TEST(PresetsCommand, AutoGoesByTheSegmentsNames) {
   EXPECT_TRUE(echoed(withSegments({"--preset", "auto"})).contains("preset: knee-cartilage"));
-  EXPECT_TRUE(echoed(withSegments({"--preset", "auto", "--focus", "Tibial cartilage"}))
-                  .contains("focus: Tibial cartilage"));
+  EXPECT_TRUE(echoed(withSegments({"--preset", "auto", "--focus", "Femoral cartilage"}))
+                  .contains("focus: Femoral cartilage"));
   EXPECT_TRUE(echoed({"--preset", "auto"}, "knee/knee.mrb").contains("preset: knee-cartilage"));
 }
 
