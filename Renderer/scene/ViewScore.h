@@ -32,8 +32,8 @@ public:
   ViewScorer(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
              const Mask& focus);
 
-  /// `fromTarget`: a unit vector; `rays`: how many look for the focus, over the box that it fills. The
-  /// score is right to about one over how many find it.
+  /// `fromTarget`: a unit vector; `rays`: how many look for the focus, over the box that it fills.
+  /// The score is right to about one over how many find it.
   ViewScore operator()(const Vec3& fromTarget, std::size_t rays) const;
 
 private:

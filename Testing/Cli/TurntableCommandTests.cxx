@@ -213,5 +213,19 @@ TEST_F(TurntableCommand, BeginsWithTheViewThatShowsTheFocusBest) {
   }
 }
 
+TEST_F(TurntableCommand, ShowsTheKneesCartilagesFromInFront) {
+  const std::string picture = (folder / "auto.exr").string();
+  for (const char* projection : {"orthographic", "perspective"}) {
+    ASSERT_EQ(
+        run({"knee/knee.mrml", "--focus", "FemoralCartilage,TibialCartilage", "--view", "auto",
+             "--projection", projection, "--size", "16x16", "--samples", "1", "--output", picture},
+            kneeFolder().path())
+            .status,
+        0);
+    EXPECT_GT(toEye("auto.exr").y(), std::cos(45.0 * pi / 180.0)) << toEye("auto.exr").transpose();
+    EXPECT_EQ(vectorOf("auto.exr", "--up="), Vec3::UnitZ());
+  }
+}
+
 } // namespace
 } // namespace fenestra
