@@ -11,9 +11,10 @@ namespace {
 /// Flags that decide one thing together; any other flag decides by itself.
 const std::vector<std::vector<std::string>> kinds = {
     {"view", "position", "target", "up", "projection", "scale", "angle"},
-    {"clip", "boundary", "controlpoints", "smoothing", "plane"},
+    {"clip", "boundary", "controlpoints", "smoothing", "plane", "hole", "holemargin", "ghost",
+     "offset", "soft"},
     {"samples", "seconds", "noise"},
-    {"focus", "segmentation"},
+    {"focus", "segmentation", "margin"},
     {"lights", "environment"},
 };
 

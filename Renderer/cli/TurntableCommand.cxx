@@ -168,10 +168,10 @@ int turntableCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(turntableSyntax(), argc, argv, first);
   if (!given)
     return 0;
-  const FlagValues flags = withSceneFlags(*given);
+  const PresetFlags flags = withPreset(withSceneFlags(*given));
   const TurntableOptions options = turntableOptions(flags);
   const MachineUse machine(options.render.settings);
-  TurntableRecord record(options, flags);
+  TurntableRecord record(options, flags.flags);
   RenderMonitor monitor;
   StopOnSignal stopOnSignal;
   checkFrames(options, record);

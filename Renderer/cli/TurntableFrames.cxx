@@ -44,12 +44,13 @@ const CommandSyntax& turntableSyntax() {
   return syntax;
 }
 
-TurntableOptions turntableOptions(const FlagValues& flags) {
+TurntableOptions turntableOptions(const PresetFlags& given) {
+  const FlagValues& flags = given.flags;
   for (const char* name : {"surface", "returnparameterfile", "xml", "echo"})
     if (flags.has(name))
       throw usageError(std::string("--") + name +
                        ": is for a single picture; use it with fenestra render, or drop it");
-  TurntableOptions options{renderOptions(flags)};
+  TurntableOptions options{renderOptions(given)};
   options.render.scene.measure = false; // the statistics are of all frames
   options.frames = static_cast<int>(flags.count("frames").value_or(36));
   options.degrees = flags.number("degrees").value_or(options.degrees);

@@ -1,7 +1,7 @@
 #pragma once
 // The flags of `fenestra turntable`, and what they make of each frame.
 
-#include "cli/RenderFlags.h"
+#include "cli/PresetFlags.h"
 
 namespace fenestra {
 
@@ -21,7 +21,7 @@ struct TurntableOptions {
 const CommandSyntax& turntableSyntax();
 
 /// Throws Error (usage).
-TurntableOptions turntableOptions(const FlagValues& flags);
+TurntableOptions turntableOptions(const PresetFlags& given);
 
 /// turn.png's frame 7 is turn_0007.png.
 std::filesystem::path framePath(const std::filesystem::path& output, int frame);

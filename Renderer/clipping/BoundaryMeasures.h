@@ -16,19 +16,23 @@ struct Distribution {
   static Distribution of(std::vector<double> values); ///< zeros of none
 };
 
-/// Where an outline passes between two samples, the focus has a depth and a slope on its side, and
-/// on the other the context begins at some depth: where the clip leaves it, or where the eye ray
-/// enters the volume. Each side is continued linearly, the context to the focus's last sample.
+/// On the focus's outline, which is found by bisection between a sample of the focus and a
+/// neighbour that is none, the focus has a depth, and the context begins at one: where the clip
+/// leaves it, or where the eye ray enters the volume. Where the clip has steps (cutaway, hole) that
+/// is of samples beyond, continued linearly.
 struct BoundaryMeasures {
-  Distribution gap;        ///< mm between the two depths there, without depth jumps
-  Distribution slopeJump;  ///< between the two slopes, mm of depth per mm, without depth jumps
+  Distribution gap; ///< mm between the two depths there, without depth jumps
+  /// Between the slopes of two samples on each side, mm of depth per mm, without depth jumps.
+  Distribution slopeJump;
   double depthJumps = 0.0; ///< share of the outline where the focus's own depth jumps
   std::size_t crossings = 0;
 };
 
-/// mm by which a sample's depth differs from a neighbour's where the focus is said to jump.
+/// mm by which a focus sample's depth differs from a neighbour's where the focus is said to jump.
 constexpr double depthJump = 2.0;
 
-BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const FocusDepth& focus);
+/// `depths` are those of `focus`, for the clip's camera.
+BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
+                                 const FocusDepth& depths);
 
 } // namespace fenestra

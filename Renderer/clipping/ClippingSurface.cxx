@@ -1,5 +1,6 @@
 #include "clipping/ClippingSurface.h"
 
+#include "clipping/Sewing.h"
 #include "clipping/SmoothFill.h"
 #include "clipping/ThinPlateSpline.h"
 #include "core/Error.h"
@@ -18,12 +19,6 @@ void check(const SurfaceOptions& options) {
     throw usageError("--controlpoints: must be from 1 to 1000");
   if (!(options.smoothing >= 0.0 && options.smoothing <= 1.0))
     throw usageError("--smoothing: must be from 0 to 1");
-}
-
-/// Of the clip's buffer, mm away from the eye.
-void move(DepthBuffer& buffer, double offset) {
-  for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
-    buffer.set(sample, buffer.at(sample) + offset);
 }
 
 std::string nameOf(const Mask& focus) {
@@ -59,15 +54,6 @@ BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
   misses.reserve(samples.size());
   for (const ControlPoint& sample : samples)
     misses.push_back(std::abs(spline(sample.site) - sample.depth));
-  return Distribution::of(std::move(misses));
-}
-
-/// Of the filled buffer, on the rays between the samples of the outline.
-BoundaryMismatch mismatchOf(const DepthBuffer& buffer, const std::vector<Meeting>& meetings) {
-  std::vector<double> misses;
-  misses.reserve(meetings.size());
-  for (const Meeting& meeting : meetings)
-    misses.push_back(std::max(0.0, meeting.depth - buffer.depth(meeting.position)));
   return Distribution::of(std::move(misses));
 }
 
@@ -169,17 +155,6 @@ void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
       buffer.set(sample, -infinity);
 }
 
-/// The rim is part of what the surface around the focus starts from.
-void fillExactly(DepthBuffer& buffer, const FocusDepth& focus, const std::vector<RimDepth>& rim,
-                 double length) {
-  std::vector<Region> given = focus.regions;
-  for (const RimDepth& sample : rim) {
-    buffer.set(sample.sample, sample.depth);
-    given[static_cast<std::size_t>(sample.sample)] = Region::focus;
-  }
-  fillSmoothly(buffer, given, length);
-}
-
 /// The spline of the focus's outline, and what it is judged by.
 ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& options) {
   const std::vector<Contour> contours = traceContours(surface.focus);
@@ -219,16 +194,15 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   } else if (options.mode == SurfaceMode::hole) {
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
-    const Rim rim = tracer.rim(surface.focus);
-    fillExactly(*buffer, surface.focus, rim.samples, levellingLength(volume));
-    surface.mismatch = mismatchOf(*buffer, rim.meetings);
+    fillSmoothly(*buffer, surface.focus.regions, levellingLength(volume));
+    sew(*buffer, surface.focus, tracer.seams(surface.focus));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();
     SplineFill(*buffer, surface.focus.regions, spline).fill();
   }
   if (options.offset != 0.0)
-    move(*buffer, options.offset);
+    buffer->move(options.offset);
   auto pyramid = std::make_shared<const DepthPyramid>(*buffer);
   const auto lookup =
       options.mode == SurfaceMode::surface ? ClipDepth::Lookup::linear : ClipDepth::Lookup::nearest;

@@ -7,6 +7,7 @@
 #include "clipping/FocusDepth.h"
 #include "clipping/Hole.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,16 +35,15 @@ struct SurfaceOptions {
   ClipEdge edge = {};
 };
 
-/// mm. Of a spline f, |f(x) - z| over the focus samples on the contours: how far it misses their
-/// depth. Of an exact boundary, how far the surface stands in front of the focus on rays between
-/// the samples where the focus ends; at the samples it does not.
+/// Of a spline f, |f(x) - z| in mm over the focus samples on the contours: how far it misses their
+/// depth.
 using BoundaryMismatch = Distribution;
 
 struct ClippingSurface {
-  Clip clip;                                 ///< a ClipDepth
-  FocusDepth focus;                          ///< over the samples of the clip's buffer
-  std::vector<ControlPoint> controlPoints{}; ///< of a spline only
-  BoundaryMismatch mismatch{};
+  Clip clip;                                  ///< a ClipDepth
+  FocusDepth focus;                           ///< over the samples of the clip's buffer
+  std::vector<ControlPoint> controlPoints{};  ///< of a spline only
+  std::optional<BoundaryMismatch> mismatch{}; ///< of a spline only
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
   std::vector<std::string> warnings{};
 };

@@ -4,6 +4,7 @@
 #include "camera/Camera.h"
 #include "volume/Grid.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -77,10 +78,34 @@ public:
     m_depths[index(sample)] = static_cast<float>(depth - m_reference);
   }
 
-  /// Linear in each axis between samples, which must be finite.
+  /// Squares along an edge of a fine cell.
+  static constexpr int fineSide = 4;
+  /// The depth in each square of a cell between four samples, mm, column by column of each row.
+  using FineCell = std::array<double, fineSide * fineSide>;
+
+  /// The cell from this sample to the next column and row, which there have to be, is known finely:
+  /// between its samples the depth is that of the square, and linear no more.
+  void refine(std::int64_t sample, const FineCell& depths);
+  /// Of each sample the number of its fine cell, or -1; empty where there are none.
+  const std::vector<std::int32_t>& fineCells() const { return m_fineCells; }
+  /// Of one fine cell after the other, less the depth of the camera's target.
+  const std::vector<float>& fineDepths() const { return m_fineDepths; }
+
+  /// Moves all of it away from the eye, mm.
+  void move(double offset);
+
+  /// Linear in each axis between samples, which must be finite; in fine cells that of the square.
   double depth(const Vec2& position) const {
     const Neighbours x = neighbours(m_x, position.x());
     const Neighbours y = neighbours(m_y, position.y());
+    if (!m_fineCells.empty())
+      if (const std::int32_t cell = m_fineCells[index(sample(x.low, y.low))]; cell >= 0) {
+        const auto square = [](double fraction) {
+          return std::min(static_cast<std::size_t>(fraction * fineSide), std::size_t{fineSide - 1});
+        };
+        return m_reference + m_fineDepths[static_cast<std::size_t>(cell) * fineSide * fineSide +
+                                          square(y.fraction) * fineSide + square(x.fraction)];
+      }
     const auto lerp = [](double a, double b, double f) { return a + (b - a) * f; };
     const auto row = [&](std::int64_t r) {
       return lerp(m_depths[index(sample(x.low, r))], m_depths[index(sample(x.high, r))],
@@ -112,6 +137,8 @@ private:
   DepthAxis m_x, m_y;
   double m_reference;          ///< the target's depth: what a float keeps is the distance from it,
   std::vector<float> m_depths; ///< so that nothing is lost when the eye is far away
+  std::vector<std::int32_t> m_fineCells;
+  std::vector<float> m_fineDepths;
 };
 
 } // namespace fenestra

@@ -1,6 +1,7 @@
 #include "clipping/DepthPyramid.h"
 
 #include <bit>
+#include <span>
 
 namespace fenestra {
 
@@ -17,6 +18,11 @@ struct SampleRange {
     last = std::min(axis.size() - 1, static_cast<std::int64_t>(std::ceil(high + slack)));
   }
 };
+
+std::span<const float> fineDepths(const DepthBuffer& buffer, std::int32_t cell) {
+  constexpr std::size_t squares = std::tuple_size_v<DepthBuffer::FineCell>;
+  return std::span(buffer.fineDepths()).subspan(static_cast<std::size_t>(cell) * squares, squares);
+}
 
 } // namespace
 
@@ -45,7 +51,12 @@ DepthPyramid::DepthPyramid(const DepthBuffer& buffer) {
   const std::vector<float>& depths = buffer.depthsFromReference();
   m_levels.push_back(halved(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
     const float depth = depths[static_cast<std::size_t>(sample)];
-    return Extremes{depth, depth};
+    Extremes extremes{depth, depth};
+    if (!buffer.fineCells().empty())
+      if (const std::int32_t cell = buffer.fineCells()[static_cast<std::size_t>(sample)]; cell >= 0)
+        for (const float fine : fineDepths(buffer, cell))
+          extremes = {std::min(extremes.least, fine), std::max(extremes.greatest, fine)};
+    return extremes;
   }));
   while (m_levels.back().extremes.size() > 1) {
     const Level& below = m_levels.back();

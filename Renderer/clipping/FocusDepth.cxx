@@ -2,7 +2,6 @@
 
 #include "clipping/FocusCells.h"
 #include "clipping/Footprints.h"
-#include "clipping/SmoothFill.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -94,89 +93,43 @@ bool isInside(const FocusCells& cells, const Domain& volume) {
   return true;
 }
 
-/// A square of four neighbouring samples, some of them focus and some not.
-class RimCell {
-public:
-  static constexpr int probesAcross = 3;
-  static constexpr int probes = probesAcross * probesAcross;
-
-  /// The cell whose least column and row these are.
-  RimCell(const FocusDepth& focus, std::int64_t column, std::int64_t row)
-      : m_buffer(focus.depth), m_column(column), m_row(row) {
-    for (std::size_t corner = 0; corner < 4; ++corner)
-      if (focus.regions[static_cast<std::size_t>(sample(corner))] == Region::focus) {
-        m_isFocus[corner] = true;
-        m_depths[corner] = m_buffer.at(sample(corner));
-        m_greatest = std::max(m_greatest, m_depths[corner]);
-      }
-  }
-
-  /// mm on the plane through the target; probes keep off the samples.
-  Vec2 probe(int number) const {
-    const Vec2 low = m_buffer.position(m_column, m_row);
-    const Vec2 high = m_buffer.position(m_column + 1, m_row + 1);
-    return low + fraction(number).cwiseProduct(high - low);
-  }
-  /// What a probe that meets the focus at a depth asks of the samples that are not focus; nothing
-  /// (-infinity) where the focus falls away no more steeply than the surface may by itself.
-  double asked(int number, double depth) const {
-    const Vec2 f = fraction(number);
-    const double weights[] = {(1.0 - f.x()) * (1.0 - f.y()), f.x() * (1.0 - f.y()),
-                              (1.0 - f.x()) * f.y(), f.x() * f.y()};
-    double own = 0.0, weight = 0.0; // of the samples of the focus
-    Vec2 middle = Vec2::Zero();
-    for (int corner = 0; corner < 4; ++corner)
-      if (const auto i = static_cast<std::size_t>(corner); m_isFocus[i]) {
-        own += weights[i] * m_depths[i];
-        middle += weights[i] * Vec2(corner % 2, corner / 2);
-        weight += weights[i];
-      }
-    const double pitch =
-        std::abs(m_buffer.xAxis().coordinate(m_column + 1) - m_buffer.xAxis().coordinate(m_column));
-    const double rounding = 1e-3;
-    if (depth - own / weight <=
-        steepestBoundary * pitch * ((f - middle / weight).norm() + rounding))
-      return -infinity;
-    return std::min((depth - own) / (1.0 - weight), m_greatest + steepestRim * pitch);
-  }
-  /// Visits the samples that are not focus.
-  template <typename Visitor>
-  void visitRim(const Visitor& visit) const {
-    for (std::size_t corner = 0; corner < 4; ++corner)
-      if (!m_isFocus[corner])
-        visit(sample(corner));
-  }
-
-private:
-  static Vec2 fraction(int number) {
-    return (Vec2(number % probesAcross, number / probesAcross).array() + 0.5) / probesAcross;
-  }
-  std::int64_t sample(std::size_t corner) const {
-    const auto at = static_cast<std::int64_t>(corner);
-    return m_buffer.sample(m_column + at % 2, m_row + at / 2);
-  }
-
-  const DepthBuffer& m_buffer;
-  std::int64_t m_column, m_row;
-  std::array<bool, 4> m_isFocus{};
-  std::array<double, 4> m_depths{};
-  double m_greatest = -infinity; ///< of the samples of the focus
-};
-
-std::vector<RimCell> rimCells(const FocusDepth& focus) {
+/// Cells as FocusTracer::seams finds them, without their depths but at the samples.
+std::vector<Seam> findSeams(const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
-  std::vector<RimCell> cells;
+  std::vector<Seam> seams;
   for (std::int64_t row = 0; row + 1 < buffer.rows(); ++row) {
     const Region* const above = &focus.regions[static_cast<std::size_t>(buffer.sample(0, row))];
     const Region* const below = above + buffer.columns();
     const auto inColumn = [&](std::int64_t column) {
       return (above[column] == Region::focus) + (below[column] == Region::focus);
     };
-    for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column)
-      if (const int count = inColumn(column) + inColumn(column + 1); count > 0 && count < 4)
-        cells.emplace_back(focus, column, row);
+    for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column) {
+      const int count = inColumn(column) + inColumn(column + 1);
+      if (count == 0)
+        continue;
+      const std::array corners{
+          buffer.at(buffer.sample(column, row)), buffer.at(buffer.sample(column + 1, row)),
+          buffer.at(buffer.sample(column, row + 1)), buffer.at(buffer.sample(column + 1, row + 1))};
+      const auto [least, greatest] = std::ranges::minmax(corners);
+      const double pitch =
+          std::abs(buffer.xAxis().coordinate(column + 1) - buffer.xAxis().coordinate(column));
+      if (count == 4 && greatest - least <= steepestCell * pitch)
+        continue;
+      Seam& seam = seams.emplace_back(Seam{column, row, {}});
+      seam.depths.fill(infinity);
+      constexpr std::size_t last = Seam::across - 1;
+      seam.depths[0] = corners[0];
+      seam.depths[last] = corners[1];
+      seam.depths[last * Seam::across] = corners[2];
+      seam.depths[last * Seam::across + last] = corners[3];
+    }
   }
-  return cells;
+  return seams;
+}
+
+bool isSample(int corner) {
+  constexpr int last = Seam::across - 1;
+  return corner % Seam::across % last == 0 && corner / Seam::across % last == 0;
 }
 
 /// The part of a world ray in the volume's domain.
@@ -239,46 +192,50 @@ FocusDepth FocusTracer::depths() const {
   return result;
 }
 
-Rim FocusTracer::rim(const FocusDepth& focus) const {
-  const std::vector<RimCell> cells = rimCells(focus);
-  std::vector<double> met(cells.size() * RimCell::probes, infinity);
+template <typename Rays, typename Meet>
+void FocusTracer::traceAll(std::size_t count, const Rays& rays, const Meet& meet) const {
   const CellRays cellRays(m_camera, *m_cells);
-  const auto meet = [&met](std::int64_t probe, double depth) {
-    met[static_cast<std::size_t>(probe)] = depth;
-  };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size()), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const auto& range) {
     FocusBatch batch(*m_cells, meet);
+    const auto add = [&](std::int64_t number, const Vec2& position) {
+      const auto [ray, depthPerLength] = cellRays.through(position);
+      const Interval inDomain =
+          m_isWhole ? Interval{} : inVolume(m_volume, m_camera.rayThrough(position));
+      batch.add(number, ray, inDomain, depthPerLength);
+    };
     for (std::size_t i = range.begin(); i < range.end(); ++i)
-      for (int probe = 0; probe < RimCell::probes; ++probe) {
-        const Vec2 position = cells[i].probe(probe);
-        const auto [ray, depthPerLength] = cellRays.through(position);
-        const Interval inDomain =
-            m_isWhole ? Interval{} : inVolume(m_volume, m_camera.rayThrough(position));
-        batch.add(static_cast<std::int64_t>(i) * RimCell::probes + probe, ray, inDomain,
-                  depthPerLength);
-      }
+      rays(i, add);
     batch.trace();
   });
+}
 
-  Rim rim;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    double deepest = -infinity;
-    for (int probe = 0; probe < RimCell::probes; ++probe)
-      if (const double depth = met[i * RimCell::probes + static_cast<std::size_t>(probe)];
-          depth < infinity) {
-        deepest = std::max(deepest, cells[i].asked(probe, depth));
-        rim.meetings.push_back({cells[i].probe(probe), depth});
-      }
-    if (deepest > -infinity)
-      cells[i].visitRim([&](std::int64_t at) { rim.samples.push_back({at, deepest}); });
-  }
-  // A sample has the deepest that its cells ask for.
-  std::ranges::sort(rim.samples, [](const RimDepth& a, const RimDepth& b) {
-    return a.sample < b.sample || (a.sample == b.sample && a.depth > b.depth);
-  });
-  const auto repeated = std::ranges::unique(rim.samples, {}, &RimDepth::sample);
-  rim.samples.erase(repeated.begin(), repeated.end());
-  return rim;
+std::vector<double> FocusTracer::depthsAt(const std::vector<Vec2>& positions) const {
+  std::vector<double> depths(positions.size(), infinity);
+  traceAll(
+      positions.size(),
+      [&](std::size_t i, const auto& add) { add(static_cast<std::int64_t>(i), positions[i]); },
+      [&](std::int64_t i, double depth) { depths[static_cast<std::size_t>(i)] = depth; });
+  return depths;
+}
+
+std::vector<Seam> FocusTracer::seams(const FocusDepth& focus) const {
+  std::vector<Seam> seams = findSeams(focus);
+  constexpr std::int64_t corners = Seam::across * Seam::across;
+  traceAll(
+      seams.size(),
+      [&](std::size_t i, const auto& add) {
+        const Vec2 low = focus.depth.position(seams[i].column, seams[i].row);
+        const Vec2 high = focus.depth.position(seams[i].column + 1, seams[i].row + 1);
+        for (int corner = 0; corner < corners; ++corner)
+          if (!isSample(corner))
+            add(static_cast<std::int64_t>(i) * corners + corner,
+                Vec2(low + Seam::fraction(corner).cwiseProduct(high - low)));
+      },
+      [&](std::int64_t number, double depth) {
+        seams[static_cast<std::size_t>(number / corners)]
+            .depths[static_cast<std::size_t>(number % corners)] = depth;
+      });
+  return seams;
 }
 
 FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus) {

@@ -24,28 +24,23 @@ struct FocusDepth {
   }
 };
 
-/// A context sample beside the focus, and the depth that it has to have.
-struct RimDepth {
-  std::int64_t sample;
-  double depth; ///< mm
+/// A cell between four samples in which the focus's depth is known more finely: on the corners of
+/// the squares of a fine cell (DepthBuffer), row by row, infinity where it is missed; mm.
+struct Seam {
+  static constexpr int across = DepthBuffer::fineSide + 1;
+
+  std::int64_t column, row; ///< of the cell's first sample
+  std::array<double, across * across> depths;
+
+  /// Of a corner, in cells from the first sample.
+  static Vec2 fraction(int corner) {
+    return Vec2(corner % across, corner / across) / DepthBuffer::fineSide;
+  }
 };
 
-/// An eye ray, by its (x, y) on the plane through the target, and where it meets the focus; mm.
-struct Meeting {
-  Vec2 position;
-  double depth;
-};
-
-/// Where the focus ends: context samples beside it, and rays between the samples that meet it
-/// there.
-struct Rim {
-  std::vector<RimDepth> samples;
-  std::vector<Meeting> meetings;
-};
-
-/// Depth per distance, both in mm on the plane through the target, between a sample of the focus
-/// and its rim.
-constexpr double steepestRim = 4.0;
+/// Depth per distance between focus samples, both in mm on the plane through the target, from which
+/// on what lies between them is looked at.
+constexpr double steepestCell = 2.0;
 
 class FocusCells;
 
@@ -58,14 +53,19 @@ public:
   /// As traceFocus.
   FocusDepth depths() const;
 
-  /// The rim: context samples that share a cell of four samples with some of the focus. The focus
-  /// ends in such cells, and often falls away there, while the surface is linear. Rays between the
-  /// samples tell how deep the rim has to be for the surface not to hide the focus before it ends.
-  /// Where the focus falls away more steeply than the surface may by itself, the rim is so deep, up
-  /// to a limit; elsewhere it is as other context.
-  Rim rim(const FocusDepth& focus) const;
+  /// Of the rays through these (x, y), mm; infinity where they miss the focus.
+  std::vector<double> depthsAt(const std::vector<Vec2>& positions) const;
+
+  /// The cells where the focus ends, or falls away more steeply than steepestCell: part of it may
+  /// hide another there.
+  std::vector<Seam> seams(const FocusDepth& focus) const;
 
 private:
+  /// rays(i, add) for each i adds rays by a number and their (x, y); meet(number, depth) is told of
+  /// those that meet the focus.
+  template <typename Rays, typename Meet>
+  void traceAll(std::size_t count, const Rays& rays, const Meet& meet) const;
+
   const Camera& m_camera;
   const Domain& m_volume;
   std::unique_ptr<const FocusCells> m_cells;

@@ -231,7 +231,7 @@ void Scene::buildClip(const SceneRequest& request) {
   if (mode == ClipMode::plane)
     m_clip = placedPlane(request.clip, depth);
   if (depth && request.measure && mode == ClipMode::plane)
-    m_boundary = measureBoundary(m_clip, domain(), *depth);
+    m_boundary = measureBoundary(m_clip, domain(), *focus(), *depth);
 }
 
 ClipPlane Scene::placedPlane(const ClipRequest& request,
@@ -264,9 +264,10 @@ void Scene::buildDepthClip(ClipMode mode, const SceneRequest& scene) {
   m_focusDepth = viewportDepths(surface.focus, *m_camera);
   m_clip = std::move(surface.clip);
   if (scene.measure)
-    m_boundary = measureBoundary(m_clip, domain(), surface.focus);
-  if (isSurface)
-    m_mismatch = surface.mismatch;
+    m_boundary = measureBoundary(m_clip, domain(), *focus(), surface.focus);
+  m_mismatch = surface.mismatch;
+  if (isSurface && !m_mismatch && m_boundary)
+    m_mismatch = m_boundary->gap;
   m_seconds.focus = surface.focusSeconds;
   m_seconds.spline = surface.splineSeconds;
   m_seconds.fill = surface.fillSeconds;

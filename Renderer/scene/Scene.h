@@ -56,7 +56,8 @@ public:
   /// Depth of the focus at each pixel's centre, mm, infinity where it is missed; empty without a
   /// focus, and in the clip modes none and plane unless the clip is to be measured.
   const std::vector<double>& focusDepth() const { return m_focusDepth; }
-  /// How far the spline misses the focus's boundary; nothing in the other clip modes.
+  /// How far the spline misses the focus's boundary, or an exact surface where that is measured;
+  /// nothing in the other clip modes.
   const std::optional<BoundaryMismatch>& mismatch() const { return m_mismatch; }
   /// How the context meets the focus's outline, where it is to be measured.
   const std::optional<BoundaryMeasures>& boundary() const { return m_boundary; }

@@ -8,6 +8,7 @@
 #define FENESTRA_WIDE_LOOKUP_INL_H
 #endif
 
+#include "clipping/DepthBuffer.h"
 #include "tracking/WideScene.h"
 // After foreach_target.h:
 #include "core/Lanes-inl.h"
@@ -245,6 +246,24 @@ HWY_INLINE M isFocus(const WideScene::Context& context, const Point& p) {
                 all(context.level));
 }
 
+/// `surface`, or in fine cells the depth of the square that a point is in, at fractions (x, y) of
+/// the cell (DepthBuffer::depth).
+HWY_INLINE F refined(const WideScene& scene, I sample, F x, F y, F surface) {
+  constexpr int side = DepthBuffer::fineSide;
+  const I cell = hn::GatherIndex(ints, scene.fineCells, sample);
+  const auto isFine = hn::Gt(cell, hn::Set(ints, -1));
+  if (hn::AllFalse(ints, isFine))
+    return surface;
+  const auto square = [&](F fraction) {
+    return hn::Min(hn::ConvertTo(ints, hn::Mul(fraction, all(float{side}))),
+                   hn::Set(ints, side - 1));
+  };
+  const I first = hn::Mul(hn::Max(cell, hn::Zero(ints)), hn::Set(ints, side * side));
+  const I at = hn::Add(first, hn::Add(hn::Mul(square(y), hn::Set(ints, side)), square(x)));
+  return hn::IfThenElse(hn::RebindMask(floats, isFine),
+                        hn::GatherIndex(floats, scene.fineDepths, at), surface);
+}
+
 /// What clipping keeps (clipping/Clip.h's keep, for all its kinds).
 inline F keep(const WideScene& scene, const Point& p) {
   const F depth = apply(scene.toView[2], p); // from the target
@@ -284,6 +303,8 @@ inline F keep(const WideScene& scene, const Point& p) {
       return hn::GatherIndex(floats, scene.depths, hn::Add(hn::Mul(r, columns), c));
     };
     surface = lerp(lerp(at(c0, r0), at(c1, r0), fc), lerp(at(c0, r1), at(c1, r1), fc), fr);
+    if (scene.fineCells)
+      surface = refined(scene, hn::Add(hn::Mul(r0, columns), c0), fc, fr, surface);
   }
   return edge(hn::Sub(depth, surface));
 }

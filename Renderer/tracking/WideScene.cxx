@@ -137,6 +137,10 @@ void WideTracker::setClip(const Clip& clip, const Grid& grid) {
   m_scene.depthY = wide(depth.buffer->yAxis());
   m_scene.depths = depth.buffer->depthsFromReference().data();
   m_scene.depthColumns = static_cast<std::int32_t>(depth.buffer->columns());
+  if (!depth.buffer->fineCells().empty()) {
+    m_scene.fineCells = depth.buffer->fineCells().data();
+    m_scene.fineDepths = depth.buffer->fineDepths().data();
+  }
 }
 
 void WideTracker::setContext(const ContextStyle& style, const Grid& grid) {

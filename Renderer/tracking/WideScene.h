@@ -75,6 +75,8 @@ struct WideScene {
   DepthAxis depthX = {}, depthY = {};
   const float* depths = nullptr; ///< counted from the target
   std::int32_t depthColumns = 0;
+  const std::int32_t* fineCells = nullptr; ///< of the depths' buffer; null where it has none
+  const float* fineDepths = nullptr;
 };
 
 } // namespace fenestra

@@ -52,7 +52,7 @@ constexpr const char* figureRule = "---|---|---|---|---|---|---|---|---|---|\n";
 
 constexpr const char* boundaries[] = {"spline", "exact"};
 
-void sweep(const Subject& subject, int size, int views, const std::filesystem::path& folder) {
+void sweep(const Subject& subject, int size, int views) {
   const FocusField field(readIndicator(subject));
   std::printf("\n## %s\n\n| view | boundary | outline |%s|---|---|---|%s", subject.name.c_str(),
               figureTitles, figureRule);
@@ -61,8 +61,7 @@ void sweep(const Subject& subject, int size, int views, const std::filesystem::p
     const View view = viewAround(field, number, views, size);
     const FocusView focus(field, view);
     for (std::size_t i = 0; i < 2; ++i) {
-      const BoundaryMeasure measure =
-          focus.measure(clipDepths(subject, view, boundaries[i], folder));
+      const BoundaryMeasure measure = focus.measure(clippingSurface(subject, view, boundaries[i]));
       worst[i].add(measure);
       std::printf("| %d° | %s | %.0f |", 360 * number / views, boundaries[i],
                   measure.outlinePoints);
@@ -87,7 +86,7 @@ void sweepAll(int size, int views) {
       {"vertebra", abdomen / "ct.nii.gz", abdomen / "seg_multiorgan.nii.gz", "20", 20}};
   for (const Subject& subject : subjects)
     if (std::filesystem::exists(subject.labelmap))
-      sweep(subject, size, views, folder.path());
+      sweep(subject, size, views);
     else
       std::printf("\n## %s\n\nSkipped: no real data.\n", subject.name.c_str());
 }

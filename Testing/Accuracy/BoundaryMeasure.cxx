@@ -19,10 +19,9 @@ double jitter(std::uint64_t number) {
   return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
 }
 
-/// Four pixel centres around a raster position, and how far it is from the first.
+/// The first of the four pixel centres around a raster position.
 struct Cell {
   std::size_t first;
-  double x, y;
 
   Cell(const Vec2& raster, int size) {
     const double last = size - 1.0;
@@ -32,18 +31,8 @@ struct Cell {
     const double top = std::min(std::floor(row), last - 1.0);
     first = static_cast<std::size_t>(top) * static_cast<std::size_t>(size) +
             static_cast<std::size_t>(left);
-    x = column - left;
-    y = row - top;
   }
 };
-
-double linear(const std::vector<float>& depths, const Vec2& raster, int size) {
-  const Cell cell(raster, size);
-  const auto at = [&](std::size_t step) { return double{depths[cell.first + step]}; };
-  const auto width = static_cast<std::size_t>(size);
-  return (1.0 - cell.y) * ((1.0 - cell.x) * at(0) + cell.x * at(1)) +
-         cell.y * ((1.0 - cell.x) * at(width) + cell.x * at(width + 1));
-}
 
 Distances summary(std::vector<double> values) {
   Distances result;
@@ -132,12 +121,12 @@ bool FocusView::isAtJump(const Point& point) const {
   return greatest - least > jumpDepth;
 }
 
-BoundaryMeasure FocusView::measure(const std::vector<float>& depths) const {
+BoundaryMeasure FocusView::measure(const Surface& surface) const {
   BoundaryMeasure result;
   std::vector<double> gaps, cuts;
   for (const Point& point : m_outline)
     if (!isAtJump(point)) {
-      const double kept = point.depth - linear(depths, point.raster, m_view.size);
+      const double kept = point.depth - surface(point.raster);
       gaps.push_back(std::max(0.0, kept));
       cuts.push_back(std::max(0.0, -kept));
     }
@@ -150,7 +139,7 @@ BoundaryMeasure FocusView::measure(const std::vector<float>& depths) const {
   for (std::size_t ray = 0; ray < m_rays.size(); ++ray)
     if (m_rays[ray] < infinity) {
       const Vec2 raster = rayAt(ray);
-      const double kept = m_rays[ray] - linear(depths, raster, m_view.size);
+      const double kept = m_rays[ray] - surface(raster);
       const bool isJump = isAtJump({raster, m_rays[ray]});
       const bool isShown = kept <= 0.5 * m_field.longestEdge();
       result.rays += 1.0;
@@ -163,10 +152,12 @@ BoundaryMeasure FocusView::measure(const std::vector<float>& depths) const {
   result.halfVoxel /= result.rays;
   result.halfVoxelSmooth = halfVoxelSmooth / (result.rays - jumps);
   result.rayJumpShare = jumps / result.rays;
+  const auto width = static_cast<std::size_t>(m_view.size);
   for (std::size_t i = 0; i < m_centres.size(); ++i)
-    if (m_centres[i] < infinity)
-      result.centreDifference =
-          std::max(result.centreDifference, std::abs(m_centres[i] - double{depths[i]}));
+    if (m_centres[i] < infinity) {
+      const Vec2 centre(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
+      result.centreGap = std::max(result.centreGap, m_centres[i] - surface(centre));
+    }
   return result;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // How a clipping surface meets the focus: on jittered rays, four by four to a pixel.
 //
-// What the surface is between pixel centres is its contract: linear in each axis. What the focus is
-// there, rays tell (FocusField.h).
+// The surface is asked for its depth wherever a ray goes; what the focus is there, the check finds
+// by itself (FocusField.h, Views.h).
 // - A ray on the focus is unoccluded where nothing, to a tolerance, is kept in front of it: where
 // the
 //   surface is not nearer to the eye than the focus.
@@ -16,6 +16,8 @@
 
 #include "FocusField.h"
 #include "Views.h"
+
+#include <functional>
 
 namespace fenestra::accuracy {
 
@@ -33,18 +35,20 @@ struct BoundaryMeasure {
   double rays = 0.0;      ///< on the focus
   double strict = 0.0;    ///< share unoccluded, to strictTolerance
   double halfVoxel = 0.0; ///< to half of the labelmap's longest voxel edge, as it knows no better
-  double rayJumpShare = 0.0;     ///< of the rays
-  double halfVoxelSmooth = 0.0;  ///< as halfVoxel, of rays without a depth jump
-  double centreDifference = 0.0; ///< mm, at most, of the two depths at pixel centres on the focus
+  double rayJumpShare = 0.0;    ///< of the rays
+  double halfVoxelSmooth = 0.0; ///< as halfVoxel, of rays without a depth jump
+  double centreGap = 0.0; ///< mm, at most, of the surface in front of the focus at pixel centres
 };
+
+/// Depth of a clipping surface, mm from the eye's plane, at a raster position.
+using Surface = std::function<double(const Vec2&)>;
 
 /// What is known of a view before any surface is.
 class FocusView {
 public:
   FocusView(const FocusField& field, const View& view);
 
-  /// `depths` are the surface's at pixel centres, mm from the eye's plane, row 0 at the top.
-  BoundaryMeasure measure(const std::vector<float>& depths) const;
+  BoundaryMeasure measure(const Surface& surface) const;
 
 private:
   struct Point {

@@ -1,4 +1,4 @@
-// A knee's clipping surface, as the executable makes it, against rays of the test's own.
+// A knee's clipping surface against rays of the test's own.
 
 #include "BoundaryMeasure.h"
 #include "Subjects.h"
@@ -55,11 +55,11 @@ TEST(Boundary, MeetsTheFocusOfAKnee) {
     View view = viewAround(field, number, 12, 256);
     view.isPerspective = number == 1;
     const FocusView focus(field, view);
-    const BoundaryMeasure spline = focus.measure(clipDepths(knee, view, "spline", folder.path()));
-    const BoundaryMeasure exact = focus.measure(clipDepths(knee, view, "exact", folder.path()));
+    const BoundaryMeasure spline = focus.measure(clippingSurface(knee, view, "spline"));
+    const BoundaryMeasure exact = focus.measure(clippingSurface(knee, view, "exact"));
     for (const BoundaryMeasure& measure : {spline, exact}) {
       EXPECT_GT(measure.rays, 1e5);
-      EXPECT_LT(measure.centreDifference, 1e-3);
+      EXPECT_LT(measure.centreGap, 1e-3);
     }
     EXPECT_LT(exact.gap.mean, 0.3 * spline.gap.mean);
     EXPECT_LT(exact.gap.p95, 0.3 * spline.gap.p95);

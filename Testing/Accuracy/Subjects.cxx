@@ -1,6 +1,6 @@
 #include "Subjects.h"
 
-#include "io/pictures/ImageReader.h"
+#include "scene/Scene.h"
 
 #include <itkImage.h>
 #include <itkImageFileReader.h>
@@ -9,8 +9,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <iomanip>
-#include <sstream>
 #include <stdexcept>
 
 namespace fenestra::accuracy {
@@ -25,12 +23,6 @@ void runFenestra(const std::string& arguments) {
   const std::string command = quoted(FENESTRA_EXECUTABLE) + " " + arguments + " > /dev/null";
   if (std::system(command.c_str()) != 0)
     throw std::runtime_error("failed: " + command);
-}
-
-std::string text(const Vec3& p) {
-  std::ostringstream out;
-  out << std::setprecision(17) << p.x() << ',' << p.y() << ',' << p.z();
-  return out.str();
 }
 
 } // namespace
@@ -78,25 +70,29 @@ View viewAround(const FocusField& field, int number, int count, int size) {
   return view;
 }
 
-std::vector<float> clipDepths(const Subject& subject, const View& view, const std::string& boundary,
-                              const std::filesystem::path& folder) {
-  const std::filesystem::path picture = folder / "clip.exr";
-  std::ostringstream arguments;
-  arguments << std::setprecision(17) << quoted(subject.input.string());
+Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary) {
+  SceneRequest request;
+  request.input = subject.input;
   if (subject.input.extension() != ".mrml")
-    arguments << " --segmentation " << quoted(subject.labelmap.string());
-  arguments << " --focus " << subject.focus << " --clip surface --boundary " << boundary
-            << " --position=" << text(view.position) << " --target=" << text(view.target)
-            << " --up=" << text(view.up) << " --projection "
-            << (view.isPerspective ? "perspective --angle " : "orthographic --scale ")
-            << (view.isPerspective
-                    ? 360.0 / pi * std::atan(view.halfHeight / (view.target - view.position).norm())
-                    : view.halfHeight)
-            << " --size " << view.size << 'x' << view.size
-            << " --samples 1 --bounces 1 --layers clip --progress none --output "
-            << quoted(picture.string());
-  runFenestra(arguments.str());
-  return readImage(picture).channels.at("clip.Z");
+    request.segmentation = subject.labelmap.string();
+  request.focus = {subject.focus};
+  request.clip.mode = ClipMode::surface;
+  request.clip.boundary = boundary == "exact" ? Boundary::exact : Boundary::spline;
+  request.view.position = view.position;
+  request.view.target = view.target;
+  request.view.up = view.up;
+  request.view.projection = view.isPerspective ? Projection::perspective : Projection::orthographic;
+  if (view.isPerspective)
+    request.view.angle =
+        360.0 / pi * std::atan(view.halfHeight / (view.target - view.position).norm());
+  else
+    request.view.scale = view.halfHeight;
+  request.width = request.height = view.size;
+  const auto scene = std::make_shared<const Scene>(request);
+  return [scene](const Vec2& raster) {
+    return std::get<ClipDepth>(scene->clip())
+        .surface(scene->camera().toPlane(raster.x(), raster.y()));
+  };
 }
 
 } // namespace fenestra::accuracy

@@ -1,8 +1,7 @@
 #pragma once
-// Who is looked at, and the executable's clipping surface of them.
+// Who is looked at, and the clipping surface of them.
 
-#include "FocusField.h"
-#include "Views.h"
+#include "BoundaryMeasure.h"
 
 #include <filesystem>
 #include <string>
@@ -11,7 +10,7 @@ namespace fenestra::accuracy {
 
 struct Subject {
   std::string name;
-  std::filesystem::path input;    ///< what `fenestra` renders
+  std::filesystem::path input;    ///< what is rendered
   std::filesystem::path labelmap; ///< on the volume's grid
   std::string focus;              ///< as --focus has it
   int label;                      ///< in the labelmap
@@ -26,8 +25,8 @@ Indicator readIndicator(const Subject& subject);
 /// the front.
 View viewAround(const FocusField& field, int number, int count, int size);
 
-/// Depths at pixel centres, from `fenestra --clip surface --boundary …`; files go into `folder`.
-std::vector<float> clipDepths(const Subject& subject, const View& view, const std::string& boundary,
-                              const std::filesystem::path& folder);
+/// The clipping surface of `--clip surface --boundary …`, whose depth (mm from the eye's plane) is
+/// a function of raster positions: what is to be checked.
+Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary);
 
 } // namespace fenestra::accuracy

@@ -216,6 +216,14 @@ double Clipping::surface(const Vec2& at) const {
     return m_depths[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
                     std::min(column, clip.columns.size() - 1)];
   };
+  if (const auto cell = clip.fine.find(y.before * clip.columns.size() + x.before);
+      cell != clip.fine.end()) {
+    const auto side = static_cast<std::size_t>(std::sqrt(cell->second.size()));
+    const auto square = [&](double share) {
+      return std::min(static_cast<std::size_t>(share * static_cast<double>(side)), side - 1);
+    };
+    return cell->second[square(y.share) * side + square(x.share)];
+  }
   if (clip.hasSteps())
     return depth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5));
   return (1.0 - y.share) * ((1.0 - x.share) * depth(x.before, y.before) +

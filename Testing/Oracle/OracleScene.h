@@ -8,6 +8,7 @@
 #include "volume/Mask.h"
 #include "volume/Volume.h"
 
+#include <map>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -45,6 +46,9 @@ struct DepthClip {
   std::optional<HoleDescription> hole = {};
   /// Where it is not empty: the depths of samples that are not focus, as they are to be taken.
   std::vector<double> given = {};
+  /// Cells between samples that have depths of their own, by the number of their first sample:
+  /// squares, as many along each edge, row by row.
+  std::map<std::size_t, std::vector<double>> fine = {};
   double offset = 0.0; ///< mm that all of it lies farther from the eye
   Edge edge = {};
 

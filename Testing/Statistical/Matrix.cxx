@@ -342,8 +342,14 @@ oracle::DepthClip describeDepth(const Combination& c, const ClippingSurface& sur
     clip.hole = {static_cast<oracle::HoleDescription::Shape>(options.hole.shape),
                  options.hole.margin};
   if (c.clip == ClipFactor::exactSurface)
-    for (std::int64_t i = 0; i < buffer.size(); ++i)
+    for (std::int64_t i = 0; i < buffer.size(); ++i) {
       clip.given.push_back(buffer.at(i));
+      const std::int32_t cell = buffer.fineCells()[static_cast<std::size_t>(i)];
+      constexpr std::size_t squares = std::tuple_size_v<DepthBuffer::FineCell>;
+      for (std::size_t k = 0; cell >= 0 && k < squares; ++k)
+        clip.fine[static_cast<std::size_t>(i)].push_back(
+            buffer.reference() + buffer.fineDepths()[static_cast<std::size_t>(cell) * squares + k]);
+    }
   return clip;
 }
 

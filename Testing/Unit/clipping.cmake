@@ -6,7 +6,7 @@ fenestra_test(ClippingTests
   FocusDepthTests.cxx
   GridWalkTests.cxx
   KernelSumsTests.cxx
-  RimTests.cxx
+  SewingTests.cxx
   SmoothFillTests.cxx
   SurfaceChangeTests.cxx
   SurfaceMeshTests.cxx
