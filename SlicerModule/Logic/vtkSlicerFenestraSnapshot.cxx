@@ -194,6 +194,14 @@ bool IsEmpty(vtkOrientedImageData* labels) {
          labels->GetNumberOfPoints() == 0;
 }
 
+/// What says of which anatomy a segment is.
+std::string Tags(vtkSegment* segment) {
+  std::string entry;
+  if (!segment->GetTag(vtkSegment::GetTerminologyEntryTagName(), entry) || entry.empty())
+    return {};
+  return std::string(vtkSegment::GetTerminologyEntryTagName()) + ":" + entry + "|";
+}
+
 /// A layer on the lattice of the first one; where its own is another, its nearest labels there.
 FenestraScene::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* first) {
   vtkSmartPointer<vtkOrientedImageData> image = labels;
@@ -262,8 +270,9 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
     for (const std::string& id : segmentation->GetSegmentIDsForLayer(i, name)) {
       vtkSegment* segment = segmentation->GetSegment(id);
       taken.segments.push_back({id, segment->GetName() ? segment->GetName() : id,
-                                segment->GetLabelValue(), taken.layers.size()});
-      key << '\n' << id << ' ' << segment->GetLabelValue() << ' ' << taken.segments.back().name;
+                                segment->GetLabelValue(), taken.layers.size(), Tags(segment)});
+      const Segment& last = taken.segments.back();
+      key << '\n' << id << ' ' << last.label << ' ' << last.name << ' ' << last.tags;
     }
     taken.layers.push_back(ToLayer(labels, first));
     key << '\n' << Key(labels, "", taken.layers.back().labels);

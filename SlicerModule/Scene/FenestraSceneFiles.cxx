@@ -161,6 +161,8 @@ Image withSegmentFields(const Segmentation& segmentation) {
     image.fields[prefix + "LabelValue"] = std::to_string(segment.label);
     image.fields[prefix + "Layer"] = std::to_string(segment.layer);
     image.fields[prefix + "Extent"] = extent.str();
+    if (!segment.tags.empty())
+      image.fields[prefix + "Tags"] = oneLine(segment.tags);
   }
   return image;
 }

@@ -14,6 +14,7 @@ struct Segment {
   std::string id, name;
   int label = 0;         ///< its voxels' value in its layer
   std::size_t layer = 0; ///< the component that holds it, for segments may overlap
+  std::string tags;      ///< "key:value|...": its terminology
 };
 
 /// Labels of segments that do not overlap; all layers of a segmentation have one lattice.

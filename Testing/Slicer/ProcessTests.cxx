@@ -4,6 +4,7 @@
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
 
+#include "qFenestraAbilities.h"
 #include "qFenestraPreview.h"
 #include "qFenestraQueue.h"
 
@@ -172,6 +173,31 @@ TEST_F(SlicerProcess, ReadsProgressAndNothingElse) {
         "<filter-progress>-1</filter-progress>", "<filter-progress>nan</filter-progress>",
         "<filter-progress></filter-progress>", "<filter-start>", "</filter-progress>"})
     EXPECT_EQ(qFenestraQueue::progressIn(line), -1.0) << line;
+}
+
+TEST_F(SlicerProcess, TellsWhatTheRendererKnows) {
+  qFenestraQuestion question;
+  std::vector<qFenestraAbilities> told;
+  QObject::connect(&question, &qFenestraQuestion::told,
+                   [&](const qFenestraAbilities& abilities) { told.push_back(abilities); });
+  question.ask(program);
+  ASSERT_TRUE(waitFor([&] { return !told.empty(); }));
+  EXPECT_TRUE(told[0].takes("clip", "hole"));
+  EXPECT_FALSE(told[0].takes("clip", "hol"));
+  EXPECT_TRUE(told[0].names("lights", "studio"));
+  EXPECT_FALSE(told[0].names("lights", "stud"));
+  EXPECT_TRUE(told[0].flags["holemargin"].text.startsWith("How much wider"));
+  EXPECT_TRUE(told[0].flags["holemargin"].words.isEmpty());
+  EXPECT_EQ(told[0].turns(), told[0].turntable.contains("--frames"));
+
+  qFenestraQuestion missing;
+  QObject::connect(&missing, &qFenestraQuestion::told,
+                   [&](const qFenestraAbilities& abilities) { told.push_back(abilities); });
+  missing.ask("/nowhere/fenestra");
+  ASSERT_TRUE(waitFor([&] { return told.size() == 2; }));
+  EXPECT_TRUE(told[1].flags.isEmpty());
+  EXPECT_FALSE(told[1].turns());
+  EXPECT_TRUE(qFenestraAbilities::flagsIn("no description").isEmpty());
 }
 
 TEST_F(SlicerProcess, ChildrenDoNotSeeSlicersLibraries) {

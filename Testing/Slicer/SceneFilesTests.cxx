@@ -102,6 +102,23 @@ TEST(SlicerSceneFiles, WhatDidNotChangeIsLinked) {
       << text;
 }
 
+TEST(SlicerSceneFiles, SegmentsKeepWhatAnatomyTheyAre) {
+  const TemporaryFolder folder;
+  FenestraScene::Contents contents;
+  contents.volume = ramp({3, 4, 5});
+  contents.segmentation.layers = {block({0, 0, 0}, 1)};
+  contents.segmentation.segments = {{"a", "A", 1, 0, "TerminologyEntry:b~SCT^1^\nc|"},
+                                    {"d", "D", 2, 0, ""}};
+  const auto scene = FenestraScene::Writer(folder.path()).write(contents);
+  const FenestraScene::Image labels =
+      FenestraScene::readNrrd(scene.parent_path() / "segmentation.seg.nrrd");
+  EXPECT_EQ(labels.size[0], 2u);
+  std::ifstream file(scene.parent_path() / "segmentation.seg.nrrd");
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_NE(text.find("\nSegment0_Tags:=TerminologyEntry:b~SCT^1^ c|\n"), std::string::npos);
+  EXPECT_EQ(text.find("Segment1_Tags"), std::string::npos); // none
+}
+
 TEST(SlicerSceneFiles, FoldersOfTheDeadAreRemoved) {
   const TemporaryFolder folder;
   const std::string own = "x-" + std::to_string(::getpid()) + "-a";

@@ -1,0 +1,60 @@
+#include "qFenestraAbilities.h"
+
+#include <QDir>
+#include <QRegularExpression>
+#include <QXmlStreamReader>
+
+/// As a word of its own, in the description.
+bool qFenestraAbilities::names(const QString& flag, const QString& word) const {
+  const QRegularExpression alone("(^|[\\s(,])" + QRegularExpression::escape(word) + "([\\s),.]|$)");
+  return alone.match(flags.value(flag).text).hasMatch();
+}
+
+QMap<QString, qFenestraAbilities::Flag> qFenestraAbilities::flagsIn(const QString& description) {
+  QMap<QString, Flag> all;
+  QXmlStreamReader xml(description);
+  QString name;
+  Flag flag;
+  while (!xml.atEnd()) {
+    xml.readNext();
+    if (!xml.isStartElement())
+      continue;
+    if (xml.name() == QLatin1String("parameters"))
+      name.clear(); // what follows is a group's
+    else if (xml.name() == QLatin1String("name"))
+      name = xml.readElementText(), flag = {};
+    else if (xml.name() == QLatin1String("description") && !name.isEmpty())
+      flag.text = xml.readElementText();
+    else if (xml.name() == QLatin1String("element"))
+      flag.words << xml.readElementText();
+    if (!name.isEmpty())
+      all[name] = flag;
+  }
+  return xml.hasError() ? QMap<QString, Flag>() : all;
+}
+
+qFenestraQuestion::qFenestraQuestion(QObject* parent) : QObject(parent) {
+  connect(&m_child, &qFenestraProgram::said, this,
+          [this](const QString& line) { m_said += line + '\n'; });
+  connect(&m_child, &qFenestraProgram::ended, this, &qFenestraQuestion::hear);
+}
+
+void qFenestraQuestion::ask(const QString& program) {
+  m_program = program;
+  m_child.run(m_program, {"--xml"}, QDir::tempPath());
+}
+
+void qFenestraQuestion::hear(const qFenestraOutcome& outcome) {
+  const bool good = outcome.kind == qFenestraOutcome::Kind::done;
+  if (!m_described && good) {
+    m_abilities.flags = qFenestraAbilities::flagsIn(m_said);
+    m_described = true;
+    m_said.clear();
+    m_child.run(m_program, {"turntable", "--help"}, QDir::tempPath());
+    return;
+  }
+  // Where there is no such command, the help is that of a render.
+  if (m_described && good && m_said.contains("--frames"))
+    m_abilities.turntable = m_said;
+  emit told(m_abilities);
+}
