@@ -21,9 +21,11 @@ string(TOUPPER ${MODULE_NAME} MODULE_NAME_UPPER)
 add_subdirectory(MRML)
 add_subdirectory(Logic)
 
-set(module_classes qSlicerFenestraModule qSlicerFenestraModuleWidget qSlicerFenestraPanel
-  qSlicerFenestraSession qSlicerFenestraSettings)
-set(module_sources qSlicerFenestraLights.cxx qSlicerFenestraLights.h)
+set(module_classes qSlicerFenestraClipping qSlicerFenestraMargins qSlicerFenestraModule
+  qSlicerFenestraModuleWidget qSlicerFenestraPanel qSlicerFenestraPlayer qSlicerFenestraSession
+  qSlicerFenestraSettings)
+set(module_sources qSlicerFenestraLights.cxx qSlicerFenestraLights.h qSlicerFenestraMeasures.cxx
+  qSlicerFenestraMeasures.h)
 set(module_moc)
 foreach(class ${module_classes})
   list(APPEND module_sources ${class}.cxx ${class}.h)

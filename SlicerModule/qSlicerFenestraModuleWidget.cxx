@@ -1,7 +1,9 @@
 #include "qSlicerFenestraModuleWidget.h"
 
+#include "qSlicerFenestraMeasures.h"
 #include "qSlicerFenestraModule.h"
 #include "qSlicerFenestraPanel.h"
+#include "qSlicerFenestraPlayer.h"
 #include "qSlicerFenestraSettings.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
@@ -15,6 +17,8 @@
 #include <QCheckBox>
 #include <QFile>
 #include <QFileDialog>
+#include <QFileInfo>
+#include <QJsonDocument>
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
@@ -65,13 +69,22 @@ void qSlicerFenestraModuleWidget::setup() {
 void qSlicerFenestraModuleWidget::connectPanel() {
   const qSlicerFenestraPanel& panel = *m_panel;
   connect(panel.sample, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::loadSample);
-  connect(panel.renders, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(updateButtons()));
+  connect(panel.renders, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(showChosen()));
   connect(panel.showPreview, &QCheckBox::toggled, this, [this](bool shown) {
     m_panel->preview->setVisible(shown);
     m_panel->previewState->setVisible(shown);
     preview();
   });
   connect(panel.render, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::render);
+  connect(panel.turn, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::renderTurntable);
+  connect(panel.resume, &QPushButton::clicked, this, [this] {
+    m_session->resume(chosen());
+    updateButtons();
+  });
+  connect(panel.player, &qSlicerFenestraPlayer::frameChanged, this, [this](int frame) {
+    if (chosen())
+      fenestra()->ShowFrame(chosen(), frame);
+  });
   connect(panel.stop, &QPushButton::clicked, m_session, &qSlicerFenestraSession::stop);
   connect(panel.repeat, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::repeat);
   connect(panel.show, &QPushButton::clicked, this, [this] { showResult(chosen()); });
@@ -83,6 +96,11 @@ void qSlicerFenestraModuleWidget::connectSession() {
           &qSlicerFenestraModuleWidget::updateButtons);
   connect(m_settings, &qSlicerFenestraSettings::changed, m_session,
           &qSlicerFenestraSession::refresh);
+  connect(m_session, &qSlicerFenestraSession::learned, this,
+          [this](const qFenestraAbilities& abilities) {
+            m_panel->offer(abilities);
+            m_settings->use(m_settings->node());
+          });
   connect(m_session, &qSlicerFenestraSession::previewed, this,
           &qSlicerFenestraModuleWidget::showPicture);
   connect(m_session, &qSlicerFenestraSession::previewRefused, m_panel->previewState,
@@ -139,9 +157,17 @@ Node* qSlicerFenestraModuleWidget::chosen() const {
 }
 
 void qSlicerFenestraModuleWidget::render() {
+  start(qSlicerFenestraSession::Kind::picture);
+}
+
+void qSlicerFenestraModuleWidget::renderTurntable() {
+  start(qSlicerFenestraSession::Kind::turntable);
+}
+
+void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   if (!m_settings->node())
     return;
-  m_session->render(m_settings->node());
+  m_session->render(m_settings->node(), kind);
   updateButtons();
 }
 
@@ -152,6 +178,8 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
     if (!shown || !shown->GetScene())
       return;
     fenestra()->ShowResult(shown);
+    if (shown == chosen() && shown->IsTurntable())
+      fenestra()->ShowFrame(shown, m_panel->player->frame());
     if (times > 1)
       showResult(shown, times - 1);
   });
@@ -162,7 +190,8 @@ void qSlicerFenestraModuleWidget::repeat() {
   if (!render || !m_settings->node())
     return;
   m_settings->copy(render);
-  this->render();
+  start(render->IsTurntable() ? qSlicerFenestraSession::Kind::turntable
+                              : qSlicerFenestraSession::Kind::picture);
 }
 
 void qSlicerFenestraModuleWidget::showPicture(const QImage& picture, const qFenestraPicture& what) {
@@ -203,7 +232,7 @@ void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& 
             .arg(QString::fromUtf8(render->GetDescription() ? render->GetDescription() : "")));
   if (render)
     m_panel->renders->setCurrentNode(render);
-  updateButtons();
+  showChosen();
   showResult(render);
 }
 
@@ -218,6 +247,7 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   const bool hasVolume =
       m_settings->node() && m_settings->node()->GetNodeReference(Node::VolumeRole);
   m_panel->render->setEnabled(hasVolume);
+  m_panel->turn->setEnabled(hasVolume);
   m_panel->sample->setVisible(!hasVolume);
   if (!hasVolume)
     m_panel->preview->setText(tr("Load a volume, or the sample knee"));
@@ -227,14 +257,41 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   m_panel->show->setEnabled(hasPicture);
   m_panel->save->setEnabled(hasPicture);
   m_panel->repeat->setEnabled(render != nullptr);
+  m_panel->resume->setVisible(m_session->canResume(render));
+}
+
+/// What there is to see of the chosen picture.
+void qSlicerFenestraModuleWidget::showChosen() {
+  updateButtons();
+  Node* render = chosen();
   const char* description = render ? render->GetDescription() : nullptr;
   m_panel->description->setText(QString::fromUtf8(description ? description : ""));
+  const int frames = render && render->IsTurntable() ? fenestra()->GetNumberOfFrames(render) : 0;
+  m_panel->player->setVisible(frames > 0);
+  m_panel->player->setFrames(frames);
+  showMeasures(render);
+}
+
+void qSlicerFenestraModuleWidget::showMeasures(Node* render) {
+  const char* text = render ? render->GetAttribute(Node::MeasuresAttribute) : nullptr;
+  const auto measures =
+      qSlicerFenestraMeasures::inWords(QJsonDocument::fromJson(text ? text : "").object());
+  QString rows, help;
+  for (const qSlicerFenestraMeasures::Measure& one : measures) {
+    rows += QString("<tr><td>%1:&nbsp;</td><td>%2</td></tr>").arg(one.name, one.value);
+    help += QString("<p><b>%1</b>: %2</p>").arg(one.name, one.help);
+  }
+  m_panel->measures->setText(rows.isEmpty() ? rows : "<table>" + rows + "</table>");
+  m_panel->measures->setToolTip(help);
+  m_panel->measures->setVisible(!rows.isEmpty());
 }
 
 // ---- files
 
 void qSlicerFenestraModuleWidget::save() {
   Node* render = chosen();
+  if (render->IsTurntable())
+    return saveFrames(render);
   const QString png = tr("Picture (*.png)"), exr = tr("Linear colour and depth (*.exr)");
   QString filter;
   QString file = QFileDialog::getSaveFileName(this, tr("Save the picture"),
@@ -253,6 +310,29 @@ void qSlicerFenestraModuleWidget::save() {
   if (!QFile::copy(source, file))
     return say(tr("%1 could not be written. Choose another folder.").arg(file));
   say(tr("Saved as %1.").arg(file));
+}
+
+/// turn.png becomes turn_0000.png and so on.
+void qSlicerFenestraModuleWidget::saveFrames(Node* turntable) {
+  const QStringList frames = m_session->framesOf(turntable);
+  if (frames.isEmpty())
+    return say(tr("The frames' files went with the session that made them. Press Repeat, then "
+                  "save."));
+  QString file = QFileDialog::getSaveFileName(this, tr("Save the frames, numbered"),
+                                              QString::fromUtf8(turntable->GetName()) + ".png",
+                                              tr("Pictures (*.png)"));
+  if (file.isEmpty())
+    return;
+  if (file.endsWith(".png", Qt::CaseInsensitive))
+    file.chop(4);
+  for (const QString& frame : frames) {
+    const QString number = QFileInfo(frame).completeBaseName().section('_', -1);
+    const QString numbered = QString("%1_%2.png").arg(file, number);
+    QFile::remove(numbered);
+    if (!QFile::copy(frame, numbered))
+      return say(tr("%1 could not be written. Choose another folder.").arg(numbered));
+  }
+  say(tr("Saved as %1_0000.png and so on.").arg(file));
 }
 
 void qSlicerFenestraModuleWidget::loadSample() {

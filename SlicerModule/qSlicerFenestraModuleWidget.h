@@ -33,6 +33,7 @@ public:
 public slots:
   void setMRMLScene(vtkMRMLScene* scene) override;
   void render();
+  void renderTurntable();
   void repeat();
   void loadSample();
 
@@ -42,6 +43,7 @@ protected:
 private slots:
   void useScene();
   void updateButtons();
+  void showChosen();
   void save();
 
 private:
@@ -50,6 +52,9 @@ private:
   void connectPanel();
   void connectSession();
   void preview();
+  void start(qSlicerFenestraSession::Kind kind);
+  void showMeasures(vtkMRMLFenestraRenderNode* render);
+  void saveFrames(vtkMRMLFenestraRenderNode* turntable);
   void say(const QString& message, const QString& details = {});
   void showPicture(const QImage& picture, const qFenestraPicture& what);
   void onProgress(double part, double seconds);

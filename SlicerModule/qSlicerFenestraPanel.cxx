@@ -1,5 +1,9 @@
 #include "qSlicerFenestraPanel.h"
 
+#include "qFenestraAbilities.h"
+#include "qSlicerFenestraClipping.h"
+#include "qSlicerFenestraPlayer.h"
+
 #include <ctkCollapsibleButton.h>
 #include <ctkSliderWidget.h>
 #include <qMRMLNodeComboBox.h>
@@ -13,6 +17,7 @@
 #include <QListWidget>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QSignalBlocker>
 #include <QSpinBox>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -27,9 +32,34 @@ QComboBox* choices(const QString& name, const QList<Choice>& all, const QString&
   auto* box = new QComboBox;
   box->setObjectName(name);
   box->setToolTip(help);
+  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon); // long words fit, too
   for (const Choice& choice : all)
     box->addItem(choice.text, choice.data);
   return box;
+}
+
+/// Adds, or takes away, a choice behind the first `index` ones.
+void offerChoice(QComboBox* box, int index, const Choice& choice, bool offered) {
+  const QSignalBlocker unheard(box); // what is chosen stays chosen
+  const int found = box->findData(choice.data);
+  if (offered && found < 0)
+    box->insertItem(index, choice.text, choice.data);
+  if (!offered && found >= 0)
+    box->removeItem(found);
+}
+
+/// The renderer's, in words.
+QList<Choice> anatomies() {
+  const auto tr = [](const char* text) { return QObject::tr(text); };
+  return {{tr("Knee cartilage (MR)"), "knee-cartilage"},
+          {tr("Bones of the foot (CT)"), "foot-bones"},
+          {tr("Spine (CT)"), "spine"},
+          {tr("Heart (CT)"), "heart"},
+          {tr("Lungs and airways (CT)"), "lungs"},
+          {tr("Liver (CT)"), "liver"},
+          {tr("Brain surface (MR)"), "brain-surface"},
+          {tr("Brain tumour (MR)"), "brain-tumour"},
+          {tr("Face of a fetus (US)"), "fetal-face"}};
 }
 
 QLabel* words(const QString& name) {
@@ -74,6 +104,7 @@ qSlicerFenestraPanel::qSlicerFenestraPanel(QWidget* parent) : QWidget(parent) {
   buildSubject(layout);
   buildView(layout);
   buildQuality(layout);
+  buildAnimation(layout);
   buildResults(layout);
   layout->addStretch(1);
 }
@@ -100,6 +131,7 @@ qMRMLNodeComboBox* qSlicerFenestraPanel::nodes(const QString& type, const QStrin
 
 void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   QFormLayout* form = section(layout, tr("What to show"), false);
+  m_subject = form;
   sample = button("SampleButton", tr("Load a sample knee"),
                   tr("A synthetic knee with its segments, made on this computer"));
   form->addRow(sample);
@@ -110,17 +142,25 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   segmentation = nodes("vtkMRMLSegmentationNode", "SegmentationBox");
   segmentation->setNoneEnabled(true);
   form->addRow(tr("Segmentation:"), segmentation);
+  preset =
+      choices("PresetBox", {{tr("My own choice"), ""}, {tr("By the segments' names"), "auto"}},
+              tr("Focus, clipping, tissue colours, light and view for an anatomy, in one; what "
+                 "you choose yourself wins over it"));
+  form->addRow(tr("Anatomy:"), preset);
+  preset->hide();
+  form->labelForField(preset)->hide();
   focus = new QListWidget;
   focus->setObjectName("FocusList");
   focus->setToolTip(tr("Segments that nothing hides"));
   focus->setMaximumHeight(150);
   form->addRow(tr("Focus:"), focus);
-  clip = choices("ClipBox",
-                 {{tr("Smooth surface through the focus"), ""},
-                  {tr("Cut away in front of the focus"), "cutaway"},
-                  {tr("Nothing"), "none"}},
-                 tr("What is clipped, so that the focus shows"));
-  form->addRow(tr("Clip:"), clip);
+  focusHint = words("FocusHint");
+  focusHint->setText(tr("With none ticked, the anatomy's segments are found by their names."));
+  focusHint->hide();
+  form->addRow(focusHint);
+  clipping = new qSlicerFenestraClipping(nodes("vtkMRMLMarkupsPlaneNode", "PlaneNodeBox"));
+  clipping->setObjectName("Clipping");
+  form->addRow(clipping);
 }
 
 void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
@@ -240,6 +280,35 @@ void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
   form->addRow(tr("Size in pixels:"), row);
 }
 
+void qSlicerFenestraPanel::buildAnimation(QVBoxLayout* layout) {
+  QFormLayout* form = section(layout, tr("Turntable"), true);
+  animation = form->parentWidget();
+  animation->hide();
+  frames = number("FramesBox", 1, 3600);
+  frames->setValue(36);
+  form->addRow(tr("Frames:"), frames);
+  degrees = new QDoubleSpinBox;
+  degrees->setObjectName("DegreesBox");
+  degrees->setRange(-3600.0, 3600.0);
+  degrees->setDecimals(1);
+  degrees->setValue(360.0);
+  degrees->setSuffix(tr("\u00b0"));
+  degrees->setToolTip(tr("How far around the focus; negative: the other way"));
+  form->addRow(tr("Turn:"), degrees);
+  steady = new QDoubleSpinBox;
+  steady->setObjectName("SteadyBox");
+  steady->setRange(0.0, 45.0);
+  steady->setDecimals(1);
+  steady->setSuffix(tr("\u00b0"));
+  steady->setSpecialValueText(tr("each frame by itself"));
+  steady->setToolTip(tr("Spreads sudden changes of the clipping surface over so far a turn"));
+  form->addRow(tr("Steady surface:"), steady);
+  turn = button("TurnButton", tr("Render turntable"),
+                tr("Goes around the focus from the view above, a picture a frame of the quality "
+                   "above"));
+  form->addRow(turn);
+}
+
 void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
   QFormLayout* form = section(layout, tr("Pictures"), false);
   renders = nodes("vtkMRMLFenestraRenderNode", "RendersBox");
@@ -249,12 +318,44 @@ void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
   form->addRow(tr("Picture:"), renders);
   description = words("DescriptionLabel");
   form->addRow(description);
+  player = new qSlicerFenestraPlayer;
+  player->setObjectName("Player");
+  player->hide();
+  form->addRow(player);
+  measures = words("MeasuresLabel");
+  measures->setTextFormat(Qt::RichText);
+  form->addRow(measures);
   auto* row = new QHBoxLayout;
   show = button("ShowButton", tr("Show"), tr("In a view beside the 3D view"));
   repeat = button("RepeatButton", tr("Repeat"), tr("Renders with the same settings again"));
+  resume = button("ResumeButton", tr("Continue"),
+                  tr("Renders the frames of the turntable that are missing"));
+  resume->hide();
   save = button("SaveButton", tr("Save as..."),
-                tr("A .png to look at, or an .exr with linear colour and depth"));
-  for (QPushButton* one : {show, repeat, save})
+                tr("A .png to look at, or an .exr with linear colour and depth; a turntable's "
+                   "frames as numbered .png"));
+  for (QPushButton* one : {show, repeat, resume, save})
     row->addWidget(one);
   form->addRow(row);
+}
+
+void qSlicerFenestraPanel::offer(const qFenestraAbilities& abilities) {
+  const QString best = tr("Best view of the focus");
+  offerChoice(view, 1, {best, "auto"}, abilities.takes("view", "auto"));
+  const bool presets = abilities.flags.contains("preset");
+  preset->setVisible(presets);
+  m_subject->labelForField(preset)->setVisible(presets);
+  for (const Choice& anatomy : anatomies())
+    offerChoice(preset, preset->count(), anatomy, abilities.names("preset", anatomy.data));
+  animation->setVisible(abilities.turns());
+  const bool steadies = abilities.turntable.contains("--steady");
+  steady->setVisible(steadies);
+  qobject_cast<QFormLayout*>(animation->layout())->labelForField(steady)->setVisible(steadies);
+}
+
+void qSlicerFenestraPanel::offerPresets(bool chosen) {
+  const QString left = tr("As the anatomy preset");
+  offerChoice(view, 0, {left, "preset"}, chosen);
+  offerChoice(rig, 0, {left, ""}, chosen);
+  transfer->setItemText(transfer->findData(""), chosen ? left : tr("As in Volume Rendering"));
 }

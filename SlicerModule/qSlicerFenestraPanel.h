@@ -5,6 +5,8 @@
 
 class ctkSliderWidget;
 class qMRMLNodeComboBox;
+class qSlicerFenestraClipping;
+class qSlicerFenestraPlayer;
 class QCheckBox;
 class QComboBox;
 class QDoubleSpinBox;
@@ -17,6 +19,7 @@ class QSpinBox;
 class QToolButton;
 class QVBoxLayout;
 class vtkMRMLScene;
+struct qFenestraAbilities;
 
 /// The module's widgets from top to bottom, and nothing that they do.
 class qSlicerFenestraPanel : public QWidget {
@@ -25,11 +28,19 @@ class qSlicerFenestraPanel : public QWidget {
 public:
   explicit qSlicerFenestraPanel(QWidget* parent = nullptr);
 
+  /// Offers what only newer renderers know.
+  void offer(const qFenestraAbilities& abilities);
+  /// With an anatomy preset there are choices that are left to it: data "preset" for the view, and
+  /// none for others.
+  void offerPresets(bool chosen);
+
   QPushButton* sample;
   qMRMLNodeComboBox* volume;
   qMRMLNodeComboBox* segmentation;
+  QComboBox* preset; ///< hidden where there are none
   QListWidget* focus;
-  QComboBox* clip;
+  QLabel* focusHint;
+  qSlicerFenestraClipping* clipping;
 
   QComboBox* view; ///< data: the flag's word; empty: a 3-D view's camera
   qMRMLNodeComboBox* view3D;
@@ -46,6 +57,12 @@ public:
   QSpinBox* width;
   QSpinBox* height;
 
+  QWidget* animation;
+  QSpinBox* frames;
+  QDoubleSpinBox* degrees;
+  QDoubleSpinBox* steady; ///< degrees; 0: as each frame by itself
+  QPushButton* turn;
+
   QCheckBox* showPreview;
   QLabel* preview;
   QLabel* previewState;
@@ -59,8 +76,11 @@ public:
 
   qMRMLNodeComboBox* renders;
   QLabel* description;
+  qSlicerFenestraPlayer* player;
+  QLabel* measures;
   QPushButton* show;
   QPushButton* repeat;
+  QPushButton* resume;
   QPushButton* save;
 
 signals:
@@ -72,9 +92,12 @@ private:
   void buildView(QVBoxLayout* layout);
   void buildQuality(QVBoxLayout* layout);
   void buildRender(QVBoxLayout* layout);
+  void buildAnimation(QVBoxLayout* layout);
   void buildResults(QVBoxLayout* layout);
   QFormLayout* section(QVBoxLayout* layout, const QString& title, bool collapsed);
   qMRMLNodeComboBox* nodes(const QString& type, const QString& name);
+
+  QFormLayout* m_subject;
 };
 
 #endif

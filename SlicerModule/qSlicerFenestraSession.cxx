@@ -1,5 +1,7 @@
 #include "qSlicerFenestraSession.h"
 
+#include "qSlicerFenestraMeasures.h"
+
 #include <QCoreApplication>
 #include <QCryptographicHash>
 #include <QDir>
@@ -13,12 +15,13 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
-using Kind = qFenestraOutcome::Kind;
+using Ended = qFenestraOutcome::Kind;
 
 QString prefix() {
   return QStringLiteral("fenestra-slicer-");
@@ -33,7 +36,7 @@ QString folderTemplate() {
 }
 
 qFenestraOutcome failure(const QString& message, const QString& details = {}) {
-  return {Kind::failed, message, details};
+  return {Ended::failed, message, details};
 }
 
 /// What a preview must load anew when it changes.
@@ -90,15 +93,37 @@ struct Paused {
   vtkSmartPointer<vtkMRMLApplicationLogic> application;
 };
 
-QString statsLine(const QString& folder) {
+QJsonObject statistics(const QString& folder) {
   QFile file(folder + "/stats.json");
   if (!file.open(QIODevice::ReadOnly))
     return {};
-  const QJsonObject stats = QJsonDocument::fromJson(file.readAll()).object();
-  return QObject::tr("%1 samples a pixel, noise %2, %3 s")
-      .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
-      .arg(stats["noise"].toDouble(), 0, 'g', 2)
-      .arg(stats["seconds"].toObject()["total"].toDouble(), 0, 'f', 1);
+  return QJsonDocument::fromJson(file.readAll()).object();
+}
+
+QString statsLine(const QJsonObject& stats) {
+  return stats.isEmpty()
+             ? QString()
+             : QObject::tr("%1 samples a pixel, noise %2, %3 s")
+                   .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
+                   .arg(stats["noise"].toDouble(), 0, 'g', 2)
+                   .arg(stats["seconds"].toObject()["total"].toDouble(), 0, 'f', 1);
+}
+
+QString turntableLine(Node* render) {
+  return QObject::tr("%1 of %2 frames, %3\u00b0")
+      .arg(vtkSlicerFenestraLogic::GetNumberOfFrames(render))
+      .arg(QString::fromStdString(render->GetFlag("frames")),
+           QString::fromStdString(render->GetFlag("degrees")));
+}
+
+/// With the render, what the renderer says about it.
+void describe(Node* render, const QJsonObject& stats) {
+  const QString line = render->IsTurntable() ? turntableLine(render) : statsLine(stats);
+  render->SetDescription(line.toUtf8().constData());
+  const QJsonObject measures = qSlicerFenestraMeasures::kept(stats);
+  if (!measures.isEmpty())
+    render->SetAttribute(Node::MeasuresAttribute,
+                         QJsonDocument(measures).toJson(QJsonDocument::Compact).constData());
 }
 
 } // namespace
@@ -122,7 +147,7 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
     emit previewRefused(inWords(message, m_folder.path()));
   });
   connect(&m_preview, &qFenestraPreview::ended, this, [this](const qFenestraOutcome& outcome) {
-    if (outcome.kind == Kind::failed)
+    if (outcome.kind == Ended::failed)
       emit previewRefused(inWords(outcome.message, m_folder.path()));
   });
   connect(&m_queue, &qFenestraQueue::started, this, [this](int id) {
@@ -135,11 +160,14 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   connect(&m_queue, &qFenestraQueue::commented, this,
           [this](int, const QString& words) { emit reached(words); });
   connect(&m_queue, &qFenestraQueue::ended, this, &qSlicerFenestraSession::finishRender);
+  connect(&m_question, &qFenestraQuestion::told, this, &qSlicerFenestraSession::learned);
+  m_question.ask(m_program);
 }
 
 qSlicerFenestraSession::~qSlicerFenestraSession() {
   disconnect(&m_queue, nullptr, this, nullptr);
   disconnect(&m_preview, nullptr, this, nullptr);
+  disconnect(&m_question, nullptr, this, nullptr);
   m_preview.stop();
   m_worker.clear();
   m_worker.waitForDone();
@@ -171,7 +199,7 @@ void qSlicerFenestraSession::write(
 
 // ---- renders
 
-vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings) {
+vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind kind) {
   FenestraScene::Contents contents;
   try {
     if (!QFileInfo(m_program).isExecutable())
@@ -183,10 +211,11 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings) {
     return nullptr;
   }
   m_preview.stop();
-  Node* node = m_logic->AddRender(settings);
+  Node* node = m_logic->AddRender(settings, kind == Kind::turntable);
   const int id = ++m_last;
   m_renders[id].node = node;
-  const bool withSurface = vtkSlicerFenestraLogic::HasSurface(contents.flags);
+  const bool withSurface =
+      vtkSlicerFenestraLogic::HasSurface(contents.flags) && !contents.segmentation.segments.empty();
   write(contents, [this, id, withSurface](const QString& scene, const QString& message) {
     Render& render = m_renders[id];
     if (!message.isEmpty())
@@ -194,14 +223,45 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings) {
                                       "disk with the temporary files full?"),
                                    message));
     if (render.stopped)
-      return endRender(id, {Kind::stopped, {}, {}});
+      return endRender(id, {Ended::stopped, {}, {}});
     render.folder = QFileInfo(scene).absolutePath();
-    QStringList arguments = {scene, "--stats", "stats.json"};
-    for (const std::string& argument : vtkSlicerFenestraLogic::GetOutputArguments(withSurface))
-      arguments << QString::fromStdString(argument);
-    m_queue.add({id, arguments, render.folder});
+    m_queue.add({id, arguments(render.node, scene, withSurface), render.folder});
   });
   return node;
+}
+
+QStringList qSlicerFenestraSession::arguments(Node* render, const QString& scene,
+                                              bool withSurface) const {
+  const bool turns = render && render->IsTurntable();
+  QStringList all = turns ? QStringList{"turntable", scene} : QStringList{scene};
+  all << "--stats"
+      << "stats.json";
+  for (const std::string& argument : turns
+                                         ? vtkSlicerFenestraLogic::GetTurntableArguments(render)
+                                         : vtkSlicerFenestraLogic::GetOutputArguments(withSurface))
+    all << QString::fromStdString(argument);
+  return all;
+}
+
+bool qSlicerFenestraSession::canResume(Node* turntable) const {
+  const QString folder = turntable ? m_folders.value(turntable->GetID()) : QString();
+  const bool known = !folder.isEmpty() && QFileInfo::exists(folder + "/scene.mrml");
+  return known && turntable->IsTurntable() &&
+         vtkSlicerFenestraLogic::GetNumberOfFrames(turntable) <
+             std::stoi(turntable->GetFlag("frames")) &&
+         std::none_of(m_renders.begin(), m_renders.end(),
+                      [turntable](const Render& render) { return render.node == turntable; });
+}
+
+void qSlicerFenestraSession::resume(Node* turntable) {
+  if (!canResume(turntable))
+    return;
+  m_preview.stop();
+  const int id = ++m_last;
+  const QString folder = m_folders.value(turntable->GetID());
+  m_renders[id].node = turntable;
+  m_renders[id].folder = folder;
+  m_queue.add({id, arguments(turntable, folder + "/scene.mrml", false), folder});
 }
 
 void qSlicerFenestraSession::stop() {
@@ -214,7 +274,12 @@ void qSlicerFenestraSession::stop() {
 void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcome) {
   const QString folder = m_renders[id].folder;
   emit renderStopped();
-  if (outcome.kind == Kind::failed || !QFileInfo::exists(folder + "/radiance.nrrd"))
+  Node* node = m_renders[id].node;
+  const bool turns = node && node->IsTurntable(); // what is finished is kept, whatever happens
+  const bool isThere =
+      turns ? !vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()).empty()
+            : outcome.kind != Ended::failed && QFileInfo::exists(folder + "/radiance.nrrd");
+  if (!isThere)
     return endRender(id, outcome);
   work([this, id, outcome, folder] {
     const auto result = std::make_shared<vtkSlicerFenestraResult>();
@@ -246,7 +311,7 @@ void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
   }
   if (open) {
     const QString folder = m_renders[id].folder;
-    node->SetDescription(statsLine(folder).toUtf8().constData());
+    describe(node, statistics(folder));
     m_folders[node->GetID()] = folder;
   }
   endRender(id, outcome);
@@ -256,9 +321,10 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
   const Render render = m_renders.take(id);
   vtkSmartPointer<Node> node = render.node.GetPointer();
   const bool kept = node && node->GetNodeReference(Node::PictureRole);
-  for (const char* file : {"scene.mrml", "volume.nrrd", "segmentation.seg.nrrd", "roi.mrk.json"})
-    if (!render.folder.isEmpty())
-      QFile::remove(render.folder + "/" + file);
+  if (!kept || !canResume(node)) // which needs them
+    for (const char* file : {"scene.mrml", "volume.nrrd", "segmentation.seg.nrrd", "roi.mrk.json"})
+      if (!render.folder.isEmpty())
+        QFile::remove(render.folder + "/" + file);
   if (!kept)
     removeFolder(render.folder);
   if (node && !kept && node->GetScene())
@@ -276,7 +342,7 @@ void qSlicerFenestraSession::makeSample(
   connect(maker, &qFenestraProgram::ended, this,
           [maker, folder, then](const qFenestraOutcome& outcome) {
             maker->deleteLater();
-            const bool made = outcome.kind == Kind::done;
+            const bool made = outcome.kind == Ended::done;
             then(made ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
           });
   maker->run(m_program, {"phantom", "knee", "--output", folder}, m_folder.path());
@@ -286,6 +352,15 @@ QString qSlicerFenestraSession::fileOf(Node* render, const QString& ending) cons
   const QString folder = render ? m_folders.value(render->GetID()) : QString();
   const QString file = folder + "/picture." + ending;
   return !folder.isEmpty() && QFileInfo::exists(file) ? file : QString();
+}
+
+QStringList qSlicerFenestraSession::framesOf(Node* turntable) const {
+  const QString folder = turntable ? m_folders.value(turntable->GetID()) : QString();
+  QStringList files;
+  if (!folder.isEmpty())
+    for (const std::string& file : vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()))
+      files << QString::fromStdString(file);
+  return files;
 }
 
 // ---- preview
@@ -330,8 +405,7 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
       return message.isEmpty() ? void() : emit previewRefused(message);
     QStringList arguments = {scene, "--output", "preview.png"};
     for (auto flag = flags.begin(); flag != flags.end(); ++flag)
-      if (flag.value().isString())
-        arguments << "--" + flag.key() << flag.value().toString();
+      arguments << "--" + flag.key() << flag.value().toString();
     m_told = flags;
     const QString folder = QFileInfo(scene).absolutePath();
     if (rendering())
@@ -342,22 +416,18 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
   });
 }
 
-/// All flags of a node; null: not given.
+/// A node's flags, as they are told to a preview.
 QJsonObject qSlicerFenestraSession::previewFlags(const FenestraScene::Contents& contents) const {
   std::map<std::string, std::string> flags = contents.flags;
   for (const char* name : {"seconds", "seed", "samples"})
     flags.erase(name);
   flags["noise"] = "0.03";
   flags["size"] = previewSize(flags["size"]);
-  if (flags.count("transfer") == 0 && !contents.property.empty())
+  if (flags.count("transfer") == 0 && flags.count("preset") == 0 && !contents.property.empty())
     flags["transfer"] = propertyFile(contents).toStdString();
   QJsonObject all;
-  for (const std::string& name : Node::GetFlagNames()) {
-    const auto flag = flags.find(name);
-    all[QString::fromStdString(name)] = flag == flags.end()
-                                            ? QJsonValue(QJsonValue::Null)
-                                            : QJsonValue(QString::fromStdString(flag->second));
-  }
+  for (const auto& [name, value] : flags)
+    all[QString::fromStdString(name)] = QString::fromStdString(value);
   return all;
 }
 
@@ -375,6 +445,9 @@ QString qSlicerFenestraSession::propertyFile(const FenestraScene::Contents& cont
 
 void qSlicerFenestraSession::tellPreview(const QJsonObject& flags) {
   QJsonObject changed;
+  for (auto flag = m_told.begin(); flag != m_told.end(); ++flag)
+    if (!flags.contains(flag.key()))
+      changed[flag.key()] = QJsonValue::Null; // no more given
   for (auto flag = flags.begin(); flag != flags.end(); ++flag)
     if (m_told.value(flag.key()) != flag.value())
       changed[flag.key()] = flag.value();

@@ -2,6 +2,7 @@
 #define __qSlicerFenestraSession_h
 
 #include "FenestraSceneFiles.h"
+#include "qFenestraAbilities.h"
 #include "qFenestraPreview.h"
 #include "qFenestraQueue.h"
 #include "qSlicerFenestraModuleExport.h"
@@ -33,9 +34,14 @@ public:
                          QObject* parent = nullptr);
   ~qSlicerFenestraSession() override;
 
+  enum class Kind { picture, turntable };
   /// Adds a render of the settings to the scene and to the queue. Null where something is missing:
   /// `ended` says what.
-  vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings);
+  vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings, Kind kind = Kind::picture);
+  /// Whether frames of a turntable are missing that this session can add.
+  bool canResume(vtkMRMLFenestraRenderNode* turntable) const;
+  /// Goes on with it: its frames are more then.
+  void resume(vtkMRMLFenestraRenderNode* turntable);
   /// Ends the render under way, which keeps what it has.
   void stop();
   bool rendering() const { return !m_renders.isEmpty(); }
@@ -49,12 +55,16 @@ public:
 
   /// The picture of a render as it was written, or empty where this session did not make it.
   QString fileOf(vtkMRMLFenestraRenderNode* render, const QString& ending) const;
+  /// The same of a turntable: its frames.
+  QStringList framesOf(vtkMRMLFenestraRenderNode* turntable) const;
 
 public slots:
   /// Something may have changed: settings, camera, volume, segments, transfer function.
   void refresh();
 
 signals:
+  /// What the renderer knows; once, soon after the session began.
+  void learned(const qFenestraAbilities& abilities);
   void previewed(const QImage& picture, const qFenestraPicture& what);
   /// A sentence for the user; what was shown stays.
   void previewRefused(const QString& message);
@@ -79,6 +89,8 @@ private:
   void later(const std::function<void()>& job);
   void write(const FenestraScene::Contents& contents,
              const std::function<void(const QString& scene, const QString& failure)>& then);
+  QStringList arguments(vtkMRMLFenestraRenderNode* render, const QString& scene,
+                        bool withSurface) const;
   void finishRender(int id, const qFenestraOutcome& outcome);
   void addResult(int id, const qFenestraOutcome& outcome,
                  const std::function<void(vtkMRMLFenestraRenderNode*, int)>& add, int step = 0);
@@ -97,6 +109,7 @@ private:
   FenestraScene::Writer m_writer; ///< the working thread's
   QThreadPool m_worker;
 
+  qFenestraQuestion m_question;
   qFenestraQueue m_queue;
   QMap<int, Render> m_renders;      ///< under way and waiting
   QMap<QString, QString> m_folders; ///< of the renders that this session made, by node

@@ -1,5 +1,6 @@
 #include "qSlicerFenestraSettings.h"
 
+#include "qSlicerFenestraClipping.h"
 #include "qSlicerFenestraLights.h"
 #include "qSlicerFenestraPanel.h"
 #include "vtkSlicerFenestraLogic.h"
@@ -8,6 +9,7 @@
 #include <qMRMLNodeComboBox.h>
 
 #include <vtkMRMLCameraNode.h>
+#include <vtkMRMLMarkupsPlaneNode.h>
 #include <vtkMRMLScene.h>
 #include <vtkMRMLSegmentationNode.h>
 #include <vtkMRMLVolumeNode.h>
@@ -17,9 +19,11 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QLabel>
 #include <QListWidget>
 #include <QScopedValueRollback>
 #include <QSpinBox>
+#include <QStandardItemModel>
 
 #include <algorithm>
 
@@ -68,16 +72,19 @@ void qSlicerFenestraSettings::connectPanel() {
           SLOT(takeSegmentation(vtkMRMLNode*)));
   connect(panel.view3D, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(take()));
   connect(panel.focus, &QListWidget::itemChanged, this, &Settings::take);
-  for (QComboBox* box : {panel.clip, panel.view, panel.transfer, panel.rig, panel.background})
+  connect(panel.clipping, &qSlicerFenestraClipping::changed, this, &Settings::take);
+  connect(panel.preset, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+          &Settings::takePreset);
+  for (QComboBox* box : {panel.view, panel.transfer, panel.rig, panel.background})
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &Settings::take);
   connect(panel.follow, &QCheckBox::toggled, this, &Settings::take);
   for (ctkSliderWidget* slider : panel.strengths)
     connect(slider, &ctkSliderWidget::valueChanged, this, &Settings::take);
   connect(panel.quality, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
           &Settings::takeQuality);
-  for (QSpinBox* box : {panel.samples, panel.width, panel.height})
+  for (QSpinBox* box : {panel.samples, panel.width, panel.height, panel.frames})
     connect(box, QOverload<int>::of(&QSpinBox::valueChanged), this, &Settings::take);
-  for (QDoubleSpinBox* box : {panel.noise, panel.seconds})
+  for (QDoubleSpinBox* box : {panel.noise, panel.seconds, panel.degrees, panel.steady})
     connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &Settings::take);
 }
 
@@ -86,7 +93,8 @@ void qSlicerFenestraSettings::connectPanel() {
 void qSlicerFenestraSettings::use(Node* node) {
   this->qvtkDisconnectAll();
   m_node = node;
-  m_volume = m_segmentation = m_camera = nullptr;
+  m_volume = m_segmentation = m_camera = m_plane = nullptr;
+  m_panel->clipping->reset();
   if (!m_node)
     return;
   this->qvtkConnect(m_node, vtkCommand::ModifiedEvent, this, SLOT(show()));
@@ -98,6 +106,7 @@ void qSlicerFenestraSettings::copy(Node* render) {
   const int wasModifying = m_node->StartModify();
   for (const char* role : {Node::VolumeRole, Node::SegmentationRole, Node::ViewRole})
     m_node->SetNodeReferenceID(role, render->GetNodeReferenceID(role));
+  m_node->SetNodeReferenceID(Node::PlaneRole, nullptr); // it may have moved
   m_node->SetAttribute(rigAttribute, render->GetAttribute(rigAttribute));
   m_node->SetFlags(render->GetFlags());
   m_node->EndModify(wasModifying);
@@ -119,7 +128,24 @@ void qSlicerFenestraSettings::chooseDefaults() {
   };
   byDefault(Node::VolumeRole, "vtkMRMLScalarVolumeNode");
   byDefault(Node::SegmentationRole, "vtkMRMLSegmentationNode");
-  byDefault(Node::ViewRole, "vtkMRMLViewNode");
+  if (!hasPreset()) // which may be meant to choose the view
+    byDefault(Node::ViewRole, "vtkMRMLViewNode");
+}
+
+bool qSlicerFenestraSettings::hasPreset() const {
+  return !m_node->GetFlag("preset").empty();
+}
+
+QList<qSlicerFenestraSegment> qSlicerFenestraSettings::focusSegments() const {
+  QList<qSlicerFenestraSegment> focus;
+  auto* node =
+      vtkMRMLSegmentationNode::SafeDownCast(m_node->GetNodeReference(Node::SegmentationRole));
+  for (const std::string& id : m_node->GetFocus()) {
+    vtkSegment* segment = node ? node->GetSegmentation()->GetSegment(id) : nullptr;
+    focus.append({QString::fromStdString(id),
+                  segment ? QString::fromUtf8(segment->GetName()) : QString::fromStdString(id)});
+  }
+  return focus;
 }
 
 void qSlicerFenestraSettings::watch(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRMLNode* node) {
@@ -146,6 +172,23 @@ void qSlicerFenestraSettings::watchCamera() {
   m_camera = camera;
 }
 
+void qSlicerFenestraSettings::watchPlane() {
+  vtkMRMLNode* plane = m_node->GetNodeReference(Node::PlaneRole);
+  if (m_plane == plane)
+    return;
+  for (const unsigned long event :
+       {(unsigned long)vtkCommand::ModifiedEvent,
+        (unsigned long)vtkMRMLMarkupsNode::PointModifiedEvent,
+        (unsigned long)vtkMRMLTransformableNode::TransformModifiedEvent})
+    this->qvtkReconnect(m_plane, plane, event, this, SLOT(onPlaneMoved()));
+  m_plane = plane;
+}
+
+void qSlicerFenestraSettings::onPlaneMoved() {
+  if (m_node && m_node->GetFlag("clip") == "plane")
+    m_node->SetFlag("plane", vtkSlicerFenestraLogic::GetPlaneFlag(m_plane));
+}
+
 void qSlicerFenestraSettings::onDataChanged() {
   showSegments();
   emit changed();
@@ -166,8 +209,9 @@ void qSlicerFenestraSettings::show() {
     watch(m_volume, volume);
     watch(m_segmentation, segmentation);
     watchCamera();
+    watchPlane();
     showSegments();
-    choose(m_panel->clip, flagOf(flags, "clip"));
+    showSubject(flags);
     choose(m_panel->transfer, flagOf(flags, "transfer"));
     choose(m_panel->background, flagOf(flags, "background"));
     showView(flags);
@@ -206,10 +250,30 @@ void qSlicerFenestraSettings::showSegments() {
   }
 }
 
+void qSlicerFenestraSettings::showSubject(const Flags& flags) {
+  using Plane = qSlicerFenestraClipping::Plane;
+  choose(m_panel->preset, flagOf(flags, "preset"));
+  m_panel->offerPresets(hasPreset());
+  m_panel->focusHint->setVisible(hasPreset() && m_node->GetFocus().empty());
+  const bool isPlaced = flags.count("plane") > 0;
+  m_panel->clipping->show(flags,
+                          m_plane    ? Plane::node
+                          : isPlaced ? Plane::fixed
+                                     : Plane::automatic,
+                          focusSegments(), hasPreset());
+}
+
 void qSlicerFenestraSettings::showView(const Flags& flags) {
-  choose(m_panel->view, flagOf(flags, "view"));
-  m_panel->view3D->setCurrentNode(m_node->GetNodeReference(Node::ViewRole));
-  const bool fromCamera = flagOf(flags, "view").isEmpty();
+  vtkMRMLNode* view3D = m_node->GetNodeReference(Node::ViewRole);
+  const bool byPreset = hasPreset() && !view3D && flags.count("position") == 0;
+  const QString word = flagOf(flags, "view");
+  choose(m_panel->view, word.isEmpty() && byPreset ? "preset" : word);
+  if (auto* model = qobject_cast<QStandardItemModel*>(m_panel->view->model()))
+    if (const int best = m_panel->view->findData("auto"); best >= 0)
+      model->item(best)->setEnabled(hasPreset() || !m_node->GetFocus().empty());
+  if (view3D)
+    m_panel->view3D->setCurrentNode(view3D);
+  const bool fromCamera = m_panel->view->currentData().toString().isEmpty();
   m_panel->view3D->setEnabled(fromCamera);
   m_panel->follow->setEnabled(fromCamera);
   m_panel->follow->setChecked(flags.count("position") == 0);
@@ -220,8 +284,11 @@ void qSlicerFenestraSettings::showLights(const Flags& flags) {
   const QStringList rig =
       stored ? QString(stored).split(' ') : QStringList{flagOf(flags, "lights")};
   choose(m_panel->rig, rig.value(0));
-  for (int i = 0; i < 4; ++i)
+  const bool isOwn = !m_panel->rig->currentData().toString().isEmpty();
+  for (int i = 0; i < 4; ++i) {
     m_panel->strengths[i]->setValue(rig.value(i + 1, "100").toDouble());
+    m_panel->strengths[i]->setEnabled(isOwn);
+  }
 }
 
 void qSlicerFenestraSettings::showQuality(const Flags& flags) {
@@ -237,6 +304,12 @@ void qSlicerFenestraSettings::showQuality(const Flags& flags) {
   const QStringList size = flagOf(flags, "size").split('x');
   m_panel->width->setValue(size.value(0, "512").toInt());
   m_panel->height->setValue(size.value(1, "512").toInt());
+  if (flags.count("frames") == 0) // of a picture that was repeated
+    return;
+  m_panel->frames->setValue(flagOf(flags, "frames").toInt());
+  m_panel->degrees->setValue(flags.count("degrees") > 0 ? flagOf(flags, "degrees").toDouble()
+                                                        : 360.0);
+  m_panel->steady->setValue(flagOf(flags, "steady").toDouble());
 }
 
 // ---- from the panel to the node
@@ -251,7 +324,8 @@ void qSlicerFenestraSettings::take() {
       focus.push_back(m_panel->focus->item(i)->data(Qt::UserRole).toString().toStdString());
   m_node->SetFocus(focus);
   Flags flags = m_node->GetFlags();
-  flags["clip"] = focus.empty() ? "" : chosenIn(m_panel->clip); // nothing to clip for
+  flags["preset"] = chosenIn(m_panel->preset);
+  takeClipping(flags);
   flags["transfer"] = chosenIn(m_panel->transfer);
   flags["background"] = chosenIn(m_panel->background);
   takeView(flags);
@@ -261,17 +335,52 @@ void qSlicerFenestraSettings::take() {
   flags["seconds"] = limit(m_panel->seconds->value());
   flags["size"] =
       std::to_string(m_panel->width->value()) + "x" + std::to_string(m_panel->height->value());
+  flags["frames"] = std::to_string(m_panel->frames->value());
+  flags["degrees"] = QString::number(m_panel->degrees->value()).toStdString();
+  flags["steady"] = limit(m_panel->steady->value());
   m_node->SetFlags(flags);
   m_node->EndModify(wasModifying);
 }
 
+void qSlicerFenestraSettings::takeClipping(Flags& flags) {
+  const qSlicerFenestraClipping& clipping = *m_panel->clipping;
+  const bool isNode = clipping.plane() == qSlicerFenestraClipping::Plane::node;
+  vtkMRMLNode* plane = isNode ? clipping.planeNode()->currentNode() : nullptr;
+  m_node->SetNodeReferenceID(Node::PlaneRole, idOf(plane));
+  const bool byPreset = !flags["preset"].empty();
+  clipping.take(flags, vtkSlicerFenestraLogic::GetPlaneFlag(plane),
+                byPreset || !flags["focus"].empty(), byPreset);
+}
+
+/// What is the preset's is left to it, until the user chooses; without one it is as at first.
+void qSlicerFenestraSettings::takePreset() {
+  if (!m_node || m_showing)
+    return;
+  const bool chosen = !chosenIn(m_panel->preset).empty();
+  {
+    const QScopedValueRollback<bool> showing(m_showing, true);
+    m_panel->offerPresets(chosen);
+    if (chosen != hasPreset()) {
+      m_panel->clipping->reset();
+      choose(m_panel->view, chosen ? "preset" : "");
+      choose(m_panel->transfer, "");
+      choose(m_panel->rig, chosen ? "" : "studio");
+    }
+  }
+  take();
+}
+
 /// Of a 3-D view's camera: followed, or as it is at this moment.
 void qSlicerFenestraSettings::takeView(Flags& flags) {
-  const std::string view = chosenIn(m_panel->view);
-  m_node->SetNodeReferenceID(Node::ViewRole, idOf(m_panel->view3D->currentNode()));
+  const std::string word = chosenIn(m_panel->view);
+  const bool byPreset = word == "preset";
+  const bool best = word == "auto" && flags["preset"].empty() && flags["focus"].empty(); // of what?
+  const std::string view = byPreset || best ? "" : word;
+  m_node->SetNodeReferenceID(Node::ViewRole,
+                             byPreset ? nullptr : idOf(m_panel->view3D->currentNode()));
   const bool frozen = flags.count("position") > 0;
   flags["view"] = view;
-  if (view.empty() && !m_panel->follow->isChecked()) {
+  if (view.empty() && !byPreset && !m_panel->follow->isChecked()) {
     vtkMRMLCameraNode* camera = frozen ? nullptr : m_logic->GetFollowedCamera(m_node);
     if (camera)
       for (const auto& [name, value] : vtkSlicerFenestraLogic::GetCameraFlags(camera))

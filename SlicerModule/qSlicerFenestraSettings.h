@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 
+#include "qSlicerFenestraMargins.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include <vtkWeakPointer.h>
 
@@ -43,28 +44,35 @@ private slots:
   void show();
   void showSegments();
   void take();
+  void takePreset();
   void takeQuality();
   void takeVolume(vtkMRMLNode* node);
   void takeSegmentation(vtkMRMLNode* node);
   void onDataChanged();
+  void onPlaneMoved();
 
 private:
   using Flags = std::map<std::string, std::string>;
 
   void connectPanel();
   void chooseDefaults();
+  bool hasPreset() const;
+  QList<qSlicerFenestraSegment> focusSegments() const;
   void watch(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRMLNode* node);
   void watchCamera();
+  void watchPlane();
+  void showSubject(const Flags& flags);
   void showView(const Flags& flags);
   void showLights(const Flags& flags);
   void showQuality(const Flags& flags);
+  void takeClipping(Flags& flags);
   void takeView(Flags& flags);
   void takeLights(Flags& flags);
 
   qSlicerFenestraPanel* m_panel;
   vtkSlicerFenestraLogic* m_logic;
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_node;
-  vtkWeakPointer<vtkMRMLNode> m_volume, m_segmentation, m_camera; ///< watched
+  vtkWeakPointer<vtkMRMLNode> m_volume, m_segmentation, m_camera, m_plane; ///< watched
   bool m_showing = false; ///< the panel is being set, not used
 };
 

@@ -6,6 +6,7 @@
 #include <vtkMRMLApplicationLogic.h>
 #include <vtkMRMLCameraNode.h>
 #include <vtkMRMLLayoutNode.h>
+#include <vtkMRMLMarkupsPlaneNode.h>
 #include <vtkMRMLModelDisplayNode.h>
 #include <vtkMRMLModelNode.h>
 #include <vtkMRMLScalarVolumeDisplayNode.h>
@@ -26,6 +27,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkPNGReader.h>
 #include <vtkPolyData.h>
+#include <vtkStringArray.h>
 #include <vtkXMLPolyDataReader.h>
 
 #include <cmath>
@@ -75,10 +77,13 @@ FenestraScene::Image ReadFloats(const std::string& file) {
   return image;
 }
 
-/// Row 0 at the top, as in the renderer's volumes, and without transparency.
-vtkSmartPointer<vtkImageData> ReadPicture(const std::string& file) {
+/// Row 0 at the top, as in the renderer's volumes, and without transparency; a slice a file.
+vtkSmartPointer<vtkImageData> ReadPictures(const std::vector<std::string>& files) {
+  vtkNew<vtkStringArray> names;
+  for (const std::string& file : files)
+    names->InsertNextValue(file);
   vtkNew<vtkPNGReader> reader;
-  reader->SetFileName(file.c_str());
+  reader->SetFileNames(names);
   vtkNew<vtkImageFlip> flip;
   flip->SetInputConnection(reader->GetOutputPort());
   flip->SetFilteredAxis(1);
@@ -87,6 +92,37 @@ vtkSmartPointer<vtkImageData> ReadPicture(const std::string& file) {
   colours->SetComponents(0, 1, 2);
   colours->Update();
   return colours->GetOutput();
+}
+
+std::string FrameFile(const std::string& folder, int frame) {
+  std::string number = std::to_string(frame);
+  number.insert(0, 4 - std::min<size_t>(4, number.size()), '0');
+  return folder + "/frame_" + number + ".png";
+}
+
+/// As the eye saw a picture's slice: its rows run to the right, its columns down.
+void FaceFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
+  double directions[3][3];
+  picture->GetIJKToRASDirections(directions);
+  vtkNew<vtkMatrix4x4> ijkToRas;
+  picture->GetIJKToRASMatrix(ijkToRas);
+  const int* size = picture->GetImageData()->GetDimensions();
+  const double middle[4] = {0.5 * (size[0] - 1), 0.5 * (size[1] - 1), double(frame), 1.0};
+  double centre[4];
+  ijkToRas->MultiplyPoint(middle, centre);
+  vtkNew<vtkMatrix4x4> toRas;
+  for (int row = 0; row < 3; ++row) {
+    toRas->SetElement(row, 0, directions[row][0]);
+    toRas->SetElement(row, 1, -directions[row][1]);
+    toRas->SetElement(row, 2, -directions[row][2]);
+    toRas->SetElement(row, 3, centre[row]);
+  }
+  slice->GetSliceToRAS()->DeepCopy(toRas);
+  slice->UpdateMatrices();
+}
+
+vtkMRMLSliceNode* PictureView(vtkMRMLScene* scene) {
+  return vtkMRMLSliceNode::SafeDownCast(scene->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
 }
 
 /// A grey window over what is finite.
@@ -133,17 +169,22 @@ Node* vtkSlicerFenestraLogic::GetSettings() {
   return Node::SafeDownCast(scene->AddNode(node));
 }
 
-Node* vtkSlicerFenestraLogic::AddRender(Node* settings) {
+Node* vtkSlicerFenestraLogic::AddRender(Node* settings, bool turntable) {
   vtkMRMLScene* scene = this->GetMRMLScene();
   vtkMRMLNode* volume = settings->GetNodeReference(Node::VolumeRole);
-  const std::string name = std::string(volume ? volume->GetName() : "Volume") + " render";
+  const std::string name =
+      std::string(volume ? volume->GetName() : "Volume") + (turntable ? " turntable" : " render");
   auto* render = Node::SafeDownCast(scene->AddNewNodeByClass(
       "vtkMRMLFenestraRenderNode", scene->GenerateUniqueName(name.c_str())));
   for (const char* role : {Node::VolumeRole, Node::SegmentationRole, Node::ViewRole})
     render->SetNodeReferenceID(role, settings->GetNodeReferenceID(role));
   for (const std::string& attribute : settings->GetAttributeNames())
     render->SetAttribute(attribute.c_str(), settings->GetAttribute(attribute.c_str()));
-  render->SetFlags(this->GetFlags(settings));
+  std::map<std::string, std::string> flags = this->GetFlags(settings);
+  for (const std::string& own : Node::GetTurntableFlagNames())
+    if (!turntable)
+      flags.erase(own);
+  render->SetFlags(flags);
   return render;
 }
 
@@ -155,6 +196,8 @@ FenestraScene::Contents vtkSlicerFenestraLogic::Snapshot(Node* render) {
   vtkSlicerFenestraSnapshot::TakeVolume(volume, contents);
   vtkSlicerFenestraSnapshot::TakeRendering(volume, contents);
   contents.flags = this->GetFlags(render);
+  for (const std::string& own : Node::GetTurntableFlagNames())
+    contents.flags.erase(own);
   if (!segmentation && !render->GetFocus().empty())
     throw vtkSlicerFenestraComplaint("The segmentation that holds the focus is gone. Choose one.");
   if (segmentation)
@@ -199,12 +242,22 @@ vtkSlicerFenestraLogic::GetCameraFlags(vtkMRMLCameraNode* camera) {
   return flags;
 }
 
+std::string vtkSlicerFenestraLogic::GetPlaneFlag(vtkMRMLNode* node) {
+  auto* plane = vtkMRMLMarkupsPlaneNode::SafeDownCast(node);
+  if (!plane || !plane->GetIsPlaneValid())
+    return {};
+  double origin[3], normal[3];
+  plane->GetOriginWorld(origin);
+  plane->GetNormalWorld(normal);
+  return triple(origin) + "," + triple(normal);
+}
+
 bool vtkSlicerFenestraLogic::HasSurface(const std::map<std::string, std::string>& flags) {
   const auto clip = flags.find("clip");
   const std::string mode = clip == flags.end() ? "" : clip->second;
-  if (mode.empty() || mode == "auto")
-    return flags.count("focus") > 0;
-  return mode == "surface" || mode == "cutaway";
+  if (mode.empty() || mode == "auto") // so do all presets
+    return flags.count("focus") > 0 || flags.count("preset") > 0;
+  return mode != "none" && mode != "plane";
 }
 
 std::vector<std::string> vtkSlicerFenestraLogic::GetOutputArguments(bool withSurface) {
@@ -216,11 +269,34 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetOutputArguments(bool withSur
   return arguments;
 }
 
+std::vector<std::string> vtkSlicerFenestraLogic::GetFrameFiles(const std::string& folder) {
+  std::vector<std::string> files;
+  std::string next = FrameFile(folder, 0);
+  while (std::filesystem::exists(next)) {
+    files.push_back(next);
+    next = FrameFile(folder, static_cast<int>(files.size()));
+  }
+  return files;
+}
+
+std::vector<std::string> vtkSlicerFenestraLogic::GetTurntableArguments(Node* render) {
+  std::vector<std::string> arguments = {"--output", "frame.png"};
+  for (const std::string& name : Node::GetTurntableFlagNames())
+    if (!render->GetFlag(name).empty())
+      arguments.insert(arguments.end(), {"--" + name, render->GetFlag(name)});
+  return arguments;
+}
+
 vtkSlicerFenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
   vtkSlicerFenestraResult result;
+  const std::vector<std::string> frames = GetFrameFiles(folder);
+  if (!frames.empty()) {
+    result.picture = ReadPictures(frames);
+    return result;
+  }
   result.radiance = ReadFloats(folder + "/radiance.nrrd");
   result.depth = ReadFloats(folder + "/radiance-Z.nrrd");
-  result.picture = ReadPicture(folder + "/picture.png");
+  result.picture = ReadPictures({folder + "/picture.png"});
   const std::string surface = folder + "/surface.vtp";
   if (std::filesystem::exists(surface)) {
     vtkNew<vtkXMLPolyDataReader> reader;
@@ -279,8 +355,27 @@ FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
   return moved;
 }
 
+/// They are no place in the anatomy: a millimetre a pixel, far from it.
+void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
+  if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
+    return picture->SetAndObserveImageData(frames);
+  double bounds[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole)))
+    volume->GetRASBounds(bounds);
+  FenestraScene::Matrix ijkToRas = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+  const int* size = frames->GetDimensions();
+  for (size_t axis = 0; axis < 3; ++axis)
+    ijkToRas[4 * axis + 3] = 2.0 * bounds[2 * axis + 1] - bounds[2 * axis] + size[axis];
+  this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, frames, ijkToRas);
+}
+
 void vtkSlicerFenestraLogic::AddResult(Node* render, const vtkSlicerFenestraResult& result,
                                        int step) {
+  if (render->IsTurntable()) {
+    if (step == 0)
+      this->AddFrames(render, result.picture);
+    return;
+  }
   if (step == 0)
     this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, result.picture,
                     this->BesideAnatomy(render, result.radiance.ijkToRas));
@@ -305,8 +400,7 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
     layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
   layout->SetViewArrangement(ResultLayout);
 
-  auto* slice =
-      vtkMRMLSliceNode::SafeDownCast(scene->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
+  vtkMRMLSliceNode* slice = PictureView(scene);
   vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
   vtkMRMLSliceLogic* logic = slice && application ? application->GetSliceLogic(slice) : nullptr;
   if (!logic)
@@ -315,21 +409,26 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   composite->SetBackgroundVolumeID(picture->GetID());
   composite->SetForegroundVolumeID(nullptr);
   composite->SetLabelVolumeID(nullptr);
-  // As the eye saw it: the picture's rows run to the right, its columns down.
-  double directions[3][3];
-  picture->GetIJKToRASDirections(directions);
-  double bounds[6];
-  picture->GetSliceBounds(bounds, nullptr);
-  const double centre[3] = {0.5 * (bounds[0] + bounds[1]), 0.5 * (bounds[2] + bounds[3]),
-                            0.5 * (bounds[4] + bounds[5])};
-  vtkNew<vtkMatrix4x4> toRas;
-  for (int row = 0; row < 3; ++row) {
-    toRas->SetElement(row, 0, directions[row][0]);
-    toRas->SetElement(row, 1, -directions[row][1]);
-    toRas->SetElement(row, 2, -directions[row][2]);
-    toRas->SetElement(row, 3, centre[row]);
-  }
-  slice->GetSliceToRAS()->DeepCopy(toRas);
-  slice->UpdateMatrices();
-  logic->FitSliceToBackground(-1, -1);
+  FaceFrame(picture, 0, slice);
+  const int* view = slice->GetDimensions(); // without them the picture's sides are cut off
+  logic->FitSliceToBackground(view[0], view[1]);
+}
+
+void vtkSlicerFenestraLogic::ShowFrame(Node* render, int frame) {
+  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
+  if (!picture || frame < 0 || frame >= GetNumberOfFrames(render))
+    return;
+  vtkMRMLSliceNode* slice = PictureView(this->GetMRMLScene());
+  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
+  vtkMRMLSliceLogic* logic = slice && application ? application->GetSliceLogic(slice) : nullptr;
+  const char* shown = logic ? logic->GetSliceCompositeNode()->GetBackgroundVolumeID() : nullptr;
+  if (!shown || std::strcmp(shown, picture->GetID()) != 0)
+    this->ShowResult(render);
+  if (slice)
+    FaceFrame(picture, frame, slice);
+}
+
+int vtkSlicerFenestraLogic::GetNumberOfFrames(Node* render) {
+  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
+  return picture && picture->GetImageData() ? picture->GetImageData()->GetDimensions()[2] : 0;
 }

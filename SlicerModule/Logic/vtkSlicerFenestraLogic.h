@@ -20,7 +20,8 @@ class vtkMRMLSegmentationNode;
 class vtkMRMLVolumeNode;
 class vtkPolyData;
 
-/// What a render left, read from its files.
+/// What a render left, read from its files. Of a turntable there is the picture alone, with a
+/// frame in each of its slices.
 struct vtkSlicerFenestraResult {
   FenestraScene::Image radiance;         ///< linear RGBA, where the picture lies in the world
   FenestraScene::Image depth;            ///< mm from the eye; infinite where nothing is
@@ -47,8 +48,8 @@ public:
   /// renders are copies of it.
   vtkMRMLFenestraRenderNode* GetSettings();
   /// A node of its own for a render, with the settings as they are now: what a 3-D view's camera
-  /// looked at is a fixed view from now on.
-  vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings);
+  /// looked at is a fixed view from now on. A turntable's has the settings' flags of turntables.
+  vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
 
   /// Everything that the renderer needs, without a copy of the voxels; throws
   /// vtkSlicerFenestraComplaint.
@@ -57,6 +58,8 @@ public:
   /// from.
   std::map<std::string, std::string> GetFlags(vtkMRMLFenestraRenderNode* render);
   static std::map<std::string, std::string> GetCameraFlags(vtkMRMLCameraNode* camera);
+  /// The flag for a plane of the Markups module; empty where it is none, or not placed yet.
+  static std::string GetPlaneFlag(vtkMRMLNode* plane);
   /// The camera of the node's 3-D view; none where the flags fix a view.
   vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
 
@@ -65,16 +68,24 @@ public:
   static vtkSlicerFenestraResult ReadResult(const std::string& folder);
   /// Flags that make a render leave what ReadResult reads.
   static std::vector<std::string> GetOutputArguments(bool withSurface);
+  /// A turntable's finished frames in `folder`, from the first one on.
+  static std::vector<std::string> GetFrameFiles(const std::string& folder);
+  /// Flags that make `fenestra turntable` leave them, those of the node among them.
+  static std::vector<std::string> GetTurntableArguments(vtkMRMLFenestraRenderNode* render);
   /// Whether a clipping surface comes with these flags.
   static bool HasSurface(const std::map<std::string, std::string>& flags);
 
   /// Adds the result's nodes and lets the render refer to them: a node each step, from 0, for the
-  /// application can answer its user in between.
+  /// application can answer its user in between. A turntable that went on shows more frames then.
   void AddResult(vtkMRMLFenestraRenderNode* render, const vtkSlicerFenestraResult& result,
                  int step);
   static constexpr int ResultSteps = 4;
   /// Shows the render's picture beside a 3-D view, in a layout of the module's own.
   void ShowResult(vtkMRMLFenestraRenderNode* render);
+  /// Another frame of a turntable, in the same view.
+  void ShowFrame(vtkMRMLFenestraRenderNode* render, int frame);
+  /// 1 where it is no turntable's; 0 without a picture.
+  static int GetNumberOfFrames(vtkMRMLFenestraRenderNode* render);
 
 protected:
   vtkSlicerFenestraLogic();
@@ -88,6 +99,7 @@ private:
   FenestraScene::Matrix BesideAnatomy(vtkMRMLFenestraRenderNode* render,
                                       const FenestraScene::Matrix& ijkToRas);
   void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);
+  void AddFrames(vtkMRMLFenestraRenderNode* render, vtkImageData* frames);
   vtkMRMLVolumeNode* AddVolume(vtkMRMLFenestraRenderNode* render, const char* className,
                                const char* role, vtkImageData* image,
                                const FenestraScene::Matrix& ijkToRas);

@@ -9,14 +9,16 @@ vtkMRMLNodeNewMacro(vtkMRMLFenestraRenderNode);
 const char* const vtkMRMLFenestraRenderNode::VolumeRole = "volume";
 const char* const vtkMRMLFenestraRenderNode::SegmentationRole = "segmentation";
 const char* const vtkMRMLFenestraRenderNode::ViewRole = "view";
+const char* const vtkMRMLFenestraRenderNode::PlaneRole = "plane";
 const char* const vtkMRMLFenestraRenderNode::PictureRole = "picture";
 const char* const vtkMRMLFenestraRenderNode::RadianceRole = "radiance";
 const char* const vtkMRMLFenestraRenderNode::DepthRole = "depth";
 const char* const vtkMRMLFenestraRenderNode::SurfaceRole = "surface";
+const char* const vtkMRMLFenestraRenderNode::MeasuresAttribute = "Fenestra.Measures";
 
 vtkMRMLFenestraRenderNode::vtkMRMLFenestraRenderNode() {
-  for (const char* role :
-       {VolumeRole, SegmentationRole, ViewRole, PictureRole, RadianceRole, DepthRole, SurfaceRole})
+  for (const char* role : {VolumeRole, SegmentationRole, ViewRole, PlaneRole, PictureRole,
+                           RadianceRole, DepthRole, SurfaceRole})
     this->AddNodeReferenceRole(role);
 }
 
@@ -24,10 +26,21 @@ vtkMRMLFenestraRenderNode::~vtkMRMLFenestraRenderNode() = default;
 
 const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetFlagNames() {
   static const std::vector<std::string> names = {
-      "focus",   "clip",    "controlpoints", "smoothing",  "plane", "view",     "position",
-      "target",  "up",      "projection",    "scale",      "angle", "transfer", "shift",
-      "density", "lights",  "environment",   "background", "size",  "samples",  "seconds",
-      "noise",   "bounces", "seed"};
+      "focus",      "preset",   "margin",         "labelsmoothing",
+      "clip",       "boundary", "controlpoints",  "smoothing",
+      "plane",      "hole",     "holemargin",     "ghost",
+      "offset",     "soft",     "contextdensity", "contextsaturation",
+      "view",       "position", "target",         "up",
+      "projection", "scale",    "angle",          "transfer",
+      "shift",      "density",  "lights",         "environment",
+      "background", "size",     "samples",        "seconds",
+      "noise",      "bounces",  "seed",           "frames",
+      "degrees",    "steady"};
+  return names;
+}
+
+const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetTurntableFlagNames() {
+  static const std::vector<std::string> names = {"frames", "degrees", "steady"};
   return names;
 }
 

@@ -19,7 +19,8 @@ class vtkMRMLVolumeNode;
 /// several such nodes the renderer follows the last.
 ///
 /// References: `volume`, `segmentation`, `view` (whose camera is followed as long as no flag says
-/// where to look from), and results: `picture` (display colours), `radiance` (linear RGBA), `depth`
+/// where to look from), `plane` (which the flag `plane` follows), and results: `picture` (display
+/// colours; of a turntable its frames, one behind the other), `radiance` (linear RGBA), `depth`
 /// (mm) and `surface` (the clipping surface, a model).
 class VTK_SLICER_FENESTRA_MODULE_MRML_EXPORT vtkMRMLFenestraRenderNode : public vtkMRMLNode {
 public:
@@ -35,6 +36,10 @@ public:
 
   /// Flags that a node can hold; others are neither set nor read.
   static const std::vector<std::string>& GetFlagNames();
+  /// Those of them that are of `fenestra turntable` alone; a scene does not hand them on.
+  static const std::vector<std::string>& GetTurntableFlagNames();
+  /// Whether the picture is a turntable's frames. (Settings have such flags, too.)
+  bool IsTurntable() { return !this->GetSingletonTag() && !this->GetFlag("frames").empty(); }
 
   /// Values as the command line takes them. An empty one is a flag that is not given.
   void SetFlag(const std::string& name, const std::string& value);
@@ -49,10 +54,14 @@ public:
   static const char* const VolumeRole;
   static const char* const SegmentationRole;
   static const char* const ViewRole;
+  static const char* const PlaneRole;
   static const char* const PictureRole;
   static const char* const RadianceRole;
   static const char* const DepthRole;
   static const char* const SurfaceRole;
+
+  /// Of a result: what the renderer measured, as its statistics say it (.json, an object).
+  static const char* const MeasuresAttribute;
 
 protected:
   vtkMRMLFenestraRenderNode();

@@ -12,7 +12,9 @@
 #include <vtkSegmentation.h>
 
 #include <cmath>
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace FenestraTesting {
 
@@ -54,6 +56,18 @@ inline vtkMRMLSegmentationNode* addSegmentation(vtkMRMLScene* scene) {
   node->AddSegmentFromBinaryLabelmapRepresentation(labels, "Ball");
   node->GetSegmentation()->AddEmptySegment("Nothing", "Nothing");
   return node;
+}
+
+/// Whether a flag is these numbers, but for rounding.
+inline bool isNear(const std::string& flag, const std::vector<double>& numbers) {
+  std::istringstream text(flag);
+  char comma = 0;
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    double number = 0.0;
+    if ((i > 0 && !(text >> comma)) || !(text >> number) || std::abs(number - numbers[i]) > 1e-9)
+      return false;
+  }
+  return !(text >> comma);
 }
 
 } // namespace FenestraTesting

@@ -13,13 +13,17 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QElapsedTimer>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
 #include <QScopedPointer>
+#include <QSlider>
 #include <QSpinBox>
+#include <QToolButton>
 
+#include <vtkMRMLMarkupsPlaneNode.h>
 #include <vtkMRMLVectorVolumeNode.h>
 
 namespace {
@@ -40,6 +44,9 @@ struct Panel {
     combo->setCurrentIndex(combo->findData(data));
   }
   QString chosen(const char* box) const { return find<QComboBox>(box)->currentData().toString(); }
+  bool shows(const char* widget) const { return !find<QWidget>(widget)->isHidden(); }
+  void set(const char* box, double value) const { find<QDoubleSpinBox>(box)->setValue(value); }
+  std::string flag(const char* name) const { return settings()->GetFlag(name); }
   Node* picture() const { return Node::SafeDownCast(nodes("RendersBox")->currentNode()); }
   qMRMLNodeComboBox* nodes(const char* name) const { return find<qMRMLNodeComboBox>(name); }
 };
@@ -57,6 +64,15 @@ bool ends(const Panel& panel, Action&& action) {
     QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
   QObject::disconnect(connection);
   return ended == 1;
+}
+
+template <typename Condition>
+bool waitFor(Condition&& condition) {
+  QElapsedTimer watch;
+  watch.start();
+  while (!condition() && watch.elapsed() < 30000)
+    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  return condition();
 }
 
 QByteArray radianceOf(Node* render) {
@@ -140,6 +156,202 @@ int checkShowing(const Panel& panel) {
   return EXIT_SUCCESS;
 }
 
+/// Each way of clipping shows what it has, and gives no other flag.
+int checkClipping(const Panel& panel) {
+  const std::map<std::string, std::string> before = panel.settings()->GetFlags();
+  panel.choose("ClipBox", "");
+  CHECK_BOOL(panel.shows("BoundaryBox"), true);
+  for (const char* other : {"ghostBox", "HoleBox", "holemarginBox", "PlaneBox", "PlaneNodeBox"})
+    CHECK_BOOL(panel.shows(other), false);
+  panel.choose("BoundaryBox", "exact");
+  CHECK_STD_STRING(panel.flag("boundary"), "exact");
+  panel.choose("ClipBox", "ghost");
+  CHECK_STD_STRING(panel.flag("boundary"), "exact"); // it has the same surface
+  panel.set("ghostBox", 25.0);
+  CHECK_STD_STRING(panel.flag("ghost"), "0.25");
+  panel.choose("ClipBox", "hole");
+  CHECK_BOOL(panel.shows("ghostBox"), false);
+  CHECK_BOOL(panel.shows("BoundaryBox"), false);
+  for (const char* other : {"ghost", "boundary", "hole", "holemargin"}) // as the renderer has it
+    CHECK_STD_STRING(panel.flag(other), "");
+  panel.choose("HoleBox", "sphere");
+  panel.set("holemarginBox", 7.5);
+  CHECK_STD_STRING(panel.flag("hole"), "sphere");
+  CHECK_STD_STRING(panel.flag("holemargin"), "7.5");
+  panel.choose("ClipBox", "ghost"); // what was set is still there
+  CHECK_STD_STRING(panel.flag("ghost"), "0.25");
+  CHECK_STD_STRING(panel.flag("holemargin"), "");
+
+  panel.set("offsetBox", -2.5);
+  panel.set("softBox", 3.0);
+  panel.set("labelsmoothingBox", 0.8);
+  panel.set("contextdensityBox", 40.0);
+  panel.set("contextsaturationBox", 0.0);
+  panel.set("MarginBox", 1.0);
+  const std::map<std::string, std::string> expected = {
+      {"offset", "-2.5"},        {"soft", "3"},   {"labelsmoothing", "0.8"},
+      {"contextdensity", "0.4"}, {"margin", "1"}, {"contextsaturation", "0"}};
+  for (const auto& [name, value] : expected)
+    CHECK_STD_STRING(panel.flag(name.c_str()), value);
+  panel.choose("ClipBox", "none"); // a style is none of clipping
+  CHECK_STD_STRING(panel.flag("offset"), "");
+  CHECK_STD_STRING(panel.flag("contextdensity"), "0.4");
+  panel.choose("ClipBox", "cutaway");
+  CHECK_STD_STRING(panel.flag("offset"), "-2.5");
+
+  // Without a focus there is nothing to clip for.
+  QListWidgetItem* segment = panel.find<QListWidget>("FocusList")->item(0);
+  segment->setCheckState(Qt::Unchecked);
+  for (const char* name : {"clip", "offset", "margin", "contextdensity", "labelsmoothing"})
+    CHECK_STD_STRING(panel.flag(name), "");
+  segment->setCheckState(Qt::Checked);
+  CHECK_STD_STRING(panel.flag("clip"), "cutaway");
+  CHECK_STD_STRING(panel.flag("margin"), "1");
+
+  // More digits than a box has stay as long as it is not touched.
+  panel.settings()->SetFlag("soft", "1.23456");
+  CHECK_DOUBLE(panel.find<QDoubleSpinBox>("softBox")->value(), 1.23);
+  panel.choose("TransferBox", "ct-bone");
+  CHECK_STD_STRING(panel.flag("soft"), "1.23456");
+  panel.settings()->SetFlags(before);
+  CHECK_BOOL(panel.settings()->GetFlags() == before, true);
+  CHECK_DOUBLE(panel.find<QDoubleSpinBox>("softBox")->value(), 0.0);
+  return EXIT_SUCCESS;
+}
+
+int checkMargins(const Panel& panel) {
+  const std::map<std::string, std::string> before = panel.settings()->GetFlags();
+  QListWidget& focus = *panel.find<QListWidget>("FocusList");
+  CHECK_BOOL(panel.shows("MarginEachBox"), false);
+  focus.item(1)->setCheckState(Qt::Checked);
+  CHECK_BOOL(panel.shows("MarginEachBox"), true);
+  CHECK_BOOL(panel.shows("Margin1"), false);
+  panel.find<QCheckBox>("MarginEachBox")->setChecked(true);
+  panel.set("Margin0", 1.5);
+  panel.set("Margin1", -0.5);
+  CHECK_STD_STRING(panel.flag("margin"), "1.5,-0.5");
+  panel.settings()->SetFlag("margin", "2,3");
+  CHECK_DOUBLE(panel.find<QDoubleSpinBox>("Margin1")->value(), 3.0);
+  panel.settings()->SetFlag("margin", "4");
+  CHECK_BOOL(panel.find<QCheckBox>("MarginEachBox")->isChecked(), false);
+  CHECK_DOUBLE(panel.find<QDoubleSpinBox>("MarginBox")->value(), 4.0);
+  panel.settings()->SetFlags(before);
+  return EXIT_SUCCESS;
+}
+
+int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
+  const std::map<std::string, std::string> before = panel.settings()->GetFlags();
+  panel.choose("ClipBox", "plane");
+  CHECK_STD_STRING(panel.flag("clip"), "plane");
+  CHECK_STD_STRING(panel.flag("plane"), ""); // where the focus puts it
+  CHECK_BOOL(panel.shows("PlaneNodeBox"), false);
+  auto* combo = panel.find<QComboBox>("PlaneBox");
+  combo->setCurrentIndex(1);
+  CHECK_BOOL(panel.shows("PlaneNodeBox"), true);
+  scene->RegisterNodeClass(vtkSmartPointer<vtkMRMLMarkupsPlaneNode>::New());
+  auto* plane = vtkMRMLMarkupsPlaneNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLMarkupsPlaneNode", "Cut"));
+  plane->SetOrigin(0.0, 2.0, 0.0);
+  plane->SetNormal(0.0, 1.0, 0.0);
+  panel.nodes("PlaneNodeBox")->setCurrentNode(plane);
+  CHECK_BOOL(FenestraTesting::isNear(panel.flag("plane"), {0, 2, 0, 0, 1, 0}), true);
+  plane->SetOrigin(0.0, 4.0, 0.0); // it is followed
+  CHECK_BOOL(FenestraTesting::isNear(panel.flag("plane"), {0, 4, 0, 0, 1, 0}), true);
+  panel.settings()->SetNodeReferenceID(Node::PlaneRole, nullptr); // as after Repeat
+  CHECK_INT(combo->currentIndex(), 2);
+  plane->SetOrigin(0.0, 6.0, 0.0);
+  CHECK_BOOL(FenestraTesting::isNear(panel.flag("plane"), {0, 4, 0, 0, 1, 0}), true);
+  combo->setCurrentIndex(0);
+  CHECK_STD_STRING(panel.flag("plane"), "");
+  CHECK_INT(combo->count(), 2);
+  panel.settings()->SetFlags(before);
+  scene->RemoveNode(plane);
+  return EXIT_SUCCESS;
+}
+
+/// Only what the renderer knows is offered.
+int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
+  const bool automatic = abilities.flags["view"].words.contains("auto");
+  CHECK_BOOL(panel.find<QComboBox>("ViewBox")->findData("auto") >= 0, automatic);
+  const bool presets = abilities.flags.contains("preset");
+  CHECK_BOOL(panel.shows("PresetBox"), presets);
+  const std::map<std::string, std::string> before = panel.settings()->GetFlags();
+  if (automatic) {
+    panel.choose("ViewBox", "auto");
+    CHECK_STD_STRING(panel.flag("view"), "auto");
+    panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Unchecked);
+    CHECK_STD_STRING(panel.flag("view"), ""); // of what?
+    panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Checked);
+  }
+  if (presets) {
+    panel.choose("RigBox", "soft");
+    panel.choose("PresetBox", "knee-cartilage");
+    for (const char* name : {"view", "position", "lights", "transfer", "clip"})
+      CHECK_STD_STRING(panel.flag(name), "");
+    CHECK_STD_STRING(panel.flag("preset"), "knee-cartilage");
+    CHECK_STD_STRING(panel.chosen("ViewBox").toStdString(), "preset");
+    panel.choose("ClipBox", "surface"); // wins over the preset
+    CHECK_STD_STRING(panel.flag("clip"), "surface");
+    panel.choose("ViewBox", "left");
+    CHECK_STD_STRING(panel.flag("view"), "left");
+    panel.choose("PresetBox", "");
+    CHECK_STD_STRING(panel.chosen("RigBox").toStdString(), "studio");
+    CHECK_STD_STRING(panel.flag("clip"), "");
+    panel.choose("RigBox", "soft");
+  }
+  panel.settings()->SetFlags(before);
+  CHECK_BOOL(panel.settings()->GetFlags() == before, true);
+  return EXIT_SUCCESS;
+}
+
+/// Rendered, played, stopped in between and gone on with.
+int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
+  CHECK_BOOL(panel.shows("Turntable"), abilities.turns());
+  CHECK_BOOL(panel.shows("Player"), false);
+  if (!abilities.turns())
+    return EXIT_SUCCESS;
+  auto* frames = panel.find<QSpinBox>("FramesBox");
+  auto* turn = panel.find<QPushButton>("TurnButton");
+  frames->setValue(3);
+  panel.set("DegreesBox", 30.0);
+  CHECK_STD_STRING(panel.flag("frames"), "3");
+  CHECK_STD_STRING(panel.flag("degrees"), "30");
+  CHECK_BOOL(ends(panel, [&] { turn->click(); }), true);
+  Node* turntable = panel.picture();
+  CHECK_NOT_NULL(turntable);
+  CHECK_BOOL(turntable->IsTurntable(), true);
+  CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 3);
+  CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().startsWith("3 of 3 frames"), true);
+  CHECK_BOOL(panel.shows("Player"), true);
+  CHECK_BOOL(panel.shows("ResumeButton"), false);
+  auto* slider = panel.find<QSlider>("FrameSlider");
+  CHECK_INT(slider->maximum(), 2);
+  panel.find<QToolButton>("PlayButton")->setChecked(true);
+  CHECK_BOOL(waitFor([&] { return slider->value() == 2; }), true);
+  CHECK_BOOL(waitFor([&] { return slider->value() == 0; }), true); // around
+  panel.find<QToolButton>("PlayButton")->setChecked(false);
+
+  frames->setValue(60);
+  const auto heard = QObject::connect(panel.widget->session(), &qSlicerFenestraSession::progressed,
+                                      panel.widget, [&](Node*, double part, double) {
+                                        if (part > 0.1)
+                                          panel.widget->session()->stop();
+                                      });
+  CHECK_BOOL(ends(panel, [&] { turn->click(); }), true);
+  QObject::disconnect(heard);
+  turntable = panel.picture();
+  const int some = vtkSlicerFenestraLogic::GetNumberOfFrames(turntable);
+  std::cout << some << " frames when it was stopped\n";
+  CHECK_BOOL(some > 0 && some < 60, true);
+  CHECK_BOOL(panel.shows("ResumeButton"), true);
+  CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("ResumeButton")->click(); }), true);
+  CHECK_POINTER(panel.picture(), turntable);
+  CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 60);
+  CHECK_INT(slider->maximum(), 59);
+  CHECK_BOOL(panel.shows("ResumeButton"), false);
+  return EXIT_SUCCESS;
+}
+
 int checkRenders(const Panel& panel) {
   auto* button = panel.find<QPushButton>("RenderButton");
   CHECK_BOOL(ends(panel, [&] { button->click(); }), true);
@@ -147,6 +359,8 @@ int checkRenders(const Panel& panel) {
   CHECK_NOT_NULL(first);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().startsWith("Done: "), true);
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
+  CHECK_BOOL(panel.shows("MeasuresLabel"), true);
+  CHECK_BOOL(panel.find<QLabel>("MeasuresLabel")->text().contains("Focus seen"), true);
   for (const char* enabled : {"ShowButton", "RepeatButton", "SaveButton"})
     CHECK_BOOL(panel.find<QPushButton>(enabled)->isEnabled(), true);
   CHECK_BOOL(panel.find<QPushButton>("StopButton")->isEnabled(), false);
@@ -188,8 +402,14 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_NOT_NULL(widget);
   const QScopedPointer<qSlicerFenestraModuleWidget> owner(widget);
   const Panel panel{widget, vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
+  qFenestraAbilities abilities;
+  bool learned = false;
+  QObject::connect(widget->session(), &qSlicerFenestraSession::learned,
+                   [&](const qFenestraAbilities& told) { abilities = told, learned = true; });
   widget->enter();
   CHECK_EXIT_SUCCESS(checkEmpty(panel));
+  CHECK_BOOL(waitFor([&] { return learned; }), true);
+  CHECK_BOOL(abilities.flags["clip"].words.contains("ghost"), true);
   widget->exit();
 
   vtkMRMLNode* volume = FenestraTesting::addVolume(scene);
@@ -198,6 +418,11 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkDefaults(panel, volume, segmentation));
   CHECK_EXIT_SUCCESS(checkTaking(panel, segmentation->GetSegmentation()->GetNthSegmentID(0)));
   CHECK_EXIT_SUCCESS(checkShowing(panel));
+  CHECK_EXIT_SUCCESS(checkClipping(panel));
+  CHECK_EXIT_SUCCESS(checkMargins(panel));
+  CHECK_EXIT_SUCCESS(checkPlane(panel, scene));
+  CHECK_EXIT_SUCCESS(checkPresets(panel, abilities));
+  CHECK_EXIT_SUCCESS(checkTurntable(panel, abilities));
   CHECK_EXIT_SUCCESS(checkRenders(panel));
 
   // A segment added, renamed and removed elsewhere; then another segmentation.

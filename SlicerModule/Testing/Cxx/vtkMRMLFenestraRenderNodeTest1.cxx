@@ -43,6 +43,32 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   CHECK_BOOL(read->GetFocus() == first->GetFocus(), true);
   CHECK_NOT_NULL(read->GetNodeReference(Node::VolumeRole));
 
+  // Every flag, and what was measured.
+  std::map<std::string, std::string> all;
+  for (const std::string& name : Node::GetFlagNames())
+    all[name] = name + " 1,-0.5";
+  read->SetFlags(all);
+  CHECK_BOOL(read->GetFlags() == all, true);
+  CHECK_BOOL(read->IsTurntable(), true);
+  const std::string measures = R"({"boundaryGapMm":{"max":0.1},"focusCoverage":1})";
+  read->SetAttribute(Node::MeasuresAttribute, measures.c_str());
+  again->SetSaveToXMLString(1);
+  again->Commit();
+  vtkNew<vtkMRMLScene> third;
+  third->RegisterNodeClass(vtkSmartPointer<Node>::New());
+  third->SetLoadFromXMLString(1);
+  third->SetSceneXMLString(again->GetSceneXMLString());
+  CHECK_INT(third->Import(), 1);
+  auto* last = Node::SafeDownCast(third->GetFirstNodeByClass("vtkMRMLFenestraRenderNode"));
+  CHECK_NOT_NULL(last);
+  CHECK_BOOL(last->GetFlags() == all, true);
+  CHECK_STD_STRING(last->GetAttribute(Node::MeasuresAttribute), measures);
+  for (const std::string& name : Node::GetTurntableFlagNames())
+    last->SetFlag(name, "");
+  CHECK_BOOL(last->IsTurntable(), false);
+  CHECK_INT(static_cast<int>(last->GetFlags().size()),
+            static_cast<int>(all.size() - Node::GetTurntableFlagNames().size()));
+
   vtkNew<Node> copy;
   copy->Copy(first);
   CHECK_BOOL(copy->GetFlags() == first->GetFlags(), true);

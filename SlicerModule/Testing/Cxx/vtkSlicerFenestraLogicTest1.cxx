@@ -8,9 +8,11 @@
 #include <vtkMRMLBSplineTransformNode.h>
 #include <vtkMRMLCameraNode.h>
 #include <vtkMRMLLinearTransformNode.h>
+#include <vtkMRMLMarkupsPlaneNode.h>
 #include <vtkMRMLViewNode.h>
 #include <vtkMatrix4x4.h>
 #include <vtkPointData.h>
+#include <vtkSegment.h>
 #include <vtkTransform.h>
 
 namespace {
@@ -82,6 +84,10 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   contents = logic->Snapshot(settings);
   CHECK_BOOL(contents.segmentation.segments.empty(), false);
   CHECK_STD_STRING(contents.segmentation.segments[0].name, "Ball");
+  segmentation->GetSegmentation()->GetSegment(ids[0])->SetTag(
+      vtkSegment::GetTerminologyEntryTagName(), "a~SCT^1^b");
+  CHECK_STD_STRING(logic->Snapshot(settings).segmentation.segments[0].tags,
+                   "TerminologyEntry:a~SCT^1^b|");
   settings->SetFocus({"gone"});
   CHECK_BOOL(has(complaint(logic, settings), "gone"), true);
   settings->SetFocus({ids[0]});
@@ -100,6 +106,36 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   return EXIT_SUCCESS;
 }
 
+int testPlane(vtkMRMLScene* scene) {
+  scene->RegisterNodeClass(vtkSmartPointer<vtkMRMLMarkupsPlaneNode>::New());
+  auto* plane = vtkMRMLMarkupsPlaneNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLMarkupsPlaneNode", "Cut"));
+  CHECK_STD_STRING(vtkSlicerFenestraLogic::GetPlaneFlag(nullptr), "");
+  CHECK_STD_STRING(vtkSlicerFenestraLogic::GetPlaneFlag(plane), ""); // not placed
+  plane->SetOrigin(1.0, -2.5, 3.0);
+  plane->SetNormal(0.0, 1.0, 0.0);
+  const std::string flag = vtkSlicerFenestraLogic::GetPlaneFlag(plane);
+  CHECK_BOOL(FenestraTesting::isNear(flag, {1.0, -2.5, 3.0, 0.0, 1.0, 0.0}), true);
+  return EXIT_SUCCESS;
+}
+
+/// Of a turntable's own flags the scene that is rendered knows nothing.
+int testTurntable(vtkSlicerFenestraLogic* logic, Node* settings) {
+  settings->SetFlag("frames", "12");
+  settings->SetFlag("degrees", "90");
+  CHECK_BOOL(settings->IsTurntable(), false);
+  CHECK_BOOL(logic->AddRender(settings)->IsTurntable(), false);
+  Node* turntable = logic->AddRender(settings, true);
+  CHECK_BOOL(turntable->IsTurntable(), true);
+  CHECK_INT(static_cast<int>(logic->Snapshot(turntable).flags.count("frames")), 0);
+  CHECK_BOOL(
+      vtkSlicerFenestraLogic::GetTurntableArguments(turntable) ==
+          std::vector<std::string>({"--output", "frame.png", "--frames", "12", "--degrees", "90"}),
+      true);
+  CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 0);
+  return EXIT_SUCCESS;
+}
+
 } // namespace
 
 int vtkSlicerFenestraLogicTest1(int, char*[]) {
@@ -112,7 +148,12 @@ int vtkSlicerFenestraLogicTest1(int, char*[]) {
   CHECK_POINTER(logic->GetSettings(), settings);
   CHECK_EXIT_SUCCESS(testSubject(scene, logic, settings));
   CHECK_EXIT_SUCCESS(testCamera(scene, logic, settings));
+  CHECK_EXIT_SUCCESS(testPlane(scene));
+  CHECK_EXIT_SUCCESS(testTurntable(logic, settings));
   CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}}), true);
+  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}, {"clip", "ghost"}}), true);
+  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}, {"clip", "plane"}}), false);
+  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"preset", "liver"}}), true);
   CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}, {"clip", "none"}}), false);
   CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({}), false);
   return EXIT_SUCCESS;

@@ -1,0 +1,30 @@
+// The renderer's measures in words.
+
+#include "FenestraTesting.h"
+
+#include "qSlicerFenestraMeasures.h"
+
+#include <QJsonDocument>
+
+int qSlicerFenestraMeasuresTest1(int, char*[]) {
+  using namespace qSlicerFenestraMeasures;
+  const QJsonObject statistics =
+      QJsonDocument::fromJson(R"({"seconds": {"total": 1}, "noise": 0.1, "focusCoverage": 0.99875,
+                                  "contextRemoved": 0.25, "focusLight": null,
+                                  "boundaryGapMm": {"mean": 0.0123, "p95": 0.05, "max": 1.5}})")
+          .object();
+  const QJsonObject measures = kept(statistics);
+  CHECK_INT(measures.size(), 3);
+  CHECK_INT(kept({}).size(), 0);
+  const QList<Measure> words = inWords(measures);
+  CHECK_INT(static_cast<int>(words.size()), 3);
+  CHECK_STD_STRING(words[0].name.toStdString(), "Focus seen");
+  CHECK_STD_STRING(words[0].value.toStdString(), "99.88 %");
+  CHECK_STD_STRING(words[1].value.toStdString(), "25.0 %");
+  CHECK_STD_STRING(words[2].value.toStdString(), "mean 0.012, 95 % below 0.05, at most 1.5 mm");
+  for (const Measure& one : words)
+    CHECK_BOOL(one.help.isEmpty(), false);
+  // What is no measure says nothing: a scene's attribute may hold anything.
+  CHECK_INT(static_cast<int>(inWords({{"focusCoverage", "x"}, {"boundaryGapMm", 1}}).size()), 1);
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,253 @@
+#include "qSlicerFenestraClipping.h"
+
+#include "qSlicerFenestraMargins.h"
+
+#include <ctkCollapsibleGroupBox.h>
+#include <qMRMLNodeComboBox.h>
+
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFormLayout>
+#include <QLabel>
+#include <QSignalBlocker>
+#include <QVBoxLayout>
+
+namespace {
+
+using Flags = qSlicerFenestraClipping::Flags;
+
+constexpr const char* byPresetMode = "preset"; ///< known only when it is rendered
+const QStringList& cutting() {
+  static const QStringList modes = {"surface", "ghost", "cutaway", "hole", "plane", byPresetMode};
+  return modes;
+}
+const QStringList anyMode; ///< a focus is all that it needs
+
+QString flagOf(const Flags& flags, const char* name) {
+  const auto found = flags.find(name);
+  return found == flags.end() ? QString() : QString::fromStdString(found->second);
+}
+
+void choose(QComboBox* box, const QString& data) {
+  const int index = box->findData(data);
+  box->setCurrentIndex(index < 0 ? 0 : index);
+}
+
+QComboBox* choices(const QString& name, const QString& help) {
+  auto* box = new QComboBox;
+  box->setObjectName(name);
+  box->setToolTip(help);
+  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  return box;
+}
+
+void showRow(const QFormLayout* form, QWidget* editor, bool shown) {
+  editor->setVisible(shown);
+  if (QWidget* label = form->labelForField(editor))
+    label->setVisible(shown);
+}
+
+} // namespace
+
+qSlicerFenestraClipping::qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, QWidget* parent)
+    : QWidget(parent), m_planeNode(planeNode) {
+  m_form = new QFormLayout(this);
+  m_form->setContentsMargins(0, 0, 0, 0);
+  buildMode(m_form);
+  auto* details = new ctkCollapsibleGroupBox(tr("Margins, edge and surroundings"));
+  details->setObjectName("ClipDetails");
+  details->setCollapsed(true);
+  m_details = details;
+  buildDetails(new QFormLayout(details));
+  m_form->addRow(details);
+  for (QComboBox* box : {m_clip, m_plane}) // even where no flag changes
+    connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+            &qSlicerFenestraClipping::showMode);
+  for (QComboBox* box : {m_clip, m_boundary, m_hole, m_plane})
+    connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+            &qSlicerFenestraClipping::changed);
+  connect(m_planeNode, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SIGNAL(changed()));
+  connect(m_margins, &qSlicerFenestraMargins::changed, this, &qSlicerFenestraClipping::changed);
+  showMode();
+}
+
+void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
+  m_clip = choices("ClipBox", tr("What is taken away, so that the focus shows"));
+  m_clip->addItem(tr("Smooth surface through the focus"), "");
+  m_clip->addItem(tr("Surface, what is in front left faint"), "ghost");
+  m_clip->addItem(tr("All in front of the focus (cut-away)"), "cutaway");
+  m_clip->addItem(tr("Hole toward the focus"), "hole");
+  m_clip->addItem(tr("Flat plane"), "plane");
+  m_clip->addItem(tr("Nothing"), "none");
+  form->addRow(tr("Clip:"), m_clip);
+  m_boundary = choices("BoundaryBox",
+                       tr("How the surface goes on beside the focus. Exact: from its very edge, "
+                          "without a step or a kink"));
+  m_boundary->addItem(tr("Smoothed (spline)"), "");
+  m_boundary->addItem(tr("Exact"), "exact");
+  form->addRow(tr("Edge of the focus:"), m_boundary);
+  addNumber(form, "ghost", tr("Left in front:"), 0.01, 10.0, {"ghost"},
+            tr("How dense what lies in front of the surface stays"));
+  m_hole = choices("HoleBox", tr("The hole leads from the eye to the focus"));
+  m_hole->addItem(tr("Cylinder"), "");
+  m_hole->addItem(tr("Box"), "box");
+  m_hole->addItem(tr("Sphere"), "sphere");
+  form->addRow(tr("Shape:"), m_hole);
+  addNumber(form, "holemargin", tr("Wider by:"), 1.0, 5.0, {"hole"},
+            tr("How much wider than the focus"));
+  m_plane = choices("PlaneBox", tr("Where the plane lies"));
+  m_plane->addItem(tr("Placed by the focus"), int(Plane::automatic));
+  m_plane->addItem(tr("A plane of the scene"), int(Plane::node));
+  form->addRow(tr("Plane:"), m_plane);
+  m_planeNode->setNoneEnabled(true);
+  m_planeNode->setToolTip(tr("Draw one in the Markups module. What its normal points at is taken "
+                             "away; the preview follows it as you move it"));
+  form->addRow(tr("Which:"), m_planeNode);
+}
+
+void qSlicerFenestraClipping::buildDetails(QFormLayout* form) {
+  m_margins = new qSlicerFenestraMargins;
+  form->addRow(tr("Margin:"), m_margins);
+  addNumber(form, "labelsmoothing", tr("Smooth labels by:"), 1.0, 0.0, anyMode,
+            tr("Against stair steps of the segments' voxels; about half a slice's thickness"));
+  addNumber(form, "offset", tr("Move the cut by:"), 1.0, 0.0, cutting(),
+            tr("Away from the eye, into the focus; negative: toward the eye"));
+  addNumber(form, "soft", tr("Soft edge:"), 1.0, 0.0, cutting(),
+            tr("Tissue comes back gradually over this depth behind the cut"));
+  addNumber(form, "contextdensity", tr("Surroundings, density:"), 0.01, 100.0, anyMode,
+            tr("Makes all but the focus more transparent"));
+  addNumber(form, "contextsaturation", tr("Surroundings, colour:"), 0.01, 100.0, anyMode,
+            tr("0 %: all but the focus is grey"));
+}
+
+void qSlicerFenestraClipping::addNumber(QFormLayout* form, const char* flag, const QString& label,
+                                        double unit, double standard, const QStringList& modes,
+                                        const QString& help) {
+  const bool share = unit != 1.0;
+  const bool isSigned = flag == std::string("offset");
+  const double most = share || flag == std::string("labelsmoothing") ? 100.0 : 1000.0;
+  auto* box = new QDoubleSpinBox;
+  box->setObjectName(QString(flag) + "Box");
+  box->setRange(isSigned ? -most : 0.0, most);
+  box->setDecimals(share ? 1 : 2);
+  box->setSingleStep(share ? 5.0 : 0.5);
+  box->setSuffix(share ? tr(" %") : tr(" mm"));
+  box->setToolTip(help);
+  box->setValue(standard);
+  form->addRow(label, box);
+  connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+          &qSlicerFenestraClipping::changed);
+  m_numbers.append({flag, box, unit, standard, modes, {}, standard});
+}
+
+qSlicerFenestraClipping::Plane qSlicerFenestraClipping::plane() const {
+  return static_cast<Plane>(m_plane->currentData().toInt());
+}
+
+/// Of the renderer's, by its word.
+QString qSlicerFenestraClipping::mode(bool byPreset) const {
+  const QString word = m_clip->currentData().toString();
+  return word.isEmpty() ? (byPreset ? byPresetMode : "surface") : word;
+}
+
+void qSlicerFenestraClipping::showMode() {
+  const QString now = mode(m_byPreset);
+  const bool surface = now == "surface" || now == "ghost";
+  m_clip->setItemText(0, m_byPreset ? tr("As the anatomy preset")
+                                    : tr("Smooth surface through the focus"));
+  showRow(m_form, m_boundary, surface);
+  showRow(m_form, m_hole, now == "hole");
+  showRow(m_form, m_plane, now == "plane");
+  showRow(m_form, m_planeNode, now == "plane" && plane() == Plane::node);
+  for (const Number& number : m_numbers) {
+    if (m_form->indexOf(number.box) >= 0)
+      showRow(m_form, number.box, number.modes.contains(now));
+    else
+      number.box->setEnabled(number.modes.isEmpty() || number.modes.contains(now));
+  }
+  m_details->setEnabled(m_hasFocus);
+}
+
+// ---- flags
+
+void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
+                                   const QList<qSlicerFenestraSegment>& focus, bool byPreset) {
+  const QSignalBlocker unheard(this);
+  const bool hasFocus = byPreset || !focus.isEmpty();
+  const int surface = m_clip->findData("surface");
+  if (byPreset && surface < 0)
+    m_clip->insertItem(1, tr("Smooth surface through the focus"), "surface");
+  if (!byPreset && surface >= 0)
+    m_clip->removeItem(surface);
+  if (hasFocus || flags.count("clip") > 0)
+    choose(m_clip, flagOf(flags, "clip"));
+  const QString now = mode(byPreset);
+  if (now == "surface" || now == "ghost")
+    choose(m_boundary, flagOf(flags, "boundary"));
+  if (now == "hole")
+    choose(m_hole, flagOf(flags, "hole"));
+  if (now == "plane") {
+    const int fixed = m_plane->findData(int(Plane::fixed));
+    if (plane == Plane::fixed && fixed < 0)
+      m_plane->addItem(tr("As it was rendered"), int(Plane::fixed));
+    if (plane != Plane::fixed && fixed >= 0)
+      m_plane->removeItem(fixed);
+    const bool choosing = this->plane() == Plane::node && !m_planeNode->currentNode();
+    if (plane != Plane::automatic || !choosing)
+      m_plane->setCurrentIndex(m_plane->findData(int(plane)));
+  }
+  for (Number& number : m_numbers) {
+    if (!hasFocus || !(number.modes.isEmpty() || number.modes.contains(now)))
+      continue;
+    number.shown = flagOf(flags, number.flag);
+    number.box->setValue(number.shown.isEmpty() ? number.standard
+                                                : number.shown.toDouble() / number.unit);
+    number.shownValue = number.box->value();
+  }
+  if (hasFocus)
+    m_margins->show(flagOf(flags, "margin"), focus);
+  m_hasFocus = hasFocus;
+  m_byPreset = byPreset;
+  showMode();
+}
+
+void qSlicerFenestraClipping::reset() {
+  const QSignalBlocker unheard(this);
+  for (QComboBox* box : {m_clip, m_boundary, m_hole, m_plane})
+    box->setCurrentIndex(0);
+  for (Number& number : m_numbers) {
+    number.shown.clear();
+    number.box->setValue(number.standard);
+    number.shownValue = number.standard;
+  }
+  m_margins->show({}, {});
+}
+
+void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool hasFocus,
+                                   bool byPreset) const {
+  const QString now = mode(byPreset);
+  const auto word = [](const QComboBox* box) {
+    return box->currentData().toString().toStdString();
+  };
+  const bool surface = now == "surface" || now == "ghost";
+  const std::string fixed = flags["plane"];
+  flags["plane"] = now != "plane" || this->plane() == Plane::automatic ? ""
+                   : this->plane() == Plane::node                      ? plane
+                                                                       : fixed;
+  const bool clips = hasFocus || now == "none" || !flags["plane"].empty();
+  flags["clip"] = clips ? word(m_clip) : "";
+  flags["boundary"] = clips && surface ? word(m_boundary) : "";
+  if (!clips || !surface || !flags["boundary"].empty())
+    flags["controlpoints"] = flags["smoothing"] = ""; // the spline's alone
+  flags["hole"] = clips && now == "hole" ? word(m_hole) : "";
+  flags["margin"] = hasFocus ? m_margins->flag().toStdString() : "";
+  for (const Number& number : m_numbers) {
+    const bool matters = hasFocus && (number.modes.isEmpty() || number.modes.contains(now));
+    const double value = number.box->value();
+    QString text =
+        value == number.standard ? QString() : QString::number(value * number.unit, 'g', 10);
+    if (value == number.shownValue)
+      text = number.shown;
+    flags[number.flag] = matters ? text.toStdString() : "";
+  }
+}

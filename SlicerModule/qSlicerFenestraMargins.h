@@ -1,0 +1,41 @@
+#ifndef __qSlicerFenestraMargins_h
+#define __qSlicerFenestraMargins_h
+
+#include <QMap>
+#include <QWidget>
+
+class QCheckBox;
+class QDoubleSpinBox;
+class QFormLayout;
+
+struct qSlicerFenestraSegment {
+  QString id, name;
+};
+
+/// How much the focus's segments are grown, in mm: one for all, or one each.
+class qSlicerFenestraMargins : public QWidget {
+  Q_OBJECT
+
+public:
+  explicit qSlicerFenestraMargins(QWidget* parent = nullptr);
+
+  /// The flag's numbers, in the order of the segments.
+  void show(const QString& flag, const QList<qSlicerFenestraSegment>& focus);
+  QString flag() const;
+
+signals:
+  void changed();
+
+private:
+  void build(const QList<qSlicerFenestraSegment>& focus);
+  void showEach();
+
+  QDoubleSpinBox* m_all;
+  QCheckBox* m_each;
+  QFormLayout* m_rows;
+  QList<qSlicerFenestraSegment> m_focus;
+  QList<QDoubleSpinBox*> m_boxes;  ///< one a segment of the focus
+  QMap<QString, double> m_margins; ///< by segment: they outlive that it is not focus for a while
+};
+
+#endif

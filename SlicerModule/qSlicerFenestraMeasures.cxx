@@ -1,0 +1,99 @@
+#include "qSlicerFenestraMeasures.h"
+
+#include <QObject>
+
+#include <utility>
+
+namespace {
+
+enum class Unit { share, millimetres, slope, millimetresADegree };
+
+struct Known {
+  const char* key;
+  Unit unit;
+  QString name, help;
+};
+
+/// In the order of what matters to who looks.
+QList<Known> known() {
+  const auto tr = [](const char* text) { return QObject::tr(text); };
+  return {
+      {"focusCoverage", Unit::share, tr("Focus seen"),
+       tr("Of the light of its pixels, the share that nothing in front takes away")},
+      {"focusCoverageUnclipped", Unit::share, tr("Focus seen without clipping"),
+       tr("The same, were nothing taken away")},
+      {"focusKept", Unit::share, tr("Focus kept"),
+       tr("Share of its pixels where the clipping leaves the focus itself")},
+      {"focusLight", Unit::share, tr("Light on the focus"),
+       tr("Straight from the lights, relative to the focus alone")},
+      {"contextRemoved", Unit::share, tr("Surroundings taken away"),
+       tr("Share of the matter that is not focus")},
+      {"boundaryGapMm", Unit::millimetres, tr("Gap at the edge"),
+       tr("In depth, between the focus and the surface at the focus's edge")},
+      {"boundaryMismatchMm", Unit::millimetres, tr("Step at the edge"),
+       tr("In depth, between the focus's outermost pixels and the surface beside them")},
+      {"boundarySlopeJump", Unit::slope, tr("Kink at the edge"),
+       tr("How much the slope in depth changes there, mm a mm")},
+      {"boundaryDepthJumps", Unit::share, tr("Edge that is torn"),
+       tr("Share of the edge where the focus's own depth jumps, which is not measured")},
+      {"surfaceChangeMmPerDegree", Unit::millimetresADegree, tr("Change while turning"),
+       tr("Of the surface's depth, from frame to frame")},
+  };
+}
+
+QString number(double value, Unit unit) {
+  if (unit == Unit::share) // 99.98 % is not all
+    return QString::number(100.0 * value, 'f', value > 0.99 && value < 1.0 ? 2 : 1);
+  return QString::number(value, 'g', 2);
+}
+
+QString suffix(Unit unit) {
+  switch (unit) {
+  case Unit::share:
+    return QObject::tr(" %");
+  case Unit::millimetres:
+    return QObject::tr(" mm");
+  case Unit::millimetresADegree:
+    return QObject::tr(" mm/\u00b0");
+  case Unit::slope:
+    break;
+  }
+  return {};
+}
+
+/// A number, or a distribution's mean, 95th percentile and greatest.
+QString inWords(const QJsonValue& value, Unit unit) {
+  if (value.isDouble())
+    return number(value.toDouble(), unit) + suffix(unit);
+  const QJsonObject object = value.toObject();
+  QStringList parts;
+  for (const auto& [key, words] :
+       {std::pair{"mean", QObject::tr("mean %1")}, std::pair{"p95", QObject::tr("95 % below %1")},
+        std::pair{"max", QObject::tr("at most %1")}})
+    if (const QJsonValue part = object[QLatin1String(key)]; part.isDouble())
+      parts << words.arg(number(part.toDouble(), unit));
+  return parts.isEmpty() ? QString() : parts.join(", ") + suffix(unit);
+}
+
+} // namespace
+
+QJsonObject qSlicerFenestraMeasures::kept(const QJsonObject& statistics) {
+  QJsonObject measures;
+  for (const Known& one : known()) {
+    const QJsonValue value = statistics[QLatin1String(one.key)];
+    if (value.isDouble() || value.isObject())
+      measures[QLatin1String(one.key)] = value;
+  }
+  return measures;
+}
+
+QList<qSlicerFenestraMeasures::Measure>
+qSlicerFenestraMeasures::inWords(const QJsonObject& measures) {
+  QList<Measure> all;
+  for (const Known& one : known()) {
+    const QString value = ::inWords(measures[QLatin1String(one.key)], one.unit);
+    if (!value.isEmpty())
+      all.append({one.name, value, one.help});
+  }
+  return all;
+}
