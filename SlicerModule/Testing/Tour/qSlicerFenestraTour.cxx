@@ -3,6 +3,8 @@
 #include "qSlicerFenestraModuleWidget.h"
 #include "vtkMRMLFenestraRenderNode.h"
 
+#include <ctkCollapsibleButton.h>
+#include <ctkCollapsibleGroupBox.h>
 #include <qMRMLNodeComboBox.h>
 #include <qSlicerApplication.h>
 #include <qSlicerCLIModule.h>
@@ -23,18 +25,23 @@
 
 #include <QAbstractButton>
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QFile>
 #include <QJsonDocument>
 #include <QLabel>
 #include <QListWidget>
 #include <QMainWindow>
 #include <QScreen>
+#include <QScrollArea>
+#include <QSlider>
+#include <QSpinBox>
 #include <QStyle>
 #include <QStyleOptionViewItem>
 #include <QTest>
 
 #include <cstring>
 #include <iostream>
+#include <set>
 
 namespace {
 
@@ -76,6 +83,10 @@ bool qSlicerFenestraTour::run() {
                         {"turn", &qSlicerFenestraTour::turnCamera},
                         {"render", &qSlicerFenestraTour::render},
                         {"stop", &qSlicerFenestraTour::stopRender},
+                        {"clipping", &qSlicerFenestraTour::changeClipping},
+                        {"view", &qSlicerFenestraTour::changeView},
+                        {"measures", &qSlicerFenestraTour::renderMeasured},
+                        {"turntable", &qSlicerFenestraTour::renderTurntable},
                         {"repeat", &qSlicerFenestraTour::saveAndRepeat},
                         {"command", &qSlicerFenestraTour::runCommand}};
   bool good = true;
@@ -208,9 +219,7 @@ bool qSlicerFenestraTour::render() {
 /// Without Slicer's own volume rendering: the pauses are the module's.
 bool qSlicerFenestraTour::stopRender() {
   showVolumeRendering(false);
-  auto* settings =
-      Node::SafeDownCast(qSlicerApplication::application()->mrmlScene()->GetSingletonNode(
-          "Settings", "vtkMRMLFenestraRenderNode"));
+  Node* const settings = this->settings();
   const std::map<std::string, std::string> flags = settings->GetFlags();
   std::map<std::string, std::string> endless = flags;
   endless["samples"] = "1000000";
@@ -240,18 +249,111 @@ bool qSlicerFenestraTour::stopRender() {
   return lastRender() != nullptr;
 }
 
+/// Beside the first picture, which is the best so far.
+bool qSlicerFenestraTour::changeClipping() {
+  showVolumeRendering(false);
+  m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(firstRender());
+  if (!click("ShowButton"))
+    return false;
+  const bool hole = photographPreview("12-hole", [this] {
+    const bool chosen = choose("ClipBox", "hole");
+    set("holemarginBox", 8.0);
+    scrollTo("Clipping");
+    return chosen;
+  });
+  const bool exact = photographPreview("13-exact", [this] {
+    auto* details = m_panel->findChild<ctkCollapsibleGroupBox*>("ClipDetails");
+    details->setCollapsed(false);
+    const bool chosen = choose("ClipBox", "") && choose("BoundaryBox", "exact");
+    set("contextsaturationBox", 30.0);
+    settle(300);
+    scrollTo("ClipDetails");
+    return chosen;
+  });
+  m_panel->findChild<ctkCollapsibleGroupBox*>("ClipDetails")->setCollapsed(true);
+  return hole && exact && settings()->GetFlag("boundary") == "exact" &&
+         settings()->GetFlag("hole").empty();
+}
+
+/// Where the renderer knows how.
+bool qSlicerFenestraTour::changeView() {
+  bool good = true;
+  if (m_panel->findChild<QComboBox*>("ViewBox")->findData("auto") >= 0)
+    good = photographPreview("14-view", [this] {
+      fold("What to show", true);
+      scrollTo("PreviewBox");
+      return choose("ViewBox", "auto");
+    });
+  fold("What to show", false);
+  if (!m_panel->findChild<QComboBox*>("PresetBox")->isHidden())
+    good = good && photographPreview("15-anatomy", [this] {
+             scrollTo("PreviewBox");
+             return choose("PresetBox", "knee-cartilage");
+           });
+  return good;
+}
+
+bool qSlicerFenestraTour::renderMeasured() {
+  choose("QualityBox", "16 0 0");
+  const int before = m_ended;
+  if (!click("RenderButton") || !waitFor([&] { return m_ended > before; }, 300000))
+    return false;
+  settle(2000);
+  fold("View and light", true);
+  scrollTo("SaveButton");
+  settle(500);
+  photograph("16-measures");
+  auto* measures = m_panel->findChild<QLabel*>("MeasuresLabel");
+  m_figures["measures"] = measures->text();
+  return measures->isVisible() && measures->text().contains("Focus seen");
+}
+
+/// Where the renderer has turntables: a few small frames, played.
+bool qSlicerFenestraTour::renderTurntable() {
+  if (m_panel->findChild<QWidget*>("Turntable")->isHidden())
+    return true;
+  fold("Turntable", false);
+  const std::map<std::string, std::string> flags = settings()->GetFlags();
+  settings()->SetFlag("size", "256x256");
+  m_panel->findChild<QSpinBox*>("FramesBox")->setValue(8);
+  set("DegreesBox", 120.0);
+  settle(300);
+  scrollTo("StateLabel");
+  scrollTo("TurnButton");
+  const int before = m_ended;
+  if (!click("TurnButton"))
+    return false;
+  settle(3000);
+  photograph("17-turning");
+  if (!waitFor([&] { return m_ended > before; }, 300000))
+    return false;
+  settle(3000);
+  fold("Turntable", true);
+  scrollTo("SaveButton");
+  auto* slider = m_panel->findChild<QSlider*>("FrameSlider");
+  std::set<int> seen;
+  const auto heard =
+      QObject::connect(slider, &QSlider::valueChanged, [&seen](int frame) { seen.insert(frame); });
+  click("PlayButton");
+  const bool played = waitFor([&] { return seen.size() == 8; });
+  click("PlayButton");
+  QObject::disconnect(heard);
+  slider->setValue(5);
+  settle(1000);
+  photograph("18-turntable");
+  m_figures["turntable"] = m_panel->findChild<QLabel*>("DescriptionLabel")->text();
+  settings()->SetFlags(flags);
+  return played && vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender()) == 8;
+}
+
 bool qSlicerFenestraTour::saveAndRepeat() {
   vtkMRMLScene* scene = qSlicerApplication::application()->mrmlScene();
-  std::vector<vtkMRMLNode*> renders;
-  scene->GetNodesByClass("vtkMRMLFenestraRenderNode", renders);
-  Node* first = nullptr;
-  for (vtkMRMLNode* node : renders)
-    if (!first && !node->GetSingletonTag())
-      first = Node::SafeDownCast(node);
+  Node* const first = firstRender();
   if (!first)
     return false;
   const QByteArray before = radianceOf(first);
   const std::string name = first->GetName();
+  const int frames = vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender());
   qSlicerIO::IOProperties properties;
   const QString file = m_report + "/saved.mrb";
   properties["fileName"] = file;
@@ -267,7 +369,8 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   auto* again = Node::SafeDownCast(scene->GetFirstNodeByName(name.c_str()));
   if (!again)
     return false;
-  m_figures["readBack"] = radianceOf(again) == before;
+  m_figures["readBack"] = radianceOf(again) == before &&
+                          vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender()) == frames;
   auto* chooser = m_panel->findChild<qMRMLNodeComboBox*>("RendersBox");
   chooser->setCurrentNode(again);
   settle(500);
@@ -334,6 +437,40 @@ bool qSlicerFenestraTour::click(const char* button) {
   return true;
 }
 
+bool qSlicerFenestraTour::choose(const char* box, const QString& data) {
+  auto* found = m_panel->findChild<QComboBox*>(box);
+  const int index = found->findData(data);
+  if (index >= 0)
+    found->setCurrentIndex(index);
+  return index >= 0;
+}
+
+void qSlicerFenestraTour::set(const char* box, double value) {
+  m_panel->findChild<QDoubleSpinBox*>(box)->setValue(value);
+}
+
+void qSlicerFenestraTour::scrollTo(const char* widget) {
+  auto* found = m_panel->findChild<QWidget*>(widget);
+  for (QWidget* above = found; above; above = above->parentWidget())
+    if (auto* area = qobject_cast<QScrollArea*>(above))
+      area->ensureWidgetVisible(found, 0, 10);
+}
+
+void qSlicerFenestraTour::fold(const char* section, bool folded) {
+  m_panel->findChild<ctkCollapsibleButton*>(section)->setCollapsed(folded);
+  settle(300); // it is laid out anew
+}
+
+/// What the preview makes of a change.
+bool qSlicerFenestraTour::photographPreview(const char* name, const std::function<bool()>& action) {
+  const int before = m_previews;
+  if (!action() || !waitFor([&] { return m_previews > before; }))
+    return false;
+  settle(4000);
+  photograph(name);
+  return m_panel->findChild<QLabel*>("PreviewStateLabel")->text().startsWith("Preview:");
+}
+
 bool qSlicerFenestraTour::waitFor(const std::function<bool()>& condition, int milliseconds) {
   QElapsedTimer watch;
   watch.start();
@@ -349,6 +486,21 @@ void qSlicerFenestraTour::settle(int milliseconds) {
 void qSlicerFenestraTour::photograph(const char* name) {
   m_window->screen()->grabWindow(m_window->winId()).save(QString("%1/%2.png").arg(m_report, name));
   std::cout << "tour: " << name << std::endl;
+}
+
+Node* qSlicerFenestraTour::settings() const {
+  return Node::SafeDownCast(qSlicerApplication::application()->mrmlScene()->GetSingletonNode(
+      "Settings", "vtkMRMLFenestraRenderNode"));
+}
+
+Node* qSlicerFenestraTour::firstRender() const {
+  std::vector<vtkMRMLNode*> renders;
+  qSlicerApplication::application()->mrmlScene()->GetNodesByClass("vtkMRMLFenestraRenderNode",
+                                                                  renders);
+  for (vtkMRMLNode* node : renders)
+    if (!node->GetSingletonTag())
+      return Node::SafeDownCast(node);
+  return nullptr;
 }
 
 Node* qSlicerFenestraTour::lastRender() const {

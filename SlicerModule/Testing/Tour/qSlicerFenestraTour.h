@@ -41,13 +41,24 @@ private:
   void showVolumeRendering(bool visible);
   bool render();
   bool stopRender();
+  bool changeClipping();
+  bool changeView();
+  bool renderMeasured();
+  bool renderTurntable();
   bool saveAndRepeat();
   bool runCommand();
 
   bool click(const char* button);
+  bool choose(const char* box, const QString& data);
+  void set(const char* box, double value);
+  void scrollTo(const char* widget);
+  void fold(const char* section, bool folded);
+  bool photographPreview(const char* name, const std::function<bool()>& action);
   bool waitFor(const std::function<bool()>& condition, int milliseconds = 60000);
   void settle(int milliseconds);
   void photograph(const char* name);
+  vtkMRMLFenestraRenderNode* settings() const;
+  vtkMRMLFenestraRenderNode* firstRender() const;
   vtkMRMLFenestraRenderNode* lastRender() const;
 
   QString m_report;
