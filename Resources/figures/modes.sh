@@ -34,7 +34,7 @@ show box "--clip hole --hole box" "A box-shaped hole, flat at the focus's farthe
 show cylinder "--clip hole" "A round hole."
 show sphere "--clip hole --hole sphere" "As if a ball around the visible focus were pushed in."
 show cutaway "--clip cutaway" "Only what is in front of the focus is removed."
-show ghost "--clip ghost --ghost 0.02" "What the surface would remove keeps a share of its extinction (0.1 unless told; dense looks want less)."
+show ghost "--clip ghost --ghost 0.004" "What the surface would remove keeps a share of its extinction (0.1 unless told; dense looks want less)."
 show surface "--clip surface" "The paper's surface: a thin plate spline through \`--controlpoints\` points of the focus's outline, smoothed by \`--smoothing\`."
 show exact "--boundary exact" "The surface that leaves the focus with its own depth and slope."
 show perspective "--boundary exact --projection perspective" "Every mode works in perspective, too."

@@ -4,8 +4,8 @@
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 
 names=(plane hole cutaway ghost spline exact)
-flags=("--clip plane" "--clip hole" "--clip cutaway" "--clip ghost --ghost 0.02" "--clip surface" "--boundary exact")
-titles=("Cut plane (placed by the focus)" "Virtual hole" "Cut-away" "Ghost (2 %)"
+flags=("--clip plane" "--clip hole" "--clip cutaway" "--clip ghost --ghost 0.004" "--clip surface" "--boundary exact")
+titles=("Cut plane (placed by the focus)" "Virtual hole" "Cut-away" "Ghost (0.4 %)"
   "Clipping surface, spline" "Clipping surface, exact")
 page=$shown/techniques.md
 

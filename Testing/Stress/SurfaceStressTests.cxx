@@ -393,7 +393,7 @@ TEST(SurfaceStress, TheCameraInsideTheFocus) {
       }
     for (const double smoothing : smoothings) {
       const ClippingSurface other = view.surface({.smoothing = smoothing});
-      expectDepths(other, {.smoothing = smoothing});
+      expectDepths(view, other, {.smoothing = smoothing});
       expectKeepEverywhere(view, other.clip);
       expectVisible(view, other.clip);
       expectBoxes(view, other.clip);
