@@ -98,7 +98,8 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
   };
   expectRefused(
       {
-          {"transfer preset", with("--transfer", "ct-bones"), 3, "one of ct-bone, ct-soft"},
+          {"transfer preset", with("--transfer", "ct-bones"), 3,
+           "one of ct-bone, ct-heart, ct-liver"},
           {"transfer file", with("--transfer", "missing.vp"), 3, "missing.vp: no such file"},
           {"half of a .json", with("--transfer", "cut.json"), 3, "cut.json: is not JSON"},
           {"word for a number", with("--transfer", "word.json"), 3, "extinction[0][1]: "},
@@ -111,7 +112,7 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
            {"constant.nrrd", "--transfer", "hybrid.json"},
            3,
            "constant.nrrd: every voxel has the same value"},
-          {"light preset", with("--lights", "sun"), 3, "one of headlight, soft, studio"},
+          {"light preset", with("--lights", "sun"), 3, "one of amber, headlight, soft, studio"},
           {"light type", with("--lights", "spot.json"), 3, "spot.json: lights[0].type: "},
           {"half of a light", with("--lights", "cut.json"), 3, "cut.json: is not JSON"},
           {"half of a text", with("--lights", R"({"lights": [)"), 3,
@@ -123,7 +124,8 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
           {"map of a text",
            with("--lights", R"({"lights": [{"type": "environment", "file": "missing.exr"}]})"), 3,
            "missing.exr: there is no such file"},
-          {"text of another flag", with("--transfer", R"({"extinction": []})"), 3, "no such file"},
+          {"half of a look's text", with("--transfer", R"({"extinction": []})"), 3,
+           "--transfer: extinction: is empty"},
           {"environment", with("--environment", "missing.exr"), 3, "missing.exr: "},
           {"damaged environment", with("--environment", "dark.exr"), 3, "dark.exr: "},
       },

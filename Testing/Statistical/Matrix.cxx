@@ -42,7 +42,7 @@ Combination combination(int index) {
   Combination c;
   c.index = index;
   c.view = static_cast<ViewFactor>(next(4));
-  c.clip = static_cast<ClipFactor>(next(6));
+  c.clip = static_cast<ClipFactor>(next(4)); // of the first four
   c.light = static_cast<LightFactor>(next(6));
   c.g = anisotropies[next(7)];
   c.albedo = static_cast<AlbedoFactor>(next(6));
@@ -53,10 +53,21 @@ Combination combination(int index) {
   c.isCropped = next(4) == 0;
   c.background = static_cast<BackgroundFactor>(next(3));
   c.bounces = bounces[next(5)];
-  c.edge = static_cast<EdgeFactor>(next(4));
-  c.style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // none as often as all others
+  const auto edge = static_cast<EdgeFactor>(next(4));
+  const auto style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // none in half of them
   constexpr double offsets[] = {0.0, 0.7, -0.7};
-  c.offset = offsets[next(3)];
+  const double offset = offsets[next(3)];
+  const bool isOtherKind = next(2) == 0;
+  if (index % 4 == 1 ||
+      index % 4 == 2) { // the others are plain: errors of all else show there best
+    c.edge = edge;
+    c.style = style;
+    c.offset = offset;
+    if (isOtherKind && c.clip == ClipFactor::surface)
+      c.clip = ClipFactor::exactSurface;
+    if (isOtherKind && c.clip == ClipFactor::cutaway)
+      c.clip = ClipFactor::hole;
+  }
   // Parallel light reaches the eye through the phase function's peak alone: at g = 0.99 hardly a
   // path in ten thousand shows it, and no mean of them is anywhere near normal.
   const bool hasParallel = c.light == LightFactor::directional || c.light == LightFactor::several;
