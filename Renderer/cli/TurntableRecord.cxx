@@ -109,7 +109,7 @@ void TurntableRecord::read(const TurntableOptions& options) {
   const JsonNode root(document, name);
   for (const char* list : {"arguments", "inputs"})
     root.at("request").at(list).elements(); // throws where it is none
-  const json request = document["request"];
+  const json& request = document["request"];
   if (request != m_request)
     throw usageError(name + ": is of another turntable (" + difference(request, m_request) +
                      "); choose another --output, or add --restart to replace its frames");

@@ -53,7 +53,8 @@ public:
 
 private:
   void add(const Crossing& crossing) {
-    const auto [x, y] = outward(crossing);
+    const SampleStep step = outward(crossing);
+    const std::int64_t x = step.column, y = step.row;
     const std::int64_t column = crossing.column, row = crossing.row;
     const DepthBuffer& buffer = m_focus.depth;
     const auto isSample = [&](std::int64_t c, std::int64_t r) {

@@ -80,8 +80,9 @@ public:
 
   /// Squares along an edge of a fine cell.
   static constexpr int fineSide = 4;
+  static constexpr std::size_t fineSquares = std::size_t{fineSide} * fineSide;
   /// The depth in each square of a cell between four samples, mm, column by column of each row.
-  using FineCell = std::array<double, fineSide * fineSide>;
+  using FineCell = std::array<double, fineSquares>;
 
   /// The cell from this sample to the next column and row, which there have to be, is known finely:
   /// between its samples the depth is that of the square, and linear no more.
@@ -103,7 +104,7 @@ public:
         const auto square = [](double fraction) {
           return std::min(static_cast<std::size_t>(fraction * fineSide), std::size_t{fineSide - 1});
         };
-        return m_reference + m_fineDepths[static_cast<std::size_t>(cell) * fineSide * fineSide +
+        return m_reference + m_fineDepths[static_cast<std::size_t>(cell) * fineSquares +
                                           square(y.fraction) * fineSide + square(x.fraction)];
       }
     const auto lerp = [](double a, double b, double f) { return a + (b - a) * f; };

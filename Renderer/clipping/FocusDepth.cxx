@@ -220,7 +220,7 @@ std::vector<double> FocusTracer::depthsAt(const std::vector<Vec2>& positions) co
 
 std::vector<Seam> FocusTracer::seams(const FocusDepth& focus) const {
   std::vector<Seam> seams = findSeams(focus);
-  constexpr std::int64_t corners = Seam::across * Seam::across;
+  constexpr auto corners = static_cast<std::int64_t>(Seam::corners);
   traceAll(
       seams.size(),
       [&](std::size_t i, const auto& add) {

@@ -28,9 +28,10 @@ struct FocusDepth {
 /// the squares of a fine cell (DepthBuffer), row by row, infinity where it is missed; mm.
 struct Seam {
   static constexpr int across = DepthBuffer::fineSide + 1;
+  static constexpr std::size_t corners = std::size_t{across} * across;
 
   std::int64_t column, row; ///< of the cell's first sample
-  std::array<double, across * across> depths;
+  std::array<double, corners> depths;
 
   /// Of a corner, in cells from the first sample.
   static Vec2 fraction(int corner) {

@@ -300,8 +300,8 @@ private:
                        static_cast<std::int64_t>(cells[1][lane]),
                        static_cast<std::int64_t>(cells[2][lane]));
       for (std::size_t i = 0; i < 8; ++i) {
-        const auto [dx, dy, dz] = std::array{i & 1U, i >> 1U & 1U, i >> 2U};
-        const Size3 voxel = cell + Size3(dx, dy, dz) - Size3::Ones();
+        const auto bit = [i](unsigned axis) { return static_cast<std::int64_t>(i >> axis & 1U); };
+        const Size3 voxel = cell + Size3(bit(0), bit(1), bit(2)) - Size3::Ones();
         const bool isThere = (voxel.array() >= 0).all() && (voxel.array() < size.array()).all();
         const std::size_t at = static_cast<std::size_t>(
             isThere ? voxel.x() + size.x() * (voxel.y() + size.y() * voxel.z()) : 0);

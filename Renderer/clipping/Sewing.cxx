@@ -41,7 +41,8 @@ public:
 
 private:
   double focusAt(int column, int row) const {
-    return m_seam.depths[static_cast<std::size_t>(row * Seam::across + column)];
+    return m_seam
+        .depths[static_cast<std::size_t>(row) * Seam::across + static_cast<std::size_t>(column)];
   }
 
   struct InSquare {
@@ -67,7 +68,7 @@ private:
   Nearest nearestFocus(const Vec2& from) const {
     Nearest nearest{0.0, infinity};
     int at = 0;
-    for (int corner = 0; corner < Seam::across * Seam::across; ++corner)
+    for (int corner = 0; corner < static_cast<int>(Seam::corners); ++corner)
       if (const double depth = m_seam.depths[static_cast<std::size_t>(corner)]; depth < infinity) {
         const double distance = (Seam::fraction(corner) - from).norm();
         if (distance < nearest.distance) {
@@ -133,7 +134,8 @@ void sew(DepthBuffer& buffer, const FocusDepth& focus, const std::vector<Seam>& 
     DepthBuffer::FineCell depths;
     for (int row = 0; row < side; ++row)
       for (int column = 0; column < side; ++column)
-        depths[static_cast<std::size_t>(row * side + column)] = cell.depth(column, row);
+        depths[static_cast<std::size_t>(row) * side + static_cast<std::size_t>(column)] =
+            cell.depth(column, row);
     buffer.refine(buffer.sample(seam.column, seam.row), depths);
   }
 }

@@ -26,8 +26,9 @@ FocusPoints::FocusPoints(const RenderScene& scene, const std::vector<double>& de
   for (std::size_t pixel = 0; pixel < depth.size(); ++pixel) {
     if (!(depth[pixel] < infinity))
       continue;
-    const Ray ray = scene.camera.ray(static_cast<double>(pixel % width) + 0.5,
-                                     static_cast<double>(pixel / width) + 0.5);
+    const std::size_t row = pixel / width, column = pixel - row * width;
+    const Ray ray =
+        scene.camera.ray(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     const double distance = depth[pixel] / scene.camera.depthPerLength(ray);
     const Interval behind = behindSurface(scene.clip, ray);
     const bool isKept =

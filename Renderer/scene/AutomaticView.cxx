@@ -88,7 +88,7 @@ Vec2 stepToTop(const std::vector<Vec2>& points, const std::vector<double>& score
   Eigen::Matrix2d curvature;
   curvature << 2.0 * fit[3], fit[4], fit[4], 2.0 * fit[5];
   const bool hasTop = curvature.determinant() > 0.0 && curvature.trace() < 0.0;
-  const Vec2 step = hasTop ? Vec2(-curvature.inverse() * slope) : slope;
+  Vec2 step = hasTop ? Vec2(-curvature.inverse() * slope) : slope;
   if (hasTop && step.norm() < farthest)
     return step;
   return farthest * step.stableNormalized();

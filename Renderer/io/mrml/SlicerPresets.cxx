@@ -46,7 +46,7 @@ std::optional<Path> homeInPath() {
 
 std::optional<Path> findSlicerPresets() {
   if (const char* const home = std::getenv("SLICER_HOME"); home && *home)
-    if (const auto presets = presetsIn(home))
+    if (auto presets = presetsIn(home))
       return presets;
   const auto home = homeInPath();
   return home ? presetsIn(*home) : std::nullopt;
