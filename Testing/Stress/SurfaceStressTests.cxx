@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <ranges>
 #include <set>
 
 using namespace fenestra;
@@ -34,10 +33,8 @@ struct View {
 /// Between the nearest and the farthest depth of the focus, and a length that slopes may carry it.
 void expectBounded(double depth, const ClippingSurface& surface, const View& view) {
   double least = infinity, greatest = -infinity;
-  for (const double focus :
-       std::views::iota(std::int64_t{0}, surface.focus.depth.size()) |
-           std::views::transform([&](std::int64_t i) { return surface.focus.depth.at(i); }))
-    if (focus < infinity) {
+  for (std::int64_t i = 0; i < surface.focus.depth.size(); ++i)
+    if (const double focus = surface.focus.depth.at(i); focus < infinity) {
       least = std::min(least, focus);
       greatest = std::max(greatest, focus);
     }
