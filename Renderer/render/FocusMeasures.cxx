@@ -18,6 +18,17 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
+/// The greatest depth that the focus has at a pixel and its neighbours.
+double deepestAround(const std::vector<double>& depth, std::size_t width, std::size_t column,
+                     std::size_t row) {
+  double deepest = -infinity;
+  for (std::size_t y = row > 0 ? row - 1 : 0; y <= row + 1 && y * width < depth.size(); ++y)
+    for (std::size_t x = column > 0 ? column - 1 : 0; x <= column + 1 && x < width; ++x)
+      if (const double other = depth[y * width + x]; other < infinity)
+        deepest = std::max(deepest, other);
+  return deepest;
+}
+
 } // namespace
 
 FocusPoints::FocusPoints(const RenderScene& scene, const std::vector<double>& depth) {
@@ -31,8 +42,10 @@ FocusPoints::FocusPoints(const RenderScene& scene, const std::vector<double>& de
         scene.camera.ray(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     const double distance = depth[pixel] / scene.camera.depthPerLength(ray);
     const Interval behind = behindSurface(scene.clip, ray);
+    const double deepest =
+        deepestAround(depth, width, column, row) / scene.camera.depthPerLength(ray);
     const bool isKept =
-        !behind.empty() && behind.begin <= distance + rounding && behind.end >= distance - rounding;
+        !behind.empty() && behind.begin <= deepest + rounding && behind.end >= distance - rounding;
     m_points.push_back({ray, distance, isKept, pixel});
   }
 }

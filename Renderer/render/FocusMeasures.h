@@ -14,7 +14,7 @@ public:
   struct Point {
     Ray ray;         ///< of the eye
     double distance; ///< mm along it
-    bool isKept;     ///< clipping leaves it
+    bool isKept;     ///< clipping leaves it, to the depth that the focus has within a pixel
     std::size_t pixel;
 
     Vec3 position() const { return ray.at(distance); }

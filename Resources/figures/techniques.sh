@@ -5,7 +5,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 
 names=(plane hole cutaway ghost spline exact)
 flags=("--clip plane" "--clip hole" "--clip cutaway" "--clip ghost --ghost 0.004" "--clip surface" "--boundary exact")
-titles=("Cut plane (placed by the focus)" "Virtual hole" "Cut-away" "Ghost (0.4 %)"
+titles=("Cut plane (placed by the focus)" "Virtual hole" "Cut-away" "Ghost, 0.004"
   "Clipping surface, spline" "Clipping surface, exact")
 page=$shown/techniques.md
 
