@@ -36,7 +36,7 @@ row figure1.jpg knee-none "a  Whole" knee-hand-plane "b  Plane, by hand" knee-cu
   knee-spline "d  Clipping surface" knee-points "e  Outline, control points" foot-spline "f  Foot"
 
 first() { number "$1" '(.seconds.focus + .seconds.spline + .seconds.fill) * 1000' %.0f; }
-share() { number "$1" '100 * (.seconds.focus + .seconds.spline + .seconds.fill) * 100 / (.seconds.transport * 100 / '"$samples"')' "$2"; }
+share() { number "$1" '100 * (.seconds.focus + .seconds.spline + .seconds.fill) / (.seconds.transport * 100 / '"$samples"')' "$2"; }
 {
   cat <<'END'
 # The paper's figure 1
@@ -98,7 +98,7 @@ cat >>"$page" <<END
   shape at 1 mm and at 512 mm is smoothed differently ([figure 3](figure3.md)).
 - **First pass in 0.1 s** at 512 x 512 (dual core i7 with a Quadro K2200): here $(first knee-spline) ms at
   $size x $size on $(nproc) cores, without a graphics card.
-- **First pass as one iteration in 100**: here it costs $(share knee-spline %.1f) % of a picture of 100 samples a pixel.
+- **First pass as one iteration in 100**: here it costs $(share knee-spline %.2f) % of a picture of 100 samples a pixel.
 END
 
 {
