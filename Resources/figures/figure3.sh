@@ -28,7 +28,7 @@ set title 'd  as the eye sees it' textcolor rgb 'white'
 set xlabel 'right, mm'; set ylabel 'up, mm'
 plot '$out/$name.points' using (\$1*rx+\$2*ry+\$3*rz):(\$1*ux+\$2*uy+\$3*uz):4 with points pt 5 ps 0.35 palette
 set title 'd  turned by 90 degrees' textcolor rgb 'white'
-set xlabel 'depth, mm'; set ylabel 'up, mm'
+set xlabel 'depth, mm' offset 0,-0.5; set ylabel 'up, mm'; set xtics rotate by -60
 plot '$out/$name.points' using 4:(\$1*ux+\$2*uy+\$3*uz):4 with points pt 5 ps 0.35 palette
 unset multiplot
 END
