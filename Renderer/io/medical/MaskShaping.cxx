@@ -3,9 +3,9 @@
 #include "core/Error.h"
 #include "io/medical/ItkForClang.h"
 
-#include <itkDiscreteGaussianImageFilter.h>
 #include <itkImage.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>
+#include <itkSmoothingRecursiveGaussianImageFilter.h>
 
 #include <algorithm>
 
@@ -38,7 +38,8 @@ Part around(const Mask& mask, double reach, const Grid& volume) {
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
   const Vec3 first = (-voxels).cwiseMax((lower.array().floor() - 1.0).matrix()).cwiseMin(0.0);
   const Vec3 end = (last + voxels).cwiseMin((upper.array().ceil() + 1.0).matrix()).cwiseMax(last);
-  const Vec3 size = end - first + Vec3::Ones();
+  constexpr double fewest = 4.0; // that recursive filters take
+  const Vec3 size = (end - first + Vec3::Ones()).cwiseMax(fewest);
   if (size.prod() > 0x1p31)
     throw outputError("--focus", "with its margin it spans more than 2^31 voxels; choose less");
   return {first.cast<std::int64_t>(), size.cast<std::int64_t>()};
@@ -160,11 +161,9 @@ Mask smoothed(const Mask& mask, double deviation, const Grid& volume) {
     return mask;
   constexpr double farthest = 3.0; // deviations
   const Part part = around(mask, farthest * deviation, volume);
-  const auto gaussian = itk::DiscreteGaussianImageFilter<Pixels, Pixels>::New();
+  const auto gaussian = itk::SmoothingRecursiveGaussianImageFilter<Pixels, Pixels>::New();
   gaussian->SetInput(pixelsOf(mask, part));
-  gaussian->SetVariance(deviation * deviation); // mm^2
-  gaussian->SetMaximumError(0.001);
-  gaussian->SetMaximumKernelWidth(512);
+  gaussian->SetSigma(deviation); // mm
   gaussian->Update();
   const float* const from = gaussian->GetOutput()->GetBufferPointer();
   constexpr std::uint8_t full = 255;
