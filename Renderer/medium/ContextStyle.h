@@ -9,6 +9,11 @@
 
 namespace fenestra {
 
+/// Of linear Rec. 709.
+inline double luminance(const Rgb& color) {
+  return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+}
+
 /// What lies outside the focus, whose indicator is below 0.5 there, looks like. The focus is
 /// untouched.
 struct ContextStyle {
@@ -16,9 +21,9 @@ struct ContextStyle {
   double extinction = 1.0;           ///< multiplies the extinction, 0 to 1
   double saturation = 1.0;           ///< of the albedo: 0 is grey, 1 as it is
 
-  /// With less colour, and the same luminance (Rec. 709).
+  /// With less colour, and the same luminance.
   Rgb paled(const Rgb& albedo) const {
-    const double grey = 0.2126 * albedo[0] + 0.7152 * albedo[1] + 0.0722 * albedo[2];
+    const double grey = luminance(albedo);
     return grey + saturation * (albedo - grey);
   }
 };

@@ -10,10 +10,6 @@
 namespace fenestra {
 namespace {
 
-double luminance(const Rgb& color) {
-  return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
-}
-
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }

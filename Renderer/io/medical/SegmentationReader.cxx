@@ -310,7 +310,7 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
                                      "); choose segments that are not empty");
     return mask;
   };
-  if (shaping == MaskShaping()) // at once
+  if (shaping == MaskShaping())
     return maskOf(chosen);
   std::vector<Mask> masks;
   for (std::size_t i = 0; i < chosen.size(); ++i)
