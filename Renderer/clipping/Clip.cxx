@@ -94,6 +94,22 @@ Kept keptBox(const ClipDepth& clip, const Corners& corners) {
 
 } // namespace
 
+double ClipDepth::inSeam(const DepthBuffer::Cell& cell, const Vec2& position, double linear,
+                         const Interval& between) const {
+  const std::int32_t seam =
+      seams->numbers()[static_cast<std::size_t>(buffer->sample(cell.column, cell.row))];
+  if (seam < 0)
+    return linear;
+  const Seams::Reach& reach = seams->reaches()[static_cast<std::size_t>(seam)];
+  const double reference = buffer->reference();
+  if (between.end < std::min(linear, reference + reach.least) ||
+      between.begin > std::max(linear, reference + reach.greatest))
+    return linear;
+  Seams::Question question{seam, position, linear - reference, {between.begin - reference, between.end - reference}};
+  seams->answer({&question, 1});
+  return reference + question.surface;
+}
+
 Interval behindSurface(const Clip& clip, const Ray& eyeRay) {
   return std::visit([&](const auto& kind) { return behindPart(kind, eyeRay); }, clip);
 }

@@ -5,6 +5,7 @@
 #include "camera/Camera.h"
 #include "clipping/DepthBuffer.h"
 #include "clipping/DepthPyramid.h"
+#include "clipping/Seams.h"
 
 #include <array>
 #include <memory>
@@ -69,14 +70,27 @@ struct ClipDepth {
 
   Camera camera;
   std::shared_ptr<const DepthBuffer> buffer; ///< -infinity where nothing is removed (nearest only)
-  std::shared_ptr<const DepthPyramid> pyramid; ///< of the buffer
+  std::shared_ptr<const DepthPyramid> pyramid; ///< of the buffer, and the seams
   Lookup lookup = Lookup::linear;
   ClipEdge edge = {};
+  std::shared_ptr<const Seams> seams = nullptr; ///< of an exact boundary; null elsewhere
 
   /// The depth at (x, y), mm, below which everything is removed.
-  double surface(const Vec2& position) const {
-    return lookup == Lookup::linear ? buffer->depth(position) : buffer->nearest(position);
+  double surface(const Vec2& position) const { return surfaceFor(position, {-infinity, infinity}); }
+
+  /// The same, or where it is certain that it does not lie between two depths, mm, any depth on the
+  /// same side of both.
+  double surfaceFor(const Vec2& position, const Interval& between) const {
+    if (lookup == Lookup::nearest)
+      return buffer->nearest(position);
+    const DepthBuffer::Cell cell = buffer->cell(position);
+    const double linear = buffer->depthIn(cell);
+    return seams ? inSeam(cell, position, linear, between) : linear;
   }
+
+private:
+  double inSeam(const DepthBuffer::Cell& cell, const Vec2& position, double linear,
+                const Interval& between) const;
 };
 
 using Clip = std::variant<ClipNone, ClipPlane, ClipDepth>;
@@ -96,7 +110,9 @@ inline double keep(const ClipDepth& clip, const Vec3& world) {
   const Vec3 at = toBuffer(clip.camera, world);
   if (behindEye(clip.camera, at.z()))
     return 0.0;
-  return clip.edge(at.z() - clip.surface(at.head<2>()));
+  // It may be any depth that leaves the point in front, or behind the edge.
+  const Interval between{at.z() - clip.edge.softness, at.z()};
+  return clip.edge(at.z() - clip.surfaceFor(at.head<2>(), between));
 }
 
 inline double keep(const Clip& clip, const Vec3& world) {

@@ -1,6 +1,5 @@
 #include "clipping/ClippingSurface.h"
 
-#include "clipping/Sewing.h"
 #include "clipping/SmoothFill.h"
 #include "clipping/ThinPlateSpline.h"
 #include "core/Error.h"
@@ -155,6 +154,16 @@ void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
       buffer.set(sample, -infinity);
 }
 
+/// An exact boundary's surface, which begins where the focus ends.
+void fillFromRim(DepthBuffer& buffer, const FocusDepth& focus, const Seams& seams, double length) {
+  std::vector<Region> known = focus.regions;
+  for (const auto& [sample, depth] : seams.rim()) {
+    buffer.set(sample, depth);
+    known[static_cast<std::size_t>(sample)] = Region::focus;
+  }
+  fillSmoothly(buffer, known, length);
+}
+
 /// The spline of the focus's outline, and what it is judged by.
 ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& options) {
   const std::vector<Contour> contours = traceContours(surface.focus);
@@ -181,32 +190,37 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
                                      const SurfaceOptions& options) {
   check(options);
   Stopwatch stopwatch;
-  const FocusTracer tracer(camera, volume, focus);
-  ClippingSurface surface{.clip = {}, .focus = tracer.depths()};
+  const auto tracer = std::make_shared<const FocusTracer>(camera, volume, focus);
+  ClippingSurface surface{.clip = {}, .focus = tracer->depths()};
   requireVisible(surface.focus, focus);
   if (!inPicture(surface.focus))
     surface.warnings.push_back(nameOf(focus) + " lies outside the picture");
   surface.focusSeconds = stopwatch.lap();
 
   auto buffer = std::make_shared<DepthBuffer>(surface.focus.depth);
+  std::shared_ptr<Seams> seams;
   if (options.mode == SurfaceMode::cutaway) {
     fillCutaway(*buffer, surface.focus.regions);
   } else if (options.mode == SurfaceMode::hole) {
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
-    fillSmoothly(*buffer, surface.focus.regions, levellingLength(volume));
-    sew(*buffer, surface.focus, tracer.seams(surface.focus));
+    seams = std::make_shared<Seams>(tracer, surface.focus);
+    fillFromRim(*buffer, surface.focus, *seams, levellingLength(volume));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();
     SplineFill(*buffer, surface.focus.regions, spline).fill();
   }
-  if (options.offset != 0.0)
+  if (options.offset != 0.0) {
     buffer->move(options.offset);
-  auto pyramid = std::make_shared<const DepthPyramid>(*buffer);
+    if (seams)
+      seams->move(options.offset);
+  }
+  auto pyramid = std::make_shared<const DepthPyramid>(*buffer, seams.get());
   const auto lookup =
       options.mode == SurfaceMode::surface ? ClipDepth::Lookup::linear : ClipDepth::Lookup::nearest;
-  surface.clip = ClipDepth{camera, std::move(buffer), std::move(pyramid), lookup, options.edge};
+  surface.clip = ClipDepth{camera, std::move(buffer), std::move(pyramid),
+                           lookup, options.edge,      std::move(seams)};
   surface.fillSeconds = stopwatch.lap();
   return surface;
 }

@@ -88,17 +88,9 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
   m_depths.assign(index(size()), std::numeric_limits<float>::infinity());
 }
 
-void DepthBuffer::refine(std::int64_t sample, const FineCell& depths) {
-  m_fineCells.resize(m_depths.size(), -1);
-  m_fineCells[index(sample)] = static_cast<std::int32_t>(m_fineDepths.size() / depths.size());
-  for (const double depth : depths)
-    m_fineDepths.push_back(static_cast<float>(depth - m_reference));
-}
-
 void DepthBuffer::move(double offset) {
-  for (std::vector<float>* depths : {&m_depths, &m_fineDepths})
-    for (float& depth : *depths)
-      depth = static_cast<float>(depth + offset);
+  for (float& depth : m_depths)
+    depth = static_cast<float>(depth + offset);
 }
 
 } // namespace fenestra

@@ -4,7 +4,6 @@
 #include "camera/Camera.h"
 #include "volume/Grid.h"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -78,42 +77,31 @@ public:
     m_depths[index(sample)] = static_cast<float>(depth - m_reference);
   }
 
-  /// Squares along an edge of a fine cell.
-  static constexpr int fineSide = 4;
-  static constexpr std::size_t fineSquares = std::size_t{fineSide} * fineSide;
-  /// The depth in each square of a cell between four samples, mm, column by column of each row.
-  using FineCell = std::array<double, fineSquares>;
-
-  /// The cell from this sample to the next column and row, which there have to be, is known finely:
-  /// between its samples the depth is that of the square, and linear no more.
-  void refine(std::int64_t sample, const FineCell& depths);
-  /// Of each sample the number of its fine cell, or -1; empty where there are none.
-  const std::vector<std::int32_t>& fineCells() const { return m_fineCells; }
-  /// Of one fine cell after the other, less the depth of the camera's target.
-  const std::vector<float>& fineDepths() const { return m_fineDepths; }
-
   /// Moves all of it away from the eye, mm.
   void move(double offset);
 
-  /// Linear in each axis between samples, which must be finite; in fine cells that of the square.
-  double depth(const Vec2& position) const {
+  /// A cell between four samples, and a place in it.
+  struct Cell {
+    std::int64_t column, row;         ///< of its first sample
+    std::int64_t nextColumn, nextRow; ///< of its last
+    Vec2 fraction;                    ///< from the first
+  };
+  Cell cell(const Vec2& position) const {
     const Neighbours x = neighbours(m_x, position.x());
     const Neighbours y = neighbours(m_y, position.y());
-    if (!m_fineCells.empty())
-      if (const std::int32_t cell = m_fineCells[index(sample(x.low, y.low))]; cell >= 0) {
-        const auto square = [](double fraction) {
-          return std::min(static_cast<std::size_t>(fraction * fineSide), std::size_t{fineSide - 1});
-        };
-        return m_reference + m_fineDepths[static_cast<std::size_t>(cell) * fineSquares +
-                                          square(y.fraction) * fineSide + square(x.fraction)];
-      }
+    return {x.low, y.low, x.high, y.high, Vec2(x.fraction, y.fraction)};
+  }
+
+  /// Linear in each axis between samples, which must be finite.
+  double depthIn(const Cell& cell) const {
     const auto lerp = [](double a, double b, double f) { return a + (b - a) * f; };
     const auto row = [&](std::int64_t r) {
-      return lerp(m_depths[index(sample(x.low, r))], m_depths[index(sample(x.high, r))],
-                  x.fraction);
+      return lerp(m_depths[index(sample(cell.column, r))],
+                  m_depths[index(sample(cell.nextColumn, r))], cell.fraction.x());
     };
-    return m_reference + lerp(row(y.low), row(y.high), y.fraction);
+    return m_reference + lerp(row(cell.row), row(cell.nextRow), cell.fraction.y());
   }
+  double depth(const Vec2& position) const { return depthIn(cell(position)); }
 
   /// The nearest sample's.
   double nearest(const Vec2& position) const {
@@ -138,8 +126,6 @@ private:
   DepthAxis m_x, m_y;
   double m_reference;          ///< the target's depth: what a float keeps is the distance from it,
   std::vector<float> m_depths; ///< so that nothing is lost when the eye is far away
-  std::vector<std::int32_t> m_fineCells;
-  std::vector<float> m_fineDepths;
 };
 
 } // namespace fenestra

@@ -1,7 +1,6 @@
 #include "clipping/DepthPyramid.h"
 
 #include <bit>
-#include <span>
 
 namespace fenestra {
 
@@ -18,11 +17,6 @@ struct SampleRange {
     last = std::min(axis.size() - 1, static_cast<std::int64_t>(std::ceil(high + slack)));
   }
 };
-
-std::span<const float> fineDepths(const DepthBuffer& buffer, std::int32_t cell) {
-  constexpr std::size_t squares = std::tuple_size_v<DepthBuffer::FineCell>;
-  return std::span(buffer.fineDepths()).subspan(static_cast<std::size_t>(cell) * squares, squares);
-}
 
 } // namespace
 
@@ -47,15 +41,16 @@ DepthPyramid::Level DepthPyramid::halved(std::int64_t columns, std::int64_t rows
   return level;
 }
 
-DepthPyramid::DepthPyramid(const DepthBuffer& buffer) {
+DepthPyramid::DepthPyramid(const DepthBuffer& buffer, const Seams* seams) {
   const std::vector<float>& depths = buffer.depthsFromReference();
   m_levels.push_back(halved(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
     const float depth = depths[static_cast<std::size_t>(sample)];
     Extremes extremes{depth, depth};
-    if (!buffer.fineCells().empty())
-      if (const std::int32_t cell = buffer.fineCells()[static_cast<std::size_t>(sample)]; cell >= 0)
-        for (const float fine : fineDepths(buffer, cell))
-          extremes = {std::min(extremes.least, fine), std::max(extremes.greatest, fine)};
+    if (seams)
+      if (const std::int32_t seam = seams->numbers()[static_cast<std::size_t>(sample)]; seam >= 0) {
+        const auto& [least, greatest] = seams->reaches()[static_cast<std::size_t>(seam)];
+        extremes = {std::min(extremes.least, least), std::max(extremes.greatest, greatest)};
+      }
     return extremes;
   }));
   while (m_levels.back().extremes.size() > 1) {

@@ -2,6 +2,7 @@
 // The least and the greatest depth over any rectangle of a depth buffer, from a few look-ups.
 
 #include "clipping/DepthBuffer.h"
+#include "clipping/Seams.h"
 
 #include <vector>
 
@@ -10,14 +11,14 @@ namespace fenestra {
 /// Level 0 holds the extremes of 2 x 2 samples, each further level those of 2 x 2 below it.
 class DepthPyramid {
 public:
-  explicit DepthPyramid(const DepthBuffer& buffer);
+  explicit DepthPyramid(const DepthBuffer& buffer, const Seams* seams = nullptr);
 
   struct Bounds {
     double least, greatest; ///< mm
   };
 
-  /// Bounds of what the buffer returns, interpolated or not, anywhere in the rectangle between two
-  /// positions in mm: the extreme samples of it and its near surroundings.
+  /// Bounds of what the buffer returns, interpolated or not, or its seams, anywhere in the
+  /// rectangle between two positions in mm: the extreme samples of it and its near surroundings.
   Bounds bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const;
 
 private:

@@ -14,10 +14,14 @@ struct FocusRays {
   static constexpr std::size_t capacity = 256;
   using Column = std::array<double, capacity + 8>; ///< and room for whole vectors
 
+  FocusRays() {} // its columns are not cleared: a few rays cost no more than a few rays
+
   std::size_t size = 0;
-  alignas(64) std::array<Column, 3> origin{}, direction{};
-  alignas(64) Column begin{}, end{}; ///< of the range that is looked at; it lies inside the cells
-  alignas(64) Column meeting{};      ///< what was found
+  alignas(64) std::array<Column, 3> origin, direction;
+  alignas(64) Column begin, end; ///< of the range that is looked at; it lies inside the cells
+  alignas(64) Column meeting;    ///< what was found
+  /// Of rays that meet nothing, as findSummits finds it.
+  alignas(64) Column summit, height;
 
   bool full() const { return size == capacity; }
 };
@@ -30,8 +34,7 @@ class FocusCells {
 public:
   static constexpr std::int64_t blockSize = 4; ///< cells
 
-  /// A view of a smoothed mask, which outlives it. Throws Error (input) for masks of more than 2^31
-  /// voxels.
+  /// Of a mask, which it needs no more. Throws Error (input) for one of more than 2^30 voxels.
   explicit FocusCells(const Mask& mask);
 
   const Affine& worldToCell() const { return m_worldToCell; }
@@ -42,16 +45,27 @@ public:
   /// The least t in each ray's range at which it is in the mask (indicator >= 0.5), else infinity.
   void findMeetings(FocusRays& rays) const;
 
+  /// The same, and of rays that meet nothing the t of their summit, where the indicator is greatest
+  /// (the least such t), and how high it is there; no summit is known where it is `foothill` or
+  /// less, and its height is `foothill`. Where a ray just misses the mask its summit is where it
+  /// would meet it.
+  void findSummits(FocusRays& rays) const;
+  static constexpr double foothill = 0.25;
+
+  /// The indicator at a point of the cells' space; 0 in cells without a voxel above the foothill.
+  double indicator(const Vec3& point) const;
+
   /// What walks read: of each block which corners it has, and these, 64 bytes each.
   struct Layout {
     const std::int32_t* blocks;
     const std::uint8_t* corners;
     Size3 blockCount;
-    const Mask* smooth; ///< whose voxels say more than the corners; null where they do not
+    const std::uint8_t* values; ///< of each block's voxels; null where the corners say it all
+    double perValue;            ///< indicator
   };
 
   /// Calls back with each block, block (i, j, k) filling [i, i + 1]... of cell space / blockSize,
-  /// that has a voxel of the mask at any corner of its cells.
+  /// that has a voxel above the foothill at any corner of its cells.
   template <typename Visitor>
   void visitOccupied(const Visitor& visit) const {
     std::size_t block = 0;
@@ -62,20 +76,44 @@ public:
             visit(Size3(x, y, z));
   }
 
-private:
-  /// Of each cell of a block, x fastest, whether the indicator at its eight corners is at least
-  /// 0.5, a bit each, x fastest. A cell without any is not met.
-  using BlockCorners = std::array<std::uint8_t, blockSize * blockSize * blockSize>;
-  static constexpr std::int32_t noBlock = 0, wholeBlock = 1; ///< blocks with all bits alike
+  /// Calls back with each cell of a block that has a voxel above the foothill at any corner.
+  template <typename Visitor>
+  void visitCells(const Size3& block, const Visitor& visit) const {
+    const BlockCorners& corners = m_corners[static_cast<std::size_t>(
+        m_blockCorners[static_cast<std::size_t>(blockIndex(block))])];
+    std::size_t cell = 0;
+    for (std::int64_t z = 0; z < blockSize; ++z)
+      for (std::int64_t y = 0; y < blockSize; ++y)
+        for (std::int64_t x = 0; x < blockSize; ++x)
+          if (corners[cell++] != 0)
+            visit(Size3(blockSize * block + Size3(x, y, z)));
+  }
 
-  std::vector<BlockCorners> cornersOfLayer(const Mask& mask, std::int64_t z);
+private:
+  /// Of each cell of a block, x fastest, whether the indicator at its eight corners is above the
+  /// foothill, a bit each, x fastest. A cell without any is not met.
+  using BlockCorners = std::array<std::uint8_t, blockSize * blockSize * blockSize>;
+  static constexpr std::int32_t noBlock = 0, wholeBlock = 1; ///< with none of the mask, and only it
+  /// The voxels around the cells of a block, x fastest, and what makes them two lines of the cache.
+  using BlockValues = std::array<std::uint8_t, 128>;
+
+  struct Block {
+    BlockCorners corners;
+    BlockValues values; ///< of a smoothed mask only
+  };
+  std::vector<Block> blocksOfLayer(const Mask& mask, std::int64_t z);
+  Layout layout() const;
+  std::int64_t blockIndex(const Size3& block) const {
+    return block.x() + m_blocks.x() * (block.y() + m_blocks.y() * block.z());
+  }
 
   Size3 m_count;  ///< cells
   Size3 m_blocks; ///< blocks of cells
   Affine m_worldToCell;
   std::vector<std::int32_t> m_blockCorners; ///< of each block, which of m_corners
   std::vector<BlockCorners> m_corners;
-  const Mask* m_smooth = nullptr; ///< the mask itself, where its voxels are not 0 and 1 alone
+  std::vector<BlockValues> m_values; ///< as m_corners; empty where voxels are 0 and 1 alone
+  double m_perValue;
 };
 
 } // namespace fenestra

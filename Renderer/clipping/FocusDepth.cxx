@@ -9,7 +9,6 @@
 #include <algorithm>
 
 namespace fenestra {
-namespace {
 
 /// The camera's eye rays in the cells' space: each is found there, and none transformed.
 class CellRays {
@@ -41,8 +40,11 @@ private:
   Vec3 m_eye, m_right, m_up, m_forward;
 };
 
-/// Rays that are traced together. What is met is told to `meet(number of the ray, depth in mm)`.
-template <typename Meet>
+namespace {
+
+/// Rays that are traced together. What is met is told to `meet(number of the ray, sight)`, with
+/// summits also what is passed.
+template <bool withSummits, typename Meet>
 class FocusBatch {
 public:
   FocusBatch(const FocusCells& cells, const Meet& meet)
@@ -67,10 +69,15 @@ public:
   }
 
   void trace() {
-    m_cells.findMeetings(m_rays);
+    if constexpr (withSummits)
+      m_cells.findSummits(m_rays);
+    else
+      m_cells.findMeetings(m_rays);
     for (std::size_t i = 0; i < m_rays.size; ++i)
       if (m_rays.meeting[i] < infinity)
-        m_meet(m_numbers[i], m_rays.meeting[i] * m_depthPerLength[i]);
+        m_meet(m_numbers[i], Sight{m_rays.meeting[i] * m_depthPerLength[i], 0.5});
+      else if (withSummits && m_rays.height[i] > FocusCells::foothill)
+        m_meet(m_numbers[i], Sight{m_rays.summit[i] * m_depthPerLength[i], m_rays.height[i]});
     m_rays.size = 0;
   }
 
@@ -93,45 +100,6 @@ bool isInside(const FocusCells& cells, const Domain& volume) {
   return true;
 }
 
-/// Cells as FocusTracer::seams finds them, without their depths but at the samples.
-std::vector<Seam> findSeams(const FocusDepth& focus) {
-  const DepthBuffer& buffer = focus.depth;
-  std::vector<Seam> seams;
-  for (std::int64_t row = 0; row + 1 < buffer.rows(); ++row) {
-    const Region* const above = &focus.regions[static_cast<std::size_t>(buffer.sample(0, row))];
-    const Region* const below = above + buffer.columns();
-    const auto inColumn = [&](std::int64_t column) {
-      return (above[column] == Region::focus) + (below[column] == Region::focus);
-    };
-    for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column) {
-      const int count = inColumn(column) + inColumn(column + 1);
-      if (count == 0)
-        continue;
-      const std::array corners{
-          buffer.at(buffer.sample(column, row)), buffer.at(buffer.sample(column + 1, row)),
-          buffer.at(buffer.sample(column, row + 1)), buffer.at(buffer.sample(column + 1, row + 1))};
-      const auto [least, greatest] = std::ranges::minmax(corners);
-      const double pitch =
-          std::abs(buffer.xAxis().coordinate(column + 1) - buffer.xAxis().coordinate(column));
-      if (count == 4 && greatest - least <= steepestCell * pitch)
-        continue;
-      Seam& seam = seams.emplace_back(Seam{column, row, {}});
-      seam.depths.fill(infinity);
-      constexpr std::size_t last = Seam::across - 1;
-      seam.depths[0] = corners[0];
-      seam.depths[last] = corners[1];
-      seam.depths[last * Seam::across] = corners[2];
-      seam.depths[last * Seam::across + last] = corners[3];
-    }
-  }
-  return seams;
-}
-
-bool isSample(int corner) {
-  constexpr int last = Seam::across - 1;
-  return corner % Seam::across % last == 0 && corner / Seam::across % last == 0;
-}
-
 /// The part of a world ray in the volume's domain.
 Interval inVolume(const Domain& volume, const Ray& ray) {
   return volume.clip(transformed(volume.grid().worldToIndex, ray));
@@ -143,9 +111,15 @@ FocusTracer::FocusTracer(const Camera& camera, const Domain& volume, const Mask&
     : m_camera(camera),
       m_volume(volume),
       m_cells(std::make_unique<const FocusCells>(focus)),
+      m_rays(std::make_unique<const CellRays>(m_camera, *m_cells)),
       m_isWhole(isInside(*m_cells, volume)) {}
 
 FocusTracer::~FocusTracer() = default;
+
+/// The part of an eye ray in which it can meet the focus inside the volume's domain.
+Interval FocusTracer::inDomain(const Vec2& position) const {
+  return m_isWhole ? Interval{} : inVolume(m_volume, m_camera.rayThrough(position));
+}
 
 FocusDepth FocusTracer::depths() const {
   FocusDepth result{DepthBuffer(m_camera, m_volume.grid()), {}};
@@ -153,7 +127,6 @@ FocusDepth FocusTracer::depths() const {
   result.regions.assign(static_cast<std::size_t>(depth.size()), Region::outside);
   const FocusFootprint focusFootprint(m_camera, depth, *m_cells);
   const DomainFootprint domainFootprint(m_camera, m_volume);
-  const CellRays cellRays(m_camera, *m_cells);
 
   const auto meetsVolume = [&](std::int64_t column, std::int64_t row) {
     return !inVolume(m_volume, m_camera.rayThrough(depth.position(column, row))).empty();
@@ -172,19 +145,19 @@ FocusDepth FocusTracer::depths() const {
       if (depths.empty())
         continue;
       const Vec2 position = depth.position(column, row);
-      const auto [ray, depthPerLength] = cellRays.through(position);
-      Interval range = m_isWhole ? Interval{} : inVolume(m_volume, m_camera.rayThrough(position));
+      const auto [ray, depthPerLength] = m_rays->through(position);
+      Interval range = inDomain(position);
       range.begin = std::max(range.begin, depths.begin / depthPerLength);
       range.end = std::min(range.end, depths.end / depthPerLength);
       batch.add(sample, ray, range, depthPerLength);
     }
   };
-  const auto meet = [&result](std::int64_t sample, double met) {
-    result.depth.set(sample, met);
+  const auto meet = [&result](std::int64_t sample, const Sight& met) {
+    result.depth.set(sample, met.depth);
     result.regions[static_cast<std::size_t>(sample)] = Region::focus;
   };
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, depth.rows()), [&](const auto& rows) {
-    FocusBatch batch(*m_cells, meet);
+    FocusBatch<false, decltype(meet)> batch(*m_cells, meet);
     for (std::int64_t row = rows.begin(); row < rows.end(); ++row)
       traceRow(row, batch);
     batch.trace();
@@ -192,50 +165,56 @@ FocusDepth FocusTracer::depths() const {
   return result;
 }
 
-template <typename Rays, typename Meet>
-void FocusTracer::traceAll(std::size_t count, const Rays& rays, const Meet& meet) const {
-  const CellRays cellRays(m_camera, *m_cells);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const auto& range) {
-    FocusBatch batch(*m_cells, meet);
-    const auto add = [&](std::int64_t number, const Vec2& position) {
-      const auto [ray, depthPerLength] = cellRays.through(position);
-      const Interval inDomain =
-          m_isWhole ? Interval{} : inVolume(m_volume, m_camera.rayThrough(position));
-      batch.add(number, ray, inDomain, depthPerLength);
-    };
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      rays(i, add);
-    batch.trace();
-  });
-}
-
 std::vector<double> FocusTracer::depthsAt(const std::vector<Vec2>& positions) const {
   std::vector<double> depths(positions.size(), infinity);
-  traceAll(
-      positions.size(),
-      [&](std::size_t i, const auto& add) { add(static_cast<std::int64_t>(i), positions[i]); },
-      [&](std::int64_t i, double depth) { depths[static_cast<std::size_t>(i)] = depth; });
+  const auto meet = [&depths](std::int64_t i, const Sight& met) {
+    depths[static_cast<std::size_t>(i)] = met.depth;
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size()), [&](const auto& range) {
+    FocusBatch<false, decltype(meet)> batch(*m_cells, meet);
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const auto [ray, depthPerLength] = m_rays->through(positions[i]);
+      batch.add(static_cast<std::int64_t>(i), ray, inDomain(positions[i]), depthPerLength);
+    }
+    batch.trace();
+  });
   return depths;
 }
 
-std::vector<Seam> FocusTracer::seams(const FocusDepth& focus) const {
-  std::vector<Seam> seams = findSeams(focus);
-  constexpr auto corners = static_cast<std::int64_t>(Seam::corners);
-  traceAll(
-      seams.size(),
-      [&](std::size_t i, const auto& add) {
-        const Vec2 low = focus.depth.position(seams[i].column, seams[i].row);
-        const Vec2 high = focus.depth.position(seams[i].column + 1, seams[i].row + 1);
-        for (int corner = 0; corner < corners; ++corner)
-          if (!isSample(corner))
-            add(static_cast<std::int64_t>(i) * corners + corner,
-                Vec2(low + Seam::fraction(corner).cwiseProduct(high - low)));
-      },
-      [&](std::int64_t number, double depth) {
-        seams[static_cast<std::size_t>(number / corners)]
-            .depths[static_cast<std::size_t>(number % corners)] = depth;
-      });
-  return seams;
+bool FocusTracer::isFocus(const Vec2& position, double depth) const {
+  const auto [ray, depthPerLength] = m_rays->through(position);
+  const double t = depth / depthPerLength;
+  if (!(m_cells->indicator(ray.at(t)) >= 0.5))
+    return false;
+  const Affine& worldToIndex = m_volume.grid().worldToIndex;
+  return m_isWhole || m_volume.contains(worldToIndex * m_camera.rayThrough(position).at(t));
+}
+
+template <bool withSummits>
+void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sights) const {
+  if (glances.empty())
+    return;
+  std::ranges::fill(sights, Sight{});
+  const auto meet = [&sights](std::int64_t i, const Sight& met) {
+    sights[static_cast<std::size_t>(i)] = met;
+  };
+  FocusBatch<withSummits, decltype(meet)> batch(*m_cells, meet);
+  for (std::size_t i = 0; i < glances.size(); ++i) {
+    const auto [ray, depthPerLength] = m_rays->through(glances[i].position);
+    Interval range = inDomain(glances[i].position);
+    range.begin = std::max(range.begin, glances[i].depths.begin / depthPerLength);
+    range.end = std::min(range.end, glances[i].depths.end / depthPerLength);
+    batch.add(static_cast<std::int64_t>(i), ray, range, depthPerLength);
+  }
+  batch.trace();
+}
+
+void FocusTracer::meet(std::span<const Glance> glances, std::span<Sight> sights) const {
+  follow<false>(glances, sights);
+}
+
+void FocusTracer::look(std::span<const Glance> glances, std::span<Sight> sights) const {
+  follow<true>(glances, sights);
 }
 
 FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus) {

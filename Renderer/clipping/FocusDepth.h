@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace fenestra {
@@ -24,28 +25,25 @@ struct FocusDepth {
   }
 };
 
-/// A cell between four samples in which the focus's depth is known more finely: on the corners of
-/// the squares of a fine cell (DepthBuffer), row by row, infinity where it is missed; mm.
-struct Seam {
-  static constexpr int across = DepthBuffer::fineSide + 1;
-  static constexpr std::size_t corners = std::size_t{across} * across;
-
-  std::int64_t column, row; ///< of the cell's first sample
-  std::array<double, corners> depths;
-
-  /// Of a corner, in cells from the first sample.
-  static Vec2 fraction(int corner) {
-    return Vec2(corner % across, corner / across) / DepthBuffer::fineSide;
-  }
-};
-
-/// Depth per distance between focus samples, both in mm on the plane through the target, from which
-/// on what lies between them is looked at.
-constexpr double steepestCell = 2.0;
-
+class CellRays;
 class FocusCells;
 
-/// Follows eye rays to a focus.
+/// What to look at along an eye ray.
+struct Glance {
+  Vec2 position;   ///< (x, y) of the ray, mm
+  Interval depths; ///< mm
+};
+
+/// What is seen there.
+struct Sight {
+  /// Where the ray meets the focus; else, where it passes it, of the first point at which the
+  /// focus's indicator is greatest. A ray that leaves the focus goes from one to the other without
+  /// a step.
+  double depth = infinity;
+  double indicator = 0.0; ///< 1/2 where the focus is met; 0 where it is foothill or less
+};
+
+/// Follows eye rays to a focus, of which and of the volume it keeps what it needs.
 class FocusTracer {
 public:
   FocusTracer(const Camera& camera, const Domain& volume, const Mask& focus);
@@ -57,19 +55,26 @@ public:
   /// Of the rays through these (x, y), mm; infinity where they miss the focus.
   std::vector<double> depthsAt(const std::vector<Vec2>& positions) const;
 
-  /// The cells where the focus ends, or falls away more steeply than steepestCell: part of it may
-  /// hide another there.
-  std::vector<Seam> seams(const FocusDepth& focus) const;
+  /// One sight for each glance; `meet` tells of what is met alone, and costs less. For few of them,
+  /// or in parallel: they are looked at here and now.
+  void meet(std::span<const Glance> glances, std::span<Sight> sights) const;
+  void look(std::span<const Glance> glances, std::span<Sight> sights) const;
+
+  /// Whether the ray through (x, y) is in the focus, and the volume, at this depth, mm.
+  bool isFocus(const Vec2& position, double depth) const;
+
+  const Camera& camera() const { return m_camera; }
+  const FocusCells& cells() const { return *m_cells; }
 
 private:
-  /// rays(i, add) for each i adds rays by a number and their (x, y); meet(number, depth) is told of
-  /// those that meet the focus.
-  template <typename Rays, typename Meet>
-  void traceAll(std::size_t count, const Rays& rays, const Meet& meet) const;
+  Interval inDomain(const Vec2& position) const;
+  template <bool withSummits>
+  void follow(std::span<const Glance> glances, std::span<Sight> sights) const;
 
-  const Camera& m_camera;
-  const Domain& m_volume;
+  Camera m_camera;
+  Domain m_volume;
   std::unique_ptr<const FocusCells> m_cells;
+  std::unique_ptr<const CellRays> m_rays;
   bool m_isWhole; ///< nothing of the focus reaches out of the volume or its crop
 };
 

@@ -1,6 +1,6 @@
-// FocusCells::findMeetings, in SIMD lanes: as many rays as there are lanes walk through the cells
-// together (Amanatides and Woo 1987), over blocks that hold nothing in one step. In double: a
-// meeting is as exact as one ray's by itself would be.
+// FocusCells::findMeetings and findSummits, in SIMD lanes: as many rays as there are lanes walk
+// through the cells together (Amanatides and Woo 1987), over blocks that hold nothing in one step.
+// In double: a meeting is as exact as one ray's by itself would be.
 
 #include "clipping/CellCubic.h"
 #include "clipping/FocusCells.h"
@@ -117,6 +117,9 @@ public:
 
   /// As rootBetween(cubic, 0, 1) finds them.
   void solve(FocusRays& rays) {
+    for (std::size_t i = m_size; i % hn::Lanes(doubles) != 0; ++i)
+      for (Column* column : {&m_c[0], &m_c[1], &m_c[2], &m_c[3], &m_begin, &m_length})
+        (*column)[i] = 0.0; // whole vectors are read
     for (std::size_t i = 0; i < m_size; i += hn::Lanes(doubles)) {
       const D s = rootsFrom(i);
       Lane meetings;
@@ -161,12 +164,27 @@ private:
 
   using Column = FocusRays::Column;
   std::size_t m_size = 0;
-  alignas(64) std::array<Column, 4> m_c = {};
-  alignas(64) Column m_begin = {}, m_length = {};
+  alignas(64) std::array<Column, 4> m_c;
+  alignas(64) Column m_begin, m_length;
   std::array<std::size_t, FocusRays::capacity> m_ray;
 };
 
+/// A ray along a flat face passes level ground, whose summit is where it begins: what is higher by
+/// less than this, of an indicator, is level.
+constexpr double level = 1e-8;
+
+/// Where a cubic is greatest in [0, 1], first.
+double summitOf(const Cubic& cubic) {
+  const std::array<double, 2> turns = turningPoints(cubic);
+  double best = 0.0;
+  for (const double s : {turns[0], turns[1], 1.0})
+    if (cubic(s) > cubic(best) + level)
+      best = s;
+  return best;
+}
+
 /// Rays i, i + 1 and so on, one in each lane.
+template <bool withSummits>
 class Walk {
 public:
   Walk(const FocusCells::Layout& cells, FocusRays& rays, Roots& roots, std::size_t i)
@@ -178,7 +196,18 @@ public:
         m_end(hn::Load(doubles, &rays.end[i])),
         m_busy(
             hn::And(hn::FirstN(doubles, rays.size - std::min(i, rays.size)), hn::Lt(m_t, m_end))),
-        m_axes{axis(0), axis(1), axis(2)} {}
+        m_axes{axis(0), axis(1), axis(2)} {
+    m_heights.fill(FocusCells::foothill - 0.5);
+  }
+
+  /// To be called when none is busy: tells the summits.
+  void finish() {
+    for (std::size_t i = m_first;
+         withSummits && i < std::min(m_first + hn::Lanes(doubles), m_rays.size); ++i) {
+      m_rays.summit[i] = m_summits[i - m_first];
+      m_rays.height[i] = 0.5 + m_heights[i - m_first];
+    }
+  }
 
   bool busy() const { return !hn::AllFalse(doubles, m_busy); }
 
@@ -216,7 +245,10 @@ public:
           hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.corners), at),
           allInts(0xff));
       if (const M some = hn::And(look, isNot0(corners)); !hn::AllFalse(doubles, some))
-        meet(some, corners, exit);
+        meet(some, corners,
+             hn::Add(hn::ShiftLeft<7>(block),
+                     linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 5, 5)),
+             exit);
     }
 
     m_busy = hn::And(m_busy, hn::Lt(out, m_end));
@@ -231,16 +263,10 @@ public:
 
 private:
   /// Ends the walks that meet the surface in their cells: those whose cubic's coefficients in
-  /// Bernstein's form, which bound it, are not all below 0 are looked at one by one.
-  HWY_INLINE void meet(M which, I corners, D exit) {
-    const auto value = [&](std::int32_t i) { // the indicator - 1/2
-      const I bit = hn::And(corners, allInts(1 << i));
-      return hn::IfThenElse(isNot0(bit), all(0.5), all(-0.5));
-    };
-    std::array<D, 8> v = {value(0), value(1), value(2), value(3),
-                          value(4), value(5), value(6), value(7)};
-    if (m_cells.smooth)
-      readSmooth(which, v);
+  /// Bernstein's form, which bound it, are not all below 0 are looked at one by one. `values` is
+  /// the place of the first of their cells' values.
+  HWY_INLINE void meet(M which, I corners, I values, D exit) {
+    const std::array<D, 8> v = m_cells.values ? smoothed(values) : sharp(corners);
     const D length = hn::Sub(exit, m_t);
     const D x = m_axes[0].fractionAt(m_t), u = m_axes[0].along(length);
     const D y = m_axes[1].fractionAt(m_t), w = m_axes[1].along(length);
@@ -277,8 +303,10 @@ private:
     const D b2 = hn::Add(b1, hn::Mul(hn::Add(c1, c2), third));
     const D b3 = sum(c0, c1, c2, c3);
     const D greatest = hn::Max(hn::Max(c0, b1), hn::Max(b2, b3));
-    // A little below 0 is rounding.
-    const M possible = hn::And(which, hn::Ge(greatest, all(-1e-12)));
+    D least = all(-1e-12); // a little below 0 is rounding
+    if constexpr (withSummits)
+      least = hn::Min(least, hn::Load(doubles, m_heights.data()));
+    const M possible = hn::And(which, hn::Ge(greatest, least));
     if (hn::AllFalse(doubles, possible))
       return;
     const M rises = hn::And(hn::And(hn::Lt(c0, hn::Zero(doubles)), hn::Ge(b3, hn::Zero(doubles))),
@@ -286,30 +314,28 @@ private:
     solve(possible, {c0, c1, c2, c3}, rises, length);
   }
 
-  /// The indicator - 1/2 at the corners of the cells that some walks are in, from the mask itself.
-  void readSmooth(M which, std::array<D, 8>& values) const {
-    const Mask& mask = *m_cells.smooth;
-    const Size3& size = mask.grid.size;
-    std::array<Lane, 3> cells;
-    for (std::size_t a = 0; a < 3; ++a)
-      hn::Store(m_axes[a].number(), doubles, cells[a].data());
-    std::array<Lane, 8> corners = {};
-    for (unsigned left = bitsOf(which); left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      const Size3 cell(static_cast<std::int64_t>(cells[0][lane]),
-                       static_cast<std::int64_t>(cells[1][lane]),
-                       static_cast<std::int64_t>(cells[2][lane]));
-      for (std::size_t i = 0; i < 8; ++i) {
-        const auto bit = [i](unsigned axis) { return static_cast<std::int64_t>(i >> axis & 1U); };
-        const Size3 voxel = cell + Size3(bit(0), bit(1), bit(2)) - Size3::Ones();
-        const bool isThere = (voxel.array() >= 0).all() && (voxel.array() < size.array()).all();
-        const std::size_t at = static_cast<std::size_t>(
-            isThere ? voxel.x() + size.x() * (voxel.y() + size.y() * voxel.z()) : 0);
-        corners[i][lane] = (isThere ? mask.voxels[at] / static_cast<double>(mask.full) : 0.0) - 0.5;
-      }
+  /// The indicator - 1/2 at the corners of cells, x fastest.
+  HWY_INLINE static std::array<D, 8> sharp(I corners) {
+    const auto value = [&](std::int32_t i) {
+      const I bit = hn::And(corners, allInts(1 << i));
+      return hn::IfThenElse(isNot0(bit), all(0.5), all(-0.5));
+    };
+    return {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
+  }
+  HWY_INLINE std::array<D, 8> smoothed(I first) const {
+    const auto value = [&](I byte) {
+      const D whole = hn::PromoteTo(doubles, hn::And(byte, allInts(0xff)));
+      return hn::MulSub(whole, all(m_cells.perValue), all(0.5));
+    };
+    std::array<D, 8> v;
+    std::size_t i = 0;
+    for (const std::int32_t row : {0, 5, 25, 30}) { // two neighbours along x at once
+      const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.values),
+                                      hn::Add(first, allInts(row)));
+      v[i++] = value(both);
+      v[i++] = value(hn::ShiftRight<8>(both));
     }
-    for (std::size_t i = 0; i < 8; ++i)
-      values[i] = hn::Load(doubles, corners[i].data());
+    return v;
   }
 
   /// Cubics that rise all the way, to 0 or beyond it, meet it: where, is found later for many at
@@ -328,8 +354,11 @@ private:
       const Cubic cubic{{lanes[0][lane], lanes[1][lane], lanes[2][lane], lanes[3][lane]}};
       const bool isRising = rising >> lane & 1;
       const double s = isRising ? 0.0 : firstNonNegative(cubic);
-      if (s == infinity)
+      if (s == infinity) {
+        if constexpr (withSummits)
+          climb(lane, cubic, lanes[4][lane], lanes[5][lane]);
         continue;
+      }
       lanes[6][lane] = 0.0;
       if (isRising)
         m_roots.add(cubic, lanes[4][lane], lanes[5][lane], m_first + lane);
@@ -339,6 +368,14 @@ private:
     m_busy = hn::Gt(hn::Load(doubles, lanes[6].data()), hn::Zero(doubles));
   }
 
+  void climb(std::size_t lane, const Cubic& cubic, double begin, double length) {
+    const double s = summitOf(cubic);
+    if (const double height = cubic(s); height > m_heights[lane] + level) {
+      m_heights[lane] = height;
+      m_summits[lane] = begin + s * length;
+    }
+  }
+
   const FocusCells::Layout& m_cells;
   FocusRays& m_rays;
   Roots& m_roots;
@@ -346,20 +383,36 @@ private:
   D m_t, m_end;
   M m_busy;
   std::array<Axis, 3> m_axes;
+  Lane m_heights, m_summits{}; ///< so far: the indicator - 1/2, and where
 };
 
+template <bool withSummits>
 void walkAll(const FocusCells::Layout& cells, FocusRays& rays) {
   Roots roots;
   const std::size_t lanes = hn::Lanes(doubles);
   for (std::size_t i = 0; i < rays.size; i += 2 * lanes) {
     // Two at a time: while one waits for the cells that it has asked for, the other computes.
-    Walk one(cells, rays, roots, i), other(cells, rays, roots, i + lanes);
-    while (one.busy() || other.busy()) {
-      one.step();
-      other.step();
+    Walk<withSummits> one(cells, rays, roots, i);
+    if (i + lanes < rays.size) {
+      Walk<withSummits> other(cells, rays, roots, i + lanes);
+      while (one.busy() || other.busy()) {
+        one.step();
+        other.step();
+      }
+      other.finish();
     }
+    while (one.busy())
+      one.step();
+    one.finish();
   }
   roots.solve(rays);
+}
+
+void findAllMeetings(const FocusCells::Layout& cells, FocusRays& rays) {
+  walkAll<false>(cells, rays);
+}
+void findAllSummits(const FocusCells::Layout& cells, FocusRays& rays) {
+  walkAll<true>(cells, rays);
 }
 
 } // namespace
@@ -369,12 +422,35 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace fenestra {
 
-HWY_EXPORT(walkAll);
+HWY_EXPORT(findAllMeetings);
+HWY_EXPORT(findAllSummits);
+
+namespace {
+
+/// Nothing is met so far, and what whole vectors read beyond the last ray is a number.
+void prepare(FocusRays& rays) {
+  std::fill_n(rays.meeting.begin(), rays.size, infinity);
+  for (std::size_t i = rays.size; i < std::min(rays.size + 16, rays.begin.size()); ++i) {
+    for (FocusRays::Column* column :
+         {&rays.origin[0], &rays.origin[1], &rays.origin[2], &rays.begin, &rays.end})
+      (*column)[i] = 0.0;
+    for (FocusRays::Column& column : rays.direction)
+      column[i] = 1.0;
+  }
+}
+
+} // namespace
 
 void FocusCells::findMeetings(FocusRays& rays) const {
-  std::fill_n(rays.meeting.begin(), rays.size, infinity);
-  const Layout cells{m_blockCorners.data(), m_corners.front().data(), m_blocks, m_smooth};
-  HWY_DYNAMIC_DISPATCH(walkAll)(cells, rays);
+  prepare(rays);
+  const Layout cells = layout();
+  HWY_DYNAMIC_DISPATCH(findAllMeetings)(cells, rays);
+}
+
+void FocusCells::findSummits(FocusRays& rays) const {
+  prepare(rays);
+  const Layout cells = layout();
+  HWY_DYNAMIC_DISPATCH(findAllSummits)(cells, rays);
 }
 
 } // namespace fenestra

@@ -21,6 +21,48 @@ std::pair<std::int64_t, std::int64_t> samplesAround(const DepthAxis& axis, doubl
           std::min(axis.size() - 1, static_cast<std::int64_t>(std::ceil(high + sampleSlack)))};
 }
 
+/// Cells between samples, the last ones excluded.
+struct CellRange {
+  std::int64_t left, right, top, bottom;
+
+  /// Those that rays between two positions pass.
+  CellRange(const DepthBuffer& buffer, const Vec2& lower, const Vec2& upper) {
+    std::tie(left, right) = samplesAround(buffer.xAxis(), lower.x(), upper.x());
+    std::tie(top, bottom) = samplesAround(buffer.yAxis(), lower.y(), upper.y());
+  }
+};
+
+/// Tiles of cells, to pass over many at once.
+class AskedTiles {
+public:
+  AskedTiles(const DepthBuffer& buffer, const std::vector<std::uint8_t>& isAskedFor)
+      : m_across(buffer.columns() / side + 1),
+        m_isAskedFor(static_cast<std::size_t>(m_across * (buffer.rows() / side + 1))) {
+    std::size_t cell = 0;
+    for (std::int64_t row = 0; row < buffer.rows(); ++row)
+      for (std::int64_t column = 0; column < buffer.columns(); ++column)
+        m_isAskedFor[tile(column, row)] |= isAskedFor[cell++];
+  }
+
+  bool any(const CellRange& cells) const {
+    for (std::int64_t row = cells.top; row < cells.bottom + side; row += side)
+      for (std::int64_t column = cells.left; column < cells.right + side; column += side)
+        if (m_isAskedFor[tile(std::min(column, cells.right), std::min(row, cells.bottom))])
+          return true;
+    return false;
+  }
+
+private:
+  static constexpr std::int64_t side = 8;
+
+  std::size_t tile(std::int64_t column, std::int64_t row) const {
+    return static_cast<std::size_t>(column / side + row / side * m_across);
+  }
+
+  std::int64_t m_across;
+  std::vector<std::uint8_t> m_isAskedFor;
+};
+
 } // namespace
 
 DomainFootprint::DomainFootprint(const Camera& camera, const Domain& domain) {
@@ -76,6 +118,35 @@ FocusFootprint::FocusFootprint(const Camera& camera, const DepthBuffer& buffer,
         tile.end = std::max(tile.end, depths.end);
       }
   });
+}
+
+std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buffer,
+                                   const FocusCells& cells,
+                                   const std::vector<std::uint8_t>& isAskedFor) {
+  std::vector<Interval> reaches(isAskedFor.size(), {infinity, -infinity});
+  const AskedTiles tiles(buffer, isAskedFor);
+  const BoxProjection blocks(camera,
+                             cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize}));
+  const BoxProjection boxes(camera, cells.cellToWorld());
+  const auto reach = [&](const Size3& cell) {
+    const auto [depths, lower, upper] = boxes.of(cell);
+    if (depths.end < 0.0)
+      return;
+    const CellRange range(buffer, lower, upper);
+    for (std::int64_t row = range.top; row < range.bottom; ++row)
+      for (std::int64_t column = range.left; column < range.right; ++column) {
+        const auto at = static_cast<std::size_t>(buffer.sample(column, row));
+        if (isAskedFor[at])
+          reaches[at] = {std::min(reaches[at].begin, depths.begin),
+                         std::max(reaches[at].end, depths.end)};
+      }
+  };
+  cells.visitOccupied([&](const Size3& block) {
+    const auto [depths, lower, upper] = blocks.of(block);
+    if (depths.end >= 0.0 && tiles.any(CellRange(buffer, lower, upper)))
+      cells.visitCells(block, reach);
+  });
+  return reaches;
 }
 
 } // namespace fenestra

@@ -44,4 +44,11 @@ private:
   std::vector<Interval> m_tiles;
 };
 
+/// For each cell between samples, told by its first one, the depths, mm, between which its rays can
+/// meet the focus or pass a summit of it (FocusCells); empty where they can not, and in cells that
+/// are not asked for.
+std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buffer,
+                                   const FocusCells& cells,
+                                   const std::vector<std::uint8_t>& isAskedFor);
+
 } // namespace fenestra

@@ -81,7 +81,7 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
     surface.fillSeconds += other.fillSeconds;
   }
   ClipDepth clip = own;
-  clip.pyramid = std::make_shared<const DepthPyramid>(*buffer);
+  clip.pyramid = std::make_shared<const DepthPyramid>(*buffer, clip.seams.get());
   clip.buffer = std::move(buffer);
   surface.clip = std::move(clip);
   return surface;

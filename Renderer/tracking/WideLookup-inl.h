@@ -8,7 +8,7 @@
 #define FENESTRA_WIDE_LOOKUP_INL_H
 #endif
 
-#include "clipping/DepthBuffer.h"
+#include "clipping/Seams.h"
 #include "tracking/WideScene.h"
 // After foreach_target.h:
 #include "core/Lanes-inl.h"
@@ -246,22 +246,51 @@ HWY_INLINE M isFocus(const WideScene::Context& context, const Point& p) {
                 all(context.level));
 }
 
-/// `surface`, or in fine cells the depth of the square that a point is in, at fractions (x, y) of
-/// the cell (DepthBuffer::depth).
-HWY_INLINE F refined(const WideScene& scene, I sample, F x, F y, F surface) {
-  constexpr int side = DepthBuffer::fineSide;
-  const I cell = hn::GatherIndex(ints, scene.fineCells, sample);
-  const auto isFine = hn::Gt(cell, hn::Set(ints, -1));
-  if (hn::AllFalse(ints, isFine))
+/// The surface in seams, at (x, y), for the lanes that ask for it; `surface` for the others.
+inline F askSeams(const Seams& seams, M isAsked, I seam, F x, F y, F depth, double softness,
+                  F surface) {
+  constexpr std::size_t lanes = HWY_MAX_BYTES / sizeof(float);
+  static_assert(lanes <= Seams::mostQuestions);
+  const Indices numbers(seam);
+  struct alignas(64) Floats : std::array<float, lanes> {};
+  Floats xs, ys, depths, surfaces, asked;
+  hn::Store(x, floats, xs.data());
+  hn::Store(y, floats, ys.data());
+  hn::Store(depth, floats, depths.data());
+  hn::Store(surface, floats, surfaces.data());
+  hn::Store(hn::IfThenElseZero(isAsked, all(1.0F)), floats, asked.data());
+  std::array<Seams::Question, lanes> questions;
+  std::array<std::size_t, lanes> lane;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < hn::Lanes(floats); ++i)
+    if (asked[i] > 0.0F) {
+      lane[count] = i;
+      questions[count++] = {
+          numbers[i], Vec2(xs[i], ys[i]), surfaces[i], {depths[i] - softness, depths[i]}};
+    }
+  seams.answer(std::span(questions).first(count));
+  for (std::size_t i = 0; i < count; ++i)
+    surfaces[lane[i]] = static_cast<float>(questions[i].surface);
+  return hn::Load(floats, surfaces.data());
+}
+
+/// `surface`, or in seams what that is for a point at (x, y) and `depth` (ClipDepth::surfaceFor).
+HWY_INLINE F sewn(const WideScene& scene, I sample, F x, F y, F depth, F surface) {
+  const I seam = hn::GatherIndex(ints, scene.seams->numbers().data(), sample);
+  const auto isSeam = hn::Gt(seam, hn::Set(ints, -1));
+  if (hn::AllFalse(ints, isSeam))
     return surface;
-  const auto square = [&](F fraction) {
-    return hn::Min(hn::ConvertTo(ints, hn::Mul(fraction, all(float{side}))),
-                   hn::Set(ints, side - 1));
-  };
-  const I first = hn::Mul(hn::Max(cell, hn::Zero(ints)), hn::Set(ints, side * side));
-  const I at = hn::Add(first, hn::Add(hn::Mul(square(y), hn::Set(ints, side)), square(x)));
-  return hn::IfThenElse(hn::RebindMask(floats, isFine),
-                        hn::GatherIndex(floats, scene.fineDepths, at), surface);
+  const I first = hn::ShiftLeft<1>(hn::Max(seam, hn::Zero(ints)));
+  const float* const reaches = &scene.seams->reaches().data()->least;
+  const F least = hn::Min(surface, hn::GatherIndex(floats, reaches, first));
+  const F greatest =
+      hn::Max(surface, hn::GatherIndex(floats, reaches + 1, first)); // least and greatest alternate
+  const M isNear =
+      hn::And(hn::Ge(depth, least), hn::Le(depth, hn::Add(greatest, all(scene.softness))));
+  const M isAsked = hn::And(hn::RebindMask(floats, isSeam), isNear);
+  if (hn::AllFalse(floats, isAsked))
+    return surface;
+  return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
 }
 
 /// What clipping keeps (clipping/Clip.h's keep, for all its kinds).
@@ -283,8 +312,10 @@ inline F keep(const WideScene& scene, const Point& p) {
   };
   if (scene.clipKind == WideScene::ClipKind::plane)
     return edge(hn::Neg(apply(scene.toPlane, p)));
-  const F column = depthIndex(scene.depthX, hn::Mul(apply(scene.toView[0], p), scale));
-  const F row = depthIndex(scene.depthY, hn::Mul(apply(scene.toView[1], p), scale));
+  const F x = hn::Mul(apply(scene.toView[0], p), scale);
+  const F y = hn::Mul(apply(scene.toView[1], p), scale);
+  const F column = depthIndex(scene.depthX, x);
+  const F row = depthIndex(scene.depthY, y);
   const I columns = hn::Set(ints, scene.depthColumns);
   F surface;
   if (scene.clipKind == WideScene::ClipKind::depthNearest) {
@@ -303,8 +334,8 @@ inline F keep(const WideScene& scene, const Point& p) {
       return hn::GatherIndex(floats, scene.depths, hn::Add(hn::Mul(r, columns), c));
     };
     surface = lerp(lerp(at(c0, r0), at(c1, r0), fc), lerp(at(c0, r1), at(c1, r1), fc), fr);
-    if (scene.fineCells)
-      surface = refined(scene, hn::Add(hn::Mul(r0, columns), c0), fc, fr, surface);
+    if (scene.seams)
+      surface = sewn(scene, hn::Add(hn::Mul(r0, columns), c0), x, y, depth, surface);
   }
   return edge(hn::Sub(depth, surface));
 }

@@ -119,6 +119,7 @@ void WideTracker::setClip(const Clip& clip, const Grid& grid) {
   };
   const auto setEdge = [&](const ClipEdge& edge) {
     m_scene.ghost = narrow(edge.ghost);
+    m_scene.softness = narrow(edge.softness);
     m_scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
   };
   if (const auto* plane = std::get_if<ClipPlane>(&clip)) {
@@ -137,10 +138,7 @@ void WideTracker::setClip(const Clip& clip, const Grid& grid) {
   m_scene.depthY = wide(depth.buffer->yAxis());
   m_scene.depths = depth.buffer->depthsFromReference().data();
   m_scene.depthColumns = static_cast<std::int32_t>(depth.buffer->columns());
-  if (!depth.buffer->fineCells().empty()) {
-    m_scene.fineCells = depth.buffer->fineCells().data();
-    m_scene.fineDepths = depth.buffer->fineDepths().data();
-  }
+  m_scene.seams = depth.seams.get();
 }
 
 void WideTracker::setContext(const ContextStyle& style, const Grid& grid) {

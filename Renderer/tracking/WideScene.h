@@ -11,6 +11,8 @@
 
 namespace fenestra {
 
+class Seams;
+
 /// Voxels that lanes interpolate between.
 struct WideField {
   struct Axis {
@@ -66,6 +68,7 @@ struct WideScene {
 
   ClipKind clipKind = ClipKind::none;
   float ghost = 0.0F;       ///< ClipEdge
+  float softness = 0.0F;    ///< mm
   float perSoftness = 0.0F; ///< 1 / mm; 0 where the edge is sharp
   bool perspective = false;
   /// Rows of the map from index space to view space, depth counted from the target.
@@ -75,8 +78,7 @@ struct WideScene {
   DepthAxis depthX = {}, depthY = {};
   const float* depths = nullptr; ///< counted from the target
   std::int32_t depthColumns = 0;
-  const std::int32_t* fineCells = nullptr; ///< of the depths' buffer; null where it has none
-  const float* fineDepths = nullptr;
+  const Seams* seams = nullptr; ///< of an exact boundary; null elsewhere
 };
 
 } // namespace fenestra

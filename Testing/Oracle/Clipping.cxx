@@ -40,10 +40,15 @@ double summit(const Function& f, double low, double high) {
   return 0.5 * (low + high);
 }
 
-/// Where along a ray the indicator first reaches 1/2 within the volume, or infinity: sampled
-/// twenty-five times a voxel, and at every summit between samples, where a ray may graze the
-/// surface; then bisected.
-double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
+/// What a ray sees of a focus.
+struct Sight {
+  double t;      ///< where the indicator first reaches 1/2, or where it is greatest; or infinity
+  double height; ///< the indicator there
+};
+
+/// Within the volume: sampled twenty-five times a voxel, and at every summit between samples, where
+/// a ray may graze the surface; then bisected.
+Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray) {
   const Affine worldToIndex = mask.grid.indexToWorld.inverse();
   const Interval part = matter.inBox(ray.origin, ray.direction);
   const auto level = [&](double t) {
@@ -56,25 +61,34 @@ double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
       const double middle = 0.5 * (outside + inside);
       (level(middle) >= 0.5 ? inside : outside) = middle;
     }
-    return inside;
+    return Sight{inside, 0.5};
   };
   const double step = 0.04 * mask.grid.spacing().minCoeff();
   double before = 0.0, here = part.empty() ? 0.0 : level(part.begin);
   if (here >= 0.5)
-    return part.begin;
+    return {part.begin, 0.5};
+  Sight best{infinity, 0.0};
   for (double t = part.begin; t < part.end; t += step) {
     const double next = std::min(t + step, part.end), there = level(next);
     if (there >= 0.5)
       return between(t, next);
-    if (here > 0.3 && here >= before && here >= there) {
+    if (here > 0.2 && here >= before && here >= there) {
       const double top = summit(level, std::max(t - step, part.begin), next);
-      if (level(top) >= 0.5)
+      const double height = level(top);
+      if (height >= 0.5)
         return between(std::max(t - step, part.begin), top);
+      if (height > best.height)
+        best = {top, height};
     }
     before = here;
     here = there;
   }
-  return infinity;
+  return best;
+}
+
+double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
+  const Sight sight = lookAlong(mask, matter, ray);
+  return sight.height >= 0.5 ? sight.t : infinity;
 }
 
 /// The spline as its equations stand.
@@ -204,7 +218,7 @@ double indicatorAt(const Mask& mask, const Vec3& world) {
 }
 
 Clipping::Clipping(const ClipDescription& description, const View& view, const Matter& matter)
-    : m_description(description), m_view(view) {
+    : m_description(description), m_view(view), m_matter(matter) {
   if (const auto* clip = std::get_if<DepthClip>(&description))
     m_depths = depthsOf(*clip, view, matter);
 }
@@ -216,20 +230,25 @@ double Clipping::surface(const Vec2& at) const {
     return m_depths[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
                     std::min(column, clip.columns.size() - 1)];
   };
-  if (const auto cell = clip.fine.find(y.before * clip.columns.size() + x.before);
-      cell != clip.fine.end()) {
-    const auto side = static_cast<std::size_t>(std::sqrt(cell->second.size()));
-    const auto square = [&](double share) {
-      return std::min(static_cast<std::size_t>(share * static_cast<double>(side)), side - 1);
-    };
-    return cell->second[square(y.share) * side + square(x.share)];
-  }
   if (clip.hasSteps())
     return depth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5));
-  return (1.0 - y.share) * ((1.0 - x.share) * depth(x.before, y.before) +
-                            x.share * depth(x.before + 1, y.before)) +
-         y.share * ((1.0 - x.share) * depth(x.before, y.before + 1) +
-                    x.share * depth(x.before + 1, y.before + 1));
+  const double between = (1.0 - y.share) * ((1.0 - x.share) * depth(x.before, y.before) +
+                                            x.share * depth(x.before + 1, y.before)) +
+                         y.share * ((1.0 - x.share) * depth(x.before, y.before + 1) +
+                                    x.share * depth(x.before + 1, y.before + 1));
+  const auto seam = clip.seams.find(y.before * clip.columns.size() + x.before);
+  return seam == clip.seams.end() ? between : surfaceInSeam(seam->second, at, between);
+}
+
+double Clipping::surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, double between) const {
+  const auto& clip = std::get<DepthClip>(m_description);
+  const Ray ray = m_view.through(at.x(), at.y());
+  const Sight sight = lookAlong(clip.focus, m_matter, ray);
+  const double depth = sight.t < infinity ? m_view.depth(ray.at(sight.t)) + clip.offset : infinity;
+  if (seam.isInner())
+    return std::clamp(sight.height >= 0.5 ? depth : infinity, seam.least, seam.greatest);
+  const double share = std::clamp((sight.height - 0.25) / 0.25, 0.0, 1.0);
+  return share > 0.0 ? between + share * (depth - between) : between;
 }
 
 double Clipping::keep(const Vec3& world) const {

@@ -22,9 +22,11 @@ public:
 
 private:
   double surface(const Vec2& at) const;
+  double surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, double between) const;
 
   const ClipDescription& m_description;
   const View& m_view;
+  const Matter& m_matter;
   std::vector<double> m_depths;
 };
 

@@ -332,6 +332,22 @@ Affine cropOf(Generator& generator) {
   return crop;
 }
 
+/// The surface is taken as it is at samples; between them the oracle finds it where it may be told
+/// from the focus.
+void describeExact(const ClipDepth& surface, oracle::DepthClip& clip) {
+  const DepthBuffer& buffer = *surface.buffer;
+  for (std::int64_t i = 0; i < buffer.size(); ++i)
+    clip.given.push_back(buffer.at(i));
+  const Seams& seams = *surface.seams;
+  for (std::size_t i = 0; i < seams.numbers().size(); ++i)
+    if (const std::int32_t seam = seams.numbers()[i]; seam >= 0) {
+      clip.seams[i] = {};
+      if (const auto& [least, greatest] = seams.reaches()[static_cast<std::size_t>(seam)];
+          seams.isInner(seam))
+        clip.seams[i] = {buffer.reference() + least, buffer.reference() + greatest};
+    }
+}
+
 oracle::DepthClip describeDepth(const Combination& c, const ClippingSurface& surface,
                                 const SurfaceOptions& options) {
   oracle::DepthClip clip;
@@ -353,14 +369,7 @@ oracle::DepthClip describeDepth(const Combination& c, const ClippingSurface& sur
     clip.hole = {static_cast<oracle::HoleDescription::Shape>(options.hole.shape),
                  options.hole.margin};
   if (c.clip == ClipFactor::exactSurface)
-    for (std::int64_t i = 0; i < buffer.size(); ++i) {
-      clip.given.push_back(buffer.at(i));
-      const std::int32_t cell = buffer.fineCells()[static_cast<std::size_t>(i)];
-      constexpr std::size_t squares = std::tuple_size_v<DepthBuffer::FineCell>;
-      for (std::size_t k = 0; cell >= 0 && k < squares; ++k)
-        clip.fine[static_cast<std::size_t>(i)].push_back(
-            buffer.reference() + buffer.fineDepths()[static_cast<std::size_t>(cell) * squares + k]);
-    }
+    describeExact(std::get<ClipDepth>(surface.clip), clip);
   return clip;
 }
 

@@ -41,6 +41,29 @@ double depthAt(const FocusDepth& focus, const Vec2& position) {
   return focus.depth.nearest(position);
 }
 
+/// Rays through and beside a mask of 3^3 voxels, in its cells, and in the world.
+struct SomeRays {
+  FocusRays inCells;
+  std::vector<Ray> inWorld;
+
+  SomeRays(Random& random, const FocusCells& cells) {
+    while (inWorld.size() < 50) {
+      const Vec3 origin = randomPoint(random, -4.0, 6.0);
+      const Ray world{origin, (randomPoint(random, -0.5, 2.5) - origin).normalized()};
+      const Ray ray = transformed(cells.worldToCell(), world);
+      const Interval inside = cells.box().clip(ray, {});
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        inCells.origin[axis][inCells.size] = ray.origin[static_cast<int>(axis)];
+        inCells.direction[axis][inCells.size] = ray.direction[static_cast<int>(axis)];
+      }
+      inCells.begin[inCells.size] = inside.begin;
+      inCells.end[inCells.size] = inside.end;
+      ++inCells.size;
+      inWorld.push_back(world);
+    }
+  }
+};
+
 TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
   Random random(5, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
@@ -48,22 +71,7 @@ TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
   for (int trial = 0; trial < 40; ++trial) {
     const Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.4; });
     const FocusCells cells(mask);
-    FocusRays rays;
-    std::vector<Ray> worldRays;
-    while (worldRays.size() < 50) {
-      const Vec3 origin = randomPoint(random, -4.0, 6.0);
-      const Ray world{origin, (randomPoint(random, -0.5, 2.5) - origin).normalized()};
-      const Ray ray = transformed(cells.worldToCell(), world);
-      const Interval inside = cells.box().clip(ray, {});
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        rays.origin[axis][rays.size] = ray.origin[static_cast<int>(axis)];
-        rays.direction[axis][rays.size] = ray.direction[static_cast<int>(axis)];
-      }
-      rays.begin[rays.size] = inside.begin;
-      rays.end[rays.size] = inside.end;
-      ++rays.size;
-      worldRays.push_back(world);
-    }
+    auto [rays, worldRays] = SomeRays(random, cells);
     cells.findMeetings(rays);
     for (std::size_t i = 0; i < rays.size; ++i) {
       const double meeting = rays.meeting[i];
@@ -77,6 +85,40 @@ TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
     }
   }
   EXPECT_GT(met, 500);
+}
+
+TEST(FocusCells, KnowTheSummitsOfRaysThatMissThem) {
+  Random random(6, 0, 0);
+  const Grid grid({3, 3, 3}, Affine::Identity());
+  int passed = 0;
+  for (const std::uint8_t full : {std::uint8_t{1}, std::uint8_t{200}})
+    for (int trial = 0; trial < 40; ++trial) {
+      Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.3; });
+      mask.full = full;
+      for (std::uint8_t& voxel : mask.voxels)
+        voxel = static_cast<std::uint8_t>(full == 1 ? voxel : 200.0 * random.uniform());
+      const FocusCells cells(mask);
+      auto [rays, worldRays] = SomeRays(random, cells);
+      cells.findSummits(rays);
+      for (std::size_t i = 0; i < rays.size; ++i) {
+        if (rays.meeting[i] < infinity)
+          continue;
+        double greatest = 0.0;
+        for (double t = rays.begin[i]; t < rays.end[i]; t += 0.003)
+          greatest = std::max(greatest, indicator(mask, worldRays[i].at(t)) / full);
+        if (greatest <= FocusCells::foothill) {
+          EXPECT_LT(rays.height[i], FocusCells::foothill + 1e-3);
+          continue;
+        }
+        ++passed;
+        EXPECT_NEAR(rays.height[i], greatest, 2e-3) << "a step along the ray";
+        EXPECT_GE(rays.height[i], greatest - 1e-6);
+        const Vec3 summit = worldRays[i].at(rays.summit[i]);
+        EXPECT_NEAR(indicator(mask, summit) / full, rays.height[i], 1e-9);
+        EXPECT_NEAR(cells.indicator(cells.worldToCell() * summit), rays.height[i], 1e-9);
+      }
+    }
+  EXPECT_GT(passed, 200);
 }
 
 TEST(CellCubic, KnowsItsSlope) {

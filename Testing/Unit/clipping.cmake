@@ -6,7 +6,7 @@ fenestra_test(ClippingTests
   FocusDepthTests.cxx
   GridWalkTests.cxx
   KernelSumsTests.cxx
-  SewingTests.cxx
+  SeamsTests.cxx
   SmoothFillTests.cxx
   SurfaceChangeTests.cxx
   SurfaceMeshTests.cxx

@@ -1,0 +1,213 @@
+// Between samples: where the focus ends or hides a part of itself, the exact surface is the focus's
+// own depth.
+
+#include "ClippingTesting.h"
+#include "clipping/ClippingSurface.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+using namespace fenestra::testing_clipping;
+
+namespace {
+
+constexpr std::array projections{Projection::orthographic, Projection::perspective};
+
+/// A ball, which falls away steeply where it ends; seen by pixels smaller than its voxels.
+struct Ball {
+  Domain volume{centredGrid({60, 60, 60})};
+  Mask focus = sphereMask(centredGrid({60, 60, 60}), 20.3);
+  Camera camera;
+
+  explicit Ball(Projection projection)
+      : camera(anteriorCamera(projection, 200.0, 30.0, 100, 100)) {}
+
+  ClippingSurface surface() const {
+    return buildClippingSurface(camera, volume, focus, {.boundary = Boundary::exact});
+  }
+};
+
+/// A ray's depth in the focus, by stepping.
+double focusDepth(const Ball& ball, const Vec2& at) {
+  const Ray ray = ball.camera.rayThrough(at);
+  const Mask& mask = ball.focus;
+  const auto inside = [&](double t) {
+    const Vec3 index = mask.grid.worldToIndex * ray.at(t);
+    const Vec3 base = index.array().floor();
+    double sum = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 offset(corner & 1, corner >> 1 & 1, corner >> 2);
+      const Vec3 voxel = base + offset;
+      const Vec3 weight = (1.0 - (index - voxel).array().abs()).matrix();
+      const Size3 v = voxel.cast<std::int64_t>();
+      if ((v.array() >= 0).all() && (v.array() < mask.grid.size.array()).all())
+        sum += weight.prod() *
+               mask.voxels[static_cast<std::size_t>(v.x() + 60 * (v.y() + 60 * v.z()))];
+    }
+    return sum >= 0.5;
+  };
+  for (double t = 170.0; t < 230.0; t += 0.01)
+    if (inside(t))
+      return t * ball.camera.depthPerLength(ray);
+  return infinity;
+}
+
+/// Where a way from the axis leaves the ball.
+struct End {
+  Vec2 inside, outside; ///< 1e-7 mm apart
+};
+End endOf(const Ball& ball, const Vec2& way) {
+  double in = 17.0, out = 22.0;
+  while (out - in > 1e-7) {
+    const double middle = 0.5 * (in + out);
+    (FocusTracer(ball.camera, ball.volume, ball.focus).depthsAt({middle * way})[0] < infinity
+         ? in
+         : out) = middle;
+  }
+  return {in * way, out * way};
+}
+
+TEST(Seams, AreAsDeepAsTheFocusBetweenSamples) {
+  for (const Projection projection : projections) {
+    const Ball ball(projection);
+    const ClippingSurface surface = ball.surface();
+    const auto& clip = std::get<ClipDepth>(surface.clip);
+    Random random(1, 0, 0);
+    std::vector<double> apart;
+    while (apart.size() < 400) {
+      const double angle = uniform(random, 0.0, 2.0 * pi);
+      const Vec2 at = uniform(random, 18.0, 21.0) * Vec2(std::cos(angle), std::sin(angle));
+      if (const double depth = focusDepth(ball, at); depth < infinity)
+        apart.push_back(std::abs(depth - clip.surface(at)));
+    }
+    std::ranges::sort(apart);
+    EXPECT_LT(apart[360], 0.02) << "a step of this test's search";
+    EXPECT_LT(apart[399], 0.6) << "a sample's distance, where all around are focus";
+  }
+}
+
+TEST(Seams, GoOnWhereTheFocusEnds) {
+  for (const Projection projection : projections) {
+    const Ball ball(projection);
+    const ClippingSurface surface = ball.surface();
+    const auto& clip = std::get<ClipDepth>(surface.clip);
+    std::vector<double> steps;
+    for (int i = 0; i < 200; ++i) {
+      const End end = endOf(ball, {std::cos(0.0314 * i), std::sin(0.0314 * i)});
+      const double depth =
+          FocusTracer(ball.camera, ball.volume, ball.focus).depthsAt({end.inside})[0];
+      EXPECT_NEAR(clip.surface(end.inside), depth, 1e-4);
+      steps.push_back(std::abs(clip.surface(end.outside) - depth));
+    }
+    std::ranges::sort(steps);
+    EXPECT_LT(steps[190], 1e-3);
+    EXPECT_LT(steps[199], 1.5) << "where two voxels' outlines cross";
+  }
+}
+
+TEST(Seams, GoOverIntoTheSamplesWithoutASteep) {
+  const Ball ball(Projection::orthographic);
+  const ClippingSurface surface = ball.surface();
+  const auto& clip = std::get<ClipDepth>(surface.clip);
+  constexpr double step = 1e-3; // mm
+  std::vector<double> slopes;
+  for (int i = 0; i < 50; ++i) {
+    const Vec2 way(std::cos(0.126 * i), std::sin(0.126 * i));
+    const double end = endOf(ball, way).outside.norm();
+    for (double r = end; r < end + 3.0; r += step)
+      slopes.push_back(std::abs(clip.surface((r + step) * way) - clip.surface(r * way)) / step);
+  }
+  std::ranges::sort(slopes);
+  EXPECT_LT(slopes[slopes.size() * 9 / 10], 2.0);
+  EXPECT_LT(slopes[slopes.size() * 998 / 1000], 20.0) << "but for outlines that cross";
+}
+
+TEST(Seams, AreAskedOnlyWhereItMatters) {
+  // keep asks for no more of the surface than it needs; told the whole of it, it is the same.
+  for (const Projection projection : projections)
+    for (const double softness : {0.0, 1.5}) {
+      const Ball ball(projection);
+      SurfaceOptions options;
+      options.boundary = Boundary::exact;
+      options.offset = softness;
+      options.edge = {0.25, softness};
+      const CropBox crop(Eigen::Translation3d(0.0, 10.0, 4.0) * Eigen::Scaling(30.0, 22.0, 20.0));
+      const ClippingSurface surface =
+          buildClippingSurface(ball.camera, Domain(ball.volume.grid(), crop), ball.focus, options);
+      const auto& clip = std::get<ClipDepth>(surface.clip);
+      Random random(3, 0, 0);
+      int between = 0;
+      for (int i = 0; i < 20000; ++i) {
+        const Vec2 across(uniform(random, -22.0, 22.0), uniform(random, -22.0, 22.0));
+        const double depth = clip.surface(across) + uniform(random, -4.0, 4.0);
+        const Vec3 world = fromBuffer(ball.camera, {across.x(), across.y(), depth});
+        const Vec3 at = toBuffer(ball.camera, world);
+        const double expected = clip.edge(at.z() - clip.surface(at.head<2>()));
+        between += expected > 0.25 && expected < 1.0;
+        ASSERT_NEAR(keep(clip, world), expected, 1e-6) << across.transpose() << ' ' << depth;
+        const auto bounds = clip.pyramid->bounds(*clip.buffer, across, across);
+        ASSERT_GE(clip.surface(across), bounds.least - 1e-4);
+        ASSERT_LE(clip.surface(across), bounds.greatest + 1e-4);
+      }
+      EXPECT_EQ(between > 1000, softness > 0.0);
+    }
+}
+
+TEST(Seams, OfASmoothedFocusMeetItToo) {
+  Ball ball(Projection::orthographic);
+  ball.focus = maskOf(ball.volume.grid(), [](const Vec3&) { return false; });
+  ball.focus.full = 255;
+  for (std::size_t i = 0; i < ball.focus.voxels.size(); ++i) {
+    const auto n = static_cast<std::int64_t>(i);
+    const Vec3 p = ball.volume.grid().indexToWorld * Vec3(static_cast<double>(n % 60),
+                                                          static_cast<double>(n / 60 % 60),
+                                                          static_cast<double>(n / 3600));
+    ball.focus.voxels[i] = static_cast<std::uint8_t>(
+        std::lround(255.0 * std::clamp(0.5 + 0.25 * (20.3 - p.norm()), 0.0, 1.0)));
+  }
+  const ClippingSurface surface = ball.surface();
+  const auto& clip = std::get<ClipDepth>(surface.clip);
+  for (int i = 0; i < 100; ++i) {
+    const End end = endOf(ball, {std::cos(0.0628 * i), std::sin(0.0628 * i)});
+    EXPECT_NEAR(end.inside.norm(), 20.3, 0.05);
+    EXPECT_NEAR(clip.surface(end.outside), 200.0, 1.0) << "the ball ends in its middle";
+    EXPECT_NEAR(clip.surface(end.outside), clip.surface(end.inside), 0.01);
+    EXPECT_NEAR(clip.surface(1.02 * end.outside), 200.0, 1.0);
+  }
+}
+
+TEST(Seams, AFocusThatHidesAPartOfItselfHasTheFartherDepthBetween) {
+  // The right half lies 10 mm deeper.
+  const Grid volume = centredGrid({60, 60, 60});
+  const Mask focus = maskOf(volume, [](const Vec3& p) {
+    return std::abs(p.x()) < 16.0 && std::abs(p.z()) < 16.0 &&
+           std::abs(p.y() - (p.x() > 0.0 ? 10.0 : 0.0)) < 6.0;
+  });
+  const Camera camera = anteriorCamera(Projection::orthographic, 100, 30, 77, 77);
+  const ClippingSurface surface =
+      buildClippingSurface(camera, volume, focus, {.boundary = Boundary::exact});
+  const auto& clip = std::get<ClipDepth>(surface.clip);
+  int between = 0;
+  for (double x = -3.0; x < 3.0; x += 0.01) {
+    const double depth = clip.surface({x, 0.3});
+    between += depth > 95.0 && depth < 103.0;
+  }
+  EXPECT_LT(between * 0.01, 1.0) << "mm; the voxels' own slope";
+}
+
+TEST(Seams, MovesWithTheSurface) {
+  const Ball ball(Projection::orthographic);
+  SurfaceOptions options;
+  options.boundary = Boundary::exact;
+  const ClippingSurface plain = buildClippingSurface(ball.camera, ball.volume, ball.focus, options);
+  options.offset = 3.0;
+  const ClippingSurface moved = buildClippingSurface(ball.camera, ball.volume, ball.focus, options);
+  Random random(2, 0, 0);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2 at(uniform(random, -25, 25), uniform(random, -25, 25));
+    EXPECT_NEAR(std::get<ClipDepth>(moved.clip).surface(at),
+                std::get<ClipDepth>(plain.clip).surface(at) + 3.0, 1e-4);
+  }
+}
+
+} // namespace
