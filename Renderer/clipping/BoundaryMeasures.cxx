@@ -93,31 +93,33 @@ private:
   std::vector<Edge> m_edges;
 };
 
-/// A point of the focus.
+/// Where the focus ends.
 struct OutlinePoint {
-  Vec2 position;
-  double depth;
+  double depth; ///< of the last of the focus
+  Vec2 beyond;  ///< just outside
 };
 
-/// The last points of the focus on the way from inside to outside, to 1/256 of it.
+/// Where it ends on the way from inside to outside, to 1/4096 of it.
 std::vector<OutlinePoint> outlinePoints(const FocusTracer& tracer, const std::vector<Edge>& edges) {
-  std::vector<OutlinePoint> in;
-  std::vector<Vec2> out, middle(edges.size());
+  std::vector<OutlinePoint> points;
+  std::vector<Vec2> in, middle(edges.size());
   for (const Edge& edge : edges) {
-    in.push_back({edge.inside, edge.own});
-    out.push_back(edge.outside);
+    in.push_back(edge.inside);
+    points.push_back({edge.own, edge.outside});
   }
-  for (int halving = 0; halving < 8; ++halving) {
+  for (int halving = 0; halving < 12; ++halving) {
     for (std::size_t i = 0; i < edges.size(); ++i)
-      middle[i] = 0.5 * (in[i].position + out[i]);
+      middle[i] = 0.5 * (in[i] + points[i].beyond);
     const std::vector<double> depths = tracer.depthsAt(middle);
     for (std::size_t i = 0; i < edges.size(); ++i)
-      if (depths[i] < infinity)
-        in[i] = {middle[i], depths[i]};
-      else
-        out[i] = middle[i];
+      if (depths[i] < infinity) {
+        in[i] = middle[i];
+        points[i].depth = depths[i];
+      } else {
+        points[i].beyond = middle[i];
+      }
   }
-  return in;
+  return points;
 }
 
 } // namespace
@@ -146,7 +148,7 @@ BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const M
     // Where the focus falls away steeply before it ends, that is a jump as well.
     if (edge.jumps || std::abs(points[i].depth - edge.own) > depthJump)
       continue;
-    const double context = outline.contextAt(points[i].position);
+    const double context = outline.contextAt(points[i].beyond);
     if (hasSteps(clip))
       gaps.push_back(std::abs(2.0 * edge.near - edge.far - edge.own));
     else if (context < infinity)

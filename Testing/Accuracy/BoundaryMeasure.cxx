@@ -83,10 +83,15 @@ void FocusView::traceRays() {
 }
 
 void FocusView::traceOutline() {
+  m_outlineDepths.resize(m_rays.size(), {infinity, -infinity});
   const auto look = [&](std::size_t a, std::size_t b) {
     const bool aIn = m_rays[a] < infinity, bIn = m_rays[b] < infinity;
-    if (aIn != bIn)
-      m_outline.push_back(aIn ? edgeBetween(a, b) : edgeBetween(b, a));
+    if (aIn == bIn)
+      return;
+    m_outline.push_back(aIn ? edgeBetween(a, b) : edgeBetween(b, a));
+    const Point& end = m_outline.back().inner;
+    DepthRange& range = m_outlineDepths[rayNear(end.raster)];
+    range = {std::min(range.least, end.depth), std::max(range.greatest, end.depth)};
   };
   for (std::size_t row = 0; row + 1 < m_across; ++row)
     for (std::size_t column = 0; column + 1 < m_across; ++column) {
@@ -96,17 +101,25 @@ void FocusView::traceOutline() {
     }
 }
 
-FocusView::Point FocusView::edgeBetween(std::size_t in, std::size_t out) const {
+/// The ray whose part of a pixel a raster position is in.
+std::size_t FocusView::rayNear(const Vec2& raster) const {
+  const auto part = [&](double x) {
+    return std::min(static_cast<std::size_t>(x * double{raysAcrossPixel}), m_across - 1);
+  };
+  return part(raster.y()) * m_across + part(raster.x());
+}
+
+FocusView::Edge FocusView::edgeBetween(std::size_t in, std::size_t out) const {
   Point inner{rayAt(in), m_rays[in]};
   Vec2 outer = rayAt(out);
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 24; ++i) {
     const Vec2 middle = 0.5 * (inner.raster + outer);
     if (const double depth = depthThrough(middle); depth < infinity)
       inner = {middle, depth};
     else
       outer = middle;
   }
-  return inner;
+  return {inner, outer};
 }
 
 bool FocusView::isAtJump(const Point& point) const {
@@ -121,14 +134,26 @@ bool FocusView::isAtJump(const Point& point) const {
   return greatest - least > jumpDepth;
 }
 
+bool FocusView::isAtOutlineJump(const Point& point) const {
+  const std::size_t ray = rayNear(point.raster);
+  const std::size_t column = ray % m_across, row = ray / m_across;
+  double least = infinity, greatest = -infinity;
+  for (std::size_t r = std::max<std::size_t>(row, 1) - 1; r <= std::min(row + 1, m_across - 1); ++r)
+    for (std::size_t c = std::max<std::size_t>(column, 1) - 1;
+         c <= std::min(column + 1, m_across - 1); ++c) {
+      least = std::min(least, m_outlineDepths[r * m_across + c].least);
+      greatest = std::max(greatest, m_outlineDepths[r * m_across + c].greatest);
+    }
+  return greatest - least > jumpDepth;
+}
+
 BoundaryMeasure FocusView::measure(const Surface& surface) const {
   BoundaryMeasure result;
   std::vector<double> gaps, cuts;
-  for (const Point& point : m_outline)
-    if (!isAtJump(point)) {
-      const double kept = point.depth - surface(point.raster);
-      gaps.push_back(std::max(0.0, kept));
-      cuts.push_back(std::max(0.0, -kept));
+  for (const auto& [inner, outer] : m_outline)
+    if (!isAtJump(inner) && !isAtOutlineJump(inner)) {
+      gaps.push_back(std::abs(inner.depth - surface(outer)));
+      cuts.push_back(std::max(0.0, surface(inner.raster) - inner.depth));
     }
   result.outlinePoints = static_cast<double>(m_outline.size());
   result.jumpShare = 1.0 - static_cast<double>(gaps.size()) / result.outlinePoints;

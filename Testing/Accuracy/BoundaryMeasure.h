@@ -7,12 +7,13 @@
 // the
 //   surface is not nearer to the eye than the focus.
 // - The gap is measured on the outline, found between each ray that meets the focus and a neighbour
-//   that does not, by bisection: how far the surface stands in front of the focus there. Where it
-//   lies behind, the focus is cut and is shown from the surface on, so the two still meet; how deep
-//   that cut is is told beside it.
+//   that does not, by bisection: how far the surface just outside stands in front of, or behind,
+//   the focus's last point. Where it stands in front by more than it does just inside there is a
+//   cliff up to the context.
 // - A depth jump is a difference of over 2 mm among the focus's depths at the four pixel centres
-//   around and at the ray itself: one depth per pixel cannot follow it. Shares with and without are
-//   told.
+//   around and at the ray itself, or among the outline's own in the parts of pixels around: where
+//   one part of the focus ends before another, its outline has two depths. Shares with and without
+//   are told.
 
 #include "FocusField.h"
 #include "Views.h"
@@ -31,7 +32,8 @@ struct Distances {
 struct BoundaryMeasure {
   double outlinePoints = 0.0;
   double jumpShare = 0.0; ///< of the outline's points, left out of `gap` and `cut`
-  Distances gap, cut;
+  Distances gap;          ///< of the surface just outside, either way
+  Distances cut;          ///< of the focus's last point in front of the surface
   double rays = 0.0;      ///< on the focus
   double strict = 0.0;    ///< share unoccluded, to strictTolerance
   double halfVoxel = 0.0; ///< to half of the labelmap's longest voxel edge, as it knows no better
@@ -55,20 +57,31 @@ private:
     Vec2 raster;
     double depth;
   };
+  /// The last of the focus, and just outside.
+  struct Edge {
+    Point inner;
+    Vec2 outer;
+  };
 
   double depthThrough(const Vec2& raster) const;
   Vec2 rayAt(std::size_t ray) const;
   void traceRays();
   void traceOutline();
-  Point edgeBetween(std::size_t in, std::size_t out) const;
+  Edge edgeBetween(std::size_t in, std::size_t out) const;
   bool isAtJump(const Point& point) const;
+  bool isAtOutlineJump(const Point& point) const;
+  std::size_t rayNear(const Vec2& raster) const;
 
   const FocusField& m_field;
   View m_view;
   std::size_t m_across;          ///< rays in a row
   std::vector<double> m_centres; ///< depth of the focus at pixel centres, infinite where it is not
   std::vector<double> m_rays;    ///< the same of the rays
-  std::vector<Point> m_outline;
+  std::vector<Edge> m_outline;
+  struct DepthRange {
+    double least, greatest;
+  };
+  std::vector<DepthRange> m_outlineDepths; ///< in each ray's part of a pixel
 };
 
 } // namespace fenestra::accuracy
