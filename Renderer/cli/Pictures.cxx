@@ -121,7 +121,9 @@ std::future<void> startSurface(const RenderOptions& options, const Scene& scene)
   if (!options.surface)
     return std::async(std::launch::deferred, [] {});
   return std::async(std::launch::async, [&options, &scene] {
-    writeSurface(surfaceMesh(std::get<ClipDepth>(scene.clip()), scene.domain()), *options.surface);
+    const auto& clip = std::get<ClipDepth>(scene.clip());
+    writeSurface(surfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)),
+                 *options.surface);
   });
 }
 

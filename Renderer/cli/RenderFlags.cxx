@@ -133,8 +133,8 @@ constexpr Flag flags[] = {
      "depth (a file of its own) [all]",
      Takes::list(), "color"},
     {"surface", "FILE", outputGroup,
-     "Clipping surface as triangles, RAS mm (any --clip but none and plane): .vtp .ply (with "
-     "depths) .stl",
+     "Clipping surface as triangles in RAS mm, to a tenth of a pixel in depth (any --clip but none "
+     "and plane): .vtp .ply (with depths) .stl",
      Takes::surface()},
     {"stats", "FILE", outputGroup, "Times, counts and measures as .json", Takes::report()},
     {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none [auto]",

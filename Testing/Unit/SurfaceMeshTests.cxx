@@ -1,11 +1,14 @@
 // The clipping surface's mesh: its points are samples of the buffer, on their rays, at their
-// depths; its triangles face the eye.
+// depths; its triangles face the eye, meet at whole edges, and miss no sample by more than they
+// may.
 
 #include "ClippingTesting.h"
 #include "clipping/SurfaceMesh.h"
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <map>
 #include <set>
 
 using namespace fenestra;
@@ -42,6 +45,32 @@ double waves(const Camera& camera, const Vec2& p) {
   return camera.targetDepth() + 5.0 * std::sin(0.1 * p.x()) - 3.0 * std::cos(0.2 * p.y());
 }
 
+/// Surfaces that are not kind to a mesh, by name.
+using Shape = std::function<double(const Vec2&)>;
+std::map<std::string, Shape> shapes(const Camera& camera) {
+  const double at = camera.targetDepth(), pitch = camera.pixelPitch();
+  const auto random = [](const Vec2& p) {
+    return Random(7, static_cast<std::uint64_t>(std::llround(1e3 * p.x()) + 1000000),
+                  static_cast<std::uint64_t>(std::llround(1e3 * p.y()) + 1000000))
+        .uniform();
+  };
+  return {
+      {"waves", [=](const Vec2& p) { return waves(camera, p); }},
+      {"a slanted step", [=](const Vec2& p) { return p.x() < 0.37 * p.y() ? at : at + 15.0; }},
+      {"a thin wall", [=](const Vec2& p) { return std::abs(p.x()) < 0.6 * pitch ? at - 9.0 : at; }},
+      {"a spike", [=](const Vec2& p) { return p.norm() < pitch ? at - 20.0 : at; }},
+      {"noise", [=](const Vec2& p) { return at + 20.0 * random(p); }},
+      {"a little noise", [=](const Vec2& p) { return at + 0.2 * random(p); }},
+      {"a disk", [=](const Vec2& p) { return p.norm() < 8.3 ? waves(camera, p) : -infinity; }},
+      {"torn", [=](const Vec2& p) { return random(p) < 0.6 ? waves(camera, p) : -infinity; }},
+  };
+}
+
+/// On the plane through the target, mm: counter-clockwise is positive.
+double flatArea(const Vec2& a, const Vec2& b, const Vec2& c) {
+  return 0.5 * ((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x());
+}
+
 Vec3 normalOf(const SurfaceMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   return (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]);
@@ -70,7 +99,7 @@ TEST(SurfaceMesh, APlaneSeenAlongAnAxisLiesWhereItIs) {
   const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 8.0, 24, 16);
   const Grid volume = centredGrid({20, 30, 10}); // in R, A and S: narrower than the viewport
   const auto plane = [](const Vec2& p) { return 290.0 + 0.25 * p.x() - 0.5 * p.y(); };
-  const SurfaceMesh mesh = surfaceMesh(clipOf(camera, volume, plane), volume);
+  const SurfaceMesh mesh = surfaceMesh(clipOf(camera, volume, plane), volume, 0.0);
   expectWellMade(mesh, camera);
   Vec3 lower = Vec3::Constant(infinity), upper = -lower;
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -94,7 +123,7 @@ TEST(SurfaceMesh, PointsProjectToTheirSamplesAndHaveTheirDepths) {
     const Camera camera = slantedCamera(projection);
     const Grid volume = centredGrid({60, 50, 40});
     const ClipDepth clip = clipOf(camera, volume, [&](const Vec2& p) { return waves(camera, p); });
-    const SurfaceMesh mesh = surfaceMesh(clip, volume);
+    const SurfaceMesh mesh = surfaceMesh(clip, volume, 1e-3);
     expectWellMade(mesh, camera);
     std::set<std::pair<long, long>> samples;
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -116,7 +145,7 @@ TEST(SurfaceMesh, CoversTheVolumesProjection) {
     const Grid volume = centredGrid({60, 50, 40});
     const ClipDepth clip =
         clipOf(camera, volume, [&](const Vec2&) { return camera.targetDepth(); });
-    const SurfaceMesh mesh = surfaceMesh(clip, volume);
+    const SurfaceMesh mesh = surfaceMesh(clip, volume, 1e-3);
     double area = 0.0;
     for (const auto& triangle : mesh.triangles)
       area += 0.5 * normalOf(mesh, triangle).norm();
@@ -143,7 +172,7 @@ TEST(SurfaceMesh, LeavesOutWhatHasNoDepthOrIsBehindTheEye) {
   const Grid volume = centredGrid({40, 40, 40});
   const Camera parallel = anteriorCamera(Projection::orthographic, 300.0, 10.0, 40, 40);
   const auto disk = [](const Vec2& p) { return p.norm() < 6.0 ? 290.0 : -infinity; };
-  const SurfaceMesh cutaway = surfaceMesh(clipOf(parallel, volume, disk), volume);
+  const SurfaceMesh cutaway = surfaceMesh(clipOf(parallel, volume, disk), volume, 1e-3);
   expectWellMade(cutaway, parallel);
   double area = 0.0;
   for (const auto& triangle : cutaway.triangles)
@@ -153,7 +182,7 @@ TEST(SurfaceMesh, LeavesOutWhatHasNoDepthOrIsBehindTheEye) {
 
   const Camera inside = anteriorCamera(Projection::perspective, 10.0, 10.0, 40, 40);
   const auto ramp = [](const Vec2& p) { return 3.0 + 0.5 * p.x(); };
-  const SurfaceMesh mesh = surfaceMesh(clipOf(inside, volume, ramp), volume);
+  const SurfaceMesh mesh = surfaceMesh(clipOf(inside, volume, ramp), volume, 1e-3);
   expectWellMade(mesh, inside);
   for (const float depth : mesh.depths)
     EXPECT_GT(depth, 0.0f);
@@ -161,33 +190,179 @@ TEST(SurfaceMesh, LeavesOutWhatHasNoDepthOrIsBehindTheEye) {
   const auto dot = [](const Vec2& p) {
     return (p - Vec2(0.25, 0.25)).norm() < 0.1 ? 290.0 : -infinity;
   };
-  EXPECT_TRUE(surfaceMesh(clipOf(parallel, volume, dot), volume).points.empty());
+  EXPECT_TRUE(surfaceMesh(clipOf(parallel, volume, dot), volume, 1e-3).points.empty());
   const auto none = [](const Vec2&) { return -infinity; };
-  EXPECT_TRUE(surfaceMesh(clipOf(parallel, volume, none), volume).points.empty());
+  EXPECT_TRUE(surfaceMesh(clipOf(parallel, volume, none), volume, 1e-3).points.empty());
 }
 
-TEST(SurfaceMesh, TakesEveryNthSampleOfALargeBufferAndTheEdges) {
-  const Grid volume = centredGrid({200, 200, 150});
-  const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 20.0, 300, 300);
-  const auto flat = [](const Vec2&) { return 290.0; };
-  const ClipDepth clip = clipOf(camera, volume, flat);
-  ASSERT_GT(clip.buffer->size(), 5 * mostSurfacePoints);
-  const SurfaceMesh mesh = surfaceMesh(clip, volume);
-  expectWellMade(mesh, camera);
-  EXPECT_LE(static_cast<std::int64_t>(mesh.points.size()), mostSurfacePoints);
-  EXPECT_GT(static_cast<std::int64_t>(mesh.points.size()), mostSurfacePoints / 3);
-  double area = 0.0;
-  for (const auto& triangle : mesh.triangles)
-    area += 0.5 * normalOf(mesh, triangle).norm();
-  EXPECT_GE(area, 200.0 * 150.0);
-  EXPECT_LT(area, 202.0 * 152.0);
+/// The greatest distance along depth of samples from the mesh, and how often each is covered by it:
+/// found from the triangles in the world alone.
+struct MeshError {
+  double greatest = 0.0;
+  std::map<std::pair<std::int64_t, std::int64_t>, int> covered; ///< column and row, not on edges
+};
 
-  // A small focus loses nothing to a large volume.
-  const auto small = [](const Vec2& p) { return p.norm() < 3.0 ? 290.0 : -infinity; };
-  const SurfaceMesh fine = surfaceMesh(clipOf(camera, volume, small), volume);
+MeshError errorOf(const SurfaceMesh& mesh, const ClipDepth& clip) {
+  const DepthBuffer& buffer = *clip.buffer;
+  MeshError error;
+  for (const auto& triangle : mesh.triangles) {
+    std::array<Vec2, 3> at;
+    Vec2 lower = Vec2::Constant(infinity), upper = -lower; // columns and rows
+    for (std::size_t i = 0; i < 3; ++i) {
+      at[i] = toBuffer(clip.camera, mesh.points[triangle[i]]).head<2>();
+      const Vec2 index(buffer.xAxis().index(at[i].x()), buffer.yAxis().index(at[i].y()));
+      lower = lower.cwiseMin(index);
+      upper = upper.cwiseMax(index);
+    }
+    const double area = flatArea(at[0], at[1], at[2]);
+    const Vec3 normal = normalOf(mesh, triangle);
+    for (std::int64_t row = std::lround(lower.y()); row <= std::lround(upper.y()); ++row)
+      for (std::int64_t column = std::lround(lower.x()); column <= std::lround(upper.x());
+           ++column) {
+        const Vec2 p = buffer.position(column, row);
+        const double inside = std::min({flatArea(at[0], at[1], p), flatArea(at[1], at[2], p),
+                                        flatArea(at[2], at[0], p)}) /
+                              area;
+        if (inside < -1e-7)
+          continue;
+        const Ray ray = clip.camera.rayThrough(p);
+        const double t =
+            (mesh.points[triangle[0]] - ray.origin).dot(normal) / ray.direction.dot(normal);
+        const double depth = t * clip.camera.depthPerLength(ray);
+        error.greatest =
+            std::max(error.greatest, std::abs(depth - buffer.at(buffer.sample(column, row))));
+        error.covered[{column, row}] += inside > 1e-7 ? 1 : 0;
+      }
+  }
+  return error;
+}
+
+/// Every edge has one triangle on each side, or is of the outline; and no point lies within an edge
+/// of the outline, as it would where a triangle beside it were halved alone.
+void expectNoCracks(const SurfaceMesh& mesh, const Camera& camera) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const auto& [a, b, c] : mesh.triangles)
+    for (const auto& edge : {std::pair{a, b}, {b, c}, {c, a}})
+      ASSERT_TRUE(edges.insert(edge).second) << "two triangles on one side of an edge";
+  std::vector<Vec2> at;
+  std::multimap<double, std::size_t> byX, byY;
+  for (const Vec3& point : mesh.points) {
+    at.push_back(toBuffer(camera, point).head<2>());
+    byX.emplace(at.back().x(), at.size() - 1);
+    byY.emplace(at.back().y(), at.size() - 1);
+  }
   const double pitch = camera.pixelPitch();
-  EXPECT_NEAR(static_cast<double>(fine.triangles.size()), 2.0 * pi * 9.0 / (pitch * pitch),
-              0.1 * static_cast<double>(fine.triangles.size()));
+  for (const auto& [from, to] : edges) {
+    if (edges.contains({to, from}))
+      continue;
+    const Vec2 a = at[from], b = at[to], along = (b - a).normalized();
+    const bool isUpright = std::abs(along.y()) > std::abs(along.x());
+    const auto& sorted = isUpright ? byY : byX;
+    const auto [low, high] = isUpright ? std::minmax(a.y(), b.y()) : std::minmax(a.x(), b.x());
+    for (auto point = sorted.upper_bound(low + 1e-6 * pitch);
+         point != sorted.end() && point->first < high - 1e-6 * pitch; ++point) {
+      const Vec2 d = at[point->second] - a;
+      ASSERT_GT(std::abs(d.x() * along.y() - d.y() * along.x()), 1e-3 * pitch)
+          << "a point within an outer edge";
+    }
+  }
+}
+
+TEST(SurfaceMesh, IsNowhereFartherFromASampleThanItMayBe) {
+  for (const Projection projection : projections)
+    for (const auto& [width, height] : {std::pair{48, 36}, {33, 65}, {17, 90}}) {
+      const Camera camera = slantedCamera(projection, width, height);
+      const Grid volume = centredGrid({30, 50, 40});
+      for (const auto& [name, shape] : shapes(camera)) {
+        const ClipDepth clip = clipOf(camera, volume, shape);
+        std::size_t before = 0;
+        for (const double tolerance : {1.0, 0.1, 0.01}) {
+          SCOPED_TRACE(name + " to " + std::to_string(tolerance) + " mm");
+          const SurfaceMesh mesh = surfaceMesh(clip, volume, tolerance);
+          expectWellMade(mesh, camera);
+          expectNoCracks(mesh, camera);
+          const MeshError error = errorOf(mesh, clip);
+          EXPECT_LE(error.greatest, tolerance + 1e-9);
+          for (const auto& [sample, triangles] : error.covered)
+            ASSERT_LE(triangles, 1);
+          EXPECT_GE(mesh.triangles.size(), before);
+          before = mesh.triangles.size();
+        }
+      }
+    }
+}
+
+TEST(SurfaceMesh, CoversEveryCellOfWhichThreeSamplesHaveADepth) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 10.0, 37, 50);
+  const Grid volume = centredGrid({60, 60, 60}); // all of the viewport, and coarser around it
+  for (const auto& [name, shape] : shapes(camera)) {
+    const ClipDepth clip = clipOf(camera, volume, shape);
+    const DepthBuffer& buffer = *clip.buffer;
+    double cells = 0.0;
+    for (std::int64_t row = 0; row + 1 < buffer.rows(); ++row)
+      for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column) {
+        int corners = 0;
+        for (const auto& [right, down] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}})
+          corners += std::isfinite(buffer.at(buffer.sample(column + right, row + down))) ? 1 : 0;
+        const Vec2 edges = buffer.position(column + 1, row + 1) - buffer.position(column, row);
+        cells += 0.5 * std::max(0, corners - 2) * std::abs(edges.x() * edges.y());
+      }
+    const SurfaceMesh mesh = surfaceMesh(clip, volume, 0.05);
+    double area = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles)
+      area += flatArea(toBuffer(camera, mesh.points[a]).head<2>(),
+                       toBuffer(camera, mesh.points[b]).head<2>(),
+                       toBuffer(camera, mesh.points[c]).head<2>());
+    EXPECT_NEAR(area, cells, 1e-9 * cells) << name;
+  }
+}
+
+TEST(SurfaceMesh, HasAsManyTrianglesAsTheSurfaceNeeds) {
+  const Grid volume = centredGrid({30, 30, 30});
+  for (const Projection projection : projections) {
+    const Camera camera = anteriorCamera(projection, 300.0, 15.0, 200, 200);
+    // A plane, which in perspective has no depth that is linear over the picture.
+    const auto plane = [&](const Vec2& p) {
+      const Vec3 normal(0.3, 1.0, -0.2);
+      const Ray ray = camera.rayThrough(p);
+      const double t = (Vec3(0, -12, 0) - ray.origin).dot(normal) / ray.direction.dot(normal);
+      return t * camera.depthPerLength(ray);
+    };
+    const ClipDepth flat = clipOf(camera, volume, plane);
+    const double tolerance = surfaceTolerance(camera);
+    EXPECT_DOUBLE_EQ(tolerance, 0.015);
+    const SurfaceMesh two = surfaceMesh(flat, volume, tolerance);
+    EXPECT_EQ(two.triangles.size(), 2u);
+    EXPECT_EQ(two.points.size(), 4u);
+    EXPECT_LE(errorOf(two, flat).greatest, tolerance);
+
+    // A step costs what its own edge needs; noise needs every sample, and no more.
+    const auto step = [&](const Vec2& p) { return plane(p) + (p.x() < 0.31 * p.y() ? 0.0 : 9.0); };
+    const auto columns = static_cast<std::size_t>(flat.buffer->columns());
+    EXPECT_LT(surfaceMesh(clipOf(camera, volume, step), volume, tolerance).triangles.size(),
+              14 * columns);
+    const ClipDepth noise = clipOf(camera, volume, shapes(camera).at("noise"));
+    const std::size_t most = surfaceMesh(noise, volume, 0.0).triangles.size();
+    EXPECT_GT(surfaceMesh(noise, volume, tolerance).triangles.size(), most * 95 / 100);
+    EXPECT_LE(most, 2 * static_cast<std::size_t>(flat.buffer->size()));
+  }
+}
+
+TEST(SurfaceMesh, IsTheSameForASubjectOfAnySize) {
+  std::vector<std::size_t> triangles;
+  for (const double size : {1.0, 512.0}) {
+    const Camera camera =
+        anteriorCamera(Projection::orthographic, 5.0 * size, 0.6 * size, 100, 100);
+    const Grid volume = centredGrid({16, 16, 16}, Vec3::Constant(size / 16.0));
+    const auto bump = [&](const Vec2& p) {
+      return 5.0 * size - 0.3 * size * std::exp(-9.0 * p.squaredNorm() / (size * size));
+    };
+    triangles.push_back(surfaceMesh(clipOf(camera, volume, bump), volume, surfaceTolerance(camera))
+                            .triangles.size());
+  }
+  EXPECT_NEAR(static_cast<double>(triangles[0]), static_cast<double>(triangles[1]), 8.0);
+  EXPECT_GT(triangles[0], 100u);
+  EXPECT_LT(triangles[0], 5000u);
 }
 
 } // namespace
