@@ -6,6 +6,8 @@
 #include "io/JsonNode.h"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 
 namespace fenestra {
 namespace {
@@ -38,12 +40,30 @@ json fileState(const std::filesystem::path& path) {
       {"file", path.string()}, {"bytes", bytes}, {"modified", modified.time_since_epoch().count()}};
 }
 
-json inputStates(const std::vector<std::filesystem::path>& inputs) {
+json inputStates(const TurntableOptions& options, const Scene& scene) {
+  std::set<std::filesystem::path> files(options.render.inputs.begin(), options.render.inputs.end());
+  for (const std::string& file : scene.files())
+    files.insert(file);
   json states = json::array();
-  for (const std::filesystem::path& input : inputs)
-    if (std::filesystem::is_regular_file(input))
-      states.push_back(fileState(input));
+  for (const std::filesystem::path& file : files) // what is in an archive changes with it
+    if (std::filesystem::is_regular_file(file))
+      states.push_back(fileState(file));
   return states;
+}
+
+template <typename T>
+std::uint64_t digest(const std::vector<T>& voxels) {
+  return std::hash<std::string_view>()(
+      {reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)});
+}
+
+/// Of what may lie in files that only a header names.
+json voxelDigests(const Scene& scene) {
+  json digests = {
+      {"volume", std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels)}};
+  if (scene.focus())
+    digests["focus"] = digest(scene.focus()->voxels);
+  return digests;
 }
 
 /// Elements of one array that another does not have.
@@ -64,9 +84,16 @@ std::string difference(const json& there, const json& here) {
     return before + (before.empty() || now.empty() ? "" : " there, ") + now +
            (now.empty() ? " there" : " here");
   }
-  if (there["inputs"] != here["inputs"])
-    return elementsBeyond(here["inputs"], there["inputs"]) + " has changed since";
-  return "made by fenestra " + there["version"].dump();
+  if (there["version"] != here["version"])
+    return "made by fenestra " + there["version"].dump();
+  const std::string changed = elementsBeyond(here["inputs"], there["inputs"]);
+  return (changed.empty() ? "the volume or the focus" : changed) + " has changed since";
+}
+
+void requireSame(const json& there, const json& here, const std::string& record) {
+  if (there != here)
+    throw usageError(record + ": is of another turntable (" + difference(there, here) +
+                     "); choose another --output, or add --restart to replace its frames");
 }
 
 SurfaceChange changeIn(const JsonNode& node) {
@@ -82,9 +109,7 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
 
 TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
     : m_path(recordPath(options)),
-      m_request{{"version", versionText},
-                {"arguments", requestedArguments(flags)},
-                {"inputs", inputStates(options.render.inputs)}},
+      m_request{{"version", versionText}, {"arguments", requestedArguments(flags)}},
       m_finished(static_cast<std::size_t>(options.frames), false) {
   if (options.restart)
     return;
@@ -109,10 +134,11 @@ void TurntableRecord::read(const TurntableOptions& options) {
   const JsonNode root(document, name);
   for (const char* list : {"arguments", "inputs"})
     root.at("request").at(list).elements(); // throws where it is none
-  const json& request = document["request"];
-  if (request != m_request)
-    throw usageError(name + ": is of another turntable (" + difference(request, m_request) +
-                     "); choose another --output, or add --restart to replace its frames");
+  m_recorded = document["request"];
+  json known = m_recorded;
+  for (const char* later : {"inputs", "voxels"})
+    known.erase(later);
+  requireSame(known, m_request, name);
   for (const JsonNode& finished : root.at("finished").elements()) {
     const auto frame = static_cast<int>(finished.at("frame").numberIn(0, options.frames - 1));
     const std::vector<std::filesystem::path> files = frameFiles(options, frame);
@@ -121,6 +147,13 @@ void TurntableRecord::read(const TurntableOptions& options) {
     if (const auto change = finished.find("surfaceChange"))
       m_changes[frame] = changeIn(*change);
   }
+}
+
+void TurntableRecord::setInputs(const TurntableOptions& options, const Scene& scene) {
+  m_request["inputs"] = inputStates(options, scene);
+  m_request["voxels"] = voxelDigests(scene);
+  if (!m_recorded.is_null())
+    requireSame(m_recorded, m_request, m_path.string());
 }
 
 int TurntableRecord::finishedCount() const {

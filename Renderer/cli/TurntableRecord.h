@@ -4,6 +4,7 @@
 
 #include "cli/TurntableFrames.h"
 #include "clipping/SurfaceChange.h"
+#include "scene/Scene.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,9 +15,12 @@ namespace fenestra {
 class TurntableRecord {
 public:
   /// Reads the record that there is for these flags; with options.restart as if there were none.
-  /// Throws Error: usage where it, or any of the frames, is of something else; input where it is
+  /// Throws Error: usage where it, or any of the frames, is of other flags; input where it is
   /// damaged.
   TurntableRecord(const TurntableOptions& options, const FlagValues& flags);
+  /// What the frames are made of, beside the flags: files that were named or are referred to, and
+  /// the voxels. Throws Error (usage) where the recorded frames are of others.
+  void setInputs(const TurntableOptions& options, const Scene& scene);
 
   const std::filesystem::path& path() const { return m_path; }
   int finishedCount() const;
@@ -37,6 +41,7 @@ private:
 
   std::filesystem::path m_path;
   nlohmann::json m_request;
+  nlohmann::json m_recorded; ///< the request that the record has; null where there is none
   std::vector<bool> m_finished;
   std::map<int, SurfaceChange> m_changes;
 };

@@ -2,6 +2,7 @@
 // as the first of them may be chosen.
 
 #include "CommandTesting.h"
+#include "core/Stopwatch.h"
 #include "io/pictures/ImageReader.h"
 
 #include <nlohmann/json.hpp>
@@ -174,6 +175,60 @@ TEST_F(TurntableCommand, MixesNoFramesOfDifferentTurntables) {
   EXPECT_EQ(changed.status, 2);
   EXPECT_NE(changed.err.find("segments.seg.nrrd has changed since"), std::string::npos)
       << changed.err;
+}
+
+TEST_F(TurntableCommand, NoticesWhatASceneRefersTo) {
+  std::filesystem::copy(kneeFolder() / "knee", folder / "knee");
+  const Arguments turn = {
+      "turntable", "knee/knee.mrml",    "--size",   "8x8", "--samples", "1",
+      "--focus",   "PatellarCartilage", "--frames", "2",   "--output",  "knee.png"};
+  ASSERT_EQ(run(turn, folder.path()).status, 0);
+  ASSERT_EQ(run(turn, folder.path()).status, 0);
+  for (const char* file : {"knee/knee.nrrd", "knee/knee.seg.nrrd"}) {
+    const auto before = std::filesystem::last_write_time(folder / file);
+    std::filesystem::last_write_time(folder / file, before + std::chrono::seconds(1));
+    expectRefused({{file, turn, 2,
+                    "knee.turntable.json: is of another turntable (" + std::string(file) +
+                        " has changed since)"}},
+                  folder.path());
+    std::filesystem::last_write_time(folder / file, before);
+  }
+  EXPECT_EQ(run(turn, folder.path()).status, 0);
+}
+
+TEST_F(TurntableCommand, NoticesVoxelsInAFileThatOnlyAHeaderNames) {
+  NrrdText header;
+  header.fields = "data file: voxels.raw\n";
+  folder.write("volume.nhdr", header.with(""));
+  folder.write("voxels.raw", ramp());
+  Arguments arguments = turntable({"--output", "turn.exr"});
+  *std::find(arguments.begin(), arguments.end(), "volume.nrrd") = "volume.nhdr";
+  ASSERT_EQ(run(arguments, folder.path()).status, 0);
+  std::string others = ramp();
+  std::swap(others[20], others[40]);
+  const auto before = std::filesystem::last_write_time(folder / "voxels.raw");
+  folder.write("voxels.raw", others);
+  std::filesystem::last_write_time(folder / "voxels.raw", before);
+  expectRefused({{"voxels", arguments, 2, "(the volume or the focus has changed since)"}},
+                folder.path());
+}
+
+TEST_F(TurntableCommand, WaitsForNoSurfaceToStop) {
+  Arguments arguments = turntable({"--output", "turn.exr", "--samples", "1", "--boundary", "exact",
+                                   "--degrees", "90", "--stats", "all.json", "--progress", "xml"});
+  *std::find(arguments.begin(), arguments.end(), "16x16") = "1024x1024"; // five surfaces a frame
+  const Stopwatch watch;
+  Process process(arguments, folder.path());
+  ASSERT_TRUE(process.waitForOutput("frame 2 of 4"));
+  const double frame = watch.seconds(); // most of it for its surfaces
+  process.send(SIGINT);
+  const Outcome outcome = process.wait();
+  std::cout << "stopped within " << outcome.seconds << " s, after a frame of " << frame << " s\n";
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_LT(outcome.seconds, frame / 4.0);
+  EXPECT_NE(outcome.out.find("1 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
+  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "all.json"))["finished"], 1);
+  EXPECT_EQ(filesIn(folder.path()).size(), 2U + 3) << "inputs, a frame, and two .json";
 }
 
 TEST_F(TurntableCommand, RefusesWhatIsForOnePicture) {
