@@ -17,10 +17,9 @@ void onSignal(int) {
     *stop = true;
     return;
   }
-  removePrivateFolders();
   static constexpr char line[] = "fenestra: stopped on request; nothing was written\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line, sizeof line - 1);
-  ::_exit(stoppedStatus);
+  endStopped();
 }
 
 void handle(void (*handler)(int)) {
@@ -33,6 +32,11 @@ void handle(void (*handler)(int)) {
 }
 
 } // namespace
+
+void endStopped() {
+  removePrivateFolders();
+  ::_exit(stoppedStatus);
+}
 
 StopOnSignal::StopOnSignal() {
   handle(onSignal);

@@ -8,6 +8,10 @@ namespace fenestra {
 
 inline constexpr int stoppedStatus = 5;
 
+/// Ends the process with that status, whatever other threads are about; nothing may be
+/// half-written.
+[[noreturn]] void endStopped();
+
 /// One at a time, for as long as signals are to be handled.
 class StopOnSignal {
 public:

@@ -13,6 +13,8 @@
 #include "io/AtomicFile.h"
 #include "scene/Scene.h"
 
+#include <chrono>
+#include <future>
 #include <iostream>
 #include <set>
 #include <sstream>
@@ -33,9 +35,12 @@ public:
         m_scene(options.render.scene),
         m_start(m_scene.camera().pose()) {}
 
+  /// Whether a view is being made that nobody waits for any more.
+  bool isPreparing() const { return m_preparing.valid(); }
   int rendered() const { return m_record.finishedCount() - m_before; }
 
   void run() {
+    m_record.setInputs(m_options, m_scene);
     m_record.write();
     const RenderOptions& render = m_options.render;
     const RenderSettings settings = settingsFor(render, m_scene.background());
@@ -68,14 +73,38 @@ public:
   }
 
 private:
+  /// What a frame shows, before it is rendered.
+  struct View {
+    Scene scene;
+    std::optional<SeenSurface> surface;
+    std::optional<SurfaceChange> change; ///< of the surface since the frame before
+  };
+
   /// Returns whether it is finished, and not stopped.
   bool renderFrame(int frame, const RenderSettings& settings) {
-    const std::optional<SurfaceChange> change = turnTo(frame);
+    if (!waitForView(frame))
+      return false;
+    View view = m_preparing.get();
+    m_scene = std::move(view.scene);
+    m_surface = std::move(view.surface);
+    m_surfaceFrame = frame;
+    for (const std::string& warning : m_scene.warnings())
+      if (m_warnings.insert(warning).second)
+        std::cerr << "fenestra: warning: " << warning << '\n';
     const RenderResult result = render(m_scene.forRender(), settings, m_monitor);
     if (result.reason == StopReason::request)
       return false;
     writePictures(frameOptions(m_options, frame), m_scene, result, m_command);
-    m_record.finish(frame, change);
+    m_record.finish(frame, view.change);
+    return true;
+  }
+
+  /// In a thread of its own, since a stop does not wait for surfaces; returns whether it is there.
+  bool waitForView(int frame) {
+    m_preparing = std::async(std::launch::async, [this, frame] { return viewOf(frame); });
+    while (m_preparing.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready)
+      if (m_monitor.stop)
+        return false;
     return true;
   }
 
@@ -83,22 +112,17 @@ private:
     return m_scene.changed(turnedRequest(m_options.render.scene, m_start, degrees));
   }
 
-  /// How the clipping surface has changed since the frame before.
-  std::optional<SurfaceChange> turnTo(int frame) {
+  View viewOf(int frame) const {
     const double step = m_options.angle(1), angle = m_options.angle(frame);
     const bool follows = frame > 0 || m_options.isClosed();
+    std::optional<SeenSurface> before = m_surface;
     if (follows && m_surfaceFrame != frame - 1)
-      m_surface = seen(sceneAt(angle - step));
-    m_scene = sceneAt(angle);
-    for (const std::string& warning : m_scene.warnings())
-      if (m_warnings.insert(warning).second)
-        std::cerr << "fenestra: warning: " << warning << '\n';
-    const std::optional<SeenSurface> before = std::move(m_surface);
-    m_surface = seen(m_scene);
-    m_surfaceFrame = frame;
-    if (!follows || !before || !m_surface || step == 0.0)
-      return std::nullopt;
-    return changeBetween(*before, *m_surface, m_start.up, step);
+      before = seen(sceneAt(angle - step));
+    View view{sceneAt(angle), std::nullopt, std::nullopt};
+    view.surface = seen(view.scene);
+    if (follows && before && view.surface && step != 0.0)
+      view.change = changeBetween(*before, *view.surface, m_start.up, step);
+    return view;
   }
 
   /// Nothing where the clip is no surface.
@@ -134,6 +158,7 @@ private:
   std::optional<SeenSurface> m_surface; ///< of the frame:
   int m_surfaceFrame = -2;              ///< none so far
   std::set<std::string> m_warnings;
+  std::future<View> m_preparing; ///< left to itself by a stop
 };
 
 /// Before the long work: that frames cost no input, and can be written.
@@ -183,6 +208,8 @@ int turntableCommand(int argc, char** argv, int first) {
   if (options.render.stats)
     writeFile(*options.render.stats, turntable.statsJson(total.seconds()));
   report(options, record, turntable.rendered(), total.seconds());
+  if (turntable.isPreparing())
+    endStopped();
   return record.finishedCount() == options.frames ? 0 : stoppedStatus;
 }
 
