@@ -38,10 +38,12 @@ constexpr Flag flags[] = {
      "repeated [INPUT.png]",
      Takes::picture()},
     {"margin", "MM,...", clipGroup,
-     "Grows the focus's segments, or shrinks them (negative): one for all, or one each [0]",
+     "Grows the focus, or shrinks it (negative): one for all its segments together, or one "
+     "each [0]",
      Takes::numbers()},
     {"labelsmoothing", "MM", clipGroup,
-     "Smooths the focus's labels by a Gaussian of this deviation, against stair steps [0]",
+     "Smooths the focus's labels by a Gaussian of this deviation, against stair steps; thick "
+     "slices are interpolated first [0]",
      Takes::number(0.0, 100.0), "0"},
     {"clip", "MODE", clipGroup,
      "none, plane, hole, cutaway, ghost, surface, or auto: surface with a focus, else none [auto]",

@@ -4,6 +4,7 @@
 #include "clipping/FocusDepth.h"
 #include "core/Error.h"
 #include "io/medical/SegmentationReader.h"
+#include "io/medical/SliceInterpolation.h"
 
 #include <gtest/gtest.h>
 
@@ -108,6 +109,81 @@ TEST(MaskShaping, AFlatFaceStaysWhereItIs) {
     return focus.depth.at(focus.depth.viewportSample(32, 32));
   };
   EXPECT_NEAR(depth(smoothed(box, 1.0, volume)), depth(box), 0.01) << "a byte's rounding";
+}
+
+/// Spread of what the visible surface misses y = slope z by, along its normal, mm.
+double stairsOfASlope(const Mask& mask, double slope) {
+  const Camera camera = anteriorCamera(Projection::orthographic, 100, 5, 128, 128);
+  const FocusDepth focus = traceFocus(camera, volume, mask);
+  std::vector<double> misses;
+  for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
+    for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
+      const Vec2 at = focus.depth.position(column, row);
+      if (at.cwiseAbs().maxCoeff() < 5.0)
+        misses.push_back(
+            (focus.depth.at(focus.depth.sample(column, row)) - 100.0 - slope * at.y()) /
+            std::hypot(1.0, slope));
+    }
+  const auto [least, greatest] = std::ranges::minmax(misses);
+  return greatest - least;
+}
+
+TEST(MaskShaping, ASurfaceThatLeansAcrossThickSlicesIsASlope) {
+  for (const double slope : {1.0, 2.0}) { // 2 and 4 mm from slice to slice
+    const Mask steps = maskOf(centredGrid({41, 121, 21}, {0.5, 0.5, 2.0}),
+                              [&](const Vec3& p) { return p.y() >= slope * p.z() + 0.1; });
+    EXPECT_GT(stairsOfASlope(smoothed(steps, 0.6, volume), slope), 0.3);
+    EXPECT_LT(stairsOfASlope(smoothed(betweenSlices(steps), 0.6, volume), slope), 0.12);
+  }
+}
+
+TEST(MaskShaping, ThickSlicesStayAndTheShapeBetweenThemIsItsOwn) {
+  const double radius = 10.0;
+  for (const int axis : {0, 1, 2}) {
+    Vec3 spacing = Vec3::Constant(0.5);
+    Size3 size = Size3::Constant(45);
+    spacing[axis] = 1.25;
+    size[axis] = 19;
+    const Mask ball = sphereMask(centredGrid(size, spacing), radius);
+    const Mask fine = betweenSlices(ball);
+    Size3 fineSize = size;
+    fineSize[axis] = 55;
+    ASSERT_EQ(fine.grid.size, fineSize);
+    EXPECT_LT(fine.grid.worldCenter().norm(), 1e-9);
+    EXPECT_NEAR(millimetres3(fine) / ballOf(radius), 1.0, 0.02);
+    std::int64_t differing = 0;
+    for (std::int64_t i = 0; i < ball.grid.voxelCount(); ++i) {
+      const Size3 at{i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y())};
+      Size3 to = at;
+      to[axis] *= 3;
+      const auto number = to.x() + fineSize.x() * (to.y() + fineSize.y() * to.z());
+      differing +=
+          ball.voxels[static_cast<std::size_t>(i)] != fine.voxels[static_cast<std::size_t>(number)];
+    }
+    EXPECT_EQ(differing, 0);
+  }
+}
+
+TEST(MaskShaping, SlicesThatAreNearlyCubesStayAsTheyAre) {
+  const Mask mask = ball(10.0);
+  EXPECT_EQ(betweenSlices(mask).voxels, mask.voxels);
+}
+
+TEST(MaskShaping, OneMarginShrinksSegmentsThatTouchAsAWhole) {
+  const Grid grid = centredGrid({40, 40, 40});
+  std::vector<std::uint8_t> labels;
+  for (std::int64_t z = 0; z < 40; ++z)
+    for (std::int64_t y = 0; y < 40; ++y)
+      for (std::int64_t x = 0; x < 40; ++x) {
+        const bool in = x >= 10 && x < 30 && y >= 10 && y < 20 && z >= 10 && z < 20;
+        labels.push_back(!in ? 0 : x < 20 ? 1 : 2);
+      }
+  const Segmentation segmentation("test", grid, 1, labels, {{"a", "A", 1}, {"b", "B", 2}});
+  const auto count = [&](const MaskShaping& shaping) {
+    return segmentation.mask({"A", "B"}, grid, shaping).count;
+  };
+  EXPECT_EQ(count({{-1.0}}), 18 * 8 * 8);
+  EXPECT_EQ(count({{-1.0, -1.0}}), 2 * 8 * 8 * 8);
 }
 
 TEST(MaskShaping, ASegmentationTakesAMarginForEachSegment) {

@@ -8,14 +8,12 @@
 namespace fenestra {
 
 struct MaskShaping {
-  /// mm by which each chosen segment grows (or shrinks, negative), in their order; one for all, or
-  /// none.
+  /// mm by which each chosen segment grows (or shrinks, negative), in their order; or one for all
+  /// of them as a whole; or none.
   std::vector<double> margins = {};
-  double smoothing = 0.0; ///< mm, standard deviation of a Gaussian; 0 leaves the labels' own steps
-
-  double margin(std::size_t segment) const {
-    return margins.empty() ? 0.0 : margins[margins.size() == 1 ? 0 : segment];
-  }
+  /// mm, standard deviation of a Gaussian, before which thick slices are interpolated
+  /// (betweenSlices); 0 leaves the labels' own steps.
+  double smoothing = 0.0;
 
   bool operator==(const MaskShaping&) const = default;
 };

@@ -8,6 +8,7 @@
 #include "io/medical/SampleStore.h"
 #include "io/medical/SegmentMask.h"
 #include "io/medical/SegmentTags.h"
+#include "io/medical/SliceInterpolation.h"
 
 #include <charconv>
 #include <map>
@@ -312,9 +313,16 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
   };
   if (shaping == MaskShaping())
     return maskOf(chosen);
+  const auto shaped = [&](const std::vector<SegmentInfo>& segments, double margin) {
+    const Mask mask = maskOf(segments);
+    return grown(shaping.smoothing > 0.0 ? betweenSlices(mask) : mask, margin, volume);
+  };
   std::vector<Mask> masks;
-  for (std::size_t i = 0; i < chosen.size(); ++i)
-    masks.push_back(grown(maskOf({chosen[i]}), shaping.margin(i), volume));
+  if (shaping.margins.size() <= 1) // as a whole: no gaps where segments touch
+    masks.push_back(shaped(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
+  else
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
   Mask mask = smoothed(united(masks), shaping.smoothing, volume);
   if (mask.count == 0)
     throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (" +
