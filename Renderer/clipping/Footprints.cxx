@@ -2,6 +2,8 @@
 
 #include "camera/BoxProjection.h"
 
+#include <tuple>
+
 namespace fenestra {
 
 namespace {

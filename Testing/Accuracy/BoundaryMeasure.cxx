@@ -39,8 +39,10 @@ Distances summary(std::vector<double> values) {
   if (values.empty())
     return result;
   std::ranges::sort(values);
-  for (const double value : values)
+  for (const double value : values) {
     result.mean += value / static_cast<double>(values.size());
+    result.wide += (value > wideGap ? 1.0 : 0.0) / static_cast<double>(values.size());
+  }
   result.p95 = values[static_cast<std::size_t>(0.95 * static_cast<double>(values.size() - 1))];
   result.max = values.back();
   return result;

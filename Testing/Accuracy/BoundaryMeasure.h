@@ -23,10 +23,12 @@
 namespace fenestra::accuracy {
 
 constexpr double jumpDepth = 2.0;       ///< mm
+constexpr double wideGap = 0.2;         ///< mm
 constexpr double strictTolerance = 0.2; ///< mm of what may be kept in front of an unoccluded focus
 
 struct Distances {
   double mean = 0.0, p95 = 0.0, max = 0.0; ///< mm
+  double wide = 0.0;                       ///< share over wideGap
 };
 
 struct BoundaryMeasure {

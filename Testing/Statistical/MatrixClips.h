@@ -1,0 +1,27 @@
+#pragma once
+// What the matrix's scenes remove, and how what is not focus looks: for the product and, described,
+// for the oracle.
+
+#include "Matrix.h"
+
+#include <random>
+
+namespace fenestra::testing {
+
+using Generator = std::mt19937_64;
+
+inline double uniform(Generator& generator, double low, double high) {
+  return low + (high - low) * static_cast<double>(generator() >> 11) * 0x1p-53;
+}
+
+inline Vec3 randomDirection(Generator& generator) {
+  const double u = uniform(generator, 0.0, 1.0);
+  return uniformDirection({u, uniform(generator, 0.0, 1.0)});
+}
+
+/// Needs the scene's camera, volume and crop.
+void placeClip(const Combination& c, Generator& generator, MatrixScene& scene);
+
+void styleContext(StyleFactor factor, MatrixScene& scene);
+
+} // namespace fenestra::testing
