@@ -68,9 +68,11 @@ Seams::Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
       focusReaches(m_tracer->camera(), focus.depth, m_tracer->cells(), uncertainCells(focus));
   for (const Interval& reach : reaches) {
     m_numbers.push_back(reach.empty() ? -1 : static_cast<std::int32_t>(m_reaches.size()));
-    if (!reach.empty())
-      m_reaches.push_back({static_cast<float>(reach.begin - m_reference),
-                           static_cast<float>(reach.end - m_reference)});
+    if (reach.empty())
+      continue;
+    m_reaches.push_back({static_cast<float>(reach.begin - m_reference),
+                         static_cast<float>(reach.end - m_reference)});
+    m_ends.push_back(reach.end);
   }
   findRim(focus);
   limitReaches(focus);
@@ -141,31 +143,38 @@ void Seams::move(double offset) {
 }
 
 void Seams::answer(std::span<Question> questions) const {
-  Batch inner, outer;
+  Batch inner, rest;
   const double toFocus = m_reference - m_offset;
+  const auto reachOf = [&](const Question& question) {
+    return m_reaches[static_cast<std::size_t>(question.seam)];
+  };
+  const auto addToRest = [&](Question& question) {
+    rest.add(question,
+             {toFocus + reachOf(question).least, m_ends[static_cast<std::size_t>(question.seam)]});
+  };
   for (Question& question : questions) {
-    const auto seam = static_cast<std::size_t>(question.seam);
-    Interval reach{m_reaches[seam].least, m_reaches[seam].greatest};
-    if (m_tracer->isFocus(question.position, toFocus + question.between.begin)) {
-      question.surface = reach.begin; // it has been met
-    } else if (isInner(question.seam)) {
-      question.surface = reach.end;
-      reach.end = std::min(reach.end, question.between.end);
-      inner.add(question, {toFocus + reach.begin, toFocus + reach.end});
-    } else {
-      outer.add(question, {toFocus + reach.begin, toFocus + reach.end});
-    }
+    const auto [least, greatest] = reachOf(question);
+    if (m_tracer->isFocus(question.position, toFocus + question.between.begin))
+      question.surface = least; // it has been met
+    else if (isInner(question.seam))
+      inner.add(question,
+                {toFocus + least, toFocus + std::min<double>(greatest, question.between.end)});
+    else
+      addToRest(question);
   }
   m_tracer->meet(inner.glances(), inner.sights());
   for (std::size_t i = 0; i < inner.size; ++i)
     if (inner.sight[i].indicator > 0.0)
       inner.question[i]->surface = inner.sight[i].depth - toFocus;
-  m_tracer->look(outer.glances(), outer.sights());
-  for (std::size_t i = 0; i < outer.size; ++i)
-    if (const Sight& sight = outer.sight[i]; sight.indicator > FocusCells::foothill) {
+    else
+      addToRest(*inner.question[i]);
+  m_tracer->look(rest.glances(), rest.sights());
+  for (std::size_t i = 0; i < rest.size; ++i)
+    if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::foothill) {
+      Question& question = *rest.question[i];
+      const double depth = std::min<double>(sight.depth - toFocus, reachOf(question).greatest);
       const double share = (sight.indicator - FocusCells::foothill) / (0.5 - FocusCells::foothill);
-      double& surface = outer.question[i]->surface;
-      surface += share * (sight.depth - toFocus - surface);
+      question.surface += share * (depth - question.surface);
     }
 }
 

@@ -11,10 +11,10 @@
 // that still see a summit, the rim, have its depth: it is the rim that the surface is filled from,
 // so that it leaves the focus where the focus ends and not where its last sample was.
 //
-// A seam's reach bounds what its rays can see; a point in front of or behind it is not asked for. In
-// an inner seam, where all samples are focus, the surface is the focus's depth, but no nearer and no
-// farther than the samples around see it: it follows the focus onto no spike and into no hole that
-// is narrower than they are apart.
+// A seam's reach bounds what its rays can see; a point in front of or behind it is not asked for.
+// In an inner seam, where all samples are focus, the surface is no nearer and no farther than the
+// samples around see it: it follows the focus onto no spike and into no pit that is narrower than
+// they are apart.
 
 #include "clipping/FocusDepth.h"
 
@@ -45,7 +45,7 @@ public:
   struct Reach {
     float least, greatest;
   };
-  /// Of each seam: the focus, or in the inner ones the surface, is between them.
+  /// Of each seam, of what its rays see the surface goes to.
   const std::vector<Reach>& reaches() const { return m_reaches; }
 
   /// All samples around it are focus.
@@ -71,6 +71,7 @@ private:
   double m_offset = 0.0;
   std::vector<std::int32_t> m_numbers;
   std::vector<Reach> m_reaches;
+  std::vector<double> m_ends;  ///< of each seam, how far the focus reaches in it, mm
   std::vector<bool> m_isInner; ///< of each seam
   std::vector<Rim> m_rim;
 };

@@ -58,11 +58,12 @@ TEST(PresetsCommand, OneNameStandsForFocusLookViewAndClip) {
 
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
   for (const std::string& line : lines)
-    for (const char* flag : {"transfer", "lights", "view", "clip", "boundary", "labelsmoothing"})
+    for (const char* flag :
+         {"transfer", "lights", "view", "clip", "boundary", "labelsmoothing", "soft"})
       if (line.starts_with(std::string(flag) + ": "))
         written.insert(written.end(),
                        {std::string("--") + flag, line.substr(std::string(flag).size() + 2)});
-  EXPECT_GE(written.size(), 14u);
+  EXPECT_GE(written.size(), 16u);
   ASSERT_EQ(renderKnee(withSegments(written)).status, 0);
   EXPECT_EQ(picture().channels, byPreset.channels);
   EXPECT_FALSE(picture().header.contains("preset"));

@@ -48,9 +48,10 @@ struct Sight {
 
 /// Within the volume: sampled twenty-five times a voxel, and at every summit between samples, where
 /// a ray may graze the surface; then bisected.
-Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray) {
+Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray, const Interval& range) {
   const Affine worldToIndex = mask.grid.indexToWorld.inverse();
-  const Interval part = matter.inBox(ray.origin, ray.direction);
+  Interval part = matter.inBox(ray.origin, ray.direction);
+  part = {std::max(part.begin, range.begin), std::min(part.end, range.end)};
   const auto level = [&](double t) {
     const Vec3 world = ray.at(t);
     const double share = indicator(mask, worldToIndex * world);
@@ -67,7 +68,7 @@ Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray) {
   double before = 0.0, here = part.empty() ? 0.0 : level(part.begin);
   if (here >= 0.5)
     return {part.begin, 0.5};
-  Sight best{infinity, 0.0};
+  Sight best{part.begin, here};
   for (double t = part.begin; t < part.end; t += step) {
     const double next = std::min(t + step, part.end), there = level(next);
     if (there >= 0.5)
@@ -83,11 +84,11 @@ Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray) {
     before = here;
     here = there;
   }
-  return best;
+  return here > best.height ? Sight{part.end, here} : best;
 }
 
 double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
-  const Sight sight = lookAlong(mask, matter, ray);
+  const Sight sight = lookAlong(mask, matter, ray, {});
   return sight.height >= 0.5 ? sight.t : infinity;
 }
 
@@ -243,12 +244,17 @@ double Clipping::surface(const Vec2& at) const {
 double Clipping::surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, double between) const {
   const auto& clip = std::get<DepthClip>(m_description);
   const Ray ray = m_view.through(at.x(), at.y());
-  const Sight sight = lookAlong(clip.focus, m_matter, ray);
-  const double depth = sight.t < infinity ? m_view.depth(ray.at(sight.t)) + clip.offset : infinity;
-  if (seam.isInner())
-    return std::clamp(sight.height >= 0.5 ? depth : infinity, seam.least, seam.greatest);
+  const double depthPerLength = m_view.depth(ray.at(1.0)) - m_view.depth(ray.at(0.0));
+  const auto lengthTo = [&](double depth) {
+    return (depth - clip.offset - m_view.depth(ray.at(0.0))) / depthPerLength;
+  };
+  const Sight sight =
+      lookAlong(clip.focus, m_matter, ray, {std::max(0.0, lengthTo(seam.least)), infinity});
   const double share = std::clamp((sight.height - 0.25) / 0.25, 0.0, 1.0);
-  return share > 0.0 ? between + share * (depth - between) : between;
+  if (share == 0.0)
+    return between;
+  const double depth = m_view.depth(ray.at(sight.t)) + clip.offset;
+  return between + share * (std::min(depth, seam.greatest) - between);
 }
 
 double Clipping::keep(const Vec3& world) const {

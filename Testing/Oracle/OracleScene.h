@@ -47,10 +47,9 @@ struct DepthClip {
   /// Where it is not empty: the depths of samples that are not focus, as they are to be taken.
   std::vector<double> given = {};
   /// Cells between samples where the surface is the focus's own depth, by the number of their first
-  /// sample; within limits where all samples around are focus, mm.
+  /// sample; between two depths where all samples around are focus, mm, the offset included.
   struct Seam {
     double least = -infinity, greatest = infinity;
-    bool isInner() const { return greatest < infinity; }
   };
   std::map<std::size_t, Seam> seams = {};
   double offset = 0.0; ///< mm that all of it lies farther from the eye
