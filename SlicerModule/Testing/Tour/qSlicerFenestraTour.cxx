@@ -3,14 +3,12 @@
 #include "qSlicerFenestraModuleWidget.h"
 #include "vtkMRMLFenestraRenderNode.h"
 
-#include <ctkCollapsibleButton.h>
 #include <ctkCollapsibleGroupBox.h>
 #include <qMRMLNodeComboBox.h>
 #include <qSlicerApplication.h>
 #include <qSlicerCLIModule.h>
 #include <qSlicerCLIModuleWidget.h>
 #include <qSlicerCoreIOManager.h>
-#include <qSlicerLayoutManager.h>
 #include <qSlicerModuleManager.h>
 #include <qSlicerModuleSelectorToolBar.h>
 
@@ -25,22 +23,16 @@
 
 #include <QAbstractButton>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFile>
 #include <QJsonDocument>
 #include <QLabel>
 #include <QListWidget>
 #include <QMainWindow>
-#include <QScreen>
-#include <QScrollArea>
 #include <QSlider>
 #include <QSpinBox>
-#include <QStyle>
-#include <QStyleOptionViewItem>
 #include <QTest>
 
-#include <cstring>
-#include <iostream>
+#include <algorithm>
 #include <set>
 
 namespace {
@@ -57,20 +49,9 @@ QByteArray radianceOf(Node* render) {
 
 } // namespace
 
-qSlicerFenestraPulse::qSlicerFenestraPulse() {
-  m_watch.start();
-  constexpr int interval = 5;
-  QObject::connect(&m_timer, &QTimer::timeout,
-                   [this] { m_longest = std::max(m_longest, m_watch.restart() - interval); });
-  m_timer.setTimerType(Qt::PreciseTimer);
-  m_timer.start(interval);
-}
-
-qSlicerFenestraTour::qSlicerFenestraTour(const QString& report) : m_report(report) {}
+qSlicerFenestraTour::qSlicerFenestraTour(const QString& report) : qSlicerFenestraUser(report) {}
 
 bool qSlicerFenestraTour::run() {
-  m_window = qSlicerApplication::application()->mainWindow();
-  m_window->setGeometry(m_window->screen()->geometry()); // there may be nobody to maximize it
   settle(1000);
   photograph("1-start");
   struct Step {
@@ -78,7 +59,7 @@ bool qSlicerFenestraTour::run() {
     bool (qSlicerFenestraTour::*run)();
   };
   const Step steps[] = {{"load", &qSlicerFenestraTour::loadPhantom},
-                        {"open", &qSlicerFenestraTour::openModule},
+                        {"open", &qSlicerFenestraTour::seeModule},
                         {"choose", &qSlicerFenestraTour::chooseCartilage},
                         {"turn", &qSlicerFenestraTour::turnCamera},
                         {"render", &qSlicerFenestraTour::render},
@@ -113,20 +94,8 @@ bool qSlicerFenestraTour::loadPhantom() {
   return true;
 }
 
-bool qSlicerFenestraTour::openModule() {
-  auto* selector = m_window->findChild<qSlicerModuleSelectorToolBar*>();
-  if (!selector)
-    return false;
-  selector->selectModule("Fenestra");
-  settle(500);
-  m_panel = m_window->findChild<qSlicerFenestraModuleWidget*>();
-  if (!m_panel)
-    return false;
-  QObject::connect(m_panel->session(), &qSlicerFenestraSession::previewed, m_panel,
-                   [this] { ++m_previews; });
-  QObject::connect(m_panel->session(), &qSlicerFenestraSession::ended, m_panel,
-                   [this] { ++m_ended; });
-  if (!waitFor([this] { return m_previews > 0; }))
+bool qSlicerFenestraTour::seeModule() {
+  if (!openModule() || !waitFor([this] { return m_previews > 0; }))
     return false;
   settle(1500);
   photograph("3-opened");
@@ -261,17 +230,17 @@ bool qSlicerFenestraTour::changeClipping() {
     scrollTo("Clipping");
     return chosen;
   });
-  const bool exact = photographPreview("13-exact", [this] {
+  const bool surroundings = photographPreview("13-surroundings", [this] {
     auto* details = m_panel->findChild<ctkCollapsibleGroupBox*>("ClipDetails");
     details->setCollapsed(false);
-    const bool chosen = choose("ClipBox", "") && choose("BoundaryBox", "exact");
+    const bool chosen = choose("ClipBox", "");
     set("contextsaturationBox", 30.0);
     settle(300);
     scrollTo("ClipDetails");
     return chosen;
   });
   m_panel->findChild<ctkCollapsibleGroupBox*>("ClipDetails")->setCollapsed(true);
-  return hole && exact && settings()->GetFlag("boundary") == "exact" &&
+  return hole && surroundings && settings()->GetFlag("boundary") == "exact" &&
          settings()->GetFlag("hole").empty();
 }
 
@@ -423,93 +392,4 @@ bool qSlicerFenestraTour::runCommand() {
   vtkImageData* image = output->GetImageData();
   return node->GetStatus() == vtkMRMLCommandLineModuleNode::Completed &&
          node->GetErrorText().empty() && image && image->GetDimensions()[0] == 256;
-}
-
-// ---- hands and eyes
-
-bool qSlicerFenestraTour::click(const char* button) {
-  auto* found = m_panel->findChild<QAbstractButton*>(button);
-  if (!found || !found->isEnabled())
-    return false;
-  QTest::mousePress(found, Qt::LeftButton);
-  settle(50); // as a finger does
-  QTest::mouseRelease(found, Qt::LeftButton);
-  return true;
-}
-
-bool qSlicerFenestraTour::choose(const char* box, const QString& data) {
-  auto* found = m_panel->findChild<QComboBox*>(box);
-  const int index = found->findData(data);
-  if (index >= 0)
-    found->setCurrentIndex(index);
-  return index >= 0;
-}
-
-void qSlicerFenestraTour::set(const char* box, double value) {
-  m_panel->findChild<QDoubleSpinBox*>(box)->setValue(value);
-}
-
-void qSlicerFenestraTour::scrollTo(const char* widget) {
-  auto* found = m_panel->findChild<QWidget*>(widget);
-  for (QWidget* above = found; above; above = above->parentWidget())
-    if (auto* area = qobject_cast<QScrollArea*>(above))
-      area->ensureWidgetVisible(found, 0, 10);
-}
-
-void qSlicerFenestraTour::fold(const char* section, bool folded) {
-  m_panel->findChild<ctkCollapsibleButton*>(section)->setCollapsed(folded);
-  settle(300); // it is laid out anew
-}
-
-/// What the preview makes of a change.
-bool qSlicerFenestraTour::photographPreview(const char* name, const std::function<bool()>& action) {
-  const int before = m_previews;
-  if (!action() || !waitFor([&] { return m_previews > before; }))
-    return false;
-  settle(4000);
-  photograph(name);
-  return m_panel->findChild<QLabel*>("PreviewStateLabel")->text().startsWith("Preview:");
-}
-
-bool qSlicerFenestraTour::waitFor(const std::function<bool()>& condition, int milliseconds) {
-  QElapsedTimer watch;
-  watch.start();
-  while (!condition() && watch.elapsed() < milliseconds)
-    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
-  return condition();
-}
-
-void qSlicerFenestraTour::settle(int milliseconds) {
-  waitFor([] { return false; }, milliseconds);
-}
-
-void qSlicerFenestraTour::photograph(const char* name) {
-  m_window->screen()->grabWindow(m_window->winId()).save(QString("%1/%2.png").arg(m_report, name));
-  std::cout << "tour: " << name << std::endl;
-}
-
-Node* qSlicerFenestraTour::settings() const {
-  return Node::SafeDownCast(qSlicerApplication::application()->mrmlScene()->GetSingletonNode(
-      "Settings", "vtkMRMLFenestraRenderNode"));
-}
-
-Node* qSlicerFenestraTour::firstRender() const {
-  std::vector<vtkMRMLNode*> renders;
-  qSlicerApplication::application()->mrmlScene()->GetNodesByClass("vtkMRMLFenestraRenderNode",
-                                                                  renders);
-  for (vtkMRMLNode* node : renders)
-    if (!node->GetSingletonTag())
-      return Node::SafeDownCast(node);
-  return nullptr;
-}
-
-Node* qSlicerFenestraTour::lastRender() const {
-  std::vector<vtkMRMLNode*> renders;
-  qSlicerApplication::application()->mrmlScene()->GetNodesByClass("vtkMRMLFenestraRenderNode",
-                                                                  renders);
-  Node* last = nullptr;
-  for (vtkMRMLNode* node : renders)
-    if (!node->GetSingletonTag() && node->GetNodeReference(Node::PictureRole))
-      last = Node::SafeDownCast(node);
-  return last;
 }

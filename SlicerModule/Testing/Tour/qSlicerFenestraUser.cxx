@@ -1,0 +1,137 @@
+#include "qSlicerFenestraUser.h"
+
+#include "qSlicerFenestraModuleWidget.h"
+#include "vtkMRMLFenestraRenderNode.h"
+
+#include <ctkCollapsibleButton.h>
+#include <qSlicerApplication.h>
+#include <qSlicerModuleSelectorToolBar.h>
+
+#include <vtkMRMLScene.h>
+
+#include <QAbstractButton>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QElapsedTimer>
+#include <QLabel>
+#include <QMainWindow>
+#include <QScreen>
+#include <QScrollArea>
+#include <QTest>
+
+#include <iostream>
+
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+
+std::vector<vtkMRMLNode*> renderNodes() {
+  std::vector<vtkMRMLNode*> nodes;
+  qSlicerApplication::application()->mrmlScene()->GetNodesByClass("vtkMRMLFenestraRenderNode",
+                                                                  nodes);
+  return nodes;
+}
+
+} // namespace
+
+qSlicerFenestraUser::qSlicerFenestraUser(const QString& report)
+    : m_report(report), m_window(qSlicerApplication::application()->mainWindow()) {
+  m_window->setGeometry(m_window->screen()->geometry()); // there may be nobody to maximize it
+}
+
+bool qSlicerFenestraUser::openModule() {
+  auto* selector = m_window->findChild<qSlicerModuleSelectorToolBar*>();
+  if (!selector)
+    return false;
+  selector->selectModule("Fenestra");
+  settle(500);
+  m_panel = m_window->findChild<qSlicerFenestraModuleWidget*>();
+  if (!m_panel)
+    return false;
+  QObject::connect(m_panel->session(), &qSlicerFenestraSession::previewed, m_panel,
+                   [this] { ++m_previews; });
+  QObject::connect(m_panel->session(), &qSlicerFenestraSession::ended, m_panel,
+                   [this] { ++m_ended; });
+  return true;
+}
+
+bool qSlicerFenestraUser::click(const char* button) {
+  auto* found = m_panel->findChild<QAbstractButton*>(button);
+  if (!found || !found->isEnabled())
+    return false;
+  QTest::mousePress(found, Qt::LeftButton);
+  settle(50); // as a finger does
+  QTest::mouseRelease(found, Qt::LeftButton);
+  return true;
+}
+
+bool qSlicerFenestraUser::choose(const char* box, const QString& data) {
+  auto* found = m_panel->findChild<QComboBox*>(box);
+  const int index = found->findData(data);
+  if (index >= 0)
+    found->setCurrentIndex(index);
+  return index >= 0;
+}
+
+void qSlicerFenestraUser::set(const char* box, double value) {
+  m_panel->findChild<QDoubleSpinBox*>(box)->setValue(value);
+}
+
+void qSlicerFenestraUser::scrollTo(const char* widget) {
+  auto* found = m_panel->findChild<QWidget*>(widget);
+  for (QWidget* above = found; above; above = above->parentWidget())
+    if (auto* area = qobject_cast<QScrollArea*>(above))
+      area->ensureWidgetVisible(found, 0, 10);
+}
+
+void qSlicerFenestraUser::fold(const char* section, bool folded) {
+  m_panel->findChild<ctkCollapsibleButton*>(section)->setCollapsed(folded);
+  settle(300); // it is laid out anew
+}
+
+/// What the preview makes of a change.
+bool qSlicerFenestraUser::photographPreview(const char* name, const std::function<bool()>& action) {
+  const int before = m_previews;
+  if (!action() || !waitFor([&] { return m_previews > before; }))
+    return false;
+  settle(4000);
+  photograph(name);
+  return m_panel->findChild<QLabel*>("PreviewStateLabel")->text().startsWith("Preview:");
+}
+
+bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int milliseconds) {
+  QElapsedTimer watch;
+  watch.start();
+  while (!condition() && watch.elapsed() < milliseconds)
+    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  return condition();
+}
+
+void qSlicerFenestraUser::settle(int milliseconds) {
+  waitFor([] { return false; }, milliseconds);
+}
+
+void qSlicerFenestraUser::photograph(const char* name) {
+  m_window->screen()->grabWindow(m_window->winId()).save(QString("%1/%2.png").arg(m_report, name));
+  std::cout << "tour: " << name << std::endl;
+}
+
+Node* qSlicerFenestraUser::settings() const {
+  return Node::SafeDownCast(qSlicerApplication::application()->mrmlScene()->GetSingletonNode(
+      "Settings", "vtkMRMLFenestraRenderNode"));
+}
+
+Node* qSlicerFenestraUser::firstRender() const {
+  for (vtkMRMLNode* node : renderNodes())
+    if (!node->GetSingletonTag())
+      return Node::SafeDownCast(node);
+  return nullptr;
+}
+
+Node* qSlicerFenestraUser::lastRender() const {
+  Node* last = nullptr;
+  for (vtkMRMLNode* node : renderNodes())
+    if (!node->GetSingletonTag() && node->GetNodeReference(Node::PictureRole))
+      last = Node::SafeDownCast(node);
+  return last;
+}

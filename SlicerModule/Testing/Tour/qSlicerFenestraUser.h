@@ -1,0 +1,41 @@
+#pragma once
+// A user of the panel: hands on the mouse, eyes on the window, and what there is to see in the
+// scene.
+
+#include <QString>
+
+#include <functional>
+
+class QMainWindow;
+class qSlicerFenestraModuleWidget;
+class vtkMRMLFenestraRenderNode;
+
+class qSlicerFenestraUser {
+public:
+  /// `report`: the folder that photographs go to.
+  explicit qSlicerFenestraUser(const QString& report);
+
+protected:
+  /// From here on there is the panel, and what it does is counted.
+  bool openModule();
+
+  bool click(const char* button);
+  bool choose(const char* box, const QString& data);
+  void set(const char* box, double value);
+  void scrollTo(const char* widget);
+  void fold(const char* section, bool folded);
+  bool waitFor(const std::function<bool()>& condition, int milliseconds = 60000);
+  void settle(int milliseconds);
+  void photograph(const char* name);
+  bool photographPreview(const char* name, const std::function<bool()>& action);
+
+  vtkMRMLFenestraRenderNode* settings() const;
+  vtkMRMLFenestraRenderNode* firstRender() const;
+  vtkMRMLFenestraRenderNode* lastRender() const; ///< that has a picture
+
+  QString m_report;
+  QMainWindow* m_window;
+  qSlicerFenestraModuleWidget* m_panel = nullptr;
+  int m_previews = 0;
+  int m_ended = 0; ///< renders
+};
