@@ -82,9 +82,9 @@ void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
   form->addRow(tr("Clip:"), m_clip);
   m_boundary = choices("BoundaryBox",
                        tr("How the surface goes on beside the focus. Exact: from its very edge, "
-                          "without a step or a kink"));
-  m_boundary->addItem(tr("Smoothed (spline)"), "");
+                          "without a step or a kink. Smoothed: near it, as in the paper"));
   m_boundary->addItem(tr("Exact"), "exact");
+  m_boundary->addItem(tr("Smoothed (spline)"), "spline");
   form->addRow(tr("Edge of the focus:"), m_boundary);
   addNumber(form, "ghost", tr("Left in front:"), 0.01, 10.0, {"ghost"},
             tr("How dense what lies in front of the surface stays"));
@@ -179,11 +179,12 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
     m_clip->insertItem(1, tr("Smooth surface through the focus"), "surface");
   if (!byPreset && surface >= 0)
     m_clip->removeItem(surface);
-  if (hasFocus || flags.count("clip") > 0)
+  const bool clips = hasFocus || flags.count("clip") > 0;
+  if (clips)
     choose(m_clip, flagOf(flags, "clip"));
   const QString now = mode(byPreset);
-  if (now == "surface" || now == "ghost")
-    choose(m_boundary, flagOf(flags, "boundary"));
+  if (clips && (now == "surface" || now == "ghost")) // the renderer's standard is not the panel's
+    choose(m_boundary, flags.count("boundary") > 0 ? flagOf(flags, "boundary") : "spline");
   if (now == "hole")
     choose(m_hole, flagOf(flags, "hole"));
   if (now == "plane") {
@@ -237,7 +238,7 @@ void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool 
   const bool clips = hasFocus || now == "none" || !flags["plane"].empty();
   flags["clip"] = clips ? word(m_clip) : "";
   flags["boundary"] = clips && surface ? word(m_boundary) : "";
-  if (!clips || !surface || !flags["boundary"].empty())
+  if (flags["boundary"] != "spline")
     flags["controlpoints"] = flags["smoothing"] = ""; // the spline's alone
   flags["hole"] = clips && now == "hole" ? word(m_hole) : "";
   flags["margin"] = hasFocus ? m_margins->flag().toStdString() : "";

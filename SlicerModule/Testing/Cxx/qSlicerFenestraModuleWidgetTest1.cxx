@@ -163,8 +163,15 @@ int checkClipping(const Panel& panel) {
   CHECK_BOOL(panel.shows("BoundaryBox"), true);
   for (const char* other : {"ghostBox", "HoleBox", "holemarginBox", "PlaneBox", "PlaneNodeBox"})
     CHECK_BOOL(panel.shows(other), false);
+  CHECK_STD_STRING(panel.flag("boundary"), "exact"); // until the user wants another
+  panel.settings()->SetFlag("boundary", "");         // as a scene from elsewhere
+  CHECK_STD_STRING(panel.chosen("BoundaryBox").toStdString(), "spline");
+  panel.settings()->SetFlag("controlpoints", "30");
+  panel.set("softBox", 1.0);
+  CHECK_STD_STRING(panel.flag("boundary"), "spline"); // another choice does not change the picture
+  CHECK_STD_STRING(panel.flag("controlpoints"), "30");
   panel.choose("BoundaryBox", "exact");
-  CHECK_STD_STRING(panel.flag("boundary"), "exact");
+  CHECK_STD_STRING(panel.flag("controlpoints"), ""); // the spline's alone
   panel.choose("ClipBox", "ghost");
   CHECK_STD_STRING(panel.flag("boundary"), "exact"); // it has the same surface
   panel.set("ghostBox", 25.0);
