@@ -18,8 +18,8 @@ struct Distribution {
 
 /// On the focus's outline, which is found by bisection between a sample of the focus and a
 /// neighbour that is none, the focus has a depth, and just beyond it the context begins at one:
-/// where the clip leaves it, or where the eye ray enters the volume. Where the clip has steps (cutaway, hole) that
-/// is of samples beyond, continued linearly.
+/// where the clip leaves it, or where the eye ray enters the volume. Where the clip has steps
+/// (cutaway, hole) that is of samples beyond, continued linearly.
 struct BoundaryMeasures {
   Distribution gap; ///< mm between the two depths there, without depth jumps
   /// Between the slopes of two samples on each side, mm of depth per mm, without depth jumps.

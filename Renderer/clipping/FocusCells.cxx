@@ -172,8 +172,7 @@ double FocusCells::indicator(const Vec3& point) const {
       return static_cast<double>(
           m_corners[which][static_cast<std::size_t>(at)] >> (x + 2 * y + 4 * z) & 1);
     }
-    const std::int64_t at =
-        local.x() + x + corners * (local.y() + y + corners * (local.z() + z));
+    const std::int64_t at = local.x() + x + corners * (local.y() + y + corners * (local.z() + z));
     return m_perValue * m_values[which][static_cast<std::size_t>(at)];
   };
   const auto row = [&](std::int64_t y, std::int64_t z) {
