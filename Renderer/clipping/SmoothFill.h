@@ -6,11 +6,11 @@
 // a plate under tension: smooth where the focus's boundary is, and level a few lengths away from
 // it, where a thin plate spline runs on. (Smith and Wessel 1990, "Gridding with continuous
 // curvature splines in tension", without their interpolation error: the data are the boundary
-// itself.) Along the boundary u is the focus's depth at every sample, and its slope across is the
-// focus's own up to a limit, for the slope of a rounded silhouette has none. Where the boundary's
-// depth jumps, between components or where the focus hides a part of itself, u falls from one depth
-// to the other within about a sample at the boundary and ever more gently away from it; it does not
-// ring, for tension takes what would swing.
+// itself.) Along the boundary u is the depth of every sample of the focus and its rim (Seams.h),
+// and its slope across is theirs up to a limit, for the slope of a rounded silhouette has none.
+// Where the boundary's depth jumps, between components or where the focus hides a part of itself, u
+// falls from one depth to the other within about a sample at the boundary and ever more gently away
+// from it; it does not ring, for tension takes what would swing.
 //
 // Solved from coarse to fine. The coarsest samples that still see the plate bend, a quarter to half
 // a length apart, are solved directly; each finer level takes the coarser one's surface and relaxes

@@ -46,7 +46,7 @@ double focusDepth(const Ball& ball, const Vec2& at) {
     }
     return sum >= 0.5;
   };
-  for (double t = 170.0; t < 230.0; t += 0.01)
+  for (double t = 178.0; t < 222.0; t += 0.01)
     if (inside(t))
       return t * ball.camera.depthPerLength(ray);
   return infinity;
@@ -56,13 +56,11 @@ double focusDepth(const Ball& ball, const Vec2& at) {
 struct End {
   Vec2 inside, outside; ///< 1e-7 mm apart
 };
-End endOf(const Ball& ball, const Vec2& way) {
+End endOf(const FocusTracer& tracer, const Vec2& way) {
   double in = 17.0, out = 22.0;
   while (out - in > 1e-7) {
     const double middle = 0.5 * (in + out);
-    (FocusTracer(ball.camera, ball.volume, ball.focus).depthsAt({middle * way})[0] < infinity
-         ? in
-         : out) = middle;
+    (tracer.depthsAt({middle * way})[0] < infinity ? in : out) = middle;
   }
   return {in * way, out * way};
 }
@@ -91,11 +89,11 @@ TEST(Seams, GoOnWhereTheFocusEnds) {
     const Ball ball(projection);
     const ClippingSurface surface = ball.surface();
     const auto& clip = std::get<ClipDepth>(surface.clip);
+    const FocusTracer tracer(ball.camera, ball.volume, ball.focus);
     std::vector<double> steps;
     for (int i = 0; i < 200; ++i) {
-      const End end = endOf(ball, {std::cos(0.0314 * i), std::sin(0.0314 * i)});
-      const double depth =
-          FocusTracer(ball.camera, ball.volume, ball.focus).depthsAt({end.inside})[0];
+      const End end = endOf(tracer, {std::cos(0.0314 * i), std::sin(0.0314 * i)});
+      const double depth = tracer.depthsAt({end.inside})[0];
       EXPECT_NEAR(clip.surface(end.inside), depth, 1e-4);
       steps.push_back(std::abs(clip.surface(end.outside) - depth));
     }
@@ -109,11 +107,12 @@ TEST(Seams, GoOverIntoTheSamplesWithoutASteep) {
   const Ball ball(Projection::orthographic);
   const ClippingSurface surface = ball.surface();
   const auto& clip = std::get<ClipDepth>(surface.clip);
+  const FocusTracer tracer(ball.camera, ball.volume, ball.focus);
   constexpr double step = 1e-3; // mm
   std::vector<double> slopes;
   for (int i = 0; i < 50; ++i) {
     const Vec2 way(std::cos(0.126 * i), std::sin(0.126 * i));
-    const double end = endOf(ball, way).outside.norm();
+    const double end = endOf(tracer, way).outside.norm();
     for (double r = end; r < end + 3.0; r += step)
       slopes.push_back(std::abs(clip.surface((r + step) * way) - clip.surface(r * way)) / step);
   }
@@ -137,7 +136,7 @@ TEST(Seams, AreAskedOnlyWhereItMatters) {
       const auto& clip = std::get<ClipDepth>(surface.clip);
       Random random(3, 0, 0);
       int between = 0;
-      for (int i = 0; i < 20000; ++i) {
+      for (int i = 0; i < 5000; ++i) {
         const Vec2 across(uniform(random, -22.0, 22.0), uniform(random, -22.0, 22.0));
         const double depth = clip.surface(across) + uniform(random, -4.0, 4.0);
         const Vec3 world = fromBuffer(ball.camera, {across.x(), across.y(), depth});
@@ -149,7 +148,7 @@ TEST(Seams, AreAskedOnlyWhereItMatters) {
         ASSERT_GE(clip.surface(across), bounds.least - 1e-4);
         ASSERT_LE(clip.surface(across), bounds.greatest + 1e-4);
       }
-      EXPECT_EQ(between > 1000, softness > 0.0);
+      EXPECT_EQ(between > 250, softness > 0.0);
     }
 }
 
@@ -167,8 +166,9 @@ TEST(Seams, OfASmoothedFocusMeetItToo) {
   }
   const ClippingSurface surface = ball.surface();
   const auto& clip = std::get<ClipDepth>(surface.clip);
+  const FocusTracer tracer(ball.camera, ball.volume, ball.focus);
   for (int i = 0; i < 100; ++i) {
-    const End end = endOf(ball, {std::cos(0.0628 * i), std::sin(0.0628 * i)});
+    const End end = endOf(tracer, {std::cos(0.0628 * i), std::sin(0.0628 * i)});
     EXPECT_NEAR(end.inside.norm(), 20.3, 0.05);
     EXPECT_NEAR(clip.surface(end.outside), 200.0, 1.0) << "the ball ends in its middle";
     EXPECT_NEAR(clip.surface(end.outside), clip.surface(end.inside), 0.01);
