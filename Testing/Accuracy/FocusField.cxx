@@ -9,6 +9,7 @@ namespace fenestra::accuracy {
 namespace {
 
 constexpr std::uint8_t farthest = 12; ///< cells that are looked at around one
+constexpr double rounding = 1e-14;    ///< of the field
 constexpr double step = 1.0 / 16.0;   ///< in voxels, of the fastest axis
 
 /// The bound between no (t = a) and yes (t = b).
@@ -19,6 +20,19 @@ double bisected(double a, double b, const Predicate& predicate) {
     (predicate(middle) ? b : a) = middle;
   }
   return b;
+}
+
+/// Where a function with one summit between a and b is greatest.
+template <typename Function>
+double summit(double a, double b, const Function& f) {
+  for (int i = 0; i < 80; ++i) {
+    const double third = (b - a) / 3.0;
+    if (f(a + third) <= f(b - third) + rounding)
+      a += third;
+    else
+      b -= third;
+  }
+  return 0.5 * (a + b);
 }
 
 /// Each value becomes the least of it and its neighbours', across corners, too.
@@ -143,33 +157,24 @@ double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const
   const auto isInAt = [&](double s) { return value(s) >= 0.5; };
   const double voxel = 1.0 / d.cwiseAbs().maxCoeff(); // mm
   const double stride = step * voxel;
-  // The last two places looked at, and what was there: between them and a third, what is less than
-  // a step long in the focus shows as a maximum.
-  double before = t, last = t, valueBefore = 0.0, valueLast = 0.0;
+  const auto isFalling = [&](double s) {
+    return value(s + 1e-6 * voxel) < value(s - 1e-6 * voxel) - rounding;
+  };
+  // Where the field rises at one place that is looked at and falls at the next, it may be in the
+  // focus for less than a step between them.
+  double last = t;
+  bool falls = true;
   for (bool isFirst = true; t <= end; isFirst = false) {
     const std::uint8_t empty = m_emptiness[cell(o + t * d)];
-    double here = 0.0;
-    if (empty == 0) {
-      here = value(t);
-      if (here >= 0.5)
-        return isFirst ? t : bisected(last, t, isInAt);
-      if (valueLast > 0.4 && valueLast >= here && valueLast >= valueBefore) {
-        double a = before, b = t;
-        for (int i = 0; i < 40; ++i) {
-          const double third = (b - a) / 3.0;
-          if (value(a + third) < value(b - third))
-            a += third;
-          else
-            b -= third;
-        }
-        if (isInAt(0.5 * (a + b)))
-          return bisected(before, 0.5 * (a + b), isInAt);
-      }
-    }
-    before = last;
-    valueBefore = valueLast;
+    const double here = empty == 0 ? value(t) : 0.0;
+    if (here >= 0.5)
+      return isFirst ? t : bisected(last, t, isInAt);
+    const bool fell = falls;
+    falls = here < 0.25 || isFalling(t);
+    if (falls && !fell)
+      if (const double top = summit(last, t, value); isInAt(top))
+        return bisected(last, top, isInAt);
     last = t;
-    valueLast = here;
     t += empty > 1 ? (empty - 1) * voxel : stride;
   }
   return infinity;
