@@ -105,8 +105,7 @@ double ClipDepth::inSeam(const DepthBuffer::Cell& cell, const Vec2& position, do
   if (between.end < std::min(linear, reference + reach.least) ||
       between.begin > std::max(linear, reference + reach.greatest))
     return linear;
-  Seams::Question question{
-      seam, position, linear - reference, {between.begin - reference, between.end - reference}};
+  Seams::Question question{seam, position, linear - reference, between.begin - reference};
   seams->answer({&question, 1});
   return reference + question.surface;
 }

@@ -170,18 +170,8 @@ private:
 };
 
 /// A ray along a flat face passes level ground, whose summit is where it begins: what is higher by
-/// less than this, of an indicator, is level.
+/// less than this, of an indicator, is level; what is as near, in mm, is the same place.
 constexpr double level = 1e-8;
-
-/// Where a cubic is greatest in [0, 1], first.
-double summitOf(const Cubic& cubic) {
-  const std::array<double, 2> turns = turningPoints(cubic);
-  double best = 0.0;
-  for (const double s : {turns[0], turns[1], 1.0})
-    if (cubic(s) > cubic(best) + level)
-      best = s;
-  return best;
-}
 
 /// Rays i, i + 1 and so on, one in each lane.
 template <bool withSummits>
@@ -198,6 +188,7 @@ public:
             hn::And(hn::FirstN(doubles, rays.size - std::min(i, rays.size)), hn::Lt(m_t, m_end))),
         m_axes{axis(0), axis(1), axis(2)} {
     m_heights.fill(FocusCells::foothill - 0.5);
+    m_summits.fill(-infinity);
   }
 
   /// To be called when none is busy: tells the summits.
@@ -368,12 +359,25 @@ private:
     m_busy = hn::Gt(hn::Load(doubles, lanes[6].data()), hn::Zero(doubles));
   }
 
+  /// Through a cell in which nothing is met.
   void climb(std::size_t lane, const Cubic& cubic, double begin, double length) {
-    const double s = summitOf(cubic);
-    if (const double height = cubic(s); height > m_heights[lane] + level) {
-      m_heights[lane] = height;
-      m_summits[lane] = begin + s * length;
+    const std::array<double, 2> turns = turningPoints(cubic);
+    bool isOnTop = begin - m_summits[lane] < level;
+    for (const double s : {0.0, turns[0], turns[1], 1.0}) { // between these the cubic is monotone
+      const double height = cubic(s);
+      if (isOnTop ? height > m_heights[lane] + level : isNewSummit(lane, height)) {
+        m_heights[lane] = height;
+        m_summits[lane] = begin + s * length;
+        isOnTop = true;
+      }
+      isOnTop = isOnTop && height >= m_heights[lane] - level;
     }
+  }
+
+  /// Of a hill behind the one that has the summit so far.
+  bool isNewSummit(std::size_t lane, double height) const {
+    return m_summits[lane] == -infinity ? height > m_heights[lane] + level
+                                        : height > FocusCells::lessHidden * m_heights[lane];
   }
 
   const FocusCells::Layout& m_cells;
@@ -383,7 +387,7 @@ private:
   D m_t, m_end;
   M m_busy;
   std::array<Axis, 3> m_axes;
-  Lane m_heights, m_summits{}; ///< so far: the indicator - 1/2, and where
+  Lane m_heights, m_summits; ///< so far: the indicator - 1/2, and where
 };
 
 template <bool withSummits>

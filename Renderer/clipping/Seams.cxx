@@ -12,25 +12,24 @@ namespace fenestra {
 
 namespace {
 
-/// Of each cell between samples, told by its first one, whether the focus may end in it, hide a
-/// part of itself or fall away steeply.
-std::vector<std::uint8_t> uncertainCells(const FocusDepth& focus) {
+/// Calls back with each cell between samples, told by its first one, and whether all four samples
+/// around it are focus.
+template <typename Visitor>
+void visitCells(const FocusDepth& focus, const Visitor& visit) {
   const DepthBuffer& buffer = focus.depth;
-  std::vector<std::uint8_t> result(focus.regions.size(), 0);
   for (std::int64_t row = 0; row + 1 < buffer.rows(); ++row)
-    for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column) {
-      double least = infinity, greatest = -infinity;
-      for (const std::int64_t r : {row, row + 1})
-        for (const std::int64_t c : {column, column + 1}) {
-          const double depth = buffer.at(buffer.sample(c, r)); // infinite beside the focus
-          least = std::min(least, depth);
-          greatest = std::max(greatest, depth);
-        }
-      const DepthAxis& x = buffer.xAxis();
-      const double pitch = std::abs(x.coordinate(column + 1) - x.coordinate(column));
-      result[static_cast<std::size_t>(buffer.sample(column, row))] =
-          !(greatest - least <= steepestCell * pitch); // also of infinity less infinity
-    }
+    for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column)
+      visit(column, row,
+            focus.isFocus(column, row) && focus.isFocus(column + 1, row) &&
+                focus.isFocus(column, row + 1) && focus.isFocus(column + 1, row + 1));
+}
+
+/// Of each cell, told by its first sample, whether the focus may end in it.
+std::vector<std::uint8_t> outerCells(const FocusDepth& focus) {
+  std::vector<std::uint8_t> result(focus.regions.size(), 0);
+  visitCells(focus, [&](std::int64_t column, std::int64_t row, bool isInner) {
+    result[static_cast<std::size_t>(focus.depth.sample(column, row))] = isInner ? 0 : 1;
+  });
   return result;
 }
 
@@ -60,22 +59,36 @@ struct Batch {
   std::span<Sight> sights() { return std::span(sight).first(size); }
 };
 
+/// What the samples around a cell see, as deep again as they are apart: a hole between them may
+/// reach a little farther.
+Interval sightAround(const DepthBuffer& buffer, std::int64_t column, std::int64_t row) {
+  Interval depths{infinity, -infinity};
+  visitAround(buffer, column, row, [&](std::int64_t sample) {
+    if (const double depth = buffer.at(sample); depth < infinity) // not beside the focus
+      depths = {std::min(depths.begin, depth), std::max(depths.end, depth)};
+  });
+  return {depths.begin, 2.0 * depths.end - depths.begin};
+}
+
 } // namespace
 
 Seams::Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
-    : m_tracer(std::move(tracer)), m_reference(focus.depth.reference()) {
-  const std::vector<Interval> reaches =
-      focusReaches(m_tracer->camera(), focus.depth, m_tracer->cells(), uncertainCells(focus));
-  for (const Interval& reach : reaches) {
-    m_numbers.push_back(reach.empty() ? -1 : static_cast<std::int32_t>(m_reaches.size()));
+    : m_tracer(std::move(tracer)),
+      m_reference(focus.depth.reference()),
+      m_numbers(focus.regions.size(), -1) {
+  const std::vector<Interval> outer =
+      focusReaches(m_tracer->camera(), focus.depth, m_tracer->cells(), outerCells(focus));
+  visitCells(focus, [&](std::int64_t column, std::int64_t row, bool isInner) {
+    const auto cell = static_cast<std::size_t>(focus.depth.sample(column, row));
+    const Interval reach = isInner ? sightAround(focus.depth, column, row) : outer[cell];
     if (reach.empty())
-      continue;
+      return;
+    m_numbers[cell] = static_cast<std::int32_t>(m_reaches.size());
     m_reaches.push_back({static_cast<float>(reach.begin - m_reference),
                          static_cast<float>(reach.end - m_reference)});
-    m_ends.push_back(reach.end);
-  }
+    m_isInner.push_back(isInner);
+  });
   findRim(focus);
-  limitReaches(focus);
 }
 
 void Seams::findRim(const FocusDepth& focus) {
@@ -113,29 +126,6 @@ void Seams::findRim(const FocusDepth& focus) {
   m_rim.resize(seen);
 }
 
-/// Of inner seams, to what the samples around see.
-void Seams::limitReaches(const FocusDepth& focus) {
-  const DepthBuffer& buffer = focus.depth;
-  m_isInner.resize(m_reaches.size());
-  for (std::int64_t row = 0; row + 1 < buffer.rows(); ++row)
-    for (std::int64_t column = 0; column + 1 < buffer.columns(); ++column) {
-      const auto seam = m_numbers[static_cast<std::size_t>(buffer.sample(column, row))];
-      if (seam < 0)
-        continue;
-      double greatest = -infinity, least = infinity;
-      visitAround(buffer, column, row,
-                  [&](std::int64_t sample) { least = std::min(least, buffer.at(sample)); });
-      for (const std::int64_t r : {row, row + 1})
-        for (const std::int64_t c : {column, column + 1})
-          greatest = std::max(greatest, buffer.at(buffer.sample(c, r)));
-      if (greatest == infinity)
-        continue;
-      m_isInner[static_cast<std::size_t>(seam)] = true;
-      m_reaches[static_cast<std::size_t>(seam)] = {static_cast<float>(least - m_reference),
-                                                   static_cast<float>(greatest - m_reference)};
-    }
-}
-
 void Seams::move(double offset) {
   m_offset += offset;
   for (Reach& reach : m_reaches)
@@ -146,19 +136,19 @@ void Seams::answer(std::span<Question> questions) const {
   Batch inner, rest;
   const double toFocus = m_reference - m_offset;
   const auto reachOf = [&](const Question& question) {
-    return m_reaches[static_cast<std::size_t>(question.seam)];
+    const auto& [least, greatest] = m_reaches[static_cast<std::size_t>(question.seam)];
+    return Interval{toFocus + least, toFocus + greatest};
   };
   const auto addToRest = [&](Question& question) {
-    rest.add(question,
-             {toFocus + reachOf(question).least, m_ends[static_cast<std::size_t>(question.seam)]});
+    const Interval reach = reachOf(question);
+    rest.add(question, {reach.begin, isInner(question.seam) ? infinity : reach.end});
   };
   for (Question& question : questions) {
-    const auto [least, greatest] = reachOf(question);
-    if (m_tracer->isFocus(question.position, toFocus + question.between.begin))
-      question.surface = least; // it has been met
+    const Interval reach = reachOf(question);
+    if (m_tracer->isFocus(question.position, toFocus + question.from))
+      question.surface = reach.begin - toFocus; // it has been met
     else if (isInner(question.seam))
-      inner.add(question,
-                {toFocus + least, toFocus + std::min<double>(greatest, question.between.end)});
+      inner.add(question, reach);
     else
       addToRest(question);
   }
@@ -172,7 +162,7 @@ void Seams::answer(std::span<Question> questions) const {
   for (std::size_t i = 0; i < rest.size; ++i)
     if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::foothill) {
       Question& question = *rest.question[i];
-      const double depth = std::min<double>(sight.depth - toFocus, reachOf(question).greatest);
+      const double depth = std::min(sight.depth, reachOf(question).end) - toFocus;
       const double share = (sight.indicator - FocusCells::foothill) / (0.5 - FocusCells::foothill);
       question.surface += share * (depth - question.surface);
     }

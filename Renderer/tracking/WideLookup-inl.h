@@ -265,8 +265,7 @@ inline F askSeams(const Seams& seams, M isAsked, I seam, F x, F y, F depth, doub
   for (std::size_t i = 0; i < hn::Lanes(floats); ++i)
     if (asked[i] > 0.0F) {
       lane[count] = i;
-      questions[count++] = {
-          numbers[i], Vec2(xs[i], ys[i]), surfaces[i], {depths[i] - softness, depths[i]}};
+      questions[count++] = {numbers[i], Vec2(xs[i], ys[i]), surfaces[i], depths[i] - softness};
     }
   seams.answer(std::span(questions).first(count));
   for (std::size_t i = 0; i < count; ++i)

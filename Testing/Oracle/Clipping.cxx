@@ -42,8 +42,14 @@ double summit(const Function& f, double low, double high) {
 
 /// What a ray sees of a focus.
 struct Sight {
-  double t;      ///< where the indicator first reaches 1/2, or where it is greatest; or infinity
+  double t;      ///< where the indicator first reaches 1/2, or its summit; or infinity
   double height; ///< the indicator there
+
+  /// Leaves a summit for one behind it that lacks so much less of 1/2 that it is not hidden.
+  void pass(double top, double there) {
+    if (there > 0.25 && (height <= 0.25 || 0.5 - there < (0.5 - height) / 64.0))
+      *this = {top, there};
+  }
 };
 
 /// Within the volume: sampled twenty-five times a voxel, and at every summit between samples, where
@@ -68,7 +74,7 @@ Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray, const In
   double before = 0.0, here = part.empty() ? 0.0 : level(part.begin);
   if (here >= 0.5)
     return {part.begin, 0.5};
-  Sight best{part.begin, here};
+  Sight best{part.begin, 0.0};
   for (double t = part.begin; t < part.end; t += step) {
     const double next = std::min(t + step, part.end), there = level(next);
     if (there >= 0.5)
@@ -78,13 +84,13 @@ Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray, const In
       const double height = level(top);
       if (height >= 0.5)
         return between(std::max(t - step, part.begin), top);
-      if (height > best.height)
-        best = {top, height};
+      best.pass(top, height);
     }
     before = here;
     here = there;
   }
-  return here > best.height ? Sight{part.end, here} : best;
+  best.pass(part.end, here);
+  return best;
 }
 
 double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {

@@ -87,10 +87,25 @@ TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
   EXPECT_GT(met, 500);
 }
 
+/// The summit of a ray that misses a mask, by stepping.
+double summitOf(const Mask& mask, const Ray& ray, double begin, double end) {
+  constexpr double step = 0.003;
+  double best = 0.0, before = 0.0, here = 0.0;
+  for (double t = begin; t < end + 2.0 * step; t += step) {
+    const double next = t < end ? indicator(mask, ray.at(t)) / mask.full : 0.0;
+    const bool isTop = here >= before && here >= next && here > FocusCells::foothill;
+    if (isTop && (best == 0.0 || 0.5 - here < FocusCells::lessHidden * (0.5 - best)))
+      best = here;
+    before = here;
+    here = next;
+  }
+  return best;
+}
+
 TEST(FocusCells, KnowTheSummitsOfRaysThatMissThem) {
   Random random(6, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
-  int passed = 0;
+  int passed = 0, hidden = 0, other = 0;
   for (const std::uint8_t full : {std::uint8_t{1}, std::uint8_t{200}})
     for (int trial = 0; trial < 40; ++trial) {
       Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.3; });
@@ -111,14 +126,21 @@ TEST(FocusCells, KnowTheSummitsOfRaysThatMissThem) {
           continue;
         }
         ++passed;
-        EXPECT_NEAR(rays.height[i], greatest, 2e-3) << "a step along the ray";
-        EXPECT_GE(rays.height[i], greatest - 1e-6);
+        hidden += greatest > rays.height[i] + 0.01;
+        const double stepped = summitOf(mask, worldRays[i], rays.begin[i], rays.end[i]);
+        if (std::abs(rays.height[i] - stepped) > 2e-3)
+          ++other; // a hill that is hidden by a hair, or not, may be told either way by stepping
+        else if (stepped == greatest) {
+          EXPECT_GE(rays.height[i], greatest - 1e-6);
+        }
         const Vec3 summit = worldRays[i].at(rays.summit[i]);
         EXPECT_NEAR(indicator(mask, summit) / full, rays.height[i], 1e-9);
         EXPECT_NEAR(cells.indicator(cells.worldToCell() * summit), rays.height[i], 1e-9);
       }
     }
   EXPECT_GT(passed, 200);
+  EXPECT_GT(hidden, 20);
+  EXPECT_LT(other, 3);
 }
 
 TEST(CellCubic, KnowsItsSlope) {
