@@ -85,15 +85,18 @@ TEST_F(PhantomFiles, TheSegmentationNamesEverySegmentAsSlicerDoes) {
   EXPECT_EQ(field(*io, "Segment" + std::to_string(phantom.segments.size()) + "_ID"), "");
 }
 
-TEST_F(PhantomFiles, ASegmentsExtentIsTheLeastThatHoldsIt) {
-  std::istringstream text(field(*open("knee.seg.nrrd"), "Segment3_Extent"));
+// Slicer crops all of a layer to its first segment's.
+TEST_F(PhantomFiles, ASegmentsExtentHoldsItsLayer) {
+  const std::string first = field(*open("knee.seg.nrrd"), "Segment0_Extent");
+  EXPECT_EQ(field(*open("knee.seg.nrrd"), "Segment3_Extent"), first);
+  std::istringstream text(first);
   Eigen::Matrix<std::int64_t, 6, 1> extent;
   for (std::int64_t& value : extent)
     text >> value;
   Eigen::AlignedBox<std::int64_t, 3> held;
   const Size3& size = phantom.volume.grid.size;
   for (std::int64_t at = 0; at < size.prod(); ++at)
-    if (phantom.labels.layers[0][static_cast<std::size_t>(at)] == 4)
+    if (phantom.labels.layers[0][static_cast<std::size_t>(at)] != 0)
       held.extend(Size3(at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y())));
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(extent[2 * axis], held.min()[axis]);
