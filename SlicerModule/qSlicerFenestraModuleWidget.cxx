@@ -87,7 +87,10 @@ void qSlicerFenestraModuleWidget::connectPanel() {
   });
   connect(panel.stop, &QPushButton::clicked, m_session, &qSlicerFenestraSession::stop);
   connect(panel.repeat, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::repeat);
-  connect(panel.show, &QPushButton::clicked, this, [this] { showResult(chosen()); });
+  connect(panel.show, &QPushButton::clicked, this, [this] {
+    forget();
+    showResult(chosen());
+  });
   connect(panel.save, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::save);
 }
 
@@ -167,6 +170,7 @@ void qSlicerFenestraModuleWidget::renderTurntable() {
 void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   if (!m_settings->node())
     return;
+  forget();
   m_session->render(m_settings->node(), kind);
   updateButtons();
 }
@@ -241,6 +245,12 @@ void qSlicerFenestraModuleWidget::say(const QString& message, const QString& det
   m_panel->detailsText->setText(details);
   m_panel->details->setVisible(!details.isEmpty());
   m_panel->details->setChecked(false);
+}
+
+/// What the last render said, once the user has gone on.
+void qSlicerFenestraModuleWidget::forget() {
+  if (!m_session->rendering())
+    say({});
 }
 
 void qSlicerFenestraModuleWidget::updateButtons() {
@@ -343,6 +353,7 @@ void qSlicerFenestraModuleWidget::loadSample() {
     properties["fileName"] = scene;
     properties["clear"] = false;
     qSlicerCoreApplication::application()->coreIOManager()->loadNodes("SceneFile", properties);
+    fenestra()->ShowNewestVolume();
     say(tr("A synthetic knee. Choose a segment as focus."));
   });
 }

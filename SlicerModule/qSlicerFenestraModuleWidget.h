@@ -56,6 +56,7 @@ private:
   void showMeasures(vtkMRMLFenestraRenderNode* render);
   void saveFrames(vtkMRMLFenestraRenderNode* turntable);
   void say(const QString& message, const QString& details = {});
+  void forget();
   void showPicture(const QImage& picture, const qFenestraPicture& what);
   void onProgress(double part, double seconds);
   void onEnded(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);

@@ -13,6 +13,7 @@
 #include <vtkMRMLScalarVolumeNode.h>
 #include <vtkMRMLScene.h>
 #include <vtkMRMLSegmentationNode.h>
+#include <vtkMRMLSelectionNode.h>
 #include <vtkMRMLSliceCompositeNode.h>
 #include <vtkMRMLSliceLogic.h>
 #include <vtkMRMLSliceNode.h>
@@ -388,6 +389,17 @@ void vtkSlicerFenestraLogic::AddResult(Node* render, const vtkSlicerFenestraResu
                result.depth);
   if (step == 3 && result.surface && result.surface->GetNumberOfPoints() > 0)
     this->AddSurface(render, result.surface);
+}
+
+void vtkSlicerFenestraLogic::ShowNewestVolume() {
+  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
+  vtkMRMLSelectionNode* selection = application ? application->GetSelectionNode() : nullptr;
+  std::vector<vtkMRMLNode*> volumes;
+  this->GetMRMLScene()->GetNodesByClass("vtkMRMLScalarVolumeNode", volumes);
+  if (!selection || volumes.empty())
+    return;
+  selection->SetActiveVolumeID(volumes.back()->GetID());
+  application->PropagateVolumeSelection();
 }
 
 void vtkSlicerFenestraLogic::ShowResult(Node* render) {

@@ -80,6 +80,8 @@ public:
   void AddResult(vtkMRMLFenestraRenderNode* render, const vtkSlicerFenestraResult& result,
                  int step);
   static constexpr int ResultSteps = 4;
+  /// Shows the scene's newest volume in the slice views, which loading a scene leaves as they are.
+  void ShowNewestVolume();
   /// Shows the render's picture beside a 3-D view, in a layout of the module's own.
   void ShowResult(vtkMRMLFenestraRenderNode* render);
   /// Another frame of a turntable, in the same view.

@@ -24,6 +24,7 @@
 #include <QToolButton>
 
 #include <vtkMRMLMarkupsPlaneNode.h>
+#include <vtkMRMLSliceCompositeNode.h>
 #include <vtkMRMLVectorVolumeNode.h>
 
 namespace {
@@ -101,6 +102,16 @@ int checkDefaults(const Panel& panel, vtkMRMLNode* volume, vtkMRMLNode* segmenta
   CHECK_BOOL(panel.find<QPushButton>("SampleButton")->isHidden(), true);
   CHECK_INT(panel.find<QListWidget>("FocusList")->count(), 2);
   CHECK_STD_STRING(panel.chosen("QualityBox").toStdString(), "256 0.05 0");
+  return EXIT_SUCCESS;
+}
+
+/// In slice views, which loading a scene leaves as they are.
+int checkShowingVolume(const Panel& panel, vtkMRMLScene* scene, vtkMRMLNode* volume) {
+  auto* view = vtkMRMLSliceCompositeNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLSliceCompositeNode"));
+  panel.logic->ShowNewestVolume();
+  CHECK_STRING(view->GetBackgroundVolumeID(), volume->GetID());
+  scene->RemoveNode(view);
   return EXIT_SUCCESS;
 }
 
@@ -390,6 +401,8 @@ int checkRenders(const Panel& panel) {
   CHECK_BOOL(ends(panel, [&] { button->click(); }), true);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().contains("choose segments"), true);
   CHECK_POINTER(panel.picture(), before);
+  panel.find<QPushButton>("ShowButton")->click(); // the user has gone on
+  CHECK_STD_STRING(panel.find<QLabel>("StateLabel")->text().toStdString(), "");
   return EXIT_SUCCESS;
 }
 
@@ -423,6 +436,7 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   vtkMRMLSegmentationNode* segmentation = FenestraTesting::addSegmentation(scene);
   widget->enter();
   CHECK_EXIT_SUCCESS(checkDefaults(panel, volume, segmentation));
+  CHECK_EXIT_SUCCESS(checkShowingVolume(panel, scene, volume));
   CHECK_EXIT_SUCCESS(checkTaking(panel, segmentation->GetSegmentation()->GetNthSegmentID(0)));
   CHECK_EXIT_SUCCESS(checkShowing(panel));
   CHECK_EXIT_SUCCESS(checkClipping(panel));

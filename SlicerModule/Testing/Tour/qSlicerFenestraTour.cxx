@@ -89,6 +89,8 @@ bool qSlicerFenestraTour::run() {
 bool qSlicerFenestraTour::loadPhantom() {
   if (!qSlicerApplication::application()->coreIOManager()->loadScene(m_report + "/knee/knee.mrml"))
     return false;
+  auto* fenestra = qSlicerApplication::application()->moduleLogic("Fenestra");
+  vtkSlicerFenestraLogic::SafeDownCast(fenestra)->ShowNewestVolume(); // as the sample's button does
   settle(2000);
   photograph("2-loaded");
   return true;

@@ -19,6 +19,7 @@
 #include <QScrollArea>
 #include <QTest>
 
+#include <algorithm>
 #include <iostream>
 
 namespace {
@@ -30,6 +31,10 @@ std::vector<vtkMRMLNode*> renderNodes() {
   qSlicerApplication::application()->mrmlScene()->GetNodesByClass("vtkMRMLFenestraRenderNode",
                                                                   nodes);
   return nodes;
+}
+
+void processEvents() {
+  QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
 }
 
 } // namespace
@@ -100,15 +105,19 @@ bool qSlicerFenestraUser::photographPreview(const char* name, const std::functio
 }
 
 bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int milliseconds) {
+  const int patience = std::max(1, qEnvironmentVariableIntValue("FENESTRA_TOUR_PATIENCE"));
   QElapsedTimer watch;
   watch.start();
-  while (!condition() && watch.elapsed() < milliseconds)
-    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  while (!condition() && watch.elapsed() / patience < milliseconds)
+    processEvents();
   return condition();
 }
 
 void qSlicerFenestraUser::settle(int milliseconds) {
-  waitFor([] { return false; }, milliseconds);
+  QElapsedTimer watch;
+  watch.start();
+  while (watch.elapsed() < milliseconds)
+    processEvents();
 }
 
 void qSlicerFenestraUser::photograph(const char* name) {

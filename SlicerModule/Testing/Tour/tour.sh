@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The tutorial in a real Slicer on a virtual screen. usage: tour.sh SLICER MODULES FENESTRA REPORT
-# FENESTRA_TOUR_QUALITY: 0 draft, 1 good, 2 final. Leaves pictures and tour.json in REPORT; fails
-# where a step does, or where Slicer logs a warning that names Fenestra.
+# FENESTRA_TOUR_QUALITY: 0 draft, 1 good, 2 final. FENESTRA_TOUR_PATIENCE: how many times as long as
+# usual a step may take, on a busy machine or for better quality. Leaves pictures and tour.json in
+# REPORT; fails where a step does, or where Slicer logs a warning that names Fenestra.
 set -euo pipefail
 slicer=$1 modules=$2 fenestra=$3 report=$4
 rm -rf "$report"
@@ -15,7 +16,7 @@ settings="$HOME/.config/NA-MIC"
 mkdir -p "$settings"
 printf '[MainWindow]\nDontShowDisclaimerMessage=1024\nDontConfirmExit=1024\nDontConfirmSceneSave=1024\n' >"$settings/Slicer.ini"
 status=0
-timeout 800 xvfb-run -a -s "-screen 0 1600x1000x24" "$slicer" --no-splash \
+timeout $((800 * ${FENESTRA_TOUR_PATIENCE:-1})) xvfb-run -a -s "-screen 0 1600x1000x24" "$slicer" --no-splash \
   --additional-module-paths "$modules" "$commands" --verbose-module-discovery \
   >"$report/slicer.log" 2>&1 || status=$?
 cat "$report/tour.json" || true
