@@ -35,6 +35,18 @@ double summit(double a, double b, const Function& f) {
   return 0.5 * (a + b);
 }
 
+/// Where a ray that is at an index at t next comes to a face between cells.
+double nextFace(const Vec3& index, const Vec3& direction, double t) {
+  double least = infinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = direction[axis], x = index[axis];
+    const double face = d > 0.0 ? std::floor(x + 1e-9) + 1.0 : std::ceil(x - 1e-9) - 1.0;
+    if (d != 0.0)
+      least = std::min(least, t + (face - x) / d);
+  }
+  return least;
+}
+
 /// Each value becomes the least of it and its neighbours', across corners, too.
 void spreadLeast(std::vector<std::uint8_t>& values, const Size3& size) {
   const std::int64_t strides[] = {1, size.x(), size.x() * size.y()};
@@ -157,25 +169,29 @@ double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const
   const auto isInAt = [&](double s) { return value(s) >= 0.5; };
   const double voxel = 1.0 / d.cwiseAbs().maxCoeff(); // mm
   const double stride = step * voxel;
-  const auto isFalling = [&](double s) {
-    return value(s + 1e-6 * voxel) < value(s - 1e-6 * voxel) - rounding;
-  };
-  // Where the field rises at one place that is looked at and falls at the next, it may be in the
-  // focus for less than a step between them.
-  double last = t;
-  bool falls = true;
+  // Steps end at the faces of cells, between which the field is smooth. Where it rises after one
+  // end and falls before the other, it may be in the focus for less than a step between them.
+  const double near = 1e-6 * stride;
+  const auto rises = [&](double from, double to) { return value(to) > value(from) + rounding; };
   for (bool isFirst = true; t <= end; isFirst = false) {
-    const std::uint8_t empty = m_emptiness[cell(o + t * d)];
-    const double here = empty == 0 ? value(t) : 0.0;
-    if (here >= 0.5)
-      return isFirst ? t : bisected(last, t, isInAt);
-    const bool fell = falls;
-    falls = here < 0.25 || isFalling(t);
-    if (falls && !fell)
-      if (const double top = summit(last, t, value); isInAt(top))
-        return bisected(last, top, isInAt);
-    last = t;
-    t += empty > 1 ? (empty - 1) * voxel : stride;
+    const Vec3 index = o + t * d;
+    const std::uint8_t empty = m_emptiness[cell(index)];
+    if (empty > 1) {
+      t += (empty - 1) * voxel;
+      continue;
+    }
+    const double here = value(t);
+    if (here >= 0.5 && isFirst)
+      return t;
+    const double next = std::min({t + stride, nextFace(index, d, t), end});
+    if (here > 0.25 && rises(t, t + near) && rises(next, next - near)) // else it is too far off
+      if (const double top = summit(t, next, value); isInAt(top))
+        return bisected(t, top, isInAt);
+    if (isInAt(next))
+      return bisected(t, next, isInAt);
+    if (next >= end)
+      break;
+    t = next;
   }
   return infinity;
 }
