@@ -48,9 +48,9 @@ public:
   /// The same, and of rays that meet nothing the t of their summit, where the indicator is greatest
   /// (the least such t), and how high it is there; no summit is known where it is `foothill` or
   /// less, and its height is `foothill`. Where a ray just misses the mask its summit is where it
-  /// would meet it. Where it just misses two parts, as faces in one plane, the nearer one hides the
-  /// other: a summit is left for one behind it only if that lacks less than a share of what it
-  /// lacks itself of 1/2.
+  /// would meet it. Where it just misses two parts, as faces in one plane or a ridge along it, the
+  /// nearer one hides the other: a summit is left for one behind it only if that lacks less than a
+  /// share of what it lacks itself of 1/2.
   void findSummits(FocusRays& rays) const;
   static constexpr double foothill = 0.25;
   static constexpr double lessHidden = 1.0 / 64.0;

@@ -173,6 +173,11 @@ private:
 /// less than this, of an indicator, is level; what is as near, in mm, is the same place.
 constexpr double level = 1e-8;
 
+/// The edge of a face may be seen end-on: a ray beside it misses all of it, here by more, there by
+/// less. All of a hill that is lower than its summit by less than this hides what is behind it, as
+/// another hill does (FocusCells::lessHidden).
+constexpr double ridge = 1e-4;
+
 /// Rays i, i + 1 and so on, one in each lane.
 template <bool withSummits>
 class Walk {
@@ -365,13 +370,19 @@ private:
     bool isOnTop = begin - m_summits[lane] < level;
     for (const double s : {0.0, turns[0], turns[1], 1.0}) { // between these the cubic is monotone
       const double height = cubic(s);
-      if (isOnTop ? height > m_heights[lane] + level : isNewSummit(lane, height)) {
+      if (isOnTop ? isHigher(lane, height) : isNewSummit(lane, height)) {
         m_heights[lane] = height;
         m_summits[lane] = begin + s * length;
         isOnTop = true;
       }
-      isOnTop = isOnTop && height >= m_heights[lane] - level;
+      isOnTop = isOnTop && height >= m_heights[lane] - ridge;
     }
+  }
+
+  /// Of the hill that has the summit so far.
+  bool isHigher(std::size_t lane, double height) const {
+    const double least = std::min(ridge, -height / FocusCells::lessHidden);
+    return height > m_heights[lane] + std::max(level, least);
   }
 
   /// Of a hill behind the one that has the summit so far.
