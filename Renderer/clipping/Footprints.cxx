@@ -23,26 +23,29 @@ std::pair<std::int64_t, std::int64_t> samplesAround(const DepthAxis& axis, doubl
           std::min(axis.size() - 1, static_cast<std::int64_t>(std::ceil(high + sampleSlack)))};
 }
 
-/// Cells between samples, the last ones excluded.
-struct CellRange {
-  std::int64_t left, right, top, bottom;
+/// Those that rays between two positions pass.
+CellRange cellsBetween(const DepthBuffer& buffer, const Vec2& lower, const Vec2& upper) {
+  CellRange cells{};
+  std::tie(cells.left, cells.right) = samplesAround(buffer.xAxis(), lower.x(), upper.x());
+  std::tie(cells.top, cells.bottom) = samplesAround(buffer.yAxis(), lower.y(), upper.y());
+  return cells;
+}
 
-  /// Those that rays between two positions pass.
-  CellRange(const DepthBuffer& buffer, const Vec2& lower, const Vec2& upper) {
-    std::tie(left, right) = samplesAround(buffer.xAxis(), lower.x(), upper.x());
-    std::tie(top, bottom) = samplesAround(buffer.yAxis(), lower.y(), upper.y());
-  }
-};
+/// The blocks of the focus's cells.
+BoxProjection blocksOf(const Camera& camera, const FocusCells& cells) {
+  return {camera, cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize})};
+}
 
 /// Tiles of cells, to pass over many at once.
 class AskedTiles {
 public:
-  AskedTiles(const DepthBuffer& buffer, const std::vector<std::uint8_t>& isAskedFor)
-      : m_across(buffer.columns() / side + 1),
-        m_isAskedFor(static_cast<std::size_t>(m_across * (buffer.rows() / side + 1))) {
+  AskedTiles(const CellRange& range, const std::vector<std::uint8_t>& isAskedFor)
+      : m_range(range),
+        m_across(range.columns() / side + 1),
+        m_isAskedFor(static_cast<std::size_t>(m_across * (range.rows() / side + 1))) {
     std::size_t cell = 0;
-    for (std::int64_t row = 0; row < buffer.rows(); ++row)
-      for (std::int64_t column = 0; column < buffer.columns(); ++column)
+    for (std::int64_t row = range.top; row < range.bottom; ++row)
+      for (std::int64_t column = range.left; column < range.right; ++column)
         m_isAskedFor[tile(column, row)] |= isAskedFor[cell++];
   }
 
@@ -58,9 +61,11 @@ private:
   static constexpr std::int64_t side = 8;
 
   std::size_t tile(std::int64_t column, std::int64_t row) const {
-    return static_cast<std::size_t>(column / side + row / side * m_across);
+    return static_cast<std::size_t>((column - m_range.left) / side +
+                                    (row - m_range.top) / side * m_across);
   }
 
+  CellRange m_range;
   std::int64_t m_across;
   std::vector<std::uint8_t> m_isAskedFor;
 };
@@ -105,8 +110,7 @@ FocusFootprint::FocusFootprint(const Camera& camera, const DepthBuffer& buffer,
     : m_across((buffer.columns() + tileSize - 1) / tileSize) {
   const std::int64_t down = (buffer.rows() + tileSize - 1) / tileSize;
   m_tiles.assign(static_cast<std::size_t>(m_across * down), {infinity, -infinity});
-  const BoxProjection blocks(camera,
-                             cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize}));
+  const BoxProjection blocks = blocksOf(camera, cells);
   cells.visitOccupied([&](const Size3& block) {
     const auto [depths, lower, upper] = blocks.of(block);
     if (depths.end < 0.0)
@@ -122,22 +126,35 @@ FocusFootprint::FocusFootprint(const Camera& camera, const DepthBuffer& buffer,
   });
 }
 
+CellRange focusRange(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells) {
+  CellRange range{buffer.columns(), 0, buffer.rows(), 0};
+  const BoxProjection blocks = blocksOf(camera, cells);
+  cells.visitOccupied([&](const Size3& block) {
+    const auto [depths, lower, upper] = blocks.of(block);
+    if (depths.end < 0.0)
+      return;
+    const CellRange seen = cellsBetween(buffer, lower, upper);
+    range = {std::min(range.left, seen.left), std::max(range.right, seen.right),
+             std::min(range.top, seen.top), std::max(range.bottom, seen.bottom)};
+  });
+  return range.left < range.right && range.top < range.bottom ? range : CellRange{};
+}
+
 std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buffer,
-                                   const FocusCells& cells,
+                                   const FocusCells& cells, const CellRange& range,
                                    const std::vector<std::uint8_t>& isAskedFor) {
-  std::vector<Interval> reaches(isAskedFor.size(), {infinity, -infinity});
-  const AskedTiles tiles(buffer, isAskedFor);
-  const BoxProjection blocks(camera,
-                             cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize}));
+  std::vector<Interval> reaches(range.size(), {infinity, -infinity});
+  const AskedTiles tiles(range, isAskedFor);
+  const BoxProjection blocks = blocksOf(camera, cells);
   const BoxProjection boxes(camera, cells.cellToWorld());
   const auto reach = [&](const Size3& cell) {
     const auto [depths, lower, upper] = boxes.of(cell);
     if (depths.end < 0.0)
       return;
-    const CellRange range(buffer, lower, upper);
-    for (std::int64_t row = range.top; row < range.bottom; ++row)
-      for (std::int64_t column = range.left; column < range.right; ++column) {
-        const auto at = static_cast<std::size_t>(buffer.sample(column, row));
+    const CellRange seen = cellsBetween(buffer, lower, upper);
+    for (std::int64_t row = seen.top; row < seen.bottom; ++row)
+      for (std::int64_t column = seen.left; column < seen.right; ++column) {
+        const std::size_t at = range.at(column, row);
         if (isAskedFor[at])
           reaches[at] = {std::min(reaches[at].begin, depths.begin),
                          std::max(reaches[at].end, depths.end)};
@@ -145,7 +162,7 @@ std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buff
   };
   cells.visitOccupied([&](const Size3& block) {
     const auto [depths, lower, upper] = blocks.of(block);
-    if (depths.end >= 0.0 && tiles.any(CellRange(buffer, lower, upper)))
+    if (depths.end >= 0.0 && tiles.any(cellsBetween(buffer, lower, upper)))
       cells.visitCells(block, reach);
   });
   return reaches;

@@ -44,11 +44,28 @@ private:
   std::vector<Interval> m_tiles;
 };
 
-/// For each cell between samples, told by its first one, the depths, mm, between which its rays can
-/// meet the focus or pass a summit of it (FocusCells); empty where they can not, and in cells that
-/// are not asked for.
+/// A rectangle of cells between samples, each told by its first sample; right and bottom are
+/// excluded.
+struct CellRange {
+  std::int64_t left, right, top, bottom;
+
+  std::int64_t columns() const { return right - left; }
+  std::int64_t rows() const { return bottom - top; }
+  std::size_t size() const { return static_cast<std::size_t>(columns() * rows()); }
+  /// A cell's place, row by row.
+  std::size_t at(std::int64_t column, std::int64_t row) const {
+    return static_cast<std::size_t>(column - left + columns() * (row - top));
+  }
+};
+
+/// A rectangle that holds all cells whose rays can meet the focus or pass a summit of it
+/// (FocusCells).
+CellRange focusRange(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells);
+
+/// For each cell of a range the depths, mm, between which its rays can meet the focus or pass a
+/// summit of it; empty where they can not, and in cells that are not asked for.
 std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buffer,
-                                   const FocusCells& cells,
+                                   const FocusCells& cells, const CellRange& range,
                                    const std::vector<std::uint8_t>& isAskedFor);
 
 } // namespace fenestra

@@ -20,6 +20,8 @@
 
 namespace fenestra {
 
+struct CellRange;
+
 class Seams {
 public:
   Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus);
@@ -59,7 +61,8 @@ public:
   static constexpr std::size_t mostQuestions = 16;
 
 private:
-  void findRim(const FocusDepth& focus);
+  Interval reachAround(const DepthBuffer& buffer, std::int64_t column, std::int64_t row) const;
+  void findRim(const FocusDepth& focus, const CellRange& range);
 
   std::shared_ptr<const FocusTracer> m_tracer;
   double m_reference; ///< the depth of the camera's target
