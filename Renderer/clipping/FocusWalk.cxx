@@ -194,6 +194,7 @@ public:
         m_axes{axis(0), axis(1), axis(2)} {
     m_heights.fill(FocusCells::foothill - 0.5);
     m_summits.fill(-infinity);
+    m_tops.fill(-infinity);
   }
 
   /// To be called when none is busy: tells the summits.
@@ -301,7 +302,7 @@ private:
     const D greatest = hn::Max(hn::Max(c0, b1), hn::Max(b2, b3));
     D least = all(-1e-12); // a little below 0 is rounding
     if constexpr (withSummits)
-      least = hn::Min(least, hn::Load(doubles, m_heights.data()));
+      least = hn::Min(least, hn::Sub(hn::Load(doubles, m_heights.data()), all(ridge)));
     const M possible = hn::And(which, hn::Ge(greatest, least));
     if (hn::AllFalse(doubles, possible))
       return;
@@ -367,7 +368,7 @@ private:
   /// Through a cell in which nothing is met.
   void climb(std::size_t lane, const Cubic& cubic, double begin, double length) {
     const std::array<double, 2> turns = turningPoints(cubic);
-    bool isOnTop = begin - m_summits[lane] < level;
+    bool isOnTop = begin - m_tops[lane] < level;
     for (const double s : {0.0, turns[0], turns[1], 1.0}) { // between these the cubic is monotone
       const double height = cubic(s);
       if (isOnTop ? isHigher(lane, height) : isNewSummit(lane, height)) {
@@ -376,6 +377,8 @@ private:
         isOnTop = true;
       }
       isOnTop = isOnTop && height >= m_heights[lane] - ridge;
+      if (isOnTop)
+        m_tops[lane] = begin + s * length;
     }
   }
 
@@ -399,6 +402,7 @@ private:
   M m_busy;
   std::array<Axis, 3> m_axes;
   Lane m_heights, m_summits; ///< so far: the indicator - 1/2, and where
+  Lane m_tops;               ///< where the summit's ridge ends
 };
 
 template <bool withSummits>
