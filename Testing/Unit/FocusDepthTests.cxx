@@ -1,6 +1,7 @@
 // The focus's depth is exact: against planes, against dense marching of the same indicator.
 
 #include "ClippingTesting.h"
+#include "RunSettings.h"
 #include "clipping/CellCubic.h"
 #include "clipping/FocusCells.h"
 #include "core/LaneTargets.h"
@@ -12,6 +13,7 @@
 
 using namespace fenestra;
 using namespace fenestra::testing_clipping;
+using fenestra::testing::briefly;
 
 namespace {
 
@@ -68,7 +70,7 @@ TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
   Random random(5, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
   int met = 0;
-  for (int trial = 0; trial < 40; ++trial) {
+  for (int trial = 0; trial < briefly(40); ++trial) {
     const Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.4; });
     const FocusCells cells(mask);
     auto [rays, worldRays] = SomeRays(random, cells);
@@ -84,7 +86,7 @@ TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
       }
     }
   }
-  EXPECT_GT(met, 500);
+  EXPECT_GT(met, briefly(500));
 }
 
 /// The near end of a ridge may be told for its summit.
@@ -113,7 +115,7 @@ TEST(FocusCells, KnowTheSummitsOfRaysThatMissThem) {
   const Grid grid({3, 3, 3}, Affine::Identity());
   int passed = 0, hidden = 0, other = 0;
   for (const std::uint8_t full : {std::uint8_t{1}, std::uint8_t{200}})
-    for (int trial = 0; trial < 40; ++trial) {
+    for (int trial = 0; trial < briefly(40); ++trial) {
       Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.3; });
       mask.full = full;
       for (std::uint8_t& voxel : mask.voxels)
@@ -144,8 +146,8 @@ TEST(FocusCells, KnowTheSummitsOfRaysThatMissThem) {
         EXPECT_NEAR(cells.indicator(cells.worldToCell() * summit), rays.height[i], 1e-9);
       }
     }
-  EXPECT_GT(passed, 200);
-  EXPECT_GT(hidden, 20);
+  EXPECT_GT(passed, briefly(200));
+  EXPECT_GT(hidden, briefly(20));
   EXPECT_LT(other, 3);
 }
 
@@ -278,7 +280,7 @@ TEST(FocusDepth, IsTheSameInEveryInstructionSet) {
 
 TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
   Random random(3, 0, 0);
-  for (int trial = 0; trial < 6; ++trial) {
+  for (int trial = 0; trial < std::max(2, briefly(6)); ++trial) {
     Affine map = Affine::Identity();
     map.linear() =
         Mat3(Eigen::AngleAxisd(random.uniform() * 6, randomPoint(random, -1, 1).normalized())) *

@@ -1,5 +1,6 @@
 #include "tracking/MajorantGrid.h"
 
+#include "RunSettings.h"
 #include "core/Random.h"
 #include "medium/Medium.h"
 
@@ -39,7 +40,7 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
 
   const Box box = grid.indexBox();
   double tightest = infinity;
-  for (int i = 0; i < 300000; ++i) {
+  for (int i = 0; i < briefly(300000); ++i) {
     Random random(7, static_cast<std::uint64_t>(i), 0);
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis) {
