@@ -5,5 +5,7 @@ fenestra_test(LightTests LightSetTests.cxx LIBRARIES fenestra_lights LABELS unit
 fenestra_test(RenderTests BackgroundTests.cxx CoverageTests.cxx EmptyPixelsTests.cxx FilmTests.cxx DeterminismTests.cxx SamplePlanTests.cxx LIBRARIES fenestra_render LABELS unit)
 fenestra_test(OrganPresetsTests OrganPresetsTests.cxx
   LIBRARIES fenestra_scene fenestra_resources fenestra_itk LABELS unit)
-fenestra_test(SceneTests AutomaticViewTests.cxx DefaultsTests.cxx SceneChangeTests.cxx
+fenestra_test(AutomaticViewTests AutomaticViewTests.cxx
+  LIBRARIES fenestra_scene fenestra_itk TBB::tbb LABELS unit slow)
+fenestra_test(SceneTests DefaultsTests.cxx SceneChangeTests.cxx
   LIBRARIES fenestra_scene fenestra_itk TBB::tbb LABELS unit)
