@@ -41,7 +41,7 @@ Walked checkedWalk(const Ray& ray, const Interval& range, const Size3& cells) {
       const Vec3 high = middle - (c.cast<double>() + Vec3::Ones());
       walked.worstOutside = std::max({walked.worstOutside, low.maxCoeff(), high.maxCoeff()});
     }
-    if (++walked.cells > cells.sum() || !inGrid || testing::Test::HasFailure()) {
+    if (++walked.cells > cells.sum() || !inGrid || ::testing::Test::HasFailure()) {
       ADD_FAILURE() << "ray " << ray.origin.transpose() << " | " << ray.direction.transpose();
       return walked;
     }
