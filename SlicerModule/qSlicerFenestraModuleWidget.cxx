@@ -124,8 +124,10 @@ void qSlicerFenestraModuleWidget::connectSession() {
 // ---- the scene
 
 void qSlicerFenestraModuleWidget::setMRMLScene(vtkMRMLScene* scene) {
-  for (const unsigned long event : {vtkMRMLScene::EndCloseEvent, vtkMRMLScene::EndImportEvent})
-    this->qvtkReconnect(this->mrmlScene(), scene, event, this, SLOT(useScene()));
+  vtkMRMLScene* const before = this->mrmlScene();
+  this->qvtkReconnect(before, scene, vtkMRMLScene::EndCloseEvent, this, SLOT(onSceneClosed()));
+  this->qvtkReconnect(before, scene, vtkMRMLScene::EndImportEvent, this, SLOT(onSceneImported()));
+  this->qvtkReconnect(before, scene, vtkMRMLScene::EndBatchProcessEvent, this, SLOT(useNewScene()));
   Superclass::setMRMLScene(scene);
   emit m_panel->mrmlSceneChanged(scene);
   useScene();
@@ -141,9 +143,25 @@ void qSlicerFenestraModuleWidget::exit() {
   Superclass::exit();
 }
 
+void qSlicerFenestraModuleWidget::onSceneClosed() {
+  m_sceneIsNew = true;
+}
+
+void qSlicerFenestraModuleWidget::onSceneImported() {
+  m_sceneIsNew = true;
+}
+
+/// Only now do the panel's boxes know its nodes; and a scene that is opened closes another one
+/// before, in the same batch.
+void qSlicerFenestraModuleWidget::useNewScene() {
+  if (m_sceneIsNew)
+    useScene();
+}
+
 void qSlicerFenestraModuleWidget::useScene() {
   if (!this->isEntered() || !this->mrmlScene() || this->mrmlScene()->IsBatchProcessing())
     return;
+  m_sceneIsNew = false;
   m_settings->use(fenestra()->GetSettings());
   preview();
 }

@@ -41,7 +41,9 @@ protected:
   void setup() override;
 
 private slots:
-  void useScene();
+  void onSceneClosed();
+  void onSceneImported();
+  void useNewScene();
   void updateButtons();
   void showChosen();
   void save();
@@ -51,6 +53,7 @@ private:
   vtkMRMLFenestraRenderNode* chosen() const;
   void connectPanel();
   void connectSession();
+  void useScene();
   void preview();
   void start(qSlicerFenestraSession::Kind kind);
   void showMeasures(vtkMRMLFenestraRenderNode* render);
@@ -65,8 +68,9 @@ private:
   qSlicerFenestraPanel* m_panel = nullptr;
   qSlicerFenestraSettings* m_settings = nullptr;
   qSlicerFenestraSession* m_session = nullptr;
-  QString m_reached;    ///< of the render under way, in words
-  QElapsedTimer m_told; ///< since progress was last shown
+  bool m_sceneIsNew = false; ///< closed or loaded, and not yet used
+  QString m_reached;         ///< of the render under way, in words
+  QElapsedTimer m_told;      ///< since progress was last shown
 };
 
 #endif
