@@ -22,6 +22,7 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QSignalBlocker>
 #include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -69,7 +70,7 @@ void qSlicerFenestraModuleWidget::setup() {
 void qSlicerFenestraModuleWidget::connectPanel() {
   const qSlicerFenestraPanel& panel = *m_panel;
   connect(panel.sample, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::loadSample);
-  connect(panel.renders, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(showChosen()));
+  connect(panel.renders, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(onRenderChosen()));
   connect(panel.showPreview, &QCheckBox::toggled, this, [this](bool shown) {
     m_panel->preview->setVisible(shown);
     m_panel->previewState->setVisible(shown);
@@ -163,6 +164,8 @@ void qSlicerFenestraModuleWidget::useScene() {
     return;
   m_sceneIsNew = false;
   m_settings->use(fenestra()->GetSettings());
+  if (!chosen())
+    m_panel->renders->setCurrentNode(fenestra()->GetShownRender());
   preview();
 }
 
@@ -252,8 +255,10 @@ void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& 
   else
     say((outcome.kind == qFenestraOutcome::Kind::stopped ? tr("Stopped: %1.") : tr("Done: %1."))
             .arg(QString::fromUtf8(render->GetDescription() ? render->GetDescription() : "")));
-  if (render)
+  if (render) {
+    const QSignalBlocker unheard(m_panel->renders); // it is shown below
     m_panel->renders->setCurrentNode(render);
+  }
   showChosen();
   showResult(render);
 }
@@ -286,6 +291,13 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   m_panel->save->setEnabled(hasPicture);
   m_panel->repeat->setEnabled(render != nullptr);
   m_panel->resume->setVisible(m_session->canResume(render));
+}
+
+/// Where a picture is shown already, the chosen one takes its place.
+void qSlicerFenestraModuleWidget::onRenderChosen() {
+  showChosen();
+  if (chosen() && fenestra()->GetShownRender())
+    showResult(chosen());
 }
 
 /// What there is to see of the chosen picture.

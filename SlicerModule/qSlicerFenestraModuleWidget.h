@@ -45,7 +45,7 @@ private slots:
   void onSceneImported();
   void useNewScene();
   void updateButtons();
-  void showChosen();
+  void onRenderChosen();
   void save();
 
 private:
@@ -55,6 +55,7 @@ private:
   void connectSession();
   void useScene();
   void preview();
+  void showChosen();
   void start(qSlicerFenestraSession::Kind kind);
   void showMeasures(vtkMRMLFenestraRenderNode* render);
   void saveFrames(vtkMRMLFenestraRenderNode* turntable);

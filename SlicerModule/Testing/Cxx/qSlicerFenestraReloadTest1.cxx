@@ -17,6 +17,10 @@
 #include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
 #include <vtkCacheManager.h>
 #include <vtkClosedSurfaceToBinaryLabelmapConversionRule.h>
+#include <vtkCollection.h>
+#include <vtkMRMLApplicationLogic.h>
+#include <vtkMRMLLayoutNode.h>
+#include <vtkMRMLSliceLogic.h>
 #include <vtkSegmentationConverterFactory.h>
 
 namespace {
@@ -30,14 +34,26 @@ std::string textOf(const Panel& panel, const char* label) {
   return panel.find<QLabel>(label)->text().toStdString();
 }
 
+/// What Slicer's layout makes for ShowResult.
+void addPictureView(vtkMRMLApplicationLogic* application, vtkMRMLScene* scene) {
+  scene->AddNewNodeByClass("vtkMRMLLayoutNode");
+  vtkNew<vtkMRMLSliceLogic> view;
+  view->SetMRMLScene(scene);
+  view->AddSliceNode("Fenestra");
+  vtkNew<vtkCollection> views;
+  views->AddItem(view);
+  application->SetSliceLogics(views);
+}
+
 int render(const Panel& panel, const char* from) {
   panel.choose("ViewBox", from);
   CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("RenderButton")->click(); }), true);
   CHECK_NOT_NULL(panel.picture());
+  CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == panel.picture(); }), true);
   return EXIT_SUCCESS;
 }
 
-/// As it was saved.
+/// As it was saved, with the picture chosen that is seen.
 int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   vtkMRMLNode* volume = scene->GetFirstNodeByName("Ball");
   vtkMRMLNode* segmentation = scene->GetFirstNodeByName("Segmentation");
@@ -52,6 +68,9 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   CHECK_INT(focus.item(0)->checkState(), Qt::Checked);
   CHECK_STD_STRING(panel.flag("size"), "48x40");
   CHECK_BOOL(panel.find<QPushButton>("RenderButton")->isEnabled(), true);
+  CHECK_POINTER(panel.picture(), scene->GetFirstNodeByName("Ball render"));
+  CHECK_POINTER(panel.logic->GetShownRender(), panel.picture());
+  CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
   CHECK_BOOL(waitFor([&] { return textOf(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
              true);
   return EXIT_SUCCESS;
@@ -70,6 +89,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
       vtkSmartPointer<vtkClosedSurfaceToBinaryLabelmapConversionRule>::New());
   vtkMRMLScene* scene = application.mrmlScene();
   scene->GetCacheManager()->SetRemoteCacheDirectory(argv[2]);
+  addPictureView(application.applicationLogic(), scene);
   qSlicerFenestraModule module;
   module.setName("Fenestra");
   module.setPath(argv[3]);
@@ -88,13 +108,21 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   panel.find<QSpinBox>("WidthBox")->setValue(48);
   panel.find<QSpinBox>("HeightBox")->setValue(40);
 
+  // Two pictures; the one that is chosen is the one that is seen, and saved so.
   CHECK_EXIT_SUCCESS(render(panel, "left"));
+  Node* const first = panel.picture();
+  CHECK_EXIT_SUCCESS(render(panel, "right"));
+  CHECK_BOOL(panel.picture() != first, true);
+  panel.nodes("RendersBox")->setCurrentNode(first);
+  CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == first; }), true);
   const std::string file = std::string(argv[2]) + "/reload.mrb";
   CHECK_BOOL(scene->WriteToMRB(file.c_str()), true);
 
   scene->Clear(false);
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), false), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
+  CHECK_EXIT_SUCCESS(render(panel, "right"));
+  panel.nodes("RendersBox")->setCurrentNode(nullptr);
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
   owner->exit();
