@@ -96,10 +96,10 @@ void qSlicerFenestraModuleWidget::connectPanel() {
 }
 
 void qSlicerFenestraModuleWidget::connectSession() {
-  connect(m_settings, &qSlicerFenestraSettings::changed, this,
-          &qSlicerFenestraModuleWidget::updateButtons);
-  connect(m_settings, &qSlicerFenestraSettings::changed, m_session,
-          &qSlicerFenestraSession::refresh);
+  connect(m_settings, &qSlicerFenestraSettings::changed, this, [this] {
+    updateButtons();
+    preview();
+  });
   connect(m_session, &qSlicerFenestraSession::learned, this,
           [this](const qFenestraAbilities& abilities) {
             m_panel->offer(abilities);
@@ -144,8 +144,10 @@ void qSlicerFenestraModuleWidget::exit() {
   Superclass::exit();
 }
 
+/// What was said of it goes with it.
 void qSlicerFenestraModuleWidget::onSceneClosed() {
   m_sceneIsNew = true;
+  forget();
 }
 
 void qSlicerFenestraModuleWidget::onSceneImported() {
@@ -166,12 +168,15 @@ void qSlicerFenestraModuleWidget::useScene() {
   m_settings->use(fenestra()->GetSettings());
   if (!chosen())
     m_panel->renders->setCurrentNode(fenestra()->GetShownRender());
-  preview();
 }
 
 void qSlicerFenestraModuleWidget::preview() {
-  const bool shown = this->isEntered() && m_panel->showPreview->isChecked();
+  const bool shown = this->isEntered() && m_panel->showPreview->isChecked() && hasVolume();
   m_session->preview(shown ? m_settings->node() : nullptr);
+}
+
+bool qSlicerFenestraModuleWidget::hasVolume() const {
+  return m_settings->node() && m_settings->node()->GetNodeReference(Node::VolumeRole);
 }
 
 // ---- renders
@@ -277,13 +282,14 @@ void qSlicerFenestraModuleWidget::forget() {
 }
 
 void qSlicerFenestraModuleWidget::updateButtons() {
-  const bool hasVolume =
-      m_settings->node() && m_settings->node()->GetNodeReference(Node::VolumeRole);
+  const bool hasVolume = this->hasVolume();
   m_panel->render->setEnabled(hasVolume);
   m_panel->turn->setEnabled(hasVolume);
   m_panel->sample->setVisible(!hasVolume);
-  if (!hasVolume)
+  if (!hasVolume) {
     m_panel->preview->setText(tr("Load a volume, or the sample knee"));
+    m_panel->previewState->clear();
+  }
   m_panel->stop->setEnabled(m_session->rendering());
   Node* render = chosen();
   const bool hasPicture = render && render->GetNodeReference(Node::PictureRole);

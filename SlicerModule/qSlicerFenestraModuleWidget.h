@@ -44,7 +44,6 @@ private slots:
   void onSceneClosed();
   void onSceneImported();
   void useNewScene();
-  void updateButtons();
   void onRenderChosen();
   void save();
 
@@ -55,6 +54,8 @@ private:
   void connectSession();
   void useScene();
   void preview();
+  bool hasVolume() const;
+  void updateButtons();
   void showChosen();
   void start(qSlicerFenestraSession::Kind kind);
   void showMeasures(vtkMRMLFenestraRenderNode* render);

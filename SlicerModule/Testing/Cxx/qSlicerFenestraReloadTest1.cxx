@@ -53,6 +53,17 @@ int render(const Panel& panel, const char* from) {
   return EXIT_SUCCESS;
 }
 
+/// Nothing is left of the scene, neither in words nor in pictures.
+int checkClosed(const Panel& panel) {
+  for (const char* label : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
+    CHECK_STD_STRING(textOf(panel, label), "");
+  CHECK_BOOL(panel.find<QLabel>("PreviewLabel")->text().startsWith("Load a volume"), true);
+  for (const char* widget : {"DetailsButton", "ProgressBar", "MeasuresLabel", "Player"})
+    CHECK_BOOL(panel.shows(widget), false);
+  CHECK_NULL(panel.picture());
+  return EXIT_SUCCESS;
+}
+
 /// As it was saved, with the picture chosen that is seen.
 int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   vtkMRMLNode* volume = scene->GetFirstNodeByName("Ball");
@@ -68,6 +79,7 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   CHECK_INT(focus.item(0)->checkState(), Qt::Checked);
   CHECK_STD_STRING(panel.flag("size"), "48x40");
   CHECK_BOOL(panel.find<QPushButton>("RenderButton")->isEnabled(), true);
+  CHECK_STD_STRING(textOf(panel, "StateLabel"), "");
   CHECK_POINTER(panel.picture(), scene->GetFirstNodeByName("Ball render"));
   CHECK_POINTER(panel.logic->GetShownRender(), panel.picture());
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
@@ -115,16 +127,22 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   CHECK_BOOL(panel.picture() != first, true);
   panel.nodes("RendersBox")->setCurrentNode(first);
   CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == first; }), true);
+  CHECK_BOOL(textOf(panel, "StateLabel").rfind("Done:", 0) == 0, true);
+  CHECK_BOOL(waitFor([&] { return textOf(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
+             true);
   const std::string file = std::string(argv[2]) + "/reload.mrb";
   CHECK_BOOL(scene->WriteToMRB(file.c_str()), true);
 
   scene->Clear(false);
+  CHECK_EXIT_SUCCESS(checkClosed(panel));
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), false), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
-  CHECK_EXIT_SUCCESS(render(panel, "right"));
+  CHECK_EXIT_SUCCESS(render(panel, "right")); // whose words go, too
   panel.nodes("RendersBox")->setCurrentNode(nullptr);
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
+  scene->Clear(false);
+  CHECK_EXIT_SUCCESS(checkClosed(panel));
   owner->exit();
   return EXIT_SUCCESS;
 }
