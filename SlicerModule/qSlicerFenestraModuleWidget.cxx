@@ -147,6 +147,7 @@ void qSlicerFenestraModuleWidget::exit() {
 /// What was said of it goes with it.
 void qSlicerFenestraModuleWidget::onSceneClosed() {
   m_sceneIsNew = true;
+  m_session->stopAll();
   forget();
 }
 

@@ -143,6 +143,18 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
   scene->Clear(false);
   CHECK_EXIT_SUCCESS(checkClosed(panel));
+
+  // Renders end with their scene, those that wait, too.
+  CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
+  panel.find<QSpinBox>("SamplesBox")->setValue(1000000);
+  panel.find<QPushButton>("RenderButton")->click();
+  panel.find<QPushButton>("RenderButton")->click();
+  CHECK_INT(owner->session()->waiting(), 1);
+  CHECK_BOOL(waitFor([&] { return panel.shows("ProgressBar"); }), true);
+  scene->Clear(false);
+  CHECK_BOOL(waitFor([&] { return !owner->session()->rendering(); }), true);
+  CHECK_STD_STRING(textOf(panel, "StateLabel"), "Stopped before there was a picture.");
+  CHECK_BOOL(panel.shows("ProgressBar"), false);
   owner->exit();
   return EXIT_SUCCESS;
 }
