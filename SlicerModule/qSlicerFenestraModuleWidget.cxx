@@ -22,6 +22,7 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QSignalBlocker>
 #include <QTimer>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -69,7 +70,7 @@ void qSlicerFenestraModuleWidget::setup() {
 void qSlicerFenestraModuleWidget::connectPanel() {
   const qSlicerFenestraPanel& panel = *m_panel;
   connect(panel.sample, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::loadSample);
-  connect(panel.renders, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(showChosen()));
+  connect(panel.renders, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(onRenderChosen()));
   connect(panel.showPreview, &QCheckBox::toggled, this, [this](bool shown) {
     m_panel->preview->setVisible(shown);
     m_panel->previewState->setVisible(shown);
@@ -95,10 +96,10 @@ void qSlicerFenestraModuleWidget::connectPanel() {
 }
 
 void qSlicerFenestraModuleWidget::connectSession() {
-  connect(m_settings, &qSlicerFenestraSettings::changed, this,
-          &qSlicerFenestraModuleWidget::updateButtons);
-  connect(m_settings, &qSlicerFenestraSettings::changed, m_session,
-          &qSlicerFenestraSession::refresh);
+  connect(m_settings, &qSlicerFenestraSettings::changed, this, [this] {
+    updateButtons();
+    preview();
+  });
   connect(m_session, &qSlicerFenestraSession::learned, this,
           [this](const qFenestraAbilities& abilities) {
             m_panel->offer(abilities);
@@ -124,8 +125,10 @@ void qSlicerFenestraModuleWidget::connectSession() {
 // ---- the scene
 
 void qSlicerFenestraModuleWidget::setMRMLScene(vtkMRMLScene* scene) {
-  for (const unsigned long event : {vtkMRMLScene::EndCloseEvent, vtkMRMLScene::EndImportEvent})
-    this->qvtkReconnect(this->mrmlScene(), scene, event, this, SLOT(useScene()));
+  vtkMRMLScene* const before = this->mrmlScene();
+  this->qvtkReconnect(before, scene, vtkMRMLScene::EndCloseEvent, this, SLOT(onSceneClosed()));
+  this->qvtkReconnect(before, scene, vtkMRMLScene::EndImportEvent, this, SLOT(onSceneImported()));
+  this->qvtkReconnect(before, scene, vtkMRMLScene::EndBatchProcessEvent, this, SLOT(useNewScene()));
   Superclass::setMRMLScene(scene);
   emit m_panel->mrmlSceneChanged(scene);
   useScene();
@@ -141,16 +144,40 @@ void qSlicerFenestraModuleWidget::exit() {
   Superclass::exit();
 }
 
+/// What was said of it goes with it.
+void qSlicerFenestraModuleWidget::onSceneClosed() {
+  m_sceneIsNew = true;
+  m_session->stopAll();
+  forget();
+}
+
+void qSlicerFenestraModuleWidget::onSceneImported() {
+  m_sceneIsNew = true;
+}
+
+/// Only now do the panel's boxes know its nodes; and a scene that is opened closes another one
+/// before, in the same batch.
+void qSlicerFenestraModuleWidget::useNewScene() {
+  if (m_sceneIsNew)
+    useScene();
+}
+
 void qSlicerFenestraModuleWidget::useScene() {
   if (!this->isEntered() || !this->mrmlScene() || this->mrmlScene()->IsBatchProcessing())
     return;
+  m_sceneIsNew = false;
   m_settings->use(fenestra()->GetSettings());
-  preview();
+  if (!chosen())
+    m_panel->renders->setCurrentNode(fenestra()->GetShownRender());
 }
 
 void qSlicerFenestraModuleWidget::preview() {
-  const bool shown = this->isEntered() && m_panel->showPreview->isChecked();
+  const bool shown = this->isEntered() && m_panel->showPreview->isChecked() && hasVolume();
   m_session->preview(shown ? m_settings->node() : nullptr);
+}
+
+bool qSlicerFenestraModuleWidget::hasVolume() const {
+  return m_settings->node() && m_settings->node()->GetNodeReference(Node::VolumeRole);
 }
 
 // ---- renders
@@ -234,8 +261,10 @@ void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& 
   else
     say((outcome.kind == qFenestraOutcome::Kind::stopped ? tr("Stopped: %1.") : tr("Done: %1."))
             .arg(QString::fromUtf8(render->GetDescription() ? render->GetDescription() : "")));
-  if (render)
+  if (render) {
+    const QSignalBlocker unheard(m_panel->renders); // it is shown below
     m_panel->renders->setCurrentNode(render);
+  }
   showChosen();
   showResult(render);
 }
@@ -254,13 +283,14 @@ void qSlicerFenestraModuleWidget::forget() {
 }
 
 void qSlicerFenestraModuleWidget::updateButtons() {
-  const bool hasVolume =
-      m_settings->node() && m_settings->node()->GetNodeReference(Node::VolumeRole);
+  const bool hasVolume = this->hasVolume();
   m_panel->render->setEnabled(hasVolume);
   m_panel->turn->setEnabled(hasVolume);
   m_panel->sample->setVisible(!hasVolume);
-  if (!hasVolume)
+  if (!hasVolume) {
     m_panel->preview->setText(tr("Load a volume, or the sample knee"));
+    m_panel->previewState->clear();
+  }
   m_panel->stop->setEnabled(m_session->rendering());
   Node* render = chosen();
   const bool hasPicture = render && render->GetNodeReference(Node::PictureRole);
@@ -268,6 +298,13 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   m_panel->save->setEnabled(hasPicture);
   m_panel->repeat->setEnabled(render != nullptr);
   m_panel->resume->setVisible(m_session->canResume(render));
+}
+
+/// Where a picture is shown already, the chosen one takes its place.
+void qSlicerFenestraModuleWidget::onRenderChosen() {
+  showChosen();
+  if (chosen() && fenestra()->GetShownRender())
+    showResult(chosen());
 }
 
 /// What there is to see of the chosen picture.

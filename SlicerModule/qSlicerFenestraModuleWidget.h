@@ -41,9 +41,10 @@ protected:
   void setup() override;
 
 private slots:
-  void useScene();
-  void updateButtons();
-  void showChosen();
+  void onSceneClosed();
+  void onSceneImported();
+  void useNewScene();
+  void onRenderChosen();
   void save();
 
 private:
@@ -51,7 +52,11 @@ private:
   vtkMRMLFenestraRenderNode* chosen() const;
   void connectPanel();
   void connectSession();
+  void useScene();
   void preview();
+  bool hasVolume() const;
+  void updateButtons();
+  void showChosen();
   void start(qSlicerFenestraSession::Kind kind);
   void showMeasures(vtkMRMLFenestraRenderNode* render);
   void saveFrames(vtkMRMLFenestraRenderNode* turntable);
@@ -65,8 +70,9 @@ private:
   qSlicerFenestraPanel* m_panel = nullptr;
   qSlicerFenestraSettings* m_settings = nullptr;
   qSlicerFenestraSession* m_session = nullptr;
-  QString m_reached;    ///< of the render under way, in words
-  QElapsedTimer m_told; ///< since progress was last shown
+  bool m_sceneIsNew = false; ///< closed or loaded, and not yet used
+  QString m_reached;         ///< of the render under way, in words
+  QElapsedTimer m_told;      ///< since progress was last shown
 };
 
 #endif

@@ -271,6 +271,14 @@ void qSlicerFenestraSession::stop() {
   }
 }
 
+void qSlicerFenestraSession::stopAll() {
+  const QList<int> ids = m_renders.keys(); // those that wait end at once
+  for (const int id : ids) {
+    m_renders[id].stopped = true;
+    m_queue.stop(id);
+  }
+}
+
 void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcome) {
   const QString folder = m_renders[id].folder;
   emit renderStopped();

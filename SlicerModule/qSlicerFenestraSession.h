@@ -44,6 +44,8 @@ public:
   void resume(vtkMRMLFenestraRenderNode* turntable);
   /// Ends the render under way, which keeps what it has.
   void stop();
+  /// The same for those that wait, too: their scene is closed.
+  void stopAll();
   bool rendering() const { return !m_renders.isEmpty(); }
   int waiting() const { return rendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 

@@ -122,8 +122,13 @@ void FaceFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
   slice->UpdateMatrices();
 }
 
-vtkMRMLSliceNode* PictureView(vtkMRMLScene* scene) {
-  return vtkMRMLSliceNode::SafeDownCast(scene->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
+vtkMRMLLayoutNode* LayoutOf(vtkMRMLScene* scene) {
+  return vtkMRMLLayoutNode::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLLayoutNode"));
+}
+
+bool Shows(vtkMRMLSliceLogic* view, const char* picture) {
+  const char* shown = view->GetSliceCompositeNode()->GetBackgroundVolumeID();
+  return picture && shown && std::strcmp(picture, shown) == 0;
 }
 
 /// A grey window over what is finite.
@@ -402,21 +407,26 @@ void vtkSlicerFenestraLogic::ShowNewestVolume() {
   application->PropagateVolumeSelection();
 }
 
+vtkMRMLSliceLogic* vtkSlicerFenestraLogic::GetPictureView() {
+  auto* slice = vtkMRMLSliceNode::SafeDownCast(
+      this->GetMRMLScene()->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
+  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
+  return slice && application ? application->GetSliceLogic(slice) : nullptr;
+}
+
 void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
-  vtkMRMLScene* scene = this->GetMRMLScene();
-  auto* layout = vtkMRMLLayoutNode::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLLayoutNode"));
+  vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene());
   if (!picture || !layout)
     return;
   if (!layout->IsLayoutDescription(ResultLayout))
     layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
   layout->SetViewArrangement(ResultLayout);
 
-  vtkMRMLSliceNode* slice = PictureView(scene);
-  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
-  vtkMRMLSliceLogic* logic = slice && application ? application->GetSliceLogic(slice) : nullptr;
+  vtkMRMLSliceLogic* logic = this->GetPictureView();
   if (!logic)
     return;
+  vtkMRMLSliceNode* slice = logic->GetSliceNode();
   vtkMRMLSliceCompositeNode* composite = logic->GetSliceCompositeNode();
   composite->SetBackgroundVolumeID(picture->GetID());
   composite->SetForegroundVolumeID(nullptr);
@@ -426,18 +436,28 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   logic->FitSliceToBackground(view[0], view[1]);
 }
 
+Node* vtkSlicerFenestraLogic::GetShownRender() {
+  vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene());
+  vtkMRMLSliceLogic* logic = this->GetPictureView();
+  if (!logic || !layout || layout->GetViewArrangement() != ResultLayout)
+    return nullptr;
+  std::vector<vtkMRMLNode*> renders;
+  this->GetMRMLScene()->GetNodesByClass("vtkMRMLFenestraRenderNode", renders);
+  for (vtkMRMLNode* render : renders)
+    if (Shows(logic, render->GetNodeReferenceID(Node::PictureRole)))
+      return Node::SafeDownCast(render);
+  return nullptr;
+}
+
 void vtkSlicerFenestraLogic::ShowFrame(Node* render, int frame) {
   auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
   if (!picture || frame < 0 || frame >= GetNumberOfFrames(render))
     return;
-  vtkMRMLSliceNode* slice = PictureView(this->GetMRMLScene());
-  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
-  vtkMRMLSliceLogic* logic = slice && application ? application->GetSliceLogic(slice) : nullptr;
-  const char* shown = logic ? logic->GetSliceCompositeNode()->GetBackgroundVolumeID() : nullptr;
-  if (!shown || std::strcmp(shown, picture->GetID()) != 0)
+  vtkMRMLSliceLogic* logic = this->GetPictureView();
+  if (!logic || !Shows(logic, picture->GetID()))
     this->ShowResult(render);
-  if (slice)
-    FaceFrame(picture, frame, slice);
+  if (logic)
+    FaceFrame(picture, frame, logic->GetSliceNode());
 }
 
 int vtkSlicerFenestraLogic::GetNumberOfFrames(Node* render) {

@@ -17,6 +17,7 @@ class vtkMRMLCameraNode;
 class vtkMRMLFenestraRenderNode;
 class vtkMRMLScalarVolumeNode;
 class vtkMRMLSegmentationNode;
+class vtkMRMLSliceLogic;
 class vtkMRMLVolumeNode;
 class vtkPolyData;
 
@@ -84,6 +85,8 @@ public:
   void ShowNewestVolume();
   /// Shows the render's picture beside a 3-D view, in a layout of the module's own.
   void ShowResult(vtkMRMLFenestraRenderNode* render);
+  /// The one whose picture the user sees in that layout; null: none.
+  vtkMRMLFenestraRenderNode* GetShownRender();
   /// Another frame of a turntable, in the same view.
   void ShowFrame(vtkMRMLFenestraRenderNode* render, int frame);
   /// 1 where it is no turntable's; 0 without a picture.
@@ -98,6 +101,7 @@ protected:
   void RegisterNodes() override;
 
 private:
+  vtkMRMLSliceLogic* GetPictureView();
   FenestraScene::Matrix BesideAnatomy(vtkMRMLFenestraRenderNode* render,
                                       const FenestraScene::Matrix& ijkToRas);
   void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);

@@ -1,20 +1,15 @@
 // The panel as a user meets it: its widgets are used, and what they say is compared with the node
 // of settings, both ways. Arguments: the renderer, a folder for files, the module's library.
 
+#include "FenestraPanel.h"
 #include "FenestraTesting.h"
 
 #include "qSlicerFenestraModule.h"
-#include "qSlicerFenestraModuleWidget.h"
-#include "vtkMRMLFenestraRenderNode.h"
 
 #include <ctkSliderWidget.h>
-#include <qMRMLNodeComboBox.h>
 #include <qSlicerApplication.h>
 
 #include <QCheckBox>
-#include <QComboBox>
-#include <QDoubleSpinBox>
-#include <QElapsedTimer>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
@@ -29,52 +24,10 @@
 
 namespace {
 
+using FenestraTesting::ends;
+using FenestraTesting::Panel;
+using FenestraTesting::waitFor;
 using Node = vtkMRMLFenestraRenderNode;
-
-struct Panel {
-  qSlicerFenestraModuleWidget* widget;
-  vtkSlicerFenestraLogic* logic;
-
-  template <typename Widget>
-  Widget* find(const char* name) const {
-    return widget->findChild<Widget*>(name);
-  }
-  Node* settings() const { return logic->GetSettings(); }
-  void choose(const char* box, const QString& data) const {
-    auto* combo = find<QComboBox>(box);
-    combo->setCurrentIndex(combo->findData(data));
-  }
-  QString chosen(const char* box) const { return find<QComboBox>(box)->currentData().toString(); }
-  bool shows(const char* widget) const { return !find<QWidget>(widget)->isHidden(); }
-  void set(const char* box, double value) const { find<QDoubleSpinBox>(box)->setValue(value); }
-  std::string flag(const char* name) const { return settings()->GetFlag(name); }
-  Node* picture() const { return Node::SafeDownCast(nodes("RendersBox")->currentNode()); }
-  qMRMLNodeComboBox* nodes(const char* name) const { return find<qMRMLNodeComboBox>(name); }
-};
-
-/// Whether a render ended after what is done.
-template <typename Action>
-bool ends(const Panel& panel, Action&& action) {
-  int ended = 0;
-  QElapsedTimer watch;
-  watch.start();
-  const auto connection = QObject::connect(panel.widget->session(), &qSlicerFenestraSession::ended,
-                                           panel.widget, [&] { ++ended; });
-  action();
-  while (ended == 0 && watch.elapsed() < 30000)
-    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
-  QObject::disconnect(connection);
-  return ended == 1;
-}
-
-template <typename Condition>
-bool waitFor(Condition&& condition) {
-  QElapsedTimer watch;
-  watch.start();
-  while (!condition() && watch.elapsed() < 30000)
-    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
-  return condition();
-}
 
 QByteArray radianceOf(Node* render) {
   auto* volume =

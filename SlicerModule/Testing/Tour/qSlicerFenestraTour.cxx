@@ -14,10 +14,14 @@
 
 #include <vtkCamera.h>
 #include <vtkImageData.h>
+#include <vtkMRMLApplicationLogic.h>
 #include <vtkMRMLCameraNode.h>
 #include <vtkMRMLCommandLineModuleNode.h>
 #include <vtkMRMLDisplayNode.h>
 #include <vtkMRMLScene.h>
+#include <vtkMRMLSliceCompositeNode.h>
+#include <vtkMRMLSliceLogic.h>
+#include <vtkMRMLSliceNode.h>
 #include <vtkMRMLVolumeNode.h>
 #include <vtkSlicerCLIModuleLogic.h>
 
@@ -334,7 +338,11 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   scene->Clear(false);
   settle(1000);
   photograph("8-closed");
-  if (!io->loadScene(file))
+  for (const char* words : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
+    if (!m_panel->findChild<QLabel*>(words)->text().isEmpty())
+      return false;
+  const int previews = m_previews;
+  if (!io->loadScene(file) || !waitFor([&] { return m_previews > previews; }))
     return false;
   settle(2000);
   auto* again = Node::SafeDownCast(scene->GetFirstNodeByName(name.c_str()));
@@ -342,9 +350,11 @@ bool qSlicerFenestraTour::saveAndRepeat() {
     return false;
   m_figures["readBack"] = radianceOf(again) == before &&
                           vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender()) == frames;
-  auto* chooser = m_panel->findChild<qMRMLNodeComboBox*>("RendersBox");
-  chooser->setCurrentNode(again);
-  settle(500);
+  for (const char* subject : {"VolumeBox", "SegmentationBox"})
+    if (!m_panel->findChild<qMRMLNodeComboBox*>(subject)->currentNode())
+      return false;
+  m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(again);
+  settle(2000);
   photograph("9-reloaded");
   const int ended = m_ended;
   if (!click("RepeatButton") || !waitFor([&] { return m_ended > ended; }, 300000))
@@ -370,8 +380,8 @@ bool qSlicerFenestraTour::runCommand() {
   node->SetParameterAsNode("segmentation", scene->GetFirstNodeByClass("vtkMRMLSegmentationNode"));
   node->SetParameterAsString("focus", "Femoral cartilage");
   node->SetParameterAsNode("output", output);
-  node->SetParameterAsInt("samples", 16);
-  node->SetParameterAsString("size", "256x256");
+  node->SetParameterAsInt("samples", 32);
+  node->SetParameterAsString("size", "512x512");
   m_window->findChild<qSlicerModuleSelectorToolBar*>()->selectModule("fenestra");
   settle(500);
   auto* panel = m_window->findChild<qSlicerCLIModuleWidget*>();
@@ -388,10 +398,29 @@ bool qSlicerFenestraTour::runCommand() {
   };
   if (!waitFor(over))
     return false;
-  settle(2000);
+  settle(1000);
+  faceOutput(output);
+  settle(1000);
   photograph("11-command");
   m_figures["commandLineModule"] = node->GetStatusString();
   vtkImageData* image = output->GetImageData();
   return node->GetStatus() == vtkMRMLCommandLineModuleNode::Completed &&
-         node->GetErrorText().empty() && image && image->GetDimensions()[0] == 256;
+         node->GetErrorText().empty() && image && image->GetDimensions()[0] == 512;
+}
+
+/// As with the slice view's menu: turned to the picture's plane, without the segments' outlines.
+void qSlicerFenestraTour::faceOutput(vtkMRMLVolumeNode* output) {
+  auto* application = qSlicerApplication::application();
+  std::vector<vtkMRMLNode*> outlines;
+  application->mrmlScene()->GetNodesByClass("vtkMRMLSegmentationDisplayNode", outlines);
+  for (vtkMRMLNode* outline : outlines)
+    vtkMRMLDisplayNode::SafeDownCast(outline)->SetVisibility2D(false);
+  auto* slice = vtkMRMLSliceNode::SafeDownCast(
+      application->mrmlScene()->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
+  vtkMRMLSliceLogic* view = application->applicationLogic()->GetSliceLogic(slice);
+  if (!view)
+    return;
+  view->GetSliceCompositeNode()->SetBackgroundVolumeID(output->GetID());
+  slice->RotateToVolumePlane(output);
+  view->FitSliceToBackground(slice->GetDimensions()[0], slice->GetDimensions()[1]);
 }

@@ -6,6 +6,8 @@
 
 #include <QJsonObject>
 
+class vtkMRMLVolumeNode;
+
 class qSlicerFenestraTour : private qSlicerFenestraUser {
 public:
   /// `report`: a folder with the phantom's scene in knee/; pictures and tour.json are left there.
@@ -28,6 +30,7 @@ private:
   bool renderTurntable();
   bool saveAndRepeat();
   bool runCommand();
+  void faceOutput(vtkMRMLVolumeNode* output);
 
   qSlicerFenestraPulse m_pulse;
   QJsonObject m_figures;

@@ -1,0 +1,64 @@
+#pragma once
+// The panel as a user has it: widgets to choose and click, and what they say.
+
+#include "qSlicerFenestraModuleWidget.h"
+#include "vtkMRMLFenestraRenderNode.h"
+#include "vtkSlicerFenestraLogic.h"
+
+#include <qMRMLNodeComboBox.h>
+
+#include <QComboBox>
+#include <QCoreApplication>
+#include <QDoubleSpinBox>
+#include <QElapsedTimer>
+
+#include <string>
+
+namespace FenestraTesting {
+
+/// The panel, by the names of its widgets.
+struct Panel {
+  using Node = vtkMRMLFenestraRenderNode;
+
+  qSlicerFenestraModuleWidget* widget;
+  vtkSlicerFenestraLogic* logic;
+
+  template <typename Widget>
+  Widget* find(const char* name) const {
+    return widget->findChild<Widget*>(name);
+  }
+  Node* settings() const { return logic->GetSettings(); }
+  void choose(const char* box, const QString& data) const {
+    auto* combo = find<QComboBox>(box);
+    combo->setCurrentIndex(combo->findData(data));
+  }
+  QString chosen(const char* box) const { return find<QComboBox>(box)->currentData().toString(); }
+  bool shows(const char* widget) const { return !find<QWidget>(widget)->isHidden(); }
+  void set(const char* box, double value) const { find<QDoubleSpinBox>(box)->setValue(value); }
+  std::string flag(const char* name) const { return settings()->GetFlag(name); }
+  Node* picture() const { return Node::SafeDownCast(nodes("RendersBox")->currentNode()); }
+  qMRMLNodeComboBox* nodes(const char* name) const { return find<qMRMLNodeComboBox>(name); }
+};
+
+template <typename Condition>
+bool waitFor(Condition&& condition) {
+  QElapsedTimer watch;
+  watch.start();
+  while (!condition() && watch.elapsed() < 30000)
+    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  return condition();
+}
+
+/// Whether a render ended after what is done.
+template <typename Action>
+bool ends(const Panel& panel, Action&& action) {
+  int ended = 0;
+  const auto connection = QObject::connect(panel.widget->session(), &qSlicerFenestraSession::ended,
+                                           panel.widget, [&] { ++ended; });
+  action();
+  waitFor([&] { return ended > 0; });
+  QObject::disconnect(connection);
+  return ended == 1;
+}
+
+} // namespace FenestraTesting

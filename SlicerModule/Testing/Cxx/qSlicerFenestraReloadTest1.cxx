@@ -1,0 +1,160 @@
+// The scene is closed and loaded under the open panel, in both of Slicer's ways: beside what there
+// is, and in its place. Arguments: the renderer, a folder for files, the module's library.
+
+#include "FenestraPanel.h"
+#include "FenestraTesting.h"
+
+#include "qSlicerFenestraModule.h"
+
+#include <qSlicerApplication.h>
+
+#include <QLabel>
+#include <QListWidget>
+#include <QPushButton>
+#include <QScopedPointer>
+#include <QSpinBox>
+
+#include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
+#include <vtkCacheManager.h>
+#include <vtkClosedSurfaceToBinaryLabelmapConversionRule.h>
+#include <vtkCollection.h>
+#include <vtkMRMLApplicationLogic.h>
+#include <vtkMRMLLayoutNode.h>
+#include <vtkMRMLSliceLogic.h>
+#include <vtkSegmentationConverterFactory.h>
+
+namespace {
+
+using FenestraTesting::ends;
+using FenestraTesting::Panel;
+using FenestraTesting::waitFor;
+using Node = vtkMRMLFenestraRenderNode;
+
+std::string textOf(const Panel& panel, const char* label) {
+  return panel.find<QLabel>(label)->text().toStdString();
+}
+
+/// What Slicer's layout makes for ShowResult.
+void addPictureView(vtkMRMLApplicationLogic* application, vtkMRMLScene* scene) {
+  scene->AddNewNodeByClass("vtkMRMLLayoutNode");
+  vtkNew<vtkMRMLSliceLogic> view;
+  view->SetMRMLScene(scene);
+  view->AddSliceNode("Fenestra");
+  vtkNew<vtkCollection> views;
+  views->AddItem(view);
+  application->SetSliceLogics(views);
+}
+
+int render(const Panel& panel, const char* from) {
+  panel.choose("ViewBox", from);
+  CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("RenderButton")->click(); }), true);
+  CHECK_NOT_NULL(panel.picture());
+  CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == panel.picture(); }), true);
+  return EXIT_SUCCESS;
+}
+
+/// Nothing is left of the scene, neither in words nor in pictures.
+int checkClosed(const Panel& panel) {
+  for (const char* label : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
+    CHECK_STD_STRING(textOf(panel, label), "");
+  CHECK_BOOL(panel.find<QLabel>("PreviewLabel")->text().startsWith("Load a volume"), true);
+  for (const char* widget : {"DetailsButton", "ProgressBar", "MeasuresLabel", "Player"})
+    CHECK_BOOL(panel.shows(widget), false);
+  CHECK_NULL(panel.picture());
+  return EXIT_SUCCESS;
+}
+
+/// As it was saved, with the picture chosen that is seen.
+int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
+  vtkMRMLNode* volume = scene->GetFirstNodeByName("Ball");
+  vtkMRMLNode* segmentation = scene->GetFirstNodeByName("Segmentation");
+  CHECK_NOT_NULL(volume);
+  CHECK_NOT_NULL(segmentation);
+  CHECK_POINTER(panel.nodes("VolumeBox")->currentNode(), volume);
+  CHECK_POINTER(panel.nodes("SegmentationBox")->currentNode(), segmentation);
+  CHECK_POINTER(panel.settings()->GetNodeReference(Node::VolumeRole), volume);
+  CHECK_POINTER(panel.settings()->GetNodeReference(Node::SegmentationRole), segmentation);
+  QListWidget& focus = *panel.find<QListWidget>("FocusList");
+  CHECK_INT(focus.count(), 2);
+  CHECK_INT(focus.item(0)->checkState(), Qt::Checked);
+  CHECK_STD_STRING(panel.flag("size"), "48x40");
+  CHECK_BOOL(panel.find<QPushButton>("RenderButton")->isEnabled(), true);
+  CHECK_STD_STRING(textOf(panel, "StateLabel"), "");
+  CHECK_POINTER(panel.picture(), scene->GetFirstNodeByName("Ball render"));
+  CHECK_POINTER(panel.logic->GetShownRender(), panel.picture());
+  CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
+  CHECK_BOOL(waitFor([&] { return textOf(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
+             true);
+  return EXIT_SUCCESS;
+}
+
+} // namespace
+
+int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
+  qSlicerApplication application(argc, argv);
+  if (argc < 4)
+    return EXIT_FAILURE;
+  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // as its module does
+  converters->RegisterConverterRule(
+      vtkSmartPointer<vtkBinaryLabelmapToClosedSurfaceConversionRule>::New());
+  converters->RegisterConverterRule(
+      vtkSmartPointer<vtkClosedSurfaceToBinaryLabelmapConversionRule>::New());
+  vtkMRMLScene* scene = application.mrmlScene();
+  scene->GetCacheManager()->SetRemoteCacheDirectory(argv[2]);
+  addPictureView(application.applicationLogic(), scene);
+  qSlicerFenestraModule module;
+  module.setName("Fenestra");
+  module.setPath(argv[3]);
+  module.initialize(application.applicationLogic());
+  module.setMRMLScene(scene);
+  const QScopedPointer<qSlicerFenestraModuleWidget> owner(
+      dynamic_cast<qSlicerFenestraModuleWidget*>(module.widgetRepresentation()));
+  CHECK_NOT_NULL(owner.data());
+  const Panel panel{owner.data(), vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
+  FenestraTesting::addVolume(scene);
+  FenestraTesting::addSegmentation(scene);
+  owner->enter();
+  panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Checked);
+  panel.choose("TransferBox", "ct-soft");
+  panel.find<QSpinBox>("SamplesBox")->setValue(8);
+  panel.find<QSpinBox>("WidthBox")->setValue(48);
+  panel.find<QSpinBox>("HeightBox")->setValue(40);
+
+  // Two pictures; the one that is chosen is the one that is seen, and saved so.
+  CHECK_EXIT_SUCCESS(render(panel, "left"));
+  Node* const first = panel.picture();
+  CHECK_EXIT_SUCCESS(render(panel, "right"));
+  CHECK_BOOL(panel.picture() != first, true);
+  panel.nodes("RendersBox")->setCurrentNode(first);
+  CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == first; }), true);
+  CHECK_BOOL(textOf(panel, "StateLabel").rfind("Done:", 0) == 0, true);
+  CHECK_BOOL(waitFor([&] { return textOf(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
+             true);
+  const std::string file = std::string(argv[2]) + "/reload.mrb";
+  CHECK_BOOL(scene->WriteToMRB(file.c_str()), true);
+
+  scene->Clear(false);
+  CHECK_EXIT_SUCCESS(checkClosed(panel));
+  CHECK_BOOL(scene->ReadFromMRB(file.c_str(), false), true);
+  CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
+  CHECK_EXIT_SUCCESS(render(panel, "right")); // whose words go, too
+  panel.nodes("RendersBox")->setCurrentNode(nullptr);
+  CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
+  CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
+  scene->Clear(false);
+  CHECK_EXIT_SUCCESS(checkClosed(panel));
+
+  // Renders end with their scene, those that wait, too.
+  CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
+  panel.find<QSpinBox>("SamplesBox")->setValue(1000000);
+  panel.find<QPushButton>("RenderButton")->click();
+  panel.find<QPushButton>("RenderButton")->click();
+  CHECK_INT(owner->session()->waiting(), 1);
+  CHECK_BOOL(waitFor([&] { return panel.shows("ProgressBar"); }), true);
+  scene->Clear(false);
+  CHECK_BOOL(waitFor([&] { return !owner->session()->rendering(); }), true);
+  CHECK_STD_STRING(textOf(panel, "StateLabel"), "Stopped before there was a picture.");
+  CHECK_BOOL(panel.shows("ProgressBar"), false);
+  owner->exit();
+  return EXIT_SUCCESS;
+}
