@@ -2,7 +2,6 @@
 // measured: against geometry.
 
 #include "ClippingTesting.h"
-#include "RunSettings.h"
 #include "clipping/BoundaryMeasures.h"
 #include "clipping/ClippingSurface.h"
 #include "clipping/FocusPlane.h"
@@ -11,7 +10,6 @@
 
 using namespace fenestra;
 using namespace fenestra::testing_clipping;
-using fenestra::testing::briefly;
 
 namespace {
 
@@ -75,10 +73,9 @@ TEST(ClipEdge, BoxesBoundWhatIsKeptInThem) {
         clips.push_back(ball.surface(options).clip);
       }
     }
-    const int trials = std::max(500, briefly(2000));
     for (const Clip& clip : clips) {
       int below1 = 0, uniformly = 0;
-      for (int trial = 0; trial < trials; ++trial) {
+      for (int trial = 0; trial < 2000; ++trial) {
         const Vec3 lower = randomPoint(random, -40, 36);
         const Box box{lower, lower + std::pow(random.uniform(), 3) * randomPoint(random, 0, 30)};
         Corners corners;
@@ -97,8 +94,8 @@ TEST(ClipEdge, BoxesBoundWhatIsKeptInThem) {
         below1 += verdict.most < 1.0;
         uniformly += verdict.isUniform;
       }
-      EXPECT_GT(below1, trials * 3 / 200) << "not merely cautious";
-      EXPECT_GT(uniformly, trials / 10);
+      EXPECT_GT(below1, 30) << "not merely cautious";
+      EXPECT_GT(uniformly, 200);
     }
   }
 }
@@ -113,7 +110,7 @@ TEST(Clip, AnOffsetMovesTheWholeSurfaceAlongTheView) {
     ASSERT_NEAR(moved.buffer->at(i), plain.buffer->at(i) - 2.5, 1e-4);
 }
 
-class Holes : public ::testing::TestWithParam<Projection> {};
+class Holes : public testing::TestWithParam<Projection> {};
 
 TEST_P(Holes, ABoxIsFlatAtTheFocusFarthestVisiblePointAndWiderByItsMargin) {
   const Ball ball(GetParam());
@@ -181,7 +178,7 @@ TEST_P(Holes, ASphereLeavesABowl) {
   EXPECT_EQ(ball.keepAt(clip, 30.0, 0, 70.0), 1.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Projections, Holes, ::testing::ValuesIn(projections));
+INSTANTIATE_TEST_SUITE_P(Projections, Holes, testing::ValuesIn(projections));
 
 TEST(FocusPlane, IsThePlaneOfAFlatFocus) {
   const Grid volume = centredGrid({80, 80, 80});
