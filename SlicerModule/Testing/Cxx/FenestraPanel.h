@@ -1,6 +1,8 @@
 #pragma once
 // The panel as a user has it: widgets to choose and click, and what they say.
 
+#include "FenestraTesting.h"
+
 #include "qSlicerFenestraModuleWidget.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
@@ -8,9 +10,7 @@
 #include <qMRMLNodeComboBox.h>
 
 #include <QComboBox>
-#include <QCoreApplication>
 #include <QDoubleSpinBox>
-#include <QElapsedTimer>
 
 #include <string>
 
@@ -39,15 +39,6 @@ struct Panel {
   Node* picture() const { return Node::SafeDownCast(nodes("RendersBox")->currentNode()); }
   qMRMLNodeComboBox* nodes(const char* name) const { return find<qMRMLNodeComboBox>(name); }
 };
-
-template <typename Condition>
-bool waitFor(Condition&& condition) {
-  QElapsedTimer watch;
-  watch.start();
-  while (!condition() && watch.elapsed() < 30000)
-    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
-  return condition();
-}
 
 /// Whether a render ended after what is done.
 template <typename Action>

@@ -3,6 +3,9 @@
 
 #include <vtkMRMLCoreTestingMacros.h>
 
+#include <QCoreApplication>
+#include <QElapsedTimer>
+
 #include <vtkImageData.h>
 #include <vtkMRMLScalarVolumeNode.h>
 #include <vtkMRMLScene.h>
@@ -17,6 +20,16 @@
 #include <vector>
 
 namespace FenestraTesting {
+
+/// Goes on with Qt's events, for half a minute at most.
+template <typename Condition>
+bool waitFor(Condition&& condition) {
+  QElapsedTimer watch;
+  watch.start();
+  while (!condition() && watch.elapsed() < 30000)
+    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  return condition();
+}
 
 /// A ball of 100 in air, radius 10 of 32 voxels a side, 1 mm.
 inline void fillBall(vtkImageData* image, int type, double value) {

@@ -9,7 +9,6 @@
 
 #include <QApplication>
 #include <QDir>
-#include <QElapsedTimer>
 #include <QProcess>
 
 #include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
@@ -26,6 +25,7 @@
 
 namespace {
 
+using FenestraTesting::waitFor;
 using Node = vtkMRMLFenestraRenderNode;
 using Kind = qFenestraOutcome::Kind;
 
@@ -55,15 +55,6 @@ struct Heard {
   qFenestraOutcome last;
   QImage preview;
 };
-
-template <typename Condition>
-bool waitFor(Condition&& condition) {
-  QElapsedTimer watch;
-  watch.start();
-  while (!condition() && watch.elapsed() < 30000)
-    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
-  return condition();
-}
 
 /// A node's data and the node that says where they are, as Slicer saves them.
 void store(vtkMRMLScene* scene, vtkMRMLStorableNode* node, const QString& file) {
