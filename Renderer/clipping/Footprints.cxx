@@ -31,9 +31,18 @@ CellRange cellsBetween(const DepthBuffer& buffer, const Vec2& lower, const Vec2&
   return cells;
 }
 
-/// The blocks of the focus's cells.
-BoxProjection blocksOf(const Camera& camera, const FocusCells& cells) {
-  return {camera, cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize})};
+/// Calls function(block, depths, seen) for each block of the focus's cells that is not behind the
+/// eye, with its depths, mm, and the buffer's cells whose rays can pass it.
+template <typename Function>
+void visitSeen(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells,
+               const Function& function) {
+  const BoxProjection blocks(camera,
+                             cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize}));
+  cells.visitOccupied([&](const Size3& block) {
+    const auto [depths, lower, upper] = blocks.of(block);
+    if (depths.end >= 0.0)
+      function(block, depths, cellsBetween(buffer, lower, upper));
+  });
 }
 
 /// Tiles of cells, to pass over many at once.
@@ -110,30 +119,21 @@ FocusFootprint::FocusFootprint(const Camera& camera, const DepthBuffer& buffer,
     : m_across((buffer.columns() + tileSize - 1) / tileSize) {
   const std::int64_t down = (buffer.rows() + tileSize - 1) / tileSize;
   m_tiles.assign(static_cast<std::size_t>(m_across * down), {infinity, -infinity});
-  const BoxProjection blocks = blocksOf(camera, cells);
-  cells.visitOccupied([&](const Size3& block) {
-    const auto [depths, lower, upper] = blocks.of(block);
-    if (depths.end < 0.0)
-      return;
-    const auto [left, right] = samplesAround(buffer.xAxis(), lower.x(), upper.x());
-    const auto [top, bottom] = samplesAround(buffer.yAxis(), lower.y(), upper.y());
-    for (std::int64_t row = top / tileSize; row <= bottom / tileSize; ++row)
-      for (std::int64_t column = left / tileSize; column <= right / tileSize; ++column) {
-        Interval& tile = m_tiles[static_cast<std::size_t>(column + row * m_across)];
-        tile.begin = std::min(tile.begin, depths.begin);
-        tile.end = std::max(tile.end, depths.end);
-      }
-  });
+  visitSeen(camera, buffer, cells,
+            [&](const Size3&, const Interval& depths, const CellRange& seen) {
+              for (std::int64_t row = seen.top / tileSize; row <= seen.bottom / tileSize; ++row)
+                for (std::int64_t column = seen.left / tileSize; column <= seen.right / tileSize;
+                     ++column) {
+                  Interval& tile = m_tiles[static_cast<std::size_t>(column + row * m_across)];
+                  tile.begin = std::min(tile.begin, depths.begin);
+                  tile.end = std::max(tile.end, depths.end);
+                }
+            });
 }
 
 CellRange focusRange(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells) {
   CellRange range{buffer.columns(), 0, buffer.rows(), 0};
-  const BoxProjection blocks = blocksOf(camera, cells);
-  cells.visitOccupied([&](const Size3& block) {
-    const auto [depths, lower, upper] = blocks.of(block);
-    if (depths.end < 0.0)
-      return;
-    const CellRange seen = cellsBetween(buffer, lower, upper);
+  visitSeen(camera, buffer, cells, [&](const Size3&, const Interval&, const CellRange& seen) {
     range = {std::min(range.left, seen.left), std::max(range.right, seen.right),
              std::min(range.top, seen.top), std::max(range.bottom, seen.bottom)};
   });
@@ -145,7 +145,6 @@ std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buff
                                    const std::vector<std::uint8_t>& isAskedFor) {
   std::vector<Interval> reaches(range.size(), {infinity, -infinity});
   const AskedTiles tiles(range, isAskedFor);
-  const BoxProjection blocks = blocksOf(camera, cells);
   const BoxProjection boxes(camera, cells.cellToWorld());
   const auto reach = [&](const Size3& cell) {
     const auto [depths, lower, upper] = boxes.of(cell);
@@ -160,9 +159,8 @@ std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buff
                          std::max(reaches[at].end, depths.end)};
       }
   };
-  cells.visitOccupied([&](const Size3& block) {
-    const auto [depths, lower, upper] = blocks.of(block);
-    if (depths.end >= 0.0 && tiles.any(cellsBetween(buffer, lower, upper)))
+  visitSeen(camera, buffer, cells, [&](const Size3& block, const Interval&, const CellRange& seen) {
+    if (tiles.any(seen))
       cells.visitCells(block, reach);
   });
   return reaches;
