@@ -23,6 +23,7 @@
 #include <vtkImageData.h>
 #include <vtkImageExtractComponents.h>
 #include <vtkImageFlip.h>
+#include <vtkIntArray.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
@@ -158,6 +159,17 @@ void vtkSlicerFenestraLogic::PrintSelf(ostream& os, vtkIndent indent) {
 void vtkSlicerFenestraLogic::RegisterNodes() {
   if (this->GetMRMLScene())
     this->GetMRMLScene()->RegisterNodeClass(vtkSmartPointer<Node>::New());
+}
+
+void vtkSlicerFenestraLogic::SetMRMLSceneInternal(vtkMRMLScene* scene) {
+  vtkNew<vtkIntArray> events;
+  events->InsertNextValue(vtkMRMLScene::StartImportEvent);
+  this->SetAndObserveMRMLSceneEventsInternal(scene, events);
+}
+
+void vtkSlicerFenestraLogic::OnMRMLSceneStartImport() {
+  if (vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene()))
+    layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
 }
 
 Node* vtkSlicerFenestraLogic::GetSettings() {
@@ -419,8 +431,7 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene());
   if (!picture || !layout)
     return;
-  if (!layout->IsLayoutDescription(ResultLayout))
-    layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
+  layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
   layout->SetViewArrangement(ResultLayout);
 
   vtkMRMLSliceLogic* logic = this->GetPictureView();

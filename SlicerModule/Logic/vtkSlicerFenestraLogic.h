@@ -99,6 +99,9 @@ protected:
   void operator=(const vtkSlicerFenestraLogic&) = delete;
 
   void RegisterNodes() override;
+  void SetMRMLSceneInternal(vtkMRMLScene* scene) override;
+  /// Lets the scene's layout know the module's, in which the scene may have been saved.
+  void OnMRMLSceneStartImport() override;
 
 private:
   vtkMRMLSliceLogic* GetPictureView();

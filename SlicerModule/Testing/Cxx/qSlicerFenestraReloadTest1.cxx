@@ -135,6 +135,8 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
 
   scene->Clear(false);
   CHECK_EXIT_SUCCESS(checkClosed(panel));
+  scene->RemoveNode(scene->GetFirstNodeByClass("vtkMRMLLayoutNode")); // as if Slicer were new
+  scene->AddNewNodeByClass("vtkMRMLLayoutNode");
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), false), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
   CHECK_EXIT_SUCCESS(render(panel, "right")); // whose words go, too
