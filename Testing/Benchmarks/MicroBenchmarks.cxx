@@ -41,8 +41,8 @@ struct Subject {
   }
 
   Domain domain() const { return {scene.volume().grid, scene.forRender().crop}; }
-  ClippingSurface surface() const {
-    return buildClippingSurface(scene.camera(), domain(), *scene.focus(), {});
+  ClippingSurface surface(Boundary boundary = Boundary::spline) const {
+    return buildClippingSurface(scene.camera(), domain(), *scene.focus(), {.boundary = boundary});
   }
 };
 
@@ -137,11 +137,11 @@ void addFirstPass(const Subject& subject) {
       benchmark::DoNotOptimize(ThinPlateSpline(sites, depths, 0.5));
     state.SetLabel(label);
   })->Unit(benchmark::kMicrosecond);
-  const auto addStage = [&](const char* name, auto seconds) {
+  const auto addStage = [&](const char* name, auto seconds, Boundary boundary = Boundary::spline) {
     benchmark::RegisterBenchmark(name,
-                                 [&, label, seconds](benchmark::State& state) {
+                                 [&, label, seconds, boundary](benchmark::State& state) {
                                    for (auto _ : state)
-                                     state.SetIterationTime(seconds(subject.surface()));
+                                     state.SetIterationTime(seconds(subject.surface(boundary)));
                                    state.SetLabel(label + ", " + std::to_string(pictureSize) + "x" +
                                                   std::to_string(pictureSize) + " pixels");
                                  })
@@ -155,6 +155,9 @@ void addFirstPass(const Subject& subject) {
   addStage("first pass/all", [](const ClippingSurface& s) {
     return s.focusSeconds + s.splineSeconds + s.fillSeconds;
   });
+  addStage(
+      "first pass/seams and fill, exact", [](const ClippingSurface& s) { return s.fillSeconds; },
+      Boundary::exact);
 }
 
 /// The first scene with a focus of a phantom that is there.
