@@ -16,9 +16,10 @@ if [ ! -s "$out/knee/knee.nrrd" ] || [ "$fenestra" -nt "$out/knee/knee.nrrd" ]; 
   "$fenestra" phantom knee --output "$out/knee"
 fi
 
-# The femoral cartilage from in front and a little below, with its two lesions.
+# The femoral cartilage from in front and a little below, with its two lesions; without the steps of the
+# labelmap's 1 mm slices (labelsmoothing), and those of the scan's own on its border (soft).
 scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
-  --focus "Femoral cartilage" --position=-15,200,-90 --size 512x512 --samples 32)
+  --focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2 --position=-15,200,-90 --size 512x512 --samples 32)
 
 render() { # MODE [flags]
   local mode=$1
@@ -31,7 +32,7 @@ start=$SECONDS
 render none
 render plane --plane=0,10,-5,0,0.91,-0.41
 render cutaway
-render surface
+render surface --boundary exact
 say "Rendering took $((SECONDS - start)) s"
 
 montage -font DejaVu-Sans -pointsize 20 -geometry +6+6 -background '#181818' -fill white \

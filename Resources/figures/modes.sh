@@ -7,7 +7,7 @@ size=${SIZE:-320}
 
 phantom knee
 knee=("$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd" --transfer mr-knee --position=-15,200,-90)
-cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6)
+cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2)
 
 cat >"$page" <<'END'
 # Clip modes and options
@@ -17,7 +17,8 @@ modes are worth, in numbers: [techniques](techniques.md).
 
 The voxels on the border of the cartilage hold some of the fluid beside it. A surface exactly on that border shows
 the mixture, and the 1 mm slices of the scan in it as stripes where it is steep, however smooth the labels are:
-with `--soft 1` matter comes back over a millimetre behind it, and they hardly show.
+with `--soft 2` matter comes back over two millimetres behind it, and they hardly show. All pictures have it and
+`--labelsmoothing 0.6`, unless their flags say otherwise.
 
 | | flags | what it does |
 |---|---|---|
@@ -40,14 +41,15 @@ show sphere "--clip hole --hole sphere" "As if a ball around the visible focus w
 show cutaway "--clip cutaway" "Only what is in front of the focus is removed."
 show ghost "--clip ghost --ghost 0.004" "What the surface would remove keeps a share of its extinction (0.1 unless told; dense looks want less)."
 show surface "--clip surface" "The paper's surface: a thin plate spline through \`--controlpoints\` points of the focus's outline, smoothed by \`--smoothing\`."
-show exact "--boundary exact --soft 1" "The surface that leaves the focus with its own depth and slope."
-show perspective "--boundary exact --soft 1 --projection perspective" "Every mode works in perspective, too."
+show exact "--boundary exact" "The surface that leaves the focus with its own depth and slope."
+show perspective "--boundary exact --projection perspective" "Every mode works in perspective, too."
 show nearer "--boundary exact --offset=-2" "The surface 2 mm nearer to the eye: the focus stays under a layer. Positive goes into the focus."
-show soft "--boundary exact --soft 4" "Matter comes back gradually over 4 mm behind the surface."
 show margin "--boundary exact --margin 3" "The focus grown by 3 mm; negative shrinks it; with several segments one margin each."
-cartilage=(--focus "Femoral cartilage")
-show labels "--boundary exact" "Without \`--labelsmoothing\`, and exactly on the border: the steps of the labelmap's 1 mm slices, and the scan's own."
 cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6)
-show pale "--boundary exact --soft 1 --contextsaturation 0.15" "The context without its colours."
+show soft "--boundary exact --soft 4" "Matter comes back gradually over 4 mm behind the surface."
+cartilage=(--focus "Femoral cartilage")
+show labels "--labelsmoothing 0 --soft 0 --boundary exact" "Without \`--labelsmoothing\`, and exactly on the border: the steps of the labelmap's 1 mm slices, and the scan's own."
+cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2)
+show pale "--boundary exact --contextsaturation 0.15" "The context without its colours."
 show thin "--clip none --contextdensity 0.004 --contextsaturation 0.3" "The classic focus and context: no clip, but all that is not focus thinned to 0.4 %."
 say "Done: $page"

@@ -52,7 +52,7 @@ END
 
 phantom knee
 subject knee "Knee: femoral cartilage (synthetic MR)" "$out/knee/knee.nrrd" \
-  --segmentation "$out/knee/knee.seg.nrrd" --focus "Femoral cartilage" --labelsmoothing 0.6 \
+  --segmentation "$out/knee/knee.seg.nrrd" --focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2 \
   --transfer mr-knee --position=-15,200,-90
 phantom foot
 subject foot "Foot: its bones (synthetic CT)" "$out/foot/foot.mrml" --focus bones --labelsmoothing 0.6 \
