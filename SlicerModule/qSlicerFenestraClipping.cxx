@@ -12,6 +12,8 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
+#include <utility>
+
 namespace {
 
 using Flags = qSlicerFenestraClipping::Flags;
@@ -207,6 +209,7 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
   }
   if (hasFocus)
     m_margins->show(flagOf(flags, "margin"), focus);
+  m_isFresh = m_isFresh && !hasFocus;
   m_hasFocus = hasFocus;
   m_byPreset = byPreset;
   showMode();
@@ -222,6 +225,22 @@ void qSlicerFenestraClipping::reset() {
     number.shownValue = number.standard;
   }
   m_margins->show({}, {});
+  m_isFresh = true;
+}
+
+/// After slices are interpolated a voxel's smoothing is enough. The scan's own stairs, of what its
+/// voxels on the border mix, need twice as much.
+void qSlicerFenestraClipping::begin(double voxel) {
+  if (!m_isFresh)
+    return;
+  m_isFresh = false;
+  const QSignalBlocker unheard(this);
+  for (Number& number : m_numbers)
+    for (const auto& [flag, voxels] : {std::pair("labelsmoothing", 1.0), std::pair("soft", 2.0)})
+      if (number.flag == std::string(flag) && number.box->value() == number.standard) {
+        number.box->setValue(voxels * voxel);
+        number.shownValue = number.standard;
+      }
 }
 
 void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool hasFocus,

@@ -35,6 +35,9 @@ public:
             bool byPreset);
   /// Standard values, in what does not matter now, too.
   void reset();
+  /// With the first focus: what takes the stairs of voxels off it, whose shortest edge is `voxel`
+  /// mm. Nothing where the user, or the shown flags, have chosen.
+  void begin(double voxel);
   /// Puts all flags of clipping, empty where they are not to be given. `plane`: what a plane of the
   /// scene is as a flag.
   void take(Flags& flags, const std::string& plane, bool hasFocus, bool byPreset) const;
@@ -73,6 +76,7 @@ private:
   QFormLayout* m_form;
   QWidget* m_details;      ///< needs a focus
   bool m_hasFocus = false; ///< as shown
+  bool m_isFresh = true;   ///< nothing was chosen
   bool m_byPreset = false; ///< as shown
 };
 

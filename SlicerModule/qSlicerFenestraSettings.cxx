@@ -325,6 +325,9 @@ void qSlicerFenestraSettings::take() {
   m_node->SetFocus(focus);
   Flags flags = m_node->GetFlags();
   flags["preset"] = chosenIn(m_panel->preset);
+  if (auto* volume = vtkMRMLVolumeNode::SafeDownCast(m_volume);
+      volume && !focus.empty() && flags["preset"].empty())
+    m_panel->clipping->begin(*std::min_element(volume->GetSpacing(), volume->GetSpacing() + 3));
   takeClipping(flags);
   flags["transfer"] = chosenIn(m_panel->transfer);
   flags["background"] = chosenIn(m_panel->background);

@@ -123,6 +123,8 @@ int checkShowing(const Panel& panel) {
 /// Each way of clipping shows what it has, and gives no other flag.
 int checkClipping(const Panel& panel) {
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
+  CHECK_STD_STRING(panel.flag("labelsmoothing"), "1"); // a voxel, of 1 mm, with the first focus
+  CHECK_STD_STRING(panel.flag("soft"), "2");
   panel.choose("ClipBox", "");
   CHECK_BOOL(panel.shows("BoundaryBox"), true);
   for (const char* other : {"ghostBox", "HoleBox", "holemarginBox", "PlaneBox", "PlaneNodeBox"})
@@ -172,12 +174,14 @@ int checkClipping(const Panel& panel) {
 
   // Without a focus there is nothing to clip for.
   QListWidgetItem* segment = panel.find<QListWidget>("FocusList")->item(0);
+  panel.set("labelsmoothingBox", 0.0);
   segment->setCheckState(Qt::Unchecked);
   for (const char* name : {"clip", "offset", "margin", "contextdensity", "labelsmoothing"})
     CHECK_STD_STRING(panel.flag(name), "");
   segment->setCheckState(Qt::Checked);
   CHECK_STD_STRING(panel.flag("clip"), "cutaway");
   CHECK_STD_STRING(panel.flag("margin"), "1");
+  CHECK_STD_STRING(panel.flag("labelsmoothing"), ""); // as it was chosen
 
   // More digits than a box has stay as long as it is not touched.
   panel.settings()->SetFlag("soft", "1.23456");
@@ -186,7 +190,7 @@ int checkClipping(const Panel& panel) {
   CHECK_STD_STRING(panel.flag("soft"), "1.23456");
   panel.settings()->SetFlags(before);
   CHECK_BOOL(panel.settings()->GetFlags() == before, true);
-  CHECK_DOUBLE(panel.find<QDoubleSpinBox>("softBox")->value(), 0.0);
+  CHECK_DOUBLE(panel.find<QDoubleSpinBox>("softBox")->value(), 2.0);
   return EXIT_SUCCESS;
 }
 
