@@ -24,12 +24,12 @@ outlined() {
 phantom knee
 phantom foot
 knee=("$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd" --focus "Femoral cartilage"
-  --labelsmoothing 0.6 --soft 2 --transfer mr-knee --position=-15,200,-90)
+  --labelsmoothing 0.6 --transfer mr-knee --position=-15,200,-90)
 foot=("$out/foot/foot.mrml" --focus bones --labelsmoothing 0.6 --transfer ct-skeleton --view superior)
 render knee-none "${knee[@]}" --clip none
 render knee-hand-plane "${knee[@]}" --clip plane --plane=0,10,-5,0,0.91,-0.41
-render knee-cutaway "${knee[@]}" --clip cutaway
-render knee-spline "${knee[@]}" --clip surface
+render knee-cutaway "${knee[@]}" --clip cutaway --soft 2
+render knee-spline "${knee[@]}" --clip surface --soft 2
 outlined knee-points knee-spline "${knee[@]}"
 render foot-spline "${foot[@]}" --clip surface
 row figure1.jpg knee-none "a  Whole" knee-hand-plane "b  Plane, by hand" knee-cutaway "c  Cut-away" \

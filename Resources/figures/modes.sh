@@ -7,7 +7,7 @@ size=${SIZE:-320}
 
 phantom knee
 knee=("$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd" --transfer mr-knee --position=-15,200,-90)
-cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2)
+cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6)
 
 cat >"$page" <<'END'
 # Clip modes and options
@@ -34,6 +34,7 @@ show() {
 }
 
 show none "--clip none" "The whole volume."
+cartilage+=(--soft 2)
 show plane "--clip plane" "Cut by a plane: the one nearest to the focus as it is seen, or \`--plane OX,OY,OZ,NX,NY,NZ\`."
 show box "--clip hole --hole box" "A box-shaped hole, flat at the focus's farthest visible point, \`--holemargin\` mm wider than the focus."
 show cylinder "--clip hole" "A round hole."
@@ -45,11 +46,10 @@ show exact "--boundary exact" "The surface that leaves the focus with its own de
 show perspective "--boundary exact --projection perspective" "Every mode works in perspective, too."
 show nearer "--boundary exact --offset=-2" "The surface 2 mm nearer to the eye: the focus stays under a layer. Positive goes into the focus."
 show margin "--boundary exact --margin 3" "The focus grown by 3 mm; negative shrinks it; with several segments one margin each."
+show pale "--boundary exact --contextsaturation 0.15" "The context without its colours."
 cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6)
 show soft "--boundary exact --soft 4" "Matter comes back gradually over 4 mm behind the surface."
+show thin "--clip none --contextdensity 0.004 --contextsaturation 0.3" "The classic focus and context: no clip, but all that is not focus thinned to 0.4 %."
 cartilage=(--focus "Femoral cartilage")
 show labels "--labelsmoothing 0 --soft 0 --boundary exact" "Without \`--labelsmoothing\`, and exactly on the border: the steps of the labelmap's 1 mm slices, and the scan's own."
-cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2)
-show pale "--boundary exact --contextsaturation 0.15" "The context without its colours."
-show thin "--clip none --contextdensity 0.004 --contextsaturation 0.3" "The classic focus and context: no clip, but all that is not focus thinned to 0.4 %."
 say "Done: $page"
