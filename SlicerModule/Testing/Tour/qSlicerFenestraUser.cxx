@@ -33,6 +33,11 @@ std::vector<vtkMRMLNode*> renderNodes() {
   return nodes;
 }
 
+/// How many times as long as usual everything may take.
+int patience() {
+  return std::max(1, qEnvironmentVariableIntValue("FENESTRA_TOUR_PATIENCE"));
+}
+
 void processEvents() {
   QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
 }
@@ -105,10 +110,9 @@ bool qSlicerFenestraUser::photographPreview(const char* name, const std::functio
 }
 
 bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int milliseconds) {
-  const int patience = std::max(1, qEnvironmentVariableIntValue("FENESTRA_TOUR_PATIENCE"));
   QElapsedTimer watch;
   watch.start();
-  while (!condition() && watch.elapsed() / patience < milliseconds)
+  while (!condition() && watch.elapsed() / patience() < milliseconds)
     processEvents();
   return condition();
 }
@@ -116,7 +120,7 @@ bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int mi
 void qSlicerFenestraUser::settle(int milliseconds) {
   QElapsedTimer watch;
   watch.start();
-  while (watch.elapsed() < milliseconds)
+  while (watch.elapsed() / patience() < milliseconds)
     processEvents();
 }
 
