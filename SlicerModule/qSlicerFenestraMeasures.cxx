@@ -2,6 +2,8 @@
 
 #include <QObject>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace {
@@ -96,4 +98,13 @@ qSlicerFenestraMeasures::inWords(const QJsonObject& measures) {
       all.append({one.name, value, one.help});
   }
   return all;
+}
+
+QString qSlicerFenestraMeasures::duration(double seconds) {
+  if (seconds < 9.95)
+    return QObject::tr("%1 s").arg(seconds, 0, 'f', 1);
+  const auto whole = static_cast<int>(std::lround(std::min(seconds, 1e6)));
+  if (whole < 60)
+    return QObject::tr("%1 s").arg(whole);
+  return QObject::tr("%1 min %2 s").arg(whole / 60).arg(whole % 60);
 }

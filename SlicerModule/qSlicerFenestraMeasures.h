@@ -20,6 +20,9 @@ Q_SLICER_QTMODULES_FENESTRA_EXPORT QJsonObject kept(const QJsonObject& statistic
 /// In words, those that are there.
 Q_SLICER_QTMODULES_FENESTRA_EXPORT QList<Measure> inWords(const QJsonObject& measures);
 
+/// "4.2 s", "42 s", "3 min 7 s".
+Q_SLICER_QTMODULES_FENESTRA_EXPORT QString duration(double seconds);
+
 } // namespace qSlicerFenestraMeasures
 
 #endif

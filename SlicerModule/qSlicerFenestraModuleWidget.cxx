@@ -27,18 +27,9 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
-#include <cmath>
-
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
-
-QString duration(double seconds) {
-  const int whole = static_cast<int>(std::lround(std::min(seconds, 1e6)));
-  if (whole < 60)
-    return QObject::tr("%1 s").arg(whole);
-  return QObject::tr("%1 min %2 s").arg(whole / 60).arg(whole % 60);
-}
 
 } // namespace
 
@@ -228,10 +219,9 @@ void qSlicerFenestraModuleWidget::repeat() {
 void qSlicerFenestraModuleWidget::showPicture(const QImage& picture, const qFenestraPicture& what) {
   m_panel->preview->setPixmap(QPixmap::fromImage(picture));
   const QString noise = what.noise < 0.0 ? QString() : tr(", noise %1").arg(what.noise, 0, 'g', 2);
-  m_panel->previewState->setText(tr("Preview: %1 samples a pixel%2, %3 s")
+  m_panel->previewState->setText(tr("Preview: %1 samples a pixel%2, %3")
                                      .arg(what.samples)
-                                     .arg(noise)
-                                     .arg(what.seconds, 0, 'f', 1));
+                                     .arg(noise, qSlicerFenestraMeasures::duration(what.seconds)));
 }
 
 /// Now and then: where no graphics card draws Slicer's window, a change in it takes a while.
@@ -242,9 +232,9 @@ void qSlicerFenestraModuleWidget::onProgress(double part, double seconds) {
   m_told.start();
   m_panel->progress->show();
   m_panel->progress->setValue(static_cast<int>(1000.0 * part));
-  QString line = tr("%1 so far").arg(duration(seconds));
+  QString line = tr("%1 so far").arg(qSlicerFenestraMeasures::duration(seconds));
   if (part > 0.01)
-    line += tr(", %1 to go").arg(duration(seconds * (1.0 - part) / part));
+    line += tr(", %1 to go").arg(qSlicerFenestraMeasures::duration(seconds * (1.0 - part) / part));
   if (!m_reached.isEmpty())
     line += ", " + m_reached;
   if (m_session->waiting() > 0)

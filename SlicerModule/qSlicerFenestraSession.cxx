@@ -103,10 +103,11 @@ QJsonObject statistics(const QString& folder) {
 QString statsLine(const QJsonObject& stats) {
   return stats.isEmpty()
              ? QString()
-             : QObject::tr("%1 samples a pixel, noise %2, %3 s")
+             : QObject::tr("%1 samples a pixel, noise %2, %3")
                    .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
                    .arg(stats["noise"].toDouble(), 0, 'g', 2)
-                   .arg(stats["seconds"].toObject()["total"].toDouble(), 0, 'f', 1);
+                   .arg(qSlicerFenestraMeasures::duration(
+                       stats["seconds"].toObject()["total"].toDouble()));
 }
 
 QString turntableLine(Node* render) {

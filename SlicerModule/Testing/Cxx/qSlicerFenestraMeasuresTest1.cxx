@@ -26,5 +26,8 @@ int qSlicerFenestraMeasuresTest1(int, char*[]) {
     CHECK_BOOL(one.help.isEmpty(), false);
   // What is no measure says nothing: a scene's attribute may hold anything.
   CHECK_INT(static_cast<int>(inWords({{"focusCoverage", "x"}, {"boundaryGapMm", 1}}).size()), 1);
+  for (const auto& [seconds, text] :
+       {std::pair{0.04, "0.0 s"}, {9.96, "10 s"}, {59.7, "1 min 0 s"}, {187.2, "3 min 7 s"}})
+    CHECK_STD_STRING(duration(seconds).toStdString(), text);
   return EXIT_SUCCESS;
 }
