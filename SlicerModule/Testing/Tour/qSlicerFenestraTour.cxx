@@ -379,6 +379,10 @@ bool qSlicerFenestraTour::runCommand() {
   node->SetParameterAsNode("inputVolume", scene->GetFirstNodeByName("knee"));
   node->SetParameterAsNode("segmentation", scene->GetFirstNodeByClass("vtkMRMLSegmentationNode"));
   node->SetParameterAsString("focus", "Femoral cartilage");
+  node->SetParameterAsString("transfer", "mr-knee");
+  node->SetParameterAsString("boundary", "exact");
+  node->SetParameterAsDouble("labelsmoothing", 0.6);
+  node->SetParameterAsDouble("soft", 2.0);
   node->SetParameterAsNode("output", output);
   node->SetParameterAsInt("samples", 32);
   node->SetParameterAsString("size", "512x512");
@@ -408,7 +412,8 @@ bool qSlicerFenestraTour::runCommand() {
          node->GetErrorText().empty() && image && image->GetDimensions()[0] == 512;
 }
 
-/// As with the slice view's menu: turned to the picture's plane, without the segments' outlines.
+/// As with the slice view's menu: coronal and turned to the picture's plane, without the segments'
+/// outlines.
 void qSlicerFenestraTour::faceOutput(vtkMRMLVolumeNode* output) {
   auto* application = qSlicerApplication::application();
   std::vector<vtkMRMLNode*> outlines;
@@ -421,6 +426,7 @@ void qSlicerFenestraTour::faceOutput(vtkMRMLVolumeNode* output) {
   if (!view)
     return;
   view->GetSliceCompositeNode()->SetBackgroundVolumeID(output->GetID());
+  slice->SetOrientation("Coronal");
   slice->RotateToVolumePlane(output);
   view->FitSliceToBackground(slice->GetDimensions()[0], slice->GetDimensions()[1]);
 }
