@@ -384,7 +384,7 @@ bool qSlicerFenestraTour::runCommand() {
   node->SetParameterAsDouble("labelsmoothing", 0.6);
   node->SetParameterAsDouble("soft", 2.0);
   node->SetParameterAsNode("output", output);
-  node->SetParameterAsInt("samples", 32);
+  node->SetParameterAsInt("samples", 16);
   node->SetParameterAsString("size", "512x512");
   m_window->findChild<qSlicerModuleSelectorToolBar*>()->selectModule("fenestra");
   settle(500);
@@ -400,7 +400,7 @@ bool qSlicerFenestraTour::runCommand() {
   const auto over = [node] {
     return !node->IsBusy() && (node->GetStatus() & vtkMRMLCommandLineModuleNode::Completed) != 0;
   };
-  if (!waitFor(over))
+  if (!waitFor(over, 300000))
     return false;
   settle(1000);
   faceOutput(output);
