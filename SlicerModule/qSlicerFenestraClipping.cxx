@@ -237,10 +237,8 @@ void qSlicerFenestraClipping::begin(double voxel) {
   const QSignalBlocker unheard(this);
   for (Number& number : m_numbers)
     for (const auto& [flag, voxels] : {std::pair("labelsmoothing", 1.0), std::pair("soft", 2.0)})
-      if (number.flag == std::string(flag) && number.box->value() == number.standard) {
+      if (number.flag == std::string(flag))
         number.box->setValue(voxels * voxel);
-        number.shownValue = number.standard;
-      }
 }
 
 void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool hasFocus,
