@@ -99,7 +99,7 @@ struct OutlinePoint {
   Vec2 beyond;  ///< just outside
 };
 
-/// Where it ends on the way from inside to outside, to 1/4096 of it.
+/// Where it ends on the way from inside to outside, to 2^-24 of it.
 std::vector<OutlinePoint> outlinePoints(const FocusTracer& tracer, const std::vector<Edge>& edges) {
   std::vector<OutlinePoint> points;
   std::vector<Vec2> in, middle(edges.size());
@@ -107,7 +107,7 @@ std::vector<OutlinePoint> outlinePoints(const FocusTracer& tracer, const std::ve
     in.push_back(edge.inside);
     points.push_back({edge.own, edge.outside});
   }
-  for (int halving = 0; halving < 12; ++halving) {
+  for (int halving = 0; halving < 24; ++halving) {
     for (std::size_t i = 0; i < edges.size(); ++i)
       middle[i] = 0.5 * (in[i] + points[i].beyond);
     const std::vector<double> depths = tracer.depthsAt(middle);

@@ -59,7 +59,7 @@ void sweep(const Subject& subject, int size, int views) {
               figureTitles, figureRule);
   Worst worst[2];
   for (int number = 0; number < views; ++number) {
-    const View view = viewAround(field, number, views, size);
+    const View view = viewAround(field, number, views, size, subject.elevation);
     const FocusView focus(field, view);
     for (std::size_t i = 0; i < 2; ++i) {
       const BoundaryMeasure measure = focus.measure(clippingSurface(subject, view, boundaries[i]));
@@ -76,15 +76,30 @@ void sweep(const Subject& subject, int size, int views) {
   }
 }
 
+/// With smoothed labels, from above or below.
+Subject seenSmooth(Subject subject, double smoothing, double elevation) {
+  char name[100];
+  std::snprintf(name, sizeof name, "%s, labels smoothed by %g mm, seen from %g° %s",
+                subject.name.c_str(), smoothing, std::abs(elevation),
+                elevation > 0.0 ? "above" : "below");
+  subject.name = name;
+  subject.smoothing = smoothing;
+  subject.elevation = elevation;
+  return subject;
+}
+
 void sweepAll(int size, int views) {
   const TemporaryFolder folder;
   const char* const named = std::getenv("FENESTRA_DATA");
   const std::filesystem::path data = named ? named : FENESTRA_DATA;
   const auto torso = data / "torso_ct_ccth_a01", abdomen = data / "abdomen_ct_totalseg";
-  const Subject subjects[] = {
-      makeKnee(folder.path(), ""),
-      {"liver", torso / "ct.nii.gz", torso / "seg_totalsegmentator_rtstruct.nii.gz", "1", 1},
-      {"vertebra", abdomen / "ct.nii.gz", abdomen / "seg_multiorgan.nii.gz", "20", 20}};
+  const Subject knee = makeKnee(folder.path(), "");
+  const Subject liver = {"liver", torso / "ct.nii.gz",
+                         torso / "seg_totalsegmentator_rtstruct.nii.gz", "1", 1};
+  const Subject vertebra = {"vertebra", abdomen / "ct.nii.gz", abdomen / "seg_multiorgan.nii.gz",
+                            "20", 20};
+  const Subject subjects[] = {knee, liver, vertebra, seenSmooth(knee, 0.6, 25.0),
+                              seenSmooth(vertebra, 1.0, -25.0)};
   for (const Subject& subject : subjects)
     if (std::filesystem::exists(subject.labelmap))
       sweep(subject, size, views);

@@ -188,4 +188,36 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
   return result;
 }
 
+PictureMatch FocusView::match(const std::vector<float>& depths, const Surface& surface) const {
+  constexpr double tolerance = 0.1; // mm: some free paths
+  constexpr double between = 0.25;  // of a pixel, points that are looked at
+  const auto size = static_cast<std::size_t>(m_view.size);
+  PictureMatch result;
+  for (std::size_t row = 1; row + 1 < size; ++row)
+    for (std::size_t column = 1; column + 1 < size; ++column) {
+      const std::size_t pixel = row * size + column;
+      const bool isBeside = m_centres[pixel - 1] < infinity || m_centres[pixel + 1] < infinity ||
+                            m_centres[pixel - size] < infinity ||
+                            m_centres[pixel + size] < infinity;
+      if (!isBeside)
+        continue;
+      double least = infinity, greatest = -infinity;
+      bool isContext = m_centres[pixel] == infinity;
+      for (double y = 0.0; y <= 1.0 && isContext; y += between)
+        for (double x = 0.0; x <= 1.0; x += between) {
+          const Vec2 raster(static_cast<double>(column) + x, static_cast<double>(row) + y);
+          isContext = isContext && depthThrough(raster) == infinity;
+          least = std::min(least, surface(raster));
+          greatest = std::max(greatest, surface(raster));
+        }
+      if (!isContext)
+        continue;
+      const double seen = double{depths[pixel]};
+      result.pixels += 1.0;
+      result.share += seen >= least - tolerance && seen <= greatest + tolerance ? 1.0 : 0.0;
+    }
+  result.share /= result.pixels;
+  return result;
+}
+
 } // namespace fenestra::accuracy

@@ -4,8 +4,7 @@
 // The surface is asked for its depth wherever a ray goes; what the focus is there, the check finds
 // by itself (FocusField.h, Views.h).
 // - A ray on the focus is unoccluded where nothing, to a tolerance, is kept in front of it: where
-// the
-//   surface is not nearer to the eye than the focus.
+//   the surface is not nearer to the eye than the focus.
 // - The gap is measured on the outline, found between each ray that meets the focus and a neighbour
 //   that does not, by bisection: how far the surface just outside stands in front of, or behind,
 //   the focus's last point. Where it stands in front by more than it does just inside there is a
@@ -44,6 +43,11 @@ struct BoundaryMeasure {
   double centreGap = 0.0; ///< mm, at most, of the surface in front of the focus at pixel centres
 };
 
+struct PictureMatch {
+  double pixels = 0.0; ///< looked at
+  double share = 0.0;  ///< of them whose depth is one that the surface has within them
+};
+
 /// Depth of a clipping surface, mm from the eye's plane, at a raster position.
 using Surface = std::function<double(const Vec2&)>;
 
@@ -53,6 +57,10 @@ public:
   FocusView(const FocusField& field, const View& view);
 
   BoundaryMeasure measure(const Surface& surface) const;
+
+  /// Whether a picture of depths, as depthsInPicture makes it, shows the surface that `measure`
+  /// asks: on the context's pixels beside the focus.
+  PictureMatch match(const std::vector<float>& depths, const Surface& surface) const;
 
 private:
   struct Point {

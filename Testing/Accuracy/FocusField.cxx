@@ -68,7 +68,7 @@ void spreadLeast(std::vector<std::uint8_t>& values, const Size3& size) {
 
 } // namespace
 
-FocusField::FocusField(const Indicator& indicator) {
+FocusField::FocusField(const Indicator& indicator) : m_full(indicator.full) {
   const Size3& size = indicator.size;
   const auto voxel = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
     return indicator.voxels[static_cast<std::size_t>((z * size.y() + y) * size.x() + x)];
@@ -78,7 +78,7 @@ FocusField::FocusField(const Indicator& indicator) {
     for (std::int64_t z = 0; z < size.z(); ++z)
       for (std::int64_t y = 0; y < size.y(); ++y)
         for (std::int64_t x = 0; x < size.x(); ++x)
-          if (voxel(x, y, z) != 0)
+          if (voxel(x, y, z) >= 0.5 * m_full)
             visit(Size3(x, y, z));
   };
   forVoxels([&](const Size3& at) {
@@ -141,8 +141,7 @@ double FocusField::at(const Vec3& index) const {
   const Size3 high = (low + Size3::Ones()).cwiseMin(m_size - Size3::Ones());
   const Vec3 f = in - low.cast<double>();
   const auto voxel = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-    return double{
-        m_voxels[static_cast<std::size_t>((z * m_size.y() + y) * m_size.x() + x)] != 0 ? 1.0 : 0.0};
+    return m_voxels[static_cast<std::size_t>((z * m_size.y() + y) * m_size.x() + x)] / m_full;
   };
   const auto row = [&](std::int64_t y, std::int64_t z) {
     return (1.0 - f.x()) * voxel(low.x(), y, z) + f.x() * voxel(high.x(), y, z);

@@ -9,11 +9,13 @@
 
 namespace fenestra::accuracy {
 
-/// 1 where a voxel belongs to the focus, x fastest, on the volume's own grid.
+/// 1 where a voxel belongs to the focus, x fastest, on the volume's own grid; of smoothed labels
+/// what there is of the focus, of 255.
 struct Indicator {
   Size3 size;
   Affine indexToWorld; ///< RAS mm; whole numbers are voxel centres
   std::vector<std::uint8_t> voxels;
+  double full = 1.0; ///< what a voxel is that belongs to the focus entirely
 };
 
 class FocusField {
@@ -42,6 +44,7 @@ private:
   Vec3 m_lower, m_upper; ///< of the part, index space of its own voxels
   Affine m_worldToIndex; ///< of the part
   std::vector<std::uint8_t> m_voxels;
+  double m_full;                         ///< what is 1
   std::vector<std::uint8_t> m_emptiness; ///< of each cell: how many cells around it hold nothing
   Vec3 m_centre;
   double m_radius = 0.0, m_longestEdge = 0.0;

@@ -1,5 +1,6 @@
 #include "Subjects.h"
 
+#include "io/pictures/ImageReader.h"
 #include "scene/Scene.h"
 
 #include <itkImage.h>
@@ -9,6 +10,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 
 namespace fenestra::accuracy {
@@ -25,6 +27,30 @@ void runFenestra(const std::string& arguments) {
     throw std::runtime_error("failed: " + command);
 }
 
+/// As a flag's value has it.
+std::string listed(const Vec3& v) {
+  std::ostringstream text;
+  text.precision(17);
+  text << v.x() << ',' << v.y() << ',' << v.z();
+  return text.str();
+}
+
+SceneRequest requestFor(const Subject& subject) {
+  SceneRequest request;
+  request.input = subject.input;
+  if (subject.input.extension() != ".mrml")
+    request.segmentation = subject.labelmap.string();
+  request.focus = {subject.focus};
+  request.focusLook.shaping.smoothing = subject.smoothing;
+  return request;
+}
+
+Indicator smoothedIndicator(const Subject& subject) {
+  const Scene scene(requestFor(subject));
+  const Mask& mask = *scene.focus();
+  return {mask.grid.size, mask.grid.indexToWorld, mask.voxels, static_cast<double>(mask.full)};
+}
+
 } // namespace
 
 Subject makeKnee(const std::filesystem::path& folder, const std::string& size) {
@@ -36,6 +62,8 @@ Subject makeKnee(const std::filesystem::path& folder, const std::string& size) {
 }
 
 Indicator readIndicator(const Subject& subject) {
+  if (subject.smoothing > 0.0)
+    return smoothedIndicator(subject);
   using Labels = itk::Image<std::int32_t, 3>;
   itk::NiftiImageIOFactory::RegisterOneFactory();
   itk::NrrdImageIOFactory::RegisterOneFactory();
@@ -59,11 +87,13 @@ Indicator readIndicator(const Subject& subject) {
   return indicator;
 }
 
-View viewAround(const FocusField& field, int number, int count, int size) {
+View viewAround(const FocusField& field, int number, int count, int size, double elevation) {
   const double angle = 2.0 * pi * number / count;
+  const double height = elevation * pi / 180.0;
   View view;
   view.target = field.centre();
-  view.position = view.target + 500.0 * Vec3(std::sin(angle), std::cos(angle), 0.0);
+  view.position = view.target + 500.0 * Vec3(std::cos(height) * std::sin(angle),
+                                             std::cos(height) * std::cos(angle), std::sin(height));
   view.up = Vec3::UnitZ();
   view.halfHeight = 1.1 * field.radius();
   view.size = size;
@@ -71,11 +101,7 @@ View viewAround(const FocusField& field, int number, int count, int size) {
 }
 
 Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary) {
-  SceneRequest request;
-  request.input = subject.input;
-  if (subject.input.extension() != ".mrml")
-    request.segmentation = subject.labelmap.string();
-  request.focus = {subject.focus};
+  SceneRequest request = requestFor(subject);
   request.clip.mode = ClipMode::surface;
   request.clip.boundary = boundary == "exact" ? Boundary::exact : Boundary::spline;
   request.view.position = view.position;
@@ -93,6 +119,24 @@ Surface clippingSurface(const Subject& subject, const View& view, const std::str
     return std::get<ClipDepth>(scene->clip())
         .surface(scene->camera().toPlane(raster.x(), raster.y()));
   };
+}
+
+std::vector<float> depthsInPicture(const Subject& subject, const View& view,
+                                   const std::string& boundary,
+                                   const std::filesystem::path& folder) {
+  const std::filesystem::path picture = folder / (boundary + ".exr");
+  std::ostringstream arguments;
+  arguments.precision(17);
+  arguments << quoted(subject.input.string()) << " --focus " << quoted(subject.focus)
+            << " --labelsmoothing " << subject.smoothing << " --boundary " << boundary
+            << " --position=" << listed(view.position) << " --target=" << listed(view.target)
+            << " --up=" << listed(view.up) << " --scale " << view.halfHeight
+            << " --projection orthographic --size " << view.size << 'x' << view.size
+            << " --transfer '{\"extinction\": [[0, 100]], \"albedo\": [[0, 0.5, 0.5, 0.5]]}'"
+            << " --samples 4 --bounces 1 --layers depth --progress none --output "
+            << quoted(picture.string());
+  runFenestra(arguments.str());
+  return *readImage(picture).find("Z");
 }
 
 } // namespace fenestra::accuracy
