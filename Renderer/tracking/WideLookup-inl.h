@@ -273,8 +273,9 @@ inline F askSeams(const Seams& seams, M isAsked, I seam, F x, F y, F depth, doub
   return hn::Load(floats, surfaces.data());
 }
 
-/// `surface`, or in seams what that is for a point at (x, y) and `depth` (ClipDepth::surfaceFor).
-HWY_INLINE F sewn(const WideScene& scene, I sample, F x, F y, F depth, F surface) {
+/// `surface`, or in seams, for the lanes of `which`, what that is for a point at (x, y) and `depth`
+/// (ClipDepth::surfaceFor).
+HWY_INLINE F sewn(const WideScene& scene, M which, I sample, F x, F y, F depth, F surface) {
   const I seam = hn::GatherIndex(ints, scene.seams->numbers().data(), sample);
   const auto isSeam = hn::Gt(seam, hn::Set(ints, -1));
   if (hn::AllFalse(ints, isSeam))
@@ -286,14 +287,14 @@ HWY_INLINE F sewn(const WideScene& scene, I sample, F x, F y, F depth, F surface
       hn::Max(surface, hn::GatherIndex(floats, reaches + 1, first)); // least and greatest alternate
   const M isNear =
       hn::And(hn::Ge(depth, least), hn::Le(depth, hn::Add(greatest, all(scene.softness))));
-  const M isAsked = hn::And(hn::RebindMask(floats, isSeam), isNear);
+  const M isAsked = both(which, both(hn::RebindMask(floats, isSeam), isNear));
   if (hn::AllFalse(floats, isAsked))
     return surface;
   return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
 }
 
-/// What clipping keeps (clipping/Clip.h's keep, for all its kinds).
-inline F keep(const WideScene& scene, const Point& p) {
+/// What clipping keeps (clipping/Clip.h's keep, for all its kinds) for the lanes of `which`.
+inline F keep(const WideScene& scene, const Point& p, M which) {
   const F depth = apply(scene.toView[2], p); // from the target
   F scale = all(1.0F);
   M before = hn::Lt(depth, depth); // the eye: none
@@ -334,7 +335,7 @@ inline F keep(const WideScene& scene, const Point& p) {
     };
     surface = lerp(lerp(at(c0, r0), at(c1, r0), fc), lerp(at(c0, r1), at(c1, r1), fc), fr);
     if (scene.seams)
-      surface = sewn(scene, hn::Add(hn::Mul(r0, columns), c0), x, y, depth, surface);
+      surface = sewn(scene, which, hn::Add(hn::Mul(r0, columns), c0), x, y, depth, surface);
   }
   return edge(hn::Sub(depth, surface));
 }
