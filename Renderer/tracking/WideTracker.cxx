@@ -245,15 +245,15 @@ private:
     m_lookups += hn::CountTrue(floats, hit);
     const F scalar = scalarAt<Voxel>(m_scene.field, m_place);
     F extinction = extinctionOf(m_scene, scalar);
+    if (m_scene.context)
+      extinction = hn::IfThenElse(isFocus(*m_scene.context, point()), extinction,
+                                  hn::Mul(extinction, all(m_scene.context->extinction)));
     const I last = hn::Set(ints, 0x10000); // of the code
     U counter = m_counter;
     const F u = uniform(counter);
     const M cut = both(hit, hn::RebindMask(floats, hn::TestBit(m_code, last)));
     if (!hn::AllFalse(floats, cut))
       extinction = clipped(cut, extinction, majorant, u, counter);
-    if (m_scene.context)
-      extinction = hn::IfThenElse(isFocus(*m_scene.context, point()), extinction,
-                                  hn::Mul(extinction, all(m_scene.context->extinction)));
     const F share = hn::Div(extinction, majorant);
     if constexpr (wantRatio) {
       constexpr float rouletteBelow = 0.1F;
