@@ -75,7 +75,7 @@ public:
   /// there.
   void sampleCollisions(RayBatch& rays, Counters& counters) const;
   /// result: unbiased estimate of the transmittance along the whole length, by ratio tracking with
-  /// Russian roulette.
+  /// Russian roulette; by delta tracking where an exact clipping surface cuts.
   void estimateTransmittances(RayBatch& rays, Counters& counters) const;
 
   /// The instruction sets that this program has and this machine knows, the best first, as Highway
