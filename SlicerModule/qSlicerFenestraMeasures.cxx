@@ -46,6 +46,8 @@ QList<Known> known() {
 QString number(double value, Unit unit) {
   if (unit == Unit::share) // 99.98 % is not all
     return QString::number(100.0 * value, 'f', value > 0.99 && value < 1.0 ? 2 : 1);
+  if (value < 0.001) // nobody wants to read 4.1e-07 mm
+    return QString::number(value, 'f', 3);
   return value < 9.95 ? QString::number(value, 'g', 2) : QString::number(value, 'f', 0);
 }
 

@@ -11,17 +11,19 @@ int qSlicerFenestraMeasuresTest1(int, char*[]) {
   const QJsonObject statistics =
       QJsonDocument::fromJson(R"({"seconds": {"total": 1}, "noise": 0.1, "focusCoverage": 0.99875,
                                   "contextRemoved": 0.25, "focusLight": null,
-                                  "boundaryGapMm": {"mean": 0.0123, "p95": 0.05, "max": 1.5}})")
+                                  "boundaryGapMm": {"mean": 0.0123, "p95": 0.05, "max": 1.5},
+                                  "boundarySlopeJump": {"mean": 4.1e-7, "p95": 0.00099, "max": 54}})")
           .object();
   const QJsonObject measures = kept(statistics);
-  CHECK_INT(measures.size(), 3);
+  CHECK_INT(measures.size(), 4);
   CHECK_INT(kept({}).size(), 0);
   const QList<Measure> words = inWords(measures);
-  CHECK_INT(static_cast<int>(words.size()), 3);
+  CHECK_INT(static_cast<int>(words.size()), 4);
   CHECK_STD_STRING(words[0].name.toStdString(), "Focus seen");
   CHECK_STD_STRING(words[0].value.toStdString(), "99.88 %");
   CHECK_STD_STRING(words[1].value.toStdString(), "25.0 %");
   CHECK_STD_STRING(words[2].value.toStdString(), "mean 0.012, 95 % below 0.05, at most 1.5 mm");
+  CHECK_STD_STRING(words[3].value.toStdString(), "mean 0.000, 95 % below 0.001, at most 54");
   for (const Measure& one : words)
     CHECK_BOOL(one.help.isEmpty(), false);
   // What is no measure says nothing: a scene's attribute may hold anything.
