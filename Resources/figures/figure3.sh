@@ -10,7 +10,24 @@ plot() {
   local name=$1 mm=$2 header count
   header=$(($(grep -abo -m1 end_header "$out/$name.ply" | cut -d: -f1) + 11))
   count=$(grep -a -m1 'element vertex' "$out/$name.ply" | cut -d' ' -f3)
-  od -An -v -w16 -tf4 -j "$header" -N $((16 * count)) "$out/$name.ply" >"$out/$name.points"
+  # Triangles are as large as the surface allows: points all over each of them.
+  awk -v apart="$(bc -l <<<"$mm / 130")" '
+    function distance(a, b) { return sqrt((x[a] - x[b]) ^ 2 + (y[a] - y[b]) ^ 2 + (z[a] - z[b]) ^ 2) }
+    function greater(a, b) { return a > b ? a : b }
+    NF == 4 { x[n] = $1; y[n] = $2; z[n] = $3; depth[n++] = $4 }
+    NF == 13 {
+      for (i = 0; i < 3; ++i)
+        v[i] = $(4 * i + 2) + 256 * ($(4 * i + 3) + 256 * $(4 * i + 4))
+      longest = greater(distance(v[0], v[1]), greater(distance(v[1], v[2]), distance(v[2], v[0])))
+      steps = int(longest / apart) + 1
+      for (i = 0; i <= steps; ++i)
+        for (j = 0; i + j <= steps; ++j) {
+          a = i / steps; b = j / steps; c = 1 - a - b
+          print a * x[v[0]] + b * x[v[1]] + c * x[v[2]], a * y[v[0]] + b * y[v[1]] + c * y[v[2]],
+            a * z[v[0]] + b * z[v[1]] + c * z[v[2]], a * depth[v[0]] + b * depth[v[1]] + c * depth[v[2]]
+        }
+    }' <(od -An -v -w16 -tf4 -j "$header" -N $((16 * count)) "$out/$name.ply") \
+    <(od -An -v -w13 -tu1 -j $((header + 16 * count)) "$out/$name.ply") >"$out/$name.points"
   # The view's right and up, from the camera that the stats do not have: the cube's own (its scene).
   gnuplot <<END
 set terminal pngcairo size 1000,430 font 'DejaVu Sans,11' background '#181818'
