@@ -46,7 +46,7 @@ TEST(FocusField, MeetsABoxAtItsFace) {
   EXPECT_EQ(field.firstMeeting({3.3, 6.2, -10.0}, Vec3::UnitZ()), infinity);
 }
 
-struct Sweep {
+struct Seen {
   int number; ///< of twelve views
   bool isPerspective;
   double smoothing; ///< of the labels, mm
@@ -56,13 +56,13 @@ struct Sweep {
 TEST(Boundary, MeetsTheFocusOfAKnee) {
   const TemporaryFolder folder;
   Subject knee = makeKnee(folder.path(), "150x172x60");
-  for (const Sweep& sweep :
-       {Sweep{0, false, 0.0, 0.0}, Sweep{1, true, 0.0, 0.0}, Sweep{2, false, 0.6, 25.0}}) {
-    SCOPED_TRACE(sweep.number);
-    knee.smoothing = sweep.smoothing;
+  for (const Seen& seen :
+       {Seen{0, false, 0.0, 0.0}, Seen{1, true, 0.0, 0.0}, Seen{2, false, 0.6, 25.0}}) {
+    SCOPED_TRACE(seen.number);
+    knee.smoothing = seen.smoothing;
     const FocusField field(readIndicator(knee));
-    View view = viewAround(field, sweep.number, 12, 256, sweep.elevation);
-    view.isPerspective = sweep.isPerspective;
+    View view = viewAround(field, seen.number, 12, 256, seen.elevation);
+    view.isPerspective = seen.isPerspective;
     const FocusView focus(field, view);
     const BoundaryMeasure spline = focus.measure(clippingSurface(knee, view, "spline"));
     const BoundaryMeasure exact = focus.measure(clippingSurface(knee, view, "exact"));

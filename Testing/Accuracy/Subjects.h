@@ -34,7 +34,8 @@ View viewAround(const FocusField& field, int number, int count, int size, double
 Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary);
 
 /// A picture of everything opaque, clipped: depth of what is seen at each pixel, mm, row by row
-/// from the top. Written to a folder on the way.
+/// from the top. Written to a folder on the way. Of an orthographic view, of a subject that is a
+/// Slicer scene.
 std::vector<float> depthsInPicture(const Subject& subject, const View& view,
                                    const std::string& boundary,
                                    const std::filesystem::path& folder);
