@@ -4,7 +4,7 @@
 #include "cli/PresetFlags.h"
 #include "cli/Stop.h"
 #include "core/Error.h"
-#include "io/PrivateFolder.h"
+#include "io/Leftovers.h"
 
 #include <array>
 #include <csignal>
@@ -159,7 +159,7 @@ void ServeInput::takeLine(const std::string& line) {
 
 void ServeInput::end(int status) {
   const std::unique_lock lock = writing();
-  removePrivateFolders();
+  removeLeftovers();
   ::_exit(status);
 }
 

@@ -1,6 +1,6 @@
 #include "cli/Stop.h"
 
-#include "io/PrivateFolder.h"
+#include "io/Leftovers.h"
 
 #include <csignal>
 #include <unistd.h>
@@ -34,7 +34,7 @@ void handle(void (*handler)(int)) {
 } // namespace
 
 void endStopped() {
-  removePrivateFolders();
+  removeLeftovers();
   ::_exit(stoppedStatus);
 }
 

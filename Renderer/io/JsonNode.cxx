@@ -1,9 +1,11 @@
 #include "io/JsonNode.h"
 
-#include "io/InputFile.h"
+#include "io/FileErrors.h"
+#include "io/Inputs.h"
 #include "io/ShownText.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 
 namespace fenestra {
@@ -37,16 +39,12 @@ std::string shortNumber(double x) {
 } // namespace
 
 std::string readText(const std::filesystem::path& path) {
-  requireFile(path, "name a file in it");
-  std::error_code failed;
-  const auto size = std::filesystem::file_size(path, failed);
-  if (failed || size > largestText)
-    throw inputError(path.string(), "has more than " + std::to_string(largestText >> 20) +
-                                        " MB; name a smaller text file");
-  std::string text(static_cast<std::size_t>(size), '\0');
+  requireFile(path, "name a file in it", largestText);
+  std::string text(static_cast<std::size_t>(std::filesystem::file_size(path)), '\0');
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
-  if (!file.read(text.data(), static_cast<std::streamsize>(size)))
-    throw inputError(path.string(), "cannot be read; check its permissions");
+  if (!file.read(text.data(), static_cast<std::streamsize>(text.size())))
+    throw readingError(path, errno, "check its permissions");
   return text;
 }
 

@@ -1,85 +1,131 @@
 #include "io/PrivateFolder.h"
 
 #include "core/Error.h"
+#include "io/FileErrors.h"
 
-#include <atomic>
 #include <cerrno>
-#include <cstring>
 #include <fcntl.h>
-#include <string>
+#include <random>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 namespace fenestra {
 namespace {
 
-/// What was made, the latest first. Entries are few and stay until the process ends, so that a
-/// signal handler may read them at any moment.
-struct Made {
-  std::string path;
-  bool isFolder;
-  const Made* before;
-};
+constexpr std::string_view prefix = "fenestra-scene-";
 
-std::atomic<const Made*> latest = nullptr;
-static_assert(std::atomic<const Made*>::is_always_lock_free);
-
-void remember(const std::filesystem::path& path, bool isFolder) {
-  auto* made = new Made{path.string(), isFolder, latest};
-  while (!latest.compare_exchange_weak(made->before, made))
-    ;
+std::filesystem::path temporaryFiles() {
+  std::error_code failed;
+  std::filesystem::path folder = std::filesystem::temp_directory_path(failed);
+  if (failed)
+    throw outputError("TMPDIR", "is no folder; set it to one that you may write to");
+  return folder;
 }
 
 Error cannotMake(const std::filesystem::path& path) {
-  return outputError(path.string(), std::string("cannot be made: ") + std::strerror(errno) +
-                                        "; set TMPDIR to a folder that you may write to");
+  const int code = errno;
+  return outputError(path.string(), "cannot be made: " + systemMessage(code) + "; " +
+                                        writingMend(code, "set TMPDIR to a folder that you may "
+                                                          "write to"));
+}
+
+/// Descriptor of a folder of this user's that no process has locked, and locked by it; -1
+/// otherwise.
+int lockAbandoned(const std::filesystem::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  struct stat status = {};
+  if (file >= 0 && ::fstat(file, &status) == 0 && status.st_uid == ::geteuid() &&
+      ::flock(file, LOCK_EX | LOCK_NB) == 0)
+    return file;
+  if (file >= 0)
+    ::close(file);
+  return -1;
 }
 
 } // namespace
 
+/// A folder's maker locks it after making it: where an abandoned one was taken for it in between,
+/// it is gone, and another is made.
+bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
+  const Uninterrupted making;
+  m_entries.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
+  if (::mkdir(folder.c_str(), S_IRWXU) != 0) {
+    const int code = errno;
+    m_entries.clear();
+    errno = code;
+    if (code == EEXIST)
+      return false;
+    throw cannotMake(folder);
+  }
+  m_lock = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  struct stat status = {};
+  if (m_lock >= 0 && ::flock(m_lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return false;
+  return m_lock < 0 || ::fstat(m_lock, &status) != 0 || status.st_nlink > 0;
+}
+
 PrivateFolder::PrivateFolder() {
-  std::error_code failed;
-  const std::filesystem::path parent = std::filesystem::temp_directory_path(failed);
-  if (failed)
-    throw outputError("TMPDIR", "is no folder; set it to one that you may write to");
-  std::string name = (parent / "fenestra-XXXXXX").string();
-  if (!::mkdtemp(name.data())) // made with mode 0700
-    throw cannotMake(name);
-  m_path = name;
-  remember(m_path, true);
+  const std::filesystem::path parent = temporaryFiles();
+  std::random_device random;
+  for (;;) {
+    std::string name(prefix);
+    for (int digit = 0; digit < 12; ++digit)
+      name += "0123456789abcdef"[random() % 16];
+    if (makeLocked(parent / name))
+      return;
+    m_entries.clear();
+    if (m_lock >= 0)
+      ::close(m_lock);
+  }
 }
 
 PrivateFolder::~PrivateFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(m_path, ignored);
+  while (!m_entries.empty()) // what is in a folder before it
+    m_entries.pop_back();
+  if (m_lock >= 0)
+    ::close(m_lock);
 }
 
 void PrivateFolder::addFolder(const std::filesystem::path& folder) {
-  if (folder == m_path || std::filesystem::is_directory(folder))
+  std::error_code failed;
+  if (folder == path() || std::filesystem::is_directory(folder, failed))
     return;
   addFolder(folder.parent_path());
+  const Uninterrupted making;
+  m_entries.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
   if (::mkdir(folder.c_str(), S_IRWXU) != 0)
     throw cannotMake(folder);
-  remember(folder, true);
 }
 
 std::filesystem::path PrivateFolder::add(const std::filesystem::path& relative) {
-  std::filesystem::path path = m_path / relative;
-  addFolder(path.parent_path());
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  if (file < 0)
-    throw cannotMake(path);
-  ::close(file);
-  remember(path, false);
-  return path;
+  std::filesystem::path file = path() / relative;
+  addFolder(file.parent_path());
+  const Uninterrupted making;
+  m_entries.push_back(std::make_unique<Leftover>(file, Leftover::Kind::file));
+  const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (made < 0)
+    throw cannotMake(file);
+  ::close(made);
+  return file;
 }
 
-void removePrivateFolders() {
-  for (const Made* made = latest; made; made = made->before)
-    if (made->isFolder)
-      ::rmdir(made->path.c_str());
-    else
-      ::unlink(made->path.c_str());
+void removeAbandonedFolders() {
+  std::error_code failed;
+  const std::filesystem::path parent = std::filesystem::temp_directory_path(failed);
+  if (failed)
+    return;
+  for (std::filesystem::directory_iterator entry(parent, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    if (!entry->path().filename().string().starts_with(prefix))
+      continue;
+    const int lock = lockAbandoned(entry->path());
+    if (lock < 0)
+      continue;
+    std::error_code ignored;
+    std::filesystem::remove_all(entry->path(), ignored);
+    ::close(lock);
+  }
 }
 
 } // namespace fenestra

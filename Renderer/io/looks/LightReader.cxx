@@ -1,6 +1,6 @@
 #include "io/looks/LightReader.h"
 
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 
 #include "io/JsonNode.h"
 #include "io/ShownText.h"

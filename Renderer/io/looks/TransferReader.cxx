@@ -1,6 +1,6 @@
 #include "io/looks/TransferReader.h"
 
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/JsonNode.h"
 #include "io/NumberText.h"
 #include "medium/VolumeProperty.h"

@@ -1,7 +1,7 @@
 #include "io/medical/ClosedSurface.h"
 
 #include "core/Error.h"
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/ShownText.h"
 #include "io/medical/SegmentTags.h"
 #include "io/medical/Voxelize.h"

@@ -1,6 +1,7 @@
 #include "io/medical/DicomSeries.h"
 
 #include "core/Error.h"
+#include "io/Inputs.h"
 #include "io/ShownText.h"
 #include "io/medical/DicomHeader.h"
 
@@ -23,9 +24,10 @@ FolderContent contentOf(const Path& folder) {
   std::error_code failed;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
     std::error_code unknown;
-    if (it->is_regular_file(unknown))
+    if (it->is_regular_file(unknown)) {
+      requireFile(it->path(), "name the folder alone");
       content.files.push_back(it->path());
-    else if (it->is_directory(unknown))
+    } else if (it->is_directory(unknown))
       content.folders.push_back(it->path());
   }
   if (failed)

@@ -1,6 +1,7 @@
 #include "io/medical/MedicalHeader.h"
 
 #include "core/Error.h"
+#include "io/Inputs.h"
 
 #include <algorithm>
 #include <array>
@@ -98,6 +99,7 @@ void addFile(const std::filesystem::path& path, std::string_view name, StoredSam
     throw inputError(path.string(),
                      "data file: \"" + std::string(name.substr(0, 200)) +
                          "\" is not a file that can be read; put it beside the header");
+  requireFile(file, "name a file with samples");
   stored.files.push_back(file);
   stored.bytes += bytes;
 }

@@ -1,7 +1,7 @@
 #include "io/medical/MedicalImage.h"
 
 #include "core/Error.h"
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/medical/MedicalHeader.h"
 #include "io/medical/NiftiSamples.h"
 #include "io/medical/Quiet.h"

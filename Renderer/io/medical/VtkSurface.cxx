@@ -1,7 +1,7 @@
 #include "io/medical/VtkSurface.h"
 
 #include "core/Error.h"
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/NumberText.h"
 
 #include <pugixml.hpp>

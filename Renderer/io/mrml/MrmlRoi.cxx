@@ -1,6 +1,6 @@
 // Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
 
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/JsonNode.h"
 #include "io/NumberText.h"
 #include "io/mrml/MrmlScene.h"

@@ -1,6 +1,6 @@
 #include "io/mrml/SceneFiles.h"
 
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/JsonNode.h"
 #include "io/ShownText.h"
 #include "io/mrml/SceneArchive.h"

@@ -1,6 +1,6 @@
 #include "io/pictures/ImageFormat.h"
 
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 
 #include <map>
 #include <string>

@@ -1,7 +1,7 @@
 #include "io/pictures/ImageReader.h"
 
 #include "core/Error.h"
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/pictures/ExrHeader.h"
 #include "io/pictures/ImageFormat.h"
 

@@ -2,7 +2,7 @@
 
 #include "core/Error.h"
 #include "io/AtomicFile.h"
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 
 #include <bit>
 #include <map>

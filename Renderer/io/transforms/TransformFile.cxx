@@ -1,7 +1,7 @@
 #include "io/transforms/TransformFile.h"
 
 #include "core/Error.h"
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/medical/Quiet.h"
 #include "io/transforms/TransformMatrix.h"
 #include "io/transforms/TransformRecords.h"

@@ -1,0 +1,63 @@
+#pragma once
+// What a system call's error code means for a user, and its mend.
+
+#include "core/Error.h"
+
+#include <cerrno>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+namespace fenestra {
+
+inline std::string systemMessage(int code) {
+  return std::generic_category().message(code);
+}
+
+/// Mend for a file or folder that cannot be read or written whatever its name; empty where the name
+/// or its folder is what is wrong.
+inline std::string resourceMend(int code) {
+  switch (code) {
+  case EIO:
+    return "its disk fails: check it";
+  case EMFILE:
+  case ENFILE:
+    return "close other programs, or raise the limit on open files (ulimit -n)";
+  case ENOMEM:
+    return "close other programs";
+  default:
+    return {};
+  }
+}
+
+/// The same for writing, and `other` where the name is what is wrong.
+inline std::string writingMend(int code, const std::string& other) {
+  switch (code) {
+  case ENOSPC:
+  case EDQUOT:
+  case EFBIG:
+    return "free some space, or name one on another disk";
+  case ENAMETOOLONG:
+    return "choose a shorter name";
+  default:
+    const std::string mend = resourceMend(code);
+    return mend.empty() ? other : mend;
+  }
+}
+
+/// A result that cannot be written.
+inline Error writingError(const std::filesystem::path& path, int code) {
+  return outputError(
+      path.string(),
+      "cannot be written: " + systemMessage(code) + "; " +
+          writingMend(code, "name a file in an existing folder that you may write to"));
+}
+
+/// An input that cannot be read, `other` where no resource is what is missing.
+inline Error readingError(const std::filesystem::path& path, int code, const std::string& other) {
+  const std::string mend = resourceMend(code);
+  return inputError(path.string(), "cannot be read: " + systemMessage(code) + "; " +
+                                       (mend.empty() ? other : mend));
+}
+
+} // namespace fenestra

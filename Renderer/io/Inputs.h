@@ -1,0 +1,59 @@
+#pragma once
+// Ledger of every file that the process reads: no result may replace one of them, whatever the
+// name. requireFile is the one door to it, and every reader goes through that before it opens a
+// file.
+
+#include <compare>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <sys/stat.h>
+
+namespace fenestra {
+
+/// Bytes that a text file of any kind may have.
+inline constexpr std::uint64_t largestText = std::uint64_t{64} << 20;
+inline constexpr std::uint64_t anySize = std::numeric_limits<std::uint64_t>::max();
+
+/// A file whatever its names: links to it have the same.
+struct FileId {
+  dev_t device = 0;
+  ino_t inode = 0;
+
+  auto operator<=>(const FileId&) const = default;
+};
+
+/// Empty where there is nothing of this name. Follows links.
+std::optional<FileId> fileId(const std::filesystem::path& path);
+
+/// Enters `path` into the ledger. Throws Error (input) unless it is a file of at most `most` bytes
+/// inside the folder that InputsWithin names; `mend` says what to name instead of a folder.
+void requireFile(const std::filesystem::path& path, const std::string& mend,
+                 std::uint64_t most = anySize);
+
+/// While it lives, this thread reads nothing outside `folder`, whatever the files in it name: for
+/// what came out of an archive.
+class InputsWithin {
+public:
+  explicit InputsWithin(const std::filesystem::path& folder);
+  ~InputsWithin();
+  InputsWithin(const InputsWithin&) = delete;
+  InputsWithin& operator=(const InputsWithin&) = delete;
+
+private:
+  std::filesystem::path m_before;
+};
+
+/// The name under which a file was read; empty where it was not.
+std::optional<std::filesystem::path> inputNamed(const FileId& file);
+
+/// A file that this process has just made: what had its number before is gone.
+void forgetInput(const FileId& file);
+
+/// The last extension with its dot, in lower case: ".GZ" of "a.nii.GZ" is ".gz".
+std::string lowerExtension(const std::filesystem::path& path);
+
+} // namespace fenestra

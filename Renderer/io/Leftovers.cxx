@@ -1,0 +1,119 @@
+#include "io/Leftovers.h"
+
+#include <atomic>
+#include <cerrno>
+
+#include <unistd.h>
+
+namespace fenestra {
+
+/// A place in the list. Entries are used again and never freed, so that a signal handler may walk
+/// the list at any moment.
+struct Leftover::Entry {
+  std::filesystem::path path; ///< constant while it is listed
+  Kind kind = Kind::file;
+  std::atomic<bool> isTaken = false;
+  std::atomic<bool> isListed = false;
+  Entry* next = nullptr;
+
+  static std::atomic<Entry*> first;
+
+  /// An entry that nobody uses, taken.
+  static Entry* take() {
+    for (Entry* entry = first; entry; entry = entry->next)
+      if (!entry->isTaken.exchange(true))
+        return entry;
+    auto* entry = new Entry;
+    entry->isTaken = true;
+    entry->next = first;
+    while (!first.compare_exchange_weak(entry->next, entry))
+      ;
+    return entry;
+  }
+
+  bool remove() const {
+    return (kind == Kind::folder ? ::rmdir(path.c_str()) : ::unlink(path.c_str())) == 0;
+  }
+  bool isThere() const { return ::access(path.c_str(), F_OK) == 0 || errno != ENOENT; }
+};
+
+std::atomic<Leftover::Entry*> Leftover::Entry::first = nullptr;
+
+namespace {
+
+static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+std::atomic<int> uninterrupted = 0;             ///< threads
+std::atomic<void (*)()> endRequested = nullptr; ///< what a signal has asked for
+thread_local int depth = 0;                     ///< of nested Uninterrupted
+
+void leave() {
+  if (--uninterrupted == 0)
+    if (void (*end)() = endRequested)
+      end();
+}
+
+} // namespace
+
+Leftover::Leftover(const std::filesystem::path& path, Kind kind) {
+  std::filesystem::path copy = path; // may throw, before an entry is taken
+  m_entry = Entry::take();
+  m_entry->path = std::move(copy);
+  m_entry->kind = kind;
+  m_entry->isListed = true;
+}
+
+Leftover::~Leftover() {
+  if (!m_entry->remove() && errno != ENOENT)
+    return; // stays listed: the end of the process tries again
+  m_entry->isListed = false;
+  m_entry->isTaken = false;
+}
+
+const std::filesystem::path& Leftover::path() const {
+  return m_entry->path;
+}
+
+void removeLeftovers() {
+  for (const auto* entry = Leftover::Entry::first.load(); entry; entry = entry->next)
+    if (entry->isListed && entry->kind == Leftover::Kind::file)
+      entry->remove();
+  for (bool isDone = false; !isDone;) { // folders in folders: as long as one goes
+    isDone = true;
+    for (const auto* entry = Leftover::Entry::first.load(); entry; entry = entry->next)
+      if (entry->isListed && entry->kind == Leftover::Kind::folder && entry->remove())
+        isDone = false;
+  }
+}
+
+std::vector<std::filesystem::path> remainingLeftovers() {
+  std::vector<std::filesystem::path> paths;
+  for (const auto* entry = Leftover::Entry::first.load(); entry; entry = entry->next)
+    if (entry->isListed && entry->isThere())
+      paths.push_back(entry->path);
+  return paths;
+}
+
+Uninterrupted::Uninterrupted() {
+  if (depth++ > 0)
+    return;
+  ++uninterrupted;
+  if (!endRequested)
+    return;
+  leave();
+  for (;;) // another thread ends the process
+    ::pause();
+}
+
+Uninterrupted::~Uninterrupted() {
+  if (--depth == 0)
+    leave();
+}
+
+void endWhenPossible(void (*end)()) {
+  endRequested = end;
+  if (uninterrupted == 0)
+    end();
+}
+
+} // namespace fenestra
