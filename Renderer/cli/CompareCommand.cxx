@@ -1,10 +1,9 @@
 #include "cli/Commands.h"
 
 #include "cli/CommandLine.h"
-#include "cli/OutputFiles.h"
-#include "cli/Stop.h"
 #include "core/Error.h"
 #include "film/Compare.h"
+#include "io/Inputs.h"
 #include "io/pictures/ImageReader.h"
 #include "io/pictures/ImageWriter.h"
 
@@ -36,16 +35,12 @@ Image readWithError(const FlagValues& values, const char* name, const char* erro
 }
 
 /// Fails before the reading, not after it.
-void checkOutput(const FlagValues& values) {
-  const auto output = values.text("output");
-  if (!output)
-    return;
-  std::vector<std::filesystem::path> inputs;
+void declareOutput(const FlagValues& values, Outputs& outputs) {
   for (const char* name : {"A", "B", "errora", "errorb"})
     if (const auto input = values.text(name))
-      inputs.emplace_back(*input);
-  checkDistinct(inputs, imageFiles(*output));
-  checkImagePath(*output);
+      expectInput(*input);
+  if (const auto output = values.text("output"))
+    declareImage(*output, outputs);
 }
 
 /// The comparison knows pictures, a user knows files.
@@ -83,16 +78,16 @@ int compareCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, first);
   if (!values)
     return 0;
-  std::atomic<bool> stopped = false;
-  StopOnSignal stopOnSignal;
-  checkOutput(*values);
+  Outputs outputs;
+  declareOutput(*values, outputs);
   const Image a = readWithError(*values, "A", "errora");
   const Image b = readWithError(*values, "B", "errorb");
   print(compared(*values, a, b));
-  stopOnSignal.setInstead(stopped);
-  if (const auto output = values->text("output"))
-    writeImage(differenceImage(a, b), {}, *output, "Standard");
-  return stopped ? stoppedStatus : 0;
+  if (const auto output = values->text("output")) {
+    writeImage(differenceImage(a, b), {}, *output, outputs, "Standard");
+    outputs.commit();
+  }
+  return 0;
 }
 
 } // namespace fenestra

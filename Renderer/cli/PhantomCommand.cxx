@@ -1,7 +1,6 @@
 #include "cli/Commands.h"
 
 #include "cli/CommandLine.h"
-#include "cli/Stop.h"
 #include "core/Error.h"
 #include "io/phantom/PhantomWriter.h"
 #include "phantom/Cube.h"
@@ -96,16 +95,13 @@ int phantomCommand(int argc, char** argv, int first) {
     return 0;
   const std::string kind = *values->text("KIND");
   const std::string folder = values->text("output").value_or(kind);
-  std::atomic<bool> stopped = false;
-  StopOnSignal stopOnSignal;
   const Phantom phantom = makePhantom(kind, *values);
-  stopOnSignal.setInstead(stopped); // the files belong together
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
   std::cout << folder << ":";
   for (const std::string& file : files)
     std::cout << ' ' << file;
   std::cout << ", " << phantom.segments.size() << " segments" << std::endl;
-  return stopped ? stoppedStatus : 0;
+  return 0;
 }
 
 } // namespace fenestra

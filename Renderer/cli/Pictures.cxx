@@ -1,9 +1,8 @@
 #include "cli/Pictures.h"
 
-#include "cli/OutputFiles.h"
 #include "cli/Version.h"
 #include "core/Error.h"
-#include "io/AtomicFile.h"
+#include "io/Inputs.h"
 #include "io/pictures/ImageWriter.h"
 #include "io/surfaces/SurfaceWriter.h"
 
@@ -58,6 +57,20 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
   return entries;
 }
 
+} // namespace
+
+void declareOutputs(const RenderOptions& options, Outputs& outputs) {
+  for (const std::filesystem::path& input : options.inputs)
+    expectInput(input);
+  for (const std::filesystem::path& path : options.outputs)
+    declareImage(path, outputs, options.outputsNamedBy);
+  if (options.surface)
+    declareSurface(*options.surface, outputs);
+  for (const auto& file : {options.stats, options.returnValues})
+    if (file)
+      outputs.add(*file);
+}
+
 /// Linux grants memory that it does not have, and ends the process when it is used.
 void checkMemory(const SceneRequest& scene) {
   constexpr double bytesPerPixel = 2.0 * sizeof(PixelSums); // the film, and its channels as written
@@ -75,27 +88,6 @@ void checkMemory(const SceneRequest& scene) {
   throw outputError("--size", line.str());
 }
 
-} // namespace
-
-void checkOutputs(const RenderOptions& options) {
-  std::vector<std::filesystem::path> results;
-  for (const std::filesystem::path& path : options.outputs)
-    for (const std::filesystem::path& file : imageFiles(path))
-      results.push_back(file);
-  for (const auto& file : {options.surface, options.stats, options.returnValues})
-    if (file)
-      results.push_back(*file);
-  checkDistinct(options.inputs, results);
-  for (const std::filesystem::path& path : options.outputs)
-    checkImagePath(path);
-  if (options.surface)
-    checkSurfacePath(*options.surface);
-  for (const auto& file : {options.stats, options.returnValues})
-    if (file)
-      checkWritable(*file);
-  checkMemory(options.scene);
-}
-
 std::string shellCommand(const std::vector<std::string>& arguments) {
   std::string line = "fenestra";
   for (const std::string& argument : arguments)
@@ -104,26 +96,26 @@ std::string shellCommand(const std::vector<std::string>& arguments) {
 }
 
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
-                   const std::string& command) {
+                   const std::string& command, Outputs& outputs) {
   Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
   image.header = header(scene, options, result, command);
   // All at once: what packs one does not keep another waiting.
   std::vector<std::future<void>> files;
   for (const std::filesystem::path& path : options.outputs)
-    files.push_back(std::async(std::launch::async, [&image, &scene, &path] {
-      writeImage(image, picturePlane(scene.camera()), path);
+    files.push_back(std::async(std::launch::async, [&image, &scene, &path, &outputs] {
+      writeImage(image, picturePlane(scene.camera()), path, outputs);
     }));
   for (std::future<void>& file : files)
     file.get();
 }
 
-std::future<void> startSurface(const RenderOptions& options, const Scene& scene) {
+std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs) {
   if (!options.surface)
     return std::async(std::launch::deferred, [] {});
-  return std::async(std::launch::async, [&options, &scene] {
+  return std::async(std::launch::async, [&options, &scene, &outputs] {
     const auto& clip = std::get<ClipDepth>(scene.clip());
-    writeSurface(surfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)),
-                 *options.surface);
+    writeSurface(surfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)), *options.surface,
+                 outputs);
   });
 }
 

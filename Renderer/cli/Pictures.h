@@ -8,20 +8,24 @@
 
 namespace fenestra {
 
-/// Fails before the long work, not after it: results that would replace an input or one another,
-/// that cannot be written, or whose picture memory cannot hold. Throws Error (usage or output).
-void checkOutputs(const RenderOptions& options);
+/// Declares all that options name as results, and enters what they name as inputs into the ledger,
+/// so that what cannot be written, or would replace an input, fails before the long work and not
+/// after it. Throws Error: usage or output.
+void declareOutputs(const RenderOptions& options, Outputs& outputs);
+
+/// Throws Error (output) where memory cannot hold the picture.
+void checkMemory(const SceneRequest& scene);
 
 /// `fenestra arguments…` as a shell takes it back.
 std::string shellCommand(const std::vector<std::string>& arguments);
 
-/// Writes options.surface, if it is wanted, while others work; both arguments must live until the
+/// Writes options.surface, if it is wanted, while others work; the arguments must live until the
 /// result is there, which throws Error (output).
-std::future<void> startSurface(const RenderOptions& options, const Scene& scene);
+std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs);
 
-/// All of options.outputs, each with `command` and whatever else repeats it in its header. Throws
-/// Error (output).
+/// Writes all of options.outputs, each with `command` and whatever else repeats it in its header;
+/// the caller commits them. Throws Error (output).
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
-                   const std::string& command);
+                   const std::string& command, Outputs& outputs);
 
 } // namespace fenestra

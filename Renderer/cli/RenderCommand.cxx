@@ -10,7 +10,6 @@
 #include "cli/SlicerModule.h"
 #include "cli/Stats.h"
 #include "cli/Stop.h"
-#include "io/AtomicFile.h"
 #include "scene/Scene.h"
 
 #include <algorithm>
@@ -51,6 +50,71 @@ void report(const RenderOptions& options, const RenderResult& result, double sec
   std::cout << line.str() << std::endl;
 }
 
+void warn(const RenderOptions& options, const Scene& scene) {
+  for (const std::string& warning : scene.warnings())
+    (options.returnValues ? std::cout : std::cerr) << "fenestra: warning: " << warning << '\n';
+}
+
+/// What the scene has to tell, beside seconds.
+void describe(const Scene& scene, RenderStats& stats) {
+  stats.stages = scene.seconds();
+  stats.mismatch = scene.mismatch();
+  stats.boundary = scene.boundary();
+  for (const ControlPoint& point : scene.controlPoints())
+    stats.controlPoints.push_back(scene.camera().toRaster(point.site));
+  stats.warnings = scene.warnings();
+  stats.files = scene.files();
+  const MajorantGrid& majorants = scene.forRender().majorants;
+  stats.cells = majorants.size();
+  stats.emptyCells = majorants.emptyCount();
+  if (scene.focus())
+    stats.focusVoxels = scene.focus()->grid.voxelCount();
+}
+
+/// From the scene to its pictures in their place, and then what was measured of them. Returns the
+/// exit status.
+int renderScene(const RenderOptions& options, const std::string& command, Outputs& outputs) {
+  const Stopwatch total;
+  RenderStats stats;
+  const Scene scene(options.scene);
+  outputs.checkInputs(); // with all that the scene turned out to be made of
+  warn(options, scene);
+
+  RenderMonitor monitor;
+  const StopInstead stopInstead(monitor.stop);
+  std::future<void> surface = startSurface(options, scene, outputs);
+  const Stopwatch transport;
+  const RenderResult result = renderWithProgress(scene, options, monitor);
+  stats.transport = transport.seconds();
+  surface.get();
+  if (result.finishedSamples == 0) {
+    std::cerr << "fenestra: stopped on request before the first pass; no picture was written\n";
+    return stopStatus();
+  }
+  const bool isStopped = result.reason == StopReason::request;
+  const Stopwatch write;
+  writePictures(options, scene, result, command, outputs);
+  outputs.commit();
+  stats.write = write.seconds();
+
+  if (options.stats) {
+    const Stopwatch measure;
+    if (!isStopped) // which does not wait for measures
+      stats.focus = measureFocus(scene, options.settings.seed);
+    stats.measure = measure.seconds();
+    describe(scene, stats);
+    stats.preset = options.preset;
+    stats.total = total.seconds();
+    outputs.write(*options.stats, statsJson(stats, result));
+  }
+  if (options.returnValues)
+    outputs.write(*options.returnValues, returnValuesText({result.film.sampleCounts().mean,
+                                                           result.film.noise(), stats.transport}));
+  outputs.commit();
+  report(options, result, total.seconds());
+  return isStopped ? stopStatus() : 0;
+}
+
 } // namespace
 
 int renderCommand(int argc, char** argv, int first) {
@@ -66,57 +130,10 @@ int renderCommand(int argc, char** argv, int first) {
     std::cout << flags.flags.echo() << std::flush;
   const RenderOptions options = renderOptions(flags);
   const MachineUse machine(options.settings);
-  RenderMonitor monitor;
-  StopOnSignal stopOnSignal;
-  checkOutputs(options);
-
-  const Stopwatch total;
-  RenderStats stats;
-  const Scene scene(options.scene);
-  for (const std::string& warning : scene.warnings())
-    (options.returnValues ? std::cout : std::cerr) << "fenestra: warning: " << warning << '\n';
-
-  stopOnSignal.setInstead(monitor.stop);
-  std::future<void> surface = startSurface(options, scene); // so that a stop need not wait for it
-  const Stopwatch transport;
-  const RenderResult result = renderWithProgress(scene, options, monitor);
-  stats.transport = transport.seconds();
-  surface.get();
-  if (result.finishedSamples == 0) {
-    std::cerr << "fenestra: stopped on request before the first pass; no picture was written\n";
-    return stoppedStatus;
-  }
-
-  if (options.stats) {
-    const Stopwatch focus;
-    stats.focus = measureFocus(scene, options.settings.seed);
-    stats.measure = focus.seconds();
-  }
-  const Stopwatch write;
-  writePictures(options, scene, result, shellCommand({argv + 1, argv + argc}));
-  if (options.stats) {
-    stats.stages = scene.seconds();
-    stats.mismatch = scene.mismatch();
-    stats.boundary = scene.boundary();
-    for (const ControlPoint& point : scene.controlPoints())
-      stats.controlPoints.push_back(scene.camera().toRaster(point.site));
-    stats.preset = options.preset;
-    stats.warnings = scene.warnings();
-    stats.files = scene.files();
-    const MajorantGrid& majorants = scene.forRender().majorants;
-    stats.cells = majorants.size();
-    stats.emptyCells = majorants.emptyCount();
-    if (scene.focus())
-      stats.focusVoxels = scene.focus()->grid.voxelCount();
-    stats.write = write.seconds();
-    stats.total = total.seconds();
-    writeFile(*options.stats, statsJson(stats, result));
-  }
-  if (options.returnValues)
-    writeReturnValues(*options.returnValues,
-                      {result.film.sampleCounts().mean, result.film.noise(), stats.transport});
-  report(options, result, total.seconds());
-  return result.reason == StopReason::request ? stoppedStatus : 0;
+  Outputs outputs;
+  declareOutputs(options, outputs);
+  checkMemory(options.scene);
+  return renderScene(options, shellCommand({argv + 1, argv + argc}), outputs);
 }
 
 } // namespace fenestra

@@ -289,8 +289,10 @@ std::optional<std::filesystem::path> surfaceFile(const FlagValues& flags,
 void readOutputs(const FlagValues& flags, RenderOptions& options) {
   for (const std::string& file : flags.texts("output"))
     options.outputs.emplace_back(file);
-  if (options.outputs.empty())
+  if (options.outputs.empty()) {
     options.outputs.push_back(defaultOutput(options.scene.input));
+    options.outputsNamedBy = NamedBy::standard;
+  }
   options.surface = surfaceFile(flags, options.scene);
   options.stats = flags.text("stats");
   options.scene.measure = options.stats.has_value();

@@ -2,6 +2,7 @@
 // The flags of `fenestra [render]`, and what they mean.
 
 #include "cli/Flags.h"
+#include "io/pictures/ImageWriter.h"
 #include "scene/Picture.h"
 #include "scene/RenderRequest.h"
 
@@ -15,6 +16,7 @@ struct RenderOptions {
   std::optional<Background> background = {};  ///< by default the scene's, else that of the settings
   std::vector<std::filesystem::path> inputs;  ///< files named as such, presets aside
   std::vector<std::filesystem::path> outputs; ///< at least one
+  NamedBy outputsNamedBy = NamedBy::user;
   LayerSet layers;
   std::optional<std::filesystem::path> surface = {}; ///< with a clip by depth alone
   std::optional<std::filesystem::path> stats = {};

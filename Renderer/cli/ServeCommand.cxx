@@ -32,12 +32,14 @@ struct Unheard {};
 
 class Server {
 public:
-  explicit Server(const FlagValues& flags) : m_shown{flags}, m_input(flags, m_monitor, m_answers) {}
+  Server(const FlagValues& flags, Outputs& outputs)
+      : m_shown{flags}, m_outputs(outputs), m_input(flags, m_monitor, m_answers) {}
 
   /// Until the process ends, or nobody listens. Throws Error where there is no first scene.
   void run() {
     m_options = renderOptions(withPreset(m_shown.flags));
     m_scene.emplace(m_options->scene);
+    m_outputs.checkInputs();
     ServeWish wish = m_shown;
     for (;;) {
       renderPictures();
@@ -53,12 +55,15 @@ private:
   bool change(const ServeWish& wish) {
     try {
       const RenderOptions options = renderOptions(withPreset(wish.flags));
-      checkOutputs(options);
-      m_scene = m_scene->changed(options.scene);
+      checkMemory(options.scene);
+      Scene scene = m_scene->changed(options.scene);
+      m_outputs.checkInputs();
+      m_scene = std::move(scene);
       m_options = options;
       m_shown = wish;
       return true;
     } catch (const Error& error) {
+      m_outputs.forgetRefused();
       if (!m_answers.error(wish.id, error.what()))
         throw Unheard();
       m_input.takeBack(wish, m_shown.flags);
@@ -88,9 +93,15 @@ private:
   }
 
   void publish(const RenderResult& result, bool last) {
-    {
-      const std::unique_lock lock = m_input.writing();
-      writePictures(*m_options, *m_scene, result, shellCommand(m_shown.flags.arguments()));
+    try {
+      writePictures(*m_options, *m_scene, result, shellCommand(m_shown.flags.arguments()),
+                    m_outputs);
+      m_outputs.commit(Outputs::Durability::none); // another one follows soon
+    } catch (const Error& error) {                 // as of a disk that is full now
+      m_published.emplace();
+      if (!m_answers.error(m_shown.id, error.what()))
+        throw Unheard();
+      return;
     }
     nlohmann::ordered_json answer = {{"event", "picture"}, {"id", m_shown.id}};
     answer["samples"] = result.finishedSamples;
@@ -110,6 +121,7 @@ private:
   }
 
   ServeWish m_shown; ///< what the scene is of
+  Outputs& m_outputs;
   RenderMonitor m_monitor;
   ServeAnswers m_answers;
   ServeInput m_input;
@@ -134,9 +146,11 @@ int serveCommand(int argc, char** argv, int first) {
   const FlagValues flags = withSceneFlags(*given);
   const RenderOptions options = renderOptions(withPreset(flags));
   const MachineUse machine(options.settings);
-  checkOutputs(options);
-  // Lives as long as the process, as its reading thread does.
-  Server& server = *new Server(flags);
+  // Both live as long as the process, as its reading thread does.
+  Outputs& outputs = *new Outputs;
+  declareOutputs(options, outputs);
+  checkMemory(options.scene);
+  Server& server = *new Server(flags, outputs);
   try {
     server.run();
   } catch (const Unheard&) {

@@ -4,13 +4,10 @@
 #include "cli/PresetFlags.h"
 #include "cli/Stop.h"
 #include "core/Error.h"
-#include "io/Leftovers.h"
 
 #include <array>
-#include <csignal>
+#include <cerrno>
 #include <cstdio>
-#include <poll.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 namespace fenestra {
@@ -84,13 +81,6 @@ void applyChange(const json& change, FlagValues& flags) {
 
 ServeInput::ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers)
     : m_monitor(monitor), m_answers(answers), m_wish{start} {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM})
-    sigaddset(&signals, signal);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr); // for threads of this one, too
-  std::signal(SIGPIPE, SIG_IGN);
-  m_signals = ::signalfd(-1, &signals, SFD_CLOEXEC);
   m_thread = std::thread([this] { read(); });
   m_thread.detach(); // ends with the process
 }
@@ -112,14 +102,12 @@ void ServeInput::read() {
   std::string line;
   bool tooLong = false;
   for (;;) {
-    std::array<pollfd, 2> files = {pollfd{STDIN_FILENO, POLLIN, 0}, pollfd{m_signals, POLLIN, 0}};
-    ::poll(files.data(), files.size(), -1);
-    if (files[1].revents != 0)
-      end(stoppedStatus);
     std::array<char, 4096> part;
     const ssize_t size = ::read(STDIN_FILENO, part.data(), part.size());
+    if (size < 0 && errno == EINTR)
+      continue;
     if (size <= 0)
-      end(0);
+      endProcess(0);
     for (const char c : std::string_view(part.data(), static_cast<std::size_t>(size))) {
       if (c != '\n') {
         tooLong = tooLong || line.size() == longestLine;
@@ -155,12 +143,6 @@ void ServeInput::takeLine(const std::string& line) {
     m_answers.error(id, error.what());
   }
   m_changed.notify_one();
-}
-
-void ServeInput::end(int status) {
-  const std::unique_lock lock = writing();
-  removeLeftovers();
-  ::_exit(status);
 }
 
 } // namespace fenestra

@@ -38,7 +38,7 @@ struct ServeWish {
 void applyChange(const nlohmann::json& change, FlagValues& flags);
 
 /// Reads standard input in a thread of its own. A change stops the render under way; the end of
-/// input, SIGINT and SIGTERM end the process, but for a picture that is being written.
+/// input ends the process, as signals do (cli/Stop), but for a picture that is being put in place.
 class ServeInput {
 public:
   ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers);
@@ -50,21 +50,16 @@ public:
   ServeWish next(std::uint64_t seen);
   /// What could not be shown is not wanted any more, unless there are newer changes.
   void takeBack(const ServeWish& refused, const FlagValues& shown);
-  /// The process does not end while this is held.
-  std::unique_lock<std::mutex> writing() { return std::unique_lock(m_writing); }
 
 private:
   void read();
   void takeLine(const std::string& line);
-  [[noreturn]] void end(int status);
 
   RenderMonitor& m_monitor;
   ServeAnswers& m_answers;
   std::mutex m_mutex; ///< of the wish, and of monitor.stop
-  std::mutex m_writing;
   std::condition_variable m_changed;
   ServeWish m_wish;
-  int m_signals = -1; ///< a file of them
   std::thread m_thread;
 };
 

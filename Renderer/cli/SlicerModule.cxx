@@ -1,7 +1,6 @@
 #include "cli/SlicerModule.h"
 
 #include "cli/Version.h"
-#include "io/AtomicFile.h"
 
 #include <pugixml.hpp>
 
@@ -157,12 +156,12 @@ std::string slicerDescription(const CommandSyntax& syntax) {
   return text.str();
 }
 
-void writeReturnValues(const std::filesystem::path& path, const std::vector<double>& values) {
+std::string returnValuesText(const std::vector<double>& values) {
   std::ostringstream lines;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isfinite(values[i]))
       lines << returnValues[i].name << " = " << values[i] << '\n';
-  writeFile(path, lines.str());
+  return lines.str();
 }
 
 } // namespace fenestra

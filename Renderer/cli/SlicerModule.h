@@ -4,7 +4,8 @@
 
 #include "cli/Flags.h"
 
-#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace fenestra {
 
@@ -25,8 +26,7 @@ inline constexpr ReturnValue returnValues[] = {
 /// standard value is a text, which Slicer leaves out where it is empty.
 std::string slicerDescription(const CommandSyntax& syntax);
 
-/// One of `values` for each of returnValues, in Slicer's form: "name = value", a line each. Throws
-/// Error (output).
-void writeReturnValues(const std::filesystem::path& path, const std::vector<double>& values);
+/// One of `values` for each of returnValues, in Slicer's form: "name = value", a line each.
+std::string returnValuesText(const std::vector<double>& values);
 
 } // namespace fenestra

@@ -1,54 +1,104 @@
 #include "cli/Stop.h"
 
+#include "core/Error.h"
 #include "io/Leftovers.h"
+#include "io/Outputs.h"
 
+#include <array>
 #include <csignal>
+#include <ctime>
+#include <string_view>
 #include <unistd.h>
 
 namespace fenestra {
 namespace {
 
 std::atomic<std::atomic<bool>*> flag = nullptr;
+std::atomic<int> firstSignal = 0;
+std::atomic<std::int64_t> firstTime = 0; ///< of it, ms
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
-/// Only what a signal handler may do.
-void onSignal(int) {
-  if (std::atomic<bool>* stop = flag) {
-    *stop = true;
-    return;
-  }
-  static constexpr char line[] = "fenestra: stopped on request; nothing was written\n";
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line, sizeof line - 1);
-  endStopped();
+std::int64_t milliseconds() {
+  timespec now = {};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
 }
 
-void handle(void (*handler)(int)) {
-  struct sigaction action = {};
-  action.sa_handler = handler;
-  action.sa_flags = SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM})
-    sigaction(signal, &action, nullptr);
+/// One event may come as several signals: a terminal that is closed sends HUP twice.
+bool isEcho() {
+  constexpr std::int64_t together = 300; // ms
+  return firstSignal != 0 && milliseconds() - firstTime < together;
+}
+
+void say(std::string_view line) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
+}
+
+/// What may run in a signal handler alone, and nothing else.
+void end() {
+  if (firstSignal == SIGPIPE)
+    say("fenestra: standard output: nobody reads it any more\n");
+  else if (resultsWerePlaced())
+    say("fenestra: stopped on request\n");
+  else
+    say("fenestra: stopped on request; nothing was written\n");
+  removeLeftovers();
+  ::_exit(stopStatus());
+}
+
+void onSignal(int signal) {
+  const int before = errno;
+  std::atomic<bool>* const stop = flag;
+  if (firstSignal == 0) {
+    firstTime = milliseconds();
+    firstSignal = signal;
+    if (stop)
+      *stop = true;
+    else
+      endWhenPossible(end);
+  } else if (!stop || !isEcho()) {
+    endWhenPossible(end);
+  }
+  errno = before;
 }
 
 } // namespace
 
-void endStopped() {
-  removeLeftovers();
-  ::_exit(stoppedStatus);
+void handleStops() {
+  struct sigaction action = {};
+  action.sa_handler = onSignal;
+  action.sa_flags = SA_RESTART;
+  sigfillset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGPIPE}) {
+    struct sigaction before = {};
+    if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      ::sigaction(signal, &action, nullptr);
+  }
 }
 
-StopOnSignal::StopOnSignal() {
-  handle(onSignal);
+int stopStatus() {
+  return firstSignal == SIGPIPE ? static_cast<int>(ErrorKind::output) : stoppedStatus;
 }
 
-StopOnSignal::~StopOnSignal() {
-  handle(SIG_DFL);
-  flag = nullptr;
+void endProcess(int status) {
+  static std::atomic<int> last;
+  last = status;
+  endWhenPossible([] {
+    removeLeftovers();
+    ::_exit(last);
+  });
+  for (;;)
+    ::pause();
 }
 
-void StopOnSignal::setInstead(std::atomic<bool>& stop) {
+StopInstead::StopInstead(std::atomic<bool>& stop) {
   flag = &stop;
+  if (firstSignal != 0)
+    stop = true;
+}
+
+StopInstead::~StopInstead() {
+  flag = nullptr;
 }
 
 } // namespace fenestra

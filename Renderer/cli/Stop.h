@@ -1,6 +1,8 @@
 #pragma once
-// Ctrl-C and SIGTERM. At first they end the process at once; where that would cost finished work or
-// leave a file half-written, they set a flag instead. Exit status 5 either way.
+// Signals that ask the process to end: INT, TERM, HUP (the terminal was closed), QUIT, XCPU, and
+// PIPE (nobody reads standard output any more). At first they end it at once; where that would cost
+// finished work they set a flag instead, and the second signal ends it at once. What was ignored
+// when the process began (nohup) stays ignored.
 
 #include <atomic>
 
@@ -8,20 +10,24 @@ namespace fenestra {
 
 inline constexpr int stoppedStatus = 5;
 
-/// Ends the process with that status, whatever other threads are about; nothing may be
-/// half-written.
-[[noreturn]] void endStopped();
+/// From now on those signals are handled: before anything is read or made.
+void handleStops();
 
-/// One at a time, for as long as signals are to be handled.
-class StopOnSignal {
+/// Exit status of a command that was asked to stop: stoppedStatus, or that of an output error where
+/// nobody reads standard output.
+int stopStatus();
+
+/// Ends the process, whatever other threads are about, as soon as no result is being put in place.
+/// Leaves no temporary file.
+[[noreturn]] void endProcess(int status);
+
+/// While it lives, the first signal sets `stop` instead of ending the process. One at a time.
+class StopInstead {
 public:
-  StopOnSignal();
-  ~StopOnSignal();
-  StopOnSignal(const StopOnSignal&) = delete;
-  StopOnSignal& operator=(const StopOnSignal&) = delete;
-
-  /// From now on signals set `stop` instead of ending the process. It outlives this.
-  void setInstead(std::atomic<bool>& stop);
+  explicit StopInstead(std::atomic<bool>& stop);
+  ~StopInstead();
+  StopInstead(const StopInstead&) = delete;
+  StopInstead& operator=(const StopInstead&) = delete;
 };
 
 } // namespace fenestra

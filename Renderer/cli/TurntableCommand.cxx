@@ -4,13 +4,11 @@
 #include "cli/CommandLine.h"
 #include "cli/Commands.h"
 #include "cli/Machine.h"
-#include "cli/OutputFiles.h"
 #include "cli/Pictures.h"
 #include "cli/Progress.h"
 #include "cli/SceneFlags.h"
 #include "cli/Stop.h"
 #include "cli/TurntableRecord.h"
-#include "io/AtomicFile.h"
 #include "scene/Scene.h"
 
 #include <chrono>
@@ -26,10 +24,11 @@ namespace {
 class Turntable {
 public:
   Turntable(const TurntableOptions& options, TurntableRecord& record, RenderMonitor& monitor,
-            std::string command)
+            Outputs& outputs, std::string command)
       : m_options(options),
         m_record(record),
         m_monitor(monitor),
+        m_outputs(outputs),
         m_command(std::move(command)),
         m_before(record.finishedCount()),
         m_scene(options.render.scene),
@@ -40,8 +39,9 @@ public:
   int rendered() const { return m_record.finishedCount() - m_before; }
 
   void run() {
+    m_outputs.checkInputs(); // with all that the scene turned out to be made of
     m_record.setInputs(m_options, m_scene);
-    m_record.write();
+    m_record.write(m_outputs);
     const RenderOptions& render = m_options.render;
     const RenderSettings settings = settingsFor(render, m_scene.background());
     Progress progress(render.progress, settings,
@@ -94,8 +94,9 @@ private:
     const RenderResult result = render(m_scene.forRender(), settings, m_monitor);
     if (result.reason == StopReason::request)
       return false;
-    writePictures(frameOptions(m_options, frame), m_scene, result, m_command);
-    m_record.finish(frame, view.change);
+    writePictures(frameOptions(m_options, frame), m_scene, result, m_command, m_outputs);
+    m_outputs.commit();
+    m_record.finish(frame, frameFiles(m_options, frame), view.change, m_outputs);
     return true;
   }
 
@@ -151,6 +152,7 @@ private:
   const TurntableOptions& m_options;
   TurntableRecord& m_record;
   RenderMonitor& m_monitor;
+  Outputs& m_outputs;
   std::string m_command;
   int m_before; ///< finished
   Scene m_scene;
@@ -161,17 +163,15 @@ private:
   std::future<View> m_preparing; ///< left to itself by a stop
 };
 
-/// Before the long work: that frames cost no input, and can be written.
-void checkFrames(const TurntableOptions& options, const TurntableRecord& record) {
-  checkOutputs(frameOptions(options, 0));
-  for (int frame = 0; frame < options.frames; ++frame) {
-    std::vector<std::filesystem::path> files = frameFiles(options, frame);
-    for (const auto& file : {std::optional(record.path()), options.render.stats})
-      if (file)
-        files.push_back(*file);
-    checkDistinct(options.render.inputs, files);
-  }
-  checkWritable(record.path());
+/// Before the long work.
+void declareFrames(const TurntableOptions& options, const TurntableRecord& record,
+                   Outputs& outputs) {
+  declareOutputs(frameOptions(options, 0), outputs);
+  for (int frame = 1; frame < options.frames; ++frame)
+    for (const std::filesystem::path& path : frameOptions(options, frame).outputs)
+      declareImage(path, outputs, options.render.outputsNamedBy);
+  record.declare(outputs);
+  checkMemory(options.render.scene);
 }
 
 void report(const TurntableOptions& options, const TurntableRecord& record, int rendered,
@@ -198,19 +198,21 @@ int turntableCommand(int argc, char** argv, int first) {
   const MachineUse machine(options.render.settings);
   TurntableRecord record(options, flags.flags);
   RenderMonitor monitor;
-  StopOnSignal stopOnSignal;
-  checkFrames(options, record);
+  Outputs outputs;
+  declareFrames(options, record, outputs);
 
   const Stopwatch total;
-  Turntable turntable(options, record, monitor, shellCommand({argv + 1, argv + argc}));
-  stopOnSignal.setInstead(monitor.stop); // a frame under way is given up
+  Turntable turntable(options, record, monitor, outputs, shellCommand({argv + 1, argv + argc}));
+  const StopInstead stopInstead(monitor.stop); // a frame under way is given up
   turntable.run();
   if (options.render.stats)
-    writeFile(*options.render.stats, turntable.statsJson(total.seconds()));
+    outputs.write(*options.render.stats, turntable.statsJson(total.seconds()));
+  outputs.commit();
   report(options, record, turntable.rendered(), total.seconds());
+  std::cout.flush();
   if (turntable.isPreparing())
-    endStopped();
-  return record.finishedCount() == options.frames ? 0 : stoppedStatus;
+    endProcess(stopStatus());
+  return record.finishedCount() == options.frames ? 0 : stopStatus();
 }
 
 } // namespace fenestra

@@ -2,10 +2,11 @@
 
 #include "cli/Version.h"
 #include "core/Error.h"
-#include "io/AtomicFile.h"
+#include "io/Inputs.h"
 #include "io/JsonNode.h"
 
 #include <algorithm>
+#include <fstream>
 #include <set>
 #include <string_view>
 
@@ -31,6 +32,12 @@ json requestedArguments(const FlagValues& flags) {
   return request.arguments();
 }
 
+template <typename T>
+std::uint64_t digest(const std::vector<T>& voxels) {
+  return std::hash<std::string_view>()(
+      {reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)});
+}
+
 /// A file as it is now, so that another one of its name is noticed.
 json fileState(const std::filesystem::path& path) {
   std::error_code none;
@@ -51,10 +58,37 @@ json inputStates(const TurntableOptions& options, const Scene& scene) {
   return states;
 }
 
-template <typename T>
-std::uint64_t digest(const std::vector<T>& voxels) {
-  return std::hash<std::string_view>()(
-      {reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)});
+/// A frame's file as it was put in place. `path` is beside the record.
+json writtenState(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
+  return {{"file", path.filename().string()}, {"bytes", bytes.size()}, {"digest", digest(bytes)}};
+}
+
+/// Whether a frame's file is as it was recorded. One that is gone or shorter is damaged, and
+/// rendered again; throws Error (usage) for any other, which may be somebody's work.
+bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
+  std::error_code failed;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
+  const double recordedBytes = recorded.at("bytes").numberIn(0.0, 1e15);
+  if (failed || static_cast<double>(bytes) < recordedBytes)
+    return false;
+  if (writtenState(path)["digest"].dump() == recorded.at("digest").json())
+    return true;
+  throw usageError(path.string() +
+                   ": is not the frame that was recorded; move it away, and the same "
+                   "command renders it again");
+}
+
+/// The record of any turntable of any version of Fenestra.
+bool isRecord(const std::filesystem::path& path) {
+  if (bearsMark(path))
+    return true;
+  std::ifstream file(path, std::ios::binary);
+  const json document = json::parse(file, nullptr, false);
+  return document.is_object() && document.contains("finished") && document.contains("request") &&
+         document["request"].is_object() && document["request"].contains("arguments") &&
+         document["request"].contains("version");
 }
 
 /// Of what may lie in files that only a header names.
@@ -131,6 +165,8 @@ void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
 void TurntableRecord::read(const TurntableOptions& options) {
   const std::string name = m_path.string();
   const json document = parseJson(readText(m_path), name);
+  if (const auto file = fileId(m_path)) // which is written again
+    forgetInput(*file);
   const JsonNode root(document, name);
   for (const char* list : {"arguments", "inputs"})
     root.at("request").at(list).elements(); // throws where it is none
@@ -139,11 +175,19 @@ void TurntableRecord::read(const TurntableOptions& options) {
   for (const char* later : {"inputs", "voxels"})
     known.erase(later);
   requireSame(known, m_request, name);
+  std::size_t at = 0;
   for (const JsonNode& finished : root.at("finished").elements()) {
     const auto frame = static_cast<int>(finished.at("frame").numberIn(0, options.frames - 1));
     const std::vector<std::filesystem::path> files = frameFiles(options, frame);
-    m_finished[static_cast<std::size_t>(frame)] = std::all_of(
-        files.begin(), files.end(), [](const auto& file) { return std::filesystem::exists(file); });
+    const auto recorded = finished.find("files"); // which older versions did not write
+    const auto states = recorded ? recorded->elements() : std::vector<JsonNode>();
+    bool isWhole = states.size() == files.size();
+    for (std::size_t i = 0; isWhole && i < files.size(); ++i)
+      isWhole = isAsRecorded(files[i], states[i]);
+    m_finished[static_cast<std::size_t>(frame)] = isWhole;
+    if (isWhole)
+      m_files[frame] = document["finished"][at]["files"];
+    ++at;
     if (const auto change = finished.find("surfaceChange"))
       m_changes[frame] = changeIn(*change);
   }
@@ -160,25 +204,36 @@ int TurntableRecord::finishedCount() const {
   return static_cast<int>(std::count(m_finished.begin(), m_finished.end(), true));
 }
 
-void TurntableRecord::write() const {
+void TurntableRecord::declare(Outputs& outputs) const {
+  outputs.addUnnamed(m_path, isRecord);
+}
+
+void TurntableRecord::write(Outputs& outputs) const {
   nlohmann::ordered_json finished = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < m_finished.size(); ++i) {
     if (!m_finished[i])
       continue;
     const auto frame = static_cast<int>(i);
-    finished.push_back({{"frame", frame}});
+    finished.push_back({{"frame", frame}, {"files", m_files.at(frame)}});
     if (const auto change = m_changes.find(frame); change != m_changes.end())
       finished.back()["surfaceChange"] = changeJson(change->second);
   }
-  const nlohmann::ordered_json record = {{"request", m_request}, {"finished", finished}};
-  writeFile(m_path, record.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  const nlohmann::ordered_json record = {
+      {"generator", writtenMark}, {"request", m_request}, {"finished", finished}};
+  outputs.write(m_path, record.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  outputs.commit();
 }
 
-void TurntableRecord::finish(int frame, const std::optional<SurfaceChange>& change) {
+void TurntableRecord::finish(int frame, const std::vector<std::filesystem::path>& files,
+                             const std::optional<SurfaceChange>& change, Outputs& outputs) {
   m_finished[static_cast<std::size_t>(frame)] = true;
+  m_files[frame] = json::array();
+  for (const std::filesystem::path& file : files)
+    if (std::filesystem::exists(file)) // a picture without depth has one file less
+      m_files[frame].push_back(writtenState(file));
   if (change)
     m_changes[frame] = *change;
-  write();
+  write(outputs);
 }
 
 } // namespace fenestra

@@ -4,6 +4,7 @@
 
 #include "cli/TurntableFrames.h"
 #include "clipping/SurfaceChange.h"
+#include "io/Outputs.h"
 #include "scene/Scene.h"
 
 #include <nlohmann/json.hpp>
@@ -22,17 +23,21 @@ public:
   /// the voxels. Throws Error (usage) where the recorded frames are of others.
   void setInputs(const TurntableOptions& options, const Scene& scene);
 
-  const std::filesystem::path& path() const { return m_path; }
   int finishedCount() const;
-  /// Recorded, and all its files are there.
+  /// Recorded, and all its files are as they were then.
   bool isFinished(int frame) const { return m_finished[static_cast<std::size_t>(frame)]; }
   /// From the frame before, where there is a clipping surface; of all that are recorded.
   const std::map<int, SurfaceChange>& changes() const { return m_changes; }
 
-  /// Frames can only be told from others' once this is written. Throws Error (output).
-  void write() const;
-  /// The frame's files are there. Throws Error (output).
-  void finish(int frame, const std::optional<SurfaceChange>& change);
+  /// Throws what Outputs does.
+  void declare(Outputs& outputs) const;
+  /// Puts the record in place: frames can only be told from others' once this is done. Throws Error
+  /// (output).
+  void write(Outputs& outputs) const;
+  /// The frame's files are in place: records their sizes and digests, by which a damaged or another
+  /// file is noticed. Throws Error (output).
+  void finish(int frame, const std::vector<std::filesystem::path>& files,
+              const std::optional<SurfaceChange>& change, Outputs& outputs);
 
 private:
   void read(const TurntableOptions& options);
@@ -43,6 +48,7 @@ private:
   nlohmann::json m_request;
   nlohmann::json m_recorded; ///< the request that the record has; null where there is none
   std::vector<bool> m_finished;
+  std::map<int, nlohmann::json> m_files; ///< of finished frames: name, bytes, digest
   std::map<int, SurfaceChange> m_changes;
 };
 

@@ -1,13 +1,19 @@
 #include "cli/CommandLine.h"
 #include "cli/Commands.h"
+#include "cli/Stop.h"
 #include "core/Error.h"
+#include "io/Leftovers.h"
+#include "io/PrivateFolder.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <string>
 #include <string_view>
+
+#include <unistd.h>
 
 namespace {
 
@@ -47,25 +53,63 @@ int dispatch(int argc, char** argv) {
   return fenestra::renderCommand(argc, argv, 1);
 }
 
-/// Whatever an exception says, on one line.
-int fail(int status, std::string line) {
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  std::cerr << "fenestra: " << line << std::endl;
+void say(std::string_view text) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+}
+
+/// Whatever an exception says, on one line; memory may be what there is none of.
+int fail(int status, std::string_view line) {
+  static char buffer[8192];
+  const std::size_t size = std::min(line.size(), sizeof buffer);
+  std::replace_copy(line.begin(), line.begin() + size, buffer, '\n', ' ');
+  say("fenestra: ");
+  say({buffer, size});
+  say("\n");
+  return status;
+}
+
+constexpr int outputStatus = static_cast<int>(fenestra::ErrorKind::output);
+
+int run(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const fenestra::Error& error) {
+    return fail(error.exitStatus(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(outputStatus, "out of memory; use a smaller volume or picture");
+  } catch (const std::exception& error) {
+    return fail(outputStatus, error.what());
+  }
+}
+
+/// What a command printed is a result as well.
+int finishOutput(int status) {
+  errno = 0;
+  const bool isWhole = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
+  if (isWhole || status != 0)
+    return status;
+  return fail(outputStatus, "standard output: cannot be written; is there room, and a reader?");
+}
+
+/// Tries again to remove what could not be removed, and says where the user has to.
+int removeRest(int status) {
+  fenestra::removeLeftovers();
+  try {
+    for (const std::filesystem::path& path : fenestra::remainingLeftovers()) {
+      say("fenestra: warning: temporary file left: ");
+      say(path.native());
+      say("; remove it\n");
+    }
+  } catch (const std::bad_alloc&) {
+    say("fenestra: warning: temporary files are left; run any command again to remove them\n");
+  }
   return status;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-  using fenestra::ErrorKind;
-  try {
-    return dispatch(argc, argv);
-  } catch (const fenestra::Error& error) {
-    return fail(error.exitStatus(), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(static_cast<int>(ErrorKind::output),
-                "out of memory; use a smaller volume or picture");
-  } catch (const std::exception& error) {
-    return fail(static_cast<int>(ErrorKind::output), error.what());
-  }
+  fenestra::handleStops();
+  fenestra::removeAbandonedFolders();
+  return removeRest(finishOutput(run(argc, argv)));
 }

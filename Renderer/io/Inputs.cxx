@@ -1,7 +1,7 @@
 #include "io/Inputs.h"
 
 #include "core/Error.h"
-#include "io/FileErrors.h"
+#include "io/SystemCalls.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,12 +13,23 @@ namespace {
 
 struct Ledger {
   std::mutex mutex;
-  std::map<FileId, std::filesystem::path> files;
+  std::map<FileId, std::filesystem::path> files, results;
 };
 
 Ledger& ledger() {
   static Ledger ledger;
   return ledger;
+}
+
+void enter(const struct stat& status, const std::filesystem::path& path) {
+  const std::lock_guard lock(ledger().mutex);
+  ledger().files.try_emplace(FileId{status.st_dev, status.st_ino}, path);
+}
+
+bool isResult(const FileId& file) {
+  const std::lock_guard lock(ledger().mutex);
+  const auto found = ledger().results.find(file);
+  return found != ledger().results.end() && fileId(found->second) == file;
 }
 
 thread_local std::filesystem::path confinement; ///< canonical; empty: anywhere
@@ -59,8 +70,23 @@ void requireFile(const std::filesystem::path& path, const std::string& mend, std
     throw inputError(path.string(), "is not a file that can be read; " + mend);
   if (static_cast<std::uint64_t>(status.st_size) > most)
     throw inputError(path.string(), "has more than " + megabytes(most) + "; name a smaller file");
-  const std::lock_guard lock(ledger().mutex);
-  ledger().files.try_emplace(FileId{status.st_dev, status.st_ino}, path);
+  if (isResult({status.st_dev, status.st_ino}))
+    throw inputError(path.string(), "is a result of this command; name another file");
+  enter(status, path);
+}
+
+void expectInput(const std::filesystem::path& path) {
+  struct stat status = {};
+  if (::stat(path.c_str(), &status) != 0)
+    return;
+  if (S_ISREG(status.st_mode))
+    enter(status, path);
+  std::error_code failed;
+  if (S_ISDIR(status.st_mode))
+    for (std::filesystem::directory_iterator entry(path, failed), end; !failed && entry != end;
+         entry.increment(failed))
+      if (entry->is_regular_file(failed))
+        expectInput(entry->path());
 }
 
 InputsWithin::InputsWithin(const std::filesystem::path& folder) : m_before(confinement) {
@@ -80,6 +106,14 @@ std::optional<std::filesystem::path> inputNamed(const FileId& file) {
 void forgetInput(const FileId& file) {
   const std::lock_guard lock(ledger().mutex);
   ledger().files.erase(file);
+}
+
+void enterResult(const std::filesystem::path& path, const std::optional<FileId>& before) {
+  const std::lock_guard lock(ledger().mutex);
+  if (before)
+    ledger().results.erase(*before);
+  if (const auto file = fileId(path))
+    ledger().results[*file] = path;
 }
 
 std::string lowerExtension(const std::filesystem::path& path) {

@@ -30,9 +30,14 @@ struct FileId {
 std::optional<FileId> fileId(const std::filesystem::path& path);
 
 /// Enters `path` into the ledger. Throws Error (input) unless it is a file of at most `most` bytes
-/// inside the folder that InputsWithin names; `mend` says what to name instead of a folder.
+/// inside the folder that InputsWithin names, and no result of this process; `mend` says what to name
+/// instead of a folder.
 void requireFile(const std::filesystem::path& path, const std::string& mend,
                  std::uint64_t most = anySize);
+
+/// Enters what is at `path` into the ledger, if anything: a file, or those in a folder. For names
+/// of files that are read later, or that belong to what is read.
+void expectInput(const std::filesystem::path& path);
 
 /// While it lives, this thread reads nothing outside `folder`, whatever the files in it name: for
 /// what came out of an archive.
@@ -50,8 +55,13 @@ private:
 /// The name under which a file was read; empty where it was not.
 std::optional<std::filesystem::path> inputNamed(const FileId& file);
 
-/// A file that this process has just made: what had its number before is gone.
+/// Takes a file out of the ledger: one that this process has just made (what had its number before is
+/// gone), or that is read only to be written again.
 void forgetInput(const FileId& file);
+
+/// Enters a result that was put in place; requireFile refuses it as long as it is there. `before` is
+/// what was there.
+void enterResult(const std::filesystem::path& path, const std::optional<FileId>& before);
 
 /// The last extension with its dot, in lower case: ".GZ" of "a.nii.GZ" is ".gz".
 std::string lowerExtension(const std::filesystem::path& path);

@@ -1,8 +1,8 @@
 #include "io/JsonNode.h"
 
-#include "io/FileErrors.h"
 #include "io/Inputs.h"
 #include "io/ShownText.h"
+#include "io/SystemCalls.h"
 
 #include <algorithm>
 #include <cerrno>

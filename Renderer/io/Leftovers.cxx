@@ -64,7 +64,7 @@ Leftover::Leftover(const std::filesystem::path& path, Kind kind) {
 }
 
 Leftover::~Leftover() {
-  if (!m_entry->remove() && errno != ENOENT)
+  if (m_entry->isListed && !m_entry->remove() && errno != ENOENT)
     return; // stays listed: the end of the process tries again
   m_entry->isListed = false;
   m_entry->isTaken = false;
@@ -72,6 +72,10 @@ Leftover::~Leftover() {
 
 const std::filesystem::path& Leftover::path() const {
   return m_entry->path;
+}
+
+void Leftover::keep() {
+  m_entry->isListed = false;
 }
 
 void removeLeftovers() {

@@ -19,6 +19,8 @@ public:
   Leftover& operator=(const Leftover&) = delete;
 
   const std::filesystem::path& path() const;
+  /// The name stays, whatever happens.
+  void keep();
 
 private:
   struct Entry;

@@ -1,7 +1,7 @@
 #include "io/PrivateFolder.h"
 
 #include "core/Error.h"
-#include "io/FileErrors.h"
+#include "io/SystemCalls.h"
 
 #include <cerrno>
 #include <fcntl.h>
@@ -13,7 +13,7 @@
 namespace fenestra {
 namespace {
 
-constexpr std::string_view prefix = "fenestra-scene-";
+constexpr std::string_view folderPrefix = "fenestra-scene-";
 
 std::filesystem::path temporaryFiles() {
   std::error_code failed;
@@ -69,7 +69,7 @@ PrivateFolder::PrivateFolder() {
   const std::filesystem::path parent = temporaryFiles();
   std::random_device random;
   for (;;) {
-    std::string name(prefix);
+    std::string name(folderPrefix);
     for (int digit = 0; digit < 12; ++digit)
       name += "0123456789abcdef"[random() % 16];
     if (makeLocked(parent / name))
@@ -117,7 +117,7 @@ void removeAbandonedFolders() {
     return;
   for (std::filesystem::directory_iterator entry(parent, failed), end; !failed && entry != end;
        entry.increment(failed)) {
-    if (!entry->path().filename().string().starts_with(prefix))
+    if (!entry->path().filename().string().starts_with(folderPrefix))
       continue;
     const int lock = lockAbandoned(entry->path());
     if (lock < 0)

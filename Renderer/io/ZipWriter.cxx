@@ -1,7 +1,6 @@
 #include "io/ZipWriter.h"
 
 #include "core/Error.h"
-#include "io/AtomicFile.h"
 
 #include <zip.h>
 
@@ -18,26 +17,18 @@ struct DiscardZip {
   void operator()(zip_t* archive) const { zip_discard(archive); }
 };
 
+struct FreeSource {
+  void operator()(zip_source_t* source) const { zip_source_free(source); }
+};
+
 Error zipError(const std::filesystem::path& path, const std::string& reason) {
-  return outputError(path.string(),
-                     "cannot be written whole: " + reason + "; free some space on its disk");
+  return outputError(path.string(), "cannot be made: " + reason + "; close other programs");
 }
 
 /// What the content refers to lives until the archive is closed.
-struct SourceOf {
-  zip_t* archive;
-
-  zip_source_t* operator()(const std::filesystem::path& file) const {
-    return zip_source_file(archive, file.c_str(), 0, -1);
-  }
-  zip_source_t* operator()(const std::string& text) const {
-    return zip_source_buffer(archive, text.data(), text.size(), 0);
-  }
-};
-
 void addEntry(zip_t* archive, const ZipEntry& entry, const std::filesystem::path& path) {
   const auto fail = [&] { return zipError(path, zip_strerror(archive)); };
-  zip_source_t* source = std::visit(SourceOf{archive}, entry.content);
+  zip_source_t* source = zip_source_buffer(archive, entry.content.data(), entry.content.size(), 0);
   if (!source)
     throw fail();
   const zip_int64_t index = zip_file_add(archive, entry.name.c_str(), source, ZIP_FL_ENC_UTF_8);
@@ -52,26 +43,39 @@ void addEntry(zip_t* archive, const ZipEntry& entry, const std::filesystem::path
     throw fail();
 }
 
+std::string contentOf(zip_source_t* source, const std::filesystem::path& path) {
+  zip_stat_t stat;
+  if (zip_source_stat(source, &stat) != 0 || zip_source_open(source) != 0)
+    throw zipError(path, zip_error_strerror(zip_source_error(source)));
+  std::string content(stat.size, '\0');
+  const zip_int64_t count = zip_source_read(source, content.data(), content.size());
+  zip_source_close(source);
+  if (count != static_cast<zip_int64_t>(content.size()))
+    throw zipError(path, "its content cannot be read back");
+  return content;
+}
+
 } // namespace
 
-void writeZip(const std::filesystem::path& path, const std::vector<ZipEntry>& entries) {
-  AtomicFile file(path);
-  int code = 0;
+std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& comment,
+                      const std::filesystem::path& path) {
+  zip_error_t error;
+  zip_error_init(&error);
+  const std::unique_ptr<zip_source_t, FreeSource> source(
+      zip_source_buffer_create(nullptr, 0, 0, &error));
   std::unique_ptr<zip_t, DiscardZip> archive(
-      zip_open(file.temporaryPath().c_str(), ZIP_CREATE | ZIP_TRUNCATE, &code));
-  if (!archive) {
-    zip_error_t error;
-    zip_error_init_with_code(&error, code);
-    const std::string reason = zip_error_strerror(&error);
-    zip_error_fini(&error);
-    throw zipError(path, reason);
-  }
+      source ? zip_open_from_source(source.get(), ZIP_TRUNCATE, &error) : nullptr);
+  if (!archive)
+    throw zipError(path, zip_error_strerror(&error));
+  zip_source_keep(source.get()); // closing the archive frees one
   for (const ZipEntry& entry : entries)
     addEntry(archive.get(), entry, path);
-  if (zip_close(archive.get()) != 0)
+  if (zip_set_archive_comment(archive.get(), comment.data(),
+                              static_cast<zip_uint16_t>(comment.size())) != 0 ||
+      zip_close(archive.get()) != 0)
     throw zipError(path, zip_strerror(archive.get()));
   static_cast<void>(archive.release()); // closed: freed
-  file.commit();
+  return contentOf(source.get(), path);
 }
 
 } // namespace fenestra

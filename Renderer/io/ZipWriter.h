@@ -3,18 +3,20 @@
 
 #include <filesystem>
 #include <string>
-#include <variant>
+#include <string_view>
 #include <vector>
 
 namespace fenestra {
 
 struct ZipEntry {
-  std::string name;                                         ///< in the archive, with slashes
-  std::variant<std::filesystem::path, std::string> content; ///< a file's, or this text
+  std::string name; ///< in the archive, with slashes
+  std::string_view content;
 };
 
 /// Stores the entries in this order as they are (what is large is compressed already), all dated
-/// 1980-01-01. The archive appears whole or not at all. Throws Error (output).
-void writeZip(const std::filesystem::path& path, const std::vector<ZipEntry>& entries);
+/// 1980-01-01, and `comment` at the end. Throws Error (output) where memory is short; `path` is
+/// named then.
+std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& comment,
+                      const std::filesystem::path& path);
 
 } // namespace fenestra

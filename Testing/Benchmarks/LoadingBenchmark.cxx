@@ -5,8 +5,9 @@
 //     LoadingBenchmark [EDGE [RUNS]]     (512 voxels, 3 runs)
 
 #include "TemporaryFolder.h"
+#include "WriteResults.h"
 #include "core/Stopwatch.h"
-#include "io/medical/NrrdWriter.h"
+#include "io/NrrdWriter.h"
 
 #include <itkImage.h>
 #include <itkImageFileReader.h>
@@ -148,8 +149,9 @@ void measure(const std::string& self, std::int64_t edge, int runs) {
               << std::setw(32) << "s" << std::setw(10) << "CPU s" << std::setw(10) << "peak MB"
               << std::endl;
     writeRaw(folder / "raw.nrrd", edge, voxels);
-    writeNrrd<std::int16_t>(folder / "gzip.nrrd", Grid(Size3::Constant(edge), Affine::Identity()),
-                            {std::span(voxels)});
+    writeFile(folder / "gzip.nrrd",
+              encodeNrrd({.type = "short", .size = Size3::Constant(edge)},
+                         {reinterpret_cast<const char*>(voxels.data()), voxels.size() * 2}));
   }
   for (const char* name : {"raw.nrrd", "gzip.nrrd"})
     compare(self, folder / "", name, runs);

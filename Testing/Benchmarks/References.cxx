@@ -5,13 +5,13 @@
 #include "Oracle/Oracle.h"
 #include "Statistical/Pictures.h"
 
+#include "WriteResults.h"
 #include "core/Error.h"
 #include "core/Stopwatch.h"
 #include "film/Compare.h"
 #include "io/EmbeddedResources.h"
 #include "io/looks/LightReader.h"
 #include "io/pictures/ImageReader.h"
-#include "io/pictures/ImageWriter.h"
 
 #include <algorithm>
 #include <optional>

@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <thread>
 
 namespace fenestra {
@@ -18,10 +19,8 @@ const double soon = 2.0 * static_cast<double>(testing::brevity());
 
 class SignalsCommand : public SmallScene, public ::testing::WithParamInterface<int> {};
 
-INSTANTIATE_TEST_SUITE_P(Both, SignalsCommand, ::testing::Values(SIGINT, SIGTERM),
-                         [](const auto& info) {
-                           return info.param == SIGINT ? "Interrupt" : "Terminate";
-                         });
+INSTANTIATE_TEST_SUITE_P(All, SignalsCommand, ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT),
+                         [](const auto& info) { return ::sigabbrev_np(info.param); });
 
 TEST_P(SignalsCommand, KeepsFinishedPasses) {
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "20000", "--progress", "xml",
@@ -29,7 +28,7 @@ TEST_P(SignalsCommand, KeepsFinishedPasses) {
                   folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-progress>0\\.0*[1-9]"));
   process.send(GetParam());
-  process.send(GetParam()); // another does no harm
+  process.send(GetParam()); // one event may come as two signals
   const Outcome outcome = process.wait();
   std::cout << "stopped within " << outcome.seconds << " s\n";
   EXPECT_EQ(outcome.status, 5) << outcome.err;
@@ -44,6 +43,53 @@ TEST_P(SignalsCommand, KeepsFinishedPasses) {
   EXPECT_EQ(readImage(folder / "a.png").width, 64);
   EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "a.json"))["samplesPerPixel"]["min"], samples);
   EXPECT_EQ(filesIn(folder.path()).size(), 5u); // two inputs, three results
+}
+
+TEST_P(SignalsCommand, EndsAtOnceAtTheSecond) {
+  folder.write("a.exr", "old");
+  const auto before = filesIn(folder.path());
+  // No pass ends within the test, and a path takes long: matter that scatters and never absorbs.
+  folder.write("dense.json", R"({"extinction": [[0, 1e4], [64, 1e4]], "albedo": [[0, 1, 1, 1]]})");
+  Process process({"volume.nrrd", "--transfer", "dense.json", "--size", "1024x1024", "--samples",
+                   "100000", "--bounces", "1000000", "--progress", "xml", "--output", "a.exr"},
+                  folder.path());
+  ASSERT_TRUE(process.waitForOutput("<filter-start>"));
+  process.send(GetParam());
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  process.send(GetParam());
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_EQ(bytesOf(folder / "a.exr"), "old");
+  std::filesystem::remove(folder / "dense.json");
+  EXPECT_EQ(filesIn(folder.path()), before);
+}
+
+TEST_P(SignalsCommand, StaysIgnoredWhereItWasAtTheStart) {
+  std::signal(GetParam(), SIG_IGN); // as nohup and background jobs have it
+  Process process({"volume.nrrd", "--size", "64x64", "--samples", "500", "--progress", "xml",
+                   "--output", "a.png"},
+                  folder.path());
+  std::signal(GetParam(), SIG_DFL);
+  ASSERT_TRUE(process.waitForOutput("<filter-progress>0\\.0*[1-9]"));
+  process.send(GetParam());
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST_P(SignalsCommand, LeavesNothingOfAnArchive) {
+  const TemporaryFolder temporary;
+  ::setenv("TMPDIR", temporary.path().c_str(), 1);
+  Process process({"knee/knee.mrb", "--size", "256x256", "--samples", "100000", "--progress", "xml",
+                   "--output", "never.png"},
+                  kneeFolder().path());
+  ::unsetenv("TMPDIR");
+  ASSERT_TRUE(process.waitForOutput("<filter-start>"));
+  process.send(GetParam());
+  EXPECT_EQ(process.wait().status, 5);
+  EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
+  std::filesystem::remove(kneeFolder() / "never.png");
 }
 
 TEST_P(SignalsCommand, WritesNothingBeforeTheFirstPass) {
@@ -88,6 +134,19 @@ TEST_P(SignalsCommand, LeavesNoHalfAPhantom) {
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.seconds, soon);
   EXPECT_EQ(filesIn(folder.path()), before);
+}
+
+class BrokenPipe : public SmallScene {};
+
+TEST_F(BrokenPipe, KeepsFinishedPassesAndIsToldByTheStatus) {
+  Process process({"volume.nrrd", "--size", "64x64", "--samples", "1000000", "--seconds", "20",
+                   "--progress", "xml", "--output", "a.png"},
+                  folder.path(), Reader::nobody);
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 4) << outcome.err;
+  EXPECT_LT(outcome.seconds, 10 * soon);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.png"));
 }
 
 } // namespace

@@ -2,8 +2,8 @@
 #include "Regression/SampleFiles.h"
 #include "SceneNeighbours.h"
 #include "TemporaryFolder.h"
+#include "WriteResults.h"
 #include "io/ZipWriter.h"
-#include "io/pictures/ImageWriter.h"
 
 #include <itkAffineTransform.h>
 #include <itkGDCMImageIO.h>
@@ -137,10 +137,10 @@ void makeArchive(const fs::path& corpus) {
   for (std::size_t at = 0; (at = scene.find(attribute, at)) != std::string::npos;)
     scene.insert(at += attribute.size(), "Data/");
   std::vector<ZipEntry> entries = {{"n/n.mrml", scene}};
-  for (const auto& [name, content] : fuzzing::sceneNeighbours())
+  const auto neighbours = fuzzing::sceneNeighbours();
+  for (const auto& [name, content] : neighbours)
     entries.push_back({"n/Data/" + name, content});
-  fs::create_directories(corpus / "Archive");
-  writeZip(corpus / "Archive/stored.mrb", entries);
+  save(corpus / "Archive", "stored.mrb", encodeZip(entries, "", "stored.mrb"));
 }
 
 } // namespace

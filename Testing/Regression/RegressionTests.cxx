@@ -2,9 +2,9 @@
 #include "Cases.h"
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
+#include "WriteResults.h"
 #include "film/Compare.h"
 #include "io/pictures/ImageReader.h"
-#include "io/pictures/ImageWriter.h"
 
 #include <gtest/gtest.h>
 

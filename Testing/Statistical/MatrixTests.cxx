@@ -5,8 +5,8 @@
 #include "Pictures.h"
 #include "RunSettings.h"
 
+#include "WriteResults.h"
 #include "film/Compare.h"
-#include "io/pictures/ImageWriter.h"
 
 #include <gtest/gtest.h>
 

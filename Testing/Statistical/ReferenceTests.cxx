@@ -6,12 +6,12 @@
 #include "RunSettings.h"
 #include "Support.h"
 
+#include "WriteResults.h"
 #include "cli/CommandLine.h"
 #include "cli/RenderFlags.h"
 #include "film/Compare.h"
 #include "io/looks/LightReader.h"
 #include "io/pictures/ImageReader.h"
-#include "io/pictures/ImageWriter.h"
 #include "scene/Scene.h"
 
 #include <gtest/gtest.h>

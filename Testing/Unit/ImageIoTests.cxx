@@ -1,10 +1,9 @@
 // Pictures to files and back: what is kept, what a failure leaves, what a damaged file does.
 
+#include "WriteResults.h"
 #include "core/Error.h"
-#include "io/AtomicFile.h"
 #include "io/EmbeddedResources.h"
 #include "io/pictures/ImageReader.h"
-#include "io/pictures/ImageWriter.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -125,7 +124,6 @@ protected:
   fs::path m_folder;
 };
 
-using AtomicFiles = ImageFiles;
 using ExrFiles = ImageFiles;
 using NrrdFiles = ImageFiles;
 using DisplayFiles = ImageFiles;
@@ -138,56 +136,6 @@ TEST(EmbeddedResources, HoldTheColourConfiguration) {
   EXPECT_TRUE(embeddedResource("color/other.ocio").empty());
   EXPECT_EQ(embeddedResourceNames("color/"), std::vector<std::string>{"color/fenestra.ocio"});
   EXPECT_TRUE(embeddedResourceNames("nothing/").empty());
-}
-
-TEST_F(AtomicFiles, AppearWhenCommitted) {
-  AtomicFile file(path("result.seg.nrrd"));
-  store(file.temporaryPath(), "content");
-  EXPECT_FALSE(fs::exists(path("result.seg.nrrd")));
-  EXPECT_TRUE(file.temporaryPath().filename().string().ends_with("result.seg.nrrd"));
-  file.commit();
-  EXPECT_EQ(contentOf(path("result.seg.nrrd")), "content");
-  EXPECT_EQ(fileCount(), 1u);
-}
-
-TEST_F(AtomicFiles, LeaveTheFormerFileUnlessCommitted) {
-  store(path("a.txt"), "before");
-  {
-    const AtomicFile first(path("a.txt"));
-    const AtomicFile second(path("a.txt"));
-    EXPECT_NE(first.temporaryPath(), second.temporaryPath());
-    store(first.temporaryPath(), "half");
-  }
-  EXPECT_EQ(contentOf(path("a.txt")), "before");
-  EXPECT_EQ(fileCount(), 1u);
-}
-
-TEST_F(AtomicFiles, RefuseWhatIsNotAFile) {
-  fs::create_directory(path("folder.png"));
-  fs::create_symlink("/dev/full", path("device.png"));
-  for (const auto& bad : {path("folder.png"), path("device.png"), path("missing/a.png"),
-                          path("folder.png/"), path(std::string(300, 'n') + ".png")})
-    EXPECT_EQ(kindOf([&] { checkWritable(bad); }, bad.string()), ErrorKind::output);
-  EXPECT_EQ(kindOf([] { checkWritable("/dev/full"); }, "/dev/full"), ErrorKind::output);
-  EXPECT_EQ(kindOf([] { checkWritable("/proc/a.png"); }, "/proc/a.png"), ErrorKind::output);
-  EXPECT_EQ(fileCount(), 2u);
-}
-
-TEST_F(AtomicFiles, CheckingLeavesNothingBehind) {
-  checkWritable(path("a.png"));
-  EXPECT_EQ(fileCount(), 0u);
-}
-
-TEST_F(AtomicFiles, WriteWholeContentOrNone) {
-  writeFile(path("a.txt"), "new");
-  EXPECT_EQ(contentOf(path("a.txt")), "new");
-  {
-    const FullDisk full(100);
-    EXPECT_EQ(kindOf([&] { writeFile(path("a.txt"), std::string(1000, 'x')); }, "a.txt"),
-              ErrorKind::output);
-  }
-  EXPECT_EQ(contentOf(path("a.txt")), "new");
-  EXPECT_EQ(fileCount(), 1u);
 }
 
 TEST_F(ExrFiles, KeepEveryChannelBitByBitAndTheHeader) {
@@ -274,6 +222,37 @@ TEST_F(NrrdFiles, AreOpaqueWithoutAlphaAndAloneWithoutDepth) {
   EXPECT_EQ(fileCount(), 1u);
 }
 
+TEST_F(NrrdFiles, ReplaceNoDepthPictureThatIsNotTheirs) {
+  const Image image = renderedImage();
+  written(image, "view.nrrd"); // whose depth bears the mark
+  written(image, "view.nrrd");
+  std::string depth = contentOf(path("view-Z.nrrd"));
+  const std::size_t mark = depth.find("Software:=");
+  store(path("view-Z.nrrd"), depth.erase(mark, depth.find('\n', mark) + 1 - mark));
+  written(image, "view.nrrd"); // as earlier versions wrote it: the same grid
+  store(path("view-Z.nrrd"), "somebody else's");
+  EXPECT_EQ(kindOf([&] { written(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
+  EXPECT_EQ(contentOf(path("view-Z.nrrd")), "somebody else's");
+}
+
+TEST_F(DisplayFiles, ThatNobodyNamedReplaceOnlyOurs) {
+  for (const bool isOurs : {true, false}) {
+    if (!isOurs)
+      store(path("a.png"), "somebody else's");
+    const auto declare = [&] {
+      Outputs outputs;
+      declareImage(path("a.png"), outputs, NamedBy::standard);
+    };
+    if (isOurs) {
+      declare();
+      written(renderedImage(), "a.png");
+      declare();
+    } else {
+      EXPECT_EQ(kindOf(declare, "a.png"), ErrorKind::usage);
+    }
+  }
+}
+
 TEST_F(NrrdFiles, LieOnThePlaneInLps) {
   // Seen from anterior: the patient's right is on the picture's left, superior is up.
   const ImagePlane plane{{90.0, 100.0, 80.0}, {-0.5, 0.0, 0.0}, {0.0, 0.0, -0.25}};
@@ -344,9 +323,10 @@ TEST_F(ImageFiles, OfUnknownFormatsAndPicturesWithoutColourAreRefused) {
   };
   EXPECT_EQ(kindOf(write(renderedImage(), path("a.jpg")), ".exr, .nrrd, .png or .tif"),
             ErrorKind::usage);
-  EXPECT_EQ(kindOf([&] { checkImagePath(path("a")); }, ".exr, .nrrd, .png or .tif"),
+  Outputs outputs;
+  EXPECT_EQ(kindOf([&] { declareImage(path("a"), outputs); }, ".exr, .nrrd, .png or .tif"),
             ErrorKind::usage);
-  checkImagePath(path("a.png"));
+  declareImage(path("a.png"), outputs);
   Image depth = renderedImage();
   depth.channels.erase("G");
   EXPECT_EQ(kindOf(write(depth, path("a.png")), "a.png"), ErrorKind::usage);

@@ -128,6 +128,50 @@ TEST_F(PhantomFiles, NothingButTheSevenFilesIsLeft) {
   EXPECT_EQ(count, 7u);
 }
 
+std::string contentOf(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The folder as versions before the mark left it.
+void removeMarks(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::string text = contentOf(entry.path());
+    const std::size_t mark = text.find("Written by Fenestra");
+    if (mark == std::string::npos)
+      continue;
+    const std::size_t line = text.rfind('\n', mark) + 1;
+    text.erase(line, text.find('\n', mark) + 1 - line);
+    std::ofstream(entry.path(), std::ios::binary) << text;
+  }
+}
+
+TEST_F(PhantomFiles, ReplaceTheirLikeAndThoseOfEarlierVersions) {
+  writePhantom(phantom, folder, "knee");
+  writePhantom(makeKneePhantom({{16, 18, 12}}), folder, "knee"); // by their marks
+  writePhantom(phantom, folder, "knee");
+  removeMarks(folder);
+  writePhantom(phantom, folder, "knee"); // by volume and scene
+}
+
+TEST_F(PhantomFiles, ReplaceNothingThatIsNotTheirs) {
+  for (const char* name : {"knee.nrrd", "knee.seg.nrrd", "knee.vp.json", "knee.vp",
+                           "knee-roi.mrk.json", "knee.mrml", "knee.mrb"}) {
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directory(folder);
+    std::ofstream(folder / name) << "somebody else's";
+    try {
+      writePhantom(phantom, folder, "knee");
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(contentOf(folder / name), "somebody else's");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+  }
+}
+
 TEST_F(PhantomFiles, AFolderThatCannotBeMadeIsAnOutputError) {
   const auto file = folder / "knee.nrrd";
   try {

@@ -15,6 +15,13 @@
 namespace fenestra {
 namespace {
 
+void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path) {
+  Outputs outputs;
+  declareSurface(path, outputs);
+  writeSurface(surface, path, outputs);
+  outputs.commit();
+}
+
 /// Two triangles of four points.
 SurfaceMesh roof() {
   SurfaceMesh mesh;
@@ -167,12 +174,12 @@ TEST(SurfaceWriter, RefusesOtherEndingsAndFoldersThatAreNotThere) {
       }
     };
     expectError([&] { writeSurface(roof(), folder / name); });
-    expectError([&] { checkSurfacePath(folder / name); });
   };
   refused("a.obj", ErrorKind::usage, "a.obj: has no known extension; name a file .vtp");
   refused("a", ErrorKind::usage, "has no known extension");
   refused("missing/a.vtp", ErrorKind::output, "missing/a.vtp: cannot be written: ");
-  checkSurfacePath(folder / "a.stl");
+  Outputs outputs;
+  declareSurface(folder / "a.stl", outputs);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -6,3 +6,4 @@ fenestra_test(DisplayTransformTests DisplayTransformTests.cxx
   LIBRARIES fenestra_io_pictures LABELS unit)
 fenestra_test(CompareTests CompareTests.cxx
   LIBRARIES fenestra_film fenestra_io_pictures LABELS unit)
+fenestra_test(OutputsTests OutputsTests.cxx LIBRARIES fenestra_io LABELS unit)

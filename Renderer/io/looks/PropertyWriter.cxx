@@ -1,5 +1,7 @@
 #include "io/looks/PropertyWriter.h"
 
+#include "io/Outputs.h"
+
 #include <nlohmann/json.hpp>
 
 #include <limits>
@@ -73,6 +75,7 @@ std::string propertyJson(const VolumeProperty& property, double minimum, double 
   const Json file = {{"@schema",
                       "https://raw.githubusercontent.com/Slicer/Slicer/main/Modules/Loadable/"
                       "VolumeRendering/Resources/Schema/volume-property-schema-v1.0.0.json#"},
+                     {"generator", writtenMark},
                      {"volumeProperties", Json::array({node})}};
   return file.dump(2) + "\n";
 }

@@ -49,6 +49,14 @@ Rgb colorOf(const MrmlNode& node, const std::string& attribute, const Rgb& other
 
 } // namespace
 
+MrmlScene::MrmlScene(const std::filesystem::path& path)
+    : files(path), document(files.sceneText(), files.source()) {
+  for (const MrmlNode& node : document.nodes())
+    for (const auto& [name, value] : node.attributes)
+      if (name == "fileName" || name.starts_with("fileListMember"))
+        files.expect(value);
+}
+
 bool isLabelMap(const MrmlNode& node) {
   return node.tag == "LabelMapVolume" || (node.tag == "Volume" && node.flag("labelMap", false));
 }

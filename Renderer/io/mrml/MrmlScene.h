@@ -20,8 +20,8 @@
 namespace fenestra {
 
 struct MrmlScene {
-  explicit MrmlScene(const std::filesystem::path& path)
-      : files(path), document(files.sceneText(), files.source()) {}
+  /// Enters every file that a node names into the ledger of inputs (SceneFiles::expect).
+  explicit MrmlScene(const std::filesystem::path& path);
 
   SceneFiles files;
   MrmlDocument document;

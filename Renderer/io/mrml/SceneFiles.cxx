@@ -79,6 +79,11 @@ std::filesystem::path SceneFiles::resolved(const std::string& fileName) const {
   return (m_folder / decodedUrl(fileName)).lexically_normal(); // or an absolute name
 }
 
+void SceneFiles::expect(const std::string& fileName) const {
+  if (!m_archive)
+    expectInput(resolved(fileName));
+}
+
 bool SceneFiles::holds(const std::string& fileName) const {
   std::error_code failed;
   const std::filesystem::path file = resolved(fileName);

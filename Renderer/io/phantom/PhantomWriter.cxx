@@ -1,12 +1,14 @@
 #include "io/phantom/PhantomWriter.h"
 
 #include "core/Error.h"
-#include "io/AtomicFile.h"
+#include "io/MadeFolders.h"
+#include "io/NrrdWriter.h"
+#include "io/Outputs.h"
 #include "io/ZipWriter.h"
 #include "io/looks/PropertyWriter.h"
-#include "io/medical/NrrdWriter.h"
 #include "io/phantom/PhantomScene.h"
 
+#include <fstream>
 #include <sstream>
 
 namespace fenestra {
@@ -77,31 +79,80 @@ NrrdFields segmentationFields(const Phantom& phantom) {
   return fields;
 }
 
-void writeVolume(const std::filesystem::path& path, const Phantom& phantom) {
-  const auto& voxels = std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
-  writeNrrd<std::int16_t>(path, phantom.volume.grid, {voxels});
+NrrdFields marked(NrrdFields fields = {}) {
+  fields.emplace_back("Software", writtenMark);
+  return fields;
 }
 
-void writeSegmentation(const std::filesystem::path& path, const Phantom& phantom) {
+template <typename Value>
+std::string_view bytesOf(const std::vector<Value>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
+}
+
+NrrdHeader volumeHeader(const Phantom& phantom) {
+  const Grid& grid = phantom.volume.grid;
+  return {
+      .type = "short", .size = grid.size, .indexToWorld = grid.indexToWorld, .fields = marked()};
+}
+
+std::string encodeSegmentation(const Phantom& phantom) {
   const PhantomLabels& labels = phantom.labels;
+  const std::size_t count = labels.layers.size();
   Affine indexToWorld = phantom.volume.grid.indexToWorld;
   indexToWorld.translation() = indexToWorld * Vec3(labels.offset.cast<double>());
-  const std::vector<std::span<const std::uint8_t>> layers(labels.layers.begin(),
-                                                          labels.layers.end());
-  writeNrrd(path, Grid{labels.size, indexToWorld}, layers, segmentationFields(phantom));
+  const NrrdHeader header{.type = "unsigned char",
+                          .leadingKind = count > 1 ? "list" : "",
+                          .leadingCount = count,
+                          .size = labels.size,
+                          .indexToWorld = indexToWorld,
+                          .fields = marked(segmentationFields(phantom))};
+  if (count == 1)
+    return encodeNrrd(header, bytesOf(labels.layers.front()));
+  std::vector<std::uint8_t> interleaved(count * labels.layers.front().size());
+  for (std::size_t layer = 0; layer < count; ++layer)
+    for (std::size_t i = 0; i < labels.layers[layer].size(); ++i)
+      interleaved[i * count + layer] = labels.layers[layer][i];
+  return encodeNrrd(header, bytesOf(interleaved));
 }
 
+struct PhantomFile {
+  std::string name, content;
+};
+
 /// A scene for the archive, whose data have a folder of their own, and around it all that it names.
-void writeArchive(const Phantom& phantom, const std::filesystem::path& directory,
-                  const std::string& name, const PhantomFileNames& files) {
+std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& path,
+                          const std::string& name, const PhantomFileNames& files,
+                          const std::vector<PhantomFile>& written) {
   const auto data = [](const std::string& file) { return "Data/" + file; };
   const std::string scene = phantomScene(
       phantom, name,
       {data(files.volume), data(files.segmentation), data(files.property), data(files.roi)});
   std::vector<ZipEntry> entries = {{name + "/" + name + ".mrml", scene}};
   for (const std::string& file : {files.volume, files.segmentation, files.property, files.roi})
-    entries.push_back({name + "/" + data(file), directory / file});
-  writeZip(directory / (name + ".mrb"), entries);
+    for (const PhantomFile& one : written)
+      if (one.name == file)
+        entries.push_back({name + "/" + data(file), one.content});
+  return encodeZip(entries, std::string(writtenMark), path);
+}
+
+/// The first bytes of a file, as many as `text` has, are `text`.
+bool beginsWith(const std::filesystem::path& path, const std::string& text) {
+  std::string bytes(text.size(), '\0');
+  return std::ifstream(path, std::ios::binary)
+             .read(bytes.data(), static_cast<std::streamsize>(bytes.size())) &&
+         bytes == text;
+}
+
+bool holds(const std::filesystem::path& path, const std::string& content) {
+  std::error_code failed;
+  return std::filesystem::file_size(path, failed) == content.size() && beginsWith(path, content);
+}
+
+/// As it was before there were marks.
+std::string withoutMark(std::string text) {
+  const std::size_t at = text.find(writtenMark);
+  const std::size_t line = text.rfind('\n', at) + 1;
+  return text.erase(line, text.find('\n', at) + 1 - line);
 }
 
 } // namespace
@@ -109,23 +160,37 @@ void writeArchive(const Phantom& phantom, const std::filesystem::path& directory
 std::vector<std::string> writePhantom(const Phantom& phantom,
                                       const std::filesystem::path& directory,
                                       const std::string& name) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error)
-    throw outputError(directory.string(), "cannot be made: " + error.message() +
-                                              "; name a folder that you may write to");
-  const PhantomFileNames files{name + ".nrrd", name + ".seg.nrrd", name + ".vp",
+  const PhantomFileNames names{name + ".nrrd", name + ".seg.nrrd", name + ".vp",
                                name + "-roi.mrk.json"};
-  const std::string json = name + ".vp.json", scene = name + ".mrml";
   const Volume& volume = phantom.volume;
-  writeVolume(directory / files.volume, phantom);
-  writeSegmentation(directory / files.segmentation, phantom);
-  writeFile(directory / json, propertyJson(phantom.property, volume.minimum, volume.maximum));
-  writeFile(directory / files.property, propertyVp(phantom.property));
-  writeFile(directory / files.roi, phantomRoi(phantom));
-  writeFile(directory / scene, phantomScene(phantom, name, files));
-  writeArchive(phantom, directory, name, files);
-  return {files.volume, files.segmentation, json, files.property, files.roi, scene, name + ".mrb"};
+  const auto& voxels = std::get<std::vector<std::int16_t>>(volume.voxels);
+  const NrrdHeader header = volumeHeader(phantom);
+  const std::string scene = phantomScene(phantom, name, names);
+  std::vector<PhantomFile> files = {
+      {names.volume, encodeNrrd(header, bytesOf(voxels))},
+      {names.segmentation, encodeSegmentation(phantom)},
+      {name + ".vp.json", propertyJson(phantom.property, volume.minimum, volume.maximum)},
+      {names.property, propertyVp(phantom.property)},
+      {names.roi, phantomRoi(phantom)},
+      {name + ".mrml", scene}};
+  const std::filesystem::path archive = directory / (name + ".mrb");
+  files.push_back({name + ".mrb", encodeArchive(phantom, archive, name, names, files)});
+
+  const MadeFolders folders(directory);
+  Outputs outputs;
+  const bool isPhantoms = beginsWith(directory / names.volume, withoutMark(nrrdText(header))) &&
+                          holds(directory / (name + ".mrml"), withoutMark(scene));
+  for (const PhantomFile& file : files)
+    outputs.addUnnamed(directory / file.name, [&](const std::filesystem::path& path) {
+      return isPhantoms || bearsMark(path) || holds(path, file.content);
+    });
+  std::vector<std::string> written;
+  for (const PhantomFile& file : files) {
+    outputs.write(directory / file.name, file.content);
+    written.push_back(file.name);
+  }
+  outputs.commit();
+  return written;
 }
 
 } // namespace fenestra

@@ -1,10 +1,9 @@
 #include "io/pictures/ImageWriter.h"
 
 #include "core/Error.h"
-#include "io/AtomicFile.h"
+#include "io/NrrdWriter.h"
 #include "io/pictures/DisplayTransform.h"
 #include "io/pictures/ImageFormat.h"
-#include "io/pictures/ImageReader.h"
 
 #include <ImfChannelList.h>
 #include <ImfChromaticitiesAttribute.h>
@@ -14,24 +13,20 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <itkNrrdImageIO.h>
 #include <png.h>
-#include <tiffio.h>
+#include <tiffio.hxx>
+#include <zlib.h>
 
 #include <cstdint>
+#include <fstream>
 #include <limits>
 #include <memory>
-#include <mutex>
+#include <sstream>
 
 namespace fenestra {
 
 namespace {
 
-Error unwritable(const std::filesystem::path& path) {
-  return outputError(path.string(), "cannot be written whole; free some space on its disk");
-}
-
-/// In memory, because OpenEXR keeps silent about a disk that fills as it closes a file.
 std::string encodeExr(const Image& image) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
@@ -75,6 +70,25 @@ std::vector<T> quantized(const std::vector<float>& rgba) {
   return values;
 }
 
+std::string bigEndian(std::uint32_t number) {
+  std::string bytes;
+  for (const int shift : {24, 16, 8, 0})
+    bytes += static_cast<char>(number >> shift & 0xff);
+  return bytes;
+}
+
+/// With a tEXt chunk behind the first one, IHDR (PNG specification, 11.3.4.3): libpng's simple
+/// interface writes none.
+std::string withPngText(std::string png, std::string_view keyword, std::string_view text) {
+  constexpr std::size_t afterHeader = 8 + 25; // signature and IHDR
+  std::string chunk = "tEXt";
+  chunk.append(keyword).append(1, '\0').append(text);
+  const auto* const bytes = reinterpret_cast<const Bytef*>(chunk.data());
+  const auto length = static_cast<uInt>(chunk.size());
+  const auto checksum = static_cast<std::uint32_t>(crc32(crc32(0, nullptr, 0), bytes, length));
+  return png.insert(afterHeader, bigEndian(length - 4) + chunk + bigEndian(checksum));
+}
+
 std::string encodePng(const Image& image, const std::vector<float>& rgba) {
   const std::vector<std::uint8_t> values = quantized<std::uint8_t>(rgba);
   png_image png{};
@@ -88,7 +102,7 @@ std::string encodePng(const Image& image, const std::vector<float>& rgba) {
   if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
     throw outputError("picture as PNG", std::string(png.message) + "; write it as .exr");
   content.resize(size);
-  return content;
+  return withPngText(content, "Software", writtenMark);
 }
 
 void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
@@ -106,14 +120,11 @@ void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
 }
 
-void writeTiff(const Image& image, const std::vector<float>& rgba,
-               const std::filesystem::path& path) {
+std::string encodeTiff(const Image& image, const std::vector<float>& rgba) {
   std::vector<std::uint16_t> values = quantized<std::uint16_t>(rgba);
   const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
-  AtomicFile file(path);
-  TIFFSetErrorHandler(nullptr); // standard error is ours
-  std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(file.temporaryPath().c_str(), "w"),
-                                              TIFFClose);
+  std::ostringstream stream;
+  const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("picture", &stream), TIFFClose);
   bool good = tiff != nullptr;
   if (good)
     setTiffFields(tiff.get(), image, isOpaque(rgba));
@@ -121,48 +132,32 @@ void writeTiff(const Image& image, const std::vector<float>& rgba,
     good = TIFFWriteScanline(tiff.get(), &values[row * rowLength],
                              static_cast<std::uint32_t>(row)) == 1;
   if (!good || TIFFFlush(tiff.get()) != 1)
-    throw unwritable(path);
-  tiff.reset();
-  file.commit();
+    throw outputError("picture as TIFF", "does not fit into memory; write it as .exr");
+  return stream.str();
 }
 
-/// The plane as ITK states it: LPS, whose first two axes are RAS turned round.
-void setGeometry(itk::ImageIOBase& io, const ImagePlane& plane) {
-  const Vec3 lpsFromRas(-1.0, -1.0, 1.0);
-  // Right-handed, so that Slicer need not flip the slice; it is as thick as a pixel is wide.
-  const Vec3 axes[3] = {plane.columnStep, plane.rowStep,
-                        plane.columnStep.cross(plane.rowStep).normalized() *
-                            plane.columnStep.norm()};
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    const Vec3 direction = axes[axis].normalized().cwiseProduct(lpsFromRas);
-    io.SetSpacing(axis, axes[axis].norm());
-    io.SetOrigin(axis, plane.topLeft[axis] * lpsFromRas[axis]);
-    // + 0.0: no "-0" in the header
-    io.SetDirection(axis, {direction.x() + 0.0, direction.y() + 0.0, direction.z() + 0.0});
-  }
+/// The slice is as thick as a pixel is wide; right-handed, so that Slicer need not flip it.
+Affine sliceToWorld(const ImagePlane& plane) {
+  Affine map = Affine::Identity();
+  map.linear() << plane.columnStep, plane.rowStep,
+      plane.columnStep.cross(plane.rowStep).normalized() * plane.columnStep.norm();
+  map.translation() = plane.topLeft;
+  return map;
 }
 
-/// `values`: one or more floats by pixel. A disk that fills in a file's last block goes unnoticed
-/// by ITK; reading back notices.
-void writeSlice(const Image& image, const ImagePlane& plane, const std::vector<float>& values,
-                const AtomicFile& file, const std::filesystem::path& path) {
-  const auto components = static_cast<unsigned>(values.size() / image.channels.at("R").size());
-  const auto io = itk::NrrdImageIO::New();
-  io->SetNumberOfDimensions(3);
-  io->SetDimensions(0, static_cast<std::size_t>(image.width));
-  io->SetDimensions(1, static_cast<std::size_t>(image.height));
-  io->SetDimensions(2, 1);
-  setGeometry(*io, plane);
-  io->SetNumberOfComponents(components);
-  io->SetPixelType(components > 1 ? itk::IOPixelEnum::VECTOR : itk::IOPixelEnum::SCALAR);
-  io->SetComponentType(itk::IOComponentEnum::FLOAT);
-  io->SetFileName(file.temporaryPath().string());
-  try {
-    io->Write(values.data());
-    readImage(file.temporaryPath());
-  } catch (const std::exception&) { // its text names ITK's own source lines
-    throw unwritable(path);
-  }
+/// `values`: one or more floats by pixel.
+std::string encodeSlice(const Image& image, const ImagePlane& plane,
+                        const std::vector<float>& values) {
+  const std::size_t components = values.size() / image.channels.at("R").size();
+  const NrrdHeader header{.type = "float",
+                          .leadingKind = components > 1 ? "vector" : "",
+                          .leadingCount = components,
+                          .size = {image.width, image.height, 1},
+                          .indexToWorld = sliceToWorld(plane),
+                          .encoding = NrrdHeader::Encoding::raw,
+                          .fields = {{"Software", std::string(writtenMark)}}};
+  return encodeNrrd(header,
+                    {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
 }
 
 std::vector<float> interleavedRgba(const Image& image) {
@@ -180,19 +175,22 @@ std::filesystem::path depthPath(const std::filesystem::path& path) {
   return path.parent_path() / (path.stem().string() + "-Z.nrrd");
 }
 
-/// Both files are complete before either gets its name. One at a time: ITK's NRRD library keeps
-/// its errors in one place.
-void writeNrrd(const Image& image, const ImagePlane& plane, const std::filesystem::path& path) {
-  static std::mutex alone;
-  const std::lock_guard lock(alone);
-  AtomicFile colour(path);
-  writeSlice(image, plane, interleavedRgba(image), colour, path);
-  if (const std::vector<float>* depth = image.find("Z")) {
-    AtomicFile file(depthPath(path));
-    writeSlice(image, plane, *depth, file, depthPath(path));
-    file.commit();
-  }
-  colour.commit();
+/// The lines of a NRRD header that say where its voxels lie.
+std::vector<std::string> gridLines(const std::filesystem::path& path) {
+  std::vector<std::string> lines;
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line) && !line.empty() && lines.size() < 3;)
+    for (const char* field : {"space: ", "space directions: ", "space origin: "})
+      if (line.starts_with(field))
+        lines.push_back(line.starts_with("space directions: none ") ? line.erase(18, 5) : line);
+  return lines;
+}
+
+/// Whether a depth picture is Fenestra's: by its mark, or, before there were marks, by the grid
+/// that it shares with the colours beside it.
+bool isOurDepth(const std::filesystem::path& depth, const std::filesystem::path& colour) {
+  const std::vector<std::string> lines = gridLines(depth);
+  return bearsMark(depth) || (lines.size() == 3 && lines == gridLines(colour));
 }
 
 ImageFormat checkedFormat(const std::filesystem::path& path) {
@@ -212,18 +210,20 @@ void requireColour(const Image& image, const std::filesystem::path& path) {
 } // namespace
 
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
-                const std::string& view) {
+                Outputs& outputs, const std::string& view) {
   const ImageFormat format = checkedFormat(path);
   if (format == ImageFormat::exr)
-    return writeFile(path, encodeExr(image));
+    return outputs.write(path, encodeExr(image));
   requireColour(image, path);
-  if (format == ImageFormat::nrrd)
-    return writeNrrd(image, plane, path);
+  if (format == ImageFormat::nrrd) {
+    outputs.write(path, encodeSlice(image, plane, interleavedRgba(image)));
+    if (const std::vector<float>* depth = image.find("Z"))
+      outputs.write(depthPath(path), encodeSlice(image, plane, *depth));
+    return;
+  }
   const std::vector<float> display = toDisplay(image, DisplayTransform(view));
-  if (format == ImageFormat::png)
-    writeFile(path, encodePng(image, display));
-  else
-    writeTiff(image, display, path);
+  outputs.write(path, format == ImageFormat::png ? encodePng(image, display)
+                                                 : encodeTiff(image, display));
 }
 
 std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path) {
@@ -232,9 +232,14 @@ std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path)
   return {path};
 }
 
-void checkImagePath(const std::filesystem::path& path) {
-  for (const std::filesystem::path& file : imageFiles(path))
-    checkWritable(file);
+void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy namedBy) {
+  if (namedBy == NamedBy::user)
+    outputs.add(path);
+  else
+    outputs.addUnnamed(path);
+  if (checkedFormat(path) == ImageFormat::nrrd)
+    outputs.addUnnamed(depthPath(path),
+                       [&path](const auto& depth) { return isOurDepth(depth, path); });
 }
 
 } // namespace fenestra

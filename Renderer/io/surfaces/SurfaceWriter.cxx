@@ -1,7 +1,6 @@
 #include "io/surfaces/SurfaceWriter.h"
 
 #include "core/Error.h"
-#include "io/AtomicFile.h"
 #include "io/Inputs.h"
 
 #include <bit>
@@ -121,13 +120,13 @@ Encoder encoderFor(const std::filesystem::path& path) {
 
 } // namespace
 
-void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path) {
-  writeFile(path, encoderFor(path)(surface));
+void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path, Outputs& outputs) {
+  outputs.write(path, encoderFor(path)(surface));
 }
 
-void checkSurfacePath(const std::filesystem::path& path) {
+void declareSurface(const std::filesystem::path& path, Outputs& outputs) {
   encoderFor(path);
-  checkWritable(path);
+  outputs.add(path);
 }
 
 } // namespace fenestra

@@ -1,12 +1,16 @@
 #pragma once
-// What a system call's error code means for a user, and its mend.
+// System calls on files as they are meant: repeated where a signal interrupts them, and what their
+// error codes mean for a user, with the mend.
 
 #include "core/Error.h"
 
 #include <cerrno>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <system_error>
+
+#include <unistd.h>
 
 namespace fenestra {
 
@@ -58,6 +62,25 @@ inline Error readingError(const std::filesystem::path& path, int code, const std
   const std::string mend = resourceMend(code);
   return inputError(path.string(), "cannot be read: " + systemMessage(code) + "; " +
                                        (mend.empty() ? other : mend));
+}
+
+/// What `call` returns once no signal interrupts it.
+template <typename Call>
+auto repeated(Call&& call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR)
+    result = call();
+  return result;
+}
+
+/// All of `content` to a descriptor; `path` names it. Throws Error (output).
+inline void writeAll(int file, std::string_view content, const std::filesystem::path& path) {
+  while (!content.empty()) {
+    const auto written = repeated([&] { return ::write(file, content.data(), content.size()); });
+    if (written < 0)
+      throw writingError(path, errno);
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
 }
 
 } // namespace fenestra

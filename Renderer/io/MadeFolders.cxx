@@ -1,0 +1,37 @@
+#include "io/MadeFolders.h"
+
+#include "io/SystemCalls.h"
+
+#include <sys/stat.h>
+
+namespace fenestra {
+
+MadeFolders::MadeFolders(const std::filesystem::path& folder) {
+  make(std::filesystem::absolute(folder).lexically_normal());
+}
+
+MadeFolders::~MadeFolders() {
+  while (!m_made.empty()) { // the innermost first
+    std::error_code failed;
+    if (!std::filesystem::is_empty(m_made.back()->path(), failed) && !failed)
+      m_made.back()->keep();
+    m_made.pop_back();
+  }
+}
+
+void MadeFolders::make(const std::filesystem::path& folder) {
+  std::error_code failed;
+  if (std::filesystem::is_directory(folder, failed))
+    return;
+  make(folder.parent_path());
+  if (!folder.has_filename()) // a slash at the end
+    return;
+  const Uninterrupted making;
+  m_made.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
+  if (::mkdir(folder.c_str(), 0777) != 0)
+    throw outputError(folder.string(),
+                      "cannot be made: " + systemMessage(errno) + "; " +
+                          writingMend(errno, "name a folder that you may write to"));
+}
+
+} // namespace fenestra

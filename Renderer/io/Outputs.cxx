@@ -1,0 +1,193 @@
+#include "io/Outputs.h"
+
+#include "core/Error.h"
+#include "io/Inputs.h"
+#include "io/OutputStream.h"
+#include "io/SystemCalls.h"
+#include "io/TemporaryFile.h"
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <optional>
+#include <set>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> anyIsPlaced = false;
+
+/// Where writing to `path` writes: links are followed, into nothing as well. Its folder is
+/// canonical, so that one file has one name. Throws Error (output).
+fs::path targetOf(const fs::path& path) {
+  constexpr int mostLinks = 40; // Linux's own limit
+  std::error_code failed;
+  fs::path target = fs::absolute(path);
+  for (int links = 0; fs::is_symlink(target, failed) && links < mostLinks; ++links)
+    target = target.parent_path() / fs::read_symlink(target);
+  const fs::path folder = fs::canonical(target.parent_path(), failed);
+  if (failed)
+    throw writingError(path, failed.value());
+  return folder / target.filename();
+}
+
+void requireReplaceable(const fs::path& path, const fs::path& target) {
+  struct stat status = {};
+  if (!target.has_filename() || (::lstat(target.c_str(), &status) == 0 && !S_ISREG(status.st_mode)))
+    throw outputError(path.string(), "is a folder or a device; name a file");
+  if (status.st_mode != 0 && (status.st_mode & 0222) == 0)
+    throw outputError(path.string(), "is write-protected; choose another name, or chmod u+w it");
+}
+
+void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {
+  if (const auto input = file ? inputNamed(*file) : std::nullopt)
+    throw usageError(path.string() + ": would replace an input file" +
+                     (*input == path ? "" : " (" + input->string() + ")") +
+                     "; choose another name");
+}
+
+void syncFolder(const fs::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool isSynced = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);
+  const int code = errno;
+  if (file >= 0)
+    ::close(file);
+  if (!isSynced)
+    throw writingError(folder, code);
+}
+
+} // namespace
+
+bool bearsMark(const fs::path& path) {
+  constexpr std::streamoff part = 1 << 16;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file.tellg();
+  for (const std::streamoff from : {std::streamoff{0}, std::max<std::streamoff>(0, size - part)}) {
+    std::string text(static_cast<std::size_t>(std::min(part, std::max<std::streamoff>(0, size))),
+                     '\0');
+    file.seekg(from).read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (file && text.find(writtenMark) != std::string::npos)
+      return true;
+  }
+  return false;
+}
+
+bool resultsWerePlaced() {
+  return anyIsPlaced;
+}
+
+struct Outputs::Result {
+  fs::path named;
+  std::optional<OutputStream> stream;  ///< instead of a file
+  fs::path target;                     ///< of a file
+  std::unique_ptr<TemporaryFile> file; ///< written and not yet in place
+
+  std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
+};
+
+Outputs::Outputs() = default;
+Outputs::~Outputs() = default;
+
+Outputs::Result& Outputs::declare(const fs::path& path) {
+  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}});
+  if (!result->stream) {
+    result->target = targetOf(path);
+    requireReplaceable(path, result->target);
+  }
+  requireNoInput(path, result->id());
+  for (const auto& [name, other] : m_results)
+    if ((result->target == other->target && !result->stream) ||
+        (result->id() && result->id() == other->id()))
+      throw usageError(path.string() + ": would be written twice; give each result a name of its "
+                                       "own");
+  const fs::path folder = result->target.parent_path();
+  if (!result->stream && std::find(m_folders.begin(), m_folders.end(), folder) == m_folders.end()) {
+    removeAbandonedFiles(folder);
+    requireRoomFor(result->target);
+    m_folders.push_back(folder);
+  }
+  return *(m_results[path] = std::move(result));
+}
+
+void Outputs::add(const fs::path& path) {
+  declare(path);
+}
+
+void Outputs::addUnnamed(const fs::path& path, const IsOurs& isOurs) {
+  const Result& result = declare(path);
+  std::error_code failed;
+  if (fs::exists(result.target, failed) && !isOurs(result.target))
+    throw usageError(path.string() + ": is there, and Fenestra did not write it; move it away, or "
+                                     "choose another --output");
+}
+
+void Outputs::checkInputs() const {
+  for (const auto& [path, result] : m_results)
+    requireNoInput(path, result->id());
+}
+
+void Outputs::forgetRefused() const {
+  for (const auto& [path, result] : m_results)
+    if (const auto file = result->id())
+      forgetInput(*file);
+}
+
+void Outputs::write(const fs::path& path, std::string_view content) {
+  Result& result = *m_results.at(path);
+  if (result.stream) {
+    result.stream->keep(content);
+    return;
+  }
+  result.file = std::make_unique<TemporaryFile>(result.target);
+  result.file->write(content);
+}
+
+void Outputs::place(const std::vector<Result*>& files, Durability durability) {
+  const Uninterrupted replacing;
+  std::size_t placed = 0;
+  try {
+    for (Result* result : files) {
+      const std::optional<FileId> before = result->id();
+      requireNoInput(result->named, before);
+      requireReplaceable(result->named, result->target);
+      result->file->place();
+      enterResult(result->target, before);
+      ++placed;
+    }
+  } catch (const Error&) {
+    while (placed > 0)
+      files[--placed]->file->takeBack();
+    throw;
+  }
+  anyIsPlaced = anyIsPlaced || placed > 0;
+  std::set<fs::path> folders;
+  for (Result* result : files) {
+    folders.insert(result->target.parent_path());
+    result->file.reset();
+  }
+  if (durability == Durability::synced)
+    std::for_each(folders.begin(), folders.end(), syncFolder);
+}
+
+void Outputs::commit(Durability durability) {
+  const auto sync =
+      durability == Durability::synced ? TemporaryFile::Sync::disk : TemporaryFile::Sync::none;
+  std::vector<Result*> files;
+  for (const auto& [path, result] : m_results)
+    if (result->file) {
+      result->file->finish(sync);
+      files.push_back(result.get());
+    }
+  place(files, durability);
+  for (const auto& [path, result] : m_results)
+    if (result->stream)
+      result->stream->send();
+}
+
+} // namespace fenestra

@@ -1,0 +1,165 @@
+#include "io/TemporaryFile.h"
+
+#include "io/SystemCalls.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <fcntl.h>
+#include <random>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+constexpr std::string_view namePrefix = ".fenestra-";
+constexpr std::string_view digits = "0123456789abcdef";
+constexpr std::size_t digitCount = 12;
+
+/// Another name with every call, in this process and others.
+std::filesystem::path shortNameBeside(const std::filesystem::path& target) {
+  static thread_local std::random_device random;
+  std::string name(namePrefix);
+  for (std::size_t i = 0; i < digitCount; ++i)
+    name += digits[random() % digits.size()];
+  return target.parent_path() / name;
+}
+
+bool isShortName(const std::string& name) {
+  return name.size() == namePrefix.size() + digitCount && name.starts_with(namePrefix) &&
+         name.find_first_not_of(digits, namePrefix.size()) == std::string::npos;
+}
+
+/// Rights of a new file: what umask leaves. Asked before there are threads.
+const mode_t usualMode = [] {
+  const mode_t mask = ::umask(077);
+  ::umask(mask);
+  return 0666 & ~mask;
+}();
+
+/// Others' rights stay what they were: where the group is another one, it gets those of others.
+mode_t keptMode(const struct stat& before, bool isOfItsGroup) {
+  const mode_t mode = before.st_mode & 0777;
+  const mode_t groupAsOthers = (mode & 07) << 3;
+  return isOfItsGroup ? mode : (mode & ~mode_t{070}) | (mode & groupAsOthers);
+}
+
+} // namespace
+
+TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(target) {
+  open();
+  if (m_file < 0)
+    throw writingError(m_target, errno);
+  if (struct stat status = {}; ::fstat(m_file, &status) == 0)
+    forgetInput({status.st_dev, status.st_ino});
+}
+
+/// Locked after it is made: where a later run took it for abandoned in between, it has no name any
+/// more, and another one is made.
+void TemporaryFile::open() {
+  for (;;) {
+    const Uninterrupted making;
+    m_name.emplace(shortNameBeside(m_target), Leftover::Kind::file);
+    m_file = repeated([this] {
+      return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    });
+    if (m_file < 0 && errno == EEXIST)
+      continue;
+    if (m_file < 0)
+      return;
+    const bool isTaken = ::flock(m_file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat status = {};
+    if (!isTaken && (::fstat(m_file, &status) != 0 || status.st_nlink > 0))
+      return;
+    ::close(m_file);
+  }
+}
+
+TemporaryFile::~TemporaryFile() {
+  if (m_file >= 0)
+    ::close(m_file);
+}
+
+void TemporaryFile::write(std::string_view content) {
+  writeAll(m_file, content, m_target);
+}
+
+void TemporaryFile::finish(Sync sync) {
+  mode_t mode = usualMode;
+  struct stat before = {};
+  if (::lstat(m_target.c_str(), &before) == 0) {
+    const bool isOwned = ::fchown(m_file, before.st_uid, before.st_gid) == 0;
+    const bool isOfItsGroup = isOwned || ::fchown(m_file, uid_t(-1), before.st_gid) == 0;
+    mode = keptMode(before, isOfItsGroup);
+  }
+  if (repeated([&] { return ::fchmod(m_file, mode); }) != 0)
+    throw writingError(m_target, errno);
+  if (sync == Sync::disk && repeated([&] { return ::fsync(m_file); }) != 0 && errno != EINVAL)
+    throw writingError(m_target, errno);
+}
+
+void TemporaryFile::place() {
+  const char* const name = m_name->path().c_str();
+  const char* const target = m_target.c_str();
+  const auto rename = [&](unsigned flags) {
+    return repeated([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
+  };
+  if (rename(RENAME_NOREPLACE))
+    m_placed = Placed::fresh;
+  else if (errno == EEXIST && rename(RENAME_EXCHANGE))
+    m_placed = Placed::exchanged;
+  else if (errno == EINVAL || errno == ENOSYS)
+    placeByLink();
+  else
+    throw writingError(m_target, errno);
+}
+
+/// For disks that cannot exchange names. Where they have no links either, there is nothing to take
+/// back to.
+void TemporaryFile::placeByLink() {
+  m_before.emplace(shortNameBeside(m_target), Leftover::Kind::file);
+  const bool isKept = ::link(m_target.c_str(), m_before->path().c_str()) == 0;
+  const bool isFresh = !isKept && errno == ENOENT;
+  if (repeated([&] { return ::rename(m_name->path().c_str(), m_target.c_str()); }) != 0)
+    throw writingError(m_target, errno);
+  m_placed = isFresh ? Placed::fresh : isKept ? Placed::linked : Placed::no;
+}
+
+void TemporaryFile::takeBack() noexcept {
+  const char* const name = m_name->path().c_str();
+  const char* const target = m_target.c_str();
+  const auto again = [](auto&& call) { // a failure may pass: once more
+    if (call() != 0)
+      static_cast<void>(call());
+  };
+  if (m_placed == Placed::exchanged)
+    again([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, RENAME_EXCHANGE); });
+  else if (m_placed == Placed::fresh)
+    again([&] { return ::unlink(target); });
+  else if (m_placed == Placed::linked)
+    again([&] { return ::rename(m_before->path().c_str(), target); });
+  m_placed = Placed::no;
+}
+
+void removeAbandonedFiles(const std::filesystem::path& folder) {
+  std::error_code failed;
+  for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    if (!isShortName(entry->path().filename().string()))
+      continue;
+    const int file = ::open(entry->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    struct stat status = {};
+    if (file >= 0 && ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) &&
+        status.st_uid == ::geteuid() && ::flock(file, LOCK_EX | LOCK_NB) == 0)
+      ::unlink(entry->path().c_str());
+    if (file >= 0)
+      ::close(file);
+  }
+}
+
+void requireRoomFor(const std::filesystem::path& target) {
+  const TemporaryFile probe(target);
+}
+
+} // namespace fenestra

@@ -1,0 +1,298 @@
+// Results: what they may replace, that they appear together, and what a failure or another run
+// finds.
+
+#include "TemporaryFolder.h"
+#include "core/Error.h"
+#include "io/Inputs.h"
+#include "io/Outputs.h"
+#include "io/PrivateFolder.h"
+#include "io/TemporaryFile.h"
+
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutputFiles : public testing::Test {
+protected:
+  /// The message of what `action` throws, which must be an Error of `kind` on one line.
+  template <typename Action>
+  static std::string refusal(ErrorKind kind, Action&& action) {
+    try {
+      action();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), kind) << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      return error.what();
+    }
+    ADD_FAILURE() << "nothing was thrown";
+    return {};
+  }
+  std::size_t fileCount() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
+  }
+  fs::path read(const std::string& name, const std::string& content = "input") const {
+    requireFile(folder.write(name, content), "");
+    return folder / name;
+  }
+  static mode_t modeOf(const fs::path& path) {
+    struct stat status = {};
+    EXPECT_EQ(::lstat(path.c_str(), &status), 0) << path;
+    return status.st_mode & 07777;
+  }
+
+  TemporaryFolder folder;
+  Outputs outputs;
+};
+
+TEST_F(OutputFiles, AppearTogetherAtTheCommit) {
+  folder.write("a", "old");
+  outputs.add(folder / "a");
+  outputs.add(folder / "b");
+  outputs.write(folder / "a", "new");
+  outputs.write(folder / "b", "new");
+  EXPECT_EQ(bytesOf(folder / "a"), "old");
+  EXPECT_FALSE(fs::exists(folder / "b"));
+  outputs.commit();
+  EXPECT_EQ(bytesOf(folder / "a"), "new");
+  EXPECT_EQ(bytesOf(folder / "b"), "new");
+  EXPECT_EQ(fileCount(), 2u);
+}
+
+TEST_F(OutputFiles, LeaveNothingWithoutACommit) {
+  folder.write("a", "old");
+  {
+    Outputs given;
+    given.add(folder / "a");
+    EXPECT_EQ(fileCount(), 1u);
+    given.write(folder / "a", "half");
+  }
+  EXPECT_EQ(bytesOf(folder / "a"), "old");
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST_F(OutputFiles, AreAllTakenBackWhereOneCannotBePlaced) {
+  folder.write("a", "old");
+  outputs.add(folder / "a");
+  outputs.add(folder / "b");
+  outputs.add(folder / "c");
+  for (const char* name : {"a", "b", "c"})
+    outputs.write(folder / name, "new");
+  fs::create_directory(folder / "c");
+  refusal(ErrorKind::output, [&] { outputs.commit(); });
+  EXPECT_EQ(bytesOf(folder / "a"), "old");
+  EXPECT_FALSE(fs::exists(folder / "b"));
+  EXPECT_TRUE(fs::is_directory(folder / "c"));
+}
+
+TEST_F(OutputFiles, NeverReplaceAnInputWhateverItsName) {
+  read("volume");
+  fs::create_symlink("volume", folder / "link");
+  fs::create_hard_link(folder / "volume", folder / "hard");
+  fs::create_symlink(folder.path(), folder / "here");
+  for (const std::string name : {"volume", "link", "hard", "here/volume", "here/../link"})
+    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name); }).find("input"),
+              std::string::npos)
+        << name;
+}
+
+TEST_F(OutputFiles, DoNotReplaceWhatBecameAnInputAfterTheyWereDeclared) {
+  folder.write("a", "old");
+  outputs.add(folder / "a");
+  outputs.checkInputs();
+  read("a", "old");
+  refusal(ErrorKind::usage, [&] { outputs.checkInputs(); });
+  outputs.write(folder / "a", "new");
+  refusal(ErrorKind::usage, [&] { outputs.commit(); });
+  EXPECT_EQ(bytesOf(folder / "a"), "old");
+}
+
+TEST_F(OutputFiles, AreNoInputsOfTheSameProcess) {
+  outputs.add(folder / "a");
+  outputs.write(folder / "a", "new");
+  outputs.commit();
+  refusal(ErrorKind::input, [&] { requireFile(folder / "a", ""); });
+  fs::remove(folder / "a");
+  folder.write("a", "another one");
+  requireFile(folder / "a", "");
+}
+
+TEST_F(OutputFiles, OfOneNameAreRefused) {
+  folder.write("a", "old");
+  fs::create_hard_link(folder / "a", folder / "hard");
+  fs::create_symlink("none", folder / "link");
+  outputs.add(folder / "a");
+  outputs.add(folder / "none");
+  for (const char* name : {"a", "hard", "link", "./none"})
+    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name); }).find("twice"),
+              std::string::npos);
+}
+
+TEST_F(OutputFiles, FollowLinksAndKeepThem) {
+  folder.write("real", "old");
+  fs::create_symlink("real", folder / "link");
+  fs::create_symlink("later", folder / "dangling");
+  for (const char* name : {"link", "dangling"}) {
+    outputs.add(folder / name);
+    outputs.write(folder / name, "new");
+  }
+  outputs.commit();
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_TRUE(fs::is_symlink(folder / "dangling"));
+  EXPECT_EQ(bytesOf(folder / "real"), "new");
+  EXPECT_EQ(bytesOf(folder / "later"), "new");
+}
+
+TEST_F(OutputFiles, RefuseFoldersAndDevicesAndWhatIsProtected) {
+  fs::create_directory(folder / "folder.png");
+  fs::create_symlink("/dev/full", folder / "device.png");
+  folder.write("protected.png", "old");
+  fs::permissions(folder / "protected.png", fs::perms::owner_read);
+  for (const fs::path path :
+       {folder / "folder.png", folder / "folder.png/", folder / "device.png",
+        folder / "missing/a.png", folder / "protected.png",
+        folder / (std::string(300, 'n') + ".png"), fs::path("/dev/null"), fs::path("/proc/a.png")})
+    EXPECT_NE(refusal(ErrorKind::output, [&] { outputs.add(path); }).find(path.string()),
+              std::string::npos);
+  EXPECT_EQ(fileCount(), 3u);
+}
+
+TEST_F(OutputFiles, MayHaveTheLongestNameThereIs) {
+  const std::string name = std::string(251, 'n') + ".png"; // 255 bytes
+  outputs.add(folder / name);
+  outputs.write(folder / name, "new");
+  outputs.commit();
+  EXPECT_EQ(bytesOf(folder / name), "new");
+}
+
+TEST_F(OutputFiles, KeepModeAndOwnerOfWhatTheyReplace) {
+  folder.write("private", "old");
+  ::chmod((folder / "private").c_str(), 0600);
+  if (::geteuid() == 0)
+    ASSERT_EQ(::chown((folder / "private").c_str(), 1234, 1235), 0);
+  for (const char* name : {"private", "fresh"}) {
+    outputs.add(folder / name);
+    outputs.write(folder / name, "new");
+  }
+  outputs.commit();
+  EXPECT_EQ(modeOf(folder / "private"), 0600u);
+  struct stat status = {};
+  ASSERT_EQ(::stat((folder / "private").c_str(), &status), 0);
+  if (::geteuid() == 0) {
+    EXPECT_EQ(status.st_uid, 1234u);
+    EXPECT_EQ(status.st_gid, 1235u);
+  }
+  const fs::path usual = folder.write("usual", "");
+  EXPECT_EQ(modeOf(folder / "fresh"), modeOf(usual));
+}
+
+TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
+  folder.write("theirs", "somebody else made this");
+  folder.write("ours", "x" + std::string(writtenMark) + "y");
+  folder.write("ours.end", std::string(1 << 20, 'x') + std::string(writtenMark));
+  EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.addUnnamed(folder / "theirs"); })
+                .find("Fenestra did not write it"),
+            std::string::npos);
+  outputs.addUnnamed(folder / "ours");
+  outputs.addUnnamed(folder / "ours.end");
+  outputs.addUnnamed(folder / "new");
+}
+
+TEST_F(OutputFiles, GoToDescriptorsAndPipesAfterAllFiles) {
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  const int file = ::open((folder / "open").c_str(), O_RDWR | O_CREAT, 0600);
+  const std::string descriptor = "/dev/fd/" + std::to_string(file);
+  outputs.add(pipe);
+  outputs.add(descriptor);
+  outputs.write(pipe, "piped");
+  outputs.write(descriptor, "described");
+  EXPECT_EQ(bytesOf(folder / "open"), "");
+  outputs.commit();
+  char text[16] = {};
+  EXPECT_EQ(::read(reader, text, sizeof text), 5);
+  EXPECT_STREQ(text, "piped");
+  EXPECT_EQ(bytesOf(folder / "open"), "described");
+  ::close(reader);
+  ::close(file);
+  outputs.write(pipe, "nobody reads");
+  refusal(ErrorKind::output, [&] { outputs.commit(); });
+  refusal(ErrorKind::output, [&] { outputs.add("/dev/fd/987"); });
+}
+
+TEST_F(OutputFiles, OfRunsThatWereKilledAreRemovedByTheNext) {
+  folder.write(".fenestra-0123456789ab", "left");
+  folder.write(".fenestra-notes", "somebody's");
+  const int living = ::open(folder.write(".fenestra-ba9876543210", "in use").c_str(), O_RDONLY);
+  ASSERT_EQ(::flock(living, LOCK_EX), 0);
+  outputs.add(folder / "a");
+  EXPECT_FALSE(fs::exists(folder / ".fenestra-0123456789ab"));
+  EXPECT_TRUE(fs::exists(folder / ".fenestra-notes"));
+  EXPECT_TRUE(fs::exists(folder / ".fenestra-ba9876543210"));
+  ::close(living);
+}
+
+TEST_F(OutputFiles, OfAnotherProcessAreNotTakenForAbandoned) {
+  const TemporaryFile file(folder / "a");
+  removeAbandonedFiles(folder.path()); // another descriptor: another lock, as in another process
+  EXPECT_EQ(fileCount(), 1u);
+}
+
+TEST(Inputs, AreConfinedToTheArchivesFolder) {
+  const TemporaryFolder inside, outside;
+  const fs::path member = inside.write("member", "1"), secret = outside.write("secret", "2");
+  fs::create_symlink(secret, inside / "link");
+  const InputsWithin within(inside.path());
+  requireFile(member, "");
+  for (const fs::path& path :
+       {secret, inside / "link", inside / ".." / secret.parent_path().filename() / "secret"})
+    EXPECT_THROW(requireFile(path, ""), Error) << path;
+}
+
+TEST(Inputs, HaveABudget) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("a", std::string(100, 'x'));
+  requireFile(file, "", 100);
+  EXPECT_THROW(requireFile(file, "", 99), Error);
+}
+
+TEST(PrivateFolders, OfRunsThatWereKilledAreRemovedByTheNext) {
+  const TemporaryFolder temporary;
+  const std::string before = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
+  ::setenv("TMPDIR", temporary.path().c_str(), 1);
+  const fs::path left = temporary / "fenestra-scene-0123456789ab";
+  fs::create_directories(left / "Data");
+  temporary.write("fenestra-scene-0123456789ab/Data/patient.nrrd", "left");
+  fs::create_directory(temporary / "fenestra-others");
+  PrivateFolder living;
+  const fs::path file = living.add("Data/a.nrrd");
+  removeAbandonedFolders();
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_TRUE(fs::exists(temporary / "fenestra-others"));
+  ::setenv("TMPDIR", before.c_str(), 1);
+}
+
+TEST(PrivateFolders, GoWithWhatIsInThem) {
+  fs::path path;
+  {
+    PrivateFolder folder;
+    path = folder.path();
+    folder.add("a/b/c.nrrd");
+    folder.add("a/d.nrrd");
+    EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_all);
+  }
+  EXPECT_FALSE(fs::exists(path));
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,34 @@
+#pragma once
+// Results of a single writer, declared, written and in place in one call.
+
+#include "io/Inputs.h"
+#include "io/Outputs.h"
+#include "io/pictures/ImageWriter.h"
+
+namespace fenestra {
+
+/// Tests read what they have written, and write it again.
+inline void forgetIfRead(const std::filesystem::path& path) {
+  if (const auto file = fileId(path))
+    forgetInput(*file);
+}
+
+inline void writeFile(const std::filesystem::path& path, std::string_view content) {
+  forgetIfRead(path);
+  Outputs outputs;
+  outputs.add(path);
+  outputs.write(path, content);
+  outputs.commit();
+}
+
+inline void writeImage(const Image& image, const ImagePlane& plane,
+                       const std::filesystem::path& path, const std::string& view = "") {
+  for (const std::filesystem::path& file : imageFiles(path))
+    forgetIfRead(file);
+  Outputs outputs;
+  declareImage(path, outputs);
+  writeImage(image, plane, path, outputs, view);
+  outputs.commit();
+}
+
+} // namespace fenestra
