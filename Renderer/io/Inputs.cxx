@@ -8,12 +8,16 @@
 #include <map>
 #include <mutex>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 namespace fenestra {
 namespace {
 
 struct Ledger {
   std::mutex mutex;
-  std::map<FileId, std::filesystem::path> files, results;
+  std::map<FileId, std::filesystem::path> inputs;
+  std::map<std::filesystem::path, FileId> results;
 };
 
 Ledger& ledger() {
@@ -21,15 +25,26 @@ Ledger& ledger() {
   return ledger;
 }
 
-void enter(const struct stat& status, const std::filesystem::path& path) {
+void enter(const FileId& file, const std::filesystem::path& path) {
   const std::lock_guard lock(ledger().mutex);
-  ledger().files.try_emplace(FileId{status.st_dev, status.st_ino}, path);
+  ledger().inputs.try_emplace(file, path);
 }
 
 bool isResult(const FileId& file) {
   const std::lock_guard lock(ledger().mutex);
-  const auto found = ledger().results.find(file);
-  return found != ledger().results.end() && fileId(found->second) == file;
+  return std::any_of(ledger().results.begin(), ledger().results.end(),
+                     [&file](const auto& result) { return result.second == file; });
+}
+
+std::optional<FileId> idOf(int folder, const char* path, int flags) {
+  struct statx status = {};
+  if (::statx(folder, path, flags, STATX_INO | STATX_BTIME, &status) != 0)
+    return std::nullopt;
+  const bool isBorn = (status.stx_mask & STATX_BTIME) != 0;
+  return FileId{std::uint64_t{status.stx_dev_major} << 32 | status.stx_dev_minor, status.stx_ino,
+                isBorn ? std::int64_t{status.stx_btime.tv_sec} * 1'000'000'000 +
+                             status.stx_btime.tv_nsec
+                       : 0};
 }
 
 thread_local std::filesystem::path confinement; ///< canonical; empty: anywhere
@@ -48,10 +63,11 @@ std::string megabytes(std::uint64_t bytes) {
 } // namespace
 
 std::optional<FileId> fileId(const std::filesystem::path& path) {
-  struct stat status = {};
-  if (::stat(path.c_str(), &status) != 0)
-    return std::nullopt;
-  return FileId{status.st_dev, status.st_ino};
+  return idOf(AT_FDCWD, path.c_str(), 0);
+}
+
+std::optional<FileId> fileId(int descriptor) {
+  return idOf(descriptor, "", AT_EMPTY_PATH);
 }
 
 void requireFile(const std::filesystem::path& path, const std::string& mend, std::uint64_t most) {
@@ -70,19 +86,20 @@ void requireFile(const std::filesystem::path& path, const std::string& mend, std
     throw inputError(path.string(), "is not a file that can be read; " + mend);
   if (static_cast<std::uint64_t>(status.st_size) > most)
     throw inputError(path.string(), "has more than " + megabytes(most) + "; name a smaller file");
-  if (isResult({status.st_dev, status.st_ino}))
+  const std::optional<FileId> file = fileId(path);
+  if (file && isResult(*file))
     throw inputError(path.string(), "is a result of this command; name another file");
-  enter(status, path);
+  if (file)
+    enter(*file, path);
 }
 
 void expectInput(const std::filesystem::path& path) {
-  struct stat status = {};
-  if (::stat(path.c_str(), &status) != 0)
-    return;
-  if (S_ISREG(status.st_mode))
-    enter(status, path);
   std::error_code failed;
-  if (S_ISDIR(status.st_mode))
+  const auto type = std::filesystem::status(path, failed).type();
+  const std::optional<FileId> file = fileId(path);
+  if (file && type == std::filesystem::file_type::regular)
+    enter(*file, path);
+  else if (type == std::filesystem::file_type::directory)
     for (std::filesystem::directory_iterator entry(path, failed), end; !failed && entry != end;
          entry.increment(failed))
       if (entry->is_regular_file(failed))
@@ -99,21 +116,24 @@ InputsWithin::~InputsWithin() {
 
 std::optional<std::filesystem::path> inputNamed(const FileId& file) {
   const std::lock_guard lock(ledger().mutex);
-  const auto found = ledger().files.find(file);
-  return found == ledger().files.end() ? std::nullopt : std::optional(found->second);
+  const auto found = ledger().inputs.find(file);
+  return found == ledger().inputs.end() ? std::nullopt : std::optional(found->second);
 }
 
 void forgetInput(const FileId& file) {
   const std::lock_guard lock(ledger().mutex);
-  ledger().files.erase(file);
+  ledger().inputs.erase(file);
 }
 
-void enterResult(const std::filesystem::path& path, const std::optional<FileId>& before) {
+void enterResult(const std::filesystem::path& path) {
   const std::lock_guard lock(ledger().mutex);
-  if (before)
-    ledger().results.erase(*before);
   if (const auto file = fileId(path))
-    ledger().results[*file] = path;
+    ledger().results[path] = *file;
+}
+
+void forgetResult(const std::filesystem::path& path) {
+  const std::lock_guard lock(ledger().mutex);
+  ledger().results.erase(path);
 }
 
 std::string lowerExtension(const std::filesystem::path& path) {

@@ -10,28 +10,29 @@
 #include <optional>
 #include <string>
 
-#include <sys/stat.h>
-
 namespace fenestra {
 
 /// Bytes that a text file of any kind may have.
 inline constexpr std::uint64_t largestText = std::uint64_t{64} << 20;
 inline constexpr std::uint64_t anySize = std::numeric_limits<std::uint64_t>::max();
 
-/// A file whatever its names: links to it have the same.
+/// A file whatever its names: links to it have the same. A number that is free is given to another
+/// file, which was born later.
 struct FileId {
-  dev_t device = 0;
-  ino_t inode = 0;
+  std::uint64_t device = 0, inode = 0;
+  std::int64_t born = 0; ///< ns since 1970; 0 where the disk does not tell
 
   auto operator<=>(const FileId&) const = default;
 };
 
 /// Empty where there is nothing of this name. Follows links.
 std::optional<FileId> fileId(const std::filesystem::path& path);
+/// Of an open file.
+std::optional<FileId> fileId(int descriptor);
 
 /// Enters `path` into the ledger. Throws Error (input) unless it is a file of at most `most` bytes
-/// inside the folder that InputsWithin names, and no result of this process; `mend` says what to name
-/// instead of a folder.
+/// inside the folder that InputsWithin names, and no result of this process; `mend` says what to
+/// name instead of a folder.
 void requireFile(const std::filesystem::path& path, const std::string& mend,
                  std::uint64_t most = anySize);
 
@@ -55,13 +56,13 @@ private:
 /// The name under which a file was read; empty where it was not.
 std::optional<std::filesystem::path> inputNamed(const FileId& file);
 
-/// Takes a file out of the ledger: one that this process has just made (what had its number before is
-/// gone), or that is read only to be written again.
+/// Takes a file out of the ledger: one that this process has just made (what had its number before
+/// is gone), or that is read only to be written again.
 void forgetInput(const FileId& file);
 
-/// Enters a result that was put in place; requireFile refuses it as long as it is there. `before` is
-/// what was there.
-void enterResult(const std::filesystem::path& path, const std::optional<FileId>& before);
+/// A result that was put in place: requireFile refuses it until forgetResult.
+void enterResult(const std::filesystem::path& path);
+void forgetResult(const std::filesystem::path& path);
 
 /// The last extension with its dot, in lower case: ".GZ" of "a.nii.GZ" is ".gz".
 std::string lowerExtension(const std::filesystem::path& path);

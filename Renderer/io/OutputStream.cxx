@@ -46,10 +46,7 @@ std::optional<OutputStream> OutputStream::named(const std::filesystem::path& pat
 }
 
 std::optional<FileId> OutputStream::id() const {
-  struct stat status = {};
-  if (m_descriptor < 0 || ::fstat(m_descriptor, &status) != 0)
-    return std::nullopt;
-  return FileId{status.st_dev, status.st_ino};
+  return m_descriptor < 0 ? std::nullopt : fileId(m_descriptor);
 }
 
 void OutputStream::send() {

@@ -39,9 +39,16 @@ fs::path targetOf(const fs::path& path) {
 
 void requireReplaceable(const fs::path& path, const fs::path& target) {
   struct stat status = {};
-  if (!target.has_filename() || (::lstat(target.c_str(), &status) == 0 && !S_ISREG(status.st_mode)))
+  if (!target.has_filename())
+    throw outputError(path.string(), "is a folder; name a file");
+  if (::lstat(target.c_str(), &status) != 0) {
+    if (errno != ENOENT)
+      throw writingError(path, errno);
+    return;
+  }
+  if (!S_ISREG(status.st_mode))
     throw outputError(path.string(), "is a folder or a device; name a file");
-  if (status.st_mode != 0 && (status.st_mode & 0222) == 0)
+  if ((status.st_mode & 0222) == 0)
     throw outputError(path.string(), "is write-protected; choose another name, or chmod u+w it");
 }
 
@@ -92,7 +99,10 @@ struct Outputs::Result {
 };
 
 Outputs::Outputs() = default;
-Outputs::~Outputs() = default;
+Outputs::~Outputs() {
+  for (const auto& [path, result] : m_results)
+    forgetResult(result->target);
+}
 
 Outputs::Result& Outputs::declare(const fs::path& path) {
   auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}});
@@ -153,11 +163,10 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
   std::size_t placed = 0;
   try {
     for (Result* result : files) {
-      const std::optional<FileId> before = result->id();
-      requireNoInput(result->named, before);
+      requireNoInput(result->named, result->id());
       requireReplaceable(result->named, result->target);
       result->file->place();
-      enterResult(result->target, before);
+      enterResult(result->target);
       ++placed;
     }
   } catch (const Error&) {

@@ -51,8 +51,8 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(tar
   open();
   if (m_file < 0)
     throw writingError(m_target, errno);
-  if (struct stat status = {}; ::fstat(m_file, &status) == 0)
-    forgetInput({status.st_dev, status.st_ino});
+  if (const auto file = fileId(m_file)) // on a disk that tells no births
+    forgetInput(*file);
 }
 
 /// Locked after it is made: where a later run took it for abandoned in between, it has no name any

@@ -19,6 +19,7 @@ namespace fenestra {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 
 class OutputFiles : public testing::Test {
 protected:
@@ -98,7 +99,8 @@ TEST_F(OutputFiles, NeverReplaceAnInputWhateverItsName) {
   fs::create_symlink("volume", folder / "link");
   fs::create_hard_link(folder / "volume", folder / "hard");
   fs::create_symlink(folder.path(), folder / "here");
-  for (const std::string name : {"volume", "link", "hard", "here/volume", "here/../link"})
+  const std::string upAndDown = "../" + folder.path().filename().string() + "/link";
+  for (const std::string& name : {"volume"s, "link"s, "hard"s, "here/volume"s, upAndDown})
     EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name); }).find("input"),
               std::string::npos)
         << name;
@@ -120,7 +122,7 @@ TEST_F(OutputFiles, AreNoInputsOfTheSameProcess) {
   outputs.write(folder / "a", "new");
   outputs.commit();
   refusal(ErrorKind::input, [&] { requireFile(folder / "a", ""); });
-  fs::remove(folder / "a");
+  fs::remove(folder / "a"); // and its number is free for others
   folder.write("a", "another one");
   requireFile(folder / "a", "");
 }
@@ -156,7 +158,7 @@ TEST_F(OutputFiles, RefuseFoldersAndDevicesAndWhatIsProtected) {
   fs::create_symlink("/dev/full", folder / "device.png");
   folder.write("protected.png", "old");
   fs::permissions(folder / "protected.png", fs::perms::owner_read);
-  for (const fs::path path :
+  for (const fs::path& path :
        {folder / "folder.png", folder / "folder.png/", folder / "device.png",
         folder / "missing/a.png", folder / "protected.png",
         folder / (std::string(300, 'n') + ".png"), fs::path("/dev/null"), fs::path("/proc/a.png")})
@@ -176,8 +178,10 @@ TEST_F(OutputFiles, MayHaveTheLongestNameThereIs) {
 TEST_F(OutputFiles, KeepModeAndOwnerOfWhatTheyReplace) {
   folder.write("private", "old");
   ::chmod((folder / "private").c_str(), 0600);
-  if (::geteuid() == 0)
+  const bool isRoot = ::geteuid() == 0;
+  if (isRoot) {
     ASSERT_EQ(::chown((folder / "private").c_str(), 1234, 1235), 0);
+  }
   for (const char* name : {"private", "fresh"}) {
     outputs.add(folder / name);
     outputs.write(folder / name, "new");
@@ -186,7 +190,7 @@ TEST_F(OutputFiles, KeepModeAndOwnerOfWhatTheyReplace) {
   EXPECT_EQ(modeOf(folder / "private"), 0600u);
   struct stat status = {};
   ASSERT_EQ(::stat((folder / "private").c_str(), &status), 0);
-  if (::geteuid() == 0) {
+  if (isRoot) {
     EXPECT_EQ(status.st_uid, 1234u);
     EXPECT_EQ(status.st_gid, 1235u);
   }
