@@ -28,10 +28,12 @@ void MadeFolders::make(const std::filesystem::path& folder) {
     return;
   const Uninterrupted making;
   m_made.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
-  if (::mkdir(folder.c_str(), 0777) != 0)
-    throw outputError(folder.string(),
-                      "cannot be made: " + systemMessage(errno) + "; " +
-                          writingMend(errno, "name a folder that you may write to"));
+  if (::mkdir(folder.c_str(), 0777) == 0)
+    return;
+  const int code = errno;
+  m_made.back()->keep(); // what is there is not ours
+  throw outputError(folder.string(), "cannot be made: " + systemMessage(code) + "; " +
+                                         writingMend(code, "name a folder that you may write to"));
 }
 
 } // namespace fenestra

@@ -86,6 +86,10 @@ const std::vector<Expectation>& expectations() {
       {"slicer_scenes/slicerrt_scenes/EclipseProstate_Structures_ColorTable.ctbl",
        "@/slicer_scenes/slicerrt_scenes/EclipseProstate_Structures_ColorTable.ctbl",
        "has no known extension"},
+      {"torso_pet_ccth_a01/pet_suv.nii.gz", "@/torso_pet_ccth_a01/pet_suv.nii.gz"},
+      {"head_stroke/stroke_T1.nii.gz", "@/head_stroke/stroke_T1.nii.gz"},
+      {"head_stroke/stroke_T2.nii.gz", "@/head_stroke/stroke_T2.nii.gz"},
+      {"head_stroke/stroke_FLAIR.nii.gz", "@/head_stroke/stroke_FLAIR.nii.gz"},
       // scenes
       {"slicer_scenes/slicer_5_2_written/chest.mrb",
        "@/slicer_scenes/slicer_5_2_written/chest.mrb --focus ribs"},

@@ -245,10 +245,20 @@ TEST_F(RendersCommand, TakesFilesThatLookLikeFlagsOrSubcommands) {
 }
 
 TEST_F(RendersCommand, ReplacesAPictureAndNothingElse) {
-  folder.write("volume.png", "an older picture");
   const std::string volume = bytesOf(folder / "volume.nrrd");
+  folder.write("named.png", "somebody's picture");
+  ASSERT_EQ(renderWith({"--output", "named.png"}).status, 0);
+  EXPECT_EQ(readImage(folder / "named.png").width, 16);
+  ASSERT_EQ(renderWith({}).status, 0); // volume.png, which nobody named
   ASSERT_EQ(renderWith({}).status, 0);
   EXPECT_EQ(readImage(folder / "volume.png").width, 16);
+  folder.write("volume.png", "somebody's picture");
+  const Outcome refused = renderWith({});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("volume.png: is there, and Fenestra did not write it"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(bytesOf(folder / "volume.png"), "somebody's picture");
   EXPECT_EQ(bytesOf(folder / "volume.nrrd"), volume);
 }
 

@@ -144,9 +144,10 @@ TEST_F(TurntableCommand, GoesOnAfterAnInterruptionBitForBit) {
     EXPECT_EQ(readImage(folder / ("whole_000" + std::to_string(i) + ".exr")).channels,
               readImage(folder / frame(i)).channels)
         << i;
-  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "whole.turntable.json"))["finished"],
-            resumed["finished"])
-      << "and the surface's changes between them";
+  // The files differ by the command in their headers.
+  const nlohmann::json atOnce = nlohmann::json::parse(bytesOf(folder / "whole.turntable.json"));
+  for (const std::size_t i : {0, 1, 2, 3})
+    EXPECT_EQ(atOnce["finished"][i]["surfaceChange"], resumed["finished"][i]["surfaceChange"]);
 }
 
 TEST_F(TurntableCommand, MixesNoFramesOfDifferentTurntables) {

@@ -148,7 +148,7 @@ void removeMarks(const std::filesystem::path& folder) {
 
 TEST_F(PhantomFiles, ReplaceTheirLikeAndThoseOfEarlierVersions) {
   writePhantom(phantom, folder, "knee");
-  writePhantom(makeKneePhantom({{16, 18, 12}}), folder, "knee"); // by their marks
+  writePhantom(makeKneePhantom({{24, 28, 16}}), folder, "knee"); // by their marks
   writePhantom(phantom, folder, "knee");
   removeMarks(folder);
   writePhantom(phantom, folder, "knee"); // by volume and scene

@@ -233,11 +233,12 @@ std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path)
 }
 
 void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy namedBy) {
+  const ImageFormat format = checkedFormat(path);
   if (namedBy == NamedBy::user)
     outputs.add(path);
   else
     outputs.addUnnamed(path);
-  if (checkedFormat(path) == ImageFormat::nrrd)
+  if (format == ImageFormat::nrrd)
     outputs.addUnnamed(depthPath(path),
                        [&path](const auto& depth) { return isOurDepth(depth, path); });
 }
