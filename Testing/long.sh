@@ -193,7 +193,7 @@ stage_fuzz() {
 }
 
 mkdir -p "$logs"
-install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev
+install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
 [ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang
 for name in "$@"; do
   say "$name"

@@ -43,7 +43,7 @@ fuzz() {
   return $((status != 0))
 }
 
-install_packages "${build_packages[@]}" clang libclang-rt-14-dev
+install_packages "${build_packages[@]}" clang libclang-rt-14-dev lld
 (cd "$top" && cmake --preset asan-ubsan -B "$build_folder" >/dev/null &&
   cmake --build "$build_folder" --target fuzzers) || die "the fuzz targets do not build (see above)"
 
