@@ -3,7 +3,7 @@
 #include "io/medical/DicomSeries.h"
 
 #include "MedicalFiles.h"
-#include "io/medical/Quiet.h"
+#include "io/Quiet.h"
 #include "io/medical/VolumeReader.h"
 
 #include <itkGDCMImageIO.h>

@@ -1,7 +1,6 @@
 #include "io/medical/MaskShaping.h"
 
 #include "core/Error.h"
-#include "io/medical/ItkForClang.h"
 
 #include <itkImage.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>

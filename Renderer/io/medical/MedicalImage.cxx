@@ -2,9 +2,9 @@
 
 #include "core/Error.h"
 #include "io/Inputs.h"
+#include "io/Quiet.h"
 #include "io/medical/MedicalHeader.h"
 #include "io/medical/NiftiSamples.h"
-#include "io/medical/Quiet.h"
 #include "io/medical/SampleStream.h"
 
 #include <itkMetaDataObject.h>

@@ -2,7 +2,7 @@
 
 #include "core/Error.h"
 #include "io/Inputs.h"
-#include "io/medical/Quiet.h"
+#include "io/Quiet.h"
 #include "io/transforms/TransformMatrix.h"
 #include "io/transforms/TransformRecords.h"
 
