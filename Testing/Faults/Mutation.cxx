@@ -9,10 +9,6 @@
 namespace fenestra::faults {
 namespace {
 
-/// Bytes in which text is looked for: it comes first in all formats, and samples behind it are
-/// alike.
-constexpr std::size_t textual = 65536;
-
 /// A part of the bytes.
 struct Span {
   std::size_t begin = 0, length = 0;
@@ -67,6 +63,11 @@ constexpr std::string_view extremes[] = {
     "9223372036854775807",
     "18446744073709551616",
 };
+
+/// What comes before samples and tables of bytes.
+std::string_view textOf(std::string_view bytes) {
+  return bytes.substr(0, bytes.find('\0'));
+}
 
 Spans numbersIn(std::string_view bytes) {
   Spans found;
@@ -147,7 +148,7 @@ void changeOneOf(std::string& bytes, const Spans& parts, std::mt19937_64& random
 }
 
 void changeNumber(std::string& bytes, std::mt19937_64& random) {
-  const Spans numbers = numbersIn(bytes.substr(0, textual));
+  const Spans numbers = numbersIn(textOf(bytes));
   if (numbers.empty())
     return;
   const Span number = anyOf(numbers, random);
@@ -175,7 +176,7 @@ void changeBytes(std::string& bytes, std::mt19937_64& random) {
 void mutateOnce(std::string& bytes, std::mt19937_64& random) {
   if (bytes.empty())
     return;
-  const std::string_view text(bytes.data(), std::min(bytes.size(), textual));
+  const std::string_view text = textOf(bytes);
   switch (below(random, 10)) {
   case 0:
   case 1:
