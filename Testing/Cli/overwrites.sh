@@ -27,13 +27,18 @@ shifted() {
   sed -e 's#\(name="Inner" references="\)\([^"]*\)" matrix[^>]*>#\1storage:ts;\2">#' \
     -e "s#</MRML>#<TransformStorage id=\"ts\" fileName=\"$1\"/></MRML>#" scene.mrml >s.mrml
 }
-# talk CHANGE: says it to serve and waits for what it answers, or ten seconds.
-talk() {
-  echo "{\"id\":1,$1}"
+# until_said EXPRESSION: waits until serve has said it, or ten seconds.
+until_said() {
   for _ in {1..100}; do
-    ! grep -qE '"id":1(,.*"done":true|.*"message")' ../out || break
+    ! grep -qE "$1" ../out 2>/dev/null || return
     sleep 0.1
   done
+}
+# talk CHANGE: says it to serve after its first picture, and waits for the answer.
+talk() {
+  until_said '"id":null,.*"done":true'
+  echo "{\"id\":1,$1}"
+  until_said '"id":1,.*("done":true|"message")'
 }
 mine() { printf 'somebody else made this\n' >"$1"; }
 slicer=home/share/Slicer-5.6/qt-loadable-modules/VolumeRendering
@@ -128,9 +133,9 @@ turntable: record, foreign JSON      | refused | cp lights.json turn.turntable.j
 turntable: record = stats            | refused |  | turn plain.nrrd --output turn.png --stats turn.turntable.json
 serve: volume of a scene             | refused |  | serve scene.mrml --output plain.nrrd < <(talk '"seed":1')
 serve: hard link of a volume         | refused | ln plain.nrrd hard.nrrd | serve scene.mrml --output hard.nrrd < <(talk '"seed":1')
-serve: map that a change names       | told    |  | serve plain.nrrd --output sky.exr < <(talk '"environment":"sky.exr"')
-serve: map in lights of a change     | told    | echo '{"lights":[{"type":"environment","file":"sky.exr"}]}' >l.json | serve plain.nrrd --output sky.exr < <(talk '"lights":"l.json"')
-serve: segments that a change names  | told    |  | serve plain.nrrd --output labels.nrrd < <(talk '"segmentation":"labels.nrrd","focus":"1"')
+serve: output that a change reads    | told    |  | serve plain.nrrd --output new.exr < <(talk '"environment":"new.exr"')
+serve: output that its lights read   | told    | echo '{"lights":[{"type":"environment","file":"new.exr"}]}' >l.json | serve plain.nrrd --output new.exr < <(talk '"lights":"l.json"')
+serve: map that a change writes      | told    |  | serve plain.nrrd --environment sky.exr --output o.exr < <(talk '"output":["sky.exr"]')
 phantom: foreign volume              | refused | cp plain.nrrd cube.nrrd; rm cube.mrb | phantom cube --output .
 phantom: foreign segmentation        | refused | cp labels.nrrd cube.seg.nrrd; rm cube.mrb | phantom cube --output .
 phantom: foreign scene               | refused | cp scene.mrml cube.mrml; rm cube.mrb | phantom cube --output .
