@@ -163,8 +163,7 @@ bool print(const std::vector<Case>& cases, const std::vector<Result>& results) {
       deaths[culprit(outcome.frames).function].add(nameOf(one));
     const std::string call = outcome.place.substr(0, outcome.place.find(' '));
     for (const std::string& line : wrong)
-      violations[one.subject->request->name + ", " + one.kind->word + " " + one.kind->valueName +
-                 " at " + call + ": " + line]
+      violations[one.subject->request->name + ", " + one.kind->word + " at " + call + ": " + line]
           .add(nameOf(one) + ": " + outcome.place);
     const bool isLast = i + 1 == cases.size() || cases[i + 1].subject != one.subject ||
                         cases[i + 1].kind != one.kind;

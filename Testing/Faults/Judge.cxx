@@ -112,6 +112,21 @@ void append(Lines& lines, const Lines& more) {
       lines.push_back(line);
 }
 
+/// Without template arguments and parameters.
+std::string withoutArguments(const std::string& function) {
+  std::string name;
+  int depth = 0;
+  for (const char c : function) {
+    depth -= c == '>' ? 1 : 0;
+    if (depth == 0 && c == '(' && !name.empty() && name.back() != ':')
+      break;
+    if (depth == 0 && c != '<' && c != '>')
+      name += c;
+    depth += c == '<' ? 1 : 0;
+  }
+  return name;
+}
+
 /// The exported name, else what the module's own table says.
 std::string functionOf(const Frame& frame) {
   std::string name = frame.function;
@@ -130,7 +145,7 @@ std::string functionOf(const Frame& frame) {
   if (failed == 0)
     name = readable;
   std::free(readable);
-  return name.substr(0, name.find('('));
+  return withoutArguments(name);
 }
 
 } // namespace

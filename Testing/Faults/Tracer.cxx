@@ -308,6 +308,9 @@ Outcome run(const Command& command, const Fault& fault) {
   Trace(child, fault, outcome).follow();
   outcome.hung = watchdog.end();
   outcome.errors = err.content();
+  const std::string root = command.folder.parent_path().string() + "/";
+  if (const std::size_t at = outcome.place.find(root); at != outcome.place.npos)
+    outcome.place.erase(at, root.size());
   outcome.allocations = page->allocations;
   if (page->failing != 0 && page->allocations >= page->failing)
     outcome.place = "allocation";

@@ -79,9 +79,10 @@ FENESTRA_FUZZ(input) {
   SceneRequest request;
   if (input[0] != '0')
     request.focus = {"A"};
+  input.remove_prefix(1);
   constexpr std::string_view parting = "\n---\n";
   const std::size_t end = input.find(parting);
-  request.input = fuzzing::asFile(input.substr(0, end).substr(1), "scene.mrml");
+  request.input = fuzzing::asFile(input.substr(0, end), "scene.mrml");
   fuzzing::asFile(end == input.npos ? fuzzing::sceneNeighbours().at("v.nrrd")
                                     : std::string(input.substr(end + parting.size())),
                   "v.nrrd");
