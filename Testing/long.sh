@@ -9,6 +9,7 @@
 #   addresses     the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer
 #   threads       the whole suite under ThreadSanitizer, with a oneTBB that it can see into
 #   clang         the whole suite built by clang
+#   faults        every fault that Testing/Faults makes, and 20,000 damaged files
 # and only where it is named:
 #   fuzz          every fuzz target for ten minutes
 #   boundary      the clipping surface's boundary on sub-pixel rays; what its record says of the
@@ -180,6 +181,14 @@ stage_clang() {
   in_record clang.md run_labels 'clang' "$top/build-clang" "${labels[@]}"
 }
 
+stage_faults() {
+  build release -DFENESTRA_BUILD_TESTS=ON
+  "$top/build/bin/Faults" "$top/build/bin/fenestra" >"$record/faults-in-turn.md" ||
+    say "faults do harm: see $record/faults-in-turn.md"
+  "$top/build/bin/Mutations" "$top/build/bin/fenestra" 1 20000 >"$record/mutations.md" ||
+    say "damaged files do harm: see $record/mutations.md"
+}
+
 stage_boundary() {
   (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target BoundaryCheck)
   (sed '/^## /,$d' "$record/boundary.md" && "$top/build/bin/BoundaryCheck" 256 12) \
@@ -194,7 +203,7 @@ stage_fuzz() {
 
 mkdir -p "$logs"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
-[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang
+[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang faults
 for name in "$@"; do
   say "$name"
   "stage_$name"

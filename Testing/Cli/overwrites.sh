@@ -1,0 +1,194 @@
+#!/usr/bin/env bash
+# Names as an output, in every way known, what the request reads or what somebody else made. Each way
+# runs in a fresh folder of copies. All must be refused before anything is rendered: one line, exit
+# status 2, 3 or 4, nothing on standard output, no file more; `told` ways are refused by serve's answer.
+# Whatever was in the folder stays as it was, links included. Prints a row of a table for each way that
+# breaks this, and exits 1. usage: overwrites.sh FENESTRA [WAY...]
+set -uo pipefail
+export LC_ALL=C
+program=$(realpath "$1")
+data=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../Data")
+corpus=$data/../Fuzz/Corpus
+shift
+work=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" overwrites-XXXXXX)
+trap 'rm -rf "$work"' EXIT
+
+# Words of the table below. Each of the first renders; `serve` takes its changes from standard input.
+quick=(--size 8x8 --samples 1)
+render() { "$program" render "$@" "${quick[@]}" --progress xml; }
+turn() { "$program" turntable "$@" "${quick[@]}" --frames 4 --progress xml; }
+serve() { "$program" serve "$@" "${quick[@]}"; }
+compare() { "$program" compare "$@"; }
+phantom() { "$program" phantom "$@" --size 16; }
+# scene FROM TO: the scene with one word replaced, as s.mrml.
+scene() { sed "s#$1#$2#" scene.mrml >s.mrml; }
+# shifted FILE: the scene with its inner transform in a file, as s.mrml.
+shifted() {
+  sed -e 's#\(name="Inner" references="\)\([^"]*\)" matrix[^>]*>#\1storage:ts;\2">#' \
+    -e "s#</MRML>#<TransformStorage id=\"ts\" fileName=\"$1\"/></MRML>#" scene.mrml >s.mrml
+}
+# until_said EXPRESSION: waits until serve has said it, or ten seconds.
+until_said() {
+  for _ in {1..100}; do
+    ! grep -qE "$1" ../out 2>/dev/null || return
+    sleep 0.1
+  done
+}
+# talk CHANGE: says it to serve after its first picture, and waits for the answer.
+talk() {
+  until_said '"id":null,.*"done":true'
+  echo "{\"id\":1,$1}"
+  until_said '"id":1,.*("done":true|"message")'
+}
+mine() { printf 'somebody else made this\n' >"$1"; }
+slicer=home/share/Slicer-5.6/qt-loadable-modules/VolumeRendering
+look='name="Mine" scalarOpacity="4 0 0 200 1" gradientOpacity="4 0 1 255 1" colorTransfer="4 0 1 1 1" shade="0"'
+
+# What the folder of every way holds.
+fill() {
+  cp "$data"/traps/{scene.mrml,plain.nrrd,layers.seg.nrrd,labels.nrrd,property.vp,roi.mrk.json} \
+    "$data"/traps/{detached.nhdr,detached.raw,lights.json,thin.json} "$data/cube/cube.mrb" .
+  cp "$data/baselines/plain.exr" sky.exr
+  cp sky.exr other.exr
+  mkdir d
+  cp "$corpus/Dicom/native.dcm" d/a.dcm
+}
+
+# WAY | EXPECTED | BEFORE | COMMAND
+ways() {
+  cat <<'END'
+volume of a scene                    | refused |  | render scene.mrml --output plain.nrrd
+volume of a scene, return values     | refused |  | render scene.mrml --output o.png --returnparameterfile plain.nrrd
+volume of a scene, stats             | refused |  | render scene.mrml --output o.png --stats plain.nrrd
+volume of a scene, from elsewhere    | refused | mkdir e | cd e && render ../scene.mrml --output ../plain.nrrd
+volume of a scene, absolute          | refused |  | render scene.mrml --output "$PWD/plain.nrrd"
+volume of a scene, through /proc     | refused |  | render scene.mrml --output /proc/self/cwd/plain.nrrd
+volume of a scene, hard link         | refused | ln plain.nrrd hard.nrrd | render scene.mrml --output hard.nrrd
+volume of a scene, link to it        | refused | ln -s plain.nrrd soft.nrrd | render scene.mrml --output soft.nrrd
+volume of a scene, folder's link     | refused | ln -s . again | render scene.mrml --output again/plain.nrrd
+volume of a scene that is a link     | refused | mkdir r; mv plain.nrrd r; ln -s r/plain.nrrd . | render scene.mrml --output r/plain.nrrd
+volume of a scene, the link itself   | refused | mkdir r; mv plain.nrrd r; ln -s r/plain.nrrd . | render scene.mrml --output plain.nrrd
+volume of a scene, escaped           | refused | mv plain.nrrd p%n.nrrd; scene plain.nrrd p%25n.nrrd | render s.mrml --output p%n.nrrd
+segmentation of a scene              | refused |  | render scene.mrml --focus Heart --output layers.seg.nrrd
+segmentation of a scene, no focus    | refused |  | render scene.mrml --output layers.seg.nrrd
+property of a scene                  | refused |  | render scene.mrml --output o.png --stats property.vp
+box of a scene                       | refused |  | render scene.mrml --output o.png --stats roi.mrk.json
+transform of a scene                 | refused | sed 1s/^.// "$corpus/Transform/affine.tfm" >t.tfm; shifted t.tfm | render s.mrml --output o.png --stats t.tfm
+part of a scene's closed surface     | refused | cp "$corpus/Surface/box.vtm" b.vtm; sed 1s/^.// -i b.vtm; sed 1s/^.// "$corpus/Surface/box.vtp" >s.vtp | render plain.nrrd --segmentation b.vtm --focus 1 --output o.png --surface s.vtp
+samples of a header                  | refused |  | render detached.nhdr --output o.png --stats detached.raw
+samples of a header, a .nrrd         | refused | mv detached.raw data.nrrd; sed -i s/detached.raw/data.nrrd/ detached.nhdr | render detached.nhdr --output data.nrrd
+samples of a scene's header          | refused | scene plain.nrrd detached.nhdr | render s.mrml --output o.png --stats detached.raw
+samples of a MetaImage header        | refused | mv detached.raw raw.nrrd; printf 'ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nDimSize = 25 25 25\nElementSpacing = 1 1 1\nElementType = MET_SHORT\nElementDataFile = raw.nrrd\n' >m.mhd | render m.mhd --output raw.nrrd
+slice of a DICOM folder, stats       | refused |  | render d --output o.png --stats d/a.dcm
+slice of a DICOM folder, values      | refused |  | render d --output o.png --returnparameterfile d/a.dcm
+slice of a DICOM folder with a slash | refused |  | render d/ --output o.png --stats d/a.dcm
+slice that is called .nrrd           | refused | mv d/a.dcm d/a.nrrd | render d --output d/a.nrrd
+slice of another series              | refused | sed 's/1[.]2[.]3/1.2.4/g' d/a.dcm >d/b.dcm | render d --volume 1.2.3 --output o.png --stats d/b.dcm
+file of a DICOM folder, no slice     | refused | mine d/notes.json | render d --output o.png --stats d/notes.json
+depth beside a picture, a volume     | refused | mv plain.nrrd a-Z.nrrd; scene plain.nrrd a-Z.nrrd | render s.mrml --output a.nrrd
+depth beside a picture, INPUT        | refused | mv plain.nrrd a-Z.nrrd | render a-Z.nrrd --output a.nrrd
+depth beside a picture, foreign      | refused | mine a-Z.nrrd | render plain.nrrd --output a.nrrd
+depth beside a picture, other volume | refused | cp labels.nrrd a-Z.nrrd | render plain.nrrd --output a.nrrd
+default output, foreign              | refused | mine plain.png | render plain.nrrd
+default output, another's picture    | refused | cp "$corpus/Picture/picture.png" plain.png; sed -i 1s/^.// plain.png | render plain.nrrd
+map of --lights                      | refused | echo '{"lights":[{"type":"environment","file":"sky.exr"}]}' >l.json | render plain.nrrd --lights l.json --output sky.exr
+map of --environment                 | refused |  | render plain.nrrd --environment sky.exr --output sky.exr
+file of --lights                     | refused |  | render plain.nrrd --lights lights.json --output o.png --stats lights.json
+file of --transfer                   | refused |  | render plain.nrrd --transfer thin.json --output o.png --stats thin.json
+file of --preset                     | refused | echo '{"title": "t", "modality": "CT", "focus": {"codes": ["a^b"]}, "flags": {}}' >p.json | render plain.nrrd --preset p.json --output o.png --stats p.json
+file of --segmentation               | refused |  | render plain.nrrd --segmentation labels.nrrd --focus 1 --output labels.nrrd
+presets of an installed Slicer       | refused | mkdir -p "$slicer"; echo "<MRML><VolumeProperty $look/></MRML>" >"$slicer/presets.xml"; export SLICER_HOME=$PWD/home | render plain.nrrd --transfer Mine --output o.png --stats "$slicer/presets.xml"
+INPUT                                | refused |  | render plain.nrrd --output plain.nrrd
+INPUT, relative                      | refused | mkdir -p x | render plain.nrrd --output ./x/../plain.nrrd
+INPUT, hard link                     | refused | ln plain.nrrd hard.nrrd | render plain.nrrd --output hard.nrrd
+INPUT, link to it                    | refused | ln -s plain.nrrd soft.nrrd | render plain.nrrd --output soft.nrrd
+INPUT that is a link                 | refused | ln -s plain.nrrd soft.nrrd | render soft.nrrd --output plain.nrrd
+INPUT, link to a link                | refused | ln -s b a.nrrd; ln -s plain.nrrd b | render plain.nrrd --output a.nrrd
+INPUT, a scene                       | refused |  | render scene.mrml --output o.png --stats scene.mrml
+INPUT, an archive                    | refused |  | render cube.mrb --output o.png --stats cube.mrb
+INPUT, an archive's hard link        | refused | ln cube.mrb c.json | render cube.mrb --output o.png --stats c.json
+INPUT, a header                      | refused |  | render detached.nhdr --output o.png --stats detached.nhdr
+two outputs, one name                | refused | mine o.png | render plain.nrrd --output o.png --output ./o.png
+two outputs, one file                | refused | mine o.png; ln o.png p.png | render plain.nrrd --output o.png --output p.png
+two outputs, folder's links          | refused | ln -s . a; ln -s . b | render plain.nrrd --output a/o.png --output b/o.png
+two outputs, one a link              | refused | ln -s o.png p.png | render plain.nrrd --output o.png --output p.png
+stats = output                       | refused | mine o.png | render plain.nrrd --output o.png --stats o.png
+stats = depth beside a picture       | refused |  | render plain.nrrd --output o.nrrd --stats o-Z.nrrd
+output = depth beside a picture      | refused |  | render plain.nrrd --output o.nrrd --output o-Z.nrrd
+stats = values                       | refused |  | render plain.nrrd --output o.png --stats s.json --returnparameterfile s.json
+compare: A                           | refused |  | compare sky.exr other.exr --output sky.exr
+compare: B                           | refused |  | compare sky.exr other.exr --output other.exr
+compare: hard link of B              | refused | ln other.exr h.exr | compare sky.exr other.exr --output h.exr
+compare: error of A                  | refused | cp sky.exr e.exr | compare sky.exr other.exr --errora e.exr --errorb sky.exr --output e.exr
+compare: error of B                  | refused | cp sky.exr e.exr | compare sky.exr other.exr --errora sky.exr --errorb e.exr --output e.exr
+turntable: frame = volume            | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd
+turntable: frame = volume, anew      | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd --restart
+turntable: frame = INPUT, anew       | refused | mv plain.nrrd turn_0003.nrrd | turn turn_0003.nrrd --output turn.nrrd --restart
+turntable: frame's depth = volume    | refused | mv plain.nrrd turn_0001-Z.nrrd; scene plain.nrrd turn_0001-Z.nrrd | turn s.mrml --output turn.nrrd --restart
+turntable: frame's depth, foreign    | refused | mine turn_0001-Z.nrrd | turn plain.nrrd --output turn.nrrd --restart
+turntable: stats = volume            | refused |  | turn scene.mrml --output turn.png --stats plain.nrrd
+turntable: record = a scene's file   | refused | mv roi.mrk.json turn.turntable.json; scene roi.mrk.json turn.turntable.json | turn s.mrml --output turn.png --restart
+turntable: record, foreign           | refused | mine turn.turntable.json | turn plain.nrrd --output turn.png --restart
+turntable: record, foreign JSON      | refused | cp lights.json turn.turntable.json | turn plain.nrrd --output turn.png --restart
+turntable: record = stats            | refused |  | turn plain.nrrd --output turn.png --stats turn.turntable.json
+serve: volume of a scene             | refused |  | serve scene.mrml --output plain.nrrd < <(talk '"seed":1')
+serve: hard link of a volume         | refused | ln plain.nrrd hard.nrrd | serve scene.mrml --output hard.nrrd < <(talk '"seed":1')
+serve: output that a change reads    | told    |  | serve plain.nrrd --output new.exr < <(talk '"environment":"new.exr"')
+serve: output that its lights read   | told    | echo '{"lights":[{"type":"environment","file":"new.exr"}]}' >l.json | serve plain.nrrd --output new.exr < <(talk '"lights":"l.json"')
+serve: map that a change writes      | told    |  | serve plain.nrrd --environment sky.exr --output o.exr < <(talk '"output":["sky.exr"]')
+phantom: foreign volume              | refused | cp plain.nrrd cube.nrrd; rm cube.mrb | phantom cube --output .
+phantom: foreign segmentation        | refused | cp labels.nrrd cube.seg.nrrd; rm cube.mrb | phantom cube --output .
+phantom: foreign scene               | refused | cp scene.mrml cube.mrml; rm cube.mrb | phantom cube --output .
+phantom: foreign archive             | refused | mine cube.mrb | phantom cube --output .
+phantom: foreign property            | refused | cp property.vp cube.vp; rm cube.mrb | phantom cube --output .
+phantom: foreign box                 | refused | cp roi.mrk.json cube-roi.mrk.json; rm cube.mrb | phantom cube --output .
+phantom: link to a foreign file      | refused | ln -s plain.nrrd cube.nrrd; rm cube.mrb | phantom cube --output .
+phantom: through a folder's link     | refused | mkdir p; mine p/cube.vp.json; ln -s p q | phantom cube --output q
+END
+}
+
+# state: name, kind, target of a link and digest of all that the folder holds.
+state() {
+  find . ! -name . -printf '%P|%y|%l|' \( -type f -exec sha256sum {} \; -o -printf '\n' \) | sort
+}
+
+# broken EXPECTED STATUS: what is wrong with the run, nothing where it is right.
+broken() {
+  local lost more
+  lost=$(comm -23 ../before ../after | cut -d'|' -f1 | paste -sd' ')
+  more=$(comm -13 <(cut -d'|' -f1 ../before) <(cut -d'|' -f1 ../after) | paste -sd' ')
+  [ -z "$lost" ] || printf 'changed or gone: %s; ' "$lost"
+  if [ "$1" = told ]; then
+    grep -q '"event":"error"' ../out || printf 'not told; '
+    return
+  fi
+  [ -z "$more" ] || printf 'more files: %s; ' "$more"
+  [[ $2 == [234] ]] || printf 'status %s; ' "$2"
+  [ ! -s ../out ] || printf 'rendered; '
+  [ "$(grep -vc '^fenestra: warning' ../err)" = 1 ] || printf 'not one line; '
+}
+
+trimmed() { sed 's/^ *//; s/ *$//' <<<"$1"; }
+
+count=0 failed=0
+while IFS='|' read -r way expected before command; do
+  way=$(trimmed "$way")
+  [ $# -eq 0 ] || [[ " $* " == *" $way "* ]] || continue
+  rm -rf "${work:?}"/*
+  mkdir "$work/folder"
+  count=$((count + 1))
+  wrong=$(
+    cd "$work/folder" && fill && eval "$before" || printf 'not prepared; '
+    state >../before
+    eval "$command" >../out 2>../err
+    status=$?
+    cd "$work/folder" && state >../after
+    broken "$(trimmed "$expected")" "$status"
+  )
+  [ -z "$wrong" ] && continue
+  [ $failed -gt 0 ] || printf '| way | command | what is wrong | what it said |\n|---|---|---|---|\n'
+  failed=$((failed + 1))
+  printf '| %s | `%s` | %s | %s |\n' "$way" "$(trimmed "$command")" "${wrong%; }" "$(head -1 "$work/err")"
+done < <(ways)
+echo "$((count - failed)) of $count ways hold"
+[ $count -gt 0 ] && [ $failed -eq 0 ]

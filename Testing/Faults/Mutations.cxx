@@ -1,0 +1,270 @@
+// Renders and inspects damaged files of every format. usage: Mutations FENESTRA FIRST LAST
+// A mutation is a function of its number. Prints what they came to as tables in Markdown; exit
+// status 1 where one crashed, hung, took more than 2 GB, said more than one line or left a file. A
+// mutation alone (FIRST = LAST) leaves its files in mutation-FIRST/ of the current folder.
+#include "Judge.h"
+#include "Mutation.h"
+
+#include "io/ZipWriter.h"
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+namespace fenestra::faults {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// A file to be damaged, others that belong to it, and what reads them.
+struct Victim {
+  std::string name;
+  Files files;
+  bool isPacked = false; ///< into a.mrb, the others beside it
+  Words words;           ///< of a render, or of a comparison
+};
+
+class Samples {
+public:
+  explicit Samples(const fs::path& data) : m_data(data) {}
+
+  std::string of(const std::string& name) const { return bytesOf(m_data / name); }
+  /// Of the fuzz targets; where a digit chooses the format it is left out.
+  std::string seed(const std::string& name, bool chosen = true) const {
+    return bytesOf(m_data / "../Fuzz/Corpus" / name).substr(chosen ? 1 : 0);
+  }
+
+private:
+  fs::path m_data;
+};
+
+/// traps/scene.mrml with the files that it names, one of which is the victim.
+void addScene(std::vector<Victim>& victims, const Samples& samples) {
+  Files files;
+  for (const char* name :
+       {"scene.mrml", "plain.nrrd", "layers.seg.nrrd", "property.vp", "roi.mrk.json"})
+    files[name] = samples.of("traps/" + std::string(name));
+  for (const auto& [name, content] : files) {
+    victims.push_back({name, files, false, {"render", "scene.mrml", "--focus", "Heart"}});
+    victims.push_back({name, files, true, {"render", "a.mrb", "--focus", "Heart"}});
+  }
+}
+
+/// Scenes whose volume is moved by a transform of a file.
+void addTransforms(std::vector<Victim>& victims, const Samples& samples) {
+  for (const char* name : {"affine.h5", "affine.mat", "affine.tfm", "composite.tfm"}) {
+    const std::string scene =
+        "<MRML version=\"Slicer 5.6.2 32448\"><TransformStorage id=\"ts\" fileName=\"" +
+        std::string(name) +
+        "\"/><Transform id=\"t\" references=\"storage:ts;\"/><VolumeArchetypeStorage id=\"s\" "
+        "fileName=\"plain.nrrd\"/><Volume id=\"v\" references=\"storage:s;transform:t;\"/></MRML>";
+    victims.push_back({name,
+                       {{name, samples.seed("Transform/" + std::string(name))},
+                        {"s.mrml", scene},
+                        {"plain.nrrd", samples.of("traps/plain.nrrd")}},
+                       false,
+                       {"render", "s.mrml"}});
+  }
+}
+
+void addVolumes(std::vector<Victim>& victims, const Samples& samples) {
+  for (const char* name : {"volume.nii", "volume.mha", "gzip.nrrd", "ascii.nrrd", "double.nrrd"})
+    victims.push_back(
+        {name, {{name, samples.seed("Volume/" + std::string(name))}}, false, {"render", name}});
+  victims.push_back({"detached.nhdr",
+                     {{"detached.nhdr", samples.of("traps/detached.nhdr")},
+                      {"detached.raw", samples.of("traps/detached.raw")}},
+                     false,
+                     {"render", "detached.nhdr"}});
+  for (const char* name : {"native.dcm", "jpeg2000.dcm"})
+    victims.push_back(
+        {"d/" + std::string(name),
+         {{"d/", ""},
+          {"d/" + std::string(name), samples.seed("Dicom/" + std::string(name), false)}},
+         false,
+         {"render", "d"}});
+}
+
+/// Looks, segments and maps beside a volume.
+void addFlags(std::vector<Victim>& victims, const Samples& samples) {
+  const Files volume = {{"plain.nrrd", samples.of("traps/plain.nrrd")}};
+  const auto add = [&](const std::string& name, const std::string& content, Words words,
+                       const Files& more = {}) {
+    Victim victim = {name, volume, false, {"render", "plain.nrrd"}};
+    victim.files[name] = content;
+    victim.files.insert(more.begin(), more.end());
+    victim.words.insert(victim.words.end(), words.begin(), words.end());
+    victims.push_back(victim);
+  };
+  for (const char* name : {"midpoint.vp.json", "property.vp", "thin.json", "hybrid.json"})
+    add(name, samples.of("traps/" + std::string(name)), {"--transfer", name});
+  add("lights.json", samples.of("traps/lights.json"), {"--lights", "lights.json"});
+  add("preset.json", samples.seed("Preset/all.json", false), {"--preset", "preset.json"});
+  add("labels.nrrd", samples.of("traps/labels.nrrd"),
+      {"--segmentation", "labels.nrrd", "--focus", "1"});
+  add("cropped.seg.nrrd", samples.of("traps/cropped.seg.nrrd"),
+      {"--segmentation", "cropped.seg.nrrd", "--focus", "1"});
+  const std::string list = samples.seed("Surface/box.vtm"),
+                    surface = samples.seed("Surface/box.vtp");
+  const Words segments = {"--segmentation", "b.vtm", "--focus", "1"};
+  add("b.vtm", list, segments, {{"s.vtp", surface}});
+  add("s.vtp", surface, segments, {{"b.vtm", list}});
+  for (const char* name : {"picture.exr", "picture.nrrd", "picture.png", "picture.tif"})
+    victims.push_back({name,
+                       {{name, samples.seed("Picture/" + std::string(name))}},
+                       false,
+                       {"compare", name, name, "--output", "o.png"}});
+  add("sky.exr", samples.seed("Picture/picture.exr"), {"--environment", "sky.exr"});
+}
+
+std::vector<Victim> makeVictims(const Samples& samples) {
+  std::vector<Victim> victims;
+  addScene(victims, samples);
+  addTransforms(victims, samples);
+  addVolumes(victims, samples);
+  addFlags(victims, samples);
+  return victims;
+}
+
+/// The files of a mutation in a folder, and its command.
+Words prepare(const Victim& victim, long number, const Place& place) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(number));
+  Files files = victim.files;
+  files[victim.name] = mutated(files[victim.name], random);
+  Words words = victim.words;
+  if (words[0] == "render" && random() % 4 == 0)
+    words = {"inspect", words[1], "--json"};
+  else if (words[0] == "render")
+    for (const char* word : {"--size", "8x8", "--samples", "1", "--bounces", "8", "--threads", "1",
+                             "--progress", "none", "--output", "o.png"})
+      words.emplace_back(word);
+  if (!victim.isPacked) {
+    place.fill(files);
+    return words;
+  }
+  std::vector<ZipEntry> entries;
+  for (const auto& [name, content] : files)
+    entries.push_back({"a/" + name, content});
+  place.fill({});
+  writeZip(place.folder() / "a.mrb", entries);
+  return words;
+}
+
+/// What is wrong; nothing where the file was taken or refused as it should be.
+std::string finding(const Outcome& outcome, const Files& before, const Place& place) {
+  constexpr long mostMemory = 2'000'000; // kB
+  if (outcome.hung)
+    return "hangs";
+  if (outcome.signal != 0)
+    return "dies of signal " + std::to_string(outcome.signal) + " in " +
+           culprit(outcome.frames).function;
+  if (outcome.status != 0 && outcome.status != 2 && outcome.status != 3 && outcome.status != 4)
+    return "ends with " + std::to_string(outcome.status);
+  if (outcome.peakKilobytes > mostMemory)
+    return "takes more than 2 GB";
+  const std::size_t lines = errorLines(outcome).size();
+  if (lines != (outcome.status == 0 ? 0U : 1U))
+    return std::to_string(lines) + " lines and status " + std::to_string(outcome.status);
+  Files after = place.files();
+  after.erase("o.png");
+  if (after != before || !place.temporaries().empty())
+    return "leaves or changes a file";
+  return "";
+}
+
+struct Result {
+  int status = -1;
+  std::string finding;
+};
+
+Result tryOne(const std::vector<Victim>& victims, long number, const Place& place) {
+  const Victim& victim = victims[static_cast<std::size_t>(number) % victims.size()];
+  const Words words = prepare(victim, number, place);
+  const Files before = place.files();
+  const Outcome outcome = place.run(words, {});
+  return {outcome.status, finding(outcome, before, place)};
+}
+
+std::vector<Result> tryAll(const std::vector<Victim>& victims, long first, long last,
+                           const Tools& tools) {
+  std::vector<Result> results(static_cast<std::size_t>(last - first + 1));
+  std::atomic<long> next = first;
+  std::vector<std::thread> workers;
+  for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
+    workers.emplace_back([&] {
+      const Place place(tools);
+      for (long number; (number = next++) <= last;)
+        results[static_cast<std::size_t>(number - first)] = tryOne(victims, number, place);
+    });
+  for (std::thread& worker : workers)
+    worker.join();
+  return results;
+}
+
+/// Returns whether nothing was found.
+bool print(const std::vector<Victim>& victims, const std::vector<Result>& results, long first) {
+  struct Row {
+    long runs = 0, taken = 0, refused = 0;
+  };
+  std::map<std::string, Row> rows;
+  std::map<std::string, std::vector<long>> findings;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const long number = first + static_cast<long>(i);
+    const Victim& victim = victims[static_cast<std::size_t>(number) % victims.size()];
+    const std::string name = victim.name + (victim.isPacked ? " in a .mrb" : "");
+    Row& row = rows[name];
+    ++row.runs;
+    ++(results[i].status == 0 ? row.taken : row.refused);
+    if (!results[i].finding.empty())
+      findings[name + ": " + results[i].finding].push_back(number);
+  }
+  std::puts(
+      "# Mutations of whole files\n\n| damaged | runs | taken | refused |\n|---|---|---|---|");
+  for (const auto& [name, row] : rows)
+    std::printf("| %s | %ld | %ld | %ld |\n", name.c_str(), row.runs, row.taken, row.refused);
+  std::puts(findings.empty() ? "\nNo finding." : "\n| finding | runs | first |\n|---|---|---|");
+  for (const auto& [text, numbers] : findings)
+    std::printf("| %s | %zu | %ld |\n", text.c_str(), numbers.size(), numbers.front());
+  return findings.empty();
+}
+
+/// What is needed to see a finding again by hand.
+void keep(const std::vector<Victim>& victims, long number, const Tools& tools) {
+  const Place place(tools);
+  const Victim& victim = victims[static_cast<std::size_t>(number) % victims.size()];
+  const fs::path folder = "mutation-" + std::to_string(number);
+  std::string command = "cd " + folder.string() + " && fenestra";
+  for (const std::string& word : prepare(victim, number, place))
+    command += " " + word;
+  fs::copy(place.folder(), folder,
+           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  std::printf("%s\n", command.c_str());
+}
+
+int runMutations(int count, char** words) {
+  if (count != 4) {
+    std::fputs("usage: Mutations FENESTRA FIRST LAST\n", stderr);
+    return 2;
+  }
+  const Tools tools = {fs::canonical(words[1]), FENESTRA_PRELOAD, FENESTRA_TEST_DATA};
+  const std::vector<Victim> victims = makeVictims(Samples(tools.data));
+  const long first = std::atol(words[2]), last = std::atol(words[3]);
+  if (first == last)
+    keep(victims, first, tools);
+  return print(victims, tryAll(victims, first, last, tools), first) ? 0 : 1;
+}
+
+} // namespace
+} // namespace fenestra::faults
+
+int main(int count, char** words) {
+  try {
+    return fenestra::faults::runMutations(count, words);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "Mutations: %s\n", error.what());
+    return 1;
+  }
+}

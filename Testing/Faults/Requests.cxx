@@ -1,0 +1,124 @@
+#include "Requests.h"
+
+#include <fstream>
+#include <stdexcept>
+
+#include <unistd.h>
+
+namespace fenestra::faults {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Words = std::vector<std::string>;
+
+Words joined(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+std::vector<Request> makeRequests() {
+  const Words quick = {"--size", "16x16", "--samples", "1", "--threads", "1", "--progress", "none"};
+  const Words render =
+      joined({"render", "knee.mrb", "--focus", "FemoralCartilage", "--output", "o.exr", "--output",
+              "o.png", "--surface", "o.vtp", "--stats", "s.json"},
+             quick);
+  const Words turntable = joined({"turntable", "knee.mrb", "--frames", "2", "--output", "t.png",
+                                  "--stats", "s.json", "--restart"},
+                                 quick);
+  const Words phantom = {"phantom", "cube", "--output", "p", "--size", "16"};
+  Request three = {"phantom", phantom, joined(phantom, {"--edge", "2"}), {{}}, "", ""};
+  for (const char* ending :
+       {".mrml", ".mrb", ".nrrd", ".seg.nrrd", ".vp", ".vp.json", "-roi.mrk.json"})
+    three.groups[0].push_back("p/cube" + std::string(ending));
+  return {
+      {"render",
+       render,
+       joined(render, {"--seed", "7", "--offset", "2"}),
+       {{"o.exr", "o.png", "o.vtp"}},
+       "s.json",
+       ""},
+      {"turntable",
+       turntable,
+       joined(turntable, {"--seed", "7"}),
+       {{"t_0000.png"}, {"t_0001.png"}},
+       "s.json",
+       "t.turntable.json"},
+      three,
+  };
+}
+
+} // namespace
+
+const std::vector<Request>& requests() {
+  static const std::vector<Request> made = makeRequests();
+  return made;
+}
+
+std::string bytesOf(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Files Place::filesIn(const fs::path& folder) {
+  Files files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string();
+    if (entry.is_directory())
+      files[name + "/"];
+    else
+      files[name] = bytesOf(entry.path());
+  }
+  return files;
+}
+
+Place::Place(const Tools& tools) : m_tools(tools) {
+  const fs::path memory = "/dev/shm";
+  std::string name =
+      ((::access(memory.c_str(), W_OK) == 0 ? memory : fs::temp_directory_path()) / "faults-XXXXXX")
+          .string();
+  if (!::mkdtemp(name.data()))
+    throw std::runtime_error("no folder for runs");
+  m_root = name;
+}
+
+Place::~Place() {
+  std::error_code ignored;
+  fs::remove_all(m_root, ignored);
+}
+
+void Place::fill(const Files& files) const {
+  for (const fs::path& made : {folder(), temporary()}) {
+    fs::remove_all(made);
+    fs::create_directory(made);
+  }
+  for (const auto& [name, content] : files)
+    if (name.ends_with('/'))
+      fs::create_directories(folder() / name);
+    else
+      std::ofstream(folder() / name, std::ios::binary) << content;
+}
+
+Outcome Place::run(const Words& words, const Fault& fault) const {
+  return faults::run(
+      {joined({m_tools.executable.string()}, words), folder(), temporary(), m_tools.preload},
+      fault);
+}
+
+Subject learn(const Request& request, const Tools& tools) {
+  const Place place(tools);
+  Subject subject = {&request, {}, {}, {"knee.mrb"}, {}};
+  place.fill({{"knee.mrb", bytesOf(tools.data / "knee/knee.mrb")}});
+  const Outcome first = place.run(request.before, {});
+  subject.before = place.files();
+  subject.undisturbed = place.run(request.words, {Fault::Kind::counting});
+  subject.after = place.files();
+  for (const Outcome& outcome : {first, subject.undisturbed})
+    if (outcome.status != 0)
+      throw std::runtime_error(request.name + " fails without a fault: " + outcome.errors);
+  if (subject.undisturbed.calls == 0 || subject.undisturbed.allocations == 0)
+    throw std::runtime_error("where main begins is not seen");
+  return subject;
+}
+
+} // namespace fenestra::faults

@@ -1,0 +1,91 @@
+// A whole request, from bytes to pixels: a scene's text, a line `---`, and its volume, v.nrrd; the
+// other files that it may name lie beside it. The first byte says whether there is a focus. What
+// scene and volume make together (places, boxes, cameras, majorants, paths) is met nowhere else.
+#include "Harness.h"
+#include "SceneNeighbours.h"
+
+#include "render/Render.h"
+#include "scene/Scene.h"
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace {
+
+using namespace fenestra;
+
+constexpr std::int64_t mostVoxels = 32 * 32 * 32;
+constexpr std::uint64_t mostBounces = 8;
+
+/// Asks a render to stop after half a second. Dense matter may take that long, and stopping must
+/// not.
+class Budget {
+public:
+  explicit Budget(std::atomic<bool>& stop)
+      : m_thread([this, &stop] {
+          std::unique_lock lock(m_mutex);
+          stop = !m_wake.wait_for(lock, std::chrono::milliseconds(500), [this] { return m_done; });
+        }) {}
+  ~Budget() {
+    {
+      const std::lock_guard lock(m_mutex);
+      m_done = true;
+    }
+    m_wake.notify_one();
+    m_thread.join();
+  }
+  Budget(const Budget&) = delete;
+  Budget& operator=(const Budget&) = delete;
+
+private:
+  std::mutex m_mutex;
+  std::condition_variable m_wake;
+  bool m_done = false;
+  std::thread m_thread;
+};
+
+void checkPixels(const Film& film) {
+  for (const PixelSums& pixel : film.pixels())
+    if (!pixel.mean.allFinite() || (pixel.mean < 0.0).any())
+      throw std::logic_error("a pixel that is no light");
+}
+
+void renderRequest(const SceneRequest& request) {
+  if (loadVolume(request).volume.grid.voxelCount() > mostVoxels)
+    return;
+  const Scene scene(request);
+  RenderSettings settings;
+  settings.path.bounces = mostBounces;
+  settings.samples = 1;
+  settings.threads = 1;
+  RenderMonitor monitor;
+  const Budget budget(monitor.stop);
+  checkPixels(render(scene.forRender(), settings, monitor).film);
+}
+
+bool writeNeighbours() {
+  for (const auto& [name, content] : fuzzing::sceneNeighbours())
+    fuzzing::asFile(content, name);
+  return true;
+}
+
+} // namespace
+
+FENESTRA_FUZZ(input) {
+  static const bool written = writeNeighbours();
+  if (!written || input.empty())
+    return;
+  SceneRequest request;
+  if (input[0] != '0')
+    request.focus = {"A"};
+  input.remove_prefix(1);
+  constexpr std::string_view parting = "\n---\n";
+  const std::size_t end = input.find(parting);
+  request.input = fuzzing::asFile(input.substr(0, end), "scene.mrml");
+  fuzzing::asFile(end == input.npos ? fuzzing::sceneNeighbours().at("v.nrrd")
+                                    : std::string(input.substr(end + parting.size())),
+                  "v.nrrd");
+  request.width = request.height = 4;
+  renderRequest(request);
+}
