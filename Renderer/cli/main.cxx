@@ -2,6 +2,7 @@
 #include "cli/Commands.h"
 #include "cli/Stop.h"
 #include "core/Error.h"
+#include "io/Apart.h"
 #include "io/Leftovers.h"
 #include "io/PrivateFolder.h"
 
@@ -109,6 +110,7 @@ int removeRest(int status) {
 } // namespace
 
 int main(int argc, char** argv) {
+  fenestra::serveApart(argc, argv); // does not return where this is the child
   fenestra::handleStops();
   fenestra::removeAbandonedFolders();
   return removeRest(finishOutput(run(argc, argv)));

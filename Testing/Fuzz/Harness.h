@@ -5,6 +5,7 @@
 
 #include "TemporaryFolder.h"
 #include "core/Error.h"
+#include "io/Apart.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -73,7 +74,8 @@ inline void silence() {
 /// The one function of a target: `statements` see the input as `std::string_view input`.
 #define FENESTRA_FUZZ(input)                                                                       \
   static void fuzzOne(std::string_view input);                                                     \
-  extern "C" int LLVMFuzzerInitialize(int*, char***) {                                             \
+  extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {                                   \
+    fenestra::serveApart(*argc, *argv);                                                            \
     fenestra::fuzzing::silence();                                                                  \
     return 0;                                                                                      \
   }                                                                                                \

@@ -1,54 +1,248 @@
-// Work in a process of its own: done, not done, and what would have ended this one.
+// Work in a process of its own: what it may not do, what would have ended this process, and answers
+// that are none. The jobs below run in the child, which is this executable.
 
 #include "io/Apart.h"
 
+#include "TemporaryFolder.h"
+#include "core/Error.h"
+#include "io/ApartBytes.h"
+
 #include <gtest/gtest.h>
 
+#include <array>
 #include <csignal>
 #include <cstring>
+#include <fcntl.h>
 #include <iostream>
+#include <poll.h>
 #include <stdexcept>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
 
 namespace fenestra {
 namespace {
 
-TEST(Apart, givesWhatItWasFilledWith) {
-  EXPECT_EQ(filledApart(5,
-                        [](char* place) {
-                          std::memcpy(place, "hello", 5);
-                          return true;
-                        }),
-            "hello");
-  constexpr std::size_t large = std::size_t{1} << 26;
-  const auto zeros = filledApart(large, [](char*) { return true; });
-  ASSERT_TRUE(zeros);
-  EXPECT_EQ(zeros->size(), large);
+constexpr std::uint64_t most = 1 << 20;
+constexpr std::uint64_t manyBytes = std::uint64_t{2} << 30;
+
+const ApartJob echo("test-echo", [](const std::string& question) { return question; });
+
+/// What the question names.
+std::string misbehave(const std::string& how) {
+  if (how == "throw")
+    throw std::runtime_error("no");
+  if (how == "abort")
+    std::abort();
+  if (how == "segv")
+    ::raise(SIGSEGV);
+  if (how == "exit")
+    std::_Exit(0);
+  if (how == "print")
+    std::cerr << "not for the user" << std::endl;
+  if (how == "spin")
+    while (::getpid() != 0)
+      ;
+  if (how == "sleep")
+    for (;;)
+      ::pause();
+  if (how == "take memory")
+    return std::string(3 * manyBytes / 2, 'x');
+  if (how == "number")
+    return std::to_string(::getpid());
+  constexpr int connection = 3;
+  if (how == "half a frame" && ::write(connection, "\1\0\0", 3) == 3)
+    std::_Exit(0);
+  const std::uint64_t length = how == "endless frame" ? ~std::uint64_t{0} : 100;
+  if (how.ends_with(" frame") && ::write(connection, &length, sizeof length) == sizeof length &&
+      ::write(connection, "abc", 3) == 3)
+    std::_Exit(0);
+  return how;
 }
 
-TEST(Apart, leavesThisProcessAsItWas) {
-  int here = 1;
-  EXPECT_TRUE(filledApart(1, [&here](char*) {
-    here = 2;
-    return true;
-  }));
-  EXPECT_EQ(here, 1);
+const ApartJob misbehaving("test-misbehave", misbehave, {1, manyBytes});
+
+TEST(Apart, answersOneQuestionAfterAnother) {
+  Apart child(echo);
+  EXPECT_EQ(child.ask("hello", most), "hello");
+  const std::string large(60000, 'x');
+  EXPECT_EQ(child.ask(large, most), large);
+  EXPECT_EQ(child.ask("", most), "");
+  EXPECT_EQ(child.ask(std::string(1 << 17, 'x'), most), std::nullopt);
+  EXPECT_EQ(child.ask("hello", 4), std::nullopt);
+  EXPECT_EQ(child.ask("hello", 5), "hello");
 }
 
 TEST(Apart, survivesWhateverHappensThere) {
   testing::internal::CaptureStderr();
-  EXPECT_FALSE(filledApart(8, [](char*) { return false; }));
-  EXPECT_FALSE(filledApart(8, [](char*) -> bool { throw std::runtime_error("no"); }));
-  EXPECT_FALSE(filledApart(8, [](char*) -> bool { std::abort(); }));
-  EXPECT_FALSE(filledApart(8, [](char*) {
-    ::raise(SIGSEGV);
-    return true;
-  }));
-  EXPECT_FALSE(filledApart(8, [](char*) -> bool { std::_Exit(3); }));
-  EXPECT_FALSE(filledApart(8, [](char*) {
-    std::cerr << "not for the user" << std::endl;
-    return false;
-  }));
+  testing::internal::CaptureStdout();
+  {
+    Apart child(misbehaving);
+    EXPECT_EQ(child.ask("print", most), "print");
+    EXPECT_EQ(child.ask("throw", most), "");
+    for (const char* how : {"abort", "segv", "exit", "spin", "sleep", "half a frame",
+                            "endless frame", "short frame"}) {
+      EXPECT_EQ(child.ask(how, most), std::nullopt) << how;
+      EXPECT_EQ(child.ask("fine", most), "fine") << "after " << how;
+    }
+  }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__clang__) // sanitizers map terabytes
+TEST(Apart, leavesLittleMemory) {
+  Apart child(misbehaving);
+  EXPECT_EQ(child.ask("take memory", 2 * manyBytes), "");
+}
+#endif
+
+/// One word of what the child may do, for the test below.
+std::string allowed(const std::string& path) {
+  std::string found;
+  if (::open(path.c_str(), O_WRONLY | O_CREAT, 0600) >= 0)
+    found += "made a file; ";
+  for (int file = 0; file < 1024; ++file)
+    if (file > 3 && ::fcntl(file, F_GETFD) >= 0)
+      found += "has file " + std::to_string(file) + "; ";
+  int files = 0;
+  while (::open("/dev/null", O_RDONLY) >= 0)
+    ++files;
+  if (files > 32)
+    found += "opens " + std::to_string(files) + " files; ";
+  for (const auto limit : {RLIMIT_CORE, RLIMIT_FSIZE}) {
+    rlimit now{};
+    ::getrlimit(limit, &now);
+    if (now.rlim_max != 0)
+      found += "may write; ";
+  }
+  sigset_t blocked;
+  ::sigprocmask(SIG_SETMASK, nullptr, &blocked);
+  struct sigaction term {};
+  ::sigaction(SIGTERM, nullptr, &term);
+  if (::sigismember(&blocked, SIGINT) || term.sa_handler != SIG_DFL)
+    found += "has signals of its parent's; ";
+  if (::getpgrp() != ::getpid())
+    found += "is in its parent's group; ";
+  return found + "no more";
+}
+
+const ApartJob allowing("test-allowed", allowed);
+
+TEST(Apart, inheritsNothingAndMayChangeNothing) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "made";
+  const int file = ::open("/dev/null", O_RDONLY); // inherited by what does not close it
+  sigset_t blocked, before;
+  ::sigemptyset(&blocked);
+  ::sigaddset(&blocked, SIGINT);
+  ::pthread_sigmask(SIG_BLOCK, &blocked, &before);
+  const auto handler = ::signal(SIGTERM, SIG_IGN);
+  Apart child(allowing);
+  std::string found = child.ask(path, most).value_or("nothing");
+  ::signal(SIGTERM, handler);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  ::close(file);
+  // Kernels without Landlock let it make one, which stays empty.
+  if (const std::string made = "made a file; "; found.starts_with(made)) {
+    EXPECT_EQ(std::filesystem::file_size(path), 0u);
+    found = found.substr(made.size());
+  }
+  EXPECT_EQ(found, "no more");
+}
+
+TEST(Apart, saysThatNoProcessCanBeStarted) {
+  rlimit before{};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{0, before.rlim_max};
+  Apart child(echo);
+  ::setrlimit(RLIMIT_NOFILE, &none);
+  std::string line;
+  try {
+    child.ask("hello", most);
+  } catch (const Error& error) {
+    line = error.kind() == ErrorKind::output ? error.what() : "of another kind";
+  }
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_EQ(line, "memory: no process can be started to read files in; close other programs");
+  EXPECT_EQ(child.ask("hello", most), "hello");
+}
+
+TEST(Apart, worksBesideOtherThreads) {
+  std::vector<std::thread> threads;
+  std::array<int, 8> right{};
+  for (int& count : right)
+    threads.emplace_back([&count] {
+      for (int i = 0; i < 4; ++i) {
+        Apart child(echo);
+        count += child.ask(std::to_string(i), most) == std::to_string(i);
+      }
+    });
+  for (std::thread& thread : threads)
+    thread.join();
+  for (const int count : right)
+    EXPECT_EQ(count, 4);
+}
+
+/// A process that asks, says its child's number, and has it sleep; then it is killed.
+TEST(Apart, endsWithItsParent) {
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    Apart child(misbehaving);
+    const int number = std::stoi(child.ask("number", most).value_or("0"));
+    if (::write(pipe[1], &number, sizeof number) == sizeof number)
+      child.ask("sleep", most);
+    ::_exit(0);
+  }
+  pid_t child = 0;
+  ASSERT_EQ(::read(pipe[0], &child, sizeof child), ssize_t{sizeof child});
+  const int process = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
+  ASSERT_GE(process, 0);
+  ::kill(parent, SIGKILL);
+  ::waitpid(parent, nullptr, 0);
+  pollfd ended{process, POLLIN, 0};
+  constexpr int patience = 60'000; // ms; it would sleep for ever
+  EXPECT_EQ(::poll(&ended, 1, patience), 1);
+  ::close(process);
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+}
+
+TEST(AnswerReader, givesWhatWasPut) {
+  AnswerWriter writer;
+  writer.put("text");
+  writer.put(std::vector<double>{1.5, -2.0});
+  writer.put("");
+  writer.put(std::vector<double>{});
+  AnswerReader reader(writer.bytes());
+  EXPECT_EQ(reader.text(), "text");
+  EXPECT_EQ(reader.numbers(), (std::vector<double>{1.5, -2.0}));
+  EXPECT_EQ(reader.text(), "");
+  EXPECT_FALSE(reader.atEnd());
+  EXPECT_TRUE(reader.numbers().empty());
+  EXPECT_TRUE(reader.atEnd());
+}
+
+TEST(AnswerReader, trustsNoByte) {
+  AnswerWriter writer;
+  writer.put(std::vector<double>{1.0, 2.0});
+  const std::string& whole = writer.bytes();
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_THROW(AnswerReader(whole.substr(0, length)).numbers(), std::runtime_error) << length;
+  for (const std::uint64_t count : {std::uint64_t{17}, std::uint64_t{1} << 61, ~std::uint64_t{0}}) {
+    std::string changed = whole;
+    std::memcpy(changed.data(), &count, sizeof count);
+    EXPECT_THROW(AnswerReader(changed).numbers(), std::runtime_error) << count;
+    EXPECT_THROW(AnswerReader(changed).text(), std::runtime_error) << count;
+  }
+  AnswerWriter infinite;
+  infinite.put(std::vector<double>{std::numeric_limits<double>::infinity()});
+  EXPECT_THROW(AnswerReader(infinite.bytes()).numbers(), std::runtime_error);
 }
 
 } // namespace

@@ -1,39 +1,57 @@
 #pragma once
-// What a DICOM file says of its image, and where its voxels are. For io's own sources. GDCM's
-// parser is left out, for it takes memory for whatever length a file declares and ends the process
-// where a file is damaged; its decompressors serve DicomPixels.h.
+// What DICOM files say of their images, and their voxels, read by GDCM in a process of its own:
+// GDCM takes memory for whatever length a file declares, and ends its process where a file is
+// damaged. For io's own sources.
+
+#include "io/Apart.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fenestra {
 
-/// A stretch of the file.
-struct DicomFragment {
-  std::uint64_t begin = 0, length = 0;
-};
-
 struct DicomHeader {
   std::string seriesUid, seriesNumber, seriesDescription, modality;
-  std::string transferSyntax, photometric;
+  std::string photometric;
   std::vector<double> position;     ///< ImagePositionPatient: of the first voxel's centre, LPS mm
   std::vector<double> orientation;  ///< ImageOrientationPatient: along a row, along a column; LPS
   std::vector<double> pixelSpacing; ///< mm between rows, between columns
   std::vector<double> slope, intercept; ///< one number each, or missing
-  unsigned rows = 0, columns = 0, samples = 1;
+  unsigned rows = 0, columns = 0, samples = 1, frames = 1;
   unsigned bits = 0, bitsStored = 0, highBit = 0, isSigned = 0; ///< of a voxel
-  std::uint64_t frames = 1;
-  bool bigEndian = false;            ///< the voxels are
-  bool compressed = false;           ///< into fragments
-  std::vector<DicomFragment> pixels; ///< one where they are not compressed, or none
-  bool whole = false;                ///< all lengths lie within the file, to its end
+  bool image = false;                                           ///< its kind of object has one
+  bool compressed = false;                                      ///< its voxels are
+  bool whole = false; ///< what comes before the voxels can be read
 };
 
-/// Nothing where the file cannot be read or is not DICOM (its preamble and "DICM" are missing).
-/// `whole` is false where it is damaged, truncated, or deflated as a whole.
-std::optional<DicomHeader> readDicomHeader(const std::filesystem::path& path);
+/// Objects without an image (structures, plans, reports) have no rows.
+inline bool isImage(const DicomHeader& header) {
+  return header.image || header.rows > 0;
+}
+
+/// One child process for the files of a folder.
+class DicomFiles {
+public:
+  DicomFiles();
+
+  /// Nothing where the file cannot be read or is not DICOM (its preamble and "DICM" are missing).
+  /// `whole` is false where it is damaged, or deflated as a whole. Throws Error (input) where
+  /// reading breaks the child or takes more than it may.
+  std::optional<DicomHeader> header(const std::filesystem::path& path);
+
+  /// rows * columns voxels of bits / 8 bytes, little-endian, as they are stored. Throws Error
+  /// (input) where there are not as many.
+  std::string voxels(const std::filesystem::path& path, const DicomHeader& header);
+
+private:
+  Apart m_child;
+};
+
+/// The header in what the child answered, which may be anything: then std::runtime_error.
+DicomHeader dicomHeader(std::string_view answer);
 
 } // namespace fenestra

@@ -1,9 +1,10 @@
 #pragma once
-// The voxels of one DICOM slice. For io's own sources.
+// From the stored voxels of one DICOM slice to scalars. For io's own sources.
 
 #include "io/medical/DicomHeader.h"
 
 #include <filesystem>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -15,9 +16,8 @@ using DicomSamples = std::variant<std::vector<std::int32_t>, std::vector<double>
 /// it.
 void checkDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
 
-/// Rescaled: std::int32_t, or double where that has fractions or is larger. Takes what
-/// checkDicomPixels lets pass. What is compressed goes through GDCM's decompressors, and its
-/// codestream must be of the size that the header says. Throws Error (input).
-DicomSamples readDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
+/// Rescaled: std::int32_t, or double where that has fractions or is larger. Takes a header that
+/// checkDicomPixels lets pass, and what DicomFiles::voxels gives for it.
+DicomSamples rescaledVoxels(const DicomHeader& header, const std::string& voxels);
 
 } // namespace fenestra

@@ -73,10 +73,11 @@ std::string listed(const std::vector<const DicomSeries*>& series) {
 } // namespace
 
 std::vector<DicomSeries> findDicomSeries(const Path& folder) {
+  DicomFiles files;
   std::map<std::string, DicomSeries> byUid;
   for (const Path& file : candidates(folder)) {
-    const auto header = readDicomHeader(file);
-    if (!header || header->seriesUid.empty() || (header->whole && header->pixels.empty()))
+    const auto header = files.header(file);
+    if (!header || header->seriesUid.empty() || (header->whole && !isImage(*header)))
       continue;
     DicomSeries& series = byUid[header->seriesUid];
     if (series.files.empty())

@@ -30,15 +30,15 @@ std::string millimetres(double length) {
 // ---- one file
 // ----------------------------------------------------------------------------------
 
-Slice openSlice(const Path& path) {
-  const auto header = readDicomHeader(path);
+Slice openSlice(DicomFiles& files, const Path& path) {
+  const auto header = files.header(path);
   const auto refuse = [&](const char* what) { throw inputError(path.string(), what); };
   if (!header)
     refuse("is not a DICOM file; name a volume file or a DICOM series");
   const DicomHeader& h = *header;
   if (!h.whole)
     refuse("is damaged, truncated or deflated; export the series again");
-  if (h.pixels.empty())
+  if (!isImage(h))
     refuse("PixelData: there is none; name a series of images");
   if (h.frames != 1)
     refuse("NumberOfFrames: several in one file are not read; save the volume in Slicer as .nrrd "
@@ -173,7 +173,7 @@ Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step
   return {Size3(h.columns, h.rows, static_cast<std::int64_t>(slices.size())), indexToWorld};
 }
 
-VoxelStore readAll(const std::vector<Slice>& slices) {
+VoxelStore readAll(DicomFiles& files, const std::vector<Slice>& slices) {
   const DicomHeader& first = slices.front().header;
   VoxelStore all(std::size_t{first.rows} * first.columns * slices.size());
   for (const Slice& slice : slices)
@@ -182,14 +182,15 @@ VoxelStore readAll(const std::vector<Slice>& slices) {
           const std::span block(samples);
           all.append(block, survey(block));
         },
-        readDicomPixels(slice.path, slice.header));
+        rescaledVoxels(slice.header, files.voxels(slice.path, slice.header)));
   return all;
 }
 
-Volume readSlices(const std::vector<Path>& files, const std::string& name) {
+Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
+  DicomFiles files;
   std::vector<Slice> slices;
-  for (const Path& file : files)
-    slices.push_back(openSlice(file));
+  for (const Path& path : paths)
+    slices.push_back(openSlice(files, path));
   if (slices.empty())
     throw inputError(name, "names no DICOM file; name the series' files");
   checkAlike(slices);
@@ -201,7 +202,7 @@ Volume readSlices(const std::vector<Path>& files, const std::string& name) {
   std::vector<std::string> warnings;
   const Vec3 step = stepOf(slices, axes, warnings);
   const Grid grid = gridOf(slices, axes, step);
-  Volume volume = makeVolume(name, grid, readAll(slices));
+  Volume volume = makeVolume(name, grid, readAll(files, slices));
   for (const std::string& warning : warnings)
     volume.warnings.push_back(std::string(name).append(": ").append(warning));
   return volume;

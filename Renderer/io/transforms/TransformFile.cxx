@@ -6,6 +6,8 @@
 #include "io/transforms/TransformMatrix.h"
 #include "io/transforms/TransformRecords.h"
 
+#include <fstream>
+
 namespace fenestra {
 namespace {
 
@@ -38,20 +40,26 @@ void checkInvertible(const Path& path, const Affine& map) {
     throw inputError(path.string(), "Parameters: the map cannot be inverted; save one that can");
 }
 
-std::vector<TransformRecord> readRecords(const Path& path) {
+void checkExtension(const Path& path) {
   const std::string extension = lowerExtension(path);
-  if (extension == ".tfm" || extension == ".txt")
-    return readTransformText(path);
-  if (extension == ".h5" || extension == ".hdf5")
-    return readTransformHdf5(path);
-  if (extension == ".mat")
-    return readTransformMatlab(path);
+  for (const char* known : {".tfm", ".txt", ".h5", ".hdf5", ".mat"})
+    if (extension == known)
+      return;
   for (const char* image : {".nrrd", ".nhdr", ".nii", ".gz", ".mha", ".mhd"})
     if (extension == image)
       throw inputError(path.string(), "is a displacement field, which is not linear; harden it in "
                                       "Slicer (Data module, Harden transform) and save again");
   throw inputError(path.string(), "has no known extension of a transform; name a .tfm, .txt, .h5, "
                                   ".hdf5 or .mat file");
+}
+
+/// ITK would open whatever a text names.
+void checkNamesNoFile(const Path& path) {
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line);)
+    if (line.find("ComponentTransformFile") != std::string::npos)
+      throw inputError(path.string(), "ComponentTransformFile: further files are not read; save "
+                                      "the composite in one file");
 }
 
 } // namespace
@@ -64,7 +72,9 @@ Affine readLinearTransform(const Path& path, TransformSense sense) {
                                     "in Slicer (Data module, Harden transform) and save again");
   try {
     const Quiet quiet;
-    Affine map = composed(path, readRecords(path));
+    checkExtension(path);
+    checkNamesNoFile(path);
+    Affine map = composed(path, readTransformRecords(path));
     checkInvertible(path, map);
     if (sense == TransformSense::fromParent)
       map = map.inverse();
@@ -75,7 +85,8 @@ Affine readLinearTransform(const Path& path, TransformSense sense) {
     return ras;
   } catch (const Error&) {
     throw;
-  } catch (const std::exception&) { // ITK's, of matrices that are not what their class says
+  } catch (const std::exception&) { // ITK's, of matrices that are not what their class says, and of
+                                    // answers that are none
     throwDamagedTransform(path);
   }
 }

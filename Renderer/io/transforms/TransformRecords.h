@@ -1,10 +1,11 @@
 #pragma once
-// ITK's transform files as they are: a list of type names and numbers. For io's own sources. They
-// are not read by ITK's classes, which take memory for whatever sizes a file declares, open further
-// files that it names, and do not check how many parameters there are.
+// ITK's transform files as they are: a list of type names and numbers. For io's own sources. ITK
+// reads them in a process of its own, for it and HDF5 take memory for whatever sizes a file
+// declares, and abort or go astray where it is damaged; what the numbers mean is told here.
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fenestra {
@@ -15,20 +16,16 @@ struct TransformRecord {
   std::vector<double> fixed;      ///< the centre, mostly
 };
 
-/// More parameters than any linear transform has.
-inline constexpr std::size_t mostParameters = 64;
-inline constexpr std::size_t mostRecords = 256;
+/// Of a .tfm, .txt, .mat, .h5 or .hdf5 file. Throws Error (input) where the file is damaged, takes
+/// more to read than it may, or holds what is not linear and of three axes; Error (output) where no
+/// process can be started.
+std::vector<TransformRecord> readTransformRecords(const std::filesystem::path& path);
 
-/// A record without its numbers from "Type_scalar_axes_axes"; throws Error (input) unless the
-/// type is linear and of three axes.
-TransformRecord transformRecord(const std::filesystem::path& path, const std::string& name);
+/// The records of what the process answered, which may be anything; throws as above.
+std::vector<TransformRecord> transformRecords(const std::filesystem::path& path,
+                                              std::string_view answer);
 
-/// Each throws Error (input) where the file is damaged or holds what is not linear.
-std::vector<TransformRecord> readTransformText(const std::filesystem::path& path);   // .tfm .txt
-std::vector<TransformRecord> readTransformMatlab(const std::filesystem::path& path); // .mat
-std::vector<TransformRecord> readTransformHdf5(const std::filesystem::path& path);   // .h5 .hdf5
-
-/// What all of them say of a file that makes no sense.
+/// What all say of a file that makes no sense.
 [[noreturn]] void throwDamagedTransform(const std::filesystem::path& path);
 
 } // namespace fenestra
