@@ -3,7 +3,7 @@
 #include "core/Error.h"
 #include "io/Apart.h"
 #include "io/ApartBytes.h"
-#include "io/InputFile.h"
+#include "io/Inputs.h"
 #include "io/ShownText.h"
 #include "io/transforms/TransformMatrix.h"
 
