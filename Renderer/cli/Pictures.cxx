@@ -1,5 +1,6 @@
 #include "cli/Pictures.h"
 
+#include "cli/FileNames.h"
 #include "cli/Version.h"
 #include "core/Error.h"
 #include "io/Inputs.h"
@@ -88,9 +89,10 @@ void checkMemory(const SceneRequest& scene) {
   throw outputError("--size", line.str());
 }
 
-std::string shellCommand(const std::vector<std::string>& arguments) {
+std::string shellCommand(const std::vector<std::string>& arguments, const RenderOptions& options) {
   std::string line = "fenestra";
-  for (const std::string& argument : arguments)
+  for (const std::string& argument :
+       relativeArguments(arguments, renderSyntax.flags, options.outputs.front().parent_path()))
     line.append(" ").append(quoted(argument));
   return line;
 }

@@ -16,8 +16,9 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs);
 /// Throws Error (output) where memory cannot hold the picture.
 void checkMemory(const SceneRequest& scene);
 
-/// `fenestra arguments…` as a shell takes it back.
-std::string shellCommand(const std::vector<std::string>& arguments);
+/// `fenestra arguments…` as a shell takes it back in the folder of the first picture, as seen from
+/// which files are named.
+std::string shellCommand(const std::vector<std::string>& arguments, const RenderOptions& options);
 
 /// Writes options.surface, if it is wanted, while others work; the arguments must live until the
 /// result is there, which throws Error (output).

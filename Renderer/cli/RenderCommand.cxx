@@ -1,6 +1,7 @@
 #include "cli/Commands.h"
 
 #include "cli/CommandLine.h"
+#include "cli/FileNames.h"
 #include "cli/Machine.h"
 #include "cli/Pictures.h"
 #include "cli/PresetFlags.h"
@@ -99,12 +100,14 @@ int renderScene(const RenderOptions& options, const std::string& command, Output
 
   if (options.stats) {
     const Stopwatch measure;
-    if (!isStopped) // which does not wait for measures
+    if (!monitor.stop) // which does not wait for measures
       stats.focus = measureFocus(scene, options.settings.seed);
     stats.measure = measure.seconds();
     describe(scene, stats);
     stats.preset = options.preset;
     stats.total = total.seconds();
+    for (std::string& file : stats.files)
+      file = relativeName(file, options.stats->parent_path());
     outputs.write(*options.stats, statsJson(stats, result));
   }
   if (options.returnValues)
@@ -133,7 +136,7 @@ int renderCommand(int argc, char** argv, int first) {
   Outputs outputs;
   declareOutputs(options, outputs);
   checkMemory(options.scene);
-  return renderScene(options, shellCommand({argv + 1, argv + argc}), outputs);
+  return renderScene(options, shellCommand({argv + 1, argv + argc}, options), outputs);
 }
 
 } // namespace fenestra

@@ -94,8 +94,8 @@ private:
 
   void publish(const RenderResult& result, bool last) {
     try {
-      writePictures(*m_options, *m_scene, result, shellCommand(m_shown.flags.arguments()),
-                    m_outputs);
+      writePictures(*m_options, *m_scene, result,
+                    shellCommand(m_shown.flags.arguments(), *m_options), m_outputs);
       m_outputs.commit(Outputs::Durability::none); // another one follows soon
     } catch (const Error& error) {                 // as of a disk that is full now
       m_published.emplace();

@@ -76,6 +76,10 @@ void handleStops() {
   }
 }
 
+bool stopRequested() {
+  return firstSignal != 0;
+}
+
 int stopStatus() {
   return firstSignal == SIGPIPE ? static_cast<int>(ErrorKind::output) : stoppedStatus;
 }

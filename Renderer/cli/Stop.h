@@ -13,6 +13,9 @@ inline constexpr int stoppedStatus = 5;
 /// From now on those signals are handled: before anything is read or made.
 void handleStops();
 
+/// Whether any of those signals has come.
+bool stopRequested();
+
 /// Exit status of a command that was asked to stop: stoppedStatus, or that of an output error where
 /// nobody reads standard output.
 int stopStatus();

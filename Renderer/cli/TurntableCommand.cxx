@@ -202,10 +202,12 @@ int turntableCommand(int argc, char** argv, int first) {
   declareFrames(options, record, outputs);
 
   const Stopwatch total;
-  Turntable turntable(options, record, monitor, outputs, shellCommand({argv + 1, argv + argc}));
+  Turntable turntable(options, record, monitor, outputs,
+                      shellCommand({argv + 1, argv + argc}, options.render));
   const StopInstead stopInstead(monitor.stop); // a frame under way is given up
   turntable.run();
-  if (options.render.stats)
+  const bool hasNews = turntable.rendered() > 0 || record.finishedCount() == options.frames;
+  if (options.render.stats && hasNews) // else they would be of pictures that are not there
     outputs.write(*options.render.stats, turntable.statsJson(total.seconds()));
   outputs.commit();
   report(options, record, turntable.rendered(), total.seconds());

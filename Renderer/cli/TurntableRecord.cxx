@@ -1,5 +1,6 @@
 #include "cli/TurntableRecord.h"
 
+#include "cli/FileNames.h"
 #include "cli/Version.h"
 #include "core/Error.h"
 #include "io/Inputs.h"
@@ -22,14 +23,14 @@ std::filesystem::path recordPath(const TurntableOptions& options) {
 }
 
 /// What the frames' pictures depend on, as arguments.
-json requestedArguments(const FlagValues& flags) {
+json requestedArguments(const FlagValues& flags, const std::filesystem::path& folder) {
   FlagValues request = flags;
   for (const char* name : {"threads", "progress", "stats", "restart"})
     request.remove(name);
   for (const char* name : {"frames", "degrees"})
     if (!request.has(name))
       request.add(name, findFlag(turntableSyntax().flags, name)->standard);
-  return request.arguments();
+  return relativeArguments(request.arguments(), turntableSyntax().flags, folder);
 }
 
 template <typename T>
@@ -39,22 +40,24 @@ std::uint64_t digest(const std::vector<T>& voxels) {
 }
 
 /// A file as it is now, so that another one of its name is noticed.
-json fileState(const std::filesystem::path& path) {
+json fileState(const std::filesystem::path& path, const std::filesystem::path& folder) {
   std::error_code none;
   const auto bytes = std::filesystem::file_size(path, none);
   const auto modified = std::filesystem::last_write_time(path, none);
-  return {
-      {"file", path.string()}, {"bytes", bytes}, {"modified", modified.time_since_epoch().count()}};
+  return {{"file", relativeName(path.string(), folder)},
+          {"bytes", bytes},
+          {"modified", modified.time_since_epoch().count()}};
 }
 
-json inputStates(const TurntableOptions& options, const Scene& scene) {
+json inputStates(const TurntableOptions& options, const Scene& scene,
+                 const std::filesystem::path& folder) {
   std::set<std::filesystem::path> files(options.render.inputs.begin(), options.render.inputs.end());
   for (const std::string& file : scene.files())
     files.insert(file);
   json states = json::array();
   for (const std::filesystem::path& file : files) // what is in an archive changes with it
     if (std::filesystem::is_regular_file(file))
-      states.push_back(fileState(file));
+      states.push_back(fileState(file, folder));
   return states;
 }
 
@@ -143,7 +146,8 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
 
 TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
     : m_path(recordPath(options)),
-      m_request{{"version", versionText}, {"arguments", requestedArguments(flags)}},
+      m_request{{"version", versionText},
+                {"arguments", requestedArguments(flags, m_path.parent_path())}},
       m_finished(static_cast<std::size_t>(options.frames), false) {
   if (options.restart)
     return;
@@ -194,7 +198,7 @@ void TurntableRecord::read(const TurntableOptions& options) {
 }
 
 void TurntableRecord::setInputs(const TurntableOptions& options, const Scene& scene) {
-  m_request["inputs"] = inputStates(options, scene);
+  m_request["inputs"] = inputStates(options, scene, m_path.parent_path());
   m_request["voxels"] = voxelDigests(scene);
   if (!m_recorded.is_null())
     requireSame(m_recorded, m_request, m_path.string());

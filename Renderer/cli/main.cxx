@@ -113,5 +113,6 @@ int main(int argc, char** argv) {
   fenestra::serveApart(argc, argv); // does not return where this is the child
   fenestra::handleStops();
   fenestra::removeAbandonedFolders();
-  return removeRest(finishOutput(run(argc, argv)));
+  const int status = removeRest(finishOutput(run(argc, argv)));
+  return status == 0 && fenestra::stopRequested() ? fenestra::stopStatus() : status;
 }

@@ -53,7 +53,11 @@ Process::Process(const Arguments& arguments, const std::filesystem::path& folder
   if (m_id < 0)
     throw std::runtime_error("no process");
   if (m_id == 0)
-    become(arguments, folder, in[0], reader == Reader::test ? m_out : unread[1], m_err);
+    become(arguments, folder, in[0],
+           reader == Reader::test     ? m_out
+           : reader == Reader::nobody ? unread[1]
+                                      : ::open("/dev/full", O_WRONLY),
+           m_err);
   ::close(in[0]);
   ::close(unread[1]);
   m_in = in[1];

@@ -16,8 +16,8 @@ struct Outcome {
   double seconds = 0.0; ///< waited for
 };
 
-/// Who reads a process's standard output.
-enum class Reader { test, nobody };
+/// Who reads a process's standard output; a full disk takes nothing of it.
+enum class Reader { test, nobody, fullDisk };
 
 /// `fenestra arguments…`, running in `folder` from construction on; killed by the destructor.
 class Process {

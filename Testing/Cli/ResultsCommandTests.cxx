@@ -1,0 +1,102 @@
+// What becomes of results: where they go, what they replace, and what they tell of their inputs.
+
+#include "CommandTesting.h"
+#include "io/pictures/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/stat.h>
+
+namespace fenestra {
+namespace {
+
+class ResultsCommand : public SmallScene {
+protected:
+  Outcome turn(Arguments arguments = {}) const {
+    arguments.insert(arguments.begin(), {"turntable", "volume.nrrd", "--size", "8x8", "--samples",
+                                         "1", "--frames", "2", "--output", "turn.png"});
+    return run(arguments, folder.path());
+  }
+};
+
+TEST_F(ResultsCommand, StatsGoToStandardOutputBehindWhatWasSaid) {
+  const Outcome outcome = renderWith({"--output", "a.png", "--stats", "/dev/stdout"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::size_t json = outcome.out.find('{');
+  ASSERT_NE(json, std::string::npos) << outcome.out;
+  EXPECT_TRUE(nlohmann::json::parse(outcome.out.substr(json, outcome.out.rfind('}') + 1 - json))
+                  .contains("samplesPerPixel"));
+  struct stat status = {};
+  ASSERT_EQ(::lstat("/dev/stdout", &status), 0);
+  EXPECT_TRUE(S_ISLNK(status.st_mode));
+}
+
+TEST_F(ResultsCommand, StandardOutputThatIsFullIsAnOutputError) {
+  for (const Arguments& arguments : std::initializer_list<Arguments>{
+           {"--help"},
+           {"--version"},
+           {"--xml"},
+           {"inspect", "volume.nrrd"},
+           {"volume.nrrd", "--size", "8x8", "--samples", "1", "--output", "a.png"}}) {
+    const Outcome outcome = Process(arguments, folder.path(), Reader::fullDisk).wait();
+    EXPECT_EQ(outcome.status, 4) << arguments.front();
+    EXPECT_TRUE(outcome.err.starts_with("fenestra: standard output: cannot be written"))
+        << outcome.err;
+  }
+  EXPECT_EQ(readImage(folder / "a.png").width, 8);
+}
+
+TEST_F(ResultsCommand, PicturesSayTheirCommandAsSeenFromTheirFolder) {
+  std::filesystem::create_directories(folder / "Doe^John_19501231/dicom");
+  std::filesystem::create_directory(folder / "Doe^John_19501231/pictures");
+  std::filesystem::rename(folder / "volume.nrrd", folder / "Doe^John_19501231/dicom/volume.nrrd");
+  const std::string patient = (folder / "Doe^John_19501231").string();
+  const Outcome outcome =
+      run({patient + "/dicom/volume.nrrd", "--size", "8x8", "--samples=1",
+           "--output=" + patient + "/pictures/a.exr", "--stats", patient + "/pictures/a.json"},
+          folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::filesystem::path pictures = folder / "Doe^John_19501231/pictures";
+  EXPECT_EQ(readImage(pictures / "a.exr").header.at("command"),
+            "fenestra ../dicom/volume.nrrd --size 8x8 --samples=1 --output=a.exr --stats a.json");
+  EXPECT_EQ(nlohmann::json::parse(bytesOf(pictures / "a.json"))["filesRead"],
+            nlohmann::json::array({"../dicom/volume.nrrd"}));
+  for (const char* file : {"a.exr", "a.json"})
+    EXPECT_EQ(bytesOf(pictures / file).find("Doe^John"), std::string::npos) << file;
+}
+
+TEST_F(ResultsCommand, TurntablesRenderDamagedFramesAgain) {
+  ASSERT_EQ(turn().status, 0);
+  const std::string whole = bytesOf(folder / "turn_0000.png");
+  for (const std::size_t bytes : {std::size_t{0}, std::size_t{50}}) {
+    std::filesystem::resize_file(folder / "turn_0000.png", bytes);
+    const Outcome again = turn();
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_NE(again.out.find("1 rendered now"), std::string::npos) << again.out;
+    EXPECT_EQ(bytesOf(folder / "turn_0000.png"), whole);
+  }
+}
+
+TEST_F(ResultsCommand, TurntablesReplaceNothingThatWasPutInAFramesPlace) {
+  ASSERT_EQ(turn().status, 0);
+  const std::string edited = bytesOf(folder / "turn_0000.png") + "edited";
+  folder.write("turn_0000.png", edited);
+  const Outcome again = turn();
+  EXPECT_EQ(again.status, 2);
+  EXPECT_NE(again.err.find("turn_0000.png: is not the frame that was recorded"), std::string::npos)
+      << again.err;
+  EXPECT_EQ(bytesOf(folder / "turn_0000.png"), edited);
+}
+
+TEST_F(ResultsCommand, ARecordThatIsNoneIsNotReplaced) {
+  folder.write("turn.turntable.json", "somebody's notes");
+  const Outcome outcome = turn({"--restart"});
+  EXPECT_EQ(outcome.status, 2) << outcome.err;
+  EXPECT_EQ(bytesOf(folder / "turn.turntable.json"), "somebody's notes");
+  folder.write("turn.turntable.json", // as earlier versions wrote it
+               R"({"request": {"version": "0.1", "arguments": []}, "finished": []})");
+  EXPECT_EQ(turn({"--restart"}).status, 0);
+}
+
+} // namespace
+} // namespace fenestra
