@@ -40,7 +40,7 @@ inline std::string writingMend(int code, const std::string& other) {
   case ENOSPC:
   case EDQUOT:
   case EFBIG:
-    return "free some space, or name one on another disk";
+    return "free some space, or choose another disk";
   case ENAMETOOLONG:
     return "choose a shorter name";
   default:

@@ -89,7 +89,7 @@ TEST(SceneFiles, unpacksNothingBeforeItIsAskedFor) {
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
     files.locate("big");
     EXPECT_FALSE(std::filesystem::is_empty(temporary.path()));
-    removePrivateFolders(); // what a signal does
+    removeLeftovers(); // what a signal does
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
   }
   unsetenv("TMPDIR");
@@ -128,6 +128,24 @@ TEST(SceneFiles, refusesArchivesThatAreNotSlicers) {
   const std::string bytes = bytesOf(folder / "whole.mrb");
   const auto half = folder.write("half.mrb", bytes.substr(0, bytes.size() / 2));
   expectRefused(half, "no whole archive", [&] { SceneFiles files(half); });
+}
+
+TEST(SceneFiles, unpacksNoMoreThanASceneHolds) {
+  const TemporaryFolder folder;
+  std::mt19937 random(1);
+  std::string noise(2'000'000, '\0');
+  for (char& byte : noise)
+    byte = static_cast<char>(random());
+  writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}, {"big", noise}});
+  std::string bytes = bytesOf(folder / "a.mrb");
+  const std::size_t entry = bytes.rfind("PK\1\2"); // of the last file in the central directory
+  ASSERT_EQ(bytes.substr(entry + 46, 3), "big");
+  for (const char* size : {"\0\0\0\x60", "\0\0\0\x70"}) { // 1.6 and 1.9 GB
+    bytes.replace(entry + 24, 4, size, 4);
+    folder.write("b.mrb", bytes);
+    SceneFiles files(folder / "b.mrb");
+    expectRefused(folder / "b.mrb", "more bytes than a scene packs", [&] { files.locate("big"); });
+  }
 }
 
 TEST(SceneFiles, refusesDamagedAndBoundlessEntries) {

@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/ShownText.h"
+#include "io/SystemCalls.h"
 
 #include <zip.h>
 
@@ -18,6 +19,12 @@ constexpr std::int64_t mostEntries = 1'000'000;
 
 /// Deflate packs at most 1032 bytes into one; what claims more is no archive of Slicer's.
 constexpr std::uint64_t greatestRatio = 1032;
+
+/// Bytes that all files of an archive may unpack to: a volume of zeros packs well, a whole scene
+/// does not.
+std::uint64_t mostUnpacked(std::uint64_t archiveBytes) {
+  return (std::uint64_t{1} << 30) + 100 * archiveBytes;
+}
 
 bool leadsOut(const std::filesystem::path& name) {
   return name.is_absolute() ||
@@ -36,6 +43,7 @@ struct SceneArchive::Zip {
 
   std::unique_ptr<zip_t, Close> archive;
   std::string source;
+  std::uint64_t unpackable = 0; ///< bytes that may still be extracted
 
   Error error(const std::filesystem::path& file, const std::string& what) const {
     return inputError(source, oneLine(file.string()) + " in it " + what);
@@ -82,9 +90,13 @@ struct SceneArchive::Zip {
 SceneArchive::SceneArchive(const std::filesystem::path& path) : m_zip(std::make_unique<Zip>()) {
   int failure = 0;
   const std::string& source = m_zip->source = path.string();
+  errno = 0;
   zip_t* zip = zip_open(path.c_str(), ZIP_RDONLY, &failure);
+  if (!zip && (failure == ZIP_ER_OPEN || failure == ZIP_ER_READ) && errno != 0)
+    throw readingError(path, errno, "check its permissions");
   if (!zip)
     throw inputError(source, "is no whole archive; save the scene again, or name its .mrml");
+  m_zip->unpackable = mostUnpacked(std::filesystem::file_size(path));
   m_zip->archive.reset(zip);
   const zip_int64_t count = zip_get_num_entries(zip, 0);
   if (count > mostEntries)
@@ -108,19 +120,29 @@ SceneArchive::~SceneArchive() = default;
 void SceneArchive::extract(const std::filesystem::path& file,
                            const std::filesystem::path& destination) const {
   const std::uint64_t entry = m_files.at(file);
-  const auto noRoom = [&] {
-    return outputError(oneLine(destination.string()), "there is no room to unpack " +
-                                                          oneLine(file.string()) +
-                                                          "; set TMPDIR to a folder with more");
+  const std::uint64_t size = m_zip->stat(entry, file).size;
+  if (size > m_zip->unpackable)
+    throw m_zip->error(file,
+                       "and what was unpacked before have more bytes than a scene packs into "
+                       "an archive of this size; save the scene again, or unpack it yourself");
+  m_zip->unpackable -= size;
+  const auto cannotUnpack = [&](int code) {
+    return outputError(oneLine(destination.string()),
+                       oneLine(file.string()) + " cannot be unpacked: " + systemMessage(code) +
+                           "; " + writingMend(code, "set TMPDIR to another folder"));
   };
+  std::error_code unknown;
+  if (size > std::filesystem::space(destination.parent_path(), unknown).available && !unknown)
+    throw cannotUnpack(ENOSPC);
+  errno = 0;
   std::ofstream out(destination, std::ios::binary);
-  m_zip->read(entry, file, m_zip->stat(entry, file).size, [&](std::string_view chunk) {
+  m_zip->read(entry, file, size, [&](std::string_view chunk) {
     if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size())))
-      throw noRoom();
+      throw cannotUnpack(errno);
   });
   out.close();
   if (!out)
-    throw noRoom();
+    throw cannotUnpack(errno);
 }
 
 std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t most) const {

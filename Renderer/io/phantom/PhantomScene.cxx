@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 
+#include <cstdlib>
+#include <new>
 #include <sstream>
 
 namespace fenestra {
@@ -56,6 +58,16 @@ pugi::xml_node addNode(pugi::xml_node scene, const char* tag, const char* id,
 void set(pugi::xml_node node, const Attributes& attributes) {
   for (const auto& [name, value] : attributes)
     node.append_attribute(name) = value.c_str();
+}
+
+/// Otherwise pugixml leaves out what there is no memory for, and says so in results that nobody
+/// reads at every attribute.
+void throwWithoutMemory() {
+  const auto allocate = [](std::size_t size) {
+    void* const memory = std::malloc(size);
+    return memory ? memory : throw std::bad_alloc();
+  };
+  pugi::set_memory_management_functions(allocate, std::free);
 }
 
 std::string reference(const char* role, const std::string& ids) {
@@ -338,6 +350,7 @@ void addRoi(pugi::xml_node scene, const Phantom& phantom, const std::string& fil
 
 std::string phantomScene(const Phantom& phantom, const std::string& name,
                          const PhantomFileNames& files) {
+  throwWithoutMemory();
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   set(declaration, {{"version", "1.0"}, {"encoding", "UTF-8"}});
