@@ -27,12 +27,11 @@ shifted() {
   sed -e 's#\(name="Inner" references="\)\([^"]*\)" matrix[^>]*>#\1storage:ts;\2">#' \
     -e "s#</MRML>#<TransformStorage id=\"ts\" fileName=\"$1\"/></MRML>#" scene.mrml >s.mrml
 }
-# until_said EXPRESSION: waits until serve has said it, or ten seconds.
+# until_said EXPRESSION: waits until serve has said it, or has ended.
 until_said() {
-  for _ in {1..100}; do
-    ! grep -qE "$1" ../out 2>/dev/null || return
+  while [ -e ../out ] && [ ! -e ../after ] && ! grep -qE "$1" ../out; do
     sleep 0.1
-  done
+  done 2>/dev/null
 }
 # talk CHANGE: says it to serve after its first picture, and waits for the answer.
 talk() {
@@ -156,7 +155,7 @@ state() {
 broken() {
   local lost more
   lost=$(comm -23 ../before ../after | cut -d'|' -f1 | paste -sd' ')
-  more=$(comm -13 <(cut -d'|' -f1 ../before) <(cut -d'|' -f1 ../after) | paste -sd' ')
+  more=$(comm -13 <(cut -d'|' -f1 ../before | sort) <(cut -d'|' -f1 ../after | sort) | paste -sd' ')
   [ -z "$lost" ] || printf 'changed or gone: %s; ' "$lost"
   if [ "$1" = told ]; then
     grep -q '"event":"error"' ../out || printf 'not told; '

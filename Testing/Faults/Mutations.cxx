@@ -148,8 +148,7 @@ Words prepare(const Victim& victim, long number, const Place& place) {
   std::vector<ZipEntry> entries;
   for (const auto& [name, content] : files)
     entries.push_back({"a/" + name, content});
-  place.fill({});
-  writeZip(place.folder() / "a.mrb", entries);
+  place.fill({{"a.mrb", encodeZip(entries, "", "a.mrb")}});
   return words;
 }
 
