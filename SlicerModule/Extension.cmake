@@ -25,7 +25,7 @@ set(module_classes qSlicerFenestraClipping qSlicerFenestraMargins qSlicerFenestr
   qSlicerFenestraModuleWidget qSlicerFenestraPanel qSlicerFenestraPlayer qSlicerFenestraSession
   qSlicerFenestraSettings)
 set(module_sources qSlicerFenestraLights.cxx qSlicerFenestraLights.h qSlicerFenestraMeasures.cxx
-  qSlicerFenestraMeasures.h)
+  qSlicerFenestraMeasures.h qSlicerFenestraResults.cxx qSlicerFenestraResults.h)
 set(module_moc)
 foreach(class ${module_classes})
   list(APPEND module_sources ${class}.cxx ${class}.h)

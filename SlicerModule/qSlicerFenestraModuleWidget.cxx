@@ -1,5 +1,6 @@
 #include "qSlicerFenestraModuleWidget.h"
 
+#include "qFenestraCopies.h"
 #include "qSlicerFenestraMeasures.h"
 #include "qSlicerFenestraModule.h"
 #include "qSlicerFenestraPanel.h"
@@ -15,11 +16,10 @@
 #include <vtkMRMLScene.h>
 
 #include <QCheckBox>
-#include <QFile>
 #include <QFileDialog>
-#include <QFileInfo>
 #include <QJsonDocument>
 #include <QLabel>
+#include <QMessageBox>
 #include <QProgressBar>
 #include <QPushButton>
 #include <QSignalBlocker>
@@ -77,7 +77,7 @@ void qSlicerFenestraModuleWidget::connectPanel() {
     if (chosen())
       fenestra()->ShowFrame(chosen(), frame);
   });
-  connect(panel.stop, &QPushButton::clicked, m_session, &qSlicerFenestraSession::stop);
+  connect(panel.stop, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::stop);
   connect(panel.repeat, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::repeat);
   connect(panel.show, &QPushButton::clicked, this, [this] {
     forget();
@@ -138,7 +138,7 @@ void qSlicerFenestraModuleWidget::exit() {
 /// What was said of it goes with it.
 void qSlicerFenestraModuleWidget::onSceneClosed() {
   m_sceneIsNew = true;
-  m_session->stopAll();
+  m_session->closeScene();
   forget();
 }
 
@@ -207,11 +207,21 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
   });
 }
 
+/// Writing takes as long as it takes: who does not want to wait, presses again.
+void qSlicerFenestraModuleWidget::stop() {
+  m_session->stop();
+  if (m_session->rendering())
+    say(tr("Stopping: what there is is written. Press Stop again to end without it."));
+}
+
 void qSlicerFenestraModuleWidget::repeat() {
   Node* render = chosen();
   if (!render || !m_settings->node())
     return;
   m_settings->copy(render);
+  if (render->WithholdsFiles())
+    return say(tr("This picture was made with files that its scene names. Allow them above, then "
+                  "press Render."));
   start(render->IsTurntable() ? qSlicerFenestraSession::Kind::turntable
                               : qSlicerFenestraSession::Kind::picture);
 }
@@ -227,7 +237,7 @@ void qSlicerFenestraModuleWidget::showPicture(const QImage& picture, const qFene
 /// Now and then: where no graphics card draws Slicer's window, a change in it takes a while.
 void qSlicerFenestraModuleWidget::onProgress(double part, double seconds) {
   constexpr int interval = 500; // milliseconds
-  if (m_told.isValid() && m_told.elapsed() < interval)
+  if (m_session->stopping() || (m_told.isValid() && m_told.elapsed() < interval))
     return;
   m_told.start();
   m_panel->progress->show();
@@ -242,15 +252,24 @@ void qSlicerFenestraModuleWidget::onProgress(double part, double seconds) {
   say(line);
 }
 
+QString qSlicerFenestraModuleWidget::inWords(Node* render, qFenestraOutcome::Kind kind) const {
+  using Kind = qFenestraOutcome::Kind;
+  const bool whole = kind == Kind::done;
+  if (!render)
+    return kind == Kind::killed ? tr("Ended at once, without a picture.")
+                                : tr("Stopped before there was a picture.");
+  const QString description = QString::fromUtf8(render->GetDescription());
+  if (description.isEmpty()) // its statistics were not written any more
+    return whole ? tr("Done.") : tr("Stopped.");
+  return (whole ? tr("Done: %1.") : tr("Stopped: %1.")).arg(description);
+}
+
 void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& outcome) {
   m_panel->progress->hide();
   if (outcome.kind == qFenestraOutcome::Kind::failed)
     say(outcome.message, outcome.details);
-  else if (!render)
-    say(tr("Stopped before there was a picture."));
   else
-    say((outcome.kind == qFenestraOutcome::Kind::stopped ? tr("Stopped: %1.") : tr("Done: %1."))
-            .arg(QString::fromUtf8(render->GetDescription() ? render->GetDescription() : "")));
+    say(inWords(render, outcome.kind));
   if (render) {
     const QSignalBlocker unheard(m_panel->renders); // it is shown below
     m_panel->renders->setCurrentNode(render);
@@ -327,49 +346,38 @@ void qSlicerFenestraModuleWidget::showMeasures(Node* render) {
 
 void qSlicerFenestraModuleWidget::save() {
   Node* render = chosen();
-  if (render->IsTurntable())
-    return saveFrames(render);
-  const QString png = tr("Picture (*.png)"), exr = tr("Linear colour and depth (*.exr)");
-  QString filter;
-  QString file = QFileDialog::getSaveFileName(this, tr("Save the picture"),
-                                              QString::fromUtf8(render->GetName()) + ".png",
-                                              png + ";;" + exr, &filter);
-  if (file.isEmpty())
+  const bool turns = render->IsTurntable();
+  const QStringList frames = m_session->results().framesOf(render);
+  if (turns ? frames.isEmpty() : m_session->results().fileOf(render, "png").isEmpty())
+    return say(tr("Its files went with the session that made it. Press Repeat, then save."));
+  const QString png = turns ? tr("Pictures, numbered (*.png)") : tr("Picture (*.png)");
+  const QString exr = tr("Linear colour and depth (*.exr)");
+  // Asked below, for the names that are written: the ending may be missing, or a number.
+  const QString chosen = QFileDialog::getSaveFileName(
+      this, turns ? tr("Save the frames, numbered") : tr("Save the picture"),
+      QString::fromUtf8(render->GetName()) + ".png", turns ? png : png + ";;" + exr, nullptr,
+      QFileDialog::DontConfirmOverwrite);
+  if (chosen.isEmpty())
     return;
-  const QString ending = file.endsWith(".exr", Qt::CaseInsensitive) ? "exr" : "png";
-  if (!file.endsWith("." + ending, Qt::CaseInsensitive))
-    file += "." + ending;
-  const QString source = m_session->fileOf(render, ending);
-  if (source.isEmpty())
-    return say(tr("The picture's file went with the session that made it. Press Repeat, then "
-                  "save."));
-  QFile::remove(file);
-  if (!QFile::copy(source, file))
-    return say(tr("%1 could not be written. Choose another folder.").arg(file));
-  say(tr("Saved as %1.").arg(file));
+  const QString ending = chosen.endsWith(".exr", Qt::CaseInsensitive) ? "exr" : "png";
+  const QString picture = m_session->results().fileOf(render, ending);
+  saveAs(turns ? qFenestraCopies::frames(frames, chosen)
+               : qFenestraCopies::picture(picture, chosen, "." + ending));
 }
 
-/// turn.png becomes turn_0000.png and so on.
-void qSlicerFenestraModuleWidget::saveFrames(Node* turntable) {
-  const QStringList frames = m_session->framesOf(turntable);
-  if (frames.isEmpty())
-    return say(tr("The frames' files went with the session that made them. Press Repeat, then "
-                  "save."));
-  QString file = QFileDialog::getSaveFileName(this, tr("Save the frames, numbered"),
-                                              QString::fromUtf8(turntable->GetName()) + ".png",
-                                              tr("Pictures (*.png)"));
-  if (file.isEmpty())
+void qSlicerFenestraModuleWidget::saveAs(const qFenestraCopies& copies) {
+  const QStringList lost = copies.existing();
+  const QString question = lost.size() == 1
+                               ? tr("%1 is there already. Replace it?").arg(lost.first())
+                               : tr("%n files are there already, %1 the first. Replace them?",
+                                    nullptr, static_cast<int>(lost.size()))
+                                     .arg(lost.value(0));
+  if (!lost.isEmpty() && QMessageBox::question(this, tr("Save"), question) != QMessageBox::Yes)
     return;
-  if (file.endsWith(".png", Qt::CaseInsensitive))
-    file.chop(4);
-  for (const QString& frame : frames) {
-    const QString number = QFileInfo(frame).completeBaseName().section('_', -1);
-    const QString numbered = QString("%1_%2.png").arg(file, number);
-    QFile::remove(numbered);
-    if (!QFile::copy(frame, numbered))
-      return say(tr("%1 could not be written. Choose another folder.").arg(numbered));
-  }
-  say(tr("Saved as %1_0000.png and so on.").arg(file));
+  const QString failed = copies.write();
+  say(failed.isEmpty()
+          ? tr("Saved as %1.").arg(copies.names())
+          : tr("%1 could not be written, and is as it was. Choose another folder.").arg(failed));
 }
 
 void qSlicerFenestraModuleWidget::loadSample() {

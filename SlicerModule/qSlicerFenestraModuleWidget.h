@@ -8,6 +8,7 @@
 #include "qSlicerFenestraModuleExport.h"
 #include "qSlicerFenestraSession.h"
 
+class qFenestraCopies;
 class qSlicerFenestraPanel;
 class qSlicerFenestraSettings;
 class vtkMRMLFenestraRenderNode;
@@ -34,6 +35,7 @@ public slots:
   void setMRMLScene(vtkMRMLScene* scene) override;
   void render();
   void renderTurntable();
+  void stop();
   void repeat();
   void loadSample();
 
@@ -59,11 +61,12 @@ private:
   void showChosen();
   void start(qSlicerFenestraSession::Kind kind);
   void showMeasures(vtkMRMLFenestraRenderNode* render);
-  void saveFrames(vtkMRMLFenestraRenderNode* turntable);
+  void saveAs(const qFenestraCopies& copies);
   void say(const QString& message, const QString& details = {});
   void forget();
   void showPicture(const QImage& picture, const qFenestraPicture& what);
   void onProgress(double part, double seconds);
+  QString inWords(vtkMRMLFenestraRenderNode* render, qFenestraOutcome::Kind kind) const;
   void onEnded(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
   void showResult(vtkMRMLFenestraRenderNode* render, int times = 2);
 

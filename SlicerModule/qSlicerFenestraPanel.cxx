@@ -1,5 +1,6 @@
 #include "qSlicerFenestraPanel.h"
 
+#include "FenestraFlags.h"
 #include "qFenestraAbilities.h"
 #include "qSlicerFenestraClipping.h"
 #include "qSlicerFenestraPlayer.h"
@@ -65,6 +66,7 @@ QList<Choice> anatomies() {
 QLabel* words(const QString& name) {
   auto* label = new QLabel;
   label->setObjectName(name);
+  label->setTextFormat(Qt::PlainText); // it may hold a scene's words, which are nobody's pages
   label->setWordWrap(true);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
@@ -158,6 +160,13 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   focusHint->setText(tr("With none ticked, the anatomy's segments are found by their names."));
   focusHint->hide();
   form->addRow(focusHint);
+  withheld = words("WithheldLabel");
+  allow = button("AllowButton", tr("Open these files"),
+                 tr("Files that the scene names are opened only where you trust who made it"));
+  for (QWidget* one : {static_cast<QWidget*>(withheld), static_cast<QWidget*>(allow)}) {
+    one->hide();
+    form->addRow(one);
+  }
   clipping = new qSlicerFenestraClipping(nodes("vtkMRMLMarkupsPlaneNode", "PlaneNodeBox"));
   clipping->setObjectName("Clipping");
   form->addRow(clipping);
@@ -358,4 +367,26 @@ void qSlicerFenestraPanel::offerPresets(bool chosen) {
   offerChoice(view, 0, {left, "preset"}, chosen);
   offerChoice(rig, 0, {left, ""}, chosen);
   transfer->setItemText(transfer->findData(""), chosen ? left : tr("As in Volume Rendering"));
+}
+
+void qSlicerFenestraPanel::showWithheld(const std::map<std::string, std::string>& what,
+                                        bool files) {
+  constexpr std::size_t most = 200; // characters of a value: a label is no page
+  QStringList lines = {tr("Not followed, of what this scene says:")};
+  for (const auto& [name, value] : what)
+    lines << QString::fromStdString(name + ": " + value.substr(0, most));
+  withheld->setText(lines.join('\n'));
+  withheld->setVisible(!what.empty());
+  allow->setVisible(files);
+}
+
+bool qSlicerFenestraPanel::namesFile(const char* flag, const QString& value) {
+  return FenestraScene::verdictOn(flag, value.toStdString()) == FenestraScene::Verdict::file;
+}
+
+void qSlicerFenestraPanel::choose(QComboBox* box, const QString& data, const char* flag) {
+  if (box->findData(data) < 0 && namesFile(flag, data))
+    box->addItem(data, data);
+  const int index = box->findData(data);
+  box->setCurrentIndex(index < 0 ? 0 : index);
 }

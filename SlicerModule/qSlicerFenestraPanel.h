@@ -3,6 +3,9 @@
 
 #include <QWidget>
 
+#include <map>
+#include <string>
+
 class ctkSliderWidget;
 class qMRMLNodeComboBox;
 class qSlicerFenestraClipping;
@@ -33,6 +36,13 @@ public:
   /// With an anatomy preset there are choices that are left to it: data "preset" for the view, and
   /// none for others.
   void offerPresets(bool chosen);
+  /// What the scene says of flags and is not followed, word by word; `files`: it names files.
+  void showWithheld(const std::map<std::string, std::string>& what, bool files);
+
+  /// Chooses by data; the first where it is none of the choices. A file that the user allowed as
+  /// the value of `flag` is made one of them.
+  static void choose(QComboBox* box, const QString& data, const char* flag);
+  static bool namesFile(const char* flag, const QString& value);
 
   QPushButton* sample;
   qMRMLNodeComboBox* volume;
@@ -40,6 +50,8 @@ public:
   QComboBox* preset; ///< hidden where there are none
   QListWidget* focus;
   QLabel* focusHint;
+  QLabel* withheld;   ///< what the scene says and is not followed; hidden where there is nothing
+  QPushButton* allow; ///< those of it that are files
   qSlicerFenestraClipping* clipping;
 
   QComboBox* view; ///< data: the flag's word; empty: a 3-D view's camera

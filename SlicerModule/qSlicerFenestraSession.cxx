@@ -1,13 +1,10 @@
 #include "qSlicerFenestraSession.h"
 
-#include "qSlicerFenestraMeasures.h"
-
 #include <QCoreApplication>
 #include <QCryptographicHash>
 #include <QDir>
 #include <QFile>
 #include <QFileInfo>
-#include <QJsonDocument>
 
 #include <vtkImageData.h>
 #include <vtkMRMLApplicationLogic.h>
@@ -22,18 +19,7 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 using Ended = qFenestraOutcome::Kind;
-
-QString prefix() {
-  return QStringLiteral("fenestra-slicer-");
-}
-
-QString folderTemplate() {
-  const QString temporary = QDir::tempPath();
-  FenestraScene::removeAbandoned(temporary.toStdString(), prefix().toStdString());
-  return QStringLiteral("%1/%2%3-XXXXXX")
-      .arg(temporary, prefix())
-      .arg(QCoreApplication::applicationPid());
-}
+using Flags = std::map<std::string, std::string>;
 
 qFenestraOutcome failure(const QString& message, const QString& details = {}) {
   return {Ended::failed, message, details};
@@ -93,40 +79,6 @@ struct Paused {
   vtkSmartPointer<vtkMRMLApplicationLogic> application;
 };
 
-QJsonObject statistics(const QString& folder) {
-  QFile file(folder + "/stats.json");
-  if (!file.open(QIODevice::ReadOnly))
-    return {};
-  return QJsonDocument::fromJson(file.readAll()).object();
-}
-
-QString statsLine(const QJsonObject& stats) {
-  return stats.isEmpty()
-             ? QString()
-             : QObject::tr("%1 samples a pixel, noise %2, %3")
-                   .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
-                   .arg(stats["noise"].toDouble(), 0, 'g', 2)
-                   .arg(qSlicerFenestraMeasures::duration(
-                       stats["seconds"].toObject()["total"].toDouble()));
-}
-
-QString turntableLine(Node* render) {
-  return QObject::tr("%1 of %2 frames, %3\u00b0")
-      .arg(vtkSlicerFenestraLogic::GetNumberOfFrames(render))
-      .arg(QString::fromStdString(render->GetFlag("frames")),
-           QString::fromStdString(render->GetFlag("degrees")));
-}
-
-/// With the render, what the renderer says about it.
-void describe(Node* render, const QJsonObject& stats) {
-  const QString line = render->IsTurntable() ? turntableLine(render) : statsLine(stats);
-  render->SetDescription(line.toUtf8().constData());
-  const QJsonObject measures = qSlicerFenestraMeasures::kept(stats);
-  if (!measures.isEmpty())
-    render->SetAttribute(Node::MeasuresAttribute,
-                         QJsonDocument(measures).toJson(QJsonDocument::Compact).constData());
-}
-
 } // namespace
 
 qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
@@ -134,8 +86,7 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
     : QObject(parent),
       m_logic(logic),
       m_program(program),
-      m_folder(folderTemplate()),
-      m_writer(m_folder.path().toStdString()),
+      m_files(std::make_shared<Files>()),
       m_queue(program) {
   m_worker.setMaxThreadCount(1);
   constexpr int interval = 60; // milliseconds: what a drag of the mouse does is not all told
@@ -145,11 +96,11 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   connect(&m_soon, &QTimer::timeout, this, &qSlicerFenestraSession::follow);
   connect(&m_preview, &qFenestraPreview::refreshed, this, &qSlicerFenestraSession::showPreview);
   connect(&m_preview, &qFenestraPreview::refused, this, [this](const QString& message) {
-    emit previewRefused(inWords(message, m_folder.path()));
+    emit previewRefused(inWords(message, m_files->folder.path()));
   });
   connect(&m_preview, &qFenestraPreview::ended, this, [this](const qFenestraOutcome& outcome) {
     if (outcome.kind == Ended::failed)
-      emit previewRefused(inWords(outcome.message, m_folder.path()));
+      emit previewRefused(inWords(outcome.message, m_files->folder.path()));
   });
   connect(&m_queue, &qFenestraQueue::started, this, [this](int id) {
     m_watch.start();
@@ -187,10 +138,10 @@ void qSlicerFenestraSession::write(
     const FenestraScene::Contents& contents,
     const std::function<void(const QString& scene, const QString& failure)>& then) {
   const auto shared = std::make_shared<FenestraScene::Contents>(contents);
-  work([this, shared, then] {
+  work([this, shared, files = m_files, then] {
     QString scene, message;
     try {
-      scene = QString::fromStdString(m_writer.write(*shared).string());
+      scene = QString::fromStdString(files->writer.write(*shared).string());
     } catch (const std::exception& error) {
       message = QString::fromUtf8(error.what());
     }
@@ -206,7 +157,7 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
     if (!QFileInfo(m_program).isExecutable())
       throw vtkSlicerFenestraComplaint(
           "The renderer is missing. Install the Fenestra extension again.");
-    contents = m_logic->Snapshot(settings);
+    contents = m_logic->Snapshot(settings, m_files->folder.path().toStdString());
   } catch (const vtkSlicerFenestraComplaint& complaint) {
     emit ended(nullptr, failure(QString::fromUtf8(complaint.what()), m_program));
     return nullptr;
@@ -214,42 +165,34 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   m_preview.stop();
   Node* node = m_logic->AddRender(settings, kind == Kind::turntable);
   const int id = ++m_last;
-  m_renders[id].node = node;
-  const bool withSurface =
-      vtkSlicerFenestraLogic::HasSurface(contents.flags) && !contents.segmentation.segments.empty();
+  m_renders[id] = {node, m_files, {}};
+  const bool withSurface = vtkSlicerFenestraLogic::HasSurface(node->GetFlags()) &&
+                           !contents.segmentation.segments.empty();
   write(contents, [this, id, withSurface](const QString& scene, const QString& message) {
     Render& render = m_renders[id];
     if (!message.isEmpty())
       return endRender(id, failure(tr("The volume could not be handed to the renderer. Is the "
                                       "disk with the temporary files full?"),
                                    message));
-    if (render.stopped)
-      return endRender(id, {Ended::stopped, {}, {}});
     render.folder = QFileInfo(scene).absolutePath();
+    if (render.stopped || !render.node)
+      return endRender(id, {Ended::stopped, {}, {}});
     m_queue.add({id, arguments(render.node, scene, withSurface), render.folder});
   });
   return node;
 }
 
+/// All flags are told beside the scene: the renderer trusts a user more than a scene.
 QStringList qSlicerFenestraSession::arguments(Node* render, const QString& scene,
                                               bool withSurface) const {
-  const bool turns = render && render->IsTurntable();
-  QStringList all = turns ? QStringList{"turntable", scene} : QStringList{scene};
-  all << "--stats"
-      << "stats.json";
-  for (const std::string& argument : turns
-                                         ? vtkSlicerFenestraLogic::GetTurntableArguments(render)
-                                         : vtkSlicerFenestraLogic::GetOutputArguments(withSurface))
+  QStringList all = render->IsTurntable() ? QStringList{"turntable", scene} : QStringList{scene};
+  for (const std::string& argument : vtkSlicerFenestraLogic::GetArguments(render, withSurface))
     all << QString::fromStdString(argument);
   return all;
 }
 
 bool qSlicerFenestraSession::canResume(Node* turntable) const {
-  const QString folder = turntable ? m_folders.value(turntable->GetID()) : QString();
-  const bool known = !folder.isEmpty() && QFileInfo::exists(folder + "/scene.mrml");
-  return known && turntable->IsTurntable() &&
-         vtkSlicerFenestraLogic::GetNumberOfFrames(turntable) <
-             std::stoi(turntable->GetFlag("frames")) &&
+  return m_results.lacksFrames(turntable) &&
          std::none_of(m_renders.begin(), m_renders.end(),
                       [turntable](const Render& render) { return render.node == turntable; });
 }
@@ -259,9 +202,8 @@ void qSlicerFenestraSession::resume(Node* turntable) {
     return;
   m_preview.stop();
   const int id = ++m_last;
-  const QString folder = m_folders.value(turntable->GetID());
-  m_renders[id].node = turntable;
-  m_renders[id].folder = folder;
+  const QString folder = m_results.folderOf(turntable);
+  m_renders[id] = {turntable, m_files, folder};
   m_queue.add({id, arguments(turntable, folder + "/scene.mrml", false), folder});
 }
 
@@ -272,12 +214,18 @@ void qSlicerFenestraSession::stop() {
   }
 }
 
-void qSlicerFenestraSession::stopAll() {
+void qSlicerFenestraSession::closeScene() {
+  m_preview.stop();
+  m_results.clear();
   const QList<int> ids = m_renders.keys(); // those that wait end at once
   for (const int id : ids) {
     m_renders[id].stopped = true;
     m_queue.stop(id);
+    m_queue.stop(id); // of the one under way nothing is to be kept
   }
+  m_files = std::make_shared<Files>(); // the old ones go with the last process that uses them
+  m_shownData.clear();
+  m_previewFolder.clear();
 }
 
 void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcome) {
@@ -319,9 +267,7 @@ void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
     return later([this, id, outcome, add, step] { addResult(id, outcome, add, step + 1); });
   }
   if (open) {
-    const QString folder = m_renders[id].folder;
-    describe(node, statistics(folder));
-    m_folders[node->GetID()] = folder;
+    m_results.add(node, m_renders[id].folder);
   }
   endRender(id, outcome);
 }
@@ -329,7 +275,7 @@ void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
 void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) {
   const Render render = m_renders.take(id);
   vtkSmartPointer<Node> node = render.node.GetPointer();
-  const bool kept = node && node->GetNodeReference(Node::PictureRole);
+  const bool kept = node && node->GetScene() && node->GetNodeReference(Node::PictureRole);
   if (!kept || !canResume(node)) // which needs them
     for (const char* file : {"scene.mrml", "volume.nrrd", "segmentation.seg.nrrd", "roi.mrk.json"})
       if (!render.folder.isEmpty())
@@ -338,15 +284,16 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
     removeFolder(render.folder);
   if (node && !kept && node->GetScene())
     node->GetScene()->RemoveNode(node);
-  emit ended(kept ? node.GetPointer() : nullptr,
-             {outcome.kind, inWords(outcome.message, m_folder.path()), outcome.details});
+  emit ended(
+      kept ? node.GetPointer() : nullptr,
+      {outcome.kind, inWords(outcome.message, render.files->folder.path()), outcome.details});
   if (!rendering())
     refresh();
 }
 
 void qSlicerFenestraSession::makeSample(
     const std::function<void(const QString& scene, const QString& failure)>& then) {
-  const QString folder = m_folder.filePath("sample");
+  const QString folder = m_files->folder.filePath("sample");
   auto* maker = new qFenestraProgram(this);
   connect(maker, &qFenestraProgram::ended, this,
           [maker, folder, then](const qFenestraOutcome& outcome) {
@@ -354,22 +301,7 @@ void qSlicerFenestraSession::makeSample(
             const bool made = outcome.kind == Ended::done;
             then(made ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
           });
-  maker->run(m_program, {"phantom", "knee", "--output", folder}, m_folder.path());
-}
-
-QString qSlicerFenestraSession::fileOf(Node* render, const QString& ending) const {
-  const QString folder = render ? m_folders.value(render->GetID()) : QString();
-  const QString file = folder + "/picture." + ending;
-  return !folder.isEmpty() && QFileInfo::exists(file) ? file : QString();
-}
-
-QStringList qSlicerFenestraSession::framesOf(Node* turntable) const {
-  const QString folder = turntable ? m_folders.value(turntable->GetID()) : QString();
-  QStringList files;
-  if (!folder.isEmpty())
-    for (const std::string& file : vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()))
-      files << QString::fromStdString(file);
-  return files;
+  maker->run(m_program, {"phantom", "knee", "--output", folder}, m_files->folder.path());
 }
 
 // ---- preview
@@ -393,42 +325,44 @@ void qSlicerFenestraSession::follow() {
   if (m_starting)
     return m_soon.start(); // what changed meanwhile is told then
   try {
-    const FenestraScene::Contents contents = m_logic->Snapshot(m_previewed);
+    const FenestraScene::Contents contents =
+        m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
+    const QJsonObject flags = previewFlags(m_logic->GetFlags(m_previewed), contents);
     if (!m_preview.running() || dataOf(contents) != m_shownData)
-      return startPreview(contents);
-    tellPreview(previewFlags(contents));
+      return startPreview(contents, flags);
+    tellPreview(flags);
   } catch (const vtkSlicerFenestraComplaint& complaint) {
     emit previewRefused(QString::fromUtf8(complaint.what()));
   }
 }
 
-void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& contents) {
+void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& contents,
+                                          const QJsonObject& flags) {
   m_starting = true;
   m_shownData = dataOf(contents);
-  FenestraScene::Contents bare = contents;
-  bare.flags.clear(); // they are told
-  const QJsonObject flags = previewFlags(contents);
-  write(bare, [this, flags](const QString& scene, const QString& message) {
+  write(contents, [this, flags, files = m_files](const QString& scene, const QString& message) {
     m_starting = false;
     if (!message.isEmpty() || !m_previewed)
       return message.isEmpty() ? void() : emit previewRefused(message);
-    QStringList arguments = {scene, "--output", "preview.png"};
+    QStringList arguments = {scene, "--output=preview.png"};
     for (auto flag = flags.begin(); flag != flags.end(); ++flag)
-      arguments << "--" + flag.key() << flag.value().toString();
+      arguments << "--" + flag.key() + "=" + flag.value().toString();
     m_told = flags;
     const QString folder = QFileInfo(scene).absolutePath();
-    if (rendering())
+    if (rendering() || files != m_files) // the scene was closed meanwhile
       return removeFolder(folder);
-    m_preview.start(m_program, arguments, folder);
+    m_preview.start(m_program, arguments, folder, files);
     removeFolder(m_previewFolder);
     m_previewFolder = folder;
   });
 }
 
 /// A node's flags, as they are told to a preview.
-QJsonObject qSlicerFenestraSession::previewFlags(const FenestraScene::Contents& contents) const {
-  std::map<std::string, std::string> flags = contents.flags;
+QJsonObject qSlicerFenestraSession::previewFlags(Flags flags,
+                                                 const FenestraScene::Contents& contents) const {
   for (const char* name : {"seconds", "seed", "samples"})
+    flags.erase(name);
+  for (const std::string& name : Node::GetTurntableFlagNames())
     flags.erase(name);
   flags["noise"] = "0.03";
   flags["size"] = previewSize(flags["size"]);
@@ -444,7 +378,7 @@ QJsonObject qSlicerFenestraSession::previewFlags(const FenestraScene::Contents& 
 QString qSlicerFenestraSession::propertyFile(const FenestraScene::Contents& contents) const {
   const QByteArray text = QByteArray::fromStdString(contents.property);
   const QString name = QCryptographicHash::hash(text, QCryptographicHash::Sha1).toHex();
-  QFile file(m_folder.filePath(name + QString::fromStdString(contents.propertyEnding)));
+  QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyEnding)));
   if (file.size() != text.size() &&
       (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size()))
     throw vtkSlicerFenestraComplaint("The transfer function could not be written. Is the disk "

@@ -3,18 +3,21 @@
 
 #include "FenestraSceneFiles.h"
 #include "qFenestraAbilities.h"
+#include "qFenestraFolder.h"
 #include "qFenestraPreview.h"
 #include "qFenestraQueue.h"
 #include "qSlicerFenestraModuleExport.h"
+#include "qSlicerFenestraResults.h"
 
+#include <QDir>
 #include <QElapsedTimer>
 #include <QImage>
 #include <QMap>
-#include <QTemporaryDir>
 #include <QThreadPool>
 #include <QTimer>
 
 #include <functional>
+#include <memory>
 
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
@@ -23,9 +26,9 @@
 /// \brief What the panel has done: one preview that follows the settings, and renders one after the
 /// other.
 ///
-/// Files are written and read in a thread of its own, below a private folder that goes with it;
-/// the scene is touched in the main thread alone. While a render is under way there is no preview,
-/// which would take its time.
+/// Files are written and read in a thread of its own, below a private folder that goes with the
+/// scene; the scene is touched in the main thread alone. While a render is under way there is no
+/// preview, which would take its time.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject {
   Q_OBJECT
 
@@ -42,10 +45,12 @@ public:
   bool canResume(vtkMRMLFenestraRenderNode* turntable) const;
   /// Goes on with it: its frames are more then.
   void resume(vtkMRMLFenestraRenderNode* turntable);
-  /// Ends the render under way, which keeps what it has.
+  /// Ends the render under way, which keeps what it has; called again, without.
   void stop();
-  /// The same for those that wait, too: their scene is closed.
-  void stopAll();
+  /// The render under way has been told to end.
+  bool stopping() const { return rendering() && m_renders.first().stopped; }
+  /// The scene is closed: its renders, results and files go with it.
+  void closeScene();
   bool rendering() const { return !m_renders.isEmpty(); }
   int waiting() const { return rendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 
@@ -55,10 +60,7 @@ public:
   /// Makes the renderer's synthetic knee, and then tells its scene's path, or what failed.
   void makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
 
-  /// The picture of a render as it was written, or empty where this session did not make it.
-  QString fileOf(vtkMRMLFenestraRenderNode* render, const QString& ending) const;
-  /// The same of a turntable: its frames.
-  QStringList framesOf(vtkMRMLFenestraRenderNode* turntable) const;
+  const qSlicerFenestraResults& results() const { return m_results; }
 
 public slots:
   /// Something may have changed: settings, camera, volume, segments, transfer function.
@@ -81,10 +83,16 @@ signals:
   void ended(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
 
 private:
+  /// Of one scene: the working thread's.
+  struct Files {
+    qFenestraFolder folder{QDir::tempPath(), "fenestra-slicer-"};
+    FenestraScene::Writer writer{folder.path().toStdString()};
+  };
   struct Render {
     vtkWeakPointer<vtkMRMLFenestraRenderNode> node;
-    QString folder;       ///< empty until it is written
-    bool stopped = false; ///< before it was written
+    std::shared_ptr<Files> files; ///< which stay until its process has ended
+    QString folder;               ///< empty until it is written
+    bool stopped = false;
   };
 
   void work(const std::function<void()>& job);
@@ -99,22 +107,22 @@ private:
   void endRender(int id, const qFenestraOutcome& outcome);
 
   void follow();
-  void startPreview(const FenestraScene::Contents& contents);
-  QJsonObject previewFlags(const FenestraScene::Contents& contents) const;
+  void startPreview(const FenestraScene::Contents& contents, const QJsonObject& flags);
+  QJsonObject previewFlags(std::map<std::string, std::string> flags,
+                           const FenestraScene::Contents& contents) const;
   QString propertyFile(const FenestraScene::Contents& contents) const;
   void tellPreview(const QJsonObject& flags);
   void showPreview(const qFenestraPicture& picture);
 
   vtkSlicerFenestraLogic* m_logic;
   QString m_program;
-  QTemporaryDir m_folder;
-  FenestraScene::Writer m_writer; ///< the working thread's
+  std::shared_ptr<Files> m_files; ///< of the scene that is open
   QThreadPool m_worker;
 
   qFenestraQuestion m_question;
   qFenestraQueue m_queue;
-  QMap<int, Render> m_renders;      ///< under way and waiting
-  QMap<QString, QString> m_folders; ///< of the renders that this session made, by node
+  QMap<int, Render> m_renders; ///< under way and waiting
+  qSlicerFenestraResults m_results;
   QElapsedTimer m_watch;
   int m_last = 0;
 

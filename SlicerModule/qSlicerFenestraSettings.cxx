@@ -21,21 +21,19 @@
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QListWidget>
+#include <QPushButton>
 #include <QScopedValueRollback>
 #include <QSpinBox>
 #include <QStandardItemModel>
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
+constexpr auto choose = qSlicerFenestraPanel::choose;
 constexpr const char* rigAttribute = "Fenestra.Lights"; ///< "rig key fill rim environment"
-
-void choose(QComboBox* box, const QString& data) {
-  const int index = box->findData(data);
-  box->setCurrentIndex(index < 0 ? 0 : index);
-}
 
 std::string chosenIn(const QComboBox* box) {
   return box->currentData().toString().toStdString();
@@ -77,6 +75,10 @@ void qSlicerFenestraSettings::connectPanel() {
           &Settings::takePreset);
   for (QComboBox* box : {panel.view, panel.transfer, panel.rig, panel.background})
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &Settings::take);
+  connect(panel.allow, &QPushButton::clicked, this, [this] {
+    if (m_node)
+      m_node->AllowFiles();
+  });
   connect(panel.follow, &QCheckBox::toggled, this, &Settings::take);
   for (ctkSliderWidget* slider : panel.strengths)
     connect(slider, &ctkSliderWidget::valueChanged, this, &Settings::take);
@@ -108,7 +110,7 @@ void qSlicerFenestraSettings::copy(Node* render) {
     m_node->SetNodeReferenceID(role, render->GetNodeReferenceID(role));
   m_node->SetNodeReferenceID(Node::PlaneRole, nullptr); // it may have moved
   m_node->SetAttribute(rigAttribute, render->GetAttribute(rigAttribute));
-  m_node->SetFlags(render->GetFlags());
+  m_node->CopyFlags(render);
   m_node->EndModify(wasModifying);
 }
 
@@ -212,8 +214,9 @@ void qSlicerFenestraSettings::show() {
     watchPlane();
     showSegments();
     showSubject(flags);
-    choose(m_panel->transfer, flagOf(flags, "transfer"));
-    choose(m_panel->background, flagOf(flags, "background"));
+    m_panel->showWithheld(m_node->GetWithheld(), m_node->WithholdsFiles());
+    choose(m_panel->transfer, flagOf(flags, "transfer"), "transfer");
+    choose(m_panel->background, flagOf(flags, "background"), "background");
     showView(flags);
     showLights(flags);
     showQuality(flags);
@@ -252,7 +255,7 @@ void qSlicerFenestraSettings::showSegments() {
 
 void qSlicerFenestraSettings::showSubject(const Flags& flags) {
   using Plane = qSlicerFenestraClipping::Plane;
-  choose(m_panel->preset, flagOf(flags, "preset"));
+  choose(m_panel->preset, flagOf(flags, "preset"), "preset");
   m_panel->offerPresets(hasPreset());
   m_panel->focusHint->setVisible(hasPreset() && m_node->GetFocus().empty());
   const bool isPlaced = flags.count("plane") > 0;
@@ -267,7 +270,7 @@ void qSlicerFenestraSettings::showView(const Flags& flags) {
   vtkMRMLNode* view3D = m_node->GetNodeReference(Node::ViewRole);
   const bool byPreset = hasPreset() && !view3D && flags.count("position") == 0;
   const QString word = flagOf(flags, "view");
-  choose(m_panel->view, word.isEmpty() && byPreset ? "preset" : word);
+  choose(m_panel->view, word.isEmpty() && byPreset ? "preset" : word, "view");
   if (auto* model = qobject_cast<QStandardItemModel*>(m_panel->view->model()))
     if (const int best = m_panel->view->findData("auto"); best >= 0)
       model->item(best)->setEnabled(hasPreset() || !m_node->GetFocus().empty());
@@ -280,13 +283,16 @@ void qSlicerFenestraSettings::showView(const Flags& flags) {
 }
 
 void qSlicerFenestraSettings::showLights(const Flags& flags) {
-  const char* stored = m_node->GetAttribute(rigAttribute);
-  const QStringList rig =
-      stored ? QString(stored).split(' ') : QStringList{flagOf(flags, "lights")};
-  choose(m_panel->rig, rig.value(0));
+  const QString lights = flagOf(flags, "lights");
+  const char* stored = qSlicerFenestraPanel::namesFile("lights", lights)
+                           ? nullptr
+                           : m_node->GetAttribute(rigAttribute);
+  const QStringList rig = stored ? QString(stored).split(' ') : QStringList{lights};
+  choose(m_panel->rig, rig.value(0), "lights");
   const bool isOwn = !m_panel->rig->currentData().toString().isEmpty();
   for (int i = 0; i < 4; ++i) {
-    m_panel->strengths[i]->setValue(rig.value(i + 1, "100").toDouble());
+    const double strength = rig.value(i + 1, "100").toDouble();
+    m_panel->strengths[i]->setValue(std::isfinite(strength) ? strength : 100.0);
     m_panel->strengths[i]->setEnabled(isOwn);
   }
 }
@@ -365,9 +371,9 @@ void qSlicerFenestraSettings::takePreset() {
     m_panel->offerPresets(chosen);
     if (chosen != hasPreset()) {
       m_panel->clipping->reset();
-      choose(m_panel->view, chosen ? "preset" : "");
-      choose(m_panel->transfer, "");
-      choose(m_panel->rig, chosen ? "" : "studio");
+      choose(m_panel->view, chosen ? "preset" : "", "view");
+      choose(m_panel->transfer, "", "transfer");
+      choose(m_panel->rig, chosen ? "" : "studio", "lights");
     }
   }
   take();

@@ -206,16 +206,14 @@ Node* vtkSlicerFenestraLogic::AddRender(Node* settings, bool turntable) {
   return render;
 }
 
-FenestraScene::Contents vtkSlicerFenestraLogic::Snapshot(Node* render) {
+FenestraScene::Contents vtkSlicerFenestraLogic::Snapshot(Node* render,
+                                                         const std::filesystem::path& folder) {
   auto* volume = vtkMRMLScalarVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
   auto* segmentation =
       vtkMRMLSegmentationNode::SafeDownCast(render->GetNodeReference(Node::SegmentationRole));
   FenestraScene::Contents contents;
   vtkSlicerFenestraSnapshot::TakeVolume(volume, contents);
-  vtkSlicerFenestraSnapshot::TakeRendering(volume, contents);
-  contents.flags = this->GetFlags(render);
-  for (const std::string& own : Node::GetTurntableFlagNames())
-    contents.flags.erase(own);
+  vtkSlicerFenestraSnapshot::TakeRendering(volume, folder, contents);
   if (!segmentation && !render->GetFocus().empty())
     throw vtkSlicerFenestraComplaint("The segmentation that holds the focus is gone. Choose one.");
   if (segmentation)
@@ -278,12 +276,17 @@ bool vtkSlicerFenestraLogic::HasSurface(const std::map<std::string, std::string>
   return mode != "none" && mode != "plane";
 }
 
-std::vector<std::string> vtkSlicerFenestraLogic::GetOutputArguments(bool withSurface) {
-  // Layers that take long to pack would make a stop wait.
-  std::vector<std::string> arguments = {"--output", "picture.png",   "--output", "picture.exr",
-                                        "--output", "radiance.nrrd", "--layers", "color,depth"};
-  if (withSurface)
-    arguments.insert(arguments.end(), {"--surface", "surface.vtp"});
+std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool withSurface) {
+  std::vector<std::string> arguments = {"--stats=stats.json"};
+  if (render->IsTurntable())
+    arguments.push_back("--output=frame.png");
+  else // layers that take long to pack would make a stop wait
+    arguments.insert(arguments.end(), {"--output=picture.png", "--output=picture.exr",
+                                       "--output=radiance.nrrd", "--layers=color,depth"});
+  if (withSurface && !render->IsTurntable())
+    arguments.push_back("--surface=surface.vtp");
+  for (const auto& [name, value] : render->GetFlags()) // a value stays one, whatever it begins with
+    arguments.push_back("--" + name + "=" + value);
   return arguments;
 }
 
@@ -295,14 +298,6 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetFrameFiles(const std::string
     next = FrameFile(folder, static_cast<int>(files.size()));
   }
   return files;
-}
-
-std::vector<std::string> vtkSlicerFenestraLogic::GetTurntableArguments(Node* render) {
-  std::vector<std::string> arguments = {"--output", "frame.png"};
-  for (const std::string& name : Node::GetTurntableFlagNames())
-    if (!render->GetFlag(name).empty())
-      arguments.insert(arguments.end(), {"--" + name, render->GetFlag(name)});
-  return arguments;
 }
 
 vtkSlicerFenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {

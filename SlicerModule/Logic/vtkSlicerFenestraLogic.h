@@ -52,9 +52,11 @@ public:
   /// looked at is a fixed view from now on. A turntable's has the settings' flags of turntables.
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
 
-  /// Everything that the renderer needs, without a copy of the voxels; throws
+  /// Everything that the renderer needs but the flags, without a copy of the voxels. `folder` is
+  /// private: what Slicer can only write as files passes through it. Throws
   /// vtkSlicerFenestraComplaint.
-  FenestraScene::Contents Snapshot(vtkMRMLFenestraRenderNode* render);
+  FenestraScene::Contents Snapshot(vtkMRMLFenestraRenderNode* render,
+                                   const std::filesystem::path& folder);
   /// The node's flags, with those of its 3-D view's camera where nothing else says where to look
   /// from.
   std::map<std::string, std::string> GetFlags(vtkMRMLFenestraRenderNode* render);
@@ -64,15 +66,13 @@ public:
   /// The camera of the node's 3-D view; none where the flags fix a view.
   vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
 
-  /// Of a render into `folder`, under the names of GetOutputArguments. Throws
+  /// Of a render into `folder`, under the names of GetArguments. Throws
   /// FenestraScene::FileError. For any thread.
   static vtkSlicerFenestraResult ReadResult(const std::string& folder);
-  /// Flags that make a render leave what ReadResult reads.
-  static std::vector<std::string> GetOutputArguments(bool withSurface);
+  /// Flags of the command line that make a render of the node, and leave what ReadResult reads.
+  static std::vector<std::string> GetArguments(vtkMRMLFenestraRenderNode* render, bool withSurface);
   /// A turntable's finished frames in `folder`, from the first one on.
   static std::vector<std::string> GetFrameFiles(const std::string& folder);
-  /// Flags that make `fenestra turntable` leave them, those of the node among them.
-  static std::vector<std::string> GetTurntableArguments(vtkMRMLFenestraRenderNode* render);
   /// Whether a clipping surface comes with these flags.
   static bool HasSurface(const std::map<std::string, std::string>& flags);
 

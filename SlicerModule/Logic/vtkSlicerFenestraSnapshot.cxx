@@ -123,22 +123,32 @@ vtkMRMLVolumeRenderingDisplayNode* RenderingOf(vtkMRMLScalarVolumeNode* volume) 
   return first;
 }
 
+/// A file that goes with this, whatever happens.
+struct PassingFile {
+  explicit PassingFile(const std::filesystem::path& file) : path(file) {}
+  ~PassingFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+  PassingFile(const PassingFile&) = delete;
+  PassingFile& operator=(const PassingFile&) = delete;
+
+  std::filesystem::path path;
+};
+
 /// As Slicer itself would save it: its storage knows what this version's properties hold.
-void TakeProperty(vtkMRMLVolumePropertyNode* property, FenestraScene::Contents& contents) {
+void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
+                  FenestraScene::Contents& contents) {
   vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own is not to look as if it were saved
   copy->Copy(property);
   const auto storage =
       vtkSmartPointer<vtkMRMLStorageNode>::Take(property->CreateDefaultStorageNode());
   const std::string ending = std::string(".") + storage->GetDefaultWriteFileExtension();
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() /
-      ("fenestra-property-" + std::to_string(reinterpret_cast<std::uintptr_t>(&contents)) + ending);
-  storage->SetFileName(file.string().c_str());
+  const PassingFile file(folder / ("passing" + ending));
+  storage->SetFileName(file.path.string().c_str());
   const bool written = storage->WriteData(copy) != 0;
   std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
+  text << std::ifstream(file.path, std::ios::binary).rdbuf();
   if (!written || text.str().empty())
     throw Complaint("The volume rendering's settings could not be written to the temporary folder. "
                     "Is the disk full?");
@@ -242,12 +252,13 @@ void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
 }
 
 void vtkSlicerFenestraSnapshot::TakeRendering(vtkMRMLScalarVolumeNode* volume,
+                                              const std::filesystem::path& folder,
                                               FenestraScene::Contents& contents) {
   vtkMRMLVolumeRenderingDisplayNode* display = RenderingOf(volume);
   if (!display)
     return;
   if (vtkMRMLVolumePropertyNode* property = display->GetVolumePropertyNode())
-    TakeProperty(property, contents);
+    TakeProperty(property, folder, contents);
   if (display->GetCroppingEnabled() && display->GetROINode())
     TakeRoi(display, contents);
 }

@@ -1,8 +1,12 @@
 #include "vtkMRMLFenestraRenderNode.h"
 
+#include "FenestraFlags.h"
+
 #include <vtkObjectFactory.h>
 
 #include <algorithm>
+
+using FenestraScene::Verdict;
 
 vtkMRMLNodeNewMacro(vtkMRMLFenestraRenderNode);
 
@@ -25,17 +29,12 @@ vtkMRMLFenestraRenderNode::vtkMRMLFenestraRenderNode() {
 vtkMRMLFenestraRenderNode::~vtkMRMLFenestraRenderNode() = default;
 
 const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetFlagNames() {
-  static const std::vector<std::string> names = {
-      "focus",      "preset",   "margin",         "labelsmoothing",
-      "clip",       "boundary", "controlpoints",  "smoothing",
-      "plane",      "hole",     "holemargin",     "ghost",
-      "offset",     "soft",     "contextdensity", "contextsaturation",
-      "view",       "position", "target",         "up",
-      "projection", "scale",    "angle",          "transfer",
-      "shift",      "density",  "lights",         "environment",
-      "background", "size",     "samples",        "seconds",
-      "noise",      "bounces",  "seed",           "frames",
-      "degrees",    "steady"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const FenestraScene::Flag& flag : FenestraScene::flags())
+      all.push_back(flag.name);
+    return all;
+  }();
   return names;
 }
 
@@ -56,16 +55,42 @@ std::string vtkMRMLFenestraRenderNode::GetFlag(const std::string& name) const {
 }
 
 void vtkMRMLFenestraRenderNode::SetFlags(const std::map<std::string, std::string>& flags) {
-  std::map<std::string, std::string> kept;
+  std::map<std::string, std::string> kept, withheld = this->Withheld;
   for (const std::string& name : GetFlagNames()) {
     const auto found = flags.find(name);
-    if (found != flags.end() && !found->second.empty())
-      kept.insert(*found);
+    if (found == flags.end() || found->second.empty())
+      continue;
+    kept.insert(*found);
+    withheld.erase(name);
   }
-  if (kept == this->Flags)
+  this->Assign(kept, withheld);
+}
+
+void vtkMRMLFenestraRenderNode::Assign(std::map<std::string, std::string> flags,
+                                       std::map<std::string, std::string> withheld) {
+  if (flags == this->Flags && withheld == this->Withheld)
     return;
-  this->Flags = kept;
+  this->Flags = std::move(flags);
+  this->Withheld = std::move(withheld);
   this->Modified();
+}
+
+bool vtkMRMLFenestraRenderNode::WithholdsFiles() const {
+  return std::any_of(this->Withheld.begin(), this->Withheld.end(), [](const auto& one) {
+    return FenestraScene::verdictOn(one.first, one.second) == Verdict::file;
+  });
+}
+
+void vtkMRMLFenestraRenderNode::AllowFiles() {
+  std::map<std::string, std::string> flags = this->Flags;
+  for (const auto& [name, value] : this->Withheld)
+    if (FenestraScene::verdictOn(name, value) == Verdict::file)
+      flags[name] = value;
+  this->SetFlags(flags);
+}
+
+void vtkMRMLFenestraRenderNode::CopyFlags(vtkMRMLFenestraRenderNode* node) {
+  this->Assign(node->Flags, node->Withheld);
 }
 
 void vtkMRMLFenestraRenderNode::SetFocus(const std::vector<std::string>& segments) {
@@ -98,24 +123,28 @@ std::vector<std::string> vtkMRMLFenestraRenderNode::GetFocus() const {
 void vtkMRMLFenestraRenderNode::ReadXMLAttributes(const char** atts) {
   const int wasModifying = this->StartModify();
   Superclass::ReadXMLAttributes(atts);
-  std::map<std::string, std::string> flags;
+  const std::vector<std::string>& names = GetFlagNames();
+  std::map<std::string, std::string> flags, withheld;
   for (; atts[0] && atts[1]; atts += 2)
-    flags[atts[0]] = atts[1];
-  this->SetFlags(flags);
+    if (std::find(names.begin(), names.end(), atts[0]) != names.end() && *atts[1] != '\0')
+      (FenestraScene::verdictOn(atts[0], atts[1]) == Verdict::good ? flags : withheld)[atts[0]] =
+          atts[1];
+  this->Assign(flags, withheld);
   this->EndModify(wasModifying);
 }
 
 void vtkMRMLFenestraRenderNode::WriteXML(ostream& of, int indent) {
   Superclass::WriteXML(of, indent);
-  for (const auto& [name, value] : this->Flags)
-    of << ' ' << name << "=\"" << this->XMLAttributeEncodeString(value) << '"';
+  for (const auto* all : {&this->Flags, &this->Withheld})
+    for (const auto& [name, value] : *all)
+      of << ' ' << name << "=\"" << this->XMLAttributeEncodeString(value) << '"';
 }
 
 void vtkMRMLFenestraRenderNode::Copy(vtkMRMLNode* node) {
   const int wasModifying = this->StartModify();
   Superclass::Copy(node);
   if (auto* other = vtkMRMLFenestraRenderNode::SafeDownCast(node))
-    this->SetFlags(other->Flags);
+    this->CopyFlags(other);
   this->EndModify(wasModifying);
 }
 
@@ -123,4 +152,6 @@ void vtkMRMLFenestraRenderNode::PrintSelf(ostream& os, vtkIndent indent) {
   Superclass::PrintSelf(os, indent);
   for (const auto& [name, value] : this->Flags)
     os << indent << name << ": " << value << '\n';
+  for (const auto& [name, value] : this->Withheld)
+    os << indent << "withheld " << name << ": " << value << '\n';
 }

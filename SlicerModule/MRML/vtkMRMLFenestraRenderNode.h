@@ -18,6 +18,9 @@ class vtkMRMLVolumeNode;
 /// scene as attributes of the same names, so that `fenestra scene.mrml` makes the picture again. Of
 /// several such nodes the renderer follows the last.
 ///
+/// Anybody may have made a scene. So what a scene's attributes say is checked: what is no value of
+/// a flag's, and files that the scene names, are kept and written again, but withheld: no flags.
+///
 /// References: `volume`, `segmentation`, `view` (whose camera is followed as long as no flag says
 /// where to look from), `plane` (which the flag `plane` follows), and results: `picture` (display
 /// colours; of a turntable its frames, one behind the other), `radiance` (linear RGBA), `depth`
@@ -47,6 +50,15 @@ public:
   void SetFlags(const std::map<std::string, std::string>& flags);
   const std::map<std::string, std::string>& GetFlags() const { return this->Flags; }
 
+  /// What the node's scene says and is no flag; setting that flag forgets it.
+  const std::map<std::string, std::string>& GetWithheld() const { return this->Withheld; }
+  /// Whether it names files.
+  bool WithholdsFiles() const;
+  /// The user allows it: the files are flags from now on.
+  void AllowFiles();
+  /// Flags, and what is withheld, as another node has them.
+  void CopyFlags(vtkMRMLFenestraRenderNode* node);
+
   /// Ids, names or label values of the focus segments: the flag `focus`, split at its commas.
   void SetFocus(const std::vector<std::string>& segments);
   std::vector<std::string> GetFocus() const;
@@ -69,7 +81,10 @@ protected:
   vtkMRMLFenestraRenderNode(const vtkMRMLFenestraRenderNode&) = delete;
   void operator=(const vtkMRMLFenestraRenderNode&) = delete;
 
-  std::map<std::string, std::string> Flags;
+  void Assign(std::map<std::string, std::string> flags,
+              std::map<std::string, std::string> withheld);
+
+  std::map<std::string, std::string> Flags, Withheld;
 };
 
 #endif

@@ -11,12 +11,13 @@ qFenestraPreview::qFenestraPreview(QObject* parent) : QObject(parent) {
 }
 
 void qFenestraPreview::start(const QString& program, const QStringList& arguments,
-                             const QString& folder) {
+                             const QString& folder, const std::shared_ptr<const void>& files) {
   stop();
   m_told = 0;
   m_child = new qFenestraProgram(this);
   connect(m_child, &qFenestraProgram::said, this, &qFenestraPreview::hear);
   connect(m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
+  connect(m_child, &QObject::destroyed, [files] {}); // the connection holds them
   m_child->run(program, QStringList{"serve"} + arguments, folder);
 }
 
@@ -33,7 +34,8 @@ void qFenestraPreview::stop() {
   connect(child, &qFenestraProgram::ended, child, &QObject::deleteLater);
   constexpr int grace = 150;
   child->closeWriteChannel(); // a server ends with its input
-  child->stop(grace);
+  child->stop();
+  QTimer::singleShot(grace, child, &qFenestraProgram::stop); // nothing of it is to be kept
 }
 
 void qFenestraPreview::change(const QJsonObject& flags) {

@@ -7,6 +7,8 @@
 #include <QJsonObject>
 #include <QTimer>
 
+#include <memory>
+
 struct qFenestraPicture {
   QStringList files;
   int samples = 0;      ///< a pixel
@@ -24,8 +26,10 @@ public:
   /// Milliseconds without another change before one is told.
   void setDelay(int milliseconds) { m_rest.setInterval(milliseconds); }
 
-  /// `fenestra serve arguments…`; a preview under way ends.
-  void start(const QString& program, const QStringList& arguments, const QString& folder);
+  /// `fenestra serve arguments…`; a preview under way ends. `files` are held until the child has
+  /// ended, also where it is stopped before.
+  void start(const QString& program, const QStringList& arguments, const QString& folder,
+             const std::shared_ptr<const void>& files = {});
   /// Does not wait: the child ends by itself, unheard, and with this at the latest.
   void stop();
   bool running() const { return m_child && m_child->state() != QProcess::NotRunning; }

@@ -1,9 +1,8 @@
 #include "qFenestraProgram.h"
 
-#include <QTimer>
+#include <csignal>
 
 #ifdef Q_OS_LINUX
-#include <csignal>
 #include <sys/prctl.h>
 #endif
 
@@ -71,22 +70,21 @@ void qFenestraProgram::setupChildProcess() {
 
 void qFenestraProgram::run(const QString& program, const QStringList& arguments,
                            const QString& folder) {
-  m_stopped = false;
+  m_stopped = m_killed = false;
   m_ended = false;
   setWorkingDirectory(folder);
   start(program, arguments);
 }
 
-void qFenestraProgram::stop(int grace) {
+void qFenestraProgram::stop() {
   if (state() == QProcess::NotRunning)
     return;
+  m_killed = m_stopped;
   m_stopped = true;
-  terminate();
-  const auto id = processId();
-  QTimer::singleShot(grace, this, [this, id] {
-    if (processId() == id)
-      kill();
-  });
+  if (m_killed)
+    kill();
+  else
+    terminate();
 }
 
 QProcessEnvironment qFenestraProgram::isolated(QProcessEnvironment environment) {
@@ -113,9 +111,12 @@ qFenestraOutcome qFenestraProgram::outcomeOf(int code, QProcess::ExitStatus stat
   constexpr int stoppedOnRequest = 5; // the renderer's exit status
   using Kind = qFenestraOutcome::Kind;
   const QString errors = QString::fromUtf8(readAllStandardError());
-  if (m_stopped || (status == QProcess::NormalExit && code == stoppedOnRequest))
-    return {Kind::stopped, {}, errors};
-  if (status == QProcess::CrashExit)
+  const bool crashed = status == QProcess::CrashExit; // `code` is the signal then
+  if (m_killed && crashed)
+    return {Kind::killed, {}, errors};
+  if (crashed ? m_stopped && code == SIGTERM : code == stoppedOnRequest)
+    return {Kind::stopped, {}, errors}; // by the signal itself where it could not listen yet
+  if (crashed)
     return {Kind::failed,
             tr("The renderer ended unexpectedly. If the computer ran out of memory, try a smaller "
                "picture, or crop the volume."),

@@ -7,7 +7,8 @@
 
 /// How a child ended, in words for who started it.
 struct qFenestraOutcome {
-  enum class Kind { done, stopped, failed };
+  /// `stopped`: at the user's word, with what it had; `killed`: without.
+  enum class Kind { done, stopped, killed, failed };
   Kind kind = Kind::done;
   QString message; ///< one sentence that says what to do; empty where nothing failed
   QString details; ///< what the renderer itself said
@@ -24,9 +25,9 @@ public:
   /// Starts `program` in `folder`. `ended` follows, also where it cannot be started.
   void run(const QString& program, const QStringList& arguments, const QString& folder);
 
-  /// Asks the child to end, which keeps what it has finished, and kills it where it has not ended
-  /// after `grace` milliseconds.
-  void stop(int grace = 1000);
+  /// Asks the child to end, which writes what it has finished, however long that takes. Asked
+  /// again, kills it.
+  void stop();
 
   /// An environment without what a launcher set for its own program's libraries.
   static QProcessEnvironment isolated(QProcessEnvironment environment);
@@ -46,6 +47,6 @@ private:
   void finish(const qFenestraOutcome& outcome);
   qFenestraOutcome outcomeOf(int code, QProcess::ExitStatus status);
 
-  bool m_stopped = false;
+  bool m_stopped = false, m_killed = false;
   bool m_ended = true;
 };

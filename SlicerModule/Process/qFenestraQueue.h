@@ -21,7 +21,8 @@ public:
 
   /// Starts the render, or lets it wait its turn.
   void add(const qFenestraJob& job);
-  /// Ends the render under way, which keeps what it has, or forgets the waiting one.
+  /// Ends the render under way, which keeps what it has (stopped again: not), or forgets the
+  /// waiting one.
   void stop(int id);
   int waiting() const { return static_cast<int>(m_waiting.size()); }
 

@@ -1,50 +1,12 @@
 #include "FenestraSceneFiles.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <fstream>
 #include <sstream>
 
-#ifndef _WIN32
-#include <cerrno>
-#include <csignal>
-#include <unistd.h>
-#endif
-
 namespace FenestraScene {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    switch (c) {
-    case '&':
-      out += "&amp;";
-      break;
-    case '<':
-      out += "&lt;";
-      break;
-    case '>':
-      out += "&gt;";
-      break;
-    case '"':
-      out += "&quot;";
-      break;
-    case '\n':
-      out += "&#10;";
-      break;
-    case '\t':
-      out += "&#9;";
-      break;
-    case '\r':
-      out += "&#13;";
-      break;
-    default:
-      out += c;
-    }
-  return out;
-}
 
 std::string numbers(const Matrix& matrix) {
   std::ostringstream text;
@@ -62,7 +24,8 @@ void writeText(const std::string& text, const std::filesystem::path& file) {
     throw FileError(file.string() + ": could not be written; is the disk full?");
 }
 
-/// A scene's text, a node after the other.
+/// A scene's text, a node after the other. Values are this file's own: no user's text, nothing to
+/// escape.
 class Nodes {
 public:
   using Attributes = std::vector<std::pair<std::string, std::string>>;
@@ -71,7 +34,7 @@ public:
     m_text << " <" << tag << " id=\"" << id << "\" name=\"" << id << '"';
     for (const auto& [name, value] : attributes)
       if (!value.empty())
-        m_text << ' ' << name << "=\"" << escaped(value) << '"';
+        m_text << ' ' << name << "=\"" << value << '"';
     m_text << "></" << tag << ">\n";
   }
   /// Returns the reference to put with others; none for the identity.
@@ -133,9 +96,7 @@ std::string sceneText(const Contents& contents) {
               {{"references", transform + "storage:SegmentationStorage;"}});
     shown += "segmentation:Segmentation;";
   }
-  Nodes::Attributes flags(contents.flags.begin(), contents.flags.end());
-  flags.emplace_back("references", shown);
-  nodes.add("FenestraRender", "Render", flags);
+  nodes.add("FenestraRender", "Render", {{"references", shown}});
   return nodes.text();
 }
 
@@ -271,28 +232,6 @@ std::filesystem::path Writer::write(const Contents& contents) {
     writeText(contents.crop.front().markup, folder / "roi.mrk.json");
   writeText(sceneText(contents), folder / "scene.mrml");
   return folder / "scene.mrml";
-}
-
-void removeAbandoned(const std::filesystem::path& folder, const std::string& prefix) {
-#ifndef _WIN32
-  std::error_code failed;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
-    const std::string name = entry.path().filename().string();
-    if (name.compare(0, prefix.size(), prefix) != 0)
-      continue;
-    std::size_t end = prefix.size();
-    while (end < name.size() && end < prefix.size() + 9 &&
-           std::isdigit(static_cast<unsigned char>(name[end])) != 0)
-      ++end;
-    if (end == prefix.size() || end == name.size() || name[end] != '-')
-      continue;
-    const int process = std::stoi(name.substr(prefix.size(), end - prefix.size()));
-    if (::kill(process, 0) != 0 && errno == ESRCH)
-      std::filesystem::remove_all(entry.path(), failed);
-  }
-#else
-  (void)folder, (void)prefix;
-#endif
 }
 
 } // namespace FenestraScene

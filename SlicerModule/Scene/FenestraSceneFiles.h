@@ -1,7 +1,8 @@
 #pragma once
 // What the renderer needs of Slicer's scene, and how it is written into a folder: a small scene of
-// its own that `fenestra scene.mrml` renders. No Slicer, no VTK: built and tested everywhere, and
-// free to run in any thread.
+// its own that `fenestra scene.mrml` renders, with flags that are told beside it: what a scene
+// holds the renderer trusts less. No Slicer, no VTK: built and tested everywhere, and free to run
+// in any thread.
 
 #include "FenestraImage.h"
 
@@ -45,7 +46,6 @@ struct Contents {
   std::string property; ///< the volume property's file, as text; empty: the renderer's choice
   std::string propertyEnding = ".vp"; ///< of that file
   std::vector<Roi> crop;
-  std::map<std::string, std::string> flags; ///< of <FenestraRender>
 };
 
 /// All layers side by side, a component each, over the smallest box that holds them.
@@ -72,9 +72,5 @@ private:
   Kept m_volume, m_segmentation;
   int m_written = 0;
 };
-
-/// Folders that a process left behind when it crashed, "<prefix><process id>-…" in `folder`, of
-/// processes that are no more.
-void removeAbandoned(const std::filesystem::path& folder, const std::string& prefix);
 
 } // namespace FenestraScene

@@ -165,6 +165,62 @@ TEST_F(SlicerProcess, ACrashIsNoEndOfTheWorld) {
   EXPECT_TRUE(outcomes[0].message.contains("memory"));
 }
 
+/// A renderer of a few words of shell: what it does when it is told to stop.
+struct Stopped {
+  explicit Stopped(const TemporaryFolder& folder, const char* whenTold) {
+    QObject::connect(&child, &qFenestraProgram::ended,
+                     [this](const qFenestraOutcome& ended) { outcomes.push_back(ended); });
+    bool ready = false;
+    const auto heard = QObject::connect(&child, &qFenestraProgram::said, [&] { ready = true; });
+    child.run(
+        "/bin/sh",
+        {"-c", QString("trap '%1' TERM; echo ready; while :; do sleep 0.02; done").arg(whenTold)},
+        QString::fromStdString(folder.path().string()));
+    EXPECT_TRUE(waitFor([&] { return ready; }));
+    QObject::disconnect(heard);
+    child.stop();
+  }
+  Kind kind() {
+    EXPECT_TRUE(waitFor([this] { return !outcomes.empty(); }));
+    return outcomes.empty() ? Kind::done : outcomes[0].kind;
+  }
+
+  std::vector<qFenestraOutcome> outcomes;
+  qFenestraProgram child;
+};
+
+/// Longer than any clock that a hand would set for it.
+TEST_F(SlicerProcess, NoClockEndsARendererThatWrites) {
+  Stopped stopped(folder, "sleep 2; echo picture >kept.png; exit 5");
+  EXPECT_EQ(stopped.kind(), Kind::stopped);
+  EXPECT_TRUE(exists("kept.png"));
+}
+
+TEST_F(SlicerProcess, StoppedAgainItIsKilledAndToldSo) {
+  Stopped stopped(folder, ":");
+  QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
+  EXPECT_TRUE(stopped.outcomes.empty());
+  stopped.child.stop();
+  EXPECT_EQ(stopped.kind(), Kind::killed);
+}
+
+TEST_F(SlicerProcess, WhatGoesWrongWhileStoppingIsTold) {
+  EXPECT_EQ(Stopped(folder, "kill -SEGV $$").kind(), Kind::failed);
+  EXPECT_EQ(Stopped(folder, "echo fenestra: full >&2; exit 4").kind(), Kind::failed);
+  EXPECT_EQ(Stopped(folder, "exit 0").kind(), Kind::done); // it was just ready
+}
+
+TEST_F(SlicerProcess, AProgramThatCannotListenYetIsStoppedAllTheSame) {
+  qFenestraProgram child;
+  std::vector<qFenestraOutcome> outcomes;
+  QObject::connect(&child, &qFenestraProgram::ended,
+                   [&](const qFenestraOutcome& ended) { outcomes.push_back(ended); });
+  child.run("/bin/sleep", {"100"}, path());
+  child.stop();
+  ASSERT_TRUE(waitFor([&] { return !outcomes.empty(); }));
+  EXPECT_EQ(outcomes[0].kind, Kind::stopped);
+}
+
 TEST_F(SlicerProcess, ReadsProgressAndNothingElse) {
   EXPECT_EQ(qFenestraQueue::progressIn("<filter-progress>0.25</filter-progress>"), 0.25);
   EXPECT_EQ(qFenestraQueue::progressIn("<filter-progress>7</filter-progress>"), 1.0);
@@ -313,6 +369,18 @@ TEST_F(SlicerPreview, StopsAtOnce) {
   // The child ends by itself, unheard.
   EXPECT_TRUE(waitFor([this] { return preview.findChildren<qFenestraProgram*>().isEmpty(); }));
   EXPECT_TRUE(outcomes.empty());
+}
+
+TEST_F(SlicerPreview, HoldsItsFilesUntilItsChildHasEnded) {
+  auto files = std::make_shared<int>();
+  const std::weak_ptr<int> held = files;
+  preview.start(program, {"volume.nrrd", "--size=16x16", "--samples=100000000", "--output=p.png"},
+                path(), std::move(files));
+  ASSERT_TRUE(waitFor([this] { return !pictures.empty(); }));
+  preview.stop();
+  EXPECT_FALSE(held.expired());
+  EXPECT_TRUE(waitFor([&] { return held.expired(); }));
+  EXPECT_TRUE(preview.findChildren<qFenestraProgram*>().isEmpty());
 }
 
 TEST_F(SlicerPreview, SaysWhyItCannotBegin) {

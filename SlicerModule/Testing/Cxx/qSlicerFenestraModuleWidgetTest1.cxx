@@ -279,6 +279,26 @@ int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
   return EXIT_SUCCESS;
 }
 
+/// What a scene says and is not followed is shown; files are followed once they are allowed.
+int checkWithheld(const Panel& panel) {
+  const std::map<std::string, std::string> flags = panel.settings()->GetFlags();
+  CHECK_BOOL(panel.shows("WithheldLabel"), false);
+  const char* attributes[] = {"transfer", "/nowhere/colours.json", "noise", "<b>", nullptr};
+  panel.settings()->ReadXMLAttributes(attributes);
+  CHECK_BOOL(panel.find<QLabel>("WithheldLabel")->text().contains("transfer: /nowhere"), true);
+  CHECK_BOOL(panel.find<QLabel>("WithheldLabel")->text().contains("noise: <b>"), true);
+  CHECK_BOOL(panel.shows("AllowButton"), true);
+  CHECK_STD_STRING(panel.flag("transfer"), "");
+  panel.find<QPushButton>("AllowButton")->click();
+  CHECK_STD_STRING(panel.flag("transfer"), "/nowhere/colours.json");
+  CHECK_STD_STRING(panel.chosen("TransferBox").toStdString(), "/nowhere/colours.json");
+  CHECK_BOOL(panel.shows("AllowButton"), false);
+  panel.settings()->SetFlag("noise", "0.05"); // and so the last of it is gone
+  CHECK_BOOL(panel.shows("WithheldLabel"), false);
+  panel.settings()->SetFlags(flags);
+  return EXIT_SUCCESS;
+}
+
 /// Rendered, played, stopped in between and gone on with.
 int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   CHECK_BOOL(panel.shows("Turntable"), abilities.turns());
@@ -319,6 +339,9 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   std::cout << some << " frames when it was stopped\n";
   CHECK_BOOL(some > 0 && some < 60, true);
   CHECK_BOOL(panel.shows("ResumeButton"), true);
+  turntable->SetFlag("frames", "x"); // garbage is no turntable that can go on
+  CHECK_BOOL(panel.widget->session()->canResume(turntable), false);
+  turntable->SetFlag("frames", "60");
   CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("ResumeButton")->click(); }), true);
   CHECK_POINTER(panel.picture(), turntable);
   CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 60);
@@ -400,6 +423,7 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkMargins(panel));
   CHECK_EXIT_SUCCESS(checkPlane(panel, scene));
   CHECK_EXIT_SUCCESS(checkPresets(panel, abilities));
+  CHECK_EXIT_SUCCESS(checkWithheld(panel));
   CHECK_EXIT_SUCCESS(checkTurntable(panel, abilities));
   CHECK_EXIT_SUCCESS(checkRenders(panel));
 

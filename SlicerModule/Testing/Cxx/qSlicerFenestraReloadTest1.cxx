@@ -155,7 +155,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   CHECK_BOOL(waitFor([&] { return panel.shows("ProgressBar"); }), true);
   scene->Clear(false);
   CHECK_BOOL(waitFor([&] { return !owner->session()->rendering(); }), true);
-  CHECK_STD_STRING(textOf(panel, "StateLabel"), "Stopped before there was a picture.");
+  CHECK_STD_STRING(textOf(panel, "StateLabel"), "Ended at once, without a picture.");
   CHECK_BOOL(panel.shows("ProgressBar"), false);
   owner->exit();
   return EXIT_SUCCESS;

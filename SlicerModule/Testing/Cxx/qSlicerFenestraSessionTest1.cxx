@@ -9,6 +9,7 @@
 
 #include <QApplication>
 #include <QDir>
+#include <QFileInfo>
 #include <QProcess>
 
 #include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
@@ -111,6 +112,25 @@ int checkResult(vtkMRMLScene* scene, Node* render) {
   return EXIT_SUCCESS;
 }
 
+/// Another scene gives a node the ID that this render has: nothing of the render is its.
+int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* render) {
+  const std::string id = render->GetID();
+  const QString file = session.results().fileOf(render, "png");
+  CHECK_BOOL(file.isEmpty(), false);
+  scene->Clear(false);
+  Node* stranger = nullptr;
+  for (int i = 0; i < 20 && (!stranger || id != stranger->GetID()); ++i)
+    stranger = Node::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLFenestraRenderNode"));
+  CHECK_STD_STRING(std::string(stranger->GetID()), id);
+  stranger->SetFlag("frames", "x");
+  CHECK_BOOL(session.results().fileOf(stranger, "png").isEmpty(), true);
+  CHECK_BOOL(session.results().framesOf(stranger).isEmpty(), true);
+  CHECK_BOOL(session.canResume(stranger), false);
+  session.closeScene(); // as the panel does then
+  CHECK_BOOL(waitFor([&] { return !QFileInfo::exists(file); }), true);
+  return EXIT_SUCCESS;
+}
+
 } // namespace
 
 int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
@@ -161,7 +181,7 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   CHECK_BOOL(waitFor([&] { return heard.ended == 2; }), true);
   CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::done));
   CHECK_EXIT_SUCCESS(checkResult(scene, first));
-  CHECK_BOOL(session.fileOf(first, "exr").isEmpty(), false);
+  CHECK_BOOL(session.results().fileOf(first, "exr").isEmpty(), false);
   Node* second = heard.render;
   CHECK_STD_STRING(second->GetFlag("seed"), "5");
   CHECK_EXIT_SUCCESS(compareWithCommandLine(scene, second, program, folder));
@@ -199,5 +219,6 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   CHECK_NULL(without.render(settings));
   CHECK_BOOL(other.last.message.contains("missing"), true);
   CHECK_INT(scene->GetNumberOfNodes(), nodes);
+  CHECK_EXIT_SUCCESS(checkAnotherScene(scene, session, second));
   return EXIT_SUCCESS;
 }

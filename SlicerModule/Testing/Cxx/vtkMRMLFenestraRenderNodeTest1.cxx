@@ -1,13 +1,85 @@
 // The node that keeps what a picture was made of: written, read, copied.
 
+#include "FenestraFlags.h"
 #include "FenestraTesting.h"
 
 #include "vtkMRMLFenestraRenderNode.h"
 
 #include <vtkNew.h>
 
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+
+/// A value as a flag of this kind has one.
+std::string example(FenestraScene::FlagKind kind) {
+  using Kind = FenestraScene::FlagKind;
+  switch (kind) {
+  case Kind::text:
+    return "a,b c";
+  case Kind::word:
+    return "word";
+  case Kind::whole:
+    return "12";
+  case Kind::number:
+    return "-0.5";
+  case Kind::size:
+    return "8x6";
+  case Kind::look:
+    return "studio";
+  default:
+    return "1,-0.5,3";
+  }
+}
+
+/// The one node of a scene that says this, as a stored scene is read.
+Node* readIn(vtkMRMLScene* scene, const std::string& text) {
+  scene->RegisterNodeClass(vtkSmartPointer<Node>::New());
+  scene->SetLoadFromXMLString(1);
+  scene->SetSceneXMLString(text);
+  scene->Import();
+  return Node::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLFenestraRenderNode"));
+}
+
+std::string written(vtkMRMLScene* scene) {
+  scene->SetSaveToXMLString(1);
+  scene->Commit();
+  return scene->GetSceneXMLString();
+}
+
+/// A scene of anybody's: its files and its garbage are kept, and not followed.
+int testWithheld() {
+  const std::string text =
+      R"(<MRML version="Slicer 5.2"><FenestraRender id="r" name="r" )"
+      R"(clip="surface" frames="x" transfer="/etc/passwd" seed="-1" )"
+      R"(lights="{&quot;file&quot;: &quot;a.exr&quot;}"></FenestraRender></MRML>)";
+  vtkNew<vtkMRMLScene> scene;
+  Node* node = readIn(scene, text);
+  CHECK_NOT_NULL(node);
+  CHECK_INT(static_cast<int>(node->GetFlags().size()), 1);
+  CHECK_STD_STRING(node->GetFlag("clip"), "surface");
+  CHECK_INT(static_cast<int>(node->GetWithheld().size()), 4);
+  CHECK_BOOL(node->WithholdsFiles(), true);
+  CHECK_BOOL(node->IsTurntable(), false);
+  vtkNew<vtkMRMLScene> again;
+  Node* reread = readIn(again, written(scene));
+  CHECK_BOOL(reread->GetWithheld() == node->GetWithheld(), true);
+  vtkNew<Node> copy;
+  copy->Copy(node);
+  CHECK_BOOL(copy->GetWithheld() == node->GetWithheld(), true);
+  node->SetFlag("lights", "studio"); // the user chooses another one
+  CHECK_INT(static_cast<int>(node->GetWithheld().count("lights")), 0);
+  node->AllowFiles();
+  CHECK_STD_STRING(node->GetFlag("transfer"), "/etc/passwd");
+  CHECK_STD_STRING(node->GetFlag("frames"), "");
+  CHECK_BOOL(node->WithholdsFiles(), false);
+  CHECK_INT(static_cast<int>(node->GetWithheld().size()), 2); // garbage
+  return EXIT_SUCCESS;
+}
+
+} // namespace
+
 int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
-  using Node = vtkMRMLFenestraRenderNode;
   vtkNew<Node> node;
   EXERCISE_ALL_BASIC_MRML_METHODS(node.GetPointer());
 
@@ -28,16 +100,10 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   CHECK_STD_STRING(first->GetFocus()[2], "d\\e");
   first->SetNodeReferenceID(Node::VolumeRole, volume->GetID());
 
-  scene->SetSaveToXMLString(1);
-  scene->Commit();
-  const std::string text = scene->GetSceneXMLString();
+  const std::string text = written(scene);
   std::cout << text;
   vtkNew<vtkMRMLScene> again;
-  again->RegisterNodeClass(vtkSmartPointer<Node>::New());
-  again->SetLoadFromXMLString(1);
-  again->SetSceneXMLString(text);
-  CHECK_INT(again->Import(), 1);
-  auto* read = Node::SafeDownCast(again->GetFirstNodeByClass("vtkMRMLFenestraRenderNode"));
+  Node* read = readIn(again, text);
   CHECK_NOT_NULL(read);
   CHECK_BOOL(read->GetFlags() == first->GetFlags(), true);
   CHECK_BOOL(read->GetFocus() == first->GetFocus(), true);
@@ -45,21 +111,15 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
 
   // Every flag, and what was measured.
   std::map<std::string, std::string> all;
-  for (const std::string& name : Node::GetFlagNames())
-    all[name] = name + " 1,-0.5";
+  for (const FenestraScene::Flag& flag : FenestraScene::flags())
+    all[flag.name] = example(flag.kind);
   read->SetFlags(all);
   CHECK_BOOL(read->GetFlags() == all, true);
   CHECK_BOOL(read->IsTurntable(), true);
   const std::string measures = R"({"boundaryGapMm":{"max":0.1},"focusCoverage":1})";
   read->SetAttribute(Node::MeasuresAttribute, measures.c_str());
-  again->SetSaveToXMLString(1);
-  again->Commit();
   vtkNew<vtkMRMLScene> third;
-  third->RegisterNodeClass(vtkSmartPointer<Node>::New());
-  third->SetLoadFromXMLString(1);
-  third->SetSceneXMLString(again->GetSceneXMLString());
-  CHECK_INT(third->Import(), 1);
-  auto* last = Node::SafeDownCast(third->GetFirstNodeByClass("vtkMRMLFenestraRenderNode"));
+  Node* last = readIn(third, written(again));
   CHECK_NOT_NULL(last);
   CHECK_BOOL(last->GetFlags() == all, true);
   CHECK_STD_STRING(last->GetAttribute(Node::MeasuresAttribute), measures);
@@ -78,5 +138,6 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   CHECK_BOOL(first->GetMTime() == before, true);
   first->SetFlag("clip", "");
   CHECK_INT(static_cast<int>(first->GetFlags().count("clip")), 0);
+  CHECK_EXIT_SUCCESS(testWithheld());
   return EXIT_SUCCESS;
 }

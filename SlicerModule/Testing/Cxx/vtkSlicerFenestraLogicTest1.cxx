@@ -15,14 +15,18 @@
 #include <vtkSegment.h>
 #include <vtkTransform.h>
 
+#include <algorithm>
+
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
+const auto folder = std::filesystem::temp_directory_path(); // nothing passes through it here
+
 /// What is said where something is missing; empty where nothing is.
 std::string complaint(vtkSlicerFenestraLogic* logic, Node* node) {
   try {
-    logic->Snapshot(node);
+    logic->Snapshot(node, folder);
     return {};
   } catch (const vtkSlicerFenestraComplaint& said) {
     return said.what();
@@ -67,26 +71,26 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   vtkMRMLScalarVolumeNode* volume = FenestraTesting::addVolume(scene);
   settings->SetNodeReferenceID(Node::VolumeRole, volume->GetID());
   CHECK_STD_STRING(complaint(logic, settings), "");
-  FenestraScene::Contents contents = logic->Snapshot(settings);
+  FenestraScene::Contents contents = logic->Snapshot(settings, folder);
   CHECK_STD_STRING(contents.volume.type, "int16");
   CHECK_BOOL(contents.volume.data.get() == volume->GetImageData()->GetScalarPointer(), true);
   CHECK_BOOL(contents.property.empty(), true);
   const std::string key = contents.volumeKey;
-  CHECK_STD_STRING(logic->Snapshot(settings).volumeKey, key);
+  CHECK_STD_STRING(logic->Snapshot(settings, folder).volumeKey, key);
   volume->GetImageData()->GetPointData()->GetScalars()->Modified();
-  CHECK_BOOL(logic->Snapshot(settings).volumeKey != key, true);
+  CHECK_BOOL(logic->Snapshot(settings, folder).volumeKey != key, true);
 
   vtkMRMLSegmentationNode* segmentation = FenestraTesting::addSegmentation(scene);
   settings->SetNodeReferenceID(Node::SegmentationRole, segmentation->GetID());
   std::vector<std::string> ids;
   segmentation->GetSegmentation()->GetSegmentIDs(ids);
   settings->SetFocus({ids[0]});
-  contents = logic->Snapshot(settings);
+  contents = logic->Snapshot(settings, folder);
   CHECK_BOOL(contents.segmentation.segments.empty(), false);
   CHECK_STD_STRING(contents.segmentation.segments[0].name, "Ball");
   segmentation->GetSegmentation()->GetSegment(ids[0])->SetTag(
       vtkSegment::GetTerminologyEntryTagName(), "a~SCT^1^b");
-  CHECK_STD_STRING(logic->Snapshot(settings).segmentation.segments[0].tags,
+  CHECK_STD_STRING(logic->Snapshot(settings, folder).segmentation.segments[0].tags,
                    "TerminologyEntry:a~SCT^1^b|");
   settings->SetFocus({"gone"});
   CHECK_BOOL(has(complaint(logic, settings), "gone"), true);
@@ -98,7 +102,7 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
       scene->AddNewNodeByClass("vtkMRMLLinearTransformNode", "Shift"));
   transform->SetMatrixTransformToParent(shift);
   segmentation->SetAndObserveTransformNodeID(transform->GetID());
-  CHECK_DOUBLE(logic->Snapshot(settings).segmentation.toWorld[3], 12.5);
+  CHECK_DOUBLE(logic->Snapshot(settings, folder).segmentation.toWorld[3], 12.5);
   auto* bending = scene->AddNewNodeByClass("vtkMRMLBSplineTransformNode", "Bending");
   volume->SetAndObserveTransformNodeID(bending->GetID());
   CHECK_BOOL(has(complaint(logic, settings), "Harden"), true);
@@ -119,7 +123,7 @@ int testPlane(vtkMRMLScene* scene) {
   return EXIT_SUCCESS;
 }
 
-/// Of a turntable's own flags the scene that is rendered knows nothing.
+/// A picture knows nothing of a turntable's own flags.
 int testTurntable(vtkSlicerFenestraLogic* logic, Node* settings) {
   settings->SetFlag("frames", "12");
   settings->SetFlag("degrees", "90");
@@ -127,11 +131,16 @@ int testTurntable(vtkSlicerFenestraLogic* logic, Node* settings) {
   CHECK_BOOL(logic->AddRender(settings)->IsTurntable(), false);
   Node* turntable = logic->AddRender(settings, true);
   CHECK_BOOL(turntable->IsTurntable(), true);
-  CHECK_INT(static_cast<int>(logic->Snapshot(turntable).flags.count("frames")), 0);
-  CHECK_BOOL(
-      vtkSlicerFenestraLogic::GetTurntableArguments(turntable) ==
-          std::vector<std::string>({"--output", "frame.png", "--frames", "12", "--degrees", "90"}),
-      true);
+  const auto says = [](Node* render, const std::string& argument) {
+    const auto all = vtkSlicerFenestraLogic::GetArguments(render, true);
+    return std::find(all.begin(), all.end(), argument) != all.end();
+  };
+  for (const char* argument : {"--output=frame.png", "--frames=12", "--degrees=90"}) {
+    CHECK_BOOL(says(turntable, argument), true);
+    CHECK_BOOL(says(logic->AddRender(settings), argument), false);
+  }
+  CHECK_BOOL(says(logic->AddRender(settings), "--surface=surface.vtp"), true);
+  CHECK_BOOL(says(turntable, "--surface=surface.vtp"), false);
   CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 0);
   return EXIT_SUCCESS;
 }

@@ -1,0 +1,67 @@
+#include "qFenestraFolder.h"
+
+#ifdef Q_OS_UNIX
+
+#include <QDir>
+#include <QFile>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace {
+
+constexpr const char* lockName = "lock";
+
+/// Opens a lock and takes it without waiting; -1 where another process holds it, or it is none of
+/// this user's.
+int take(const QString& file, int flags) {
+  const int lock = ::open(QFile::encodeName(file).constData(),
+                          flags | O_RDWR | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  struct stat status = {};
+  if (lock < 0 || (::fstat(lock, &status) == 0 && status.st_uid == ::geteuid() &&
+                   ::flock(lock, LOCK_EX | LOCK_NB) == 0))
+    return lock;
+  ::close(lock);
+  return -1;
+}
+
+/// Those without a lock are too young to be judged, and hold nothing.
+void removeAbandoned(const QDir& parent, const QString& prefix) {
+  const QStringList names = parent.entryList({prefix + "*"}, QDir::Dirs | QDir::NoSymLinks);
+  for (const QString& name : names) {
+    QDir folder(parent.filePath(name));
+    const int lock = take(folder.filePath(lockName), 0);
+    if (lock < 0)
+      continue;
+    folder.removeRecursively();
+    ::close(lock);
+  }
+}
+
+} // namespace
+
+qFenestraFolder::qFenestraFolder(const QString& parent, const QString& prefix)
+    : QTemporaryDir((removeAbandoned(parent, prefix), parent + "/" + prefix + "XXXXXX")) {
+  if (!isValid())
+    return;
+  const QString young = filePath("lock.young"); // nobody sees the lock before it is held
+  m_lock = take(young, O_CREAT | O_EXCL);
+  QFile::rename(young, filePath(lockName));
+}
+
+qFenestraFolder::~qFenestraFolder() {
+  remove();
+  if (m_lock >= 0)
+    ::close(m_lock);
+}
+
+#else // abandoned folders stay
+
+qFenestraFolder::qFenestraFolder(const QString& parent, const QString& prefix)
+    : QTemporaryDir(parent + "/" + prefix + "XXXXXX") {}
+
+qFenestraFolder::~qFenestraFolder() = default;
+
+#endif

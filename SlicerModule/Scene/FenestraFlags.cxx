@@ -1,0 +1,129 @@
+#include "FenestraFlags.h"
+
+#include <algorithm>
+#include <locale>
+#include <sstream>
+
+namespace FenestraScene {
+namespace {
+
+constexpr std::size_t longest = 100000; // bytes: one argument of a command may have 131,071
+
+bool isWhole(const std::string& text) {
+  constexpr std::size_t digits = 20; // those of 2^64
+  return !text.empty() && text.size() <= digits &&
+         text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// Numbers of any size that a double holds; neither infinite nor "nan", which streams do not read.
+bool areNumbers(const std::string& text, bool several) {
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  char comma = ',';
+  while (comma == ',') {
+    double number = 0.0;
+    if (!(in >> number))
+      return false;
+    if (!(in >> comma))
+      return true;
+    if (!several)
+      return false;
+  }
+  return false;
+}
+
+bool isWord(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(),
+                                      [](char c) { return (c >= 'a' && c <= 'z') || c == '-'; });
+}
+
+bool isSize(const std::string& text) {
+  const std::size_t times = text.find('x');
+  return times != std::string::npos && isWhole(text.substr(0, times)) &&
+         isWhole(text.substr(times + 1));
+}
+
+/// A JSON text opens a file by its member "file", which an escape could hide; any other value is a
+/// name, which without these characters is a file in the session's own folder at most.
+bool namesFile(const std::string& look) {
+  if (look.front() == '{')
+    return look.find("\"file\"") != std::string::npos || look.find('\\') != std::string::npos;
+  return !areNumbers(look, true) && look.find_first_of("/\\.:~") != std::string::npos;
+}
+
+bool isKind(FlagKind kind, const std::string& value) {
+  switch (kind) {
+  case FlagKind::word:
+    return isWord(value);
+  case FlagKind::whole:
+    return isWhole(value);
+  case FlagKind::number:
+    return areNumbers(value, false);
+  case FlagKind::numbers:
+    return areNumbers(value, true);
+  case FlagKind::size:
+    return isSize(value);
+  case FlagKind::colour:
+    return isWord(value) || areNumbers(value, true);
+  case FlagKind::text:
+  case FlagKind::look:
+    break;
+  }
+  return value.find('\0') == std::string::npos; // which would end an argument
+}
+
+} // namespace
+
+const std::vector<Flag>& flags() {
+  using Kind = FlagKind;
+  static const std::vector<Flag> all = {{"focus", Kind::text},
+                                        {"preset", Kind::look},
+                                        {"margin", Kind::numbers},
+                                        {"labelsmoothing", Kind::number},
+                                        {"clip", Kind::word},
+                                        {"boundary", Kind::word},
+                                        {"controlpoints", Kind::whole},
+                                        {"smoothing", Kind::number},
+                                        {"plane", Kind::numbers},
+                                        {"hole", Kind::word},
+                                        {"holemargin", Kind::number},
+                                        {"ghost", Kind::number},
+                                        {"offset", Kind::number},
+                                        {"soft", Kind::number},
+                                        {"contextdensity", Kind::number},
+                                        {"contextsaturation", Kind::number},
+                                        {"view", Kind::word},
+                                        {"position", Kind::numbers},
+                                        {"target", Kind::numbers},
+                                        {"up", Kind::numbers},
+                                        {"projection", Kind::word},
+                                        {"scale", Kind::number},
+                                        {"angle", Kind::number},
+                                        {"transfer", Kind::look},
+                                        {"shift", Kind::number},
+                                        {"density", Kind::number},
+                                        {"lights", Kind::look},
+                                        {"environment", Kind::look},
+                                        {"background", Kind::colour},
+                                        {"size", Kind::size},
+                                        {"samples", Kind::whole},
+                                        {"seconds", Kind::number},
+                                        {"noise", Kind::number},
+                                        {"bounces", Kind::whole},
+                                        {"seed", Kind::whole},
+                                        {"frames", Kind::whole},
+                                        {"degrees", Kind::number},
+                                        {"steady", Kind::number}};
+  return all;
+}
+
+Verdict verdictOn(const std::string& name, const std::string& value) {
+  const auto flag = std::find_if(flags().begin(), flags().end(),
+                                 [&](const Flag& one) { return one.name == name; });
+  if (flag == flags().end() || value.empty() || value.size() > longest ||
+      !isKind(flag->kind, value))
+    return Verdict::bad;
+  return flag->kind == FlagKind::look && namesFile(value) ? Verdict::file : Verdict::good;
+}
+
+} // namespace FenestraScene

@@ -1,0 +1,87 @@
+#include "qSlicerFenestraResults.h"
+
+#include "qSlicerFenestraMeasures.h"
+#include "vtkSlicerFenestraLogic.h"
+
+#include <QFile>
+#include <QFileInfo>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QObject>
+
+#include <algorithm>
+
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+
+QJsonObject statistics(const QString& folder) {
+  QFile file(folder + "/stats.json");
+  if (!file.open(QIODevice::ReadOnly))
+    return {};
+  return QJsonDocument::fromJson(file.readAll()).object();
+}
+
+QString statsLine(const QJsonObject& stats) {
+  return stats.isEmpty()
+             ? QString()
+             : QObject::tr("%1 samples a pixel, noise %2, %3")
+                   .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
+                   .arg(stats["noise"].toDouble(), 0, 'g', 2)
+                   .arg(qSlicerFenestraMeasures::duration(
+                       stats["seconds"].toObject()["total"].toDouble()));
+}
+
+QString turntableLine(Node* render) {
+  return QObject::tr("%1 of %2 frames, %3\u00b0")
+      .arg(vtkSlicerFenestraLogic::GetNumberOfFrames(render))
+      .arg(QString::fromStdString(render->GetFlag("frames")),
+           QString::fromStdString(render->GetFlag("degrees")));
+}
+
+/// With the render, what the renderer says about it.
+void describe(Node* render, const QJsonObject& stats) {
+  const QString line = render->IsTurntable() ? turntableLine(render) : statsLine(stats);
+  render->SetDescription(line.toUtf8().constData());
+  const QJsonObject measures = qSlicerFenestraMeasures::kept(stats);
+  if (!measures.isEmpty())
+    render->SetAttribute(Node::MeasuresAttribute,
+                         QJsonDocument(measures).toJson(QJsonDocument::Compact).constData());
+}
+
+} // namespace
+
+void qSlicerFenestraResults::add(Node* render, const QString& folder) {
+  describe(render, statistics(folder));
+  const auto isIts = [render](const Result& one) { return !one.node || one.node == render; };
+  m_all.erase(std::remove_if(m_all.begin(), m_all.end(), isIts), m_all.end());
+  m_all.append({render, folder});
+}
+
+QString qSlicerFenestraResults::folderOf(Node* render) const {
+  const auto found = std::find_if(m_all.begin(), m_all.end(),
+                                  [render](const Result& one) { return one.node == render; });
+  return render && found != m_all.end() ? found->folder : QString();
+}
+
+QString qSlicerFenestraResults::fileOf(Node* render, const QString& ending) const {
+  const QString folder = folderOf(render);
+  const QString file = folder + "/picture." + ending;
+  return !folder.isEmpty() && QFileInfo::exists(file) ? file : QString();
+}
+
+QStringList qSlicerFenestraResults::framesOf(Node* turntable) const {
+  const QString folder = folderOf(turntable);
+  QStringList files;
+  if (!folder.isEmpty())
+    for (const std::string& file : vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()))
+      files << QString::fromStdString(file);
+  return files;
+}
+
+bool qSlicerFenestraResults::lacksFrames(Node* render) const {
+  const QString folder = folderOf(render);
+  return !folder.isEmpty() && render->IsTurntable() && QFileInfo::exists(folder + "/scene.mrml") &&
+         vtkSlicerFenestraLogic::GetNumberOfFrames(render) <
+             QString::fromStdString(render->GetFlag("frames")).toInt();
+}

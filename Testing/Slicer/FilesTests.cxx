@@ -1,0 +1,163 @@
+// Files of patients: where a session keeps them, how they go, and what saving them costs.
+
+#include "TemporaryFolder.h"
+
+#include "qFenestraCopies.h"
+#include "qFenestraFolder.h"
+
+#include <QDir>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+QString inQt(const std::filesystem::path& path) {
+  return QString::fromStdString(path.string());
+}
+
+/// Another session, in a process that lives until it is killed.
+class Neighbour {
+public:
+  explicit Neighbour(const TemporaryFolder& parent) {
+    int tell[2];
+    EXPECT_EQ(::pipe(tell), 0);
+    m_process = ::fork();
+    if (m_process == 0) {
+      const qFenestraFolder folder(inQt(parent.path()), "session-");
+      std::ofstream(folder.filePath("patient.nrrd").toStdString()) << "voxels";
+      const std::string path = folder.path().toStdString();
+      [[maybe_unused]] const auto written = ::write(tell[1], path.data(), path.size());
+      for (;;)
+        ::pause();
+    }
+    char path[4096] = {};
+    EXPECT_GT(::read(tell[0], path, sizeof path - 1), 0);
+    folder = path;
+    ::close(tell[0]);
+    ::close(tell[1]);
+  }
+  ~Neighbour() { crash(); }
+  Neighbour(const Neighbour&) = delete;
+  Neighbour& operator=(const Neighbour&) = delete;
+
+  void crash() {
+    if (m_process > 0) {
+      ::kill(m_process, SIGKILL);
+      ::waitpid(m_process, nullptr, 0);
+    }
+    m_process = -1;
+  }
+
+  std::filesystem::path folder;
+
+private:
+  pid_t m_process = -1;
+};
+
+TEST(SlicerFolder, IsPrivateAndGoesWithItsSession) {
+  const TemporaryFolder parent;
+  QString path;
+  {
+    const qFenestraFolder folder(inQt(parent.path()), "session-");
+    path = folder.path();
+    ASSERT_TRUE(folder.isValid());
+    EXPECT_EQ(std::filesystem::status(path.toStdString()).permissions(),
+              std::filesystem::perms::owner_all);
+    EXPECT_TRUE(QDir(path).mkpath("1"));
+  }
+  EXPECT_FALSE(QDir(path).exists());
+}
+
+/// Whatever its number in another container may be.
+TEST(SlicerFolder, OfALivingSessionStaysAndOfACrashedOneGoes) {
+  const TemporaryFolder parent;
+  Neighbour neighbour(parent);
+  const std::filesystem::path renamed = parent / "session-999999999-a"; // no such process here
+  std::filesystem::rename(neighbour.folder, renamed);
+  { const qFenestraFolder own(inQt(parent.path()), "session-"); }
+  EXPECT_TRUE(std::filesystem::exists(renamed / "patient.nrrd"));
+  neighbour.crash();
+  { const qFenestraFolder own(inQt(parent.path()), "session-"); }
+  EXPECT_FALSE(std::filesystem::exists(renamed));
+}
+
+TEST(SlicerFolder, OthersFoldersAndLinksAreLeftAlone) {
+  const TemporaryFolder parent;
+  for (const char* name : {"session-young", "other-a", "elsewhere"})
+    std::filesystem::create_directory(parent / name);
+  parent.write("other-a/lock", "");
+  parent.write("elsewhere/lock", "");
+  std::filesystem::create_directory_symlink(parent / "elsewhere", parent / "session-link");
+  std::filesystem::create_directory(parent / "session-trap");
+  std::filesystem::create_symlink(parent / "elsewhere/lock", parent / "session-trap/lock");
+  { const qFenestraFolder own(inQt(parent.path()), "session-"); }
+  for (const char* name : {"session-young", "other-a/lock", "elsewhere/lock", "session-trap/lock"})
+    EXPECT_TRUE(std::filesystem::exists(parent / name)) << name;
+}
+
+class SlicerCopies : public ::testing::Test {
+protected:
+  SlicerCopies() {
+    folder.write("new.png", std::string(10000, 'n'));
+    folder.write("old.png", "old");
+  }
+  QString path(const char* name) const { return inQt(folder / name); }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(SlicerCopies, ReplaceAFileOnceTheyAreWhole) {
+  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old.png"), ".png").write(), "");
+  EXPECT_EQ(bytesOf(folder / "old.png").size(), 10000u);
+}
+
+TEST_F(SlicerCopies, ThatFailLeaveTheOldFileAndNoOther) {
+  EXPECT_EQ(qFenestraCopies::picture(path("gone.png"), path("old.png"), ".png").write(),
+            path("old.png"));
+  EXPECT_EQ(bytesOf(folder / "old.png"), "old");
+
+  struct rlimit before = {};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, SIG_IGN);
+  struct rlimit full = before;
+  full.rlim_cur = 4096; // as a disk that is full
+  ::setrlimit(RLIMIT_FSIZE, &full);
+  const QString failed = qFenestraCopies::picture(path("new.png"), path("old.png"), ".png").write();
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, SIG_DFL);
+  EXPECT_EQ(failed.toStdString(), path("old.png").toStdString());
+  EXPECT_EQ(bytesOf(folder / "old.png").size(), 3u);
+  EXPECT_EQ(QDir(inQt(folder.path())).entryList(QDir::Files | QDir::Hidden),
+            (QStringList{"new.png", "old.png"}));
+}
+
+TEST_F(SlicerCopies, AskForTheNamesThatTheyWrite) {
+  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old"), ".png").existing(),
+            QStringList{path("old.png")});
+  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old.PNG"), ".png").existing(),
+            QStringList());
+  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old"), ".exr").existing(),
+            QStringList());
+
+  const QStringList sources = {path("frame_0000.png"), path("frame_0001.png"),
+                               path("frame_0002.png")};
+  for (const QString& source : sources)
+    folder.write(QFileInfo(source).fileName().toStdString(), "frame");
+  folder.write("turn_0001.png", "old");
+  std::filesystem::create_symlink(folder / "nowhere", folder / "turn_0002.png");
+  for (const char* chosen : {"turn", "turn.png"}) {
+    const qFenestraCopies frames = qFenestraCopies::frames(sources, path(chosen));
+    EXPECT_EQ(frames.existing(), (QStringList{path("turn_0001.png"), path("turn_0002.png")}));
+    EXPECT_EQ(frames.names(), path("turn_0000.png") + " to turn_0002.png");
+  }
+  EXPECT_EQ(qFenestraCopies::frames(sources, path("turn")).write(), "");
+  EXPECT_EQ(bytesOf(folder / "turn_0001.png"), "frame");
+}
+
+} // namespace
+} // namespace fenestra
