@@ -95,32 +95,39 @@ struct Outputs::Result {
   fs::path target;                     ///< of a file
   std::unique_ptr<TemporaryFile> file; ///< written and not yet in place
 
+  IsOurs isOurs; ///< empty where the user named it
+
   std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
+  void requireOurs() const {
+    std::error_code failed;
+    if (isOurs && fs::exists(target, failed) && !isOurs(target))
+      throw usageError(named.string() + ": is there, and Fenestra did not write it; move it away, "
+                                        "or choose another --output");
+  }
 };
 
 Outputs::Outputs() = default;
+
 Outputs::~Outputs() {
   for (const auto& [path, result] : m_results)
     forgetResult(result->target);
 }
 
 Outputs::Result& Outputs::declare(const fs::path& path) {
-  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}});
+  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}, {}});
   if (!result->stream) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
   }
   requireNoInput(path, result->id());
-  for (const auto& [name, other] : m_results)
-    if ((result->target == other->target && !result->stream) ||
-        (result->id() && result->id() == other->id()))
-      throw usageError(path.string() + ": would be written twice; give each result a name of its "
-                                       "own");
-  const fs::path folder = result->target.parent_path();
-  if (!result->stream && std::find(m_folders.begin(), m_folders.end(), folder) == m_folders.end()) {
-    removeAbandonedFiles(folder);
+  const std::optional<FileId> id = result->id();
+  if ((!result->stream && !m_targets.insert(result->target).second) ||
+      (id && !m_files.insert(*id).second))
+    throw usageError(path.string() +
+                     ": would be written twice; give each result a name of its own");
+  if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
+    removeAbandonedFiles(result->target.parent_path());
     requireRoomFor(result->target);
-    m_folders.push_back(folder);
   }
   return *(m_results[path] = std::move(result));
 }
@@ -130,11 +137,9 @@ void Outputs::add(const fs::path& path) {
 }
 
 void Outputs::addUnnamed(const fs::path& path, const IsOurs& isOurs) {
-  const Result& result = declare(path);
-  std::error_code failed;
-  if (fs::exists(result.target, failed) && !isOurs(result.target))
-    throw usageError(path.string() + ": is there, and Fenestra did not write it; move it away, or "
-                                     "choose another --output");
+  Result& result = declare(path);
+  result.isOurs = isOurs;
+  result.requireOurs();
 }
 
 void Outputs::checkInputs() const {
@@ -165,11 +170,12 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
     for (Result* result : files) {
       requireNoInput(result->named, result->id());
       requireReplaceable(result->named, result->target);
+      result->requireOurs();
       result->file->place();
-      enterResult(result->target);
       ++placed;
+      enterResult(result->target);
     }
-  } catch (const Error&) {
+  } catch (...) {
     while (placed > 0)
       files[--placed]->file->takeBack();
     throw;

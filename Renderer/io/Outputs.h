@@ -2,10 +2,13 @@
 // What a command writes: declared before the long work, refused where that would cost the user a
 // file, and put in place together when it is complete. Nothing else in Renderer writes results.
 
+#include "io/Inputs.h"
+
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,8 +67,10 @@ private:
   void place(const std::vector<Result*>& files, Durability durability);
 
   std::map<std::filesystem::path, std::unique_ptr<Result>>
-      m_results;                                ///< by the name that was given
-  std::vector<std::filesystem::path> m_folders; ///< where a file can be made
+      m_results;                             ///< by the name that was given
+  std::set<std::filesystem::path> m_targets; ///< of all results
+  std::set<FileId> m_files;                  ///< that were there when they were declared
+  std::set<std::filesystem::path> m_folders; ///< in which a file can be made
 };
 
 } // namespace fenestra

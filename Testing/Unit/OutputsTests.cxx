@@ -210,6 +210,14 @@ TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
   outputs.addUnnamed(folder / "new");
 }
 
+TEST_F(OutputFiles, DoNotReplaceWhatSomebodyPutThereMeanwhile) {
+  outputs.addUnnamed(folder / "a");
+  outputs.write(folder / "a", "new");
+  folder.write("a", "somebody else's");
+  refusal(ErrorKind::usage, [&] { outputs.commit(); });
+  EXPECT_EQ(bytesOf(folder / "a"), "somebody else's");
+}
+
 TEST_F(OutputFiles, GoToDescriptorsAndPipesAfterAllFiles) {
   const fs::path pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

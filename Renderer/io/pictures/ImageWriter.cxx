@@ -240,7 +240,7 @@ void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy n
     outputs.addUnnamed(path);
   if (format == ImageFormat::nrrd)
     outputs.addUnnamed(depthPath(path),
-                       [&path](const auto& depth) { return isOurDepth(depth, path); });
+                       [path](const auto& depth) { return isOurDepth(depth, path); });
 }
 
 } // namespace fenestra
