@@ -8,7 +8,7 @@
 #   instructions  the statistical tests and the planted errors on every instruction set
 #   addresses     the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer
 #   threads       the whole suite under ThreadSanitizer, with a oneTBB that it can see into
-#   clang         the whole suite built by clang
+#   clang         the whole suite, and the benchmarks that nothing tests, built by clang
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
 # and only where it is named:
 #   fuzz          every fuzz target for ten minutes
@@ -177,7 +177,7 @@ stage_threads() {
 stage_clang() {
   install_packages clang
   (cd "$top" && cmake --preset dev -B build-clang -DCMAKE_CXX_COMPILER=clang++ >/dev/null &&
-    cmake --build build-clang)
+    cmake --build build-clang --target all MicroBenchmarks ChangeBenchmark LoadingBenchmark)
   in_record clang.md run_labels 'clang' "$top/build-clang" "${labels[@]}"
 }
 

@@ -18,7 +18,7 @@ stage() {
 run_tests() { (cd "$top" && ctest --preset "$1" -j"$(nproc)"); }
 
 stage "install packages" install_packages "${build_packages[@]}" libgmock-dev libboost-dev \
-  libbenchmark-dev qtbase5-dev clang libclang-rt-14-dev lld
+  qtbase5-dev clang libclang-rt-14-dev lld
 stage "build (release)" build release -DFENESTRA_BUILD_TESTS=ON ${Slicer_DIR:+"-DSlicer_DIR=$Slicer_DIR"}
 stage "tests (release)" run_tests release
 stage "build (ASan, UBSan)" build asan-ubsan

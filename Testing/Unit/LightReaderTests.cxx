@@ -5,7 +5,7 @@
 #include "io/looks/LightReader.h"
 #include "io/looks/LookText.h"
 
-#include "MedicalFiles.h"
+#include "Refusals.h"
 
 namespace fenestra {
 namespace {

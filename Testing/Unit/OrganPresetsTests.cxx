@@ -5,7 +5,7 @@
 #include "scene/NamedLooks.h"
 #include "scene/OrganPresets.h"
 
-#include "MedicalFiles.h"
+#include "Refusals.h"
 #include "Support.h"
 
 namespace fenestra {

@@ -4,7 +4,7 @@
 #include "io/looks/PresetReader.h"
 #include "io/looks/TransferReader.h"
 
-#include "MedicalFiles.h"
+#include "Refusals.h"
 
 namespace fenestra {
 namespace {

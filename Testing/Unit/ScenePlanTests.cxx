@@ -2,7 +2,7 @@
 
 #include "io/mrml/ScenePlan.h"
 
-#include "MedicalFiles.h"
+#include "Refusals.h"
 
 namespace fenestra {
 namespace {

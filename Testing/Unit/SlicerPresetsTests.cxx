@@ -2,7 +2,7 @@
 
 #include "io/mrml/SlicerPresets.h"
 
-#include "MedicalFiles.h"
+#include "Refusals.h"
 
 #include <cstdlib>
 

@@ -3,7 +3,7 @@
 #include "io/looks/TransferReader.h"
 #include "medium/VolumeProperty.h"
 
-#include "MedicalFiles.h"
+#include "Refusals.h"
 
 namespace fenestra {
 namespace {

@@ -8,5 +8,5 @@ find_package(ITK REQUIRED COMPONENTS ITKIOGDCM)
 fenestra_test(DicomSeriesTests DicomSeriesTests.cxx APART
   LIBRARIES fenestra_io_medical fenestra_itk ${ITK_LIBRARIES} LABELS unit)
 fenestra_test(ClosedSurfaceTests ClosedSurfaceTests.cxx
-  LIBRARIES fenestra_io_medical fenestra_itk ZLIB::ZLIB LABELS unit)
+  LIBRARIES fenestra_io_medical ZLIB::ZLIB LABELS unit)
 fenestra_test(ApartTests ApartTests.cxx APART LIBRARIES fenestra_io LABELS unit)

@@ -1,2 +1,2 @@
 fenestra_test(SampleReadingTests SampleReadingTests.cxx
-  LIBRARIES fenestra_io_medical fenestra_itk TBB::tbb ZLIB::ZLIB LABELS unit)
+  LIBRARIES fenestra_io_medical TBB::tbb ZLIB::ZLIB LABELS unit)

@@ -4,8 +4,8 @@ fenestra_test(ScatteringTests ScatteringTests.cxx LIBRARIES fenestra_medium LABE
 fenestra_test(LightTests LightSetTests.cxx LIBRARIES fenestra_lights LABELS unit)
 fenestra_test(RenderTests BackgroundTests.cxx CoverageTests.cxx EmptyPixelsTests.cxx FilmTests.cxx DeterminismTests.cxx SamplePlanTests.cxx LIBRARIES fenestra_render LABELS unit)
 fenestra_test(OrganPresetsTests OrganPresetsTests.cxx
-  LIBRARIES fenestra_scene fenestra_resources fenestra_itk LABELS unit)
+  LIBRARIES fenestra_scene fenestra_resources LABELS unit)
 fenestra_test(AutomaticViewTests AutomaticViewTests.cxx
-  LIBRARIES fenestra_scene fenestra_itk TBB::tbb LABELS unit slow)
+  LIBRARIES fenestra_scene TBB::tbb LABELS unit slow)
 fenestra_test(SceneTests DefaultsTests.cxx SceneChangeTests.cxx
-  LIBRARIES fenestra_scene fenestra_itk TBB::tbb LABELS unit)
+  LIBRARIES fenestra_scene medical_files TBB::tbb LABELS unit)

@@ -1,0 +1,34 @@
+#pragma once
+// Files that a reader has to refuse, and how it says so.
+
+#include "TemporaryFolder.h"
+#include "core/Error.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+namespace fenestra {
+
+/// Expects an Error (input) of one line that names the file and contains `text`, and nothing on the
+/// standard error stream.
+template <typename Call>
+void expectRefused(const std::filesystem::path& path, const std::string& text, Call&& call) {
+  ::testing::internal::CaptureStderr();
+  std::string line = "(no error)";
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    line = error.what();
+  } catch (const std::exception& error) {
+    line = std::string("(another exception) ") + error.what();
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << path;
+  EXPECT_EQ(line.find(path.string() + ": "), 0u) << line << "\n" << bytesOf(path).substr(0, 300);
+  EXPECT_NE(line.find(text), std::string::npos) << line;
+  EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+}
+
+} // namespace fenestra
