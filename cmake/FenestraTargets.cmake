@@ -27,12 +27,6 @@ function(fenestra_lanes)
     COMPILE_OPTIONS "${options}" SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# fenestra_apart(sources...): sources with local names that others of their folder have, too. Where a
-# folder's sources are looked at together (a unity build, as Testing/style.sh has), they stay alone.
-function(fenestra_apart)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-endfunction()
-
 # fenestra_library(NAME [sources...] [PUBLIC libraries...] [PRIVATE libraries...])
 # A concept of the renderer: the target fenestra_NAME, header-only where it has no sources.
 # Headers are included as "NAME/Header.h".

@@ -12,19 +12,19 @@
 namespace fenestra {
 namespace {
 
-constexpr const char* group = "Compare";
-constexpr Flag flags[] = {
-    {"errora", "FILE", group, "Standard errors of A, where A itself has no error channels"},
-    {"errorb", "FILE", group, "Standard errors of B, where B itself has no error channels"},
-    {"output", "FILE", group, "Difference picture: .png .tif .exr .nrrd"},
+constexpr const char* compareGroup = "Compare";
+constexpr Flag compareFlags[] = {
+    {"errora", "FILE", compareGroup, "Standard errors of A, where A itself has no error channels"},
+    {"errorb", "FILE", compareGroup, "Standard errors of B, where B itself has no error channels"},
+    {"output", "FILE", compareGroup, "Difference picture: .png .tif .exr .nrrd"},
 };
 
-const CommandSyntax syntax = {
+const CommandSyntax compareSyntax = {
     "compare",
     "Compares picture A with reference B: error measures, and z statistics where both carry "
     "errors.",
     {{"A", "Picture: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
-    flags,
+    compareFlags,
 };
 
 Image readWithError(const FlagValues& values, const char* name, const char* errorFlag) {
@@ -75,7 +75,7 @@ void print(const Comparison& c) {
 } // namespace
 
 int compareCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, first);
+  const std::optional<FlagValues> values = parseCommandLine(compareSyntax, argc, argv, first);
   if (!values)
     return 0;
   Outputs outputs;

@@ -12,28 +12,29 @@
 namespace fenestra {
 namespace {
 
-constexpr const char* group = "Inspect";
-constexpr Flag flags[] = {
-    {"volume", "NAME", group, "As for render: which volume of a scene, or series of a folder"},
-    {"segmentation", "FILE|NAME", group, "As for render: a file, or a node of the scene"},
-    {"json", "", group,
+constexpr const char* inspectGroup = "Inspect";
+constexpr Flag inspectFlags[] = {
+    {"volume", "NAME", inspectGroup,
+     "As for render: which volume of a scene, or series of a folder"},
+    {"segmentation", "FILE|NAME", inspectGroup, "As for render: a file, or a node of the scene"},
+    {"json", "", inspectGroup,
      "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
      "views, cameras, transforms, series, others; render (what it would use), refused (why it "
      "would not start, else null), warnings, ignored; mm, RAS, ml"},
 };
 
-const CommandSyntax syntax = {
+const CommandSyntax inspectSyntax = {
     "inspect",
     "Lists what an input holds, what a render of it would use, and what it would ignore and why.",
     {{"INPUT", "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
                "segmentation (.seg.nrrd) or DICOM folder"}},
-    flags,
+    inspectFlags,
 };
 
 } // namespace
 
 int inspectCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, first);
+  const std::optional<FlagValues> values = parseCommandLine(inspectSyntax, argc, argv, first);
   if (!values)
     return 0;
   const std::string input = *values->text("INPUT");

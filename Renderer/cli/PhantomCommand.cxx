@@ -14,23 +14,24 @@
 namespace fenestra {
 namespace {
 
-constexpr const char* group = "Phantom";
-constexpr Flag flags[] = {
-    {"output", "DIR", group, "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
+constexpr const char* phantomGroup = "Phantom";
+constexpr Flag phantomFlags[] = {
+    {"output", "DIR", phantomGroup,
+     "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size",
      "WxHxD",
-     group,
+     phantomGroup,
      "Voxels over the same field of view; N for the cube [knee 300x344x120, foot 300x120x150, "
      "fetus 160x160x160, cube 512]",
      {Takes::Kind::text, 16, 1024}}, // of the cube
-    {"edge", "MM", group, "The cube's edge [1]", Takes::number(1e-3, 1e5)},
+    {"edge", "MM", phantomGroup, "The cube's edge [1]", Takes::number(1e-3, 1e5)},
 };
 
-const CommandSyntax syntax = {
+const CommandSyntax phantomSyntax = {
     "phantom",
     "Makes a synthetic subject: an image, its segments, a transfer function, and scenes of them.",
     {{"KIND", "knee (MR), foot (CT), fetus (ultrasound) or cube (the scalar is the z index)"}},
-    flags,
+    phantomFlags,
 };
 
 /// WxHxD in voxels.
@@ -90,7 +91,7 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
 } // namespace
 
 int phantomCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, first);
+  const std::optional<FlagValues> values = parseCommandLine(phantomSyntax, argc, argv, first);
   if (!values)
     return 0;
   const std::string kind = *values->text("KIND");

@@ -22,7 +22,7 @@ constexpr const char* slicerGroup = "3D Slicer's own";
 
 constexpr double unlimited = 0x1p40; // samples, scatterings
 
-constexpr Flag flags[] = {
+constexpr Flag renderFlags[] = {
     {"segmentation", "FILE|NAME", sceneGroup,
      "Segments: a .seg.nrrd, any label map, or a node of the scene [the scene's]", Takes::labels()},
     {"focus", "A,B,...", sceneGroup,
@@ -316,7 +316,7 @@ const CommandSyntax renderSyntax = {
     "compare, fenestra phantom, fenestra serve, fenestra turntable.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
-    flags,
+    renderFlags,
 };
 
 bool shapesPicture(const Flag& flag) {

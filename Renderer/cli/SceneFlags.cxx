@@ -18,7 +18,7 @@ const std::vector<std::vector<std::string>> kinds = {
     {"lights", "environment"},
 };
 
-bool decides(const FlagValues& given, const std::string& name) {
+bool isDecided(const std::string& name, const FlagValues& given) {
   const auto has = [&](const std::string& flag) { return given.has(flag); };
   for (const std::vector<std::string>& kind : kinds)
     if (std::find(kind.begin(), kind.end(), name) != kind.end())
@@ -43,7 +43,7 @@ FlagValues withSceneFlags(const FlagValues& given) {
     const std::string name = flag.name;
     const bool isNode = name == "volume" || name == "segmentation";
     const std::string value = isNode ? node.referenced(name) : node.text(name);
-    if (shapesPicture(flag) && !value.empty() && !decides(deciding, name))
+    if (shapesPicture(flag) && !value.empty() && !isDecided(name, deciding))
       merged.add(name, value);
   }
   if (!merged.has("focus") && !given.has("segmentation")) // which one was chosen does not matter

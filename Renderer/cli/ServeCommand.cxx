@@ -16,7 +16,7 @@
 namespace fenestra {
 namespace {
 
-const CommandSyntax syntax = {
+const CommandSyntax serveSyntax = {
     "serve",
     "Keeps a scene loaded and renders it anew after every change, for previews. Changes are JSON "
     "objects of flags on standard input, a line each, as {\"id\": 7, \"view\": \"left\", "
@@ -135,7 +135,7 @@ private:
 } // namespace
 
 int serveCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> given = parseCommandLine(syntax, argc, argv, first);
+  const std::optional<FlagValues> given = parseCommandLine(serveSyntax, argc, argv, first);
   if (!given)
     return 0;
   for (const char* name : {"stats", "returnparameterfile", "progress", "xml", "echo"})

@@ -9,18 +9,20 @@
 namespace fenestra {
 namespace {
 
-constexpr const char* group = "Turntable";
+constexpr const char* turntableGroup = "Turntable";
 constexpr int mostFrames = 10000; // four digits
 
 constexpr Flag ownFlags[] = {
-    {"frames", "N", group, "Pictures, 1 to 10000 [36]", Takes::whole(1, mostFrames), "36"},
-    {"degrees", "D", group, "How far the eye goes around; frame i of N stands at i D / N [360]",
+    {"frames", "N", turntableGroup, "Pictures, 1 to 10000 [36]", Takes::whole(1, mostFrames), "36"},
+    {"degrees", "D", turntableGroup,
+     "How far the eye goes around; frame i of N stands at i D / N [360]",
      Takes::number(-36000.0, 36000.0), "360"},
-    {"steady", "DEGREES", group,
+    {"steady", "DEGREES", turntableGroup,
      "Spreads what the clipping surface does suddenly, away from the focus, over so far to both "
      "sides; 0: every frame as render makes it [twice from frame to frame, 10 at most]",
      Takes::number(0.0, 45.0)},
-    {"restart", "", group, "Begin anew, in place of another turntable's frames of these names"},
+    {"restart", "", turntableGroup,
+     "Begin anew, in place of another turntable's frames of these names"},
 };
 
 } // namespace

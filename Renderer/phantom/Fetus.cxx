@@ -10,8 +10,8 @@ namespace fenestra {
 
 namespace {
 
-const Vec3 fieldOfView{112.0, 112.0, 112.0}; ///< mm along the voxel axes
-const Vec3 fieldCenter{0.0, 14.0, -8.0};     ///< world
+const Vec3 fetusFieldOfView{112.0, 112.0, 112.0}; ///< mm along the voxel axes
+const Vec3 fetusFieldCenter{0.0, 14.0, -8.0};     ///< world
 
 enum class FetusTissue { skin, inside, cord, wall, fluid };
 
@@ -66,7 +66,8 @@ public:
   std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const {
     const double speckle =
         1.0 + 0.24 * valueNoise(point / 1.3, 21) + 0.14 * valueNoise(point / 0.7, 22);
-    const double depth = 1.0 - 0.0022 * (fieldCenter.y() + 0.5 * fieldOfView.y() - point.y());
+    const double depth =
+        1.0 - 0.0022 * (fetusFieldCenter.y() + 0.5 * fetusFieldOfView.y() - point.y());
     const double value = signal * speckle * depth + 3.0 * normalNoise(voxel);
     return static_cast<std::int16_t>(std::lround(std::clamp(value, 0.0, 255.0)));
   }
@@ -93,8 +94,8 @@ private:
       const double wave = 2.0 * valueNoise(p / 17.0, 31) + 1.0 * valueNoise(p / 7.0, 32);
       return -ellipsoidDistance(p, {0, -4, -8}, {62, 58, 62}) + wave - 0.5;
     };
-    const Vec3 half = 0.6 * fieldOfView;
-    return {distance, {fieldCenter - half, fieldCenter + half}};
+    const Vec3 half = 0.6 * fetusFieldOfView;
+    return {distance, {fetusFieldCenter - half, fetusFieldCenter + half}};
   }
 
   void add(std::uint8_t label, FetusTissue tissue, const Solid& solid) {
@@ -113,8 +114,8 @@ Phantom makeFetusPhantom(const FetusOptions& options) {
   Mat3 axes; // columns: left, posterior, superior
   axes << -1, 0, 0, 0, -1, 0, 0, 0, 1;
   const FetusSubject subject;
-  Phantom phantom =
-      paintPhantom(subject, phantomGrid(options.size, fieldOfView, axes, fieldCenter), "fetus");
+  Phantom phantom = paintPhantom(
+      subject, phantomGrid(options.size, fetusFieldOfView, axes, fetusFieldCenter), "fetus");
   phantom.segments = {{"face", "Fetal face and hand", {0.93, 0.72, 0.58}, 1, 0},
                       {"cord", "Umbilical cord", {0.75, 0.55, 0.62}, 2, 0},
                       {"wall", "Uterine wall", {0.72, 0.36, 0.32}, 3, 0}};

@@ -7,8 +7,8 @@ namespace fenestra {
 
 namespace {
 
-const Vec3 fieldOfView{280.0, 112.0, 140.0}; ///< mm along the voxel axes
-const Vec3 fieldCenter{-2.0, 131.0, 64.0};   ///< world
+const Vec3 footFieldOfView{280.0, 112.0, 140.0}; ///< mm along the voxel axes
+const Vec3 footFieldCenter{-2.0, 131.0, 64.0};   ///< world
 
 /// The foot as the painter asks for it.
 struct FootSubject {
@@ -45,8 +45,8 @@ Phantom makeFootPhantom(const FootOptions& options) {
   Mat3 axes; // columns: anterior, left, superior
   axes << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   const FootSubject subject;
-  Phantom phantom =
-      paintPhantom(subject, phantomGrid(options.size, fieldOfView, axes, fieldCenter), "foot");
+  Phantom phantom = paintPhantom(
+      subject, phantomGrid(options.size, footFieldOfView, axes, footFieldCenter), "foot");
   phantom.segments = subject.foot.segments();
   addThresholdedBones(phantom);
   phantom.property = footProperty();

@@ -6,12 +6,8 @@ namespace fenestra {
 
 namespace {
 
-constexpr double boxMargin = 1.5; ///< mm: soft borders reach this far past a shape
-constexpr double skinThickness = 1.6;
+constexpr double footSkinThickness = 1.6;
 
-const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
-
-const Rgb boneColor{0.945, 0.839, 0.569};
 const Rgb tendonColor{0.718, 0.839, 0.827};
 
 double trabeculae(const Vec3& p) {
@@ -111,17 +107,18 @@ void FootLayers::addSoftTissue() {
   const auto cartilage = segment("joints", "Joint cartilage and capsules", {0.435, 0.722, 0.824});
   layer(cartilage, FootTissue::cartilage, everywhere, [](const FootSite& s) {
     constexpr double halfWidth = 2.3; // mm: of the gap that a capsule bridges
-    return std::max(0.5 * (s.bones[s.nearest] + s.second) - halfWidth, s.surface + skinThickness);
+    return std::max(0.5 * (s.bones[s.nearest] + s.second) - halfWidth,
+                    s.surface + footSkinThickness);
   });
   const auto achilles = segment("achilles_tendon", "Achilles tendon", tendonColor);
-  tubes(achilles, FootTissue::tendon, {achillesTendon()}, skinThickness + 0.5);
+  tubes(achilles, FootTissue::tendon, {achillesTendon()}, footSkinThickness + 0.5);
   const auto tendons = segment("tendons", "Tendons", tendonColor);
-  tubes(tendons, FootTissue::tendon, extensorTendons(), skinThickness + 0.5);
-  tubes(tendons, FootTissue::tendon, flexorTendons(), skinThickness + 0.5);
+  tubes(tendons, FootTissue::tendon, extensorTendons(), footSkinThickness + 0.5);
+  tubes(tendons, FootTissue::tendon, flexorTendons(), footSkinThickness + 0.5);
   tubes(segment("plantar_aponeurosis", "Plantar aponeurosis", tendonColor), FootTissue::tendon,
-        {plantarAponeurosis()}, skinThickness + 2.0);
+        {plantarAponeurosis()}, footSkinThickness + 2.0);
   tubes(segment("vessels", "Vessels", {0.847, 0.396, 0.310}), FootTissue::vessel, footVessels(),
-        skinThickness + 0.4);
+        footSkinThickness + 0.4);
   const auto muscles = segment("muscles", "Muscles", {0.753, 0.408, 0.345});
   for (const Tube& belly : footMuscles())
     layer(muscles, FootTissue::muscle, belly.box(), [belly](const FootSite& s) {
@@ -129,7 +126,7 @@ void FootLayers::addSoftTissue() {
       return std::max(shape, s.fascia);
     });
   layer(segment("fat", "Fat", {0.902, 0.863, 0.275}), FootTissue::fat, everywhere,
-        [](const FootSite& s) { return s.surface + skinThickness; });
+        [](const FootSite& s) { return s.surface + footSkinThickness; });
   layer(segment("skin", "Skin", {0.694, 0.478, 0.396}), FootTissue::skin, everywhere,
         [](const FootSite& s) { return s.surface; });
 }

@@ -7,8 +7,8 @@ namespace fenestra {
 
 namespace {
 
-const Vec3 fieldOfView{120.0, 137.6, 120.0}; ///< mm along the voxel axes
-const Vec3 fieldCenter{0.0, -2.0, 6.8};      ///< world
+const Vec3 kneeFieldOfView{120.0, 137.6, 120.0}; ///< mm along the voxel axes
+const Vec3 kneeFieldCenter{0.0, -2.0, 6.8};      ///< world
 
 /// The knee as the painter asks for it.
 struct KneeSubject {
@@ -36,8 +36,8 @@ Phantom makeKneePhantom(const KneeOptions& options) {
   Mat3 axes; // columns: posterior, inferior, right
   axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   const KneeSubject subject;
-  Phantom phantom =
-      paintPhantom(subject, phantomGrid(options.size, fieldOfView, axes, fieldCenter), "knee");
+  Phantom phantom = paintPhantom(
+      subject, phantomGrid(options.size, kneeFieldOfView, axes, kneeFieldCenter), "knee");
   phantom.segments = subject.knee.segments();
   phantom.property = kneeProperty();
   return phantom;

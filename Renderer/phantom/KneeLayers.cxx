@@ -6,14 +6,10 @@ namespace fenestra {
 
 namespace {
 
-constexpr double boxMargin = 1.5; ///< mm: soft borders reach this far past a shape
-constexpr double skinThickness = 1.5;
+constexpr double kneeSkinThickness = 1.5;
 constexpr double fasciaThickness = 0.6;
 constexpr double film = 0.7; ///< mm of fluid on the joint's faces
 
-const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
-
-const Rgb boneColor{0.945, 0.839, 0.569};
 const Rgb cartilageColor{0.435, 0.722, 0.824};
 const Rgb meniscusColor{0.663, 0.784, 0.702};
 const Rgb ligamentColor{0.718, 0.839, 0.827};
@@ -178,7 +174,7 @@ void KneeLayers::addVessels() {
   const auto add = [this](std::uint8_t label, KneeTissue tissue, Tube tube) {
     const Box box = tube.box();
     layer(label, tissue, box, [tube = std::move(tube)](const KneeSite& s) {
-      return std::max(tube.distance(s.point), s.surface + skinThickness + 0.5);
+      return std::max(tube.distance(s.point), s.surface + kneeSkinThickness + 0.5);
     });
   };
   const Rgb veinColor{0.0, 0.592, 0.808};
@@ -213,7 +209,7 @@ void KneeLayers::addCovers() {
   layer(segment("Fascia", "Fascia", ligamentColor), KneeTissue::fascia, everywhere,
         [](const KneeSite& s) { return s.fascia; });
   layer(segment("SubcutaneousFat", "Subcutaneous fat", fatColor), KneeTissue::subcutaneousFat,
-        everywhere, [](const KneeSite& s) { return s.surface + skinThickness; });
+        everywhere, [](const KneeSite& s) { return s.surface + kneeSkinThickness; });
   layer(segment("Skin", "Skin", {0.694, 0.478, 0.396}), KneeTissue::skin, everywhere,
         [](const KneeSite& s) { return s.surface; });
 }

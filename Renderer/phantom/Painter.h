@@ -19,6 +19,11 @@ struct PaintLayer {
   std::function<double(const Site&)> distance; ///< mm, negative inside
 };
 
+/// mm: soft borders reach this far past a shape.
+inline constexpr double boxMargin = 1.5;
+inline const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
+inline const Rgb boneColor{0.945, 0.839, 0.569};
+
 /// Paints places of a grid, from the front layer back until nothing more shows.
 ///
 /// A Subject has `Site`, a place with what its layers ask about it, among that `surface`, the mm to

@@ -10,11 +10,11 @@
 namespace fenestra {
 namespace {
 
-constexpr double largest = 1e30;      ///< of scalars and extinctions: their spans stay finite
+constexpr double largestValue = 1e30; ///< of scalars and extinctions: their spans stay finite
 constexpr double mostForward = 0.999; ///< g = 1 would never scatter
 
 double finite(const JsonNode& node) {
-  return node.numberIn(-largest, largest);
+  return node.numberIn(-largestValue, largestValue);
 }
 
 // ---- Fenestra
@@ -25,7 +25,7 @@ template <int Channels>
 PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double most) {
   std::vector<typename PiecewiseLinear<Channels>::Knot> knots;
   for (const JsonNode& row : rows.elements()) {
-    const auto numbers = row.numbers(Channels + 1, -largest, largest);
+    const auto numbers = row.numbers(Channels + 1, -largestValue, largestValue);
     for (const double value : std::span(numbers).subspan(1))
       if (value < 0.0 || value > most)
         throw row.error(most == 1.0 ? "values must be from 0 to 1" : "value must not be negative");
@@ -52,7 +52,7 @@ bool isRelative(const JsonNode& scalars) {
 
 TransferLook readOwn(const JsonNode& root) {
   root.allowOnly({"scalars", "extinction", "albedo", "g", "shading"});
-  TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largest),
+  TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largestValue),
                             .albedo = readCurve<3>(root.at("albedo"), 1.0)};
   if (const auto g = root.find("g")) {
     transfer.g = g->number();
@@ -165,10 +165,10 @@ constexpr const char* propertyFields[] = {"interpolation", "shade",           "d
 
 enum class PropertyForm { lines, attributes };
 
-class PropertyTexts {
+class PropertyFields {
 public:
-  PropertyTexts(const std::map<std::string, std::string>& texts, PropertyForm form,
-                std::string source)
+  PropertyFields(const std::map<std::string, std::string>& texts, PropertyForm form,
+                 std::string source)
       : m_texts(texts), m_form(form), m_source(std::move(source)) {}
 
   bool has(const std::string& field) const { return m_texts.contains(field); }
@@ -211,8 +211,8 @@ private:
     if (text == m_texts.end())
       throw error(field, "is missing; save the volume property again");
     auto all = parseNumbers(text->second);
-    if (!all ||
-        std::any_of(all->begin(), all->end(), [](double x) { return !(std::abs(x) <= largest); }))
+    if (!all || std::any_of(all->begin(), all->end(),
+                            [](double x) { return !(std::abs(x) <= largestValue); }))
       throw error(field, "holds something other than numbers; save the volume property again");
     return std::move(*all);
   }
@@ -223,7 +223,7 @@ private:
 };
 
 /// Light that arrives from nowhere (ambient) has no place in path tracing.
-VolumeProperty readProperty(const PropertyTexts& texts) {
+VolumeProperty readProperty(const PropertyFields& texts) {
   VolumeProperty property;
   if (texts.has("shade"))
     property.shade = texts.number("shade") != 0.0;
@@ -250,7 +250,7 @@ VolumeProperty readPropertyLines(std::string_view content, const std::string& so
     texts[field] = content.substr(0, end);
     content.remove_prefix(std::min(end + 1, content.size()));
   }
-  const PropertyTexts property(texts, PropertyForm::lines, source);
+  const PropertyFields property(texts, PropertyForm::lines, source);
   for (const char* field : {"interpolation", "ambient"}) // of no use here, but of the format
     property.number(field);
   return readProperty(property);
@@ -281,7 +281,7 @@ TransferFunction parseTransferFunction(std::string_view json, const std::string&
 
 TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
                                        const std::string& source) {
-  return tabulate(readProperty(PropertyTexts(attributes, PropertyForm::attributes, source)),
+  return tabulate(readProperty(PropertyFields(attributes, PropertyForm::attributes, source)),
                   source);
 }
 

@@ -76,7 +76,7 @@ std::vector<SegmentInfo> segmentsOf(const Segmentation::Labels& labels, const st
 // ---- Slicer's header fields
 // ----------------------------------------------------------------------
 
-std::optional<std::int32_t> wholeNumber(std::string_view text) {
+std::optional<std::int32_t> labelValue(std::string_view text) {
   std::int32_t value = 0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failure != std::errc() || end != text.data() + text.size())
@@ -131,7 +131,7 @@ private:
     const std::string* text = find(n, field);
     if (!text)
       return fallback;
-    const auto value = wholeNumber(*text);
+    const auto value = labelValue(*text);
     if (!value)
       throw inputError(m_source, key(n, field) + ": must be a whole number");
     return *value;
@@ -250,7 +250,7 @@ Segmentation::Segmentation(std::string source, Grid grid, std::size_t layerCount
       m_segments(std::move(segments)) {}
 
 const SegmentInfo& Segmentation::find(const std::string& selector) const {
-  const auto value = wholeNumber(selector);
+  const auto value = labelValue(selector);
   const auto only = [&](auto&& matches) -> const SegmentInfo* {
     std::vector<SegmentInfo> found;
     const SegmentInfo* last = nullptr;

@@ -14,7 +14,7 @@ namespace fenestra {
 namespace {
 
 /// Something that makes no sense; the file's name is added above.
-struct Damaged {};
+struct DamagedSurface {};
 
 // ---- bytes
 // --------------------------------------------------------------------------------------
@@ -29,7 +29,7 @@ int base64Digit(char c) {
 /// Of groups of four, the last of which may end in "=".
 std::string fromBase64(std::string_view text) {
   if (text.size() % 4 != 0)
-    throw Damaged();
+    throw DamagedSurface();
   std::string bytes;
   bytes.reserve(text.size() / 4 * 3);
   for (std::size_t at = 0; at < text.size(); at += 4) {
@@ -38,11 +38,11 @@ std::string fromBase64(std::string_view text) {
       const int digit = base64Digit(c);
       padding += c == '=';
       if ((digit < 0 && c != '=') || (digit >= 0 && padding > 0))
-        throw Damaged();
+        throw DamagedSurface();
       group = group << 6 | std::max(digit, 0);
     }
     if (padding > 2 || (padding > 0 && at + 4 != text.size()))
-      throw Damaged();
+      throw DamagedSurface();
     for (int byte = 2; byte >= padding; --byte)
       bytes += static_cast<char>(group >> (8 * byte) & 0xff);
   }
@@ -53,7 +53,7 @@ template <typename T>
 T numberAt(std::string_view bytes, std::uint64_t index) {
   T value{};
   if (bytes.size() / sizeof(T) <= index)
-    throw Damaged();
+    throw DamagedSurface();
   std::memcpy(&value, bytes.data() + index * sizeof(T), sizeof(T));
   return value;
 }
@@ -75,7 +75,7 @@ std::string plainBytes(std::string_view text, const Coding& coding) {
   const std::uint64_t length = coding.header(bytes, 0);
   bytes.erase(0, coding.headerSize());
   if (length > bytes.size())
-    throw Damaged();
+    throw DamagedSurface();
   bytes.resize(static_cast<std::size_t>(length));
   return bytes;
 }
@@ -87,12 +87,12 @@ std::string inflatedBytes(std::string_view text, const Coding& coding) {
   const std::string start = fromBase64(text.substr(0, encodedSize(3 * word)));
   const std::uint64_t blocks = coding.header(start, 0);
   if (blocks > text.size())
-    throw Damaged();
+    throw DamagedSurface();
   if (blocks == 0)
     return {};
   const std::uint64_t headerText = encodedSize((3 + blocks) * word);
   if (headerText > text.size())
-    throw Damaged();
+    throw DamagedSurface();
   const std::string header = fromBase64(text.substr(0, static_cast<std::size_t>(headerText)));
   const std::string packed = fromBase64(text.substr(static_cast<std::size_t>(headerText)));
   const std::uint64_t blockSize = coding.header(header, 1), lastSize = coding.header(header, 2);
@@ -104,7 +104,7 @@ std::string inflatedBytes(std::string_view text, const Coding& coding) {
     const std::uint64_t size = partial ? lastSize : blockSize;
     constexpr std::uint64_t ratio = 1032, slack = 64; // deflate's greatest
     if (length > packed.size() - at || size > length * ratio + slack)
-      throw Damaged();
+      throw DamagedSurface();
     const std::size_t before = bytes.size();
     bytes.resize(before + static_cast<std::size_t>(size));
     auto written = static_cast<uLongf>(size);
@@ -112,7 +112,7 @@ std::string inflatedBytes(std::string_view text, const Coding& coding) {
                    reinterpret_cast<const Bytef*>(packed.data() + at),
                    static_cast<uLong>(length)) != Z_OK ||
         written != size)
-      throw Damaged();
+      throw DamagedSurface();
     at += static_cast<std::size_t>(length);
   }
   return bytes;
@@ -140,11 +140,11 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
   if (format == "ascii") {
     auto numbers = parseNumbers(array.text().get());
     if (!numbers)
-      throw Damaged();
+      throw DamagedSurface();
     return *std::move(numbers);
   }
   if (format != "binary")
-    throw Damaged(); // appended, which Slicer does not write
+    throw DamagedSurface(); // appended, which Slicer does not write
   const std::string bytes = binary(array, coding);
   const std::string type = array.attribute("type").value();
   if (type == "Float32")
@@ -159,7 +159,7 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
     return converted<std::int64_t>(bytes);
   if (type == "UInt64")
     return converted<std::uint64_t>(bytes);
-  throw Damaged();
+  throw DamagedSurface();
 }
 
 /// The first string.
@@ -191,13 +191,13 @@ void addTriangles(const pugi::xml_node& cells, const Coding& coding, bool strips
   std::vector<std::uint32_t> points;
   for (const double corner : corners) {
     if (!(corner >= 0.0 && corner < static_cast<double>(pointCount)))
-      throw Damaged();
+      throw DamagedSurface();
     points.push_back(static_cast<std::uint32_t>(firstPoint + static_cast<std::size_t>(corner)));
   }
   std::size_t begin = 0;
   for (const double offset : numbersOf(arrayNamed(cells, "offsets"), coding)) {
     if (!(offset >= static_cast<double>(begin) && offset <= static_cast<double>(points.size())))
-      throw Damaged();
+      throw DamagedSurface();
     const auto end = static_cast<std::size_t>(offset);
     for (std::size_t i = begin + 2; i < end; ++i)
       triangles.push_back({points[strips ? i - 2 : begin], points[i - 1], points[i]});
@@ -210,12 +210,12 @@ void addPiece(const pugi::xml_node& piece, const Coding& coding, VtkSurface& sur
   if (const auto array = piece.child("Points").child("DataArray")) {
     const std::vector<double> coordinates = numbersOf(array, coding);
     if (coordinates.size() % 3 != 0 || coordinates.size() > UINT32_MAX)
-      throw Damaged();
+      throw DamagedSurface();
     for (std::size_t i = 0; i < coordinates.size(); i += 3) {
       surface.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
       constexpr double largest = 1e9; // mm
       if (!(surface.points.back().array().abs() < largest).all())
-        throw Damaged();
+        throw DamagedSurface();
     }
   }
   const std::size_t count = surface.points.size() - first;
@@ -230,7 +230,7 @@ VtkSurface surfaceOf(const pugi::xml_document& document) {
   if (std::string_view(file.attribute("type").value()) != "PolyData" ||
       std::string_view(file.attribute("byte_order").value()) != "LittleEndian" ||
       (!compressor.empty() && compressor != "vtkZLibDataCompressor"))
-    throw Damaged();
+    throw DamagedSurface();
   const Coding coding{std::string_view(file.attribute("header_type").value()) == "UInt64",
                       !compressor.empty()};
   VtkSurface surface;
@@ -254,9 +254,9 @@ VtkSurface readVtkSurface(const std::filesystem::path& path) {
   pugi::xml_document document;
   try {
     if (!document.load_file(path.c_str()))
-      throw Damaged();
+      throw DamagedSurface();
     return surfaceOf(document);
-  } catch (const Damaged&) {
+  } catch (const DamagedSurface&) {
     throw inputError(path.string(), "is damaged or no surface as Slicer writes it; export the "
                                     "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
   }
