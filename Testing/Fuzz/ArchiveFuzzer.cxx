@@ -39,7 +39,7 @@ std::string withChecksums(std::string zip) {
 
 } // namespace
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Archive, input) {
   using namespace fenestra;
   fuzzing::loadScene(fuzzing::asFile(withChecksums(std::string(input)), "scene.mrb"));
 }

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(CommandLine, input) {
   using namespace fenestra;
   std::vector<std::string> words = {"fenestra"};
   while (!input.empty() && words.size() < 64) {

@@ -3,7 +3,7 @@
 
 #include "io/medical/DicomSeries.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Dicom, input) {
   using namespace fenestra;
   const auto slice = fuzzing::asFile(input, "slice.dcm");
   try {

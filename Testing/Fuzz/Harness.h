@@ -5,7 +5,6 @@
 
 #include "TemporaryFolder.h"
 #include "core/Error.h"
-#include "io/Apart.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -13,7 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iostream>
+#include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -63,25 +62,20 @@ std::string chooseName(std::string_view& input, const std::array<const char*, N>
   return names[(first >= '0' ? first - std::size_t{'0'} : first) % N];
 }
 
-/// Keeps what the product prints away from libFuzzer's own lines.
-inline void silence() {
-  std::cout.rdbuf(nullptr);
-  std::cerr.rdbuf(nullptr);
-}
+/// A fuzz target by its name, which FENESTRA_FUZZ_TARGET chooses (Fuzzers.cxx).
+struct Target {
+  using Function = void (*)(std::string_view);
+  Target(const char* name, Function function) { all()[name] = function; }
+  static std::map<std::string, Function>& all() {
+    static std::map<std::string, Function> functions;
+    return functions;
+  }
+};
 
 } // namespace fenestra::fuzzing
 
-/// The one function of a target: `statements` see the input as `std::string_view input`.
-#define FENESTRA_FUZZ(input)                                                                       \
-  static void fuzzOne(std::string_view input);                                                     \
-  extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {                                   \
-    fenestra::serveApart(*argc, *argv);                                                            \
-    fenestra::fuzzing::silence();                                                                  \
-    return 0;                                                                                      \
-  }                                                                                                \
-  extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {              \
-    const std::string_view bytes(reinterpret_cast<const char*>(data), size);                       \
-    fenestra::fuzzing::readOrRefuse([bytes] { fuzzOne(bytes); });                                  \
-    return 0;                                                                                      \
-  }                                                                                                \
-  static void fuzzOne(std::string_view input)
+/// A target's one function: `statements` see the input as `std::string_view input`.
+#define FENESTRA_FUZZ(name, input)                                                                 \
+  static void fuzz##name(std::string_view input);                                                  \
+  static const fenestra::fuzzing::Target target##name(#name, fuzz##name);                          \
+  static void fuzz##name(std::string_view input)

@@ -3,6 +3,6 @@
 
 #include "io/looks/LightReader.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Lights, input) {
   fenestra::parseLights(input, "lights.json");
 }

@@ -3,7 +3,7 @@
 
 #include "io/pictures/ImageReader.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Picture, input) {
   using namespace fenestra;
   const std::string name =
       fuzzing::chooseName(input, std::array{"p.exr", "p.png", "p.tif", "p.nrrd"});

@@ -3,7 +3,7 @@
 
 #include "io/looks/PresetReader.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Preset, input) {
   const fenestra::OrganPreset preset = fenestra::parsePreset(input, "preset.json");
   for (const std::string& pattern : preset.focus.names)
     if (!fenestra::matchesName(pattern, pattern) && pattern.find_first_of("*?") == pattern.npos &&

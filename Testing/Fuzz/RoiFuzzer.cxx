@@ -3,7 +3,7 @@
 
 #include "io/mrml/MrmlScene.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Roi, input) {
   using namespace fenestra;
   static const auto scenePath =
       fuzzing::asFile("<MRML version=\"Slicer5\" userTags=\"\">"

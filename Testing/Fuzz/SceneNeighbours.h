@@ -1,6 +1,8 @@
 #pragma once
 // Files that a scene refers to, one of each kind: the least that reads.
 
+#include "Harness.h"
+
 #include <map>
 #include <string>
 
@@ -25,6 +27,16 @@ inline std::map<std::string, std::string> sceneNeighbours() {
                 "AffineTransform_double_3_3\nParameters: 1 0 0 0 1 0 0 0 1 5 -3 2\n"
                 "FixedParameters: 0 0 0\n"},
   };
+}
+
+/// Has them in folder() from the first call on.
+inline void writeSceneNeighbours() {
+  static const bool written = [] {
+    for (const auto& [name, content] : sceneNeighbours())
+      asFile(content, name);
+    return true;
+  }();
+  static_cast<void>(written);
 }
 
 } // namespace fenestra::fuzzing

@@ -3,7 +3,7 @@
 
 #include "io/medical/SegmentationReader.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Segmentation, input) {
   using namespace fenestra;
   const Segmentation segmentation = readSegmentation(fuzzing::asFile(input, "s.seg.nrrd"));
   std::vector<std::string> focus;

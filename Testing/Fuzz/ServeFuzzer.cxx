@@ -3,7 +3,7 @@
 
 #include "cli/ServeInput.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Serve, input) {
   using namespace fenestra;
   FlagValues flags(renderSyntax.flags);
   flags.add("INPUT", "volume.nrrd");

@@ -4,7 +4,7 @@
 
 #include "io/medical/SegmentationReader.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Surface, input) {
   using namespace fenestra;
   static const auto whole =
       fuzzing::asFile("<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"

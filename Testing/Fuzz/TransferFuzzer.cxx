@@ -1,13 +1,28 @@
-// Transfer functions of the kind that FENESTRA_FUZZ_FILE ends like.
+// Transfer functions: own ones, and Slicer's volume properties as text and as JSON.
 #include "Harness.h"
 
 #include "io/looks/TransferReader.h"
 
-FENESTRA_FUZZ(input) {
+namespace {
+
+void readTransfer(std::string_view input, const std::string& name) {
   using namespace fenestra;
-  const TransferFunction transfer =
-      readTransferLook(fuzzing::asFile(input, FENESTRA_FUZZ_FILE)).over(-1e3, 1e3);
+  const TransferFunction transfer = readTransferLook(fuzzing::asFile(input, name)).over(-1e3, 1e3);
   for (const double s : {-1e30, -1000.0, 0.0, 0.5, 300.0, 1e30})
     if (!(transfer.extinction(s)[0] >= 0.0) || !transfer.albedo(s).isFinite().all())
       throw std::logic_error("a medium that is none");
+}
+
+} // namespace
+
+FENESTRA_FUZZ(Transfer, input) {
+  readTransfer(input, "t.json");
+}
+
+FENESTRA_FUZZ(Property, input) {
+  readTransfer(input, "t.vp");
+}
+
+FENESTRA_FUZZ(PropertyJson, input) {
+  readTransfer(input, "t.vp.json");
 }

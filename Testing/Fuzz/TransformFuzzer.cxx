@@ -3,7 +3,7 @@
 
 #include "io/transforms/TransformFile.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Transform, input) {
   using namespace fenestra;
   const std::string name =
       fuzzing::chooseName(input, std::array{"t.h5", "t.tfm", "t.mat", "t.txt"});

@@ -4,7 +4,7 @@
 
 #include "io/medical/VolumeReader.h"
 
-FENESTRA_FUZZ(input) {
+FENESTRA_FUZZ(Volume, input) {
   using namespace fenestra;
   static const auto samples = fuzzing::asFile(std::string(256, '\x2a'), "samples.raw");
   const std::string name = fuzzing::chooseName(

@@ -64,18 +64,12 @@ void renderRequest(const SceneRequest& request) {
   checkPixels(render(scene.forRender(), settings, monitor).film);
 }
 
-bool writeNeighbours() {
-  for (const auto& [name, content] : fuzzing::sceneNeighbours())
-    fuzzing::asFile(content, name);
-  return true;
-}
-
 } // namespace
 
-FENESTRA_FUZZ(input) {
-  static const bool written = writeNeighbours();
-  if (!written || input.empty())
+FENESTRA_FUZZ(WholeRequest, input) {
+  if (input.empty())
     return;
+  fuzzing::writeSceneNeighbours();
   SceneRequest request;
   if (input[0] != '0')
     request.focus = {"A"};

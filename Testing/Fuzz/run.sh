@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the fuzz targets with clang and runs them one after the other, each for SECONDS (5) or up to
+# Builds the fuzz targets with clang and runs them two at a time (each may take 2 GB), each for SECONDS (5) or up to
 # FENESTRA_FUZZ_RUNS executions, from the seeds of Corpus/ and what earlier runs found (FENESTRA_FUZZ_DIR,
 # build-asan-ubsan/fuzz), and says of each how many inputs it took. What stops a target is kept in
 # FENESTRA_FUZZ_DIR/findings, and the exit status is 1. usage: run.sh [SECONDS] [TARGET...]
@@ -33,8 +33,8 @@ summary() {
 fuzz() {
   local target=$1 log=$work/$1.log status=0
   mkdir -p "$work/corpus/$target" "$work/findings"
-  TMPDIR=$memory ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 \
-    "$build_folder/bin/Fuzz$target" "$work/corpus/$target" "$here/Corpus/$target" \
+  TMPDIR=$memory ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0 FENESTRA_FUZZ_TARGET=$target \
+    "$build_folder/bin/Fuzzers" "$work/corpus/$target" "$here/Corpus/$target" \
     -max_total_time="$seconds" -runs="${FENESTRA_FUZZ_RUNS:--1}" -max_len=16384 -timeout=10 \
     -rss_limit_mb=2048 -close_fd_mask=1 -print_final_stats=1 -reload=0 \
     -artifact_prefix="$work/findings/$target-" $(dictionary "$target") >"$log" 2>&1 || status=$?
@@ -45,15 +45,13 @@ fuzz() {
 
 install_packages "${build_packages[@]}" clang libclang-rt-14-dev lld
 (cd "$top" && cmake --preset asan-ubsan -B "$build_folder" >/dev/null &&
-  cmake --build "$build_folder" --target fuzzers) || die "the fuzz targets do not build (see above)"
+  cmake --build "$build_folder" --target Fuzzers) || die "the fuzz targets do not build (see above)"
 
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(ls "$here/Corpus")
 memory=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" fenestra-fuzz-XXXXXX)
 trap 'rm -rf "$memory"' EXIT
 say "Fuzzing, $seconds s a target"
-failed=0
-for target in "${targets[@]}"; do
-  fuzz "$target" || failed=1
-done
-exit $failed
+export -f dictionary summary fuzz
+export here seconds build_folder work memory
+printf '%s\n' "${targets[@]}" | xargs -P 2 -I{} bash -c 'fuzz {}' || exit 1
