@@ -1,9 +1,6 @@
 #include "clipping/ThinPlateSpline.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <algorithm>
 
@@ -46,23 +43,98 @@ Eigen::MatrixXd kernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
   return k;
 }
 
-/// P.
-Eigen::MatrixX3d polynomials(const Eigen::MatrixX2d& sites) {
-  Eigen::MatrixX3d p(sites.rows(), 3);
-  p << Eigen::VectorXd::Ones(sites.rows()), sites;
-  return p;
-}
+/// P = Q R by Householder's reflections (Golub and Van Loan, "Matrix Computations", 5.1 and 5.2):
+/// Q = H0 H1 H2 with Hk = I - vk vk'. The columns of Q after the third span the null space of P'.
+class Polynomials {
+public:
+  /// `singular`: singular values below this share of the largest are 0. The sites' centroid is 0,
+  /// so that the largest is that of the constant, to rounding.
+  Polynomials(const Eigen::MatrixX2d& sites, double singular) : m_v(sites.rows(), 3) {
+    m_v << Eigen::VectorXd::Ones(sites.rows()), sites;
+    for (Eigen::Index k = 0; k < 3; ++k)
+      reflect(k);
+    const double squares = m_r.bottomRightCorner<2, 2>().squaredNorm();
+    const double product = std::abs(m_r(1, 1) * m_r(2, 2)); // of both singular values
+    m_greater = std::sqrt(
+        0.5 * (squares + std::sqrt(std::max(squares * squares - 4.0 * product * product, 0.0))));
+    const double least = singular * std::abs(m_r(0, 0));
+    m_rank = m_greater <= least ? 1 : product <= least * m_greater ? 2 : 3;
+    m_lesser = m_rank == 1 ? 0.0 : product / m_greater;
+  }
 
-using PolynomialsQr = Eigen::HouseholderQR<Eigen::MatrixX3d>;
+  int rank() const { return m_rank; }
 
-/// Q2' (K + lambda I) Q2, where the columns of Q2 span the null space of P'.
-Eigen::MatrixXd inNullSpace(const Eigen::MatrixXd& k, const PolynomialsQr& qr) {
-  Eigen::MatrixXd turned = k;
-  turned.applyOnTheLeft(qr.householderQ().adjoint());
-  turned.applyOnTheRight(qr.householderQ());
-  const Eigen::Index n = k.rows() - 3;
-  return turned.bottomRightCorner(n, n);
-}
+  /// Q' x.
+  Eigen::VectorXd turned(Eigen::VectorXd x) const {
+    for (Eigen::Index k = 0; k < 3; ++k)
+      x -= m_v.col(k).dot(x) * m_v.col(k);
+    return x;
+  }
+
+  /// Q x.
+  Eigen::VectorXd turnedBack(Eigen::VectorXd x) const {
+    for (Eigen::Index k = 2; k >= 0; --k)
+      x -= m_v.col(k).dot(x) * m_v.col(k);
+    return x;
+  }
+
+  /// Q2' K Q2 of a symmetric K, where Q2 is Q after its third column.
+  Eigen::MatrixXd inNullSpace(Eigen::MatrixXd k) const {
+    for (Eigen::Index i = 0; i < 3; ++i) { // H K H = K - v w' - w v'
+      const auto v = m_v.col(i);
+      Eigen::VectorXd w = k * v;
+      w -= 0.5 * v.dot(w) * v;
+      for (Eigen::Index column = 0; column < k.cols(); ++column)
+        k.col(column) -= w[column] * v + v[column] * w;
+    }
+    const Eigen::Index n = k.rows() - 3;
+    return k.bottomRightCorner(n, n);
+  }
+
+  /// The a with the least |P a - z|, the flattest where several are.
+  Vec3 leastSquares(const Eigen::VectorXd& z) const {
+    const Eigen::VectorXd all = turned(z);
+    const Eigen::Index given = std::min<Eigen::Index>(3, all.size());
+    Vec3 right = Vec3::Zero();
+    right.head(given) = all.head(given);
+    Vec3 a = Vec3::Zero();
+    if (m_rank == 3) {
+      a[2] = right[2] / m_r(2, 2);
+      a[1] = (right[1] - m_r(1, 2) * a[2]) / m_r(1, 1);
+    } else if (m_rank == 2) { // a line: B'B less the lesser square is a multiple of d d'
+      const Eigen::Matrix2d b = m_r.bottomRightCorner<2, 2>();
+      Eigen::Matrix2d along = b.transpose() * b;
+      along.diagonal().array() -= m_lesser * m_lesser;
+      const Vec2 d = along.col(along(0, 0) >= along(1, 1) ? 0 : 1).normalized();
+      a.tail<2>() = d * (b * d).dot(right.tail<2>()) / (m_greater * m_greater);
+    }
+    a[0] = (right[0] - m_r(0, 1) * a[1] - m_r(0, 2) * a[2]) / m_r(0, 0);
+    return a;
+  }
+
+private:
+  /// Makes the column its reflection's v, 0 where nothing is left to reflect, and turns those after
+  /// it.
+  void reflect(Eigen::Index k) {
+    const Eigen::Index above = std::min(k, m_v.rows());
+    auto v = m_v.col(k);
+    m_r.col(k).head(above) = v.head(above);
+    v.head(above).setZero();
+    const double length = v.norm();
+    if (length == 0.0)
+      return;
+    m_r(k, k) = -std::copysign(length, v[k]);
+    v[k] -= m_r(k, k);
+    v *= std::sqrt(2.0) / v.norm();
+    for (Eigen::Index later = k + 1; later < 3; ++later)
+      m_v.col(later) -= v.dot(m_v.col(later)) * v;
+  }
+
+  Eigen::MatrixX3d m_v; ///< v0, v1, v2
+  Mat3 m_r = Mat3::Zero();
+  double m_greater, m_lesser; ///< singular values of R without its first row and column
+  int m_rank;                 ///< at least 1
+};
 
 Eigen::MatrixX2d rows(const std::vector<Vec2>& points) {
   Eigen::MatrixX2d matrix(std::ssize(points), 2);
@@ -135,42 +207,23 @@ std::vector<Vec2> ThinPlateSpline::toUnitDisc(std::span<const Vec2> sites) {
 
 void ThinPlateSpline::fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values) {
   const Eigen::MatrixX2d u = rows(sites);
-  const Eigen::MatrixX3d p = polynomials(u);
-  // The least-squares polynomial, the flattest where several are: what is left where lambda is
-  // infinite or the sites do not determine a plane.
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd =
-      Eigen::JacobiSVD<Eigen::MatrixXd>(p, Eigen::ComputeThinU | Eigen::ComputeThinV)
-          .setThreshold(std::max(1e-9, roundingAt(m_origin) * m_perScale));
-  m_plane = svd.solve(values);
+  const Polynomials p(u, std::max(1e-9, roundingAt(m_origin) * m_perScale));
+  m_plane = p.leastSquares(values); // all there is where lambda is infinite or no plane determined
   const Eigen::Index n = values.size();
-  if (!std::isfinite(m_lambda) || svd.rank() < 3 || n == 3)
+  if (!std::isfinite(m_lambda) || p.rank() < 3 || n == 3)
     return;
 
   const Eigen::MatrixXd k = kernelMatrix(u, m_lambda);
-  const PolynomialsQr qr(p);
-  Eigen::VectorXd w = qr.householderQ().adjoint() * values;
+  Eigen::VectorXd w = p.turned(values);
   w.head<3>().setZero();
-  w.tail(n - 3) = inNullSpace(k, qr).ldlt().solve(w.tail(n - 3)).eval();
-  w.applyOnTheLeft(qr.householderQ());
-  m_plane = svd.solve(values - k * w);
+  w.tail(n - 3) = p.inNullSpace(k).ldlt().solve(w.tail(n - 3)).eval();
+  w = p.turnedBack(w);
+  m_plane = p.leastSquares(values - k * w);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Vec2& site = sites[static_cast<std::size_t>(i)];
     m_terms.push_back({site, w[i]});
     m_moment += w[i] * site.squaredNorm();
   }
-}
-
-double ThinPlateSpline::conditionNumber() const {
-  if (m_terms.empty())
-    return 1.0;
-  std::vector<Vec2> sites;
-  for (const KernelTerm& term : m_terms)
-    sites.push_back(term.site);
-  const Eigen::MatrixX2d u = rows(sites);
-  const PolynomialsQr qr(polynomials(u));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(
-      inNullSpace(kernelMatrix(u, m_lambda), qr), Eigen::EigenvaluesOnly);
-  return spectrum.eigenvalues().maxCoeff() / spectrum.eigenvalues().minCoeff();
 }
 
 double ThinPlateSpline::operator()(const Vec2& x) const {

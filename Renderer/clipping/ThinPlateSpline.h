@@ -49,9 +49,10 @@ public:
 
   static constexpr Eigen::Index mostColumns = 64; ///< they stay in the first cache
 
-  /// Of the system that was solved, in the 2-norm; 1 where there was none to solve. Computed anew,
-  /// at several times the cost of the fit.
-  double conditionNumber() const;
+  /// The system that was solved: sites in the unit disc with their weights w', none where there was
+  /// no system, and lambda / s^2.
+  const std::vector<KernelTerm>& terms() const { return m_terms; }
+  double lambda() const { return m_lambda; }
 
 private:
   using Points = Eigen::Array<double, Eigen::Dynamic, 1, 0, mostColumns, 1>; ///< of a row

@@ -1,6 +1,6 @@
 #include "scene/AutomaticView.h"
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
 #include <tbb/parallel_for.h>
 
 namespace fenestra {
@@ -70,28 +70,27 @@ Vec3 coarseBest(const ViewScorer& score) {
 }
 
 /// From the middle of the points to the top of the quadratic that fits their scores best, those
-/// within about `near` most; `farthest` toward it where it is not near.
-Vec2 stepToTop(const std::vector<Vec2>& points, const std::vector<double>& scores, double near,
-               double farthest) {
-  const auto count = static_cast<Eigen::Index>(points.size());
-  Eigen::Matrix<double, Eigen::Dynamic, 6> terms(count, 6);
-  Eigen::VectorXd values(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Vec2& p = points[static_cast<std::size_t>(i)];
-    const double weight = std::exp(-0.25 * p.squaredNorm() / (near * near)); // of an error's root
-    terms.row(i) << 1.0, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
-    terms.row(i) *= weight;
-    values[i] = weight * scores[static_cast<std::size_t>(i)];
+/// within about `near` most; `near` toward it where it is not as near as that. By the normal
+/// equations: with lengths in `near` they are far from singular.
+Vec2 stepToTop(const std::vector<Vec2>& points, const std::vector<double>& scores, double near) {
+  using Terms = Eigen::Matrix<double, 6, 1>;
+  Eigen::Matrix<double, 6, 6> products = Eigen::Matrix<double, 6, 6>::Zero();
+  Terms right = Terms::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2 p = points[i] / near;
+    const double weight = std::exp(-0.5 * p.squaredNorm());
+    Terms terms;
+    terms << 1.0, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
+    products += weight * terms * terms.transpose();
+    right += weight * scores[i] * terms;
   }
-  const Eigen::VectorXd fit = terms.colPivHouseholderQr().solve(values);
+  const Terms fit = products.llt().solve(right);
   const Vec2 slope(fit[1], fit[2]);
   Eigen::Matrix2d curvature;
   curvature << 2.0 * fit[3], fit[4], fit[4], 2.0 * fit[5];
   const bool hasTop = curvature.determinant() > 0.0 && curvature.trace() < 0.0;
-  Vec2 step = hasTop ? Vec2(-curvature.inverse() * slope) : slope;
-  if (hasTop && step.norm() < farthest)
-    return step;
-  return farthest * step.stableNormalized();
+  const Vec2 step = hasTop ? Vec2(-curvature.inverse() * slope) : slope;
+  return near * (hasTop && step.norm() < 1.0 ? step : step.stableNormalized());
 }
 
 Vec3 refined(const ViewScorer& score, const Vec3& start) {
@@ -107,7 +106,7 @@ Vec3 refined(const ViewScorer& score, const Vec3& start) {
     std::vector<Vec3> directions;
     for (const Vec2& point : points)
       directions.push_back(turned(frame, point));
-    const Vec2 step = stepToTop(points, scoresOf(score, directions, rays), near, near);
+    const Vec2 step = stepToTop(points, scoresOf(score, directions, rays), near);
     best = turned(frame, step);
     if (step.norm() < enough)
       break;

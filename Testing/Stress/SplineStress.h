@@ -2,6 +2,7 @@
 // Sites and values for the stress of the thin plate spline, and its solution in 50 digits.
 
 #include "SaddleSpline.h"
+#include "SplineCondition.h"
 #include "Unit/ClippingTesting.h"
 #include "clipping/ThinPlateSpline.h"
 
@@ -83,7 +84,7 @@ double greatestError(const F& f, const G& g, const std::vector<Vec2>& places, do
 
 /// What ThinPlateSpline.h promises, and no less than 1e-9.
 inline double splineBound(const ThinPlateSpline& spline) {
-  return std::max(1e-9, 1e-14 * spline.conditionNumber());
+  return std::max(1e-9, 1e-14 * conditionNumber(spline));
 }
 
 } // namespace fenestra::testing_clipping
