@@ -1,8 +1,10 @@
-// usage: MakeSeeds FOLDER: writes the seeds that are not text, into FOLDER/<target>/.
+// usage: MakeSeeds FOLDER: writes the seeds that are not text, into FOLDER/<target>/ and
+// FOLDER/../Apart/.
 #include "Regression/SampleFiles.h"
 #include "SceneNeighbours.h"
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
+#include "io/ApartBytes.h"
 #include "io/ZipWriter.h"
 
 #include <itkAffineTransform.h>
@@ -92,24 +94,45 @@ void makeTransforms(const fs::path& corpus) {
   const auto transform = itk::AffineTransform<double, 3>::New();
   transform->Translate(itk::Vector<double, 3>(3.0));
   transform->Rotate3D(itk::Vector<double, 3>(1.0), 0.3);
-  const auto save = [&](const char* digit, const std::string& name,
-                        itk::TransformIOBaseTemplate<double>* io) {
+  const auto save = [&](const std::string& name, itk::TransformIOBaseTemplate<double>* io) {
     const auto writer = itk::TransformFileWriterTemplate<double>::New();
     writer->SetFileName((folder / name).string());
     writer->SetTransformIO(io);
     writer->SetInput(transform);
     writer->Update();
-    fenestra::save(corpus / "Transform", name, digit + bytesOf(folder / name));
+    fenestra::save(corpus / "../Apart/Transform", name, bytesOf(folder / name));
   };
-  save("0", "affine.h5", itk::HDF5TransformIOTemplate<double>::New());
-  save("2", "affine.mat", itk::MatlabTransformIOTemplate<double>::New());
+  save("affine.h5", itk::HDF5TransformIOTemplate<double>::New());
+  save("affine.mat", itk::MatlabTransformIOTemplate<double>::New());
+}
+
+/// What a child says of such files.
+void makeAnswers(const fs::path& corpus) {
+  AnswerWriter composite;
+  for (const char* type : {"CompositeTransform_double_3_3", "AffineTransform_double_3_3",
+                           "Euler3DTransform_double_3_3"}) {
+    composite.put(type);
+    composite.put(std::vector<double>(*type == 'C' ? 0 : *type == 'A' ? 12 : 6, 0.3));
+    composite.put(std::vector<double>(*type == 'C' ? 0 : 3, 4.0));
+  }
+  save(corpus / "Transform", "composite", composite.bytes());
+  for (const char* compressed : {"0", "1"}) {
+    AnswerWriter slice;
+    for (const char* text :
+         {"1", compressed,    "1",  "CT", "head", "1.2.3",  "7",  "1\\2\\3", "1\\0\\0\\0\\1\\0",
+          "1", "MONOCHROME2", "",   "8",  "8",    "0.5\\2", "16", "12",      "11",
+          "1", "-1024",       "0.5"})
+      slice.put(text);
+    save(corpus / "Dicom", *compressed == '0' ? "native" : "compressed", slice.bytes());
+  }
 }
 
 void makeSlices(const fs::path& corpus) {
-  fs::create_directories(corpus / "Dicom");
+  const fs::path folder = corpus / "../Apart/Dicom";
+  fs::create_directories(folder);
   for (const bool compress : {false, true}) {
     const auto io = itk::GDCMImageIO::New();
-    io->SetFileName((corpus / "Dicom" / (compress ? "jpeg2000.dcm" : "native.dcm")).string());
+    io->SetFileName((folder / (compress ? "jpeg2000.dcm" : "native.dcm")).string());
     io->KeepOriginalUIDOn();
     io->SetNumberOfDimensions(3);
     itk::ImageIORegion region(3);
@@ -159,6 +182,7 @@ int main(int argc, char** argv) {
     fenestra::makePictures(argv[1]);
     fenestra::makeTransforms(argv[1]);
     fenestra::makeSlices(argv[1]);
+    fenestra::makeAnswers(argv[1]);
     fenestra::makeArchive(argv[1]);
     return 0;
   } catch (const std::exception& error) {

@@ -1,14 +1,12 @@
-// Linear transform files; the first byte chooses the format.
+// Linear transform files: the input is what the child says of one, which is whatever a child that a
+// file has taken over says. ApartMutations sends files.
 #include "Harness.h"
 
 #include "io/transforms/TransformFile.h"
 
 FENESTRA_FUZZ(Transform, input) {
   using namespace fenestra;
-  const std::string name =
-      fuzzing::chooseName(input, std::array{"t.h5", "t.tfm", "t.mat", "t.txt"});
-  const Affine toParent =
-      readLinearTransform(fuzzing::asFile(input, name), TransformSense::fromParent);
+  const Affine toParent = answeredTransform("t.h5", input, TransformSense::fromParent);
   if (!toParent.matrix().allFinite())
     throw std::logic_error("a map that is none");
 }

@@ -6,6 +6,9 @@
 #include "io/Quiet.h"
 #include "io/medical/VolumeReader.h"
 
+#include <gdcmImageChangeTransferSyntax.h>
+#include <gdcmImageReader.h>
+#include <gdcmImageWriter.h>
 #include <itkGDCMImageIO.h>
 
 #include <random>
@@ -170,6 +173,31 @@ TEST(DicomSeries, decompresses) {
                           [&] { readDicomVolume({half}, "x"); });
   fenestra::expectRefused(folder / "wider.dcm", "PixelData: cannot be decoded",
                           [&] { readDicomVolume({folder / "wider.dcm"}, "x"); });
+}
+
+TEST(DicomSeries, readsVoxelsHoweverTheyAreStored) {
+  const TemporaryFolder folder;
+  const Path file = write(folder / "one.dcm", {.width = 60, .height = 50, .first = -3});
+  using Syntax = gdcm::TransferSyntax;
+  for (const auto syntax :
+       {Syntax::ImplicitVRLittleEndian, Syntax::ExplicitVRLittleEndian, Syntax::ExplicitVRBigEndian,
+        Syntax::RLELossless, Syntax::JPEGLosslessProcess14_1, Syntax::JPEGLSLossless}) {
+    gdcm::ImageReader reader;
+    reader.SetFileName(file.c_str());
+    ASSERT_TRUE(reader.Read());
+    gdcm::ImageChangeTransferSyntax change;
+    change.SetTransferSyntax(syntax);
+    change.SetInput(reader.GetImage());
+    ASSERT_TRUE(change.Change()) << syntax;
+    gdcm::ImageWriter writer;
+    writer.SetFile(reader.GetFile());
+    writer.SetImage(change.GetOutput());
+    writer.SetFileName((folder / "stored.dcm").c_str());
+    ASSERT_TRUE(writer.Write());
+    const Volume volume = readDicomVolume({folder / "stored.dcm"}, "x");
+    for (int i = 0; i < 3000; ++i)
+      ASSERT_EQ(valueAt(volume, i % 60, i / 60, 0), i - 3) << syntax;
+  }
 }
 
 TEST(DicomSeries, readsOneSlice) {
@@ -354,7 +382,7 @@ TEST(DicomSeries, readsARealSeries) {
 /// What once ended the process inside GDCM's decoder may be read or refused, as memory happens to
 /// lie.
 TEST(DicomSeries, survivesAStreamThatItsDecoderDoesNot) {
-  const auto damaged = Path(__FILE__).parent_path() / "../Fuzz/Corpus/Dicom/jpeg2000-stream.dcm";
+  const auto damaged = Path(__FILE__).parent_path() / "../Fuzz/Apart/Dicom/jpeg2000-stream.dcm";
   ASSERT_TRUE(std::filesystem::exists(damaged));
   try {
     EXPECT_EQ(readDicomVolume({damaged}, "CT").grid.size, Size3(32, 32, 1));

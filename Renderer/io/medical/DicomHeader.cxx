@@ -172,6 +172,9 @@ DicomHeader dicomHeader(std::string_view answer) {
 }
 
 std::optional<DicomHeader> DicomFiles::header(const Path& path) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown))
+    return std::nullopt;
   const auto answer = m_child.ask(wantsHeader + path.string(), longestFields);
   if (answer && answer->empty())
     return std::nullopt;
@@ -185,7 +188,7 @@ std::optional<DicomHeader> DicomFiles::header(const Path& path) {
 }
 
 std::string DicomFiles::voxels(const Path& path, const DicomHeader& h) {
-  const std::uint64_t size = std::uint64_t{h.rows} * h.columns * (h.bits / 8);
+  const std::uint64_t size = imageBytes(h);
   auto answer = m_child.ask(wantsVoxels + path.string(), size);
   if (answer && answer->size() == size)
     return std::move(*answer);

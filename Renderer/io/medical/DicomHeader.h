@@ -33,6 +33,11 @@ inline bool isImage(const DicomHeader& header) {
   return header.image || header.rows > 0;
 }
 
+/// Bytes of the voxels that it promises.
+inline std::uint64_t imageBytes(const DicomHeader& header) {
+  return std::uint64_t{header.rows} * header.columns * (header.bits / 8);
+}
+
 /// One child process for the files of a folder.
 class DicomFiles {
 public:
@@ -43,8 +48,8 @@ public:
   /// reading breaks the child or takes more than it may.
   std::optional<DicomHeader> header(const std::filesystem::path& path);
 
-  /// rows * columns voxels of bits / 8 bytes, little-endian, as they are stored. Throws Error
-  /// (input) where there are not as many.
+  /// rows * columns voxels of bits / 8 bytes, little-endian, decompressed, not yet rescaled. Throws
+  /// Error (input) where there are not as many.
   std::string voxels(const std::filesystem::path& path, const DicomHeader& header);
 
 private:

@@ -10,10 +10,6 @@ namespace {
 
 using Path = std::filesystem::path;
 
-std::uint64_t imageBytes(const DicomHeader& h) {
-  return std::uint64_t{h.rows} * h.columns * (h.bits / 8);
-}
-
 /// The value in the stored bits of each voxel.
 class StoredValues {
 public:

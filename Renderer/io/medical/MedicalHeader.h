@@ -1,6 +1,7 @@
 #pragma once
 // What the header of a medical image says about where its samples are, read before any library
-// trusts it. For io's own sources.
+// trusts it; in this process (not as Apart.h), for samples are the bulk of all that is read and go
+// from the file to their place without a copy. For io's own sources.
 
 #include <bit>
 #include <cstdint>

@@ -70,11 +70,15 @@ Affine readLinearTransform(const Path& path, TransformSense sense) {
   if (std::filesystem::file_size(path) > largestFile)
     throw inputError(path.string(), "is larger than 64 MB, so it is no linear transform; harden it "
                                     "in Slicer (Data module, Harden transform) and save again");
+  checkExtension(path);
+  checkNamesNoFile(path);
+  return answeredTransform(path, transformAnswer(path), sense);
+}
+
+Affine answeredTransform(const Path& path, std::string_view answer, TransformSense sense) {
   try {
     const Quiet quiet;
-    checkExtension(path);
-    checkNamesNoFile(path);
-    Affine map = composed(path, readTransformRecords(path));
+    Affine map = composed(path, transformRecords(path, answer));
     checkInvertible(path, map);
     if (sense == TransformSense::fromParent)
       map = map.inverse();

@@ -4,6 +4,7 @@
 #include "core/Vector.h"
 
 #include <filesystem>
+#include <string_view>
 
 namespace fenestra {
 
@@ -18,5 +19,9 @@ enum class TransformSense { fromParent, toParent };
 /// a composite (Slicer refuses them as well), maps that cannot be inverted, damaged files, files of
 /// more than 64 MB.
 Affine readLinearTransform(const std::filesystem::path& path, TransformSense sense);
+
+/// The same of what reading the file apart answered, which may be anything (TransformRecords.h).
+Affine answeredTransform(const std::filesystem::path& path, std::string_view answer,
+                         TransformSense sense);
 
 } // namespace fenestra

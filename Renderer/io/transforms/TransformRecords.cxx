@@ -140,12 +140,12 @@ std::vector<TransformRecord> transformRecords(const Path& path, std::string_view
   return records;
 }
 
-std::vector<TransformRecord> readTransformRecords(const Path& path) {
+std::string transformAnswer(const Path& path) {
   Apart child(transformJob);
   const auto answer = child.ask(path.string(), longestAnswer);
   if (!answer || answer->empty())
     throwDamagedTransform(path);
-  return transformRecords(path, *answer);
+  return *answer;
 }
 
 } // namespace fenestra

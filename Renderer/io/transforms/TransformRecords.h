@@ -16,12 +16,13 @@ struct TransformRecord {
   std::vector<double> fixed;      ///< the centre, mostly
 };
 
-/// Of a .tfm, .txt, .mat, .h5 or .hdf5 file. Throws Error (input) where the file is damaged, takes
-/// more to read than it may, or holds what is not linear and of three axes; Error (output) where no
-/// process can be started.
-std::vector<TransformRecord> readTransformRecords(const std::filesystem::path& path);
+/// What a process of its own says of a .tfm, .txt, .mat, .h5 or .hdf5 file. Throws Error (input)
+/// where the file is damaged or takes more to read than it may, Error (output) where no process can
+/// be started.
+std::string transformAnswer(const std::filesystem::path& path);
 
-/// The records of what the process answered, which may be anything; throws as above.
+/// The records in that, which may be anything. Throws Error (input) where one is not linear and of
+/// three axes, std::runtime_error where there are no records.
 std::vector<TransformRecord> transformRecords(const std::filesystem::path& path,
                                               std::string_view answer);
 

@@ -1,0 +1,124 @@
+// Sends damaged DICOM and transform files through the child that reads them: each is read, or
+// refused by an Error (input) of one line that names it. usage: ApartMutations COUNT [SEED]
+
+#include "TemporaryFolder.h"
+#include "core/Error.h"
+#include "io/Apart.h"
+#include "io/medical/DicomSeries.h"
+#include "io/transforms/TransformFile.h"
+
+#include <cstdio>
+#include <random>
+
+namespace fenestra {
+namespace {
+
+using Path = std::filesystem::path;
+using Random = std::mt19937_64;
+
+struct Seed {
+  std::string extension, bytes;
+};
+
+std::vector<Seed> seedsOf(const Path& folder) {
+  std::vector<Seed> seeds;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    seeds.push_back({entry.path().extension(), bytesOf(entry.path())});
+  std::sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) {
+    return std::pair(a.extension, a.bytes) < std::pair(b.extension, b.bytes);
+  });
+  return seeds;
+}
+
+/// A few of: another byte, an extreme number, a stretch that is gone, moved or repeated, an early
+/// end.
+std::string mutated(std::string bytes, Random& random) {
+  const auto below = [&random](std::size_t limit) {
+    return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
+  };
+  for (std::size_t left = 1 + below(6); left > 0 && bytes.size() > 16; --left) {
+    const std::size_t at = below(bytes.size() - 8), length = below(64);
+    switch (below(6)) {
+    case 0:
+      bytes.replace(at, 1 + below(8), 8, below(2) ? '\xff' : '\0');
+      break;
+    case 1:
+      bytes.erase(at, length);
+      break;
+    case 2:
+      bytes.insert(below(bytes.size()), bytes.substr(at, length));
+      break;
+    case 3:
+      if (below(8) == 0)
+        bytes.resize(at);
+      break;
+    default:
+      bytes[at] = static_cast<char>(below(256));
+    }
+  }
+  return bytes;
+}
+
+struct Counts {
+  int read = 0, refused = 0, wrong = 0;
+};
+
+template <typename Read>
+void count(Counts& counts, const Path& path, const Read& read) {
+  std::string complaint;
+  try {
+    read();
+    ++counts.read;
+    return;
+  } catch (const Error& error) {
+    const std::string line = error.what();
+    if (error.kind() == ErrorKind::input && line.starts_with(path.string() + ": ") &&
+        line.find('\n') == std::string::npos) {
+      ++counts.refused;
+      return;
+    }
+    complaint = line;
+  } catch (const std::exception& error) {
+    complaint = std::string("another exception: ") + error.what();
+  }
+  ++counts.wrong;
+  std::filesystem::copy_file(path,
+                             "wrong" + std::to_string(counts.wrong) + path.extension().string(),
+                             std::filesystem::copy_options::overwrite_existing);
+  std::printf("%s\n", complaint.c_str());
+}
+
+int mutate(int many, Random random) {
+  const TemporaryFolder folder;
+  const std::vector<Seed> slices = seedsOf(FENESTRA_APART_FILES "/Dicom"),
+                          transforms = seedsOf(FENESTRA_APART_FILES "/Transform");
+  Counts counts;
+  for (int i = 0; i < many; ++i) {
+    const bool isSlice = i % 2 == 0;
+    const std::vector<Seed>& seeds = isSlice ? slices : transforms;
+    const Seed& seed = seeds[static_cast<std::size_t>(i / 2) % seeds.size()];
+    const Path path = folder.write("damaged" + seed.extension, mutated(seed.bytes, random));
+    count(counts, path, [&] {
+      if (isSlice)
+        readDicomVolume({path}, path.string());
+      else
+        readLinearTransform(path, TransformSense::fromParent);
+    });
+  }
+  std::printf("%d files: %d read, %d refused, %d neither\n", many, counts.read, counts.refused,
+              counts.wrong);
+  return counts.wrong == 0 ? 0 : 1;
+}
+
+} // namespace
+} // namespace fenestra
+
+int main(int argc, char** argv) {
+  fenestra::serveApart(argc, argv);
+  if (argc != 2 && argc != 3) {
+    std::fprintf(stderr, "usage: ApartMutations COUNT [SEED]\n");
+    return 2;
+  }
+  return fenestra::mutate(std::atoi(argv[1]),
+                          fenestra::Random(argc == 3 ? std::stoull(argv[2]) : 1));
+}
