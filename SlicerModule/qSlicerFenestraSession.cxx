@@ -293,7 +293,9 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
 
 void qSlicerFenestraSession::makeSample(
     const std::function<void(const QString& scene, const QString& failure)>& then) {
-  const QString folder = m_files->folder.filePath("sample");
+  if (!m_sample)
+    m_sample = std::make_unique<qFenestraFolder>(QDir::tempPath(), folderPrefix);
+  const QString folder = m_sample->filePath("knee");
   auto* maker = new qFenestraProgram(this);
   connect(maker, &qFenestraProgram::ended, this,
           [maker, folder, then](const qFenestraOutcome& outcome) {
@@ -301,7 +303,7 @@ void qSlicerFenestraSession::makeSample(
             const bool made = outcome.kind == Ended::done;
             then(made ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
           });
-  maker->run(m_program, {"phantom", "knee", "--output", folder}, m_files->folder.path());
+  maker->run(m_program, {"phantom", "knee", "--output", folder}, m_sample->path());
 }
 
 // ---- preview

@@ -83,9 +83,10 @@ signals:
   void ended(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
 
 private:
+  static constexpr const char* folderPrefix = "fenestra-slicer-";
   /// Of one scene: the working thread's.
   struct Files {
-    qFenestraFolder folder{QDir::tempPath(), "fenestra-slicer-"};
+    qFenestraFolder folder{QDir::tempPath(), folderPrefix};
     FenestraScene::Writer writer{folder.path().toStdString()};
   };
   struct Render {
@@ -117,6 +118,8 @@ private:
   vtkSlicerFenestraLogic* m_logic;
   QString m_program;
   std::shared_ptr<Files> m_files; ///< of the scene that is open
+  /// The sample, once it is made: of no patient, and a scene that was saved may refer to it.
+  std::unique_ptr<qFenestraFolder> m_sample;
   QThreadPool m_worker;
 
   qFenestraQuestion m_question;
