@@ -185,6 +185,7 @@ Lines judge(const Subject& subject, const Fault& fault, const Place& place, Outc
 Culprit culprit(const std::vector<Frame>& frames) {
   constexpr const char* runtime[] = {"libc.so", "libstdc++", "libgcc_s",
                                      "libm.so", "ld-linux",  "libfaults"};
+  std::string nameless; // the module of a function without a name: who called it there has one
   for (const Frame& frame : frames) {
     const std::string module = std::filesystem::path(frame.module).filename().string();
     const bool isRuntime =
@@ -193,10 +194,14 @@ Culprit culprit(const std::vector<Frame>& frames) {
     const std::string function = functionOf(frame);
     if (isRuntime || function.starts_with("std::") || function.starts_with("__"))
       continue;
-    const bool isOurs = function.find("fenestra::") != std::string::npos || function == "main";
-    return {function + " (" + module + ")", isOurs};
+    if (!nameless.empty() && module != nameless)
+      break;
+    nameless = module;
+    if (function != "??")
+      return {function + " (" + module + ")",
+              function.find("fenestra::") != std::string::npos || function == "main"};
   }
-  return {"a function without a name", true};
+  return {"a function without a name (" + nameless + ")", nameless.empty()};
 }
 
 } // namespace fenestra::faults

@@ -195,8 +195,12 @@ std::vector<Result> tryAll(const std::vector<Victim>& victims, long first, long 
   for (unsigned i = 0; i < std::max(1U, std::thread::hardware_concurrency()); ++i)
     workers.emplace_back([&] {
       const Place place(tools);
-      for (long number; (number = next++) <= last;)
-        results[static_cast<std::size_t>(number - first)] = tryOne(victims, number, place);
+      for (long number; (number = next++) <= last;) {
+        Result& result = results[static_cast<std::size_t>(number - first)];
+        result = tryOne(victims, number, place);
+        if (!result.finding.empty())
+          std::fprintf(stderr, "%ld %s\n", number, result.finding.c_str());
+      }
     });
   for (std::thread& worker : workers)
     worker.join();
