@@ -69,6 +69,7 @@ void handleStops() {
   action.sa_handler = onSignal;
   action.sa_flags = SA_RESTART;
   sigfillset(&action.sa_mask);
+  ::signal(SIGXFSZ, SIG_IGN); // the call that writes tells of it, as of a full disk
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGPIPE}) {
     struct sigaction before = {};
     if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)

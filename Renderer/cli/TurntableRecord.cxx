@@ -85,8 +85,6 @@ bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
 
 /// The record of any turntable of any version of Fenestra.
 bool isRecord(const std::filesystem::path& path) {
-  if (bearsMark(path))
-    return true;
   std::ifstream file(path, std::ios::binary);
   const json document = json::parse(file, nullptr, false);
   return document.is_object() && document.contains("finished") && document.contains("request") &&
@@ -222,8 +220,7 @@ void TurntableRecord::write(Outputs& outputs) const {
     if (const auto change = m_changes.find(frame); change != m_changes.end())
       finished.back()["surfaceChange"] = changeJson(change->second);
   }
-  const nlohmann::ordered_json record = {
-      {"generator", writtenMark}, {"request", m_request}, {"finished", finished}};
+  const nlohmann::ordered_json record = {{"request", m_request}, {"finished", finished}};
   outputs.write(m_path, record.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
   outputs.commit();
 }

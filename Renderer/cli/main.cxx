@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace {
@@ -83,6 +84,14 @@ int run(int argc, char** argv) {
   }
 }
 
+/// A stream that was closed must not become a file that is read or written. Nobody reads what goes
+/// to /dev/full, and writing there fails as it would have.
+void openStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0)
+      ::open(stream == STDIN_FILENO ? "/dev/null" : "/dev/full", O_RDWR); // the lowest number
+}
+
 /// What a command printed is a result as well.
 int finishOutput(int status) {
   errno = 0;
@@ -110,6 +119,7 @@ int removeRest(int status) {
 } // namespace
 
 int main(int argc, char** argv) {
+  openStandardStreams();
   fenestra::serveApart(argc, argv); // does not return where this is the child
   fenestra::handleStops();
   fenestra::removeAbandonedFolders();

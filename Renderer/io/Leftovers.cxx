@@ -2,10 +2,30 @@
 
 #include <atomic>
 #include <cerrno>
+#include <random>
 
 #include <unistd.h>
 
 namespace fenestra {
+namespace {
+
+constexpr std::string_view digits = "0123456789abcdef";
+constexpr std::size_t digitCount = 12;
+
+} // namespace
+
+std::string temporaryName(std::string_view prefix) {
+  static thread_local std::random_device random;
+  std::string name(prefix);
+  for (std::size_t i = 0; i < digitCount; ++i)
+    name += digits[random() % digits.size()];
+  return name;
+}
+
+bool isTemporaryName(std::string_view name, std::string_view prefix) {
+  return name.size() == prefix.size() + digitCount && name.starts_with(prefix) &&
+         name.find_first_not_of(digits, prefix.size()) == std::string_view::npos;
+}
 
 /// A place in the list. Entries are used again and never freed, so that a signal handler may walk
 /// the list at any moment.

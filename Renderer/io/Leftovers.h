@@ -2,9 +2,15 @@
 // Names that must not outlive the process, and moments at which a signal must not end it.
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace fenestra {
+
+/// `prefix` and twelve random digits.
+std::string temporaryName(std::string_view prefix);
+bool isTemporaryName(std::string_view name, std::string_view prefix);
 
 /// A temporary file or folder: removed with this object, or by the signal that ends the process.
 class Leftover {

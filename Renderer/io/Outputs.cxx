@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <optional>
 #include <set>
 
@@ -59,6 +58,10 @@ void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {
                      "; choose another name");
 }
 
+Error writtenTwice(const fs::path& path) {
+  return usageError(path.string() + ": would be written twice; give each result a name of its own");
+}
+
 void syncFolder(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool isSynced = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);
@@ -70,20 +73,6 @@ void syncFolder(const fs::path& folder) {
 }
 
 } // namespace
-
-bool bearsMark(const fs::path& path) {
-  constexpr std::streamoff part = 1 << 16;
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file.tellg();
-  for (const std::streamoff from : {std::streamoff{0}, std::max<std::streamoff>(0, size - part)}) {
-    std::string text(static_cast<std::size_t>(std::min(part, std::max<std::streamoff>(0, size))),
-                     '\0');
-    file.seekg(from).read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (file && text.find(writtenMark) != std::string::npos)
-      return true;
-  }
-  return false;
-}
 
 bool resultsWerePlaced() {
   return anyIsPlaced;
@@ -121,10 +110,10 @@ Outputs::Result& Outputs::declare(const fs::path& path) {
   }
   requireNoInput(path, result->id());
   const std::optional<FileId> id = result->id();
-  if ((!result->stream && !m_targets.insert(result->target).second) ||
+  const std::optional<FileId> parent = fileId(result->target.parent_path());
+  if ((parent && !m_targets.emplace(*parent, result->target.filename().string()).second) ||
       (id && !m_files.insert(*id).second))
-    throw usageError(path.string() +
-                     ": would be written twice; give each result a name of its own");
+    throw writtenTwice(path);
   if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
     removeAbandonedFiles(result->target.parent_path());
     requireRoomFor(result->target);
@@ -166,13 +155,19 @@ void Outputs::write(const fs::path& path, std::string_view content) {
 void Outputs::place(const std::vector<Result*>& files, Durability durability) {
   const Uninterrupted replacing;
   std::size_t placed = 0;
+  std::set<FileId> taken; // by results of this commit: names may be one where a disk ignores case
   try {
     for (Result* result : files) {
-      requireNoInput(result->named, result->id());
+      const std::optional<FileId> before = result->id();
+      requireNoInput(result->named, before);
+      if (before && taken.contains(*before))
+        throw writtenTwice(result->named);
       requireReplaceable(result->named, result->target);
       result->requireOurs();
       result->file->place();
       ++placed;
+      if (const auto after = result->id())
+        taken.insert(*after);
       enterResult(result->target);
     }
   } catch (...) {

@@ -3,6 +3,7 @@
 // file, and put in place together when it is complete. Nothing else in Renderer writes results.
 
 #include "io/Inputs.h"
+#include "io/Mark.h"
 
 #include <filesystem>
 #include <functional>
@@ -11,17 +12,12 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace fenestra {
 
 class TemporaryFile;
-
-/// In the first or last 64 KiB of every file that Fenestra writes under a name that the user has
-/// not given, where its format has a place for it.
-inline constexpr std::string_view writtenMark = "Written by Fenestra";
-
-bool bearsMark(const std::filesystem::path& path);
 
 /// Whether this process has put a result in place. For signal handlers, too.
 bool resultsWerePlaced();
@@ -67,10 +63,10 @@ private:
   void place(const std::vector<Result*>& files, Durability durability);
 
   std::map<std::filesystem::path, std::unique_ptr<Result>>
-      m_results;                             ///< by the name that was given
-  std::set<std::filesystem::path> m_targets; ///< of all results
-  std::set<FileId> m_files;                  ///< that were there when they were declared
-  std::set<std::filesystem::path> m_folders; ///< in which a file can be made
+      m_results;                                      ///< by the name that was given
+  std::set<std::pair<FileId, std::string>> m_targets; ///< folder and name of all results
+  std::set<FileId> m_files;                           ///< that were there when they were declared
+  std::set<std::filesystem::path> m_folders;          ///< in which a file can be made
 };
 
 } // namespace fenestra

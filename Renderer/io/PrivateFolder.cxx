@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <fcntl.h>
-#include <random>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -67,12 +66,8 @@ bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
 
 PrivateFolder::PrivateFolder() {
   const std::filesystem::path parent = temporaryFiles();
-  std::random_device random;
   for (;;) {
-    std::string name(folderPrefix);
-    for (int digit = 0; digit < 12; ++digit)
-      name += "0123456789abcdef"[random() % 16];
-    if (makeLocked(parent / name))
+    if (makeLocked(parent / temporaryName(folderPrefix)))
       return;
     m_entries.clear();
     if (m_lock >= 0)
@@ -117,7 +112,7 @@ void removeAbandonedFolders() {
     return;
   for (std::filesystem::directory_iterator entry(parent, failed), end; !failed && entry != end;
        entry.increment(failed)) {
-    if (!entry->path().filename().string().starts_with(folderPrefix))
+    if (!isTemporaryName(entry->path().filename().string(), folderPrefix))
       continue;
     const int lock = lockAbandoned(entry->path());
     if (lock < 0)

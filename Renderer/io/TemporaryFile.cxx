@@ -2,33 +2,21 @@
 
 #include "io/SystemCalls.h"
 
-#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fcntl.h>
-#include <random>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/xattr.h>
 #include <unistd.h>
 
 namespace fenestra {
 namespace {
 
 constexpr std::string_view namePrefix = ".fenestra-";
-constexpr std::string_view digits = "0123456789abcdef";
-constexpr std::size_t digitCount = 12;
 
-/// Another name with every call, in this process and others.
 std::filesystem::path shortNameBeside(const std::filesystem::path& target) {
-  static thread_local std::random_device random;
-  std::string name(namePrefix);
-  for (std::size_t i = 0; i < digitCount; ++i)
-    name += digits[random() % digits.size()];
-  return target.parent_path() / name;
-}
-
-bool isShortName(const std::string& name) {
-  return name.size() == namePrefix.size() + digitCount && name.starts_with(namePrefix) &&
-         name.find_first_not_of(digits, namePrefix.size()) == std::string::npos;
+  return target.parent_path() / temporaryName(namePrefix);
 }
 
 /// Rights of a new file: what umask leaves. Asked before there are threads.
@@ -37,6 +25,17 @@ const mode_t usualMode = [] {
   ::umask(mask);
   return 0666 & ~mask;
 }();
+
+/// Rights beyond the mode, where the disk has some (acl(5)): given to `to` as `from` has them.
+/// False where they cannot be.
+bool copyAccessList(const std::filesystem::path& from, int to) {
+  constexpr const char* attribute = "system.posix_acl_access";
+  std::array<char, 4096> list;
+  const ssize_t size = ::lgetxattr(from.c_str(), attribute, list.data(), list.size());
+  if (size < 0)
+    return errno == ENODATA || errno == ENOTSUP;
+  return ::fsetxattr(to, attribute, list.data(), static_cast<std::size_t>(size), 0) == 0;
+}
 
 /// Others' rights stay what they were: where the group is another one, it gets those of others.
 mode_t keptMode(const struct stat& before, bool isOfItsGroup) {
@@ -77,8 +76,11 @@ void TemporaryFile::open() {
 }
 
 TemporaryFile::~TemporaryFile() {
-  if (m_file >= 0)
-    ::close(m_file);
+  m_before.reset(); // names go before their locks
+  m_name.reset();
+  for (const int file : {m_file, m_replaced})
+    if (file >= 0)
+      ::close(file);
 }
 
 void TemporaryFile::write(std::string_view content) {
@@ -88,12 +90,16 @@ void TemporaryFile::write(std::string_view content) {
 void TemporaryFile::finish(Sync sync) {
   mode_t mode = usualMode;
   struct stat before = {};
-  if (::lstat(m_target.c_str(), &before) == 0) {
+  const bool isThere = ::lstat(m_target.c_str(), &before) == 0;
+  if (isThere) {
     const bool isOwned = ::fchown(m_file, before.st_uid, before.st_gid) == 0;
     const bool isOfItsGroup = isOwned || ::fchown(m_file, uid_t(-1), before.st_gid) == 0;
     mode = keptMode(before, isOfItsGroup);
   }
   if (repeated([&] { return ::fchmod(m_file, mode); }) != 0)
+    throw writingError(m_target, errno);
+  const mode_t ownersAlone = mode & 0700; // an access list that is lost was the group's bits
+  if (isThere && !copyAccessList(m_target, m_file) && ::fchmod(m_file, ownersAlone) != 0)
     throw writingError(m_target, errno);
   if (sync == Sync::disk && repeated([&] { return ::fsync(m_file); }) != 0 && errno != EINVAL)
     throw writingError(m_target, errno);
@@ -102,6 +108,9 @@ void TemporaryFile::finish(Sync sync) {
 void TemporaryFile::place() {
   const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
+  m_replaced = ::open(target, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (m_replaced >= 0) // where it can be read, other runs must not take it for abandoned
+    ::flock(m_replaced, LOCK_SH | LOCK_NB);
   const auto rename = [&](unsigned flags) {
     return repeated([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
   };
@@ -126,7 +135,14 @@ void TemporaryFile::placeByLink() {
   m_placed = isFresh ? Placed::fresh : isKept ? Placed::linked : Placed::no;
 }
 
+/// Another run may have placed a result of the same name since.
+bool TemporaryFile::isPlaced() const {
+  return fileId(m_target) == fileId(m_file);
+}
+
 void TemporaryFile::takeBack() noexcept {
+  if (!isPlaced())
+    m_placed = Placed::no;
   const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
   const auto again = [](auto&& call) { // a failure may pass: once more
@@ -146,7 +162,7 @@ void removeAbandonedFiles(const std::filesystem::path& folder) {
   std::error_code failed;
   for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
        entry.increment(failed)) {
-    if (!isShortName(entry->path().filename().string()))
+    if (!isTemporaryName(entry->path().filename().string(), namePrefix))
       continue;
     const int file = ::open(entry->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     struct stat status = {};

@@ -44,10 +44,12 @@ private:
 
   void open();
   void placeByLink();
+  bool isPlaced() const;
 
   std::filesystem::path m_target;
   std::optional<Leftover> m_name, m_before; ///< the second where the disk cannot exchange names
   int m_file = -1;
+  int m_replaced = -1; ///< the file before, locked while it bears a temporary name; -1: none
   Placed m_placed = Placed::no;
 };
 

@@ -200,11 +200,16 @@ TEST_F(OutputFiles, KeepModeAndOwnerOfWhatTheyReplace) {
 
 TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
   folder.write("theirs", "somebody else made this");
-  folder.write("ours", "x" + std::string(writtenMark) + "y");
-  folder.write("ours.end", std::string(1 << 20, 'x') + std::string(writtenMark));
-  EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.addUnnamed(folder / "theirs"); })
-                .find("Fenestra did not write it"),
-            std::string::npos);
+  const std::string ours = sealed("x " + std::string(unsealedMark) + "12345 y");
+  folder.write("ours", ours);
+  folder.write("ours.end", sealed(std::string(1 << 20, 'x') + std::string(unsealedMark)));
+  folder.write("edited", "an" + ours);
+  folder.write("edited.end", ours + " and more");
+  folder.write("claimed", std::string(unsealedMark));
+  for (const char* name : {"theirs", "edited", "edited.end", "claimed"})
+    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.addUnnamed(folder / name); })
+                  .find("Fenestra did not write it"),
+              std::string::npos);
   outputs.addUnnamed(folder / "ours");
   outputs.addUnnamed(folder / "ours.end");
   outputs.addUnnamed(folder / "new");
@@ -239,6 +244,17 @@ TEST_F(OutputFiles, GoToDescriptorsAndPipesAfterAllFiles) {
   outputs.write(pipe, "nobody reads");
   refusal(ErrorKind::output, [&] { outputs.commit(); });
   refusal(ErrorKind::output, [&] { outputs.add("/dev/fd/987"); });
+}
+
+TEST_F(OutputFiles, OfOtherRunsAreNotTakenFromThemInTheirCommit) {
+  folder.write("a", "old");
+  TemporaryFile file(folder / "a");
+  file.write("new");
+  file.finish(TemporaryFile::Sync::none);
+  file.place();
+  removeAbandonedFiles(folder.path()); // as another run does
+  file.takeBack();
+  EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
 
 TEST_F(OutputFiles, OfRunsThatWereKilledAreRemovedByTheNext) {
@@ -284,13 +300,15 @@ TEST(PrivateFolders, OfRunsThatWereKilledAreRemovedByTheNext) {
   const fs::path left = temporary / "fenestra-scene-0123456789ab";
   fs::create_directories(left / "Data");
   temporary.write("fenestra-scene-0123456789ab/Data/patient.nrrd", "left");
-  fs::create_directory(temporary / "fenestra-others");
+  for (const char* name : {"fenestra-others", "fenestra-scene-of-mine"})
+    fs::create_directory(temporary / name);
   PrivateFolder living;
   const fs::path file = living.add("Data/a.nrrd");
   removeAbandonedFolders();
   EXPECT_FALSE(fs::exists(left));
   EXPECT_TRUE(fs::exists(file));
-  EXPECT_TRUE(fs::exists(temporary / "fenestra-others"));
+  for (const char* name : {"fenestra-others", "fenestra-scene-of-mine"})
+    EXPECT_TRUE(fs::exists(temporary / name));
   ::setenv("TMPDIR", before.c_str(), 1);
 }
 

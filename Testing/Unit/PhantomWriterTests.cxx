@@ -154,6 +154,17 @@ TEST_F(PhantomFiles, ReplaceTheirLikeAndThoseOfEarlierVersions) {
   writePhantom(phantom, folder, "knee"); // by volume and scene
 }
 
+TEST_F(PhantomFiles, ReplaceNothingThatWasEdited) {
+  for (const char* name : {"knee.vp.json", "knee-roi.mrk.json", "knee.mrml"}) {
+    writePhantom(phantom, folder, "knee");
+    const std::string edited = contentOf(folder / name) + "\n";
+    std::ofstream(folder / name, std::ios::binary) << edited;
+    EXPECT_THROW(writePhantom(phantom, folder, "knee"), Error) << name;
+    EXPECT_EQ(contentOf(folder / name), edited);
+    std::filesystem::remove(folder / name);
+  }
+}
+
 TEST_F(PhantomFiles, ReplaceNothingThatIsNotTheirs) {
   for (const char* name : {"knee.nrrd", "knee.seg.nrrd", "knee.vp.json", "knee.vp",
                            "knee-roi.mrk.json", "knee.mrml", "knee.mrb"}) {

@@ -1,6 +1,6 @@
 #include "io/looks/PropertyWriter.h"
 
-#include "io/Outputs.h"
+#include "io/Mark.h"
 
 #include <nlohmann/json.hpp>
 
@@ -75,9 +75,9 @@ std::string propertyJson(const VolumeProperty& property, double minimum, double 
   const Json file = {{"@schema",
                       "https://raw.githubusercontent.com/Slicer/Slicer/main/Modules/Loadable/"
                       "VolumeRendering/Resources/Schema/volume-property-schema-v1.0.0.json#"},
-                     {"generator", writtenMark},
+                     {"generator", unsealedMark},
                      {"volumeProperties", Json::array({node})}};
-  return file.dump(2) + "\n";
+  return sealed(file.dump(2) + "\n");
 }
 
 PropertyTexts propertyTexts(const VolumeProperty& property) {

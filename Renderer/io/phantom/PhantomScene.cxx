@@ -1,6 +1,6 @@
 #include "io/phantom/PhantomScene.h"
 
-#include "io/Outputs.h"
+#include "io/Mark.h"
 #include "io/looks/PropertyWriter.h"
 
 #include <nlohmann/json.hpp>
@@ -355,7 +355,7 @@ std::string phantomScene(const Phantom& phantom, const std::string& name,
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   set(declaration, {{"version", "1.0"}, {"encoding", "UTF-8"}});
   document.append_child(pugi::node_comment)
-      .set_value((" " + std::string(writtenMark) + " ").c_str());
+      .set_value((" " + std::string(unsealedMark) + " ").c_str());
   pugi::xml_node scene = document.append_child("MRML");
   set(scene, {{"version", "Slicer 5.2.2 31383"}, {"userTags", ""}});
   const Framing framing(phantom);
@@ -367,7 +367,7 @@ std::string phantomScene(const Phantom& phantom, const std::string& name,
   addRoi(scene, phantom, files.roi);
   std::ostringstream stream;
   document.save(stream, " ");
-  return stream.str();
+  return sealed(stream.str());
 }
 
 std::string phantomRoi(const Phantom& phantom) {
@@ -407,9 +407,9 @@ std::string phantomRoi(const Phantom& phantom) {
   const Json file = {{"@schema",
                       "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/"
                       "Markups/Resources/Schema/markups-schema-v1.0.3.json#"},
-                     {"generator", writtenMark},
+                     {"generator", unsealedMark},
                      {"markups", Json::array({markup})}};
-  return file.dump(4) + "\n";
+  return sealed(file.dump(4) + "\n");
 }
 
 std::string urlEncoded(const std::string& text) {

@@ -80,7 +80,7 @@ NrrdFields segmentationFields(const Phantom& phantom) {
 }
 
 NrrdFields marked(NrrdFields fields = {}) {
-  fields.emplace_back("Software", writtenMark);
+  fields.emplace_back("Software", unsealedMark);
   return fields;
 }
 
@@ -107,12 +107,12 @@ std::string encodeSegmentation(const Phantom& phantom) {
                           .indexToWorld = indexToWorld,
                           .fields = marked(segmentationFields(phantom))};
   if (count == 1)
-    return encodeNrrd(header, bytesOf(labels.layers.front()));
+    return sealed(encodeNrrd(header, bytesOf(labels.layers.front())));
   std::vector<std::uint8_t> interleaved(count * labels.layers.front().size());
   for (std::size_t layer = 0; layer < count; ++layer)
     for (std::size_t i = 0; i < labels.layers[layer].size(); ++i)
       interleaved[i * count + layer] = labels.layers[layer][i];
-  return encodeNrrd(header, bytesOf(interleaved));
+  return sealed(encodeNrrd(header, bytesOf(interleaved)));
 }
 
 struct PhantomFile {
@@ -132,7 +132,7 @@ std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& p
     for (const PhantomFile& one : written)
       if (one.name == file)
         entries.push_back({name + "/" + data(file), one.content});
-  return encodeZip(entries, std::string(writtenMark), path);
+  return sealed(encodeZip(entries, std::string(unsealedMark), path));
 }
 
 /// The first bytes of a file, as many as `text` has, are `text`.
@@ -150,7 +150,7 @@ bool holds(const std::filesystem::path& path, const std::string& content) {
 
 /// As it was before there were marks.
 std::string withoutMark(std::string text) {
-  const std::size_t at = text.find(writtenMark);
+  const std::size_t at = text.find("Written by Fenestra");
   const std::size_t line = text.rfind('\n', at) + 1;
   return text.erase(line, text.find('\n', at) + 1 - line);
 }
@@ -167,7 +167,7 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   const NrrdHeader header = volumeHeader(phantom);
   const std::string scene = phantomScene(phantom, name, names);
   std::vector<PhantomFile> files = {
-      {names.volume, encodeNrrd(header, bytesOf(voxels))},
+      {names.volume, sealed(encodeNrrd(header, bytesOf(voxels)))},
       {names.segmentation, encodeSegmentation(phantom)},
       {name + ".vp.json", propertyJson(phantom.property, volume.minimum, volume.maximum)},
       {names.property, propertyVp(phantom.property)},

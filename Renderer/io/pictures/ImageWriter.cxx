@@ -77,16 +77,17 @@ std::string bigEndian(std::uint32_t number) {
   return bytes;
 }
 
-/// With a tEXt chunk behind the first one, IHDR (PNG specification, 11.3.4.3): libpng's simple
-/// interface writes none.
-std::string withPngText(std::string png, std::string_view keyword, std::string_view text) {
+/// With the mark in a tEXt chunk behind the first one, IHDR (PNG specification, 11.3.4.3): libpng's
+/// simple interface writes none.
+std::string withMark(std::string png) {
   constexpr std::size_t afterHeader = 8 + 25; // signature and IHDR
-  std::string chunk = "tEXt";
-  chunk.append(keyword).append(1, '\0').append(text);
-  const auto* const bytes = reinterpret_cast<const Bytef*>(chunk.data());
-  const auto length = static_cast<uInt>(chunk.size());
-  const auto checksum = static_cast<std::uint32_t>(crc32(crc32(0, nullptr, 0), bytes, length));
-  return png.insert(afterHeader, bigEndian(length - 4) + chunk + bigEndian(checksum));
+  const std::string chunk = "tEXtSoftware" + std::string(1, '\0') + std::string(unsealedMark);
+  const auto length = static_cast<std::uint32_t>(chunk.size());
+  png.insert(afterHeader, bigEndian(length - 4) + chunk + bigEndian(0));
+  png = sealed(std::move(png));
+  const auto* const bytes = reinterpret_cast<const Bytef*>(png.data()) + afterHeader + 4;
+  const uLong checksum = crc32(crc32(0, nullptr, 0), bytes, length);
+  return png.replace(afterHeader + 4 + length, 4, bigEndian(static_cast<std::uint32_t>(checksum)));
 }
 
 std::string encodePng(const Image& image, const std::vector<float>& rgba) {
@@ -102,7 +103,7 @@ std::string encodePng(const Image& image, const std::vector<float>& rgba) {
   if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
     throw outputError("picture as PNG", std::string(png.message) + "; write it as .exr");
   content.resize(size);
-  return withPngText(content, "Software", writtenMark);
+  return withMark(std::move(content));
 }
 
 void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
@@ -155,9 +156,9 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
                           .size = {image.width, image.height, 1},
                           .indexToWorld = sliceToWorld(plane),
                           .encoding = NrrdHeader::Encoding::raw,
-                          .fields = {{"Software", std::string(writtenMark)}}};
-  return encodeNrrd(header,
-                    {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+                          .fields = {{"Software", std::string(unsealedMark)}}};
+  return sealed(encodeNrrd(
+      header, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)}));
 }
 
 std::vector<float> interleavedRgba(const Image& image) {
