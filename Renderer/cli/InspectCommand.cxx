@@ -2,6 +2,7 @@
 
 #include "cli/CommandLine.h"
 #include "cli/InspectReport.h"
+#include "cli/Machine.h"
 #include "cli/RenderFlags.h"
 #include "cli/SceneFlags.h"
 #include "core/Error.h"
@@ -37,12 +38,14 @@ int inspectCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> values = parseCommandLine(inspectSyntax, argc, argv, first);
   if (!values)
     return 0;
+  useMachine(*values);
   const std::string input = *values->text("INPUT");
   FlagValues given(renderSyntax.flags);
   for (const char* name : {"INPUT", "volume", "segmentation"})
     if (const auto value = values->text(name))
       given.add(name, *value);
-  const FlagValues flags = withSceneFlags(given);
+  const SceneFlags stored = withSceneFlags(given);
+  const FlagValues& flags = stored.flags;
   SceneRequest request;
   request.input = input;
   request.volume = flags.text("volume");
@@ -52,6 +55,8 @@ int inspectCommand(int argc, char** argv, int first) {
   Inspection inspection = inspectInput(request);
   if (inspection.render)
     inspection.render->stored = sceneArguments(given, flags);
+  inspection.warnings.insert(inspection.warnings.begin(), stored.leftOut.begin(),
+                             stored.leftOut.end());
   std::cout << (values->has("json") ? inspectionJson(inspection, input)
                                     : inspectionText(inspection, input))
             << std::flush;

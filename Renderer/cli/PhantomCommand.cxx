@@ -1,6 +1,7 @@
 #include "cli/Commands.h"
 
 #include "cli/CommandLine.h"
+#include "cli/Machine.h"
 #include "core/Error.h"
 #include "io/phantom/PhantomWriter.h"
 #include "phantom/Cube.h"
@@ -96,6 +97,7 @@ int phantomCommand(int argc, char** argv, int first) {
     return 0;
   const std::string kind = *values->text("KIND");
   const std::string folder = values->text("output").value_or(kind);
+  useMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
   std::cout << folder << ":";

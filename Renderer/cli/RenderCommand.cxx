@@ -11,6 +11,7 @@
 #include "cli/SlicerModule.h"
 #include "cli/Stats.h"
 #include "cli/Stop.h"
+#include "io/ShownText.h"
 #include "scene/Scene.h"
 
 #include <algorithm>
@@ -128,11 +129,13 @@ int renderCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(renderSyntax, argc, argv, first);
   if (!given)
     return 0;
-  const PresetFlags flags = withPreset(withSceneFlags(*given));
+  useMachine(*given);
+  const SceneFlags stored = withSceneFlags(*given);
+  const PresetFlags flags = withPreset(stored.flags);
   if (given->has("echo"))
     std::cout << flags.flags.echo() << std::flush;
-  const RenderOptions options = renderOptions(flags);
-  const MachineUse machine(options.settings);
+  RenderOptions options = renderOptions(flags);
+  options.scene.leftOut = stored.leftOut;
   Outputs outputs;
   declareOutputs(options, outputs);
   checkMemory(options.scene);

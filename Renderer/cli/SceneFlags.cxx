@@ -1,9 +1,13 @@
 #include "cli/SceneFlags.h"
 
 #include "cli/PresetFlags.h"
+#include "io/ShownText.h"
 #include "io/mrml/MrmlScene.h"
+#include "io/pictures/ImageFormat.h"
+#include "scene/NamedLooks.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace fenestra {
 namespace {
@@ -26,29 +30,70 @@ bool isDecided(const std::string& name, const FlagValues& given) {
   return has(name);
 }
 
+/// Whether a render would open a file that the value names.
+bool isFile(const std::string& name, const std::string& value, const std::filesystem::path& input) {
+  if (name == "environment")
+    return imageFormat(value) == ImageFormat::exr;
+  if (name == "preset")
+    return isFileName("presets", value);
+  if (name == "lights")
+    return isFileOfLights(value);
+  return name == "transfer" && isFileOfTransfer(value, input);
+}
+
+/// Numbers that are none are refused later, as if they had been given.
+bool isTooMuch(const std::string& name, const std::string& value) {
+  constexpr int mostPixels = 4096; // in each direction
+  constexpr std::uint64_t mostSamples = 65536;
+  int width = 0, height = 0;
+  if (name == "size" && std::sscanf(value.c_str(), "%dx%d", &width, &height) == 2)
+    return std::max(width, height) > mostPixels;
+  if (name != "samples")
+    return false;
+  FlagValues samples(renderSyntax.flags);
+  samples.add(name, value);
+  return samples.count(name) > mostSamples;
+}
+
+/// Why a scene's own value is not taken; empty where it is.
+std::string objection(const MrmlScene& scene, const std::string& name, const std::string& value,
+                      const std::filesystem::path& input) {
+  if (name == "volume" || name == "segmentation")
+    return scene.document.find(value) ? "" : "is no node of the scene";
+  if (isTooMuch(name, value))
+    return "is more than a scene may ask for";
+  return isFile(name, value, input) ? "names a file, which a scene may not choose" : "";
+}
+
 } // namespace
 
-FlagValues withSceneFlags(const FlagValues& given) {
-  FlagValues merged = given;
+SceneFlags withSceneFlags(const FlagValues& given) {
+  SceneFlags result{given};
+  FlagValues& merged = result.flags;
   const std::filesystem::path input = *given.text("INPUT");
   if (!isSceneFile(input))
-    return merged;
+    return result;
   const MrmlScene scene(input);
   const std::vector<const MrmlNode*> nodes = scene.document.withTag("FenestraRender");
   if (nodes.empty())
-    return merged;
+    return result;
   const MrmlNode& node = *nodes.back();
   const FlagValues deciding = withPreset(given).flags;
   for (const Flag& flag : renderSyntax.flags) {
     const std::string name = flag.name;
     const bool isNode = name == "volume" || name == "segmentation";
     const std::string value = isNode ? node.referenced(name) : node.text(name);
-    if (shapesPicture(flag) && !value.empty() && !isDecided(name, deciding))
+    if (!shapesPicture(flag) || value.empty() || isDecided(name, deciding))
+      continue;
+    if (const std::string why = objection(scene, name, value, input); !why.empty())
+      result.leftOut.push_back(node.tag + " " + shown(node) + ": " + name + " \"" + shown(value) +
+                               "\" " + why + "; give --" + name + " " + shown(value));
+    else
       merged.add(name, value);
   }
   if (!merged.has("focus") && !given.has("segmentation")) // which one was chosen does not matter
     merged.remove("segmentation");
-  return merged;
+  return result;
 }
 
 std::vector<std::string> sceneArguments(const FlagValues& given, const FlagValues& merged) {

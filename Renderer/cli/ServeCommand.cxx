@@ -12,6 +12,7 @@
 #include "core/Stopwatch.h"
 
 #include <set>
+#include <span>
 
 namespace fenestra {
 namespace {
@@ -32,43 +33,58 @@ struct Unheard {};
 
 class Server {
 public:
-  Server(const FlagValues& flags, Outputs& outputs)
-      : m_shown{flags}, m_outputs(outputs), m_input(flags, m_monitor, m_answers) {}
+  Server(const SceneFlags& start, Outputs& outputs)
+      : m_flags(start.flags),
+        m_leftOut(start.leftOut),
+        m_outputs(outputs),
+        m_input(m_flags, m_monitor, m_answers) {}
 
   /// Until the process ends, or nobody listens. Throws Error where there is no first scene.
   void run() {
-    m_options = renderOptions(withPreset(m_shown.flags));
+    m_options = renderOptions(withPreset(m_flags));
+    m_options->scene.leftOut = m_leftOut;
     m_scene.emplace(m_options->scene);
     m_outputs.checkInputs();
-    ServeWish wish = m_shown;
     for (;;) {
       renderPictures();
-      do
-        wish = m_input.next(wish.number);
-      while (!change(wish));
+      do {
+        const ServeChanges changes = m_input.next();
+        if (!take(changes))
+          m_input.takeBack(m_flags);
+      } while (m_complete);
     }
   }
 
 private:
-  /// Makes the scene that is wanted. Where that cannot be, the one before stays; returns whether
-  /// there is something to render.
-  bool change(const ServeWish& wish) {
+  /// Makes the scene of all changes together. Where that cannot be, of those that can: each half by
+  /// itself, down to single ones, which are answered; what they changed stays as it was. Returns
+  /// whether all could be.
+  bool take(std::span<const ServeChange> changes) {
     try {
-      const RenderOptions options = renderOptions(withPreset(wish.flags));
+      FlagValues flags = m_flags;
+      for (const ServeChange& change : changes)
+        flags = changedFlags(change.flags, flags);
+      const RenderOptions options = renderOptions(withPreset(flags));
       checkMemory(options.scene);
       Scene scene = m_scene->changed(options.scene);
       m_outputs.checkInputs();
       m_scene = std::move(scene);
       m_options = options;
-      m_shown = wish;
+      m_flags = flags;
+      m_id = changes.back().id;
+      m_since = changes.back().since;
+      m_complete = false;
       return true;
     } catch (const Error& error) {
       m_outputs.forgetRefused();
-      if (!m_answers.error(wish.id, error.what()))
+      if (changes.size() == 1 && !m_answers.error(changes.front().id, error.what()))
         throw Unheard();
-      m_input.takeBack(wish, m_shown.flags);
-      return !m_complete;
     }
+    if (changes.size() > 1) {
+      take(changes.first(changes.size() / 2));
+      take(changes.subspan(changes.size() / 2));
+    }
+    return false;
   }
 
   void renderPictures() {
@@ -76,6 +92,7 @@ private:
     m_monitor.noise = infinity;
     m_monitor.paths = 0;
     m_published.reset();
+    m_failure.clear();
     m_monitor.between = [this](const RenderResult& result) { publishIfDue(result); };
     const RenderResult result =
         render(m_scene->forRender(), settingsFor(*m_options, m_scene->background()), m_monitor);
@@ -92,22 +109,31 @@ private:
     publish(result, false);
   }
 
-  void publish(const RenderResult& result, bool last) {
+  /// Returns whether the files are written. What keeps them from it (a full disk) is told, but for
+  /// pictures on the way once only; the next one may have room again.
+  bool write(const RenderResult& result, bool last) {
     try {
-      writePictures(*m_options, *m_scene, result,
-                    shellCommand(m_shown.flags.arguments(), *m_options), m_outputs);
+      writePictures(*m_options, *m_scene, result, shellCommand(m_flags.arguments(), *m_options),
+                    m_outputs);
       m_outputs.commit(Outputs::Durability::none); // another one follows soon
-    } catch (const Error& error) {                 // as of a disk that is full now
-      m_published.emplace();
-      if (!m_answers.error(m_shown.id, error.what()))
+      return true;
+    } catch (const Error& error) {
+      if ((last || m_failure != error.what()) && !m_answers.error(m_id, error.what()))
         throw Unheard();
-      return;
+      m_failure = error.what();
+      m_published.emplace();
+      return false;
     }
-    nlohmann::ordered_json answer = {{"event", "picture"}, {"id", m_shown.id}};
+  }
+
+  void publish(const RenderResult& result, bool last) {
+    if (!write(result, last))
+      return;
+    nlohmann::ordered_json answer = {{"event", "picture"}, {"id", m_id}};
     answer["samples"] = result.finishedSamples;
     const double noise = result.film.noise();
     answer["noise"] = noise < infinity ? nlohmann::ordered_json(noise) : nullptr;
-    answer["seconds"] = m_shown.since.seconds();
+    answer["seconds"] = m_since.seconds();
     answer["done"] = last;
     answer["files"] = nlohmann::ordered_json::array();
     for (const std::filesystem::path& path : m_options->outputs)
@@ -120,7 +146,10 @@ private:
     m_published.emplace();
   }
 
-  ServeWish m_shown; ///< what the scene is of
+  FlagValues m_flags; ///< what the scene is of
+  std::vector<std::string> m_leftOut;
+  nlohmann::json m_id = nullptr; ///< of the last change
+  Stopwatch m_since;             ///< it came
   Outputs& m_outputs;
   RenderMonitor m_monitor;
   ServeAnswers m_answers;
@@ -129,6 +158,7 @@ private:
   std::optional<Scene> m_scene;
   bool m_complete = false;              ///< the scene's picture
   std::optional<Stopwatch> m_published; ///< since the last picture of this scene
+  std::string m_failure;                ///< to write a picture of this scene, as it was told
   std::set<std::string> m_warned;
 };
 
@@ -143,14 +173,14 @@ int serveCommand(int argc, char** argv, int first) {
       throw usageError(std::string("--") + name + ": serve tells all on standard output; drop it");
   if (given->has("surface"))
     throw usageError("--surface: serve writes pictures alone; write it with fenestra render");
-  const FlagValues flags = withSceneFlags(*given);
-  const RenderOptions options = renderOptions(withPreset(flags));
-  const MachineUse machine(options.settings);
+  useMachine(*given);
+  const SceneFlags start = withSceneFlags(*given);
+  const RenderOptions options = renderOptions(withPreset(start.flags));
   // Both live as long as the process, as its reading thread does.
   Outputs& outputs = *new Outputs;
   declareOutputs(options, outputs);
   checkMemory(options.scene);
-  Server& server = *new Server(flags, outputs);
+  Server& server = *new Server(start, outputs);
   try {
     server.run();
   } catch (const Unheard&) {

@@ -4,11 +4,15 @@
 #include "cli/PresetFlags.h"
 #include "cli/Stop.h"
 #include "core/Error.h"
+#include "io/JsonNode.h"
+#include "io/looks/LightReader.h"
+#include "scene/NamedLooks.h"
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <unistd.h>
+#include <utility>
 
 namespace fenestra {
 namespace {
@@ -50,7 +54,21 @@ bool ServeAnswers::error(const json& id, const std::string& message) {
   return say({{"event", "error"}, {"id", id}, {"message", message}});
 }
 
-void applyChange(const json& change, FlagValues& flags) {
+ServeChange parseChange(const std::string& line, json& id) {
+  ServeChange change{parseJson(line, "a line")};
+  if (change.flags.is_object() && change.flags.contains("id")) {
+    constexpr std::size_t longestId = 256;
+    const json& given = change.flags["id"];
+    const bool isShort =
+        given.is_string() && given.get_ref<const std::string&>().size() <= longestId;
+    if (!given.is_null() && !given.is_number() && !isShort)
+      throw usageError("id: must be a number, a text of at most 256 bytes, or null");
+    change.id = id = given;
+  }
+  return change;
+}
+
+FlagValues changedFlags(const json& change, const FlagValues& flags) {
   if (!change.is_object())
     throw usageError("expected a JSON object of flags, as {\"view\": \"left\"}");
   std::vector<std::string_view> names;
@@ -75,27 +93,38 @@ void applyChange(const json& change, FlagValues& flags) {
     if (!text.empty())
       result.add(name, text);
   }
-  renderOptions(withPreset(result)); // throws where they cannot be together
-  flags = result;
+  return result;
+}
+
+void checkChange(const json& change, const FlagValues& flags) {
+  const SceneRequest scene = renderOptions(withPreset(flags)).scene;
+  const bool isPreset = change.contains("preset"); // may name any of them
+  if (isPreset || change.contains("lights"))
+    namedLights(scene.lights);
+  if (scene.transfer && (isPreset || change.contains("transfer")))
+    namedTransfer(*scene.transfer, scene.input);
+  if (scene.environmentMap && change.contains("environment"))
+    readEnvironmentMap(*scene.environmentMap);
 }
 
 ServeInput::ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers)
-    : m_monitor(monitor), m_answers(answers), m_wish{start} {
+    : m_monitor(monitor), m_answers(answers), m_wanted(start) {
   m_thread = std::thread([this] { read(); });
   m_thread.detach(); // ends with the process
 }
 
-ServeWish ServeInput::next(std::uint64_t seen) {
+ServeChanges ServeInput::next() {
   std::unique_lock lock(m_mutex);
-  m_changed.wait(lock, [&] { return m_wish.number > seen; });
+  m_changed.wait(lock, [&] { return !m_new.empty(); });
   m_monitor.stop = false;
-  return m_wish;
+  return std::exchange(m_new, {});
 }
 
-void ServeInput::takeBack(const ServeWish& refused, const FlagValues& shown) {
+void ServeInput::takeBack(const FlagValues& shown) {
   const std::lock_guard lock(m_mutex);
-  if (m_wish.number == refused.number)
-    m_wish.flags = shown;
+  m_wanted = shown;
+  for (const ServeChange& change : m_new)
+    m_wanted = changedFlags(change.flags, m_wanted);
 }
 
 void ServeInput::read() {
@@ -128,17 +157,13 @@ void ServeInput::read() {
 void ServeInput::takeLine(const std::string& line) {
   json id = nullptr;
   try {
-    const json change = json::parse(line);
-    if (change.is_object() && change.contains("id"))
-      id = change["id"];
+    ServeChange change = parseChange(line, id);
     const std::lock_guard lock(m_mutex);
-    applyChange(change, m_wish.flags);
-    m_wish.id = id;
-    m_wish.since = Stopwatch();
-    ++m_wish.number;
+    FlagValues wanted = changedFlags(change.flags, m_wanted);
+    checkChange(change.flags, wanted);
+    m_wanted = std::move(wanted);
+    m_new.push_back(std::move(change));
     m_monitor.stop = true;
-  } catch (const json::exception&) {
-    m_answers.error(id, "not JSON; expected one object of flags a line, as {\"view\": \"left\"}");
   } catch (const Error& error) {
     m_answers.error(id, error.what());
   }

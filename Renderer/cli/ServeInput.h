@@ -24,18 +24,26 @@ private:
   std::mutex m_mutex;
 };
 
-/// All flags as they are wanted after some changes.
-struct ServeWish {
-  FlagValues flags;
-  nlohmann::json id = nullptr; ///< of the last change
-  std::uint64_t number = 0;    ///< of changes so far
-  Stopwatch since = {};        ///< the last of them came
+/// A line.
+struct ServeChange {
+  nlohmann::json flags;        ///< {"flag": value, …}
+  nlohmann::json id = nullptr; ///< null, a number, or a text of at most 256 bytes
+  Stopwatch since = {};        ///< it came
 };
+using ServeChanges = std::vector<ServeChange>;
 
-/// A line's changes to `flags`: {"flag": value, …}, where a value is what the command line takes: a
-/// text, a number, or a list of them; null takes the flag back. Throws Error (usage) for what
-/// cannot change or be understood; `flags` is as it was then.
-void applyChange(const nlohmann::json& change, FlagValues& flags);
+/// What a line says. Throws Error for what is no JSON or has another id; `id` is its own as soon as
+/// it is known.
+ServeChange parseChange(const std::string& line, nlohmann::json& id);
+
+/// The flags after a line's changes: {"flag": value, …}, where a value is what the command line
+/// takes: a text, a number, or a list of them; null takes the flag back. Throws Error (usage) for
+/// what cannot change or be understood.
+FlagValues changedFlags(const nlohmann::json& change, const FlagValues& flags);
+
+/// Throws Error where the flags after a change cannot be together (usage), or a look that the
+/// change names cannot be read (input).
+void checkChange(const nlohmann::json& change, const FlagValues& flags);
 
 /// Reads standard input in a thread of its own. A change stops the render under way; the end of
 /// input ends the process, as signals do (cli/Stop), but for a picture that is being put in place.
@@ -45,11 +53,11 @@ public:
   ServeInput(const ServeInput&) = delete;
   ServeInput& operator=(const ServeInput&) = delete;
 
-  /// Blocks until there are more changes than `seen`; from then on nothing stops the render but
+  /// Blocks until there are changes, and takes them; from then on nothing stops the render but
   /// newer ones.
-  ServeWish next(std::uint64_t seen);
-  /// What could not be shown is not wanted any more, unless there are newer changes.
-  void takeBack(const ServeWish& refused, const FlagValues& shown);
+  ServeChanges next();
+  /// Some of what was taken cannot be shown: newer changes are to what is shown.
+  void takeBack(const FlagValues& shown);
 
 private:
   void read();
@@ -57,9 +65,10 @@ private:
 
   RenderMonitor& m_monitor;
   ServeAnswers& m_answers;
-  std::mutex m_mutex; ///< of the wish, and of monitor.stop
+  std::mutex m_mutex; ///< of what is wanted, and of monitor.stop
   std::condition_variable m_changed;
-  ServeWish m_wish;
+  FlagValues m_wanted; ///< after all changes
+  ServeChanges m_new;  ///< that nobody has taken
   std::thread m_thread;
 };
 

@@ -9,6 +9,7 @@
 #include "cli/SceneFlags.h"
 #include "cli/Stop.h"
 #include "cli/TurntableRecord.h"
+#include "io/ShownText.h"
 #include "scene/Scene.h"
 
 #include <chrono>
@@ -90,7 +91,7 @@ private:
     m_surfaceFrame = frame;
     for (const std::string& warning : m_scene.warnings())
       if (m_warnings.insert(warning).second)
-        std::cerr << "fenestra: warning: " << warning << '\n';
+        std::cerr << "fenestra: warning: " << oneLine(warning) << '\n';
     const RenderResult result = render(m_scene.forRender(), settings, m_monitor);
     if (result.reason == StopReason::request)
       return false;
@@ -193,9 +194,11 @@ int turntableCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(turntableSyntax(), argc, argv, first);
   if (!given)
     return 0;
-  const PresetFlags flags = withPreset(withSceneFlags(*given));
-  const TurntableOptions options = turntableOptions(flags);
-  const MachineUse machine(options.render.settings);
+  useMachine(*given);
+  const SceneFlags stored = withSceneFlags(*given);
+  const PresetFlags flags = withPreset(stored.flags);
+  TurntableOptions options = turntableOptions(flags);
+  options.render.scene.leftOut = stored.leftOut;
   TurntableRecord record(options, flags.flags);
   RenderMonitor monitor;
   Outputs outputs;

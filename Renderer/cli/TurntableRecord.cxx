@@ -103,12 +103,24 @@ json voxelDigests(const Scene& scene) {
 
 /// Elements of one array that another does not have.
 std::string elementsBeyond(const json& some, const json& others) {
+  const std::set<json> known(others.begin(), others.end());
   std::string text;
   for (const json& element : some)
-    if (std::find(others.begin(), others.end(), element) == others.end())
+    if (!known.contains(element))
       text += (text.empty() ? "" : " ") +
               (element.is_string() ? element.get<std::string>() : element.value("file", ""));
   return text;
+}
+
+/// Throws Error (input), naming file and field, unless a record's request is what `difference` and
+/// others take for granted.
+void checkRequest(const JsonNode& request) {
+  request.allowOnly({"version", "arguments", "inputs", "voxels"});
+  request.at("version").text();
+  for (const JsonNode& argument : request.at("arguments").elements())
+    argument.text();
+  for (const JsonNode& input : request.at("inputs").elements())
+    input.at("file").text();
 }
 
 /// In what a record's request is not this one.
@@ -170,8 +182,7 @@ void TurntableRecord::read(const TurntableOptions& options) {
   if (const auto file = fileId(m_path)) // which is written again
     forgetInput(*file);
   const JsonNode root(document, name);
-  for (const char* list : {"arguments", "inputs"})
-    root.at("request").at(list).elements(); // throws where it is none
+  checkRequest(root.at("request"));
   m_recorded = document["request"];
   json known = m_recorded;
   for (const char* later : {"inputs", "voxels"})

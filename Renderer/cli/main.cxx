@@ -5,6 +5,7 @@
 #include "io/Apart.h"
 #include "io/Leftovers.h"
 #include "io/PrivateFolder.h"
+#include "io/ShownText.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -63,7 +64,8 @@ void say(std::string_view text) {
 int fail(int status, std::string_view line) {
   static char buffer[8192];
   const std::size_t size = std::min(line.size(), sizeof buffer);
-  std::replace_copy(line.begin(), line.begin() + size, buffer, '\n', ' ');
+  std::copy_n(line.begin(), size, buffer);
+  fenestra::makeOneLine({buffer, size});
   say("fenestra: ");
   say({buffer, size});
   say("\n");

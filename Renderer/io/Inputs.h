@@ -12,8 +12,6 @@
 
 namespace fenestra {
 
-/// Bytes that a text file of any kind may have.
-inline constexpr std::uint64_t largestText = std::uint64_t{64} << 20;
 inline constexpr std::uint64_t anySize = std::numeric_limits<std::uint64_t>::max();
 
 /// A file whatever its names: links to it have the same. A number that is free is given to another

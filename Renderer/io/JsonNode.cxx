@@ -11,25 +11,7 @@
 namespace fenestra {
 namespace {
 
-constexpr int deepest = 64;
-
-/// How deep brackets nest outside strings.
-int nesting(std::string_view text) {
-  int depth = 0, greatest = 0;
-  bool inString = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (inString && c == '\\')
-      ++i;
-    else if (c == '"')
-      inString = !inString;
-    else if (!inString && (c == '[' || c == '{'))
-      greatest = std::max(greatest, ++depth);
-    else if (!inString && (c == ']' || c == '}'))
-      --depth;
-  }
-  return greatest;
-}
+constexpr int deepest = 64, mostParts = 200'000;
 
 std::string shortNumber(double x) {
   std::string text = nlohmann::json(x).dump();
@@ -38,8 +20,8 @@ std::string shortNumber(double x) {
 
 } // namespace
 
-std::string readText(const std::filesystem::path& path) {
-  requireFile(path, "name a file in it", largestText);
+std::string readText(const std::filesystem::path& path, std::uint64_t most) {
+  requireFile(path, "name a file in it", most);
   std::string text(static_cast<std::size_t>(std::filesystem::file_size(path)), '\0');
   errno = 0;
   std::ifstream file(path, std::ios::binary);
@@ -49,11 +31,20 @@ std::string readText(const std::filesystem::path& path) {
 }
 
 nlohmann::json parseJson(std::string_view text, const std::string& source) {
-  if (nesting(text) > deepest)
-    throw inputError(source, "nests more than " + std::to_string(deepest) +
-                                 " brackets; it is not a file of ours");
+  using Event = nlohmann::json::parse_event_t;
+  int parts = 0;
+  const auto count = [&](int depth, Event event, const nlohmann::json&) {
+    const bool opens = event == Event::object_start || event == Event::array_start;
+    if (opens && depth >= deepest)
+      throw inputError(source, "nests more than " + std::to_string(deepest) +
+                                   " brackets; it is not a file of ours");
+    if ((opens || event == Event::key || event == Event::value) && ++parts > mostParts)
+      throw inputError(source, "holds more than " + std::to_string(mostParts) +
+                                   " values; it is not a file of ours");
+    return true;
+  };
   try {
-    return nlohmann::json::parse(text);
+    return nlohmann::json::parse(text, count);
   } catch (const nlohmann::json::parse_error& error) {
     throw inputError(source, "is not JSON at byte " + std::to_string(error.byte) +
                                  "; check its brackets, commas and quotes");
@@ -93,12 +84,11 @@ double JsonNode::numberIn(double low, double high) const {
 }
 
 std::vector<double> JsonNode::numbers(std::size_t count, double low, double high) const {
-  const std::vector<JsonNode> nodes = elements();
-  if (nodes.size() != count)
+  if (m_value->is_array() && m_value->size() != count)
     throw error("must have " + std::to_string(count) + " numbers, not " +
-                std::to_string(nodes.size()));
+                std::to_string(m_value->size()));
   std::vector<double> result;
-  for (const JsonNode& node : nodes)
+  for (const JsonNode& node : elements())
     result.push_back(node.numberIn(low, high));
   return result;
 }

@@ -1,20 +1,67 @@
 #pragma once
-// Text from files in messages: on one line, and short where it can be.
+// Text from files in messages: on one line, valid UTF-8, and short where it can be.
 
 #include <algorithm>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace fenestra {
 
-/// Control characters become blanks.
+/// Bytes of the UTF-8 character at the front of `text`; 0 where there is none (The Unicode Standard
+/// 15.0, table 3-7).
+inline std::size_t characterSize(std::string_view text) {
+  const auto byte = [&text](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80)
+    return text.empty() ? 0 : 1;
+  const std::size_t size = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  const unsigned low = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
+  const unsigned high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
+  if (first < 0xc2 || first > 0xf4 || byte(1) < low || byte(1) > high)
+    return 0;
+  for (std::size_t i = 2; i < size; ++i)
+    if ((byte(i) & 0xc0U) != 0x80U)
+      return 0;
+  return size;
+}
+
+/// Control characters become blanks, bytes that are no UTF-8 question marks.
+inline void makeOneLine(std::span<char> text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t size = characterSize({text.data() + at, text.size() - at});
+    const auto c = static_cast<unsigned char>(text[at]);
+    if (size == 0)
+      text[at] = '?';
+    else if (c < 0x20 || c == 0x7f)
+      text[at] = ' ';
+    at += std::max<std::size_t>(size, 1);
+  }
+}
 inline std::string oneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  makeOneLine(text);
   return text;
 }
 
+/// At most 80 bytes of it, whole characters.
 inline std::string shown(const std::string& text) {
-  return oneLine(text.substr(0, 80));
+  std::size_t end = std::min<std::size_t>(text.size(), 80);
+  for (int i = 0; i < 3 && end < text.size() && end > 0; ++i)
+    if ((static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U)
+      --end;
+  return oneLine(text.substr(0, end));
+}
+
+/// The text with every `from` in it replaced.
+inline std::string replacedAll(std::string_view text, std::string_view from, std::string_view to) {
+  std::string result;
+  for (std::size_t at = text.find(from); at != std::string_view::npos; at = text.find(from)) {
+    result.append(text.substr(0, at)).append(to);
+    text.remove_prefix(at + from.size());
+  }
+  return result.append(text);
 }
 
 } // namespace fenestra

@@ -29,7 +29,7 @@ struct OneByOne {
     while (std::optional<PathStart> from = source.next()) {
       const std::optional<PathSample> sample =
           estimator.trace(from->column, from->row, from->random, counters);
-      if (!sample || estimator.stopped())
+      if (!sample)
         return false;
       source.deliver(from->ticket, *sample);
     }
@@ -164,14 +164,14 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
   const int cores = tbb::info::default_concurrency(); // TBB complains about more
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   return arena.execute([&] {
-    return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium,
-                                                 const Tracker<Voxel>& tracker) {
+    const auto work = [&]<typename Voxel>(const Medium<Voxel>& medium,
+                                          const Tracker<Voxel>& tracker) {
       if (settings.transport == Transport::fast &&
           WideTracker::serves(scene.volume, scene.transfer) &&
           EventScene::serves(scene.volume.grid, scene.transfer, scene.lights)) {
         const Domain domain(scene.volume.grid, scene.crop);
         const WideTracker wide(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
-                               scene.style);
+                               scene.style, monitor.stop);
         const WideEvents events(wide.scene(),
                                 EventScene(scene.volume.grid, scene.transfer, scene.lights,
                                            settings.path.bounces, settings.path.wantNormals));
@@ -183,7 +183,8 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                                                           scene.lights, scene.camera, scene.clip,
                                                           settings.path, monitor.stop)};
       return renderPasses(readable, "scalar", scene, settings, monitor);
-    });
+    };
+    return withMedium(scene, work, monitor.stop);
   });
 }
 

@@ -80,6 +80,16 @@ double backgroundLevel(const Volume& volume, double low, double high) {
   return low + (high - low) * (threshold + 1.0) / bins;
 }
 
+/// A vector times the power of two that brings it near length 1: squares neither overflow nor
+/// vanish then, and what is normalized has the same digits as without.
+Vec3 ofUsualLength(const Vec3& v) {
+  const double greatest = v.cwiseAbs().maxCoeff();
+  if (greatest == 0.0 || !std::isfinite(greatest))
+    return v;
+  const int exponent = std::ilogb(greatest);
+  return v.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
+}
+
 /// Of the least box along a domain's grid that holds it, world mm.
 Vec3 centerOf(const Domain& domain) {
   Vec3 lower = Vec3::Constant(infinity);
@@ -169,7 +179,7 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
       view.position ? Vec3((*view.position - pose.target).normalized()) : named.fromTarget;
   pose.up = view.up.value_or(
       std::abs(back.dot(named.up)) > 0.999 * back.norm() ? Vec3(Vec3::UnitY()) : named.up);
-  const Vec3 right = pose.up.cross(back).normalized();
+  const Vec3 right = ofUsualLength(pose.up).cross(back).normalized();
   const Vec3 up = back.cross(right);
 
   // The whole volume, or the focus with its surroundings where that is less.

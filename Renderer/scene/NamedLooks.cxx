@@ -89,6 +89,11 @@ std::vector<std::string> ownPresets(const std::string& kind) {
   return names;
 }
 
+bool isFileName(const std::string& kind, const std::string& name) {
+  return ownPreset(kind, name).empty() &&
+         (name.find_first_of("/.") != std::string::npos || isThere(name));
+}
+
 NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path& input) {
   if (isLookText(name))
     return {parseTransferLook(name, "--transfer")};
@@ -103,6 +108,12 @@ NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path
                       "a file or one of " + listed(ownPresets("transfer")) + slicer.known());
 }
 
+bool isFileOfTransfer(const std::string& name, const std::filesystem::path& input) {
+  if (isLookText(name) || !isFileName("transfer", name))
+    return false;
+  return name.find('/') != std::string::npos || isThere(name) || !SlicerTransfers(input).find(name);
+}
+
 NamedLights namedLights(const std::string& name) {
   if (isLookText(name))
     return {parseLights(name, "--lights")};
@@ -111,6 +122,10 @@ NamedLights namedLights(const std::string& name) {
   if (!isThere(name))
     throw unknownPreset("lights", name, "a file or one of " + listed(ownPresets("lights")));
   return {readLights(name), name};
+}
+
+bool isFileOfLights(const std::string& name) {
+  return isLookText(name) ? namesFiles(name, "--lights") : isFileName("lights", name);
 }
 
 OrganPreset namedPreset(const std::string& name) {

@@ -94,6 +94,8 @@ struct SceneRequest {
   /// What `transfer` was made for, where an organ preset chose it: a volume that is known to be
   /// something else gets the look that suits it, and a warning.
   std::optional<Modality> transferFor = {};
+  /// What was asked for and is no part of this, and why: first of the scene's warnings.
+  std::vector<std::string> leftOut = {};
 };
 
 } // namespace fenestra

@@ -276,7 +276,8 @@ void Scene::buildDepthClip(ClipMode mode, const SceneRequest& scene) {
 }
 
 std::vector<std::string> Scene::warnings() const {
-  std::vector<std::string> warnings = volume().warnings;
+  std::vector<std::string> warnings = m_request.leftOut;
+  warnings.insert(warnings.end(), volume().warnings.begin(), volume().warnings.end());
   warnings.insert(warnings.end(), m_settings.warnings.begin(), m_settings.warnings.end());
   warnings.insert(warnings.end(), m_lookWarnings.begin(), m_lookWarnings.end());
   if (domain().indexCorners().empty())

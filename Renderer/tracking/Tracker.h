@@ -5,6 +5,7 @@
 #include "medium/Medium.h"
 #include "tracking/Counters.h"
 #include "tracking/MajorantGrid.h"
+#include "tracking/StopFlag.h"
 #include "volume/Domain.h"
 #include "volume/GridWalk.h"
 
@@ -38,13 +39,14 @@ double ratioTracked(Walk&& walk, Random& random) {
   return ratio;
 }
 
-/// A view: medium, majorants and clip outlive it. Rays are in world space, unit direction.
+/// A view: medium, majorants, clip and stop outlive it. Rays are in world space, unit direction.
+/// Once `stop` is true walks end where they are, and what is returned means nothing.
 template <typename Voxel>
 class Tracker {
 public:
   Tracker(const Domain& domain, const Medium<Voxel>& medium, const MajorantGrid& majorants,
-          const Clip& clip)
-      : m_domain(domain), m_medium(medium), m_majorants(majorants), m_clip(clip) {}
+          const Clip& clip, const StopFlag& stop = neverStopped)
+      : m_domain(domain), m_medium(medium), m_majorants(majorants), m_clip(clip), m_stop(stop) {}
 
   /// Distance (mm) to the next real collision within `range`, or infinity.
   double sampleCollision(const Ray& ray, const Interval& range, Random& random,
@@ -79,6 +81,7 @@ private:
     GridWalk walk(transformed(m_majorants.worldToCell(), entering),
                   {0.0, inside.end - inside.begin}, m_majorants.cellCount());
     double opticalDepth = random.exponential();
+    std::uint32_t steps = 0;
     for (; !walk.done(); walk.next()) {
       const MajorantGrid::Cell& cell = m_majorants.cell(walk.cell());
       const double majorant = cell.majorant;
@@ -102,6 +105,8 @@ private:
         }
         if (!visit(inside.begin + t, extinction / majorant))
           return;
+        if (++steps % stepsBetweenLooks == 0 && m_stop.load(std::memory_order_relaxed))
+          return;
         opticalDepth = random.exponential();
       }
     }
@@ -111,6 +116,7 @@ private:
   const Medium<Voxel>& m_medium;
   const MajorantGrid& m_majorants;
   const Clip& m_clip;
+  const StopFlag& m_stop;
 };
 
 } // namespace fenestra

@@ -69,7 +69,8 @@ bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer)
 
 WideTracker::WideTracker(const Volume& volume, const Domain& domain,
                          const TransferFunction& transfer, const MajorantGrid& majorants,
-                         const Clip& clip, const ContextStyle* style) {
+                         const Clip& clip, const ContextStyle* style, const StopFlag& stop)
+    : m_stop(stop) {
   m_scene.type = typeOf(volume.voxels);
   m_scene.field = fieldOf(
       std::visit([](const auto& v) { return static_cast<const void*>(v.data()); }, volume.voxels),

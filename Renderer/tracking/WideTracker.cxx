@@ -346,11 +346,13 @@ private:
 
 /// Two sets of lanes take turns: while one waits for memory, the other computes.
 template <typename Voxel, bool wantRatio>
-void followBatch(const WideScene& scene, RayBatch& rays, Counters& counters) {
+void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
   Queue queue{rays};
   Lanes<Voxel, wantRatio> one(scene, queue), other(scene, queue);
   bool oneBusy = true, otherBusy = true;
-  while (oneBusy || otherBusy) {
+  for (std::uint32_t steps = 1; oneBusy || otherBusy; ++steps) {
+    if (steps % stepsBetweenLooks == 0 && stop.load(std::memory_order_relaxed))
+      return;
     if (oneBusy)
       oneBusy = one.step();
     if (otherBusy)
@@ -361,24 +363,24 @@ void followBatch(const WideScene& scene, RayBatch& rays, Counters& counters) {
 }
 
 template <bool wantRatio>
-void followAll(const WideScene& scene, RayBatch& rays, Counters& counters) {
+void followAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
   switch (scene.type) {
   case WideScene::VoxelType::uint8:
-    return followBatch<std::uint8_t, wantRatio>(scene, rays, counters);
+    return followBatch<std::uint8_t, wantRatio>(scene, rays, stop, counters);
   case WideScene::VoxelType::int16:
-    return followBatch<std::int16_t, wantRatio>(scene, rays, counters);
+    return followBatch<std::int16_t, wantRatio>(scene, rays, stop, counters);
   case WideScene::VoxelType::uint16:
-    return followBatch<std::uint16_t, wantRatio>(scene, rays, counters);
+    return followBatch<std::uint16_t, wantRatio>(scene, rays, stop, counters);
   case WideScene::VoxelType::float32:
-    return followBatch<float, wantRatio>(scene, rays, counters);
+    return followBatch<float, wantRatio>(scene, rays, stop, counters);
   }
 }
 
-void flyAll(const WideScene& scene, RayBatch& rays, Counters& counters) {
-  followAll<false>(scene, rays, counters);
+void flyAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
+  followAll<false>(scene, rays, stop, counters);
 }
-void seeAll(const WideScene& scene, RayBatch& rays, Counters& counters) {
-  followAll<true>(scene, rays, counters);
+void seeAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
+  followAll<true>(scene, rays, stop, counters);
 }
 const char* nameOfTarget() {
   return hwy::TargetName(HWY_TARGET);
@@ -396,11 +398,11 @@ HWY_EXPORT(seeAll);
 HWY_EXPORT(nameOfTarget);
 
 void WideTracker::sampleCollisions(RayBatch& rays, Counters& counters) const {
-  HWY_DYNAMIC_DISPATCH(flyAll)(m_scene, rays, counters);
+  HWY_DYNAMIC_DISPATCH(flyAll)(m_scene, rays, m_stop, counters);
 }
 
 void WideTracker::estimateTransmittances(RayBatch& rays, Counters& counters) const {
-  HWY_DYNAMIC_DISPATCH(seeAll)(m_scene, rays, counters);
+  HWY_DYNAMIC_DISPATCH(seeAll)(m_scene, rays, m_stop, counters);
 }
 
 namespace {

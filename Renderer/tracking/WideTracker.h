@@ -12,6 +12,7 @@
 #include "medium/TransferFunction.h"
 #include "tracking/Counters.h"
 #include "tracking/MajorantGrid.h"
+#include "tracking/StopFlag.h"
 #include "tracking/WideScene.h"
 #include "volume/Domain.h"
 #include "volume/Volume.h"
@@ -65,9 +66,11 @@ public:
   /// across the volume of at most 1e5.
   static bool serves(const Volume& volume, const TransferFunction& transfer);
 
-  /// A view: volume, clip and style outlive it.
+  /// A view: volume, clip, style and stop outlive it. Once `stop` is true rays are left where they
+  /// are, and what results hold means nothing.
   WideTracker(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
-              const MajorantGrid& majorants, const Clip& clip, const ContextStyle* style = nullptr);
+              const MajorantGrid& majorants, const Clip& clip, const ContextStyle* style = nullptr,
+              const StopFlag& stop = neverStopped);
 
   const WideScene& scene() const { return m_scene; }
 
@@ -95,6 +98,7 @@ private:
   void setContext(const ContextStyle& style, const Grid& grid);
 
   WideScene m_scene;
+  const StopFlag& m_stop;
 };
 
 } // namespace fenestra

@@ -5,8 +5,6 @@
 #include "tracking/Tracker.h"
 #include "transport/PathSteps.h"
 
-#include <atomic>
-
 namespace fenestra {
 
 /// `Distances` finds collisions and transmittances as Tracker does.
@@ -16,18 +14,16 @@ public:
   /// A view of all that it is given.
   PathEstimator(const Grid& grid, const Medium<Voxel>& medium, const Distances& tracker,
                 const LightSet& lights, const Camera& camera, const Clip& clip,
-                const PathSettings& settings, const std::atomic<bool>& stop)
+                const PathSettings& settings, const StopFlag& stop)
       : m_steps(grid, medium, lights, camera, clip, settings), m_tracker(tracker), m_stop(stop) {}
 
-  /// One path through raster position (column, row). Nothing where `stop` became true during a long
-  /// one: with albedo 1 in a dense medium a path can take minutes.
+  /// One path through raster position (column, row). Nothing where `stop` became true before it had
+  /// ended: with albedo 1 in a dense medium a path can take minutes.
   std::optional<PathSample> trace(double column, double row, Random& random,
                                   Counters& counters) const {
     ++counters.paths;
     Path path = m_steps.begin(column, row, random);
-    while (!PathSteps<Voxel>::ended(path)) {
-      if (path.bounces % bouncesBetweenLooks == bouncesBetweenLooks - 1 && m_stop)
-        return std::nullopt;
+    while (!PathSteps<Voxel>::ended(path) && !stopped()) {
       const double distance =
           m_tracker.sampleCollision(path.ray, path.range, path.random, counters);
       if (!m_steps.arrive(path, distance))
@@ -41,17 +37,15 @@ public:
           light->radiance *
           m_tracker.transmittance(light->ray, {0.0, light->distance}, path.random, counters);
     }
-    return path.sample;
+    return stopped() ? std::nullopt : std::optional(path.sample);
   }
 
-  bool stopped() const { return m_stop.load(std::memory_order_relaxed); }
-
 private:
-  static constexpr std::uint64_t bouncesBetweenLooks = 256;
+  bool stopped() const { return m_stop.load(std::memory_order_relaxed); }
 
   PathSteps<Voxel> m_steps;
   const Distances& m_tracker;
-  const std::atomic<bool>& m_stop;
+  const StopFlag& m_stop;
 };
 
 } // namespace fenestra

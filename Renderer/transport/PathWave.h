@@ -6,7 +6,6 @@
 #include "transport/WideEvents.h"
 #include "volume/Domain.h"
 
-#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -22,9 +21,10 @@ struct PathStart {
 
 class PathWave {
 public:
-  /// A view of all that it is given.
+  /// A view of all that it is given. The tracker looks at the same `stop`: what it leaves then is
+  /// dropped here.
   PathWave(const Domain& domain, const WideTracker& tracker, const WideEvents& events,
-           const EyeRays& eye, const std::atomic<bool>& stop)
+           const EyeRays& eye, const StopFlag& stop)
       : m_domain(domain), m_tracker(tracker), m_events(events), m_eye(eye), m_stop(stop) {}
 
   /// Traces all paths that source.next() gives, at most `atOnce` together, and hands in
@@ -44,11 +44,13 @@ public:
     while (size < std::min(atOnce, RayBatch::capacity) && begin(size))
       ++size;
     while (size > 0) {
-      if (m_stop.load(std::memory_order_relaxed))
-        return false;
       m_tracker.sampleCollisions(batch->paths.rays, counters);
+      if (stopped())
+        return false;
       m_events.scatter(batch->paths, batch->lights, counters);
       look(*batch, counters);
+      if (stopped())
+        return false;
       // The last first: what moves into a gap has not ended.
       for (std::size_t i = batch->paths.endedCount; i-- > 0;) {
         const std::size_t place = batch->paths.ended[i];
@@ -63,6 +65,8 @@ public:
   }
 
 private:
+  bool stopped() const { return m_stop.load(std::memory_order_relaxed); }
+
   /// A path's eye ray.
   struct Origin {
     std::uint64_t ticket = 0;
@@ -117,7 +121,7 @@ private:
   const WideTracker& m_tracker;
   const WideEvents& m_events;
   const EyeRays& m_eye;
-  const std::atomic<bool>& m_stop;
+  const StopFlag& m_stop;
 };
 
 } // namespace fenestra

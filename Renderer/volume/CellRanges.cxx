@@ -83,12 +83,13 @@ Size3 CellRanges::edgeFor(const Grid& grid) {
       if (voxels[axis] == 0.0) {
         const double cube = edge / spacing[axis];
         const double miss = std::max(1.0 / cube, cube / size[axis]);
-        if (miss > factor) {
+        if (farthest < 0 || miss > factor) {
           farthest = axis;
           factor = miss;
         }
       }
-    voxels[farthest] = std::clamp(std::round(edge / spacing[farthest]), 1.0, size[farthest]);
+    voxels[farthest] =
+        std::max(1.0, std::min(std::round(edge / spacing[farthest]), size[farthest]));
   }
   return voxels.cast<std::int64_t>();
 }

@@ -132,7 +132,13 @@ TEST_F(ServeCommand, BadLinesChangeNothing) {
       {R"({"id": 8, "size": "0x0"})", "8", "--size"},
       {"{\"id\": 9, \"lights\": \"" + std::string(1 << 20, 'x') + "\"}", "null",
        "more than a million"},
-      {R"({"id": 10, "samples": 1e999})", "null", "not JSON"},
+      {R"({"id": 10, "samples": 1e999})", "null", "too large"},
+      {"{\"id\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}", "null",
+       "nests more than 64"},
+      {R"({"id": {"a": 1}, "view": "left"})", "null", "id: must be a number, a text"},
+      {R"({"id": [1], "view": "left"})", "null", "id: must be"},
+      {R"({"id": true, "view": "left"})", "null", "id: must be"},
+      {R"({"id": ")" + std::string(257, 'x') + R"(", "view": "left"})", "null", "id: must be"},
       {"", "", ""},
   };
   for (const auto& [line, id, message] : lines) {
@@ -143,6 +149,47 @@ TEST_F(ServeCommand, BadLinesChangeNothing) {
   process.write("{\"id\": 99, \"view\": \"left\"}\n");
   ASSERT_TRUE(waitForPicture(process, "99")) << process.output();
   expectShown({"--view", "left"}); // and nothing of what was refused
+}
+
+/// Sent together, so that the server takes them together.
+TEST_F(ServeCommand, ABadLineTakesNoGoodOneAway) {
+  Process process(serving(), folder.path());
+  ASSERT_TRUE(waitForPicture(process, "null"));
+  const std::vector<std::string> bad = {
+      R"({"id": "bad", "lights": "/dev/zero"})", R"({"id": "bad", "transfer": "missing.json"})",
+      R"({"id": "bad", "environment": "missing.exr"})",
+      R"({"id": "bad", "segmentation": "missing.nrrd", "focus": "A"})",
+      R"({"id": "bad", "segmentation": "segments.seg.nrrd", "focus": "C"})"};
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    const std::string before = "b" + std::to_string(i), after = "a" + std::to_string(i);
+    process.write(R"({"id": ")" + before + R"(", "seed": )" + std::to_string(i + 1) + "}\n" +
+                  bad[i] + "\n" + R"({"id": ")" + after + R"(", "density": )" +
+                  std::to_string(i + 2) + "}\n");
+    ASSERT_TRUE(waitForError(process, "\"bad\"", "")) << bad[i] << process.output();
+    ASSERT_TRUE(waitForPicture(process, "\"" + after + "\"")) << bad[i] << process.output();
+    expectShown({"--seed", std::to_string(i + 1), "--density", std::to_string(i + 2)});
+  }
+  std::size_t refused = 0;
+  for (const json& answer : answers(process)) {
+    EXPECT_EQ(answer["event"] == "error", answer["id"] == "bad") << answer;
+    refused += answer["event"] == "error" ? 1 : 0;
+  }
+  EXPECT_EQ(refused, bad.size());
+}
+
+/// As on a full disk: the render under way goes on, and so does the server.
+TEST_F(ServeCommand, AFailureToWriteIsAnswered) {
+  const std::filesystem::path place = folder / "results";
+  std::filesystem::create_directory(place);
+  Process process({"serve", "volume.nrrd", "--size", "16x16", "--samples", "100000000", "--output",
+                   "results/a.exr"},
+                  folder.path());
+  ASSERT_TRUE(process.waitForOutput("picture"));
+  std::filesystem::remove_all(place);
+  ASSERT_TRUE(waitForError(process, "null", "results/a.exr")) << process.output();
+  std::filesystem::create_directory(place);
+  process.write("{\"id\": 2, \"samples\": 4}\n");
+  ASSERT_TRUE(waitForPicture(process, "2")) << process.output();
 }
 
 TEST_F(ServeCommand, EndsWithItsInput) {

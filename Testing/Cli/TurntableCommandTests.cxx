@@ -283,5 +283,33 @@ TEST_F(TurntableCommand, ShowsTheKneesCartilagesFromInFront) {
   }
 }
 
+/// Each names the file and what is wrong in it.
+TEST_F(TurntableCommand, RefusesRecordsOfOtherTypes) {
+  const std::string request = R"("version": "0.1", "arguments": ["a"], "inputs": [{"file": "b"}])";
+  const std::vector<std::pair<std::string, std::string>> records = {
+      {R"({"request": {"arguments": [], "inputs": []}})", R"(request: has no "version")"},
+      {R"({"request": {"version": 1, "arguments": [], "inputs": []}})",
+       "request.version: must be a string"},
+      {R"({"request": {"version": "", "arguments": [1, "a"], "inputs": []}})",
+       "request.arguments[0]: must be a string"},
+      {R"({"request": {"version": "", "arguments": 2, "inputs": []}})",
+       "request.arguments: must be an array"},
+      {R"({"request": {"version": "", "arguments": [], "inputs": [3]}})",
+       "request.inputs[0]: must be an object"},
+      {R"({"request": {"version": "", "arguments": [], "inputs": [{"file": 4}]}})",
+       "request.inputs[0].file: must be a string"},
+      {R"({"request": {"version": "", "arguments": [], "inputs": [], "more": 5}})",
+       "request: unknown key \"more\""},
+      {R"({"request": [)" + request + "]}", "is not JSON"},
+      {R"({"request": 6, "finished": []})", "request: must be an object"},
+      {"[]", "must be an object"}};
+  for (const auto& [text, message] : records) {
+    folder.write("turn.turntable.json", text);
+    expectRefused(
+        {{text, turntable({"--output", "turn.exr"}), 3, "turn.turntable.json: " + message}},
+        folder.path());
+  }
+}
+
 } // namespace
 } // namespace fenestra

@@ -37,6 +37,22 @@ TEST(FrameView, LooksAlongThePatientsAxesAtTheWholeVolume) {
   }
 }
 
+TEST(FrameView, TakesUpOfAnyLength) {
+  const Grid grid = ramp(0, 1).grid;
+  const auto framed = [&grid](const Vec3& up) {
+    ViewRequest view;
+    view.up = up;
+    return frameView(view, grid, nullptr, 200, 100);
+  };
+  const CameraPose usual = framed(Vec3(1, 1, 1));
+  for (const double length : {0x1p-1070, 0x1p-600, 0x1p600, 0x1p1023}) {
+    const CameraPose pose = framed(length * Vec3(1, 1, 1));
+    EXPECT_EQ(pose.scale, usual.scale) << length;
+    EXPECT_EQ(pose.position, usual.position) << length;
+    EXPECT_TRUE(Camera(pose, 200, 100).up().isApprox(Camera(usual, 200, 100).up(), 1e-15));
+  }
+}
+
 TEST(FrameView, FramesTheFocusTheSameInBothProjections) {
   const Grid grid = ramp(0, 1).grid;
   const Mask focus = smallFocus();

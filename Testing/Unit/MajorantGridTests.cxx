@@ -127,5 +127,13 @@ TEST(CellRanges, ThickSlicesMakeNoLongCells) {
   EXPECT_EQ(CellRanges::edgeFor(Grid(Size3(1, 1, 1), map)), Size3(1, 1, 1));
 }
 
+TEST(CellRanges, hasCellsOfAVoxelAtLeastWhateverTheGrid) {
+  for (const double scale : {1e-300, 1.0, 1e308}) {
+    Affine map = Affine::Identity();
+    map.linear()(0, 1) = scale;
+    EXPECT_TRUE((CellRanges::edgeFor(Grid({3, 4, 2}, map)).array() >= 1).all());
+  }
+}
+
 } // namespace
 } // namespace fenestra::testing

@@ -109,6 +109,20 @@ TEST(MrmlDocument, refusesEntities) {
          "document type");
 }
 
+TEST(MrmlDocument, refusesMoreThanASceneHas) {
+  std::string nodes = "<MRML>";
+  for (int i = 0; i < 100'001; ++i)
+    nodes += "<N/>";
+  refuse(nodes + "</MRML>", "more than 100000 nodes");
+  std::string node = "<N";
+  for (int i = 0; i < 1001; ++i)
+    node += " a" + std::to_string(i) + "=''";
+  std::string attributes = "<MRML>";
+  for (int i = 0; i < 1000; ++i)
+    attributes += node + "/>";
+  refuse(attributes + "</MRML>", "more than a million attributes");
+}
+
 TEST(MrmlDocument, survivesDeepNesting) {
   std::string deep = "<MRML>";
   for (int i = 0; i < 200'000; ++i)

@@ -74,6 +74,13 @@ TEST(TransferReader, namesThePlaceOfWhatIsWrong) {
   expectRefusal("{\"extinction\": 1e999}", "");
   expectRefusal("{\"extinction\": \"\xff\"}", "is not JSON");
   expectRefusal(std::string(1'000'000, '['), "nests more than 64");
+  std::string many = "{\"extinction\": [0";
+  for (int i = 0; i < 200'000; ++i)
+    many += ",0";
+  expectRefusal(many + "]}", "holds more than 200000 values");
+  const TemporaryFolder folder;
+  const auto large = folder.write("large.json", std::string((4 << 20) + 1, ' '));
+  expectRefused(large, "has more than 4 MB", [&large] { readTransferLook(large); });
 }
 
 /// A .vp.json around the given members of its property and component.

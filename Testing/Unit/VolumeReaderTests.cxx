@@ -291,6 +291,51 @@ TEST(VolumeReader, refusesSizesThatTheFileCannotHold) {
   expectRefusal(folder.write("huge.nii", nifti), "truncated");
 }
 
+/// ITK's NRRD library copies lines, names and numbers into 1024 bytes, and sizes into 16 places.
+TEST(VolumeReader, refusesNrrdHeadersThatTeemDoesNotSurvive) {
+  const TemporaryFolder folder;
+  const std::string sizes = "dimension: 3\nsizes: 3 4 2\n";
+  const std::string samples(24, 'x');
+  const auto with = [&](const std::string& line) {
+    return folder.write("v.nrrd", nrrd(sizes + line, samples));
+  };
+  for (const std::string& line :
+       {std::string(1000, 'x'), "kinds: " + std::string(1000, 'x'), "#" + std::string(1000, 'x'),
+        std::string(1000, 'x') + ": y", "a: " + std::string(1000, 'x') + ":=b"})
+    expectRefusal(with(line), "header: line 6 has more than 500 bytes");
+  EXPECT_EQ(readVolume(with("key:=" + std::string(100'000, 'x'))).maximum, 'x');
+  for (const char control : {'\0', '\x01', '\r', '\x7f'})
+    expectRefusal(with(std::string(400, 'x') + control + ":=" + std::string(400, 'x')), "damaged");
+  expectRefusal(folder.write("v.nrrd", "NRRD0004" + std::string(2000, 'x') + "\n" + sizes), "");
+  expectRefusal(with("data file: LIST\n" + std::string(1000, 'x')), "500 bytes");
+  expectRefusal(with("dimension: 3"), "dimension: is there twice");
+  expectRefusal(with("datafile: v.nrrd\nData file: v.nrrd"), "datafile: is there twice");
+  std::string many = "dimension: 16\nsizes:";
+  for (int axis = 0; axis < 17; ++axis)
+    many += " 1";
+  expectRefusal(folder.write("v.nrrd", nrrd(many, samples)), "dimension");
+  expectRefusal(folder.write("a.nrrd", nrrd(sizes, std::string(2000, '1') + " 1", "ascii")),
+                "number of more than 500 characters");
+  std::string deep = folder.path().string();
+  for (int level = 0; level < 5; ++level)
+    deep += "/" + std::string(200, 'd');
+  std::filesystem::create_directories(deep);
+  std::ofstream(deep + "/v.nrrd") << nrrd("x", samples);
+  expectRefusal(deep + "/v.nrrd", "path of more than 900 bytes");
+}
+
+TEST(VolumeReader, refusesNrrdHeadersOfTooManyLines) {
+  const TemporaryFolder folder;
+  const auto of = [&](int lines) {
+    std::string head = "dimension: 3\nsizes: 3 4 2\n";
+    for (int i = 0; i < lines; ++i)
+      head += "key" + std::to_string(i) + ":=value\n";
+    return folder.write("v.nrrd", nrrd(head.substr(0, head.size() - 1), std::string(24, 'x')));
+  };
+  EXPECT_EQ(readVolume(of(9'900)).maximum, 'x');
+  expectRefusal(of(100'000), "header: has more than 10000 lines");
+}
+
 TEST(VolumeReader, refusesGeometryThatIsSingular) {
   const TemporaryFolder folder;
   const auto placed = [&](const std::string& directions, const std::string& origin) {

@@ -1,3 +1,4 @@
+fenestra_test(ShownTextTests ShownTextTests.cxx LIBRARIES fenestra_io LABELS unit)
 fenestra_test(VolumePropertyTests VolumePropertyTests.cxx LIBRARIES fenestra_medium LABELS unit)
 fenestra_test(VolumeReaderTests VolumeReaderTests.cxx
   LIBRARIES fenestra_io_medical medical_files LABELS unit)

@@ -121,6 +121,13 @@ std::vector<Light> parseLights(std::string_view json, const std::string& source)
   return parse(json, source, {});
 }
 
+bool namesFiles(std::string_view json, const std::string& source) {
+  const nlohmann::json document = parseJson(json, source);
+  const std::vector<JsonNode> lights = JsonNode(document, source).at("lights").elements();
+  return std::any_of(lights.begin(), lights.end(),
+                     [](const JsonNode& light) { return light.find("file").has_value(); });
+}
+
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
   if (lowerExtension(path) != ".exr")
     throw inputError(path.string(), "is no environment map; name a .exr file");

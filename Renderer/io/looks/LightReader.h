@@ -17,6 +17,9 @@ std::vector<Light> readLights(const std::filesystem::path& path);
 /// The same from text; files are relative to the working directory. `source` names it in messages.
 std::vector<Light> parseLights(std::string_view json, const std::string& source);
 
+/// Whether the same names a file.
+bool namesFiles(std::string_view json, const std::string& source);
+
 /// R, G, B of an EXR, latitude-longitude. Throws Error (input), also where a value is negative or
 /// not finite.
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path);

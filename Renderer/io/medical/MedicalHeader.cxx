@@ -15,6 +15,11 @@ namespace fenestra {
 namespace {
 
 constexpr std::size_t longestHeader = 16 << 20;
+/// Lines of an NRRD header, with those of its list of files: teem compares each key with all
+/// before it.
+constexpr int mostLines = 10'000;
+/// Bytes of a line or a path that teem may repeat in a message, for which it has 1024.
+constexpr std::size_t longestLine = 500, longestPath = 900;
 /// Deflate packs at most 1032 bytes into one.
 constexpr std::uint64_t greatestRatio = 1100;
 
@@ -89,19 +94,25 @@ private:
   std::size_t m_position = 0;
 };
 
+/// To libraries a zero byte or a lone \r ends a line, so that they would read another one than we
+/// do.
+bool hasControls(std::string_view line) {
+  return std::any_of(line.begin(), line.end(),
+                     [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
+}
+
 /// Data files are named relative to their header's folder.
 void addFile(const std::filesystem::path& path, std::string_view name, StoredSamples& stored) {
   const std::filesystem::path file = path.parent_path() / std::filesystem::path(name);
-  std::error_code failed;
-  const bool plain = std::filesystem::is_regular_file(file, failed);
-  const auto bytes = plain ? std::filesystem::file_size(file, failed) : 0;
-  if (!plain || failed || name == "-")
-    throw inputError(path.string(),
-                     "data file: \"" + std::string(name.substr(0, 200)) +
-                         "\" is not a file that can be read; put it beside the header");
-  requireFile(file, "name a file with samples");
+  if (name == "-") // to libraries the standard input
+    throw inputError(path.string(), "data file: \"-\" is no file; name one beside the header");
+  try {
+    requireFile(file, "name a file with samples");
+  } catch (const Error& error) {
+    throw inputError(path.string(), std::string("data file: ") + error.what());
+  }
   stored.files.push_back(file);
-  stored.bytes += bytes;
+  stored.bytes += std::filesystem::file_size(file);
 }
 
 void skip(const std::filesystem::path& path, std::uint64_t offset, StoredSamples& stored) {
@@ -117,8 +128,13 @@ void skip(const std::filesystem::path& path, std::uint64_t offset, StoredSamples
 
 using Fields = std::map<std::string, std::string>;
 
-/// ITK keeps sizes in 32 bits and hands teem a buffer of those.
+/// ITK keeps sizes in 32 bits and hands teem a buffer of those; teem has room for 16 axes, and
+/// writes one more where there are too many sizes.
 void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
+  const auto dimension = fields.find("dimension");
+  const auto axes = dimension == fields.end() ? std::nullopt : wholeNumber(dimension->second);
+  if (!axes || *axes < 1 || *axes > 10)
+    throw inputError(path.string(), "dimension: must be a whole number from 1 to 10");
   const auto it = fields.find("sizes");
   if (it == fields.end())
     throw damaged(path, "NRRD");
@@ -131,16 +147,96 @@ void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
 
 /// Without a number ITK silently takes its default.
 void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
-  for (const char* key : {"space directions", "space origin", "spacings"})
+  for (const auto& [key, name] : {std::pair("spacedirections", "space directions"),
+                                  {"spaceorigin", "space origin"},
+                                  {"spacings", "spacings"}})
     if (const auto it = fields.find(key);
         it != fields.end() && lower(it->second).find("nan") != std::string::npos)
-      throw inputError(path.string(), std::string(key) + ": is not a number; mend the header");
+      throw inputError(path.string(), std::string(name) + ": is not a number; mend the header");
 }
 
-void locateNrrdFiles(const std::filesystem::path& path, const Fields& fields, HeaderLines& lines,
+/// The lines of an NRRD header: whatever teem makes of one, its messages hold it.
+class NrrdLines {
+public:
+  explicit NrrdLines(const std::filesystem::path& path) : m_path(path), m_lines(path) {}
+
+  std::optional<std::string_view> next() {
+    const auto line = m_lines.next();
+    if (!line)
+      return std::nullopt;
+    if (++m_count > mostLines)
+      throw inputError(m_path.string(), "header: has more than " + std::to_string(mostLines) +
+                                            " lines; remove some of its key:=value lines");
+    if (hasControls(*line))
+      throw damaged(m_path, "NRRD");
+    if (line->size() > longestLine && !isKeyValue(*line))
+      throw inputError(m_path.string(), "header: line " + std::to_string(m_count) +
+                                            " has more than " + std::to_string(longestLine) +
+                                            " bytes and is no key:=value; shorten it");
+    return line;
+  }
+
+  /// Text of the application's own, of any length. As to teem, a field's ": " comes first.
+  static bool isKeyValue(std::string_view line) {
+    return line.substr(0, line.find(": ")).find(":=") != std::string_view::npos;
+  }
+
+  /// Of the byte after the lines read so far.
+  std::uint64_t position() const { return m_lines.position(); }
+
+private:
+  const std::filesystem::path& m_path;
+  HeaderLines m_lines;
+  int m_count = 0;
+};
+
+void checkNrrdPath(const std::filesystem::path& path) {
+  if (path.string().size() > longestPath)
+    throw inputError(path.string(), "has a path of more than " + std::to_string(longestPath) +
+                                        " bytes; move it to a folder with a shorter one");
+}
+
+/// Teem reads each number as a text into 1024 bytes, however long it is.
+void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
+                      const std::filesystem::path& header) {
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(offset));
+  std::vector<char> block(1 << 20);
+  std::size_t length = 0; // of the number so far
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
+    for (const char c : std::string_view(block.data(), static_cast<std::size_t>(file.gcount()))) {
+      length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
+      if (length > longestLine)
+        throw inputError(header.string(), "has a number of more than " +
+                                              std::to_string(longestLine) +
+                                              " characters among its samples; write it again");
+    }
+}
+
+/// Key by key, lower case and without blanks: of names with and without, teem takes both.
+Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
+  const auto magic = lines.next();
+  if (!magic || !magic->starts_with("NRRD000") || magic->size() != 8)
+    throw damaged(path, "NRRD");
+  Fields fields;
+  for (auto line = lines.next(); line && !line->empty(); line = lines.next()) {
+    const std::size_t colon = line->find(": ");
+    if (colon == std::string_view::npos || line->starts_with('#') || NrrdLines::isKeyValue(*line))
+      continue;
+    std::string key = lower(std::string(line->substr(0, colon)));
+    std::erase(key, ' ');
+    const auto [field, isNew] = fields.emplace(key, trimmed(line->substr(colon + 2)));
+    if (!isNew) // whichever of them teem takes
+      throw inputError(path.string(), key.substr(0, 40) + ": is there twice; remove one");
+    if (key == "datafile" && field->second.starts_with("LIST"))
+      break; // the file names follow
+  }
+  return fields;
+}
+
+void locateNrrdFiles(const std::filesystem::path& path, const Fields& fields, NrrdLines& lines,
                      StoredSamples& stored) {
-  const auto named =
-      fields.contains("data file") ? fields.find("data file") : fields.find("datafile");
+  const auto named = fields.find("datafile");
   if (named == fields.end()) {
     addFile(path, path.filename().string(), stored);
     return skip(path, lines.position(), stored);
@@ -158,28 +254,21 @@ void locateNrrdFiles(const std::filesystem::path& path, const Fields& fields, He
 }
 
 StoredSamples locateNrrd(const std::filesystem::path& path) {
-  HeaderLines lines(path);
-  const auto magic = lines.next();
-  if (!magic || !magic->starts_with("NRRD000"))
-    throw damaged(path, "NRRD");
-  Fields fields;
-  for (auto line = lines.next(); line && !line->empty(); line = lines.next()) {
-    const std::size_t colon = line->find(": ");
-    if (colon == std::string_view::npos || line->starts_with('#'))
-      continue;
-    const std::string key = lower(std::string(line->substr(0, colon)));
-    fields[key] = trimmed(line->substr(colon + 2));
-    if ((key == "data file" || key == "datafile") && fields[key].starts_with("LIST"))
-      break; // the file names follow
-  }
+  checkNrrdPath(path);
+  NrrdLines lines(path);
+  Fields fields = readNrrdFields(path, lines);
   checkNrrdSizes(path, fields);
   checkNrrdGeometry(path, fields);
   StoredSamples stored;
   const std::string encoding = lower(fields["encoding"]);
   stored.compressed = encoding != "raw" && encoding != "hex"; // a text's digit can be 8 bytes
   locateNrrdFiles(path, fields, lines, stored);
-  const bool skips = fields.contains("line skip") || fields.contains("lineskip") ||
-                     fields.contains("byte skip") || fields.contains("byteskip");
+  for (const std::filesystem::path& file : stored.files) {
+    checkNrrdPath(file);
+    if (encoding == "ascii" || encoding == "text" || encoding == "txt")
+      checkNrrdNumbers(file, stored.offset, path);
+  }
+  const bool skips = fields.contains("lineskip") || fields.contains("byteskip");
   const bool simple = stored.files.size() == 1 && !skips;
   stored.isRaw = simple && encoding == "raw";
   stored.isStream = simple && (encoding == "gzip" || encoding == "gz");
@@ -214,12 +303,6 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
   if (numbers < needed)
     throw inputError(path.string(), key + ": has " + std::to_string(numbers) +
                                         " numbers; give it " + std::to_string(needed));
-}
-
-/// To MetaIO a zero byte ends a key, so that it may read another one than we do.
-bool hasControls(std::string_view line) {
-  return std::any_of(line.begin(), line.end(),
-                     [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
 }
 
 Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {

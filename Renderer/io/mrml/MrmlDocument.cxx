@@ -11,7 +11,7 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t mostNodes = 1'000'000;
+constexpr std::size_t mostNodes = 100'000, mostAttributes = 1'000'000; ///< of a scene
 
 /// Attributes that hold references in older files, by the role that they have now.
 const std::map<std::string, std::string>& legacyRoles() {
@@ -124,11 +124,15 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   if (!root)
     throw inputError(m_source, "has no MRML element, so it is no scene; name a .mrml or .mrb");
   m_version = root.attribute("version").value();
+  std::size_t attributes = 0;
   for (const pugi::xml_node& element : root.children())
     if (element.type() == pugi::node_element) {
       if (m_nodes.size() == mostNodes)
-        throw inputError(m_source, "holds more than a million nodes; save a smaller scene");
+        throw inputError(m_source, "holds more than 100000 nodes; save a smaller scene");
       m_nodes.push_back(readNode(element));
+      attributes += m_nodes.back().attributes.size();
+      if (attributes > mostAttributes)
+        throw inputError(m_source, "holds more than a million attributes; save a smaller scene");
       if (!m_nodes.back().id.empty())
         m_byId.emplace(m_nodes.back().id, m_nodes.size() - 1);
     }

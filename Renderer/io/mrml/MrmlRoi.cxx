@@ -1,5 +1,6 @@
 // Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
 
+#include "core/Checked.h"
 #include "io/Inputs.h"
 #include "io/JsonNode.h"
 #include "io/NumberText.h"
@@ -135,7 +136,11 @@ Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
 } // namespace
 
 CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
-  return CropBox(toWorld(scene, roi) * boxInNode(scene, roi));
+  return CropBox(
+      checkedMap(toWorld(scene, roi) * boxInNode(scene, roi), [&](const std::string& what) {
+        return scene.document.error(roi, "its box in the world " + what +
+                                             "; mend it in the Markups module");
+      }));
 }
 
 } // namespace fenestra

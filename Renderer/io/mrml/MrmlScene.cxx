@@ -5,7 +5,9 @@
 #include "io/medical/MedicalHeader.h"
 #include "io/medical/VolumeReader.h"
 #include "medium/VolumeProperty.h"
+#include "volume/CheckedGrid.h"
 
+#include <set>
 #include <sstream>
 
 namespace fenestra {
@@ -26,6 +28,15 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
     indexToWorld.translation() = -(fromFile.indexToWorld.linear() * middle);
   }
   return {fromFile.size, indexToWorld};
+}
+
+/// A node's grid in the world.
+Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& above,
+                const Grid& grid) {
+  return checkedGrid(grid.size, above * grid.indexToWorld, [&](const std::string& what) {
+    return scene.document.error(node, "its place in the world " + what +
+                                          "; mend the transforms above it");
+  });
 }
 
 /// The files that hold a node's data.
@@ -83,8 +94,9 @@ std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& nod
   const MrmlNode* storage = scene.document.follow(node, "storage");
   if (!storage)
     return names;
-  const auto add = [&names](const std::string& name) {
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+  std::set<std::string> known;
+  const auto add = [&](const std::string& name) {
+    if (!name.empty() && known.insert(name).second)
       names.push_back(name);
   };
   add(storage->text("fileName"));
@@ -102,8 +114,8 @@ Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
   });
   for (std::string& warning : volume.warnings)
     warning = scene.files.asKnown(warning);
-  volume.grid = placed(scene.document.follow(node, "storage"), volume.grid);
-  volume.grid = Grid(volume.grid.size, above * volume.grid.indexToWorld);
+  const Grid grid = placed(scene.document.follow(node, "storage"), volume.grid);
+  volume.grid = placedGrid(scene, node, above, grid);
   volume.name = node.name.empty() ? scene.files.asKnown(volume.name) : node.name;
   return volume;
 }
@@ -117,8 +129,7 @@ Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const
   Segmentation segmentation = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
     return readSegmentation(files.front(), inNode ? &*inNode : nullptr);
   });
-  const Grid grid = placed(storage, segmentation.grid());
-  segmentation.moveTo(Grid(grid.size, above * grid.indexToWorld));
+  segmentation.moveTo(placedGrid(scene, node, above, placed(storage, segmentation.grid())));
   return segmentation;
 }
 

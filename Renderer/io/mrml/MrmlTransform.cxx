@@ -1,5 +1,6 @@
 // Transforms above nodes, and what is placed by them: cameras.
 
+#include "camera/CheckedPose.h"
 #include "io/mrml/MrmlScene.h"
 #include "io/transforms/TransformFile.h"
 
@@ -27,9 +28,7 @@ std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
   Affine map;
   map.linear() = matrix.topLeftCorner<3, 3>();
   map.translation() = matrix.topRightCorner<3, 1>();
-  if (!(std::abs(map.linear().determinant()) > 1e-12))
-    throw refuse("cannot be inverted");
-  return map;
+  return checkedMap(map, refuse);
 }
 
 /// Files hold the map from the parent. Old scenes could say otherwise, and linear transforms said
@@ -76,7 +75,10 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
                                        "Transforms module");
     result = toParent(scene, *above) * result;
   }
-  return result;
+  return checkedMap(result, [&](const std::string& what) {
+    return scene.document.error(node, "the product of the transforms above it " + what +
+                                          "; mend them in the Transforms module");
+  });
 }
 
 CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
@@ -112,10 +114,9 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     pose.target = since * pose.target;
     pose.up = since.linear() * pose.up;
   }
-  if ((pose.target - pose.position).cross(pose.up).isZero(0.0))
-    throw scene.document.error(camera, "looks nowhere: its position, focal point and up direction "
-                                       "lie on one line; give --view");
-  return pose;
+  return checkedPose(pose, [&](const std::string& what) {
+    return scene.document.error(camera, "looks nowhere: " + what + "; give --view");
+  });
 }
 
 } // namespace fenestra

@@ -10,6 +10,8 @@
 namespace fenestra {
 namespace {
 
+constexpr std::uint64_t largestScene = std::uint64_t{64} << 20; ///< bytes of a .mrml
+
 std::ptrdiff_t depth(const std::filesystem::path& file) {
   return std::distance(file.begin(), file.end());
 }
@@ -49,9 +51,7 @@ std::string decodedUrl(std::string text) {
   constexpr std::pair<std::string_view, std::string_view> escapes[] = {
       {"%22", "\""}, {"%3C", "<"}, {"%3E", ">"}, {"%27", "'"}, {"%20", " "}, {"%25", "%"}};
   for (const auto& [escape, character] : escapes)
-    for (std::size_t at = text.find(escape); at != std::string::npos;
-         at = text.find(escape, at + character.size()))
-      text.replace(at, escape.size(), character);
+    text = replacedAll(text, escape, character);
   return text;
 }
 
@@ -65,10 +65,10 @@ SceneFiles::SceneFiles(const std::filesystem::path& path) : m_source(path.string
   if (lowerExtension(path) == ".mrb") {
     m_archive = std::make_unique<SceneArchive>(path);
     const std::filesystem::path scene = mainScene(*m_archive, path);
-    m_sceneText = m_archive->text(scene, largestText);
+    m_sceneText = m_archive->text(scene, largestScene);
     m_folder = scene.parent_path();
   } else {
-    m_sceneText = readText(path);
+    m_sceneText = readText(path, largestScene);
     m_folder = path.parent_path();
   }
 }
@@ -122,12 +122,8 @@ std::vector<std::string> SceneFiles::filesRead() const {
 }
 
 std::string SceneFiles::asKnown(std::string message) const {
-  if (m_unpacked) {
-    const std::string unpacked = m_unpacked->path().string();
-    for (std::size_t at = message.find(unpacked); at != std::string::npos;
-         at = message.find(unpacked, at + m_source.size()))
-      message.replace(at, unpacked.size(), m_source);
-  }
+  if (m_unpacked)
+    message = replacedAll(message, m_unpacked->path().string(), m_source);
   return oneLine(std::move(message));
 }
 

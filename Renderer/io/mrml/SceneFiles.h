@@ -2,6 +2,7 @@
 // The files of a Slicer scene: beside a .mrml, or inside a .mrb.
 
 #include "core/Error.h"
+#include "io/Inputs.h"
 #include "io/PrivateFolder.h"
 
 #include <filesystem>
@@ -54,7 +55,12 @@ public:
     std::vector<std::filesystem::path> paths;
     for (const std::string& fileName : fileNames)
       paths.push_back(locate(fileName));
-    return knowingly([&] { return reader(paths); });
+    return knowingly([&] {
+      std::optional<InputsWithin> within;
+      if (m_unpacked) // an archive holds all of its own
+        within.emplace(m_unpacked->path());
+      return reader(paths);
+    });
   }
   /// What `work` with files that were read makes; its errors name them as the user knows them.
   template <typename Work>

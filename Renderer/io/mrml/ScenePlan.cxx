@@ -1,6 +1,7 @@
 #include "io/mrml/ScenePlan.h"
 
 #include <algorithm>
+#include <set>
 
 namespace fenestra {
 namespace {
@@ -82,12 +83,11 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
   });
   const Nodes renderable = those(
       volumes, [&](const MrmlNode& volume) { return renderingOf(document, volume) != nullptr; });
-  const Nodes active = those(volumes, [&](const MrmlNode& volume) {
-    const Nodes selections = document.withTag("Selection");
-    return std::any_of(selections.begin(), selections.end(), [&](const MrmlNode* selection) {
-      return selection->referenced("ActiveVolume") == volume.id;
-    });
-  });
+  std::set<std::string> selected;
+  for (const MrmlNode* selection : document.withTag("Selection"))
+    selected.insert(selection->referenced("ActiveVolume"));
+  const Nodes active =
+      those(volumes, [&](const MrmlNode& volume) { return selected.contains(volume.id); });
   for (const Nodes* candidates : {&rendered, &renderable, &active, &volumes})
     if (candidates->size() == 1)
       return candidates->front();
@@ -129,10 +129,9 @@ int likelihood(const MrmlNode& view) {
 const MrmlNode* chooseView(const MrmlDocument& document, const MrmlNode* rendering) {
   Nodes views = document.withTag("View");
   if (rendering && rendering->references.contains("view")) {
-    const std::vector<std::string>& ids = rendering->references.at("view");
-    const Nodes own = those(views, [&](const MrmlNode& view) {
-      return std::find(ids.begin(), ids.end(), view.id) != ids.end();
-    });
+    const std::vector<std::string>& inViews = rendering->references.at("view");
+    const std::set<std::string> ids(inViews.begin(), inViews.end());
+    const Nodes own = those(views, [&](const MrmlNode& view) { return ids.contains(view.id); });
     views = own.empty() ? views : own;
   }
   const auto best =

@@ -1,6 +1,6 @@
 #include "io/transforms/TransformFile.h"
 
-#include "core/Error.h"
+#include "core/Checked.h"
 #include "io/Inputs.h"
 #include "io/Quiet.h"
 #include "io/transforms/TransformMatrix.h"
@@ -29,15 +29,6 @@ Affine composed(const Path& path, const std::vector<TransformRecord>& records) {
   for (std::size_t i = 1; i < records.size(); ++i)
     map = map * transformMatrix(path, records[i]);
   return map;
-}
-
-void checkInvertible(const Path& path, const Affine& map) {
-  constexpr double largest = 1e9, flattest = 1e-6; // as for the geometry of images
-  const auto scales = map.linear().colwise().norm().array();
-  if (!((scales > 1.0 / largest).all() && (scales < largest).all() &&
-        (map.translation().array().abs() < largest).all() &&
-        std::abs(map.linear().colwise().normalized().determinant()) > flattest))
-    throw inputError(path.string(), "Parameters: the map cannot be inverted; save one that can");
 }
 
 void checkExtension(const Path& path) {
@@ -78,8 +69,10 @@ Affine readLinearTransform(const Path& path, TransformSense sense) {
 Affine answeredTransform(const Path& path, std::string_view answer, TransformSense sense) {
   try {
     const Quiet quiet;
-    Affine map = composed(path, transformRecords(path, answer));
-    checkInvertible(path, map);
+    Affine map = checkedMap(
+        composed(path, transformRecords(path, answer)), [&path](const std::string& what) {
+          return inputError(path.string(), "Parameters: the map " + what + "; save another one");
+        });
     if (sense == TransformSense::fromParent)
       map = map.inverse();
     const Eigen::DiagonalMatrix<double, 3> lpsToRas(-1.0, -1.0, 1.0); // and back

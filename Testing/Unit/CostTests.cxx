@@ -1,0 +1,152 @@
+// What reading costs: counted instructions, not time, of n parts against 2 n. Under valgrind, which
+// counts them; skipped where it is not installed.
+
+#include "io/JsonNode.h"
+#include "io/medical/MedicalHeader.h"
+#include "io/mrml/ScenePlan.h"
+
+#include "TemporaryFolder.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+
+#include <sys/wait.h>
+
+namespace fenestra {
+namespace {
+
+constexpr const char* countsVariable = "FENESTRA_COUNTS"; ///< the files that valgrind writes
+
+/// Instructions of one call.
+double instructions(const std::function<void()>& work) {
+  static int dumps = 0;
+  CALLGRIND_ZERO_STATS;
+  work();
+  CALLGRIND_DUMP_STATS;
+  std::ifstream counts(std::string(std::getenv(countsVariable)) + "." + std::to_string(++dumps));
+  for (std::string word; counts >> word;)
+    if (double count = 0.0; (word == "totals:" || word == "summary:") && counts >> count)
+      return count;
+  throw std::runtime_error("valgrind has counted nothing");
+}
+
+std::string repeated(int n, const std::function<std::string(const std::string&)>& part) {
+  std::string text;
+  for (int i = 0; i < n; ++i)
+    text += part(std::to_string(i));
+  return text;
+}
+
+/// Prepares what has n parts, and returns what reads it.
+using Prepare = std::function<std::function<void()>(int n)>;
+
+std::function<void()> planOf(const std::string& nodes) {
+  const auto text = std::make_shared<std::string>("<MRML>" + nodes + "</MRML>");
+  return [text] {
+    const MrmlDocument document(*text, "test");
+    planRender(document, {"v0", {}, false});
+  };
+}
+
+struct Case {
+  const char* name;
+  int n;
+  Prepare prepare;
+};
+
+std::vector<Case> cases(const TemporaryFolder& folder) {
+  return {
+      {"volumes of a scene", 2000,
+       [](int n) {
+         return planOf(repeated(n, [](const std::string& i) {
+           return "<Volume id='v" + i + "' displayNodeRef='d" + i + "'/><VolumeRendering id='d" +
+                  i + "'/><Selection id='s" + i + "' activeVolumeID='v" + i + "'/>";
+         }));
+       }},
+      {"views of a rendering", 2000,
+       [](int n) {
+         return planOf("<Volume id='v0' displayNodeRef='d'/><VolumeRendering id='d' viewNodeIDs='" +
+                       repeated(n, [](const std::string& i) { return "w" + i + " "; }) + "'/>" +
+                       repeated(n, [](const std::string& i) { return "<View id='w" + i + "'/>"; }));
+       }},
+      {"files of a node", 2000,
+       [&folder](int n) {
+         folder.write("s.mrml", "<MRML><N id='n' storageNodeRef='s'/><S id='s' " +
+                                    repeated(n,
+                                             [](const std::string& i) {
+                                               return "fileListMember" + i + "='file" + i + "' ";
+                                             }) +
+                                    "/></MRML>");
+         const auto scene = std::make_shared<MrmlScene>(folder / "s.mrml");
+         return [scene] { storedFiles(*scene, *scene->document.find("n")); };
+       }},
+      {"escapes of a name", 20000,
+       [](int n) {
+         const auto name = repeated(n, [](const std::string&) { return "%20"; });
+         return [name] { decodedUrl(name); };
+       }},
+      {"values of JSON", 20000,
+       [](int n) {
+         const auto text =
+             "[0" + repeated(n, [](const std::string& i) { return ",[" + i + "]"; }) + "]";
+         return [text] { JsonNode(parseJson(text, "test"), "test").elements(); };
+       }},
+      {"lines of a header", 2000,
+       [&folder](int n) {
+         const auto path = folder.write(
+             "v" + std::to_string(n) + ".nrrd",
+             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n" +
+                 repeated(n, [](const std::string& i) { return "key" + i + ":=value\n"; }) + "\nx");
+         return [path] { locateSamples(path, MedicalFormat::nrrd); };
+       }},
+  };
+}
+
+/// This test again, under valgrind; false where that cannot be.
+bool isCounted(const TemporaryFolder& folder) {
+  const std::string counts = folder / "counts";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::setenv(countsVariable, counts.c_str(), 1);
+    const std::string out = "--callgrind-out-file=" + counts;
+    const std::string self = std::filesystem::read_symlink("/proc/self/exe");
+    ::execlp("valgrind", "valgrind", "--tool=callgrind", "-q", out.c_str(), self.c_str(),
+             "--gtest_filter=Cost.*", nullptr);
+    ::_exit(127);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+    return false;
+  EXPECT_EQ(status, 0) << "as valgrind's process says above";
+  return true;
+}
+
+TEST(Cost, growsNoFasterThanNLogN) {
+  const TemporaryFolder folder;
+  if (!RUNNING_ON_VALGRIND) {
+    if (!isCounted(folder))
+      GTEST_SKIP() << "valgrind is not installed";
+    return;
+  }
+  constexpr double most = 2.5; // 2 (1 + 1 / log2 n) for n log n
+  for (const Case& part : cases(folder)) {
+    const double once = instructions(part.prepare(part.n));
+    const double twice = instructions(part.prepare(2 * part.n));
+    std::cout << part.name << ": " << once / part.n << " instructions each of " << part.n
+              << ", growing by " << twice / once << '\n';
+    EXPECT_LT(twice / once, most) << part.name;
+  }
+}
+
+} // namespace
+} // namespace fenestra
+#else
+TEST(Cost, growsNoFasterThanNLogN) {
+  GTEST_SKIP() << "valgrind is not installed";
+}
+#endif

@@ -1,0 +1,73 @@
+// Numbers of a scene that are fine alone, and what is composed of them.
+
+#include "SceneTesting.h"
+
+namespace fenestra {
+namespace {
+
+const MrmlNode& node(const MrmlScene& scene, const std::string& id) {
+  return *scene.document.find(id);
+}
+
+/// A node t of three rows of four numbers, under the node `above`.
+std::string transform(const std::string& rows, const std::string& id = "t",
+                      const std::string& above = "") {
+  return "<LinearTransform id=\"" + id + "\" transformNodeRef=\"" + above +
+         "\" matrixTransformToParent=\"" + rows + " 0 0 0 1\"/>";
+}
+
+/// t, t1, t2, ...: each under the next one.
+std::string chain(const std::string& rows, int count) {
+  std::string nodes = transform(rows, "t", "t1");
+  for (int i = 1; i < count; ++i)
+    nodes += transform(rows, "t" + std::to_string(i), "t" + std::to_string(i + 1));
+  return nodes;
+}
+
+/// With these no point keeps a fraction of a voxel, or paths never end.
+TEST(MrmlTransform, refusesMapsThatLeadOutOfWhatCanBeComputed) {
+  const SceneFolder folder;
+  const auto refuse = [&](const std::string& transforms, const std::string& because) {
+    const auto path = folder.writeScene("<N id=\"n\" transformNodeRef=\"t\"/>" + transforms);
+    MrmlScene scene(path);
+    expectRefused(path, because, [&] { toWorld(scene, node(scene, "n")); });
+  };
+  for (const char* rows : {"1e60 0 0 0  0 1e60 0 0  0 0 1e60 0", "1.1 1e308 0 0  0 1 0 0  0 0 1 0",
+                           "1 0 0 1e300  0 1 0 0  0 0 1 0", "1e8 0 0 0  0 1e-10 0 0  0 0 1 0",
+                           "1 1e15 0 0  0 1 0 0  0 0 1 0", "1e-60 0 0 0  0 1e-60 0 0  0 0 1e-60 0"})
+    refuse(transform(rows), "matrixTransformToParent: cannot be inverted");
+  const std::string product = "the product of the transforms above it cannot be inverted";
+  refuse(chain("100 0 0 0  0 100 0 0  0 0 100 0", 5), product);
+  refuse(chain("1e8 0 0 0  0 1e8 0 0  0 0 1e8 0", 900), product);
+  refuse(chain("1 0 0 5e8  0 1 0 0  0 0 1 0", 3), product);
+}
+
+TEST(MrmlTransform, acceptsAnyUsefulScale) {
+  const SceneFolder folder;
+  MrmlScene scene = folder.scene("<N id=\"n\" transformNodeRef=\"t\"/>" +
+                                 transform("1e-5 0 0 0  0 1e-5 0 0  0 0 1e-5 0"));
+  EXPECT_EQ(toWorld(scene, node(scene, "n")).linear()(0, 0), 1e-5);
+}
+
+TEST(MrmlTransform, refusesPlacesThatAreComposedOfTooMuch) {
+  const SceneFolder folder;
+  writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(24, 1), {.spacing = {1e5, 1e5, 1e5}});
+  const auto path = folder.writeScene(transform("1e5 0 0 0  0 1e5 0 0  0 0 1e5 0") +
+                                      R"(<Volume id="v" storageNodeRef="s" transformNodeRef="t"/>
+      <LabelMapVolume id="l" storageNodeRef="s" transformNodeRef="t"/>
+      <VolumeArchetypeStorage id="s" fileName="v.nrrd"/>
+      <ROI id="r" xyz="1 2 3" radiusXYZ="1e5 1e5 1e5" transformNodeRef="t"/>
+      <Camera id="c" position="0 0 0" focalPoint="0 1e9 0" viewUp="0 0 1" transformNodeRef="t"/>)");
+  MrmlScene scene(path);
+  expectRefused(path, "its place in the world cannot be inverted",
+                [&] { readSceneVolume(scene, node(scene, "v")); });
+  expectRefused(path, "its place in the world cannot be inverted",
+                [&] { readSceneSegmentation(scene, node(scene, "l")); });
+  expectRefused(path, "its box in the world cannot be inverted",
+                [&] { readSceneRoi(scene, node(scene, "r")); });
+  expectRefused(path, "looks nowhere: position and target",
+                [&] { readSceneCamera(scene, node(scene, "c")); });
+}
+
+} // namespace
+} // namespace fenestra

@@ -1,0 +1,49 @@
+// What messages show of files' text.
+
+#include "io/ShownText.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra {
+namespace {
+
+TEST(ShownText, isValidUtf8OnOneLine) {
+  EXPECT_EQ(oneLine("Schädel, 頭, 🦴"), "Schädel, 頭, 🦴");
+  EXPECT_EQ(oneLine(std::string("a\nb\0c\x7f"
+                                "d",
+                                7)),
+            "a b c d");
+  const std::pair<const char*, const char*> bad[] = {
+      {"Sch\xe4"
+       "del",
+       "Sch?del"},                  // Latin-1
+      {"\x80\xbf", "??"},           // no first byte
+      {"\xc0\xaf", "??"},           // longer than need be
+      {"\xe0\x9f\xbf", "???"},      // the same
+      {"\xf0\x8f\xbf\xbf", "????"}, // the same
+      {"\xed\xa0\x80", "???"},      // a surrogate
+      {"\xf4\x90\x80\x80", "????"}, // beyond the last
+      {"\xff\xfe", "??"},           // none ever
+      {"\xe9\xa0", "??"},           // cut off
+      {"\xf0\x9f\xa6", "???"},      // cut off
+      {"\xc3\n", "? "},             // and a control
+  };
+  for (const auto& [text, shownAs] : bad)
+    EXPECT_EQ(oneLine(text), shownAs);
+}
+
+TEST(ShownText, isCutBetweenCharacters) {
+  const std::string text = std::string(79, 'x') + "ä";
+  EXPECT_EQ(shown(text), std::string(79, 'x'));
+  EXPECT_EQ(shown(std::string(78, 'x') + "ä"), std::string(78, 'x') + "ä");
+  EXPECT_EQ(shown(std::string(200, '\x80')), std::string(77, '?'));
+}
+
+TEST(ShownText, replacesAll) {
+  EXPECT_EQ(replacedAll("aXXbX", "X", "yy"), "ayyyybyy");
+  EXPECT_EQ(replacedAll("abc", "X", "y"), "abc");
+  EXPECT_EQ(replacedAll("%2525", "%25", "%"), "%25");
+}
+
+} // namespace
+} // namespace fenestra

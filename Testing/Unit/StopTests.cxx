@@ -1,0 +1,90 @@
+// A render that is stopped while its paths are under way, whatever they meet.
+
+#include "Support.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <thread>
+
+namespace fenestra::testing {
+namespace {
+
+/// A cell's majorant is 1 / mm and a voxel's edge 1e8 mm, but hardly a point of a ray near the
+/// middle has any extinction: some 1e8 null collisions a ray.
+TestScene endlessScene() {
+  const Grid grid = centredGrid({4, 4, 4}, Vec3::Constant(1e8));
+  TestScene s{makeVolume(grid, [](const Vec3& p) { return p.isZero() ? 255.0 : 0.0; }),
+              {ScalarFunction({knot(0.0, 1e-12), knot(250.0, 1e-12), knot(255.0, 1.0)}),
+               ColorFunction({{0.0, Rgb::Ones()}})},
+              {EnvironmentLight{}},
+              {}};
+  s.pose.position = {0, -1e9, 0};
+  s.pose.target = Vec3::Zero();
+  s.pose.scale = 1e8;
+  return s;
+}
+
+/// Calls work(scene, majorants, ray): a ray through the cells of that majorant.
+template <typename Work>
+void alongEndlessRay(Work&& work) {
+  const TestScene s = endlessScene();
+  const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
+  work(s, majorants, Ray{Vec3(-1.2e8, -1e9, -1.2e8), Vec3::UnitY()});
+}
+
+TEST(Stop, endsAWalkThatMeetsNothing) {
+  alongEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
+    const StopFlag stop = true;
+    const Medium<float> medium(s.volume.grid, std::get<std::vector<float>>(s.volume.voxels),
+                               s.transfer, nullptr);
+    const Tracker<float> tracker(s.volume.grid, medium, majorants, s.clip, stop);
+    Random random(1, 2, 3);
+    Counters counters;
+    tracker.sampleCollision(ray, {}, random, counters);
+    EXPECT_EQ(counters.lookups, stepsBetweenLooks);
+    tracker.transmittance(ray, {}, random, counters);
+    EXPECT_EQ(counters.lookups, 2 * stepsBetweenLooks);
+  });
+}
+
+TEST(Stop, endsTheLanesOfABatch) {
+  alongEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
+    const StopFlag stop = true;
+    const Domain domain(s.volume.grid);
+    const WideTracker tracker(s.volume, domain, s.transfer, majorants, s.clip, nullptr, stop);
+    const auto rays = std::make_unique<RayBatch>();
+    for (rays->size = 0; !rays->full(); ++rays->size)
+      setInside(*rays, rays->size, domain, ray, {}, static_cast<std::uint32_t>(rays->size));
+    Counters counters;
+    tracker.sampleCollisions(*rays, counters);
+    tracker.estimateTransmittances(*rays, counters);
+    constexpr std::uint64_t mostLanes = 2 * 16;
+    EXPECT_LE(counters.lookups, 2 * stepsBetweenLooks * mostLanes);
+  });
+}
+
+/// Nobody waits for a path: one that is under way is dropped, and its tile with it.
+TEST(Stop, endsARenderWhosePathsDoNotEnd) {
+  const TestScene s = endlessScene();
+  const Camera camera(s.pose, s.width, s.height);
+  const LightSet lights(s.lights, s.volume.grid, camera);
+  const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
+  for (const Transport transport : {Transport::readable, Transport::fast}) {
+    RenderMonitor monitor;
+    RenderSettings settings;
+    settings.transport = transport;
+    auto rendering = std::async(std::launch::async, [&] {
+      return render({s.volume, s.transfer, majorants, lights, camera, s.clip}, settings, monitor);
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    monitor.stop = true;
+    const RenderResult result = rendering.get();
+    EXPECT_EQ(result.reason, StopReason::request);
+    for (const PixelSums& pixel : result.film.pixels())
+      EXPECT_EQ(pixel.samples, 0U);
+  }
+}
+
+} // namespace
+} // namespace fenestra::testing
