@@ -38,6 +38,7 @@ std::string text(const Vec3& v) {
 
 std::map<std::string, std::string> header(const Scene& scene, const RenderOptions& options,
                                           const RenderResult& result, const std::string& command) {
+  const std::filesystem::path folder = options.outputs.front().parent_path();
   const CameraPose& pose = scene.camera().pose();
   const bool perspective = pose.projection == Projection::perspective;
   std::ostringstream camera;
@@ -51,10 +52,10 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
                                                 {"seed", std::to_string(options.settings.seed)},
                                                 {"samples", std::to_string(result.finishedSamples)},
                                                 {"camera", camera.str()},
-                                                {"look", scene.look()},
+                                                {"look", relativeName(scene.look(), folder)},
                                                 {"command", command}};
   if (options.preset)
-    entries["preset"] = *options.preset;
+    entries["preset"] = relativeName(*options.preset, folder);
   return entries;
 }
 

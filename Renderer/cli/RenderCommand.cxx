@@ -105,7 +105,8 @@ int renderScene(const RenderOptions& options, const std::string& command, Output
       stats.focus = measureFocus(scene, options.settings.seed);
     stats.measure = measure.seconds();
     describe(scene, stats);
-    stats.preset = options.preset;
+    if (options.preset)
+      stats.preset = relativeName(*options.preset, options.stats->parent_path());
     stats.total = total.seconds();
     for (std::string& file : stats.files)
       file = relativeName(file, options.stats->parent_path());

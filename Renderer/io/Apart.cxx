@@ -201,7 +201,7 @@ std::optional<std::string> Apart::ask(const std::string& question, std::uint64_t
     return std::nullopt;
   if (m_child == 0)
     start();
-  constexpr unsigned byTheClock = 6;
+  constexpr unsigned byTheClock = 3;
   const auto deadline = Clock::now() + std::chrono::seconds(byTheClock * m_job.limits().seconds);
   std::optional<std::string> answer;
   if (sendFrame(m_connection, question))

@@ -15,7 +15,7 @@ namespace fenestra {
 
 /// What a child may take for one question before it is ended.
 struct ApartLimits {
-  unsigned seconds = 10;                        ///< of a processor; by the clock, six times as many
+  unsigned seconds = 5;                         ///< of a processor; by the clock, thrice as many
   std::uint64_t bytes = std::uint64_t{2} << 30; ///< of address space, its libraries' included
 };
 

@@ -86,6 +86,8 @@ void requireFile(const std::filesystem::path& path, const std::string& mend, std
     throw inputError(path.string(), "is not a file that can be read; " + mend);
   if (static_cast<std::uint64_t>(status.st_size) > most)
     throw inputError(path.string(), "has more than " + megabytes(most) + "; name a smaller file");
+  if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
+    throw readingError(path, errno, "check its permissions");
   const std::optional<FileId> file = fileId(path);
   if (file && isResult(*file))
     throw inputError(path.string(), "is a result of this command; name another file");

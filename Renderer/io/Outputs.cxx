@@ -47,7 +47,7 @@ void requireReplaceable(const fs::path& path, const fs::path& target) {
   }
   if (!S_ISREG(status.st_mode))
     throw outputError(path.string(), "is a folder or a device; name a file");
-  if ((status.st_mode & 0222) == 0)
+  if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     throw outputError(path.string(), "is write-protected; choose another name, or chmod u+w it");
 }
 
@@ -64,7 +64,8 @@ Error writtenTwice(const fs::path& path) {
 
 void syncFolder(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool isSynced = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);
+  // A folder that may be written and not read keeps its names when it likes.
+  const bool isSynced = file >= 0 ? ::fsync(file) == 0 || errno == EINVAL : errno == EACCES;
   const int code = errno;
   if (file >= 0)
     ::close(file);

@@ -78,8 +78,9 @@ TEST_F(TrustCommand, AStoredRenderNamesNoFiles) {
         << outcome.err;
     EXPECT_NE(outcome.err.find("; give --" + flag + " "), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.err.find("another's"), std::string::npos) << outcome.err;
-    if (flag != "segmentation") // instead of which the scene's own is taken
+    if (flag != "segmentation") { // instead of which the scene's own is taken
       EXPECT_EQ(readImage(folder / "picture.exr").channels, expected) << attribute;
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include "io/ApartBytes.h"
 #include "io/Inputs.h"
 #include "io/ShownText.h"
+#include "io/transforms/Hdf5Parts.h"
 #include "io/transforms/TransformMatrix.h"
 
 #include <itkHDF5TransformIO.h>
@@ -90,7 +91,10 @@ std::vector<double> firstOf(const Parameters& parameters) {
 }
 
 std::string answerTransform(const std::string& question) {
-  const auto reader = readerOf(lowerExtension(question));
+  const std::string extension = lowerExtension(question);
+  if ((extension == ".h5" || extension == ".hdf5") && !holdsAllItsParts(question))
+    return {};
+  const auto reader = readerOf(extension);
   RecordingFactory::registerFirst();
   reader->SetFileName(question);
   reader->Read();
