@@ -9,12 +9,6 @@ bool takesFile(const Flag& flag) {
   return std::string_view(flag.value).find("FILE") != std::string_view::npos;
 }
 
-bool isWritten(const Flag& flag) {
-  using Kind = Takes::Kind;
-  return flag.takes.kind == Kind::picture || flag.takes.kind == Kind::surface ||
-         flag.takes.kind == Kind::report;
-}
-
 /// A result is named before it is there.
 std::string writtenName(const std::string& name, const fs::path& folder) {
   const fs::path path = fs::absolute(name);

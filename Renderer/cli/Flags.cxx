@@ -47,6 +47,12 @@ const Flag* findFlag(std::span<const Flag> flags, std::string_view name) {
   return it == flags.end() ? nullptr : &*it;
 }
 
+bool isWritten(const Flag& flag) {
+  const Takes::Kind kind = flag.takes.kind;
+  return kind == Takes::Kind::picture || kind == Takes::Kind::surface ||
+         kind == Takes::Kind::report;
+}
+
 std::string shortNumber(double x) {
   std::ostringstream out;
   out << x;

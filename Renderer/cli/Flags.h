@@ -113,6 +113,9 @@ private:
 /// The flag of that name; null where there is none.
 const Flag* findFlag(std::span<const Flag> flags, std::string_view name);
 
+/// True if its value names a file that is written: a picture, a surface or a report.
+bool isWritten(const Flag& flag);
+
 /// Six digits at most.
 std::string shortNumber(double x);
 

@@ -67,12 +67,6 @@ void addConstraints(pugi::xml_node parameter, const Flag& flag, const std::strin
   addText(constraints, "step", whole ? "1" : "0.01");
 }
 
-bool isWritten(const Flag& flag) {
-  const Takes::Kind kind = flag.takes.kind;
-  return kind == Takes::Kind::picture || kind == Takes::Kind::surface ||
-         kind == Takes::Kind::report;
-}
-
 void addFlag(pugi::xml_node group, const Flag& flag) {
   const std::string type = typeOf(flag);
   pugi::xml_node parameter = group.append_child(type.c_str());

@@ -45,11 +45,11 @@ Eigen::MatrixXd kernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
 
 /// P = Q R by Householder's reflections (Golub and Van Loan, "Matrix Computations", 5.1 and 5.2):
 /// Q = H0 H1 H2 with Hk = I - vk vk'. The columns of Q after the third span the null space of P'.
-class Polynomials {
+class PolynomialsQr {
 public:
   /// `singular`: singular values below this share of the largest are 0. The sites' centroid is 0,
   /// so that the largest is that of the constant, to rounding.
-  Polynomials(const Eigen::MatrixX2d& sites, double singular) : m_v(sites.rows(), 3) {
+  PolynomialsQr(const Eigen::MatrixX2d& sites, double singular) : m_v(sites.rows(), 3) {
     m_v << Eigen::VectorXd::Ones(sites.rows()), sites;
     for (Eigen::Index k = 0; k < 3; ++k)
       reflect(k);
@@ -207,7 +207,7 @@ std::vector<Vec2> ThinPlateSpline::toUnitDisc(std::span<const Vec2> sites) {
 
 void ThinPlateSpline::fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values) {
   const Eigen::MatrixX2d u = rows(sites);
-  const Polynomials p(u, std::max(1e-9, roundingAt(m_origin) * m_perScale));
+  const PolynomialsQr p(u, std::max(1e-9, roundingAt(m_origin) * m_perScale));
   m_plane = p.leastSquares(values); // all there is where lambda is infinite or no plane determined
   const Eigen::Index n = values.size();
   if (!std::isfinite(m_lambda) || p.rank() < 3 || n == 3)
