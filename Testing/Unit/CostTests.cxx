@@ -98,7 +98,7 @@ std::vector<Case> cases(const TemporaryFolder& folder) {
       {"lines of a header", 2000,
        [&folder](int n) {
          const auto path = folder.write(
-             "v" + std::to_string(n) + ".nrrd",
+             std::string("v").append(std::to_string(n)) + ".nrrd",
              "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n" +
                  repeated(n, [](const std::string& i) { return "key" + i + ":=value\n"; }) + "\nx");
          return [path] { locateSamples(path, MedicalFormat::nrrd); };

@@ -10,6 +10,7 @@
 #include <gdcmImageReader.h>
 #include <gdcmImageWriter.h>
 #include <itkGDCMImageIO.h>
+#include <itkMetaDataObject.h>
 
 #include <random>
 

@@ -18,9 +18,10 @@ std::string transform(const std::string& rows, const std::string& id = "t",
 
 /// t, t1, t2, ...: each under the next one.
 std::string chain(const std::string& rows, int count) {
+  const auto name = [](int i) { return std::string("t").append(std::to_string(i)); };
   std::string nodes = transform(rows, "t", "t1");
   for (int i = 1; i < count; ++i)
-    nodes += transform(rows, "t" + std::to_string(i), "t" + std::to_string(i + 1));
+    nodes += transform(rows, name(i), name(i + 1));
   return nodes;
 }
 
