@@ -17,16 +17,21 @@
 namespace fenestra {
 namespace {
 
-const CommandSyntax serveSyntax = {
-    "serve",
-    "Keeps a scene loaded and renders it anew after every change, for previews. Changes are JSON "
-    "objects of flags on standard input, a line each, as {\"id\": 7, \"view\": \"left\", "
-    "\"focus\": [\"Femur\", \"Tibia\"]}; null takes a flag back. Every refreshed picture replaces "
-    "the output files at once and is told on standard output, as are errors: {\"event\": "
-    "\"picture\" or \"error\", \"id\": 7, ...}. Ends with its input.",
-    renderSyntax.positionals,
-    renderSyntax.flags,
-};
+/// Made when it is asked for: what it takes over from render is initialised in another source.
+const CommandSyntax& serveSyntax() {
+  static const CommandSyntax syntax = {
+      "serve",
+      "Keeps a scene loaded and renders it anew after every change, for previews. Changes are JSON "
+      "objects of flags on standard input, a line each, as {\"id\": 7, \"view\": \"left\", "
+      "\"focus\": [\"Femur\", \"Tibia\"]}; null takes a flag back. Every refreshed picture "
+      "replaces "
+      "the output files at once and is told on standard output, as are errors: {\"event\": "
+      "\"picture\" or \"error\", \"id\": 7, ...}. Ends with its input.",
+      renderSyntax.positionals,
+      renderSyntax.flags,
+  };
+  return syntax;
+}
 
 /// Nobody reads our answers: nobody wants pictures.
 struct Unheard {};
@@ -165,7 +170,7 @@ private:
 } // namespace
 
 int serveCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> given = parseCommandLine(serveSyntax, argc, argv, first);
+  const std::optional<FlagValues> given = parseCommandLine(serveSyntax(), argc, argv, first);
   if (!given)
     return 0;
   for (const char* name : {"stats", "returnparameterfile", "progress", "xml", "echo"})
