@@ -107,7 +107,8 @@ std::string answerTransform(const std::string& question) {
   return answer.bytes();
 }
 
-const ApartJob transformJob("transform", answerTransform);
+// A tree of symbols may fan out without end; a transform takes a few milliseconds.
+const ApartJob transformJob("transform", answerTransform, {.seconds = 3});
 
 // ---- here
 // ---------------------------------------------------------------------------------------
