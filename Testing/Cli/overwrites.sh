@@ -9,6 +9,7 @@ export LC_ALL=C
 program=$(realpath "$1")
 data=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../Data")
 corpus=$data/../Fuzz/Corpus
+apart=$data/../Fuzz/Apart
 shift
 work=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" overwrites-XXXXXX)
 trap 'rm -rf "$work"' EXIT
@@ -50,7 +51,7 @@ fill() {
   cp "$data/baselines/plain.exr" sky.exr
   cp sky.exr other.exr
   mkdir d
-  cp "$corpus/Dicom/native.dcm" d/a.dcm
+  cp "$apart/Dicom/native.dcm" d/a.dcm
 }
 
 # WAY | EXPECTED | BEFORE | COMMAND
@@ -72,7 +73,7 @@ segmentation of a scene              | refused |  | render scene.mrml --focus He
 segmentation of a scene, no focus    | refused |  | render scene.mrml --output layers.seg.nrrd
 property of a scene                  | refused |  | render scene.mrml --output o.png --stats property.vp
 box of a scene                       | refused |  | render scene.mrml --output o.png --stats roi.mrk.json
-transform of a scene                 | refused | sed 1s/^.// "$corpus/Transform/affine.tfm" >t.tfm; shifted t.tfm | render s.mrml --output o.png --stats t.tfm
+transform of a scene                 | refused | cp "$apart/Transform/affine.tfm" t.tfm; shifted t.tfm | render s.mrml --output o.png --stats t.tfm
 part of a scene's closed surface     | refused | cp "$corpus/Surface/box.vtm" b.vtm; sed 1s/^.// -i b.vtm; sed 1s/^.// "$corpus/Surface/box.vtp" >s.vtp | render plain.nrrd --segmentation b.vtm --focus 1 --output o.png --surface s.vtp
 samples of a header                  | refused |  | render detached.nhdr --output o.png --stats detached.raw
 samples of a header, a .nrrd         | refused | mv detached.raw data.nrrd; sed -i s/detached.raw/data.nrrd/ detached.nhdr | render detached.nhdr --output data.nrrd

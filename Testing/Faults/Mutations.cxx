@@ -10,7 +10,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
+#include <stdexcept>
 #include <thread>
 
 namespace fenestra::faults {
@@ -31,11 +31,14 @@ class Samples {
 public:
   explicit Samples(const fs::path& data) : m_data(data) {}
 
-  std::string of(const std::string& name) const { return bytesOf(m_data / name); }
-  /// Of the fuzz targets; where a digit chooses the format it is left out.
-  std::string seed(const std::string& name, bool chosen = true) const {
-    return bytesOf(m_data / "../Fuzz/Corpus" / name).substr(chosen ? 1 : 0);
+  std::string of(const std::string& name) const {
+    const std::string bytes = bytesOf(m_data / name);
+    if (bytes.empty())
+      throw std::runtime_error(name + " is not there");
+    return bytes;
   }
+  /// Of the fuzz targets, without the digit that chooses the format.
+  std::string seed(const std::string& name) const { return of("../Fuzz/Corpus/" + name).substr(1); }
 
 private:
   fs::path m_data;
@@ -62,7 +65,7 @@ void addTransforms(std::vector<Victim>& victims, const Samples& samples) {
         "\"/><Transform id=\"t\" references=\"storage:ts;\"/><VolumeArchetypeStorage id=\"s\" "
         "fileName=\"plain.nrrd\"/><Volume id=\"v\" references=\"storage:s;transform:t;\"/></MRML>";
     victims.push_back({name,
-                       {{name, samples.seed("Transform/" + std::string(name))},
+                       {{name, samples.of("../Fuzz/Apart/Transform/" + std::string(name))},
                         {"s.mrml", scene},
                         {"plain.nrrd", samples.of("traps/plain.nrrd")}},
                        false,
@@ -83,7 +86,7 @@ void addVolumes(std::vector<Victim>& victims, const Samples& samples) {
     victims.push_back(
         {"d/" + std::string(name),
          {{"d/", ""},
-          {"d/" + std::string(name), samples.seed("Dicom/" + std::string(name), false)}},
+          {"d/" + std::string(name), samples.of("../Fuzz/Apart/Dicom/" + std::string(name))}},
          false,
          {"render", "d"}});
 }
@@ -102,7 +105,7 @@ void addFlags(std::vector<Victim>& victims, const Samples& samples) {
   for (const char* name : {"midpoint.vp.json", "property.vp", "thin.json", "hybrid.json"})
     add(name, samples.of("traps/" + std::string(name)), {"--transfer", name});
   add("lights.json", samples.of("traps/lights.json"), {"--lights", "lights.json"});
-  add("preset.json", samples.seed("Preset/all.json", false), {"--preset", "preset.json"});
+  add("preset.json", samples.of("../Fuzz/Corpus/Preset/all.json"), {"--preset", "preset.json"});
   add("labels.nrrd", samples.of("traps/labels.nrrd"),
       {"--segmentation", "labels.nrrd", "--focus", "1"});
   add("cropped.seg.nrrd", samples.of("traps/cropped.seg.nrrd"),
