@@ -354,8 +354,6 @@ std::string phantomScene(const Phantom& phantom, const std::string& name,
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   set(declaration, {{"version", "1.0"}, {"encoding", "UTF-8"}});
-  document.append_child(pugi::node_comment)
-      .set_value((" " + std::string(unsealedMark) + " ").c_str());
   pugi::xml_node scene = document.append_child("MRML");
   set(scene, {{"version", "Slicer 5.2.2 31383"}, {"userTags", ""}});
   const Framing framing(phantom);
@@ -365,6 +363,8 @@ std::string phantomScene(const Phantom& phantom, const std::string& name,
   addSegmentation(scene, phantom, name, files.segmentation);
   addRendering(scene, phantom, name, files.property);
   addRoi(scene, phantom, files.roi);
+  document.append_child(pugi::node_comment)
+      .set_value((" " + std::string(unsealedMark) + " ").c_str());
   std::ostringstream stream;
   document.save(stream, " ");
   return sealed(stream.str());
