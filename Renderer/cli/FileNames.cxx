@@ -1,5 +1,7 @@
 #include "cli/FileNames.h"
 
+#include "io/SystemCalls.h"
+
 namespace fenestra {
 namespace {
 
@@ -7,6 +9,25 @@ namespace fs = std::filesystem;
 
 bool takesFile(const Flag& flag) {
   return std::string_view(flag.value).find("FILE") != std::string_view::npos;
+}
+
+/// None for what is no name of a file (a look as text) and for what may not be looked at. Throws
+/// Error (input) where that cannot be told.
+fs::file_type typeOf(const fs::path& path) {
+  std::error_code failed;
+  const fs::file_type type = fs::status(path, failed).type();
+  const int code = failed.value();
+  if (type == fs::file_type::none && code != ENAMETOOLONG && code != EACCES && code != ELOOP)
+    throw readingError(path, code, "check its disk");
+  return type;
+}
+
+fs::path canonical(const fs::path& path) {
+  std::error_code failed;
+  fs::path real = fs::canonical(path, failed);
+  if (failed)
+    throw readingError(path, failed.value(), "check the permissions of its folder");
+  return real;
 }
 
 /// A result is named before it is there.
@@ -20,18 +41,17 @@ std::string writtenName(const std::string& name, const fs::path& folder) {
 } // namespace
 
 std::string relativeName(const std::string& name, const fs::path& folder) {
-  std::error_code failed;
   fs::path there = fs::absolute(name), inside;
-  while (!fs::exists(there, failed) && there.has_relative_path()) { // a member of an archive
-    inside = inside.empty() ? there.filename() : there.filename() / inside;
+  while (typeOf(there) == fs::file_type::not_found && there.has_relative_path()) {
+    inside = inside.empty() ? there.filename() : there.filename() / inside; // of an archive
     there = there.parent_path();
   }
-  if (!inside.empty() && !fs::is_regular_file(there, failed))
+  const fs::file_type type = typeOf(there);
+  if (type == fs::file_type::none || (!inside.empty() && type != fs::file_type::regular))
     return name;
-  const fs::path from = fs::canonical(folder.empty() ? "." : folder, failed);
-  const fs::path relative = fs::canonical(there, failed).lexically_relative(from);
-  return failed || relative.empty() ? name
-                                    : (inside.empty() ? relative : relative / inside).string();
+  const fs::path relative =
+      canonical(there).lexically_relative(canonical(folder.empty() ? "." : folder));
+  return (inside.empty() ? relative : relative / inside).string();
 }
 
 std::vector<std::string> relativeArguments(const std::vector<std::string>& words,

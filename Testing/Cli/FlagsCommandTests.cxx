@@ -171,9 +171,10 @@ TEST_F(FlagsCommand, RefusesContradictions) {
           withFocus({"--clip", "plane", "--plane", "0,0,0,0,0,1", "--surface", "a.vtp"},
                     "--surface: --clip none and plane have none"),
           refusal({"--position", "1,2,3", "--target", "1,2,3"}, "two different points"),
-          refusal({"--position", "0,0,9", "--target", "0,0,0", "--up", "0,0,1"}, "--up: must not"),
-          refusal({"--up", "0,0,0"}, "--up: must not be zero"),
-          refusal({"--view", "superior", "--up", "0,0,1"}, "--up: must not"),
+          refusal({"--position", "0,0,9", "--target", "0,0,0", "--up", "0,0,1"},
+                  "--up: up must not"),
+          refusal({"--up", "0,0,0"}, "--up: up must not be zero"),
+          refusal({"--view", "superior", "--up", "0,0,1"}, "--up: up must not"),
       },
       folder.path());
 }
