@@ -30,7 +30,11 @@ bool isEcho() {
   return firstSignal != 0 && milliseconds() - firstTime < together;
 }
 
+/// Once, whichever threads end the process.
 void say(std::string_view line) {
+  static std::atomic<bool> isSaid = false;
+  if (isSaid.exchange(true))
+    return;
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
 }
 

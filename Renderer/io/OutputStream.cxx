@@ -46,7 +46,7 @@ std::optional<OutputStream> OutputStream::named(const std::filesystem::path& pat
 }
 
 std::optional<FileId> OutputStream::id() const {
-  return m_descriptor < 0 ? std::nullopt : fileId(m_descriptor);
+  return m_descriptor < 0 ? fileId(m_path) : fileId(m_descriptor);
 }
 
 void OutputStream::send() {

@@ -16,7 +16,7 @@ public:
   /// Throws Error (output) where the descriptor is not open.
   static std::optional<OutputStream> named(const std::filesystem::path& path);
 
-  /// What is behind a descriptor; empty for a named pipe.
+  /// What is behind a descriptor, or the pipe.
   std::optional<FileId> id() const;
 
   /// Keeps `content` until it is sent.

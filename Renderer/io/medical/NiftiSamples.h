@@ -1,7 +1,7 @@
 #pragma once
 // Reads the samples of a NIfTI-1 file. ITK's library for that turns samples that are not finite
-// into zeros, unasked, and holds all of them twice; a child (Apart.h) would copy them once more. For
-// io's own sources.
+// into zeros, unasked, and holds all of them twice; a child (Apart.h) would copy them once more.
+// For io's own sources.
 
 #include "io/medical/SampleSource.h"
 
