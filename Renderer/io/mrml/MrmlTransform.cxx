@@ -71,8 +71,9 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
   const MrmlNode* above = scene.document.follow(node, "transform");
   for (int level = 0; above; above = scene.document.follow(*above, "transform"), ++level) {
     if (level == deepest)
-      throw scene.document.error(node, "the transforms above it form a loop; mend them in the "
-                                       "Transforms module");
+      throw scene.document.error(
+          node, "the transforms above it form a loop, or too long a chain; mend them in the "
+                "Transforms module");
     result = toParent(scene, *above) * result;
   }
   return checkedMap(result, [&](const std::string& what) {
