@@ -22,7 +22,7 @@ fs::file_type typeOf(const fs::path& path) {
   return type;
 }
 
-fs::path canonical(const fs::path& path) {
+fs::path realPath(const fs::path& path) {
   std::error_code failed;
   fs::path real = fs::canonical(path, failed);
   if (failed)
@@ -50,7 +50,7 @@ std::string relativeName(const std::string& name, const fs::path& folder) {
   if (type == fs::file_type::none || (!inside.empty() && type != fs::file_type::regular))
     return name;
   const fs::path relative =
-      canonical(there).lexically_relative(canonical(folder.empty() ? "." : folder));
+      realPath(there).lexically_relative(realPath(folder.empty() ? "." : folder));
   return (inside.empty() ? relative : relative / inside).string();
 }
 
