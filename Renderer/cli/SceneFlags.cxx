@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -65,6 +66,14 @@ std::string objection(const MrmlScene& scene, const std::string& name, const std
   return isFile(name, value, input) ? "names a file, which a scene may not choose" : "";
 }
 
+std::string leftOut(const MrmlNode& node, const std::string& name, const std::string& value,
+                    const std::string& why) {
+  std::ostringstream line;
+  line << node.tag << ' ' << shown(node) << ": " << name << " \"" << value << "\" " << why
+       << "; give --" << name << ' ' << value;
+  return line.str();
+}
+
 } // namespace
 
 SceneFlags withSceneFlags(const FlagValues& given) {
@@ -86,8 +95,7 @@ SceneFlags withSceneFlags(const FlagValues& given) {
     if (!shapesPicture(flag) || value.empty() || isDecided(name, deciding))
       continue;
     if (const std::string why = objection(scene, name, value, input); !why.empty())
-      result.leftOut.push_back(node.tag + " " + shown(node) + ": " + name + " \"" + shown(value) +
-                               "\" " + why + "; give --" + name + " " + shown(value));
+      result.leftOut.push_back(leftOut(node, name, shown(value), why));
     else
       merged.add(name, value);
   }

@@ -3,12 +3,12 @@
 // name. requireFile is the one door to it, and every reader goes through that before it opens a
 // file.
 
-#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
 
 namespace fenestra {
 
@@ -20,7 +20,13 @@ struct FileId {
   std::uint64_t device = 0, inode = 0;
   std::int64_t born = 0; ///< ns since 1970; 0 where the disk does not tell
 
-  auto operator<=>(const FileId&) const = default;
+  friend bool operator==(const FileId& a, const FileId& b) { return a.all() == b.all(); }
+  friend bool operator<(const FileId& a, const FileId& b) { return a.all() < b.all(); }
+
+private:
+  std::tuple<std::uint64_t, std::uint64_t, std::int64_t> all() const {
+    return {device, inode, born};
+  }
 };
 
 /// Empty where there is nothing of this name. Follows links.

@@ -115,7 +115,7 @@ const ApartJob transformJob("transform", answerTransform, {.seconds = 3});
 
 /// From "Type_scalar_axes_axes".
 std::string linearType(const Path& path, const std::string& name) {
-  const std::string type = name.substr(0, name.find('_'));
+  std::string type = name.substr(0, name.find('_'));
   if (!isLinearTransform(type))
     throw inputError(path.string(), "Transform: " + shown(name) +
                                         " is not linear; harden it in Slicer (Data module, Harden "
