@@ -46,11 +46,13 @@ std::string relativeName(const std::string& name, const fs::path& folder) {
     inside = inside.empty() ? there.filename() : there.filename() / inside; // of an archive
     there = there.parent_path();
   }
+  const fs::path from = folder.empty() ? "." : folder;
+  if (typeOf(from) == fs::file_type::not_found) // writing there tells of it
+    return name;
   const fs::file_type type = typeOf(there);
   if (type == fs::file_type::none || (!inside.empty() && type != fs::file_type::regular))
     return name;
-  const fs::path relative =
-      realPath(there).lexically_relative(realPath(folder.empty() ? "." : folder));
+  const fs::path relative = realPath(there).lexically_relative(realPath(from));
   return (inside.empty() ? relative : relative / inside).string();
 }
 
