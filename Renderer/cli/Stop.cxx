@@ -4,7 +4,6 @@
 #include "io/Leftovers.h"
 #include "io/Outputs.h"
 
-#include <array>
 #include <csignal>
 #include <ctime>
 #include <string_view>
@@ -27,7 +26,7 @@ std::int64_t milliseconds() {
 /// One event may come as several signals: a terminal that is closed sends HUP twice.
 bool isEcho() {
   constexpr std::int64_t together = 300; // ms
-  return firstSignal != 0 && milliseconds() - firstTime < together;
+  return milliseconds() - firstTime < together;
 }
 
 /// Once, whichever threads end the process.

@@ -96,7 +96,6 @@ void openStandardStreams() {
 
 /// What a command printed is a result as well.
 int finishOutput(int status) {
-  errno = 0;
   const bool isWhole = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
   if (isWhole || status != 0)
     return status;

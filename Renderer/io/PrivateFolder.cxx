@@ -50,10 +50,8 @@ bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
   const Uninterrupted making;
   m_entries.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
   if (::mkdir(folder.c_str(), S_IRWXU) != 0) {
-    const int code = errno;
-    m_entries.clear();
-    errno = code;
-    if (code == EEXIST)
+    m_entries.back()->keep(); // what is there is not ours
+    if (errno == EEXIST)
       return false;
     throw cannotMake(folder);
   }
@@ -72,6 +70,7 @@ PrivateFolder::PrivateFolder() {
     m_entries.clear();
     if (m_lock >= 0)
       ::close(m_lock);
+    m_lock = -1;
   }
 }
 

@@ -63,8 +63,10 @@ void TemporaryFile::open() {
     m_file = repeated([this] {
       return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     });
-    if (m_file < 0 && errno == EEXIST)
+    if (m_file < 0 && errno == EEXIST) {
+      m_name->keep(); // somebody else's
       continue;
+    }
     if (m_file < 0)
       return;
     const bool isTaken = ::flock(m_file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;

@@ -36,9 +36,6 @@ public:
   /// Undoes place(), after another file of the group could not be placed.
   void takeBack() noexcept;
 
-  /// What `target` was when it was placed or asked for last.
-  const std::filesystem::path& target() const { return m_target; }
-
 private:
   enum class Placed { no, fresh, exchanged, linked };
 
