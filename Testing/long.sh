@@ -117,7 +117,7 @@ run_instructions() {
   local name start log row found
   for name in "$@"; do
     # Where the machine lacks a set, programs pinned to it end at once.
-    FENESTRA_INSTRUCTIONS=$name "$top/build/bin/CropTests" --gtest_list_tests >/dev/null 2>&1 ||
+    FENESTRA_INSTRUCTIONS=$name "$top/build/bin/AnalyticTests" --gtest_list_tests >/dev/null 2>&1 ||
       continue
     log=$logs/instructions-$name.log
     start=$SECONDS

@@ -3,7 +3,7 @@
 
 #include "CommandTesting.h"
 
-namespace fenestra {
+namespace fenestra::DataCommandTests {
 namespace {
 
 const std::filesystem::path data = FENESTRA_DATA;
@@ -196,4 +196,4 @@ INSTANTIATE_TEST_SUITE_P(All, RealFiles, testing::ValuesIn(expectations()),
                          });
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::DataCommandTests

@@ -2,7 +2,7 @@
 
 #include "CommandTesting.h"
 
-namespace fenestra {
+namespace fenestra::FilesCommandTests {
 namespace {
 
 class FilesCommand : public SmallScene {};
@@ -222,4 +222,4 @@ TEST_F(FilesCommand, RefusesPhantomsThatCannotBeMade) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::FilesCommandTests

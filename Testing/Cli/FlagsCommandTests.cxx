@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::FlagsCommandTests {
 namespace {
 
 class FlagsCommand : public SmallScene {
@@ -254,4 +254,4 @@ TEST_F(FlagsCommand, VersionIsOneLineOfEverySubcommand) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::FlagsCommandTests

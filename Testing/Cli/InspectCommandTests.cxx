@@ -7,7 +7,7 @@
 
 #include <sstream>
 
-namespace fenestra {
+namespace fenestra::InspectCommandTests {
 namespace {
 
 using Json = nlohmann::json;
@@ -446,4 +446,4 @@ TEST_F(InspectCommand, DescribesWhatSlicerWrote) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::InspectCommandTests

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <sstream>
 
-namespace fenestra {
+namespace fenestra::PresetsCommandTests {
 namespace {
 
 /// `fenestra knee.nrrd …` in the folder of the knee, at 16x16 pixels and 2 samples a pixel.
@@ -274,4 +274,4 @@ TEST(PresetsCommand, AScenesVolumePropertiesAreKnownByName) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::PresetsCommandTests

@@ -2,7 +2,7 @@
 
 #include "CommandTesting.h"
 
-namespace fenestra {
+namespace fenestra::ProgressCommandTests {
 namespace {
 
 class ProgressCommand : public SmallScene {
@@ -63,4 +63,4 @@ TEST_F(ProgressCommand, NothingWithoutATerminal) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::ProgressCommandTests

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace fenestra {
+namespace fenestra::RendersCommandTests {
 namespace {
 
 class RendersCommand : public SmallScene {
@@ -263,4 +263,4 @@ TEST_F(RendersCommand, ReplacesAPictureAndNothingElse) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::RendersCommandTests

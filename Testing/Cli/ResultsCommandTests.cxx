@@ -7,7 +7,7 @@
 
 #include <sys/stat.h>
 
-namespace fenestra {
+namespace fenestra::ResultsCommandTests {
 namespace {
 
 class ResultsCommand : public SmallScene {
@@ -99,4 +99,4 @@ TEST_F(ResultsCommand, ARecordThatIsNoneIsNotReplaced) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::ResultsCommandTests

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <sstream>
 
-namespace fenestra {
+namespace fenestra::ScenesCommandTests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -419,4 +419,4 @@ INSTANTIATE_TEST_SUITE_P(Real, SlicersOwnScenes,
                          testing::Values("chest.mrb", "chest_transformed_cropped.mrb"));
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::ScenesCommandTests

@@ -8,7 +8,7 @@
 
 #include <csignal>
 
-namespace fenestra {
+namespace fenestra::ServeCommandTests {
 namespace {
 
 using nlohmann::json;
@@ -161,7 +161,7 @@ TEST_F(ServeCommand, ABadLineTakesNoGoodOneAway) {
       R"({"id": "bad", "segmentation": "missing.nrrd", "focus": "A"})",
       R"({"id": "bad", "segmentation": "segments.seg.nrrd", "focus": "C"})"};
   for (std::size_t i = 0; i < bad.size(); ++i) {
-    const std::string before = "b" + std::to_string(i), after = "a" + std::to_string(i);
+    const std::string number = std::to_string(i), before = "b" + number, after = "a" + number;
     process.write(R"({"id": ")" + before + R"(", "seed": )" + std::to_string(i + 1) + "}\n" +
                   bad[i] + "\n" + R"({"id": ")" + after + R"(", "density": )" +
                   std::to_string(i + 2) + "}\n");
@@ -234,4 +234,4 @@ TEST_F(ServeCommand, RefusesWhatRenderRefuses) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::ServeCommandTests

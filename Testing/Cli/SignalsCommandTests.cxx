@@ -11,7 +11,7 @@
 #include <cstring>
 #include <thread>
 
-namespace fenestra {
+namespace fenestra::SignalsCommandTests {
 namespace {
 
 /// Seconds; about 0.1 on an idle machine, and more in slow builds.
@@ -153,4 +153,4 @@ TEST_F(BrokenPipe, EndsARenderThatNobodyWaitsFor) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SignalsCommandTests

@@ -10,7 +10,7 @@
 #include <map>
 #include <regex>
 
-namespace fenestra {
+namespace fenestra::SlicerCommandTests {
 namespace {
 
 using Names = std::set<std::string>;
@@ -247,4 +247,4 @@ TEST_F(SlicerCommand, EchoesWhatItUnderstood) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SlicerCommandTests

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <sstream>
 
-namespace fenestra {
+namespace fenestra::SurfaceCommandTests {
 namespace {
 
 const Arguments knee = {"knee/knee.nrrd", "--segmentation",   "knee/knee.seg.nrrd",
@@ -134,4 +134,4 @@ TEST(SurfaceCommandLine, RefusesWhatCannotBe) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SurfaceCommandTests

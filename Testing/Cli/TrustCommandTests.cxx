@@ -5,7 +5,7 @@
 
 #include <zip.h>
 
-namespace fenestra {
+namespace fenestra::TrustCommandTests {
 namespace {
 
 const std::string scene = R"(<MRML version="Slicer 5.6.2 32448">
@@ -150,4 +150,4 @@ TEST_F(TrustCommand, AnArchiveReadsNothingOutsideItself) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::TrustCommandTests

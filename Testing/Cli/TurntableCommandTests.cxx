@@ -10,7 +10,7 @@
 #include <csignal>
 #include <sstream>
 
-namespace fenestra {
+namespace fenestra::TurntableCommandTests {
 namespace {
 
 const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
@@ -312,4 +312,4 @@ TEST_F(TurntableCommand, RefusesRecordsOfOtherTypes) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::TurntableCommandTests

@@ -392,9 +392,3 @@ TEST_F(SlicerPreview, SaysWhyItCannotBegin) {
 
 } // namespace
 } // namespace fenestra
-
-int main(int argc, char** argv) {
-  ::testing::InitGoogleTest(&argc, argv);
-  const QCoreApplication application(argc, argv);
-  return RUN_ALL_TESTS();
-}

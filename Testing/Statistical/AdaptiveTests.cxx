@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::AdaptiveTests {
 namespace {
 
 /// A small bright light beside a ball in the dark: few paths find it by themselves, so that the
@@ -105,4 +105,4 @@ TEST(AdaptiveSampling, SharesOutAndStopsAtItsTarget) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::AdaptiveTests

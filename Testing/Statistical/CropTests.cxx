@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::CropTests {
 namespace {
 
 Volume ones(const Grid& grid) {
@@ -154,4 +154,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CroppedPicture,
                          [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::CropTests

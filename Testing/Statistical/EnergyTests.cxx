@@ -4,7 +4,7 @@
 #include "Clumps.h"
 #include "StraightIntegral.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::EnergyTests {
 namespace {
 
 /// Places in a square of half edge `half` that faces `direction`, `u` in [0, 1)^2, `half` before
@@ -150,4 +150,4 @@ TEST_P(Energy, ComesOutOrIsAbsorbed) {
 INSTANTIATE_TEST_SUITE_P(Anisotropies, Energy, ::testing::Values(0.0, 0.5, -0.5));
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::EnergyTests

@@ -13,7 +13,7 @@
 #include <array>
 #include <vector>
 
-namespace fenestra::testing {
+namespace fenestra::testing::FiniteSlabTests {
 namespace {
 
 /// E_n(x) = ∫_1^infinity exp(-x u) u^-n du.
@@ -182,4 +182,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::FiniteSlabTests

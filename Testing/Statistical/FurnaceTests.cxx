@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::FurnaceTests {
 namespace {
 
 enum class MediumKind { homogeneous, heterogeneous, spikes };
@@ -114,4 +114,4 @@ INSTANTIATE_TEST_SUITE_P(Cropped, Furnace,
                                             ::testing::Values(0.7), ::testing::Values(true)));
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::FurnaceTests

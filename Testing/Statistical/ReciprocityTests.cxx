@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace fenestra::testing {
+namespace fenestra::testing::ReciprocityTests {
 namespace {
 
 enum class Cut { none, plane };
@@ -60,4 +60,4 @@ INSTANTIATE_TEST_SUITE_P(Volumes, Reciprocity,
                                             ::testing::Values(Cut::none, Cut::plane)));
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::ReciprocityTests

@@ -7,7 +7,7 @@
 
 #include "Slab.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::SingleScatterTests {
 namespace {
 
 /// Henyey and Greenstein 1941, per steradian, by the cosine between the light's ways before and
@@ -49,4 +49,4 @@ TEST_P(SingleScatter, IsAsInClosedForm) {
 INSTANTIATE_TEST_SUITE_P(Anisotropies, SingleScatter, ::testing::Values(-0.9, 0.0, 0.5, 0.9));
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::SingleScatterTests

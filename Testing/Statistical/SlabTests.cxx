@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace fenestra::testing {
+namespace fenestra::testing::SlabTests {
 namespace {
 
 class SlabTransmittance : public ::testing::TestWithParam<double> {};
@@ -152,4 +152,4 @@ TEST(HalfSpace, ReflectsParallelLightByTheLawOfDiffuseReflection) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::SlabTests

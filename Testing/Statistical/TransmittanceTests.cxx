@@ -7,7 +7,7 @@
 #include "clipping/ClippingSurface.h"
 #include "tracking/WideTracker.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::TransmittanceTests {
 namespace {
 
 struct Subject {
@@ -419,4 +419,4 @@ INSTANTIATE_TEST_SUITE_P(Media, Tracking,
                          });
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::TransmittanceTests

@@ -3,7 +3,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::CameraStressTests {
 namespace {
 
 constexpr double sigma = 0.25;
@@ -190,4 +190,4 @@ TEST(SharpScattering, OfMirrorsHasALimit) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::CameraStressTests

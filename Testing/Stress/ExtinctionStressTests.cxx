@@ -3,7 +3,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::ExtinctionStressTests {
 namespace {
 
 constexpr double thinnest = 1e-8; // per mm
@@ -283,4 +283,4 @@ TEST(FarCamera, SeesTheSameTransmittance) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::ExtinctionStressTests

@@ -3,7 +3,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::GeometryStressTests {
 namespace {
 
 double bump(const Vec3& p) {
@@ -200,4 +200,4 @@ TEST(Needles, TransmitAlongTheirDiagonalsAsTheirIntegralSays) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::GeometryStressTests

@@ -2,7 +2,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::GrazingStressTests {
 namespace {
 
 constexpr double sigma = 0.2;
@@ -163,4 +163,4 @@ TEST(ExactFaces, CountAsInside) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::GrazingStressTests

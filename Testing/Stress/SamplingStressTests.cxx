@@ -2,7 +2,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::SamplingStressTests {
 namespace {
 
 constexpr double ends[] = {0.0, 0x1p-53, 0.25, 0.5, 0.75, largestUniform};
@@ -312,4 +312,4 @@ TEST(PathEnds, AreBoundedByTheirCollisions) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::SamplingStressTests

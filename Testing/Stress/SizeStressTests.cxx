@@ -5,7 +5,7 @@
 #include <array>
 #include <fstream>
 
-namespace fenestra::testing {
+namespace fenestra::testing::SizeStressTests {
 namespace {
 
 /// The continuous field by its definition, from the voxel array: trilinear, clamped.
@@ -252,4 +252,4 @@ TEST(MoreThan31Bits, AreReadToTheirFarEnd) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::SizeStressTests

@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <sstream>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::SplineStressTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -387,3 +387,4 @@ TEST(SplineStress, ConditionNumbersStaySmall) {
 }
 
 } // namespace
+} // namespace fenestra::SplineStressTests

@@ -10,8 +10,8 @@
 
 #include <set>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::SurfaceStressTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -494,3 +494,4 @@ TEST(SurfaceStress, AFocusThatNoRayMeetsIsRefused) {
 }
 
 } // namespace
+} // namespace fenestra::SurfaceStressTests

@@ -5,7 +5,7 @@
 
 #include "medium/VolumeProperty.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::TransferStressTests {
 namespace {
 
 using Knots = std::vector<ScalarFunction::Knot>;
@@ -217,4 +217,4 @@ TEST(ConstantVolumes, AreHomogeneous) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::TransferStressTests

@@ -7,7 +7,7 @@
 #include "io/medical/VolumeReader.h"
 #include "scene/Scene.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::VoxelStressTests {
 namespace {
 
 /// 4x4x4 voxels, 1 mm.
@@ -212,4 +212,4 @@ TEST(ExtinctionLimit, ReflectsAsChandrasekharSays) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::VoxelStressTests

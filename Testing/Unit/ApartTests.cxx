@@ -22,7 +22,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::ApartTests {
 namespace {
 
 constexpr std::uint64_t most = 1 << 20;
@@ -247,4 +247,4 @@ TEST(AnswerReader, trustsNoByte) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::ApartTests

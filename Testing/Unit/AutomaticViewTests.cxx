@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::AutomaticViewTests {
 namespace {
 
 /// A cube of 60 mm that the context fills, thin enough to be seen through.
@@ -140,4 +140,4 @@ TEST_F(ViewOfCube, LooksFromAnteriorAtWhatCannotBeSeen) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::AutomaticViewTests

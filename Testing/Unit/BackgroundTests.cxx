@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::BackgroundTests {
 namespace {
 
 /// An empty volume in front of a background, 4 x 8 pixels.
@@ -65,4 +65,4 @@ TEST(Background, ShowsThroughTheVolumeTheSameOnAnyThread) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::BackgroundTests

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::ClipKindTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -110,7 +110,7 @@ TEST(Clip, AnOffsetMovesTheWholeSurfaceAlongTheView) {
     ASSERT_NEAR(moved.buffer->at(i), plain.buffer->at(i) - 2.5, 1e-4);
 }
 
-class Holes : public testing::TestWithParam<Projection> {};
+class Holes : public ::testing::TestWithParam<Projection> {};
 
 TEST_P(Holes, ABoxIsFlatAtTheFocusFarthestVisiblePointAndWiderByItsMargin) {
   const Ball ball(GetParam());
@@ -178,7 +178,7 @@ TEST_P(Holes, ASphereLeavesABowl) {
   EXPECT_EQ(ball.keepAt(clip, 30.0, 0, 70.0), 1.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Projections, Holes, testing::ValuesIn(projections));
+INSTANTIATE_TEST_SUITE_P(Projections, Holes, ::testing::ValuesIn(projections));
 
 TEST(FocusPlane, IsThePlaneOfAFlatFocus) {
   const Grid volume = centredGrid({80, 80, 80});
@@ -279,3 +279,4 @@ TEST(BoundaryMeasures, CountTheFocusOwnJumpsApart) {
 }
 
 } // namespace
+} // namespace fenestra::ClipKindTests

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::ClipTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -321,3 +321,4 @@ TEST(ClippingSurface, AFocusOfOnePixelGivesALevelSurface) {
 }
 
 } // namespace
+} // namespace fenestra::ClipTests

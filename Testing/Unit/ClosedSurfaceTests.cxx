@@ -11,7 +11,7 @@
 #include <random>
 #include <sstream>
 
-namespace fenestra {
+namespace fenestra::ClosedSurfaceTests {
 namespace {
 
 using Path = std::filesystem::path;
@@ -330,4 +330,4 @@ TEST(ClosedSurface, refusesRealContours) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::ClosedSurfaceTests

@@ -10,8 +10,7 @@
 
 #include <filesystem>
 
-using namespace fenestra;
-
+namespace fenestra::CompareTests {
 namespace {
 
 Image constantImage(int width, int height, float value) {
@@ -46,8 +45,6 @@ ErrorKind kindOfComparing(const Image& a, const Image& b) {
   ADD_FAILURE() << "nothing thrown";
   return ErrorKind::output;
 }
-
-} // namespace
 
 TEST(CompareImages, MeasuresAConstantDifference) {
   const Comparison c = compareImages(constantImage(5, 3, 0.6f), constantImage(5, 3, 0.5f));
@@ -204,8 +201,6 @@ TEST(AttachError, MakesTheStoredReferencesComparable) {
 // ---- whether two renders can be of one scene
 // --------------------------------------------------------
 
-namespace {
-
 Image withSamples(Image image, float samples) {
   image.channels["samples.N"].assign(image.channels["R"].size(), samples);
   return image;
@@ -215,8 +210,6 @@ Image withSamples(Image image, float samples) {
 Image render(std::uint64_t seed, float mean = 0.5f) {
   return withSamples(noisyImage(32, mean, 0.01f, seed), 1e4f);
 }
-
-} // namespace
 
 TEST(StudentTail, MatchesClosedForms) {
   EXPECT_DOUBLE_EQ(studentTail(0.0, 5.0), 1.0);
@@ -292,3 +285,6 @@ TEST(AgreementProbability, ExpectsFewBrightPathsToScatter) {
   for (std::uint64_t seed = 0; seed < 10; ++seed)
     EXPECT_GT(agreementProbability(sparse(seed, 100), reference), 0.01);
 }
+
+} // namespace
+} // namespace fenestra::CompareTests

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <set>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::ContourTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -210,3 +210,4 @@ TEST(ControlPoints, BoundarySamplesAreTheFocusSamplesWithAnOutsideNeighbour) {
 }
 
 } // namespace
+} // namespace fenestra::ContourTests

@@ -16,7 +16,7 @@
 
 #include <sys/wait.h>
 
-namespace fenestra {
+namespace fenestra::CostTests {
 namespace {
 
 constexpr const char* countsVariable = "FENESTRA_COUNTS"; ///< the files that valgrind writes
@@ -144,7 +144,7 @@ TEST(Cost, growsNoFasterThanNLogN) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::CostTests
 #else
 TEST(Cost, growsNoFasterThanNLogN) {
   GTEST_SKIP() << "valgrind is not installed";

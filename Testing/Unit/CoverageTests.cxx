@@ -8,7 +8,7 @@
 
 #include <thread>
 
-namespace fenestra::testing {
+namespace fenestra::testing::CoverageTests {
 namespace {
 
 /// A cube of 20 mm around the origin, extinction 0.1 per mm, seen from in front (anterior); the
@@ -84,4 +84,4 @@ TEST(Render, StopsInsideAPathThatWouldTakeMinutes) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::CoverageTests

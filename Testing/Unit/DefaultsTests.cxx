@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::DefaultsTests {
 namespace {
 
 Volume ramp(double low, double high) {
@@ -145,4 +145,4 @@ TEST(Picture, CarriesTheContractsChannels) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::DefaultsTests

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::DepthBufferTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -175,3 +175,4 @@ TEST(DepthPyramid, IsTightOnASmallRectangle) {
 }
 
 } // namespace
+} // namespace fenestra::DepthBufferTests

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::DeterminismTests {
 namespace {
 
 TestScene scene() {
@@ -101,4 +101,4 @@ TEST(Render, StopsByTimeAndByNoise) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::DeterminismTests

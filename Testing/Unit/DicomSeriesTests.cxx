@@ -14,7 +14,7 @@
 
 #include <random>
 
-namespace fenestra {
+namespace fenestra::DicomSeriesTests {
 namespace {
 
 using Path = std::filesystem::path;
@@ -393,4 +393,4 @@ TEST(DicomSeries, survivesAStreamThatItsDecoderDoesNot) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::DicomSeriesTests

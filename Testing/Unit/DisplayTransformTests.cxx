@@ -7,8 +7,7 @@
 
 #include <cstdlib>
 
-using namespace fenestra;
-
+namespace fenestra::DisplayTransformTests {
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -129,9 +128,9 @@ TEST(DisplayTransform, HasNoEarForTheEnvironmentAndNoVoiceOnStandardError) {
   ::setenv("OCIO", "/nowhere/config.ocio", 1);
   ::setenv("OCIO_ACTIVE_VIEWS", "Standard", 1);
   ::setenv("OCIO_ACTIVE_DISPLAYS", "Cinema", 1);
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   const float shown = shownGrey(DisplayTransform(), 1.0f);
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   EXPECT_LT(shown, 0.9f); // photographic: Standard would clip 1 to 1
   ::unsetenv("OCIO");
   ::unsetenv("OCIO_ACTIVE_VIEWS");
@@ -158,3 +157,5 @@ TEST(ToDisplay, IsBlackWhereTransparentAndOpaqueWithoutAlpha) {
   opaque.channels.erase("A");
   EXPECT_EQ(toDisplay(opaque, view)[3], 1.0f);
 }
+
+} // namespace fenestra::DisplayTransformTests

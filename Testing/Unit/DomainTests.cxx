@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::DomainTests {
 namespace {
 
 double uniform(Random& random, double low, double high) {
@@ -154,4 +154,4 @@ TEST(Domain, ACropBesideTheGridLeavesNothing) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::DomainTests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::EmptyPixelsTests {
 namespace {
 
 /// A small opaque ball off the middle of an empty box, turned against the view.
@@ -95,4 +95,4 @@ TEST(EmptyPixels, AreAllOfAPictureThatMeetsNothing) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::EmptyPixelsTests

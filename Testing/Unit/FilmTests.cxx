@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::FilmTests {
 namespace {
 
 TEST(PixelSums, MeanAndStandardErrorAreTheTextbook) {
@@ -48,4 +48,4 @@ TEST(Film, NoiseFollowsItsDefinition) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::FilmTests

@@ -11,9 +11,9 @@
 
 #include <optional>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
-using fenestra::testing::briefly;
+namespace fenestra::FocusDepthTests {
+using namespace testing_clipping;
+using testing::briefly;
 
 namespace {
 
@@ -400,3 +400,4 @@ TEST(FocusDepth, AFarEyeLosesNothing) {
 }
 
 } // namespace
+} // namespace fenestra::FocusDepthTests

@@ -8,8 +8,8 @@
 
 #include <set>
 
-using namespace fenestra;
-using fenestra::testing::briefly;
+namespace fenestra::GridWalkTests {
+using testing::briefly;
 
 namespace {
 
@@ -207,3 +207,4 @@ TEST(GridWalk, FarOriginsKeepTheirCellsToRounding) {
 }
 
 } // namespace
+} // namespace fenestra::GridWalkTests

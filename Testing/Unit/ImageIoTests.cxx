@@ -21,7 +21,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-using namespace fenestra;
+namespace fenestra::ImageIoTests {
 using namespace std::string_literals;
 namespace fs = std::filesystem;
 
@@ -100,11 +100,11 @@ private:
   void (*m_handler)(int);
 };
 
-class ImageFiles : public testing::Test {
+class ImageFiles : public ::testing::Test {
 protected:
   void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    m_folder = fs::path(testing::TempDir()) /
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    m_folder = fs::path(::testing::TempDir()) /
                ("fenestra-" + std::to_string(::getpid()) + "-" + test->name());
     fs::create_directory(m_folder);
   }
@@ -128,8 +128,6 @@ using ExrFiles = ImageFiles;
 using NrrdFiles = ImageFiles;
 using DisplayFiles = ImageFiles;
 using DamagedFiles = ImageFiles;
-
-} // namespace
 
 TEST(EmbeddedResources, HoldTheColourConfiguration) {
   EXPECT_TRUE(embeddedResource("color/fenestra.ocio").starts_with("ocio_profile_version"));
@@ -343,9 +341,9 @@ TEST_F(ImageFiles, ThatFailLeaveNothingBehindAndKeepTheFormer) {
     // Full at once, midway, and within the last block, where a buffered writer no longer looks.
     for (const std::size_t limit : {std::size_t{0}, before.size() / 2, before.size() - 1}) {
       const FullDisk full(limit);
-      testing::internal::CaptureStderr();
+      ::testing::internal::CaptureStderr();
       EXPECT_EQ(kindOf([&] { writeImage(image, {}, path(name)); }, name), ErrorKind::output);
-      EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << name << " " << limit;
+      EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << name << " " << limit;
     }
     EXPECT_EQ(fileCount(), count) << name;
     EXPECT_EQ(contentOf(path(name)), before) << name;
@@ -430,12 +428,12 @@ TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {
 }
 
 TEST_F(DamagedFiles, AreRefusedWithoutNoise) {
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     store(path(name), "not a picture at all, whatever the extension says");
     EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(ImageFiles, OfTheReferenceAreRead) {
@@ -448,3 +446,6 @@ TEST_F(ImageFiles, OfTheReferenceAreRead) {
     for (const float value : image.channels.at(name))
       ASSERT_TRUE(std::isfinite(value));
 }
+
+} // namespace
+} // namespace fenestra::ImageIoTests

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::KernelSumsTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -77,3 +77,4 @@ TEST(KernelSums, PolynomialsAreHornersScheme) {
 }
 
 } // namespace
+} // namespace fenestra::KernelSumsTests

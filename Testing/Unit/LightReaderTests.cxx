@@ -7,7 +7,7 @@
 
 #include "Refusals.h"
 
-namespace fenestra {
+namespace fenestra::LightReaderTests {
 namespace {
 
 TEST(LightReader, readsEveryKind) {
@@ -135,4 +135,4 @@ TEST(LightReader, readsTheReferencesLights) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::LightReaderTests

@@ -2,7 +2,7 @@
 
 #include "Histogram.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::LightSetTests {
 namespace {
 
 const Grid grid(Size3(10, 10, 10), Affine::Identity());
@@ -134,4 +134,4 @@ TEST(LightSet, WithoutLightsNothingIsDrawn) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::LightSetTests

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::MajorantGridTests {
 namespace {
 
 ScalarFunction::Knot knot(double s, double y) {
@@ -136,4 +136,4 @@ TEST(CellRanges, hasCellsOfAVoxelAtLeastWhateverTheGrid) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::MajorantGridTests

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::MaskShapingTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -207,3 +207,4 @@ TEST(MaskShaping, ASegmentationTakesAMarginForEachSegment) {
 }
 
 } // namespace
+} // namespace fenestra::MaskShapingTests

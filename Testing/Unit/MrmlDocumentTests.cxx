@@ -2,7 +2,7 @@
 
 #include "SceneTesting.h"
 
-namespace fenestra {
+namespace fenestra::MrmlDocumentTests {
 namespace {
 
 MrmlDocument parse(const std::string& nodes) {
@@ -134,4 +134,4 @@ TEST(MrmlDocument, survivesDeepNesting) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::MrmlDocumentTests

@@ -2,7 +2,7 @@
 
 #include "SceneTesting.h"
 
-namespace fenestra {
+namespace fenestra::MrmlSceneTests {
 namespace {
 
 const MrmlNode& node(const MrmlScene& scene, const std::string& id) {
@@ -462,4 +462,4 @@ TEST(RealScenes, haveOneTransformInTheirFileAndInTheirSixDigits) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::MrmlSceneTests

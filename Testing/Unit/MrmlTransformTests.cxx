@@ -2,7 +2,7 @@
 
 #include "SceneTesting.h"
 
-namespace fenestra {
+namespace fenestra::MrmlTransformTests {
 namespace {
 
 const MrmlNode& node(const MrmlScene& scene, const std::string& id) {
@@ -71,4 +71,4 @@ TEST(MrmlTransform, refusesPlacesThatAreComposedOfTooMuch) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::MrmlTransformTests

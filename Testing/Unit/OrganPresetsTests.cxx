@@ -8,7 +8,7 @@
 #include "Refusals.h"
 #include "Support.h"
 
-namespace fenestra {
+namespace fenestra::OrganPresetsTests {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -153,4 +153,4 @@ TEST(OrganPresets, whatIsUsualIsBetweenThePercentiles) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::OrganPresetsTests

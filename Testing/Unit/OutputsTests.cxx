@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::OutputsTests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -325,4 +325,4 @@ TEST(PrivateFolders, GoWithWhatIsInThem) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::OutputsTests

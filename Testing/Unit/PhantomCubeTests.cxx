@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-
+namespace fenestra::PhantomCubeTests {
 namespace {
 
 const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
@@ -73,3 +72,5 @@ TEST(PhantomCube, RefusesWhatIsNoCube) {
   EXPECT_THROW(makeCubePhantom({-1.0, 16}), Error);
   EXPECT_THROW(makeCubePhantom({infinity, 16}), Error);
 }
+
+} // namespace fenestra::PhantomCubeTests

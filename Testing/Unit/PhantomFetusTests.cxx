@@ -6,8 +6,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-using namespace fenestra;
-
+namespace fenestra::PhantomFetusTests {
 namespace {
 
 const Phantom& smallFetus() {
@@ -101,3 +100,4 @@ TEST(PhantomFetus, RefusesSizesBeyondItsLimits) {
 }
 
 } // namespace
+} // namespace fenestra::PhantomFetusTests

@@ -13,8 +13,7 @@
 #include <map>
 #include <queue>
 
-using namespace fenestra;
-
+namespace fenestra::PhantomFootTests {
 namespace {
 
 const Phantom& smallFoot() {
@@ -240,3 +239,5 @@ TEST(PhantomFoot, BothLayersComeBackFromItsSegmentation) {
               static_cast<std::int64_t>(voxelsIn(foot, id).size()))
         << id;
 }
+
+} // namespace fenestra::PhantomFootTests

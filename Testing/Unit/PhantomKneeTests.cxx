@@ -9,8 +9,7 @@
 
 #include <map>
 
-using namespace fenestra;
-
+namespace fenestra::PhantomKneeTests {
 namespace {
 
 const Phantom& smallKnee() {
@@ -241,3 +240,5 @@ TEST(PhantomKnee, ItsPropertyShowsCartilageDenseAndAirNotAtAll) {
   EXPECT_GE(cartilage.z(), cartilage.x()) << "bluish white";
   EXPECT_LT(fat.z(), 0.5 * fat.x()) << "yellow";
 }
+
+} // namespace fenestra::PhantomKneeTests

@@ -15,8 +15,7 @@
 #include <map>
 #include <set>
 
-using namespace fenestra;
-
+namespace fenestra::PhantomSceneTests {
 namespace {
 
 std::vector<double> numbers(const pugi::xml_node& node, const char* attribute) {
@@ -35,7 +34,7 @@ Vec3 triple(const pugi::xml_node& node, const char* attribute) {
 }
 
 /// The knee's voxel axes are none of the world's: a scene that confuses them shows.
-struct PhantomSceneFiles : testing::Test {
+struct PhantomSceneFiles : ::testing::Test {
   TemporaryFolder folder;
   Phantom phantom = makeKneePhantom({{32, 36, 16}});
   std::vector<std::string> files = writePhantom(phantom, folder.path(), "knee");
@@ -383,3 +382,4 @@ TEST(PhantomScene, AVpHoldsOpacitiesOfAMillimetre) {
 }
 
 } // namespace
+} // namespace fenestra::PhantomSceneTests

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-using namespace fenestra;
+namespace fenestra::PhantomShapesTests {
 
 TEST(PhantomShapes, BlendsEqualTheSharpOperationAwayFromTheSeam) {
   EXPECT_DOUBLE_EQ(smoothUnion(1.0, 5.0, 2.0), 1.0);
@@ -108,3 +108,5 @@ TEST(PhantomNoise, RicianMomentsAreThoseOfTheLiterature) {
   EXPECT_NEAR(muscle, std::sqrt(350.0 * 350.0 + sigma * sigma), 0.15);
   EXPECT_NEAR(std::sqrt(square - muscle * muscle), sigma, 0.1);
 }
+
+} // namespace fenestra::PhantomShapesTests

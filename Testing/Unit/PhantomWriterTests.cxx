@@ -9,13 +9,12 @@
 
 #include <fstream>
 
-using namespace fenestra;
-
+namespace fenestra::PhantomWriterTests {
 namespace {
 
-struct PhantomFiles : testing::Test {
-  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) /
-                                 testing::UnitTest::GetInstance()->current_test_info()->name() /
+struct PhantomFiles : ::testing::Test {
+  std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) /
+                                 ::testing::UnitTest::GetInstance()->current_test_info()->name() /
                                  "deeper";
   Phantom phantom = makeKneePhantom({{32, 36, 24}});
 
@@ -195,3 +194,4 @@ TEST_F(PhantomFiles, AFolderThatCannotBeMadeIsAnOutputError) {
 }
 
 } // namespace
+} // namespace fenestra::PhantomWriterTests

@@ -6,7 +6,7 @@
 
 #include "Refusals.h"
 
-namespace fenestra {
+namespace fenestra::PresetReaderTests {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -113,4 +113,4 @@ TEST(PresetReader, readsEveryPresetThatTravelsWithTheProgram) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::PresetReaderTests

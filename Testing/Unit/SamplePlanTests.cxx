@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::SamplePlanTests {
 namespace {
 
 constexpr std::uint64_t pilotSamples = 16;
@@ -104,4 +104,4 @@ TEST(SamplePlan, QuietAndTinyPicturesAreSharedOutEvenly) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::SamplePlanTests

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <limits>
 
-namespace fenestra {
+namespace fenestra::SampleReadingTests {
 namespace {
 
 constexpr std::size_t count = 600'000; // some blocks, the last one not full
@@ -199,4 +199,4 @@ TEST(SampleReading, refusesStreamsOfAnotherLength) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SampleReadingTests

@@ -2,7 +2,7 @@
 
 #include "Histogram.h"
 
-namespace fenestra::testing {
+namespace fenestra::testing::ScatteringTests {
 namespace {
 
 const Vec3 incoming = Vec3(0.3, -0.5, 0.81).normalized();
@@ -130,4 +130,4 @@ TEST(SurfaceNormal, TurnsToWhereThePathCameFrom) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::ScatteringTests

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-namespace fenestra {
+namespace fenestra::SceneChangeTests {
 namespace {
 
 struct Change {
@@ -169,4 +169,4 @@ TEST_F(SceneChange, ARefusedChangeLeavesTheSceneAsItWas) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SceneChangeTests

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace fenestra {
+namespace fenestra::SceneFilesTests {
 namespace {
 
 std::string located(SceneFiles& files, const std::string& name) {
@@ -175,4 +175,4 @@ TEST(SceneFiles, refusesDamagedAndBoundlessEntries) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SceneFilesTests

@@ -4,7 +4,7 @@
 
 #include "Refusals.h"
 
-namespace fenestra {
+namespace fenestra::ScenePlanTests {
 namespace {
 
 MrmlDocument parse(const std::string& nodes) {
@@ -182,4 +182,4 @@ TEST(ScenePlan, listsWhatItLeavesOut) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::ScenePlanTests

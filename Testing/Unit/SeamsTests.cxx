@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::SeamsTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -209,3 +209,4 @@ TEST(Seams, MovesWithTheSurface) {
 }
 
 } // namespace
+} // namespace fenestra::SeamsTests

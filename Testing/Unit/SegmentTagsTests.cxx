@@ -4,7 +4,7 @@
 
 #include "MedicalFiles.h"
 
-namespace fenestra {
+namespace fenestra::SegmentTagsTests {
 namespace {
 
 TEST(SegmentTags, sayWhatSegmentsAreWithoutTheirLabels) {
@@ -42,4 +42,4 @@ TEST(SegmentTags, sayWhatSegmentsAreWithoutTheirLabels) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SegmentTagsTests

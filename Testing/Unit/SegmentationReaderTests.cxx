@@ -5,7 +5,7 @@
 
 #include "MedicalFiles.h"
 
-namespace fenestra {
+namespace fenestra::SegmentationReaderTests {
 namespace {
 
 Grid unitGrid(const Size3& size, const Vec3& origin = Vec3::Zero(), double spacing = 1.0) {
@@ -492,4 +492,4 @@ TEST(SegmentationReader, placesRealOldFilesWhereThePatientsSurfacesAre) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SegmentationReaderTests

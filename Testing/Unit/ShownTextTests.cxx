@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra {
+namespace fenestra::ShownTextTests {
 namespace {
 
 TEST(ShownText, isValidUtf8OnOneLine) {
@@ -46,4 +46,4 @@ TEST(ShownText, replacesAll) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::ShownTextTests

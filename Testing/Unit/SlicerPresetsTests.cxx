@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-namespace fenestra {
+namespace fenestra::SlicerPresetsTests {
 namespace {
 
 constexpr const char* presetsText = R"(<?xml version="1.0" encoding="UTF-8"?>
@@ -95,4 +95,4 @@ TEST(SlicerPresets, allOfARealSlicerCanBeRead) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SlicerPresetsTests

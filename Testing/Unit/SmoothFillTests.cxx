@@ -8,8 +8,8 @@
 
 #include <functional>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::SmoothFillTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -49,7 +49,7 @@ TEST(SmoothFill, ContinuesAConstantDepthWithIt) {
 }
 
 /// u'''' = u'' / length² with u(0) = 0, u'(0) = slope, and level at the buffer's end.
-class StraightEdge : public testing::TestWithParam<std::pair<double, double>> {};
+class StraightEdge : public ::testing::TestWithParam<std::pair<double, double>> {};
 
 TEST_P(StraightEdge, IsThePlateUnderTension) {
   const auto [slope, length] = GetParam();
@@ -77,8 +77,8 @@ TEST_P(StraightEdge, IsThePlateUnderTension) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Slopes, StraightEdge,
-                         testing::Values(std::pair{0.5, 5.0}, std::pair{-0.9, 10.0},
-                                         std::pair{7.0, 10.0}, std::pair{0.2, 20.0}));
+                         ::testing::Values(std::pair{0.5, 5.0}, std::pair{-0.9, 10.0},
+                                           std::pair{7.0, 10.0}, std::pair{0.2, 20.0}));
 
 TEST(SmoothFill, LeavesACurvedBoundaryWithItsSlope) {
   Sheet sheet(512, [](const Vec2& x) {
@@ -151,3 +151,4 @@ TEST(SmoothFill, ServesAnyShapeOfBuffer) {
 }
 
 } // namespace
+} // namespace fenestra::SmoothFillTests

@@ -7,7 +7,7 @@
 #include <future>
 #include <thread>
 
-namespace fenestra::testing {
+namespace fenestra::testing::StopTests {
 namespace {
 
 /// A cell's majorant is 1 / mm and a voxel's edge 1e8 mm, but hardly a point of a ray near the
@@ -95,4 +95,4 @@ TEST(Stop, endsARenderWhosePathsDoNotEnd) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::StopTests

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::SurfaceChangeTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -139,3 +139,4 @@ TEST_F(TurnedBalls, ComeOutFromBehindEachOtherMoreSlowly) {
 }
 
 } // namespace
+} // namespace fenestra::SurfaceChangeTests

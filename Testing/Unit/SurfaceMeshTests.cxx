@@ -11,8 +11,8 @@
 #include <map>
 #include <set>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::SurfaceMeshTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -366,3 +366,4 @@ TEST(SurfaceMesh, IsTheSameForASubjectOfAnySize) {
 }
 
 } // namespace
+} // namespace fenestra::SurfaceMeshTests

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::SurfaceWriterTests {
 namespace {
 
 void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path) {
@@ -184,4 +184,4 @@ TEST(SurfaceWriter, RefusesOtherEndingsAndFoldersThatAreNotThere) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::SurfaceWriterTests

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-using namespace fenestra::testing_clipping;
+namespace fenestra::ThinPlateSplineTests {
+using namespace testing_clipping;
 
 namespace {
 
@@ -237,3 +237,4 @@ TEST(ThinPlateSpline, NearlyCoincidentSitesStayFinite) {
 }
 
 } // namespace
+} // namespace fenestra::ThinPlateSplineTests

@@ -5,7 +5,7 @@
 
 #include "Refusals.h"
 
-namespace fenestra {
+namespace fenestra::TransferReaderTests {
 namespace {
 
 TEST(TransferReader, readsItsOwnFormat) {
@@ -213,4 +213,4 @@ TEST(TransferReader, readsTheReferencesTransferFunctions) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::TransferReaderTests

@@ -29,7 +29,7 @@
 #include <cstring>
 #include <random>
 
-namespace fenestra {
+namespace fenestra::TransformFileTests {
 namespace {
 
 using Extensions = std::vector<std::string>;
@@ -369,4 +369,4 @@ TEST(TransformFile, readsSlicersFile) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::TransformFileTests

@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace fenestra {
+namespace fenestra::VolumePropertyTests {
 namespace {
 
 VolumeProperty property(std::vector<OpacityNode> opacity) {
@@ -203,4 +203,4 @@ TEST(VolumeProperty, refusesWhatIsNotUsable) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::VolumePropertyTests

@@ -6,7 +6,7 @@
 
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::VolumeReaderTests {
 namespace {
 
 template <typename Stored>
@@ -440,4 +440,4 @@ TEST(VolumeReader, readsRealScans) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::VolumeReaderTests

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::VolumeTests {
 namespace {
 
 Grid obliqueGrid(const Size3& size) {
@@ -69,4 +69,4 @@ TEST(Frame, IsOrthonormalAndRightHanded) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::VolumeTests

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::testing::WideCellsTests {
 namespace {
 
 constexpr std::int64_t edge = 96;
@@ -119,4 +119,4 @@ TEST(WideCells, HoldExtinctionsOfAllSizes) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::testing::WideCellsTests

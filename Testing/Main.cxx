@@ -1,0 +1,28 @@
+// main of the tests. Ends with 77 where a case was skipped and none failed, so that ctest shows it,
+// and with 1 where no case ran: a filter that has gone stale is no success.
+
+#ifdef FENESTRA_TEST_APART
+#include "io/Apart.h"
+#endif
+
+#include <gtest/gtest.h>
+
+#ifdef FENESTRA_TEST_QT
+#include <QCoreApplication>
+#endif
+
+int main(int argc, char** argv) {
+#ifdef FENESTRA_TEST_APART
+  fenestra::serveApart(argc, argv); // the process that reads for a test is this executable
+#endif
+  ::testing::InitGoogleTest(&argc, argv);
+#ifdef FENESTRA_TEST_QT
+  const QCoreApplication application(argc, argv);
+#endif
+  if (RUN_ALL_TESTS() != 0)
+    return 1;
+  const auto& all = *::testing::UnitTest::GetInstance();
+  if (all.test_to_run_count() == 0)
+    return 1;
+  return all.skipped_test_count() > 0 ? 77 : 0;
+}

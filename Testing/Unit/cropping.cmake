@@ -1,1 +1,0 @@
-fenestra_test(DomainTests DomainTests.cxx LIBRARIES fenestra_volume LABELS unit)
