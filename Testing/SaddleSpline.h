@@ -3,49 +3,74 @@
 
 #include "core/Vector.h"
 
-#include <Eigen/LU>
-
+#include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fenestra::testing_clipping {
 
 /// The plain saddle system in mm, [K + lambda I, P; P', 0] [w; a] = [z; 0] with
-/// lambda = (1 - p) / p, solved in Scalar. p is above 0, and the sites determine a plane.
+/// lambda = (1 - p) / p, solved in Scalar by Gaussian elimination with partial pivoting (twenty
+/// lines: a library's, for a Scalar of its own, takes a compiler a minute). p is above 0, and the
+/// sites determine a plane.
 template <typename Scalar>
 class SaddleSpline {
 public:
   SaddleSpline(std::span<const Vec2> sites, std::span<const double> values, double smoothing)
       : m_sites(sites.begin(), sites.end()) {
-    const auto n = std::ssize(m_sites);
-    Matrix system = Matrix::Zero(n + 3, n + 3);
-    Vector right = Vector::Zero(n + 3);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Vec2& site = m_sites[static_cast<std::size_t>(i)];
-      for (Eigen::Index j = 0; j < i; ++j)
-        system(i, j) = system(j, i) = kernel(site, m_sites[static_cast<std::size_t>(j)]);
-      system(i, i) = (Scalar(1) - Scalar(smoothing)) / Scalar(smoothing);
-      system(i, n) = system(n, i) = Scalar(1);
-      system(i, n + 1) = system(n + 1, i) = Scalar(site.x());
-      system(i, n + 2) = system(n + 2, i) = Scalar(site.y());
-      right[i] = Scalar(values[static_cast<std::size_t>(i)]);
+    const std::size_t n = m_sites.size();
+    std::vector<Row> system(n + 3, Row(n + 4, Scalar(0)));
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < i; ++j)
+        system[i][j] = system[j][i] = kernel(m_sites[i], m_sites[j]);
+      system[i][i] = (Scalar(1) - Scalar(smoothing)) / Scalar(smoothing);
+      system[i][n] = system[n][i] = Scalar(1);
+      system[i][n + 1] = system[n + 1][i] = Scalar(m_sites[i].x());
+      system[i][n + 2] = system[n + 2][i] = Scalar(m_sites[i].y());
+      system[i][n + 3] = Scalar(values[i]);
     }
-    m_solution = system.partialPivLu().solve(right);
+    m_solution = solved(std::move(system));
   }
 
   /// f, rounded at last.
   double operator()(const Vec2& x) const {
-    const auto n = std::ssize(m_sites);
+    const std::size_t n = m_sites.size();
     Scalar sum =
         m_solution[n] + m_solution[n + 1] * Scalar(x.x()) + m_solution[n + 2] * Scalar(x.y());
-    for (Eigen::Index i = 0; i < n; ++i)
-      sum += m_solution[i] * kernel(x, m_sites[static_cast<std::size_t>(i)]);
+    for (std::size_t i = 0; i < n; ++i)
+      sum += m_solution[i] * kernel(x, m_sites[i]);
     return static_cast<double>(sum);
   }
 
 private:
-  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-  using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+  using Row = std::vector<Scalar>;
+
+  /// The solution of A x = b, where a row is one of A and then b's value.
+  static Row solved(std::vector<Row> rows) {
+    using std::abs;
+    const std::size_t count = rows.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      std::size_t pivot = k;
+      for (std::size_t i = k + 1; i < count; ++i)
+        if (abs(rows[i][k]) > abs(rows[pivot][k]))
+          pivot = i;
+      std::swap(rows[k], rows[pivot]);
+      for (std::size_t i = k + 1; i < count; ++i) {
+        const Scalar factor = rows[i][k] / rows[k][k];
+        for (std::size_t j = k + 1; j <= count; ++j)
+          rows[i][j] -= factor * rows[k][j];
+      }
+    }
+    Row x(count, Scalar(0));
+    for (std::size_t k = count; k-- > 0;) {
+      x[k] = rows[k][count];
+      for (std::size_t j = k + 1; j < count; ++j)
+        x[k] -= rows[k][j] * x[j];
+      x[k] /= rows[k][k];
+    }
+    return x;
+  }
 
   static Scalar kernel(const Vec2& a, const Vec2& b) {
     using std::log;
@@ -55,7 +80,7 @@ private:
   }
 
   std::vector<Vec2> m_sites;
-  Vector m_solution;
+  Row m_solution;
 };
 
 } // namespace fenestra::testing_clipping
