@@ -102,7 +102,7 @@ int renderScene(const RenderOptions& options, const std::string& command, Output
   if (options.stats) {
     const Stopwatch measure;
     if (!monitor.stop) // which does not wait for measures
-      stats.focus = measureFocus(scene, options.settings.seed);
+      stats.focus = measureFocus(scene, options.settings.seed, monitor.stop);
     stats.measure = measure.seconds();
     describe(scene, stats);
     if (options.preset)

@@ -4,7 +4,8 @@
 
 namespace fenestra {
 
-std::optional<FocusReport> measureFocus(const Scene& scene, std::uint64_t seed) {
+std::optional<FocusReport> measureFocus(const Scene& scene, std::uint64_t seed,
+                                        const StopFlag& stop) {
   if (!scene.focus() || scene.focusDepth().empty())
     return std::nullopt;
   const RenderScene clipped = scene.forRender();
@@ -25,8 +26,14 @@ std::optional<FocusReport> measureFocus(const Scene& scene, std::uint64_t seed) 
   FocusReport report;
   report.kept = points.kept();
   report.coverage = focusCoverage(clipped, points, seed);
+  if (stop)
+    return std::nullopt;
   report.withoutClip = focusCoverage(wholeScene, FocusPoints(wholeScene, scene.focusDepth()), seed);
+  if (stop)
+    return std::nullopt;
   report.light = focusLight(clipped, unclipped(alone, &nothingElse), points, seed);
+  if (stop)
+    return std::nullopt;
   report.contextRemoved = contextRemoved(clipped, *mask, seed);
   return report;
 }

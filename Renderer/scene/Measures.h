@@ -13,7 +13,8 @@ struct FocusReport {
   std::optional<double> contextRemoved = {}; ///< share of the matter that is not focus
 };
 
-/// Of a scene that has measured its focus's depth; nothing of others.
-std::optional<FocusReport> measureFocus(const Scene& scene, std::uint64_t seed);
+/// Of a scene that has measured its focus's depth; nothing of others, and where it is stopped.
+std::optional<FocusReport> measureFocus(const Scene& scene, std::uint64_t seed,
+                                        const StopFlag& stop);
 
 } // namespace fenestra

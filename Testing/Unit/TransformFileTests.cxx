@@ -323,6 +323,37 @@ TEST(TransformFile, refusesWhatIsNoTransform) {
   expectRefused(large, "is larger than 64 MB");
 }
 
+/// HDF5's own ways to have a library open other files: parts of a file that is read apart.
+TEST(TransformFile, refusesHdf5ThatLeadsElsewhere) {
+  const TemporaryFolder folder;
+  const auto other = folder.write("other.raw", std::string(80, '\0'));
+  using Lead = std::function<void(hid_t file)>;
+  const Lead values = [&](hid_t file) { // a data set whose values lie in another file
+    const hsize_t size = 10;
+    const hid_t space = H5Screate_simple(1, &size, nullptr), kept = H5Pcreate(H5P_DATASET_CREATE);
+    ASSERT_GE(H5Pset_external(kept, other.c_str(), 0, 80), 0);
+    const hid_t data =
+        H5Dcreate2(file, "more", H5T_IEEE_F64LE, space, H5P_DEFAULT, kept, H5P_DEFAULT);
+    ASSERT_GE(data, 0);
+    H5Dclose(data);
+    H5Pclose(kept);
+    H5Sclose(space);
+  };
+  const Lead link = [&](hid_t file) {
+    ASSERT_GE(H5Lcreate_external("other.h5", "/", file, "more", H5P_DEFAULT, H5P_DEFAULT), 0);
+  };
+  const auto affine = turned<itk::AffineTransform<double, 3>>();
+  EXPECT_NO_THROW(
+      readLinearTransform(write(folder, ".h5", affine.GetPointer()), TransformSense::fromParent));
+  for (const Lead& lead : {values, link}) {
+    const auto path = write(folder, ".h5", affine.GetPointer());
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    lead(file);
+    H5Fclose(file);
+    expectRefused(path, "is damaged");
+  }
+}
+
 /// Whatever becomes of the bytes: read, or refused on one line.
 TEST(TransformFile, survivesDamage) {
   const TemporaryFolder folder;

@@ -146,7 +146,8 @@ std::vector<TransformRecord> transformRecords(const Path& path, std::string_view
 }
 
 std::string transformAnswer(const Path& path) {
-  Apart child(transformJob);
+  // Starting one takes longer than a transform: a thread's lasts for all that it reads.
+  thread_local Apart child(transformJob);
   const auto answer = child.ask(path.string(), longestAnswer);
   if (!answer || answer->empty())
     throwDamagedTransform(path);
