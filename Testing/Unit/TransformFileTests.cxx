@@ -44,10 +44,10 @@ typename itk::TransformIOBaseTemplate<Real>::Pointer transformIo(const std::stri
   return itk::TxtTransformIOTemplate<Real>::New().GetPointer();
 }
 
-template <typename Transform>
+template <typename Real>
 std::filesystem::path write(const TemporaryFolder& folder, const std::string& extension,
-                            const Transform* transform, bool compress = false) {
-  using Real = typename Transform::ParametersValueType;
+                            const itk::TransformBaseTemplate<Real>* transform,
+                            bool compress = false) {
   const auto writer = itk::TransformFileWriterTemplate<Real>::New();
   const auto path = folder / ("t" + extension);
   writer->SetFileName(path.string());
@@ -59,9 +59,9 @@ std::filesystem::path write(const TemporaryFolder& folder, const std::string& ex
 }
 
 /// The file maps LPS points as ITK's object does; ours maps the same points in RAS, the other way.
-template <typename Transform>
-void expectSameMap(const Transform* transform, const Extensions& extensions = everyExtension) {
-  using Real = typename Transform::ScalarType;
+template <typename Real>
+void expectSameMap(const itk::Transform<Real, 3, 3>* transform,
+                   const Extensions& extensions = everyExtension) {
   constexpr double error = sizeof(Real) == 4 ? 1e-3 : 1e-9;
   const TemporaryFolder folder;
   for (std::string extension : extensions) {
