@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -83,15 +84,43 @@ Result resultOf(const Case& one, const Place& place) {
   return result;
 }
 
+/// Says every minute how far work is, for who waits for hours.
+class Progress {
+public:
+  explicit Progress(std::size_t whole) : m_whole(whole) {}
+
+  /// From one thread. `done` is above 0 and at most the whole.
+  void tell(std::size_t done) {
+    using std::chrono::duration_cast, std::chrono::minutes;
+    const Clock::duration spent = Clock::now() - m_start;
+    if (spent < m_next)
+      return;
+    m_next = spent + minutes(1);
+    const auto left = spent * (m_whole - done) / done;
+    std::fprintf(stderr, "%zu of %zu runs, %lld min left\n", done, m_whole,
+                 static_cast<long long>(duration_cast<minutes>(left).count()));
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  std::size_t m_whole;
+  Clock::time_point m_start = Clock::now();
+  Clock::duration m_next = std::chrono::minutes(1);
+};
+
 std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, unsigned threads) {
   std::vector<Result> results(cases.size());
   std::atomic<std::size_t> next = 0;
+  Progress progress(cases.size());
   std::vector<std::thread> workers;
   for (unsigned i = 0; i < threads; ++i)
-    workers.emplace_back([&] {
+    workers.emplace_back([&, i] {
       const Place place(tools);
-      for (std::size_t at; (at = next++) < cases.size();)
+      for (std::size_t at; (at = next++) < cases.size();) {
         results[at] = resultOf(cases[at], place);
+        if (i == 0)
+          progress.tell(at + 1);
+      }
     });
   for (std::thread& worker : workers)
     worker.join();
