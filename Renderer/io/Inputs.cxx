@@ -47,7 +47,9 @@ std::optional<FileId> idOf(int folder, const char* path, int flags) {
                        : 0};
 }
 
-thread_local std::filesystem::path confinement; ///< canonical; empty: anywhere
+/// A canonical folder; none: anywhere. (A pointer: a thread's object with a destructor ends the
+/// process where there is no memory for it.)
+thread_local const std::filesystem::path* confinement = nullptr;
 
 bool isWithin(const std::filesystem::path& path, const std::filesystem::path& folder) {
   std::error_code failed;
@@ -72,7 +74,7 @@ std::optional<FileId> fileId(int descriptor) {
 
 void requireFile(const std::filesystem::path& path, const std::string& mend, std::uint64_t most) {
   // Before it is looked at: a name on an automount or a server would tell others of itself.
-  if (!confinement.empty() && !isWithin(path, confinement))
+  if (confinement && !isWithin(path, *confinement))
     throw inputError(path.string(), "is outside the archive that names it; save the scene again");
   struct stat status = {};
   if (::stat(path.c_str(), &status) != 0) {
@@ -108,12 +110,12 @@ void expectInput(const std::filesystem::path& path) {
         expectInput(entry->path());
 }
 
-InputsWithin::InputsWithin(const std::filesystem::path& folder) : m_before(confinement) {
-  confinement = std::filesystem::canonical(folder);
-}
+InputsWithin::InputsWithin(const std::filesystem::path& folder)
+    : m_folder(std::filesystem::canonical(folder)),
+      m_before(std::exchange(confinement, &m_folder)) {}
 
 InputsWithin::~InputsWithin() {
-  confinement = std::move(m_before);
+  confinement = m_before;
 }
 
 std::optional<std::filesystem::path> inputNamed(const FileId& file) {

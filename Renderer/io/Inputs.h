@@ -54,7 +54,8 @@ public:
   InputsWithin& operator=(const InputsWithin&) = delete;
 
 private:
-  std::filesystem::path m_before;
+  std::filesystem::path m_folder;
+  const std::filesystem::path* m_before;
 };
 
 /// The name under which a file was read; empty where it was not.

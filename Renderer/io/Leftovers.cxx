@@ -2,8 +2,11 @@
 
 #include <atomic>
 #include <cerrno>
+#include <memory>
+#include <new>
 #include <random>
 
+#include <dirent.h>
 #include <unistd.h>
 
 namespace fenestra {
@@ -12,19 +15,32 @@ namespace {
 constexpr std::string_view digits = "0123456789abcdef";
 constexpr std::size_t digitCount = 12;
 
+bool isTemporaryName(std::string_view name, std::string_view prefix) {
+  return name.size() == prefix.size() + digitCount && name.starts_with(prefix) &&
+         name.find_first_not_of(digits, prefix.size()) == std::string_view::npos;
+}
+
 } // namespace
 
 std::string temporaryName(std::string_view prefix) {
-  static thread_local std::random_device random;
+  std::random_device random;
   std::string name(prefix);
   for (std::size_t i = 0; i < digitCount; ++i)
     name += digits[random() % digits.size()];
   return name;
 }
 
-bool isTemporaryName(std::string_view name, std::string_view prefix) {
-  return name.size() == prefix.size() + digitCount && name.starts_with(prefix) &&
-         name.find_first_not_of(digits, prefix.size()) == std::string_view::npos;
+void forTemporaryNames(const std::filesystem::path& folder, std::string_view prefix,
+                       const std::function<void(const std::filesystem::path&)>& use) {
+  // std::filesystem's iterator ends the process where memory fails.
+  const std::unique_ptr<DIR, int (*)(DIR*)> names(::opendir(folder.c_str()), ::closedir);
+  while (const dirent* const entry = names ? ::readdir(names.get()) : nullptr)
+    try {
+      if (isTemporaryName(entry->d_name, prefix))
+        use(folder / entry->d_name);
+    } catch (const std::bad_alloc&) {
+      return;
+    }
 }
 
 /// A place in the list. Entries are used again and never freed, so that a signal handler may walk

@@ -2,6 +2,7 @@
 // Names that must not outlive the process, and moments at which a signal must not end it.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,7 +11,11 @@ namespace fenestra {
 
 /// `prefix` and twelve random digits.
 std::string temporaryName(std::string_view prefix);
-bool isTemporaryName(std::string_view name, std::string_view prefix);
+
+/// Calls `use` with each path of such a name in the folder, for whoever sweeps what others have
+/// left: where the folder cannot be read, or memory fails, the rest stays to the next.
+void forTemporaryNames(const std::filesystem::path& folder, std::string_view prefix,
+                       const std::function<void(const std::filesystem::path&)>& use);
 
 /// A temporary file or folder: removed with this object, or by the signal that ends the process.
 class Leftover {

@@ -105,21 +105,20 @@ std::filesystem::path PrivateFolder::add(const std::filesystem::path& relative) 
 }
 
 void removeAbandonedFolders() {
-  std::error_code failed;
-  const std::filesystem::path parent = std::filesystem::temp_directory_path(failed);
-  if (failed)
+  std::filesystem::path parent;
+  try {
+    parent = temporaryFiles();
+  } catch (const std::exception&) { // there is none, or no memory: whoever needs it says so
     return;
-  for (std::filesystem::directory_iterator entry(parent, failed), end; !failed && entry != end;
-       entry.increment(failed)) {
-    if (!isTemporaryName(entry->path().filename().string(), folderPrefix))
-      continue;
-    const int lock = lockAbandoned(entry->path());
-    if (lock < 0)
-      continue;
-    std::error_code ignored;
-    std::filesystem::remove_all(entry->path(), ignored);
-    ::close(lock);
   }
+  forTemporaryNames(parent, folderPrefix, [](const std::filesystem::path& folder) {
+    const int lock = lockAbandoned(folder);
+    if (lock < 0)
+      return;
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+    ::close(lock);
+  });
 }
 
 } // namespace fenestra

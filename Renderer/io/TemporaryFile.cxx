@@ -161,19 +161,15 @@ void TemporaryFile::takeBack() noexcept {
 }
 
 void removeAbandonedFiles(const std::filesystem::path& folder) {
-  std::error_code failed;
-  for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
-       entry.increment(failed)) {
-    if (!isTemporaryName(entry->path().filename().string(), namePrefix))
-      continue;
-    const int file = ::open(entry->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  forTemporaryNames(folder, namePrefix, [](const std::filesystem::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     struct stat status = {};
     if (file >= 0 && ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) &&
         status.st_uid == ::geteuid() && ::flock(file, LOCK_EX | LOCK_NB) == 0)
-      ::unlink(entry->path().c_str());
+      ::unlink(path.c_str());
     if (file >= 0)
       ::close(file);
-  }
+  });
 }
 
 void requireRoomFor(const std::filesystem::path& target) {

@@ -220,6 +220,8 @@ int showOne(const Case& one, const Tools& tools) {
   std::printf("%s: met %s; status %d, signal %d\n%s", nameOf(one).c_str(),
               result.outcome.place.c_str(), result.outcome.status, result.outcome.signal,
               result.outcome.errors.c_str());
+  for (const Frame& frame : result.outcome.frames)
+    std::printf("  in %s\n", functionOf(frame).c_str());
   for (const std::string& line : result.wrong)
     std::printf("wrong: %s\n", line.c_str());
   return result.wrong.empty() ? 0 : 1;

@@ -127,27 +127,6 @@ std::string withoutArguments(const std::string& function) {
   return name;
 }
 
-/// The exported name, else what the module's own table says.
-std::string functionOf(const Frame& frame) {
-  std::string name = frame.function;
-  if (name.empty()) {
-    std::ostringstream command;
-    command << "addr2line -f -e '" << frame.module << "' 0x" << std::hex << frame.address - 1;
-    if (FILE* const pipe = ::popen(command.str().c_str(), "r")) {
-      char line[2000] = {};
-      if (std::fgets(line, sizeof line, pipe))
-        name = std::string(line, std::strcspn(line, "\n"));
-      ::pclose(pipe);
-    }
-  }
-  int failed = 0;
-  char* const readable = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &failed);
-  if (failed == 0)
-    name = readable;
-  std::free(readable);
-  return withoutArguments(name);
-}
-
 } // namespace
 
 Lines errorLines(const Outcome& outcome) {
@@ -180,6 +159,26 @@ Lines judge(const Subject& subject, const Fault& fault, const Place& place, Outc
       wrong.push_back(line + " that the next run does not remove");
   }
   return wrong;
+}
+
+std::string functionOf(const Frame& frame) {
+  std::string name = frame.function;
+  if (name.empty()) {
+    std::ostringstream command;
+    command << "addr2line -f -e '" << frame.module << "' 0x" << std::hex << frame.address - 1;
+    if (FILE* const pipe = ::popen(command.str().c_str(), "r")) {
+      char line[2000] = {};
+      if (std::fgets(line, sizeof line, pipe))
+        name = std::string(line, std::strcspn(line, "\n"));
+      ::pclose(pipe);
+    }
+  }
+  int failed = 0;
+  char* const readable = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &failed);
+  if (failed == 0)
+    name = readable;
+  std::free(readable);
+  return withoutArguments(name);
 }
 
 Culprit culprit(const std::vector<Frame>& frames) {

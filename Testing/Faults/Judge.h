@@ -20,6 +20,9 @@ struct Culprit {
   bool isOurs;
 };
 
+/// The exported name, else what the module's own table says.
+std::string functionOf(const Frame& frame);
+
 Culprit culprit(const std::vector<Frame>& frames);
 
 } // namespace fenestra::faults
