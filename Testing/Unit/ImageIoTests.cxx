@@ -427,6 +427,20 @@ TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {
     EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
 }
 
+/// Teem's messages have room for 1024 bytes of a line, and its sizes for 16 axes.
+TEST_F(DamagedFiles, CannotOverflowTheReader) {
+  const std::string head = "NRRD0004\ntype: float\nencoding: raw\nendian: little\n";
+  const std::string plain = head + "dimension: 2\nsizes: 4 4\n", ones(1000, '1');
+  for (const std::string& header :
+       {plain + "space: left-posterior-superior\nspace directions: (" + ones + ",0,0) (0,1,0)\n",
+        plain + "dimension" + std::string(1000, 'n') + ": 4\n",
+        head + "dimension: 17\nsizes: 4 4 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1\n",
+        head + "dimension: 2\nsizes: 4 99999999999\n"}) {
+    store(path("a.nrrd"), header + "\n" + std::string(64, '\0'));
+    EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input) << header;
+  }
+}
+
 TEST_F(DamagedFiles, AreRefusedWithoutNoise) {
   ::testing::internal::CaptureStderr();
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {

@@ -25,7 +25,7 @@ constexpr std::uint64_t longestFields = 1 << 20;
 // ---- the fields: the child sends their texts in this order
 // ----------------------------------------
 
-std::string trimmed(std::string text) {
+std::string withoutPadding(std::string text) {
   const auto blank = [](char c) { return c == ' ' || c == '\0'; };
   while (!text.empty() && blank(text.back()))
     text.pop_back();
@@ -167,7 +167,7 @@ DicomHeader dicomHeader(std::string_view answer) {
   for (bool* flag : {&header.image, &header.compressed, &header.whole})
     *flag = texts.text() == "1";
   for (const Field& field : dicomFields)
-    field.keep(header, trimmed(texts.text()));
+    field.keep(header, withoutPadding(texts.text()));
   return header;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/Inputs.h"
+#include "io/NrrdHeader.h"
 #include "io/pictures/ExrHeader.h"
 #include "io/pictures/ImageFormat.h"
 
@@ -98,23 +99,6 @@ Image readExr(const std::filesystem::path& path) {
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
   return image;
-}
-
-/// A NRRD header can send its reader to other files or to standard input.
-void checkAttached(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string line(4096, '\0'); // ours have no longer ones
-  while (file.getline(line.data(), static_cast<std::streamsize>(line.size()))) {
-    std::string field = line.substr(0, line.find_first_of(":\r\0"s));
-    if (field.empty())
-      return;
-    std::erase_if(field, [](unsigned char c) { return std::isspace(c); });
-    std::transform(field.begin(), field.end(), field.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (field == "datafile")
-      throw inputError(path.string(), "keeps its data outside; store them in the file itself");
-  }
-  throw std::runtime_error("its header does not end");
 }
 
 /// Channel names by the number of components, none where it is not ours; empty names mean grey.
@@ -230,7 +214,8 @@ bool isOnePicture(const itk::ImageIOBase& io) {
 }
 
 Image readNrrd(const std::filesystem::path& path) {
-  checkAttached(path);
+  if (readNrrdHeader(path).fields.contains("datafile"))
+    throw inputError(path.string(), "keeps its data outside; store them in the file itself");
   const auto io = itk::NrrdImageIO::New();
   io->SetFileName(path.string());
   io->ReadImageInformation();

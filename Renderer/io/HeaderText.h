@@ -1,0 +1,100 @@
+#pragma once
+// Headers that are lines of text at the front of a file, as of NRRD and MetaImage. For io's own
+// sources.
+
+#include "core/Error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fenestra::header {
+
+inline constexpr std::size_t longestHeader = 16 << 20;
+
+inline std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+inline std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos)
+    return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+inline std::vector<std::string_view> words(std::string_view text) {
+  std::vector<std::string_view> found;
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
+    found.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return found;
+}
+
+inline std::optional<std::int64_t> wholeNumber(std::string_view text) {
+  text = trimmed(text);
+  std::int64_t value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || end != text.data() + text.size())
+    return std::nullopt;
+  return value;
+}
+
+inline Error damaged(const std::filesystem::path& path, const std::string& format) {
+  return inputError(path.string(),
+                    "is not a " + format + " file, or its header is damaged; write it again");
+}
+
+/// To libraries a zero byte or a lone \r ends a line, so that they would read another one than we
+/// do.
+inline bool hasControls(std::string_view line) {
+  return std::any_of(line.begin(), line.end(),
+                     [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
+}
+
+/// The text header at the front of a file, line by line; it may be followed by binary samples.
+class HeaderLines {
+public:
+  explicit HeaderLines(const std::filesystem::path& path) {
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    m_text.resize(static_cast<std::size_t>(std::min<std::uintmax_t>(longestHeader, size)));
+    std::ifstream file(path, std::ios::binary);
+    file.read(m_text.data(), static_cast<std::streamsize>(m_text.size()));
+    m_text.resize(static_cast<std::size_t>(file.gcount()));
+  }
+
+  /// The next line without its end; nothing where there is none that ends within the limit.
+  std::optional<std::string_view> next() {
+    if (m_position >= m_text.size())
+      return std::nullopt;
+    const std::size_t end = m_text.find('\n', m_position);
+    if (end == std::string::npos && m_text.size() == longestHeader)
+      return std::nullopt;
+    std::string_view line(m_text);
+    line = line.substr(m_position, end == std::string::npos ? end : end - m_position);
+    m_position += line.size() + 1;
+    if (line.ends_with('\r'))
+      line.remove_suffix(1);
+    return line;
+  }
+
+  /// Of the byte after the lines read so far.
+  std::uint64_t position() const { return std::min(m_position, m_text.size()); }
+
+private:
+  std::string m_text;
+  std::size_t m_position = 0;
+};
+
+} // namespace fenestra::header
