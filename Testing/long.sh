@@ -6,7 +6,8 @@
 #   seeds         the short matrix with twenty seed bases
 #   planted       the errors planted in a copy of the renderer
 #   instructions  the statistical tests and the planted errors on every instruction set
-#   addresses     the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer
+#   addresses     the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer, each access
+#                 checked
 #   threads       the whole suite under ThreadSanitizer, with a oneTBB that it can see into
 #   clang         the whole suite, and the benchmarks that nothing tests, built by clang
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
@@ -141,7 +142,8 @@ smaller=', brief: a fourth of the samples, 24 combinations'
 
 stage_addresses() {
   install_packages clang libclang-rt-14-dev
-  (cd "$top" && cmake --preset asan-ubsan >/dev/null && cmake --build build-asan-ubsan)
+  (cd "$top" && cmake --preset asan-ubsan -DFENESTRA_CHECK_ACCESSES=ON >/dev/null &&
+    cmake --build build-asan-ubsan)
   LSAN_OPTIONS="suppressions=$top/Testing/lsan.supp" FENESTRA_BRIEF=4 FENESTRA_COMBINATIONS=24 \
     in_record addresses.md run_labels "AddressSanitizer and UndefinedBehaviorSanitizer$smaller" \
     "$top/build-asan-ubsan" "${labels[@]}"

@@ -138,6 +138,9 @@ struct Start {
                               const_cast<sock_filter*>(filter.data())};
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int in = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  for (const int stop :
+       {SIGHUP, SIGQUIT, SIGINT, SIGTERM, SIGPIPE}) // which nohup, say, has changed
+    ::signal(stop, SIG_DFL);
   if (fault.kind == Fault::Kind::ignored)
     ::signal(fault.value, SIG_IGN);
   const bool placed = ::chdir(start.folder.c_str()) == 0 && ::dup2(in, STDIN_FILENO) >= 0 &&

@@ -1,9 +1,7 @@
-// Pictures to files and back: what is kept, what a failure leaves, what a damaged file does.
+// Pictures to files and back: what is kept, and what a failure leaves.
 
-#include "WriteResults.h"
-#include "core/Error.h"
+#include "ImageTesting.h"
 #include "io/EmbeddedResources.h"
-#include "io/pictures/ImageReader.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -23,60 +21,12 @@
 
 namespace fenestra::ImageIoTests {
 using namespace std::string_literals;
-namespace fs = std::filesystem;
-
-/// For the leak sanitizer, if there is one: ITK's NRRD reader forgets a few bytes of a damaged
-/// file.
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libITKNrrdIO";
-}
+using namespace testing_images;
 
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
-
-std::string contentOf(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream content;
-  content << file.rdbuf();
-  return content.str();
-}
-
-void store(const fs::path& path, const std::string& content) {
-  fs::remove(path); // overwriting makes some file systems wait for the disk
-  std::ofstream(path, std::ios::binary) << content;
-}
-
-/// The kind of Error that something throws; its text must be one line that names the file.
-ErrorKind kindOf(const std::function<void()>& action, const std::string& named = "") {
-  try {
-    action();
-  } catch (const Error& error) {
-    const std::string line = error.what();
-    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
-    EXPECT_NE(line.find(named), std::string::npos) << line;
-    return error.kind();
-  }
-  ADD_FAILURE() << "nothing thrown for " << named;
-  return {};
-}
-
-/// A gradient in every channel that a render has.
-Image renderedImage(int width = 13, int height = 7) {
-  Image image{width, height, {}, {{"seed", "7"}, {"command", "fenestra a.nrrd --size 13x7"}}};
-  float start = 0.0f;
-  for (const char* name :
-       {"R", "G", "B", "Z", "clip.Z", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y",
-        "normal.Z", "error.R", "error.G", "error.B", "samples.N"}) {
-    auto& plane = image.channels[name];
-    for (int i = 0; i < width * height; ++i)
-      plane.push_back(start + 0.01f * static_cast<float>(i));
-    start += 0.1f;
-  }
-  image.channels["A"].assign(static_cast<std::size_t>(width * height), 1.0f);
-  return image;
-}
 
 Image onePixel(float r, float g, float b, float a) {
   return {1, 1, {{"R", {r}}, {"G", {g}}, {"B", {b}}, {"A", {a}}}, {}};
@@ -100,34 +50,9 @@ private:
   void (*m_handler)(int);
 };
 
-class ImageFiles : public ::testing::Test {
-protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    m_folder = fs::path(::testing::TempDir()) /
-               ("fenestra-" + std::to_string(::getpid()) + "-" + test->name());
-    fs::create_directory(m_folder);
-  }
-  void TearDown() override { fs::remove_all(m_folder); }
-
-  fs::path path(const std::string& name) const { return m_folder / name; }
-  std::size_t fileCount() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()));
-  }
-  fs::path written(const Image& image, const std::string& name, const ImagePlane& plane = {},
-                   const std::string& view = "") const {
-    writeImage(image, plane, path(name), view);
-    return path(name);
-  }
-
-  fs::path m_folder;
-};
-
 using ExrFiles = ImageFiles;
 using NrrdFiles = ImageFiles;
 using DisplayFiles = ImageFiles;
-using DamagedFiles = ImageFiles;
 
 TEST(EmbeddedResources, HoldTheColourConfiguration) {
   EXPECT_TRUE(embeddedResource("color/fenestra.ocio").starts_with("ocio_profile_version"));
@@ -350,104 +275,6 @@ TEST_F(ImageFiles, ThatFailLeaveNothingBehindAndKeepTheFormer) {
     EXPECT_EQ(kindOf([&] { writeImage(image, {}, path("missing/" + name)); }, name),
               ErrorKind::output);
   }
-}
-
-TEST_F(DamagedFiles, CutShortAreRefusedOrLoseNothing) {
-  for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
-    const Image image = readImage(written(renderedImage(), name));
-    const std::string whole = contentOf(path(name));
-    for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 100) {
-      store(path("cut-" + name), whole.substr(0, length));
-      try { // a PNG has every pixel before its last bytes
-        const Image read = readImage(path("cut-" + name));
-        EXPECT_EQ(read.channels, image.channels) << length << " of " << whole.size();
-        EXPECT_GT(length, whole.size() * 9 / 10) << name;
-      } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::input);
-      }
-    }
-  }
-}
-
-TEST_F(DamagedFiles, WithAnyByteChangedAreReadOrRefused) {
-  for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
-    const std::string whole = contentOf(written(renderedImage(), name));
-    const std::size_t step = 1 + whole.size() / 1500;
-    for (std::size_t at = 0; at < whole.size(); at += step)
-      for (const char value : {'\0', '\x7f', '\xff'}) {
-        std::string changed = whole;
-        changed[at] = value;
-        store(path("changed-" + name), changed);
-        try {
-          const Image image = readImage(path("changed-" + name));
-          for (const auto& [channel, plane] : image.channels)
-            ASSERT_EQ(plane.size(), static_cast<std::size_t>(image.width * image.height));
-        } catch (const Error& error) {
-          ASSERT_EQ(error.kind(), ErrorKind::input);
-        }
-      }
-  }
-}
-
-TEST_F(DamagedFiles, CannotClaimMoreThanTheyHold) {
-  const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: raw\nendian: little\n"
-                           "kinds: vector domain domain\n";
-  store(path("a.nrrd"), head + "sizes: 4 30000 30000\n\n1234");
-  EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "too short"), ErrorKind::input);
-  store(path("b.nrrd"), head + "sizes: 4 40000 2\n\n1234");
-  EXPECT_EQ(kindOf([&] { readImage(path("b.nrrd")); }, "32768"), ErrorKind::input);
-  // An attribute of 2 GB, right after the magic number and the version.
-  std::string exr = contentOf(written(renderedImage(), "a.exr"));
-  exr.replace(8, 0, std::string("note\0string\0\xff\xff\xff\x7f", 16));
-  store(path("a.exr"), exr);
-  EXPECT_EQ(kindOf([&] { readImage(path("a.exr")); }, "attribute"), ErrorKind::input);
-  // A list of channels that ends before its size does: OpenEXR would take what follows for an
-  // attribute.
-  exr.replace(8, 16, std::string("c\0chlist\0\x0d\0\0\0\0w\0string\0\xff\xff\xff\x7f", 26));
-  store(path("a.exr"), exr);
-  EXPECT_EQ(kindOf([&] { readImage(path("a.exr")); }, "does not fill"), ErrorKind::input);
-  // A PNG's width and height are bytes 16 to 23; libpng looks at the checksum first or at them.
-  std::string png = contentOf(written(renderedImage(), "a.png"));
-  png.replace(16, 8, std::string("\0\0\x70\0\0\0\x70\0", 8));
-  store(path("a.png"), png);
-  EXPECT_EQ(kindOf([&] { readImage(path("a.png")); }, "a.png"), ErrorKind::input);
-}
-
-TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {
-  const std::string head = "NRRD0004\ntype: float\ndimension: 2\nencoding: raw\nendian: little\n"
-                           "sizes: 4 4\n";
-  for (const std::string& line : {"data file: -"s, "datafile: /dev/zero"s, " Data  File:-"s,
-                                  "#" + std::string(5000, 'x') + "\ndata file: -"}) {
-    store(path("a.nrrd"), head + line + "\n\n" + std::string(64, '\0'));
-    EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input) << line;
-  }
-  ::mkfifo(path("pipe.exr").c_str(), 0600);
-  fs::create_directory(path("folder.png"));
-  for (const char* name : {"pipe.exr", "folder.png", "missing.exr", "text.txt"})
-    EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
-}
-
-/// Teem's messages have room for 1024 bytes of a line, and its sizes for 16 axes.
-TEST_F(DamagedFiles, CannotOverflowTheReader) {
-  const std::string head = "NRRD0004\ntype: float\nencoding: raw\nendian: little\n";
-  const std::string plain = head + "dimension: 2\nsizes: 4 4\n", ones(1000, '1');
-  for (const std::string& header :
-       {plain + "space: left-posterior-superior\nspace directions: (" + ones + ",0,0) (0,1,0)\n",
-        plain + "dimension" + std::string(1000, 'n') + ": 4\n",
-        head + "dimension: 17\nsizes: 4 4 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1\n",
-        head + "dimension: 2\nsizes: 4 99999999999\n"}) {
-    store(path("a.nrrd"), header + "\n" + std::string(64, '\0'));
-    EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input) << header;
-  }
-}
-
-TEST_F(DamagedFiles, AreRefusedWithoutNoise) {
-  ::testing::internal::CaptureStderr();
-  for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
-    store(path(name), "not a picture at all, whatever the extension says");
-    EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
-  }
-  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST_F(ImageFiles, OfTheReferenceAreRead) {

@@ -7,9 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <charconv>
-#include <fstream>
 #include <map>
 #include <string_view>
 
@@ -68,8 +65,8 @@ void locateNrrdFiles(const std::filesystem::path& path, const NrrdHeaderText& he
 }
 
 StoredSamples locateNrrd(const std::filesystem::path& path) {
-  const NrrdHeaderText header = readNrrdHeader(path);
-  Fields fields = header.fields;
+  NrrdHeaderText header = readNrrdHeader(path);
+  Fields& fields = header.fields;
   StoredSamples stored;
   const std::string encoding = lower(fields["encoding"]);
   stored.compressed = encoding != "raw" && encoding != "hex"; // a text's digit can be 8 bytes

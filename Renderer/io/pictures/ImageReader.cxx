@@ -17,16 +17,11 @@
 #include <tiffio.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <memory>
 
 namespace fenestra {
-
-using namespace std::string_literals;
-
 namespace {
 
 constexpr std::int64_t largestSide = 32768;
