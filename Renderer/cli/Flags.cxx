@@ -1,10 +1,10 @@
 #include "cli/Flags.h"
 
 #include "core/Error.h"
+#include "core/TextStream.h"
 
 #include <algorithm>
 #include <charconv>
-#include <sstream>
 #include <stdexcept>
 
 namespace fenestra {
@@ -54,7 +54,7 @@ bool isWritten(const Flag& flag) {
 }
 
 std::string shortNumber(double x) {
-  std::ostringstream out;
+  TextWriter out;
   out << x;
   return out.str();
 }

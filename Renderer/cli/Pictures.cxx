@@ -3,11 +3,11 @@
 #include "cli/FileNames.h"
 #include "cli/Version.h"
 #include "core/Error.h"
+#include "core/TextStream.h"
 #include "io/Inputs.h"
 #include "io/pictures/ImageWriter.h"
 #include "io/surfaces/SurfaceWriter.h"
 
-#include <sstream>
 #include <unistd.h>
 
 namespace fenestra {
@@ -30,7 +30,7 @@ std::string quoted(const std::string& argument) {
 }
 
 std::string text(const Vec3& v) {
-  std::ostringstream out;
+  TextWriter out;
   out.precision(17);
   out << v.x() << ',' << v.y() << ',' << v.z();
   return out.str();
@@ -41,7 +41,7 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
   const std::filesystem::path folder = options.outputs.front().parent_path();
   const CameraPose& pose = scene.camera().pose();
   const bool perspective = pose.projection == Projection::perspective;
-  std::ostringstream camera;
+  TextWriter camera;
   camera.precision(17);
   camera << (perspective ? "--projection perspective --angle "
                          : "--projection orthographic --scale ")
@@ -82,7 +82,7 @@ void checkMemory(const SceneRequest& scene) {
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (needed <= there)
     return;
-  std::ostringstream line;
+  TextWriter line;
   line.precision(3);
   line << "a picture of " << scene.width << "x" << scene.height << " pixels takes "
        << needed / gigabyte << " GB of memory, this machine has " << there / gigabyte

@@ -11,12 +11,12 @@
 #include "cli/SlicerModule.h"
 #include "cli/Stats.h"
 #include "cli/Stop.h"
+#include "core/TextStream.h"
 #include "io/ShownText.h"
 #include "scene/Scene.h"
 
 #include <algorithm>
 #include <iostream>
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -36,7 +36,7 @@ void report(const RenderOptions& options, const RenderResult& result, double sec
   for (const std::filesystem::path& path : options.outputs)
     files += (files.empty() ? "" : ", ") + path.string();
   const double noise = result.film.noise();
-  std::ostringstream line;
+  TextWriter line;
   line.precision(3);
   line << files << ": " << options.scene.width << "x" << options.scene.height << " pixels, "
        << result.finishedSamples << (result.finishedSamples == 1 ? " sample" : " samples");

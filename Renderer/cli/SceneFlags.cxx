@@ -1,6 +1,7 @@
 #include "cli/SceneFlags.h"
 
 #include "cli/PresetFlags.h"
+#include "core/TextStream.h"
 #include "io/ShownText.h"
 #include "io/mrml/MrmlScene.h"
 #include "io/pictures/ImageFormat.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -68,7 +68,7 @@ std::string objection(const MrmlScene& scene, const std::string& name, const std
 
 std::string leftOut(const MrmlNode& node, const std::string& name, const std::string& value,
                     const std::string& why) {
-  std::ostringstream line;
+  TextWriter line;
   line << node.tag << ' ' << shown(node) << ": " << name << " \"" << value << "\" " << why
        << "; give --" << name << ' ' << value;
   return line.str();

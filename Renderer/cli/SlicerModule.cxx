@@ -1,10 +1,9 @@
 #include "cli/SlicerModule.h"
 
 #include "cli/Version.h"
+#include "core/TextStream.h"
 
 #include <pugixml.hpp>
-
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -145,13 +144,13 @@ std::string slicerDescription(const CommandSyntax& syntax) {
     addFlag(group, flag);
   }
   addReturnValues(module);
-  std::ostringstream text;
+  TextWriter text;
   document.save(text, "  ");
   return text.str();
 }
 
 std::string returnValuesText(const std::vector<double>& values) {
-  std::ostringstream lines;
+  TextWriter lines;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isfinite(values[i]))
       lines << returnValues[i].name << " = " << values[i] << '\n';

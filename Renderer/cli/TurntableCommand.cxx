@@ -9,6 +9,7 @@
 #include "cli/SceneFlags.h"
 #include "cli/Stop.h"
 #include "cli/TurntableRecord.h"
+#include "core/TextStream.h"
 #include "io/ShownText.h"
 #include "scene/Scene.h"
 
@@ -16,7 +17,6 @@
 #include <future>
 #include <iostream>
 #include <set>
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -178,7 +178,7 @@ void declareFrames(const TurntableOptions& options, const TurntableRecord& recor
 void report(const TurntableOptions& options, const TurntableRecord& record, int rendered,
             double seconds) {
   const bool isWhole = record.finishedCount() == options.frames;
-  std::ostringstream line;
+  TextWriter line;
   line.precision(3);
   line << framePath(options.render.outputs.front(), 0).string() << " to "
        << framePath(options.render.outputs.front(), options.frames - 1).filename().string() << ": "

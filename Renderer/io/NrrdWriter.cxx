@@ -1,13 +1,13 @@
 #include "io/NrrdWriter.h"
 
 #include "core/Error.h"
+#include "core/TextStream.h"
 
 #include <zlib.h>
 
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <sstream>
 
 namespace fenestra {
 
@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "samples are written a
 
 /// "(x,y,z)" in LPS, whose first two axes are RAS turned round; "+ 0.0" for no "-0" in the header.
 std::string lpsText(const Vec3& ras) {
-  std::ostringstream text;
+  TextWriter text;
   text.precision(17);
   text << '(' << -ras.x() + 0.0 << ',' << -ras.y() + 0.0 << ',' << ras.z() + 0.0 << ')';
   return text.str();
@@ -51,7 +51,7 @@ void appendDeflated(std::string_view samples, std::string& file) {
 std::string nrrdText(const NrrdHeader& header) {
   const bool leads = !header.leadingKind.empty();
   const auto axes = header.indexToWorld.linear();
-  std::ostringstream text;
+  TextWriter text;
   text << "NRRD0004\n"
        << "# Complete NRRD file format specification at:\n"
        << "# http://teem.sourceforge.net/nrrd/format.html\n"

@@ -3,11 +3,10 @@
 #include "clipping/SteadySurface.h"
 #include "core/Error.h"
 #include "core/Stopwatch.h"
+#include "core/TextStream.h"
 #include "io/looks/LightReader.h"
 #include "io/looks/LookText.h"
 #include "scene/Defaults.h"
-
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -57,7 +56,7 @@ void checkExtinction(const TransferFunction& transfer, const Volume& volume,
   const double allowed = thickest / (2.0 * volume.grid.boundingRadius());
   if (greatest <= allowed)
     return;
-  std::ostringstream line;
+  TextWriter line;
   line << "extinction: reaches " << greatest << " per mm, and " << allowed
        << " is opaque in any picture of this volume; lower it or --density";
   throw inputError(name, line.str());

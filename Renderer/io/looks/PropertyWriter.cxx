@@ -1,11 +1,11 @@
 #include "io/looks/PropertyWriter.h"
 
+#include "core/TextStream.h"
 #include "io/Mark.h"
 
 #include <nlohmann/json.hpp>
 
 #include <limits>
-#include <sstream>
 
 namespace fenestra {
 
@@ -32,7 +32,7 @@ Json colorTransfer(const std::vector<ColorNode>& nodes) {
 }
 
 std::string numbersText(const std::vector<double>& numbers) {
-  std::ostringstream text;
+  TextWriter text;
   text.precision(std::numeric_limits<double>::digits10);
   text << numbers.size();
   for (const double number : numbers)
@@ -90,7 +90,7 @@ PropertyTexts propertyTexts(const VolumeProperty& property) {
 
 std::string propertyVp(const VolumeProperty& property) {
   const PropertyTexts texts = propertyTexts(property);
-  std::ostringstream text;
+  TextWriter text;
   text << "1\n" // linear interpolation
        << property.shade << '\n'
        << property.diffuse << '\n'

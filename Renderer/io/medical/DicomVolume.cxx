@@ -1,13 +1,13 @@
 // From a series' slices to a volume.
 
 #include "core/Error.h"
+#include "core/TextStream.h"
 #include "io/medical/DicomHeader.h"
 #include "io/medical/DicomPixels.h"
 #include "io/medical/DicomSeries.h"
 #include "io/medical/StoreVoxels.h"
 
 #include <iomanip>
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -22,7 +22,7 @@ struct Slice {
 };
 
 std::string millimetres(double length) {
-  std::ostringstream text;
+  TextWriter text;
   text << std::setprecision(4) << length << " mm";
   return text.str();
 }

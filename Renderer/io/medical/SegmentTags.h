@@ -1,9 +1,9 @@
 #pragma once
 // Slicer's tags of a segment. For io's own sources.
 
+#include "core/TextStream.h"
 #include "io/medical/SegmentationReader.h"
 
-#include <sstream>
 #include <string_view>
 
 namespace fenestra {
@@ -17,7 +17,7 @@ inline void readTerminology(std::string_view tags, SegmentInfo& info) {
   if (at == std::string_view::npos)
     return;
   tags.remove_prefix(at + key.size());
-  std::istringstream entry(std::string(tags.substr(0, tags.find('|'))));
+  TextReader entry(std::string(tags.substr(0, tags.find('|'))));
   std::string part;
   for (int i = 0; std::getline(entry, part, '~'); ++i)
     if (const std::size_t meaning = part.rfind('^');

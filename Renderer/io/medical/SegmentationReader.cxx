@@ -1,6 +1,7 @@
 #include "io/medical/SegmentationReader.h"
 
 #include "core/Error.h"
+#include "core/TextStream.h"
 #include "io/Inputs.h"
 #include "io/ShownText.h"
 #include "io/medical/ClosedSurface.h"
@@ -14,7 +15,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <utility>
 
 namespace fenestra {
@@ -92,7 +92,7 @@ Grid placed(const Grid& grid, const std::map<std::string, std::string>& fields,
   const auto extent = fields.find("Segmentation_Extent");
   if (extent == fields.end())
     return grid;
-  std::istringstream numbers(extent->second); // "i0 i1 j0 j1 k0 k1"
+  TextReader numbers(extent->second); // "i0 i1 j0 j1 k0 k1"
   Vec3 first;
   std::int32_t lower = 0;
   std::int32_t upper = 0;

@@ -1,12 +1,12 @@
 #include "io/mrml/MrmlDocument.h"
 
+#include "core/TextStream.h"
 #include "io/NumberText.h"
 #include "io/ShownText.h"
 
 #include <pugixml.hpp>
 
 #include <algorithm>
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -35,7 +35,7 @@ const std::map<std::string, std::string>& legacyRoles() {
 }
 
 std::vector<std::string> words(const std::string& text) {
-  std::istringstream in(text);
+  TextReader in(text);
   std::vector<std::string> all;
   for (std::string word; in >> word;)
     all.push_back(word);
@@ -44,7 +44,7 @@ std::vector<std::string> words(const std::string& text) {
 
 /// "role1:id1 {key=value} id2;role2:id3;": braces hold properties of the reference before them.
 void readReferences(const std::string& text, MrmlNode& node) {
-  std::istringstream in(text);
+  TextReader in(text);
   for (std::string entry; std::getline(in, entry, ';');) {
     const std::size_t colon = entry.find(':');
     if (colon == std::string::npos || colon == 0)

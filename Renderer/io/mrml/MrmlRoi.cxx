@@ -1,12 +1,11 @@
 // Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
 
 #include "core/Checked.h"
+#include "core/TextStream.h"
 #include "io/Inputs.h"
 #include "io/JsonNode.h"
 #include "io/NumberText.h"
 #include "io/mrml/MrmlScene.h"
-
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -96,11 +95,11 @@ Affine axisAligned(const std::vector<double>& centerAndRadius, const Fail& fail)
 Affine readAnnotation(const std::filesystem::path& path) {
   const auto fail = [&path](const std::string& what) { return inputError(path.string(), what); };
   std::vector<double> numbers;
-  std::istringstream lines(readText(path));
+  TextReader lines(readText(path));
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with("point|"))
       continue;
-    std::istringstream cells(line.substr(line.find('|') + 1));
+    TextReader cells(line.substr(line.find('|') + 1));
     std::string cell;
     for (int axis = 0; axis < 3 && std::getline(cells, cell, '|'); ++axis) {
       const auto number = parseNumbers(cell);

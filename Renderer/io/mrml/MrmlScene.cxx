@@ -1,5 +1,6 @@
 #include "io/mrml/MrmlScene.h"
 
+#include "core/TextStream.h"
 #include "io/looks/TransferReader.h"
 #include "io/medical/DicomSeries.h"
 #include "io/medical/MedicalHeader.h"
@@ -8,7 +9,6 @@
 #include "volume/CheckedGrid.h"
 
 #include <set>
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -143,9 +143,9 @@ std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const Mrml
   const MrmlNode* display = scene.document.follow(node, "display");
   if (!display)
     return visible;
-  std::istringstream segments(display->text("SegmentationDisplayProperties"));
+  TextReader segments(display->text("SegmentationDisplayProperties"));
   for (std::string segment; std::getline(segments, segment, '|');) {
-    std::istringstream words(segment);
+    TextReader words(segment);
     std::string id;
     words >> id;
     bool shown = true;

@@ -1,11 +1,11 @@
 #include "io/mrml/SlicerPresets.h"
 
+#include "core/TextStream.h"
 #include "io/JsonNode.h"
 #include "io/looks/TransferReader.h"
 
 #include <algorithm>
 #include <cstdlib>
-#include <sstream>
 
 namespace fenestra {
 namespace {
@@ -32,7 +32,7 @@ std::optional<Path> presetsIn(const Path& home) {
 /// The folder of Slicer's launcher, which links may lead to.
 std::optional<Path> homeInPath() {
   const char* const path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
+  TextReader folders(path ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
     std::error_code failed;
     const Path launcher = std::filesystem::canonical(Path(folder) / "Slicer", failed);

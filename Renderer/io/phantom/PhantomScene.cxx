@@ -1,5 +1,6 @@
 #include "io/phantom/PhantomScene.h"
 
+#include "core/TextStream.h"
 #include "io/Mark.h"
 #include "io/looks/PropertyWriter.h"
 
@@ -8,7 +9,6 @@
 
 #include <cstdlib>
 #include <new>
-#include <sstream>
 
 namespace fenestra {
 
@@ -35,7 +35,7 @@ constexpr const char* roiName = "Volume rendering ROI";
 /// Numbers as Slicer writes them: a stream's six digits, separated by blanks.
 template <typename... Numbers>
 std::string text(const Numbers&... numbers) {
-  std::ostringstream stream;
+  TextWriter stream;
   const char* separator = "";
   ((stream << separator << numbers, separator = " "), ...);
   return stream.str();
@@ -365,7 +365,7 @@ std::string phantomScene(const Phantom& phantom, const std::string& name,
   addRoi(scene, phantom, files.roi);
   document.append_child(pugi::node_comment)
       .set_value((" " + std::string(unsealedMark) + " ").c_str());
-  std::ostringstream stream;
+  TextWriter stream;
   document.save(stream, " ");
   return sealed(stream.str());
 }
@@ -413,7 +413,7 @@ std::string phantomRoi(const Phantom& phantom) {
 }
 
 std::string urlEncoded(const std::string& text) {
-  std::ostringstream encoded;
+  TextWriter encoded;
   encoded << std::hex << std::uppercase;
   for (const char c : text) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');

@@ -1,6 +1,7 @@
 #include "io/phantom/PhantomWriter.h"
 
 #include "core/Error.h"
+#include "core/TextStream.h"
 #include "io/MadeFolders.h"
 #include "io/NrrdWriter.h"
 #include "io/Outputs.h"
@@ -9,7 +10,6 @@
 #include "io/phantom/PhantomScene.h"
 
 #include <fstream>
-#include <sstream>
 
 namespace fenestra {
 
@@ -18,7 +18,7 @@ namespace {
 /// Three numbers, separated by blanks.
 template <typename Triple>
 std::string text(const Triple& v) {
-  std::ostringstream stream;
+  TextWriter stream;
   stream << v.x() << ' ' << v.y() << ' ' << v.z();
   return stream.str();
 }
@@ -40,7 +40,7 @@ Extent layerExtent(const std::vector<std::uint8_t>& labels, const Size3& size) {
 
 /// "0 -1" in each axis where there is none.
 std::string extentText(const Extent& extent) {
-  std::ostringstream text;
+  TextWriter text;
   for (int axis = 0; axis < 3; ++axis)
     text << (axis > 0 ? " " : "") << (extent.isEmpty() ? 0 : extent.min()[axis]) << ' '
          << (extent.isEmpty() ? -1 : extent.max()[axis]);

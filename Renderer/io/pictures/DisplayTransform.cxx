@@ -1,11 +1,10 @@
 #include "io/pictures/DisplayTransform.h"
 
 #include "core/Error.h"
+#include "core/TextStream.h"
 #include "io/EmbeddedResources.h"
 
 #include <OpenColorIO/OpenColorIO.h>
-
-#include <sstream>
 
 namespace fenestra {
 
@@ -20,7 +19,7 @@ constexpr float brightest = 65504.0f;
 
 ocio::ConstConfigRcPtr loadConfig() {
   ocio::SetLoggingFunction([](const char*) {}); // what matters is thrown, standard error is ours
-  std::istringstream text{std::string(embeddedResource("color/fenestra.ocio"))};
+  TextReader text{std::string(embeddedResource("color/fenestra.ocio"))};
   return ocio::Config::CreateFromStream(text);
 }
 

@@ -1,7 +1,8 @@
 #include "io/pictures/ExrHeader.h"
 
+#include "core/TextStream.h"
+
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -68,7 +69,7 @@ bool fillsItsSize(const std::string& type, const std::string& value) {
 } // namespace
 
 void checkExrAttributes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
+  Throwing<std::ifstream> file(path, std::ios::binary);
   const auto length = static_cast<std::int64_t>(std::filesystem::file_size(path));
   file.seekg(5); // in the version field
   const bool severalParts = (file.get() & 0x10) != 0;

@@ -1,6 +1,7 @@
 #include "io/pictures/ImageWriter.h"
 
 #include "core/Error.h"
+#include "core/TextStream.h"
 #include "io/NrrdWriter.h"
 #include "io/pictures/DisplayTransform.h"
 #include "io/pictures/ImageFormat.h"
@@ -21,7 +22,6 @@
 #include <fstream>
 #include <limits>
 #include <memory>
-#include <sstream>
 
 namespace fenestra {
 
@@ -124,7 +124,7 @@ void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
 std::string encodeTiff(const Image& image, const std::vector<float>& rgba) {
   std::vector<std::uint16_t> values = quantized<std::uint16_t>(rgba);
   const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
-  std::ostringstream stream;
+  TextWriter stream;
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("picture", &stream), TIFFClose);
   bool good = tiff != nullptr;
   if (good)
@@ -179,7 +179,7 @@ std::filesystem::path depthPath(const std::filesystem::path& path) {
 /// The lines of a NRRD header that say where its voxels lie.
 std::vector<std::string> gridLines(const std::filesystem::path& path) {
   std::vector<std::string> lines;
-  std::ifstream file(path, std::ios::binary);
+  Throwing<std::ifstream> file(path, std::ios::binary);
   for (std::string line; std::getline(file, line) && !line.empty() && lines.size() < 3;)
     for (const char* field : {"space: ", "space directions: ", "space origin: "})
       if (line.starts_with(field))

@@ -1,11 +1,11 @@
 #include "io/surfaces/SurfaceWriter.h"
 
 #include "core/Error.h"
+#include "core/TextStream.h"
 #include "io/Inputs.h"
 
 #include <bit>
 #include <map>
-#include <sstream>
 
 namespace fenestra {
 
@@ -47,7 +47,7 @@ std::string dataArray(const char* name, const char* type, int components,
   append(bytes, std::uint64_t{items.size() * sizeof(Item)});
   for (const Item& item : items)
     append(bytes, item);
-  std::ostringstream text;
+  TextWriter text;
   text << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\""
        << components << "\" format=\"binary\">" << toBase64(bytes) << "</DataArray>\n";
   return text.str();
@@ -57,7 +57,7 @@ std::string encodeVtp(const SurfaceMesh& surface) {
   std::vector<std::int32_t> ends;
   for (std::size_t i = 1; i <= surface.triangles.size(); ++i)
     ends.push_back(static_cast<std::int32_t>(3 * i));
-  std::ostringstream text;
+  TextWriter text;
   text << "<?xml version=\"1.0\"?>\n"
        << "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
        << "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n"
@@ -74,7 +74,7 @@ std::string encodeVtp(const SurfaceMesh& surface) {
 }
 
 std::string encodePly(const SurfaceMesh& surface) {
-  std::ostringstream header;
+  TextWriter header;
   header << "ply\nformat binary_little_endian 1.0\ncomment SPACE=RAS\n"
          << "element vertex " << surface.points.size() << "\nproperty float x\nproperty float y\n"
          << "property float z\nproperty float depth\nelement face " << surface.triangles.size()

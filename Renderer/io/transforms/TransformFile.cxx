@@ -2,16 +2,19 @@
 
 #include "core/Checked.h"
 #include "io/Inputs.h"
+#include "io/JsonNode.h"
 #include "io/Quiet.h"
 #include "io/transforms/TransformMatrix.h"
 #include "io/transforms/TransformRecords.h"
 
-#include <fstream>
+#include <new>
 
 namespace fenestra {
 namespace {
 
 using Path = std::filesystem::path;
+
+constexpr std::uint64_t largestFile = 64 << 20;
 
 /// In LPS, in the file's own sense.
 Affine composed(const Path& path, const std::vector<TransformRecord>& records) {
@@ -46,18 +49,15 @@ void checkExtension(const Path& path) {
 
 /// ITK would open whatever a text names.
 void checkNamesNoFile(const Path& path) {
-  std::ifstream file(path, std::ios::binary);
-  for (std::string line; std::getline(file, line);)
-    if (line.find("ComponentTransformFile") != std::string::npos)
-      throw inputError(path.string(), "ComponentTransformFile: further files are not read; save "
-                                      "the composite in one file");
+  if (readText(path, largestFile).find("ComponentTransformFile") != std::string::npos)
+    throw inputError(path.string(), "ComponentTransformFile: further files are not read; save "
+                                    "the composite in one file");
 }
 
 } // namespace
 
 Affine readLinearTransform(const Path& path, TransformSense sense) {
   requireFile(path, "name a transform file in it");
-  constexpr std::uintmax_t largestFile = 64 << 20;
   if (std::filesystem::file_size(path) > largestFile)
     throw inputError(path.string(), "is larger than 64 MB, so it is no linear transform; harden it "
                                     "in Slicer (Data module, Harden transform) and save again");
@@ -81,6 +81,8 @@ Affine answeredTransform(const Path& path, std::string_view answer, TransformSen
     ras.translation() = lpsToRas * map.translation();
     return ras;
   } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) { // ITK's, of matrices that are not what their class says, and of
                                     // answers that are none
