@@ -12,6 +12,7 @@
 #include <QElapsedTimer>
 #include <QEventLoop>
 #include <QFileInfo>
+#include <QTimer>
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -189,9 +190,14 @@ struct Stopped {
   qFenestraProgram child;
 };
 
-/// Longer than any clock that a hand would set for it.
+/// Longer than any clock that a hand would set for it. The window answers meanwhile.
 TEST_F(SlicerProcess, NoClockEndsARendererThatWrites) {
   Stopped stopped(folder, "sleep 2; echo picture >kept.png; exit 5");
+  bool answered = false;
+  QTimer::singleShot(0, [&] { answered = true; });
+  QCoreApplication::processEvents();
+  EXPECT_TRUE(answered);
+  EXPECT_FALSE(exists("kept.png")) << "Stop waits for the renderer";
   EXPECT_EQ(stopped.kind(), Kind::stopped);
   EXPECT_TRUE(exists("kept.png"));
 }
