@@ -108,6 +108,18 @@ private:
   Clock::duration m_next = std::chrono::minutes(1);
 };
 
+std::string nameOf(const Case& one) {
+  std::string name = one.subject->request->name + " " + one.kind->word + " ";
+  name += std::to_string(one.number);
+  return *one.kind->valueName ? name + " " + one.kind->valueName : name;
+}
+
+/// Says it at once, for who would mend it before hours have passed.
+void tellWrong(const Case& one, const Result& result) {
+  for (const std::string& line : result.wrong)
+    std::fprintf(stderr, "%s: %s\n", nameOf(one).c_str(), line.c_str());
+}
+
 std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, unsigned threads) {
   std::vector<Result> results(cases.size());
   std::atomic<std::size_t> next = 0;
@@ -118,6 +130,7 @@ std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, u
       const Place place(tools);
       for (std::size_t at; (at = next++) < cases.size();) {
         results[at] = resultOf(cases[at], place);
+        tellWrong(cases[at], results[at]);
         if (i == 0)
           progress.tell(at + 1);
       }
@@ -125,12 +138,6 @@ std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, u
   for (std::thread& worker : workers)
     worker.join();
   return results;
-}
-
-std::string nameOf(const Case& one) {
-  std::string name = one.subject->request->name + " " + one.kind->word + " ";
-  name += std::to_string(one.number);
-  return *one.kind->valueName ? name + " " + one.kind->valueName : name;
 }
 
 /// How often something came up, and where first.
