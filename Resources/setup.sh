@@ -36,7 +36,7 @@ install_packages() {
 build_packages=(
   g++ cmake ninja-build pkg-config
   libinsighttoolkit5-dev libeigen3-dev libhwy-dev libopenexr-dev libopencolorio-dev libtbb-dev
-  libcli11-dev nlohmann-json3-dev libpugixml-dev libzip-dev libgtest-dev libpng-dev libtiff-dev
+  nlohmann-json3-dev libpugixml-dev libzip-dev libgtest-dev libpng-dev libtiff-dev
   zlib1g-dev)
 
 # build PRESET [cmake arguments]: configures and builds into the preset's folder.

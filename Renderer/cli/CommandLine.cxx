@@ -1,13 +1,12 @@
 #include "cli/CommandLine.h"
 
+#include "cli/Help.h"
 #include "cli/Version.h"
 #include "core/Error.h"
 
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <iostream>
-#include <map>
+#include <vector>
 
 namespace fenestra {
 namespace {
@@ -49,125 +48,76 @@ Error wrongValue(const Flag& flag) {
                     " " + flag.value);
 }
 
-/// What CLI11 says of a flag's value, in our words; its messages start with the flag, some of them
-/// without its dashes.
-Error valueError(const CommandSyntax& syntax, const CLI::Error& error) {
-  const std::string message = error.what();
-  const std::size_t dashes = message.find("--");
-  const std::size_t begin = dashes == std::string::npos ? 0 : dashes + 2;
-  const std::size_t end = message.find_first_of(": ,", begin);
-  if (const Flag* flag =
-          findFlag(syntax.flags, std::string_view(message).substr(begin, end - begin)))
-    return wrongValue(*flag);
-  return usageError(message.substr(0, message.find('\n')) + seeHelp(syntax));
-}
-
-/// A command's syntax, declared to CLI11, and where it puts what it finds.
+/// Words on their way into values, by a command's syntax.
 class Parser {
 public:
-  explicit Parser(const CommandSyntax& syntax)
-      : m_syntax(syntax),
-        m_app(wrapped(syntax.summary, page), std::string("fenestra ") + syntax.name) {
-    m_app.set_help_flag("--help", "Print this and exit");
-    m_app.set_version_flag("--version", std::string("fenestra ") + versionText);
-    m_app.get_formatter()->column_width(column);
-    m_app.allow_extras(); // so that we can say what was meant
-    for (const Positional& positional : syntax.positionals)
-      m_app
-          .add_option(positional.name, m_positionals[positional.name],
-                      wrapped(positional.text, page - column))
-          ->type_name("");
-    for (const Flag& flag : syntax.flags)
-      isSwitch(flag) ? addSwitch(flag) : addFlag(flag);
-  }
+  explicit Parser(const CommandSyntax& syntax) : m_syntax(syntax), m_values(syntax.flags) {}
 
-  /// Nothing where help or version was asked for, and printed.
-  std::optional<FlagValues> parse(std::vector<std::string> arguments) {
-    std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
-    try {
-      m_app.parse(arguments);
-    } catch (const CLI::Success& success) {
-      m_app.exit(success, std::cout, std::cerr);
-      return std::nullopt;
-    } catch (const CLI::Error& error) {
-      throw valueError(m_syntax, error);
+  FlagValues parse(std::span<const std::string_view> words) {
+    bool flagsEnded = false;
+    for (m_words = words; !m_words.empty();) {
+      const std::string_view word = taken();
+      if (!flagsEnded && word == "--")
+        flagsEnded = true;
+      else if (!flagsEnded && word.size() > 1 && word[0] == '-')
+        takeFlag(word);
+      else
+        takePositional(word);
     }
-    refuseMissingValues(); // before the words that they have made extra
-    refuseExtras();
-    return values();
+    if (m_positionals < m_syntax.positionals.size()) {
+      const Positional& missing = m_syntax.positionals[m_positionals];
+      throw usageError(std::string(missing.name) + ": is missing; name it: " + missing.text +
+                       seeHelp(m_syntax));
+    }
+    return m_values;
   }
 
 private:
-  void addFlag(const Flag& flag) {
-    m_app
-        .add_option(std::string("--") + flag.name, m_flags[flag.name],
-                    wrapped(flag.text, page - column))
-        ->type_name(flag.value)
-        ->group(flag.group)
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  std::string_view taken() {
+    const std::string_view word = m_words.front();
+    m_words = m_words.subspan(1);
+    return word;
   }
 
-  void addSwitch(const Flag& flag) {
-    m_app
-        .add_flag(std::string("--") + flag.name, m_switches[flag.name],
-                  wrapped(flag.text, page - column))
-        ->group(flag.group)
-        ->disable_flag_override();
+  void takeFlag(std::string_view word) {
+    const std::size_t equals = word.find('=');
+    const Flag* const flag =
+        word.starts_with("--") ? findFlag(m_syntax.flags, word.substr(2, equals - 2)) : nullptr;
+    if (!flag)
+      throw unknownFlag(m_syntax, word);
+    std::string_view value;
+    if (equals != word.npos)
+      value = word.substr(equals + 1);
+    else if (!isSwitch(*flag) && !m_words.empty())
+      value = checkedValue(*flag, taken());
+    if (value.empty() != isSwitch(*flag) || (isSwitch(*flag) && equals != word.npos))
+      throw wrongValue(*flag);
+    m_values.add(flag->name, std::string(value));
   }
 
-  /// A flag in the place of another one's value.
-  void refuseMissingValues() const {
-    for (const Flag& flag : m_syntax.flags)
-      if (const auto given = m_flags.find(flag.name); given != m_flags.end())
-        for (const std::string& value : given->second)
-          if (value.starts_with("--"))
-            throw wrongValue(flag);
+  /// A word by itself.
+  static std::string_view checkedValue(const Flag& flag, std::string_view word) {
+    if (word.starts_with("--"))
+      throw wrongValue(flag);
+    if (word.empty())
+      throw usageError(std::string("--") + flag.name + ": its value is empty; write --" +
+                       flag.name + " " + flag.value);
+    return word;
   }
 
-  void refuseExtras() const {
-    for (const std::string& extra : m_app.remaining())
-      throw extra.size() > 1 && extra[0] == '-'
-          ? unknownFlag(m_syntax, extra.substr(0, extra.find('=')))
-          : extraArgument(m_syntax, extra);
+  void takePositional(std::string_view word) {
+    if (m_positionals == m_syntax.positionals.size())
+      throw extraArgument(m_syntax, std::string(word));
+    const char* const name = m_syntax.positionals[m_positionals++].name;
+    if (word.empty())
+      throw usageError(std::string(name) + ": is empty; name a file");
+    m_values.add(name, std::string(word));
   }
-
-  FlagValues values() const {
-    FlagValues values(m_syntax.flags);
-    for (const Positional& positional : m_syntax.positionals) {
-      const std::string& found = m_positionals.at(positional.name);
-      if (m_app.count(positional.name) == 0)
-        throw usageError(std::string(positional.name) +
-                         ": is missing; name it: " + positional.text + seeHelp(m_syntax));
-      if (found.empty())
-        throw usageError(std::string(positional.name) + ": is empty; name a file");
-      values.add(positional.name, found);
-    }
-    for (const Flag& flag : m_syntax.flags)
-      if (!isSwitch(flag))
-        addValues(flag, values);
-      else if (m_switches.at(flag.name))
-        values.add(flag.name, "");
-    return values;
-  }
-
-  void addValues(const Flag& flag, FlagValues& values) const {
-    for (const std::string& value : m_flags.at(flag.name)) {
-      if (value.empty())
-        throw usageError(std::string("--") + flag.name + ": its value is empty; write --" +
-                         flag.name + " " + flag.value);
-      values.add(flag.name, value);
-    }
-  }
-
-  static constexpr std::size_t page = 80, column = 30; ///< of the help
 
   const CommandSyntax& m_syntax;
-  CLI::App m_app;
-  std::map<std::string, std::string> m_positionals;
-  std::map<std::string, std::vector<std::string>> m_flags;
-  std::map<std::string, bool> m_switches;
+  FlagValues m_values;
+  std::span<const std::string_view> m_words; ///< that are left
+  std::size_t m_positionals = 0;             ///< that were given
 };
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swapped neighbours.
@@ -189,21 +139,6 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 } // namespace
 
-std::string wrapped(std::string_view text, std::size_t width) {
-  std::string lines;
-  std::size_t used = 0;
-  while (!text.empty()) {
-    const std::string_view word = text.substr(0, text.find(' '));
-    text.remove_prefix(std::min(word.size() + 1, text.size()));
-    const bool fits = used + 1 + word.size() <= width;
-    if (!lines.empty())
-      lines += fits ? ' ' : '\n';
-    lines += word;
-    used = (fits ? used + 1 : 0) + word.size();
-  }
-  return lines;
-}
-
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
   constexpr std::size_t longest = 32; // no name is longer, and a path may be
   std::string_view best;
@@ -223,7 +158,17 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 
 std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
                                            int first) {
-  return Parser(syntax).parse({argv + first, argv + argc});
+  const std::vector<std::string_view> words(argv + first, argv + argc);
+  const auto asksFor = [&words](std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  if (asksFor("--help"))
+    std::cout << helpText(syntax) << std::flush;
+  else if (asksFor("--version"))
+    std::cout << "fenestra " << versionText << std::endl;
+  else
+    return Parser(syntax).parse(words);
+  return std::nullopt;
 }
 
 } // namespace fenestra

@@ -1,4 +1,4 @@
-#include "cli/CommandLine.h"
+#include "cli/Help.h"
 #include "cli/InspectReport.h"
 #include "io/ShownText.h"
 

@@ -56,6 +56,9 @@ TEST_F(FlagsCommand, RefusesMissingAndRepeatedValues) {
           refusal({"--samples", "--seed", "3"}, "--samples: its value is missing"),
           refusal({"--samples="}, "--samples: its value is missing"),
           refusal({"--samples", ""}, "--samples: its value is empty"),
+          refusal({"--samples", "--help="}, "--samples: its value is missing"),
+          refusal({"--echo=1"}, "--echo: is a switch; write it without a value"),
+          refusal({"--", "--echo"}, "'--echo': one argument too many after INPUT"),
           refusal({"--samples", "3", "--samples", "4"}, "--samples: is given more than once"),
       },
       folder.path());
