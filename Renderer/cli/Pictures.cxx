@@ -102,10 +102,10 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
                    const std::string& command, Outputs& outputs) {
   Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
   image.header = header(scene, options, result, command);
-  // All at once: what packs one does not keep another waiting.
+  // All at once where threads are left: what packs one does not keep another waiting.
   std::vector<std::future<void>> files;
   for (const std::filesystem::path& path : options.outputs)
-    files.push_back(std::async(std::launch::async, [&image, &scene, &path, &outputs] {
+    files.push_back(std::async([&image, &scene, &path, &outputs] {
       writeImage(image, picturePlane(scene.camera()), path, outputs);
     }));
   for (std::future<void>& file : files)
@@ -115,7 +115,7 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
 std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs) {
   if (!options.surface)
     return std::async(std::launch::deferred, [] {});
-  return std::async(std::launch::async, [&options, &scene, &outputs] {
+  return std::async([&options, &scene, &outputs] {
     const auto& clip = std::get<ClipDepth>(scene.clip());
     writeSurface(surfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)), *options.surface,
                  outputs);

@@ -1,6 +1,7 @@
 #include "cli/Progress.h"
 
 #include <cstdio>
+#include <system_error>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -53,8 +54,12 @@ Progress::Progress(ProgressMode mode, const RenderSettings& settings, std::uint6
               "<filter-comment>Path tracing</filter-comment>\n</filter-start>");
     std::fflush(stdout);
   }
-  if (m_mode != ProgressMode::none)
+  if (m_mode == ProgressMode::none)
+    return;
+  try {
     m_thread = std::thread([this] { run(); });
+  } catch (const std::system_error&) { // no thread is left, and the picture counts for more
+  }
 }
 
 Progress::~Progress() {

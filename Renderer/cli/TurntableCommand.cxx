@@ -101,10 +101,11 @@ private:
     return true;
   }
 
-  /// In a thread of its own, since a stop does not wait for surfaces; returns whether it is there.
+  /// In a thread of its own where one starts, since a stop does not wait for surfaces; returns
+  /// whether it is there.
   bool waitForView(int frame) {
-    m_preparing = std::async(std::launch::async, [this, frame] { return viewOf(frame); });
-    while (m_preparing.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready)
+    m_preparing = std::async([this, frame] { return viewOf(frame); });
+    while (m_preparing.wait_for(std::chrono::milliseconds(10)) == std::future_status::timeout)
       if (m_monitor.stop)
         return false;
     return true;

@@ -1,0 +1,73 @@
+// A machine that starts no more threads, as at the limit of a user's processes.
+
+#include "CommandTesting.h"
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
+#include <iostream>
+#include <thread>
+
+#include <linux/filter.h>
+#include <linux/sched.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+
+namespace fenestra::ThreadsCommandTests {
+namespace {
+
+using ThreadsCommand = SmallScene;
+
+/// From now on neither this process nor those that it starts get a thread; processes they do. A
+/// limit (RLIMIT_NPROC) would not hold for root.
+bool refuseThreads() {
+  constexpr auto refused = SECCOMP_RET_ERRNO | EAGAIN;
+  sock_filter filter[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_clone3, 3, 0),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_clone, 0, 3),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, args[0])),
+      BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, CLONE_THREAD, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, refused),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  };
+  const sock_fprog program = {std::size(filter), filter};
+  return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+[[noreturn]] void runWithoutThreads(Arguments arguments, const std::filesystem::path& folder) {
+  if (!refuseThreads())
+    std::exit(77);
+  for (const char* word : {"--size", "8x8", "--samples", "1", "--progress", "xml"})
+    arguments.emplace_back(word);
+  const Outcome outcome = run(arguments, folder);
+  std::cerr << outcome.err;
+  std::exit(outcome.status);
+}
+
+TEST_F(ThreadsCommand, TwoThatCannotStartAreToldAndOneRenders) {
+  if (std::thread::hardware_concurrency() < 2)
+    GTEST_SKIP() << "one core: no thread is wanted";
+  if (::prctl(PR_GET_SECCOMP) < 0)
+    GTEST_SKIP() << "this system filters no calls";
+  const Arguments render = {"volume.nrrd", "--output", "a.png", "--threads"};
+  const Arguments turntable = {"turntable", "volume.nrrd", "--output",  "t.png",
+                               "--frames",  "1",           "--threads", "1"};
+  const auto with = [&render](const char* threads) {
+    Arguments arguments = render;
+    arguments.emplace_back(threads);
+    return arguments;
+  };
+  EXPECT_EXIT(runWithoutThreads(with("2"), folder.path()), ::testing::ExitedWithCode(4),
+              "^fenestra: threads: 2 cannot be started; [^\n]*--threads 1\n$");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+  EXPECT_EXIT(runWithoutThreads(with("1"), folder.path()), ::testing::ExitedWithCode(0), "^$");
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.png"));
+  EXPECT_EXIT(runWithoutThreads(turntable, folder.path()), ::testing::ExitedWithCode(0), "^$");
+  EXPECT_TRUE(std::filesystem::exists(folder / "t_0000.png"));
+}
+
+} // namespace
+} // namespace fenestra::ThreadsCommandTests
