@@ -53,11 +53,12 @@ double FocusPoints::kept() const {
   return static_cast<double>(count) / static_cast<double>(m_points.size());
 }
 
-double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::uint64_t seed) {
+double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::uint64_t seed,
+                     const StopFlag& stop) {
   const std::vector<FocusPoints::Point>& points = focus.points();
   if (points.empty())
     return 0.0;
-  return withMedium(scene, [&](const auto&, const auto& tracker) {
+  const auto share = [&](const auto&, const auto& tracker) {
     std::vector<double> shown(points.size(), 0.0);
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
       const FocusPoints::Point& point = points[i];
@@ -69,11 +70,13 @@ double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::ui
       shown[i] = tracker.transmittance(point.ray, {range.begin, point.distance}, random, counters);
     });
     return sum(shown) / static_cast<double>(points.size());
-  });
+  };
+  return withMedium(scene, share, stop);
 }
 
 std::optional<double> focusLight(const RenderScene& scene, const RenderScene& alone,
-                                 const FocusPoints& focus, std::uint64_t seed) {
+                                 const FocusPoints& focus, std::uint64_t seed,
+                                 const StopFlag& stop) {
   constexpr std::size_t most = 4096; // points, of those that are kept
   constexpr std::uint64_t lightsEach = 4;
   std::vector<const FocusPoints::Point*> points;
@@ -82,7 +85,7 @@ std::optional<double> focusLight(const RenderScene& scene, const RenderScene& al
       points.push_back(&point);
   const std::size_t stride = points.size() / most + 1;
   const auto arriving = [&](const RenderScene& through) {
-    return withMedium(through, [&](const auto&, const auto& tracker) {
+    const auto sumOfLight = [&](const auto&, const auto& tracker) {
       std::vector<double> light(points.size() / stride + 1, 0.0);
       tbb::parallel_for(std::size_t{0}, points.size() / stride, [&](std::size_t i) {
         const Vec3 position = points[i * stride]->position();
@@ -98,7 +101,8 @@ std::optional<double> focusLight(const RenderScene& scene, const RenderScene& al
         }
       });
       return sum(light);
-    });
+    };
+    return withMedium(through, sumOfLight, stop);
   };
   const double unhindered = arriving(alone);
   if (!(unhindered > 0.0))

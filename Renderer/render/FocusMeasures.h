@@ -29,13 +29,17 @@ private:
 
 /// Mean over the focus's points of the transmittance to them from where the eye ray starts: the
 /// share of the focus's pixels shown unoccluded. What clipping removes counts as not shown.
-double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::uint64_t seed);
+/// Once `stop` is true walks end where they are, and what is returned means nothing, here and
+/// below.
+double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::uint64_t seed,
+                     const StopFlag& stop = neverStopped);
 
 /// Light that comes to the points that clipping leaves straight from the lights, relative to what
 /// comes to them in `alone`, the same scene of nothing but the focus. Some thousand points and
 /// lights, the same for both; nothing where none comes in `alone`.
 std::optional<double> focusLight(const RenderScene& scene, const RenderScene& alone,
-                                 const FocusPoints& focus, std::uint64_t seed);
+                                 const FocusPoints& focus, std::uint64_t seed,
+                                 const StopFlag& stop = neverStopped);
 
 /// The share that clipping removes of the volume's matter (extinction above 0) that is not focus,
 /// from a quarter of a million points: to about 0.001. Nothing where they meet no such matter.

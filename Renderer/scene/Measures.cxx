@@ -25,13 +25,14 @@ std::optional<FocusReport> measureFocus(const Scene& scene, std::uint64_t seed,
   const FocusPoints points(clipped, scene.focusDepth());
   FocusReport report;
   report.kept = points.kept();
-  report.coverage = focusCoverage(clipped, points, seed);
+  report.coverage = focusCoverage(clipped, points, seed, stop);
   if (stop)
     return std::nullopt;
-  report.withoutClip = focusCoverage(wholeScene, FocusPoints(wholeScene, scene.focusDepth()), seed);
+  report.withoutClip =
+      focusCoverage(wholeScene, FocusPoints(wholeScene, scene.focusDepth()), seed, stop);
   if (stop)
     return std::nullopt;
-  report.light = focusLight(clipped, unclipped(alone, &nothingElse), points, seed);
+  report.light = focusLight(clipped, unclipped(alone, &nothingElse), points, seed, stop);
   if (stop)
     return std::nullopt;
   report.contextRemoved = contextRemoved(clipped, *mask, seed);

@@ -2,6 +2,8 @@
 
 #include "Support.h"
 
+#include "render/FocusMeasures.h"
+
 #include <gtest/gtest.h>
 
 #include <future>
@@ -62,6 +64,20 @@ TEST(Stop, endsTheLanesOfABatch) {
     constexpr std::uint64_t mostLanes = 2 * 16;
     EXPECT_LE(counters.lookups, 2 * stepsBetweenLooks * mostLanes);
   });
+}
+
+/// Without it each would take minutes.
+TEST(Stop, endsMeasuresWhoseWalksDoNotEnd) {
+  const TestScene s = endlessScene();
+  const Camera camera(s.pose, s.width, s.height);
+  const LightSet lights(s.lights, s.volume.grid, camera);
+  const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
+  const RenderScene scene{s.volume, s.transfer, majorants, lights, camera, s.clip};
+  const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
+  const FocusPoints behind(scene, std::vector<double>(pixels, 2e9));
+  const StopFlag stop = true;
+  EXPECT_GE(focusCoverage(scene, behind, 1, stop), 0.0);
+  focusLight(scene, scene, behind, 1, stop);
 }
 
 /// Nobody waits for a path: one that is under way is dropped, and its tile with it; tiles whose
