@@ -10,6 +10,7 @@
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
@@ -22,10 +23,19 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <new>
 
 namespace fenestra {
 
 namespace {
+
+/// OpenEXR keeps some failures to itself (of memory, in its tasks and destructors).
+void requireComplete(const std::string& exr) {
+  Imf::StdISStream stream;
+  stream.str(exr);
+  if (!Imf::InputFile(stream).isComplete())
+    throw std::bad_alloc();
+}
 
 std::string encodeExr(const Image& image) {
   Imf::Header header(image.width, image.height);
@@ -47,7 +57,9 @@ std::string encodeExr(const Image& image) {
     file.setFrameBuffer(frame);
     file.writePixels(image.height);
   }
-  return stream.str();
+  std::string bytes = stream.str();
+  requireComplete(bytes);
+  return bytes;
 }
 
 bool isOpaque(const std::vector<float>& rgba) {
