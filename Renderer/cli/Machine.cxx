@@ -7,6 +7,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <future>
 #include <stdexcept>
@@ -26,6 +27,7 @@ void tryThreads(int count) {
   std::promise<void> started;
   const std::shared_future<void> all = started.get_future().share();
   std::vector<std::future<void>> threads;
+  threads.reserve(static_cast<std::size_t>(std::max(count, 0))); // one without a place is waited for
   try {
     for (int i = 0; i < count; ++i)
       threads.push_back(std::async(std::launch::async, [all] { all.wait(); }));
