@@ -27,7 +27,8 @@ void tryThreads(int count) {
   std::promise<void> started;
   const std::shared_future<void> all = started.get_future().share();
   std::vector<std::future<void>> threads;
-  threads.reserve(static_cast<std::size_t>(std::max(count, 0))); // one without a place is waited for
+  threads.reserve(
+      static_cast<std::size_t>(std::max(count, 0))); // one without a place is waited for
   try {
     for (int i = 0; i < count; ++i)
       threads.push_back(std::async(std::launch::async, [all] { all.wait(); }));
