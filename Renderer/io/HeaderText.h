@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,21 @@ inline std::optional<std::int64_t> wholeNumber(std::string_view text) {
 inline Error damaged(const std::filesystem::path& path, const std::string& format) {
   return inputError(path.string(),
                     "is not a " + format + " file, or its header is damaged; write it again");
+}
+
+/// Samples lie millimetres apart to everyone who reads them. Throws Error (input) where a field
+/// says another length; what is none, as a time, passes.
+inline void checkMillimetres(const std::filesystem::path& path, const std::string& field,
+                             const std::string& unit) {
+  static const std::set<std::string> others = {
+      "m",          "cm",          "dm",         "km",          "um",         "µm",
+      "μm",         "nm",          "in",         "ft",          "inch",       "inches",
+      "micron",     "microns",     "meter",      "meters",      "metre",      "metres",
+      "centimeter", "centimeters", "centimetre", "centimetres", "micrometer", "micrometers",
+      "micrometre", "micrometres", "foot",       "feet"};
+  if (others.contains(lower(unit)))
+    throw inputError(path.string(),
+                     field + ": \"" + unit + "\" is not read; scale the geometry to \"mm\"");
 }
 
 /// To libraries a zero byte or a lone \r ends a line, so that they would read another one than we

@@ -1,6 +1,10 @@
 #include "io/NrrdHeader.h"
 
 #include "io/HeaderText.h"
+#include "io/NumberText.h"
+
+#include <cmath>
+#include <tuple>
 
 namespace fenestra {
 
@@ -32,6 +36,98 @@ void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
   }
 }
 
+/// Of the vectors in parentheses; nothing where one is none.
+std::optional<std::vector<double>> vectorLengths(const std::string& text) {
+  std::vector<double> lengths;
+  for (std::size_t open = text.find('('); open != std::string::npos;
+       open = text.find('(', open + 1)) {
+    const std::size_t close = text.find(')', open);
+    if (close == std::string::npos)
+      return std::nullopt;
+    std::string inside = text.substr(open + 1, close - open - 1);
+    std::replace(inside.begin(), inside.end(), ',', ' ');
+    std::erase(inside, '+');
+    const auto numbers = parseNumbers(inside);
+    if (!numbers)
+      return std::nullopt;
+    double squares = 0.0;
+    for (const double number : *numbers)
+      squares += number * number;
+    lengths.push_back(std::sqrt(squares));
+  }
+  return lengths;
+}
+
+/// Those that to ITK lie in space: all that hold no list, vector or colour.
+std::size_t placedAxes(const Fields& fields) {
+  const auto kinds = fields.find("kinds");
+  if (kinds == fields.end())
+    return words(fields.at("sizes")).size();
+  std::size_t placed = 0;
+  for (const std::string_view kind : words(kinds->second))
+    for (const char* known : {"domain", "space", "time", "???", "none"})
+      placed += lower(std::string(kind)) == known;
+  return placed;
+}
+
+/// ITK takes those that are missing to be of 1 mm.
+void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields,
+                      const std::string& text) {
+  const auto lengths = vectorLengths(text);
+  constexpr double largest = 1e9; // mm, as of any spacing
+  const auto isUsable = [](double length) { return length >= 1.0 / largest && length <= largest; };
+  if (!lengths || !std::all_of(lengths->begin(), lengths->end(), isUsable))
+    throw inputError(path.string(), "space directions: each must be a vector of 1e-9 to 1e9 mm, or "
+                                    "none; mend the header");
+  if (!lengths->empty() && lengths->size() < std::min<std::size_t>(placedAxes(fields), 3))
+    throw inputError(path.string(), "space directions: has " + std::to_string(lengths->size()) +
+                                        " vectors; write one for each axis in space");
+}
+
+/// Each text in quotes.
+void checkNrrdUnits(const std::filesystem::path& path, const std::string& field,
+                    const std::string& text) {
+  for (std::size_t open = text.find('"'); open != std::string::npos;) {
+    const std::size_t close = text.find('"', open + 1);
+    if (close == std::string::npos)
+      return;
+    checkMillimetres(path, field, text.substr(open + 1, close - open - 1));
+    open = text.find('"', close + 1);
+  }
+}
+
+bool isBesideSpace(const Fields& fields) {
+  return fields.contains("space") || fields.contains("spacedimension");
+}
+
+/// Where along its axes the samples lie: beside a space teem wants them in its directions, and
+/// without spacings ITK takes mins, and 1 mm.
+void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
+  for (const auto& [key, name, mend] :
+       {std::tuple("spacings", "spacings", "write space directions"),
+        {"axismins", "axis mins", "write space directions and space origin"},
+        {"axismaxs", "axis maxs", "write space directions and space origin"},
+        {"units", "units", "write space units"}})
+    if (fields.contains(key) && isBesideSpace(fields))
+      throw inputError(path.string(), std::string(name) + ": are not read beside a space; " + mend);
+  for (const auto& [key, name] : {std::pair("axismins", "axis mins"), {"axismaxs", "axis maxs"}})
+    if (fields.contains(key) && !fields.contains("spacings"))
+      throw inputError(path.string(), std::string(name) +
+                                          ": has no spacings with it; write them, or a space with "
+                                          "its directions and origin");
+}
+
+void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
+  const auto space = fields.find("space");
+  const std::string name = space == fields.end() ? std::string() : lower(space->second);
+  const bool hasTime = name.ends_with("-time") || name.ends_with("st"); // RAST and its like
+  if (name.empty() || hasTime)
+    return;
+  if (const std::size_t placed = placedAxes(fields); placed > 3)
+    throw inputError(path.string(), "kinds: " + std::to_string(placed) +
+                                        " axes do not lie in a space of three; extract one frame");
+}
+
 /// Without a number ITK silently takes its default.
 void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
   for (const auto& [key, name] : {std::pair("spacedirections", "space directions"),
@@ -40,6 +136,13 @@ void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) 
     if (const auto it = fields.find(key);
         it != fields.end() && lower(it->second).find("nan") != std::string::npos)
       throw inputError(path.string(), std::string(name) + ": is not a number; mend the header");
+  if (const auto it = fields.find("spacedirections"); it != fields.end())
+    checkNrrdVectors(path, fields, it->second);
+  checkNrrdAxes(path, fields);
+  checkNrrdKinds(path, fields);
+  for (const auto& [key, name] : {std::pair("spaceunits", "space units"), {"units", "units"}})
+    if (const auto it = fields.find(key); it != fields.end())
+      checkNrrdUnits(path, name, it->second);
 }
 
 /// The lines of an NRRD header: whatever teem makes of one, its messages hold it.
@@ -122,6 +225,12 @@ void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
     }
 }
 
+bool saysSpacing(const NrrdHeaderText& header) {
+  const auto directions = header.fields.find("spacedirections");
+  return header.fields.contains("spacings") ||
+         (directions != header.fields.end() && directions->second.find('(') != std::string::npos);
+}
+
 NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
   checkNrrdPath(path);
   NrrdLines lines(path);
@@ -132,9 +241,11 @@ NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
   header.end = lines.position();
   if (const auto data = header.fields.find("datafile");
       data != header.fields.end() && data->second.starts_with("LIST"))
-    for (auto line = lines.next(); line; line = lines.next())
-      if (!trimmed(*line).empty())
-        header.files.emplace_back(trimmed(*line));
+    for (auto line = lines.next(); line; line = lines.next()) {
+      if (trimmed(*line).empty()) // to teem the name of a file
+        throw inputError(path.string(), "data file: its LIST has an empty line; remove that");
+      header.files.emplace_back(trimmed(*line));
+    }
   return header;
 }
 

@@ -16,8 +16,12 @@ struct NrrdHeaderText {
   std::uint64_t end = 0;          ///< byte after the header
 };
 
-/// Throws Error (input) where it is none, or states what ITK's reader is known not to survive.
+/// Throws Error (input) where it is none, states what ITK's reader is known not to survive, or a
+/// geometry that it would replace by its own.
 NrrdHeaderText readNrrdHeader(const std::filesystem::path& path);
+
+/// Whether it says how far voxels lie apart; otherwise ITK takes them to be 1 mm.
+bool saysSpacing(const NrrdHeaderText& header);
 
 /// Throws Error (input) where teem could not repeat the path in a message.
 void checkNrrdPath(const std::filesystem::path& path);

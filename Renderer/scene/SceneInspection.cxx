@@ -27,16 +27,6 @@ std::string idOf(const MrmlNode* node) {
   return node ? node->id : std::string();
 }
 
-/// The transforms above a node, the nearest first; those of a loop once.
-std::vector<std::string> transformsAbove(const MrmlDocument& document, const MrmlNode& node) {
-  std::vector<std::string> ids;
-  for (const MrmlNode* above = document.follow(node, "transform");
-       above && std::find(ids.begin(), ids.end(), above->id) == ids.end();
-       above = document.follow(*above, "transform"))
-    ids.push_back(above->id);
-  return ids;
-}
-
 class SceneInspector {
 public:
   explicit SceneInspector(const SceneRequest& request)

@@ -319,6 +319,38 @@ TEST(ClosedSurface, survivesDamage) {
   EXPECT_GT(readable, 50);
 }
 
+/// Of numbers that pack well: 200 kB would be 1.5 GiB.
+TEST(ClosedSurface, refusesArraysThatDoNotFit) {
+  const TemporaryFolder folder;
+  constexpr std::uint64_t block = 1 << 20, blocks = 1536;
+  const std::string zeros(block, '\0');
+  std::string packed(compressBound(block), '\0');
+  uLongf size = packed.size();
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+           reinterpret_cast<const Bytef*>(zeros.data()), block);
+  packed.resize(size);
+  std::vector<std::uint64_t> header = {blocks, block, 0};
+  std::string all;
+  for (std::uint64_t i = 0; i < blocks; ++i) {
+    header.push_back(size);
+    all += packed;
+  }
+  const std::string bomb = base64(rawBytes(header)) + base64(all);
+  const std::string whole =
+      surfaceText(box(Vec3(0, 0, 0), Vec3(5, 5, 5)), "id", "name", Writing::deflated);
+  const auto with = [&](const std::string& array) {
+    std::string text = whole;
+    const std::size_t begin = text.find('>', text.find("Name=\"" + array + "\"")) + 1;
+    return text.replace(begin, text.find('<', begin) - begin, bomb);
+  };
+  for (const char* array : {"Points", "connectivity", "offsets", "Segment_Name", "Segment_Color"}) {
+    folder.write("large.vtp", with(array));
+    expectRefused(folder / "large.vtp", writeBlocks(folder, {"large.vtp"}), "more than 1 GiB");
+  }
+  folder.write("unused.vtp", with("Segmentation_MasterRepresentation")); // is not looked into
+  EXPECT_EQ(readSegmentation(writeBlocks(folder, {"unused.vtp"})).segments().size(), 1u);
+}
+
 /// SlicerRT's examples hold contours alone.
 TEST(ClosedSurface, refusesRealContours) {
   const Path folder = Path(FENESTRA_DATA) / "slicer_scenes" / "slicerrt_scenes";

@@ -3,6 +3,7 @@
 #include "ImageTesting.h"
 
 #include <bit>
+#include <cstring>
 
 #include <sys/stat.h>
 
@@ -79,6 +80,29 @@ TEST_F(DamagedFiles, CannotClaimMoreThanTheyHold) {
   png.replace(16, 8, std::string("\0\0\x70\0\0\0\x70\0", 8));
   store(path("a.png"), png);
   EXPECT_EQ(kindOf([&] { readImage(path("a.png")); }, "a.png"), ErrorKind::input);
+}
+
+TEST_F(DamagedFiles, CannotTakeMoreMemoryThanAPictureMakesSenseWith) {
+  const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: gzip\nendian: little\n"
+                           "kinds: vector domain domain\n";
+  store(path("a.nrrd"), head + "sizes: 4 16384 8192\n\n" + std::string(200'000, '\0'));
+  EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "536870912 samples"), ErrorKind::input);
+  // A writer that stops early leaves zeros among the places of its blocks of lines, of which the
+  // first one follows them at once.
+  std::string exr = contentOf(written(renderedImage(40, 70), "a.exr"));
+  constexpr std::size_t places = 8 * ((70 + 15) / 16);
+  const auto placeAt = [&exr](std::size_t at) {
+    std::uint64_t place = 0;
+    std::memcpy(&place, &exr.at(at), sizeof place);
+    return place;
+  };
+  std::size_t table = 0;
+  while (placeAt(table) != table + places)
+    ++table;
+  exr.replace(table + places - 8, 8, std::string(8, '\0'));
+  store(path("cut.exr"), exr.substr(0, exr.size() * 2 / 3));
+  EXPECT_EQ(kindOf([&] { readImage(path("cut.exr")); }, "lacks some of its lines"),
+            ErrorKind::input);
 }
 
 TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {

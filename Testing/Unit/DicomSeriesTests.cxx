@@ -323,6 +323,9 @@ TEST(DicomSeries, refusesWhatIsNoStackOfGreySlices) {
   expect("\x28\0\x10\0"s, "\xff\xff", "PixelData: is shorter than Rows");
   expect("\x28\0\x10\0"s, "\0\0"s, "Rows or Columns: is missing");
   expect("\x28\0\x30\0"s, "0\\0", "PixelSpacing: must be above 0 mm");
+  expect("\x28\0\x30\0"s, "-1\\1", "PixelSpacing: must be above 0 mm");
+  expect("\x28\0\x53\x10"s, "nan", "RescaleSlope or RescaleIntercept: is not one finite number");
+  expect("\x28\0\x52\x10"s, "x", "RescaleSlope or RescaleIntercept: is not one finite number");
   expect("\x20\0\x32\0"s, "x", "is missing, so nothing says where");
   expect("\x20\0\x37\0"s, "1\\1", "must be two directions");
   const Path half = folder.write("half.dcm", bytes.substr(0, bytes.size() - 10));

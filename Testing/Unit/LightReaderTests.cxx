@@ -110,7 +110,7 @@ TEST(LightReader, refusesMapsThatAreNone) {
     expectRefused(path, text, [&path] { readEnvironmentMap(path); });
   };
   refuse("no such file");
-  for (const float value : {-0.1f, std::nanf(""), std::numeric_limits<float>::infinity()}) {
+  for (const float value : {-0.1f, std::nanf(""), std::numeric_limits<float>::infinity(), 3e38f}) {
     writeImage(sky(value), {}, path);
     refuse("channel G at pixel 2, 1");
   }

@@ -50,6 +50,44 @@ TEST(MrmlTransform, acceptsAnyUsefulScale) {
   EXPECT_EQ(toWorld(scene, node(scene, "n")).linear()(0, 0), 1e-5);
 }
 
+TEST(MrmlTransform, followsNoChainBeyondWhatARenderDoes) {
+  const SceneFolder folder;
+  const std::string rows = "1 0 0 0  0 1 0 0  0 0 1 0",
+                    below = "<N id=\"n\" transformNodeRef=\"t\"/>";
+  const auto countAbove = [&](const std::string& transforms) {
+    const MrmlScene scene = folder.scene(below + transforms);
+    return transformsAbove(scene.document, node(scene, "n")).size();
+  };
+  EXPECT_EQ(countAbove(chain(rows, 3)), 3u);
+  EXPECT_EQ(countAbove(transform(rows, "t", "u") + transform(rows, "u", "t")), 2u); // a loop
+  EXPECT_EQ(countAbove(chain(rows, 2000)), 1000u);
+}
+
+/// A scene can name a file that takes long often.
+TEST(MrmlTransform, readsAFileOnce) {
+  const SceneFolder folder;
+  const std::string nodes = R"(<N id="n" transformNodeRef="a"/>
+      <LinearTransform id="a" storageNodeRef="s" transformNodeRef="b"/>
+      <Transform id="b" storageNodeRef="s"/>
+      <TransformStorage id="s" fileName="t.tfm"/>)";
+  const std::string text = "#Insight Transform File V1.0\n#Transform 0\n"
+                           "Transform: TranslationTransform_double_3_3\nParameters: ";
+  folder.write("t.tfm", text + "1 2 3\nFixedParameters: \n");
+  MrmlScene scene = folder.scene(nodes);
+  const Affine read = toWorld(scene, node(scene, "n"));
+  EXPECT_TRUE(read.translation().isApprox(Vec3(2, 4, -6))); // twice, from the parent, of LPS
+  folder.write("t.tfm", "damaged");
+  EXPECT_TRUE(toWorld(scene, node(scene, "n")).isApprox(read));
+
+  MrmlScene damaged = folder.scene(nodes);
+  const auto refuse = [&] {
+    expectRefused(folder / "t.tfm", "is damaged", [&] { toWorld(damaged, node(damaged, "n")); });
+  };
+  refuse();
+  folder.write("t.tfm", text + "1 2 3\nFixedParameters: \n");
+  refuse();
+}
+
 TEST(MrmlTransform, refusesPlacesThatAreComposedOfTooMuch) {
   const SceneFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(24, 1), {.spacing = {1e5, 1e5, 1e5}});

@@ -203,15 +203,24 @@ TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
   const std::string ours = sealed("x " + std::string(unsealedMark) + "12345 y");
   folder.write("ours", ours);
   folder.write("ours.end", sealed(std::string(1 << 20, 'x') + std::string(unsealedMark)));
+  for (const std::size_t before : {9, 19, 25}) // across the ends of blocks, if that is their size
+    folder.write("ours." + std::to_string(before),
+                 sealed(std::string((1 << 20) - before, 'x') + std::string(unsealedMark) + "1 2"));
   folder.write("edited", "an" + ours);
   folder.write("edited.end", ours + " and more");
   folder.write("claimed", std::string(unsealedMark));
-  for (const char* name : {"theirs", "edited", "edited.end", "claimed"})
+  std::string many; // each would be a checksum of the whole file
+  for (int i = 0; i < 100; ++i)
+    many += unsealedMark;
+  folder.write("many", sealed(many));
+  for (const char* name : {"theirs", "edited", "edited.end", "claimed", "many"})
     EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.addUnnamed(folder / name); })
                   .find("Fenestra did not write it"),
               std::string::npos);
   outputs.addUnnamed(folder / "ours");
   outputs.addUnnamed(folder / "ours.end");
+  for (const char* name : {"ours.9", "ours.19", "ours.25"})
+    outputs.addUnnamed(folder / name);
   outputs.addUnnamed(folder / "new");
 }
 

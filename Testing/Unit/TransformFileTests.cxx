@@ -320,7 +320,10 @@ TEST(TransformFile, refusesWhatIsNoTransform) {
                 "is damaged");
   const auto large = folder.write("large.tfm", affineText);
   std::filesystem::resize_file(large, (64 << 20) + 1);
-  expectRefused(large, "is larger than 64 MB");
+  expectRefused(large, "is larger than 1 MB"); // text
+  const auto binary = folder.write("large.h5", affineText);
+  std::filesystem::resize_file(binary, (64 << 20) + 1);
+  expectRefused(binary, "is larger than 64 MB");
 }
 
 /// HDF5's own ways to have a library open other files: parts of a file that is read apart.

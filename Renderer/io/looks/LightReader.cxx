@@ -9,7 +9,8 @@
 namespace fenestra {
 namespace {
 
-constexpr double largest = 1e30; ///< of radiances and lengths: products of two stay finite
+constexpr double largest = 1e30;   ///< of radiances and lengths: products of two stay finite
+constexpr float brightest = 1e12f; ///< of a map, as of the flags' colours: pictures stay finite
 
 Vec3 readVector(const JsonNode& node) {
   const auto v = node.numbers(3, -largest, largest);
@@ -143,12 +144,12 @@ EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
       throw inputError(path.string(), "has no channel " + names[c] + "; write R, G and B");
     for (std::size_t i = 0; i < texels; ++i) {
       const float value = (*plane)[i];
-      if (!(value >= 0.0f) || std::isinf(value))
+      if (!(value >= 0.0f && value <= brightest))
         throw inputError(path.string(),
                          "channel " + names[c] + " at pixel " +
                              std::to_string(i % static_cast<std::size_t>(image.width)) + ", " +
                              std::to_string(i / static_cast<std::size_t>(image.width)) +
-                             " is negative or not finite; mend the map");
+                             " is not from 0 to 1e12; mend the map");
       map.rgb[3 * i + c] = value;
     }
   }

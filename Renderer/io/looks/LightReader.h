@@ -20,8 +20,8 @@ std::vector<Light> parseLights(std::string_view json, const std::string& source)
 /// Whether the same names a file.
 bool namesFiles(std::string_view json, const std::string& source);
 
-/// R, G, B of an EXR, latitude-longitude. Throws Error (input), also where a value is negative or
-/// not finite.
+/// R, G, B of an EXR, latitude-longitude. Throws Error (input), also where a value is not from 0 to
+/// 1e12.
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path);
 
 } // namespace fenestra

@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/Inputs.h"
+#include "io/JsonNode.h"
 #include "io/ShownText.h"
 #include "io/medical/SegmentTags.h"
 #include "io/medical/Voxelize.h"
@@ -20,7 +21,8 @@ constexpr const char* mend = "export the segmentation in Slicer as a binary labe
 /// The files that a .vtm names, in its folder or below.
 std::vector<Path> blocksOf(const Path& path) {
   pugi::xml_document document;
-  const bool read = static_cast<bool>(document.load_file(path.c_str()));
+  const std::string text = readText(path); // names alone
+  const bool read = static_cast<bool>(document.load_buffer(text.data(), text.size()));
   const pugi::xml_node file = document.child("VTKFile");
   if (!read || std::string_view(file.attribute("type").value()) != "vtkMultiBlockDataSet")
     throw inputError(path.string(), std::string("is damaged or no multi-block file; ") + mend);
@@ -63,8 +65,11 @@ SegmentInfo infoOf(const VtkSurface& surface, std::size_t index) {
 
 std::vector<Surface> surfacesOf(const Path& path) {
   std::vector<Surface> surfaces;
+  const std::set<std::string> fieldData = {"Segment_Name", "Segment_ID", "Segment_Tags",
+                                           "Segment_DefaultColor", "Segment_Color"};
+  SurfaceAllowance allowance;
   for (const Path& block : blocksOf(path)) {
-    VtkSurface shape = readVtkSurface(block);
+    VtkSurface shape = readVtkSurface(block, fieldData, allowance);
     if (shape.triangles.empty() && shape.hasLines)
       throw inputError(block.string(), "Segmentation_MasterRepresentation: holds planar contours, "
                                        "not a closed surface; " +

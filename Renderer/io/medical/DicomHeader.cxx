@@ -57,6 +57,13 @@ template <std::vector<double> DicomHeader::*field>
 void keepNumbers(DicomHeader& header, const std::string& text) {
   header.*field = decimals(text);
 }
+/// One number that samples are rescaled by: none where it is missing, NaN where it is no number.
+template <std::vector<double> DicomHeader::*field>
+void keepRescale(DicomHeader& header, const std::string& text) {
+  const std::vector<double> numbers = decimals(text);
+  if (!text.empty())
+    header.*field = {numbers.size() == 1 ? numbers[0] : std::nan("")};
+}
 /// What is missing stays as it is.
 template <unsigned DicomHeader::*field>
 void keepCount(DicomHeader& header, const std::string& text) {
@@ -88,8 +95,8 @@ constexpr std::array dicomFields = {
     Field{0x0028, 0x0101, keepCount<&DicomHeader::bitsStored>},
     Field{0x0028, 0x0102, keepCount<&DicomHeader::highBit>},
     Field{0x0028, 0x0103, keepCount<&DicomHeader::isSigned>},
-    Field{0x0028, 0x1052, keepNumbers<&DicomHeader::intercept>},
-    Field{0x0028, 0x1053, keepNumbers<&DicomHeader::slope>},
+    Field{0x0028, 0x1052, keepRescale<&DicomHeader::intercept>},
+    Field{0x0028, 0x1053, keepRescale<&DicomHeader::slope>},
 };
 
 // ---- in the child

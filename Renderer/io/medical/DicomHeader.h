@@ -20,7 +20,7 @@ struct DicomHeader {
   std::vector<double> position;     ///< ImagePositionPatient: of the first voxel's centre, LPS mm
   std::vector<double> orientation;  ///< ImageOrientationPatient: along a row, along a column; LPS
   std::vector<double> pixelSpacing; ///< mm between rows, between columns
-  std::vector<double> slope, intercept; ///< one number each, or missing
+  std::vector<double> slope, intercept; ///< one number each (NaN where it is none), or missing
   unsigned rows = 0, columns = 0, samples = 1, frames = 1;
   unsigned bits = 0, bitsStored = 0, highBit = 0, isSigned = 0; ///< of a voxel
   bool image = false;                                           ///< its kind of object has one

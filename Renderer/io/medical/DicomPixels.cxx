@@ -38,8 +38,11 @@ private:
   std::int64_t m_sign;
 };
 
-double only(const std::vector<double>& numbers, double fallback) {
-  return numbers.size() == 1 ? numbers[0] : fallback;
+double slopeOf(const DicomHeader& h) {
+  return h.slope.empty() ? 1.0 : h.slope[0];
+}
+double interceptOf(const DicomHeader& h) {
+  return h.intercept.empty() ? 0.0 : h.intercept[0];
 }
 
 } // namespace
@@ -53,6 +56,8 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
       h.isSigned > 1)
     refuse("BitsAllocated, BitsStored or HighBit: is none that is read; save the volume in Slicer "
            "as .nrrd and name that");
+  if (!std::isfinite(slopeOf(h)) || !std::isfinite(interceptOf(h)))
+    refuse("RescaleSlope or RescaleIntercept: is not one finite number; export the series again");
   // Lossless codecs make next to nothing of an empty picture; beyond that, a thousandth at most.
   constexpr std::uint64_t ratio = 1000, emptyPicture = 1 << 24;
   const std::uint64_t stored = std::filesystem::file_size(path);
@@ -64,7 +69,7 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
 
 DicomSamples rescaledVoxels(const DicomHeader& h, const std::string& voxels) {
   const StoredValues stored(h, voxels);
-  const double slope = only(h.slope, 1.0), intercept = only(h.intercept, 0.0);
+  const double slope = slopeOf(h), intercept = interceptOf(h);
   const std::size_t count = std::size_t{h.rows} * h.columns;
   const auto fill = [&](auto values, auto value) -> DicomSamples {
     for (std::size_t i = 0; i < count; ++i)

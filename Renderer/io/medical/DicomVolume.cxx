@@ -14,6 +14,8 @@ namespace {
 
 using Path = std::filesystem::path;
 
+constexpr double largestLength = 1e9; ///< mm, as for other files
+
 struct Slice {
   Path path;
   DicomHeader header;
@@ -51,6 +53,9 @@ Slice openSlice(DicomFiles& files, const Path& path) {
            "slice lies; name another series");
   if (h.pixelSpacing.size() != 2)
     refuse("PixelSpacing: is missing; name another series");
+  for (const double spacing : h.pixelSpacing)
+    if (!(spacing > 1.0 / largestLength && spacing < largestLength))
+      refuse("PixelSpacing: must be above 0 mm; export the series again");
   checkDicomPixels(path, h);
   return {path, h, Eigen::Map<const Vec3>(h.position.data())};
 }
@@ -154,15 +159,8 @@ Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes,
 
 Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step) {
   const DicomHeader& h = slices.front().header;
-  const auto refuse = [&](const char* what) {
-    throw inputError(slices.front().path.string(), what);
-  };
-  constexpr double largest = 1e9; // mm, as for other files
-  for (const double spacing : h.pixelSpacing)
-    if (!(spacing > 1.0 / largest && spacing < largest))
-      refuse("PixelSpacing: must be above 0 mm; export the series again");
   for (const Slice& slice : slices)
-    if (!(slice.position.array().abs() < largest).all())
+    if (!(slice.position.array().abs() < largestLength).all())
       throw inputError(slice.path.string(), "ImagePositionPatient: is not a place within 1e9 mm; "
                                             "export the series again");
   const Eigen::DiagonalMatrix<double, 3> lpsToRas(-1.0, -1.0, 1.0);

@@ -4,9 +4,11 @@
 #include "io/HeaderText.h"
 #include "io/Inputs.h"
 #include "io/NrrdHeader.h"
+#include "io/NumberText.h"
+#include "io/ShownText.h"
 
 #include <algorithm>
-#include <array>
+#include <initializer_list>
 #include <map>
 #include <string_view>
 
@@ -64,22 +66,51 @@ void locateNrrdFiles(const std::filesystem::path& path, const NrrdHeaderText& he
     addFile(path, name, stored);
 }
 
+bool isOneOf(const std::string& name, std::initializer_list<const char*> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool isGzip(const std::string& encoding) {
+  return isOneOf(encoding, {"gzip", "gz"});
+}
+
+/// What there is for ITK to read, told before it fails.
+void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
+  const std::string encoding = lower(fields["encoding"]);
+  if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
+    throw inputError(path.string(),
+                     "encoding: \"" + shown(encoding) + "\" is not read; write raw or gzip");
+  if (const auto axes = wholeNumber(fields["dimension"]); axes && *axes < 3)
+    throw inputError(path.string(), "is a picture of " + std::to_string(*axes) +
+                                        " axes, not a volume; name one of three");
+  constexpr std::int64_t mostSkipped = 1 << 20; // teem inflates them one by one
+  if (isGzip(encoding) && fields.contains("byteskip")) {
+    const auto skipped = wholeNumber(fields["byteskip"]);
+    if (!skipped || *skipped < 0 || *skipped > mostSkipped)
+      throw inputError(path.string(), "byte skip: must be from 0 to " +
+                                          std::to_string(mostSkipped) +
+                                          " in compressed data; write the samples without it");
+  }
+}
+
 StoredSamples locateNrrd(const std::filesystem::path& path) {
   NrrdHeaderText header = readNrrdHeader(path);
   Fields& fields = header.fields;
+  checkNrrdKind(path, fields);
   StoredSamples stored;
+  stored.hasSpacing = saysSpacing(header);
   const std::string encoding = lower(fields["encoding"]);
   stored.compressed = encoding != "raw" && encoding != "hex"; // a text's digit can be 8 bytes
   locateNrrdFiles(path, header, stored);
   for (const std::filesystem::path& file : stored.files) {
     checkNrrdPath(file);
-    if (encoding == "ascii" || encoding == "text" || encoding == "txt")
+    if (isOneOf(encoding, {"ascii", "text", "txt"}))
       checkNrrdNumbers(file, stored.offset, path);
   }
   const bool skips = fields.contains("lineskip") || fields.contains("byteskip");
   const bool simple = stored.files.size() == 1 && !skips;
   stored.isRaw = simple && encoding == "raw";
-  stored.isStream = simple && (encoding == "gzip" || encoding == "gz");
+  stored.isStream = simple && isGzip(encoding);
   const std::string kind = lower(fields["kinds"]);
   stored.isListFirst = kind.starts_with("list") || kind.starts_with("vector");
   if (const std::string order = lower(fields["endian"]); order == "little" || order == "big")
@@ -94,23 +125,40 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
 /// they are there or not.
 void checkMetaField(const std::filesystem::path& path, const std::string& key,
                     std::string_view value, std::int64_t dimension) {
-  static const std::array vectors = {"DimSize",  "ElementSpacing", "ElementSize",     "Offset",
-                                     "Position", "Origin",         "CenterOfRotation"};
-  static const std::array matrices = {"TransformMatrix", "Rotation", "Orientation"};
-  const auto isOneOf = [&key](const auto& names) {
-    return std::find(names.begin(), names.end(), key) != names.end();
-  };
-  const std::size_t longest = isOneOf(matrices) || isOneOf(vectors) ? 1000 : 250;
+  const bool isVector = isOneOf(key, {"DimSize", "ElementSpacing", "ElementSize", "Offset",
+                                      "Position", "Origin", "CenterOfRotation"});
+  const bool isMatrix = isOneOf(key, {"TransformMatrix", "Rotation", "Orientation"});
+  const std::size_t longest = isMatrix || isVector ? 1000 : 250;
   if (key.size() > 200 || value.size() > longest)
     throw inputError(path.string(), key.substr(0, 40) + ": has more than " +
                                         std::to_string(longest) + " characters; shorten it");
   const auto numbers = static_cast<std::int64_t>(words(value).size());
-  const std::int64_t needed = isOneOf(vectors)    ? dimension
-                              : isOneOf(matrices) ? dimension * dimension
-                                                  : 0;
+  const std::int64_t needed = isVector ? dimension : isMatrix ? dimension * dimension : 0;
   if (numbers < needed)
     throw inputError(path.string(), key + ": has " + std::to_string(numbers) +
                                         " numbers; give it " + std::to_string(needed));
+}
+
+/// What MetaIO reads and nobody applies, or takes for something else.
+void checkMetaMeaning(const std::filesystem::path& path, const std::string& key,
+                      const std::string& value) {
+  const auto refuseUnless = [&](double neutral) {
+    if (parseNumbers(value) != std::vector<double>{neutral})
+      throw inputError(path.string(), key + ": is not read, unless it is " +
+                                          std::to_string(static_cast<int>(neutral)) +
+                                          "; rescale the samples and write them again");
+  };
+  if (key == "ElementToIntensityFunctionSlope")
+    refuseUnless(1.0);
+  else if (key == "ElementToIntensityFunctionOffset")
+    refuseUnless(0.0);
+  else if (key == "DistanceUnits")
+    checkMillimetres(path, key, value);
+  else if (key == "DimSize")
+    for (const std::string_view word : words(value))
+      if (const auto size = wholeNumber(word); !size || *size < 1 || *size > INT32_MAX)
+        throw inputError(path.string(),
+                         "DimSize: each must be a whole number from 1 to 2147483647");
 }
 
 Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
@@ -132,6 +180,7 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
         throw inputError(path.string(), "NDims: must be a whole number from 1 to 10");
     }
     checkMetaField(path, key, fields[key], dimension);
+    checkMetaMeaning(path, key, fields[key]);
   }
   if (dimension == 0)
     throw damaged(path, "MetaImage");
@@ -154,6 +203,7 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
                                     "volume into one file");
   const bool local = lower(name) == "local";
   StoredSamples stored;
+  stored.hasSpacing = fields.contains("ElementSpacing") || fields.contains("ElementSize");
   stored.compressed = stored.isStream = isTrue("CompressedData");
   stored.order = std::endian::native;
   for (const char* key : {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"})

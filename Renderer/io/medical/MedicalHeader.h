@@ -28,6 +28,7 @@ struct StoredSamples {
   bool isRaw = false, isStream = false;
   std::optional<std::endian> order = {}; ///< of the bytes in a sample, where the header says
   bool isListFirst = false;              ///< a NRRD's fastest axis is the list of components
+  bool hasSpacing = true;                ///< false where the header says nothing of it
 };
 
 /// Throws Error (input) where the header is not of its format, points to something other than plain

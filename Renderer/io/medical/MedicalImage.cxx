@@ -84,7 +84,8 @@ Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Compo
   }
   constexpr double largest = 1e9; // mm; beyond, a point keeps no fraction of a voxel
   if (!((spacing.array() > 1.0 / largest).all() && (spacing.array() < largest).all()))
-    throw inputError(path.string(), "spacing: must be above 0 mm in every axis; mend the header");
+    throw inputError(path.string(),
+                     "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
   if (!(origin.array().abs() < largest).all())
     throw inputError(path.string(), "origin: is not a place within 1e9 mm; mend the header");
   // The volume of the cell that unit directions span: 1 for orthogonal axes, 0 for coplanar ones.
@@ -202,6 +203,8 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
                      .components = io->GetNumberOfComponents(),
                      .frames = framesOf(*io) > 1,
                      .fields = textFields(*io)};
+  if (!stored.hasSpacing)
+    image.warnings.push_back(path.string() + ": has no spacing; voxels are taken to be 1 mm");
   if (image.frames)
     image.components = framesOf(*io);
   take(image, format == MedicalFormat::nifti ? niftiSamples(path, sampleCount(*io))

@@ -19,6 +19,7 @@ struct MedicalImage {
   bool frames = false; ///< components lie one whole frame after the other, else those of a voxel
                        ///< together; x fastest
   std::map<std::string, std::string> fields = {}; ///< NRRD's key:=value pairs
+  std::vector<std::string> warnings = {};         ///< each names the file
 };
 
 enum class Components { one, any };

@@ -88,10 +88,9 @@ struct Header {
   std::int16_t type = 0;
   float offset = 0.0f, slope = 0.0f, intercept = 0.0f;
 
-  bool rescales() const {
-    return std::isfinite(slope) && std::isfinite(intercept) && slope != 0.0f &&
-           (slope != 1.0f || intercept != 0.0f);
-  }
+  bool rescales() const { return isScaled() && (slope != 1.0f || intercept != 0.0f); }
+  /// As 0, what is no number means: as they are.
+  bool isScaled() const { return !std::isnan(slope) && slope != 0.0f; }
 };
 
 Header readHeader(const std::filesystem::path& path, Stream& stream) {
@@ -121,6 +120,8 @@ Header readHeader(const std::filesystem::path& path, Stream& stream) {
   if (size != static_cast<std::int32_t>(bytes.size()) || !sized ||
       std::memcmp(&bytes[344], "n+1", 4) != 0 || !(header.offset <= farthest))
     throw inputError(path.string(), "is not a NIfTI-1 file of one part; write it again as .nii.gz");
+  if (header.isScaled() && !(std::isfinite(header.slope) && std::isfinite(header.intercept)))
+    throw inputError(path.string(), "scl_slope or scl_inter: is not finite; write them again");
   if (!isPlaced(bytes, header.swapped))
     throw inputError(path.string(), "qform, sform or pixdim: holds a number that is not finite or "
                                     "beyond 1e9 mm; write it again");

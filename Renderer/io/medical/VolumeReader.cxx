@@ -12,6 +12,8 @@ Volume readVolume(const std::filesystem::path& path) {
                      VoxelStore samples(source.count);
                      readSamples(source, samples);
                      volume = makeVolume(path.string(), image.grid, std::move(samples));
+                     volume.warnings.insert(volume.warnings.begin(), image.warnings.begin(),
+                                            image.warnings.end());
                    });
   return volume;
 }

@@ -13,8 +13,19 @@
 namespace fenestra {
 namespace {
 
+constexpr const char* labelmapMend =
+    "; export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
+
 /// Something that makes no sense; the file's name is added above.
 struct DamagedSurface {};
+/// More than the allowance.
+struct LargeSurface {};
+
+void take(SurfaceAllowance& allowance, std::uint64_t count, std::uint64_t size = 1) {
+  if (count > allowance.bytes / size)
+    throw LargeSurface();
+  allowance.bytes -= count * size;
+}
 
 // ---- bytes
 // --------------------------------------------------------------------------------------
@@ -58,8 +69,9 @@ T numberAt(std::string_view bytes, std::uint64_t index) {
   return value;
 }
 
-/// How the file keeps its arrays.
+/// How the file keeps its arrays, and what they may take.
 struct Coding {
+  SurfaceAllowance& allowance;
   bool wideHeaders = false; ///< 64 bit
   bool deflated = false;
 
@@ -98,6 +110,8 @@ std::string inflatedBytes(std::string_view text, const Coding& coding) {
   const std::uint64_t blockSize = coding.header(header, 1), lastSize = coding.header(header, 2);
   std::string bytes;
   std::size_t at = 0;
+  if (std::max(blockSize, lastSize) > coding.allowance.bytes / blocks)
+    throw LargeSurface();
   for (std::uint64_t block = 0; block < blocks; ++block) {
     const std::uint64_t length = coding.header(header, 3 + block);
     const bool partial = block + 1 == blocks && lastSize != 0;
@@ -128,7 +142,8 @@ std::string binary(const pugi::xml_node& array, const Coding& coding) {
 // -------------------------------------------------------------------------------------
 
 template <typename T>
-std::vector<double> converted(const std::string& bytes) {
+std::vector<double> converted(const std::string& bytes, const Coding& coding) {
+  take(coding.allowance, bytes.size() / sizeof(T), sizeof(double));
   std::vector<double> numbers(bytes.size() / sizeof(T));
   for (std::size_t i = 0; i < numbers.size(); ++i)
     numbers[i] = static_cast<double>(numberAt<T>(bytes, i));
@@ -138,7 +153,9 @@ std::vector<double> converted(const std::string& bytes) {
 std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding) {
   const std::string format = array.attribute("format").value();
   if (format == "ascii") {
-    auto numbers = parseNumbers(array.text().get());
+    const std::string_view text = array.text().get();
+    take(coding.allowance, text.size() / 2, sizeof(double)); // a digit and a blank, at least
+    auto numbers = parseNumbers(text);
     if (!numbers)
       throw DamagedSurface();
     return *std::move(numbers);
@@ -148,17 +165,17 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
   const std::string bytes = binary(array, coding);
   const std::string type = array.attribute("type").value();
   if (type == "Float32")
-    return converted<float>(bytes);
+    return converted<float>(bytes, coding);
   if (type == "Float64")
-    return converted<double>(bytes);
+    return converted<double>(bytes, coding);
   if (type == "Int32")
-    return converted<std::int32_t>(bytes);
+    return converted<std::int32_t>(bytes, coding);
   if (type == "UInt32")
-    return converted<std::uint32_t>(bytes);
+    return converted<std::uint32_t>(bytes, coding);
   if (type == "Int64")
-    return converted<std::int64_t>(bytes);
+    return converted<std::int64_t>(bytes, coding);
   if (type == "UInt64")
-    return converted<std::uint64_t>(bytes);
+    return converted<std::uint64_t>(bytes, coding);
   throw DamagedSurface();
 }
 
@@ -170,6 +187,7 @@ std::string textOf(const pugi::xml_node& array, const Coding& coding) {
       text += static_cast<char>(code > -129.0 && code < 256.0 ? static_cast<int>(code) : '?');
   else
     text = binary(array, coding);
+  take(coding.allowance, text.size());
   return text.substr(0, text.find('\0'));
 }
 
@@ -199,6 +217,8 @@ void addTriangles(const pugi::xml_node& cells, const Coding& coding, bool strips
     if (!(offset >= static_cast<double>(begin) && offset <= static_cast<double>(points.size())))
       throw DamagedSurface();
     const auto end = static_cast<std::size_t>(offset);
+    if (end > begin + 2)
+      take(coding.allowance, end - begin - 2, sizeof(Triangles::value_type));
     for (std::size_t i = begin + 2; i < end; ++i)
       triangles.push_back({points[strips ? i - 2 : begin], points[i - 1], points[i]});
     begin = end;
@@ -224,19 +244,23 @@ void addPiece(const pugi::xml_node& piece, const Coding& coding, VtkSurface& sur
   surface.hasLines = surface.hasLines || piece.attribute("NumberOfLines").as_int() > 0;
 }
 
-VtkSurface surfaceOf(const pugi::xml_document& document) {
+VtkSurface surfaceOf(const pugi::xml_document& document, const std::set<std::string>& fieldData,
+                     SurfaceAllowance& allowance) {
   const pugi::xml_node file = document.child("VTKFile");
   const std::string_view compressor = file.attribute("compressor").value();
   if (std::string_view(file.attribute("type").value()) != "PolyData" ||
       std::string_view(file.attribute("byte_order").value()) != "LittleEndian" ||
       (!compressor.empty() && compressor != "vtkZLibDataCompressor"))
     throw DamagedSurface();
-  const Coding coding{std::string_view(file.attribute("header_type").value()) == "UInt64",
+  const Coding coding{allowance,
+                      std::string_view(file.attribute("header_type").value()) == "UInt64",
                       !compressor.empty()};
   VtkSurface surface;
   const pugi::xml_node data = file.child("PolyData");
   for (const pugi::xml_node& array : data.child("FieldData").children()) {
     const std::string name = array.attribute("Name").value();
+    if (!fieldData.contains(name))
+      continue;
     if (std::string_view(array.name()) == "Array")
       surface.texts[name] = textOf(array, coding);
     else
@@ -249,16 +273,22 @@ VtkSurface surfaceOf(const pugi::xml_document& document) {
 
 } // namespace
 
-VtkSurface readVtkSurface(const std::filesystem::path& path) {
+VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std::string>& fieldData,
+                          SurfaceAllowance& allowance) {
   requireFile(path, "name a .vtp file in it");
   pugi::xml_document document;
   try {
+    take(allowance, std::filesystem::file_size(path));
     if (!document.load_file(path.c_str()))
       throw DamagedSurface();
-    return surfaceOf(document);
+    return surfaceOf(document, fieldData, allowance);
   } catch (const DamagedSurface&) {
-    throw inputError(path.string(), "is damaged or no surface as Slicer writes it; export the "
-                                    "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
+    throw inputError(path.string(),
+                     std::string("is damaged or no surface as Slicer writes it") + labelmapMend);
+  } catch (const LargeSurface&) {
+    throw inputError(path.string(),
+                     std::string("takes, with the surfaces before it, more than 1 GiB of memory") +
+                         labelmapMend);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,16 @@ struct VtkSurface {
   std::map<std::string, std::vector<double>> numbers; ///< field data
 };
 
+/// Bytes that files which belong together may still take, as texts and as numbers: deflated arrays
+/// grow a thousandfold, and a file may be named often.
+struct SurfaceAllowance {
+  std::uint64_t bytes = std::uint64_t{1} << 30;
+};
+
 /// Throws Error (input) where the file is damaged, of another type, or holds more than its bytes
-/// can.
-VtkSurface readVtkSurface(const std::filesystem::path& path);
+/// can, or than the allowance, from which it takes its own. Of the field data only the arrays named
+/// `fieldData` are looked into.
+VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std::string>& fieldData,
+                          SurfaceAllowance& allowance);
 
 } // namespace fenestra

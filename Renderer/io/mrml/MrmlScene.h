@@ -7,6 +7,7 @@
 #include "io/medical/SegmentationReader.h"
 #include "io/mrml/MrmlDocument.h"
 #include "io/mrml/SceneFiles.h"
+#include "io/transforms/TransformFile.h"
 #include "medium/TransferFunction.h"
 #include "volume/Domain.h"
 #include "volume/Volume.h"
@@ -15,6 +16,8 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace fenestra {
@@ -25,6 +28,9 @@ struct MrmlScene {
 
   SceneFiles files;
   MrmlDocument document;
+  /// What each transform's file said, be it an error: nodes may name one often, and reading one
+  /// takes a process.
+  std::map<std::pair<std::string, TransformSense>, std::variant<Affine, Error>> transformFiles;
 };
 
 /// Label maps have a tag of their own now, and an attribute in older scenes.
@@ -40,6 +46,10 @@ std::string layoutOf(const MrmlNode& viewOrCamera);
 
 /// Files of a node's storage, the first one first; empty where it has none.
 std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node);
+
+/// The ids of the transforms above a node, the nearest first; those of a loop once, of a chain as
+/// many as toWorld follows.
+std::vector<std::string> transformsAbove(const MrmlDocument& document, const MrmlNode& node);
 
 /// The node's own space to the world, RAS mm: the product of the linear transforms above it. Their
 /// storage files, which have all digits, win over the scene's own six. Non-linear ones are refused.

@@ -2,12 +2,13 @@
 
 #include "camera/CheckedPose.h"
 #include "io/mrml/MrmlScene.h"
-#include "io/transforms/TransformFile.h"
+
+#include <algorithm>
 
 namespace fenestra {
 namespace {
 
-constexpr int deepest = 1000; ///< transforms above a node
+constexpr std::size_t deepest = 1000; ///< transforms above a node
 
 /// Sixteen numbers, row by row, that are an invertible affine map; nothing where the attribute is
 /// missing. Throws where it is anything else.
@@ -48,6 +49,26 @@ std::optional<Affine> inlineMatrix(const MrmlScene& scene, const MrmlNode& node)
   return fromParent ? std::optional<Affine>(fromParent->inverse()) : std::nullopt;
 }
 
+std::variant<Affine, Error> readOrError(MrmlScene& scene, const std::string& file,
+                                        TransformSense sense) {
+  try {
+    return scene.files.read(
+        {file}, [&](const auto& files) { return readLinearTransform(files.front(), sense); });
+  } catch (const Error& error) {
+    return error;
+  }
+}
+
+Affine transformInFile(MrmlScene& scene, const std::string& file, TransformSense sense) {
+  const std::pair key(file, sense);
+  auto known = scene.transformFiles.find(key);
+  if (known == scene.transformFiles.end())
+    known = scene.transformFiles.emplace(key, readOrError(scene, file, sense)).first;
+  if (const Error* error = std::get_if<Error>(&known->second))
+    throw *error;
+  return std::get<Affine>(known->second);
+}
+
 Affine toParent(MrmlScene& scene, const MrmlNode& node) {
   if (node.tag != "LinearTransform" && node.tag != "Transform")
     throw scene.document.error(node, "is not linear; harden it in Slicer (Transforms module), then "
@@ -59,17 +80,24 @@ Affine toParent(MrmlScene& scene, const MrmlNode& node) {
       throw scene.document.error(node, "has neither a matrix nor a file; save the transform again");
     return *matrix;
   }
-  return scene.files.read({names.front()}, [&](const auto& files) {
-    return readLinearTransform(files.front(), senseOf(node));
-  });
+  return transformInFile(scene, names.front(), senseOf(node));
 }
 
 } // namespace
 
+std::vector<std::string> transformsAbove(const MrmlDocument& document, const MrmlNode& node) {
+  std::vector<std::string> ids;
+  for (const MrmlNode* above = document.follow(node, "transform");
+       above && ids.size() < deepest && std::find(ids.begin(), ids.end(), above->id) == ids.end();
+       above = document.follow(*above, "transform"))
+    ids.push_back(above->id);
+  return ids;
+}
+
 Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
   Affine result = Affine::Identity();
   const MrmlNode* above = scene.document.follow(node, "transform");
-  for (int level = 0; above; above = scene.document.follow(*above, "transform"), ++level) {
+  for (std::size_t level = 0; above; above = scene.document.follow(*above, "transform"), ++level) {
     if (level == deepest)
       throw scene.document.error(
           node, "the transforms above it form a loop, or too long a chain; mend them in the "

@@ -25,6 +25,9 @@ namespace fenestra {
 namespace {
 
 constexpr std::int64_t largestSide = 32768;
+/// Pixels times channels: 1 GiB of floats, so that two pictures to compare, or a map of light and
+/// its picture, take about 2 GiB.
+constexpr std::int64_t mostSamples = std::int64_t{1} << 28;
 
 /// Untrusted sizes, before memory is taken for them. No format packs more than about 4096 samples
 /// in a byte (deflate reaches 1032 bytes a byte, 1-bit pictures are rare); tiny files may.
@@ -38,6 +41,10 @@ void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64
   if (channels > ((1 << 20) + 4096 * bytes) / (width * height))
     throw inputError(path.string(), "is too short for " + std::to_string(channels) +
                                         " channels of " + size + " pixels; write it again");
+  if (channels > mostSamples / (width * height))
+    throw inputError(path.string(), "has " + std::to_string(width * height * channels) +
+                                        " samples; at most " + std::to_string(mostSamples) +
+                                        " are read, so use fewer pixels or channels");
 }
 
 std::string firstLine(const std::exception& error) {
@@ -77,6 +84,8 @@ Image readExr(const std::filesystem::path& path) {
   Imf::Header::setMaxTileSize(4096, 4096);
   Imf::InputFile file(path.c_str());
   checkExr(path, file.header());
+  if (!file.isComplete())
+    throw inputError(path.string(), "lacks some of its lines or tiles; write it again");
   const auto window = file.header().dataWindow();
   Image image;
   image.width = window.max.x - window.min.x + 1;
@@ -188,7 +197,7 @@ Image readTiff(const std::filesystem::path& path) {
   TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
   const auto samples = tiffField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
   const bool wide = tiffField(tiff.get(), TIFFTAG_BITSPERSAMPLE) == 16;
-  checkSize(path, width, height, samples);
+  checkSize(path, width, height, samples < 3 ? samples + 2 : samples); // grey becomes three
   const auto bytes =
       readTiffRows(tiff.get(), std::size_t{width} * samples * (wide ? 2 : 1), height);
   Image image{static_cast<int>(width), static_cast<int>(height), {}, {}};

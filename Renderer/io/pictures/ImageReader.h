@@ -14,8 +14,8 @@ namespace fenestra {
 ///   of one.
 /// - `.png`, `.tif`, `.tiff`: R, G, B and, if there, A as display values in [0, 1], neither decoded
 ///   nor premultiplied; grey is copied to R, G, B.
-/// Throws Error (input) for anything else: damaged files, more than 32768 pixels a side, more
-/// pixels than the file can hold.
+/// Throws Error (input) for anything else: damaged or incomplete files, more than 32768 pixels a
+/// side, more pixels than the file can hold, or more than 2^28 samples in all channels.
 Image readImage(const std::filesystem::path& path);
 
 } // namespace fenestra

@@ -15,6 +15,7 @@ namespace {
 using Path = std::filesystem::path;
 
 constexpr std::uint64_t largestFile = 64 << 20;
+constexpr std::uint64_t largestTextFile = 1 << 20; ///< hundreds of matrices
 
 /// In LPS, in the file's own sense.
 Affine composed(const Path& path, const std::vector<TransformRecord>& records) {
@@ -58,9 +59,13 @@ void checkNamesNoFile(const Path& path) {
 
 Affine readLinearTransform(const Path& path, TransformSense sense) {
   requireFile(path, "name a transform file in it");
-  if (std::filesystem::file_size(path) > largestFile)
-    throw inputError(path.string(), "is larger than 64 MB, so it is no linear transform; harden it "
-                                    "in Slicer (Data module, Harden transform) and save again");
+  const std::string extension = lowerExtension(path);
+  const bool isText = extension == ".tfm" || extension == ".txt";
+  const std::uint64_t largest = isText ? largestTextFile : largestFile;
+  if (std::filesystem::file_size(path) > largest)
+    throw inputError(path.string(), "is larger than " + std::to_string(largest >> 20) +
+                                        " MB, so it is no linear transform; harden it "
+                                        "in Slicer (Data module, Harden transform) and save again");
   checkExtension(path);
   checkNamesNoFile(path);
   return answeredTransform(path, transformAnswer(path), sense);

@@ -17,7 +17,7 @@ enum class TransformSense { fromParent, toParent };
 /// of such, the last of which applies first (itk::CompositeTransform). Throws Error (input):
 /// anything that is not linear (refused before its parameters are read), several transforms without
 /// a composite (Slicer refuses them as well), maps that cannot be inverted, damaged files, files of
-/// more than 64 MB.
+/// more than 64 MB, texts of more than 1 MB.
 Affine readLinearTransform(const std::filesystem::path& path, TransformSense sense);
 
 /// The same of what reading the file apart answered, which may be anything (TransformRecords.h).
