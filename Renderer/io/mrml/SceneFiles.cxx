@@ -3,6 +3,7 @@
 #include "io/Inputs.h"
 #include "io/JsonNode.h"
 #include "io/ShownText.h"
+#include "io/medical/NamedFiles.h"
 #include "io/mrml/SceneArchive.h"
 
 #include <string_view>
@@ -80,8 +81,12 @@ std::filesystem::path SceneFiles::resolved(const std::string& fileName) const {
 }
 
 void SceneFiles::expect(const std::string& fileName) const {
-  if (!m_archive)
-    expectInput(resolved(fileName));
+  if (m_archive)
+    return;
+  const std::filesystem::path file = resolved(fileName);
+  expectInput(file);
+  for (const std::filesystem::path& part : filesNamedBy(file))
+    expectInput(part);
 }
 
 bool SceneFiles::holds(const std::string& fileName) const {

@@ -39,8 +39,8 @@ public:
   /// all of its own, so names that lead out of it are refused. Throws Error (input) where there is
   /// no such file.
   std::filesystem::path locate(const std::string& fileName);
-  /// Enters a file that the scene names into the ledger of inputs, whether it is read or not: no
-  /// result may replace what belongs to a scene.
+  /// Enters a file that the scene names, and those that this one names, into the ledger of inputs,
+  /// whether they are read or not: no result may replace what belongs to a scene.
   void expect(const std::string& fileName) const;
   /// Whether locate would find it.
   bool holds(const std::string& fileName) const;
