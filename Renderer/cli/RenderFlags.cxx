@@ -339,7 +339,7 @@ RenderOptions renderOptions(const FlagValues& flags) {
   scene.segmentation = flags.text("segmentation");
   scene.focus = flags.list("focus");
   const bool isScene = isSceneFile(scene.input);
-  if (scene.volume && !isScene && !std::filesystem::is_directory(scene.input))
+  if (scene.volume && !isScene && !isFolder(scene.input))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   if (!scene.focus.empty() && !scene.segmentation && !isScene)
     throw usageError("--focus: needs --segmentation FILE to find segments in");

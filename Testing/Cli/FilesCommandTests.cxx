@@ -135,6 +135,47 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
       folder.path());
 }
 
+/// As those of a folder that another user keeps closed, but for root as well.
+TEST_F(FilesCommand, SaysWhereFilesMayNotBeLookedAt) {
+  std::filesystem::create_symlink("loop", folder / "loop");
+  folder.write("s.mrml", R"(<MRML><Volume id="v" references="storage:s;"/>)"
+                         R"(<VolumeArchetypeStorage id="s" fileName="loop/a.nrrd"/></MRML>)");
+  const std::string why = ": cannot be read: Too many levels of symbolic links; its links lead";
+  const auto with = [](const std::string& flag, const std::string& value) {
+    return Arguments{"volume.nrrd", flag, value};
+  };
+  expectRefused(
+      {
+          {"input", {"loop/a.nrrd"}, 3, "loop/a.nrrd" + why},
+          {"input of inspect", {"inspect", "loop/a.nrrd"}, 3, "loop/a.nrrd" + why},
+          {"series", {"loop/a", "--volume", "1"}, 3, "loop/a" + why},
+          {"series of inspect", {"inspect", "loop/a", "--volume", "1"}, 3, "loop/a" + why},
+          {"file of a scene", {"s.mrml"}, 3, "loop/a.nrrd, which cannot be read: Too many"},
+          {"transfer", with("--transfer", "loop/t.vp"), 3, "loop/t.vp" + why},
+          {"lights", with("--lights", "loop/l.json"), 3, "loop/l.json" + why},
+          {"preset", with("--preset", "loop/p.json"), 3, "loop/p.json" + why},
+      },
+      folder.path());
+}
+
+TEST_F(FilesCommand, NeedsNoWorkingFolderWhereAllNamesAreAbsolute) {
+  std::filesystem::create_directory(folder / "gone");
+  const std::string there = folder.path().string();
+  const auto inNowhere = [&](const std::string& arguments) {
+    return std::system(("cd " + there + "/gone && rmdir " + there + "/gone && " +
+                        FENESTRA_EXECUTABLE + " " + arguments + " --samples 1 --size 8x8 2>" +
+                        there + "/said >&2; status=$?; mkdir -p " + there + "/gone; exit $status")
+                           .c_str()) >>
+           8;
+  };
+  EXPECT_EQ(inNowhere(there + "/volume.nrrd --output " + there + "/a.png"), 0)
+      << bytesOf(folder / "said");
+  EXPECT_EQ(inNowhere(there + "/volume.nrrd"), 4);
+  EXPECT_NE(bytesOf(folder / "said").find("volume.png: cannot be written: No such file"),
+            std::string::npos)
+      << bytesOf(folder / "said");
+}
+
 TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
   std::filesystem::create_directory(folder / "folder.png");
   std::filesystem::create_directory(folder / "depth-Z.nrrd");
