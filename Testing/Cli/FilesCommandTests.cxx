@@ -2,6 +2,8 @@
 
 #include "CommandTesting.h"
 
+#include <cstdlib>
+
 namespace fenestra::FilesCommandTests {
 namespace {
 
@@ -10,6 +12,7 @@ class FilesCommand : public SmallScene {};
 TEST_F(FilesCommand, RefusesWhatIsNoVolume) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.txt", "words");
+  folder.write("a.seg.vtm", "<VTKFile/>");
   folder.write("empty.nrrd", "");
   folder.write("picture.nrrd", "\x89PNG\r\n\x1a\n0000");
   folder.write("picture.png", "\x89PNG\r\n\x1a\n0000");
@@ -23,6 +26,7 @@ TEST_F(FilesCommand, RefusesWhatIsNoVolume) {
           {"a folder", {"."}, 3, ".: "},
           {"a device", {"/dev/zero"}, 3, "/dev/zero: "},
           {"an empty name", {""}, 2, "INPUT: is empty"},
+          {"a segmentation", {"a.seg.vtm"}, 3, "a.seg.vtm: is a segmentation; name its volume"},
           {"text", {"text.nrrd"}, 3, "text.nrrd: is not a NRRD file"},
           {"another extension", {"text.txt"}, 3, "text.txt: has no known extension; name a .nrrd"},
           {"an empty file", {"empty.nrrd"}, 3, "empty.nrrd: is not a NRRD file"},
@@ -154,6 +158,10 @@ TEST_F(FilesCommand, SaysWhereFilesMayNotBeLookedAt) {
           {"transfer", with("--transfer", "loop/t.vp"), 3, "loop/t.vp" + why},
           {"lights", with("--lights", "loop/l.json"), 3, "loop/l.json" + why},
           {"preset", with("--preset", "loop/p.json"), 3, "loop/p.json" + why},
+          {"output of a turntable",
+           {"turntable", "volume.nrrd", "--output", "loop/t.png"},
+           4,
+           "loop/t_0000.png: cannot be written: Too many levels"},
       },
       folder.path());
 }
