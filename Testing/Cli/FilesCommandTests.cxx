@@ -3,6 +3,7 @@
 #include "CommandTesting.h"
 
 #include <cstdlib>
+#include <map>
 
 namespace fenestra::FilesCommandTests {
 namespace {
@@ -71,6 +72,11 @@ TEST_F(FilesCommand, RefusesFocusThatIsNotThere) {
   const std::string origin = "space origin: (0,0,0)";
   far.replace(far.find(origin), origin.size(), "space origin: (5000,0,0)");
   folder.write("far.seg.nrrd", far);
+  const std::string id = "Segment0_ID:=A";
+  std::string fractional = segments();
+  fractional.insert(fractional.find(id),
+                    "Segmentation_MasterRepresentation:=Fractional labelmap\n");
+  folder.write("fractional.seg.nrrd", fractional);
   folder.write("blank.seg.nrrd", NrrdText{"4 4 4", "uint8"}.with(std::string(64, '\0')));
   const auto focus = [](const std::string& file, const std::string& segment) {
     return Arguments{"volume.nrrd", "--segmentation", file, "--focus", segment};
@@ -83,6 +89,8 @@ TEST_F(FilesCommand, RefusesFocusThatIsNotThere) {
           {"no segments", focus("blank.seg.nrrd", "1"), 3, "blank.seg.nrrd: has no segment \"1\""},
           {"no voxel", focus("segments.seg.nrrd", "B"), 3, "the focus has no voxel (B (Void))"},
           {"outside the volume", focus("far.seg.nrrd", "A"), 3, "outside the volume"},
+          {"fractional", focus("fractional.seg.nrrd", "A"), 3,
+           "fractional.seg.nrrd: Segmentation_MasterRepresentation: is a fractional labelmap"},
           {"missing file", focus("missing.seg.nrrd", "A"), 3, "missing.seg.nrrd: "},
           {"empty name", focus("segments.seg.nrrd", "A,,B"), 2, "--focus: expected names"},
       },
@@ -227,6 +235,34 @@ TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
           {"stats", {"volume.nrrd", "--stats", "missing/a.json"}, 4, "missing/a.json: "},
           {"stats on a device", {"volume.nrrd", "--stats", "/dev/full"}, 4, "/dev/full: is a "},
       },
+      folder.path());
+}
+
+/// One grey pixel, uncompressed.
+std::string tiffOf(std::uint16_t orientation) {
+  const auto bytes = [](std::uint32_t value, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i)
+      text += static_cast<char>(value >> (8 * i) & 0xffU);
+    return text;
+  };
+  const std::map<std::uint16_t, std::uint32_t> tags = {
+      {256, 1}, {257, 1},           {258, 8}, {259, 1}, {262, 1},
+      {273, 8}, {274, orientation}, {277, 1}, {278, 1}, {279, 1}};
+  constexpr int isShort = 3;
+  std::string tiff =
+      "II" + bytes(42, 2) + bytes(10, 4) + "xx" + bytes(static_cast<std::uint32_t>(tags.size()), 2);
+  for (const auto& [tag, value] : tags)
+    tiff += bytes(tag, 2) + bytes(isShort, 2) + bytes(1, 4) + bytes(value, 4);
+  return tiff + bytes(0, 4);
+}
+
+TEST_F(FilesCommand, RefusesToCompareTurnedPictures) {
+  folder.write("upright.tif", tiffOf(1));
+  folder.write("turned.tif", tiffOf(3));
+  EXPECT_EQ(run({"compare", "upright.tif", "upright.tif"}, folder.path()).status, 0);
+  expectRefused(
+      {{"turned", {"compare", "upright.tif", "turned.tif"}, 3, "turned.tif: Orientation: is 3"}},
       folder.path());
 }
 
