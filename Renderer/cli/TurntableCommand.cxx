@@ -184,7 +184,7 @@ void report(const TurntableOptions& options, const TurntableRecord& record, int 
        << record.finishedCount() << " of " << options.frames << " frames, " << rendered
        << " rendered now, " << seconds << " s"
        << (isWhole ? "" : " (stopped on request; the same command goes on)");
-  std::cout << line.str() << std::endl;
+  std::cout << oneLine(line.str()) << std::endl;
 }
 
 } // namespace

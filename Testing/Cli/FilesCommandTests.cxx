@@ -13,6 +13,7 @@ class FilesCommand : public SmallScene {};
 TEST_F(FilesCommand, RefusesWhatIsNoVolume) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.txt", "words");
+  folder.write(".nrrd", NrrdText().with(ramp()));
   folder.write("a.seg.vtm", "<VTKFile/>");
   folder.write("empty.nrrd", "");
   folder.write("picture.nrrd", "\x89PNG\r\n\x1a\n0000");
@@ -27,6 +28,8 @@ TEST_F(FilesCommand, RefusesWhatIsNoVolume) {
           {"a folder", {"."}, 3, ".: "},
           {"a device", {"/dev/zero"}, 3, "/dev/zero: "},
           {"an empty name", {""}, 2, "INPUT: is empty"},
+          {"a folder without a name", {"/"}, 2, "--output: is missing"},
+          {"an ending alone", {".nrrd"}, 2, "--output: is missing, and .nrrd gives"},
           {"a segmentation", {"a.seg.vtm"}, 3, "a.seg.vtm: is a segmentation; name its volume"},
           {"text", {"text.nrrd"}, 3, "text.nrrd: is not a NRRD file"},
           {"another extension", {"text.txt"}, 3, "text.txt: has no known extension; name a .nrrd"},

@@ -137,6 +137,7 @@ compare: error of A                  | refused | cp sky.exr e.exr | compare sky.
 compare: error of B                  | refused | cp sky.exr e.exr | compare sky.exr other.exr --errora sky.exr --errorb e.exr --output e.exr
 turntable: frame = volume            | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd
 turntable: frame = volume, anew      | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd --restart
+default output, of the folder's dot  | refused | mine d/d.png | cd d && render .
 turntable: frame = INPUT, anew       | refused | mv plain.nrrd turn_0003.nrrd | turn turn_0003.nrrd --output turn.nrrd --restart
 turntable: frame's depth = volume    | refused | mv plain.nrrd turn_0001-Z.nrrd; scene plain.nrrd turn_0001-Z.nrrd | turn s.mrml --output turn.nrrd --restart
 turntable: frame's depth, foreign    | refused | mine turn_0001-Z.nrrd | turn plain.nrrd --output turn.nrrd --restart
