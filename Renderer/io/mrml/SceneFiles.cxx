@@ -115,7 +115,7 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   if (!m_archive->files().contains(file))
     throw inputError(m_source, "names " + oneLine(file.string()) +
                                    ", which it does not hold; save the scene again");
-  const std::filesystem::path place = unpacked(file);
+  std::filesystem::path place = unpacked(file);
   const std::filesystem::path root = m_unpacked->path().lexically_normal();
   for (const std::filesystem::path& part : filesNamedBy(place))
     if (const auto beside = part.lexically_normal().lexically_relative(root);
