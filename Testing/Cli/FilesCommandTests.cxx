@@ -175,6 +175,11 @@ TEST_F(FilesCommand, SaysWhereFilesMayNotBeLookedAt) {
            "loop/t_0000.png: cannot be written: Too many levels"},
       },
       folder.path());
+  const Outcome inspected =
+      run({"inspect", "s.mrml", "--segmentation", "loop/a.seg.nrrd"}, folder.path());
+  EXPECT_NE(inspected.out.find("loop/a.seg.nrrd: cannot be read: Too many levels"),
+            std::string::npos)
+      << inspected.out << inspected.err;
 }
 
 TEST_F(FilesCommand, NeedsNoWorkingFolderWhereAllNamesAreAbsolute) {
