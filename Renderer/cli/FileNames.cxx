@@ -32,7 +32,10 @@ fs::path realPath(const fs::path& path) {
 
 /// A result is named before it is there.
 std::string writtenName(const std::string& name, const fs::path& folder) {
-  const fs::path path = fs::absolute(name);
+  std::error_code failed;
+  const fs::path path = fs::absolute(name, failed);
+  if (failed) // where it is cannot be told, so that it cannot be written either
+    return name;
   return (fs::path(relativeName(path.parent_path().string(), folder)) / path.filename())
       .lexically_normal()
       .string();
@@ -41,7 +44,10 @@ std::string writtenName(const std::string& name, const fs::path& folder) {
 } // namespace
 
 std::string relativeName(const std::string& name, const fs::path& folder) {
-  fs::path there = fs::absolute(name), inside;
+  std::error_code failed;
+  fs::path there = fs::absolute(name, failed), inside;
+  if (failed) // the working folder is gone: there is nothing of this name
+    return name;
   while (typeOf(there) == fs::file_type::not_found && there.has_relative_path()) {
     inside = inside.empty() ? there.filename() : there.filename() / inside; // of an archive
     there = there.parent_path();

@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "core/TextStream.h"
+#include "io/ShownText.h"
 
 #include <algorithm>
 #include <charconv>
@@ -159,7 +160,7 @@ std::string FlagValues::echo() const {
   std::string lines;
   for (const auto& [name, values] : m_values)
     for (const std::string& value : values)
-      lines += name + ": " + (value.empty() ? "yes" : value) + '\n';
+      lines += name + ": " + (value.empty() ? "yes" : oneLine(value)) + '\n';
   return lines;
 }
 

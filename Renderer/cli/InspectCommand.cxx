@@ -6,6 +6,7 @@
 #include "cli/RenderFlags.h"
 #include "cli/SceneFlags.h"
 #include "core/Error.h"
+#include "io/Inputs.h"
 #include "io/mrml/SceneFiles.h"
 
 #include <iostream>
@@ -50,7 +51,7 @@ int inspectCommand(int argc, char** argv, int first) {
   request.input = input;
   request.volume = flags.text("volume");
   request.segmentation = flags.text("segmentation");
-  if (request.volume && !isSceneFile(input) && !std::filesystem::is_directory(input))
+  if (request.volume && !isSceneFile(input) && !isFolder(input))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   Inspection inspection = inspectInput(request);
   if (inspection.render)

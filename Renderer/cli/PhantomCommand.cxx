@@ -3,6 +3,7 @@
 #include "cli/CommandLine.h"
 #include "cli/Machine.h"
 #include "core/Error.h"
+#include "io/ShownText.h"
 #include "io/phantom/PhantomWriter.h"
 #include "phantom/Cube.h"
 #include "phantom/Fetus.h"
@@ -100,9 +101,9 @@ int phantomCommand(int argc, char** argv, int first) {
   useMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
-  std::cout << folder << ":";
+  std::cout << oneLine(folder) << ":";
   for (const std::string& file : files)
-    std::cout << ' ' << file;
+    std::cout << ' ' << oneLine(file);
   std::cout << ", " << phantom.segments.size() << " segments" << std::endl;
   return 0;
 }

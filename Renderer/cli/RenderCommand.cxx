@@ -49,12 +49,13 @@ void report(const RenderOptions& options, const RenderResult& result, double sec
     line << ", noise " << noise;
   line << ", " << seconds << " s"
        << (result.reason == StopReason::request ? " (stopped on request)" : "");
-  std::cout << line.str() << std::endl;
+  std::cout << oneLine(line.str()) << std::endl;
 }
 
 void warn(const RenderOptions& options, const Scene& scene) {
   for (const std::string& warning : scene.warnings())
-    (options.returnValues ? std::cout : std::cerr) << "fenestra: warning: " << warning << '\n';
+    (options.returnValues ? std::cout : std::cerr)
+        << "fenestra: warning: " << oneLine(warning) << '\n';
 }
 
 /// What the scene has to tell, beside seconds.

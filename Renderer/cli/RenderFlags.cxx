@@ -257,14 +257,21 @@ ProgressMode progressMode(const FlagValues& flags) {
   return word == "none" ? ProgressMode::none : ProgressMode::automatic;
 }
 
-/// INPUT.png in the current folder, without the input's own endings.
+/// INPUT.png in the current folder, without the input's own endings. Throws Error (usage) where
+/// nothing is left of its name.
 std::filesystem::path defaultOutput(const std::filesystem::path& input) {
-  std::string name = input.lexically_normal().filename().string();
-  if (name.empty()) // a folder's name with a slash behind it
-    name = input.lexically_normal().parent_path().filename().string();
+  std::filesystem::path named = input.lexically_normal();
+  if (!named.has_filename()) // a folder's name with a slash behind it
+    named = named.parent_path();
+  if (std::error_code failed; named.filename() == "." || named.filename() == "..")
+    named = std::filesystem::canonical(named, failed);
+  std::string name = named.filename().string();
   for (const char* ending : {".gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd", ".mrml", ".mrb"})
     if (name.ends_with(ending))
       name.resize(name.size() - std::string_view(ending).size());
+  if (name.empty())
+    throw usageError("--output: is missing, and " + input.string() +
+                     " gives the picture no name; add --output FILE.png");
   return name + ".png";
 }
 
@@ -339,7 +346,7 @@ RenderOptions renderOptions(const FlagValues& flags) {
   scene.segmentation = flags.text("segmentation");
   scene.focus = flags.list("focus");
   const bool isScene = isSceneFile(scene.input);
-  if (scene.volume && !isScene && !std::filesystem::is_directory(scene.input))
+  if (scene.volume && !isScene && !isFolder(scene.input))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   if (!scene.focus.empty() && !scene.segmentation && !isScene)
     throw usageError("--focus: needs --segmentation FILE to find segments in");

@@ -166,13 +166,11 @@ private:
 };
 
 /// Before the long work.
-void declareFrames(const TurntableOptions& options, const TurntableRecord& record,
-                   Outputs& outputs) {
+void declareFrames(const TurntableOptions& options, Outputs& outputs) {
   declareOutputs(frameOptions(options, 0), outputs);
   for (int frame = 1; frame < options.frames; ++frame)
     for (const std::filesystem::path& path : frameOptions(options, frame).outputs)
       declareImage(path, outputs, options.render.outputsNamedBy);
-  record.declare(outputs);
   checkMemory(options.render.scene);
 }
 
@@ -186,7 +184,7 @@ void report(const TurntableOptions& options, const TurntableRecord& record, int 
        << record.finishedCount() << " of " << options.frames << " frames, " << rendered
        << " rendered now, " << seconds << " s"
        << (isWhole ? "" : " (stopped on request; the same command goes on)");
-  std::cout << line.str() << std::endl;
+  std::cout << oneLine(line.str()) << std::endl;
 }
 
 } // namespace
@@ -200,10 +198,11 @@ int turntableCommand(int argc, char** argv, int first) {
   const PresetFlags flags = withPreset(stored.flags);
   TurntableOptions options = turntableOptions(flags);
   options.render.scene.leftOut = stored.leftOut;
-  TurntableRecord record(options, flags.flags);
   RenderMonitor monitor;
   Outputs outputs;
-  declareFrames(options, record, outputs);
+  declareFrames(options, outputs); // first: no --restart replaces what it refuses
+  TurntableRecord record(options, flags.flags);
+  record.declare(outputs);
 
   const Stopwatch total;
   Turntable turntable(options, record, monitor, outputs,

@@ -161,7 +161,7 @@ TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValu
       m_finished(static_cast<std::size_t>(options.frames), false) {
   if (options.restart)
     return;
-  if (std::filesystem::exists(m_path))
+  if (std::error_code failed; std::filesystem::exists(m_path, failed))
     read(options);
   else
     refuseOthers(options);
@@ -170,7 +170,7 @@ TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValu
 void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
   for (int frame = 0; frame < options.frames; ++frame)
     for (const std::filesystem::path& file : frameFiles(options, frame))
-      if (std::filesystem::exists(file))
+      if (std::error_code failed; std::filesystem::exists(file, failed))
         throw usageError(file.string() + ": is there, and no " + m_path.string() +
                          " tells what it is of; choose another --output, or add --restart to "
                          "replace it");

@@ -40,7 +40,8 @@ void refuseMisspelt(std::string_view word) {
   for (const NamedCommand& command : commands)
     names.push_back(command.name);
   const std::string_view likely = fenestra::nearest(word, names);
-  if (!likely.empty() && !std::filesystem::exists(word))
+  std::error_code failed;
+  if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
     throw fenestra::usageError("'" + std::string(word) +
                                "': neither a file nor a subcommand; did you mean fenestra " +
                                std::string(likely) + "?");

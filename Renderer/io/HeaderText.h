@@ -82,20 +82,14 @@ inline bool hasControls(std::string_view line) {
 /// The text header at the front of a file, line by line; it may be followed by binary samples.
 class HeaderLines {
 public:
-  explicit HeaderLines(const std::filesystem::path& path) {
-    const std::uintmax_t size = std::filesystem::file_size(path);
-    m_text.resize(static_cast<std::size_t>(std::min<std::uintmax_t>(longestHeader, size)));
-    std::ifstream file(path, std::ios::binary);
-    file.read(m_text.data(), static_cast<std::streamsize>(m_text.size()));
-    m_text.resize(static_cast<std::size_t>(file.gcount()));
+  explicit HeaderLines(const std::filesystem::path& path) : m_file(path, std::ios::binary) {
+    m_text.reserve(longestHeader); // lines stay where they are while more are read
   }
 
   /// The next line without its end; nothing where there is none that ends within the limit.
   std::optional<std::string_view> next() {
-    if (m_position >= m_text.size())
-      return std::nullopt;
-    const std::size_t end = m_text.find('\n', m_position);
-    if (end == std::string::npos && m_text.size() == longestHeader)
+    const std::size_t end = endOfLine();
+    if (m_position >= m_text.size() || (end == std::string::npos && m_text.size() == longestHeader))
       return std::nullopt;
     std::string_view line(m_text);
     line = line.substr(m_position, end == std::string::npos ? end : end - m_position);
@@ -109,6 +103,28 @@ public:
   std::uint64_t position() const { return std::min(m_position, m_text.size()); }
 
 private:
+  /// Reads on until a line ends.
+  std::size_t endOfLine() {
+    for (std::size_t from = m_position;;) {
+      if (const std::size_t end = m_text.find('\n', from); end != std::string::npos)
+        return end;
+      from = m_text.size();
+      if (!readMore())
+        return std::string::npos;
+    }
+  }
+
+  /// False at the end of the file, or at the limit.
+  bool readMore() {
+    constexpr std::size_t block = 16 << 10;
+    const std::size_t before = m_text.size();
+    m_text.resize(std::min(before + block, longestHeader));
+    m_file.read(m_text.data() + before, static_cast<std::streamsize>(m_text.size() - before));
+    m_text.resize(before + static_cast<std::size_t>(m_file.gcount()));
+    return m_text.size() > before;
+  }
+
+  std::ifstream m_file;
   std::string m_text;
   std::size_t m_position = 0;
 };

@@ -59,6 +59,14 @@ bool isWithin(const std::filesystem::path& path, const std::filesystem::path& fo
                         folder.end();
 }
 
+std::filesystem::file_type typeOf(const std::filesystem::path& path) {
+  std::error_code failed;
+  const std::filesystem::file_type type = std::filesystem::status(path, failed).type();
+  if (type == std::filesystem::file_type::none)
+    throw readingError(path, failed.value(), "check the permissions of its folder");
+  return type;
+}
+
 std::string megabytes(std::uint64_t bytes) {
   return std::to_string(bytes >> 20) + " MB";
 }
@@ -73,10 +81,19 @@ std::optional<FileId> fileId(int descriptor) {
   return idOf(descriptor, "", AT_EMPTY_PATH);
 }
 
+bool isThere(const std::filesystem::path& path) {
+  return typeOf(path) != std::filesystem::file_type::not_found;
+}
+
+bool isFolder(const std::filesystem::path& path) {
+  return typeOf(path) == std::filesystem::file_type::directory;
+}
+
 void requireFile(const std::filesystem::path& path, const std::string& mend, std::uint64_t most) {
   // Before it is looked at: a name on an automount or a server would tell others of itself.
   if (confinement && !isWithin(path, *confinement))
-    throw inputError(path.string(), "is outside the archive that names it; save the scene again");
+    throw inputError(path.string(),
+                     "is outside the archive that names it, or not in it; save the scene again");
   struct stat status = {};
   if (::stat(path.c_str(), &status) != 0) {
     if (errno == ENOENT || errno == ENOTDIR)

@@ -34,6 +34,11 @@ std::optional<FileId> fileId(const std::filesystem::path& path);
 /// Of an open file.
 std::optional<FileId> fileId(int descriptor);
 
+/// Whether there is anything of this name, or a folder. Follows links. Throws Error (input) where
+/// that cannot be told.
+bool isThere(const std::filesystem::path& path);
+bool isFolder(const std::filesystem::path& path);
+
 /// Enters `path` into the ledger. Throws Error (input) unless it is a file of at most `most` bytes
 /// inside the folder that InputsWithin names, and no result of this process; `mend` says what to
 /// name instead of a folder.

@@ -5,9 +5,21 @@
 #include <sys/stat.h>
 
 namespace fenestra {
+namespace {
+
+Error cannotBeMade(const std::filesystem::path& folder, int code) {
+  return outputError(folder.string(), "cannot be made: " + systemMessage(code) + "; " +
+                                          writingMend(code, "name a folder that you may write to"));
+}
+
+} // namespace
 
 MadeFolders::MadeFolders(const std::filesystem::path& folder) {
-  make(std::filesystem::absolute(folder).lexically_normal());
+  std::error_code failed;
+  const std::filesystem::path absolute = std::filesystem::absolute(folder, failed);
+  if (failed)
+    throw cannotBeMade(folder, failed.value());
+  make(absolute.lexically_normal());
 }
 
 MadeFolders::~MadeFolders() {
@@ -32,8 +44,7 @@ void MadeFolders::make(const std::filesystem::path& folder) {
     return;
   const int code = errno;
   m_made.back()->keep(); // what is there is not ours
-  throw outputError(folder.string(), "cannot be made: " + systemMessage(code) + "; " +
-                                         writingMend(code, "name a folder that you may write to"));
+  throw cannotBeMade(folder, code);
 }
 
 } // namespace fenestra

@@ -27,13 +27,24 @@ std::atomic<bool> anyIsPlaced = false;
 fs::path targetOf(const fs::path& path) {
   constexpr int mostLinks = 40; // Linux's own limit
   std::error_code failed;
-  fs::path target = fs::absolute(path);
+  fs::path target = fs::absolute(path, failed);
+  if (failed)
+    throw writingError(path, failed.value());
   for (int links = 0; fs::is_symlink(target, failed) && links < mostLinks; ++links)
     target = target.parent_path() / fs::read_symlink(target);
   const fs::path folder = fs::canonical(target.parent_path(), failed);
   if (failed)
     throw writingError(path, failed.value());
   return folder / target.filename();
+}
+
+/// Whether this process could not rename over the file: in a sticky folder, as /tmp, only the
+/// owners of the file and of the folder may (rename(2), EPERM).
+bool isKeptByItsOwner(const struct stat& file, const fs::path& folder) {
+  struct stat status = {};
+  const uid_t user = ::geteuid();
+  return ::stat(folder.c_str(), &status) == 0 && (status.st_mode & S_ISVTX) != 0 && user != 0 &&
+         user != file.st_uid && user != status.st_uid;
 }
 
 void requireReplaceable(const fs::path& path, const fs::path& target) {
@@ -49,6 +60,9 @@ void requireReplaceable(const fs::path& path, const fs::path& target) {
     throw outputError(path.string(), "is a folder or a device; name a file");
   if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     throw outputError(path.string(), "is write-protected; choose another name, or chmod u+w it");
+  if (isKeptByItsOwner(status, target.parent_path()))
+    throw outputError(path.string(), "belongs to somebody else, in a folder where only owners may "
+                                     "replace files; choose another name or folder");
 }
 
 void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {

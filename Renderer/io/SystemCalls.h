@@ -34,6 +34,19 @@ inline std::string resourceMend(int code) {
   }
 }
 
+/// The same for reading, and `other` where neither a resource nor the name is what is wrong.
+inline std::string readingMend(int code, const std::string& other) {
+  switch (code) {
+  case ELOOP:
+    return "its links lead to each other: name the file itself";
+  case ENAMETOOLONG:
+    return "choose a shorter name";
+  default:
+    const std::string mend = resourceMend(code);
+    return mend.empty() ? other : mend;
+  }
+}
+
 /// The same for writing, and `other` where the name is what is wrong.
 inline std::string writingMend(int code, const std::string& other) {
   switch (code) {
@@ -57,11 +70,10 @@ inline Error writingError(const std::filesystem::path& path, int code) {
           writingMend(code, "name a file in an existing folder that you may write to"));
 }
 
-/// An input that cannot be read, `other` where no resource is what is missing.
+/// An input that cannot be read.
 inline Error readingError(const std::filesystem::path& path, int code, const std::string& other) {
-  const std::string mend = resourceMend(code);
-  return inputError(path.string(), "cannot be read: " + systemMessage(code) + "; " +
-                                       (mend.empty() ? other : mend));
+  return inputError(path.string(),
+                    "cannot be read: " + systemMessage(code) + "; " + readingMend(code, other));
 }
 
 /// What `call` returns once no signal interrupts it.

@@ -89,7 +89,7 @@ FileVolume inspectVolume(const SceneRequest& request) {
 
 Inspection inspectFiles(const SceneRequest& request) {
   Inspection result;
-  if (std::filesystem::is_directory(request.input)) {
+  if (isFolder(request.input)) {
     result.kind = InputKind::dicom;
     for (const DicomSeries& series : findDicomSeries(request.input))
       result.series.push_back(

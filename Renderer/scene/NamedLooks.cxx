@@ -3,6 +3,7 @@
 #include "core/Error.h"
 #include "io/EmbeddedResources.h"
 #include "io/ShownText.h"
+#include "io/SystemCalls.h"
 #include "io/looks/LightReader.h"
 #include "io/looks/LookText.h"
 #include "io/mrml/MrmlScene.h"
@@ -27,13 +28,16 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-bool isThere(const std::string& name) {
+bool isFoundAsFile(const std::string& name) {
   std::error_code failed;
   return std::filesystem::exists(name, failed);
 }
 
-/// A name without a dot is a preset's; so is no file's.
+/// A file that may only not be looked at is said to be so; other names can be a preset's as well.
 Error unknownPreset(const std::string& flag, const std::string& name, const std::string& known) {
+  std::error_code failed;
+  if (name.find('/') != std::string::npos && !std::filesystem::exists(name, failed) && failed)
+    return readingError(name, failed.value(), "check the permissions of its folder");
   return inputError(name,
                     "no such file, and no preset of that name; --" + flag + " takes " + known);
 }
@@ -91,7 +95,7 @@ std::vector<std::string> ownPresets(const std::string& kind) {
 
 bool isFileName(const std::string& kind, const std::string& name) {
   return ownPreset(kind, name).empty() &&
-         (name.find_first_of("/.") != std::string::npos || isThere(name));
+         (name.find_first_of("/.") != std::string::npos || isFoundAsFile(name));
 }
 
 NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path& input) {
@@ -99,7 +103,7 @@ NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path
     return {parseTransferLook(name, "--transfer")};
   if (const std::string_view text = ownPreset("transfer", name); !text.empty())
     return {parseTransferLook(text, name)};
-  if (isThere(name))
+  if (isFoundAsFile(name))
     return {readTransferLook(name), name};
   SlicerTransfers slicer(input);
   if (auto transfer = slicer.find(name))
@@ -111,7 +115,8 @@ NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path
 bool isFileOfTransfer(const std::string& name, const std::filesystem::path& input) {
   if (isLookText(name) || !isFileName("transfer", name))
     return false;
-  return name.find('/') != std::string::npos || isThere(name) || !SlicerTransfers(input).find(name);
+  return name.find('/') != std::string::npos || isFoundAsFile(name) ||
+         !SlicerTransfers(input).find(name);
 }
 
 NamedLights namedLights(const std::string& name) {
@@ -119,7 +124,7 @@ NamedLights namedLights(const std::string& name) {
     return {parseLights(name, "--lights")};
   if (const std::string_view text = ownPreset("lights", name); !text.empty())
     return {parseLights(text, name)};
-  if (!isThere(name))
+  if (!isFoundAsFile(name))
     throw unknownPreset("lights", name, "a file or one of " + listed(ownPresets("lights")));
   return {readLights(name), name};
 }
@@ -131,7 +136,7 @@ bool isFileOfLights(const std::string& name) {
 OrganPreset namedPreset(const std::string& name) {
   if (const std::string_view text = ownPreset("presets", name); !text.empty())
     return parsePreset(text, name);
-  if (!isThere(name))
+  if (!isFoundAsFile(name))
     throw unknownPreset("preset", name, "auto, a file, or one of " + listed(ownPresets("presets")));
   return readPreset(name);
 }

@@ -1,6 +1,7 @@
 #include "scene/SceneInput.h"
 
 #include "core/Error.h"
+#include "io/Inputs.h"
 #include "io/medical/DicomSeries.h"
 #include "io/medical/SegmentationReader.h"
 #include "io/medical/VolumeReader.h"
@@ -44,7 +45,7 @@ VolumeInput volumeInScene(const SceneRequest& request) {
 }
 
 VolumeInput volumeInFiles(const SceneRequest& request) {
-  if (!std::filesystem::is_directory(request.input))
+  if (!isFolder(request.input))
     return {readVolume(request.input), {request.input.string()}};
   const std::vector<DicomSeries> all = findDicomSeries(request.input);
   const DicomSeries& series = chooseSeries(all, request.volume, request.input.string());
@@ -71,7 +72,7 @@ FocusInput focusInScene(const SceneRequest& request, const Grid& volume) {
         [&] { return segmentation.mask(request.focus, volume, request.focusLook.shaping); });
     return {std::move(mask), scene.files.filesRead()};
   }
-  if (!std::filesystem::exists(*request.segmentation))
+  if (!isThere(*request.segmentation))
     throw inputError(scene.document.source(),
                      "has no segmentation \"" + *request.segmentation +
                          "\", and there is no file of that name; fenestra inspect lists what "

@@ -258,7 +258,7 @@ private:
       return;
     const std::filesystem::path path = *m_request.segmentation;
     std::error_code failed;
-    if (!std::filesystem::exists(path, failed)) {
+    if (!std::filesystem::exists(path, failed) && !failed) { // else its reader tells why
       m_result.render->segmentationProblem =
           "--segmentation " + path.string() + ": is neither in the scene nor a file";
       return;

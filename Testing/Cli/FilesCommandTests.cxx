@@ -2,6 +2,9 @@
 
 #include "CommandTesting.h"
 
+#include <cstdlib>
+#include <map>
+
 namespace fenestra::FilesCommandTests {
 namespace {
 
@@ -10,6 +13,8 @@ class FilesCommand : public SmallScene {};
 TEST_F(FilesCommand, RefusesWhatIsNoVolume) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.txt", "words");
+  folder.write(".nrrd", NrrdText().with(ramp()));
+  folder.write("a.seg.vtm", "<VTKFile/>");
   folder.write("empty.nrrd", "");
   folder.write("picture.nrrd", "\x89PNG\r\n\x1a\n0000");
   folder.write("picture.png", "\x89PNG\r\n\x1a\n0000");
@@ -23,6 +28,9 @@ TEST_F(FilesCommand, RefusesWhatIsNoVolume) {
           {"a folder", {"."}, 3, ".: "},
           {"a device", {"/dev/zero"}, 3, "/dev/zero: "},
           {"an empty name", {""}, 2, "INPUT: is empty"},
+          {"a folder without a name", {"/"}, 2, "--output: is missing"},
+          {"an ending alone", {".nrrd"}, 2, "--output: is missing, and .nrrd gives"},
+          {"a segmentation", {"a.seg.vtm"}, 3, "a.seg.vtm: is a segmentation; name its volume"},
           {"text", {"text.nrrd"}, 3, "text.nrrd: is not a NRRD file"},
           {"another extension", {"text.txt"}, 3, "text.txt: has no known extension; name a .nrrd"},
           {"an empty file", {"empty.nrrd"}, 3, "empty.nrrd: is not a NRRD file"},
@@ -67,6 +75,11 @@ TEST_F(FilesCommand, RefusesFocusThatIsNotThere) {
   const std::string origin = "space origin: (0,0,0)";
   far.replace(far.find(origin), origin.size(), "space origin: (5000,0,0)");
   folder.write("far.seg.nrrd", far);
+  const std::string id = "Segment0_ID:=A";
+  std::string fractional = segments();
+  fractional.insert(fractional.find(id),
+                    "Segmentation_MasterRepresentation:=Fractional labelmap\n");
+  folder.write("fractional.seg.nrrd", fractional);
   folder.write("blank.seg.nrrd", NrrdText{"4 4 4", "uint8"}.with(std::string(64, '\0')));
   const auto focus = [](const std::string& file, const std::string& segment) {
     return Arguments{"volume.nrrd", "--segmentation", file, "--focus", segment};
@@ -79,6 +92,8 @@ TEST_F(FilesCommand, RefusesFocusThatIsNotThere) {
           {"no segments", focus("blank.seg.nrrd", "1"), 3, "blank.seg.nrrd: has no segment \"1\""},
           {"no voxel", focus("segments.seg.nrrd", "B"), 3, "the focus has no voxel (B (Void))"},
           {"outside the volume", focus("far.seg.nrrd", "A"), 3, "outside the volume"},
+          {"fractional", focus("fractional.seg.nrrd", "A"), 3,
+           "fractional.seg.nrrd: Segmentation_MasterRepresentation: is a fractional labelmap"},
           {"missing file", focus("missing.seg.nrrd", "A"), 3, "missing.seg.nrrd: "},
           {"empty name", focus("segments.seg.nrrd", "A,,B"), 2, "--focus: expected names"},
       },
@@ -135,6 +150,56 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
       folder.path());
 }
 
+/// As those of a folder that another user keeps closed, but for root as well.
+TEST_F(FilesCommand, SaysWhereFilesMayNotBeLookedAt) {
+  std::filesystem::create_symlink("loop", folder / "loop");
+  folder.write("s.mrml", R"(<MRML><Volume id="v" references="storage:s;"/>)"
+                         R"(<VolumeArchetypeStorage id="s" fileName="loop/a.nrrd"/></MRML>)");
+  const std::string why = ": cannot be read: Too many levels of symbolic links; its links lead";
+  const auto with = [](const std::string& flag, const std::string& value) {
+    return Arguments{"volume.nrrd", flag, value};
+  };
+  expectRefused(
+      {
+          {"input", {"loop/a.nrrd"}, 3, "loop/a.nrrd" + why},
+          {"input of inspect", {"inspect", "loop/a.nrrd"}, 3, "loop/a.nrrd" + why},
+          {"series", {"loop/a", "--volume", "1"}, 3, "loop/a" + why},
+          {"series of inspect", {"inspect", "loop/a", "--volume", "1"}, 3, "loop/a" + why},
+          {"file of a scene", {"s.mrml"}, 3, "loop/a.nrrd, which cannot be read: Too many"},
+          {"transfer", with("--transfer", "loop/t.vp"), 3, "loop/t.vp" + why},
+          {"lights", with("--lights", "loop/l.json"), 3, "loop/l.json" + why},
+          {"preset", with("--preset", "loop/p.json"), 3, "loop/p.json" + why},
+          {"output of a turntable",
+           {"turntable", "volume.nrrd", "--output", "loop/t.png"},
+           4,
+           "loop/t_0000.png: cannot be written: Too many levels"},
+      },
+      folder.path());
+  const Outcome inspected =
+      run({"inspect", "s.mrml", "--segmentation", "loop/a.seg.nrrd"}, folder.path());
+  EXPECT_NE(inspected.out.find("loop/a.seg.nrrd: cannot be read: Too many levels"),
+            std::string::npos)
+      << inspected.out << inspected.err;
+}
+
+TEST_F(FilesCommand, NeedsNoWorkingFolderWhereAllNamesAreAbsolute) {
+  std::filesystem::create_directory(folder / "gone");
+  const std::string there = folder.path().string();
+  const auto inNowhere = [&](const std::string& arguments) {
+    return std::system(("cd " + there + "/gone && rmdir " + there + "/gone && " +
+                        FENESTRA_EXECUTABLE + " " + arguments + " --samples 1 --size 8x8 2>" +
+                        there + "/said >&2; status=$?; mkdir -p " + there + "/gone; exit $status")
+                           .c_str()) >>
+           8;
+  };
+  EXPECT_EQ(inNowhere(there + "/volume.nrrd --output " + there + "/a.png"), 0)
+      << bytesOf(folder / "said");
+  EXPECT_EQ(inNowhere(there + "/volume.nrrd"), 4);
+  EXPECT_NE(bytesOf(folder / "said").find("volume.png: cannot be written: No such file"),
+            std::string::npos)
+      << bytesOf(folder / "said");
+}
+
 TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
   std::filesystem::create_directory(folder / "folder.png");
   std::filesystem::create_directory(folder / "depth-Z.nrrd");
@@ -178,6 +243,34 @@ TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
           {"stats", {"volume.nrrd", "--stats", "missing/a.json"}, 4, "missing/a.json: "},
           {"stats on a device", {"volume.nrrd", "--stats", "/dev/full"}, 4, "/dev/full: is a "},
       },
+      folder.path());
+}
+
+/// One grey pixel, uncompressed.
+std::string tiffOf(std::uint16_t orientation) {
+  const auto bytes = [](std::uint32_t value, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i)
+      text += static_cast<char>(value >> (8 * i) & 0xffU);
+    return text;
+  };
+  const std::map<std::uint16_t, std::uint32_t> tags = {
+      {256, 1}, {257, 1},           {258, 8}, {259, 1}, {262, 1},
+      {273, 8}, {274, orientation}, {277, 1}, {278, 1}, {279, 1}};
+  constexpr int isShort = 3;
+  std::string tiff =
+      "II" + bytes(42, 2) + bytes(10, 4) + "xx" + bytes(static_cast<std::uint32_t>(tags.size()), 2);
+  for (const auto& [tag, value] : tags)
+    tiff += bytes(tag, 2) + bytes(isShort, 2) + bytes(1, 4) + bytes(value, 4);
+  return tiff + bytes(0, 4);
+}
+
+TEST_F(FilesCommand, RefusesToCompareTurnedPictures) {
+  folder.write("upright.tif", tiffOf(1));
+  folder.write("turned.tif", tiffOf(3));
+  EXPECT_EQ(run({"compare", "upright.tif", "upright.tif"}, folder.path()).status, 0);
+  expectRefused(
+      {{"turned", {"compare", "upright.tif", "turned.tif"}, 3, "turned.tif: Orientation: is 3"}},
       folder.path());
 }
 

@@ -31,6 +31,22 @@ TEST_F(ResultsCommand, StatsGoToStandardOutputBehindWhatWasSaid) {
   EXPECT_TRUE(S_ISLNK(status.st_mode));
 }
 
+TEST_F(ResultsCommand, ReportsAreOneLineWhateverFilesAreCalled) {
+  const std::string name = "a\x1b[31m\nb";
+  const auto expectOneLine = [](const Outcome& outcome) {
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+    EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << outcome.out;
+  };
+  expectOneLine(renderWith({"--output", name + ".png"}));
+  expectOneLine(run({"phantom", "cube", "--size", "16", "--output", name}, folder.path()));
+  expectOneLine(run({"turntable", "volume.nrrd", "--output", name + ".png", "--frames", "2",
+                     "--size", "8x8", "--samples", "1"},
+                    folder.path()));
+  const Outcome echo = renderWith({"--output", name + ".png", "--echo"});
+  EXPECT_EQ(echo.out.find('\x1b'), std::string::npos) << echo.out;
+}
+
 TEST_F(ResultsCommand, StandardOutputThatIsFullIsAnOutputError) {
   for (const Arguments& arguments : std::initializer_list<Arguments>{
            {"--help"},

@@ -244,7 +244,7 @@ TEST_F(TurntableCommand, RefusesWhatIsForOnePicture) {
           {"an input",
            {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd"},
            2,
-           "volume_0002.nrrd: is there"},
+           "volume_0002.nrrd: would replace an input file"},
           {"an input anew",
            {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd", "--restart"},
            2,

@@ -23,6 +23,10 @@ compare() { "$program" compare "$@"; }
 phantom() { "$program" phantom "$@" --size 16; }
 # scene FROM TO: the scene with one word replaced, as s.mrml.
 scene() { sed "s#$1#$2#" scene.mrml >s.mrml; }
+# unused FILE [ATTRIBUTES]: the scene with one more volume, which no render of it shows, as s.mrml.
+unused() {
+  sed "s#</MRML>#<VolumeArchetypeStorage id=\"us\" fileName=\"$1\" ${2-}/><Volume id=\"u\" name=\"u\" references=\"storage:us;\"/>&#" scene.mrml >s.mrml
+}
 # shifted FILE: the scene with its inner transform in a file, as s.mrml.
 shifted() {
   sed -e 's#\(name="Inner" references="\)\([^"]*\)" matrix[^>]*>#\1storage:ts;\2">#' \
@@ -75,6 +79,16 @@ property of a scene                  | refused |  | render scene.mrml --output o
 box of a scene                       | refused |  | render scene.mrml --output o.png --stats roi.mrk.json
 transform of a scene                 | refused | cp "$apart/Transform/affine.tfm" t.tfm; shifted t.tfm | render s.mrml --output o.png --stats t.tfm
 part of a scene's closed surface     | refused | cp "$corpus/Surface/box.vtm" b.vtm; sed 1s/^.// -i b.vtm; sed 1s/^.// "$corpus/Surface/box.vtp" >s.vtp | render plain.nrrd --segmentation b.vtm --focus 1 --output o.png --surface s.vtp
+part of a scene's unused segmentation | refused | mkdir b; cp "$corpus/Surface/box.vtm" b.vtm; sed -e 1s/^.// -e s#s.vtp#b/s.vtp# -i b.vtm; sed 1s/^.// "$corpus/Surface/box.vtp" >b/s.vtp; scene layers.seg.nrrd b.vtm | render s.mrml --output o.png --stats b/s.vtp
+unused volume of a scene             | refused | mine u.nrrd; unused u.nrrd | render s.mrml --output u.nrrd
+unused volume, samples of a header   | refused | unused detached.nhdr | render s.mrml --output o.png --stats detached.raw
+unused volume, samples of a .nrrd    | refused | mv detached.nhdr a.nrrd; unused a.nrrd | render s.mrml --output o.png --stats detached.raw
+unused volume, a header's list       | refused | mine b.raw; printf 'NRRD0004\ndata file: LIST\na.raw\nb.raw\n' >u.nhdr; unused u.nhdr | render s.mrml --output o.png --stats b.raw
+unused volume, a header's series     | refused | mine b07.raw; printf 'NRRD0004\ndata file: b%%02d.raw 1 9 1\n\n' >u.nhdr; unused u.nhdr | render s.mrml --output o.png --stats b07.raw
+unused volume, samples of a .mhd     | refused | mine b.raw; printf 'ObjectType = Image\nElementDataFile = b.raw\n' >u.mhd; unused u.mhd | render s.mrml --output o.png --stats b.raw
+unused volume, other half of a pair  | refused | mine u.img; mine u.hdr; unused u.hdr | render s.mrml --output o.png --stats u.img
+unused volume, a slice of its list   | refused | mine a.dcm; mine b.dcm; unused a.dcm 'fileListMember0="a.dcm" fileListMember1="b.dcm"' | render s.mrml --output o.png --stats b.dcm
+file of a scene view                 | refused | mine v.nrrd; sed 's#</MRML>#<SceneView id="v"><VolumeArchetypeStorage id="vs" fileName="v.nrrd"/></SceneView>&#' scene.mrml >s.mrml | render s.mrml --output o.png --stats v.nrrd
 samples of a header                  | refused |  | render detached.nhdr --output o.png --stats detached.raw
 samples of a header, a .nrrd         | refused | mv detached.raw data.nrrd; sed -i s/detached.raw/data.nrrd/ detached.nhdr | render detached.nhdr --output data.nrrd
 samples of a scene's header          | refused | scene plain.nrrd detached.nhdr | render s.mrml --output o.png --stats detached.raw
@@ -123,6 +137,7 @@ compare: error of A                  | refused | cp sky.exr e.exr | compare sky.
 compare: error of B                  | refused | cp sky.exr e.exr | compare sky.exr other.exr --errora sky.exr --errorb e.exr --output e.exr
 turntable: frame = volume            | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd
 turntable: frame = volume, anew      | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd --restart
+default output, of the folder's dot  | refused | mine d/d.png | cd d && render .
 turntable: frame = INPUT, anew       | refused | mv plain.nrrd turn_0003.nrrd | turn turn_0003.nrrd --output turn.nrrd --restart
 turntable: frame's depth = volume    | refused | mv plain.nrrd turn_0001-Z.nrrd; scene plain.nrrd turn_0001-Z.nrrd | turn s.mrml --output turn.nrrd --restart
 turntable: frame's depth, foreign    | refused | mine turn_0001-Z.nrrd | turn plain.nrrd --output turn.nrrd --restart

@@ -332,7 +332,8 @@ TEST(DicomSeries, refusesWhatIsNoStackOfGreySlices) {
   fenestra::expectRefused(half, "is damaged, truncated or deflated", read(half));
   const Path none = folder.write("none.dcm", "what");
   fenestra::expectRefused(none, "is not a DICOM file", read(none));
-  fenestra::expectRefused(folder / "absent", "the folder cannot be read",
+  fenestra::expectRefused(folder / "absent",
+                          "the folder cannot be read: No such file or directory; check its name",
                           [&] { findDicomSeries(folder / "absent"); });
 }
 

@@ -167,6 +167,22 @@ TEST_F(OutputFiles, RefuseFoldersAndDevicesAndWhatIsProtected) {
   EXPECT_EQ(fileCount(), 3u);
 }
 
+TEST_F(OutputFiles, RefuseWhatItsOwnerKeepsInAStickyFolder) {
+  if (::geteuid() != 0)
+    GTEST_SKIP() << "takes root, to give a file away";
+  constexpr uid_t owner = 1234, other = 1235;
+  folder.write("theirs.png", "old");
+  ::chmod((folder / "theirs.png").c_str(), 0666);
+  ::chmod(folder.path().c_str(), 01777);
+  ASSERT_EQ(::chown((folder / "theirs.png").c_str(), owner, owner), 0);
+  outputs.add(folder / "theirs.png"); // which root may
+  ASSERT_EQ(::seteuid(other), 0);
+  EXPECT_NE(refusal(ErrorKind::output, [&] { Outputs().add(folder / "theirs.png"); })
+                .find("belongs to somebody else"),
+            std::string::npos);
+  EXPECT_EQ(::seteuid(0), 0);
+}
+
 TEST_F(OutputFiles, MayHaveTheLongestNameThereIs) {
   const std::string name = std::string(251, 'n') + ".png"; // 255 bytes
   outputs.add(folder / name);

@@ -68,6 +68,22 @@ TEST(SceneFiles, findsFilesInAnArchiveAndCleansUp) {
   EXPECT_FALSE(std::filesystem::exists(unpacked.parent_path().parent_path().parent_path()));
 }
 
+TEST(SceneFiles, unpacksWhatAFileNamesWithIt) {
+  const TemporaryFolder folder;
+  const auto archive = folder / "my.mrb";
+  writeArchive(archive, {{"s/s.mrml", "<MRML/>"},
+                         {"s/v.nhdr", "NRRD0004\ndata file: Data/v.raw\n\n"},
+                         {"s/Data/v.raw", "samples"},
+                         {"s/w.nhdr", "NRRD0004\ndata file: ../../out.raw\n\n"},
+                         {"s/b.vtm", "<VTKFile><DataSet file=\"b/1.vtp\"/></VTKFile>"},
+                         {"s/b/1.vtp", "surface"}});
+  SceneFiles files(archive);
+  EXPECT_EQ(bytesOf(files.locate("v.nhdr").parent_path() / "Data/v.raw"), "samples");
+  EXPECT_EQ(files.locate("Data/v.raw"), files.locate("v.nhdr").parent_path() / "Data/v.raw");
+  EXPECT_EQ(bytesOf(files.locate("b.vtm").parent_path() / "b/1.vtp"), "surface");
+  files.locate("w.nhdr"); // whose reader refuses what it names
+}
+
 TEST(SceneFiles, namesFilesOnOneLine) {
   const TemporaryFolder folder;
   writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}});

@@ -3,6 +3,7 @@
 #include "core/Error.h"
 #include "io/Inputs.h"
 #include "io/ShownText.h"
+#include "io/SystemCalls.h"
 #include "io/medical/DicomHeader.h"
 
 #include <algorithm>
@@ -31,7 +32,9 @@ FolderContent contentOf(const Path& folder) {
       content.folders.push_back(it->path());
   }
   if (failed)
-    throw inputError(folder.string(), "the folder cannot be read: " + failed.message());
+    throw inputError(folder.string(),
+                     "the folder cannot be read: " + failed.message() + "; " +
+                         readingMend(failed.value(), "check its name and its permissions"));
   std::sort(content.files.begin(), content.files.end());
   std::sort(content.folders.begin(), content.folders.end());
   return content;

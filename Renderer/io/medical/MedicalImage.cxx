@@ -217,6 +217,9 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
                       const TakeSamples& take) {
   requireFile(path, "name a volume file in it");
   const auto format = medicalFormat(path);
+  if (lowerExtension(path) == ".vtm")
+    throw inputError(path.string(), "is a segmentation; name its volume, and this file as "
+                                    "--segmentation");
   if (!format)
     throw inputError(path.string(), "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, "
                                     ".mha or .mhd file");

@@ -111,6 +111,13 @@ public:
       : m_fields(fields), m_source(source) {}
 
   std::vector<SegmentInfo> segments(std::size_t layerCount) const {
+    for (const char* field :
+         {"Segmentation_MasterRepresentation", "Segmentation_SourceRepresentation"})
+      if (const auto it = m_fields.find(field);
+          it != m_fields.end() && it->second.starts_with("Fractional"))
+        throw inputError(m_source, std::string(field) +
+                                       ": is a fractional labelmap, which is not read; export the "
+                                       "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
     std::vector<SegmentInfo> segments;
     while (find(segments.size(), "ID") && segments.size() < mostSegments)
       segments.push_back(segment(segments.size(), layerCount));

@@ -75,6 +75,20 @@ MrmlNode readNode(const pugi::xml_node& element) {
   return node;
 }
 
+/// Gathers names of files from elements at any depth, without a call for each level of it.
+struct FileNames final : pugi::xml_tree_walker {
+  bool for_each(pugi::xml_node& element) override {
+    for (const pugi::xml_attribute& attribute : element.attributes()) {
+      const std::string_view name = attribute.name();
+      if (*attribute.value() && (name == "fileName" || name.starts_with("fileListMember")))
+        found.emplace(attribute.value());
+    }
+    return true;
+  }
+
+  std::set<std::string> found;
+};
+
 } // namespace
 
 const std::string* MrmlNode::find(const std::string& attribute) const {
@@ -124,6 +138,9 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   if (!root)
     throw inputError(m_source, "has no MRML element, so it is no scene; name a .mrml or .mrb");
   m_version = root.attribute("version").value();
+  FileNames names;
+  document.traverse(names);
+  m_fileNames = std::move(names.found);
   std::size_t attributes = 0;
   for (const pugi::xml_node& element : root.children())
     if (element.type() == pugi::node_element) {

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,8 @@ public:
   const std::string& version() const { return m_version; }
   /// Those of the scene itself, in their order; scene views hold copies, which do not count.
   const std::vector<MrmlNode>& nodes() const { return m_nodes; }
+  /// What any element calls a file of its own, as it is written; those in scene views, too.
+  const std::set<std::string>& fileNames() const { return m_fileNames; }
   std::vector<const MrmlNode*> withTag(std::string_view tag) const;
   /// The first with this id; nothing where there is none.
   const MrmlNode* find(const std::string& id) const;
@@ -57,6 +60,7 @@ public:
 private:
   std::string m_source, m_version;
   std::vector<MrmlNode> m_nodes;
+  std::set<std::string> m_fileNames;
   std::map<std::string, std::size_t> m_byId;
 };
 

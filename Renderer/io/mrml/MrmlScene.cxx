@@ -62,10 +62,8 @@ Rgb colorOf(const MrmlNode& node, const std::string& attribute, const Rgb& other
 
 MrmlScene::MrmlScene(const std::filesystem::path& path)
     : files(path), document(files.sceneText(), files.source()) {
-  for (const MrmlNode& node : document.nodes())
-    for (const auto& [name, value] : node.attributes)
-      if (name == "fileName" || name.starts_with("fileListMember"))
-        files.expect(value);
+  for (const std::string& fileName : document.fileNames())
+    files.expect(fileName);
 }
 
 bool isLabelMap(const MrmlNode& node) {

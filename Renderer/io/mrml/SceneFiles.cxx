@@ -3,6 +3,8 @@
 #include "io/Inputs.h"
 #include "io/JsonNode.h"
 #include "io/ShownText.h"
+#include "io/SystemCalls.h"
+#include "io/medical/NamedFiles.h"
 #include "io/mrml/SceneArchive.h"
 
 #include <string_view>
@@ -80,8 +82,12 @@ std::filesystem::path SceneFiles::resolved(const std::string& fileName) const {
 }
 
 void SceneFiles::expect(const std::string& fileName) const {
-  if (!m_archive)
-    expectInput(resolved(fileName));
+  if (m_archive)
+    return;
+  const std::filesystem::path file = resolved(fileName);
+  expectInput(file);
+  for (const std::filesystem::path& part : filesNamedBy(file))
+    expectInput(part);
 }
 
 bool SceneFiles::holds(const std::string& fileName) const {
@@ -95,18 +101,32 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   std::filesystem::path file = resolved(fileName);
   if (!m_archive) {
     if (std::error_code failed; !std::filesystem::exists(file, failed))
-      throw inputError(m_source, "names " + oneLine(file.string()) +
-                                     ", which is not there; put it back, or save the scene again");
+      throw inputError(
+          m_source,
+          "names " + oneLine(file.string()) +
+              (failed ? ", which cannot be read: " + systemMessage(failed.value()) + "; " +
+                            readingMend(failed.value(), "check the permissions of its folder")
+                      : ", which is not there; put it back, or save the scene again"));
     return m_located[file] = file;
   }
-  if (const auto known = m_located.find(file); known != m_located.end())
-    return known->second;
   if (name.is_absolute() || *file.begin() == "..")
     throw inputError(m_source, "names " + oneLine(name.string()) +
                                    ", which is outside the archive; save the scene again");
   if (!m_archive->files().contains(file))
     throw inputError(m_source, "names " + oneLine(file.string()) +
                                    ", which it does not hold; save the scene again");
+  std::filesystem::path place = unpacked(file);
+  const std::filesystem::path root = m_unpacked->path().lexically_normal();
+  for (const std::filesystem::path& part : filesNamedBy(place))
+    if (const auto beside = part.lexically_normal().lexically_relative(root);
+        m_archive->files().contains(beside))
+      unpacked(beside);
+  return place;
+}
+
+std::filesystem::path SceneFiles::unpacked(const std::filesystem::path& file) {
+  if (const auto known = m_located.find(file); known != m_located.end())
+    return known->second;
   if (!m_unpacked)
     m_unpacked.emplace();
   const std::filesystem::path destination = m_unpacked->add(file);

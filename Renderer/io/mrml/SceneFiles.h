@@ -35,12 +35,12 @@ public:
   const std::string& sceneText() const { return m_sceneText; }
 
   /// Where the file that a storage node names can be read: its URL escapes are undone, and relative
-  /// names start at the .mrml. An archive's files are unpacked when they are asked for; it holds
-  /// all of its own, so names that lead out of it are refused. Throws Error (input) where there is
-  /// no such file.
+  /// names start at the .mrml. An archive's files are unpacked when they are asked for, with those
+  /// that they name; it holds all of its own, so names that lead out of it are refused. Throws
+  /// Error (input) where there is no such file.
   std::filesystem::path locate(const std::string& fileName);
-  /// Enters a file that the scene names into the ledger of inputs, whether it is read or not: no
-  /// result may replace what belongs to a scene.
+  /// Enters a file that the scene names, and those that this one names, into the ledger of inputs,
+  /// whether they are read or not: no result may replace what belongs to a scene.
   void expect(const std::string& fileName) const;
   /// Whether locate would find it.
   bool holds(const std::string& fileName) const;
@@ -76,6 +76,8 @@ public:
 
 private:
   std::filesystem::path resolved(const std::string& fileName) const;
+  /// Where one of the archive's files is, unpacked once.
+  std::filesystem::path unpacked(const std::filesystem::path& file);
 
   std::string m_source;
   std::string m_sceneText;

@@ -172,6 +172,10 @@ void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
       tiffField(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)
     throw inputError(path.string(),
                      "is not grey or RGB of 8 or 16 bit in interleaved rows; convert it");
+  if (const auto orientation = tiffField(tiff, TIFFTAG_ORIENTATION);
+      orientation != ORIENTATION_TOPLEFT)
+    throw inputError(path.string(), "Orientation: is " + std::to_string(orientation) +
+                                        ", a turned or mirrored picture; save it upright");
 }
 
 std::vector<char> readTiffRows(TIFF* tiff, std::size_t rowBytes, std::uint32_t height) {
