@@ -165,13 +165,20 @@ private:
   std::future<View> m_preparing; ///< left to itself by a stop
 };
 
-/// Before the long work.
+/// Before the long work. Going on, a frame that is not finished replaces nothing but Fenestra's own
+/// work: what else lies in its place was put there since.
 void declareFrames(const TurntableOptions& options, const TurntableRecord& record,
                    Outputs& outputs) {
-  declareOutputs(frameOptions(options, 0), outputs);
-  for (int frame = 1; frame < options.frames; ++frame)
-    for (const std::filesystem::path& path : frameOptions(options, frame).outputs)
-      declareImage(path, outputs, options.render.outputsNamedBy);
+  for (int frame = 0; frame < options.frames; ++frame) {
+    RenderOptions render = frameOptions(options, frame);
+    if (!options.restart && !record.isFinished(frame))
+      render.outputsNamedBy = NamedBy::standard;
+    if (frame == 0)
+      declareOutputs(render, outputs);
+    else
+      for (const std::filesystem::path& path : render.outputs)
+        declareImage(path, outputs, render.outputsNamedBy);
+  }
   record.declare(outputs);
   checkMemory(options.render.scene);
 }

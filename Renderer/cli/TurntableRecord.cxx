@@ -68,15 +68,17 @@ json writtenState(const std::filesystem::path& path) {
   return {{"file", path.filename().string()}, {"bytes", bytes.size()}, {"digest", digest(bytes)}};
 }
 
-/// Whether a frame's file is as it was recorded. One that is gone or shorter is damaged, and
-/// rendered again; throws Error (usage) for any other, which may be somebody's work.
+/// Whether a frame's file is as it was recorded. One that is gone or empty is rendered again;
+/// throws Error (usage) for any other: frames are placed whole, so a shorter one is no torn frame
+/// but somebody's work.
 bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
   std::error_code failed;
   const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
   const double recordedBytes = recorded.at("bytes").numberIn(0.0, 1e15);
-  if (failed || static_cast<double>(bytes) < recordedBytes)
+  if (failed || bytes == 0)
     return false;
-  if (writtenState(path)["digest"].dump() == recorded.at("digest").json())
+  if (static_cast<double>(bytes) == recordedBytes &&
+      writtenState(path)["digest"].dump() == recorded.at("digest").json())
     return true;
   throw usageError(path.string() +
                    ": is not the frame that was recorded; move it away, and the same "

@@ -90,7 +90,8 @@ struct Outputs::Result {
   std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
   void requireOurs() const {
     std::error_code failed;
-    if (isOurs && fs::exists(target, failed) && !isOurs(target))
+    // An empty file holds nothing of anybody's.
+    if (isOurs && fs::exists(target, failed) && !fs::is_empty(target, failed) && !isOurs(target))
       throw usageError(named.string() + ": is there, and Fenestra did not write it; move it away, "
                                         "or choose another --output");
   }

@@ -38,7 +38,7 @@ public:
   /// Says whether an existing file is Fenestra's work, and so may be replaced unasked.
   using IsOurs = std::function<bool(const std::filesystem::path&)>;
   /// The same for a name that the user has not given. Throws Error (usage) also where a file is
-  /// there that is not ours.
+  /// there that is neither ours nor empty.
   void addUnnamed(const std::filesystem::path& path, const IsOurs& isOurs = bearsMark);
 
   /// Asks the ledger of inputs again, after more files were read. Throws Error (usage).
