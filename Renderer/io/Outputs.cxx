@@ -109,6 +109,9 @@ Outputs::Result& Outputs::declare(const fs::path& path) {
   if (!result->stream) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
+    if (isTemporaryName(result->target.filename().string(), temporaryFilePrefix))
+      throw usageError(path.string() + ": is a name for Fenestra's temporary files, which the next "
+                                       "run removes; choose another");
   }
   requireNoInput(path, result->id());
   const std::optional<FileId> id = result->id();

@@ -31,8 +31,8 @@ public:
 
   /// Declares a result that the user has named. Links are followed; /dev/stdout, /dev/fd/N and
   /// pipes are streams, written after all files. Throws Error: usage where it is a file that was
-  /// read (io/Inputs) or another result; output where it is a folder, a device or write-protected,
-  /// or no file can be made in its folder.
+  /// read (io/Inputs) or another result, or has a temporary file's name; output where it is a
+  /// folder, a device or write-protected, or no file can be made in its folder.
   void add(const std::filesystem::path& path);
 
   /// Says whether an existing file is Fenestra's work, and so may be replaced unasked.
