@@ -9,7 +9,9 @@
 #include "cli/SceneFlags.h"
 #include "cli/Stop.h"
 #include "cli/TurntableRecord.h"
+#include "core/Error.h"
 #include "core/TextStream.h"
+#include "io/Locks.h"
 #include "io/ShownText.h"
 #include "scene/Scene.h"
 
@@ -183,6 +185,24 @@ void declareFrames(const TurntableOptions& options, const TurntableRecord& recor
   checkMemory(options.render.scene);
 }
 
+/// Held as long as the frames are written. Throws Error (usage) where another process has them.
+std::vector<std::unique_ptr<NameLock>> lockFrames(const TurntableOptions& options) {
+  std::set<std::filesystem::path> names; // one file's are the same
+  for (const std::filesystem::path& output : options.render.outputs)
+    names.insert(
+        std::filesystem::weakly_canonical(std::filesystem::absolute(output).parent_path()) /
+        recordPath(output).filename());
+  std::vector<std::unique_ptr<NameLock>> locks;
+  for (const std::filesystem::path& name : names) {
+    locks.push_back(std::make_unique<NameLock>(name));
+    if (!locks.back()->isHeld())
+      throw usageError(options.render.outputs.front().string() +
+                       ": another turntable is writing these frames; wait for it, or choose "
+                       "another --output");
+  }
+  return locks;
+}
+
 void report(const TurntableOptions& options, const TurntableRecord& record, int rendered,
             double seconds) {
   const bool isWhole = record.finishedCount() == options.frames;
@@ -207,6 +227,7 @@ int turntableCommand(int argc, char** argv, int first) {
   const PresetFlags flags = withPreset(stored.flags);
   TurntableOptions options = turntableOptions(flags);
   options.render.scene.leftOut = stored.leftOut;
+  const auto locks = lockFrames(options);
   TurntableRecord record(options, flags.flags);
   RenderMonitor monitor;
   Outputs outputs;

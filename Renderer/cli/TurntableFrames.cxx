@@ -69,6 +69,11 @@ std::filesystem::path framePath(const std::filesystem::path& output, int frame) 
   return path.replace_filename(output.stem().string() + number + output.extension().string());
 }
 
+std::filesystem::path recordPath(const std::filesystem::path& output) {
+  std::filesystem::path path = output;
+  return path.replace_filename(output.stem().string() + ".turntable.json");
+}
+
 RenderOptions frameOptions(const TurntableOptions& options, int frame) {
   RenderOptions result = options.render;
   for (std::filesystem::path& output : result.outputs)

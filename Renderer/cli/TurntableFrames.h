@@ -26,6 +26,9 @@ TurntableOptions turntableOptions(const PresetFlags& given);
 /// turn.png's frame 7 is turn_0007.png.
 std::filesystem::path framePath(const std::filesystem::path& output, int frame);
 
+/// Of what of a turntable is finished: turn.png's is turn.turntable.json.
+std::filesystem::path recordPath(const std::filesystem::path& output);
+
 /// The frame's own files.
 RenderOptions frameOptions(const TurntableOptions& options, int frame);
 

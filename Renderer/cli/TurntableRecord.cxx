@@ -16,12 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-/// turn.png's is turn.turntable.json.
-std::filesystem::path recordPath(const TurntableOptions& options) {
-  std::filesystem::path path = options.render.outputs.front();
-  return path.replace_filename(path.stem().string() + ".turntable.json");
-}
-
 /// What the frames' pictures depend on, as arguments.
 json requestedArguments(const FlagValues& flags, const std::filesystem::path& folder) {
   FlagValues request = flags;
@@ -35,8 +29,7 @@ json requestedArguments(const FlagValues& flags, const std::filesystem::path& fo
 
 template <typename T>
 std::uint64_t digest(const std::vector<T>& voxels) {
-  return std::hash<std::string_view>()(
-      {reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)});
+  return stateOf({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)}).digest;
 }
 
 /// A file as it is now, so that another one of its name is noticed.
@@ -61,11 +54,9 @@ json inputStates(const TurntableOptions& options, const Scene& scene,
   return states;
 }
 
-/// A frame's file as it was put in place. `path` is beside the record.
-json writtenState(const std::filesystem::path& path) {
+ContentState contentAt(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
-  return {{"file", path.filename().string()}, {"bytes", bytes.size()}, {"digest", digest(bytes)}};
+  return stateOf(std::string(std::istreambuf_iterator<char>(file), {}));
 }
 
 /// Whether a frame's file is as it was recorded. One that is gone or empty is rendered again;
@@ -78,7 +69,7 @@ bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
   if (failed || bytes == 0)
     return false;
   if (static_cast<double>(bytes) == recordedBytes &&
-      writtenState(path)["digest"].dump() == recorded.at("digest").json())
+      json(contentAt(path).digest).dump() == recorded.at("digest").json())
     return true;
   throw usageError(path.string() +
                    ": is not the frame that was recorded; move it away, and the same "
@@ -157,7 +148,7 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
 }
 
 TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
-    : m_path(recordPath(options)),
+    : m_path(recordPath(options.render.outputs.front())),
       m_request{{"version", versionText},
                 {"arguments", requestedArguments(flags, m_path.parent_path())}},
       m_finished(static_cast<std::size_t>(options.frames), false) {
@@ -243,8 +234,10 @@ void TurntableRecord::finish(int frame, const std::vector<std::filesystem::path>
   m_finished[static_cast<std::size_t>(frame)] = true;
   m_files[frame] = json::array();
   for (const std::filesystem::path& file : files)
-    if (std::filesystem::exists(file)) // a picture without depth has one file less
-      m_files[frame].push_back(writtenState(file));
+    if (const auto state = outputs.written(file)) // a picture without depth has one file less
+      m_files[frame].push_back({{"file", file.filename().string()}, // beside the record
+                                {"bytes", state->bytes},
+                                {"digest", state->digest}});
   if (change)
     m_changes[frame] = *change;
   write(outputs);

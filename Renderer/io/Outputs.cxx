@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/Inputs.h"
+#include "io/Locks.h"
 #include "io/OutputStream.h"
 #include "io/SystemCalls.h"
 #include "io/TemporaryFile.h"
@@ -75,6 +76,10 @@ void syncFolder(const fs::path& folder) {
 
 } // namespace
 
+ContentState stateOf(std::string_view content) {
+  return {content.size(), std::hash<std::string_view>()(content)};
+}
+
 bool resultsWerePlaced() {
   return anyIsPlaced;
 }
@@ -86,6 +91,7 @@ struct Outputs::Result {
   std::unique_ptr<TemporaryFile> file; ///< written and not yet in place
 
   IsOurs isOurs; ///< empty where the user named it
+  std::optional<ContentState> written;
 
   std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
   void requireOurs() const {
@@ -105,7 +111,7 @@ Outputs::~Outputs() {
 }
 
 Outputs::Result& Outputs::declare(const fs::path& path) {
-  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}, {}});
+  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}, {}, {}});
   if (!result->stream) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
@@ -149,6 +155,7 @@ void Outputs::forgetRefused() const {
 
 void Outputs::write(const fs::path& path, std::string_view content) {
   Result& result = *m_results.at(path);
+  result.written = stateOf(content);
   if (result.stream) {
     result.stream->keep(content);
     return;
@@ -157,7 +164,15 @@ void Outputs::write(const fs::path& path, std::string_view content) {
   result.file->write(content);
 }
 
+std::optional<ContentState> Outputs::written(const fs::path& path) const {
+  return m_results.at(path)->written;
+}
+
 void Outputs::place(const std::vector<Result*>& files, Durability durability) {
+  std::set<fs::path> folders;
+  for (const Result* result : files)
+    folders.insert(result->target.parent_path());
+  std::optional<FolderLocks> locks(folders);
   const Uninterrupted replacing;
   std::size_t placed = 0;
   std::set<FileId> taken; // by results of this commit: names may be one where a disk ignores case
@@ -181,11 +196,9 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
     throw;
   }
   anyIsPlaced = anyIsPlaced || placed > 0;
-  std::set<fs::path> folders;
-  for (Result* result : files) {
-    folders.insert(result->target.parent_path());
+  locks.reset();
+  for (Result* result : files)
     result->file.reset();
-  }
   if (durability == Durability::synced)
     std::for_each(folders.begin(), folders.end(), syncFolder);
 }

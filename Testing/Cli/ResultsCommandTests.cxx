@@ -127,6 +127,33 @@ TEST_F(ResultsCommand, TurntablesGoingOnReplaceUnrecordedFramesOfTheirOwnAlone) 
   }
 }
 
+TEST_F(ResultsCommand, OfTwoTurntablesOfTheSameNamesOneIsRefused) {
+  {
+    Process first({"turntable", "volume.nrrd", "--size", "64x64", "--samples", "20000", "--frames",
+                   "2", "--output", "turn.png", "--progress", "xml"},
+                  folder.path());
+    ASSERT_TRUE(first.waitForOutput("<filter-progress>0\\.0*[1-9]"));
+    const std::string record = bytesOf(folder / "turn.turntable.json");
+    for (const Arguments& arguments : {Arguments{}, {"--restart"}, {"--output", "turn.exr"}}) {
+      const Outcome second = turn(arguments);
+      EXPECT_EQ(second.status, 2) << second.err;
+      EXPECT_NE(second.err.find("turn.png: another turntable is writing these frames; wait for it"),
+                std::string::npos)
+          << second.err;
+    }
+    EXPECT_EQ(bytesOf(folder / "turn.turntable.json"), record);
+    EXPECT_EQ(run({"turntable", "volume.nrrd", "--size", "8x8", "--samples", "1", "--frames", "2",
+                   "--output", "other.png"},
+                  folder.path())
+                  .status,
+              0)
+        << "of other names";
+  } // killed
+  EXPECT_EQ(turn({"--restart"}).status, 0);
+  for (const std::string& file : filesIn(folder.path()))
+    EXPECT_FALSE(file.starts_with(".fenestra")) << file;
+}
+
 TEST_F(ResultsCommand, ARecordThatIsNoneIsNotReplaced) {
   folder.write("turn.turntable.json", "somebody's notes");
   const Outcome outcome = turn({"--restart"});

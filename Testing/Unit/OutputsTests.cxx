@@ -4,12 +4,15 @@
 #include "TemporaryFolder.h"
 #include "core/Error.h"
 #include "io/Inputs.h"
-#include "io/Leftovers.h"
+#include "io/Locks.h"
 #include "io/Outputs.h"
 #include "io/PrivateFolder.h"
 #include "io/TemporaryFile.h"
 
 #include <gtest/gtest.h>
+
+#include <chrono>
+#include <future>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -278,6 +281,45 @@ TEST_F(OutputFiles, HaveNoTemporaryFilesNames) {
   const fs::path path = folder / temporaryName(temporaryFilePrefix);
   EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(path); }).find("choose another"),
             std::string::npos);
+}
+
+TEST_F(OutputFiles, WaitForWhoPlacesResultsInTheFolder) {
+  outputs.add(folder / "a");
+  outputs.write(folder / "a", "new");
+  const int other = ::open(folder.path().c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(other, LOCK_EX), 0);
+  std::future<void> commit = std::async(std::launch::async, [this] { outputs.commit(); });
+  EXPECT_EQ(commit.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  ::close(other);
+  commit.get();
+  EXPECT_EQ(bytesOf(folder / "a"), "new");
+}
+
+TEST_F(OutputFiles, AreKnownByWhatWasWrittenNotByWhatIsThere) {
+  for (const char* name : {"a", "b"})
+    outputs.add(folder / name);
+  outputs.write(folder / "a", "new");
+  outputs.commit();
+  folder.write("a", "another's");
+  EXPECT_EQ(outputs.written(folder / "a"), stateOf("new"));
+  EXPECT_EQ(outputs.written(folder / "b"), std::nullopt);
+}
+
+TEST_F(OutputFiles, NamesAreLockedByOneAtATime) {
+  const fs::path name = folder / "turn.turntable.json";
+  {
+    const NameLock first(name);
+    EXPECT_TRUE(first.isHeld());
+    EXPECT_FALSE(NameLock(name).isHeld());
+    EXPECT_TRUE(NameLock(folder / "others.turntable.json").isHeld());
+    removeAbandonedFiles(folder.path());
+    EXPECT_FALSE(NameLock(name).isHeld()) << "after another run has looked for abandoned files";
+    EXPECT_EQ(fileCount(), 1u);
+  }
+  EXPECT_EQ(fileCount(), 0u);
+  EXPECT_TRUE(NameLock(name).isHeld());
+  refusal(ErrorKind::output, [&] { NameLock(folder / "nowhere/a"); });
 }
 
 /// As a path in an archive may be.
