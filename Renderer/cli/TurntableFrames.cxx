@@ -10,7 +10,6 @@ namespace fenestra {
 namespace {
 
 constexpr const char* turntableGroup = "Turntable";
-constexpr int mostFrames = 10000; // four digits
 
 constexpr Flag ownFlags[] = {
     {"frames", "N", turntableGroup, "Pictures, 1 to 10000 [36]", Takes::whole(1, mostFrames), "36"},

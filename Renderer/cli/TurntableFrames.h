@@ -5,6 +5,8 @@
 
 namespace fenestra {
 
+inline constexpr int mostFrames = 10000; ///< four digits
+
 struct TurntableOptions {
   RenderOptions render; ///< of any frame, but for its view and its files
   int frames = 36;

@@ -76,6 +76,19 @@ bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
                    "command renders it again");
 }
 
+/// Throws Error (input) where it is no JSON. Of untrusted size: as large as the record of as many
+/// frames as there may be, each of so many files.
+json readRecord(const std::filesystem::path& path, std::size_t filesOfFrame) {
+  constexpr int partsOfFrame = 16, partsOfFile = 7;     // values and keys, as write() has them
+  constexpr int bytesOfFrame = 400, bytesOfFile = 1700; // a name of 255 letters, all escaped
+  const int files = static_cast<int>(std::min<std::size_t>(filesOfFrame, 100));
+  const std::string text =
+      readText(path, largestText + std::uint64_t{mostFrames} *
+                                       static_cast<unsigned>(bytesOfFrame + files * bytesOfFile));
+  return parseJson(text, path.string(),
+                   mostJsonParts + mostFrames * (partsOfFrame + files * partsOfFile));
+}
+
 /// The record of any turntable of any version of Fenestra.
 bool isRecord(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -171,7 +184,7 @@ void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
 
 void TurntableRecord::read(const TurntableOptions& options) {
   const std::string name = m_path.string();
-  const json document = parseJson(readText(m_path), name);
+  const json document = readRecord(m_path, frameFiles(options, 0).size());
   if (const auto file = fileId(m_path)) // which is written again
     forgetInput(*file);
   const JsonNode root(document, name);
