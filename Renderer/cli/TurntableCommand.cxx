@@ -45,6 +45,8 @@ public:
     m_outputs.checkInputs(); // with all that the scene turned out to be made of
     m_record.setInputs(m_options, m_scene);
     m_record.write(m_outputs);
+    if (const auto warning = m_record.warning())
+      warn(*warning);
     const RenderOptions& render = m_options.render;
     const RenderSettings settings = settingsFor(render, m_scene.background());
     Progress progress(render.progress, settings,
@@ -92,8 +94,7 @@ private:
     m_surface = std::move(view.surface);
     m_surfaceFrame = frame;
     for (const std::string& warning : m_scene.warnings())
-      if (m_warnings.insert(warning).second)
-        std::cerr << "fenestra: warning: " << oneLine(warning) << '\n';
+      warn(warning);
     const RenderResult result = render(m_scene.forRender(), settings, m_monitor);
     if (result.reason == StopReason::request)
       return false;
@@ -101,6 +102,12 @@ private:
     m_outputs.commit();
     m_record.finish(frame, frameFiles(m_options, frame), view.change, m_outputs);
     return true;
+  }
+
+  /// Once each.
+  void warn(const std::string& warning) {
+    if (m_warnings.insert(warning).second)
+      std::cerr << "fenestra: warning: " << oneLine(warning) << '\n';
   }
 
   /// In a thread of its own where one starts, since a stop does not wait for surfaces; returns

@@ -107,6 +107,31 @@ json voxelDigests(const Scene& scene) {
   return digests;
 }
 
+/// What the record of another turntable tells of, is there, and is no frame of these options. Empty
+/// where the record cannot be read: it is about to be replaced.
+std::vector<std::filesystem::path> filesBeyond(const TurntableOptions& options,
+                                               const std::filesystem::path& record) {
+  std::set<std::filesystem::path> beyond;
+  try {
+    const json document = readRecord(record, frameFiles(options, 0).size());
+    for (const JsonNode& finished : JsonNode(document, "").at("finished").elements())
+      for (const JsonNode& file : finished.at("files").elements()) {
+        std::filesystem::path path = record;
+        path.replace_filename(std::filesystem::path(file.at("file").text()).filename());
+        std::error_code failed;
+        const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
+        if (!failed && static_cast<double>(bytes) == file.at("bytes").number())
+          beyond.insert(path);
+      }
+  } catch (const Error&) {
+    return {};
+  }
+  for (int frame = 0; frame < options.frames; ++frame)
+    for (const std::filesystem::path& file : frameFiles(options, frame))
+      beyond.erase(file);
+  return {beyond.begin(), beyond.end()};
+}
+
 /// Elements of one array that another does not have.
 std::string elementsBeyond(const json& some, const json& others) {
   const std::set<json> known(others.begin(), others.end());
@@ -165,12 +190,24 @@ TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValu
       m_request{{"version", versionText},
                 {"arguments", requestedArguments(flags, m_path.parent_path())}},
       m_finished(static_cast<std::size_t>(options.frames), false) {
-  if (options.restart)
-    return;
-  if (std::filesystem::exists(m_path))
+  const bool isThere = std::filesystem::exists(m_path);
+  if (options.restart && isThere)
+    m_beyond = filesBeyond(options, m_path);
+  else if (isThere)
     read(options);
-  else
+  else if (!options.restart)
     refuseOthers(options);
+  if (const auto file = isThere ? fileId(m_path) : std::nullopt)
+    forgetInput(*file); // which is written again
+}
+
+std::optional<std::string> TurntableRecord::warning() const {
+  if (m_beyond.empty())
+    return std::nullopt;
+  const bool isOne = m_beyond.size() == 1;
+  return m_beyond.front().string() + (isOne ? "" : " to " + m_beyond.back().filename().string()) +
+         (isOne ? ": is" : ": " + std::to_string(m_beyond.size()) + " files are") +
+         " of the turntable that was there before; remove " + (isOne ? "it" : "them");
 }
 
 void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
@@ -185,8 +222,6 @@ void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
 void TurntableRecord::read(const TurntableOptions& options) {
   const std::string name = m_path.string();
   const json document = readRecord(m_path, frameFiles(options, 0).size());
-  if (const auto file = fileId(m_path)) // which is written again
-    forgetInput(*file);
   const JsonNode root(document, name);
   checkRequest(root.at("request"));
   m_recorded = document["request"];

@@ -14,7 +14,9 @@ class ResultsCommand : public SmallScene {
 protected:
   Outcome turn(Arguments arguments = {}) const {
     arguments.insert(arguments.begin(), {"turntable", "volume.nrrd", "--size", "8x8", "--samples",
-                                         "1", "--frames", "2", "--output", "turn.png"});
+                                         "1", "--output", "turn.png"});
+    if (std::find(arguments.begin(), arguments.end(), "--frames") == arguments.end())
+      arguments.insert(arguments.end(), {"--frames", "2"});
     return run(arguments, folder.path());
   }
 };
@@ -152,6 +154,28 @@ TEST_F(ResultsCommand, OfTwoTurntablesOfTheSameNamesOneIsRefused) {
   EXPECT_EQ(turn({"--restart"}).status, 0);
   for (const std::string& file : filesIn(folder.path()))
     EXPECT_FALSE(file.starts_with(".fenestra")) << file;
+}
+
+TEST_F(ResultsCommand, PartsOfAnEarlierPictureAreTold) {
+  ASSERT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
+  const Outcome colour = renderWith({"--output", "a.nrrd", "--layers", "color", "--stats", "s"});
+  EXPECT_EQ(colour.status, 0);
+  const std::string warning = "a-Z.nrrd: is of an earlier picture than a.nrrd; remove it";
+  EXPECT_EQ(colour.err, "fenestra: warning: " + warning + "\n");
+  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "s"))["warnings"],
+            nlohmann::json::array({warning}));
+  EXPECT_TRUE(std::filesystem::exists(folder / "a-Z.nrrd"));
+  EXPECT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
+}
+
+TEST_F(ResultsCommand, FramesThatARestartLeavesAreTold) {
+  ASSERT_EQ(turn({"--frames", "5"}).status, 0);
+  folder.write("turn_0003.png", "edited since");
+  const Outcome fewer = turn({"--restart"});
+  EXPECT_EQ(fewer.status, 0);
+  EXPECT_EQ(fewer.err, "fenestra: warning: turn_0002.png to turn_0004.png: 2 files are of the "
+                       "turntable that was there before; remove them\n");
+  EXPECT_EQ(turn({"--restart"}).err, "");
 }
 
 TEST_F(ResultsCommand, ARecordThatIsNoneIsNotReplaced) {
