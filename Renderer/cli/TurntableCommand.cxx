@@ -18,6 +18,8 @@
 #include <chrono>
 #include <future>
 #include <iostream>
+#include <map>
+#include <memory>
 #include <set>
 
 namespace fenestra {
@@ -194,13 +196,14 @@ void declareFrames(const TurntableOptions& options, const TurntableRecord& recor
 
 /// Held as long as the frames are written. Throws Error (usage) where another process has them.
 std::vector<std::unique_ptr<NameLock>> lockFrames(const TurntableOptions& options) {
-  std::set<std::filesystem::path> names; // one file's are the same
-  for (const std::filesystem::path& output : options.render.outputs)
-    names.insert(
-        std::filesystem::weakly_canonical(std::filesystem::absolute(output).parent_path()) /
-        recordPath(output).filename());
+  std::map<std::filesystem::path, std::filesystem::path> names; // as given, by what they are
+  for (const std::filesystem::path& output : options.render.outputs) {
+    const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
+    const std::filesystem::path name = recordPath(output);
+    names.emplace(std::filesystem::weakly_canonical(folder) / name.filename(), name);
+  }
   std::vector<std::unique_ptr<NameLock>> locks;
-  for (const std::filesystem::path& name : names) {
+  for (const auto& [known, name] : names) {
     locks.push_back(std::make_unique<NameLock>(name));
     if (!locks.back()->isHeld())
       throw usageError(options.render.outputs.front().string() +

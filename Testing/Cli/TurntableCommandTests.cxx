@@ -261,6 +261,8 @@ TEST_F(TurntableCommand, RefusesWhatIsForOnePicture) {
       {
           {"surface", turntable({"--surface", "a.vtp"}), 2, "--surface: is for a single picture"},
           {"xml", turntable({"--xml"}), 2, "--xml: is for a single picture"},
+          {"no folder", turntable({"--output", "nowhere/turn.png"}), 4,
+           "fenestra: nowhere/turn.turntable.json: cannot be written: No such file"},
           {"no frames", turntable({"--steady", "50"}), 2,
            "--steady: expected a number from 0 to 45"},
           {"unknown", turntable({"--frame", "3"}), 2, "did you mean --frames?"},
