@@ -5,6 +5,7 @@
 #include "core/Error.h"
 #include "core/TextStream.h"
 #include "io/Inputs.h"
+#include "io/ShownText.h"
 #include "io/pictures/ImageWriter.h"
 #include "io/surfaces/SurfaceWriter.h"
 
@@ -110,6 +111,17 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
     }));
   for (std::future<void>& file : files)
     file.get();
+}
+
+std::vector<std::string> staleParts(const RenderOptions& options, const Outputs& outputs) {
+  std::vector<std::string> warnings;
+  std::error_code failed;
+  for (const std::filesystem::path& path : options.outputs)
+    for (const std::filesystem::path& file : imageFiles(path))
+      if (!outputs.written(file) && std::filesystem::exists(file, failed))
+        warnings.push_back(oneLine(file.string()) + ": is of an earlier picture than " +
+                           oneLine(path.filename().string()) + "; remove it");
+  return warnings;
 }
 
 std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs) {

@@ -24,6 +24,10 @@ std::string shellCommand(const std::vector<std::string>& arguments, const Render
 /// result is there, which throws Error (output).
 std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs);
 
+/// A warning for each file that belongs to one of options.outputs, was not written with it, and is
+/// there: the depth beside a `.nrrd` that has none now. For after the commit.
+std::vector<std::string> staleParts(const RenderOptions& options, const Outputs& outputs);
+
 /// Writes all of options.outputs, each with `command` and whatever else repeats it in its header;
 /// the caller commits them. Throws Error (output).
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,

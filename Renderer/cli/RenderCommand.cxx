@@ -52,8 +52,8 @@ void report(const RenderOptions& options, const RenderResult& result, double sec
   std::cout << oneLine(line.str()) << std::endl;
 }
 
-void warn(const RenderOptions& options, const Scene& scene) {
-  for (const std::string& warning : scene.warnings())
+void warn(const RenderOptions& options, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings)
     (options.returnValues ? std::cout : std::cerr)
         << "fenestra: warning: " << oneLine(warning) << '\n';
 }
@@ -81,7 +81,7 @@ int renderScene(const RenderOptions& options, const std::string& command, Output
   RenderStats stats;
   const Scene scene(options.scene);
   outputs.checkInputs(); // with all that the scene turned out to be made of
-  warn(options, scene);
+  warn(options, scene.warnings());
 
   RenderMonitor monitor;
   const StopInstead stopInstead(monitor.stop);
@@ -99,6 +99,8 @@ int renderScene(const RenderOptions& options, const std::string& command, Output
   writePictures(options, scene, result, command, outputs);
   outputs.commit();
   stats.write = write.seconds();
+  const std::vector<std::string> stale = staleParts(options, outputs);
+  warn(options, stale);
 
   if (options.stats) {
     const Stopwatch measure;
@@ -106,6 +108,7 @@ int renderScene(const RenderOptions& options, const std::string& command, Output
       stats.focus = measureFocus(scene, options.settings.seed, monitor.stop);
     stats.measure = measure.seconds();
     describe(scene, stats);
+    stats.warnings.insert(stats.warnings.end(), stale.begin(), stale.end());
     if (options.preset)
       stats.preset = relativeName(*options.preset, options.stats->parent_path());
     stats.total = total.seconds();

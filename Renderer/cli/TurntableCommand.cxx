@@ -9,13 +9,18 @@
 #include "cli/SceneFlags.h"
 #include "cli/Stop.h"
 #include "cli/TurntableRecord.h"
+#include "core/Error.h"
 #include "core/TextStream.h"
+#include "io/Inputs.h"
+#include "io/Locks.h"
 #include "io/ShownText.h"
 #include "scene/Scene.h"
 
 #include <chrono>
 #include <future>
 #include <iostream>
+#include <map>
+#include <memory>
 #include <set>
 
 namespace fenestra {
@@ -43,6 +48,8 @@ public:
     m_outputs.checkInputs(); // with all that the scene turned out to be made of
     m_record.setInputs(m_options, m_scene);
     m_record.write(m_outputs);
+    if (const auto warning = m_record.warning())
+      warn(*warning);
     const RenderOptions& render = m_options.render;
     const RenderSettings settings = settingsFor(render, m_scene.background());
     Progress progress(render.progress, settings,
@@ -90,8 +97,7 @@ private:
     m_surface = std::move(view.surface);
     m_surfaceFrame = frame;
     for (const std::string& warning : m_scene.warnings())
-      if (m_warnings.insert(warning).second)
-        std::cerr << "fenestra: warning: " << oneLine(warning) << '\n';
+      warn(warning);
     const RenderResult result = render(m_scene.forRender(), settings, m_monitor);
     if (result.reason == StopReason::request)
       return false;
@@ -99,6 +105,12 @@ private:
     m_outputs.commit();
     m_record.finish(frame, frameFiles(m_options, frame), view.change, m_outputs);
     return true;
+  }
+
+  /// Once each.
+  void warn(const std::string& warning) {
+    if (m_warnings.insert(warning).second)
+      std::cerr << "fenestra: warning: " << oneLine(warning) << '\n';
   }
 
   /// In a thread of its own where one starts, since a stop does not wait for surfaces; returns
@@ -165,13 +177,41 @@ private:
   std::future<View> m_preparing; ///< left to itself by a stop
 };
 
-/// Before the long work.
-void declareFrames(const TurntableOptions& options, Outputs& outputs) {
-  declareOutputs(frameOptions(options, 0), outputs);
-  for (int frame = 1; frame < options.frames; ++frame)
-    for (const std::filesystem::path& path : frameOptions(options, frame).outputs)
-      declareImage(path, outputs, options.render.outputsNamedBy);
+/// Before the long work. Going on, a frame that is not finished replaces nothing but Fenestra's own
+/// work: what else lies in its place was put there since.
+void declareFrames(const TurntableOptions& options, const TurntableRecord& record,
+                   Outputs& outputs) {
+  for (int frame = 0; frame < options.frames; ++frame) {
+    RenderOptions render = frameOptions(options, frame);
+    if (!options.restart && !record.isFinished(frame))
+      render.outputsNamedBy = NamedBy::standard;
+    if (frame == 0)
+      declareOutputs(render, outputs);
+    else
+      for (const std::filesystem::path& path : render.outputs)
+        declareImage(path, outputs, render.outputsNamedBy);
+  }
+  record.declare(outputs);
   checkMemory(options.render.scene);
+}
+
+/// Held as long as the frames are written. Throws Error (usage) where another process has them.
+std::vector<std::unique_ptr<NameLock>> lockFrames(const TurntableOptions& options) {
+  std::map<std::filesystem::path, std::filesystem::path> names; // as given, by what they are
+  for (const std::filesystem::path& output : options.render.outputs) {
+    const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
+    const std::filesystem::path name = recordPath(output);
+    names.emplace(std::filesystem::weakly_canonical(folder) / name.filename(), name);
+  }
+  std::vector<std::unique_ptr<NameLock>> locks;
+  for (const auto& [known, name] : names) {
+    locks.push_back(std::make_unique<NameLock>(name));
+    if (!locks.back()->isHeld())
+      throw usageError(options.render.outputs.front().string() +
+                       ": another turntable is writing these frames; wait for it, or choose "
+                       "another --output");
+  }
+  return locks;
 }
 
 void report(const TurntableOptions& options, const TurntableRecord& record, int rendered,
@@ -198,11 +238,13 @@ int turntableCommand(int argc, char** argv, int first) {
   const PresetFlags flags = withPreset(stored.flags);
   TurntableOptions options = turntableOptions(flags);
   options.render.scene.leftOut = stored.leftOut;
+  for (const std::filesystem::path& input : options.render.inputs)
+    expectInput(input); // no --restart replaces one
+  const auto locks = lockFrames(options);
+  TurntableRecord record(options, flags.flags);
   RenderMonitor monitor;
   Outputs outputs;
-  declareFrames(options, outputs); // first: no --restart replaces what it refuses
-  TurntableRecord record(options, flags.flags);
-  record.declare(outputs);
+  declareFrames(options, record, outputs);
 
   const Stopwatch total;
   Turntable turntable(options, record, monitor, outputs,

@@ -10,7 +10,6 @@ namespace fenestra {
 namespace {
 
 constexpr const char* turntableGroup = "Turntable";
-constexpr int mostFrames = 10000; // four digits
 
 constexpr Flag ownFlags[] = {
     {"frames", "N", turntableGroup, "Pictures, 1 to 10000 [36]", Takes::whole(1, mostFrames), "36"},
@@ -67,6 +66,11 @@ std::filesystem::path framePath(const std::filesystem::path& output, int frame) 
   std::snprintf(number, sizeof number, "_%04d", frame);
   std::filesystem::path path = output;
   return path.replace_filename(output.stem().string() + number + output.extension().string());
+}
+
+std::filesystem::path recordPath(const std::filesystem::path& output) {
+  std::filesystem::path path = output;
+  return path.replace_filename(output.stem().string() + ".turntable.json");
 }
 
 RenderOptions frameOptions(const TurntableOptions& options, int frame) {

@@ -5,6 +5,8 @@
 
 namespace fenestra {
 
+inline constexpr int mostFrames = 10000; ///< four digits
+
 struct TurntableOptions {
   RenderOptions render; ///< of any frame, but for its view and its files
   int frames = 36;
@@ -25,6 +27,9 @@ TurntableOptions turntableOptions(const PresetFlags& given);
 
 /// turn.png's frame 7 is turn_0007.png.
 std::filesystem::path framePath(const std::filesystem::path& output, int frame);
+
+/// Of what of a turntable is finished: turn.png's is turn.turntable.json.
+std::filesystem::path recordPath(const std::filesystem::path& output);
 
 /// The frame's own files.
 RenderOptions frameOptions(const TurntableOptions& options, int frame);

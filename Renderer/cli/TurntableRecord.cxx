@@ -16,12 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-/// turn.png's is turn.turntable.json.
-std::filesystem::path recordPath(const TurntableOptions& options) {
-  std::filesystem::path path = options.render.outputs.front();
-  return path.replace_filename(path.stem().string() + ".turntable.json");
-}
-
 /// What the frames' pictures depend on, as arguments.
 json requestedArguments(const FlagValues& flags, const std::filesystem::path& folder) {
   FlagValues request = flags;
@@ -35,8 +29,7 @@ json requestedArguments(const FlagValues& flags, const std::filesystem::path& fo
 
 template <typename T>
 std::uint64_t digest(const std::vector<T>& voxels) {
-  return std::hash<std::string_view>()(
-      {reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)});
+  return stateOf({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)}).digest;
 }
 
 /// A file as it is now, so that another one of its name is noticed.
@@ -61,26 +54,39 @@ json inputStates(const TurntableOptions& options, const Scene& scene,
   return states;
 }
 
-/// A frame's file as it was put in place. `path` is beside the record.
-json writtenState(const std::filesystem::path& path) {
+ContentState contentAt(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
-  return {{"file", path.filename().string()}, {"bytes", bytes.size()}, {"digest", digest(bytes)}};
+  return stateOf(std::string(std::istreambuf_iterator<char>(file), {}));
 }
 
-/// Whether a frame's file is as it was recorded. One that is gone or shorter is damaged, and
-/// rendered again; throws Error (usage) for any other, which may be somebody's work.
+/// Whether a frame's file is as it was recorded. One that is gone or empty is rendered again;
+/// throws Error (usage) for any other: frames are placed whole, so a shorter one is no torn frame
+/// but somebody's work.
 bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
   std::error_code failed;
   const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
   const double recordedBytes = recorded.at("bytes").numberIn(0.0, 1e15);
-  if (failed || static_cast<double>(bytes) < recordedBytes)
+  if (failed || bytes == 0)
     return false;
-  if (writtenState(path)["digest"].dump() == recorded.at("digest").json())
+  if (static_cast<double>(bytes) == recordedBytes &&
+      json(contentAt(path).digest).dump() == recorded.at("digest").json())
     return true;
   throw usageError(path.string() +
                    ": is not the frame that was recorded; move it away, and the same "
                    "command renders it again");
+}
+
+/// Throws Error (input) where it is no JSON. Of untrusted size: as large as the record of as many
+/// frames as there may be, each of so many files.
+json readRecord(const std::filesystem::path& path, std::size_t filesOfFrame) {
+  constexpr int partsOfFrame = 16, partsOfFile = 7;     // values and keys, as write() has them
+  constexpr int bytesOfFrame = 400, bytesOfFile = 1700; // a name of 255 letters, all escaped
+  const int files = static_cast<int>(std::min<std::size_t>(filesOfFrame, 100));
+  const std::string text =
+      readText(path, largestText + std::uint64_t{mostFrames} *
+                                       static_cast<unsigned>(bytesOfFrame + files * bytesOfFile));
+  return parseJson(text, path.string(),
+                   mostJsonParts + mostFrames * (partsOfFrame + files * partsOfFile));
 }
 
 /// The record of any turntable of any version of Fenestra.
@@ -99,6 +105,31 @@ json voxelDigests(const Scene& scene) {
   if (scene.focus())
     digests["focus"] = digest(scene.focus()->voxels);
   return digests;
+}
+
+/// What the record of another turntable tells of, is there, and is no frame of these options. Empty
+/// where the record cannot be read: it is about to be replaced.
+std::vector<std::filesystem::path> filesBeyond(const TurntableOptions& options,
+                                               const std::filesystem::path& record) {
+  std::set<std::filesystem::path> beyond;
+  try {
+    const json document = readRecord(record, frameFiles(options, 0).size());
+    for (const JsonNode& finished : JsonNode(document, "").at("finished").elements())
+      for (const JsonNode& file : finished.at("files").elements()) {
+        std::filesystem::path path = record;
+        path.replace_filename(std::filesystem::path(file.at("file").text()).filename());
+        std::error_code failed;
+        const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
+        if (!failed && static_cast<double>(bytes) == file.at("bytes").number())
+          beyond.insert(path);
+      }
+  } catch (const Error&) {
+    return {};
+  }
+  for (int frame = 0; frame < options.frames; ++frame)
+    for (const std::filesystem::path& file : frameFiles(options, frame))
+      beyond.erase(file);
+  return {beyond.begin(), beyond.end()};
 }
 
 /// Elements of one array that another does not have.
@@ -155,22 +186,35 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
 }
 
 TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
-    : m_path(recordPath(options)),
+    : m_path(recordPath(options.render.outputs.front())),
       m_request{{"version", versionText},
                 {"arguments", requestedArguments(flags, m_path.parent_path())}},
       m_finished(static_cast<std::size_t>(options.frames), false) {
-  if (options.restart)
-    return;
-  if (std::error_code failed; std::filesystem::exists(m_path, failed))
+  std::error_code failed;
+  const bool isThere = std::filesystem::exists(m_path, failed);
+  if (options.restart && isThere)
+    m_beyond = filesBeyond(options, m_path);
+  else if (isThere)
     read(options);
-  else
+  else if (!options.restart)
     refuseOthers(options);
+  if (const auto file = isThere ? fileId(m_path) : std::nullopt)
+    forgetInput(*file); // which is written again
+}
+
+std::optional<std::string> TurntableRecord::warning() const {
+  if (m_beyond.empty())
+    return std::nullopt;
+  const bool isOne = m_beyond.size() == 1;
+  return m_beyond.front().string() + (isOne ? "" : " to " + m_beyond.back().filename().string()) +
+         (isOne ? ": is" : ": " + std::to_string(m_beyond.size()) + " files are") +
+         " of the turntable that was there before; remove " + (isOne ? "it" : "them");
 }
 
 void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
   for (int frame = 0; frame < options.frames; ++frame)
     for (const std::filesystem::path& file : frameFiles(options, frame))
-      if (std::error_code failed; std::filesystem::exists(file, failed))
+      if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs are refused as such
         throw usageError(file.string() + ": is there, and no " + m_path.string() +
                          " tells what it is of; choose another --output, or add --restart to "
                          "replace it");
@@ -178,9 +222,7 @@ void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
 
 void TurntableRecord::read(const TurntableOptions& options) {
   const std::string name = m_path.string();
-  const json document = parseJson(readText(m_path), name);
-  if (const auto file = fileId(m_path)) // which is written again
-    forgetInput(*file);
+  const json document = readRecord(m_path, frameFiles(options, 0).size());
   const JsonNode root(document, name);
   checkRequest(root.at("request"));
   m_recorded = document["request"];
@@ -241,8 +283,10 @@ void TurntableRecord::finish(int frame, const std::vector<std::filesystem::path>
   m_finished[static_cast<std::size_t>(frame)] = true;
   m_files[frame] = json::array();
   for (const std::filesystem::path& file : files)
-    if (std::filesystem::exists(file)) // a picture without depth has one file less
-      m_files[frame].push_back(writtenState(file));
+    if (const auto state = outputs.written(file)) // a picture without depth has one file less
+      m_files[frame].push_back({{"file", file.filename().string()}, // beside the record
+                                {"bytes", state->bytes},
+                                {"digest", state->digest}});
   if (change)
     m_changes[frame] = *change;
   write(outputs);

@@ -29,6 +29,9 @@ public:
   /// From the frame before, where there is a clipping surface; of all that are recorded.
   const std::map<int, SurfaceChange>& changes() const { return m_changes; }
 
+  /// Of frames of the turntable before that --restart does not replace.
+  std::optional<std::string> warning() const;
+
   /// Throws what Outputs does.
   void declare(Outputs& outputs) const;
   /// Puts the record in place: frames can only be told from others' once this is done. Throws Error
@@ -47,6 +50,7 @@ private:
   std::filesystem::path m_path;
   nlohmann::json m_request;
   nlohmann::json m_recorded; ///< the request that the record has; null where there is none
+  std::vector<std::filesystem::path> m_beyond; ///< of the turntable before, and no frames of this
   std::vector<bool> m_finished;
   std::map<int, nlohmann::json> m_files; ///< of finished frames: name, bytes, digest
   std::map<int, SurfaceChange> m_changes;

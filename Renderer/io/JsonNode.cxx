@@ -11,7 +11,7 @@
 namespace fenestra {
 namespace {
 
-constexpr int deepest = 64, mostParts = 200'000;
+constexpr int deepest = 64;
 
 std::string shortNumber(double x) {
   std::string text = nlohmann::json(x).dump();
@@ -30,7 +30,7 @@ std::string readText(const std::filesystem::path& path, std::uint64_t most) {
   return text;
 }
 
-nlohmann::json parseJson(std::string_view text, const std::string& source) {
+nlohmann::json parseJson(std::string_view text, const std::string& source, int mostParts) {
   using Event = nlohmann::json::parse_event_t;
   int parts = 0;
   const auto count = [&](int depth, Event event, const nlohmann::json&) {

@@ -22,9 +22,13 @@ inline constexpr std::uint64_t largestText = std::uint64_t{4} << 20;
 /// bytes.
 std::string readText(const std::filesystem::path& path, std::uint64_t most = largestText);
 
+/// Values and keys in such a file.
+inline constexpr int mostJsonParts = 200'000;
+
 /// Throws Error (input) for anything but one JSON value nested at most 64 deep, and for more than
-/// 200,000 values and keys in it.
-nlohmann::json parseJson(std::string_view text, const std::string& source);
+/// `mostParts` values and keys in it.
+nlohmann::json parseJson(std::string_view text, const std::string& source,
+                         int mostParts = mostJsonParts);
 
 /// A value and where it is, like "lights[2].radiance". A view: the document outlives it. Every
 /// accessor throws Error (input) where the value is not what it asks for.

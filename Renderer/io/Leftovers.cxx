@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <memory>
 #include <new>
 #include <random>
@@ -13,11 +14,21 @@ namespace fenestra {
 namespace {
 
 constexpr std::string_view digits = "0123456789abcdef";
-constexpr std::size_t digitCount = 12;
+constexpr std::size_t digitCount = 12, checkCount = 8;
 
-bool isTemporaryName(std::string_view name, std::string_view prefix) {
-  return name.size() == prefix.size() + digitCount && name.starts_with(prefix) &&
-         name.find_first_not_of(digits, prefix.size()) == std::string_view::npos;
+/// The last digits of FNV-1a (Fowler, Noll and Vo, 64 bits).
+std::string hashDigits(std::string_view text, std::size_t count) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text)
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  std::string result;
+  for (std::size_t i = 0; i < count; ++i, hash /= digits.size())
+    result += digits[hash % digits.size()];
+  return result;
+}
+
+std::string withCheck(const std::string& name) {
+  return name + '-' + hashDigits("made by Fenestra: " + name, checkCount) + ".tmp";
 }
 
 } // namespace
@@ -27,7 +38,16 @@ std::string temporaryName(std::string_view prefix) {
   std::string name(prefix);
   for (std::size_t i = 0; i < digitCount; ++i)
     name += digits[random() % digits.size()];
-  return name;
+  return withCheck(name);
+}
+
+std::string temporaryNameOf(std::string_view prefix, std::string_view what) {
+  return withCheck(std::string(prefix) + hashDigits(what, digitCount));
+}
+
+bool isTemporaryName(std::string_view name, std::string_view prefix) {
+  return name.starts_with(prefix) &&
+         name == withCheck(std::string(name.substr(0, prefix.size() + digitCount)));
 }
 
 void forTemporaryNames(const std::filesystem::path& folder, std::string_view prefix,
@@ -42,6 +62,15 @@ void forTemporaryNames(const std::filesystem::path& folder, std::string_view pre
       return;
     }
 }
+
+namespace {
+
+/// Of a system call's error code. No file has a name that is too long.
+bool saysNothingIsThere(int code) {
+  return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
+}
+
+} // namespace
 
 /// A place in the list. Entries are used again and never freed, so that a signal handler may walk
 /// the list at any moment.
@@ -70,7 +99,7 @@ struct Leftover::Entry {
   bool remove() const {
     return (kind == Kind::folder ? ::rmdir(path.c_str()) : ::unlink(path.c_str())) == 0;
   }
-  bool isThere() const { return ::access(path.c_str(), F_OK) == 0 || errno != ENOENT; }
+  bool isThere() const { return ::access(path.c_str(), F_OK) == 0 || !saysNothingIsThere(errno); }
 };
 
 std::atomic<Leftover::Entry*> Leftover::Entry::first = nullptr;
@@ -100,7 +129,7 @@ Leftover::Leftover(const std::filesystem::path& path, Kind kind) {
 }
 
 Leftover::~Leftover() {
-  if (m_entry->isListed && !m_entry->remove() && errno != ENOENT)
+  if (m_entry->isListed && !m_entry->remove() && !saysNothingIsThere(errno))
     return; // stays listed: the end of the process tries again
   m_entry->isListed = false;
   m_entry->isTaken = false;

@@ -9,8 +9,17 @@
 
 namespace fenestra {
 
-/// `prefix` and twelve random digits.
+/// Of files that are made beside results.
+inline constexpr std::string_view temporaryFilePrefix = ".fenestra-";
+
+/// `prefix`, twelve random digits and a checksum of them, like
+/// ".fenestra-0123456789ab-89abcdef.tmp": what has such a name may be removed, so it must not be
+/// anybody's by chance.
 std::string temporaryName(std::string_view prefix);
+/// The same, with digits that follow from `what`: one that processes find without telling each
+/// other.
+std::string temporaryNameOf(std::string_view prefix, std::string_view what);
+bool isTemporaryName(std::string_view name, std::string_view prefix);
 
 /// Calls `use` with each path of such a name in the folder, for whoever sweeps what others have
 /// left: where the folder cannot be read, or memory fails, the rest stays to the next.

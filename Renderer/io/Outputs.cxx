@@ -2,6 +2,7 @@
 
 #include "core/Error.h"
 #include "io/Inputs.h"
+#include "io/Locks.h"
 #include "io/OutputStream.h"
 #include "io/SystemCalls.h"
 #include "io/TemporaryFile.h"
@@ -89,6 +90,10 @@ void syncFolder(const fs::path& folder) {
 
 } // namespace
 
+ContentState stateOf(std::string_view content) {
+  return {content.size(), std::hash<std::string_view>()(content)};
+}
+
 bool resultsWerePlaced() {
   return anyIsPlaced;
 }
@@ -100,11 +105,13 @@ struct Outputs::Result {
   std::unique_ptr<TemporaryFile> file; ///< written and not yet in place
 
   IsOurs isOurs; ///< empty where the user named it
+  std::optional<ContentState> written;
 
   std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
   void requireOurs() const {
     std::error_code failed;
-    if (isOurs && fs::exists(target, failed) && !isOurs(target))
+    // An empty file holds nothing of anybody's.
+    if (isOurs && fs::exists(target, failed) && !fs::is_empty(target, failed) && !isOurs(target))
       throw usageError(named.string() + ": is there, and Fenestra did not write it; move it away, "
                                         "or choose another --output");
   }
@@ -118,10 +125,13 @@ Outputs::~Outputs() {
 }
 
 Outputs::Result& Outputs::declare(const fs::path& path) {
-  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}, {}});
+  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}, {}, {}});
   if (!result->stream) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
+    if (isTemporaryName(result->target.filename().string(), temporaryFilePrefix))
+      throw usageError(path.string() + ": is a name for Fenestra's temporary files, which the next "
+                                       "run removes; choose another");
   }
   requireNoInput(path, result->id());
   const std::optional<FileId> id = result->id();
@@ -159,6 +169,7 @@ void Outputs::forgetRefused() const {
 
 void Outputs::write(const fs::path& path, std::string_view content) {
   Result& result = *m_results.at(path);
+  result.written = stateOf(content);
   if (result.stream) {
     result.stream->keep(content);
     return;
@@ -167,7 +178,15 @@ void Outputs::write(const fs::path& path, std::string_view content) {
   result.file->write(content);
 }
 
+std::optional<ContentState> Outputs::written(const fs::path& path) const {
+  return m_results.at(path)->written;
+}
+
 void Outputs::place(const std::vector<Result*>& files, Durability durability) {
+  std::set<fs::path> folders;
+  for (const Result* result : files)
+    folders.insert(result->target.parent_path());
+  std::optional<FolderLocks> locks(folders);
   const Uninterrupted replacing;
   std::size_t placed = 0;
   std::set<FileId> taken; // by results of this commit: names may be one where a disk ignores case
@@ -191,11 +210,9 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
     throw;
   }
   anyIsPlaced = anyIsPlaced || placed > 0;
-  std::set<fs::path> folders;
-  for (Result* result : files) {
-    folders.insert(result->target.parent_path());
+  locks.reset();
+  for (Result* result : files)
     result->file.reset();
-  }
   if (durability == Durability::synced)
     std::for_each(folders.begin(), folders.end(), syncFolder);
 }

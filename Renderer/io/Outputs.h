@@ -5,10 +5,12 @@
 #include "io/Inputs.h"
 #include "io/Mark.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -18,6 +20,14 @@
 namespace fenestra {
 
 class TemporaryFile;
+
+/// By which a file is told from another.
+struct ContentState {
+  std::uint64_t bytes = 0, digest = 0;
+
+  friend bool operator==(const ContentState&, const ContentState&) = default;
+};
+ContentState stateOf(std::string_view content);
 
 /// Whether this process has put a result in place. For signal handlers, too.
 bool resultsWerePlaced();
@@ -31,14 +41,14 @@ public:
 
   /// Declares a result that the user has named. Links are followed; /dev/stdout, /dev/fd/N and
   /// pipes are streams, written after all files. Throws Error: usage where it is a file that was
-  /// read (io/Inputs) or another result; output where it is a folder, a device or write-protected,
-  /// or no file can be made in its folder.
+  /// read (io/Inputs) or another result, or has a temporary file's name; output where it is a
+  /// folder, a device or write-protected, or no file can be made in its folder.
   void add(const std::filesystem::path& path);
 
   /// Says whether an existing file is Fenestra's work, and so may be replaced unasked.
   using IsOurs = std::function<bool(const std::filesystem::path&)>;
   /// The same for a name that the user has not given. Throws Error (usage) also where a file is
-  /// there that is not ours.
+  /// there that is neither ours nor empty.
   void addUnnamed(const std::filesystem::path& path, const IsOurs& isOurs = bearsMark);
 
   /// Asks the ledger of inputs again, after more files were read. Throws Error (usage).
@@ -49,10 +59,13 @@ public:
   /// The whole content of a declared result, complete on the disk but not in place. From any
   /// thread. Throws Error (output), a full disk included.
   void write(const std::filesystem::path& path, std::string_view content);
+  /// Of what was written last; empty where nothing was.
+  std::optional<ContentState> written(const std::filesystem::path& path) const;
 
   enum class Durability { synced, none };
   /// Puts everything in place that was written since the last commit, all or nothing: a result that
-  /// cannot take its name takes the earlier ones back. No signal ends the process in between.
+  /// cannot take its name takes the earlier ones back, and of two processes with the same results
+  /// one places all of its own after the other. No signal ends the process in between.
   /// Throws Error: usage where a result became an input meanwhile; output.
   void commit(Durability durability = Durability::synced);
 

@@ -29,13 +29,13 @@ Error cannotMake(const std::filesystem::path& path) {
                                                           "write to"));
 }
 
-/// Descriptor of a folder of this user's that no process has locked, and locked by it; -1
-/// otherwise.
+/// Descriptor of a folder of this user's, and for this user alone, that no process has locked, and
+/// locked by it; -1 otherwise.
 int lockAbandoned(const std::filesystem::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   struct stat status = {};
   if (file >= 0 && ::fstat(file, &status) == 0 && status.st_uid == ::geteuid() &&
-      ::flock(file, LOCK_EX | LOCK_NB) == 0)
+      (status.st_mode & 0777) == S_IRWXU && ::flock(file, LOCK_EX | LOCK_NB) == 0)
     return file;
   if (file >= 0)
     ::close(file);

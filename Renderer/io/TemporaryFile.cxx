@@ -13,10 +13,8 @@
 namespace fenestra {
 namespace {
 
-constexpr std::string_view namePrefix = ".fenestra-";
-
 std::filesystem::path shortNameBeside(const std::filesystem::path& target) {
-  return target.parent_path() / temporaryName(namePrefix);
+  return target.parent_path() / temporaryName(temporaryFilePrefix);
 }
 
 /// Rights of a new file: what umask leaves. Asked before there are threads.
@@ -161,7 +159,7 @@ void TemporaryFile::takeBack() noexcept {
 }
 
 void removeAbandonedFiles(const std::filesystem::path& folder) {
-  forTemporaryNames(folder, namePrefix, [](const std::filesystem::path& path) {
+  forTemporaryNames(folder, temporaryFilePrefix, [](const std::filesystem::path& path) {
     const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     struct stat status = {};
     if (file >= 0 && ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) &&

@@ -10,7 +10,7 @@
 
 namespace fenestra {
 
-/// Names like ".fenestra-0123456789ab", listed as leftovers and locked (flock): a later run in the
+/// Its name is a temporary one (io/Leftovers), listed there and locked (flock): a later run in the
 /// folder removes those that SIGKILL has left.
 class TemporaryFile {
 public:

@@ -14,7 +14,9 @@ class ResultsCommand : public SmallScene {
 protected:
   Outcome turn(Arguments arguments = {}) const {
     arguments.insert(arguments.begin(), {"turntable", "volume.nrrd", "--size", "8x8", "--samples",
-                                         "1", "--frames", "2", "--output", "turn.png"});
+                                         "1", "--output", "turn.png"});
+    if (std::find(arguments.begin(), arguments.end(), "--frames") == arguments.end())
+      arguments.insert(arguments.end(), {"--frames", "2"});
     return run(arguments, folder.path());
   }
 };
@@ -81,27 +83,115 @@ TEST_F(ResultsCommand, PicturesSayTheirCommandAsSeenFromTheirFolder) {
     EXPECT_EQ(bytesOf(pictures / file).find("Doe^John"), std::string::npos) << file;
 }
 
-TEST_F(ResultsCommand, TurntablesRenderDamagedFramesAgain) {
+TEST_F(ResultsCommand, TurntablesRenderEmptyFramesAgain) {
   ASSERT_EQ(turn().status, 0);
   const std::string whole = bytesOf(folder / "turn_0000.png");
-  for (const std::size_t bytes : {std::size_t{0}, std::size_t{50}}) {
-    std::filesystem::resize_file(folder / "turn_0000.png", bytes);
+  std::filesystem::resize_file(folder / "turn_0000.png", 0);
+  const Outcome again = turn();
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.out.find("1 rendered now"), std::string::npos) << again.out;
+  EXPECT_EQ(bytesOf(folder / "turn_0000.png"), whole);
+}
+
+/// Longer, cut, and another file altogether.
+TEST_F(ResultsCommand, TurntablesReplaceNothingThatWasPutInAFramesPlace) {
+  ASSERT_EQ(turn().status, 0);
+  const std::string whole = bytesOf(folder / "turn_0000.png");
+  for (const std::string& edited : {whole + "edited", whole.substr(0, 50), std::string("mine")}) {
+    folder.write("turn_0000.png", edited);
     const Outcome again = turn();
-    ASSERT_EQ(again.status, 0) << again.err;
-    EXPECT_NE(again.out.find("1 rendered now"), std::string::npos) << again.out;
-    EXPECT_EQ(bytesOf(folder / "turn_0000.png"), whole);
+    EXPECT_EQ(again.status, 2);
+    EXPECT_NE(again.err.find("turn_0000.png: is not the frame that was recorded; move it away"),
+              std::string::npos)
+        << again.err;
+    EXPECT_EQ(bytesOf(folder / "turn_0000.png"), edited);
   }
 }
 
-TEST_F(ResultsCommand, TurntablesReplaceNothingThatWasPutInAFramesPlace) {
+TEST_F(ResultsCommand, TurntablesFollowNoLinkThatWasPutInAFramesPlace) {
   ASSERT_EQ(turn().status, 0);
-  const std::string edited = bytesOf(folder / "turn_0000.png") + "edited";
-  folder.write("turn_0000.png", edited);
-  const Outcome again = turn();
-  EXPECT_EQ(again.status, 2);
-  EXPECT_NE(again.err.find("turn_0000.png: is not the frame that was recorded"), std::string::npos)
-      << again.err;
-  EXPECT_EQ(bytesOf(folder / "turn_0000.png"), edited);
+  folder.write("mine.txt", "mine");
+  std::filesystem::remove(folder / "turn_0001.png");
+  std::filesystem::create_symlink("mine.txt", folder / "turn_0001.png");
+  EXPECT_EQ(turn().status, 2);
+  EXPECT_EQ(bytesOf(folder / "mine.txt"), "mine");
+}
+
+/// A run that was killed between a frame and its record leaves a frame that bears the mark.
+TEST_F(ResultsCommand, TurntablesGoingOnReplaceUnrecordedFramesOfTheirOwnAlone) {
+  for (const std::string ending : {".png", ".exr", ".tif", ".nrrd"}) {
+    const Arguments arguments = {"turntable", "volume.nrrd", "--size", "8x8",      "--samples",
+                                 "1",         "--frames",    "2",      "--output", "go" + ending};
+    std::filesystem::remove(folder / "go.turntable.json");
+    ASSERT_EQ(run(arguments, folder.path()).status, 0);
+    const std::string whole = bytesOf(folder / ("go_0001" + ending));
+    auto record = nlohmann::json::parse(bytesOf(folder / "go.turntable.json"));
+    record["finished"].erase(1);
+    folder.write("go.turntable.json", record.dump());
+    const Outcome again = run(arguments, folder.path());
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(bytesOf(folder / ("go_0001" + ending)), whole);
+
+    folder.write("go.turntable.json", record.dump());
+    folder.write("go_0001" + ending, "mine");
+    const Outcome refused = run(arguments, folder.path());
+    EXPECT_EQ(refused.status, 2) << refused.err;
+    EXPECT_NE(refused.err.find("go_0001" + ending +
+                               ": is there, and Fenestra did not write it; "
+                               "move it away"),
+              std::string::npos)
+        << refused.err;
+    EXPECT_EQ(bytesOf(folder / ("go_0001" + ending)), "mine");
+  }
+}
+
+TEST_F(ResultsCommand, OfTwoTurntablesOfTheSameNamesOneIsRefused) {
+  {
+    Process first({"turntable", "volume.nrrd", "--size", "64x64", "--samples", "20000", "--frames",
+                   "2", "--output", "turn.png", "--progress", "xml"},
+                  folder.path());
+    ASSERT_TRUE(first.waitForOutput("<filter-progress>0\\.0*[1-9]"));
+    const std::string record = bytesOf(folder / "turn.turntable.json");
+    for (const Arguments& arguments : {Arguments{}, {"--restart"}, {"--output", "turn.exr"}}) {
+      const Outcome second = turn(arguments);
+      EXPECT_EQ(second.status, 2) << second.err;
+      EXPECT_NE(second.err.find("turn.png: another turntable is writing these frames; wait for it"),
+                std::string::npos)
+          << second.err;
+    }
+    EXPECT_EQ(bytesOf(folder / "turn.turntable.json"), record);
+    EXPECT_EQ(run({"turntable", "volume.nrrd", "--size", "8x8", "--samples", "1", "--frames", "2",
+                   "--output", "other.png"},
+                  folder.path())
+                  .status,
+              0)
+        << "of other names";
+  } // killed
+  EXPECT_EQ(turn({"--restart"}).status, 0);
+  for (const std::string& file : filesIn(folder.path()))
+    EXPECT_FALSE(file.starts_with(".fenestra")) << file;
+}
+
+TEST_F(ResultsCommand, PartsOfAnEarlierPictureAreTold) {
+  ASSERT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
+  const Outcome colour = renderWith({"--output", "a.nrrd", "--layers", "color", "--stats", "s"});
+  EXPECT_EQ(colour.status, 0);
+  const std::string warning = "a-Z.nrrd: is of an earlier picture than a.nrrd; remove it";
+  EXPECT_EQ(colour.err, "fenestra: warning: " + warning + "\n");
+  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "s"))["warnings"],
+            nlohmann::json::array({warning}));
+  EXPECT_TRUE(std::filesystem::exists(folder / "a-Z.nrrd"));
+  EXPECT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
+}
+
+TEST_F(ResultsCommand, FramesThatARestartLeavesAreTold) {
+  ASSERT_EQ(turn({"--frames", "5"}).status, 0);
+  folder.write("turn_0003.png", "edited since");
+  const Outcome fewer = turn({"--restart"});
+  EXPECT_EQ(fewer.status, 0);
+  EXPECT_EQ(fewer.err, "fenestra: warning: turn_0002.png to turn_0004.png: 2 files are of the "
+                       "turntable that was there before; remove them\n");
+  EXPECT_EQ(turn({"--restart"}).err, "");
 }
 
 TEST_F(ResultsCommand, ARecordThatIsNoneIsNotReplaced) {

@@ -214,6 +214,29 @@ TEST_F(TurntableCommand, NoticesVoxelsInAFileThatOnlyAHeaderNames) {
                 folder.path());
 }
 
+TEST_F(TurntableCommand, ReadsTheLongestRecord) {
+  Arguments arguments = turntable({"--output", "turn.png", "--samples", "1", "--progress", "xml"});
+  *std::find(arguments.begin(), arguments.end(), "4") = "10000";
+  const auto renderSome = [&] {
+    Process process(arguments, folder.path());
+    EXPECT_TRUE(process.waitForOutput("frame ([3-9]|[1-9][0-9]+) of 10000"));
+    process.send(SIGINT);
+    return process.wait();
+  };
+  ASSERT_EQ(renderSome().status, 5);
+  nlohmann::json whole = record();
+  const nlohmann::json finished = whole["finished"].at(1);
+  for (int frame = static_cast<int>(whole["finished"].size()); frame < 10000; ++frame) {
+    whole["finished"].push_back(finished); // of files that are lost
+    whole["finished"].back()["frame"] = frame;
+  }
+  folder.write("turn.turntable.json", whole.dump(1));
+  std::filesystem::remove(folder / "turn_0000.png");
+  std::filesystem::remove(folder / "turn_0001.png");
+  const Outcome again = renderSome();
+  EXPECT_EQ(again.status, 5) << again.err;
+}
+
 TEST_F(TurntableCommand, WaitsForNoSurfaceToStop) {
   Arguments arguments = turntable({"--output", "turn.exr", "--samples", "1", "--boundary", "exact",
                                    "--degrees", "90", "--stats", "all.json", "--progress", "xml"});
@@ -238,6 +261,8 @@ TEST_F(TurntableCommand, RefusesWhatIsForOnePicture) {
       {
           {"surface", turntable({"--surface", "a.vtp"}), 2, "--surface: is for a single picture"},
           {"xml", turntable({"--xml"}), 2, "--xml: is for a single picture"},
+          {"no folder", turntable({"--output", "nowhere/turn.png"}), 4,
+           "fenestra: nowhere/turn.turntable.json: cannot be written: No such file"},
           {"no frames", turntable({"--steady", "50"}), 2,
            "--steady: expected a number from 0 to 45"},
           {"unknown", turntable({"--frame", "3"}), 2, "did you mean --frames?"},

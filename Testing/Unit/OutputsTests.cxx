@@ -4,11 +4,15 @@
 #include "TemporaryFolder.h"
 #include "core/Error.h"
 #include "io/Inputs.h"
+#include "io/Locks.h"
 #include "io/Outputs.h"
 #include "io/PrivateFolder.h"
 #include "io/TemporaryFile.h"
 
 #include <gtest/gtest.h>
+
+#include <chrono>
+#include <future>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -283,15 +287,70 @@ TEST_F(OutputFiles, OfOtherRunsAreNotTakenFromThemInTheirCommit) {
 }
 
 TEST_F(OutputFiles, OfRunsThatWereKilledAreRemovedByTheNext) {
-  folder.write(".fenestra-0123456789ab", "left");
-  folder.write(".fenestra-notes", "somebody's");
-  const int living = ::open(folder.write(".fenestra-ba9876543210", "in use").c_str(), O_RDONLY);
+  const std::string left = temporaryName(temporaryFilePrefix);
+  const std::string inUse = temporaryName(temporaryFilePrefix);
+  folder.write(left, "left");
+  for (const char* name : {".fenestra-notes", ".fenestra-0123456789ab"})
+    folder.write(name, "somebody's");
+  const int living = ::open(folder.write(inUse, "in use").c_str(), O_RDONLY);
   ASSERT_EQ(::flock(living, LOCK_EX), 0);
   outputs.add(folder / "a");
-  EXPECT_FALSE(fs::exists(folder / ".fenestra-0123456789ab"));
-  EXPECT_TRUE(fs::exists(folder / ".fenestra-notes"));
-  EXPECT_TRUE(fs::exists(folder / ".fenestra-ba9876543210"));
+  EXPECT_FALSE(fs::exists(folder / left));
+  EXPECT_TRUE(fs::exists(folder / inUse));
+  for (const char* name : {".fenestra-notes", ".fenestra-0123456789ab"})
+    EXPECT_TRUE(fs::exists(folder / name)) << name;
   ::close(living);
+}
+
+TEST_F(OutputFiles, HaveNoTemporaryFilesNames) {
+  const fs::path path = folder / temporaryName(temporaryFilePrefix);
+  EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(path); }).find("choose another"),
+            std::string::npos);
+}
+
+TEST_F(OutputFiles, WaitForWhoPlacesResultsInTheFolder) {
+  outputs.add(folder / "a");
+  outputs.write(folder / "a", "new");
+  const int other = ::open(folder.path().c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(other, LOCK_EX), 0);
+  std::future<void> commit = std::async(std::launch::async, [this] { outputs.commit(); });
+  EXPECT_EQ(commit.wait_for(std::chrono::milliseconds(100)), std::future_status::timeout);
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  ::close(other);
+  commit.get();
+  EXPECT_EQ(bytesOf(folder / "a"), "new");
+}
+
+TEST_F(OutputFiles, AreKnownByWhatWasWrittenNotByWhatIsThere) {
+  for (const char* name : {"a", "b"})
+    outputs.add(folder / name);
+  outputs.write(folder / "a", "new");
+  outputs.commit();
+  folder.write("a", "another's");
+  EXPECT_EQ(outputs.written(folder / "a"), stateOf("new"));
+  EXPECT_EQ(outputs.written(folder / "b"), std::nullopt);
+}
+
+TEST_F(OutputFiles, NamesAreLockedByOneAtATime) {
+  const fs::path name = folder / "turn.turntable.json";
+  {
+    const NameLock first(name);
+    EXPECT_TRUE(first.isHeld());
+    EXPECT_FALSE(NameLock(name).isHeld());
+    EXPECT_TRUE(NameLock(folder / "others.turntable.json").isHeld());
+    removeAbandonedFiles(folder.path());
+    EXPECT_FALSE(NameLock(name).isHeld()) << "after another run has looked for abandoned files";
+    EXPECT_EQ(fileCount(), 1u);
+  }
+  EXPECT_EQ(fileCount(), 0u);
+  EXPECT_TRUE(NameLock(name).isHeld());
+  refusal(ErrorKind::output, [&] { NameLock(folder / "nowhere/a"); });
+}
+
+/// As a path in an archive may be.
+TEST_F(OutputFiles, WithNamesThatAreTooLongAreNotLeft) {
+  { const Leftover file(folder / std::string(300, 'x'), Leftover::Kind::file); }
+  EXPECT_EQ(remainingLeftovers(), std::vector<fs::path>());
 }
 
 TEST_F(OutputFiles, OfAnotherProcessAreNotTakenForAbandoned) {
@@ -322,17 +381,24 @@ TEST(PrivateFolders, OfRunsThatWereKilledAreRemovedByTheNext) {
   const TemporaryFolder temporary;
   const std::string before = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
-  const fs::path left = temporary / "fenestra-scene-0123456789ab";
-  fs::create_directories(left / "Data");
-  temporary.write("fenestra-scene-0123456789ab/Data/patient.nrrd", "left");
-  for (const char* name : {"fenestra-others", "fenestra-scene-of-mine"})
+  const std::string left = temporaryName("fenestra-scene-");
+  fs::create_directories(temporary / left / "Data");
+  fs::permissions(temporary / left, fs::perms::owner_all);
+  temporary.write(left + "/Data/patient.nrrd", "left");
+  const std::string shared = temporaryName("fenestra-scene-");
+  const std::vector<std::string> others = {"fenestra-others", "fenestra-scene-of-mine",
+                                           "fenestra-scene-0123456789ab", shared};
+  for (const std::string& name : others) {
     fs::create_directory(temporary / name);
+    if (name != shared)
+      fs::permissions(temporary / name, fs::perms::owner_all);
+  }
   PrivateFolder living;
   const fs::path file = living.add("Data/a.nrrd");
   removeAbandonedFolders();
-  EXPECT_FALSE(fs::exists(left));
+  EXPECT_FALSE(fs::exists(temporary / left));
   EXPECT_TRUE(fs::exists(file));
-  for (const char* name : {"fenestra-others", "fenestra-scene-of-mine"})
+  for (const std::string& name : others)
     EXPECT_TRUE(fs::exists(temporary / name));
   ::setenv("TMPDIR", before.c_str(), 1);
 }

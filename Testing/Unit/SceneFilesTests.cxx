@@ -146,6 +146,18 @@ TEST(SceneFiles, refusesArchivesThatAreNotSlicers) {
   expectRefused(half, "no whole archive", [&] { SceneFiles files(half); });
 }
 
+TEST(SceneFiles, refusesNamesThatNoFileCanHave) {
+  const TemporaryFolder folder;
+  std::string deep;
+  for (int i = 0; i < 60; ++i)
+    deep += std::string(100, 'd') + "/";
+  for (const std::string& name : {deep + "a.nrrd", std::string(300, 'n')}) {
+    writeArchive(folder / "long.mrb", {{"a.mrml", "<MRML/>"}, {name, "x"}});
+    SceneFiles files(folder / "long.mrb");
+    expectRefused(folder / "long.mrb", "is too long", [&] { files.locate(name); });
+  }
+}
+
 TEST(SceneFiles, unpacksNoMoreThanASceneHolds) {
   const TemporaryFolder folder;
   std::mt19937 random(1);

@@ -7,6 +7,8 @@
 #include "io/medical/NamedFiles.h"
 #include "io/mrml/SceneArchive.h"
 
+#include <algorithm>
+#include <climits>
 #include <string_view>
 
 namespace fenestra {
@@ -16,6 +18,13 @@ constexpr std::uint64_t largestScene = std::uint64_t{64} << 20; ///< bytes of a 
 
 std::ptrdiff_t depth(const std::filesystem::path& file) {
   return std::distance(file.begin(), file.end());
+}
+
+/// For Linux, which an archive's names do not ask.
+bool isTooLong(const std::filesystem::path& path) {
+  return path.native().size() >= PATH_MAX ||
+         std::any_of(path.begin(), path.end(),
+                     [](const auto& part) { return part.native().size() > NAME_MAX; });
 }
 
 /// Slicer takes the scene closest to the root: those deeper belong to sequences.
@@ -129,6 +138,10 @@ std::filesystem::path SceneFiles::unpacked(const std::filesystem::path& file) {
     return known->second;
   if (!m_unpacked)
     m_unpacked.emplace();
+  if (isTooLong(m_unpacked->path() / file))
+    throw inputError(m_source, "names " + shown(file.string()) +
+                                   ", which is too long for a file's name; save the scene again "
+                                   "under shorter ones");
   const std::filesystem::path destination = m_unpacked->add(file);
   m_archive->extract(file, destination);
   return m_located[file] = destination;

@@ -44,6 +44,7 @@ std::string encodeExr(const Image& image) {
   Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
   for (const auto& [key, value] : image.header)
     header.insert("fenestra." + key, Imf::StringAttribute(value));
+  header.insert("software", Imf::StringAttribute(std::string(unsealedMark)));
   Imf::FrameBuffer frame;
   for (const auto& [name, plane] : image.channels) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
@@ -59,7 +60,7 @@ std::string encodeExr(const Image& image) {
   }
   std::string bytes = stream.str();
   requireComplete(bytes);
-  return bytes;
+  return sealed(std::move(bytes));
 }
 
 bool isOpaque(const std::vector<float>& rgba) {
@@ -131,6 +132,7 @@ void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
   TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
+  TIFFSetField(tiff, TIFFTAG_SOFTWARE, std::string(unsealedMark).c_str());
 }
 
 std::string encodeTiff(const Image& image, const std::vector<float>& rgba) {
@@ -146,7 +148,7 @@ std::string encodeTiff(const Image& image, const std::vector<float>& rgba) {
                              static_cast<std::uint32_t>(row)) == 1;
   if (!good || TIFFFlush(tiff.get()) != 1)
     throw outputError("picture as TIFF", "does not fit into memory; write it as .exr");
-  return stream.str();
+  return sealed(stream.str());
 }
 
 /// The slice is as thick as a pixel is wide; right-handed, so that Slicer need not flip it.

@@ -17,8 +17,8 @@ namespace fenestra {
 ///   in the world, and Z, if there is one, as a scalar volume beside it, "<stem>-Z.nrrd".
 /// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through the display transform's `view` (by
 ///   default its first), sRGB, with straight alpha if any pixel is not opaque.
-/// Equal pictures give equal bytes. Throws Error: usage for another extension, an unknown view or
-/// missing R, G, B; output where the file cannot be written.
+/// Equal pictures give equal bytes, and all bear Fenestra's mark. Throws Error: usage for another
+/// extension, an unknown view or missing R, G, B; output where the file cannot be written.
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 Outputs& outputs, const std::string& view = "");
 
