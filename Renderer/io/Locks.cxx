@@ -28,7 +28,7 @@ void waitABit() {
 
 /// In the order of their numbers, so that two runs do not wait for each other.
 FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
-  constexpr double longest = 5.0; // s
+  constexpr double longest = 2.0; // s: a script may hold the folder for as long as it runs us
   std::map<FileId, std::filesystem::path> ordered;
   for (const std::filesystem::path& folder : folders)
     if (const auto id = fileId(folder))
