@@ -14,6 +14,7 @@
 #include "io/Inputs.h"
 #include "io/Locks.h"
 #include "io/ShownText.h"
+#include "io/SystemCalls.h"
 #include "scene/Scene.h"
 
 #include <chrono>
@@ -195,13 +196,19 @@ void declareFrames(const TurntableOptions& options, const TurntableRecord& recor
   checkMemory(options.render.scene);
 }
 
-/// Held as long as the frames are written. Throws Error (usage) where another process has them.
+/// Held as long as the frames are written. Throws Error: usage where another process has them;
+/// output.
 std::vector<std::unique_ptr<NameLock>> lockFrames(const TurntableOptions& options) {
   std::map<std::filesystem::path, std::filesystem::path> names; // as given, by what they are
   for (const std::filesystem::path& output : options.render.outputs) {
-    const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
     const std::filesystem::path name = recordPath(output);
-    names.emplace(std::filesystem::weakly_canonical(folder) / name.filename(), name);
+    std::error_code failed;
+    std::filesystem::path folder = std::filesystem::absolute(output, failed).parent_path();
+    if (!failed)
+      folder = std::filesystem::canonical(folder, failed);
+    if (failed)
+      throw writingError(name, failed.value());
+    names.emplace(folder / name.filename(), name);
   }
   std::vector<std::unique_ptr<NameLock>> locks;
   for (const auto& [known, name] : names) {

@@ -49,7 +49,7 @@ json inputStates(const TurntableOptions& options, const Scene& scene,
     files.insert(file);
   json states = json::array();
   for (const std::filesystem::path& file : files) // what is in an archive changes with it
-    if (std::filesystem::is_regular_file(file))
+    if (std::error_code failed; std::filesystem::is_regular_file(file, failed))
       states.push_back(fileState(file, folder));
   return states;
 }

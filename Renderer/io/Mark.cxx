@@ -45,17 +45,20 @@ void readBlocks(const std::filesystem::path& path, const TakeBlock& take) {
   }
 }
 
-/// Where the digits of the first marks are. A file of ours has one, and may quote a few.
+/// Where the digits of the last marks are. A file of ours has one, behind those of the files that
+/// it may hold.
 std::vector<std::uint64_t> marksIn(const std::filesystem::path& path) {
-  constexpr std::size_t mostMarks = 4; // each costs a pass through the file
+  constexpr std::ptrdiff_t mostMarks = 4; // each costs a pass through the file
   std::vector<std::uint64_t> marks;
   std::string text; // a block behind the end of the one before, too short to hold a mark
   readBlocks(path, [&](std::string_view block, std::uint64_t begin) {
     const std::uint64_t textBegin = begin - text.size();
     text += block;
-    for (std::size_t at = text.find(markText); at != std::string::npos && marks.size() < mostMarks;
+    for (std::size_t at = text.find(markText); at != std::string::npos;
          at = text.find(markText, at + 1))
       marks.push_back(textBegin + at + markText.size());
+    marks.erase(marks.begin(),
+                marks.end() - std::min<std::ptrdiff_t>(mostMarks, std::ssize(marks)));
     text.erase(0, text.size() - std::min(text.size(), markText.size() - 1));
   });
   return marks;

@@ -16,7 +16,7 @@ inline constexpr std::string_view unsealedMark = "Written by Fenestra 00000000";
 /// `content` with its last unsealed mark sealed.
 std::string sealed(std::string content);
 
-/// Whether the file has a mark, among its first few, whose checksum is right. False where it cannot
+/// Whether the file has a mark, among its last few, whose checksum is right. False where it cannot
 /// be read. It may have any size: it is never in memory as a whole, and its time grows with that
 /// alone.
 bool bearsMark(const std::filesystem::path& path);

@@ -172,7 +172,7 @@ TEST_F(FilesCommand, SaysWhereFilesMayNotBeLookedAt) {
           {"output of a turntable",
            {"turntable", "volume.nrrd", "--output", "loop/t.png"},
            4,
-           "loop/t_0000.png: cannot be written: Too many levels"},
+           "loop/t.turntable.json: cannot be written: Too many levels"},
       },
       folder.path());
   const Outcome inspected =

@@ -232,7 +232,7 @@ TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
   std::string many; // each would be a checksum of the whole file
   for (int i = 0; i < 100; ++i)
     many += unsealedMark;
-  folder.write("many", sealed(many));
+  folder.write("many", many);
   for (const char* name : {"theirs", "edited", "edited.end", "claimed", "many"})
     EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.addUnnamed(folder / name); })
                   .find("Fenestra did not write it"),
