@@ -37,7 +37,7 @@ std::vector<std::string> splitAtCommas(const std::string& text) {
 }
 
 Error badValue(const std::string& flag, const std::string& expected, const std::string& got) {
-  return usageError("--" + flag + ": expected " + expected + ", got '" + got + "'");
+  return usageError("--" + flag + ": expected " + expected + ", got '" + oneLine(got) + "'");
 }
 
 } // namespace

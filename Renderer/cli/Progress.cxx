@@ -1,8 +1,8 @@
 #include "cli/Progress.h"
 
 #include <cstdio>
-#include <system_error>
 #include <sys/ioctl.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace fenestra {

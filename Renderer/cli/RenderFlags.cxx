@@ -3,6 +3,7 @@
 #include "cli/ClipFlags.h"
 
 #include "core/Error.h"
+#include "io/ShownText.h"
 #include "io/looks/LookText.h"
 #include "io/mrml/SceneFiles.h"
 #include "io/pictures/ImageFormat.h"
@@ -189,7 +190,7 @@ void readSize(const FlagValues& flags, SceneRequest& scene) {
   if (std::sscanf(text->c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 ||
       height < 1 || width > largest || height > largest)
     throw usageError("--size: expected WIDTHxHEIGHT in pixels, each from 1 to " +
-                     std::to_string(largest) + ", got '" + *text + "'");
+                     std::to_string(largest) + ", got '" + oneLine(*text) + "'");
   scene.width = width;
   scene.height = height;
 }
@@ -209,7 +210,7 @@ Rgb color(const FlagValues& flags, const std::string& name, const std::string& o
   Rgb value = numbers ? Rgb(flags.triple(name)->array()) : Rgb::Constant(-1.0);
   if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
     throw usageError("--" + name + ": expected R,G,B, each from 0 to 1e12, or " + otherwise +
-                     ", got '" + text + "'");
+                     ", got '" + oneLine(text) + "'");
   return value;
 }
 

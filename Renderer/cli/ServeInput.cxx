@@ -5,6 +5,7 @@
 #include "cli/Stop.h"
 #include "core/Error.h"
 #include "io/JsonNode.h"
+#include "io/ShownText.h"
 #include "io/looks/LightReader.h"
 #include "scene/NamedLooks.h"
 
@@ -81,7 +82,7 @@ FlagValues changedFlags(const json& change, const FlagValues& flags) {
     const Flag* flag = findFlag(renderSyntax.flags, name);
     if (!flag) {
       const std::string_view likely = nearest(name, names);
-      throw usageError(name + ": no such flag" +
+      throw usageError(oneLine(name) + ": no such flag" +
                        (likely.empty() ? "" : "; did you mean " + std::string(likely) + "?"));
     }
     if (!shapesPicture(*flag))
