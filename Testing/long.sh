@@ -12,8 +12,8 @@
 #   clang         the whole suite, and the benchmarks that nothing tests, built by clang
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
 # and only where it is named:
-#   fuzz          every fuzz target for ten minutes, and 10^4 damaged files through the child that
-#                 reads DICOM and transforms
+#   fuzz          10^6 executions of every fuzz target, in an hour each at most, and 10^4 damaged
+#                 files through the child that reads DICOM and transforms
 #   boundary      the clipping surface's boundary on sub-pixel rays; what its record says of the
 #                 figures is written by hand
 # Each stage writes a file of its own there and leaves the others as they are; logs of what failed
@@ -200,7 +200,7 @@ stage_boundary() {
 }
 
 stage_fuzz() {
-  bash "$top/Testing/Fuzz/run.sh" 600 >"$logs/fuzz.log" 2>&1 ||
+  FENESTRA_FUZZ_RUNS=1000000 bash "$top/Testing/Fuzz/run.sh" 3600 >"$logs/fuzz.log" 2>&1 ||
     say "fuzzing found something: $logs/fuzz.log"
   (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target ApartMutations)
   (cd "$logs" && "$top/build/bin/ApartMutations" 10000 >apart.log) ||
