@@ -36,8 +36,8 @@ FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
   m_files.reserve(ordered.size());
   const Stopwatch waited;
   for (const auto& [id, folder] : ordered) {
-    const int file =
-        repeated([&] { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
+    const int file = repeated(
+        [&path = folder] { return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
     if (file < 0)
       continue;
     m_files.push_back(file);
