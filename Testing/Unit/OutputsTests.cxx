@@ -223,7 +223,8 @@ TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
   const std::string ours = sealed("x " + std::string(unsealedMark) + "12345 y");
   folder.write("ours", ours);
   folder.write("ours.end", sealed(std::string(1 << 20, 'x') + std::string(unsealedMark)));
-  for (const std::size_t before : {9U, 19U, 25U}) // across the ends of blocks, if that is their size
+  for (const std::size_t before :
+       {9U, 19U, 25U}) // across the ends of blocks, if that is their size
     folder.write("ours." + std::to_string(before),
                  sealed(std::string((1 << 20) - before, 'x') + std::string(unsealedMark) + "1 2"));
   folder.write("edited", "an" + ours);
