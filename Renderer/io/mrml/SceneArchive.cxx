@@ -135,7 +135,8 @@ void SceneArchive::extract(const std::filesystem::path& file,
   if (size > std::filesystem::space(destination.parent_path(), unknown).available && !unknown)
     throw cannotUnpack(ENOSPC);
   errno = 0;
-  std::ofstream out(destination, std::ios::binary);
+  // Where the end of the process has removed it, it is not made anew.
+  std::ofstream out(destination, std::ios::binary | std::ios::in);
   m_zip->read(entry, file, size, [&](std::string_view chunk) {
     if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size())))
       throw cannotUnpack(errno);
