@@ -14,6 +14,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace fenestra::header {
@@ -83,7 +84,9 @@ inline bool hasControls(std::string_view line) {
 class HeaderLines {
 public:
   explicit HeaderLines(const std::filesystem::path& path) : m_file(path, std::ios::binary) {
-    m_text.reserve(longestHeader); // lines stay where they are while more are read
+    std::error_code unknown; // of a pipe, say; then the size is the largest there is
+    m_limit = std::min<std::uint64_t>(std::filesystem::file_size(path, unknown), longestHeader);
+    m_text.reserve(m_limit); // lines stay where they are while more are read
   }
 
   /// The next line without its end; nothing where there is none that ends within the limit.
@@ -118,7 +121,7 @@ private:
   bool readMore() {
     constexpr std::size_t block = 16 << 10;
     const std::size_t before = m_text.size();
-    m_text.resize(std::min(before + block, longestHeader));
+    m_text.resize(std::min(before + block, m_limit));
     m_file.read(m_text.data() + before, static_cast<std::streamsize>(m_text.size() - before));
     m_text.resize(before + static_cast<std::size_t>(m_file.gcount()));
     return m_text.size() > before;
@@ -126,6 +129,7 @@ private:
 
   std::ifstream m_file;
   std::string m_text;
+  std::size_t m_limit = 0;
   std::size_t m_position = 0;
 };
 

@@ -67,6 +67,11 @@ std::filesystem::file_type typeOf(const std::filesystem::path& path) {
   return type;
 }
 
+/// The system would take such a name for the one that ends before its zero byte.
+bool hasZeroByte(const std::filesystem::path& path) {
+  return path.native().find('\0') != std::string::npos;
+}
+
 std::string megabytes(std::uint64_t bytes) {
   return std::to_string(bytes >> 20) + " MB";
 }
@@ -90,6 +95,9 @@ bool isFolder(const std::filesystem::path& path) {
 }
 
 void requireFile(const std::filesystem::path& path, const std::string& mend, std::uint64_t most) {
+  if (hasZeroByte(path))
+    throw inputError(path.c_str(),
+                     "is followed by a zero byte, which no name holds; write it again");
   // Before it is looked at: a name on an automount or a server would tell others of itself.
   if (confinement && !isWithin(path, *confinement))
     throw inputError(path.string(),
@@ -116,16 +124,21 @@ void requireFile(const std::filesystem::path& path, const std::string& mend, std
 }
 
 void expectInput(const std::filesystem::path& path) {
+  const auto enterFile = [](const std::filesystem::path& file) {
+    if (const std::optional<FileId> id = fileId(file))
+      enter(*id, file);
+  };
+  if (hasZeroByte(path))
+    return;
   std::error_code failed;
   const auto type = std::filesystem::status(path, failed).type();
-  const std::optional<FileId> file = fileId(path);
-  if (file && type == std::filesystem::file_type::regular)
-    enter(*file, path);
+  if (type == std::filesystem::file_type::regular)
+    enterFile(path);
   else if (type == std::filesystem::file_type::directory)
     for (std::filesystem::directory_iterator entry(path, failed), end; !failed && entry != end;
          entry.increment(failed))
       if (entry->is_regular_file(failed))
-        expectInput(entry->path());
+        enterFile(entry->path());
 }
 
 InputsWithin::InputsWithin(const std::filesystem::path& folder)

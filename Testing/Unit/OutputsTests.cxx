@@ -378,6 +378,19 @@ TEST(Inputs, HaveABudget) {
   EXPECT_THROW(requireFile(file, "", 99), Error);
 }
 
+/// The system ends a name there, so that a folder's name with more behind it holds the folder's
+/// files, whose names are the folder's again.
+TEST_F(OutputFiles, WithAZeroByteInTheirNamesAreNone) {
+  const fs::path file = read("a");
+  const std::string zero(1, '\0');
+  const fs::path inFolder = folder.path().native() + zero;
+  expectInput(inFolder);
+  expectInput(inFolder / "a");
+  const std::string line =
+      refusal(ErrorKind::input, [&] { requireFile(file.native() + zero + "b", ""); });
+  EXPECT_EQ(line.find(file.string() + ": is followed by a zero byte"), 0u) << line;
+}
+
 TEST(PrivateFolders, OfRunsThatWereKilledAreRemovedByTheNext) {
   const TemporaryFolder temporary;
   const std::string before = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
