@@ -187,7 +187,8 @@ TEST_F(SlicerCommand, TheReadmesTableSaysTheSame) {
   const std::size_t end = readme.find("<!-- end of flags -->");
   ASSERT_TRUE(begin < end && end != std::string::npos);
   const std::size_t after = readme.find('\n', begin) + 1;
-  EXPECT_EQ(readme.substr(after, end - after), table) << "README.md should have:\n" << table;
+  EXPECT_EQ(readme.substr(after, end - after), table) << "Renderer/cli/README.md should have:\n"
+                                                      << table;
 }
 
 TEST_F(SlicerCommand, TheFileBesideTheExecutableSaysTheSame) {
