@@ -19,7 +19,7 @@ fi
 # The femoral cartilage from in front and a little below, with its two lesions; without the steps of the
 # labelmap's 1 mm slices (labelsmoothing), and those of the scan's own on its border (soft).
 scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
-  --focus "Femoral cartilage" --labelsmoothing 0.6 --position=-15,200,-90 --size 512x512 --samples 32)
+  --focus "Femoral cartilage" --labelsmoothing 0.6 --position=-15,200,-90 --size 384x384 --samples 32)
 
 render() { # MODE [flags]
   local mode=$1
@@ -29,10 +29,11 @@ render() { # MODE [flags]
     --output "$out/$mode.exr" --output "$out/$mode.png" --stats "$out/$mode.json"
 }
 start=$SECONDS
+render surface --boundary exact --soft 2
+say "The first picture is $out/surface.png"
 render none
 render plane --plane=0,10,-5,0,0.91,-0.41
 render cutaway --soft 2
-render surface --boundary exact --soft 2
 say "Rendering took $((SECONDS - start)) s"
 
 montage -font DejaVu-Sans -pointsize 20 -geometry +6+6 -background '#181818' -fill white \

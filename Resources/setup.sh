@@ -1,4 +1,4 @@
-# Sourced by demo.sh and Testing/run.sh: installs the Debian packages that Fenestra needs, and builds.
+# Sourced by demo.sh and the scripts of Testing: installs the Debian packages that Fenestra needs, and builds.
 # Sets `top` (the project's folder). Prints a plain reason and exits where something is missing.
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -7,6 +7,22 @@ say() { printf '\n== %s\n' "$*"; }
 die() {
   printf 'fenestra: %s\n' "$*" >&2
   exit 1
+}
+
+stages=()
+# stage NAME BUDGET COMMAND...: runs it, and remembers its seconds beside its budget: seconds on two quiet cores.
+stage() {
+  local name=$1 budget=$2 start=$SECONDS took late=
+  shift 2
+  say "$name"
+  "$@" || die "$name failed"
+  took=$((SECONDS - start))
+  [ $((2 * took)) -le $((3 * budget)) ] || late="  <== TOO LONG: over its budget by half or more"
+  stages+=("$(printf '%5d s of %4d s  %s%s' "$took" "$budget" "$name" "$late")")
+}
+print_stages() {
+  say "Where the time went"
+  printf '%s\n' "${stages[@]}"
 }
 
 # install_packages PACKAGE...: only those that are missing; as root, or through sudo.

@@ -55,7 +55,7 @@ run_labels() {
 }
 
 stage_accuracy() {
-  build release -DFENESTRA_BUILD_TESTS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   {
     printf '# Pictures converged by independent renderers\n\n'
     printf '| who, scene | values | mean of z | deviation of z | image means in errors |\n|---|---|---|---|---|\n'
@@ -85,7 +85,7 @@ print_seeds() {
 }
 
 stage_seeds() {
-  build release -DFENESTRA_BUILD_TESTS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   local rows
   rows=$(mktemp -d)
   export -f seed_row
@@ -96,7 +96,7 @@ stage_seeds() {
 
 # Builds what looks for planted errors, for run_planted.
 build_planted() {
-  build release -DFENESTRA_BUILD_TESTS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   cmake --build "$top/build" --target PlantedTests
 }
 
@@ -185,7 +185,7 @@ stage_clang() {
 }
 
 stage_faults() {
-  build release -DFENESTRA_BUILD_TESTS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   "$top/build/bin/Faults" "$top/build/bin/fenestra" >"$record/faults-in-turn.md" ||
     say "faults do harm: see $record/faults-in-turn.md"
   "$top/build/bin/Mutations" "$top/build/bin/fenestra" 1 20000 >"$record/mutations.md" ||
