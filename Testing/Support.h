@@ -23,7 +23,7 @@ inline const bool instructionSetIsPinned = [] {
 /// A grid centred at the origin, axes along RAS.
 inline Grid centredGrid(const Size3& size, const Vec3& spacing) {
   Affine map = Affine::Identity();
-  map.linear().diagonal() = spacing;
+  map.linear() = Mat3::Diagonal(spacing);
   map.translation() = -0.5 * spacing.cwiseProduct((size.array() - 1).matrix().cast<double>());
   return {size, map};
 }

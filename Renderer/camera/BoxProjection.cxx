@@ -5,12 +5,11 @@ namespace fenestra {
 BoxProjection::BoxProjection(const Camera& camera, const Affine& boxesToWorld)
     : m_perspective(camera.pose().projection == Projection::perspective),
       m_targetDepth(camera.targetDepth()) {
-  Mat3 toView;
-  toView << camera.right().transpose(), camera.up().transpose(), camera.forward().transpose();
+  const Mat3 toView = Mat3::FromRows(camera.right(), camera.up(), camera.forward());
   m_boxesToView.translation() = camera.toView(boxesToWorld.translation());
   m_boxesToView.linear() = toView * boxesToWorld.linear();
   // Far more than rounding beyond half a box.
-  m_half = 0.5001 * m_boxesToView.linear().cwiseAbs().rowwise().sum() +
+  m_half = 0.5001 * m_boxesToView.linear().cwiseAbs().rowSums() +
            Vec3::Constant(1e-12 * m_boxesToView.translation().norm());
 }
 
@@ -27,8 +26,8 @@ BoxProjection::Bounds BoxProjection::of(const Size3& box) const {
     return {bounds.depths, Vec2::Constant(-infinity), Vec2::Constant(infinity)};
   const double atBegin = m_targetDepth / bounds.depths.begin;
   const double atEnd = m_targetDepth / bounds.depths.end;
-  bounds.lower = (bounds.lower * atBegin).cwiseMin(bounds.lower * atEnd).eval();
-  bounds.upper = (bounds.upper * atBegin).cwiseMax(bounds.upper * atEnd).eval();
+  bounds.lower = (bounds.lower * atBegin).cwiseMin(bounds.lower * atEnd);
+  bounds.upper = (bounds.upper * atBegin).cwiseMax(bounds.upper * atEnd);
   return bounds;
 }
 

@@ -10,7 +10,7 @@ namespace fenestra {
 /// high; by 0 degrees it is the same pose, bit for bit.
 inline CameraPose turnedAroundTarget(const CameraPose& pose, double degrees) {
   CameraPose turned = pose;
-  const Eigen::AngleAxisd turn(degrees * pi / 180.0, pose.up.stableNormalized());
+  const Mat3 turn = rotationBy(degrees * pi / 180.0, pose.up.stableNormalized()).linear();
   if (degrees != 0.0)
     turned.position = pose.target + turn * (pose.position - pose.target);
   return turned;

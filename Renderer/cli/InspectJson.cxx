@@ -11,10 +11,10 @@ Json orNull(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-template <typename Vector>
-Json list(const Vector& vector) {
+template <typename Numbers>
+Json list(const Numbers& vector) {
   Json json = Json::array();
-  for (Eigen::Index i = 0; i < vector.size(); ++i)
+  for (int i = 0; i < vector.size(); ++i)
     json.push_back(vector[i]);
   return json;
 }
@@ -112,8 +112,10 @@ Json transformJson(const TransformSummary& transform) {
   json["linear"] = transform.toWorld.has_value();
   json["toWorld"] = orNull(transform.toWorld, [](const Affine& map) {
     Json rows = Json::array();
-    for (Eigen::Index row = 0; row < 3; ++row)
-      rows.push_back(list(Eigen::Vector4d(map.matrix().row(row).transpose())));
+    for (int row = 0; row < 3; ++row) {
+      rows.push_back(list(map.linear().row(row)));
+      rows.back().push_back(map.translation()[row]);
+    }
     return rows;
   });
   return json;

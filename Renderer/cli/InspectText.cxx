@@ -41,10 +41,10 @@ std::string number(double x) {
   return text;
 }
 
-template <typename Vector>
-std::string joined(const Vector& vector, const char* between) {
+template <typename Numbers>
+std::string joined(const Numbers& vector, const char* between) {
   std::string text;
-  for (Eigen::Index i = 0; i < vector.size(); ++i)
+  for (int i = 0; i < vector.size(); ++i)
     text += (i == 0 ? "" : between) + number(static_cast<double>(vector[i]));
   return text;
 }

@@ -16,10 +16,11 @@ namespace fenestra {
 /// (x, y) in mm where the eye ray through a world point meets the plane through the target, and the
 /// point's depth. In perspective (x, y) is defined at positive depths only.
 inline Vec3 toBuffer(const Camera& camera, const Vec3& world) {
-  Vec3 view = camera.toView(world);
-  if (camera.pose().projection == Projection::perspective)
-    view.head<2>() *= camera.targetDepth() / view.z();
-  return view;
+  const Vec3 view = camera.toView(world);
+  if (camera.pose().projection == Projection::orthographic)
+    return view;
+  const double scale = camera.targetDepth() / view.z();
+  return {view.x() * scale, view.y() * scale, view.z()};
 }
 
 /// The world point that toBuffer takes to (x, y) and this depth: the eye ray through (x, y) has it

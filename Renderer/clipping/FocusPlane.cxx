@@ -4,14 +4,14 @@ namespace fenestra {
 
 namespace {
 
-/// The x with the least |S x - r|, of several the shortest; S is symmetric, its eigenvalues 0 or
-/// more, and r is a sum of its columns.
-Vec2 shortestSolution(const Eigen::Matrix2d& s, const Vec2& r) {
+/// The x with the least |S x - r|, of several the shortest. S = (xx, xy; xy, yy) has eigenvalues of
+/// 0 or more, and r is a sum of its columns.
+Vec2 shortestSolution(double xx, double xy, double yy, const Vec2& r) {
   constexpr double singular = 1e-12; // of eigenvalues to each other: samples on one line
-  const double trace = s(0, 0) + s(1, 1), determinant = s(0, 0) * s(1, 1) - s(0, 1) * s(0, 1);
+  const double trace = xx + yy, determinant = xx * yy - xy * xy;
   if (determinant > singular * trace * trace)
-    return Vec2(s(1, 1) * r.x() - s(0, 1) * r.y(), s(0, 0) * r.y() - s(0, 1) * r.x()) / determinant;
-  return trace > 0.0 ? Vec2(r / trace) : Vec2::Zero().eval(); // S is trace d d'
+    return Vec2(yy * r.x() - xy * r.y(), xx * r.y() - xy * r.x()) / determinant;
+  return trace > 0.0 ? Vec2(r / trace) : Vec2::Zero(); // S is trace d d'
 }
 
 } // namespace
@@ -30,14 +30,16 @@ ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus) {
         center += points.back();
       }
   center /= static_cast<double>(points.size());
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  double xx = 0.0, xy = 0.0, yy = 0.0;
   Vec2 rise = Vec2::Zero();
   for (const Vec3& point : points) {
     const Vec3 from = point - center;
-    spread += from.head<2>() * from.head<2>().transpose();
+    xx += from.x() * from.x();
+    xy += from.x() * from.y();
+    yy += from.y() * from.y();
     rise += from.head<2>() * from.z();
   }
-  const Vec2 slope = shortestSolution(spread, rise);
+  const Vec2 slope = shortestSolution(xx, xy, yy, rise);
   const Vec3 toward = slope.x() * camera.right() + slope.y() * camera.up() - camera.forward();
   const Vec3 world = camera.pose().position + center.x() * camera.right() +
                      center.y() * camera.up() + center.z() * camera.forward();

@@ -36,8 +36,8 @@ CellRange cellsBetween(const DepthBuffer& buffer, const Vec2& lower, const Vec2&
 template <typename Function>
 void visitSeen(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells,
                const Function& function) {
-  const BoxProjection blocks(camera,
-                             cells.cellToWorld() * Eigen::Scaling(double{FocusCells::blockSize}));
+  const BoxProjection blocks(camera, cells.cellToWorld() *
+                                         scalingBy(Vec3::Constant(FocusCells::blockSize)));
   cells.visitOccupied([&](const Size3& block) {
     const auto [depths, lower, upper] = blocks.of(block);
     if (depths.end >= 0.0)

@@ -5,6 +5,8 @@
 
 #include "clipping/KernelSums.h"
 
+#include <Eigen/Core>
+
 #include <optional>
 #include <span>
 #include <vector>

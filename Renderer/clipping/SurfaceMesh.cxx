@@ -280,8 +280,10 @@ private:
       return false;
     std::ranges::sort(corners, {}, &Corner::row);
     std::array<Vec3, 3> points;
-    for (std::size_t i = 0; i < 3; ++i)
-      points[i] << m_samples.position(corners[i].column, corners[i].row), depth(corners[i]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec2 at = m_samples.position(corners[i].column, corners[i].row);
+      points[i] = {at.x(), at.y(), depth(corners[i])};
+    }
     const MeshPlane plane(points, m_samples.isPerspective());
     for (std::int64_t row = corners[0].row; row <= corners[2].row; ++row) {
       const double y = m_samples.position(0, row).y();

@@ -20,7 +20,7 @@ constexpr double farSquared = 256.0;
 
 /// How far, in mm, the coordinates of a site may be from what they stand for.
 double roundingAt(const Vec2& site) {
-  return 8.0 * std::numeric_limits<double>::epsilon() * site.lpNorm<Eigen::Infinity>();
+  return 8.0 * std::numeric_limits<double>::epsilon() * site.cwiseAbs().maxCoeff();
 }
 
 /// phi of squared distances.
@@ -95,9 +95,9 @@ public:
   Vec3 leastSquares(const Eigen::VectorXd& z) const {
     const Eigen::VectorXd all = turned(z);
     const Eigen::Index given = std::min<Eigen::Index>(3, all.size());
-    Vec3 right = Vec3::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
     right.head(given) = all.head(given);
-    Vec3 a = Vec3::Zero();
+    Eigen::Vector3d a = Eigen::Vector3d::Zero();
     if (m_rank == 3) {
       a[2] = right[2] / m_r(2, 2);
       a[1] = (right[1] - m_r(1, 2) * a[2]) / m_r(1, 1);
@@ -105,11 +105,11 @@ public:
       const Eigen::Matrix2d b = m_r.bottomRightCorner<2, 2>();
       Eigen::Matrix2d along = b.transpose() * b;
       along.diagonal().array() -= m_lesser * m_lesser;
-      const Vec2 d = along.col(along(0, 0) >= along(1, 1) ? 0 : 1).normalized();
+      const Eigen::Vector2d d = along.col(along(0, 0) >= along(1, 1) ? 0 : 1).normalized();
       a.tail<2>() = d * (b * d).dot(right.tail<2>()) / (m_greater * m_greater);
     }
     a[0] = (right[0] - m_r(0, 1) * a[1] - m_r(0, 2) * a[2]) / m_r(0, 0);
-    return a;
+    return {a[0], a[1], a[2]};
   }
 
 private:
@@ -131,7 +131,7 @@ private:
   }
 
   Eigen::MatrixX3d m_v; ///< v0, v1, v2
-  Mat3 m_r = Mat3::Zero();
+  Eigen::Matrix3d m_r = Eigen::Matrix3d::Zero();
   double m_greater, m_lesser; ///< singular values of R without its first row and column
   int m_rank;                 ///< at least 1
 };
@@ -139,7 +139,7 @@ private:
 Eigen::MatrixX2d rows(const std::vector<Vec2>& points) {
   Eigen::MatrixX2d matrix(std::ssize(points), 2);
   for (std::size_t i = 0; i < points.size(); ++i)
-    matrix.row(static_cast<Eigen::Index>(i)) = points[i].transpose();
+    matrix.row(static_cast<Eigen::Index>(i)) << points[i].x(), points[i].y();
   return matrix;
 }
 
@@ -268,7 +268,8 @@ void ThinPlateSpline::evaluateTile(std::span<const double> x, std::span<const do
       evaluateRow(x, y[row], values.subspan(row * x.size(), x.size()));
     return;
   }
-  expansion->addPlane(m_plane[0] + m_plane.tail<2>().dot(disc.center), m_plane[1], m_plane[2]);
+  expansion->addPlane(m_plane[0] + Vec2(m_plane.y(), m_plane.z()).dot(disc.center), m_plane[1],
+                      m_plane[2]);
   Points u(std::ssize(x));
   for (Eigen::Index i = 0; i < u.size(); ++i)
     u[i] = toDiscX(x[static_cast<std::size_t>(i)]);

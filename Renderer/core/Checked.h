@@ -18,10 +18,10 @@ using Complaint = std::function<Error(const std::string& what)>;
 /// cube. Beyond, a point keeps no fraction of a voxel. Throws otherwise.
 inline Affine checkedMap(const Affine& map, const Complaint& complaint) {
   constexpr double largest = 1e9, flattest = 1e-6;
-  const auto scales = map.linear().colwise().norm().array();
+  const auto scales = map.linear().columnNorms().array();
   if (!((scales > 1.0 / largest).all() && (scales < largest).all() &&
         (map.translation().array().abs() < largest).all() &&
-        std::abs(map.linear().colwise().normalized().determinant()) > flattest))
+        std::abs(map.linear().normalizedColumns().determinant()) > flattest))
     throw complaint("cannot be inverted within scales of 1e-9 to 1e9 and places of 1e9 mm");
   return map;
 }

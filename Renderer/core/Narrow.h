@@ -23,7 +23,8 @@ inline AffineRows affineRows(const Affine& map) {
   AffineRows rows;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 4; ++j)
-      rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = narrow(map.matrix()(i, j));
+      rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+          narrow(j < 3 ? map.linear()(i, j) : map.translation()[i]);
   return rows;
 }
 

@@ -3,8 +3,7 @@
 // Spaces are named where a value is declared: "world" is RAS in mm, "index" counts voxels (voxel
 // centres at integers), "view" is defined in camera/Camera.h.
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
+#include "core/Affine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +12,11 @@
 
 namespace fenestra {
 
-using Vec2 = Eigen::Vector2d;
-using Vec3 = Eigen::Vector3d;
-using Mat3 = Eigen::Matrix3d;
-using Size3 = Eigen::Matrix<std::int64_t, 3, 1>;
-using Affine = Eigen::Transform<double, 3, Eigen::AffineCompact>;
+using Vec2 = Vector<double, 2>;
+using Size3 = Vector<std::int64_t, 3>;
 
 /// Linear Rec. 709 red, green, blue; unbounded.
-using Rgb = Eigen::Array3d;
+using Rgb = Array<double, 3>;
 
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double infinity = std::numeric_limits<double>::infinity();

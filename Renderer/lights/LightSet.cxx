@@ -36,7 +36,7 @@ void LightSet::place(const AreaLight& light, const Grid& volume, const Camera& c
   double unit = 1.0;
   Vec3 origin = Vec3::Zero();
   if (light.frame == LightFrame::camera) {
-    axes << camera.right(), camera.up(), -camera.forward();
+    axes = Mat3(camera.right(), camera.up(), -camera.forward());
     unit = volume.boundingRadius();
     origin = volume.worldCenter();
   }

@@ -1,10 +1,12 @@
 #include "medium/PiecewiseLinear.h"
 
+#include <cassert>
+
 namespace fenestra {
 
 template <int Channels>
 PiecewiseLinear<Channels>::PiecewiseLinear(std::vector<Knot> knots) : m_knots(std::move(knots)) {
-  eigen_assert(!m_knots.empty());
+  assert(!m_knots.empty());
   std::stable_sort(m_knots.begin(), m_knots.end(),
                    [](const Knot& a, const Knot& b) { return a.position < b.position; });
   if (!(span() > 0.0))

@@ -13,7 +13,7 @@ namespace fenestra {
 template <int Channels>
 class PiecewiseLinear {
 public:
-  using Value = Eigen::Array<double, Channels, 1>;
+  using Value = Array<double, Channels>;
   struct Knot {
     double position;
     Value value;

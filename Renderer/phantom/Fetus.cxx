@@ -111,8 +111,7 @@ private:
 
 Phantom makeFetusPhantom(const FetusOptions& options) {
   requirePhantomSize(options.size);
-  Mat3 axes; // columns: left, posterior, superior
-  axes << -1, 0, 0, 0, -1, 0, 0, 0, 1;
+  constexpr Mat3 axes({-1, 0, 0}, {0, -1, 0}, {0, 0, 1}); // columns: left, posterior, superior
   const FetusSubject subject;
   Phantom phantom = paintPhantom(
       subject, phantomGrid(options.size, fetusFieldOfView, axes, fetusFieldCenter), "fetus");

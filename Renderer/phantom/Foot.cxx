@@ -42,8 +42,7 @@ void addThresholdedBones(Phantom& phantom) {
 
 Phantom makeFootPhantom(const FootOptions& options) {
   requirePhantomSize(options.size);
-  Mat3 axes; // columns: anterior, left, superior
-  axes << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  constexpr Mat3 axes({0, 1, 0}, {-1, 0, 0}, {0, 0, 1}); // columns: anterior, left, superior
   const FootSubject subject;
   Phantom phantom = paintPhantom(
       subject, phantomGrid(options.size, footFieldOfView, axes, footFieldCenter), "foot");

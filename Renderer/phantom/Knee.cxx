@@ -33,8 +33,7 @@ struct KneeSubject {
 
 Phantom makeKneePhantom(const KneeOptions& options) {
   requirePhantomSize(options.size);
-  Mat3 axes; // columns: posterior, inferior, right
-  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  constexpr Mat3 axes({0, -1, 0}, {0, 0, -1}, {1, 0, 0}); // columns: posterior, inferior, right
   const KneeSubject subject;
   Phantom phantom = paintPhantom(
       subject, phantomGrid(options.size, kneeFieldOfView, axes, kneeFieldCenter), "knee");

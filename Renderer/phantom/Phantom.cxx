@@ -12,7 +12,7 @@ void requirePhantomSize(const Size3& size) {
 Grid phantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes, const Vec3& center) {
   const Vec3 spacing = fieldOfView.cwiseQuotient(size.cast<double>());
   Affine indexToWorld = Affine::Identity();
-  indexToWorld.linear() = axes * spacing.asDiagonal();
+  indexToWorld.linear() = axes * Mat3::Diagonal(spacing);
   const Vec3 middle = 0.5 * (size.cast<double>() - Vec3::Ones());
   indexToWorld.translation() = center - indexToWorld.linear() * middle;
   return {size, indexToWorld};

@@ -96,10 +96,8 @@ double roundedBoxDistance(const Vec3& point, const Vec3& halfSize, double radius
 Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up) {
   const Vec3 z = axis.normalized();
   const Vec3 y = (up - up.dot(z) * z).normalized();
-  Affine map = Affine::Identity();
-  map.linear() << z.cross(y).transpose(), y.transpose(), z.transpose();
-  map.translation() = -(map.linear() * origin);
-  return map;
+  const Mat3 linear = Mat3::FromRows(z.cross(y), y, z);
+  return Affine(linear, -(linear * origin));
 }
 
 Solid ellipsoid(const Vec3& center, const Vec3& radii) {

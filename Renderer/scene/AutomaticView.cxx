@@ -86,10 +86,12 @@ Vec2 stepToTop(const std::vector<Vec2>& points, const std::vector<double>& score
   }
   const Terms fit = products.llt().solve(right);
   const Vec2 slope(fit[1], fit[2]);
-  Eigen::Matrix2d curvature;
-  curvature << 2.0 * fit[3], fit[4], fit[4], 2.0 * fit[5];
-  const bool hasTop = curvature.determinant() > 0.0 && curvature.trace() < 0.0;
-  const Vec2 step = hasTop ? Vec2(-curvature.inverse() * slope) : slope;
+  const double xx = 2.0 * fit[3], xy = fit[4], yy = 2.0 * fit[5]; // second derivatives
+  const double determinant = xx * yy - xy * xy, inverse = 1.0 / determinant;
+  const bool hasTop = determinant > 0.0 && xx + yy < 0.0;
+  const Vec2 step = hasTop ? Vec2(-(yy * inverse) * slope.x() + xy * inverse * slope.y(),
+                                  xy * inverse * slope.x() - xx * inverse * slope.y())
+                           : slope;
   return near * (hasTop && step.norm() < 1.0 ? step : step.stableNormalized());
 }
 

@@ -127,7 +127,7 @@ private:
     const auto box = attempted([&] { return readSceneRoi(m_scene, roi); }, m_unused);
     if (!box)
       return std::nullopt;
-    const Vec3 halfEdges = box->boxToWorld.linear().colwise().norm();
+    const Vec3 halfEdges = box->boxToWorld.linear().columnNorms();
     return CropUse{roi.id, roi.name, 2.0 * halfEdges, box->boxToWorld.translation()};
   }
 

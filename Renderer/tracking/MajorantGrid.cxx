@@ -16,7 +16,7 @@ double greatest(const ScalarFunction& f, double low, double high) {
 /// Greatest |gradient| (scalar units per mm) where all interpolated values differ by at most
 /// `spread`: every central difference is at most half of it a voxel.
 double gradientBound(const Grid& grid, double spread) {
-  return 0.5 * spread * grid.worldToIndex.linear().rowwise().norm().sum();
+  return 0.5 * spread * grid.worldToIndex.linear().transpose().columnNorms().sum();
 }
 
 float roundedUp(double x) {
@@ -48,8 +48,8 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
                            const TransferFunction& transfer, const Clip& clip,
                            const ContextStyle* style)
     : m_cellCount(ranges.cellCount()), m_edge(ranges.edge()), m_cells(ranges.size()) {
-  m_worldToCell = Eigen::Scaling(ranges.edge().cast<double>().cwiseInverse().eval()) *
-                  (Eigen::Translation3d(Vec3::Constant(0.5)) * grid.worldToIndex);
+  m_worldToCell = scalingBy(ranges.edge().cast<double>().cwiseInverse()) *
+                  (translationBy(Vec3::Constant(0.5)) * grid.worldToIndex);
   const Affine cellToWorld = m_worldToCell.inverse();
 
   const auto bound = [&](std::size_t cell) {

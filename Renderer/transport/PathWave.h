@@ -103,9 +103,7 @@ private:
       return std::isinf(paths.rays.result[place]) ? m_eye.escaped(origin.row, origin.ray)
                                                   : PathSample{};
     const auto triple = [&](const Columns3& columns) {
-      return Eigen::Array3f(columns[0][place], columns[1][place], columns[2][place])
-          .cast<double>()
-          .eval();
+      return Rgb(columns[0][place], columns[1][place], columns[2][place]);
     };
     PathSample sample;
     sample.radiance = triple(paths.radiance);

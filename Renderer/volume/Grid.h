@@ -20,7 +20,7 @@ struct Grid {
   std::int64_t voxelCount() const { return size.prod(); }
   Box indexBox() const { return {Vec3::Constant(-0.5), size.cast<double>().array() - 0.5}; }
   /// mm between neighbours along each axis.
-  Vec3 spacing() const { return indexToWorld.linear().colwise().norm(); }
+  Vec3 spacing() const { return indexToWorld.linear().columnNorms(); }
   Vec3 worldCenter() const { return indexToWorld * indexBox().center(); }
   Vec3 worldCorner(int i) const { return indexToWorld * indexBox().corner(i); }
   /// Radius, in mm, of the sphere around worldCenter() that holds the box.

@@ -6,7 +6,7 @@ namespace fenestra {
 
 bool meetsMask(const Mask& mask, const Box& box) {
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
-  const auto within = [&](const Vec3& index) { return index.cwiseMax(0.0).cwiseMin(last).eval(); };
+  const auto within = [&](const Vec3& index) { return index.cwiseMax(0.0).cwiseMin(last); };
   const Size3 first = within(box.lower.array().floor()).cast<std::int64_t>();
   const Size3 end = within(box.upper.array().ceil()).cast<std::int64_t>().array() + 1;
   const Size3& size = mask.grid.size;

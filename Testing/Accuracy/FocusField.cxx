@@ -101,9 +101,9 @@ FocusField::FocusField(const Indicator& indicator) : m_full(indicator.full) {
         m_voxels.push_back(voxel(x, y, z));
   m_lower = Vec3::Constant(-0.5);
   m_upper = m_size.cast<double>() - Vec3::Constant(0.5);
-  m_worldToIndex = (indicator.indexToWorld * Eigen::Translation3d(low.cast<double>())).inverse();
+  m_worldToIndex = (indicator.indexToWorld * translationBy(low.cast<double>())).inverse();
   markEmptiness();
-  m_longestEdge = indicator.indexToWorld.linear().colwise().norm().maxCoeff();
+  m_longestEdge = indicator.indexToWorld.linear().columnNorms().maxCoeff();
 }
 
 void FocusField::markEmptiness() {

@@ -92,8 +92,7 @@ public:
       : m_domain(scene.volume.grid, scene.crop),
         m_medium(medium),
         m_clip(scene.clip),
-        m_step(step *
-               scene.volume.grid.worldToIndex.inverse().linear().colwise().norm().minCoeff()) {}
+        m_step(step * scene.volume.grid.worldToIndex.inverse().linear().columnNorms().minCoeff()) {}
 
   double sampleCollision(const Ray& ray, const Interval& range, Random& random,
                          Counters& counters) const {

@@ -102,7 +102,7 @@ private:
                       m_lights,
                       m_camera,
                       m_clip,
-                      CropBox(Affine(Eigen::Scaling(4.0, 4.0, 0.125)))};
+                      CropBox(Affine(scalingBy({4.0, 4.0, 0.125})))};
   Medium<float> m_medium{m_volume.grid, std::get<std::vector<float>>(m_volume.voxels), m_transfer};
 };
 

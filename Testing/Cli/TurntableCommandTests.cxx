@@ -303,7 +303,7 @@ TEST_F(TurntableCommand, ShowsTheKneesCartilagesFromInFront) {
             kneeFolder().path())
             .status,
         0);
-    EXPECT_GT(toEye("auto.exr").y(), std::cos(45.0 * pi / 180.0)) << toEye("auto.exr").transpose();
+    EXPECT_GT(toEye("auto.exr").y(), std::cos(45.0 * pi / 180.0)) << toEye("auto.exr");
     EXPECT_EQ(vectorOf("auto.exr", "--up="), Vec3::UnitZ());
   }
 }

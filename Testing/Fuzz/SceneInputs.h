@@ -12,8 +12,8 @@ inline void loadScene(const std::filesystem::path& path) {
   request.input = path;
   const Volume volume = loadVolume(request).volume;
   const SceneSettings settings = loadSettings(request, volume);
-  if (!volume.grid.indexToWorld.matrix().allFinite() ||
-      (settings.crop && !settings.crop->worldToBox.matrix().allFinite()))
+  if (!volume.grid.indexToWorld.allFinite() ||
+      (settings.crop && !settings.crop->worldToBox.allFinite()))
     throw std::logic_error("a place that is none");
   request.focus = {"A"};
   loadFocus(request, volume.grid);

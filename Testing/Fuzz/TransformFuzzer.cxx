@@ -7,6 +7,6 @@
 FENESTRA_FUZZ(Transform, input) {
   using namespace fenestra;
   const Affine toParent = answeredTransform("t.h5", input, TransformSense::fromParent);
-  if (!toParent.matrix().allFinite())
+  if (!toParent.allFinite())
     throw std::logic_error("a map that is none");
 }

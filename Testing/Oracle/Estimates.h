@@ -17,7 +17,7 @@ struct PathEstimate {
 };
 
 /// The first collision, as numbers to compare: how often, how deep (0 where none), how bright.
-using FirstCollision = Eigen::Array3d;
+using FirstCollision = Array<double, 3>;
 
 struct PixelEstimate {
   double samples = 0.0;

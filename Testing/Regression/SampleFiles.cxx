@@ -21,7 +21,7 @@ constexpr double fieldOfView = 40.0; // mm, around the origin
 
 /// Where voxels lie: RAS mm.
 struct Axes {
-  Eigen::Array3i size;
+  Size3 size;
   Mat3 steps; ///< a column is the way to the next voxel along that axis
   Vec3 first; ///< centre of the first voxel
 
@@ -31,23 +31,21 @@ struct Axes {
 /// Unit directions in columns; the grid is centred at the origin and fills the field of view.
 Axes axesAlong(const Mat3& directions, const Vec3& spacing) {
   Axes axes;
-  axes.size = (fieldOfView / spacing.array()).round().cast<int>();
-  axes.steps = directions * spacing.asDiagonal();
-  axes.first = -0.5 * (axes.steps * (axes.size - 1).matrix().cast<double>());
+  axes.size = (fieldOfView / spacing.array()).round().cast<std::int64_t>();
+  axes.steps = directions * Mat3::Diagonal(spacing);
+  axes.first = -0.5 * (axes.steps * (axes.size - Size3::Ones()).cast<double>());
   return axes;
 }
 
 Mat3 columns(const Vec3& a, const Vec3& b, const Vec3& c) {
-  Mat3 m;
-  m << a, b, c;
-  return m;
+  return {a, b, c};
 }
 
 const Mat3 straight = Mat3::Identity();
 
 /// 20 degrees about an axis that is none of the world's.
 Mat3 tilted() {
-  return Eigen::AngleAxisd(0.35, Vec3(1.0, 2.0, -1.5).normalized()).toRotationMatrix();
+  return rotationBy(0.35, Vec3(1.0, 2.0, -1.5).normalized()).linear();
 }
 
 // ---- samples
@@ -131,8 +129,7 @@ std::string header(const Nrrd& nrrd) {
        << "\ndimension: " << (list ? 4 : 3) << "\nspace: " << nrrd.space << "\nsizes:";
   if (list)
     text << ' ' << nrrd.layers;
-  text << ' ' << nrrd.axes.size.transpose().format(Eigen::IOFormat(0, 0, " ", " "))
-       << "\nspace directions:" << (list ? " none" : "");
+  text << ' ' << nrrd.axes.size << "\nspace directions:" << (list ? " none" : "");
   for (int axis = 0; axis < 3; ++axis)
     text << ' ' << triple(nrrd.axes.steps.col(axis).cwiseProduct(toSpace));
   text << "\nkinds:" << (list ? " list" : "") << " domain domain domain\n";
@@ -187,7 +184,7 @@ void writeGeometries(const std::filesystem::path& folder, double s) {
                             {"uint8", axesAlong(straight, cube), "right-anterior-superior"});
   Axes sheared = axesAlong(straight, cube);
   sheared.steps.col(2) += 0.3 * s * y; // a tilted gantry
-  sheared.first = -0.5 * (sheared.steps * (sheared.size - 1).matrix().cast<double>());
+  sheared.first = -0.5 * (sheared.steps * (sheared.size - Size3::Ones()).cast<double>());
   writeVolume<std::uint8_t>(folder / "sheared.nrrd", {"uint8", sheared});
 }
 
@@ -249,9 +246,9 @@ void writeSegments(const std::filesystem::path& folder, double s) {
 
   // Part of the volume's grid only: the origin is the part's own already.
   Axes part = axesAlong(straight, Vec3::Constant(s));
-  const Eigen::Array3i offset = part.size / 2;
+  const Size3 offset = part.size / 2;
   part.first = part.place(offset.x(), offset.y(), 0);
-  part.size -= Eigen::Array3i(offset.x(), offset.y(), 0);
+  part.size -= Size3(offset.x(), offset.y(), 0);
   std::ostringstream where;
   where << "Segmentation_ReferenceImageExtentOffset:=" << offset.x() << ' ' << offset.y() << " 0\n";
   Nrrd cropped{"int16",

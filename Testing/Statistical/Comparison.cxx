@@ -55,7 +55,11 @@ Rgb skewnessOf(const oracle::Estimates& picture) {
     samples += pixel.samples;
   }
   const Rgb deviation = (squares / samples).sqrt();
-  return (squares > 0.0).select(cubes / samples / deviation.cube(), Rgb(Rgb::Zero()));
+  Rgb skewness = Rgb::Zero();
+  for (int c = 0; c < 3; ++c)
+    if (squares[c] > 0.0)
+      skewness[c] = cubes[c] / samples / (deviation[c] * deviation[c] * deviation[c]);
+  return skewness;
 }
 
 /// Over a square of pixels.

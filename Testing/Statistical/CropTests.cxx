@@ -13,8 +13,8 @@ Volume ones(const Grid& grid) {
 
 /// Maps [-1, 1]^3 onto a turned box of half edges `half` around `center`.
 Affine turnedBox(const Vec3& center, const Vec3& half, double angle) {
-  return Eigen::Translation3d(center) *
-         Eigen::AngleAxisd(angle, Vec3(1.0, -2.0, 0.5).normalized()) * Eigen::Scaling(half);
+  return translationBy(center) * rotationBy(angle, Vec3(1.0, -2.0, 0.5).normalized()) *
+         scalingBy(half);
 }
 
 /// Length of a ray, from 0 on, between the three pairs of a parallelepiped's faces: what is on the
@@ -58,7 +58,7 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
   const TransferFunction looser = transfer.scaled(2.0); // so that not every collision is real
   Affine box = turnedBox({0.3, -0.4, 0.2}, {3.0, 5.0, 4.0}, 0.7);
   if (GetParam()) // sheared, as by a transform above the box
-    box = Affine((Mat3() << 1.0, 0.3, 0.0, 0.0, 1.0, -0.2, 0.1, 0.0, 0.8).finished()) * box;
+    box = Affine(Mat3::FromRows({1.0, 0.3, 0.0}, {0.0, 1.0, -0.2}, {0.1, 0.0, 0.8})) * box;
   const MajorantGrid majorants(volume.grid, CellRanges(volume, 0), looser, ClipNone{});
   const Medium<float> medium(volume.grid, std::get<std::vector<float>>(volume.voxels), transfer);
   const Clip clip;
@@ -113,8 +113,8 @@ TEST_P(CroppedPicture, LooksLikeAVolumeOfThatShape) {
   const Vec3 half(5.0, 4.0, 3.0);
   const Affine box = turnedBox({1.0, 0.0, -1.0}, half, GetParam().angle);
   // A grid of 10 x 8 x 6 voxels of 1 mm that fills the box.
-  const Affine indexToWorld = box * Eigen::Scaling(Vec3(half.cwiseInverse())) *
-                              Eigen::Translation3d(Vec3(-4.5, -3.5, -2.5));
+  const Affine indexToWorld =
+      box * scalingBy(Vec3(half.cwiseInverse())) * translationBy(Vec3(-4.5, -3.5, -2.5));
   const TestScene cut = litScene(ones(Grid({10, 8, 6}, indexToWorld)), GetParam());
   TestScene cropped = litScene(ones(centredGrid({24, 24, 24}, {1.0, 1.0, 1.0})), GetParam());
   cropped.crop = CropBox(box);

@@ -68,7 +68,7 @@ Vec3 scattered(const Vec3& direction, double g, const Vec2& u) {
   const double cosine = g == 0.0 ? 2.0 * u.x() - 1.0 : (1.0 + g * g - s * s) / (2.0 * g);
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   const double phi = 2.0 * pi * u.y();
-  const Vec3 other = direction.unitOrthogonal();
+  const Vec3 other = Frame(direction).tangent;
   return (cosine * direction +
           sine * (std::cos(phi) * other + std::sin(phi) * direction.cross(other)))
       .normalized();

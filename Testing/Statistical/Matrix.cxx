@@ -72,15 +72,14 @@ Grid gridOf(const Combination& c, Generator& generator) {
     map.translation() = -axes * (0.5 * (size.cast<double>() - Vec3::Ones()));
     return Grid(size, map);
   };
-  const auto scaled = [](double x, double y, double z) { return Mat3(Vec3(x, y, z).asDiagonal()); };
+  const auto scaled = [](double x, double y, double z) { return Mat3(Mat3::Diagonal({x, y, z})); };
   switch (c.grid) {
   case GridFactor::cubes:
     return centred({12, 11, 13}, scaled(1.0, 1.0, 1.0));
   case GridFactor::thickSlices:
     return centred({24, 17, 4}, scaled(0.5, 0.7, 3.0));
   case GridFactor::turned: {
-    const Mat3 turn = Eigen::AngleAxisd(uniform(generator, 0.0, 6.0), randomDirection(generator))
-                          .toRotationMatrix();
+    const Mat3 turn = rotationBy(uniform(generator, 0.0, 6.0), randomDirection(generator)).linear();
     return centred({14, 10, 12}, turn * scaled(0.8, 1.2, 1.0));
   }
   case GridFactor::shearedMirrored: {
@@ -294,9 +293,8 @@ CameraPose poseOf(const Combination& c, Generator& generator) {
 
 Affine cropOf(Generator& generator) {
   Affine crop = Affine::Identity();
-  crop.linear() = Eigen::AngleAxisd(uniform(generator, 0.0, 6.0), randomDirection(generator))
-                      .toRotationMatrix() *
-                  Mat3(Vec3(6.5, 4.5, 7.0).asDiagonal());
+  crop.linear() = rotationBy(uniform(generator, 0.0, 6.0), randomDirection(generator)).linear() *
+                  Mat3(Mat3::Diagonal({6.5, 4.5, 7.0}));
   crop.translation() = 0.5 * randomDirection(generator);
   return crop;
 }

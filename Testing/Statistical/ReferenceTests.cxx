@@ -78,7 +78,7 @@ void record(const std::string& who, const ZStatistics& z) {
   if (const std::optional<std::filesystem::path> folder = reportFolder())
     std::ofstream(*folder / "references.md", std::ios::app)
         << std::setprecision(3) << "| " << who << " | " << z.count << " | " << z.mean << " | "
-        << z.deviation << " | " << z.imageMean.transpose() << " |\n";
+        << z.deviation << " | " << z.imageMean << " |\n";
 }
 
 /// How z of tiles may be distributed: bounds of four standard errors of each, S2 filling three

@@ -39,7 +39,7 @@ Volume ramp() {
 
 /// A turned grid of unequal spacing.
 Volume turned(Volume volume) {
-  const Affine turn(Eigen::AngleAxisd(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
+  const Affine turn(rotationBy(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
   volume.grid = Grid(volume.grid.size, turn * volume.grid.indexToWorld);
   return volume;
 }
@@ -66,8 +66,7 @@ Ray randomRay(const Volume& volume, Random& random) {
   const auto inside = [&] {
     const Box box = volume.grid.indexBox();
     const Vec3 u(random.uniform(), random.uniform(), random.uniform());
-    return Vec3(volume.grid.indexToWorld *
-                (box.lower + u.cwiseProduct(box.upper - box.lower)).eval());
+    return Vec3(volume.grid.indexToWorld * (box.lower + u.cwiseProduct(box.upper - box.lower)));
   };
   const Vec3 target = inside();
   const Vec3 origin =

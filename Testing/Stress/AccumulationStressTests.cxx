@@ -101,11 +101,10 @@ TEST(AMillionSamples, DoNotDriftAndAreWhatARenderAdds) {
       EXPECT_TRUE((film.at(column, row).deviation == all.deviation).all());
       const Rgb difference = (first.mean - second.mean).abs();
       const Rgb error = (first.standardError().square() + second.standardError().square()).sqrt();
-      EXPECT_TRUE((difference < 4.0 * error).all())
-          << difference.transpose() << ", errors " << error.transpose();
+      EXPECT_TRUE((difference < 4.0 * error).all()) << difference << ", errors " << error;
       const Rgb other = (fast.at(column, row).mean - all.mean).abs();
       EXPECT_TRUE((other < 4.0 * std::sqrt(2.0) * all.standardError()).all())
-          << other.transpose() << ", error of each " << all.standardError().transpose();
+          << other << ", error of each " << all.standardError();
     }
 }
 

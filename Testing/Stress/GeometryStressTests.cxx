@@ -36,8 +36,7 @@ TestScene moved(TestScene scene, const Affine& map) {
 }
 
 Affine turn(double angle, const Vec3& translation = Vec3::Zero()) {
-  return Affine(Eigen::Translation3d(translation) *
-                Eigen::AngleAxisd(angle, Vec3(1.0, -2.0, 0.5).normalized()));
+  return Affine(translationBy(translation) * rotationBy(angle, Vec3(1.0, -2.0, 0.5).normalized()));
 }
 
 struct Place {
@@ -69,8 +68,8 @@ TEST_P(Placed, KeepsTheDigitsOfAVoxel) {
 
 INSTANTIATE_TEST_SUITE_P(
     Places, Placed,
-    ::testing::Values(Place{"far", Affine(Eigen::Translation3d(1e6, -1e6, 1e6))},
-                      Place{"farther", Affine(Eigen::Translation3d(-1e9, 7e8, 1e9))},
+    ::testing::Values(Place{"far", Affine(translationBy({1e6, -1e6, 1e6}))},
+                      Place{"farther", Affine(translationBy({-1e9, 7e8, 1e9}))},
                       Place{"turned", turn(1.0)}, Place{"turnedFar", turn(2.0, {1e6, 1e6, -1e6})},
                       Place{"turnedLittle", turn(1e-9)}, Place{"halfTurn", turn(pi)}),
     [](const auto& info) { return std::string(info.param.name); });
@@ -95,30 +94,30 @@ TEST(MirroredAxes, ShowTheSamePicture) {
 TestScene linearScene(const Size3& size, const Mat3& axes) {
   Affine map;
   map.linear() = axes;
-  map.translation() = -axes * (0.5 * (size.array() - 1).cast<double>()).matrix();
+  map.translation() = -axes * (0.5 * (size - Size3::Ones()).cast<double>());
   const Grid grid(size, map);
   const auto field = [&](const Vec3& p) {
     return 0.5 + Vec3(0.05, -0.04, 0.06).dot(grid.indexToWorld * p);
   };
   TestScene scene = bumpScene();
   scene.volume = makeVolume(grid, field);
-  scene.crop = CropBox(turn(0.4) * Affine(Eigen::Scaling(Vec3(4.0, 3.0, 3.5))));
+  scene.crop = CropBox(turn(0.4) * Affine(scalingBy(Vec3(4.0, 3.0, 3.5))));
   scene.pose.scale = 6.0;
   return scene;
 }
 
 TEST(ShearedAxes, ShowTheSamePicture) {
   const TestScene straight = linearScene({14, 14, 14}, Mat3::Identity());
-  Mat3 sheared, flat;
-  sheared << 1.0, 0.9, 0.3, 0.0, 0.8, -0.7, 0.0, 0.0, 1.1;
-  flat << 0.5, 0.5, 0.1, 0.5, 0.5 - 1e-3, 0.0, 0.0, 0.2, 1.0; // two axes nearly parallel
+  const Mat3 sheared = Mat3::FromRows({1.0, 0.9, 0.3}, {0.0, 0.8, -0.7}, {0.0, 0.0, 1.1});
+  const Mat3 flat = // two axes nearly parallel
+      Mat3::FromRows({0.5, 0.5, 0.1}, {0.5, 0.5 - 1e-3, 0.0}, {0.0, 0.2, 1.0});
   const int samples = budget(400);
   const RenderResult expected = renderIn(straight, samples, 5);
   expectSamePicture(expected.film, renderIn(linearScene({50, 50, 30}, sheared), samples, 6).film);
   // The flat parallelepiped holds a small part of the crop only; compare what both hold by eye rays
   // through an even smaller crop.
   TestScene small = straight;
-  small.crop = CropBox(Affine(Eigen::Scaling(Vec3(0.01, 0.01, 0.5))));
+  small.crop = CropBox(Affine(scalingBy(Vec3(0.01, 0.01, 0.5))));
   small.pose.scale = 0.3;
   small.transfer = linearTransfer(5.0, Rgb::Constant(0.8));
   TestScene smallFlat = linearScene({101, 101, 9}, flat);

@@ -81,7 +81,7 @@ TEST_P(PhaseEnds, AreUnitWithTheirDensity) {
       const long double d = (1.0L - size) * (1.0L - size) + size * chord2;
       const auto expected =
           static_cast<double>(0.25L / pi * (1.0L - size * size) / (d * std::sqrt(d)));
-      EXPECT_NEAR(sample.pdf / expected, 1.0, precision) << "g " << g << ", u " << u.transpose();
+      EXPECT_NEAR(sample.pdf / expected, 1.0, precision) << "g " << g << ", u " << u;
     }
 }
 
@@ -120,7 +120,7 @@ TEST(SurfaceEnds, GiveUnitDirectionsAndBoundedWeights) {
               ASSERT_NEAR(sample.outgoing.norm(), 1.0, 1e-12) << cosine << " " << power;
               ASSERT_TRUE(sample.pdf >= 0.0 && std::isfinite(sample.pdf)) << cosine << " " << power;
               ASSERT_TRUE((sample.weight >= 0.0).all() && (sample.weight <= greatestWeight).all())
-                  << sample.weight.transpose() << ", " << cosine << " " << power;
+                  << sample.weight << ", " << cosine << " " << power;
               ASSERT_TRUE(sample.pdf > 0.0 || sample.weight.maxCoeff() == 0.0);
               drawn += sample.pdf > 0.0 ? 1 : 0;
             }
@@ -178,7 +178,7 @@ TEST(EnvironmentEnds, AreUnitAndInOrNextToALitTexel) {
         const Vec3 step(1e-7 * std::cos(phi), 1e-7 * std::sin(phi), i < 16 ? 1e-8 : -1e-8);
         greatest = std::max(greatest, sampler.pdf((direction + step).normalized()));
       }
-      EXPECT_GT(greatest, 0.0) << u.transpose();
+      EXPECT_GT(greatest, 0.0) << u;
     }
   }
 }
@@ -231,12 +231,12 @@ TEST(LightEnds, GiveUnitDirectionsAndFiniteContributions) {
           if (!sample)
             continue;
           ++drawn;
-          ASSERT_NEAR(sample->direction.norm(), 1.0, 1e-12) << point.transpose();
+          ASSERT_NEAR(sample->direction.norm(), 1.0, 1e-12) << point;
           ASSERT_GT(sample->distance, 0.0);
           ASSERT_GT(sample->pdf, 0.0);
-          ASSERT_TRUE(sample->radiance.isFinite().all());
+          ASSERT_TRUE(sample->radiance.allFinite());
           // An infinite density (grazing, or a light without area) leaves a contribution of 0.
-          ASSERT_TRUE((sample->radiance / sample->pdf).isFinite().all()) << point.transpose();
+          ASSERT_TRUE((sample->radiance / sample->pdf).allFinite()) << point;
         }
   }
   EXPECT_GT(drawn, 20000);
@@ -306,7 +306,7 @@ TEST(PathEnds, AreBoundedByTheirCollisions) {
           const double weight = hybrid ? 25.0 : 1.0;
           const double bound = 2.0 * weight * static_cast<double>(counters.collisions + 1);
           ASSERT_TRUE((radiance >= 0.0).all() && (radiance <= bound).all())
-              << radiance.transpose() << ", draw " << draw << ", g " << g;
+              << radiance << ", draw " << draw << ", g " << g;
         }
     }
 }

@@ -289,7 +289,8 @@ TEST(SplineStress, TurnsWithItsSites) {
       for (const double angle : {1e-8, 0.7, 0.5 * pi, 3.0}) {
         const SplineData data = scattered(random, 50, 40.0, {0, 0}, 40.0);
         const auto turn = [&](const Vec2& x) -> Vec2 {
-          return Eigen::Rotation2Dd(angle) * x + Vec2(origin, -origin);
+          const double c = std::cos(angle), s = std::sin(angle);
+          return {c * x.x() - s * x.y() + origin, s * x.x() + c * x.y() - origin};
         };
         // 1e6 mm away coordinates are rounded by 1e-10 mm, and so are slopes' effects on f.
         const double bound = origin > 1e5 ? 1e-7 : 1e-9;

@@ -5,6 +5,7 @@
 #include "RunSettings.h"
 #include "Support.h"
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 namespace fenestra::testing {
@@ -43,11 +44,13 @@ inline Random randomWithDraw(int draw, std::uint64_t bits) {
 /// product.
 inline double chord(const Grid& grid, const Ray& ray) {
   using Vector = Eigen::Matrix<long double, 3, 1>;
-  const Eigen::Matrix<long double, 3, 3> inverse =
-      grid.indexToWorld.linear().cast<long double>().inverse();
-  const Vector origin =
-      inverse * (ray.origin - Vec3(grid.indexToWorld.translation())).cast<long double>();
-  const Vector direction = inverse * ray.direction.cast<long double>();
+  const auto precise = [](const Vec3& v) { return Vector(v.x(), v.y(), v.z()); };
+  Eigen::Matrix<long double, 3, 3> linear;
+  for (int axis = 0; axis < 3; ++axis)
+    linear.col(axis) = precise(grid.indexToWorld.linear().col(axis));
+  const Eigen::Matrix<long double, 3, 3> inverse = linear.inverse();
+  const Vector origin = inverse * precise(ray.origin - grid.indexToWorld.translation());
+  const Vector direction = inverse * precise(ray.direction);
   long double begin = 0.0L;
   long double end = std::numeric_limits<long double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -97,8 +100,8 @@ public:
       ratio += m_tracker.transmittance(ray, range, random, counters) / n;
     }
     const double error = 4.0 * std::sqrt(expected * (1.0 - expected) / n) + 1e-12 * expected + 1e-9;
-    EXPECT_NEAR(free, expected, error) << ray.origin.transpose() << " | " << ray.direction;
-    EXPECT_NEAR(ratio, expected, error) << ray.origin.transpose() << " | " << ray.direction;
+    EXPECT_NEAR(free, expected, error) << ray.origin << " | " << ray.direction;
+    EXPECT_NEAR(ratio, expected, error) << ray.origin << " | " << ray.direction;
     return counters;
   }
 

@@ -118,7 +118,7 @@ void expectKeepEverywhere(const View& view, const Clip& clip) {
       points.push_back(center + reach * view.volume.boundingRadius() * randomPoint(random, -1, 1));
   for (const Vec3& point : points) {
     const double kept = keep(clip, point);
-    ASSERT_TRUE(kept == 0.0 || kept == 1.0) << point.transpose();
+    ASSERT_TRUE(kept == 0.0 || kept == 1.0) << point;
     if (behindEye(camera, camera.toView(point).z())) {
       ASSERT_EQ(kept, 0.0);
     }
@@ -281,7 +281,7 @@ TEST(SurfaceStress, OnePixel) {
 TEST(SurfaceStress, AFocusAtTheVolumesBorder) {
   for (const Vec3& corner : {Vec3(-16, -16, -16), Vec3(16, 16, 16), Vec3(-16, 16, 0)}) {
     const Mask focus =
-        maskOf(cube, [&](const Vec3& p) { return (p - corner).lpNorm<Eigen::Infinity>() < 9.0; });
+        maskOf(cube, [&](const Vec3& p) { return (p - corner).cwiseAbs().maxCoeff() < 9.0; });
     expectSoundFromFront(focus, 20.0);
     expectSoundFromFront(focus, 10.0);
   }
@@ -374,7 +374,7 @@ TEST(SurfaceStress, TheCameraInsideTheVolume) {
   for (const auto projection : projections)
     for (const Vec3& from : {Vec3(10, -11, 3), Vec3(8, 0, 0), Vec3(-16, -16, -16), Vec3(2, 1, 3)})
       for (const double angle : {20.0, 120.0}) {
-        SCOPED_TRACE(from.transpose());
+        SCOPED_TRACE(from);
         expectSound({camera(projection, from, Vec3::Zero(), 5.0, angle), cube, ball});
       }
 }
@@ -440,7 +440,7 @@ TEST(SurfaceStress, FarFromTheOriginIsTheSame) {
     const Vec3 from(10, -60, 5);
     const View here{camera(projection, from, Vec3::Zero(), 14.0), cube, ball};
     Affine moved = cube.indexToWorld;
-    moved.pretranslate(far);
+    moved.translation() += far;
     const Grid there(cube.size, moved);
     Mask focus = ball;
     focus.grid = there;
@@ -488,7 +488,7 @@ TEST(SurfaceStress, AFocusThatNoRayMeetsIsRefused) {
   // In another place than the volume.
   Mask elsewhere = ball;
   Affine moved = cube.indexToWorld;
-  moved.pretranslate(Vec3(0, 0, 1e6));
+  moved.translation() += Vec3(0, 0, 1e6);
   elsewhere.grid = Grid(cube.size, moved);
   expectRefused(ahead, cube, elsewhere);
 }

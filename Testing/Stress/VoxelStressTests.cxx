@@ -92,7 +92,7 @@ void expectReplaced(const std::vector<T>& odd) {
     expectEqualBits(film, pictureOf(folder / "easy.nrrd", transfer));
     double sum = 0.0;
     for (const PixelSums& pixel : film.pixels()) {
-      ASSERT_TRUE((pixel.mean >= 0.0).all() && pixel.mean.isFinite().all());
+      ASSERT_TRUE((pixel.mean >= 0.0).all() && pixel.mean.allFinite());
       sum += pixel.mean.sum();
     }
     EXPECT_GT(sum, 0.0) << "black says nothing";

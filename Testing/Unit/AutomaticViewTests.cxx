@@ -77,7 +77,7 @@ TEST_F(ViewOfCube, ShowsASlabFromTheFaceThatItIsNear) {
       });
       const ViewDirection view = viewOf(slab);
       EXPECT_LT(degreesBetween(view.fromTarget, side * Vec3::Unit(axis)), 8.0)
-          << "axis " << axis << ", side " << side << ": " << view.fromTarget.transpose();
+          << "axis " << axis << ", side " << side << ": " << view.fromTarget;
       EXPECT_EQ(view.up, axis == 2 ? Vec3::UnitY() : Vec3::UnitZ());
       EXPECT_NEAR(view.fromTarget.norm(), 1.0, 1e-12);
     }
@@ -89,7 +89,7 @@ TEST_F(ViewOfCube, ShowsADiscFlatOnFromTheUsualSide) {
     const Mask disc = focusWhere([&](const Vec3& p) {
       return std::abs(p.dot(unit)) < 2.0 && (p - p.dot(unit) * unit).norm() < 20.0;
     });
-    EXPECT_LT(degreesBetween(viewOf(disc).fromTarget, unit), 10.0) << normal.transpose();
+    EXPECT_LT(degreesBetween(viewOf(disc).fromTarget, unit), 10.0) << normal;
   }
 }
 

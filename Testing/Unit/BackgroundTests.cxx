@@ -35,7 +35,8 @@ TEST(Background, RunsFromBottomToTopInDisplayValues) {
       const PixelSums& pixel = film.at(column, row);
       const double height = (7.5 - row) / 8.0; // row 0 is the top one
       const Rgb encoded = (1.0 - height) * bottom + height * top;
-      const Rgb expected = ((encoded + 0.055) / 1.055).pow(2.4);
+      const Rgb expected =
+          ((encoded + 0.055) / 1.055).unaryExpr([](double v) { return std::pow(v, 2.4); });
       EXPECT_LT((pixel.mean - expected).abs().maxCoeff(), 1e-12) << "row " << row;
       EXPECT_EQ(pixel.standardError().maxCoeff(), 0.0) << "a background is no noise";
       EXPECT_EQ(pixel.alpha, 1.0) << "of one sample, which is enough";

@@ -165,8 +165,7 @@ TEST_P(Holes, ASphereLeavesABowl) {
     return fromBuffer(ball.camera, Vec3(x, y, depth.surface({x, y})));
   };
   const Vec3 a = bottom(14.0, 0), b = bottom(-14.0, 0), c = bottom(0, 15.0), d = bottom(0, -16.0);
-  Mat3 chords;
-  chords << (b - a).transpose(), (c - a).transpose(), (d - a).transpose();
+  const Mat3 chords = Mat3::FromRows(b - a, c - a, d - a);
   const Vec3 right(0.5 * (b.squaredNorm() - a.squaredNorm()),
                    0.5 * (c.squaredNorm() - a.squaredNorm()),
                    0.5 * (d.squaredNorm() - a.squaredNorm()));

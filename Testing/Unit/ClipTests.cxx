@@ -127,8 +127,8 @@ TEST(Clip, BoxesAreKeptOrRemovedAsTheirPointsAre) {
           const Vec3 center = randomPoint(random, -35, 35);
           const Vec3 half =
               Vec3::Constant(0.2) + std::pow(random.uniform(), 4) * randomPoint(random, 0, 20);
-          const Mat3 turn(
-              Eigen::AngleAxisd(random.uniform(), randomPoint(random, -1, 1).normalized()));
+          const Mat3 turn =
+              rotationBy(random.uniform(), randomPoint(random, -1, 1).normalized()).linear();
           const Box box{-half, half};
           Corners corners;
           for (int i = 0; i < 8; ++i)
@@ -284,7 +284,7 @@ TEST(ClippingSurface, AFocusThatNoRayMeetsIsAnInputError) {
   const Model model;
   const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 40, 40);
   Affine aside = model.focus.grid.indexToWorld;
-  aside.pretranslate(Vec3(500, 0, 0));
+  aside.translation() += Vec3(500, 0, 0);
   Mask outside = model.focus;
   outside.grid = Grid(outside.grid.size, aside);
   Mask nothing = maskOf(model.volume, [](const Vec3&) { return false; });

@@ -22,7 +22,7 @@ inline Vec3 randomPoint(Random& random, double low, double high) {
 /// Voxels of `spacing` mm around the world's origin.
 inline Grid centredGrid(const Size3& size, const Vec3& spacing = Vec3::Ones()) {
   Affine map = Affine::Identity();
-  map.linear() = spacing.asDiagonal();
+  map.linear() = Mat3::Diagonal(spacing);
   map.translation() = -0.5 * spacing.cwiseProduct((size.array() - 1).cast<double>().matrix());
   return {size, map};
 }

@@ -169,8 +169,8 @@ Path writeSegments(const TemporaryFolder& folder, const std::vector<Shape>& shap
 
 Grid volumeGrid() {
   Affine map = Affine::Identity();
-  map.linear() = Eigen::AngleAxisd(0.5, Vec3(1, 1, 2).normalized()).toRotationMatrix() *
-                 Vec3(0.5, 0.75, 1.0).asDiagonal();
+  map.linear() =
+      rotationBy(0.5, Vec3(1, 1, 2).normalized()).linear() * Mat3::Diagonal({0.5, 0.75, 1.0});
   map.translation() = Vec3(-20, 5, 3);
   return {Size3(40, 32, 24), map};
 }
@@ -242,7 +242,7 @@ TEST(ClosedSurface, makesItsOwnGridWithoutAVolume) {
   const Path path = writeSegments(folder, {box(Vec3(-10, 0, 5), Vec3(118, 64, 37))});
   const Segmentation segmentation = readSegmentation(path);
   const Grid& grid = segmentation.grid();
-  EXPECT_TRUE((grid.spacing().array() == 0.5).all());
+  EXPECT_TRUE(grid.spacing() == Vec3::Constant(0.5));
   const auto count = static_cast<double>(segmentation.mask({"id0"}, grid).count);
   EXPECT_NEAR(count / 8.0, 128.0 * 64 * 32, 0.03 * 128 * 64 * 32);
 }

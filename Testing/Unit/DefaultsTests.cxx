@@ -72,9 +72,8 @@ TEST(FrameView, FramesTheFocusTheSameInBothProjections) {
 TEST(FrameView, FramesWhatACropLeaves) {
   const Grid grid = ramp(0, 1).grid; // 80 x 60 x 40 mm
   // A turned box that reaches beyond the volume's right side.
-  const CropBox crop(Eigen::Translation3d(grid.worldCenter() + Vec3(30, 0, 0)) *
-                     Eigen::AngleAxisd(pi / 4, Vec3::UnitY()) *
-                     Eigen::Scaling(Vec3::Constant(10.0)));
+  const CropBox crop(translationBy(grid.worldCenter() + Vec3(30, 0, 0)) *
+                     rotationBy(pi / 4, Vec3::UnitY()) * scalingBy(Vec3::Constant(10.0)));
   const Camera camera(frameView({}, Domain(grid, crop), nullptr, 64, 64), 64, 64);
   // Across: from the turned box's corner to the volume's face, 24.14 mm; up: 28.28 mm.
   const double across = 10.0 * std::numbers::sqrt2 + 10.0;
@@ -82,7 +81,7 @@ TEST(FrameView, FramesWhatACropLeaves) {
   EXPECT_LT((camera.pose().target - center).norm(), 1e-6);
   EXPECT_NEAR(camera.pose().scale, 1.05 * 10.0 * std::numbers::sqrt2, 1e-6);
 
-  const CropBox beside(Affine(Eigen::Translation3d(500, 0, 0)));
+  const CropBox beside(Affine(translationBy({500, 0, 0})));
   EXPECT_EQ(frameView({}, Domain(grid, beside), nullptr, 64, 64).scale,
             frameView({}, grid, nullptr, 64, 64).scale)
       << "nothing is left: the volume is framed";

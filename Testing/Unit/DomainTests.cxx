@@ -20,11 +20,11 @@ Vec3 randomPoint(Random& random, double size) {
 /// Rotated, sheared and stretched about the origin, sometimes mirrored.
 Affine randomMap(Random& random, double size) {
   Affine map = Affine::Identity();
-  const Mat3 shear =
-      Mat3::Identity() + 0.3 * Mat3(Mat3::NullaryExpr([&] { return uniform(random, -1, 1); }));
+  const Mat3 anything(randomPoint(random, 1), randomPoint(random, 1), randomPoint(random, 1));
+  const Mat3 shear = Mat3::Identity() + 0.3 * anything;
   map.linear() =
-      Mat3(Eigen::AngleAxisd(uniform(random, -3, 3), randomPoint(random, 1).normalized())) * shear *
-      Vec3(size, uniform(random, 0.2, 1) * size, uniform(random, 0.2, 1) * size).asDiagonal();
+      rotationBy(uniform(random, -3, 3), randomPoint(random, 1).normalized()).linear() * shear *
+      Mat3::Diagonal({size, uniform(random, 0.2, 1) * size, uniform(random, 0.2, 1) * size});
   if (random.uniform() < 0.5)
     map.linear().col(0) *= -1.0;
   map.translation() = randomPoint(random, 0.5 * size);
@@ -34,7 +34,7 @@ Affine randomMap(Random& random, double size) {
 Grid randomGrid(Random& random) {
   const Size3 size(5, 9, 7);
   return {size, randomMap(random, 1.0) *
-                    Eigen::Translation3d(-0.5 * (size.array() - 1).cast<double>().matrix())};
+                    translationBy(-0.5 * (size.array() - 1).cast<double>().matrix())};
 }
 
 /// How far a world point is outside, in the boxes' own units: 0 on the surface, negative inside.
@@ -117,8 +117,8 @@ TEST(Domain, CornersSpanIt) {
   for (int trial = 0; trial < 200; ++trial) {
     const Grid grid = randomGrid(random);
     const CropBox crop(trial % 4 ? randomMap(random, 3.0) // else exactly the grid's own box
-                                 : grid.indexToWorld * Eigen::Translation3d(2, 4, 3) *
-                                       Eigen::Scaling(Vec3(2.5, 4.5, 3.5)));
+                                 : grid.indexToWorld * translationBy({2, 4, 3}) *
+                                       scalingBy(Vec3(2.5, 4.5, 3.5)));
     const std::vector<Vec3> corners = Domain(grid, crop).indexCorners();
     for (const Vec3& corner : corners)
       ASSERT_LT(outside(grid, crop, grid.indexToWorld * corner), 1e-7);

@@ -283,8 +283,9 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
   for (int trial = 0; trial < std::max(2, briefly(6)); ++trial) {
     Affine map = Affine::Identity();
     map.linear() =
-        Mat3(Eigen::AngleAxisd(random.uniform() * 6, randomPoint(random, -1, 1).normalized())) *
-        (Mat3::Identity() + 0.2 * Mat3(Mat3::NullaryExpr([&] { return uniform(random, -1, 1); })));
+        rotationBy(random.uniform() * 6, randomPoint(random, -1, 1).normalized()).linear() *
+        (Mat3::Identity() + 0.2 * Mat3(randomPoint(random, -1, 1), randomPoint(random, -1, 1),
+                                       randomPoint(random, -1, 1)));
     map.translation() = map.linear() * Vec3::Constant(-10.0);
     const Grid grid({21, 21, 21}, map);
     const Mask mask = maskOf(grid, [&](const Vec3& p) {
@@ -296,8 +297,8 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
     pose.target = Vec3::Zero();
     pose.scale = 10.0;
     compareWithMarching({pose, 24, 20}, grid, mask);
-    const CropBox crop(Affine(Eigen::AngleAxisd(0.4, randomPoint(random, -1, 1).normalized())) *
-                       Eigen::Scaling(Vec3(6.0, 7.0, 5.0)));
+    const CropBox crop(Affine(rotationBy(0.4, randomPoint(random, -1, 1).normalized())) *
+                       scalingBy(Vec3(6.0, 7.0, 5.0)));
     compareWithMarching({pose, 24, 20}, {grid, crop}, mask);
   }
 }
@@ -318,9 +319,9 @@ TEST(FocusDepth, RegionsAreWhatEachRayMeets) {
     pose.scale = std::pow(10.0, uniform(random, 0, 2));
     pose.angle = uniform(random, 2, 120);
     const Camera camera(pose, 1 + static_cast<int>(random.uniform() * 40), 21);
-    const CropBox crop(Affine(Eigen::Translation3d(randomPoint(random, -6, 6)) *
-                              Eigen::AngleAxisd(trial, randomPoint(random, -1, 1).normalized())) *
-                       Eigen::Scaling(randomPoint(random, 1, 15)));
+    const CropBox crop(Affine(translationBy(randomPoint(random, -6, 6)) *
+                              rotationBy(trial, randomPoint(random, -1, 1).normalized())) *
+                       scalingBy(randomPoint(random, 1, 15)));
     const Domain volume = trial % 5 < 2 ? Domain(grid, crop) : Domain(grid);
     const FocusDepth focus = traceFocus(camera, volume, mask);
     const std::int64_t stride = 1 + focus.depth.rows() / 40;
@@ -361,8 +362,8 @@ TEST(FocusDepth, ACropCutsTheFocusAndItsContext) {
   const Grid volume = centredGrid({40, 40, 40});
   const Mask mask = sphereMask(volume, 10.0);
   // Keeps what is behind a plane through the origin that falls 1 mm of depth a mm to the right.
-  const CropBox crop(Eigen::AngleAxisd(-pi / 4, Vec3::UnitZ()) *
-                     Eigen::Translation3d(0.0, 30.0, 0.0) * Eigen::Scaling(Vec3(60.0, 30.0, 18.0)));
+  const CropBox crop(rotationBy(-pi / 4, Vec3::UnitZ()) * translationBy({0.0, 30.0, 0.0}) *
+                     scalingBy(Vec3(60.0, 30.0, 18.0)));
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
   const FocusDepth focus = traceFocus(camera, {volume, crop}, mask);
   const auto region = [&](const Vec2& at) {

@@ -28,7 +28,7 @@ Walked checkedWalk(const Ray& ray, const Interval& range, const Size3& cells) {
     const Size3& c = walk.coordinates();
     const Interval interval = walk.interval();
     const bool inGrid = (c.array() >= 0).all() && (c.array() < cells.array()).all();
-    EXPECT_TRUE(inGrid) << c.transpose();
+    EXPECT_TRUE(inGrid) << c;
     EXPECT_EQ(walk.cell(), c.x() + cells.x() * (c.y() + cells.y() * c.z()));
     EXPECT_EQ(interval.begin, reached);
     EXPECT_LE(interval.begin, interval.end);
@@ -42,7 +42,7 @@ Walked checkedWalk(const Ray& ray, const Interval& range, const Size3& cells) {
       walked.worstOutside = std::max({walked.worstOutside, low.maxCoeff(), high.maxCoeff()});
     }
     if (++walked.cells > cells.sum() || !inGrid || ::testing::Test::HasFailure()) {
-      ADD_FAILURE() << "ray " << ray.origin.transpose() << " | " << ray.direction.transpose();
+      ADD_FAILURE() << "ray " << ray.origin << " | " << ray.direction;
       return walked;
     }
   }

@@ -30,7 +30,7 @@ std::vector<Voxel> noise(const Size3& size, double low, double high) {
 template <typename Voxel>
 void expectConservative(const TransferFunction& transfer, double low, double high) {
   Affine map = Affine::Identity();
-  map.linear() = Vec3(0.3, -1.0, 2.5).asDiagonal();
+  map.linear() = Mat3::Diagonal({0.3, -1.0, 2.5});
   const Grid grid(Size3(29, 17, 11), map);
   Volume volume{grid, noise<Voxel>(grid.size, low, high), 0.0, 0.0, "noise", {}};
   computeRange(volume);
@@ -56,8 +56,7 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
     const std::int64_t index =
         cell.x() + majorants.cellCount().x() * (cell.y() + majorants.cellCount().y() * cell.z());
     const double sigma_t = medium.extinction(p);
-    ASSERT_LE(sigma_t, static_cast<double>(majorants.cell(index).majorant))
-        << "at " << p.transpose();
+    ASSERT_LE(sigma_t, static_cast<double>(majorants.cell(index).majorant)) << "at " << p;
     tightest = std::min(tightest, static_cast<double>(majorants.cell(index).majorant));
   }
   EXPECT_LT(tightest, transfer.extinction.range(-1e9, 1e9)[1]) << "some cell must be tighter";
@@ -118,7 +117,7 @@ TEST(MajorantGrid, DropsClippedAndEmptyCellsAndMarksThoseThatAreCut) {
 
 TEST(CellRanges, ThickSlicesMakeNoLongCells) {
   Affine map = Affine::Identity();
-  map.linear() = Vec3(0.5, 0.5, 5.0).asDiagonal();
+  map.linear() = Mat3::Diagonal({0.5, 0.5, 5.0});
   const Grid grid(Size3(512, 512, 60), map);
   const Size3 edge = CellRanges::edgeFor(grid);
   EXPECT_EQ(edge.z(), 1);

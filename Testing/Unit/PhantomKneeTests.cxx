@@ -102,7 +102,7 @@ TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
         (grid.spacing().cwiseProduct(grid.size.cast<double>())).isApprox(Vec3(120, 137.6, 120)));
     EXPECT_TRUE(grid.worldCenter().isApprox(Vec3(0, -2, 6.8)));
   }
-  const Mat3 axes = smallKnee().volume.grid.indexToWorld.linear().colwise().normalized();
+  const Mat3 axes = smallKnee().volume.grid.indexToWorld.linear().normalizedColumns();
   EXPECT_TRUE(axes.col(0).isApprox(Vec3(0, -1, 0))) << "posterior";
   EXPECT_TRUE(axes.col(1).isApprox(Vec3(0, 0, -1))) << "inferior";
   EXPECT_TRUE(axes.col(2).isApprox(Vec3(1, 0, 0))) << "right";

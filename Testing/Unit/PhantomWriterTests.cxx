@@ -89,17 +89,21 @@ TEST_F(PhantomFiles, ASegmentsExtentHoldsItsLayer) {
   const std::string first = field(*open("knee.seg.nrrd"), "Segment0_Extent");
   EXPECT_EQ(field(*open("knee.seg.nrrd"), "Segment3_Extent"), first);
   std::istringstream text(first);
-  Eigen::Matrix<std::int64_t, 6, 1> extent;
+  std::array<std::int64_t, 6> extent;
   for (std::int64_t& value : extent)
     text >> value;
-  Eigen::AlignedBox<std::int64_t, 3> held;
+  Size3 held[2] = {phantom.volume.grid.size, Size3::Zero()}; // first and last
+  const auto hold = [&held](const Size3& voxel) {
+    held[0] = held[0].cwiseMin(voxel);
+    held[1] = held[1].cwiseMax(voxel);
+  };
   const Size3& size = phantom.volume.grid.size;
   for (std::int64_t at = 0; at < size.prod(); ++at)
     if (phantom.labels.layers[0][static_cast<std::size_t>(at)] != 0)
-      held.extend(Size3(at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y())));
+      hold({at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y())});
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_EQ(extent[2 * axis], held.min()[axis]);
-    EXPECT_EQ(extent[2 * axis + 1], held.max()[axis]);
+    EXPECT_EQ(extent[2 * static_cast<std::size_t>(axis)], held[0][axis]);
+    EXPECT_EQ(extent[2 * static_cast<std::size_t>(axis) + 1], held[1][axis]);
   }
 }
 

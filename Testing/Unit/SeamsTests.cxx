@@ -128,7 +128,7 @@ TEST(Seams, AreAskedOnlyWhereItMatters) {
       options.boundary = Boundary::exact;
       options.offset = softness;
       options.edge = {0.25, softness};
-      const CropBox crop(Eigen::Translation3d(0.0, 10.0, 4.0) * Eigen::Scaling(30.0, 22.0, 20.0));
+      const CropBox crop(translationBy({0.0, 10.0, 4.0}) * scalingBy({30.0, 22.0, 20.0}));
       const ClippingSurface surface =
           buildClippingSurface(ball.camera, Domain(ball.volume.grid(), crop), ball.focus, options);
       const auto& clip = std::get<ClipDepth>(surface.clip);
@@ -141,7 +141,7 @@ TEST(Seams, AreAskedOnlyWhereItMatters) {
         const Vec3 at = toBuffer(ball.camera, world);
         const double expected = clip.edge(at.z() - clip.surface(at.head<2>()));
         between += expected > 0.25 && expected < 1.0;
-        ASSERT_NEAR(keep(clip, world), expected, 1e-6) << across.transpose() << ' ' << depth;
+        ASSERT_NEAR(keep(clip, world), expected, 1e-6) << across << ' ' << depth;
         const auto bounds = clip.pyramid->bounds(*clip.buffer, across, across);
         ASSERT_GE(clip.surface(across), bounds.least - 1e-4);
         ASSERT_LE(clip.surface(across), bounds.greatest + 1e-4);

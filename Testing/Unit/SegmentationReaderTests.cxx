@@ -9,9 +9,7 @@ namespace fenestra::SegmentationReaderTests {
 namespace {
 
 Grid unitGrid(const Size3& size, const Vec3& origin = Vec3::Zero(), double spacing = 1.0) {
-  Affine map = Affine::Identity();
-  map.translate(origin).scale(spacing);
-  return {size, map};
+  return {size, translationBy(origin) * scalingBy(Vec3::Constant(spacing))};
 }
 
 std::int64_t index(const Grid& grid, std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -95,12 +93,10 @@ TEST(SegmentationReader, sharesFacesWithinHalfAVoxelOnly) {
 
 TEST(SegmentationReader, sharesFacesOfFlippedAndTurnedGrids) {
   const Segmentation s = labelmap({{{0, 3, 3}, 1}});
-  Affine flipped = Affine::Identity(); // fills the same box as the labelmap, axes permuted
-  flipped.linear() << 0, 0, -1, 1, 0, 0, 0, -1, 0;
-  flipped.translation() = Vec3(5, 0, 5);
+  // Fills the same box as the labelmap, axes permuted.
+  const Affine flipped(Mat3({0, 1, 0}, {0, 0, -1}, {-1, 0, 0}), {5, 0, 5});
   EXPECT_EQ(at(s.mask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
-  Affine oblique = Affine::Identity();
-  oblique.rotate(Eigen::AngleAxisd(0.4, Vec3::UnitZ()));
+  const Affine oblique = rotationBy(0.4, Vec3::UnitZ());
   EXPECT_EQ(at(s.mask({"1"}, Grid({6, 6, 6}, oblique)), {-1, 3, 3}), 0);
 }
 
@@ -414,9 +410,8 @@ TEST(SegmentationReader, refusesABrokenGzipStream) {
 }
 
 TEST(SegmentationReader, tellsWhatEachSegmentHolds) {
-  Affine map = Affine::Identity(); // axes turned: index x runs along S, y along -R, z along A
-  map.linear() << 0, -2, 0, 0, 0, 3, 1, 0, 0;
-  map.translation() = Vec3(10, 20, 30);
+  // Axes turned: index x runs along S, y along -R, z along A.
+  const Affine map(Mat3({0, 0, 1}, {-2, 0, 0}, {0, 3, 0}), {10, 20, 30});
   const Grid grid({4, 5, 6}, map);
   std::vector<std::uint8_t> labels(240, 0); // two layers
   for (const Size3& voxel : {Size3(1, 2, 3), Size3(2, 2, 3), Size3(1, 4, 5)})
@@ -481,9 +476,9 @@ TEST(SegmentationReader, placesRealOldFilesWhereThePatientsSurfacesAre) {
     const Box found = readSegmentation(folder / file).statistics().at(0).bounds;
     const Vec3 voxel(1.0, 1.0, 2.5);
     EXPECT_TRUE(((found.lower - lower).cwiseAbs().array() <= voxel.array()).all())
-        << file << ": " << found.lower.transpose();
+        << file << ": " << found.lower;
     EXPECT_TRUE(((found.upper - upper).cwiseAbs().array() <= voxel.array()).all())
-        << file << ": " << found.upper.transpose();
+        << file << ": " << found.upper;
   };
   expectBounds("EclipseProstate_Expanded_5_5_5_Bladder.seg.nrrd",
                bladder.lower - Vec3::Constant(5.0), bladder.upper + Vec3::Constant(5.0));

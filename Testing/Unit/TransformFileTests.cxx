@@ -378,7 +378,7 @@ TEST(TransformFile, survivesDamage) {
         bytes[random() % bytes.size()] = static_cast<char>(random());
       const auto path = folder.write(std::to_string(i) + extension, bytes);
       try {
-        EXPECT_TRUE(readLinearTransform(path, TransformSense::fromParent).matrix().allFinite());
+        EXPECT_TRUE(readLinearTransform(path, TransformSense::fromParent).allFinite());
       } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
       }
@@ -396,10 +396,11 @@ TEST(TransformFile, readsSlicersFile) {
   const TemporaryFolder folder;
   const auto path = folder.write("tilt.h5", "");
   SceneArchive(scene).extract("chest_transformed_cropped/Data/tilt.h5", path);
-  Affine expected;
-  expected.matrix() << 0.939693, -0.34202, 0, 20, 0.34202, 0.939693, 0, -10, 0, 0, 1, 15;
+  const Affine expected(Mat3::FromRows({0.939693, -0.34202, 0}, {0.34202, 0.939693, 0}, {0, 0, 1}),
+                        {20, -10, 15});
   const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
-  EXPECT_LT((toParent.matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((toParent.linear() - expected.linear()).norm(), 1e-6);
+  EXPECT_LT((toParent.translation() - expected.translation()).norm(), 1e-6);
 }
 
 } // namespace

@@ -117,7 +117,7 @@ TEST(VolumeReader, convertsObliqueGeometryToRas) {
                        index[1] * 0.75 * Vec3(-s, c, 0) +
                        index[2] * 3.0 * Vec3(0, 0, leftHanded ? -1 : 1);
       EXPECT_TRUE((grid.indexToWorld * index).isApprox(Vec3(-lps.x(), -lps.y(), lps.z()), 1e-6))
-          << name << " " << (grid.indexToWorld * index).transpose();
+          << name << " " << (grid.indexToWorld * index);
       EXPECT_TRUE((grid.worldToIndex * (grid.indexToWorld * index)).isApprox(index, 1e-6));
       EXPECT_TRUE(grid.spacing().isApprox(Vec3(0.5, 0.75, 3), 1e-6)) << name;
     }

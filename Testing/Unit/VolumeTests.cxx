@@ -9,8 +9,8 @@ namespace {
 
 Grid obliqueGrid(const Size3& size) {
   Affine map = Affine::Identity();
-  map.linear() = (Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix()) *
-                 Vec3(0.5, 2.0, -1.25).asDiagonal();
+  map.linear() =
+      (rotationBy(0.4, Vec3(1, 2, 3).normalized()).linear()) * Mat3::Diagonal({0.5, 2.0, -1.25});
   map.translation() = Vec3(10, -20, 30);
   return {size, map};
 }

@@ -67,17 +67,15 @@ void expectBounds(const Walk& walk) {
       return;
     const WideCells::Cell cell = walk.cell(c);
     const MajorantGrid::Cell& own = walk.narrow(c);
-    ASSERT_EQ(cell.majorant == 0.0F, own.majorant == 0.0F) << c.transpose();
-    ASSERT_EQ(cell.cut, own.cut) << c.transpose();
+    ASSERT_EQ(cell.majorant == 0.0F, own.majorant == 0.0F) << c;
+    ASSERT_EQ(cell.cut, own.cut) << c;
     if (cell.reach == 0) { // six bits, rounded up, from the greatest down
-      ASSERT_LE(cell.majorant, own.majorant * 1.016F + walk.greatest * 1e-8F) << c.transpose();
+      ASSERT_LE(cell.majorant, own.majorant * 1.016F + walk.greatest * 1e-8F) << c;
     }
     const Size3 around = Size3::Constant(static_cast<std::int64_t>(cell.reach));
     walk.forEach(c - around, c + around, [&](const Size3& other) {
-      ASSERT_GE(cell.majorant, walk.narrow(other).majorant)
-          << c.transpose() << ", " << other.transpose();
-      ASSERT_TRUE(other == c || !walk.narrow(other).cut)
-          << c.transpose() << ", " << other.transpose();
+      ASSERT_GE(cell.majorant, walk.narrow(other).majorant) << c << ", " << other;
+      ASSERT_TRUE(other == c || !walk.narrow(other).cut) << c << ", " << other;
     });
   });
 }
@@ -108,7 +106,7 @@ TEST(WideCells, ReachNoCellThatClippingCuts) {
   int cut = 0;
   walk.forEach([&](const Size3& c) {
     cut += walk.cell(c).cut ? 1 : 0;
-    EXPECT_TRUE(!walk.cell(c).cut || walk.cell(c).reach == 0) << c.transpose();
+    EXPECT_TRUE(!walk.cell(c).cut || walk.cell(c).reach == 0) << c;
   });
   EXPECT_GT(cut, 100);
 }

@@ -29,7 +29,9 @@ PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double most) {
     for (const double value : std::span(numbers).subspan(1))
       if (value < 0.0 || value > most)
         throw row.error(most == 1.0 ? "values must be from 0 to 1" : "value must not be negative");
-    knots.push_back({numbers[0], Eigen::Map<const Eigen::Array<double, Channels, 1>>(&numbers[1])});
+    Array<double, Channels> value;
+    std::copy_n(numbers.begin() + 1, Channels, value.data());
+    knots.push_back({numbers[0], value});
   }
   if (knots.empty())
     throw rows.error("is empty; give at least one point");

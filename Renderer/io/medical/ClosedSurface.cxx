@@ -58,7 +58,7 @@ SegmentInfo infoOf(const VtkSurface& surface, std::size_t index) {
   for (const char* key : {"Segment_DefaultColor", "Segment_Color"}) {
     const auto found = surface.numbers.find(key);
     if (found != surface.numbers.end() && found->second.size() == 3)
-      info.color = Eigen::Map<const Rgb>(found->second.data()).max(0.0).min(1.0);
+      info.color = Rgb(found->second[0], found->second[1], found->second[2]).max(0.0).min(1.0);
   }
   return info;
 }

@@ -57,7 +57,7 @@ Slice openSlice(DicomFiles& files, const Path& path) {
     if (!(spacing > 1.0 / largestLength && spacing < largestLength))
       refuse("PixelSpacing: must be above 0 mm; export the series again");
   checkDicomPixels(path, h);
-  return {path, h, Eigen::Map<const Vec3>(h.position.data())};
+  return {path, h, {h.position[0], h.position[1], h.position[2]}};
 }
 
 // ---- all files
@@ -70,8 +70,8 @@ struct Axes {
 };
 
 Axes axesOf(const Slice& slice) {
-  const Eigen::Map<const Vec3> row(slice.header.orientation.data());
-  const Eigen::Map<const Vec3> column(slice.header.orientation.data() + 3);
+  const std::vector<double>& o = slice.header.orientation;
+  const Vec3 row(o[0], o[1], o[2]), column(o[3], o[4], o[5]);
   constexpr double tolerance = 1e-2; // real files round their cosines
   if (std::abs(row.norm() - 1.0) > tolerance || std::abs(column.norm() - 1.0) > tolerance ||
       std::abs(row.dot(column)) > tolerance)
@@ -163,12 +163,9 @@ Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step
     if (!(slice.position.array().abs() < largestLength).all())
       throw inputError(slice.path.string(), "ImagePositionPatient: is not a place within 1e9 mm; "
                                             "export the series again");
-  const Eigen::DiagonalMatrix<double, 3> lpsToRas(-1.0, -1.0, 1.0);
-  Affine indexToWorld;
-  indexToWorld.linear() << axes.row * h.pixelSpacing[1], axes.column * h.pixelSpacing[0], step;
-  indexToWorld.linear() = lpsToRas * indexToWorld.linear();
-  indexToWorld.translation() = lpsToRas * slices.front().position;
-  return {Size3(h.columns, h.rows, static_cast<std::int64_t>(slices.size())), indexToWorld};
+  const Mat3 steps(axes.row * h.pixelSpacing[1], axes.column * h.pixelSpacing[0], step);
+  return {Size3(h.columns, h.rows, static_cast<std::int64_t>(slices.size())),
+          Affine(lpsToRas * steps, lpsToRas * slices.front().position)};
 }
 
 VoxelStore readAll(DicomFiles& files, const std::vector<Slice>& slices) {

@@ -73,14 +73,13 @@ Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Comp
 
 Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
   const Size3 size = sizeOf(path, io, allowed);
-  const Eigen::DiagonalMatrix<double, 3> lpsToRas(-1.0, -1.0, 1.0);
   Mat3 directions;
   Vec3 spacing, origin;
   for (unsigned axis = 0; axis < 3; ++axis) {
     const std::vector<double> direction = io.GetDirection(axis);
-    directions.col(axis) << direction[0], direction[1], direction[2];
-    spacing[axis] = io.GetSpacing(axis);
-    origin[axis] = io.GetOrigin(axis);
+    directions.col(static_cast<int>(axis)) = {direction[0], direction[1], direction[2]};
+    spacing[static_cast<int>(axis)] = io.GetSpacing(axis);
+    origin[static_cast<int>(axis)] = io.GetOrigin(axis);
   }
   constexpr double largest = 1e9; // mm; beyond, a point keeps no fraction of a voxel
   if (!((spacing.array() > 1.0 / largest).all() && (spacing.array() < largest).all()))
@@ -90,12 +89,9 @@ Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Compo
     throw inputError(path.string(), "origin: is not a place within 1e9 mm; mend the header");
   // The volume of the cell that unit directions span: 1 for orthogonal axes, 0 for coplanar ones.
   constexpr double flattest = 1e-6;
-  if (!(std::abs(directions.colwise().normalized().determinant()) > flattest))
+  if (!(std::abs(directions.normalizedColumns().determinant()) > flattest))
     throw inputError(path.string(), "directions: the axes do not span space; mend the header");
-  Affine indexToWorld;
-  indexToWorld.linear() = lpsToRas * directions * spacing.asDiagonal();
-  indexToWorld.translation() = lpsToRas * origin;
-  return {size, indexToWorld};
+  return {size, Affine(lpsToRas * directions * Mat3::Diagonal(spacing), lpsToRas * origin)};
 }
 
 /// The greatest number where there are more.

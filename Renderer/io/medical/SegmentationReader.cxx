@@ -101,8 +101,7 @@ Grid placed(const Grid& grid, const std::map<std::string, std::string>& fields,
       throw inputError(source, "Segmentation_Extent: must be six whole numbers");
     first[axis] = lower;
   }
-  const Affine readAsLps(Eigen::Scaling(-1.0, -1.0, 1.0));
-  return {grid.size, readAsLps * grid.indexToWorld * Eigen::Translation3d(first)};
+  return {grid.size, Affine(lpsToRas) * grid.indexToWorld * translationBy(first)};
 }
 
 class SegmentFields {

@@ -13,7 +13,8 @@ class Slices {
 public:
   explicit Slices(const Mask& mask) : m_mask(mask) {
     const Vec3 spacing = mask.grid.spacing();
-    m_thickness = spacing.maxCoeff(&m_axis);
+    m_axis = static_cast<int>(std::max_element(spacing.begin(), spacing.end()) - spacing.begin());
+    m_thickness = spacing[m_axis];
     const int column = m_axis == 0 ? 1 : 0, row = m_axis == 2 ? 1 : 2;
     const Size3& size = mask.grid.size;
     const Size3 steps{1, size.x(), size.x() * size.y()};

@@ -19,10 +19,7 @@ Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges, const
     throw fail("its size must be above 0 in every axis; mend it in the Markups module");
   if (!(std::abs(axes.determinant()) > 1e-6))
     throw fail("its axes do not span space; mend it in the Markups module");
-  Affine map;
-  map.linear() = axes * halfEdges.asDiagonal();
-  map.translation() = center;
-  return map;
+  return Affine(axes * Mat3::Diagonal(halfEdges), center);
 }
 
 template <typename Fail>
@@ -71,12 +68,15 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
   const bool lps = isLps(roi);
   if (const auto orientation = roi.find("orientation")) {
     const auto numbers = orientation->numbers(9, -largest, largest);
-    axes = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
+    const auto row = [&numbers](std::size_t i) {
+      return Vec3(numbers[i], numbers[i + 1], numbers[i + 2]);
+    };
+    axes = Mat3::FromRows(row(0), row(3), row(6));
     if (lps)
-      axes.topRows<2>() *= -1.0;
+      axes = lpsToRas * axes;
   }
   if (lps)
-    center.head<2>() *= -1.0;
+    center = lpsToRas * center;
   return boxMap(center, axes, 0.5 * vector(roi.at("size")), fail);
 }
 
@@ -87,8 +87,8 @@ template <typename Fail>
 Affine axisAligned(const std::vector<double>& centerAndRadius, const Fail& fail) {
   if (centerAndRadius.size() != 6)
     throw fail("needs a centre and a radius, three numbers each; save it again");
-  const auto n = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(centerAndRadius.data());
-  return boxMap(n.head<3>(), Mat3::Identity(), n.tail<3>(), fail);
+  const std::vector<double>& n = centerAndRadius;
+  return boxMap({n[0], n[1], n[2]}, Mat3::Identity(), {n[3], n[4], n[5]}, fail);
 }
 
 /// Annotation files: two lines "point|x|y|z|...".

@@ -21,7 +21,7 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
     return fromFile;
   Affine indexToWorld = fromFile.indexToWorld;
   if (!storage->flag("UseOrientationFromFile", true)) {
-    indexToWorld.linear() = fromFile.spacing().asDiagonal();
+    indexToWorld.linear() = Mat3::Diagonal(fromFile.spacing());
     indexToWorld.translation().setZero();
   } else if (storage->flag("centerImage", false)) {
     const Vec3 middle = fromFile.indexBox().center();

@@ -23,13 +23,13 @@ std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
   };
   if (!numbers || numbers->size() != 16)
     throw refuse("must be 16 numbers");
-  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(numbers->data());
-  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+  const auto row = [&numbers](std::size_t i) { // three of its four
+    return Vec3((*numbers)[4 * i], (*numbers)[4 * i + 1], (*numbers)[4 * i + 2]);
+  };
+  if (row(3) != Vec3::Zero() || numbers->back() != 1.0)
     throw refuse("its last row must be 0 0 0 1");
-  Affine map;
-  map.linear() = matrix.topLeftCorner<3, 3>();
-  map.translation() = matrix.topRightCorner<3, 1>();
-  return checkedMap(map, refuse);
+  const Vec3 translation((*numbers)[3], (*numbers)[7], (*numbers)[11]);
+  return checkedMap(Affine(Mat3::FromRows(row(0), row(1), row(2)), translation), refuse);
 }
 
 /// Files hold the map from the parent. Old scenes could say otherwise, and linear transforms said

@@ -233,12 +233,10 @@ void addVolume(pugi::xml_node scene, const Phantom& phantom, const std::string& 
   set(storage, {{"centerImage", "0"}, {"UseOrientationFromFile", "1"}});
 
   const Grid& grid = volume.grid;
-  Mat3 directions = grid.indexToWorld.linear();
-  directions.colwise().normalize();
-  directions.array() += 0.0; // no "-0"
+  const Mat3 directions = grid.indexToWorld.linear().normalizedColumns() + Mat3::Zero(); // no "-0"
   std::string directionsText;
   for (int row = 0; row < 3; ++row)
-    directionsText += text(Vec3(directions.row(row))) + " ";
+    directionsText += text(directions.row(row)) + " ";
   pugi::xml_node node = addNode(scene, "Volume", volumeId, name, false);
   set(node, {{"references", reference("display", std::string(volumeDisplayId) + " " + renderingId) +
                                 reference("storage", volumeStorageId)},
@@ -373,11 +371,9 @@ std::string phantomScene(const Phantom& phantom, const std::string& name,
 std::string phantomRoi(const Phantom& phantom) {
   using Json = nlohmann::ordered_json;
   const Grid& grid = phantom.volume.grid;
-  const Vec3 lpsFromRas(-1.0, -1.0, 1.0);
-  Mat3 axes = lpsFromRas.asDiagonal() * Mat3(grid.indexToWorld.linear());
-  axes.colwise().normalize();
-  axes.array() += 0.0;
-  const Vec3 center = lpsFromRas.cwiseProduct(grid.worldCenter()).array() + 0.0;
+  const Mat3 axes =
+      (lpsToRas * grid.indexToWorld.linear()).normalizedColumns() + Mat3::Zero(); // no "-0"
+  const Vec3 center = (lpsToRas * grid.worldCenter()).array() + 0.0;
   const Vec3 size = grid.spacing().cwiseProduct(grid.size.cast<double>());
   Json orientation = Json::array();
   for (int row = 0; row < 3; ++row)

@@ -23,7 +23,11 @@ std::string text(const Triple& v) {
   return stream.str();
 }
 
-using Extent = Eigen::AlignedBox<std::int64_t, 3>;
+struct Extent {
+  Size3 first = Size3::Constant(std::numeric_limits<std::int64_t>::max()), last = -first;
+
+  bool isEmpty() const { return last.x() < first.x(); }
+};
 
 /// First and last voxel of all labels of a layer, in its own voxels. Slicer, which gives a layer
 /// the extent of its first segment and crops the others to that, writes the same to each of them.
@@ -34,7 +38,7 @@ Extent layerExtent(const std::vector<std::uint8_t>& labels, const Size3& size) {
     for (std::int64_t j = 0; j < size.y(); ++j)
       for (std::int64_t i = 0; i < size.x(); ++i)
         if (labels[at++] != 0)
-          extent.extend(Size3{i, j, k});
+          extent = {extent.first.cwiseMin({i, j, k}), extent.last.cwiseMax({i, j, k})};
   return extent;
 }
 
@@ -42,8 +46,8 @@ Extent layerExtent(const std::vector<std::uint8_t>& labels, const Size3& size) {
 std::string extentText(const Extent& extent) {
   TextWriter text;
   for (int axis = 0; axis < 3; ++axis)
-    text << (axis > 0 ? " " : "") << (extent.isEmpty() ? 0 : extent.min()[axis]) << ' '
-         << (extent.isEmpty() ? -1 : extent.max()[axis]);
+    text << (axis > 0 ? " " : "") << (extent.isEmpty() ? 0 : extent.first[axis]) << ' '
+         << (extent.isEmpty() ? -1 : extent.last[axis]);
   return text.str();
 }
 

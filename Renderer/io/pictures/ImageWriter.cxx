@@ -153,11 +153,8 @@ std::string encodeTiff(const Image& image, const std::vector<float>& rgba) {
 
 /// The slice is as thick as a pixel is wide; right-handed, so that Slicer need not flip it.
 Affine sliceToWorld(const ImagePlane& plane) {
-  Affine map = Affine::Identity();
-  map.linear() << plane.columnStep, plane.rowStep,
-      plane.columnStep.cross(plane.rowStep).normalized() * plane.columnStep.norm();
-  map.translation() = plane.topLeft;
-  return map;
+  const Vec3 normal = plane.columnStep.cross(plane.rowStep).normalized();
+  return Affine({plane.columnStep, plane.rowStep, normal * plane.columnStep.norm()}, plane.topLeft);
 }
 
 /// `values`: one or more floats by pixel.

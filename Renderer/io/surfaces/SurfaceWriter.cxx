@@ -20,7 +20,7 @@ void append(std::string& bytes, const T& value) {
 }
 
 void appendFloats(std::string& bytes, const Vec3& v) {
-  append(bytes, Eigen::Vector3f(v.cast<float>()));
+  append(bytes, v.cast<float>());
 }
 
 std::string toBase64(const std::string& bytes) {

@@ -80,11 +80,7 @@ Affine answeredTransform(const Path& path, std::string_view answer, TransformSen
         });
     if (sense == TransformSense::fromParent)
       map = map.inverse();
-    const Eigen::DiagonalMatrix<double, 3> lpsToRas(-1.0, -1.0, 1.0); // and back
-    Affine ras;
-    ras.linear() = lpsToRas * map.linear() * lpsToRas;
-    ras.translation() = lpsToRas * map.translation();
-    return ras;
+    return Affine(lpsToRas * map.linear() * lpsToRas, lpsToRas * map.translation());
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -45,10 +45,11 @@ Affine matrixOffset(const Path& path, const TransformRecord& record) {
   transform->SetParameters(fill(transform->GetParameters(), record.parameters));
   transform->SetCenter(transform->GetCenter()); // some kinds leave their offset as it was
   Affine map;
-  for (unsigned row = 0; row < 3; ++row) {
-    for (unsigned column = 0; column < 3; ++column)
-      map.linear()(row, column) = transform->GetMatrix()[row][column];
-    map.translation()[row] = transform->GetOffset()[row];
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      map.linear()(row, column) =
+          transform->GetMatrix()(static_cast<unsigned>(row), static_cast<unsigned>(column));
+    map.translation()[row] = transform->GetOffset()[static_cast<unsigned>(row)];
   }
   return map;
 }
@@ -56,9 +57,7 @@ Affine matrixOffset(const Path& path, const TransformRecord& record) {
 Affine translation(const Path& path, const TransformRecord& record) {
   if (record.parameters.size() != 3)
     throwDamagedTransform(path);
-  Affine map = Affine::Identity();
-  map.translation() = Eigen::Map<const Vec3>(record.parameters.data());
-  return map;
+  return translationBy({record.parameters[0], record.parameters[1], record.parameters[2]});
 }
 
 Affine identity(const Path&, const TransformRecord&) {

@@ -1,0 +1,355 @@
+#pragma once
+// Vector (a place or direction) and Array (unrelated numbers, as a colour's): 1 to 4 numbers of one
+// type. Both add and scale; of two arrays, * and < go part by part. Members bear Eigen's names.
+// Eigen itself solves our equations and stays out of this header, for its templates took half of
+// the time of compiling. Sums and dots go left to right: pictures keep their bits.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <ostream>
+
+namespace fenestra {
+
+template <typename T, int N>
+class Vector;
+template <typename T, int N>
+class Array;
+
+/// Base of Vector and Array. T: type of a number; N: count, 1 to 4.
+template <template <typename, int> class Kind, typename T, int N>
+class Tuple {
+public:
+  using Scalar = T;
+  using Self = Kind<T, N>;
+
+  Tuple() = default; ///< uninitialised, as an int
+  static constexpr Self Constant(T value) {
+    Self result;
+    for (T& part : result.m_parts)
+      part = value;
+    return result;
+  }
+  static constexpr Self Zero() { return Constant(T(0)); }
+  static constexpr Self Ones() { return Constant(T(1)); }
+
+  static constexpr int size() { return N; }
+  constexpr const T& operator[](std::ptrdiff_t i) const { return m_parts[i]; }
+  constexpr T& operator[](std::ptrdiff_t i) { return m_parts[i]; }
+  constexpr const T& x() const { return m_parts[0]; }
+  constexpr T& x() { return m_parts[0]; }
+  constexpr const T& y() const { return m_parts[1]; }
+  constexpr T& y() { return m_parts[1]; }
+  constexpr const T& z() const {
+    static_assert(N > 2);
+    return m_parts[2];
+  }
+  constexpr T& z() {
+    static_assert(N > 2);
+    return m_parts[2];
+  }
+  constexpr const T* data() const { return m_parts; }
+  constexpr T* data() { return m_parts; }
+  constexpr const T* begin() const { return m_parts; }
+  constexpr const T* end() const { return m_parts + N; }
+
+  constexpr void setZero() { self() = Zero(); }
+  constexpr void setConstant(T value) { self() = Constant(value); }
+
+  /// f of each part.
+  template <typename F>
+  constexpr auto unaryExpr(F&& f) const {
+    Kind<decltype(f(m_parts[0])), N> result;
+    for (int i = 0; i < N; ++i)
+      result[i] = f(m_parts[i]);
+    return result;
+  }
+  template <typename U>
+  constexpr Kind<U, N> cast() const {
+    return unaryExpr([](T part) { return static_cast<U>(part); });
+  }
+  template <int M>
+  constexpr Kind<T, M> head() const {
+    static_assert(M <= N);
+    Kind<T, M> result;
+    for (int i = 0; i < M; ++i)
+      result[i] = m_parts[i];
+    return result;
+  }
+
+  constexpr T sum() const {
+    T total = m_parts[0];
+    for (int i = 1; i < N; ++i)
+      total += m_parts[i];
+    return total;
+  }
+  constexpr T prod() const {
+    T product = m_parts[0];
+    for (int i = 1; i < N; ++i)
+      product *= m_parts[i];
+    return product;
+  }
+  constexpr T mean() const { return sum() / T(N); }
+  constexpr T maxCoeff() const { return *std::max_element(begin(), end()); }
+  constexpr T minCoeff() const { return *std::min_element(begin(), end()); }
+  bool allFinite() const {
+    return std::all_of(begin(), end(), [](T part) { return std::isfinite(part); });
+  }
+  /// True if no part is farther from 0 than `most`.
+  bool isZero(T most = T(1e-12)) const {
+    return std::all_of(begin(), end(), [most](T part) { return std::abs(part) <= most; });
+  }
+
+  /// |this - o| <= relative * min(|this|, |o|), norms being Euclidean.
+  bool isApprox(const Self& o, T relative = T(1e-12)) const {
+    T difference = 0, own = 0, others = 0; // squares
+    for (int i = 0; i < N; ++i) {
+      difference += (m_parts[i] - o[i]) * (m_parts[i] - o[i]);
+      own += m_parts[i] * m_parts[i];
+      others += o[i] * o[i];
+    }
+    return difference <= relative * relative * std::min(own, others);
+  }
+
+  constexpr Self cwiseMax(const Self& o) const {
+    return with(o, [](T a, T b) { return std::max(a, b); });
+  }
+  constexpr Self cwiseMin(const Self& o) const {
+    return with(o, [](T a, T b) { return std::min(a, b); });
+  }
+  constexpr Self cwiseMax(T o) const { return cwiseMax(Constant(o)); }
+  constexpr Self cwiseMin(T o) const { return cwiseMin(Constant(o)); }
+  constexpr Self cwiseAbs() const {
+    return unaryExpr([](T part) { return std::abs(part); });
+  }
+
+  constexpr Self operator-() const {
+    return unaryExpr([](T part) { return T(-part); });
+  }
+  constexpr Self& operator+=(const Self& o) & { return self() = self() + o; }
+  constexpr Self& operator-=(const Self& o) & { return self() = self() - o; }
+  constexpr Self& operator*=(T factor) & { return self() = self() * factor; }
+  constexpr Self& operator/=(T divisor) & { return self() = self() / divisor; }
+
+  friend constexpr Self operator+(const Self& a, const Self& b) {
+    return a.with(b, [](T p, T q) { return T(p + q); });
+  }
+  friend constexpr Self operator-(const Self& a, const Self& b) {
+    return a.with(b, [](T p, T q) { return T(p - q); });
+  }
+  friend constexpr Self operator*(const Self& a, T factor) {
+    return a.unaryExpr([factor](T part) { return T(part * factor); });
+  }
+  friend constexpr Self operator*(T factor, const Self& a) {
+    return a.unaryExpr([factor](T part) { return T(factor * part); });
+  }
+  friend constexpr Self operator/(const Self& a, T divisor) {
+    return a.unaryExpr([divisor](T part) { return T(part / divisor); });
+  }
+
+protected:
+  template <typename F>
+  constexpr auto with(const Self& o, F&& f) const {
+    Kind<decltype(f(m_parts[0], o[0])), N> result;
+    for (int i = 0; i < N; ++i)
+      result[i] = f(m_parts[i], o[i]);
+    return result;
+  }
+
+  T m_parts[N];
+
+private:
+  constexpr Self& self() { return static_cast<Self&>(*this); }
+  constexpr const Self& self() const { return static_cast<const Self&>(*this); }
+};
+
+/// "x y z".
+template <template <typename, int> class Kind, typename T, int N>
+std::ostream& operator<<(std::ostream& out, const Tuple<Kind, T, N>& tuple) {
+  for (int i = 0; i < N; ++i)
+    out << (i > 0 ? " " : "") << tuple[i];
+  return out;
+}
+
+template <typename T, int N>
+class Array : public Tuple<Array, T, N> {
+public:
+  Array() = default;
+  Array(const Array&) = default;
+  Array& operator=(const Array&) & = default; // temporaries refuse assignment
+  constexpr explicit Array(T x) requires(N == 1) { assign(x); }
+  constexpr Array(T x, T y) requires(N == 2) { assign(x, y); }
+  constexpr Array(T x, T y, T z) requires(N == 3) { assign(x, y, z); }
+
+  constexpr Vector<T, N> matrix() const;
+  constexpr T value() const {
+    static_assert(N == 1);
+    return (*this)[0];
+  }
+
+  constexpr Array max(T o) const { return this->cwiseMax(o); }
+  constexpr Array max(const Array& o) const { return this->cwiseMax(o); }
+  constexpr Array min(T o) const { return this->cwiseMin(o); }
+  constexpr Array min(const Array& o) const { return this->cwiseMin(o); }
+  constexpr Array abs() const { return this->cwiseAbs(); }
+  Array floor() const {
+    return this->unaryExpr([](T part) { return std::floor(part); });
+  }
+  Array ceil() const {
+    return this->unaryExpr([](T part) { return std::ceil(part); });
+  }
+  Array round() const {
+    return this->unaryExpr([](T part) { return std::round(part); });
+  }
+  constexpr Array square() const { return *this * *this; }
+  Array sqrt() const {
+    return this->unaryExpr([](T part) { return std::sqrt(part); });
+  }
+  Array exp() const {
+    return this->unaryExpr([](T part) { return std::exp(part); });
+  }
+  Array log() const {
+    return this->unaryExpr([](T part) { return std::log(part); });
+  }
+  /// For arrays of bool.
+  constexpr bool all() const {
+    return std::all_of(this->begin(), this->end(), [](T part) { return bool(part); });
+  }
+  constexpr bool any() const {
+    return std::any_of(this->begin(), this->end(), [](T part) { return bool(part); });
+  }
+
+  using Tuple<fenestra::Array, T, N>::operator+=;
+  using Tuple<fenestra::Array, T, N>::operator-=;
+  constexpr Array& operator+=(T o) & { return *this = *this + o; }
+  constexpr Array& operator-=(T o) & { return *this = *this - o; }
+  constexpr Array& operator*=(const Array& o) & { return *this = *this * o; }
+  constexpr Array& operator*=(T o) & { return *this = *this * o; }
+  constexpr Array& operator/=(const Array& o) & { return *this = *this / o; }
+  constexpr Array& operator/=(T o) & { return *this = *this / o; }
+
+  friend constexpr Array operator+(const Array& a, T b) { return a + Array::Constant(b); }
+  friend constexpr Array operator-(const Array& a, T b) { return a - Array::Constant(b); }
+  friend constexpr Array operator-(T a, const Array& b) { return Array::Constant(a) - b; }
+  friend constexpr Array operator+(T a, const Array& b) { return Array::Constant(a) + b; }
+  friend constexpr Array operator/(T a, const Array& b) { return Array::Constant(a) / b; }
+  friend constexpr Array operator*(const Array& a, const Array& b) {
+    return a.with(b, [](T p, T q) { return T(p * q); });
+  }
+  friend constexpr Array operator/(const Array& a, const Array& b) {
+    return a.with(b, [](T p, T q) { return T(p / q); });
+  }
+
+  using Truths = Array<bool, N>;
+  friend constexpr Truths operator<(const Array& a, const Array& b) {
+    return a.with(b, [](T p, T q) { return p < q; });
+  }
+  friend constexpr Truths operator<=(const Array& a, const Array& b) {
+    return a.with(b, [](T p, T q) { return p <= q; });
+  }
+  friend constexpr Truths operator>(const Array& a, const Array& b) { return b < a; }
+  friend constexpr Truths operator>=(const Array& a, const Array& b) { return b <= a; }
+  friend constexpr Truths operator==(const Array& a, const Array& b) {
+    return a.with(b, [](T p, T q) { return p == q; });
+  }
+  friend constexpr Truths operator!=(const Array& a, const Array& b) {
+    return a.with(b, [](T p, T q) { return p != q; });
+  }
+  friend constexpr Truths operator<(const Array& a, T b) { return a < Array::Constant(b); }
+  friend constexpr Truths operator<=(const Array& a, T b) { return a <= Array::Constant(b); }
+  friend constexpr Truths operator>(const Array& a, T b) { return a > Array::Constant(b); }
+  friend constexpr Truths operator>=(const Array& a, T b) { return a >= Array::Constant(b); }
+  friend constexpr Truths operator==(const Array& a, T b) { return a == Array::Constant(b); }
+  friend constexpr Truths operator&&(const Array& a, const Array& b) {
+    return a.with(b, [](T p, T q) { return p && q; });
+  }
+
+private:
+  template <typename... Parts>
+  constexpr void assign(Parts... parts) {
+    int i = 0;
+    ((this->m_parts[i++] = parts), ...);
+  }
+};
+
+template <typename T, int N>
+class Vector : public Tuple<Vector, T, N> {
+public:
+  Vector() = default;
+  Vector(const Vector&) = default;
+  Vector& operator=(const Vector&) & = default; // temporaries refuse assignment
+  constexpr Vector(T x, T y) requires(N == 2) { assign(x, y); }
+  constexpr Vector(T x, T y, T z) requires(N == 3) { assign(x, y, z); }
+  constexpr Vector(T x, T y, T z, T w) requires(N == 4) { assign(x, y, z, w); }
+  /// Conversion, not explicit: assigning an array to a vector is common.
+  constexpr Vector(const Array<T, N>& parts) {
+    for (int i = 0; i < N; ++i)
+      (*this)[i] = parts[i];
+  }
+
+  static constexpr Vector Unit(int axis) {
+    Vector result = Vector::Zero();
+    result[axis] = T(1);
+    return result;
+  }
+  static constexpr Vector UnitX() { return Unit(0); }
+  static constexpr Vector UnitY() { return Unit(1); }
+  static constexpr Vector UnitZ() { return Unit(2); }
+
+  constexpr Array<T, N> array() const {
+    Array<T, N> result;
+    for (int i = 0; i < N; ++i)
+      result[i] = (*this)[i];
+    return result;
+  }
+
+  constexpr T dot(const Vector& o) const { return cwiseProduct(o).sum(); }
+  constexpr T squaredNorm() const { return dot(*this); }
+  T norm() const { return std::sqrt(squaredNorm()); }
+  /// Unit vector; the vector 0 is returned as it is.
+  Vector normalized() const {
+    const T square = squaredNorm();
+    return square > T(0) ? *this / std::sqrt(square) : *this;
+  }
+  void normalize() { *this = normalized(); }
+  /// normalized() for lengths whose squares overflow or vanish.
+  Vector stableNormalized() const {
+    const T greatest = this->cwiseAbs().maxCoeff();
+    const T square = (*this / greatest).squaredNorm();
+    return square > T(0) ? *this / (std::sqrt(square) * greatest) : *this;
+  }
+  constexpr Vector cross(const Vector& o) const {
+    static_assert(N == 3);
+    const Vector& a = *this;
+    return {a[1] * o[2] - a[2] * o[1], a[2] * o[0] - a[0] * o[2], a[0] * o[1] - a[1] * o[0]};
+  }
+
+  constexpr Vector cwiseProduct(const Vector& o) const {
+    return this->with(o, [](T p, T q) { return T(p * q); });
+  }
+  constexpr Vector cwiseQuotient(const Vector& o) const {
+    return this->with(o, [](T p, T q) { return T(p / q); });
+  }
+  constexpr Vector cwiseInverse() const {
+    return this->unaryExpr([](T part) { return T(1) / part; });
+  }
+
+  friend constexpr bool operator==(const Vector& a, const Vector& b) {
+    return std::equal(a.begin(), a.end(), b.begin());
+  }
+
+private:
+  template <typename... Parts>
+  constexpr void assign(Parts... parts) {
+    int i = 0;
+    ((this->m_parts[i++] = parts), ...);
+  }
+};
+
+template <typename T, int N>
+constexpr Vector<T, N> Array<T, N>::matrix() const {
+  return *this;
+}
+
+} // namespace fenestra
