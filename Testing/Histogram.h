@@ -2,7 +2,7 @@
 // Does a sampling routine draw what its pdf says? Directions are binned on the sphere and compared
 // with the integral of the pdf over each bin.
 
-#include "core/Random.h"
+#include "base/Random.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // and with 1 where no case ran: a filter that has gone stale is no success.
 
 #ifdef FENESTRA_TEST_APART
-#include "io/Apart.h"
+#include "base/safe/Apart.h"
 #endif
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #pragma once
 // The thin plate spline as its equations stand, for tests: no unit disc, no null space.
 
-#include "core/Vector.h"
+#include "base/Vector.h"
 
 #include <cmath>
 #include <span>

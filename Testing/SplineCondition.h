@@ -1,7 +1,7 @@
 #pragma once
 // The condition number of a thin plate spline's system, by which its rounding is bounded.
 
-#include "clipping/ThinPlateSpline.h"
+#include "clip/surface/ThinPlateSpline.h"
 
 namespace fenestra::testing_clipping {
 

@@ -1,8 +1,8 @@
 #pragma once
 // Small scenes and statistics that tests share.
 
-#include "render/Render.h"
-#include "tracking/WideTracker.h"
+#include "transport/lanes/Tracker.h"
+#include "transport/render/Render.h"
 
 #include <cstdint>
 #include <cstdlib>

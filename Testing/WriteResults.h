@@ -1,9 +1,9 @@
 #pragma once
 // Results of a single writer, declared, written and in place in one call.
 
-#include "io/Inputs.h"
-#include "io/Outputs.h"
-#include "io/pictures/ImageWriter.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/Outputs.h"
+#include "files/pictures/ImageWriter.h"
 
 namespace fenestra {
 

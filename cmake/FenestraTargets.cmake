@@ -25,37 +25,53 @@ if(FENESTRA_FUZZING)
   target_compile_options(fenestra_reading INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# fenestra_lanes(sources...): sources that Highway compiles once for each instruction set. No multiply
+# fenestra_simd(sources...): sources that Highway compiles once for each instruction set. No multiply
 # and add may be fused that is not written so: a lane's result must not depend on what was inlined
 # around it. Sanitizers see lanes that are emulated (what gathers read is then checked), and nothing
 # else of them: it would take clang a quarter of an hour.
-function(fenestra_lanes)
+function(fenestra_simd)
   set(options -ffp-contract=off)
   if(FENESTRA_SANITIZERS)
     list(APPEND options -DHWY_COMPILE_ONLY_EMU128
       $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=undefined>)
   endif()
+  # Highway includes a source by its name, once for each instruction set.
+  set(root "${PROJECT_BINARY_DIR}/include/simd")
+  foreach(source ${ARGN})
+    if(NOT IS_ABSOLUTE "${source}")
+      file(RELATIVE_PATH name "${PROJECT_SOURCE_DIR}/Renderer" "${CMAKE_CURRENT_SOURCE_DIR}/${source}")
+      get_filename_component(folder "${root}/${name}" DIRECTORY)
+      file(MAKE_DIRECTORY "${folder}")
+      file(CREATE_LINK "${CMAKE_CURRENT_SOURCE_DIR}/${source}" "${root}/${name}" SYMBOLIC)
+      set_source_files_properties(${source} PROPERTIES INCLUDE_DIRECTORIES "${root}")
+    endif()
+  endforeach()
   set_source_files_properties(${ARGN} PROPERTIES
     COMPILE_OPTIONS "${options}" SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# fenestra_library(NAME [sources...] [PUBLIC libraries...] [PRIVATE libraries...])
-# A concept of the renderer: the target fenestra_NAME, header-only where it has no sources.
-# Headers are included as "NAME/Header.h".
-function(fenestra_library name)
+# fenestra_library(FOLDER sources... [PUBLIC libraries...] [PRIVATE libraries...])
+# A concept of the renderer: the target fenestra_NAME, NAME being the last part of FOLDER (clip/focus:
+# fenestra_focus). Its headers are included as "FOLDER/Header.h", and found by those alone that link it,
+# for each library has an include root of its own, of links to its headers: an include that the floor plan
+# forbids does not compile.
+function(fenestra_library folder)
   cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE" ${ARGN})
+  get_filename_component(name ${folder} NAME)
   set(target fenestra_${name})
-  if(arg_UNPARSED_ARGUMENTS)
-    add_library(${target} STATIC ${arg_UNPARSED_ARGUMENTS})
-    target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}/Renderer")
-    target_link_libraries(${target} PUBLIC ${arg_PUBLIC} fenestra_sanitizers
-      PRIVATE ${arg_PRIVATE} fenestra_warnings)
-    if(name MATCHES "^(io|scene|cli)")
-      target_link_libraries(${target} PRIVATE fenestra_reading)
-    endif()
-  else()
-    add_library(${target} INTERFACE)
-    target_include_directories(${target} INTERFACE "${PROJECT_SOURCE_DIR}/Renderer")
-    target_link_libraries(${target} INTERFACE ${arg_PUBLIC} fenestra_sanitizers)
+  add_library(${target} STATIC ${arg_UNPARSED_ARGUMENTS})
+  set(root "${PROJECT_BINARY_DIR}/include/${name}")
+  file(REMOVE_RECURSE "${root}")
+  file(MAKE_DIRECTORY "${root}/${folder}")
+  file(GLOB headers CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/Renderer/${folder}/*.h")
+  foreach(header ${headers})
+    get_filename_component(file ${header} NAME)
+    file(CREATE_LINK "${header}" "${root}/${folder}/${file}" SYMBOLIC)
+  endforeach()
+  target_include_directories(${target} PUBLIC "${root}")
+  target_link_libraries(${target} PUBLIC ${arg_PUBLIC} fenestra_sanitizers
+    PRIVATE ${arg_PRIVATE} fenestra_warnings)
+  if(folder MATCHES "^(base/safe|files|session|program)")
+    target_link_libraries(${target} PRIVATE fenestra_reading)
   endif()
 endfunction()

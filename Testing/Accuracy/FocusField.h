@@ -1,8 +1,8 @@
 #pragma once
 // Where a ray first meets a labelmap's segment, found by looking: short steps and bisection on the
-// interpolated indicator. Shares no code with the renderer's search (clipping/FocusCells.h).
+// interpolated indicator. Shares no code with the renderer's search (clip/focus/FocusCells.h).
 
-#include "core/Vector.h"
+#include "base/Vector.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "Subjects.h"
 
-#include "io/pictures/ImageReader.h"
-#include "scene/Scene.h"
+#include "files/pictures/ImageReader.h"
+#include "session/Scene.h"
 
 #include <itkImage.h>
 #include <itkImageFileReader.h>

@@ -2,7 +2,7 @@
 // Cameras of the boundary check: what --position, --target, --up and --scale or --angle mean, by
 // the check's own arithmetic.
 
-#include "core/Vector.h"
+#include "base/Vector.h"
 
 #include <string>
 #include <vector>

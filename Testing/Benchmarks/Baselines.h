@@ -2,7 +2,7 @@
 // What others do, around the product's own path estimator: delta tracking against one majorant for
 // the whole volume, and the fixed steps of medical renderers. Both have Tracker's members.
 
-#include "render/Render.h"
+#include "transport/render/Render.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

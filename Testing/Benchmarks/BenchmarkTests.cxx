@@ -6,7 +6,7 @@
 #include "Support.h"
 #include "TemporaryFolder.h"
 
-#include "film/Compare.h"
+#include "image/Compare.h"
 
 #include <gtest/gtest.h>
 

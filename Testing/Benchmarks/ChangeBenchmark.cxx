@@ -2,11 +2,11 @@
 //
 //     ChangeBenchmark FOCUS ARGUMENTS...     (another focus; what `fenestra` renders)
 
-#include "cli/CommandLine.h"
-#include "cli/RenderFlags.h"
-#include "core/Error.h"
-#include "core/Stopwatch.h"
-#include "scene/Scene.h"
+#include "base/Error.h"
+#include "base/Stopwatch.h"
+#include "program/CommandLine.h"
+#include "program/RenderFlags.h"
+#include "session/Scene.h"
 
 #include <functional>
 #include <iomanip>

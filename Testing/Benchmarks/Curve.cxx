@@ -1,6 +1,6 @@
 #include "Curve.h"
 
-#include "film/Compare.h"
+#include "image/Compare.h"
 
 #include <sys/resource.h>
 

@@ -2,8 +2,8 @@
 
 #include "Report.h"
 
-#include "cli/CommandLine.h"
-#include "core/Error.h"
+#include "base/Error.h"
+#include "program/CommandLine.h"
 
 #include <algorithm>
 #include <fstream>

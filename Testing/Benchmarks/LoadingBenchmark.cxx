@@ -6,8 +6,8 @@
 
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
-#include "core/Stopwatch.h"
-#include "io/NrrdWriter.h"
+#include "base/Stopwatch.h"
+#include "base/safe/NrrdWriter.h"
 
 #include <itkImage.h>
 #include <itkImageFileReader.h>

@@ -2,9 +2,9 @@
 
 #include "Scenes.h"
 
-#include "clipping/ThinPlateSpline.h"
-#include "scene/Scene.h"
-#include "tracking/Tracker.h"
+#include "clip/surface/ThinPlateSpline.h"
+#include "session/Scene.h"
+#include "transport/readable/Tracker.h"
 
 #include <benchmark/benchmark.h>
 

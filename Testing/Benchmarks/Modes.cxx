@@ -2,7 +2,7 @@
 
 #include "Baselines.h"
 
-#include "core/Error.h"
+#include "base/Error.h"
 
 namespace fenestra::benchmarks {
 namespace {

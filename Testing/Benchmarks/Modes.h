@@ -1,7 +1,7 @@
 #pragma once
 // The ways to render that are compared.
 
-#include "render/Render.h"
+#include "transport/render/Render.h"
 
 #include <span>
 #include <string>

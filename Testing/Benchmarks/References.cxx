@@ -6,12 +6,12 @@
 #include "Statistical/Pictures.h"
 
 #include "WriteResults.h"
-#include "core/Error.h"
-#include "core/Stopwatch.h"
-#include "film/Compare.h"
-#include "io/EmbeddedResources.h"
-#include "io/looks/LightReader.h"
-#include "io/pictures/ImageReader.h"
+#include "base/Error.h"
+#include "base/Stopwatch.h"
+#include "base/safe/EmbeddedResources.h"
+#include "files/looks/LightReader.h"
+#include "files/pictures/ImageReader.h"
+#include "image/Compare.h"
 
 #include <algorithm>
 #include <optional>

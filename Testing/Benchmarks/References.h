@@ -3,8 +3,8 @@
 
 #include "Scenes.h"
 
-#include "film/Image.h"
-#include "scene/Scene.h"
+#include "image/Image.h"
+#include "session/Scene.h"
 
 namespace fenestra::benchmarks {
 

@@ -1,7 +1,7 @@
 #include "Report.h"
 
 #include "WriteResults.h"
-#include "core/Error.h"
+#include "base/Error.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,7 +1,7 @@
 #include "Scenes.h"
 
-#include "cli/CommandLine.h"
-#include "core/Error.h"
+#include "base/Error.h"
+#include "program/CommandLine.h"
 
 #include <fstream>
 #include <map>

@@ -1,7 +1,7 @@
 #pragma once
 // The scenes of scenes.txt: each is a command line of `fenestra`.
 
-#include "cli/RenderFlags.h"
+#include "program/RenderFlags.h"
 
 #include <filesystem>
 #include <string>

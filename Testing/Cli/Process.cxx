@@ -1,7 +1,7 @@
 #include "Process.h"
 
 #include "RunSettings.h"
-#include "core/Stopwatch.h"
+#include "base/Stopwatch.h"
 
 #include <csignal>
 #include <cstdlib>

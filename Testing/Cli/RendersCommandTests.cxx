@@ -1,7 +1,7 @@
 // What a render leaves behind: pictures, statistics, and what it says.
 
 #include "CommandTesting.h"
-#include "io/pictures/ImageReader.h"
+#include "files/pictures/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

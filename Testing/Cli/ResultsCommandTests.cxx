@@ -1,7 +1,7 @@
 // What becomes of results: where they go, what they replace, and what they tell of their inputs.
 
 #include "CommandTesting.h"
-#include "io/pictures/ImageReader.h"
+#include "files/pictures/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 // as the scene's own numbers have it, by a projection written here from VTK's conventions.
 
 #include "CommandTesting.h"
-#include "io/pictures/ImageReader.h"
+#include "files/pictures/ImageReader.h"
 
 #include <Eigen/Geometry>
 #include <zip.h>

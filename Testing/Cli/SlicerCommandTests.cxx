@@ -187,7 +187,7 @@ TEST_F(SlicerCommand, TheReadmesTableSaysTheSame) {
   const std::size_t end = readme.find("<!-- end of flags -->");
   ASSERT_TRUE(begin < end && end != std::string::npos);
   const std::size_t after = readme.find('\n', begin) + 1;
-  EXPECT_EQ(readme.substr(after, end - after), table) << "Renderer/cli/README.md should have:\n"
+  EXPECT_EQ(readme.substr(after, end - after), table) << "Renderer/program/README.md should have:\n"
                                                       << table;
 }
 

@@ -1,7 +1,7 @@
 // `--surface`: the clipping surface as a mesh, of what it is refused for, and what is left behind.
 
 #include "CommandTesting.h"
-#include "io/pictures/ImageReader.h"
+#include "files/pictures/ImageReader.h"
 
 #include <pugixml.hpp>
 

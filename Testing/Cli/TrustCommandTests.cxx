@@ -1,7 +1,7 @@
 // Scenes come from others: what one of them may make the program read, write and take.
 
 #include "CommandTesting.h"
-#include "io/pictures/ImageReader.h"
+#include "files/pictures/ImageReader.h"
 
 #include <zip.h>
 

@@ -2,8 +2,8 @@
 // as the first of them may be chosen.
 
 #include "CommandTesting.h"
-#include "core/Stopwatch.h"
-#include "io/pictures/ImageReader.h"
+#include "base/Stopwatch.h"
+#include "files/pictures/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

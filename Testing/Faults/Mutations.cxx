@@ -5,7 +5,7 @@
 #include "Judge.h"
 #include "Mutation.h"
 
-#include "io/ZipWriter.h"
+#include "base/safe/ZipWriter.h"
 
 #include <atomic>
 #include <cstdio>

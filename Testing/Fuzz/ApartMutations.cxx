@@ -2,10 +2,10 @@
 // refused by an Error (input) of one line that names it. usage: ApartMutations COUNT [SEED]
 
 #include "TemporaryFolder.h"
-#include "core/Error.h"
-#include "io/Apart.h"
-#include "io/medical/DicomSeries.h"
-#include "io/transforms/TransformFile.h"
+#include "base/Error.h"
+#include "base/safe/Apart.h"
+#include "files/medical/DicomSeries.h"
+#include "files/slicer/TransformFile.h"
 
 #include <cstdio>
 #include <random>

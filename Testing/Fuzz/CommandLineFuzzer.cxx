@@ -1,8 +1,8 @@
 // The command line of a render: one word a line. Nothing is read or written.
 #include "Harness.h"
 
-#include "cli/CommandLine.h"
-#include "cli/RenderFlags.h"
+#include "program/CommandLine.h"
+#include "program/RenderFlags.h"
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 // taken over says. ApartMutations sends files.
 #include "Harness.h"
 
-#include "io/medical/DicomPixels.h"
+#include "files/medical/DicomPixels.h"
 
 FENESTRA_FUZZ(Dicom, input) {
   using namespace fenestra;

@@ -1,7 +1,7 @@
 // All fuzz targets in one executable. FENESTRA_FUZZ_TARGET in the environment names the one that
 // runs.
 #include "Harness.h"
-#include "io/Apart.h"
+#include "base/safe/Apart.h"
 
 #include <cstdlib>
 #include <iostream>

@@ -4,7 +4,7 @@
 // much time or memory) is a finding, and libFuzzer says so.
 
 #include "TemporaryFolder.h"
-#include "core/Error.h"
+#include "base/Error.h"
 
 #include <fcntl.h>
 #include <unistd.h>

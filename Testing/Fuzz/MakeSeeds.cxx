@@ -4,8 +4,8 @@
 #include "SceneNeighbours.h"
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
-#include "io/ApartBytes.h"
-#include "io/ZipWriter.h"
+#include "base/safe/ApartBytes.h"
+#include "base/safe/ZipWriter.h"
 
 #include <itkAffineTransform.h>
 #include <itkGDCMImageIO.h>

@@ -1,7 +1,7 @@
 // Pictures that are compared or shine as environments; the first byte chooses the format.
 #include "Harness.h"
 
-#include "io/pictures/ImageReader.h"
+#include "files/pictures/ImageReader.h"
 
 FENESTRA_FUZZ(Picture, input) {
   using namespace fenestra;

@@ -1,7 +1,7 @@
 // Organ presets, and a name that their patterns are held against.
 #include "Harness.h"
 
-#include "io/looks/PresetReader.h"
+#include "files/looks/PresetReader.h"
 
 FENESTRA_FUZZ(Preset, input) {
   const fenestra::OrganPreset preset = fenestra::parsePreset(input, "preset.json");

@@ -1,7 +1,7 @@
 // Regions of interest (.mrk.json).
 #include "Harness.h"
 
-#include "io/mrml/MrmlScene.h"
+#include "files/slicer/MrmlScene.h"
 
 FENESTRA_FUZZ(Roi, input) {
   using namespace fenestra;

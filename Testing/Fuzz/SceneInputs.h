@@ -3,7 +3,7 @@
 
 #include "Harness.h"
 
-#include "scene/SceneInput.h"
+#include "session/SceneInput.h"
 
 namespace fenestra::fuzzing {
 

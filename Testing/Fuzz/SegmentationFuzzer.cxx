@@ -1,7 +1,7 @@
 // Segmentations: their metadata, and the mask of the first segments.
 #include "Harness.h"
 
-#include "io/medical/SegmentationReader.h"
+#include "files/segments/SegmentationReader.h"
 
 FENESTRA_FUZZ(Segmentation, input) {
   using namespace fenestra;

@@ -1,7 +1,7 @@
 // A line that a server is told. Looks are read, nothing else, and nothing is written.
 #include "Harness.h"
 
-#include "cli/ServeInput.h"
+#include "program/ServeInput.h"
 
 FENESTRA_FUZZ(Serve, input) {
   using namespace fenestra;

@@ -2,7 +2,7 @@
 // a whole .vtm names.
 #include "Harness.h"
 
-#include "io/medical/SegmentationReader.h"
+#include "files/segments/SegmentationReader.h"
 
 FENESTRA_FUZZ(Surface, input) {
   using namespace fenestra;

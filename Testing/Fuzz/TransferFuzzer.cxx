@@ -1,7 +1,7 @@
 // Transfer functions: own ones, and Slicer's volume properties as text and as JSON.
 #include "Harness.h"
 
-#include "io/looks/TransferReader.h"
+#include "files/looks/TransferReader.h"
 
 namespace {
 

@@ -2,7 +2,7 @@
 // file has taken over says. ApartMutations sends files.
 #include "Harness.h"
 
-#include "io/transforms/TransformFile.h"
+#include "files/slicer/TransformFile.h"
 
 FENESTRA_FUZZ(Transform, input) {
   using namespace fenestra;

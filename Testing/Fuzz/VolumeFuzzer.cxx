@@ -2,7 +2,7 @@
 // `samples.raw`.
 #include "Harness.h"
 
-#include "io/medical/VolumeReader.h"
+#include "files/medical/VolumeReader.h"
 
 FENESTRA_FUZZ(Volume, input) {
   using namespace fenestra;

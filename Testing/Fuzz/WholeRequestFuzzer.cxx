@@ -4,8 +4,8 @@
 #include "Harness.h"
 #include "SceneNeighbours.h"
 
-#include "render/Render.h"
-#include "scene/Scene.h"
+#include "session/Scene.h"
+#include "transport/render/Render.h"
 
 #include <condition_variable>
 #include <mutex>

@@ -1,7 +1,7 @@
 #pragma once
 // What a picture's pixels are believed to be, and how sure that is.
 
-#include "core/Vector.h"
+#include "base/Vector.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,12 +1,12 @@
 #pragma once
 // What the oracle renders: the product's plain data, and nothing that computes.
 
-#include "camera/Camera.h"
-#include "lights/Light.h"
-#include "medium/TransferFunction.h"
-#include "transport/Background.h"
-#include "volume/Mask.h"
-#include "volume/Volume.h"
+#include "model/camera/Background.h"
+#include "model/camera/Camera.h"
+#include "model/lights/Light.h"
+#include "model/medium/TransferFunction.h"
+#include "model/volume/Mask.h"
+#include "model/volume/Volume.h"
 
 #include <map>
 #include <optional>

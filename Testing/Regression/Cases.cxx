@@ -1,8 +1,8 @@
 #include "Cases.h"
 
 #include "Cli/Process.h"
-#include "film/Compare.h"
-#include "io/pictures/ImageReader.h"
+#include "files/pictures/ImageReader.h"
+#include "image/Compare.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 // The cases of cases.txt, how they are rendered, and when a render agrees with its baseline.
 
-#include "film/Image.h"
+#include "image/Image.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -3,8 +3,8 @@
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
-#include "film/Compare.h"
-#include "io/pictures/ImageReader.h"
+#include "files/pictures/ImageReader.h"
+#include "image/Compare.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // What the format traps show: a body with four organs, no two alike and none on an axis, so that
 // every flip, swap and shift of axes shows.
 
-#include "core/Vector.h"
+#include "base/Vector.h"
 
 #include <algorithm>
 

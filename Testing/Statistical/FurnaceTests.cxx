@@ -3,7 +3,7 @@
 
 #include "Support.h"
 
-#include "clipping/ClippingSurface.h"
+#include "clip/surface/ClippingSurface.h"
 
 #include <gtest/gtest.h>
 

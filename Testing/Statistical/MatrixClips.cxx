@@ -1,6 +1,6 @@
 #include "MatrixClips.h"
 
-#include "clipping/ClippingSurface.h"
+#include "clip/surface/ClippingSurface.h"
 
 namespace fenestra::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include "RunSettings.h"
 
 #include "WriteResults.h"
-#include "film/Compare.h"
+#include "image/Compare.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Estimates as pictures: for error images, and for comparisons that take pictures.
 
 #include "Oracle/Estimates.h"
-#include "film/Image.h"
+#include "image/Image.h"
 
 namespace fenestra::testing {
 

@@ -7,12 +7,12 @@
 #include "Support.h"
 
 #include "WriteResults.h"
-#include "cli/CommandLine.h"
-#include "cli/RenderFlags.h"
-#include "film/Compare.h"
-#include "io/looks/LightReader.h"
-#include "io/pictures/ImageReader.h"
-#include "scene/Scene.h"
+#include "files/looks/LightReader.h"
+#include "files/pictures/ImageReader.h"
+#include "image/Compare.h"
+#include "program/CommandLine.h"
+#include "program/RenderFlags.h"
+#include "session/Scene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "Significance.h"
 
-#include "film/StudentT.h"
+#include "image/StudentT.h"
 
 #include <algorithm>
 #include <cmath>

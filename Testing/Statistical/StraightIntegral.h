@@ -2,8 +2,8 @@
 // The medium, and the optical depth of a ray, exact to rounding and independent of tracking: from
 // the voxels and the knots of the medium's table alone.
 
-#include "medium/TransferFunction.h"
-#include "volume/Volume.h"
+#include "model/medium/TransferFunction.h"
+#include "model/volume/Volume.h"
 
 #include <vector>
 

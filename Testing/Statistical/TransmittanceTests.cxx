@@ -4,8 +4,8 @@
 #include "Significance.h"
 #include "StraightIntegral.h"
 
-#include "clipping/ClippingSurface.h"
-#include "tracking/WideTracker.h"
+#include "clip/surface/ClippingSurface.h"
+#include "transport/lanes/Tracker.h"
 
 namespace fenestra::testing::TransmittanceTests {
 namespace {

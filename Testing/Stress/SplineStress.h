@@ -4,7 +4,7 @@
 #include "SaddleSpline.h"
 #include "SplineCondition.h"
 #include "Unit/ClippingTesting.h"
-#include "clipping/ThinPlateSpline.h"
+#include "clip/surface/ThinPlateSpline.h"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>

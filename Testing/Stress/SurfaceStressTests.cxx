@@ -2,9 +2,9 @@
 // own, keep is defined everywhere and says what visible and keptIn say.
 
 #include "Unit/ClippingTesting.h"
-#include "clipping/ClippingSurface.h"
-#include "clipping/ThinPlateSpline.h"
-#include "core/Error.h"
+#include "base/Error.h"
+#include "clip/surface/ClippingSurface.h"
+#include "clip/surface/ThinPlateSpline.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include "StressSupport.h"
 
-#include "medium/VolumeProperty.h"
+#include "model/medium/VolumeProperty.h"
 
 namespace fenestra::testing::TransferStressTests {
 namespace {

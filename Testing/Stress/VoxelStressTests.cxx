@@ -4,8 +4,8 @@
 
 #include "StressSupport.h"
 #include "Unit/MedicalFiles.h"
-#include "io/medical/VolumeReader.h"
-#include "scene/Scene.h"
+#include "files/medical/VolumeReader.h"
+#include "session/Scene.h"
 
 namespace fenestra::testing::VoxelStressTests {
 namespace {

@@ -1,11 +1,11 @@
 // Work in a process of its own: what it may not do, what would have ended this process, and answers
 // that are none. The jobs below run in the child, which is this executable.
 
-#include "io/Apart.h"
+#include "base/safe/Apart.h"
 
 #include "TemporaryFolder.h"
-#include "core/Error.h"
-#include "io/ApartBytes.h"
+#include "base/Error.h"
+#include "base/safe/ApartBytes.h"
 
 #include <gtest/gtest.h>
 

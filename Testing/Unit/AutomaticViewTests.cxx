@@ -1,9 +1,9 @@
 // --view auto: what it sees of analytic bodies, and that it stays where it is.
 
-#include "scene/AutomaticView.h"
+#include "session/AutomaticView.h"
 
 #include "Support.h"
-#include "core/Random.h"
+#include "base/Random.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -2,9 +2,9 @@
 // measured: against geometry.
 
 #include "ClippingTesting.h"
-#include "clipping/BoundaryMeasures.h"
-#include "clipping/ClippingSurface.h"
-#include "clipping/FocusPlane.h"
+#include "clip/surface/ClippingSurface.h"
+#include "clip/surface/FocusPlane.h"
+#include "measure/BoundaryMeasures.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
-#include "clipping/ClippingSurface.h"
-#include "core/Error.h"
+#include "base/Error.h"
+#include "clip/surface/ClippingSurface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 #pragma once
 // Grids, masks and cameras for the tests of the clipping surface.
 
-#include "camera/Camera.h"
-#include "clipping/FocusDepth.h"
-#include "core/Random.h"
-#include "volume/Mask.h"
+#include "base/Random.h"
+#include "clip/focus/FocusDepth.h"
+#include "model/camera/Camera.h"
+#include "model/volume/Mask.h"
 
 #include <string>
 #include <vector>

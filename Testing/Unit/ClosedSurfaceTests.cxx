@@ -1,10 +1,10 @@
 // Surfaces of known shapes, in every way that VTK writes its arrays, and files that are not what
 // they say.
 
-#include "io/medical/ClosedSurface.h"
+#include "files/segments/ClosedSurface.h"
 
 #include "MedicalFiles.h"
-#include "io/medical/Voxelize.h"
+#include "model/masks/Voxelize.h"
 
 #include <zlib.h>
 

@@ -1,10 +1,10 @@
 // Comparisons of pictures whose statistics are known.
 
-#include "core/Error.h"
-#include "core/Random.h"
-#include "film/Compare.h"
-#include "film/StudentT.h"
-#include "io/pictures/ImageReader.h"
+#include "base/Error.h"
+#include "base/Random.h"
+#include "files/pictures/ImageReader.h"
+#include "image/Compare.h"
+#include "image/StudentT.h"
 
 #include <gtest/gtest.h>
 

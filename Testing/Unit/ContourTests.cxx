@@ -1,7 +1,7 @@
 // Contours of drawn regions: loops, lengths, holes, and control points spaced uniformly on them.
 
 #include "ClippingTesting.h"
-#include "clipping/Contour.h"
+#include "clip/focus/Contour.h"
 
 #include <gtest/gtest.h>
 

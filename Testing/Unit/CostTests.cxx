@@ -1,9 +1,9 @@
 // What reading costs: counted instructions, not time, of n parts against 2 n. Under valgrind, which
 // counts them; skipped where it is not installed.
 
-#include "io/JsonNode.h"
-#include "io/medical/MedicalHeader.h"
-#include "io/mrml/ScenePlan.h"
+#include "base/safe/JsonNode.h"
+#include "files/medical/MedicalHeader.h"
+#include "files/slicer/ScenePlan.h"
 
 #include "TemporaryFolder.h"
 

@@ -2,7 +2,7 @@
 
 #include "Support.h"
 
-#include "render/FocusMeasures.h"
+#include "measure/FocusMeasures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // What a scene gets where its user says nothing.
 
-#include "scene/Defaults.h"
-#include "scene/Picture.h"
+#include "session/Defaults.h"
+#include "session/Picture.h"
 
 #include "Support.h"
-#include "core/Error.h"
+#include "base/Error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Where the buffer's samples lie, how far they reach, and what is between and beyond them.
 
 #include "ClippingTesting.h"
-#include "clipping/DepthPyramid.h"
-#include "core/Error.h"
+#include "base/Error.h"
+#include "clip/keep/DepthPyramid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // DICOM series that GDCM writes here, a real one, and files that are not what they say.
 
-#include "io/medical/DicomSeries.h"
+#include "files/medical/DicomSeries.h"
 
 #include "MedicalFiles.h"
-#include "io/Quiet.h"
-#include "io/medical/VolumeReader.h"
+#include "files/medical/Quiet.h"
+#include "files/medical/VolumeReader.h"
 
 #include <gdcmImageChangeTransferSyntax.h>
 #include <gdcmImageReader.h>

@@ -1,7 +1,7 @@
 // The display views: the tone curve's properties, and alpha.
 
-#include "core/Error.h"
-#include "io/pictures/DisplayTransform.h"
+#include "base/Error.h"
+#include "files/pictures/DisplayTransform.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // A cropped volume's domain against its definition: a point is inside where it is in both boxes.
 
-#include "volume/Domain.h"
+#include "model/volume/Domain.h"
 
-#include "core/Random.h"
+#include "base/Random.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Pixels that provably meet nothing take one sample, and no others do.
 
 #include "Support.h"
-#include "render/EmptyPixels.h"
+#include "transport/render/EmptyPixels.h"
 
 #include <gtest/gtest.h>
 

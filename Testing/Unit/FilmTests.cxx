@@ -1,6 +1,6 @@
-#include "film/Film.h"
+#include "image/Film.h"
 
-#include "core/Random.h"
+#include "base/Random.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
-#include "clipping/CellCubic.h"
-#include "clipping/FocusCells.h"
-#include "core/LaneTargets.h"
+#include "base/LaneTargets.h"
+#include "clip/focus/CellCubic.h"
+#include "clip/focus/FocusCells.h"
 
 #include <gtest/gtest.h>
 #include <hwy/highway.h>

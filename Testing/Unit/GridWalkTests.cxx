@@ -1,8 +1,8 @@
 // Every cell, in order, whatever the ray: GridWalk against its promises and against brute force.
 
 #include "RunSettings.h"
-#include "core/Random.h"
-#include "volume/GridWalk.h"
+#include "base/Random.h"
+#include "model/volume/GridWalk.h"
 
 #include <gtest/gtest.h>
 

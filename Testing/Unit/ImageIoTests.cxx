@@ -1,7 +1,7 @@
 // Pictures to files and back: what is kept, and what a failure leaves.
 
 #include "ImageTesting.h"
-#include "io/EmbeddedResources.h"
+#include "base/safe/EmbeddedResources.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

@@ -2,8 +2,8 @@
 // Pictures to write, and a folder to write them into.
 
 #include "WriteResults.h"
-#include "core/Error.h"
-#include "io/pictures/ImageReader.h"
+#include "base/Error.h"
+#include "files/pictures/ImageReader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-#include "clipping/KernelSums.h"
+#include "clip/surface/KernelSums.h"
 
 #include "ClippingTesting.h"
-#include "core/LaneTargets.h"
+#include "base/LaneTargets.h"
 
 #include <gtest/gtest.h>
 #include <hwy/highway.h>

@@ -1,9 +1,9 @@
 // Lights from JSON, environment maps from EXR, and what is refused.
 
 #include "WriteResults.h"
-#include "io/EmbeddedResources.h"
-#include "io/looks/LightReader.h"
-#include "io/looks/LookText.h"
+#include "base/safe/EmbeddedResources.h"
+#include "files/looks/LightReader.h"
+#include "files/looks/LookText.h"
 
 #include "Refusals.h"
 

@@ -1,4 +1,4 @@
-#include "lights/LightSet.h"
+#include "model/lights/LightSet.h"
 
 #include "Histogram.h"
 

@@ -1,8 +1,8 @@
-#include "tracking/MajorantGrid.h"
+#include "transport/readable/MajorantGrid.h"
 
 #include "RunSettings.h"
-#include "core/Random.h"
-#include "medium/Medium.h"
+#include "base/Random.h"
+#include "model/medium/Medium.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Margins and smooth labels, against balls and slabs.
 
 #include "ClippingTesting.h"
-#include "clipping/FocusDepth.h"
-#include "core/Error.h"
-#include "io/medical/SegmentationReader.h"
-#include "io/medical/SliceInterpolation.h"
+#include "base/Error.h"
+#include "clip/focus/FocusDepth.h"
+#include "files/segments/SegmentationReader.h"
+#include "model/masks/SliceInterpolation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Headers of volumes that are sound but say what is not read: what is refused, in true words, and
 // what is told.
 
-#include "io/medical/VolumeReader.h"
+#include "files/medical/VolumeReader.h"
 
 #include "MedicalFiles.h"
 

@@ -1,9 +1,9 @@
 // Which segments a preset takes for its focus, and which preset is taken for segments.
 
-#include "io/EmbeddedResources.h"
-#include "scene/Defaults.h"
-#include "scene/NamedLooks.h"
-#include "scene/OrganPresets.h"
+#include "base/safe/EmbeddedResources.h"
+#include "session/Defaults.h"
+#include "session/NamedLooks.h"
+#include "session/OrganPresets.h"
 
 #include "Refusals.h"
 #include "Support.h"

@@ -2,12 +2,12 @@
 // finds.
 
 #include "TemporaryFolder.h"
-#include "core/Error.h"
-#include "io/Inputs.h"
-#include "io/Locks.h"
-#include "io/Outputs.h"
-#include "io/PrivateFolder.h"
-#include "io/TemporaryFile.h"
+#include "base/Error.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/Locks.h"
+#include "base/safe/Outputs.h"
+#include "base/safe/PrivateFolder.h"
+#include "base/safe/TemporaryFile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "core/Error.h"
-#include "phantom/Cube.h"
+#include "base/Error.h"
+#include "phantoms/Cube.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The synthetic fetus: what its segments hold, what hides the face, and that it is always the same.
 
-#include "core/Error.h"
-#include "phantom/Fetus.h"
+#include "base/Error.h"
+#include "phantoms/Fetus.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,9 +1,9 @@
-#include "core/Error.h"
-#include "io/medical/SegmentationReader.h"
-#include "io/phantom/PhantomWriter.h"
-#include "phantom/Foot.h"
-#include "phantom/FootBones.h"
-#include "phantom/FootLayers.h"
+#include "base/Error.h"
+#include "files/segments/SegmentationReader.h"
+#include "phantoms/Foot.h"
+#include "phantoms/FootBones.h"
+#include "phantoms/FootLayers.h"
+#include "phantoms/PhantomWriter.h"
 
 #include "TemporaryFolder.h"
 

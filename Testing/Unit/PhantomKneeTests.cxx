@@ -1,8 +1,8 @@
-#include "core/Error.h"
-#include "medium/TransferFunction.h"
-#include "phantom/Knee.h"
-#include "phantom/KneeBones.h"
-#include "phantom/KneeSignal.h"
+#include "base/Error.h"
+#include "model/medium/TransferFunction.h"
+#include "phantoms/Knee.h"
+#include "phantoms/KneeBones.h"
+#include "phantoms/KneeSignal.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,8 +1,8 @@
-#include "io/phantom/PhantomScene.h"
-#include "io/phantom/PhantomWriter.h"
-#include "phantom/Cube.h"
-#include "phantom/Foot.h"
-#include "phantom/Knee.h"
+#include "phantoms/Cube.h"
+#include "phantoms/Foot.h"
+#include "phantoms/Knee.h"
+#include "phantoms/PhantomScene.h"
+#include "phantoms/PhantomWriter.h"
 
 #include "TemporaryFolder.h"
 

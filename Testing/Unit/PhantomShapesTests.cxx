@@ -1,5 +1,5 @@
-#include "phantom/Noise.h"
-#include "phantom/Shapes.h"
+#include "phantoms/Noise.h"
+#include "phantoms/Shapes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "core/Error.h"
-#include "io/phantom/PhantomWriter.h"
-#include "phantom/Knee.h"
+#include "base/Error.h"
+#include "phantoms/Knee.h"
+#include "phantoms/PhantomWriter.h"
 
 #include <gtest/gtest.h>
 #include <itkMetaDataObject.h>

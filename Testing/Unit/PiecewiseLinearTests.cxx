@@ -1,6 +1,6 @@
-#include "medium/PiecewiseLinear.h"
+#include "model/medium/PiecewiseLinear.h"
 
-#include "core/Random.h"
+#include "base/Random.h"
 
 #include <gtest/gtest.h>
 

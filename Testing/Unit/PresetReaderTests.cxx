@@ -1,8 +1,8 @@
 // Organ presets: what their files say, what is refused, and which names a pattern matches.
 
-#include "io/EmbeddedResources.h"
-#include "io/looks/PresetReader.h"
-#include "io/looks/TransferReader.h"
+#include "base/safe/EmbeddedResources.h"
+#include "files/looks/PresetReader.h"
+#include "files/looks/TransferReader.h"
 
 #include "Refusals.h"
 

@@ -2,7 +2,7 @@
 // Files that a reader has to refuse, and how it says so.
 
 #include "TemporaryFolder.h"
-#include "core/Error.h"
+#include "base/Error.h"
 
 #include <gtest/gtest.h>
 

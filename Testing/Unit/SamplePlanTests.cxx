@@ -1,6 +1,6 @@
-#include "render/SamplePlan.h"
+#include "transport/render/SamplePlan.h"
 
-#include "core/Random.h"
+#include "base/Random.h"
 
 #include <gtest/gtest.h>
 

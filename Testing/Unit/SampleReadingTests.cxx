@@ -1,10 +1,10 @@
 // Samples on their way from a file, block by block, into the smallest type that holds them all.
 
-#include "io/medical/VolumeReader.h"
+#include "files/medical/VolumeReader.h"
 
 #include "MedicalFiles.h"
-#include "io/medical/SampleSource.h"
-#include "io/medical/SampleStore.h"
+#include "files/medical/SampleSource.h"
+#include "files/medical/SampleStore.h"
 
 #include <zlib.h>
 

@@ -1,4 +1,4 @@
-#include "medium/Scattering.h"
+#include "model/medium/Scattering.h"
 
 #include "Histogram.h"
 

@@ -1,6 +1,6 @@
 // A changed request makes the scene that it would make from nothing, and only what depends on it.
 
-#include "scene/Scene.h"
+#include "session/Scene.h"
 
 #include "MedicalFiles.h"
 

@@ -1,6 +1,6 @@
 // Which nodes of a scene a picture shows, and what is refused or ignored, and why.
 
-#include "io/mrml/ScenePlan.h"
+#include "files/slicer/ScenePlan.h"
 
 #include "Refusals.h"
 

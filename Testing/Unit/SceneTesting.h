@@ -1,7 +1,7 @@
 #pragma once
 // Slicer scenes for tests: a folder with a small volume and a .mrml of given nodes.
 
-#include "io/mrml/MrmlScene.h"
+#include "files/slicer/MrmlScene.h"
 
 #include "MedicalFiles.h"
 

@@ -1,7 +1,7 @@
 // Between samples the exact surface is the focus's own depth.
 
 #include "ClippingTesting.h"
-#include "clipping/ClippingSurface.h"
+#include "clip/surface/ClippingSurface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // What Slicer's tags say of segments, which is read without their labels.
 
-#include "io/medical/SegmentationReader.h"
+#include "files/segments/SegmentationReader.h"
 
 #include "MedicalFiles.h"
 

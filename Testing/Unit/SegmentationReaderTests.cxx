@@ -1,7 +1,7 @@
 // Labelmaps and Slicer segmentations, and the masks that become of their segments.
 
-#include "io/medical/SegmentationReader.h"
-#include "io/medical/VolumeReader.h"
+#include "files/medical/VolumeReader.h"
+#include "files/segments/SegmentationReader.h"
 
 #include "MedicalFiles.h"
 

@@ -1,6 +1,6 @@
 // What messages show of files' text.
 
-#include "io/ShownText.h"
+#include "base/safe/ShownText.h"
 
 #include <gtest/gtest.h>
 

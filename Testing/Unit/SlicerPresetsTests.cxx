@@ -1,6 +1,6 @@
 // The presets of a 3D Slicer that is there: where they are looked for, and what is read.
 
-#include "io/mrml/SlicerPresets.h"
+#include "files/slicer/SlicerPresets.h"
 
 #include "Refusals.h"
 

@@ -2,7 +2,7 @@
 // along a straight edge, jumps of depth.
 
 #include "ClippingTesting.h"
-#include "clipping/SmoothFill.h"
+#include "clip/surface/SmoothFill.h"
 
 #include <gtest/gtest.h>
 

@@ -2,9 +2,9 @@
 // steadied.
 
 #include "ClippingTesting.h"
-#include "camera/Turn.h"
-#include "clipping/SteadySurface.h"
-#include "clipping/SurfaceChange.h"
+#include "clip/surface/SteadySurface.h"
+#include "measure/SurfaceChange.h"
+#include "model/camera/Turn.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 // may.
 
 #include "ClippingTesting.h"
-#include "clipping/SurfaceMesh.h"
+#include "clip/mesh/SurfaceMesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Surfaces as files: what is in them, read back here.
 
-#include "core/Error.h"
-#include "io/medical/VtkSurface.h"
-#include "io/surfaces/SurfaceWriter.h"
+#include "base/Error.h"
+#include "clip/mesh/SurfaceWriter.h"
+#include "files/segments/VtkSurface.h"
 
 #include "TemporaryFolder.h"
 

@@ -4,7 +4,7 @@
 #include "RunSettings.h"
 #include "SaddleSpline.h"
 #include "SplineCondition.h"
-#include "clipping/ThinPlateSpline.h"
+#include "clip/surface/ThinPlateSpline.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and files that are neither.
 
-#include "io/looks/TransferReader.h"
-#include "medium/VolumeProperty.h"
+#include "files/looks/TransferReader.h"
+#include "model/medium/VolumeProperty.h"
 
 #include "Refusals.h"
 

@@ -1,10 +1,10 @@
 // Every linear transform that ITK writes, against what ITK itself does with a point; and files that
 // are not what they say.
 
-#include "io/transforms/TransformFile.h"
+#include "files/slicer/TransformFile.h"
 
 #include "MedicalFiles.h"
-#include "io/mrml/SceneArchive.h"
+#include "files/slicer/SceneArchive.h"
 
 #include <itkAffineTransform.h>
 #include <itkBSplineTransform.h>

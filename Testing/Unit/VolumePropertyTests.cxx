@@ -1,7 +1,7 @@
 // The medium's table against the formulas that it stands for.
 
-#include "core/Error.h"
-#include "medium/VolumeProperty.h"
+#include "base/Error.h"
+#include "model/medium/VolumeProperty.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Round trips through every format and sample type, and files that are not what they say.
 
-#include "io/medical/VolumeReader.h"
+#include "files/medical/VolumeReader.h"
 
 #include "MedicalFiles.h"
 

@@ -1,6 +1,6 @@
-#include "volume/Volume.h"
+#include "model/volume/Volume.h"
 
-#include "core/Random.h"
+#include "base/Random.h"
 
 #include <gtest/gtest.h>
 

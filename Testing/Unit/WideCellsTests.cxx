@@ -1,6 +1,6 @@
-#include "tracking/WideCells.h"
+#include "transport/lanes/MajorantGrid.h"
 
-#include "core/Random.h"
+#include "base/Random.h"
 
 #include <gtest/gtest.h>
 

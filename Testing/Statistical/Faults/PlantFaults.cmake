@@ -1,10 +1,10 @@
-# Copies concepts of the renderer with every error of faults.json in them (README.md here).
-# usage: cmake -DFROM=Renderer -DTO=folder -DFAULTS=faults.json -DCONCEPTS=a,b,... -P PlantFaults.cmake
+# Copies storeys of the renderer with every error of faults.json in them (README.md here).
+# usage: cmake -DFROM=Renderer -DTO=folder -DFAULTS=faults.json -DSTOREYS=a,b,... -P PlantFaults.cmake
 cmake_minimum_required(VERSION 3.25)
 
-string(REPLACE "," ";" CONCEPTS "${CONCEPTS}")
-foreach(concept ${CONCEPTS})
-  file(COPY "${FROM}/${concept}" DESTINATION "${TO}" FILES_MATCHING PATTERN "*.h" PATTERN "*.cxx")
+string(REPLACE "," ";" STOREYS "${STOREYS}")
+foreach(storey ${STOREYS})
+  file(COPY "${FROM}/${storey}" DESTINATION "${TO}" FILES_MATCHING PATTERN "*.h" PATTERN "*.cxx")
 endforeach()
 
 file(READ "${FAULTS}" faults)

@@ -1,0 +1,74 @@
+#include "base/Affine.h"
+
+namespace fenestra {
+
+double Mat3::determinant() const {
+  const Mat3& m = *this;
+  const auto part = [&m](int a, int b, int c) {
+    return m(0, a) * (m(1, b) * m(2, c) - m(1, c) * m(2, b));
+  };
+  return part(0, 1, 2) - part(1, 0, 2) + part(2, 0, 1);
+}
+
+Mat3 Mat3::inverse() const {
+  const Mat3& m = *this;
+  const auto cofactor = [&m](int i, int j) {
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+    return m(i1, j1) * m(i2, j2) - m(i1, j2) * m(i2, j1);
+  };
+  const Vec3 first(cofactor(0, 0), cofactor(1, 0), cofactor(2, 0));
+  const double perDeterminant = 1.0 / first.dot(m.col(0));
+  const auto row = [&](int j) { return Vec3(cofactor(0, j), cofactor(1, j), cofactor(2, j)); };
+  return FromRows(row(0) * perDeterminant, row(1) * perDeterminant, row(2) * perDeterminant);
+}
+
+Vec3 Mat3::columnNorms() const {
+  return {col(0).norm(), col(1).norm(), col(2).norm()};
+}
+
+Vec3 Mat3::rowSums() const {
+  return col(0) + col(1) + col(2);
+}
+
+Mat3 Mat3::normalizedColumns() const {
+  return {col(0).normalized(), col(1).normalized(), col(2).normalized()};
+}
+
+Mat3 Mat3::cwiseAbs() const {
+  return {col(0).cwiseAbs(), col(1).cwiseAbs(), col(2).cwiseAbs()};
+}
+
+bool Mat3::allFinite() const {
+  return col(0).allFinite() && col(1).allFinite() && col(2).allFinite();
+}
+
+double Mat3::norm() const {
+  return std::sqrt(col(0).squaredNorm() + col(1).squaredNorm() + col(2).squaredNorm());
+}
+
+bool Mat3::isApprox(const Mat3& o, double relative) const {
+  return (*this - o).norm() <= relative * std::min(norm(), o.norm());
+}
+
+Affine Affine::inverse() const {
+  const Mat3 linear = m_linear.inverse();
+  return Affine(linear, -(linear * m_translation));
+}
+
+bool Affine::isApprox(const Affine& o, double relative) const {
+  const auto norm = [](const Mat3& m, const Vec3& v) { return std::hypot(m.norm(), v.norm()); };
+  return norm(m_linear - o.m_linear, m_translation - o.m_translation) <=
+         relative * std::min(norm(m_linear, m_translation), norm(o.m_linear, o.m_translation));
+}
+
+/// Rodrigues' formula.
+Affine rotationBy(double angle, const Vec3& axis) {
+  const Vec3 s = std::sin(angle) * axis, c = (1.0 - std::cos(angle)) * axis;
+  const double xy = c.x() * axis.y(), xz = c.x() * axis.z(), yz = c.y() * axis.z();
+  const Vec3 diagonal = c.cwiseProduct(axis) + Vec3::Constant(std::cos(angle));
+  return Affine(Mat3::FromRows({diagonal.x(), xy - s.z(), xz + s.y()},
+                               {xy + s.z(), diagonal.y(), yz - s.x()},
+                               {xz - s.y(), yz + s.x(), diagonal.z()}));
+}
+
+} // namespace fenestra

@@ -1,0 +1,31 @@
+#pragma once
+// Doubles as lanes read them.
+
+#include "base/Vector.h"
+
+#include <array>
+
+namespace fenestra {
+
+inline float narrow(double x) {
+  return static_cast<float>(x);
+}
+
+template <typename Triple>
+std::array<float, 3> narrow3(const Triple& v) {
+  return {narrow(v[0]), narrow(v[1]), narrow(v[2])};
+}
+
+/// The rows of an affine map, translation last.
+using AffineRows = std::array<std::array<float, 4>, 3>;
+
+inline AffineRows affineRows(const Affine& map) {
+  AffineRows rows;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j)
+      rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+          narrow(j < 3 ? map.linear()(i, j) : map.translation()[i]);
+  return rows;
+}
+
+} // namespace fenestra

@@ -1,0 +1,136 @@
+#pragma once
+// Headers that are lines of text at the front of a file, as of NRRD and MetaImage. For io's own
+// sources.
+
+#include "base/Error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace fenestra::header {
+
+inline constexpr std::size_t longestHeader = 16 << 20;
+
+inline std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+inline std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos)
+    return {};
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+inline std::vector<std::string_view> words(std::string_view text) {
+  std::vector<std::string_view> found;
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
+    found.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return found;
+}
+
+inline std::optional<std::int64_t> wholeNumber(std::string_view text) {
+  text = trimmed(text);
+  std::int64_t value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || end != text.data() + text.size())
+    return std::nullopt;
+  return value;
+}
+
+inline Error damaged(const std::filesystem::path& path, const std::string& format) {
+  return inputError(path.string(),
+                    "is not a " + format + " file, or its header is damaged; write it again");
+}
+
+/// Samples lie millimetres apart to everyone who reads them. Throws Error (input) where a field
+/// says another length; what is none, as a time, passes.
+inline void checkMillimetres(const std::filesystem::path& path, const std::string& field,
+                             const std::string& unit) {
+  static const std::set<std::string> others = {
+      "m",          "cm",          "dm",         "km",          "um",         "µm",
+      "μm",         "nm",          "in",         "ft",          "inch",       "inches",
+      "micron",     "microns",     "meter",      "meters",      "metre",      "metres",
+      "centimeter", "centimeters", "centimetre", "centimetres", "micrometer", "micrometers",
+      "micrometre", "micrometres", "foot",       "feet"};
+  if (others.contains(lower(unit)))
+    throw inputError(path.string(),
+                     field + ": \"" + unit + "\" is not read; scale the geometry to \"mm\"");
+}
+
+/// To libraries a zero byte or a lone \r ends a line, so that they would read another one than we
+/// do.
+inline bool hasControls(std::string_view line) {
+  return std::any_of(line.begin(), line.end(),
+                     [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
+}
+
+/// The text header at the front of a file, line by line; it may be followed by binary samples.
+class HeaderLines {
+public:
+  explicit HeaderLines(const std::filesystem::path& path) : m_file(path, std::ios::binary) {
+    std::error_code unknown; // of a pipe, say; then the size is the largest there is
+    m_limit = std::min<std::uint64_t>(std::filesystem::file_size(path, unknown), longestHeader);
+    m_text.reserve(m_limit); // lines stay where they are while more are read
+  }
+
+  /// The next line without its end; nothing where there is none that ends within the limit.
+  std::optional<std::string_view> next() {
+    const std::size_t end = endOfLine();
+    if (m_position >= m_text.size() || (end == std::string::npos && m_text.size() == longestHeader))
+      return std::nullopt;
+    std::string_view line(m_text);
+    line = line.substr(m_position, end == std::string::npos ? end : end - m_position);
+    m_position += line.size() + 1;
+    if (line.ends_with('\r'))
+      line.remove_suffix(1);
+    return line;
+  }
+
+  /// Of the byte after the lines read so far.
+  std::uint64_t position() const { return std::min(m_position, m_text.size()); }
+
+private:
+  /// Reads on until a line ends.
+  std::size_t endOfLine() {
+    for (std::size_t from = m_position;;) {
+      if (const std::size_t end = m_text.find('\n', from); end != std::string::npos)
+        return end;
+      from = m_text.size();
+      if (!readMore())
+        return std::string::npos;
+    }
+  }
+
+  /// False at the end of the file, or at the limit.
+  bool readMore() {
+    constexpr std::size_t block = 16 << 10;
+    const std::size_t before = m_text.size();
+    m_text.resize(std::min(before + block, m_limit));
+    m_file.read(m_text.data() + before, static_cast<std::streamsize>(m_text.size() - before));
+    m_text.resize(before + static_cast<std::size_t>(m_file.gcount()));
+    return m_text.size() > before;
+  }
+
+  std::ifstream m_file;
+  std::string m_text;
+  std::size_t m_limit = 0;
+  std::size_t m_position = 0;
+};
+
+} // namespace fenestra::header

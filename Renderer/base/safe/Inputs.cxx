@@ -1,0 +1,181 @@
+#include "base/safe/Inputs.h"
+
+#include "base/Error.h"
+#include "base/safe/SystemCalls.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+namespace fenestra {
+namespace {
+
+struct Ledger {
+  std::mutex mutex;
+  std::map<FileId, std::filesystem::path> inputs;
+  std::map<std::filesystem::path, FileId> results;
+};
+
+Ledger& ledger() {
+  static Ledger ledger;
+  return ledger;
+}
+
+void enter(const FileId& file, const std::filesystem::path& path) {
+  const std::lock_guard lock(ledger().mutex);
+  ledger().inputs.try_emplace(file, path);
+}
+
+bool isResult(const FileId& file) {
+  const std::lock_guard lock(ledger().mutex);
+  return std::any_of(ledger().results.begin(), ledger().results.end(),
+                     [&file](const auto& result) { return result.second == file; });
+}
+
+std::optional<FileId> idOf(int folder, const char* path, int flags) {
+  struct statx status = {};
+  if (::statx(folder, path, flags, STATX_INO | STATX_BTIME, &status) != 0)
+    return std::nullopt;
+  const bool isBorn = (status.stx_mask & STATX_BTIME) != 0;
+  return FileId{std::uint64_t{status.stx_dev_major} << 32 | status.stx_dev_minor, status.stx_ino,
+                isBorn ? std::int64_t{status.stx_btime.tv_sec} * 1'000'000'000 +
+                             status.stx_btime.tv_nsec
+                       : 0};
+}
+
+/// A canonical folder; none: anywhere. (A pointer: a thread's object with a destructor ends the
+/// process where there is no memory for it.)
+thread_local const std::filesystem::path* confinement = nullptr;
+
+bool isWithin(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  std::error_code failed;
+  const std::filesystem::path real = std::filesystem::canonical(path, failed);
+  return !failed && std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first ==
+                        folder.end();
+}
+
+std::filesystem::file_type typeOf(const std::filesystem::path& path) {
+  std::error_code failed;
+  const std::filesystem::file_type type = std::filesystem::status(path, failed).type();
+  if (type == std::filesystem::file_type::none)
+    throw readingError(path, failed.value(), "check the permissions of its folder");
+  return type;
+}
+
+/// The system would take such a name for the one that ends before its zero byte.
+bool hasZeroByte(const std::filesystem::path& path) {
+  return path.native().find('\0') != std::string::npos;
+}
+
+std::string megabytes(std::uint64_t bytes) {
+  return std::to_string(bytes >> 20) + " MB";
+}
+
+} // namespace
+
+std::optional<FileId> fileId(const std::filesystem::path& path) {
+  return idOf(AT_FDCWD, path.c_str(), 0);
+}
+
+std::optional<FileId> fileId(int descriptor) {
+  return idOf(descriptor, "", AT_EMPTY_PATH);
+}
+
+bool isThere(const std::filesystem::path& path) {
+  return typeOf(path) != std::filesystem::file_type::not_found;
+}
+
+bool isFolder(const std::filesystem::path& path) {
+  return typeOf(path) == std::filesystem::file_type::directory;
+}
+
+void requireFile(const std::filesystem::path& path, const std::string& mend, std::uint64_t most) {
+  if (hasZeroByte(path))
+    throw inputError(path.c_str(),
+                     "is followed by a zero byte, which no name holds; write it again");
+  // Before it is looked at: a name on an automount or a server would tell others of itself.
+  if (confinement && !isWithin(path, *confinement))
+    throw inputError(path.string(),
+                     "is outside the archive that names it, or not in it; save the scene again");
+  struct stat status = {};
+  if (::stat(path.c_str(), &status) != 0) {
+    if (errno == ENOENT || errno == ENOTDIR)
+      throw inputError(path.string(), "there is no such file; check the name");
+    throw readingError(path, errno, "check its permissions and those of its folder");
+  }
+  if (S_ISDIR(status.st_mode))
+    throw inputError(path.string(), "is a folder; " + mend);
+  if (!S_ISREG(status.st_mode))
+    throw inputError(path.string(), "is not a file that can be read; " + mend);
+  if (static_cast<std::uint64_t>(status.st_size) > most)
+    throw inputError(path.string(), "has more than " + megabytes(most) + "; name a smaller file");
+  if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
+    throw readingError(path, errno, "check its permissions");
+  const std::optional<FileId> file = fileId(path);
+  if (file && isResult(*file))
+    throw inputError(path.string(), "is a result of this command; name another file");
+  if (file)
+    enter(*file, path);
+}
+
+void expectInput(const std::filesystem::path& path) {
+  const auto enterFile = [](const std::filesystem::path& file) {
+    if (const std::optional<FileId> id = fileId(file))
+      enter(*id, file);
+  };
+  if (hasZeroByte(path))
+    return;
+  std::error_code failed;
+  const auto type = std::filesystem::status(path, failed).type();
+  if (type == std::filesystem::file_type::regular)
+    enterFile(path);
+  else if (type == std::filesystem::file_type::directory)
+    for (std::filesystem::directory_iterator entry(path, failed), end; !failed && entry != end;
+         entry.increment(failed))
+      if (entry->is_regular_file(failed))
+        enterFile(entry->path());
+}
+
+InputsWithin::InputsWithin(const std::filesystem::path& folder)
+    : m_folder(std::filesystem::canonical(folder)),
+      m_before(std::exchange(confinement, &m_folder)) {}
+
+InputsWithin::~InputsWithin() {
+  confinement = m_before;
+}
+
+std::optional<std::filesystem::path> inputNamed(const FileId& file) {
+  const std::lock_guard lock(ledger().mutex);
+  const auto found = ledger().inputs.find(file);
+  return found == ledger().inputs.end() ? std::nullopt : std::optional(found->second);
+}
+
+void forgetInput(const FileId& file) {
+  const std::lock_guard lock(ledger().mutex);
+  ledger().inputs.erase(file);
+}
+
+void enterResult(const std::filesystem::path& path) {
+  const std::lock_guard lock(ledger().mutex);
+  if (const auto file = fileId(path))
+    ledger().results[path] = *file;
+}
+
+void forgetResult(const std::filesystem::path& path) {
+  const std::lock_guard lock(ledger().mutex);
+  ledger().results.erase(path);
+}
+
+std::string lowerExtension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+} // namespace fenestra

@@ -1,0 +1,149 @@
+#include "base/safe/JsonNode.h"
+
+#include "base/safe/Inputs.h"
+#include "base/safe/ShownText.h"
+#include "base/safe/SystemCalls.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+
+namespace fenestra {
+namespace {
+
+constexpr int deepest = 64;
+
+std::string shortNumber(double x) {
+  std::string text = nlohmann::json(x).dump();
+  return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
+}
+
+} // namespace
+
+std::string readText(const std::filesystem::path& path, std::uint64_t most) {
+  requireFile(path, "name a file in it", most);
+  std::string text(static_cast<std::size_t>(std::filesystem::file_size(path)), '\0');
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(text.data(), static_cast<std::streamsize>(text.size())))
+    throw readingError(path, errno, "check its permissions");
+  return text;
+}
+
+nlohmann::json parseJson(std::string_view text, const std::string& source, int mostParts) {
+  using Event = nlohmann::json::parse_event_t;
+  int parts = 0;
+  const auto count = [&](int depth, Event event, const nlohmann::json&) {
+    const bool opens = event == Event::object_start || event == Event::array_start;
+    if (opens && depth >= deepest)
+      throw inputError(source, "nests more than " + std::to_string(deepest) +
+                                   " brackets; it is not a file of ours");
+    if ((opens || event == Event::key || event == Event::value) && ++parts > mostParts)
+      throw inputError(source, "holds more than " + std::to_string(mostParts) +
+                                   " values; it is not a file of ours");
+    return true;
+  };
+  try {
+    return nlohmann::json::parse(text, count);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw inputError(source, "is not JSON at byte " + std::to_string(error.byte) +
+                                 "; check its brackets, commas and quotes");
+  } catch (const nlohmann::json::exception&) {
+    throw inputError(source, "holds a number that is too large; write a smaller one");
+  }
+}
+
+Error JsonNode::error(const std::string& mend) const {
+  return inputError(m_source, m_place.empty() ? mend : m_place + ": " + mend);
+}
+
+bool JsonNode::boolean() const {
+  if (!m_value->is_boolean())
+    throw error("must be true or false");
+  return m_value->get<bool>();
+}
+
+std::string JsonNode::text() const {
+  if (!m_value->is_string())
+    throw error("must be a string");
+  return m_value->get<std::string>();
+}
+
+double JsonNode::number() const {
+  if (!m_value->is_number())
+    throw error("must be a number");
+  return m_value->get<double>();
+}
+
+double JsonNode::numberIn(double low, double high) const {
+  const double x = number();
+  if (!(x >= low && x <= high))
+    throw error("is " + shortNumber(x) + "; it must be from " + shortNumber(low) + " to " +
+                shortNumber(high));
+  return x;
+}
+
+std::vector<double> JsonNode::numbers(std::size_t count, double low, double high) const {
+  if (m_value->is_array() && m_value->size() != count)
+    throw error("must have " + std::to_string(count) + " numbers, not " +
+                std::to_string(m_value->size()));
+  std::vector<double> result;
+  for (const JsonNode& node : elements())
+    result.push_back(node.numberIn(low, high));
+  return result;
+}
+
+std::vector<JsonNode> JsonNode::elements() const {
+  if (!m_value->is_array())
+    throw error("must be an array");
+  std::vector<JsonNode> nodes;
+  for (const nlohmann::json& value : *m_value)
+    nodes.push_back({value, m_source, m_place + "[" + std::to_string(nodes.size()) + "]"});
+  return nodes;
+}
+
+std::optional<JsonNode> JsonNode::find(const std::string& key) const {
+  if (!m_value->is_object())
+    throw error("must be an object, {…}");
+  const auto it = m_value->find(key);
+  if (it == m_value->end())
+    return std::nullopt;
+  return JsonNode(*it, m_source, m_place.empty() ? key : m_place + "." + key);
+}
+
+JsonNode JsonNode::at(const std::string& key) const {
+  const auto node = find(key);
+  if (!node)
+    throw error("has no \"" + key + "\"; add it");
+  return *node;
+}
+
+std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
+  if (!m_value->is_object())
+    throw error("must be an object, {…}");
+  std::vector<std::pair<std::string, JsonNode>> nodes;
+  for (const auto& [key, value] : m_value->items())
+    nodes.emplace_back(
+        key, JsonNode(value, m_source, (m_place.empty() ? "" : m_place + ".") + shown(key)));
+  return nodes;
+}
+
+std::string JsonNode::json() const {
+  return m_value->dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {
+  if (!m_value->is_object())
+    throw error("must be an object, {…}");
+  for (const auto& [key, value] : m_value->items())
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+      std::string known;
+      for (const std::string_view k : keys)
+        known += (known.empty() ? "" : ", ") + std::string(k);
+      const std::string shown =
+          nlohmann::json(key).dump(-1, ' ', true); // one line, whatever it holds
+      throw error("unknown key " + shown.substr(0, 80) + "; known ones are " + known);
+    }
+}
+
+} // namespace fenestra

@@ -1,0 +1,252 @@
+#include "base/safe/NrrdHeader.h"
+
+#include "base/safe/HeaderText.h"
+#include "base/safe/NumberText.h"
+
+#include <cmath>
+#include <tuple>
+
+namespace fenestra {
+
+using namespace header;
+
+namespace {
+
+/// Lines of a header, with those of its list of files: teem compares each key with all before it.
+constexpr int mostLines = 10'000;
+/// Bytes of a line or a path that teem may repeat in a message, for which it has 1024.
+constexpr std::size_t longestLine = 500, longestPath = 900;
+
+using Fields = std::map<std::string, std::string>;
+
+/// ITK keeps sizes in 32 bits and hands teem a buffer of those; teem has room for 16 axes, and
+/// writes one more where there are too many sizes.
+void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
+  const auto dimension = fields.find("dimension");
+  const auto axes = dimension == fields.end() ? std::nullopt : wholeNumber(dimension->second);
+  if (!axes || *axes < 1 || *axes > 10)
+    throw inputError(path.string(), "dimension: must be a whole number from 1 to 10");
+  const auto it = fields.find("sizes");
+  if (it == fields.end())
+    throw damaged(path, "NRRD");
+  for (const std::string_view word : words(it->second)) {
+    const auto size = wholeNumber(word);
+    if (!size || *size < 1 || *size > INT32_MAX)
+      throw inputError(path.string(), "sizes: each must be a whole number from 1 to 2147483647");
+  }
+}
+
+/// Of the vectors in parentheses; nothing where one is none.
+std::optional<std::vector<double>> vectorLengths(const std::string& text) {
+  std::vector<double> lengths;
+  for (std::size_t open = text.find('('); open != std::string::npos;
+       open = text.find('(', open + 1)) {
+    const std::size_t close = text.find(')', open);
+    if (close == std::string::npos)
+      return std::nullopt;
+    std::string inside = text.substr(open + 1, close - open - 1);
+    std::replace(inside.begin(), inside.end(), ',', ' ');
+    std::erase(inside, '+');
+    const auto numbers = parseNumbers(inside);
+    if (!numbers)
+      return std::nullopt;
+    double squares = 0.0;
+    for (const double number : *numbers)
+      squares += number * number;
+    lengths.push_back(std::sqrt(squares));
+  }
+  return lengths;
+}
+
+/// Those that to ITK lie in space: all that hold no list, vector or colour.
+std::size_t placedAxes(const Fields& fields) {
+  const auto kinds = fields.find("kinds");
+  if (kinds == fields.end())
+    return words(fields.at("sizes")).size();
+  std::size_t placed = 0;
+  for (const std::string_view kind : words(kinds->second))
+    for (const char* known : {"domain", "space", "time", "???", "none"})
+      placed += lower(std::string(kind)) == known;
+  return placed;
+}
+
+/// ITK takes those that are missing to be of 1 mm.
+void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields,
+                      const std::string& text) {
+  const auto lengths = vectorLengths(text);
+  constexpr double largest = 1e9; // mm, as of any spacing
+  const auto isUsable = [](double length) { return length >= 1.0 / largest && length <= largest; };
+  if (!lengths || !std::all_of(lengths->begin(), lengths->end(), isUsable))
+    throw inputError(path.string(), "space directions: each must be a vector of 1e-9 to 1e9 mm, or "
+                                    "none; mend the header");
+  if (!lengths->empty() && lengths->size() < std::min<std::size_t>(placedAxes(fields), 3))
+    throw inputError(path.string(), "space directions: has " + std::to_string(lengths->size()) +
+                                        " vectors; write one for each axis in space");
+}
+
+/// Each text in quotes.
+void checkNrrdUnits(const std::filesystem::path& path, const std::string& field,
+                    const std::string& text) {
+  for (std::size_t open = text.find('"'); open != std::string::npos;) {
+    const std::size_t close = text.find('"', open + 1);
+    if (close == std::string::npos)
+      return;
+    checkMillimetres(path, field, text.substr(open + 1, close - open - 1));
+    open = text.find('"', close + 1);
+  }
+}
+
+bool isBesideSpace(const Fields& fields) {
+  return fields.contains("space") || fields.contains("spacedimension");
+}
+
+/// Where along its axes the samples lie: beside a space teem wants them in its directions, and
+/// without spacings ITK takes mins, and 1 mm.
+void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
+  for (const auto& [key, name, mend] :
+       {std::tuple("spacings", "spacings", "write space directions"),
+        {"axismins", "axis mins", "write space directions and space origin"},
+        {"axismaxs", "axis maxs", "write space directions and space origin"},
+        {"units", "units", "write space units"}})
+    if (fields.contains(key) && isBesideSpace(fields))
+      throw inputError(path.string(), std::string(name) + ": are not read beside a space; " + mend);
+  for (const auto& [key, name] : {std::pair("axismins", "axis mins"), {"axismaxs", "axis maxs"}})
+    if (fields.contains(key) && !fields.contains("spacings"))
+      throw inputError(path.string(), std::string(name) +
+                                          ": has no spacings with it; write them, or a space with "
+                                          "its directions and origin");
+}
+
+void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
+  const auto space = fields.find("space");
+  const std::string name = space == fields.end() ? std::string() : lower(space->second);
+  const bool hasTime = name.ends_with("-time") || name.ends_with("st"); // RAST and its like
+  if (name.empty() || hasTime)
+    return;
+  if (const std::size_t placed = placedAxes(fields); placed > 3)
+    throw inputError(path.string(), "kinds: " + std::to_string(placed) +
+                                        " axes do not lie in a space of three; extract one frame");
+}
+
+/// Without a number ITK silently takes its default.
+void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
+  for (const auto& [key, name] : {std::pair("spacedirections", "space directions"),
+                                  {"spaceorigin", "space origin"},
+                                  {"spacings", "spacings"}})
+    if (const auto it = fields.find(key);
+        it != fields.end() && lower(it->second).find("nan") != std::string::npos)
+      throw inputError(path.string(), std::string(name) + ": is not a number; mend the header");
+  if (const auto it = fields.find("spacedirections"); it != fields.end())
+    checkNrrdVectors(path, fields, it->second);
+  checkNrrdAxes(path, fields);
+  checkNrrdKinds(path, fields);
+  for (const auto& [key, name] : {std::pair("spaceunits", "space units"), {"units", "units"}})
+    if (const auto it = fields.find(key); it != fields.end())
+      checkNrrdUnits(path, name, it->second);
+}
+
+/// The lines of an NRRD header: whatever teem makes of one, its messages hold it.
+class NrrdLines {
+public:
+  explicit NrrdLines(const std::filesystem::path& path) : m_path(path), m_lines(path) {}
+
+  std::optional<std::string_view> next() {
+    const auto line = m_lines.next();
+    if (!line)
+      return std::nullopt;
+    if (++m_count > mostLines)
+      throw inputError(m_path.string(), "header: has more than " + std::to_string(mostLines) +
+                                            " lines; remove some of its key:=value lines");
+    if (hasControls(*line))
+      throw damaged(m_path, "NRRD");
+    if (line->size() > longestLine && !isKeyValue(*line))
+      throw inputError(m_path.string(), "header: line " + std::to_string(m_count) +
+                                            " has more than " + std::to_string(longestLine) +
+                                            " bytes and is no key:=value; shorten it");
+    return line;
+  }
+
+  /// Text of the application's own, of any length. As to teem, a field's ": " comes first.
+  static bool isKeyValue(std::string_view line) {
+    return line.substr(0, line.find(": ")).find(":=") != std::string_view::npos;
+  }
+
+  /// Of the byte after the lines read so far.
+  std::uint64_t position() const { return m_lines.position(); }
+
+private:
+  const std::filesystem::path& m_path;
+  HeaderLines m_lines;
+  int m_count = 0;
+};
+
+Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
+  const auto magic = lines.next();
+  if (!magic || !magic->starts_with("NRRD000") || magic->size() != 8)
+    throw damaged(path, "NRRD");
+  Fields fields;
+  for (auto line = lines.next(); line && !line->empty(); line = lines.next()) {
+    const std::size_t colon = line->find(": ");
+    if (colon == std::string_view::npos || line->starts_with('#') || NrrdLines::isKeyValue(*line))
+      continue;
+    std::string key = lower(std::string(line->substr(0, colon)));
+    std::erase(key, ' ');
+    const auto [field, isNew] = fields.emplace(key, trimmed(line->substr(colon + 2)));
+    if (!isNew) // whichever of them teem takes
+      throw inputError(path.string(), key.substr(0, 40) + ": is there twice; remove one");
+    if (key == "datafile" && field->second.starts_with("LIST"))
+      break; // the file names follow
+  }
+  return fields;
+}
+
+} // namespace
+
+void checkNrrdPath(const std::filesystem::path& path) {
+  if (path.string().size() > longestPath)
+    throw inputError(path.string(), "has a path of more than " + std::to_string(longestPath) +
+                                        " bytes; move it to a folder with a shorter one");
+}
+
+/// Teem reads each number as a text into 1024 bytes, however long it is.
+void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
+                      const std::filesystem::path& header) {
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(offset));
+  std::vector<char> block(1 << 20);
+  std::size_t length = 0; // of the number so far
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
+    for (const char c : std::string_view(block.data(), static_cast<std::size_t>(file.gcount()))) {
+      length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
+      if (length > longestLine)
+        throw inputError(header.string(), "has a number of more than " +
+                                              std::to_string(longestLine) +
+                                              " characters among its samples; write it again");
+    }
+}
+
+bool saysSpacing(const NrrdHeaderText& header) {
+  const auto directions = header.fields.find("spacedirections");
+  return header.fields.contains("spacings") ||
+         (directions != header.fields.end() && directions->second.find('(') != std::string::npos);
+}
+
+NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
+  checkNrrdPath(path);
+  NrrdLines lines(path);
+  NrrdHeaderText header;
+  header.fields = readNrrdFields(path, lines);
+  checkNrrdSizes(path, header.fields);
+  checkNrrdGeometry(path, header.fields);
+  header.end = lines.position();
+  if (const auto data = header.fields.find("datafile");
+      data != header.fields.end() && data->second.starts_with("LIST"))
+    for (auto line = lines.next(); line; line = lines.next()) {
+      if (trimmed(*line).empty()) // to teem the name of a file
+        throw inputError(path.string(), "data file: its LIST has an empty line; remove that");
+      header.files.emplace_back(trimmed(*line));
+    }
+  return header;
+}
+
+} // namespace fenestra

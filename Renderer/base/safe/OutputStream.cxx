@@ -1,0 +1,75 @@
+#include "base/safe/OutputStream.h"
+
+#include "base/Error.h"
+#include "base/safe/SystemCalls.h"
+
+#include <charconv>
+#include <cstdio>
+#include <fcntl.h>
+#include <iostream>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+namespace fenestra {
+namespace {
+
+/// The number in /dev/fd/N and its like.
+std::optional<int> descriptorNumber(const std::string& path) {
+  if (path == "/dev/stdout")
+    return STDOUT_FILENO;
+  if (path == "/dev/stderr")
+    return STDERR_FILENO;
+  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    int number = -1;
+    const char* const end = path.data() + path.size();
+    if (path.starts_with(folder) &&
+        std::from_chars(path.data() + folder.size(), end, number).ptr == end && number >= 0)
+      return number;
+  }
+  return std::nullopt;
+}
+
+} // namespace
+
+std::optional<OutputStream> OutputStream::named(const std::filesystem::path& path) {
+  if (const auto number = descriptorNumber(path.lexically_normal().string())) {
+    const int flags = ::fcntl(*number, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
+      throw outputError(path.string(), "is not open for writing; redirect it, as in 3>FILE");
+    return OutputStream(path, *number);
+  }
+  struct stat status = {};
+  if (::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))
+    return OutputStream(path, -1);
+  return std::nullopt;
+}
+
+std::optional<FileId> OutputStream::id() const {
+  return m_descriptor < 0 ? fileId(m_path) : fileId(m_descriptor);
+}
+
+void OutputStream::send() {
+  if (m_content.empty())
+    return;
+  const std::string content = std::exchange(m_content, {});
+  if (m_descriptor >= 0) {
+    std::cout.flush(); // what was said before comes before
+    std::fflush(stdout);
+    return writeAll(m_descriptor, content, m_path);
+  }
+  // Without a reader opening would wait for ever.
+  const int file = ::open(m_path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0)
+    throw outputError(m_path.string(), "nobody reads this pipe; start its reader first");
+  ::fcntl(file, F_SETFL, 0);
+  try {
+    writeAll(file, content, m_path);
+  } catch (const Error&) {
+    ::close(file);
+    throw;
+  }
+  ::close(file);
+}
+
+} // namespace fenestra

@@ -1,0 +1,235 @@
+#include "base/safe/Outputs.h"
+
+#include "base/Error.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/Locks.h"
+#include "base/safe/OutputStream.h"
+#include "base/safe/SystemCalls.h"
+#include "base/safe/TemporaryFile.h"
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <set>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::atomic<bool> anyIsPlaced = false;
+
+/// Where writing to `path` writes: links are followed, into nothing as well. Its folder is
+/// canonical, so that one file has one name. Throws Error (output).
+fs::path targetOf(const fs::path& path) {
+  constexpr int mostLinks = 40; // Linux's own limit
+  std::error_code failed;
+  fs::path target = fs::absolute(path, failed);
+  if (failed)
+    throw writingError(path, failed.value());
+  for (int links = 0; fs::is_symlink(target, failed) && links < mostLinks; ++links)
+    target = target.parent_path() / fs::read_symlink(target);
+  const fs::path folder = fs::canonical(target.parent_path(), failed);
+  if (failed)
+    throw writingError(path, failed.value());
+  return folder / target.filename();
+}
+
+/// Whether this process could not rename over the file: in a sticky folder, as /tmp, only the
+/// owners of the file and of the folder may (rename(2), EPERM).
+bool isKeptByItsOwner(const struct stat& file, const fs::path& folder) {
+  struct stat status = {};
+  const uid_t user = ::geteuid();
+  return ::stat(folder.c_str(), &status) == 0 && (status.st_mode & S_ISVTX) != 0 && user != 0 &&
+         user != file.st_uid && user != status.st_uid;
+}
+
+void requireReplaceable(const fs::path& path, const fs::path& target) {
+  struct stat status = {};
+  if (!target.has_filename())
+    throw outputError(path.string(), "is a folder; name a file");
+  if (::lstat(target.c_str(), &status) != 0) {
+    if (errno != ENOENT)
+      throw writingError(path, errno);
+    return;
+  }
+  if (!S_ISREG(status.st_mode))
+    throw outputError(path.string(), "is a folder or a device; name a file");
+  if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
+    throw outputError(path.string(), "is write-protected; choose another name, or chmod u+w it");
+  if (isKeptByItsOwner(status, target.parent_path()))
+    throw outputError(path.string(), "belongs to somebody else, in a folder where only owners may "
+                                     "replace files; choose another name or folder");
+}
+
+void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {
+  if (const auto input = file ? inputNamed(*file) : std::nullopt)
+    throw usageError(path.string() + ": would replace an input file" +
+                     (*input == path ? "" : " (" + input->string() + ")") +
+                     "; choose another name");
+}
+
+Error writtenTwice(const fs::path& path) {
+  return usageError(path.string() + ": would be written twice; give each result a name of its own");
+}
+
+void syncFolder(const fs::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // A folder that may be written and not read keeps its names when it likes.
+  const bool isSynced = file >= 0 ? ::fsync(file) == 0 || errno == EINVAL : errno == EACCES;
+  const int code = errno;
+  if (file >= 0)
+    ::close(file);
+  if (!isSynced)
+    throw writingError(folder, code);
+}
+
+} // namespace
+
+ContentState stateOf(std::string_view content) {
+  return {content.size(), std::hash<std::string_view>()(content)};
+}
+
+bool resultsWerePlaced() {
+  return anyIsPlaced;
+}
+
+struct Outputs::Result {
+  fs::path named;
+  std::optional<OutputStream> stream;  ///< instead of a file
+  fs::path target;                     ///< of a file
+  std::unique_ptr<TemporaryFile> file; ///< written and not yet in place
+
+  IsOurs isOurs; ///< empty where the user named it
+  std::optional<ContentState> written;
+
+  std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
+  void requireOurs() const {
+    std::error_code failed;
+    // An empty file holds nothing of anybody's.
+    if (isOurs && fs::exists(target, failed) && !fs::is_empty(target, failed) && !isOurs(target))
+      throw usageError(named.string() + ": is there, and Fenestra did not write it; move it away, "
+                                        "or choose another --output");
+  }
+};
+
+Outputs::Outputs() = default;
+
+Outputs::~Outputs() {
+  for (const auto& [path, result] : m_results)
+    forgetResult(result->target);
+}
+
+Outputs::Result& Outputs::declare(const fs::path& path) {
+  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}, {}, {}});
+  if (!result->stream) {
+    result->target = targetOf(path);
+    requireReplaceable(path, result->target);
+    if (isTemporaryName(result->target.filename().string(), temporaryFilePrefix))
+      throw usageError(path.string() + ": is a name for Fenestra's temporary files, which the next "
+                                       "run removes; choose another");
+  }
+  requireNoInput(path, result->id());
+  const std::optional<FileId> id = result->id();
+  const std::optional<FileId> parent = fileId(result->target.parent_path());
+  if ((parent && !m_targets.emplace(*parent, result->target.filename().string()).second) ||
+      (id && !m_files.insert(*id).second))
+    throw writtenTwice(path);
+  if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
+    removeAbandonedFiles(result->target.parent_path());
+    requireRoomFor(result->target);
+  }
+  return *(m_results[path] = std::move(result));
+}
+
+void Outputs::add(const fs::path& path) {
+  declare(path);
+}
+
+void Outputs::addUnnamed(const fs::path& path, const IsOurs& isOurs) {
+  Result& result = declare(path);
+  result.isOurs = isOurs;
+  result.requireOurs();
+}
+
+void Outputs::checkInputs() const {
+  for (const auto& [path, result] : m_results)
+    requireNoInput(path, result->id());
+}
+
+void Outputs::forgetRefused() const {
+  for (const auto& [path, result] : m_results)
+    if (const auto file = result->id())
+      forgetInput(*file);
+}
+
+void Outputs::write(const fs::path& path, std::string_view content) {
+  Result& result = *m_results.at(path);
+  result.written = stateOf(content);
+  if (result.stream) {
+    result.stream->keep(content);
+    return;
+  }
+  result.file = std::make_unique<TemporaryFile>(result.target);
+  result.file->write(content);
+}
+
+std::optional<ContentState> Outputs::written(const fs::path& path) const {
+  return m_results.at(path)->written;
+}
+
+void Outputs::place(const std::vector<Result*>& files, Durability durability) {
+  std::set<fs::path> folders;
+  for (const Result* result : files)
+    folders.insert(result->target.parent_path());
+  std::optional<FolderLocks> locks(folders);
+  const Uninterrupted replacing;
+  std::size_t placed = 0;
+  std::set<FileId> taken; // by results of this commit: names may be one where a disk ignores case
+  try {
+    for (Result* result : files) {
+      const std::optional<FileId> before = result->id();
+      requireNoInput(result->named, before);
+      if (before && taken.contains(*before))
+        throw writtenTwice(result->named);
+      requireReplaceable(result->named, result->target);
+      result->requireOurs();
+      result->file->place();
+      ++placed;
+      if (const auto after = result->id())
+        taken.insert(*after);
+      enterResult(result->target);
+    }
+  } catch (...) {
+    while (placed > 0)
+      files[--placed]->file->takeBack();
+    throw;
+  }
+  anyIsPlaced = anyIsPlaced || placed > 0;
+  locks.reset();
+  for (Result* result : files)
+    result->file.reset();
+  if (durability == Durability::synced)
+    std::for_each(folders.begin(), folders.end(), syncFolder);
+}
+
+void Outputs::commit(Durability durability) {
+  const auto sync =
+      durability == Durability::synced ? TemporaryFile::Sync::disk : TemporaryFile::Sync::none;
+  std::vector<Result*> files;
+  for (const auto& [path, result] : m_results)
+    if (result->file) {
+      result->file->finish(sync);
+      files.push_back(result.get());
+    }
+  place(files, durability);
+  for (const auto& [path, result] : m_results)
+    if (result->stream)
+      result->stream->send();
+}
+
+} // namespace fenestra

@@ -1,0 +1,177 @@
+#include "base/safe/TemporaryFile.h"
+
+#include "base/safe/SystemCalls.h"
+
+#include <array>
+#include <cstdio>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/xattr.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+std::filesystem::path shortNameBeside(const std::filesystem::path& target) {
+  return target.parent_path() / temporaryName(temporaryFilePrefix);
+}
+
+/// Rights of a new file: what umask leaves. Asked before there are threads.
+const mode_t usualMode = [] {
+  const mode_t mask = ::umask(077);
+  ::umask(mask);
+  return 0666 & ~mask;
+}();
+
+/// Rights beyond the mode, where the disk has some (acl(5)): given to `to` as `from` has them.
+/// False where they cannot be.
+bool copyAccessList(const std::filesystem::path& from, int to) {
+  constexpr const char* attribute = "system.posix_acl_access";
+  std::array<char, 4096> list;
+  const ssize_t size = ::lgetxattr(from.c_str(), attribute, list.data(), list.size());
+  if (size < 0)
+    return errno == ENODATA || errno == ENOTSUP;
+  return ::fsetxattr(to, attribute, list.data(), static_cast<std::size_t>(size), 0) == 0;
+}
+
+/// Others' rights stay what they were: where the group is another one, it gets those of others.
+mode_t keptMode(const struct stat& before, bool isOfItsGroup) {
+  const mode_t mode = before.st_mode & 0777;
+  const mode_t groupAsOthers = (mode & 07) << 3;
+  return isOfItsGroup ? mode : (mode & ~mode_t{070}) | (mode & groupAsOthers);
+}
+
+} // namespace
+
+TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(target) {
+  open();
+  if (m_file < 0)
+    throw writingError(m_target, errno);
+  if (const auto file = fileId(m_file)) // on a disk that tells no births
+    forgetInput(*file);
+}
+
+/// Locked after it is made: where a later run took it for abandoned in between, it has no name any
+/// more, and another one is made.
+void TemporaryFile::open() {
+  for (;;) {
+    const Uninterrupted making;
+    m_name.emplace(shortNameBeside(m_target), Leftover::Kind::file);
+    m_file = repeated([this] {
+      return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    });
+    if (m_file < 0 && errno == EEXIST) {
+      m_name->keep(); // somebody else's
+      continue;
+    }
+    if (m_file < 0)
+      return;
+    const bool isTaken = ::flock(m_file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat status = {};
+    if (!isTaken && (::fstat(m_file, &status) != 0 || status.st_nlink > 0))
+      return;
+    ::close(m_file);
+  }
+}
+
+TemporaryFile::~TemporaryFile() {
+  m_before.reset(); // names go before their locks
+  m_name.reset();
+  for (const int file : {m_file, m_replaced})
+    if (file >= 0)
+      ::close(file);
+}
+
+void TemporaryFile::write(std::string_view content) {
+  writeAll(m_file, content, m_target);
+}
+
+void TemporaryFile::finish(Sync sync) {
+  mode_t mode = usualMode;
+  struct stat before = {};
+  const bool isThere = ::lstat(m_target.c_str(), &before) == 0;
+  if (isThere) {
+    const bool isOwned = ::fchown(m_file, before.st_uid, before.st_gid) == 0;
+    const bool isOfItsGroup = isOwned || ::fchown(m_file, uid_t(-1), before.st_gid) == 0;
+    mode = keptMode(before, isOfItsGroup);
+  }
+  if (repeated([&] { return ::fchmod(m_file, mode); }) != 0)
+    throw writingError(m_target, errno);
+  const mode_t ownersAlone = mode & 0700; // an access list that is lost was the group's bits
+  if (isThere && !copyAccessList(m_target, m_file) && ::fchmod(m_file, ownersAlone) != 0)
+    throw writingError(m_target, errno);
+  if (sync == Sync::disk && repeated([&] { return ::fsync(m_file); }) != 0 && errno != EINVAL)
+    throw writingError(m_target, errno);
+}
+
+void TemporaryFile::place() {
+  const char* const name = m_name->path().c_str();
+  const char* const target = m_target.c_str();
+  m_replaced = ::open(target, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (m_replaced >= 0) // where it can be read, other runs must not take it for abandoned
+    ::flock(m_replaced, LOCK_SH | LOCK_NB);
+  const auto rename = [&](unsigned flags) {
+    return repeated([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
+  };
+  if (rename(RENAME_NOREPLACE))
+    m_placed = Placed::fresh;
+  else if (errno == EEXIST && rename(RENAME_EXCHANGE))
+    m_placed = Placed::exchanged;
+  else if (errno == EINVAL || errno == ENOSYS)
+    placeByLink();
+  else
+    throw writingError(m_target, errno);
+}
+
+/// For disks that cannot exchange names. Where they have no links either, there is nothing to take
+/// back to.
+void TemporaryFile::placeByLink() {
+  m_before.emplace(shortNameBeside(m_target), Leftover::Kind::file);
+  const bool isKept = ::link(m_target.c_str(), m_before->path().c_str()) == 0;
+  const bool isFresh = !isKept && errno == ENOENT;
+  if (repeated([&] { return ::rename(m_name->path().c_str(), m_target.c_str()); }) != 0)
+    throw writingError(m_target, errno);
+  m_placed = isFresh ? Placed::fresh : isKept ? Placed::linked : Placed::no;
+}
+
+/// Another run may have placed a result of the same name since.
+bool TemporaryFile::isPlaced() const {
+  return fileId(m_target) == fileId(m_file);
+}
+
+void TemporaryFile::takeBack() noexcept {
+  if (!isPlaced())
+    m_placed = Placed::no;
+  const char* const name = m_name->path().c_str();
+  const char* const target = m_target.c_str();
+  const auto again = [](auto&& call) { // a failure may pass: once more
+    if (call() != 0)
+      static_cast<void>(call());
+  };
+  if (m_placed == Placed::exchanged)
+    again([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, RENAME_EXCHANGE); });
+  else if (m_placed == Placed::fresh)
+    again([&] { return ::unlink(target); });
+  else if (m_placed == Placed::linked)
+    again([&] { return ::rename(m_before->path().c_str(), target); });
+  m_placed = Placed::no;
+}
+
+void removeAbandonedFiles(const std::filesystem::path& folder) {
+  forTemporaryNames(folder, temporaryFilePrefix, [](const std::filesystem::path& path) {
+    const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    struct stat status = {};
+    if (file >= 0 && ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) &&
+        status.st_uid == ::geteuid() && ::flock(file, LOCK_EX | LOCK_NB) == 0)
+      ::unlink(path.c_str());
+    if (file >= 0)
+      ::close(file);
+  });
+}
+
+void requireRoomFor(const std::filesystem::path& target) {
+  const TemporaryFile probe(target);
+}
+
+} // namespace fenestra

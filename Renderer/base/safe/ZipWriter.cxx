@@ -1,0 +1,81 @@
+#include "base/safe/ZipWriter.h"
+
+#include "base/Error.h"
+
+#include <zip.h>
+
+#include <memory>
+
+namespace fenestra {
+
+namespace {
+
+constexpr zip_uint16_t dosTime = 0, dosDate = 0x21;   ///< 1980-01-01, the format's first day
+constexpr zip_uint32_t readableFile = 0100644U << 16; ///< a Unix mode, whatever the source's is
+
+struct DiscardZip {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+};
+
+struct FreeSource {
+  void operator()(zip_source_t* source) const { zip_source_free(source); }
+};
+
+Error zipError(const std::filesystem::path& path, const std::string& reason) {
+  return outputError(path.string(), "cannot be made: " + reason + "; close other programs");
+}
+
+/// What the content refers to lives until the archive is closed.
+void addEntry(zip_t* archive, const ZipEntry& entry, const std::filesystem::path& path) {
+  const auto fail = [&] { return zipError(path, zip_strerror(archive)); };
+  zip_source_t* source = zip_source_buffer(archive, entry.content.data(), entry.content.size(), 0);
+  if (!source)
+    throw fail();
+  const zip_int64_t index = zip_file_add(archive, entry.name.c_str(), source, ZIP_FL_ENC_UTF_8);
+  if (index < 0) {
+    zip_source_free(source);
+    throw fail();
+  }
+  const auto at = static_cast<zip_uint64_t>(index);
+  if (zip_set_file_compression(archive, at, ZIP_CM_STORE, 0) != 0 ||
+      zip_file_set_dostime(archive, at, dosTime, dosDate, 0) != 0 ||
+      zip_file_set_external_attributes(archive, at, 0, ZIP_OPSYS_UNIX, readableFile) != 0)
+    throw fail();
+}
+
+std::string contentOf(zip_source_t* source, const std::filesystem::path& path) {
+  zip_stat_t stat;
+  if (zip_source_stat(source, &stat) != 0 || zip_source_open(source) != 0)
+    throw zipError(path, zip_error_strerror(zip_source_error(source)));
+  std::string content(stat.size, '\0');
+  const zip_int64_t count = zip_source_read(source, content.data(), content.size());
+  zip_source_close(source);
+  if (count != static_cast<zip_int64_t>(content.size()))
+    throw zipError(path, "its content cannot be read back");
+  return content;
+}
+
+} // namespace
+
+std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& comment,
+                      const std::filesystem::path& path) {
+  zip_error_t error;
+  zip_error_init(&error);
+  const std::unique_ptr<zip_source_t, FreeSource> source(
+      zip_source_buffer_create(nullptr, 0, 0, &error));
+  std::unique_ptr<zip_t, DiscardZip> archive(
+      source ? zip_open_from_source(source.get(), ZIP_TRUNCATE, &error) : nullptr);
+  if (!archive)
+    throw zipError(path, zip_error_strerror(&error));
+  zip_source_keep(source.get()); // closing the archive frees one
+  for (const ZipEntry& entry : entries)
+    addEntry(archive.get(), entry, path);
+  if (zip_set_archive_comment(archive.get(), comment.data(),
+                              static_cast<zip_uint16_t>(comment.size())) != 0 ||
+      zip_close(archive.get()) != 0)
+    throw zipError(path, zip_strerror(archive.get()));
+  static_cast<void>(archive.release()); // closed: freed
+  return contentOf(source.get(), path);
+}
+
+} // namespace fenestra

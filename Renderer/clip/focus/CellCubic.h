@@ -1,0 +1,71 @@
+#pragma once
+// A cubic, which a trilinear function is along a ray through one cell, and where it first reaches
+// 0.
+
+#include "base/Vector.h"
+
+#include <array>
+
+namespace fenestra {
+
+/// c0 + c1 s + c2 s^2 + c3 s^3.
+struct Cubic {
+  std::array<double, 4> c{};
+
+  double operator()(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
+  double slope(double s) const { return c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]); }
+};
+
+/// Where the cubic's slope changes sign in (0, 1), ascending; 1 stands for "nowhere".
+inline std::array<double, 2> turningPoints(const Cubic& cubic) {
+  const double a = 3.0 * cubic.c[3], halfB = cubic.c[2], c = cubic.c[1];
+  const double discriminant = halfB * halfB - a * c;
+  if (!(discriminant > 0.0))
+    return {1.0, 1.0};
+  const double q = -(halfB + std::copysign(std::sqrt(discriminant), halfB)); // nothing cancels
+  const auto inside = [](double s) {
+    return s > 0.0 && s < 1.0 ? s : 1.0;
+  }; // not for NaN, infinity
+  const auto [first, second] = std::minmax({inside(q / a), inside(c / q)});
+  return {first, second};
+}
+
+/// The root of a cubic that rises monotonically from below 0 at `low` to at least 0 at `high`:
+/// Newton's steps from the chord's root, bisection wherever they leave the bracket.
+inline double rootBetween(const Cubic& cubic, double low, double high) {
+  constexpr double rounding = 1e-15; // of s, which is at most 1
+  const double atLow = cubic(low);
+  double s = low + (high - low) * (atLow / (atLow - cubic(high)));
+  for (int step = 0; step < 100 && high - low > rounding; ++step) {
+    const double value = cubic(s);
+    (value < 0.0 ? low : high) = s;
+    const double newton = s - value / cubic.slope(s);
+    if (std::abs(newton - s) <= rounding)
+      break; // before it is held against the bracket, of which s is an end
+    s = newton > low && newton < high ? newton : 0.5 * (low + high);
+  }
+  return s;
+}
+
+/// The least s in [0, 1] at which the cubic is not below 0; infinity where there is none.
+inline double firstNonNegative(const Cubic& cubic) {
+  const std::array<double, 4>& c = cubic.c;
+  if (c[0] >= 0.0)
+    return 0.0;
+  // Bernstein's coefficients bound the cubic; it rises where they do.
+  const double b1 = c[0] + c[1] / 3.0, b2 = b1 + (c[1] + c[2]) / 3.0, b3 = cubic(1.0);
+  if (std::max({b1, b2, b3}) < 0.0)
+    return infinity;
+  if (c[0] <= b1 && b1 <= b2 && b2 <= b3)
+    return rootBetween(cubic, 0.0, 1.0);
+  double low = 0.0;
+  const auto [first, second] = turningPoints(cubic);
+  for (const double high : {first, second, 1.0}) { // between these the cubic is monotone
+    if (cubic(high) >= 0.0)
+      return rootBetween(cubic, low, high);
+    low = high;
+  }
+  return infinity;
+}
+
+} // namespace fenestra

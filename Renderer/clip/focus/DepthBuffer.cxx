@@ -1,0 +1,96 @@
+#include "clip/focus/DepthBuffer.h"
+
+#include "base/Error.h"
+
+namespace fenestra {
+
+namespace {
+
+struct Rectangle {
+  Vec2 lower = Vec2::Constant(infinity);
+  Vec2 upper = Vec2::Constant(-infinity);
+
+  void extend(const Vec2& point) {
+    lower = lower.cwiseMin(point);
+    upper = upper.cwiseMax(point);
+  }
+};
+
+/// Of the volume's box, on the plane through the target, mm.
+Rectangle projection(const Camera& camera, const Grid& volume) {
+  const Vec2 limit = Vec2::Constant(camera.targetDepth() * std::tan(75.0 * pi / 180.0));
+  Rectangle rectangle;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = camera.toView(volume.worldCorner(i));
+    if (camera.pose().projection == Projection::orthographic) {
+      rectangle.extend(corner.head<2>());
+    } else if (corner.z() > 0.0) {
+      const Vec2 seen = corner.head<2>() * (camera.targetDepth() / corner.z());
+      rectangle.extend(seen.cwiseMax(-limit).cwiseMin(limit));
+    } else { // behind the eye: its edges may run out of the picture anywhere
+      rectangle.extend(-limit);
+      rectangle.extend(limit);
+    }
+  }
+  return rectangle;
+}
+
+/// The axis's `before` and `after` such that its samples reach from a to b, mm.
+void spread(DepthAxis& axis, double factor, double a, double b) {
+  const double first = std::min(a / axis.pitch, b / axis.pitch) - axis.start;
+  const double last = std::max(a / axis.pitch, b / axis.pitch) - axis.start;
+  const auto beyond = [factor](double pixels) {
+    constexpr double most = 1e9; // more than any buffer has; its square is no overflow
+    return static_cast<std::int64_t>(std::ceil(std::clamp(pixels / factor, 0.0, most)));
+  };
+  axis.factor = factor;
+  axis.before = beyond(-first);
+  axis.after = beyond(last - static_cast<double>(axis.inside - 1));
+}
+
+/// Axis along which pixel i's centre is at (i + 1/2 - pixels / 2) pitch, as in Camera::toPlane.
+DepthAxis viewportAxis(double pitch, int pixels) {
+  DepthAxis axis;
+  axis.pitch = pitch;
+  axis.start = 0.5 - 0.5 * pixels;
+  axis.inside = pixels;
+  return axis;
+}
+
+} // namespace
+
+DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
+    : m_x(viewportAxis(camera.pixelPitch(), camera.width())),
+      m_y(viewportAxis(-camera.pixelPitch(), camera.height())),
+      m_reference(camera.targetDepth()) {
+  const double pitch = camera.pixelPitch();
+  const Rectangle span = projection(camera, volume);
+  const double farthest = span.lower.cwiseAbs().cwiseMax(span.upper.cwiseAbs()).maxCoeff();
+  if (!(pitch > 0.0) || !std::isfinite(pitch) || !(farthest / pitch < 1e15) ||
+      std::min(camera.width(), camera.height()) < 1)
+    throw usageError("--scale, --angle and --size: the picture is empty, or too small beside the "
+                     "volume or too far from it");
+  const std::int64_t limit = std::max<std::int64_t>(
+      {4 << 20, m_x.inside * m_y.inside * 5 / 4, (m_x.inside + 2) * (m_y.inside + 2)});
+  const auto fits = [&](double factor) {
+    spread(m_x, factor, span.lower.x(), span.upper.x());
+    spread(m_y, factor, span.lower.y(), span.upper.y());
+    return size() <= limit;
+  };
+  double fitting = 1.0;
+  while (!fits(fitting)) // at last one sample is left on each side, which the limit allows
+    fitting *= 2.0;
+  for (double failing = 0.5 * fitting; failing >= 1.0 && fitting - failing > 1.0;) {
+    const double middle = std::floor(0.5 * (failing + fitting));
+    (fits(middle) ? fitting : failing) = middle;
+  }
+  fits(fitting);
+  m_depths.assign(index(size()), std::numeric_limits<float>::infinity());
+}
+
+void DepthBuffer::move(double offset) {
+  for (float& depth : m_depths)
+    depth = static_cast<float>(depth + offset);
+}
+
+} // namespace fenestra

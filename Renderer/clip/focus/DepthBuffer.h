@@ -1,0 +1,131 @@
+#pragma once
+// The clipping surface's support: depths over the plane through the target that faces the eye.
+
+#include "model/camera/Camera.h"
+#include "model/volume/Grid.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace fenestra {
+
+/// Sample positions along one axis of a depth buffer. Inside the viewport they are the centres of
+/// its pixels; beyond it they lie `factor` pixels apart.
+struct DepthAxis {
+  double pitch = 1.0;      ///< mm from one pixel to the next, negative where rows run downwards
+  double start = 0.0;      ///< coordinate of the viewport's first pixel, in pitches
+  double factor = 1.0;     ///< pixels between samples beyond the viewport, a whole number
+  std::int64_t before = 0; ///< samples ahead of the viewport
+  std::int64_t inside = 1; ///< the viewport's pixels
+  std::int64_t after = 0;  ///< samples behind the viewport
+
+  std::int64_t size() const { return before + inside + after; }
+
+  /// mm of a sample; of samples that would follow, too, for indices out of range.
+  double coordinate(std::int64_t sample) const {
+    const auto pixel = static_cast<double>(sample - before);
+    const double fine = inViewport(pixel);
+    return pitch * (start + fine + factor * (pixel - fine));
+  }
+
+  /// Continuous index of a coordinate in mm, in [0, size - 1]: beyond the edge is at the edge.
+  double index(double coordinate) const {
+    const double pixel = coordinate / pitch - start;
+    const double fine = inViewport(pixel);
+    const double index = static_cast<double>(before) + fine + (pixel - fine) / factor;
+    return std::max(0.0, std::min(static_cast<double>(size() - 1), index)); // NaN is the edge, too
+  }
+
+private:
+  double inViewport(double pixel) const {
+    return std::clamp(pixel, 0.0, static_cast<double>(inside - 1));
+  }
+};
+
+/// Depths in mm over (x, y) in mm, where the eye rays meet the plane through the target. Spans the
+/// viewport and the volume's projection (in perspective what is seen at up to 75 degrees from the
+/// axis); beyond its samples the edge's depth holds. Row 0 is at the top, as in pictures.
+class DepthBuffer {
+public:
+  /// Every depth infinite. Beyond the viewport the samples are as dense as the viewport's pixels
+  /// where 4 Mpixel allow it (or 5/4 of the viewport, where that is more). Throws Error (usage) for
+  /// a viewport without extent.
+  DepthBuffer(const Camera& camera, const Grid& volume);
+
+  const DepthAxis& xAxis() const { return m_x; }
+  const DepthAxis& yAxis() const { return m_y; }
+  std::int64_t columns() const { return m_x.size(); }
+  std::int64_t rows() const { return m_y.size(); }
+  std::int64_t size() const { return columns() * rows(); }
+  std::int64_t sample(std::int64_t column, std::int64_t row) const {
+    return row * columns() + column;
+  }
+  /// The sample at the centre of a pixel of the viewport.
+  std::int64_t viewportSample(std::int64_t column, std::int64_t row) const {
+    return sample(m_x.before + column, m_y.before + row);
+  }
+  Vec2 position(std::int64_t column, std::int64_t row) const {
+    return {m_x.coordinate(column), m_y.coordinate(row)};
+  }
+
+  /// Row by row from the top, less the depth of the camera's target.
+  const std::vector<float>& depthsFromReference() const { return m_depths; }
+  /// That depth.
+  double reference() const { return m_reference; }
+  double at(std::int64_t sample) const { return m_reference + m_depths[index(sample)]; }
+  void set(std::int64_t sample, double depth) {
+    m_depths[index(sample)] = static_cast<float>(depth - m_reference);
+  }
+
+  /// Moves all of it away from the eye, mm.
+  void move(double offset);
+
+  /// A cell between four samples, and a place in it.
+  struct Cell {
+    std::int64_t column, row;         ///< of its first sample
+    std::int64_t nextColumn, nextRow; ///< of its last
+    Vec2 fraction;                    ///< from the first
+  };
+  Cell cell(const Vec2& position) const {
+    const Neighbours x = neighbours(m_x, position.x());
+    const Neighbours y = neighbours(m_y, position.y());
+    return {x.low, y.low, x.high, y.high, Vec2(x.fraction, y.fraction)};
+  }
+
+  /// Linear in each axis between samples, which must be finite.
+  double depthIn(const Cell& cell) const {
+    const auto lerp = [](double a, double b, double f) { return a + (b - a) * f; };
+    const auto row = [&](std::int64_t r) {
+      return lerp(m_depths[index(sample(cell.column, r))],
+                  m_depths[index(sample(cell.nextColumn, r))], cell.fraction.x());
+    };
+    return m_reference + lerp(row(cell.row), row(cell.nextRow), cell.fraction.y());
+  }
+  double depth(const Vec2& position) const { return depthIn(cell(position)); }
+
+  /// The nearest sample's.
+  double nearest(const Vec2& position) const {
+    const auto column = static_cast<std::int64_t>(m_x.index(position.x()) + 0.5);
+    const auto row = static_cast<std::int64_t>(m_y.index(position.y()) + 0.5);
+    return at(sample(column, row));
+  }
+
+private:
+  struct Neighbours {
+    std::int64_t low, high;
+    double fraction;
+  };
+
+  static Neighbours neighbours(const DepthAxis& axis, double coordinate) {
+    const double x = axis.index(coordinate);
+    const auto low = static_cast<std::int64_t>(x);
+    return {low, std::min(low + 1, axis.size() - 1), x - static_cast<double>(low)};
+  }
+  static std::size_t index(std::int64_t sample) { return static_cast<std::size_t>(sample); }
+
+  DepthAxis m_x, m_y;
+  double m_reference;          ///< the target's depth: what a float keeps is the distance from it,
+  std::vector<float> m_depths; ///< so that nothing is lost when the eye is far away
+};
+
+} // namespace fenestra

@@ -1,0 +1,216 @@
+#include "clip/focus/FocusCells.h"
+
+#include "base/Error.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace fenestra {
+namespace {
+
+constexpr std::int64_t edge = FocusCells::blockSize;
+constexpr std::int64_t corners = edge + 1; ///< voxels along an edge of a block
+
+/// The least voxel above the foothill.
+std::uint8_t leastVoxel(const Mask& mask) {
+  return static_cast<std::uint8_t>(std::floor(FocusCells::foothill * mask.full) + 1.0);
+}
+
+/// The mask's voxels around blocks of cells.
+class Voxels {
+public:
+  explicit Voxels(const Mask& mask)
+      : m_voxels(mask.voxels.data()), m_size(mask.grid.size), m_least(leastVoxel(mask)) {}
+
+  /// Whether they are above the foothill, of two neighbours along x each, for the four cells of a
+  /// block's row: bits 0 and 1 of a byte a cell, the first one lowest. Voxel `y`, `z`; 0 outside
+  /// the mask.
+  std::uint32_t pairs(std::int64_t blockX, std::int64_t y, std::int64_t z) const {
+    if (y < 0 || z < 0 || y >= m_size.y() || z >= m_size.z())
+      return 0;
+    const std::int64_t first = blockX * edge - 1;
+    const std::uint8_t* row = m_voxels + m_size.x() * (y + m_size.y() * z);
+    std::uint64_t word = 0; // of little-endian bytes, 0 or 1
+    if (m_least == 1 && first >= 0 && first + 8 <= m_size.x()) {
+      std::memcpy(&word, row + first, sizeof(word));
+    } else {
+      const std::int64_t end = std::min(first + corners, m_size.x());
+      for (std::int64_t x = std::max<std::int64_t>(first, 0); x < end; ++x)
+        word |= std::uint64_t{row[x] >= m_least} << (8 * (x - first));
+    }
+    return static_cast<std::uint32_t>(word | word >> 7);
+  }
+
+  std::uint8_t at(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    const Size3 voxel(x, y, z);
+    const bool isThere = (voxel.array() >= 0).all() && (voxel.array() < m_size.array()).all();
+    return isThere ? m_voxels[x + m_size.x() * (y + m_size.y() * z)] : std::uint8_t{0};
+  }
+
+private:
+  const std::uint8_t* m_voxels;
+  Size3 m_size;
+  std::uint8_t m_least;
+};
+
+/// Which blocks of a layer, x fastest, have such a voxel at any corner of their cells: row
+/// by row, the greatest of all rows' voxels at a row of blocks' corners, and then block by block.
+std::vector<std::uint8_t> occupied(const Mask& mask, const Size3& blocks, std::int64_t blockZ) {
+  const Size3& size = mask.grid.size;
+  const auto range = [&](std::int64_t block, int axis) { // first and end
+    return std::pair(std::max<std::int64_t>(0, block * edge - 1),
+                     std::min(size[axis], (block + 1) * edge));
+  };
+  std::vector<std::uint8_t> result(static_cast<std::size_t>(blocks.x() * blocks.y()));
+  std::vector<std::uint8_t> most(static_cast<std::size_t>(size.x()));
+  const auto [firstZ, endZ] = range(blockZ, 2);
+  for (std::int64_t by = 0; by < blocks.y(); ++by) {
+    std::ranges::fill(most, std::uint8_t{0});
+    const auto [firstY, endY] = range(by, 1);
+    for (std::int64_t z = firstZ; z < endZ; ++z)
+      for (std::int64_t y = firstY; y < endY; ++y)
+        std::transform(most.begin(), most.end(), mask.voxels.data() + size.x() * (y + size.y() * z),
+                       most.begin(), [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
+    for (std::int64_t bx = 0; bx < blocks.x(); ++bx) {
+      const auto [first, end] = range(bx, 0);
+      result[static_cast<std::size_t>(bx + blocks.x() * by)] =
+          std::any_of(most.begin() + first, most.begin() + end,
+                      [&](std::uint8_t voxel) { return voxel >= leastVoxel(mask); });
+    }
+  }
+  return result;
+}
+
+/// Four bits a row of a block's cells; whether all are set.
+bool cornersOf(const Voxels& voxels, const Size3& block,
+               std::array<std::uint8_t, edge * edge * edge>& result) {
+  std::array<std::array<std::uint32_t, corners>, corners> pairs;
+  for (std::int64_t k = 0; k < corners; ++k)
+    for (std::int64_t j = 0; j < corners; ++j)
+      pairs[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
+          voxels.pairs(block.x(), block.y() * edge + j - 1, block.z() * edge + k - 1);
+  bool isWhole = true;
+  for (std::size_t k = 0; k < edge; ++k)
+    for (std::size_t j = 0; j < edge; ++j) {
+      const std::uint32_t both = 0x03030303U;
+      const std::uint32_t row = (pairs[k][j] & both) | (pairs[k][j + 1] & both) << 2 |
+                                (pairs[k + 1][j] & both) << 4 | (pairs[k + 1][j + 1] & both) << 6;
+      isWhole = isWhole && row == 0xffffffffU;
+      std::memcpy(&result[edge * (j + edge * k)], &row, sizeof(row));
+    }
+  return isWhole;
+}
+
+/// The voxels around a block's cells; the least of them.
+std::uint8_t valuesOf(const Voxels& voxels, const Size3& block,
+                      std::array<std::uint8_t, 128>& result) {
+  std::uint8_t least = 255;
+  std::size_t i = 0;
+  for (std::int64_t z = 0; z < corners; ++z)
+    for (std::int64_t y = 0; y < corners; ++y)
+      for (std::int64_t x = 0; x < corners; ++x) {
+        const Size3 voxel = edge * block + Size3(x, y, z) - Size3::Ones();
+        result[i] = voxels.at(voxel.x(), voxel.y(), voxel.z());
+        least = std::min(least, result[i++]);
+      }
+  return least;
+}
+
+} // namespace
+
+FocusCells::FocusCells(const Mask& mask)
+    : m_count(mask.grid.size.array() + 1),
+      m_blocks((m_count.array() + blockSize - 1) / blockSize),
+      m_worldToCell(translationBy(Vec3::Ones()) * mask.grid.worldToIndex),
+      m_perValue(1.0 / mask.full) {
+  const std::int64_t bytes = m_blocks.prod() * static_cast<std::int64_t>(sizeof(BlockValues));
+  if (bytes > std::numeric_limits<std::int32_t>::max())
+    throw inputError("focus", "its segments span more than 2^30 voxels; crop the segmentation");
+  m_blockCorners.resize(static_cast<std::size_t>(m_blocks.prod()), noBlock);
+  m_corners.resize(2);
+  m_corners[noBlock].fill(0);
+  m_corners[wholeBlock].fill(0xff);
+  const bool isSmooth = mask.full != 1;
+  if (isSmooth) {
+    m_values.resize(2);
+    m_values[noBlock].fill(0);
+    m_values[wholeBlock].fill(mask.full);
+  }
+  std::vector<std::vector<Block>> layers(static_cast<std::size_t>(m_blocks.z()));
+  tbb::parallel_for(std::int64_t{0}, m_blocks.z(), [&](std::int64_t z) {
+    layers[static_cast<std::size_t>(z)] = blocksOfLayer(mask, z);
+  });
+  const std::size_t perLayer = static_cast<std::size_t>(m_blocks.x() * m_blocks.y());
+  for (std::size_t z = 0; z < layers.size(); ++z) {
+    // Counted from the layer's own first one so far.
+    const auto before = static_cast<std::int32_t>(m_corners.size());
+    for (std::size_t i = z * perLayer; i < (z + 1) * perLayer; ++i)
+      if (m_blockCorners[i] < 0)
+        m_blockCorners[i] = before - 1 - m_blockCorners[i];
+    for (const Block& block : layers[z]) {
+      m_corners.push_back(block.corners);
+      if (isSmooth)
+        m_values.push_back(block.values);
+    }
+  }
+  m_corners.emplace_back(); // lanes read four bytes where they need one
+}
+
+double FocusCells::indicator(const Vec3& point) const {
+  if (!(point.array() >= 0.0).all() || !(point.array() < m_count.cast<double>().array()).all())
+    return 0.0;
+  const Size3 cell = point.cast<std::int64_t>();
+  const Vec3 f = point - cell.cast<double>();
+  const Size3 block = cell / blockSize, local = cell - blockSize * block;
+  const auto which =
+      static_cast<std::size_t>(m_blockCorners[static_cast<std::size_t>(blockIndex(block))]);
+  const auto corner = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+    if (m_values.empty()) {
+      const std::int64_t at = local.x() + blockSize * (local.y() + blockSize * local.z());
+      return static_cast<double>(
+          m_corners[which][static_cast<std::size_t>(at)] >> (x + 2 * y + 4 * z) & 1);
+    }
+    const std::int64_t at = local.x() + x + corners * (local.y() + y + corners * (local.z() + z));
+    return m_perValue * m_values[which][static_cast<std::size_t>(at)];
+  };
+  const auto row = [&](std::int64_t y, std::int64_t z) {
+    return corner(0, y, z) + f.x() * (corner(1, y, z) - corner(0, y, z));
+  };
+  const double front = row(0, 0) + f.y() * (row(1, 0) - row(0, 0));
+  const double back = row(0, 1) + f.y() * (row(1, 1) - row(0, 1));
+  return front + f.z() * (back - front);
+}
+
+FocusCells::Layout FocusCells::layout() const {
+  return {m_blockCorners.data(), m_corners.front().data(), m_blocks,
+          m_values.empty() ? nullptr : m_values.front().data(), m_perValue};
+}
+
+/// Those of a layer that are mixed; the layer's blocks refer to them by -1, -2 and so on.
+std::vector<FocusCells::Block> FocusCells::blocksOfLayer(const Mask& mask, std::int64_t z) {
+  const Voxels voxels(mask);
+  const std::vector<std::uint8_t> isOccupied = occupied(mask, m_blocks, z);
+  std::vector<Block> result;
+  for (std::int64_t y = 0; y < m_blocks.y(); ++y)
+    for (std::int64_t x = 0; x < m_blocks.x(); ++x) {
+      const Size3 at(x, y, z);
+      if (!isOccupied[static_cast<std::size_t>(x + m_blocks.x() * y)])
+        continue;
+      Block block{};
+      bool isWhole = cornersOf(voxels, at, block.corners);
+      if (mask.full != 1)
+        isWhole = valuesOf(voxels, at, block.values) >= mask.half();
+      std::int32_t& where = m_blockCorners[static_cast<std::size_t>(blockIndex(at))];
+      if (isWhole) {
+        where = wholeBlock;
+      } else {
+        result.push_back(block);
+        where = -static_cast<std::int32_t>(result.size());
+      }
+    }
+  return result;
+}
+
+} // namespace fenestra

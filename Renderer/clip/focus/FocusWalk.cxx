@@ -1,0 +1,476 @@
+// FocusCells::findMeetings and findSummits, in SIMD lanes: as many rays as there are lanes walk
+// through the cells together (Amanatides and Woo 1987), over blocks that hold nothing in one step.
+// In double: a meeting is as exact as one ray's by itself would be.
+
+#include "base/LaneTargets.h"
+#include "clip/focus/CellCubic.h"
+#include "clip/focus/FocusCells.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "clip/focus/FocusWalk.cxx"
+#include <hwy/foreach_target.h>
+// After foreach_target.h:
+#include <hwy/highway.h>
+
+#include <bit>
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Doubles = hn::ScalableTag<double>;
+using Ints = hn::Rebind<std::int32_t, Doubles>;
+using D = hn::Vec<Doubles>;
+using I = hn::Vec<Ints>;
+using M = hn::Mask<Doubles>;
+
+constexpr Doubles doubles{};
+constexpr Ints ints{};
+
+HWY_INLINE D all(double x) {
+  return hn::Set(doubles, x);
+}
+HWY_INLINE I allInts(std::int64_t x) {
+  return hn::Set(ints, static_cast<std::int32_t>(x));
+}
+HWY_INLINE M isNot0(I x) {
+  return hn::Ne(hn::PromoteTo(doubles, x), hn::Zero(doubles));
+}
+
+/// One axis of the rays' walk, mirrored where a ray goes down, so that all go up. All blocks are
+/// whole.
+struct Axis {
+  D origin, direction; ///< the direction is not negative
+  D inverse;           ///< of the direction; infinity for rays that do not move along this axis
+  D cell;              ///< where the rays are
+  D face;              ///< of the cell, or of its block where that is empty, ahead
+  M mirrored;
+  double cells; ///< a multiple of a block's
+
+  Axis(D o, D d, D t, std::int64_t blocks)
+      : direction(hn::Abs(d)),
+        inverse(hn::Div(all(1.0), direction)),
+        face(hn::Zero(doubles)),
+        mirrored(hn::Lt(d, hn::Zero(doubles))),
+        cells(static_cast<double>(blocks * FocusCells::blockSize)) {
+    origin = hn::IfThenElse(mirrored, hn::Sub(all(cells), o), o);
+    cell = hn::Max(hn::Min(cellAt(t), all(cells - 1.0)), hn::Zero(doubles));
+  }
+
+  /// The next face's t, infinity for the last one: a walk ends with its range.
+  HWY_INLINE D findFace(M emptyBlock) {
+    constexpr double edge = FocusCells::blockSize;
+    const D block = hn::Floor(hn::Mul(cell, all(1.0 / edge)));
+    face = hn::IfThenElse(emptyBlock, hn::MulAdd(block, all(edge), all(edge)),
+                          hn::Add(cell, all(1.0)));
+    const M inner = hn::And(hn::Lt(face, all(cells)), hn::Lt(inverse, all(infinity)));
+    return hn::IfThenElse(inner, hn::Mul(hn::Sub(face, origin), inverse), all(infinity));
+  }
+
+  /// Walks that go on are at t: beyond the face ahead where `through` says so, else before it, and
+  /// never back.
+  HWY_INLINE void advance(M which, M through, D t) {
+    const D before = hn::Min(hn::Max(cellAt(t), cell), hn::Sub(face, all(1.0)));
+    cell = hn::IfThenElse(which, hn::IfThenElse(through, face, before), cell);
+  }
+
+  /// The cell's own number.
+  HWY_INLINE D number() const {
+    return hn::IfThenElse(mirrored, hn::Sub(all(cells - 1.0), cell), cell);
+  }
+  /// Where the ray is in the cell itself, from 0 to 1; and how far it goes in `length`.
+  HWY_INLINE D fractionAt(D t) const {
+    const D f = hn::Sub(position(t), cell);
+    return hn::IfThenElse(mirrored, hn::Sub(all(1.0), f), f);
+  }
+  HWY_INLINE D along(D length) const {
+    const D d = hn::Mul(direction, length);
+    return hn::IfThenElse(mirrored, hn::Neg(d), d);
+  }
+
+private:
+  HWY_INLINE D position(D t) const { return hn::Add(origin, hn::Mul(t, direction)); }
+  HWY_INLINE D cellAt(D t) const { return hn::Floor(position(t)); }
+};
+
+constexpr std::size_t mostLanes = HWY_MAX_BYTES / sizeof(double);
+struct alignas(64) Lane : std::array<double, mostLanes> {};
+
+HWY_INLINE unsigned bitsOf(M mask) {
+  std::array<std::uint8_t, 8> packed = {};
+  hn::StoreMaskBits(doubles, mask, packed.data());
+  return packed[0];
+}
+
+/// Cubics that rise from below 0 to 0 or beyond, over parts of rays.
+class Roots {
+public:
+  void add(const Cubic& cubic, double begin, double length, std::size_t ray) {
+    for (std::size_t i = 0; i < 4; ++i)
+      m_c[i][m_size] = cubic.c[i];
+    m_begin[m_size] = begin;
+    m_length[m_size] = length;
+    m_ray[m_size] = ray;
+    ++m_size;
+  }
+
+  /// As rootBetween(cubic, 0, 1) finds them.
+  void solve(FocusRays& rays) {
+    for (std::size_t i = m_size; i % hn::Lanes(doubles) != 0; ++i)
+      for (Column* column : {&m_c[0], &m_c[1], &m_c[2], &m_c[3], &m_begin, &m_length})
+        (*column)[i] = 0.0; // whole vectors are read
+    for (std::size_t i = 0; i < m_size; i += hn::Lanes(doubles)) {
+      const D s = rootsFrom(i);
+      Lane meetings;
+      hn::Store(hn::MulAdd(s, hn::Load(doubles, &m_length[i]), hn::Load(doubles, &m_begin[i])),
+                doubles, meetings.data());
+      for (std::size_t lane = 0; lane < std::min(hn::Lanes(doubles), m_size - i); ++lane)
+        rays.meeting[m_ray[i + lane]] = meetings[lane];
+    }
+  }
+
+private:
+  HWY_INLINE D rootsFrom(std::size_t i) const {
+    const D c0 = hn::Load(doubles, &m_c[0][i]), c1 = hn::Load(doubles, &m_c[1][i]);
+    const D c2 = hn::Load(doubles, &m_c[2][i]), c3 = hn::Load(doubles, &m_c[3][i]);
+    const auto at = [&](D s) {
+      return hn::MulAdd(hn::MulAdd(hn::MulAdd(c3, s, c2), s, c1), s, c0);
+    };
+    const auto slope = [&](D s) {
+      return hn::MulAdd(hn::MulAdd(hn::Mul(all(3.0), c3), s, hn::Mul(all(2.0), c2)), s, c1);
+    };
+    const D rounding = all(1e-15);
+    D low = hn::Zero(doubles), high = all(1.0);
+    D s = hn::Div(c0, hn::Sub(c0, at(high)));
+    M open = hn::FirstN(doubles, m_size - i);
+    for (int step = 0; step < 100; ++step) {
+      const D value = at(s);
+      const M below = hn::Lt(value, hn::Zero(doubles));
+      low = hn::IfThenElse(below, s, low);
+      high = hn::IfThenElse(below, high, s);
+      const D newton = hn::Sub(s, hn::Div(value, slope(s)));
+      const M settled = hn::Or(hn::Le(hn::Sub(high, low), rounding),
+                               hn::Le(hn::Abs(hn::Sub(newton, s)), rounding));
+      open = hn::AndNot(settled, open); // a NaN settles nothing
+      if (hn::AllFalse(doubles, open))
+        break;
+      const M inside = hn::And(hn::Gt(newton, low), hn::Lt(newton, high));
+      const D next = hn::IfThenElse(inside, newton, hn::Mul(all(0.5), hn::Add(low, high)));
+      s = hn::IfThenElse(open, next, s);
+    }
+    return s;
+  }
+
+  using Column = FocusRays::Column;
+  std::size_t m_size = 0;
+  alignas(64) std::array<Column, 4> m_c;
+  alignas(64) Column m_begin, m_length;
+  std::array<std::size_t, FocusRays::capacity> m_ray;
+};
+
+/// A ray along a flat face passes level ground, whose summit is where it begins: what is higher by
+/// less than this, of an indicator, is level; what is as near, in mm, is the same place.
+constexpr double level = 1e-8;
+
+/// The edge of a face may be seen end-on: a ray beside it misses all of it, here by more, there by
+/// less. All of a hill that is lower than its summit by less than this hides what is behind it, as
+/// another hill does (FocusCells::lessHidden).
+constexpr double ridge = 1e-4;
+
+/// Rays i, i + 1 and so on, one in each lane.
+template <bool withSummits>
+class Walk {
+public:
+  Walk(const FocusCells::Layout& cells, FocusRays& rays, Roots& roots, std::size_t i)
+      : m_cells(cells),
+        m_rays(rays),
+        m_roots(roots),
+        m_first(i),
+        m_t(hn::Load(doubles, &rays.begin[i])),
+        m_end(hn::Load(doubles, &rays.end[i])),
+        m_busy(
+            hn::And(hn::FirstN(doubles, rays.size - std::min(i, rays.size)), hn::Lt(m_t, m_end))),
+        m_axes{axis(0), axis(1), axis(2)} {
+    m_heights.fill(FocusCells::foothill - 0.5);
+    m_summits.fill(-infinity);
+    m_tops.fill(-infinity);
+  }
+
+  /// To be called when none is busy: tells the summits.
+  void finish() {
+    for (std::size_t i = m_first;
+         withSummits && i < std::min(m_first + hn::Lanes(doubles), m_rays.size); ++i) {
+      m_rays.summit[i] = m_summits[i - m_first];
+      m_rays.height[i] = 0.5 + m_heights[i - m_first];
+    }
+  }
+
+  bool busy() const { return !hn::AllFalse(doubles, m_busy); }
+
+  Axis axis(std::size_t a) const {
+    return {hn::Load(doubles, &m_rays.origin[a][m_first]),
+            hn::Load(doubles, &m_rays.direction[a][m_first]), m_t,
+            m_cells.blockCount[static_cast<int>(a)]};
+  }
+
+  /// Into the next cell or block.
+  HWY_INLINE void step() {
+    const I x = hn::DemoteTo(ints, m_axes[0].number());
+    const I y = hn::DemoteTo(ints, m_axes[1].number());
+    const I z = hn::DemoteTo(ints, m_axes[2].number());
+    const auto linear = [](I a, I b, I c, std::int64_t countA, std::int64_t countB) {
+      return hn::Add(a, hn::Mul(allInts(countA), hn::Add(b, hn::Mul(allInts(countB), c))));
+    };
+    const I block =
+        hn::GatherIndex(ints, m_cells.blocks,
+                        linear(hn::ShiftRight<2>(x), hn::ShiftRight<2>(y), hn::ShiftRight<2>(z),
+                               m_cells.blockCount.x(), m_cells.blockCount.y()));
+    const M full = isNot0(block);
+    const M empty = hn::Not(full);
+    const D toX = m_axes[0].findFace(empty);
+    const D toY = m_axes[1].findFace(empty);
+    const D toZ = m_axes[2].findFace(empty);
+    const D out = hn::Min(hn::Min(toX, toY), toZ);
+    const D exit = hn::Min(m_end, hn::Max(m_t, out));
+
+    if (const M look = hn::And(full, m_busy); !hn::AllFalse(doubles, look)) {
+      const I three = allInts(3);
+      const I cell = linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 4, 4);
+      const I at = hn::Add(hn::ShiftLeft<6>(block), cell);
+      const I corners = hn::And(
+          hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.corners), at),
+          allInts(0xff));
+      if (const M some = hn::And(look, isNot0(corners)); !hn::AllFalse(doubles, some))
+        meet(some, corners,
+             hn::Add(hn::ShiftLeft<7>(block),
+                     linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 5, 5)),
+             exit);
+    }
+
+    m_busy = hn::And(m_busy, hn::Lt(out, m_end));
+    const M throughX = hn::Eq(toX, out);
+    const M throughY = hn::AndNot(throughX, hn::Eq(toY, out));
+    const M throughZ = hn::Not(hn::Or(throughX, throughY));
+    m_axes[0].advance(m_busy, throughX, exit);
+    m_axes[1].advance(m_busy, throughY, exit);
+    m_axes[2].advance(m_busy, throughZ, exit);
+    m_t = exit;
+  }
+
+private:
+  /// Ends the walks that meet the surface in their cells: those whose cubic's coefficients in
+  /// Bernstein's form, which bound it, are not all below 0 are looked at one by one. `values` is
+  /// the place of the first of their cells' values.
+  HWY_INLINE void meet(M which, I corners, I values, D exit) {
+    const std::array<D, 8> v = m_cells.values ? smoothed(values) : sharp(corners);
+    const D length = hn::Sub(exit, m_t);
+    const D x = m_axes[0].fractionAt(m_t), u = m_axes[0].along(length);
+    const D y = m_axes[1].fractionAt(m_t), w = m_axes[1].along(length);
+    const D z = m_axes[2].fractionAt(m_t), q = m_axes[2].along(length);
+
+    // The indicator is a + x bx + y by + z bz + x y cxy + x z cxz + y z cyz + x y z d, and along
+    // the ray x becomes x + s u, y + s w, z + s q with s in [0, 1].
+    const D bx = hn::Sub(v[1], v[0]), by = hn::Sub(v[2], v[0]), bz = hn::Sub(v[4], v[0]);
+    const D cxy = hn::Sub(hn::Sub(v[3], v[2]), bx);
+    const D cxz = hn::Sub(hn::Sub(v[5], v[4]), bx);
+    const D cyz = hn::Sub(hn::Sub(v[6], v[4]), by);
+    const D d = hn::Sub(hn::Add(hn::Sub(hn::Sub(v[7], v[6]), v[5]), v[4]), cxy);
+    const auto sum = [](auto... terms) {
+      D total = hn::Zero(doubles);
+      ((total = hn::Add(total, terms)), ...);
+      return total;
+    };
+    const auto times = [](D a, auto... factors) {
+      ((a = hn::Mul(a, factors)), ...);
+      return a;
+    };
+    const D c0 = sum(v[0], times(bx, x), times(by, y), times(bz, z), times(cxy, x, y),
+                     times(cxz, x, z), times(cyz, y, z), times(d, x, y, z));
+    const D c1 =
+        sum(times(bx, u), times(by, w), times(bz, q), times(cxy, sum(times(x, w), times(y, u))),
+            times(cxz, sum(times(x, q), times(z, u))), times(cyz, sum(times(y, q), times(z, w))),
+            times(d, sum(times(x, y, q), times(x, w, z), times(u, y, z))));
+    const D c2 = sum(times(cxy, u, w), times(cxz, u, q), times(cyz, w, q),
+                     times(d, sum(times(x, w, q), times(u, y, q), times(u, w, z))));
+    const D c3 = times(d, u, w, q);
+
+    const D third = all(1.0 / 3.0);
+    const D b1 = hn::Add(c0, hn::Mul(c1, third));
+    const D b2 = hn::Add(b1, hn::Mul(hn::Add(c1, c2), third));
+    const D b3 = sum(c0, c1, c2, c3);
+    const D greatest = hn::Max(hn::Max(c0, b1), hn::Max(b2, b3));
+    D least = all(-1e-12); // a little below 0 is rounding
+    if constexpr (withSummits)
+      least = hn::Min(least, hn::Sub(hn::Load(doubles, m_heights.data()), all(ridge)));
+    const M possible = hn::And(which, hn::Ge(greatest, least));
+    if (hn::AllFalse(doubles, possible))
+      return;
+    const M rises = hn::And(hn::And(hn::Lt(c0, hn::Zero(doubles)), hn::Ge(b3, hn::Zero(doubles))),
+                            hn::And(hn::And(hn::Le(c0, b1), hn::Le(b1, b2)), hn::Le(b2, b3)));
+    solve(possible, {c0, c1, c2, c3}, rises, length);
+  }
+
+  /// The indicator - 1/2 at the corners of cells, x fastest.
+  HWY_INLINE static std::array<D, 8> sharp(I corners) {
+    const auto value = [&](std::int32_t i) {
+      const I bit = hn::And(corners, allInts(1 << i));
+      return hn::IfThenElse(isNot0(bit), all(0.5), all(-0.5));
+    };
+    return {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
+  }
+  HWY_INLINE std::array<D, 8> smoothed(I first) const {
+    const auto value = [&](I byte) {
+      const D whole = hn::PromoteTo(doubles, hn::And(byte, allInts(0xff)));
+      return hn::MulSub(whole, all(m_cells.perValue), all(0.5));
+    };
+    std::array<D, 8> v;
+    std::size_t i = 0;
+    for (const std::int32_t row : {0, 5, 25, 30}) { // two neighbours along x at once
+      const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.values),
+                                      hn::Add(first, allInts(row)));
+      v[i++] = value(both);
+      v[i++] = value(hn::ShiftRight<8>(both));
+    }
+    return v;
+  }
+
+  /// Cubics that rise all the way, to 0 or beyond it, meet it: where, is found later for many at
+  /// once. The others are looked at one by one.
+  HWY_INLINE void solve(M which, const std::array<D, 4>& c, M rises, D length) {
+    alignas(64) std::array<Lane, 7> lanes;
+    for (std::size_t i = 0; i < 4; ++i)
+      hn::Store(c[i], doubles, lanes[i].data());
+    hn::Store(m_t, doubles, lanes[4].data());
+    hn::Store(length, doubles, lanes[5].data());
+    hn::Store(hn::IfThenElseZero(m_busy, all(1.0)), doubles, lanes[6].data());
+    const unsigned toLook = bitsOf(which);
+    const unsigned rising = bitsOf(rises);
+    for (unsigned left = toLook; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      const Cubic cubic{{lanes[0][lane], lanes[1][lane], lanes[2][lane], lanes[3][lane]}};
+      const bool isRising = rising >> lane & 1;
+      const double s = isRising ? 0.0 : firstNonNegative(cubic);
+      if (s == infinity) {
+        if constexpr (withSummits)
+          climb(lane, cubic, lanes[4][lane], lanes[5][lane]);
+        continue;
+      }
+      lanes[6][lane] = 0.0;
+      if (isRising)
+        m_roots.add(cubic, lanes[4][lane], lanes[5][lane], m_first + lane);
+      else
+        m_rays.meeting[m_first + lane] = lanes[4][lane] + s * lanes[5][lane];
+    }
+    m_busy = hn::Gt(hn::Load(doubles, lanes[6].data()), hn::Zero(doubles));
+  }
+
+  /// Through a cell in which nothing is met.
+  void climb(std::size_t lane, const Cubic& cubic, double begin, double length) {
+    const std::array<double, 2> turns = turningPoints(cubic);
+    bool isOnTop = begin - m_tops[lane] < level;
+    for (const double s : {0.0, turns[0], turns[1], 1.0}) { // between these the cubic is monotone
+      const double height = cubic(s);
+      if (isOnTop ? isHigher(lane, height) : isNewSummit(lane, height)) {
+        m_heights[lane] = height;
+        m_summits[lane] = begin + s * length;
+        isOnTop = true;
+      }
+      isOnTop = isOnTop && height >= m_heights[lane] - ridge;
+      if (isOnTop)
+        m_tops[lane] = begin + s * length;
+    }
+  }
+
+  /// Of the hill that has the summit so far.
+  bool isHigher(std::size_t lane, double height) const {
+    const double least = std::min(ridge, -height / FocusCells::lessHidden);
+    return height > m_heights[lane] + std::max(level, least);
+  }
+
+  /// Of a hill behind the one that has the summit so far.
+  bool isNewSummit(std::size_t lane, double height) const {
+    return m_summits[lane] == -infinity ? height > m_heights[lane] + level
+                                        : height > FocusCells::lessHidden * m_heights[lane];
+  }
+
+  const FocusCells::Layout& m_cells;
+  FocusRays& m_rays;
+  Roots& m_roots;
+  std::size_t m_first;
+  D m_t, m_end;
+  M m_busy;
+  std::array<Axis, 3> m_axes;
+  Lane m_heights, m_summits; ///< so far: the indicator - 1/2, and where
+  Lane m_tops;               ///< where the summit's ridge ends
+};
+
+template <bool withSummits>
+void walkAll(const FocusCells::Layout& cells, FocusRays& rays) {
+  Roots roots;
+  const std::size_t lanes = hn::Lanes(doubles);
+  for (std::size_t i = 0; i < rays.size; i += 2 * lanes) {
+    // Two at a time: while one waits for the cells that it has asked for, the other computes.
+    Walk<withSummits> one(cells, rays, roots, i);
+    if (i + lanes < rays.size) {
+      Walk<withSummits> other(cells, rays, roots, i + lanes);
+      while (one.busy() || other.busy()) {
+        one.step();
+        other.step();
+      }
+      other.finish();
+    }
+    while (one.busy())
+      one.step();
+    one.finish();
+  }
+  roots.solve(rays);
+}
+
+void findAllMeetings(const FocusCells::Layout& cells, FocusRays& rays) {
+  walkAll<false>(cells, rays);
+}
+void findAllSummits(const FocusCells::Layout& cells, FocusRays& rays) {
+  walkAll<true>(cells, rays);
+}
+
+} // namespace
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fenestra {
+
+HWY_EXPORT(findAllMeetings);
+HWY_EXPORT(findAllSummits);
+
+namespace {
+
+/// Nothing is met so far, and what whole vectors read beyond the last ray is a number.
+void prepare(FocusRays& rays) {
+  std::fill_n(rays.meeting.begin(), rays.size, infinity);
+  for (std::size_t i = rays.size; i < std::min(rays.size + 16, rays.begin.size()); ++i) {
+    for (FocusRays::Column* column :
+         {&rays.origin[0], &rays.origin[1], &rays.origin[2], &rays.begin, &rays.end})
+      (*column)[i] = 0.0;
+    for (FocusRays::Column& column : rays.direction)
+      column[i] = 1.0;
+  }
+}
+
+} // namespace
+
+void FocusCells::findMeetings(FocusRays& rays) const {
+  prepare(rays);
+  const Layout cells = layout();
+  HWY_DYNAMIC_DISPATCH(findAllMeetings)(cells, rays);
+}
+
+void FocusCells::findSummits(FocusRays& rays) const {
+  prepare(rays);
+  const Layout cells = layout();
+  HWY_DYNAMIC_DISPATCH(findAllSummits)(cells, rays);
+}
+
+} // namespace fenestra
+#endif

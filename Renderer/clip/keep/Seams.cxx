@@ -1,0 +1,190 @@
+#include "clip/keep/Seams.h"
+
+#include "clip/focus/FocusCells.h"
+#include "clip/focus/Footprints.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+
+namespace fenestra {
+
+namespace {
+
+/// Of each cell whether the focus may end in it: not all four samples around it are focus.
+std::vector<std::uint8_t> outerCells(const FocusDepth& focus, const CellRange& range) {
+  std::vector<std::uint8_t> isOuter(range.size());
+  const auto outside = [&](std::int64_t sample) {
+    return static_cast<std::uint8_t>(focus.regions[static_cast<std::size_t>(sample)] !=
+                                     Region::focus);
+  };
+  for (std::int64_t row = range.top; row < range.bottom; ++row)
+    for (std::int64_t column = range.left; column < range.right; ++column) {
+      const std::int64_t upper = focus.depth.sample(column, row);
+      const std::int64_t lower = upper + focus.depth.columns();
+      isOuter[range.at(column, row)] = static_cast<std::uint8_t>(
+          outside(upper) | outside(upper + 1) | outside(lower) | outside(lower + 1));
+    }
+  return isOuter;
+}
+
+/// What the samples around each cell and those around them, four by four, see, as deep again as
+/// they are apart: a hole between them may reach a little farther. Less the buffer's reference.
+std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRange& range) {
+  constexpr std::int64_t across = 4;
+  constexpr float nothing = std::numeric_limits<float>::infinity();
+  const auto columns = static_cast<std::size_t>(range.columns());
+  std::vector<float> row(columns + across - 1);
+  // First of four neighbours in a row, then of four such rows.
+  std::vector<Seams::Reach> sights(columns * static_cast<std::size_t>(range.rows() + across - 1));
+  const auto both = [](const Seams::Reach& a, const Seams::Reach& b) {
+    return Seams::Reach{std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
+  };
+  auto sight = sights.begin();
+  for (std::int64_t r = range.top - 1; r < range.bottom + across - 2; ++r) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      row[i] = buffer.depthsFromReference()[static_cast<std::size_t>(
+          buffer.sample(std::clamp<std::int64_t>(range.left - 1 + static_cast<std::int64_t>(i), 0,
+                                                 buffer.columns() - 1),
+                        std::clamp<std::int64_t>(r, 0, buffer.rows() - 1)))];
+    const auto at = [&](std::size_t i) { // beside the focus a sample sees nothing
+      return Seams::Reach{row[i], row[i] < nothing ? row[i] : -nothing};
+    };
+    for (std::size_t i = 0; i < columns; ++i)
+      *sight++ = both(both(at(i), at(i + 1)), both(at(i + 2), at(i + 3)));
+  }
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    const auto& [least, greatest] = both(both(sights[i], sights[i + columns]),
+                                         both(sights[i + 2 * columns], sights[i + 3 * columns]));
+    sights[i] = {least, 2.0F * greatest - least};
+  }
+  return sights;
+}
+
+/// Questions that are looked at together.
+struct Batch {
+  std::size_t size = 0;
+  std::array<Seams::Question*, Seams::mostQuestions> question;
+  std::array<Glance, Seams::mostQuestions> glance;
+  std::array<Sight, Seams::mostQuestions> sight;
+
+  void add(Seams::Question& asked, const Interval& depths) {
+    question[size] = &asked;
+    glance[size++] = {asked.position, depths};
+  }
+  std::span<const Glance> glances() const { return std::span(glance).first(size); }
+  std::span<Sight> sights() { return std::span(sight).first(size); }
+};
+
+} // namespace
+
+Seams::Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
+    : m_tracer(std::move(tracer)),
+      m_reference(focus.depth.reference()),
+      m_numbers(focus.regions.size(), -1) {
+  const Camera& camera = m_tracer->camera();
+  const FocusCells& cells = m_tracer->cells();
+  const CellRange range = focusRange(camera, focus.depth, cells);
+  const std::vector<std::uint8_t> isOuter = outerCells(focus, range);
+  const std::vector<Interval> outer = focusReaches(camera, focus.depth, cells, range, isOuter);
+  const std::vector<Reach> inner = sightsAround(focus.depth, range);
+  for (std::int64_t row = range.top; row < range.bottom; ++row)
+    for (std::int64_t column = range.left; column < range.right; ++column) {
+      const std::size_t cell = range.at(column, row);
+      if (isOuter[cell] && outer[cell].empty())
+        continue;
+      m_numbers[static_cast<std::size_t>(focus.depth.sample(column, row))] =
+          static_cast<std::int32_t>(m_reaches.size());
+      m_reaches.push_back(isOuter[cell] ? Reach{static_cast<float>(outer[cell].begin - m_reference),
+                                                static_cast<float>(outer[cell].end - m_reference)}
+                                        : inner[cell]);
+      m_isInner.push_back(!isOuter[cell]);
+    }
+  findRim(focus, range);
+}
+
+/// What can be seen from the four cells around a sample.
+Interval Seams::reachAround(const DepthBuffer& buffer, std::int64_t column,
+                            std::int64_t row) const {
+  Interval depths{infinity, -infinity};
+  for (const std::int64_t r : {std::max<std::int64_t>(row, 1) - 1, row})
+    for (const std::int64_t c : {std::max<std::int64_t>(column, 1) - 1, column})
+      if (const auto seam = m_numbers[static_cast<std::size_t>(buffer.sample(c, r))]; seam >= 0) {
+        const auto& [least, greatest] = m_reaches[static_cast<std::size_t>(seam)];
+        depths = {std::min(depths.begin, m_reference + least),
+                  std::max(depths.end, m_reference + greatest)};
+      }
+  return depths;
+}
+
+void Seams::findRim(const FocusDepth& focus, const CellRange& range) {
+  const DepthBuffer& buffer = focus.depth;
+  std::vector<Glance> glances;
+  for (std::int64_t row = range.top; row <= std::min(range.bottom, buffer.rows() - 1); ++row)
+    for (std::int64_t column = range.left; column <= std::min(range.right, buffer.columns() - 1);
+         ++column) {
+      const std::int64_t sample = buffer.sample(column, row);
+      if (focus.regions[static_cast<std::size_t>(sample)] != Region::context)
+        continue;
+      const Interval depths = reachAround(buffer, column, row);
+      if (depths.empty())
+        continue;
+      m_rim.push_back({sample, 0.0});
+      glances.push_back({buffer.position(column, row), depths});
+    }
+  std::vector<Sight> sights(glances.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, glances.size(), 256), [&](const auto& part) {
+    m_tracer->look(std::span(glances).subspan(part.begin(), part.size()),
+                   std::span(sights).subspan(part.begin(), part.size()));
+  });
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < m_rim.size(); ++i)
+    if (sights[i].indicator > FocusCells::foothill)
+      m_rim[seen++] = {m_rim[i].sample, sights[i].depth};
+  m_rim.resize(seen);
+}
+
+void Seams::move(double offset) {
+  m_offset += offset;
+  for (Reach& reach : m_reaches)
+    reach = {static_cast<float>(reach.least + offset), static_cast<float>(reach.greatest + offset)};
+}
+
+void Seams::answer(std::span<Question> questions) const {
+  Batch inner, rest;
+  const double toFocus = m_reference - m_offset;
+  const auto reachOf = [&](const Question& question) {
+    const auto& [least, greatest] = m_reaches[static_cast<std::size_t>(question.seam)];
+    return Interval{toFocus + least, toFocus + greatest};
+  };
+  const auto addToRest = [&](Question& question) {
+    const Interval reach = reachOf(question);
+    rest.add(question, {reach.begin, isInner(question.seam) ? infinity : reach.end});
+  };
+  for (Question& question : questions) {
+    const Interval reach = reachOf(question);
+    if (m_tracer->isFocus(question.position, toFocus + question.from))
+      question.surface = reach.begin - toFocus; // it has been met
+    else if (isInner(question.seam))
+      inner.add(question, reach);
+    else
+      addToRest(question);
+  }
+  m_tracer->meet(inner.glances(), inner.sights());
+  for (std::size_t i = 0; i < inner.size; ++i)
+    if (inner.sight[i].indicator > 0.0)
+      inner.question[i]->surface = inner.sight[i].depth - toFocus;
+    else
+      addToRest(*inner.question[i]);
+  m_tracer->look(rest.glances(), rest.sights());
+  for (std::size_t i = 0; i < rest.size; ++i)
+    if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::foothill) {
+      Question& question = *rest.question[i];
+      const double depth = std::min(sight.depth, reachOf(question).end) - toFocus;
+      const double share = (sight.indicator - FocusCells::foothill) / (0.5 - FocusCells::foothill);
+      question.surface += share * (depth - question.surface);
+    }
+}
+
+} // namespace fenestra

@@ -1,0 +1,383 @@
+// Right-triangulated irregular networks: Evans, Kirkpatrick and Townsend, Algorithmica 30 (2001).
+// Squares are cut along a diagonal, and right triangles are halved from the right angle's corner to
+// the middle of the edge across, again and again. Two triangles share such an edge; they are halved
+// together or not at all, so no corner ever lies on another triangle's edge.
+
+#include "clip/mesh/SurfaceMesh.h"
+
+#include "clip/focus/Footprints.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace fenestra {
+
+namespace {
+
+constexpr double noDepth = std::numeric_limits<double>::quiet_NaN();
+
+/// The samples that a mesh is made of, in a rectangle that just holds them: columns and rows count
+/// from its first.
+class MeshSamples {
+public:
+  MeshSamples(const ClipDepth& clip, const Domain& volume)
+      : m_camera(clip.camera), m_buffer(*clip.buffer) {
+    findFootprint(volume);
+    findRectangle();
+    if (m_rows == 0)
+      return;
+    for (std::int64_t row = 0; row < m_rows; ++row) {
+      m_y.push_back(m_buffer.yAxis().coordinate(m_firstRow + row));
+      for (std::int64_t column = 0; column < m_columns; ++column)
+        m_depths.push_back(depthOf(m_firstColumn + column, m_firstRow + row));
+    }
+    for (std::int64_t column = 0; column < m_columns; ++column)
+      m_x.push_back(m_buffer.xAxis().coordinate(m_firstColumn + column));
+  }
+
+  std::int64_t columns() const { return m_columns; }
+  std::int64_t rows() const { return m_rows; }
+  std::size_t sample(std::int64_t column, std::int64_t row) const {
+    return static_cast<std::size_t>(row * m_columns + column);
+  }
+  /// mm; NaN where there is none.
+  double depth(std::int64_t column, std::int64_t row) const {
+    return m_depths[sample(column, row)];
+  }
+  const double* depthsOfRow(std::int64_t row) const { return m_depths.data() + sample(0, row); }
+  Vec2 position(std::int64_t column, std::int64_t row) const {
+    return {x()[column], m_y[static_cast<std::size_t>(row)]};
+  }
+  /// Of every column, mm.
+  const double* x() const { return m_x.data(); }
+  /// The continuous column at x, mm.
+  double column(double x) const {
+    return m_buffer.xAxis().index(x) - static_cast<double>(m_firstColumn);
+  }
+
+  Vec3 point(std::int64_t column, std::int64_t row) const {
+    const Vec2 at = position(column, row);
+    return fromBuffer(m_camera, {at.x(), at.y(), depth(column, row)});
+  }
+  bool isPerspective() const { return m_camera.pose().projection == Projection::perspective; }
+
+private:
+  void findFootprint(const Domain& volume) {
+    const DomainFootprint footprint(m_camera, volume);
+    for (std::int64_t row = 0; row < m_buffer.rows(); ++row)
+      m_footprint.push_back(footprint.columns(m_buffer, row));
+  }
+
+  /// Around all samples of the footprint that have a depth.
+  void findRectangle() {
+    std::int64_t endColumn = 0, endRow = 0;
+    m_firstColumn = m_buffer.columns();
+    m_firstRow = m_buffer.rows();
+    for (std::int64_t row = 0; row < m_buffer.rows(); ++row) {
+      const DomainFootprint::Columns seen = m_footprint[static_cast<std::size_t>(row)];
+      for (std::int64_t column = seen.first; column < seen.end; ++column)
+        if (hasDepth(column, row)) {
+          m_firstColumn = std::min(m_firstColumn, column);
+          endColumn = std::max(endColumn, column + 1);
+          m_firstRow = std::min(m_firstRow, row);
+          endRow = row + 1;
+        }
+    }
+    m_columns = std::max(std::int64_t{0}, endColumn - m_firstColumn);
+    m_rows = std::max(std::int64_t{0}, endRow - m_firstRow);
+  }
+
+  bool hasDepth(std::int64_t column, std::int64_t row) const {
+    const double depth = m_buffer.at(m_buffer.sample(column, row));
+    return std::isfinite(depth) && !behindEye(m_camera, depth);
+  }
+
+  /// Of a sample of the buffer that is a corner of a cell in the footprint.
+  double depthOf(std::int64_t column, std::int64_t row) const {
+    DomainFootprint::Columns around{m_buffer.columns(), 0};
+    for (std::int64_t near = std::max(std::int64_t{0}, row - 1);
+         near < std::min(m_buffer.rows(), row + 2); ++near) {
+      const DomainFootprint::Columns seen = m_footprint[static_cast<std::size_t>(near)];
+      if (seen.first < seen.end)
+        around = {std::min(around.first, seen.first), std::max(around.end, seen.end)};
+    }
+    const bool isCorner = column + 1 >= around.first && column <= around.end;
+    return isCorner && hasDepth(column, row) ? m_buffer.at(m_buffer.sample(column, row)) : noDepth;
+  }
+
+  const Camera& m_camera;
+  const DepthBuffer& m_buffer;
+  std::vector<DomainFootprint::Columns> m_footprint; ///< of every row of the buffer
+  std::int64_t m_firstColumn = 0, m_firstRow = 0, m_columns = 0, m_rows = 0;
+  std::vector<double> m_x, m_y;
+  std::vector<double> m_depths; ///< row by row
+};
+
+/// A corner of halved squares: a sample's column and row. Squares may reach beyond the last column
+/// and row: corners there are taken to lie on it, and triangles without an area are left out.
+struct Corner {
+  std::int64_t column, row;
+};
+
+/// Right-angled at its apex; halved from there to the middle of a and b.
+struct Triangle {
+  Corner a, b, apex;
+};
+
+/// The two triangles of a square; or two that have a and b in common and are halved together.
+struct Pair {
+  Corner a, b;
+  std::array<Corner, 2> apexes;
+};
+
+/// The square of this side and place among squares of that side. Its diagonal goes to the one
+/// corner that is a middle of larger squares, so that halves of large squares are made of small
+/// ones'.
+Pair squarePair(std::int64_t column, std::int64_t row, std::int64_t side) {
+  const bool isLeft = column % 2 != 0, isUpper = row % 2 != 0;
+  const std::int64_t left = column * side, upper = row * side;
+  const Corner odd{isLeft ? left : left + side, isUpper ? upper : upper + side};
+  const Corner even{isLeft ? left + side : left, isUpper ? upper + side : upper};
+  return {odd, even, {{{odd.column, even.row}, {even.column, odd.row}}}};
+}
+
+/// On both sides of the edge of squares that is 2 s long and has this middle.
+Pair edgePair(const Corner& middle, std::int64_t s) {
+  const Corner left{middle.column - s, middle.row}, right{middle.column + s, middle.row};
+  const Corner upper{middle.column, middle.row - s}, lower{middle.column, middle.row + s};
+  return middle.column / s % 2 != 0 ? Pair{left, right, {upper, lower}}
+                                    : Pair{upper, lower, {left, right}};
+}
+
+/// A plane over (x, y) that triangles of a mesh lie in. What is linear there is the depth, or in
+/// perspective its reciprocal.
+class MeshPlane {
+public:
+  MeshPlane(const std::array<Vec3, 3>& corners, bool isPerspective)
+      : m_isPerspective(isPerspective), m_origin(corners[0].head<2>()) {
+    const auto height = [&](const Vec3& at) { return isPerspective ? 1.0 / at.z() : at.z(); };
+    const Vec2 u = (corners[1] - corners[0]).head<2>(), v = (corners[2] - corners[0]).head<2>();
+    m_height = height(corners[0]);
+    const double du = height(corners[1]) - m_height, dv = height(corners[2]) - m_height;
+    const double area = u.x() * v.y() - u.y() * v.x();
+    m_slope = Vec2(du * v.y() - dv * u.y(), dv * u.x() - du * v.x()) / area;
+  }
+
+  /// Of some samples of a row, at y: whether it is nowhere farther than the tolerance from their
+  /// depths, and all have one.
+  bool isNear(const double* x, const double* depths, std::int64_t count, double y,
+              double tolerance) const {
+    const double start = m_height + m_slope.y() * (y - m_origin.y()) - m_slope.x() * m_origin.x();
+    std::int64_t near = 0;
+    for (std::int64_t i = 0; i < count; ++i) {
+      const double height = start + m_slope.x() * x[i];
+      // |1 / height - depth| <= tolerance, without a division
+      const double error = m_isPerspective ? 1.0 - height * depths[i] : height - depths[i];
+      near += std::abs(error) <= (m_isPerspective ? tolerance * height : tolerance) ? 1 : 0;
+    }
+    return near == count;
+  }
+
+private:
+  bool m_isPerspective;
+  Vec2 m_origin, m_slope;
+  double m_height;
+};
+
+class MeshMaker {
+public:
+  MeshMaker(const MeshSamples& samples, double tolerance)
+      : m_samples(samples),
+        m_tolerance(tolerance),
+        m_lastColumn(samples.columns() - 1),
+        m_lastRow(samples.rows() - 1),
+        m_side(static_cast<std::int64_t>(
+            std::bit_ceil(static_cast<std::uint64_t>(std::min(m_lastColumn, m_lastRow))))),
+        m_squaresAcross((m_lastColumn + m_side - 1) / m_side),
+        m_squaresDown((m_lastRow + m_side - 1) / m_side),
+        m_isHalved(static_cast<std::size_t>((m_squaresAcross * m_side + 1) *
+                                            (m_squaresDown * m_side + 1))),
+        m_numbers(samples.sample(0, samples.rows()), unnumbered) {}
+
+  SurfaceMesh mesh() {
+    chooseHalved();
+    for (std::int64_t row = 0; row < m_squaresDown; ++row)
+      for (std::int64_t column = 0; column < m_squaresAcross; ++column) {
+        const auto [a, b, apexes] = squarePair(column, row, m_side);
+        for (const Corner& apex : apexes)
+          addHalves(isCounterClockwise({a, b, apex}) ? Triangle{a, b, apex} : Triangle{b, a, apex});
+      }
+    return std::move(m_mesh);
+  }
+
+private:
+  static constexpr auto unnumbered = std::numeric_limits<std::uint32_t>::max();
+
+  /// From the smallest pairs to the largest: those that must be halved, and then all that they are
+  /// halves of.
+  void chooseHalved() {
+    for (std::int64_t s = 1; s < m_side; s *= 2) {
+      for (std::int64_t row = 0; row - s < m_lastRow; row += s)
+        for (std::int64_t column = row / s % 2 == 0 ? s : 0; column - s < m_lastColumn;
+             column += 2 * s)
+          choose({column, row}, edgePair({column, row}, s));
+      for (std::int64_t row = 0; 2 * s * row < m_lastRow; ++row)
+        for (std::int64_t column = 0; 2 * s * column < m_lastColumn; ++column)
+          choose({(2 * column + 1) * s, (2 * row + 1) * s}, squarePair(column, row, 2 * s));
+    }
+  }
+
+  void choose(const Corner& middle, const Pair& pair) {
+    const auto mustBeHalved = [&](const Corner& apex) {
+      return isInside(apex) && !isGood({pair.a, pair.b, apex});
+    };
+    if (!isHalved(middle) && !std::ranges::any_of(pair.apexes, mustBeHalved))
+      return;
+    m_isHalved[index(middle)] = true;
+    for (const Corner& apex : pair.apexes) // the middle of what this is a half of
+      if (isInside(apex))
+        m_isHalved[index(apex)] = true;
+  }
+
+  /// Of squares, which may be more than the samples.
+  bool isInside(const Corner& corner) const {
+    return corner.column >= 0 && corner.column <= m_squaresAcross * m_side && corner.row >= 0 &&
+           corner.row <= m_squaresDown * m_side;
+  }
+  std::size_t index(const Corner& corner) const {
+    return static_cast<std::size_t>(corner.row * (m_squaresAcross * m_side + 1) + corner.column);
+  }
+  bool isHalved(const Corner& middle) const { return m_isHalved[index(middle)]; }
+
+  Corner onSamples(const Corner& corner) const {
+    return {std::min(corner.column, m_lastColumn), std::min(corner.row, m_lastRow)};
+  }
+  double depth(const Corner& corner) const {
+    const Corner sample = onSamples(corner);
+    return m_samples.depth(sample.column, sample.row);
+  }
+  /// Positive for triangles that are counter-clockwise as the eye sees them.
+  std::int64_t area(const Triangle& triangle) const {
+    const Corner a = onSamples(triangle.a), b = onSamples(triangle.b);
+    const Corner apex = onSamples(triangle.apex);
+    return (b.row - a.row) * (apex.column - a.column) - (b.column - a.column) * (apex.row - a.row);
+  }
+  static bool isCounterClockwise(const Triangle& t) {
+    return (t.b.row - t.a.row) * (t.apex.column - t.a.column) >
+           (t.b.column - t.a.column) * (t.apex.row - t.a.row);
+  }
+
+  /// Whether the triangle may stay whole: all samples in it are near enough, or none has a depth.
+  bool isGood(const Triangle& triangle) const {
+    if (area(triangle) == 0)
+      return true;
+    std::array corners{onSamples(triangle.a), onSamples(triangle.b), onSamples(triangle.apex)};
+    const auto missing =
+        std::ranges::count_if(corners, [&](const Corner& c) { return std::isnan(depth(c)); });
+    if (missing == 1 || missing == 2)
+      return false;
+    std::ranges::sort(corners, {}, &Corner::row);
+    std::array<Vec3, 3> points;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec2 at = m_samples.position(corners[i].column, corners[i].row);
+      points[i] = {at.x(), at.y(), depth(corners[i])};
+    }
+    const MeshPlane plane(points, m_samples.isPerspective());
+    for (std::int64_t row = corners[0].row; row <= corners[2].row; ++row) {
+      const double y = m_samples.position(0, row).y();
+      const auto [first, end] = columnsAt(points, y);
+      const double* depths = m_samples.depthsOfRow(row);
+      const bool isGoodRow =
+          missing == 0
+              ? plane.isNear(m_samples.x() + first, depths + first, end - first, y, m_tolerance)
+              : std::all_of(depths + first, depths + end, [](double d) { return std::isnan(d); });
+      if (!isGoodRow)
+        return false;
+    }
+    return true;
+  }
+
+  /// The columns in and on a triangle, whose points are in the order of rows, at a y between them;
+  /// the second excluded.
+  std::pair<std::int64_t, std::int64_t> columnsAt(const std::array<Vec3, 3>& points,
+                                                  double y) const {
+    constexpr double rounding = 1e-6; // of a column
+    const auto along = [&](const Vec3& from, const Vec3& to) {
+      const double height = to.y() - from.y();
+      return height == 0.0 ? from.x() : from.x() + (to.x() - from.x()) * (y - from.y()) / height;
+    };
+    const double whole = along(points[0], points[2]);
+    const bool isUpper = std::abs(y - points[0].y()) < std::abs(points[1].y() - points[0].y());
+    const double part = isUpper ? along(points[0], points[1]) : along(points[1], points[2]);
+    return {
+        static_cast<std::int64_t>(std::ceil(m_samples.column(std::min(whole, part)) - rounding)),
+        static_cast<std::int64_t>(std::floor(m_samples.column(std::max(whole, part)) + rounding)) +
+            1};
+  }
+
+  void addHalves(const Triangle& triangle) {
+    const auto& [a, b, apex] = triangle;
+    const bool isSmallest = std::abs(a.column - b.column) == 1;
+    const Corner middle{(a.column + b.column) / 2, (a.row + b.row) / 2};
+    if (!isSmallest && isHalved(middle)) {
+      addHalves({apex, a, middle});
+      addHalves({b, apex, middle});
+    } else if (!std::isnan(depth(a)) && !std::isnan(depth(b)) && !std::isnan(depth(apex))) {
+      add(triangle);
+    } else if (isSmallest) {
+      addAcross(triangle);
+    }
+  }
+
+  /// In a cell between four samples whose diagonal has a depth at one end: the triangle of that end
+  /// and the other two. Both halves of the cell come here; the upper one makes it.
+  void addAcross(const Triangle& half) {
+    const auto& [a, b, apex] = half;
+    const Corner opposite{a.column + b.column - apex.column, a.row + b.row - apex.row};
+    if (apex.row > opposite.row || std::isnan(depth(apex)) || std::isnan(depth(opposite)))
+      return;
+    if (!std::isnan(depth(a)))
+      add({a, opposite, apex});
+    else if (!std::isnan(depth(b)))
+      add({b, apex, opposite});
+  }
+
+  void add(const Triangle& triangle) {
+    if (area(triangle) != 0)
+      m_mesh.triangles.push_back({number(triangle.a), number(triangle.b), number(triangle.apex)});
+  }
+
+  /// Of the point there, which is made when it is first wanted.
+  std::uint32_t number(const Corner& corner) {
+    const Corner sample = onSamples(corner);
+    std::uint32_t& number = m_numbers[m_samples.sample(sample.column, sample.row)];
+    if (number == unnumbered) {
+      number = static_cast<std::uint32_t>(m_mesh.points.size());
+      m_mesh.points.push_back(m_samples.point(sample.column, sample.row));
+      m_mesh.depths.push_back(static_cast<float>(depth(sample)));
+    }
+    return number;
+  }
+
+  const MeshSamples& m_samples;
+  double m_tolerance;
+  std::int64_t m_lastColumn, m_lastRow;
+  std::int64_t m_side; ///< of the squares to begin with, a power of two: one row or column of them
+  std::int64_t m_squaresAcross, m_squaresDown;
+  std::vector<bool> m_isHalved;         ///< pairs, by their middle
+  std::vector<std::uint32_t> m_numbers; ///< of the points at samples
+  SurfaceMesh m_mesh;
+};
+
+} // namespace
+
+SurfaceMesh surfaceMesh(const ClipDepth& clip, const Domain& volume, double tolerance) {
+  const MeshSamples samples(clip, volume);
+  if (samples.columns() < 2 || samples.rows() < 2)
+    return {};
+  return MeshMaker(samples, tolerance).mesh();
+}
+
+} // namespace fenestra

@@ -1,0 +1,49 @@
+#include "clip/surface/FocusPlane.h"
+
+namespace fenestra {
+
+namespace {
+
+/// The x with the least |S x - r|, of several the shortest. S = (xx, xy; xy, yy) has eigenvalues of
+/// 0 or more, and r is a sum of its columns.
+Vec2 shortestSolution(double xx, double xy, double yy, const Vec2& r) {
+  constexpr double singular = 1e-12; // of eigenvalues to each other: samples on one line
+  const double trace = xx + yy, determinant = xx * yy - xy * xy;
+  if (determinant > singular * trace * trace)
+    return Vec2(yy * r.x() - xy * r.y(), xx * r.y() - xy * r.x()) / determinant;
+  return trace > 0.0 ? Vec2(r / trace) : Vec2::Zero(); // S is trace d d'
+}
+
+} // namespace
+
+ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus) {
+  std::vector<Vec3> points; // that are seen, in view space
+  Vec3 center = Vec3::Zero();
+  const DepthBuffer& depth = focus.depth;
+  for (std::int64_t row = 0; row < depth.rows(); ++row)
+    for (std::int64_t column = 0; column < depth.columns(); ++column)
+      if (focus.isFocus(column, row)) {
+        const Vec2 at = depth.position(column, row);
+        const Vec3 world =
+            fromBuffer(camera, {at.x(), at.y(), depth.at(depth.sample(column, row))});
+        points.push_back(camera.toView(world));
+        center += points.back();
+      }
+  center /= static_cast<double>(points.size());
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  Vec2 rise = Vec2::Zero();
+  for (const Vec3& point : points) {
+    const Vec3 from = point - center;
+    xx += from.x() * from.x();
+    xy += from.x() * from.y();
+    yy += from.y() * from.y();
+    rise += from.head<2>() * from.z();
+  }
+  const Vec2 slope = shortestSolution(xx, xy, yy, rise);
+  const Vec3 toward = slope.x() * camera.right() + slope.y() * camera.up() - camera.forward();
+  const Vec3 world = camera.pose().position + center.x() * camera.right() +
+                     center.y() * camera.up() + center.z() * camera.forward();
+  return {camera, world, toward.normalized()};
+}
+
+} // namespace fenestra

@@ -1,0 +1,82 @@
+#include "clip/surface/Hole.h"
+
+#include "clip/keep/Clip.h"
+
+namespace fenestra {
+
+namespace {
+
+/// Calls back with each sample of the focus: its position (x, y) and depth, mm.
+template <typename Visitor>
+void forFocus(const FocusDepth& focus, const Visitor& visit) {
+  const DepthBuffer& depth = focus.depth;
+  for (std::int64_t row = 0; row < depth.rows(); ++row)
+    for (std::int64_t column = 0; column < depth.columns(); ++column)
+      if (focus.isFocus(column, row)) {
+        const Vec2 at = depth.position(column, row);
+        visit(Vec3(at.x(), at.y(), depth.at(depth.sample(column, row))));
+      }
+}
+
+Box extentOf(const FocusDepth& focus) {
+  Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  forFocus(focus, [&](const Vec3& at) { box = {box.lower.cwiseMin(at), box.upper.cwiseMax(at)}; });
+  return box;
+}
+
+/// Fills all samples that are not focus by bottom((x, y)).
+template <typename Bottom>
+void fillContext(DepthBuffer& buffer, const FocusDepth& focus, const Bottom& bottom) {
+  for (std::int64_t row = 0; row < buffer.rows(); ++row)
+    for (std::int64_t column = 0; column < buffer.columns(); ++column)
+      if (!focus.isFocus(column, row))
+        buffer.set(buffer.sample(column, row), bottom(buffer.position(column, row)));
+}
+
+/// Where the eye ray through (x, y) leaves a ball; -infinity where it misses it.
+double farSide(const Camera& camera, const Vec2& at, const Vec3& center, double radius) {
+  const Ray ray = camera.rayThrough(at);
+  const double nearest = (center - ray.origin).dot(ray.direction);
+  const double missed = (ray.at(nearest) - center).squaredNorm();
+  if (missed > radius * radius)
+    return -infinity;
+  return (nearest + std::sqrt(radius * radius - missed)) * camera.depthPerLength(ray);
+}
+
+void fillBowl(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera, double margin) {
+  Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  forFocus(focus, [&](const Vec3& at) {
+    const Vec3 world = fromBuffer(camera, at);
+    box = {box.lower.cwiseMin(world), box.upper.cwiseMax(world)};
+  });
+  const Vec3 center = box.center();
+  double radius = 0.0;
+  forFocus(focus, [&](const Vec3& at) {
+    radius = std::max(radius, (fromBuffer(camera, at) - center).norm());
+  });
+  fillContext(buffer, focus,
+              [&](const Vec2& at) { return farSide(camera, at, center, radius + margin); });
+}
+
+} // namespace
+
+void fillHole(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera,
+              const HoleOptions& options) {
+  if (options.shape == HoleShape::sphere)
+    return fillBowl(buffer, focus, camera, options.margin);
+  const Box extent = extentOf(focus);
+  const Vec2 center = extent.center().head<2>();
+  const Vec2 half = (0.5 * (extent.upper - extent.lower)).head<2>();
+  double radius = 0.0;
+  forFocus(focus,
+           [&](const Vec3& at) { radius = std::max(radius, (at.head<2>() - center).norm()); });
+  const auto isInside = [&](const Vec2& at) {
+    const Vec2 from = (at - center).cwiseAbs();
+    return options.shape == HoleShape::box ? (from.array() <= half.array() + options.margin).all()
+                                           : from.norm() <= radius + options.margin;
+  };
+  fillContext(buffer, focus,
+              [&](const Vec2& at) { return isInside(at) ? extent.upper.z() : -infinity; });
+}
+
+} // namespace fenestra

@@ -1,0 +1,50 @@
+#pragma once
+// The kernels of a thin plate spline, seen from afar: a polynomial over a disc that they lie well
+// outside of (as the local expansions of Greengard and Rokhlin 1987, "A Fast Algorithm for Particle
+// Simulations", for the biharmonic kernel).
+
+#include "clip/surface/KernelSums.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace fenestra {
+
+/// Where u = center + radius * tau, |tau| <= 1, and with d = site - center, e = radius / d as
+/// complex numbers, |e| < 1,
+///   phi = |u - site|^2 (ln |d|^2 + 2 Re ln(1 - e tau)),
+///   (1 - q) ln(1 - q) = -q + sum over k >= 2 of q^k / (k (k - 1)),
+/// so that the sum of the terms is the real part of P(tau) + conj(tau) Q(tau), with
+///   P_k = 2 / (k (k - 1)) sum w |d|^2 e^k,  Q_k = -2 radius^2 / (k (k - 1)) sum w e^(k - 1)
+/// for k >= 2. What comes after k = K is no more than
+///   2 / (K (K + 1)) sum |w| |d|^2 |e|^(K + 1) (1 + |e|) / (1 - |e|).
+class LocalExpansion {
+public:
+  /// |e| up to which terms are expanded: a compromise of how many terms are, and how long.
+  static constexpr double farthest = 1.0 / 3.0;
+
+  /// Within `tolerance` of the terms' sum all over the disc, rounding included; nothing where
+  /// double precision cannot give that. Every |e| has to be at most `farthest`.
+  static std::optional<LocalExpansion> of(std::span<const KernelTerm> terms, const Vec2& center,
+                                          double radius, double tolerance);
+
+  void addPlane(double atCenter, double alongX, double alongY);
+
+  /// The sum at center + (x[i], y) for every i, all within the disc.
+  void evaluateRow(std::span<const double> x, double y, std::span<double> values) const;
+
+private:
+  /// Coefficients of x^a y^b in row a and column b, in radii.
+  using Coefficients = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic>;
+
+  LocalExpansion(Coefficients coefficients, double radius)
+      : m_coefficients(std::move(coefficients)), m_radius(radius) {}
+
+  Coefficients m_coefficients;
+  double m_radius;
+};
+
+} // namespace fenestra

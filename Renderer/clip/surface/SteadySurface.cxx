@@ -1,0 +1,90 @@
+#include "clip/surface/SteadySurface.h"
+
+#include "model/camera/Turn.h"
+
+#include <algorithm>
+
+namespace fenestra {
+
+namespace {
+
+/// Of each sample from the nearest that is focus, mm: along steps to the eight neighbours, which is
+/// at most 8 % too far.
+std::vector<double> distancesFromFocus(const FocusDepth& focus) {
+  const DepthBuffer& buffer = focus.depth;
+  std::vector<double> distances;
+  for (const Region region : focus.regions)
+    distances.push_back(region == Region::focus ? 0.0 : infinity);
+  // Row by row from the top, then from the bottom: from neighbours that are done by then.
+  for (const std::int64_t way : {1, -1}) {
+    const auto shorten = [&](std::int64_t column, std::int64_t row, std::int64_t x,
+                             std::int64_t y) {
+      if (x < 0 || y < 0 || x >= buffer.columns() || y >= buffer.rows())
+        return;
+      double& distance = distances[static_cast<std::size_t>(buffer.sample(column, row))];
+      const double step = (buffer.position(x, y) - buffer.position(column, row)).norm();
+      distance =
+          std::min(distance, step + distances[static_cast<std::size_t>(buffer.sample(x, y))]);
+    };
+    for (std::int64_t j = 0; j < buffer.rows(); ++j)
+      for (std::int64_t i = 0; i < buffer.columns(); ++i) {
+        const std::int64_t row = way > 0 ? j : buffer.rows() - 1 - j;
+        const std::int64_t column = way > 0 ? i : buffer.columns() - 1 - i;
+        shorten(column, row, column - way, row);
+        for (const std::int64_t x : {-1, 0, 1})
+          shorten(column, row, column + x, row - way);
+      }
+  }
+  return distances;
+}
+
+/// From 0 at the focus to 1 at `width` from it, level at both.
+double shareOfMean(double distance, double width) {
+  const double x = std::min(1.0, distance / width);
+  return x * x * (3.0 - 2.0 * x);
+}
+
+} // namespace
+
+ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, const Mask& focus,
+                                   const SurfaceOptions& options, double degrees) {
+  ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);
+  if (degrees == 0.0 || options.mode != SurfaceMode::surface)
+    return surface;
+  struct Neighbour {
+    double turn, weight;
+  };
+  static constexpr Neighbour neighbours[] = {
+      {-1.0, 1.0 / 16.0}, {-0.5, 4.0 / 16.0}, {0.5, 4.0 / 16.0}, {1.0, 1.0 / 16.0}};
+  const auto& own = std::get<ClipDepth>(surface.clip);
+  const double width = focus.grid.boundingRadius() * std::abs(degrees) * pi / 180.0;
+  std::vector<double> shares = distancesFromFocus(surface.focus);
+  for (double& share : shares)
+    share = shareOfMean(share, width);
+
+  auto buffer = std::make_shared<DepthBuffer>(*own.buffer);
+  for (const auto& [turn, weight] : neighbours) {
+    const Camera turned(turnedAroundTarget(camera.pose(), turn * degrees), camera.width(),
+                        camera.height());
+    const ClippingSurface other = buildClippingSurface(turned, volume, focus, options);
+    const DepthBuffer& depths = *std::get<ClipDepth>(other.clip).buffer;
+    for (std::int64_t row = 0; row < buffer->rows(); ++row)
+      for (std::int64_t column = 0; column < buffer->columns(); ++column) {
+        const std::int64_t sample = buffer->sample(column, row);
+        const double difference =
+            depths.depth(buffer->position(column, row)) - own.buffer->at(sample);
+        const double share = weight * shares[static_cast<std::size_t>(sample)];
+        buffer->set(sample, buffer->at(sample) + share * difference);
+      }
+    surface.focusSeconds += other.focusSeconds;
+    surface.splineSeconds += other.splineSeconds;
+    surface.fillSeconds += other.fillSeconds;
+  }
+  ClipDepth clip = own;
+  clip.pyramid = std::make_shared<const DepthPyramid>(*buffer, clip.seams.get());
+  clip.buffer = std::move(buffer);
+  surface.clip = std::move(clip);
+  return surface;
+}
+
+} // namespace fenestra

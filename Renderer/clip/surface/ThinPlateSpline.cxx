@@ -1,0 +1,310 @@
+#include "clip/surface/ThinPlateSpline.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+
+namespace fenestra {
+
+namespace {
+
+/// Keeps the logarithm finite at a site, where its factor is 0.
+constexpr double tiny = 1e-300;
+
+/// lambda - phi below which two sites are not told apart: it is the least eigenvalue that they
+/// cause, and a few digits of the solution have to survive it.
+constexpr double indistinct = 1e-12;
+
+/// Squared radii beyond which the sum of the kernels loses too much to cancellation.
+constexpr double farSquared = 256.0;
+
+/// How far, in mm, the coordinates of a site may be from what they stand for.
+double roundingAt(const Vec2& site) {
+  return 8.0 * std::numeric_limits<double>::epsilon() * site.cwiseAbs().maxCoeff();
+}
+
+/// phi of squared distances.
+template <typename Derived>
+auto kernel(const Eigen::ArrayBase<Derived>& squared) {
+  return squared * (squared + tiny).log();
+}
+
+template <typename Array>
+auto spanOf(Array& array) {
+  return std::span(array.data(), static_cast<std::size_t>(array.size()));
+}
+
+/// K + lambda I.
+Eigen::MatrixXd kernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
+  Eigen::MatrixXd k(sites.rows(), sites.rows());
+  for (Eigen::Index i = 0; i < sites.rows(); ++i)
+    k.col(i) = kernel((sites.rowwise() - sites.row(i)).rowwise().squaredNorm().array());
+  k.diagonal().array() += lambda;
+  return k;
+}
+
+/// P = Q R by Householder's reflections (Golub and Van Loan, "Matrix Computations", 5.1 and 5.2):
+/// Q = H0 H1 H2 with Hk = I - vk vk'. The columns of Q after the third span the null space of P'.
+class PolynomialsQr {
+public:
+  /// `singular`: singular values below this share of the largest are 0. The sites' centroid is 0,
+  /// so that the largest is that of the constant, to rounding.
+  PolynomialsQr(const Eigen::MatrixX2d& sites, double singular) : m_v(sites.rows(), 3) {
+    m_v << Eigen::VectorXd::Ones(sites.rows()), sites;
+    for (Eigen::Index k = 0; k < 3; ++k)
+      reflect(k);
+    const double squares = m_r.bottomRightCorner<2, 2>().squaredNorm();
+    const double product = std::abs(m_r(1, 1) * m_r(2, 2)); // of both singular values
+    m_greater = std::sqrt(
+        0.5 * (squares + std::sqrt(std::max(squares * squares - 4.0 * product * product, 0.0))));
+    const double least = singular * std::abs(m_r(0, 0));
+    m_rank = m_greater <= least ? 1 : product <= least * m_greater ? 2 : 3;
+    m_lesser = m_rank == 1 ? 0.0 : product / m_greater;
+  }
+
+  int rank() const { return m_rank; }
+
+  /// Q' x.
+  Eigen::VectorXd turned(Eigen::VectorXd x) const {
+    for (Eigen::Index k = 0; k < 3; ++k)
+      x -= m_v.col(k).dot(x) * m_v.col(k);
+    return x;
+  }
+
+  /// Q x.
+  Eigen::VectorXd turnedBack(Eigen::VectorXd x) const {
+    for (Eigen::Index k = 2; k >= 0; --k)
+      x -= m_v.col(k).dot(x) * m_v.col(k);
+    return x;
+  }
+
+  /// Q2' K Q2 of a symmetric K, where Q2 is Q after its third column.
+  Eigen::MatrixXd inNullSpace(Eigen::MatrixXd k) const {
+    for (Eigen::Index i = 0; i < 3; ++i) { // H K H = K - v w' - w v'
+      const auto v = m_v.col(i);
+      Eigen::VectorXd w = k * v;
+      w -= 0.5 * v.dot(w) * v;
+      for (Eigen::Index column = 0; column < k.cols(); ++column)
+        k.col(column) -= w[column] * v + v[column] * w;
+    }
+    const Eigen::Index n = k.rows() - 3;
+    return k.bottomRightCorner(n, n);
+  }
+
+  /// The a with the least |P a - z|, the flattest where several are.
+  Vec3 leastSquares(const Eigen::VectorXd& z) const {
+    const Eigen::VectorXd all = turned(z);
+    const Eigen::Index given = std::min<Eigen::Index>(3, all.size());
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    right.head(given) = all.head(given);
+    Eigen::Vector3d a = Eigen::Vector3d::Zero();
+    if (m_rank == 3) {
+      a[2] = right[2] / m_r(2, 2);
+      a[1] = (right[1] - m_r(1, 2) * a[2]) / m_r(1, 1);
+    } else if (m_rank == 2) { // a line: B'B less the lesser square is a multiple of d d'
+      const Eigen::Matrix2d b = m_r.bottomRightCorner<2, 2>();
+      Eigen::Matrix2d along = b.transpose() * b;
+      along.diagonal().array() -= m_lesser * m_lesser;
+      const Eigen::Vector2d d = along.col(along(0, 0) >= along(1, 1) ? 0 : 1).normalized();
+      a.tail<2>() = d * (b * d).dot(right.tail<2>()) / (m_greater * m_greater);
+    }
+    a[0] = (right[0] - m_r(0, 1) * a[1] - m_r(0, 2) * a[2]) / m_r(0, 0);
+    return {a[0], a[1], a[2]};
+  }
+
+private:
+  /// Makes the column its reflection's v, 0 where nothing is left to reflect, and turns those after
+  /// it.
+  void reflect(Eigen::Index k) {
+    const Eigen::Index above = std::min(k, m_v.rows());
+    auto v = m_v.col(k);
+    m_r.col(k).head(above) = v.head(above);
+    v.head(above).setZero();
+    const double length = v.norm();
+    if (length == 0.0)
+      return;
+    m_r(k, k) = -std::copysign(length, v[k]);
+    v[k] -= m_r(k, k);
+    v *= std::sqrt(2.0) / v.norm();
+    for (Eigen::Index later = k + 1; later < 3; ++later)
+      m_v.col(later) -= v.dot(m_v.col(later)) * v;
+  }
+
+  Eigen::MatrixX3d m_v; ///< v0, v1, v2
+  Eigen::Matrix3d m_r = Eigen::Matrix3d::Zero();
+  double m_greater, m_lesser; ///< singular values of R without its first row and column
+  int m_rank;                 ///< at least 1
+};
+
+Eigen::MatrixX2d rows(const std::vector<Vec2>& points) {
+  Eigen::MatrixX2d matrix(std::ssize(points), 2);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    matrix.row(static_cast<Eigen::Index>(i)) << points[i].x(), points[i].y();
+  return matrix;
+}
+
+/// Sites of the unit disc, and their values.
+struct Samples {
+  std::vector<Vec2> sites;
+  std::vector<double> values;
+};
+
+/// Sites that lambda leaves indistinct become the first of them, with their mean value: so those
+/// that stay are as far apart as they have to be.
+Samples merged(const Samples& samples, double lambda) {
+  Samples kept;
+  std::vector<double> counts;
+  for (std::size_t i = 0; i < samples.sites.size(); ++i) {
+    const auto isNear = [&, site = samples.sites[i]](const Vec2& other) {
+      const Eigen::Array<double, 1, 1> squared((site - other).squaredNorm());
+      return squared[0] < 1e-6 && lambda - kernel(squared)[0] < indistinct; // phi < 0 nearby
+    };
+    const auto found = std::ranges::find_if(kept.sites, isNear);
+    const auto at = static_cast<std::size_t>(found - kept.sites.begin());
+    if (found == kept.sites.end()) {
+      kept.sites.push_back(samples.sites[i]);
+      kept.values.push_back(0.0);
+      counts.push_back(0.0);
+    }
+    counts[at] += 1.0;
+    kept.values[at] += (samples.values[i] - kept.values[at]) / counts[at];
+  }
+  return kept;
+}
+
+} // namespace
+
+ThinPlateSpline::ThinPlateSpline(std::span<const Vec2> sites, std::span<const double> values,
+                                 double smoothing) {
+  if (sites.empty())
+    return;
+  Samples samples{toUnitDisc(sites), {values.begin(), values.end()}};
+  m_lambda = smoothing > 0.0 ? (1.0 - smoothing) / smoothing * m_perScale * m_perScale : infinity;
+  if (m_lambda < indistinct)
+    samples = merged(samples, m_lambda);
+  fit(samples.sites,
+      Eigen::Map<const Eigen::VectorXd>(samples.values.data(), std::ssize(samples.values)));
+}
+
+std::vector<Vec2> ThinPlateSpline::toUnitDisc(std::span<const Vec2> sites) {
+  m_origin = sites[0];
+  const auto count = static_cast<double>(sites.size());
+  Vec2 centroid = Vec2::Zero();
+  for (const Vec2& site : sites)
+    centroid += (site - m_origin) / count;
+  double scale = 0.0;
+  for (const Vec2& site : sites)
+    scale = std::max(scale, (site - m_origin - centroid).norm());
+  if (scale > std::max(roundingAt(m_origin), 1e-100)) // else they coincide
+    m_perScale = 1.0 / scale;
+  m_centroid = m_perScale * centroid;
+  std::vector<Vec2> inDisc;
+  inDisc.reserve(sites.size());
+  for (const Vec2& site : sites)
+    inDisc.push_back((site - m_origin) * m_perScale - m_centroid);
+  return inDisc;
+}
+
+void ThinPlateSpline::fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values) {
+  const Eigen::MatrixX2d u = rows(sites);
+  const PolynomialsQr p(u, std::max(1e-9, roundingAt(m_origin) * m_perScale));
+  m_plane = p.leastSquares(values); // all there is where lambda is infinite or no plane determined
+  const Eigen::Index n = values.size();
+  if (!std::isfinite(m_lambda) || p.rank() < 3 || n == 3)
+    return;
+
+  const Eigen::MatrixXd k = kernelMatrix(u, m_lambda);
+  Eigen::VectorXd w = p.turned(values);
+  w.head<3>().setZero();
+  w.tail(n - 3) = p.inNullSpace(k).ldlt().solve(w.tail(n - 3)).eval();
+  w = p.turnedBack(w);
+  m_plane = p.leastSquares(values - k * w);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Vec2& site = sites[static_cast<std::size_t>(i)];
+    m_terms.push_back({site, w[i]});
+    m_moment += w[i] * site.squaredNorm();
+  }
+}
+
+double ThinPlateSpline::operator()(const Vec2& x) const {
+  double value = 0.0;
+  evaluateRow({&x.x(), 1}, x.y(), {&value, 1});
+  return value;
+}
+
+void ThinPlateSpline::evaluateRow(std::span<const double> x, double y,
+                                  std::span<double> values) const {
+  const double v = toDiscY(y);
+  for (Eigen::Index begin = 0; begin < std::ssize(x); begin += mostColumns) {
+    const Eigen::Index count = std::min(mostColumns, std::ssize(x) - begin);
+    const Points u =
+        (Eigen::Map<const Points>(x.data() + begin, count) - m_origin.x()) * m_perScale -
+        m_centroid.x();
+    const Points squaredNorm = u.square() + v * v;
+    Points sum = m_plane[0] + m_plane[2] * v + m_plane[1] * u;
+    Points near = sum;
+    addKernels(m_terms, spanOf(u), v, spanOf(near));
+    if (!(squaredNorm <= farSquared).all())
+      near = (squaredNorm <= farSquared).select(near, sum + farTerms(u, v));
+    Eigen::Map<Points>(values.data() + begin, count) = near;
+  }
+}
+
+void ThinPlateSpline::evaluateTile(std::span<const double> x, std::span<const double> y,
+                                   double tolerance, std::span<double> values) const {
+  const Disc disc = discAround(x, y);
+  std::vector<KernelTerm> near = m_terms, far;
+  const auto isNear = [&](const KernelTerm& term) { return !disc.isFar(term); };
+  const auto firstFar = std::stable_partition(near.begin(), near.end(), isNear);
+  far.assign(firstFar, near.end());
+  near.erase(firstFar, near.end());
+  const double reach = disc.center.norm() + disc.radius;
+  const bool isSummable = near.empty() || reach * reach <= farSquared;
+  std::optional<LocalExpansion> expansion;
+  if (isSummable)
+    expansion = LocalExpansion::of(far, disc.center, disc.radius, tolerance);
+  if (!expansion) {
+    for (std::size_t row = 0; row < y.size(); ++row)
+      evaluateRow(x, y[row], values.subspan(row * x.size(), x.size()));
+    return;
+  }
+  expansion->addPlane(m_plane[0] + Vec2(m_plane.y(), m_plane.z()).dot(disc.center), m_plane[1],
+                      m_plane[2]);
+  Points u(std::ssize(x));
+  for (Eigen::Index i = 0; i < u.size(); ++i)
+    u[i] = toDiscX(x[static_cast<std::size_t>(i)]);
+  const Points fromCenter = u - disc.center.x();
+  for (std::size_t row = 0; row < y.size(); ++row) {
+    const double v = toDiscY(y[row]);
+    const auto ofRow = values.subspan(row * x.size(), x.size());
+    expansion->evaluateRow({fromCenter.data(), x.size()}, v - disc.center.y(), ofRow);
+    addKernels(near, spanOf(u), v, ofRow);
+  }
+}
+
+std::int64_t ThinPlateSpline::termsNear(std::span<const double> x,
+                                        std::span<const double> y) const {
+  const Disc disc = discAround(x, y);
+  return std::ranges::count_if(m_terms, [&](const KernelTerm& term) { return !disc.isFar(term); });
+}
+
+ThinPlateSpline::Disc ThinPlateSpline::discAround(std::span<const double> x,
+                                                  std::span<const double> y) const {
+  const Vec2 first(toDiscX(x.front()), toDiscY(y.front()));
+  const Vec2 last(toDiscX(x.back()), toDiscY(y.back()));
+  return {0.5 * (first + last), 0.5 * (last - first).norm()};
+}
+
+ThinPlateSpline::Points ThinPlateSpline::farTerms(const Points& u, double v) const {
+  const Points squaredNorm = (u.square() + v * v).max(farSquared);
+  Points sum = m_moment * squaredNorm.log();
+  Points excess(u.size());
+  for (const KernelTerm& term : m_terms) {
+    const Vec2& site = term.site;
+    excess = site.squaredNorm() - 2.0 * (site.x() * u + site.y() * v);
+    sum += term.weight * (squaredNorm + excess) * (excess / squaredNorm).log1p();
+  }
+  return sum;
+}
+
+} // namespace fenestra

@@ -1,0 +1,94 @@
+#pragma once
+// The approximating thin plate spline (Duchon 1977; Wahba 1990, "Spline Models for Observational
+// Data", section 2.4) that carries the focus's depth into its surroundings.
+
+#include "clip/surface/LocalExpansion.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace fenestra {
+
+/// f(x) = a0 + a1 x + a2 y + sum w_i phi(|x - x_i|), phi(r) = r^2 ln r^2, with
+///   (K + lambda I) w + P a = z,  P' w = 0,  lambda = (1 - p) / p,
+/// K_ij = phi(|x_i - x_j|) and P's rows (1, x_i, y_i), all in mm: MATLAB's tpaps. p = 1
+/// interpolates, p = 0 is the least-squares plane. Sites that determine no plane (fewer than three,
+/// coincident, collinear to 1e-9 of their extent or to their coordinates' rounding) give the
+/// least-squares line along them, or their mean; no sites give 0.
+///
+/// Solved in the unit disc, u = (x - c) / s. There phi(s r) = s^2 phi(r) + s^2 ln(s^2) r^2, and for
+/// weights with P' w = 0 the sum of the last term is the same at every x, so that a0 takes it in.
+/// With w' = s^2 w the system in u is (K' + lambda / s^2 I) w' + P' a' = z, with the same f.
+///
+/// Rounding: f is right to 1e-14 times the condition number, relative to |f| and to the range of
+/// the values, at any distance from the sites; tilt across nearly collinear sites is as ill defined
+/// as they are. Where all but nothing is smoothed, the f through sites much nearer to each other
+/// than the disc is wide runs away between their values, and at last is lost to rounding. Sites
+/// nearer than r with lambda / s^2 - phi(r / s) < 1e-12, so 1.9e-7 s at p = 1, therefore count as
+/// one, the first of them, with their mean value.
+class ThinPlateSpline {
+public:
+  /// Sites (mm) and values (mm), equally many, finite; smoothing p in [0, 1].
+  ThinPlateSpline(std::span<const Vec2> sites, std::span<const double> values, double smoothing);
+
+  double operator()(const Vec2& x) const;
+
+  /// f at (x[i], y) for every i.
+  void evaluateRow(std::span<const double> x, double y, std::span<double> values) const;
+
+  /// f at (x[i], y[j]) for every i and j, row by row, to within `tolerance` mm beyond the rounding
+  /// of f itself, at a small part of the cost: terms far from the tile are summed as one
+  /// polynomial. Where double precision is short for that, or everything is near, it does as
+  /// evaluateRow. At most mostColumns of x; x and y each ascend or descend.
+  void evaluateTile(std::span<const double> x, std::span<const double> y, double tolerance,
+                    std::span<double> values) const;
+
+  /// Terms that evaluateTile computes one by one, and so what a tile costs.
+  std::int64_t termsNear(std::span<const double> x, std::span<const double> y) const;
+
+  static constexpr Eigen::Index mostColumns = 64; ///< they stay in the first cache
+
+  /// The system that was solved: sites in the unit disc with their weights w', none where there was
+  /// no system, and lambda / s^2.
+  const std::vector<KernelTerm>& terms() const { return m_terms; }
+  double lambda() const { return m_lambda; }
+
+private:
+  using Points = Eigen::Array<double, Eigen::Dynamic, 1, 0, mostColumns, 1>; ///< of a row
+
+  /// Chooses the unit disc and returns the sites in it.
+  std::vector<Vec2> toUnitDisc(std::span<const Vec2> sites);
+  void fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values);
+
+  struct Disc {
+    Vec2 center; ///< in the unit disc
+    double radius;
+
+    bool isFar(const KernelTerm& term) const {
+      return (term.site - center).norm() * LocalExpansion::farthest > radius;
+    }
+  };
+
+  /// mm to the unit disc.
+  double toDiscX(double x) const { return (x - m_origin.x()) * m_perScale - m_centroid.x(); }
+  double toDiscY(double y) const { return (y - m_origin.y()) * m_perScale - m_centroid.y(); }
+  /// Around a tile.
+  Disc discAround(std::span<const double> x, std::span<const double> y) const;
+
+  /// The sum of w'_i phi(|u - u_i|) for |u| > 1, where the terms are as large as |u|^2 ln |u|^2 and
+  /// nearly cancel. With e_i = |u - u_i|^2 - |u|^2 and P' w' = 0 the sum is m ln |u|^2 +
+  /// sum w'_i (|u|^2 + e_i) ln(1 + e_i / |u|^2), m being the moment, and its terms are no larger
+  /// than 4 |u|.
+  Points farTerms(const Points& u, double v) const;
+
+  Vec2 m_origin = Vec2::Zero();    ///< mm, one of the sites: differences from it do not round
+  Vec2 m_centroid = Vec2::Zero();  ///< from the origin, in radii: c = origin + s centroid
+  double m_perScale = 1.0;         ///< 1 / s, mm^-1
+  double m_lambda = 0.0;           ///< lambda / s^2
+  Vec3 m_plane = Vec3::Zero();     ///< a', in the unit disc
+  double m_moment = 0.0;           ///< sum of w'_i |u_i|^2
+  std::vector<KernelTerm> m_terms; ///< sites in the unit disc
+};
+
+} // namespace fenestra

@@ -1,0 +1,159 @@
+#include "files/looks/LightReader.h"
+
+#include "base/safe/Inputs.h"
+
+#include "base/safe/JsonNode.h"
+#include "base/safe/ShownText.h"
+#include "files/pictures/ImageReader.h"
+
+namespace fenestra {
+namespace {
+
+constexpr double largest = 1e30;   ///< of radiances and lengths: products of two stay finite
+constexpr float brightest = 1e12f; ///< of a map, as of the flags' colours: pictures stay finite
+
+Vec3 readVector(const JsonNode& node) {
+  const auto v = node.numbers(3, -largest, largest);
+  return {v[0], v[1], v[2]};
+}
+
+Vec3 readDirection(const JsonNode& node) {
+  const Vec3 v = readVector(node);
+  if (v.isZero(0.0))
+    throw node.error("is the zero vector; give a direction");
+  return v.stableNormalized();
+}
+
+Rgb readRadiance(const JsonNode& node) {
+  const auto v = node.numbers(3, 0.0, largest);
+  return {v[0], v[1], v[2]};
+}
+
+/// One that a message of one line can name.
+std::string readFileName(const JsonNode& node) {
+  std::string name = node.text();
+  if (name.find_first_of(std::string_view("\0\n\r", 3)) != std::string::npos)
+    throw node.error("\"" + shown(name) + "\" is no file name; give one without line breaks");
+  return name;
+}
+
+Light readEnvironment(const JsonNode& node, const std::filesystem::path& folder) {
+  node.allowOnly({"type", "radiance", "file"});
+  EnvironmentLight light;
+  const auto file = node.find("file");
+  if (file)
+    light.map = readEnvironmentMap(folder / readFileName(*file));
+  if (const auto radiance = file ? node.find("radiance") : node.at("radiance"))
+    light.radiance = readRadiance(*radiance);
+  return light;
+}
+
+Light readDirectional(const JsonNode& node) {
+  node.allowOnly({"type", "direction", "irradiance"});
+  return DirectionalLight{readDirection(node.at("direction")), readRadiance(node.at("irradiance"))};
+}
+
+/// Two edges, or a diameter: one number, or the same number twice.
+Vec2 readSize(const JsonNode& node, AreaLight::Shape shape) {
+  const bool disk = shape == AreaLight::Shape::disk;
+  std::vector<double> size;
+  if (disk && node.isNumber())
+    size.assign(2, node.numberIn(0.0, largest));
+  else
+    size = node.numbers(2, 0.0, largest);
+  if (size[0] == 0.0 || size[1] == 0.0)
+    throw node.error("must be above 0");
+  if (disk && size[0] != size[1])
+    throw node.error("of a disk is one number, its diameter");
+  return {size[0], size[1]};
+}
+
+Light readArea(const JsonNode& node, AreaLight::Shape shape) {
+  node.allowOnly({"type", "center", "normal", "up", "size", "radiance", "frame"});
+  AreaLight light;
+  light.shape = shape;
+  light.center = readVector(node.at("center"));
+  light.normal = readDirection(node.at("normal"));
+  if (const auto up = node.find("up"))
+    light.up = readDirection(*up);
+  light.size = readSize(node.at("size"), shape);
+  light.radiance = readRadiance(node.at("radiance"));
+  if (const auto frame = node.find("frame")) {
+    const std::string name = frame->text();
+    if (name != "world" && name != "camera")
+      throw frame->error("must be \"world\" or \"camera\"");
+    light.frame = name == "camera" ? LightFrame::camera : LightFrame::world;
+  }
+  return light;
+}
+
+Light readLight(const JsonNode& node, const std::filesystem::path& folder) {
+  const JsonNode type = node.at("type");
+  const std::string name = type.text();
+  if (name == "environment")
+    return readEnvironment(node, folder);
+  if (name == "directional")
+    return readDirectional(node);
+  if (name == "rectangle")
+    return readArea(node, AreaLight::Shape::rectangle);
+  if (name == "disk")
+    return readArea(node, AreaLight::Shape::disk);
+  throw type.error("must be environment, directional, rectangle or disk");
+}
+
+std::vector<Light> parse(std::string_view json, const std::string& source,
+                         const std::filesystem::path& folder) {
+  const nlohmann::json document = parseJson(json, source);
+  const JsonNode root(document, source);
+  root.allowOnly({"lights"});
+  std::vector<Light> lights;
+  for (const JsonNode& node : root.at("lights").elements())
+    lights.push_back(readLight(node, folder));
+  return lights;
+}
+
+} // namespace
+
+std::vector<Light> readLights(const std::filesystem::path& path) {
+  return parse(readText(path), path.string(), path.parent_path());
+}
+
+std::vector<Light> parseLights(std::string_view json, const std::string& source) {
+  return parse(json, source, {});
+}
+
+bool namesFiles(std::string_view json, const std::string& source) {
+  const nlohmann::json document = parseJson(json, source);
+  const std::vector<JsonNode> lights = JsonNode(document, source).at("lights").elements();
+  return std::any_of(lights.begin(), lights.end(),
+                     [](const JsonNode& light) { return light.find("file").has_value(); });
+}
+
+EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
+  if (lowerExtension(path) != ".exr")
+    throw inputError(path.string(), "is no environment map; name a .exr file");
+  const Image image = readImage(path);
+  EnvironmentMap map{image.width, image.height, {}};
+  const std::size_t texels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  map.rgb.resize(3 * texels);
+  const std::string names[] = {"R", "G", "B"};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<float>* plane = image.find(names[c]);
+    if (!plane)
+      throw inputError(path.string(), "has no channel " + names[c] + "; write R, G and B");
+    for (std::size_t i = 0; i < texels; ++i) {
+      const float value = (*plane)[i];
+      if (!(value >= 0.0f && value <= brightest))
+        throw inputError(path.string(),
+                         "channel " + names[c] + " at pixel " +
+                             std::to_string(i % static_cast<std::size_t>(image.width)) + ", " +
+                             std::to_string(i / static_cast<std::size_t>(image.width)) +
+                             " is not from 0 to 1e12; mend the map");
+      map.rgb[3 * i + c] = value;
+    }
+  }
+  return map;
+}
+
+} // namespace fenestra

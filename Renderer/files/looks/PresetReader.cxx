@@ -1,0 +1,161 @@
+#include "files/looks/PresetReader.h"
+
+#include "base/safe/JsonNode.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace fenestra {
+namespace {
+
+constexpr std::size_t longestPattern = 200;
+constexpr std::size_t longestName = 1000; ///< of a segment, as far as it is looked at
+
+std::vector<std::string> readTexts(const JsonNode& node) {
+  std::vector<std::string> texts;
+  for (const JsonNode& element : node.elements()) {
+    texts.push_back(element.text());
+    if (texts.back().empty() || texts.back().size() > longestPattern)
+      throw element.error("must have 1 to " + std::to_string(longestPattern) + " characters");
+  }
+  return texts;
+}
+
+std::vector<std::string> textsAt(const JsonNode& parent, const std::string& key) {
+  const auto node = parent.find(key);
+  return node ? readTexts(*node) : std::vector<std::string>();
+}
+
+Modality readModality(const JsonNode& node) {
+  const std::string text = node.text();
+  if (text == "CT")
+    return Modality::ct;
+  if (text == "MR")
+    return Modality::mr;
+  if (text == "US")
+    return Modality::us;
+  throw node.error("must be \"CT\", \"MR\" or \"US\"");
+}
+
+/// "SCHEME^VALUE", or two of them with ~ between.
+bool isCode(const std::string& text) {
+  const std::size_t tilde = text.find('~');
+  const auto one = [](std::string_view code) {
+    const std::size_t roof = code.find('^');
+    return roof != 0 && roof != std::string_view::npos && roof + 1 < code.size() &&
+           code.find_first_of("^~", roof + 1) == std::string_view::npos;
+  };
+  const std::string_view code(text);
+  return tilde == std::string::npos ? one(code)
+                                    : one(code.substr(0, tilde)) && one(code.substr(tilde + 1));
+}
+
+FocusPatterns readFocus(const JsonNode& node) {
+  node.allowOnly({"names", "except", "codes"});
+  FocusPatterns focus{textsAt(node, "names"), textsAt(node, "except"), textsAt(node, "codes")};
+  if (focus.names.empty() && focus.codes.empty())
+    throw node.error("has neither \"names\" nor \"codes\"; add patterns of segment names");
+  for (std::size_t i = 0; i < focus.codes.size(); ++i)
+    if (!isCode(focus.codes[i]))
+      throw node.at("codes").elements()[i].error(
+          "must be a code like \"SCT^39607008\", or with its region \"SCT^4147007~SCT^12738006\"");
+  return focus;
+}
+
+/// A flag's value as the command line has it: a text, a number, numbers, or a look itself.
+std::string readValue(const JsonNode& node) {
+  if (node.isObject() || node.isNumber())
+    return node.json();
+  if (!node.isArray())
+    return node.text();
+  std::string text;
+  for (const JsonNode& element : node.elements()) {
+    element.number();
+    text.append(text.empty() ? "" : ",").append(element.json());
+  }
+  return text;
+}
+
+char lower(char c) {
+  return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
+
+bool isWordCharacter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & 0x80) != 0;
+}
+
+bool isUpper(char c) {
+  return std::isupper(static_cast<unsigned char>(c)) != 0;
+}
+
+/// In lower case; `globs` are characters of words, too.
+std::vector<std::string> wordsOf(std::string_view text, std::string_view globs) {
+  std::vector<std::string> words;
+  char before = ' ';
+  for (const char c : text.substr(0, longestName)) {
+    const bool inWord = isWordCharacter(c) || globs.find(c) != std::string_view::npos;
+    const bool begins = before == ' ' || (isUpper(c) && !isUpper(before));
+    if (inWord && begins)
+      words.emplace_back();
+    if (inWord)
+      words.back() += lower(c);
+    before = inWord ? c : ' ';
+  }
+  return words;
+}
+
+/// In time of the product of both lengths at most: only the last * is ever taken back.
+bool matchesGlob(std::string_view glob, std::string_view word) {
+  std::size_t g = 0;
+  std::size_t w = 0;
+  std::size_t star = std::string_view::npos;
+  std::size_t from = 0;
+  while (w < word.size()) {
+    if (g < glob.size() && glob[g] == '*') {
+      star = g++;
+      from = w;
+    } else if (g < glob.size() && (glob[g] == '?' || glob[g] == word[w])) {
+      ++g;
+      ++w;
+    } else if (star != std::string_view::npos) {
+      g = star + 1;
+      w = ++from;
+    } else {
+      return false;
+    }
+  }
+  return glob.find_first_not_of('*', g) == std::string_view::npos;
+}
+
+} // namespace
+
+OrganPreset readPreset(const std::filesystem::path& path) {
+  return parsePreset(readText(path), path.string());
+}
+
+OrganPreset parsePreset(std::string_view json, const std::string& source) {
+  const nlohmann::json document = parseJson(json, source);
+  const JsonNode root(document, source);
+  root.allowOnly({"title", "modality", "focus", "before", "flags", "tested"});
+  OrganPreset preset{.name = std::filesystem::path(source).stem().string(),
+                     .title = root.at("title").text(),
+                     .modality = readModality(root.at("modality")),
+                     .focus = readFocus(root.at("focus")),
+                     .before = textsAt(root, "before")};
+  for (const auto& [flag, value] : root.at("flags").members())
+    preset.flags.emplace_back(flag, readValue(value));
+  if (const auto tested = root.find("tested"))
+    preset.tested = tested->text();
+  return preset;
+}
+
+bool matchesName(std::string_view pattern, std::string_view name) {
+  const std::vector<std::string> globs = wordsOf(pattern, "*?");
+  const std::vector<std::string> words = wordsOf(name, "");
+  return !globs.empty() && std::search(words.begin(), words.end(), globs.begin(), globs.end(),
+                                       [](const std::string& word, const std::string& glob) {
+                                         return matchesGlob(glob, word);
+                                       }) != words.end();
+}
+
+} // namespace fenestra

@@ -1,0 +1,106 @@
+#include "files/looks/PropertyWriter.h"
+
+#include "base/TextStream.h"
+#include "base/safe/Mark.h"
+
+#include <nlohmann/json.hpp>
+
+#include <limits>
+
+namespace fenestra {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json piecewiseLinear(const std::vector<OpacityNode>& nodes) {
+  Json points = Json::array();
+  for (const OpacityNode& node : nodes)
+    points.push_back(
+        {{"x", node.x}, {"y", node.y}, {"midpoint", node.midpoint}, {"sharpness", node.sharpness}});
+  return {{"type", "piecewiseLinearFunction"}, {"points", points}};
+}
+
+Json colorTransfer(const std::vector<ColorNode>& nodes) {
+  Json points = Json::array();
+  for (const ColorNode& node : nodes)
+    points.push_back({{"x", node.x},
+                      {"color", {node.color.x(), node.color.y(), node.color.z()}},
+                      {"midpoint", node.midpoint},
+                      {"sharpness", node.sharpness}});
+  return {{"type", "colorTransferFunction"}, {"points", points}};
+}
+
+std::string numbersText(const std::vector<double>& numbers) {
+  TextWriter text;
+  text.precision(std::numeric_limits<double>::digits10);
+  text << numbers.size();
+  for (const double number : numbers)
+    text << ' ' << number;
+  return text.str();
+}
+
+std::string opacityText(const std::vector<OpacityNode>& nodes, double unitsPerMm) {
+  std::vector<double> numbers;
+  for (const OpacityNode& node : nodes) {
+    const double y = unitsPerMm == 1.0 ? node.y : 1.0 - std::pow(1.0 - node.y, unitsPerMm);
+    numbers.insert(numbers.end(), {node.x, y});
+  }
+  return numbersText(numbers);
+}
+
+} // namespace
+
+std::string propertyJson(const VolumeProperty& property, double minimum, double maximum) {
+  const Json component = {{"componentWeight", 1.0},
+                          {"shade", property.shade},
+                          {"lighting",
+                           {{"diffuse", property.diffuse},
+                            {"ambient", ambientLight},
+                            {"specular", property.specular},
+                            {"specularPower", property.specularPower}}},
+                          {"disableGradientOpacity", false},
+                          {"scalarOpacityUnitDistance", property.unitDistance},
+                          {"rgbTransferFunction", colorTransfer(property.color)},
+                          {"scalarOpacity", piecewiseLinear(property.scalarOpacity)},
+                          {"gradientOpacity", piecewiseLinear(property.gradientOpacity)}};
+  const Json node = {{"effectiveRange", {minimum, maximum}},
+                     {"isoSurfaceValues", Json::array()},
+                     {"independentComponents", true},
+                     {"interpolationType", "linear"},
+                     {"useClippedVoxelIntensity", false},
+                     {"clippedVoxelIntensity", 0.0},
+                     {"scatteringAnisotropy", property.anisotropy},
+                     {"components", Json::array({component})}};
+  const Json file = {{"@schema",
+                      "https://raw.githubusercontent.com/Slicer/Slicer/main/Modules/Loadable/"
+                      "VolumeRendering/Resources/Schema/volume-property-schema-v1.0.0.json#"},
+                     {"generator", unsealedMark},
+                     {"volumeProperties", Json::array({node})}};
+  return sealed(file.dump(2) + "\n");
+}
+
+PropertyTexts propertyTexts(const VolumeProperty& property) {
+  std::vector<double> color;
+  for (const ColorNode& node : property.color)
+    color.insert(color.end(), {node.x, node.color.x(), node.color.y(), node.color.z()});
+  return {opacityText(property.scalarOpacity, 1.0 / property.unitDistance),
+          opacityText(property.gradientOpacity, 1.0), numbersText(color)};
+}
+
+std::string propertyVp(const VolumeProperty& property) {
+  const PropertyTexts texts = propertyTexts(property);
+  TextWriter text;
+  text << "1\n" // linear interpolation
+       << property.shade << '\n'
+       << property.diffuse << '\n'
+       << ambientLight << '\n'
+       << property.specular << '\n'
+       << property.specularPower << '\n'
+       << texts.scalarOpacity << '\n'
+       << texts.gradientOpacity << '\n'
+       << texts.color << '\n';
+  return text.str();
+}
+
+} // namespace fenestra

@@ -1,0 +1,304 @@
+#include "files/looks/TransferReader.h"
+
+#include "base/safe/Inputs.h"
+#include "base/safe/JsonNode.h"
+#include "base/safe/NumberText.h"
+#include "model/medium/VolumeProperty.h"
+
+#include <span>
+
+namespace fenestra {
+namespace {
+
+constexpr double largestValue = 1e30; ///< of scalars and extinctions: their spans stay finite
+constexpr double mostForward = 0.999; ///< g = 1 would never scatter
+
+double finite(const JsonNode& node) {
+  return node.numberIn(-largestValue, largestValue);
+}
+
+// ---- Fenestra
+// ------------------------------------------------------------------------------------
+
+/// Rows [scalar, value...], each value from 0 to `most`.
+template <int Channels>
+PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double most) {
+  std::vector<typename PiecewiseLinear<Channels>::Knot> knots;
+  for (const JsonNode& row : rows.elements()) {
+    const auto numbers = row.numbers(Channels + 1, -largestValue, largestValue);
+    for (const double value : std::span(numbers).subspan(1))
+      if (value < 0.0 || value > most)
+        throw row.error(most == 1.0 ? "values must be from 0 to 1" : "value must not be negative");
+    Array<double, Channels> value;
+    std::copy_n(numbers.begin() + 1, Channels, value.data());
+    knots.push_back({numbers[0], value});
+  }
+  if (knots.empty())
+    throw rows.error("is empty; give at least one point");
+  return PiecewiseLinear<Channels>(std::move(knots));
+}
+
+bool isHybrid(const JsonNode& shading) {
+  const std::string text = shading.text();
+  if (text != "volume" && text != "hybrid")
+    throw shading.error("must be \"volume\" or \"hybrid\"");
+  return text == "hybrid";
+}
+
+bool isRelative(const JsonNode& scalars) {
+  const std::string text = scalars.text();
+  if (text != "absolute" && text != "relative")
+    throw scalars.error("must be \"absolute\" or \"relative\"");
+  return text == "relative";
+}
+
+TransferLook readOwn(const JsonNode& root) {
+  root.allowOnly({"scalars", "extinction", "albedo", "g", "shading"});
+  TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largestValue),
+                            .albedo = readCurve<3>(root.at("albedo"), 1.0)};
+  if (const auto g = root.find("g")) {
+    transfer.g = g->number();
+    if (!(std::abs(transfer.g) < 1.0))
+      throw g->error("must be between -1 and 1, both excluded");
+  }
+  if (const auto shading = root.find("shading"); shading && isHybrid(*shading))
+    transfer.shading = SurfaceShading();
+  const auto scalars = root.find("scalars");
+  return {std::move(transfer), scalars && isRelative(*scalars)};
+}
+
+template <int Channels>
+PiecewiseLinear<Channels> stretched(const PiecewiseLinear<Channels>& f, double low, double high) {
+  auto knots = f.knots();
+  for (auto& knot : knots)
+    knot.position = low + knot.position * (high - low);
+  return PiecewiseLinear<Channels>(std::move(knots));
+}
+
+TransferFunction absolute(TransferLook look, const std::string& source) {
+  if (look.relative)
+    throw inputError(source, "scalars: are relative to a volume; name one of absolute scalars");
+  return std::move(look.function);
+}
+
+// ---- Slicer's .vp.json
+// ---------------------------------------------------------------------------
+
+double orElse(const std::optional<JsonNode>& node, double fallback) {
+  return node ? finite(*node) : fallback;
+}
+
+/// What both kinds of point share; x must be there.
+template <typename Node>
+Node readPoint(const JsonNode& point) {
+  Node node;
+  node.x = finite(point.at("x"));
+  node.midpoint = orElse(point.find("midpoint"), node.midpoint);
+  node.sharpness = orElse(point.find("sharpness"), node.sharpness);
+  return node;
+}
+
+template <typename Node>
+void sortByPosition(std::vector<Node>& nodes) {
+  std::stable_sort(nodes.begin(), nodes.end(),
+                   [](const Node& a, const Node& b) { return a.x < b.x; });
+}
+
+std::vector<OpacityNode> readOpacity(const JsonNode& function) {
+  std::vector<OpacityNode> nodes;
+  for (const JsonNode& point : function.at("points").elements()) {
+    nodes.push_back(readPoint<OpacityNode>(point));
+    nodes.back().y = point.at("y").numberIn(0.0, 1.0);
+  }
+  sortByPosition(nodes);
+  return nodes;
+}
+
+std::vector<ColorNode> readColor(const JsonNode& function) {
+  std::vector<ColorNode> nodes;
+  for (const JsonNode& point : function.at("points").elements()) {
+    nodes.push_back(readPoint<ColorNode>(point));
+    const auto rgb = point.at("color").numbers(3, 0.0, 1.0);
+    nodes.back().color = {rgb[0], rgb[1], rgb[2]};
+  }
+  sortByPosition(nodes);
+  return nodes;
+}
+
+JsonNode first(const JsonNode& parent, const std::string& key) {
+  const JsonNode array = parent.at(key);
+  const std::vector<JsonNode> elements = array.elements();
+  if (elements.empty())
+    throw array.error("is empty; save the volume property again");
+  return elements.front();
+}
+
+VolumeProperty readSlicer(const JsonNode& root) {
+  const JsonNode slicer = first(root, "volumeProperties");
+  const JsonNode component = first(slicer, "components");
+  VolumeProperty property;
+  property.scalarOpacity = readOpacity(component.at("scalarOpacity"));
+  property.color = readColor(component.at("rgbTransferFunction"));
+  const auto disabled = component.find("disableGradientOpacity");
+  const auto gradient = component.find("gradientOpacity");
+  if (gradient && !(disabled && disabled->boolean()))
+    property.gradientOpacity = readOpacity(*gradient);
+  property.unitDistance =
+      orElse(component.find("scalarOpacityUnitDistance"), property.unitDistance);
+  if (const auto shade = component.find("shade"))
+    property.shade = shade->boolean();
+  if (const auto lighting = component.find("lighting")) {
+    property.diffuse = orElse(lighting->find("diffuse"), property.diffuse);
+    property.specular = orElse(lighting->find("specular"), property.specular);
+    property.specularPower = orElse(lighting->find("specularPower"), property.specularPower);
+  }
+  if (const auto g = slicer.find("scatteringAnisotropy"))
+    property.anisotropy = std::clamp(g->numberIn(-1.0, 1.0), -mostForward, mostForward);
+  return property;
+}
+
+// ---- Slicer's .vp, and the same texts as a scene's attributes
+// ----------------------------------
+
+/// The texts of a property by the names that MRML gives them, in the order of a .vp's lines.
+constexpr const char* propertyFields[] = {"interpolation", "shade",           "diffuse",
+                                          "ambient",       "specular",        "specularPower",
+                                          "scalarOpacity", "gradientOpacity", "colorTransfer"};
+
+enum class PropertyForm { lines, attributes };
+
+class PropertyFields {
+public:
+  PropertyFields(const std::map<std::string, std::string>& texts, PropertyForm form,
+                 std::string source)
+      : m_texts(texts), m_form(form), m_source(std::move(source)) {}
+
+  bool has(const std::string& field) const { return m_texts.contains(field); }
+
+  double number(const std::string& field) const {
+    const auto all = numbers(field);
+    if (all.size() != 1)
+      throw error(field, "must be one number");
+    return all[0];
+  }
+
+  /// `<count> x v... x v...` in rows of `width`; Slicer moves an x that does not grow to the one
+  /// before (and 10 units in the last place more).
+  std::vector<std::vector<double>> rows(const std::string& field, std::size_t width) const {
+    const auto all = numbers(field);
+    if (all.empty() || all[0] != static_cast<double>(all.size() - 1) ||
+        (all.size() - 1) % width != 0)
+      throw error(field,
+                  "must be a count and that many numbers, " + std::to_string(width) + " a point");
+    std::vector<std::vector<double>> rows;
+    for (auto it = all.begin() + 1; it != all.end(); it += static_cast<long>(width)) {
+      rows.emplace_back(it, it + static_cast<long>(width));
+      if (rows.size() > 1)
+        rows.back()[0] = std::max(rows.back()[0], rows[rows.size() - 2][0]);
+    }
+    return rows;
+  }
+
+private:
+  Error error(const std::string& field, const std::string& what) const {
+    if (m_form == PropertyForm::attributes)
+      return inputError(m_source, field + ": " + what);
+    const auto* const line = std::find(std::begin(propertyFields), std::end(propertyFields), field);
+    return inputError(m_source, "line " + std::to_string(line - std::begin(propertyFields) + 1) +
+                                    " (" + field + "): " + what);
+  }
+
+  std::vector<double> numbers(const std::string& field) const {
+    const auto text = m_texts.find(field);
+    if (text == m_texts.end())
+      throw error(field, "is missing; save the volume property again");
+    auto all = parseNumbers(text->second);
+    if (!all || std::any_of(all->begin(), all->end(),
+                            [](double x) { return !(std::abs(x) <= largestValue); }))
+      throw error(field, "holds something other than numbers; save the volume property again");
+    return std::move(*all);
+  }
+
+  const std::map<std::string, std::string>& m_texts;
+  PropertyForm m_form;
+  std::string m_source;
+};
+
+/// Light that arrives from nowhere (ambient) has no place in path tracing.
+VolumeProperty readProperty(const PropertyFields& texts) {
+  VolumeProperty property;
+  if (texts.has("shade"))
+    property.shade = texts.number("shade") != 0.0;
+  const std::pair<const char*, double*> numbers[] = {{"diffuse", &property.diffuse},
+                                                     {"specular", &property.specular},
+                                                     {"specularPower", &property.specularPower}};
+  for (const auto& [field, value] : numbers)
+    if (texts.has(field))
+      *value = texts.number(field);
+  for (const auto& row : texts.rows("scalarOpacity", 2))
+    property.scalarOpacity.push_back({row[0], row[1]});
+  if (texts.has("gradientOpacity"))
+    for (const auto& row : texts.rows("gradientOpacity", 2))
+      property.gradientOpacity.push_back({row[0], row[1]});
+  for (const auto& row : texts.rows("colorTransfer", 4))
+    property.color.push_back({row[0], {row[1], row[2], row[3]}});
+  return property;
+}
+
+VolumeProperty readPropertyLines(std::string_view content, const std::string& source) {
+  std::map<std::string, std::string> texts;
+  for (const char* field : propertyFields) {
+    const std::size_t end = std::min(content.find('\n'), content.size());
+    texts[field] = content.substr(0, end);
+    content.remove_prefix(std::min(end + 1, content.size()));
+  }
+  const PropertyFields property(texts, PropertyForm::lines, source);
+  for (const char* field : {"interpolation", "ambient"}) // of no use here, but of the format
+    property.number(field);
+  return readProperty(property);
+}
+
+} // namespace
+
+TransferFunction TransferLook::over(double low, double high) const {
+  TransferFunction result = function;
+  if (relative) {
+    result.extinction = stretched(function.extinction, low, high);
+    result.albedo = stretched(function.albedo, low, high);
+  }
+  return result;
+}
+
+TransferLook parseTransferLook(std::string_view json, const std::string& source) {
+  const nlohmann::json document = parseJson(json, source);
+  const JsonNode root(document, source);
+  if (root.find("volumeProperties"))
+    return {tabulate(readSlicer(root), source)};
+  return readOwn(root);
+}
+
+TransferFunction parseTransferFunction(std::string_view json, const std::string& source) {
+  return absolute(parseTransferLook(json, source), source);
+}
+
+TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
+                                       const std::string& source) {
+  return tabulate(readProperty(PropertyFields(attributes, PropertyForm::attributes, source)),
+                  source);
+}
+
+TransferLook readTransferLook(const std::filesystem::path& path) {
+  const std::string source = path.string();
+  const std::string extension = lowerExtension(path);
+  if (extension != ".vp" && extension != ".json")
+    throw inputError(source, "is no transfer function; name a .vp, .vp.json or .json file");
+  const std::string text = readText(path);
+  return extension == ".vp" ? TransferLook{tabulate(readPropertyLines(text, source), source)}
+                            : parseTransferLook(text, source);
+}
+
+TransferFunction readTransferFunction(const std::filesystem::path& path) {
+  return absolute(readTransferLook(path), path.string());
+}
+
+} // namespace fenestra

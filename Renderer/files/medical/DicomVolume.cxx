@@ -1,0 +1,222 @@
+// From a series' slices to a volume.
+
+#include "base/Error.h"
+#include "base/TextStream.h"
+#include "files/medical/DicomHeader.h"
+#include "files/medical/DicomPixels.h"
+#include "files/medical/DicomSeries.h"
+#include "files/medical/StoreVoxels.h"
+
+#include <iomanip>
+
+namespace fenestra {
+namespace {
+
+using Path = std::filesystem::path;
+
+constexpr double largestLength = 1e9; ///< mm, as for other files
+
+struct Slice {
+  Path path;
+  DicomHeader header;
+  Vec3 position;      ///< of its first voxel's centre, LPS mm
+  double depth = 0.0; ///< along the normal
+};
+
+std::string millimetres(double length) {
+  TextWriter text;
+  text << std::setprecision(4) << length << " mm";
+  return text.str();
+}
+
+// ---- one file
+// ----------------------------------------------------------------------------------
+
+Slice openSlice(DicomFiles& files, const Path& path) {
+  const auto header = files.header(path);
+  const auto refuse = [&](const char* what) { throw inputError(path.string(), what); };
+  if (!header)
+    refuse("is not a DICOM file; name a volume file or a DICOM series");
+  const DicomHeader& h = *header;
+  if (!h.whole)
+    refuse("is damaged, truncated or deflated; export the series again");
+  if (!isImage(h))
+    refuse("PixelData: there is none; name a series of images");
+  if (h.frames != 1)
+    refuse("NumberOfFrames: several in one file are not read; save the volume in Slicer as .nrrd "
+           "and name that");
+  if (h.samples != 1 || h.photometric != "MONOCHROME2")
+    refuse("PhotometricInterpretation: is not MONOCHROME2, of one scalar a voxel; name a series of "
+           "grey images");
+  if (h.position.size() != 3 || h.orientation.size() != 6)
+    refuse("ImagePositionPatient or ImageOrientationPatient: is missing, so nothing says where the "
+           "slice lies; name another series");
+  if (h.pixelSpacing.size() != 2)
+    refuse("PixelSpacing: is missing; name another series");
+  for (const double spacing : h.pixelSpacing)
+    if (!(spacing > 1.0 / largestLength && spacing < largestLength))
+      refuse("PixelSpacing: must be above 0 mm; export the series again");
+  checkDicomPixels(path, h);
+  return {path, h, {h.position[0], h.position[1], h.position[2]}};
+}
+
+// ---- all files
+// ---------------------------------------------------------------------------------
+
+/// Along a row and along a column, in LPS; at right angles.
+struct Axes {
+  Vec3 row, column;
+  Vec3 normal() const { return row.cross(column).normalized(); }
+};
+
+Axes axesOf(const Slice& slice) {
+  const std::vector<double>& o = slice.header.orientation;
+  const Vec3 row(o[0], o[1], o[2]), column(o[3], o[4], o[5]);
+  constexpr double tolerance = 1e-2; // real files round their cosines
+  if (std::abs(row.norm() - 1.0) > tolerance || std::abs(column.norm() - 1.0) > tolerance ||
+      std::abs(row.dot(column)) > tolerance)
+    throw inputError(slice.path.string(),
+                     "ImageOrientationPatient: must be two directions at right "
+                     "angles; export the series again");
+  return {row.normalized(), column.normalized()};
+}
+
+void checkAlike(const std::vector<Slice>& slices) {
+  const Slice& first = slices.front();
+  const auto near = [](const std::vector<double>& a, const std::vector<double>& b, double error) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [error](double x, double y) { return std::abs(x - y) <= error; });
+  };
+  for (const Slice& slice : slices) {
+    const auto refuse = [&](const char* field) {
+      throw inputError(slice.path.string(), std::string(field) + ": differs from that of " +
+                                                first.path.filename().string() +
+                                                "; name a series of parallel slices of one size");
+    };
+    const DicomHeader& h = slice.header;
+    if (h.rows != first.header.rows || h.columns != first.header.columns)
+      refuse("Rows or Columns");
+    if (!near(h.orientation, first.header.orientation, 1e-3))
+      refuse("ImageOrientationPatient");
+    if (!near(h.pixelSpacing, first.header.pixelSpacing, 1e-3 * first.header.pixelSpacing[0]))
+      refuse("PixelSpacing");
+  }
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Slices are sorted. Throws where one is missing or repeated.
+void checkGaps(const std::vector<Slice>& slices) {
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < slices.size(); ++i)
+    gaps.push_back(slices[i].depth - slices[i - 1].depth);
+  const double usual = median(gaps);
+  constexpr double least = 1e-3; // mm
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    const std::string between = slices[i + 1].path.filename().string();
+    if (gaps[i] < least)
+      throw inputError(
+          slices[i].path.string(),
+          "ImagePositionPatient: lies where " + between +
+              " does; name a series of one slice a place (not several times or echoes)");
+    if (std::abs(gaps[i] - usual) > 0.5 * usual)
+      throw inputError(slices[i].path.string(),
+                       "ImagePositionPatient: is " + millimetres(gaps[i]) + " from " + between +
+                           ", others " + millimetres(usual) + "; add the slices that are missing");
+  }
+}
+
+/// From a slice to the next, LPS mm; warns where they are not even.
+Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes,
+            std::vector<std::string>& warnings) {
+  if (slices.size() == 1)
+    return axes.normal();
+  checkGaps(slices);
+  Vec3 step =
+      (slices.back().position - slices.front().position) / static_cast<double>(slices.size() - 1);
+  const std::vector<double>& pixel = slices.front().header.pixelSpacing;
+  double most = 0.0;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const Vec3 off = slices[i].position - slices.front().position - double(i) * step;
+    const double along = std::abs(off.dot(axes.normal()));
+    if (along > 0.5 * step.dot(axes.normal()) || std::abs(off.dot(axes.row)) > 0.5 * pixel[1] ||
+        std::abs(off.dot(axes.column)) > 0.5 * pixel[0])
+      throw inputError(slices[i].path.string(),
+                       "ImagePositionPatient: is " + millimetres(off.norm()) +
+                           " off even steps; resample the series in Slicer "
+                           "and name the volume file");
+    most = std::max(most, off.norm());
+  }
+  if (most > 0.02 * step.norm())
+    warnings.push_back("slices lie up to " + millimetres(most) + " off even steps of " +
+                       millimetres(step.norm()) + ", which are taken for theirs");
+  return step;
+}
+
+Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step) {
+  const DicomHeader& h = slices.front().header;
+  for (const Slice& slice : slices)
+    if (!(slice.position.array().abs() < largestLength).all())
+      throw inputError(slice.path.string(), "ImagePositionPatient: is not a place within 1e9 mm; "
+                                            "export the series again");
+  const Mat3 steps(axes.row * h.pixelSpacing[1], axes.column * h.pixelSpacing[0], step);
+  return {Size3(h.columns, h.rows, static_cast<std::int64_t>(slices.size())),
+          Affine(lpsToRas * steps, lpsToRas * slices.front().position)};
+}
+
+VoxelStore readAll(DicomFiles& files, const std::vector<Slice>& slices) {
+  const DicomHeader& first = slices.front().header;
+  VoxelStore all(std::size_t{first.rows} * first.columns * slices.size());
+  for (const Slice& slice : slices)
+    std::visit(
+        [&all](const auto& samples) {
+          const std::span block(samples);
+          all.append(block, survey(block));
+        },
+        rescaledVoxels(slice.header, files.voxels(slice.path, slice.header)));
+  return all;
+}
+
+Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
+  DicomFiles files;
+  std::vector<Slice> slices;
+  for (const Path& path : paths)
+    slices.push_back(openSlice(files, path));
+  if (slices.empty())
+    throw inputError(name, "names no DICOM file; name the series' files");
+  checkAlike(slices);
+  const Axes axes = axesOf(slices.front());
+  for (Slice& slice : slices)
+    slice.depth = slice.position.dot(axes.normal());
+  std::stable_sort(slices.begin(), slices.end(),
+                   [](const Slice& a, const Slice& b) { return a.depth < b.depth; });
+  std::vector<std::string> warnings;
+  const Vec3 step = stepOf(slices, axes, warnings);
+  const Grid grid = gridOf(slices, axes, step);
+  Volume volume = makeVolume(name, grid, readAll(files, slices));
+  for (const std::string& warning : warnings)
+    volume.warnings.push_back(std::string(name).append(": ").append(warning));
+  return volume;
+}
+
+} // namespace
+
+Volume readDicomVolume(const std::vector<Path>& files, const std::string& name) {
+  try {
+    return readSlices(files, name);
+  } catch (const std::bad_alloc&) {
+    throw inputError(name, "does not fit into memory; crop or resample it");
+  }
+}
+
+Volume readDicomVolume(const DicomSeries& series) {
+  return readDicomVolume(series.files, series.files.empty()
+                                           ? series.uid
+                                           : series.files.front().parent_path().string());
+}
+
+} // namespace fenestra

@@ -1,0 +1,269 @@
+#include "files/medical/MedicalHeader.h"
+
+#include "base/Error.h"
+#include "base/safe/HeaderText.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/NrrdHeader.h"
+#include "base/safe/NumberText.h"
+#include "base/safe/ShownText.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <map>
+#include <string_view>
+
+namespace fenestra {
+
+using namespace header;
+
+namespace {
+
+/// Deflate packs at most 1032 bytes into one.
+constexpr std::uint64_t greatestRatio = 1100;
+
+/// Data files are named relative to their header's folder.
+void addFile(const std::filesystem::path& path, std::string_view name, StoredSamples& stored) {
+  const std::filesystem::path file = path.parent_path() / std::filesystem::path(name);
+  if (name == "-") // to libraries the standard input
+    throw inputError(path.string(), "data file: \"-\" is no file; name one beside the header");
+  try {
+    requireFile(file, "name a file with samples");
+  } catch (const Error& error) {
+    throw inputError(path.string(), std::string("data file: ") + error.what());
+  }
+  stored.files.push_back(file);
+  stored.bytes += std::filesystem::file_size(file);
+}
+
+void skip(const std::filesystem::path& path, std::uint64_t offset, StoredSamples& stored) {
+  if (offset > stored.bytes)
+    throw inputError(path.string(),
+                     "is truncated: it ends before its samples begin; copy it again");
+  stored.offset = offset;
+  stored.bytes -= offset;
+}
+
+// ---- NRRD
+// ----------------------------------------------------------------------------------------
+
+using Fields = std::map<std::string, std::string>;
+
+void locateNrrdFiles(const std::filesystem::path& path, const NrrdHeaderText& header,
+                     StoredSamples& stored) {
+  const auto named = header.fields.find("datafile");
+  if (named == header.fields.end()) {
+    addFile(path, path.filename().string(), stored);
+    return skip(path, header.end, stored);
+  }
+  const std::string& name = named->second;
+  if (name.starts_with("LIST")) {
+    for (const std::string& file : header.files)
+      addFile(path, file, stored);
+  } else if (name.find('%') != std::string::npos)
+    throw inputError(path.string(), "data file: numbered series of files are not read; write the "
+                                    "volume into one file");
+  else
+    addFile(path, name, stored);
+}
+
+bool isOneOf(const std::string& name, std::initializer_list<const char*> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool isGzip(const std::string& encoding) {
+  return isOneOf(encoding, {"gzip", "gz"});
+}
+
+/// What there is for ITK to read, told before it fails.
+void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
+  const std::string encoding = lower(fields["encoding"]);
+  if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
+    throw inputError(path.string(),
+                     "encoding: \"" + shown(encoding) + "\" is not read; write raw or gzip");
+  if (const auto axes = wholeNumber(fields["dimension"]); axes && *axes < 3)
+    throw inputError(path.string(), "is a picture of " + std::to_string(*axes) +
+                                        " axes, not a volume; name one of three");
+  constexpr std::int64_t mostSkipped = 1 << 20; // teem inflates them one by one
+  if (isGzip(encoding) && fields.contains("byteskip")) {
+    const auto skipped = wholeNumber(fields["byteskip"]);
+    if (!skipped || *skipped < 0 || *skipped > mostSkipped)
+      throw inputError(path.string(), "byte skip: must be from 0 to " +
+                                          std::to_string(mostSkipped) +
+                                          " in compressed data; write the samples without it");
+  }
+}
+
+StoredSamples locateNrrd(const std::filesystem::path& path) {
+  NrrdHeaderText header = readNrrdHeader(path);
+  Fields& fields = header.fields;
+  checkNrrdKind(path, fields);
+  StoredSamples stored;
+  stored.hasSpacing = saysSpacing(header);
+  const std::string encoding = lower(fields["encoding"]);
+  stored.compressed = encoding != "raw" && encoding != "hex"; // a text's digit can be 8 bytes
+  locateNrrdFiles(path, header, stored);
+  for (const std::filesystem::path& file : stored.files) {
+    checkNrrdPath(file);
+    if (isOneOf(encoding, {"ascii", "text", "txt"}))
+      checkNrrdNumbers(file, stored.offset, path);
+  }
+  const bool skips = fields.contains("lineskip") || fields.contains("byteskip");
+  const bool simple = stored.files.size() == 1 && !skips;
+  stored.isRaw = simple && encoding == "raw";
+  stored.isStream = simple && isGzip(encoding);
+  const std::string kind = lower(fields["kinds"]);
+  stored.isListFirst = kind.starts_with("list") || kind.starts_with("vector");
+  if (const std::string order = lower(fields["endian"]); order == "little" || order == "big")
+    stored.order = order == "big" ? std::endian::big : std::endian::little;
+  return stored;
+}
+
+// ---- MetaImage
+// -----------------------------------------------------------------------------------
+
+/// MetaIO copies text into 255 bytes, and takes as many numbers as the dimension asks for, whether
+/// they are there or not.
+void checkMetaField(const std::filesystem::path& path, const std::string& key,
+                    std::string_view value, std::int64_t dimension) {
+  const bool isVector = isOneOf(key, {"DimSize", "ElementSpacing", "ElementSize", "Offset",
+                                      "Position", "Origin", "CenterOfRotation"});
+  const bool isMatrix = isOneOf(key, {"TransformMatrix", "Rotation", "Orientation"});
+  const std::size_t longest = isMatrix || isVector ? 1000 : 250;
+  if (key.size() > 200 || value.size() > longest)
+    throw inputError(path.string(), key.substr(0, 40) + ": has more than " +
+                                        std::to_string(longest) + " characters; shorten it");
+  const auto numbers = static_cast<std::int64_t>(words(value).size());
+  const std::int64_t needed = isVector ? dimension : isMatrix ? dimension * dimension : 0;
+  if (numbers < needed)
+    throw inputError(path.string(), key + ": has " + std::to_string(numbers) +
+                                        " numbers; give it " + std::to_string(needed));
+}
+
+/// What MetaIO reads and nobody applies, or takes for something else.
+void checkMetaMeaning(const std::filesystem::path& path, const std::string& key,
+                      const std::string& value) {
+  const auto refuseUnless = [&](double neutral) {
+    if (parseNumbers(value) != std::vector<double>{neutral})
+      throw inputError(path.string(), key + ": is not read, unless it is " +
+                                          std::to_string(static_cast<int>(neutral)) +
+                                          "; rescale the samples and write them again");
+  };
+  if (key == "ElementToIntensityFunctionSlope")
+    refuseUnless(1.0);
+  else if (key == "ElementToIntensityFunctionOffset")
+    refuseUnless(0.0);
+  else if (key == "DistanceUnits")
+    checkMillimetres(path, key, value);
+  else if (key == "DimSize")
+    for (const std::string_view word : words(value))
+      if (const auto size = wholeNumber(word); !size || *size < 1 || *size > INT32_MAX)
+        throw inputError(path.string(),
+                         "DimSize: each must be a whole number from 1 to 2147483647");
+}
+
+Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
+  Fields fields;
+  std::int64_t dimension = 0;
+  while (!fields.contains("ElementDataFile")) {
+    const auto line = lines.next();
+    const std::size_t equals = line ? line->find('=') : std::string_view::npos;
+    if (equals == std::string_view::npos || hasControls(trimmed(*line)))
+      throw damaged(path, "MetaImage");
+    const std::string_view name = line->substr(0, equals);
+    if (name.find(':') != std::string_view::npos) // which MetaIO takes for an equals sign
+      throw damaged(path, "MetaImage");
+    const std::string key(trimmed(name));
+    fields[key] = trimmed(line->substr(equals + 1));
+    if (key == "NDims") {
+      dimension = wholeNumber(fields[key]).value_or(0);
+      if (dimension < 1 || dimension > 10)
+        throw inputError(path.string(), "NDims: must be a whole number from 1 to 10");
+    }
+    checkMetaField(path, key, fields[key], dimension);
+    checkMetaMeaning(path, key, fields[key]);
+  }
+  if (dimension == 0)
+    throw damaged(path, "MetaImage");
+  return fields;
+}
+
+StoredSamples locateMeta(const std::filesystem::path& path) {
+  HeaderLines lines(path);
+  Fields fields = readMetaFields(path, lines);
+  const auto isTrue = [&fields](const char* key) {
+    const std::string value = lower(fields[key]);
+    return value.starts_with('t') || value.starts_with('1') || value.starts_with('y');
+  };
+  if (fields.contains("BinaryData") && !isTrue("BinaryData"))
+    throw inputError(path.string(),
+                     "BinaryData: samples as text are not read; write them as binary");
+  const std::string& name = fields["ElementDataFile"];
+  if (name.starts_with("LIST") || name.find('%') != std::string::npos)
+    throw inputError(path.string(), "ElementDataFile: series of files are not read; write the "
+                                    "volume into one file");
+  const bool local = lower(name) == "local";
+  StoredSamples stored;
+  stored.hasSpacing = fields.contains("ElementSpacing") || fields.contains("ElementSize");
+  stored.compressed = stored.isStream = isTrue("CompressedData");
+  stored.order = std::endian::native;
+  for (const char* key : {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"})
+    if (fields.contains(key))
+      stored.order = isTrue(key) ? std::endian::big : std::endian::little;
+  addFile(path, local ? path.filename().string() : name, stored);
+  const std::int64_t header = wholeNumber(fields["HeaderSize"]).value_or(0);
+  // A negative HeaderSize means: the samples end where the file ends.
+  stored.isRaw = !stored.compressed && (header == 0 || (header > 0 && !local));
+  skip(path,
+       local ? lines.position() : static_cast<std::uint64_t>(std::max<std::int64_t>(header, 0)),
+       stored);
+  return stored;
+}
+
+// ---- NIfTI
+// ---------------------------------------------------------------------------------------
+
+StoredSamples locateNifti(const std::filesystem::path& path) {
+  StoredSamples stored;
+  stored.compressed = lower(path.extension().string()) == ".gz";
+  addFile(path, path.filename().string(), stored);
+  constexpr std::uint64_t headerBytes = 348;
+  if (!stored.compressed)
+    skip(path, headerBytes, stored);
+  return stored;
+}
+
+} // namespace
+
+std::optional<MedicalFormat> medicalFormat(const std::filesystem::path& path) {
+  const std::string name = lower(path.filename().string());
+  if (name.ends_with(".nrrd") || name.ends_with(".nhdr"))
+    return MedicalFormat::nrrd;
+  if (name.ends_with(".nii") || name.ends_with(".nii.gz"))
+    return MedicalFormat::nifti;
+  if (name.ends_with(".mha") || name.ends_with(".mhd"))
+    return MedicalFormat::metaImage;
+  return std::nullopt;
+}
+
+StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat format) {
+  switch (format) {
+  case MedicalFormat::nrrd:
+    return locateNrrd(path);
+  case MedicalFormat::metaImage:
+    return locateMeta(path);
+  case MedicalFormat::nifti:
+    break;
+  }
+  return locateNifti(path);
+}
+
+void checkCapacity(const std::filesystem::path& path, const StoredSamples& stored,
+                   std::uint64_t declared) {
+  if (declared / (stored.compressed ? greatestRatio : 1) > stored.bytes)
+    throw inputError(path.string(),
+                     "is truncated: its header announces " + std::to_string(declared) +
+                         " bytes of samples, the file has " + std::to_string(stored.bytes) +
+                         (stored.compressed ? " compressed" : "") + "; copy or write it again");
+}
+
+} // namespace fenestra

@@ -1,0 +1,234 @@
+#include "files/medical/MedicalImage.h"
+
+#include "base/Error.h"
+#include "base/safe/Inputs.h"
+#include "files/medical/MedicalHeader.h"
+#include "files/medical/NiftiSamples.h"
+#include "files/medical/Quiet.h"
+#include "files/medical/SampleStream.h"
+
+#include <itkMetaDataObject.h>
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
+
+#include <bit>
+#include <cstring>
+#include <memory>
+
+namespace fenestra {
+namespace {
+
+itk::ImageIOBase::Pointer makeImageIo(MedicalFormat format) {
+  switch (format) {
+  case MedicalFormat::nrrd:
+    return itk::NrrdImageIO::New().GetPointer();
+  case MedicalFormat::nifti:
+    return itk::NiftiImageIO::New().GetPointer();
+  case MedicalFormat::metaImage:
+    break;
+  }
+  return itk::MetaImageIO::New().GetPointer();
+}
+
+void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io,
+                 Components allowed) {
+  using Pixel = itk::IOPixelEnum;
+  const Pixel type = io.GetPixelType();
+  const bool scalar = io.GetNumberOfComponents() == 1 && type != Pixel::COMPLEX;
+  const bool list = allowed == Components::any && type == Pixel::VECTOR;
+  if (!scalar && !list)
+    throw inputError(path.string(), "has " + std::to_string(io.GetNumberOfComponents()) +
+                                        " components a voxel (" +
+                                        itk::ImageIOBase::GetPixelTypeAsString(type) +
+                                        "); convert it to one scalar a voxel");
+}
+
+std::size_t framesOf(const itk::ImageIOBase& io) {
+  return io.GetNumberOfDimensions() > 3 ? io.GetDimensions(3) : 1;
+}
+
+/// The number of axes that matter is three; a fourth may hold several frames where `allowed`.
+Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
+  const unsigned axes = io.GetNumberOfDimensions();
+  if (axes < 3)
+    throw inputError(path.string(), "is a picture of " + std::to_string(axes) +
+                                        " axes, not a volume; name one of three");
+  const bool frames = allowed == Components::any && io.GetNumberOfComponents() == 1;
+  for (unsigned axis = frames ? 4 : 3; axis < axes; ++axis)
+    if (io.GetDimensions(axis) != 1)
+      throw inputError(path.string(), "has " + std::to_string(axes) + " axes, the " +
+                                          std::to_string(axis + 1) + "th with " +
+                                          std::to_string(io.GetDimensions(axis)) +
+                                          " frames; extract one of them");
+  Size3 size;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    size[axis] = static_cast<std::int64_t>(io.GetDimensions(axis));
+    if (size[axis] < 1)
+      throw inputError(path.string(), "sizes: axis " + std::to_string(axis + 1) +
+                                          " has no voxels; write it again");
+  }
+  return size;
+}
+
+Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
+  const Size3 size = sizeOf(path, io, allowed);
+  Mat3 directions;
+  Vec3 spacing, origin;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const std::vector<double> direction = io.GetDirection(axis);
+    directions.col(static_cast<int>(axis)) = {direction[0], direction[1], direction[2]};
+    spacing[static_cast<int>(axis)] = io.GetSpacing(axis);
+    origin[static_cast<int>(axis)] = io.GetOrigin(axis);
+  }
+  constexpr double largest = 1e9; // mm; beyond, a point keeps no fraction of a voxel
+  if (!((spacing.array() > 1.0 / largest).all() && (spacing.array() < largest).all()))
+    throw inputError(path.string(),
+                     "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
+  if (!(origin.array().abs() < largest).all())
+    throw inputError(path.string(), "origin: is not a place within 1e9 mm; mend the header");
+  // The volume of the cell that unit directions span: 1 for orthogonal axes, 0 for coplanar ones.
+  constexpr double flattest = 1e-6;
+  if (!(std::abs(directions.normalizedColumns().determinant()) > flattest))
+    throw inputError(path.string(), "directions: the axes do not span space; mend the header");
+  return {size, Affine(lpsToRas * directions * Mat3::Diagonal(spacing), lpsToRas * origin)};
+}
+
+/// The greatest number where there are more.
+std::uint64_t sampleCount(const itk::ImageIOBase& io) {
+  std::uint64_t samples = io.GetNumberOfComponents();
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
+    if (__builtin_mul_overflow(samples, io.GetDimensions(axis), &samples))
+      return UINT64_MAX;
+  return samples;
+}
+
+SampleType typeOf(const std::filesystem::path& path, const itk::ImageIOBase& io) {
+  using Type = itk::IOComponentEnum;
+  switch (io.GetComponentType()) {
+  case Type::CHAR:
+    return std::int8_t();
+  case Type::UCHAR:
+    return std::uint8_t();
+  case Type::SHORT:
+    return std::int16_t();
+  case Type::USHORT:
+    return std::uint16_t();
+  case Type::INT:
+    return std::int32_t();
+  case Type::UINT:
+    return std::uint32_t();
+  case Type::LONG:
+  case Type::LONGLONG:
+    return std::int64_t();
+  case Type::ULONG:
+  case Type::ULONGLONG:
+    return std::uint64_t();
+  case Type::FLOAT:
+    return float();
+  case Type::DOUBLE:
+    return double();
+  default:
+    throw inputError(path.string(),
+                     "has samples of an unknown type; convert them to 16-bit integers");
+  }
+}
+
+/// All samples at once, in whatever encoding ITK knows.
+std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std::size_t bytes) {
+  itk::ImageIORegion region(io.GetNumberOfDimensions());
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
+    region.SetSize(axis, io.GetDimensions(axis));
+  io.SetIORegion(region);
+  const std::shared_ptr<char[]> all(new char[bytes]);
+  io.Read(all.get());
+  return [all, position = std::size_t{0}](void* to, std::size_t part) mutable {
+    std::memcpy(to, all.get() + position, part);
+    position += part;
+  };
+}
+
+/// Refuses more samples than the files can hold.
+SampleSource samplesOf(const std::filesystem::path& path, const StoredSamples& stored,
+                       itk::ImageIOBase& io) {
+  SampleSource source{.type = typeOf(path, io), .count = sampleCount(io)};
+  const std::size_t sampleBytes = std::visit([](auto x) { return sizeof(x); }, source.type);
+  std::uint64_t declared = 0;
+  if (__builtin_mul_overflow(source.count, sampleBytes, &declared))
+    declared = UINT64_MAX;
+  checkCapacity(path, stored, declared);
+  // Where a voxel's components lie apart, ITK brings them together.
+  const bool ordered = io.GetNumberOfComponents() == 1 || stored.isListFirst;
+  const bool known = sampleBytes == 1 || stored.order;
+  if (!((stored.isRaw || stored.isStream) && ordered && known)) {
+    source.read = readThroughItk(io, declared);
+    return source;
+  }
+  const auto stream = std::make_shared<SampleStream>(path, stored, declared);
+  source.swapped = sampleBytes > 1 && *stored.order != std::endian::native;
+  source.read = [stream](void* to, std::size_t bytes) { stream->read(to, bytes); };
+  source.finish = [stream] { stream->finish(); };
+  return source;
+}
+
+std::map<std::string, std::string> textFields(const itk::ImageIOBase& io) {
+  const itk::MetaDataDictionary& dictionary = io.GetMetaDataDictionary();
+  std::map<std::string, std::string> fields;
+  for (const std::string& key : dictionary.GetKeys()) {
+    std::string text;
+    if (itk::ExposeMetaData(dictionary, key, text))
+      fields[key] = text;
+  }
+  return fields;
+}
+
+void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
+                 const TakeSamples& take) {
+  const StoredSamples stored = locateSamples(path, format); // refuses what ITK does not survive
+  if (format == MedicalFormat::nifti)
+    checkNiftiHeader(path);
+  const Quiet quiet;
+  const auto io = makeImageIo(format);
+  io->SetFileName(path.string());
+  io->ReadImageInformation();
+  // Of the formats, NRRD alone keeps a list of layers.
+  if (format != MedicalFormat::nrrd)
+    allowed = Components::one;
+  checkPixels(path, *io, allowed);
+  MedicalImage image{.grid = gridOf(path, *io, allowed),
+                     .components = io->GetNumberOfComponents(),
+                     .frames = framesOf(*io) > 1,
+                     .fields = textFields(*io)};
+  if (!stored.hasSpacing)
+    image.warnings.push_back(path.string() + ": has no spacing; voxels are taken to be 1 mm");
+  if (image.frames)
+    image.components = framesOf(*io);
+  take(image, format == MedicalFormat::nifti ? niftiSamples(path, sampleCount(*io))
+                                             : samplesOf(path, stored, *io));
+}
+
+} // namespace
+
+void readMedicalImage(const std::filesystem::path& path, Components allowed,
+                      const TakeSamples& take) {
+  requireFile(path, "name a volume file in it");
+  const auto format = medicalFormat(path);
+  if (lowerExtension(path) == ".vtm")
+    throw inputError(path.string(), "is a segmentation; name its volume, and this file as "
+                                    "--segmentation");
+  if (!format)
+    throw inputError(path.string(), "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, "
+                                    ".mha or .mhd file");
+  try {
+    readChecked(path, *format, allowed, take);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw inputError(path.string(), "does not fit into memory; crop or resample it");
+  } catch (const std::exception&) { // ITK's text has many lines and names its own sources
+    throw inputError(path.string(),
+                     "is damaged, truncated or not of its extension's format; write it again");
+  }
+}
+
+} // namespace fenestra

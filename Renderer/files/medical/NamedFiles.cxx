@@ -1,0 +1,122 @@
+#include "files/medical/NamedFiles.h"
+
+#include "base/safe/HeaderText.h"
+#include "base/safe/Inputs.h"
+
+#include <pugixml.hpp>
+
+#include <string_view>
+
+namespace fenestra {
+
+using namespace header;
+
+namespace {
+
+namespace fs = std::filesystem;
+using Paths = std::vector<fs::path>;
+
+constexpr std::size_t mostFiles = 10'000;                ///< that one file names
+constexpr std::uint64_t largestMultiBlock = 64ULL << 20; ///< bytes of a .vtm
+
+/// Whether a number, and nothing else, is between `start` and `end` of the name.
+bool isNumbered(std::string_view name, std::string_view start, std::string_view end) {
+  if (name.size() < start.size() + end.size() || !name.starts_with(start) || !name.ends_with(end))
+    return false;
+  const std::string_view number =
+      name.substr(start.size(), name.size() - start.size() - end.size());
+  return number.find_first_not_of("0123456789+- ") == std::string_view::npos;
+}
+
+/// "s%03d.raw 1 99 1": the files in its folder that are named so, whatever their numbers.
+void addSeries(const fs::path& folder, std::string_view pattern, Paths& files) {
+  const std::size_t percent = pattern.find('%');
+  const std::size_t conversion = pattern.find_first_not_of("0123456789+- #.", percent + 1);
+  if (conversion == std::string_view::npos)
+    return;
+  const fs::path named = folder / pattern.substr(0, percent);
+  const std::string start = named.filename().string();
+  const std::string_view end = words(pattern.substr(conversion)).front().substr(1);
+  const fs::path within = named.has_parent_path() ? named.parent_path() : ".";
+  std::error_code failed;
+  for (fs::directory_iterator entry(within, failed), last;
+       !failed && entry != last && files.size() < mostFiles; entry.increment(failed))
+    if (isNumbered(entry->path().filename().string(), start, end))
+      files.push_back(entry->path());
+}
+
+/// What a header says of its samples: a file, "LIST" and files on the lines that follow, or a
+/// pattern.
+void addNamed(const fs::path& header, std::string_view value, HeaderLines& lines, Paths& files) {
+  const fs::path folder = header.parent_path();
+  if (value.starts_with("LIST")) {
+    for (auto line = lines.next(); line && files.size() < mostFiles; line = lines.next())
+      if (!trimmed(*line).empty())
+        files.push_back(folder / trimmed(*line));
+    return;
+  }
+  if (!value.empty())
+    files.push_back(folder / value);
+  if (value.find('%') != std::string_view::npos)
+    addSeries(folder, value, files);
+}
+
+/// The line that says where the samples are: "data file: NAME" or "ElementDataFile = NAME".
+Paths namedInHeader(const fs::path& path, std::string_view separator, std::string_view key) {
+  Paths files;
+  HeaderLines lines(path);
+  for (auto line = lines.next(); line && !line->empty(); line = lines.next()) {
+    const std::size_t end = line->find(separator);
+    if (end == std::string_view::npos)
+      continue;
+    std::string found = lower(std::string(line->substr(0, end)));
+    std::erase(found, ' ');
+    if (found == key) {
+      addNamed(path, trimmed(line->substr(end + separator.size())), lines, files);
+      break;
+    }
+  }
+  return files;
+}
+
+struct BlockNames final : pugi::xml_tree_walker {
+  explicit BlockNames(fs::path within) : folder(std::move(within)) {}
+
+  bool for_each(pugi::xml_node& element) override {
+    if (const char* name = element.attribute("file").value(); *name)
+      files.push_back(folder / name);
+    return files.size() < mostFiles;
+  }
+
+  fs::path folder;
+  Paths files;
+};
+
+Paths namedInMultiBlock(const fs::path& path) {
+  std::error_code failed;
+  BlockNames names(path.parent_path());
+  pugi::xml_document document;
+  if (fs::file_size(path, failed) <= largestMultiBlock && document.load_file(path.c_str()))
+    document.traverse(names);
+  return names.files;
+}
+
+} // namespace
+
+std::vector<fs::path> filesNamedBy(const fs::path& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed))
+    return {};
+  const std::string extension = lowerExtension(path);
+  if (extension == ".nrrd" || extension == ".nhdr")
+    return namedInHeader(path, ": ", "datafile");
+  if (extension == ".mha" || extension == ".mhd")
+    return namedInHeader(path, "=", "elementdatafile");
+  if (extension == ".vtm")
+    return namedInMultiBlock(path);
+  if (extension == ".hdr" || extension == ".img")
+    return {fs::path(path).replace_extension(extension == ".hdr" ? ".img" : ".hdr")};
+  return {};
+}
+
+} // namespace fenestra

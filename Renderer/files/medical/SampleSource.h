@@ -1,0 +1,125 @@
+#pragma once
+// Samples that are still in their file, and the way from there to a store: block by block, so that
+// only the store is as large as the volume. For io's own sources.
+
+#include "files/medical/SampleSurvey.h"
+
+#include <tbb/parallel_pipeline.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace fenestra {
+
+/// Which of them it holds counts, not its value.
+using SampleType =
+    std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
+                 std::uint32_t, std::int64_t, std::uint64_t, float, double>;
+
+struct Rescaling {
+  double slope, intercept;
+};
+
+struct SampleSource {
+  SampleType type = {};
+  std::size_t count = 0;
+  bool swapped = false; ///< the bytes of a sample are in the other order than the machine's
+  std::optional<Rescaling> rescaling = {};
+  /// Fills memory with the next bytes of the file. Throws where they are not there.
+  std::function<void(void*, std::size_t)> read = {};
+  /// After the last sample: throws where the file turns out to be damaged. May be empty.
+  std::function<void()> finish = {};
+};
+
+template <typename T>
+void swapBytes(T& x) {
+  std::array<char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), &x, sizeof(T));
+  std::reverse(bytes.begin(), bytes.end());
+  std::memcpy(&x, bytes.data(), sizeof(T));
+}
+
+/// Samples of the file's type T, rescaled ones as `Rescaled`.
+template <typename T>
+class SampleBlock {
+public:
+  using Rescaled = std::conditional_t<sizeof(T) <= 2, float, double>;
+
+  void read(const SampleSource& source, std::size_t count) {
+    m_samples.resize(count);
+    source.read(m_samples.data(), count * sizeof(T));
+  }
+
+  void prepare(const SampleSource& source) {
+    if (source.swapped)
+      std::for_each(m_samples.begin(), m_samples.end(), swapBytes<T>);
+    if (!source.rescaling) {
+      m_survey = survey(std::span<const T>(m_samples));
+      return;
+    }
+    m_rescaled.resize(m_samples.size());
+    std::transform(m_samples.begin(), m_samples.end(), m_rescaled.begin(),
+                   [r = *source.rescaling](T x) {
+                     return static_cast<Rescaled>(r.slope * static_cast<double>(x) + r.intercept);
+                   });
+    m_survey = survey(std::span<const Rescaled>(m_rescaled));
+  }
+
+  template <typename Store>
+  void append(const SampleSource& source, Store& store) const {
+    if (source.rescaling)
+      store.append(std::span<const Rescaled>(m_rescaled), m_survey);
+    else
+      store.append(std::span<const T>(m_samples), m_survey);
+  }
+
+private:
+  std::vector<T> m_samples;
+  std::vector<Rescaled> m_rescaled;
+  SampleSurvey m_survey;
+};
+
+/// Appends all samples to a SampleStore, in their order. Reading (which inflates), preparing and
+/// appending blocks overlap.
+template <typename Store>
+void readSamples(const SampleSource& source, Store& store) {
+  constexpr std::size_t samplesInBlock = 1 << 18;
+  constexpr std::size_t inFlight = 4;
+  const auto readAs = [&]<typename T>(T) {
+    using Block = SampleBlock<T>;
+    std::array<Block, inFlight> blocks; // a token is free again when its block has been appended
+    std::size_t begun = 0;
+    std::size_t left = source.count;
+    const auto read = [&](tbb::flow_control& flow) -> Block* {
+      if (left == 0) {
+        flow.stop();
+        return nullptr;
+      }
+      Block& block = blocks[begun++ % inFlight];
+      const std::size_t count = std::min(left, samplesInBlock);
+      block.read(source, count);
+      left -= count;
+      return &block;
+    };
+    const auto prepare = [&](Block* block) {
+      block->prepare(source);
+      return block;
+    };
+    const auto append = [&](const Block* block) { block->append(source, store); };
+    using Mode = tbb::filter_mode;
+    tbb::parallel_pipeline(inFlight,
+                           tbb::make_filter<void, Block*>(Mode::serial_in_order, read) &
+                               tbb::make_filter<Block*, Block*>(Mode::parallel, prepare) &
+                               tbb::make_filter<Block*, void>(Mode::serial_in_order, append));
+  };
+  std::visit(readAs, source.type);
+  if (source.finish)
+    source.finish();
+}
+
+} // namespace fenestra

@@ -1,0 +1,144 @@
+#pragma once
+// Keeps samples in the smallest type that holds them all, as they come: a file's own, wider type
+// never takes memory as a whole. For io's own sources.
+
+#include "files/medical/SampleSurvey.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace fenestra {
+
+/// `Stored` are in order of preference. Integers hold whole numbers in their range; a float holds
+/// anything, rounded, and what is beyond its range as the end of it.
+template <typename... Stored>
+class SampleStore {
+public:
+  using Vectors = std::variant<std::vector<Stored>...>;
+
+  /// Takes no memory before the samples come.
+  explicit SampleStore(std::size_t count) : m_count(count) { begin<0>(); }
+
+  /// `s` is the survey of `block`. Once no type holds all samples, none is kept.
+  template <typename T>
+  void append(std::span<const T> block, const SampleSurvey& s) {
+    m_survey.add(s);
+    if (const std::size_t needed = smallest(); needed != m_index)
+      change(needed);
+    if (m_index < sizeof...(Stored))
+      std::visit([&](auto& to) { copy(block, to); }, m_samples);
+  }
+
+  const SampleSurvey& survey() const { return m_survey; }
+  bool holdsAll() const { return m_index < sizeof...(Stored); }
+
+  /// The least and the greatest of what take() gives.
+  std::array<double, 2> range() const {
+    return std::visit(
+        [this]<typename To>(const std::vector<To>&) -> std::array<double, 2> {
+          return {static_cast<double>(converted<To>(m_survey.least)),
+                  static_cast<double>(converted<To>(m_survey.greatest))};
+        },
+        m_samples);
+  }
+
+  /// All samples, where holdsAll(); those that were not finite as the least finite one, or the
+  /// greatest for +infinity. Leaves nothing behind.
+  Vectors take() {
+    if (!m_survey.finite()) {
+      std::visit([this](auto& samples) { this->mend(samples); }, m_samples);
+      m_survey.notANumber = m_survey.infinite = 0;
+      if (const std::size_t needed = smallest(); needed != m_index)
+        change(needed);
+    }
+    return std::move(m_samples);
+  }
+
+private:
+  template <typename To>
+  bool fits() const {
+    if constexpr (std::is_floating_point_v<To>)
+      return true;
+    else
+      return m_survey.finite() && m_survey.whole &&
+             m_survey.least >= static_cast<double>(std::numeric_limits<To>::min()) &&
+             m_survey.greatest <= static_cast<double>(std::numeric_limits<To>::max());
+  }
+
+  std::size_t smallest() const {
+    const std::array<bool, sizeof...(Stored)> fitting = {fits<Stored>()...};
+    return static_cast<std::size_t>(std::find(fitting.begin(), fitting.end(), true) -
+                                    fitting.begin());
+  }
+
+  template <std::size_t index>
+  void begin() {
+    m_samples.template emplace<index>().reserve(m_count);
+    m_index = index;
+  }
+
+  /// Moves what is there to the type of that index.
+  template <std::size_t index = 0>
+  void change(std::size_t wanted) {
+    if constexpr (index < sizeof...(Stored)) {
+      if (index != wanted)
+        return change<index + 1>(wanted);
+      const Vectors before = std::move(m_samples);
+      begin<index>();
+      std::visit(
+          [this](const auto& samples) { copy(std::span(samples), std::get<index>(m_samples)); },
+          before);
+    } else {
+      m_samples = Vectors();
+      m_index = index;
+    }
+  }
+
+  /// In parts: growing fills with zeros, which costs little where it stays in the cache.
+  template <typename T, typename To>
+  static void copy(std::span<const T> from, std::vector<To>& to) {
+    if constexpr (std::is_same_v<T, To>)
+      to.insert(to.end(), from.begin(), from.end());
+    else
+      while (!from.empty()) {
+        const auto part = from.first(std::min<std::size_t>(from.size(), 1 << 16));
+        const auto end = static_cast<std::ptrdiff_t>(to.size());
+        to.resize(to.size() + part.size());
+        std::transform(part.begin(), part.end(), to.begin() + end, converted<To, T>);
+        from = from.subspan(part.size());
+      }
+  }
+
+  template <typename To, typename T>
+  static To converted(T x) {
+    if constexpr (std::is_same_v<T, double> && std::is_same_v<To, float>) {
+      constexpr double most = std::numeric_limits<float>::max();
+      return std::isinf(x) ? static_cast<float>(x)
+                           : static_cast<float>(std::clamp(x, -most, most)); // NaN stays
+    }
+    if constexpr (std::is_floating_point_v<To>)
+      return static_cast<To>(static_cast<double>(x)); // so that range() rounds as samples do
+    return static_cast<To>(x);
+  }
+
+  template <typename To>
+  void mend(std::vector<To>& samples) const {
+    if constexpr (std::is_floating_point_v<To>) {
+      const auto least = converted<To>(m_survey.least);
+      const auto greatest = converted<To>(m_survey.greatest);
+      for (To& x : samples)
+        if (!std::isfinite(x))
+          x = x > 0 ? greatest : least;
+    }
+  }
+
+  std::size_t m_count;
+  std::size_t m_index = 0; ///< of the type, one beyond where there is none
+  Vectors m_samples;
+  SampleSurvey m_survey;
+};
+
+} // namespace fenestra

@@ -1,0 +1,45 @@
+#pragma once
+// The bytes of samples as they are stored, or inflated from one zlib or gzip stream. For io's own
+// sources.
+
+#include "base/Error.h"
+#include "files/medical/MedicalHeader.h"
+
+#include <zlib.h>
+
+#include <fstream>
+#include <vector>
+
+namespace fenestra {
+
+/// Reads what locateSamples has found to be `isRaw` or `isStream`, from its first byte on.
+class SampleStream {
+public:
+  /// `path` is for messages; `declared` bytes have passed checkCapacity.
+  SampleStream(const std::filesystem::path& path, const StoredSamples& stored,
+               std::uint64_t declared);
+  ~SampleStream();
+  SampleStream(const SampleStream&) = delete;
+  SampleStream& operator=(const SampleStream&) = delete;
+
+  /// The next bytes. Throws Error (input) where they are not there.
+  void read(void* to, std::size_t bytes);
+
+  /// When the declared bytes have been read: throws Error (input) unless a compressed stream ends
+  /// there, with the checksum that it states.
+  void finish();
+
+private:
+  void inflateNext();
+  Error damaged() const;
+
+  std::filesystem::path m_path;
+  std::ifstream m_file;
+  std::uint64_t m_declared;
+  bool m_compressed;
+  std::vector<char> m_input;
+  z_stream m_stream{};
+  int m_status = Z_OK;
+};
+
+} // namespace fenestra

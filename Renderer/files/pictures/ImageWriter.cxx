@@ -1,0 +1,258 @@
+#include "files/pictures/ImageWriter.h"
+
+#include "base/Error.h"
+#include "base/TextStream.h"
+#include "base/safe/NrrdWriter.h"
+#include "files/pictures/DisplayTransform.h"
+#include "files/pictures/ImageFormat.h"
+
+#include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <png.h>
+#include <tiffio.hxx>
+#include <zlib.h>
+
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <new>
+
+namespace fenestra {
+
+namespace {
+
+/// OpenEXR keeps some failures to itself (of memory, in its tasks and destructors).
+void requireComplete(const std::string& exr) {
+  Imf::StdISStream stream;
+  stream.str(exr);
+  if (!Imf::InputFile(stream).isComplete())
+    throw std::bad_alloc();
+}
+
+std::string encodeExr(const Image& image) {
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = 1;                      // noise packs no better with more work
+  Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
+  for (const auto& [key, value] : image.header)
+    header.insert("fenestra." + key, Imf::StringAttribute(value));
+  header.insert("software", Imf::StringAttribute(std::string(unsealedMark)));
+  Imf::FrameBuffer frame;
+  for (const auto& [name, plane] : image.channels) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    char* const pixels = reinterpret_cast<char*>(const_cast<float*>(plane.data()));
+    frame.insert(name, Imf::Slice(Imf::FLOAT, pixels, sizeof(float),
+                                  sizeof(float) * static_cast<std::size_t>(image.width)));
+  }
+  Imf::StdOSStream stream;
+  {
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(frame);
+    file.writePixels(image.height);
+  }
+  std::string bytes = stream.str();
+  requireComplete(bytes);
+  return sealed(std::move(bytes));
+}
+
+bool isOpaque(const std::vector<float>& rgba) {
+  for (std::size_t i = 3; i < rgba.size(); i += 4)
+    if (rgba[i] < 1.0f)
+      return false;
+  return true;
+}
+
+/// Values in [0, 1] as integers from 0 to the largest, without alpha where it says nothing.
+template <typename T>
+std::vector<T> quantized(const std::vector<float>& rgba) {
+  const bool opaque = isOpaque(rgba);
+  std::vector<T> values;
+  values.reserve(rgba.size());
+  for (std::size_t i = 0; i < rgba.size(); ++i)
+    if (!opaque || i % 4 != 3)
+      values.push_back(static_cast<T>(
+          std::lround(static_cast<double>(rgba[i]) * std::numeric_limits<T>::max())));
+  return values;
+}
+
+std::string bigEndian(std::uint32_t number) {
+  std::string bytes;
+  for (const int shift : {24, 16, 8, 0})
+    bytes += static_cast<char>(number >> shift & 0xff);
+  return bytes;
+}
+
+/// With the mark in a tEXt chunk behind the first one, IHDR (PNG specification, 11.3.4.3): libpng's
+/// simple interface writes none.
+std::string withMark(std::string png) {
+  constexpr std::size_t afterHeader = 8 + 25; // signature and IHDR
+  const std::string chunk = "tEXtSoftware" + std::string(1, '\0') + std::string(unsealedMark);
+  const auto length = static_cast<std::uint32_t>(chunk.size());
+  png.insert(afterHeader, bigEndian(length - 4) + chunk + bigEndian(0));
+  png = sealed(std::move(png));
+  const auto* const bytes = reinterpret_cast<const Bytef*>(png.data()) + afterHeader + 4;
+  const uLong checksum = crc32(crc32(0, nullptr, 0), bytes, length);
+  return png.replace(afterHeader + 4 + length, 4, bigEndian(static_cast<std::uint32_t>(checksum)));
+}
+
+std::string encodePng(const Image& image, const std::vector<float>& rgba) {
+  const std::vector<std::uint8_t> values = quantized<std::uint8_t>(rgba);
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(image.width);
+  png.height = static_cast<png_uint_32>(image.height);
+  png.format = isOpaque(rgba) ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+  png.flags = PNG_IMAGE_FLAG_FAST; // noise packs little better with twice the work
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string content(size, '\0');
+  if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
+    throw outputError("picture as PNG", std::string(png.message) + "; write it as .exr");
+  content.resize(size);
+  return withMark(std::move(content));
+}
+
+void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
+  const std::uint16_t straightAlpha = EXTRASAMPLE_UNASSALPHA;
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, image.width);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, image.height);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, opaque ? 3 : 4);
+  if (!opaque)
+    TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &straightAlpha);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+  TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
+  TIFFSetField(tiff, TIFFTAG_SOFTWARE, std::string(unsealedMark).c_str());
+}
+
+std::string encodeTiff(const Image& image, const std::vector<float>& rgba) {
+  std::vector<std::uint16_t> values = quantized<std::uint16_t>(rgba);
+  const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
+  TextWriter stream;
+  const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("picture", &stream), TIFFClose);
+  bool good = tiff != nullptr;
+  if (good)
+    setTiffFields(tiff.get(), image, isOpaque(rgba));
+  for (std::size_t row = 0; good && row < static_cast<std::size_t>(image.height); ++row)
+    good = TIFFWriteScanline(tiff.get(), &values[row * rowLength],
+                             static_cast<std::uint32_t>(row)) == 1;
+  if (!good || TIFFFlush(tiff.get()) != 1)
+    throw outputError("picture as TIFF", "does not fit into memory; write it as .exr");
+  return sealed(stream.str());
+}
+
+/// The slice is as thick as a pixel is wide; right-handed, so that Slicer need not flip it.
+Affine sliceToWorld(const ImagePlane& plane) {
+  const Vec3 normal = plane.columnStep.cross(plane.rowStep).normalized();
+  return Affine({plane.columnStep, plane.rowStep, normal * plane.columnStep.norm()}, plane.topLeft);
+}
+
+/// `values`: one or more floats by pixel.
+std::string encodeSlice(const Image& image, const ImagePlane& plane,
+                        const std::vector<float>& values) {
+  const std::size_t components = values.size() / image.channels.at("R").size();
+  const NrrdHeader header{.type = "float",
+                          .leadingKind = components > 1 ? "vector" : "",
+                          .leadingCount = components,
+                          .size = {image.width, image.height, 1},
+                          .indexToWorld = sliceToWorld(plane),
+                          .encoding = NrrdHeader::Encoding::raw,
+                          .fields = {{"Software", std::string(unsealedMark)}}};
+  return sealed(encodeNrrd(
+      header, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)}));
+}
+
+std::vector<float> interleavedRgba(const Image& image) {
+  const std::size_t count = image.channels.at("R").size();
+  std::vector<float> values(4 * count, 1.0f);
+  const char* const names[4] = {"R", "G", "B", "A"};
+  for (std::size_t c = 0; c < 4; ++c)
+    if (const std::vector<float>* channel = image.find(names[c]))
+      for (std::size_t i = 0; i < count; ++i)
+        values[4 * i + c] = (*channel)[i];
+  return values;
+}
+
+std::filesystem::path depthPath(const std::filesystem::path& path) {
+  return path.parent_path() / (path.stem().string() + "-Z.nrrd");
+}
+
+/// The lines of a NRRD header that say where its voxels lie.
+std::vector<std::string> gridLines(const std::filesystem::path& path) {
+  std::vector<std::string> lines;
+  Throwing<std::ifstream> file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line) && !line.empty() && lines.size() < 3;)
+    for (const char* field : {"space: ", "space directions: ", "space origin: "})
+      if (line.starts_with(field))
+        lines.push_back(line.starts_with("space directions: none ") ? line.erase(18, 5) : line);
+  return lines;
+}
+
+/// Whether a depth picture is Fenestra's: by its mark, or, before there were marks, by the grid
+/// that it shares with the colours beside it.
+bool isOurDepth(const std::filesystem::path& depth, const std::filesystem::path& colour) {
+  const std::vector<std::string> lines = gridLines(depth);
+  return bearsMark(depth) || (lines.size() == 3 && lines == gridLines(colour));
+}
+
+ImageFormat checkedFormat(const std::filesystem::path& path) {
+  if (const auto format = imageFormat(path))
+    return *format;
+  throw usageError("--output " + path.string() + ": has no known extension; name a file " +
+                   imageExtensions);
+}
+
+void requireColour(const Image& image, const std::filesystem::path& path) {
+  for (const char* name : {"R", "G", "B"})
+    if (!image.find(name))
+      throw usageError(path.string() + ": the picture has no channel " + name +
+                       "; write it as .exr");
+}
+
+} // namespace
+
+void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
+                Outputs& outputs, const std::string& view) {
+  const ImageFormat format = checkedFormat(path);
+  if (format == ImageFormat::exr)
+    return outputs.write(path, encodeExr(image));
+  requireColour(image, path);
+  if (format == ImageFormat::nrrd) {
+    outputs.write(path, encodeSlice(image, plane, interleavedRgba(image)));
+    if (const std::vector<float>* depth = image.find("Z"))
+      outputs.write(depthPath(path), encodeSlice(image, plane, *depth));
+    return;
+  }
+  const std::vector<float> display = toDisplay(image, DisplayTransform(view));
+  outputs.write(path, format == ImageFormat::png ? encodePng(image, display)
+                                                 : encodeTiff(image, display));
+}
+
+std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path) {
+  if (checkedFormat(path) == ImageFormat::nrrd)
+    return {path, depthPath(path)};
+  return {path};
+}
+
+void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy namedBy) {
+  const ImageFormat format = checkedFormat(path);
+  if (namedBy == NamedBy::user)
+    outputs.add(path);
+  else
+    outputs.addUnnamed(path);
+  if (format == ImageFormat::nrrd)
+    outputs.addUnnamed(depthPath(path),
+                       [path](const auto& depth) { return isOurDepth(depth, path); });
+}
+
+} // namespace fenestra

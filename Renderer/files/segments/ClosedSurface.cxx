@@ -1,0 +1,202 @@
+#include "files/segments/ClosedSurface.h"
+
+#include "base/Error.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/JsonNode.h"
+#include "base/safe/ShownText.h"
+#include "files/segments/SegmentTags.h"
+#include "files/segments/VtkSurface.h"
+#include "model/masks/Voxelize.h"
+
+#include <pugixml.hpp>
+
+#include <string_view>
+
+namespace fenestra {
+namespace {
+
+using Path = std::filesystem::path;
+constexpr const char* mend = "export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
+
+/// The files that a .vtm names, in its folder or below.
+std::vector<Path> blocksOf(const Path& path) {
+  pugi::xml_document document;
+  const std::string text = readText(path); // names alone
+  const bool read = static_cast<bool>(document.load_buffer(text.data(), text.size()));
+  const pugi::xml_node file = document.child("VTKFile");
+  if (!read || std::string_view(file.attribute("type").value()) != "vtkMultiBlockDataSet")
+    throw inputError(path.string(), std::string("is damaged or no multi-block file; ") + mend);
+  constexpr std::size_t mostBlocks = 4096;
+  std::vector<Path> blocks;
+  for (const auto& block : file.child("vtkMultiBlockDataSet").children("DataSet")) {
+    const Path name = Path(block.attribute("file").value()).lexically_normal();
+    if (name.empty() || name.is_absolute() || *name.begin() == ".." || blocks.size() == mostBlocks)
+      throw inputError(path.string(), "DataSet: file=\"" + shown(name.string()) +
+                                          "\" is not in the folder of the .vtm; " + mend);
+    blocks.push_back(path.parent_path() / name);
+  }
+  if (blocks.empty())
+    throw inputError(path.string(), std::string("holds no segment; ") + mend);
+  return blocks;
+}
+
+struct Surface {
+  SegmentInfo info;
+  VtkSurface shape;
+};
+
+SegmentInfo infoOf(const VtkSurface& surface, std::size_t index) {
+  const auto text = [&](const char* key, const std::string& fallback) {
+    const auto found = surface.texts.find(key);
+    return found == surface.texts.end() || found->second.empty() ? fallback : found->second;
+  };
+  SegmentInfo info;
+  info.name = text("Segment_Name", "Segment " + std::to_string(index));
+  info.id = text("Segment_ID", info.name);
+  info.labelValue = static_cast<std::int32_t>(index + 1);
+  readTerminology(text("Segment_Tags", ""), info);
+  for (const char* key : {"Segment_DefaultColor", "Segment_Color"}) {
+    const auto found = surface.numbers.find(key);
+    if (found != surface.numbers.end() && found->second.size() == 3)
+      info.color = Rgb(found->second[0], found->second[1], found->second[2]).max(0.0).min(1.0);
+  }
+  return info;
+}
+
+std::vector<Surface> surfacesOf(const Path& path) {
+  std::vector<Surface> surfaces;
+  const std::set<std::string> fieldData = {"Segment_Name", "Segment_ID", "Segment_Tags",
+                                           "Segment_DefaultColor", "Segment_Color"};
+  SurfaceAllowance allowance;
+  for (const Path& block : blocksOf(path)) {
+    VtkSurface shape = readVtkSurface(block, fieldData, allowance);
+    if (shape.triangles.empty() && shape.hasLines)
+      throw inputError(block.string(), "Segmentation_MasterRepresentation: holds planar contours, "
+                                       "not a closed surface; " +
+                                           std::string(mend));
+    surfaces.push_back({infoOf(shape, surfaces.size()), std::move(shape)});
+  }
+  return surfaces;
+}
+
+/// Of the points, in a grid's index space.
+Box boundsOf(const std::vector<Surface>& surfaces, const Affine& worldToIndex) {
+  Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (const Surface& surface : surfaces)
+    for (const Vec3& point : surface.shape.points) {
+      const Vec3 index = worldToIndex * point;
+      bounds.lower = bounds.lower.cwiseMin(index);
+      bounds.upper = bounds.upper.cwiseMax(index);
+    }
+  return bounds;
+}
+
+Grid gridAround(const Box& bounds) {
+  constexpr double longest = 256.0;
+  const Vec3 extent = bounds.upper - bounds.lower;
+  const double spacing = std::max(extent.maxCoeff() / longest, 1e-6);
+  Affine indexToWorld = Affine::Identity();
+  indexToWorld.linear() *= spacing;
+  indexToWorld.translation() = bounds.lower;
+  return {(extent / spacing).array().ceil().cast<std::int64_t>() + 1, indexToWorld};
+}
+
+/// The part of the reference that the surfaces may touch.
+Grid cropped(const Grid& reference, const Box& bounds) {
+  const Vec3 last = reference.size.cast<double>().array() - 1.0;
+  const Vec3 lower = bounds.lower.array().floor().max(0.0).min(last.array());
+  const Vec3 upper = bounds.upper.array().ceil().max(0.0).min(last.array());
+  Affine indexToWorld = reference.indexToWorld;
+  indexToWorld.translate(lower);
+  return {(upper - lower).array().cast<std::int64_t>().max(0) + 1, indexToWorld};
+}
+
+/// Labels of one layer after the other, as few as overlaps allow.
+class Layers {
+public:
+  using Label = std::int16_t;
+
+  Layers(const Size3& size, const Path& path) : m_size(size), m_path(path) {}
+
+  /// The layer that took the segment.
+  std::size_t add(const std::vector<VoxelRun>& runs, Label label) {
+    std::size_t layer = 0;
+    while (layer < m_layers.size() && !isFree(m_layers[layer], runs))
+      ++layer;
+    if (layer == m_layers.size()) {
+      constexpr std::int64_t most = std::int64_t{1} << 31;
+      if (m_size.prod() * static_cast<std::int64_t>(layer + 1) > most)
+        throw inputError(m_path.string(), std::string("overlaps in too many layers; ") + mend);
+      m_layers.emplace_back(static_cast<std::size_t>(m_size.prod()), Label{0});
+    }
+    for (const VoxelRun& run : runs)
+      std::fill(m_layers[layer].begin() + begin(run), m_layers[layer].begin() + end(run), label);
+    return layer;
+  }
+
+  std::size_t count() const { return m_layers.size(); }
+
+  /// The layers of a voxel together.
+  std::vector<Label> together() && {
+    if (m_layers.size() == 1)
+      return std::move(m_layers[0]);
+    std::vector<Label> labels(m_layers.size() * static_cast<std::size_t>(m_size.prod()));
+    for (std::size_t layer = 0; layer < m_layers.size(); ++layer)
+      for (std::size_t i = 0; i < m_layers[layer].size(); ++i)
+        labels[i * m_layers.size() + layer] = m_layers[layer][i];
+    return labels;
+  }
+
+private:
+  std::ptrdiff_t begin(const VoxelRun& run) const {
+    return run.first + m_size.x() * (run.y + m_size.y() * run.z);
+  }
+  std::ptrdiff_t end(const VoxelRun& run) const { return begin(run) + run.last - run.first; }
+
+  bool isFree(const std::vector<Label>& layer, const std::vector<VoxelRun>& runs) const {
+    return std::all_of(runs.begin(), runs.end(), [&](const VoxelRun& run) {
+      return std::all_of(layer.begin() + begin(run), layer.begin() + end(run),
+                         [](Label label) { return label == 0; });
+    });
+  }
+
+  Size3 m_size;
+  const Path& m_path;
+  std::vector<std::vector<Label>> m_layers;
+};
+
+} // namespace
+
+Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
+  requireFile(path, "name a .vtm file in it");
+  std::vector<Surface> surfaces = surfacesOf(path);
+  const Box bounds = boundsOf(surfaces, Affine::Identity());
+  if (!(bounds.upper.array() >= bounds.lower.array()).all())
+    throw inputError(path.string(), std::string("its surfaces hold no point; ") + mend);
+  const Grid grid = reference ? cropped(*reference, boundsOf(surfaces, reference->worldToIndex))
+                              : gridAround(bounds);
+  Layers layers(grid.size, path);
+  std::vector<SegmentInfo> segments;
+  for (Surface& surface : surfaces) {
+    for (Vec3& point : surface.shape.points)
+      point = grid.worldToIndex * point;
+    const auto runs = voxelRuns(surface.shape.points, surface.shape.triangles, grid.size);
+    if (!runs)
+      throw inputError(path.string(), "segment \"" + shown(surface.info.name) +
+                                          "\": its surface has holes or is too complex; " + mend);
+    surface.info.layer = layers.add(*runs, static_cast<Layers::Label>(surface.info.labelValue));
+    segments.push_back(surface.info);
+  }
+  const std::size_t count = layers.count();
+  return {path.string(), grid, count, std::move(layers).together(), std::move(segments)};
+}
+
+std::vector<SegmentInfo> readClosedSurfaceInfos(const Path& path) {
+  requireFile(path, "name a .vtm file in it");
+  std::vector<SegmentInfo> infos;
+  for (Surface& surface : surfacesOf(path))
+    infos.push_back(std::move(surface.info));
+  return infos;
+}
+
+} // namespace fenestra

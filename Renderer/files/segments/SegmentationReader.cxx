@@ -1,0 +1,374 @@
+#include "files/segments/SegmentationReader.h"
+
+#include "base/Error.h"
+#include "base/TextStream.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/ShownText.h"
+#include "files/medical/MedicalImage.h"
+#include "files/medical/SampleStore.h"
+#include "files/segments/ClosedSurface.h"
+#include "files/segments/SegmentMask.h"
+#include "files/segments/SegmentTags.h"
+#include "model/masks/SliceInterpolation.h"
+
+#include <charconv>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace fenestra {
+namespace {
+
+constexpr std::size_t mostSegments = 65536;
+
+// ---- labels
+// --------------------------------------------------------------------------------------
+
+using LabelStore = SampleStore<std::uint8_t, std::int16_t, std::int32_t>;
+
+Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
+  const SampleSurvey& s = samples.survey();
+  if (!s.whole || !s.finite())
+    throw inputError(source, "holds values that are not whole numbers, so it is no labelmap; "
+                             "name a segmentation");
+  if (!samples.holdsAll())
+    throw inputError(source, "holds label values beyond 32 bits; number its labels again");
+  return samples.take();
+}
+
+/// From one frame after the other to the layers of a voxel together.
+Segmentation::Labels interleaved(const Segmentation::Labels& frames, std::size_t count) {
+  return std::visit(
+      [count](const auto& labels) -> Segmentation::Labels {
+        std::decay_t<decltype(labels)> together(labels.size());
+        const std::size_t voxels = labels.size() / count;
+        for (std::size_t frame = 0; frame < count; ++frame)
+          for (std::size_t voxel = 0; voxel < voxels; ++voxel)
+            together[voxel * count + frame] = labels[frame * voxels + voxel];
+        return together;
+      },
+      frames);
+}
+
+/// One segment a value, in their order.
+std::vector<SegmentInfo> segmentsOf(const Segmentation::Labels& labels, const std::string& source) {
+  std::set<std::int32_t> values;
+  std::visit(
+      [&](const auto& voxels) {
+        std::int32_t last = 0;
+        for (const std::int32_t value : voxels)
+          if (value != std::exchange(last, value) && value != 0 && values.insert(value).second &&
+              values.size() > mostSegments)
+            throw inputError(source,
+                             "holds more than 65536 different values, so it is no labelmap; "
+                             "name a segmentation");
+      },
+      labels);
+  std::vector<SegmentInfo> segments;
+  for (const std::int32_t value : values) {
+    const std::string name = "Segment_" + std::to_string(value);
+    segments.push_back({.id = name, .name = name, .labelValue = value});
+  }
+  return segments;
+}
+
+// ---- Slicer's header fields
+// ----------------------------------------------------------------------
+
+std::optional<std::int32_t> labelValue(std::string_view text) {
+  std::int32_t value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || end != text.data() + text.size())
+    return std::nullopt;
+  return value;
+}
+
+/// The oldest files keep the geometry of the whole reference image, in RAS, and say in
+/// Segmentation_Extent which part of it their voxels are. (A bladder of such a file meets the same
+/// patient's bladder surface only so.)
+Grid placed(const Grid& grid, const std::map<std::string, std::string>& fields,
+            const std::string& source) {
+  const auto extent = fields.find("Segmentation_Extent");
+  if (extent == fields.end())
+    return grid;
+  TextReader numbers(extent->second); // "i0 i1 j0 j1 k0 k1"
+  Vec3 first;
+  std::int32_t lower = 0;
+  std::int32_t upper = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(numbers >> lower >> upper))
+      throw inputError(source, "Segmentation_Extent: must be six whole numbers");
+    first[axis] = lower;
+  }
+  return {grid.size, Affine(lpsToRas) * grid.indexToWorld * translationBy(first)};
+}
+
+class SegmentFields {
+public:
+  SegmentFields(const std::map<std::string, std::string>& fields, const std::string& source)
+      : m_fields(fields), m_source(source) {}
+
+  std::vector<SegmentInfo> segments(std::size_t layerCount) const {
+    for (const char* field :
+         {"Segmentation_MasterRepresentation", "Segmentation_SourceRepresentation"})
+      if (const auto it = m_fields.find(field);
+          it != m_fields.end() && it->second.starts_with("Fractional"))
+        throw inputError(m_source, std::string(field) +
+                                       ": is a fractional labelmap, which is not read; export the "
+                                       "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
+    std::vector<SegmentInfo> segments;
+    while (find(segments.size(), "ID") && segments.size() < mostSegments)
+      segments.push_back(segment(segments.size(), layerCount));
+    return segments;
+  }
+
+private:
+  static std::string key(std::size_t n, const std::string& field) {
+    return "Segment" + std::to_string(n) + "_" + field;
+  }
+
+  const std::string* find(std::size_t n, const std::string& field) const {
+    const auto it = m_fields.find(key(n, field));
+    return it == m_fields.end() ? nullptr : &it->second;
+  }
+
+  std::int32_t number(std::size_t n, const std::string& field, std::int32_t fallback) const {
+    const std::string* text = find(n, field);
+    if (!text)
+      return fallback;
+    const auto value = labelValue(*text);
+    if (!value)
+      throw inputError(m_source, key(n, field) + ": must be a whole number");
+    return *value;
+  }
+
+  SegmentInfo segment(std::size_t n, std::size_t layerCount) const {
+    SegmentInfo info;
+    info.id = *find(n, "ID");
+    const std::string* name = find(n, "Name");
+    info.name = name ? *name : info.id;
+    info.labelValue = number(n, "LabelValue", 1);
+    if (info.labelValue == 0)
+      throw inputError(m_source, key(n, "LabelValue") + ": 0 is the background; use another");
+    // Older files do not say: with several layers it is the segment's own.
+    const std::int32_t layer =
+        number(n, "Layer", layerCount == 1 ? 0 : static_cast<std::int32_t>(n));
+    if (std::cmp_less(layer, 0) || std::cmp_greater_equal(layer, layerCount))
+      throw inputError(m_source, key(n, "Layer") + ": is " + std::to_string(layer) +
+                                     ", but the file has " + std::to_string(layerCount) +
+                                     " layers; save it again");
+    info.layer = static_cast<std::size_t>(layer);
+    info.color = color(n, info.color);
+    if (const std::string* tags = find(n, "Tags"))
+      readTerminology(*tags, info);
+    return info;
+  }
+
+  /// A colour is decoration here: whatever is wrong with it, grey will do.
+  Rgb color(std::size_t n, const Rgb& fallback) const {
+    const std::string* text = find(n, "Color") ? find(n, "Color") : find(n, "DefaultColor");
+    Rgb rgb = fallback;
+    const char* at = text ? text->data() : nullptr;
+    for (int c = 0; text && c < 3; ++c) {
+      const char* const end = text->data() + text->size();
+      while (at != end && *at == ' ')
+        ++at;
+      const auto [next, failure] = std::from_chars(at, end, rgb[c]);
+      if (failure != std::errc() || !(rgb[c] >= 0.0 && rgb[c] <= 1.0))
+        return fallback;
+      at = next;
+    }
+    return rgb;
+  }
+
+  const std::map<std::string, std::string>& m_fields;
+  const std::string& m_source;
+};
+
+// ---- statistics
+// ----------------------------------------------------------------------------------
+
+struct ValueStatistics {
+  std::int64_t voxels = 0;
+  VoxelExtent extent = {};
+};
+
+using StatisticsOfValues = std::map<std::int32_t, ValueStatistics>;
+
+/// Adds one layer's voxels to those of the values that are there.
+template <typename Label>
+void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_t layer,
+                 std::size_t layerCount, StatisticsOfValues& values) {
+  std::size_t at = layer;
+  std::int32_t last = 0; // labels come in runs
+  ValueStatistics* counted = nullptr;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x, at += layerCount) {
+        const std::int32_t label = labels[at];
+        if (label != std::exchange(last, label)) {
+          const auto found = values.find(label);
+          counted = found == values.end() ? nullptr : &found->second;
+        }
+        if (counted) {
+          ++counted->voxels;
+          counted->extent.add({{x, y, z}, {x, y, z}});
+        }
+      }
+}
+
+/// Of whole voxels, along the world's axes.
+Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
+  const Box voxels{extent.lower.cast<double>().array() - 0.5,
+                   extent.upper.cast<double>().array() + 0.5};
+  Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = grid.indexToWorld * voxels.corner(i);
+    bounds.lower = bounds.lower.cwiseMin(corner);
+    bounds.upper = bounds.upper.cwiseMax(corner);
+  }
+  return bounds;
+}
+
+// ---- messages
+// ------------------------------------------------------------------------------------
+
+std::string listed(const std::vector<SegmentInfo>& segments) {
+  constexpr std::size_t most = 40;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, segments.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + shown(segments[i].id);
+    if (segments[i].name != segments[i].id)
+      text += " (" + shown(segments[i].name) + ")";
+  }
+  return text + (segments.size() > most ? ", …" : "");
+}
+
+} // namespace
+
+Segmentation::Segmentation(std::string source, Grid grid, std::size_t layerCount, Labels labels,
+                           std::vector<SegmentInfo> segments)
+    : m_source(std::move(source)),
+      m_grid(std::move(grid)),
+      m_layerCount(layerCount),
+      m_labels(std::move(labels)),
+      m_segments(std::move(segments)) {}
+
+const SegmentInfo& Segmentation::find(const std::string& selector) const {
+  const auto value = labelValue(selector);
+  const auto only = [&](auto&& matches) -> const SegmentInfo* {
+    std::vector<SegmentInfo> found;
+    const SegmentInfo* last = nullptr;
+    for (const SegmentInfo& segment : m_segments)
+      if (matches(segment)) {
+        found.push_back(segment);
+        last = &segment;
+      }
+    if (found.size() > 1)
+      throw inputError(m_source, "segment \"" + shown(selector) + "\" can be any of " +
+                                     listed(found) + "; name one by its id");
+    return last;
+  };
+  if (const auto* segment = only([&](const SegmentInfo& s) { return s.id == selector; }))
+    return *segment;
+  if (const auto* segment = only([&](const SegmentInfo& s) { return s.name == selector; }))
+    return *segment;
+  if (const auto* segment = only([&](const SegmentInfo& s) { return value == s.labelValue; }))
+    return *segment;
+  throw inputError(m_source, "has no segment \"" + shown(selector) + "\"; it has " +
+                                 (m_segments.empty() ? "none at all" : listed(m_segments)));
+}
+
+std::vector<SegmentStatistics> Segmentation::statistics() const {
+  std::vector<StatisticsOfValues> layers(m_layerCount);
+  for (const SegmentInfo& segment : m_segments)
+    layers[segment.layer][segment.labelValue] = {};
+  std::visit(
+      [&](const auto& labels) {
+        for (std::size_t layer = 0; layer < m_layerCount; ++layer)
+          countVoxels(labels, m_grid.size, layer, m_layerCount, layers[layer]);
+      },
+      m_labels);
+  std::vector<SegmentStatistics> statistics;
+  for (const SegmentInfo& segment : m_segments) {
+    const ValueStatistics& value = layers[segment.layer].at(segment.labelValue);
+    statistics.push_back({value.voxels, {}});
+    if (value.voxels > 0)
+      statistics.back().bounds = worldBounds(m_grid, value.extent);
+  }
+  return statistics;
+}
+
+Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& volume,
+                        const MaskShaping& shaping) const {
+  if (shaping.margins.size() > 1 && shaping.margins.size() != selectors.size())
+    throw usageError("--margin: give one for all segments of --focus, or one each");
+  std::vector<SegmentInfo> chosen;
+  for (const std::string& selector : selectors)
+    chosen.push_back(find(selector));
+  const auto maskOf = [&](const std::vector<SegmentInfo>& segments) {
+    Mask mask;
+    for (const SegmentInfo& segment : segments)
+      mask.names.push_back(segment.name);
+    fillMask(m_grid, m_layerCount, m_labels, segments, volume, mask);
+    if (mask.count == 0)
+      throw inputError(m_source, "the focus has no voxel (" + listed(segments) +
+                                     "); choose segments that are not empty");
+    return mask;
+  };
+  if (shaping == MaskShaping())
+    return maskOf(chosen);
+  const auto shaped = [&](const std::vector<SegmentInfo>& segments, double margin) {
+    const Mask mask = maskOf(segments);
+    return grown(shaping.smoothing > 0.0 ? betweenSlices(mask) : mask, margin, volume);
+  };
+  std::vector<Mask> masks;
+  if (shaping.margins.size() <= 1) // as a whole: no gaps where segments touch
+    masks.push_back(shaped(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
+  else
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
+  Mask mask = smoothed(united(masks), shaping.smoothing, volume);
+  if (mask.count == 0)
+    throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (" +
+                                   listed(chosen) + "); choose less");
+  return mask;
+}
+
+std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path) {
+  if (lowerExtension(path) == ".vtm")
+    return readClosedSurfaceInfos(path);
+  const std::string source = path.string();
+  std::vector<SegmentInfo> segments;
+  readMedicalImage(path, Components::any, [&](const MedicalImage& image, const SampleSource&) {
+    segments = SegmentFields(image.fields, source).segments(image.components);
+  });
+  return segments;
+}
+
+Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference) {
+  if (lowerExtension(path) == ".vtm")
+    return readClosedSurfaces(path, reference);
+  const std::string source = path.string();
+  MedicalImage image;
+  Segmentation::Labels labels;
+  readMedicalImage(path, Components::any, [&](const MedicalImage& read, const SampleSource& from) {
+    LabelStore samples(from.count);
+    readSamples(from, samples);
+    labels = toLabels(std::move(samples), source);
+    image = read;
+  });
+  if (image.frames)
+    labels = interleaved(labels, image.components);
+  auto segments = SegmentFields(image.fields, source).segments(image.components);
+  if (segments.empty() && image.components > 1)
+    throw inputError(source, "has " + std::to_string(image.components) +
+                                 " components a voxel but names no segments; name a segmentation");
+  if (segments.empty())
+    segments = segmentsOf(labels, source);
+  return {source, placed(image.grid, image.fields, source), image.components, std::move(labels),
+          std::move(segments)};
+}
+
+} // namespace fenestra

@@ -1,0 +1,182 @@
+#include "files/slicer/MrmlDocument.h"
+
+#include "base/TextStream.h"
+#include "base/safe/NumberText.h"
+#include "base/safe/ShownText.h"
+
+#include <pugixml.hpp>
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+constexpr std::size_t mostNodes = 100'000, mostAttributes = 1'000'000; ///< of a scene
+
+/// Attributes that hold references in older files, by the role that they have now.
+const std::map<std::string, std::string>& legacyRoles() {
+  static const std::map<std::string, std::string> roles = {
+      {"displayNodeRef", "display"},
+      {"displayNodeID", "display"},
+      {"storageNodeRef", "storage"},
+      {"storageNodeID", "storage"},
+      {"transformNodeRef", "transform"},
+      {"transformNodeID", "transform"},
+      {"volumePropertyNodeID", "volumeProperty"},
+      {"ROINodeID", "roi"},
+      {"shaderPropertyNodeId", "shaderProperty"},
+      {"colorNodeID", "color"},
+      {"colorNodeRef", "color"},
+      {"viewNodeRef", "view"},
+      {"viewNodeIDs", "view"},
+      {"activeVolumeID", "ActiveVolume"},
+  };
+  return roles;
+}
+
+std::vector<std::string> words(const std::string& text) {
+  TextReader in(text);
+  std::vector<std::string> all;
+  for (std::string word; in >> word;)
+    all.push_back(word);
+  return all;
+}
+
+/// "role1:id1 {key=value} id2;role2:id3;": braces hold properties of the reference before them.
+void readReferences(const std::string& text, MrmlNode& node) {
+  TextReader in(text);
+  for (std::string entry; std::getline(in, entry, ';');) {
+    const std::size_t colon = entry.find(':');
+    if (colon == std::string::npos || colon == 0)
+      continue;
+    const std::string role = entry.substr(0, colon);
+    if (node.references.contains(role))
+      continue;
+    std::vector<std::string> ids;
+    for (const std::string& word : words(entry.substr(colon + 1)))
+      if (word.find_first_of("{}") == std::string::npos)
+        ids.push_back(word);
+    if (!ids.empty())
+      node.references[role] = std::move(ids);
+  }
+}
+
+MrmlNode readNode(const pugi::xml_node& element) {
+  MrmlNode node{.tag = element.name(), .id = "", .name = ""};
+  for (const pugi::xml_attribute& attribute : element.attributes())
+    node.attributes.emplace(attribute.name(), attribute.value());
+  node.id = node.text("id");
+  node.name = node.text("name");
+  readReferences(node.text("references"), node);
+  for (const auto& [attribute, role] : legacyRoles())
+    if (const std::string* value = node.find(attribute); value && !node.references.contains(role))
+      if (std::vector<std::string> ids = words(*value); !ids.empty())
+        node.references[role] = std::move(ids);
+  return node;
+}
+
+/// Gathers names of files from elements at any depth, without a call for each level of it.
+struct FileNames final : pugi::xml_tree_walker {
+  bool for_each(pugi::xml_node& element) override {
+    for (const pugi::xml_attribute& attribute : element.attributes()) {
+      const std::string_view name = attribute.name();
+      if (*attribute.value() && (name == "fileName" || name.starts_with("fileListMember")))
+        found.emplace(attribute.value());
+    }
+    return true;
+  }
+
+  std::set<std::string> found;
+};
+
+} // namespace
+
+const std::string* MrmlNode::find(const std::string& attribute) const {
+  const auto it = attributes.find(attribute);
+  return it == attributes.end() ? nullptr : &it->second;
+}
+
+std::string MrmlNode::text(const std::string& attribute) const {
+  const std::string* value = find(attribute);
+  return value ? *value : std::string();
+}
+
+bool MrmlNode::flag(const std::string& attribute, bool otherwise) const {
+  const std::string* value = find(attribute);
+  if (!value)
+    return otherwise;
+  if (*value == "true" || *value == "false")
+    return *value == "true";
+  const auto number = parseNumbers(*value);
+  return number && number->size() == 1 ? number->front() != 0.0 : otherwise;
+}
+
+std::optional<std::vector<double>> MrmlNode::numbers(const std::string& attribute) const {
+  const std::string* value = find(attribute);
+  return value ? parseNumbers(*value) : std::nullopt;
+}
+
+std::string MrmlNode::referenced(const std::string& role) const {
+  const auto it = references.find(role);
+  return it == references.end() ? std::string() : it->second.front();
+}
+
+MrmlDocument::MrmlDocument(std::string_view text, std::string source)
+    : m_source(std::move(source)) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result result =
+      document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_doctype);
+  if (!result)
+    throw inputError(m_source, std::string("is no whole XML (") + result.description() +
+                                   " at byte " + std::to_string(result.offset) +
+                                   "); save the scene again");
+  for (const pugi::xml_node& child : document)
+    if (child.type() == pugi::node_doctype)
+      throw inputError(m_source, "has a document type, which no MRML scene needs and which could "
+                                 "define entities; remove the line <!DOCTYPE ...>");
+  const pugi::xml_node root = document.child("MRML");
+  if (!root)
+    throw inputError(m_source, "has no MRML element, so it is no scene; name a .mrml or .mrb");
+  m_version = root.attribute("version").value();
+  FileNames names;
+  document.traverse(names);
+  m_fileNames = std::move(names.found);
+  std::size_t attributes = 0;
+  for (const pugi::xml_node& element : root.children())
+    if (element.type() == pugi::node_element) {
+      if (m_nodes.size() == mostNodes)
+        throw inputError(m_source, "holds more than 100000 nodes; save a smaller scene");
+      m_nodes.push_back(readNode(element));
+      attributes += m_nodes.back().attributes.size();
+      if (attributes > mostAttributes)
+        throw inputError(m_source, "holds more than a million attributes; save a smaller scene");
+      if (!m_nodes.back().id.empty())
+        m_byId.emplace(m_nodes.back().id, m_nodes.size() - 1);
+    }
+}
+
+std::vector<const MrmlNode*> MrmlDocument::withTag(std::string_view tag) const {
+  std::vector<const MrmlNode*> found;
+  for (const MrmlNode& node : m_nodes)
+    if (node.tag == tag)
+      found.push_back(&node);
+  return found;
+}
+
+const MrmlNode* MrmlDocument::find(const std::string& id) const {
+  const auto it = m_byId.find(id);
+  return it == m_byId.end() ? nullptr : &m_nodes[it->second];
+}
+
+Error MrmlDocument::error(const MrmlNode& node, const std::string& what) const {
+  return inputError(m_source, node.tag + " " + shown(node) + ": " + what);
+}
+
+std::string shown(const MrmlNode& node) {
+  std::string text = shown(node.name);
+  if (!node.id.empty())
+    text.append(text.empty() ? "(" : " (").append(shown(node.id)).append(")");
+  return text;
+}
+
+} // namespace fenestra

@@ -1,0 +1,145 @@
+// Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
+
+#include "base/Checked.h"
+#include "base/TextStream.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/JsonNode.h"
+#include "base/safe/NumberText.h"
+#include "files/slicer/MrmlScene.h"
+
+namespace fenestra {
+namespace {
+
+constexpr double largest = 1e9; ///< mm
+
+/// [-1, 1]^3 to a box of half edges along the columns of `axes`. Throws where it is flat.
+template <typename Fail>
+Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges, const Fail& fail) {
+  if (!(halfEdges.array() > 0.0).all())
+    throw fail("its size must be above 0 in every axis; mend it in the Markups module");
+  if (!(std::abs(axes.determinant()) > 1e-6))
+    throw fail("its axes do not span space; mend it in the Markups module");
+  return Affine(axes * Mat3::Diagonal(halfEdges), center);
+}
+
+template <typename Fail>
+void refuseInsideOut(bool insideOut, const Fail& fail) {
+  if (insideOut)
+    throw fail("is inside out, which crops everything in Slicer, too; turn that off in the Markups "
+               "module");
+}
+
+// ---- .mrk.json
+// -----------------------------------------------------------------------------------
+
+Vec3 vector(const JsonNode& node) {
+  const auto numbers = node.numbers(3, -largest, largest);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+bool isLps(const JsonNode& markup) {
+  const auto system = markup.find("coordinateSystem");
+  if (!system)
+    return true;          // Slicer's default
+  if (system->isNumber()) // of the first files: vtkMRMLStorageNode's enumeration
+    return system->number() != 0.0;
+  const std::string name = system->text();
+  if (name != "LPS" && name != "RAS")
+    throw system->error("must be \"LPS\" or \"RAS\"");
+  return name == "LPS";
+}
+
+Affine readMarkupsJson(const std::filesystem::path& path) {
+  const std::string source = path.string();
+  const nlohmann::json document = parseJson(readText(path), source);
+  const JsonNode markups = JsonNode(document, source).at("markups");
+  const std::vector<JsonNode> elements = markups.elements();
+  if (elements.empty())
+    throw markups.error("is empty; save the region of interest again");
+  const JsonNode& roi = elements.front();
+  const auto fail = [&roi](const std::string& what) { return roi.error(what); };
+  if (roi.at("type").text() != "ROI")
+    throw roi.at("type").error("must be \"ROI\"; name a region of interest");
+  if (const auto insideOut = roi.find("insideOut"))
+    refuseInsideOut(insideOut->boolean(), fail);
+
+  Vec3 center = vector(roi.at("center"));
+  Mat3 axes = Mat3::Identity();
+  const bool lps = isLps(roi);
+  if (const auto orientation = roi.find("orientation")) {
+    const auto numbers = orientation->numbers(9, -largest, largest);
+    const auto row = [&numbers](std::size_t i) {
+      return Vec3(numbers[i], numbers[i + 1], numbers[i + 2]);
+    };
+    axes = Mat3::FromRows(row(0), row(3), row(6));
+    if (lps)
+      axes = lpsToRas * axes;
+  }
+  if (lps)
+    center = lpsToRas * center;
+  return boxMap(center, axes, 0.5 * vector(roi.at("size")), fail);
+}
+
+// ---- older forms: centre and half edges, RAS
+// -----------------------------------------------------
+
+template <typename Fail>
+Affine axisAligned(const std::vector<double>& centerAndRadius, const Fail& fail) {
+  if (centerAndRadius.size() != 6)
+    throw fail("needs a centre and a radius, three numbers each; save it again");
+  const std::vector<double>& n = centerAndRadius;
+  return boxMap({n[0], n[1], n[2]}, Mat3::Identity(), {n[3], n[4], n[5]}, fail);
+}
+
+/// Annotation files: two lines "point|x|y|z|...".
+Affine readAnnotation(const std::filesystem::path& path) {
+  const auto fail = [&path](const std::string& what) { return inputError(path.string(), what); };
+  std::vector<double> numbers;
+  TextReader lines(readText(path));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("point|"))
+      continue;
+    TextReader cells(line.substr(line.find('|') + 1));
+    std::string cell;
+    for (int axis = 0; axis < 3 && std::getline(cells, cell, '|'); ++axis) {
+      const auto number = parseNumbers(cell);
+      if (!number || number->size() != 1)
+        throw fail("point: must have three numbers; save it again");
+      numbers.push_back(number->front());
+    }
+  }
+  return axisAligned(numbers, fail);
+}
+
+Affine inlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
+  const auto fail = [&](const std::string& what) { return scene.document.error(roi, what); };
+  std::string text = roi.text("ctrlPtsCoord"); // "x y z|x y z"
+  if (text.empty())
+    text = roi.text("xyz") + roi.text("XYZ") + " " + roi.text("radiusXYZ") + roi.text("RadiusXYZ");
+  std::replace(text.begin(), text.end(), '|', ' ');
+  return axisAligned(parseNumbers(text).value_or(std::vector<double>()), fail);
+}
+
+Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
+  refuseInsideOut(roi.flag("insideOut", false),
+                  [&](const std::string& what) { return scene.document.error(roi, what); });
+  const std::vector<std::string> names = storedFiles(scene, roi);
+  if (names.empty())
+    return inlineRoi(scene, roi);
+  return scene.files.read({names.front()}, [](const auto& files) {
+    const std::filesystem::path& file = files.front();
+    return lowerExtension(file) == ".acsv" ? readAnnotation(file) : readMarkupsJson(file);
+  });
+}
+
+} // namespace
+
+CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
+  return CropBox(
+      checkedMap(toWorld(scene, roi) * boxInNode(scene, roi), [&](const std::string& what) {
+        return scene.document.error(roi, "its box in the world " + what +
+                                             "; mend it in the Markups module");
+      }));
+}
+
+} // namespace fenestra

@@ -1,0 +1,209 @@
+#include "files/slicer/MrmlScene.h"
+
+#include "base/TextStream.h"
+#include "files/looks/TransferReader.h"
+#include "files/medical/DicomSeries.h"
+#include "files/medical/MedicalHeader.h"
+#include "files/medical/VolumeReader.h"
+#include "model/medium/VolumeProperty.h"
+#include "model/volume/CheckedGrid.h"
+
+#include <set>
+
+namespace fenestra {
+namespace {
+
+using Paths = std::vector<std::filesystem::path>;
+
+/// What a storage node says of the geometry in a volume's file (vtkITKArchetypeImageSeriesReader).
+Grid placed(const MrmlNode* storage, const Grid& fromFile) {
+  if (!storage)
+    return fromFile;
+  Affine indexToWorld = fromFile.indexToWorld;
+  if (!storage->flag("UseOrientationFromFile", true)) {
+    indexToWorld.linear() = Mat3::Diagonal(fromFile.spacing());
+    indexToWorld.translation().setZero();
+  } else if (storage->flag("centerImage", false)) {
+    const Vec3 middle = fromFile.indexBox().center();
+    indexToWorld.translation() = -(fromFile.indexToWorld.linear() * middle);
+  }
+  return {fromFile.size, indexToWorld};
+}
+
+/// A node's grid in the world.
+Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& above,
+                const Grid& grid) {
+  return checkedGrid(grid.size, above * grid.indexToWorld, [&](const std::string& what) {
+    return scene.document.error(node, "its place in the world " + what +
+                                          "; mend the transforms above it");
+  });
+}
+
+/// The files that hold a node's data.
+std::vector<std::string> dataFiles(const MrmlScene& scene, const MrmlNode& node) {
+  std::vector<std::string> names = storedFiles(scene, node);
+  if (names.empty())
+    throw scene.document.error(node, "names no file; save its data in Slicer, then the scene");
+  return names;
+}
+
+bool isOf(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+Rgb colorOf(const MrmlNode& node, const std::string& attribute, const Rgb& otherwise) {
+  const auto numbers = node.numbers(attribute);
+  if (!numbers || numbers->size() != 3)
+    return otherwise;
+  return Rgb((*numbers)[0], (*numbers)[1], (*numbers)[2]).max(0.0).min(1.0);
+}
+
+} // namespace
+
+MrmlScene::MrmlScene(const std::filesystem::path& path)
+    : files(path), document(files.sceneText(), files.source()) {
+  for (const std::string& fileName : document.fileNames())
+    files.expect(fileName);
+}
+
+bool isLabelMap(const MrmlNode& node) {
+  return node.tag == "LabelMapVolume" || (node.tag == "Volume" && node.flag("labelMap", false));
+}
+
+bool isScalarVolume(const MrmlNode& node) {
+  return node.tag == "Volume" && !isLabelMap(node);
+}
+
+bool isVolumeRendering(const MrmlNode& node) {
+  return isOf(node.tag, {"GPURayCastVolumeRendering", "CPURayCastVolumeRendering",
+                         "MultiVolumeRendering", "NCIRayCastVolumeRendering", "VolumeRendering"});
+}
+
+bool isShown(const MrmlNode& display) {
+  return display.flag("visibility", true) && display.flag("visibility3D", true);
+}
+
+std::string layoutOf(const MrmlNode& viewOrCamera) {
+  return viewOrCamera.text(viewOrCamera.find("layoutName") ? "layoutName" : "singletonTag");
+}
+
+std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node) {
+  std::vector<std::string> names;
+  const MrmlNode* storage = scene.document.follow(node, "storage");
+  if (!storage)
+    return names;
+  std::set<std::string> known;
+  const auto add = [&](const std::string& name) {
+    if (!name.empty() && known.insert(name).second)
+      names.push_back(name);
+  };
+  add(storage->text("fileName"));
+  for (std::size_t n = 0; storage->find("fileListMember" + std::to_string(n)); ++n)
+    add(storage->text("fileListMember" + std::to_string(n)));
+  return names;
+}
+
+Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
+  const Affine above = toWorld(scene, node);
+  Volume volume = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
+    // A volume's file comes alone or with its samples beside it; otherwise the files are slices.
+    return medicalFormat(files.front()) ? readVolume(files.front())
+                                        : readDicomVolume(files, node.name);
+  });
+  for (std::string& warning : volume.warnings)
+    warning = scene.files.asKnown(warning);
+  const Grid grid = placed(scene.document.follow(node, "storage"), volume.grid);
+  volume.grid = placedGrid(scene, node, above, grid);
+  volume.name = node.name.empty() ? scene.files.asKnown(volume.name) : node.name;
+  return volume;
+}
+
+Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const Grid* volume) {
+  const Affine above = toWorld(scene, node);
+  std::optional<Grid> inNode;
+  if (volume)
+    inNode.emplace(volume->size, above.inverse() * volume->indexToWorld);
+  const MrmlNode* storage = isLabelMap(node) ? scene.document.follow(node, "storage") : nullptr;
+  Segmentation segmentation = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
+    return readSegmentation(files.front(), inNode ? &*inNode : nullptr);
+  });
+  segmentation.moveTo(placedGrid(scene, node, above, placed(storage, segmentation.grid())));
+  return segmentation;
+}
+
+std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node) {
+  return scene.files.read(dataFiles(scene, node),
+                          [](const Paths& files) { return readSegmentInfos(files.front()); });
+}
+
+std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node) {
+  std::map<std::string, bool> visible;
+  const MrmlNode* display = scene.document.follow(node, "display");
+  if (!display)
+    return visible;
+  TextReader segments(display->text("SegmentationDisplayProperties"));
+  for (std::string segment; std::getline(segments, segment, '|');) {
+    TextReader words(segment);
+    std::string id;
+    words >> id;
+    bool shown = true;
+    for (std::string word; words >> word;)
+      shown = shown && word != "Visible:false" && word != "Visible3D:false";
+    if (!id.empty())
+      visible[decodedUrl(id)] = shown;
+  }
+  return visible;
+}
+
+TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property) {
+  const std::string inScene = scene.document.source() + ": " + property.tag + " " + shown(property);
+  const std::vector<std::string> names = storedFiles(scene, property);
+  const bool isInline = property.find("scalarOpacity") && property.find("colorTransfer");
+  if (names.empty() && !isInline)
+    throw scene.document.error(property, "has neither a file nor points of its own; save the "
+                                         "volume property, or give --transfer");
+  if (names.empty())
+    return parseTransferFunction(property.attributes, inScene);
+  return scene.files.read(names,
+                          [](const Paths& files) { return readTransferFunction(files.front()); });
+}
+
+std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const MrmlNode& display,
+                                                const std::array<double, 2>& range) {
+  const auto number = [&display](const std::string& attribute, double otherwise) {
+    const auto numbers = display.numbers(attribute);
+    return numbers && numbers->size() == 1 ? numbers->front() : otherwise;
+  };
+  const std::string colors = display.referenced("color");
+  if (!display.find("window") || !display.find("level") ||
+      (!colors.empty() && colors != "vtkMRMLColorTableNodeGrey"))
+    return std::nullopt;
+  const double window = std::abs(number("window", 0.0));
+  const double low = number("level", 0.0) - 0.5 * window;
+  const double high = low + window;
+
+  const bool byWindow = rendering.flag("ignoreVolumeDisplayNodeThreshold", false);
+  const auto inRange = [&range](double x) { return std::clamp(x, range[0], range[1]); };
+  const double from = inRange(byWindow ? low : number("lowerThreshold", range[0]));
+  const double to = std::max(from, inRange(byWindow ? high : number("upperThreshold", range[1])));
+  const double beyond = byWindow ? 1.0 : 0.0;
+
+  VolumeProperty property;
+  property.scalarOpacity = {
+      {range[0], 0.0}, {from, 0.0}, {to, 1.0}, {to, beyond}, {range[1], beyond}};
+  const bool inverted = display.flag("invertDisplayScalarRange", false);
+  const Rgb first = Rgb::Constant(inverted ? 1.0 : 0.0);
+  property.color = {{low, first}, {high, 1.0 - first}};
+  property.shade = true;
+  property.diffuse = 0.6;
+  property.specular = 0.5;
+  property.specularPower = 40.0;
+  return tabulate(property, display.name);
+}
+
+ViewBackground viewBackground(const MrmlNode& view) {
+  const Rgb bottom = colorOf(view, "backgroundColor", Rgb::Zero());
+  return {bottom, colorOf(view, "backgroundColor2", bottom)};
+}
+
+} // namespace fenestra

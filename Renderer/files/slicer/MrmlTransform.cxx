@@ -1,0 +1,151 @@
+// Transforms above nodes, and what is placed by them: cameras.
+
+#include "files/slicer/MrmlScene.h"
+#include "model/camera/CheckedPose.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+constexpr std::size_t deepest = 1000; ///< transforms above a node
+
+/// Sixteen numbers, row by row, that are an invertible affine map; nothing where the attribute is
+/// missing. Throws where it is anything else.
+std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
+                               const std::string& attribute) {
+  if (!node.find(attribute))
+    return std::nullopt;
+  const auto numbers = node.numbers(attribute);
+  const auto refuse = [&](const std::string& what) {
+    return scene.document.error(node,
+                                attribute + ": " + what + "; mend it in the Transforms module");
+  };
+  if (!numbers || numbers->size() != 16)
+    throw refuse("must be 16 numbers");
+  const auto row = [&numbers](std::size_t i) { // three of its four
+    return Vec3((*numbers)[4 * i], (*numbers)[4 * i + 1], (*numbers)[4 * i + 2]);
+  };
+  if (row(3) != Vec3::Zero() || numbers->back() != 1.0)
+    throw refuse("its last row must be 0 0 0 1");
+  const Vec3 translation((*numbers)[3], (*numbers)[7], (*numbers)[11]);
+  return checkedMap(Affine(Mat3::FromRows(row(0), row(1), row(2)), translation), refuse);
+}
+
+/// Files hold the map from the parent. Old scenes could say otherwise, and linear transforms said
+/// so the wrong way round (vtkMRMLLinearTransformNode::ReadXMLAttributes).
+TransformSense senseOf(const MrmlNode& node) {
+  const std::string* said = node.find("readWriteAsTransformToParent");
+  if (!said)
+    return TransformSense::fromParent;
+  const bool toParent = node.tag == "LinearTransform" ? *said != "true" : *said == "true";
+  return toParent ? TransformSense::toParent : TransformSense::fromParent;
+}
+
+std::optional<Affine> inlineMatrix(const MrmlScene& scene, const MrmlNode& node) {
+  if (auto toParent = matrixOf(scene, node, "matrixTransformToParent"))
+    return toParent;
+  const auto fromParent = matrixOf(scene, node, "matrixTransformFromParent");
+  return fromParent ? std::optional<Affine>(fromParent->inverse()) : std::nullopt;
+}
+
+std::variant<Affine, Error> readOrError(MrmlScene& scene, const std::string& file,
+                                        TransformSense sense) {
+  try {
+    return scene.files.read(
+        {file}, [&](const auto& files) { return readLinearTransform(files.front(), sense); });
+  } catch (const Error& error) {
+    return error;
+  }
+}
+
+Affine transformInFile(MrmlScene& scene, const std::string& file, TransformSense sense) {
+  const std::pair key(file, sense);
+  auto known = scene.transformFiles.find(key);
+  if (known == scene.transformFiles.end())
+    known = scene.transformFiles.emplace(key, readOrError(scene, file, sense)).first;
+  if (const Error* error = std::get_if<Error>(&known->second))
+    throw *error;
+  return std::get<Affine>(known->second);
+}
+
+Affine toParent(MrmlScene& scene, const MrmlNode& node) {
+  if (node.tag != "LinearTransform" && node.tag != "Transform")
+    throw scene.document.error(node, "is not linear; harden it in Slicer (Transforms module), then "
+                                     "save the scene");
+  const auto matrix = inlineMatrix(scene, node);
+  const std::vector<std::string> names = storedFiles(scene, node);
+  if (names.empty()) {
+    if (!matrix)
+      throw scene.document.error(node, "has neither a matrix nor a file; save the transform again");
+    return *matrix;
+  }
+  return transformInFile(scene, names.front(), senseOf(node));
+}
+
+} // namespace
+
+std::vector<std::string> transformsAbove(const MrmlDocument& document, const MrmlNode& node) {
+  std::vector<std::string> ids;
+  for (const MrmlNode* above = document.follow(node, "transform");
+       above && ids.size() < deepest && std::find(ids.begin(), ids.end(), above->id) == ids.end();
+       above = document.follow(*above, "transform"))
+    ids.push_back(above->id);
+  return ids;
+}
+
+Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
+  Affine result = Affine::Identity();
+  const MrmlNode* above = scene.document.follow(node, "transform");
+  for (std::size_t level = 0; above; above = scene.document.follow(*above, "transform"), ++level) {
+    if (level == deepest)
+      throw scene.document.error(
+          node, "the transforms above it form a loop, or too long a chain; mend them in the "
+                "Transforms module");
+    result = toParent(scene, *above) * result;
+  }
+  return checkedMap(result, [&](const std::string& what) {
+    return scene.document.error(node, "the product of the transforms above it " + what +
+                                          "; mend them in the Transforms module");
+  });
+}
+
+CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
+  const auto triple = [&](const std::string& attribute) {
+    const auto numbers = camera.numbers(attribute);
+    if (!numbers || numbers->size() != 3)
+      throw scene.document.error(camera, attribute + ": must be three numbers; give --view");
+    return Vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+  };
+  const auto number = [&](const std::string& attribute, double otherwise, double most) {
+    if (!camera.find(attribute))
+      return otherwise;
+    const auto numbers = camera.numbers(attribute);
+    if (!numbers || numbers->size() != 1 || !(numbers->front() > 0.0 && numbers->front() <= most))
+      throw scene.document.error(camera, attribute + ": is not usable; give --view");
+    return numbers->front();
+  };
+  CameraPose pose;
+  pose.projection =
+      camera.flag("parallelProjection", false) ? Projection::orthographic : Projection::perspective;
+  pose.position = triple("position");
+  pose.target = triple("focalPoint");
+  pose.up = triple("viewUp");
+  pose.scale = number("parallelScale", pose.scale, 1e9);
+  pose.angle = number("viewAngle", pose.angle, 179.0);
+
+  // The pose is stored as it is in the world, with the transform above it applied; only what has
+  // changed of that since then still moves it (vtkMRMLCameraNode::TransformPoints).
+  if (camera.references.contains("transform")) {
+    const Affine applied = matrixOf(scene, camera, "appliedTransform").value_or(Affine::Identity());
+    const Affine since = toWorld(scene, camera) * applied.inverse();
+    pose.position = since * pose.position;
+    pose.target = since * pose.target;
+    pose.up = since.linear() * pose.up;
+  }
+  return checkedPose(pose, [&](const std::string& what) {
+    return scene.document.error(camera, "looks nowhere: " + what + "; give --view");
+  });
+}
+
+} // namespace fenestra

@@ -1,0 +1,72 @@
+#include "files/slicer/SlicerPresets.h"
+
+#include "base/TextStream.h"
+#include "base/safe/JsonNode.h"
+#include "files/looks/TransferReader.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace fenestra {
+namespace {
+
+using Path = std::filesystem::path;
+
+/// In share/Slicer-VERSION/qt-loadable-modules (qSlicerLoadableModule's share directory); of
+/// several versions the last by name.
+std::optional<Path> presetsIn(const Path& home) {
+  std::vector<Path> found;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator entry(home / "share", failed), end;
+       !failed && entry != end; entry.increment(failed)) {
+    const Path file = entry->path() / "qt-loadable-modules" / "VolumeRendering" / "presets.xml";
+    std::error_code missing;
+    if (entry->path().filename().string().starts_with("Slicer-") &&
+        std::filesystem::is_regular_file(file, missing))
+      found.push_back(file);
+  }
+  const auto last = std::max_element(found.begin(), found.end());
+  return last == found.end() ? std::nullopt : std::optional<Path>(*last);
+}
+
+/// The folder of Slicer's launcher, which links may lead to.
+std::optional<Path> homeInPath() {
+  const char* const path = std::getenv("PATH");
+  TextReader folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    std::error_code failed;
+    const Path launcher = std::filesystem::canonical(Path(folder) / "Slicer", failed);
+    if (!failed && std::filesystem::is_regular_file(launcher, failed))
+      return launcher.parent_path();
+  }
+  return std::nullopt;
+}
+
+} // namespace
+
+std::optional<Path> findSlicerPresets() {
+  if (const char* const home = std::getenv("SLICER_HOME"); home && *home)
+    if (auto presets = presetsIn(home))
+      return presets;
+  const auto home = homeInPath();
+  return home ? presetsIn(*home) : std::nullopt;
+}
+
+SlicerPresets::SlicerPresets(const Path& path) : m_document(readText(path), path.string()) {}
+
+std::optional<TransferFunction> SlicerPresets::find(const std::string& name) const {
+  for (const MrmlNode* node : m_document.withTag("VolumeProperty"))
+    if (node->name == name)
+      return parseTransferFunction(node->attributes,
+                                   m_document.source() + ": " + node->tag + " " + shown(*node));
+  return std::nullopt;
+}
+
+std::vector<std::string> SlicerPresets::names() const {
+  std::vector<std::string> names;
+  for (const MrmlNode* node : m_document.withTag("VolumeProperty"))
+    names.push_back(node->name);
+  return names;
+}
+
+} // namespace fenestra

@@ -1,0 +1,32 @@
+#pragma once
+// The volume rendering presets of a 3D Slicer installation, by name.
+
+#include "files/slicer/MrmlDocument.h"
+#include "model/medium/TransferFunction.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fenestra {
+
+/// presets.xml of the Slicer in the folder that SLICER_HOME names, which Slicer sets for programs
+/// that it starts, else of the one whose launcher is first in PATH; nothing where there is none.
+std::optional<std::filesystem::path> findSlicerPresets();
+
+/// Slicer's presets: volume property nodes in a MRML file.
+class SlicerPresets {
+public:
+  /// Throws Error (input).
+  explicit SlicerPresets(const std::filesystem::path& path);
+
+  /// Nothing where none has the name. Throws Error (input) where it is damaged.
+  std::optional<TransferFunction> find(const std::string& name) const;
+  std::vector<std::string> names() const;
+
+private:
+  MrmlDocument m_document;
+};
+
+} // namespace fenestra

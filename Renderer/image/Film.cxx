@@ -1,0 +1,55 @@
+#include "image/Film.h"
+
+namespace fenestra {
+
+void PixelSums::add(const PathSample& sample) {
+  ++samples;
+  const Rgb before = sample.radiance - mean;
+  mean += before / static_cast<double>(samples);
+  deviation += before * (sample.radiance - mean);
+  alpha += sample.alpha;
+  albedo += sample.albedo;
+  normal += sample.normal;
+  scatterings += sample.scatterings;
+  if (sample.depth < infinity) {
+    depth += sample.depth;
+    ++collided;
+  }
+}
+
+Rgb PixelSums::standardError() const {
+  if (samples < 2)
+    return Rgb::Zero();
+  const auto n = static_cast<double>(samples);
+  return (deviation / (n * (n - 1.0))).sqrt();
+}
+
+double Film::noise() const {
+  double sum = 0.0;
+  for (const PixelSums& pixel : m_pixels) {
+    if (pixel.isCertain)
+      continue;
+    if (pixel.samples < 2)
+      return infinity;
+    sum += (pixel.standardError().square() / (pixel.mean.square() + 0.01)).sum();
+  }
+  return std::sqrt(sum / (3.0 * static_cast<double>(m_pixels.size())));
+}
+
+SampleCounts Film::sampleCounts() const {
+  SampleCounts counts{std::numeric_limits<std::uint64_t>::max(), 0, 0.0, 0};
+  for (const PixelSums& pixel : m_pixels)
+    counts.certainPixels += pixel.isCertain ? 1 : 0;
+  const bool allCertain = counts.certainPixels == m_pixels.size();
+  for (const PixelSums& pixel : m_pixels) {
+    if (pixel.isCertain && !allCertain)
+      continue;
+    counts.least = std::min(counts.least, pixel.samples);
+    counts.greatest = std::max(counts.greatest, pixel.samples);
+    counts.mean += static_cast<double>(pixel.samples);
+  }
+  counts.mean /= static_cast<double>(m_pixels.size() - (allCertain ? 0 : counts.certainPixels));
+  return counts;
+}
+
+} // namespace fenestra

@@ -1,0 +1,33 @@
+#pragma once
+// A finished picture as named float planes: what writers write, readers read and `compare`
+// compares.
+
+#include "base/Vector.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace fenestra {
+
+/// Channels by their EXR names (R G B A Z clip.Z albedo.R … error.R … samples.N), each width *
+/// height floats, row 0 at the top.
+struct Image {
+  int width = 0, height = 0;
+  std::map<std::string, std::vector<float>> channels;
+  std::map<std::string, std::string> header; ///< version, target, seed, samples, camera, command …
+
+  const std::vector<float>* find(const std::string& name) const {
+    const auto it = channels.find(name);
+    return it == channels.end() ? nullptr : &it->second;
+  }
+};
+
+/// Where a picture lies in the world: what a NRRD output carries so that Slicer shows it in place.
+struct ImagePlane {
+  Vec3 topLeft = Vec3::Zero();     ///< centre of the top left pixel, RAS mm
+  Vec3 columnStep = Vec3::UnitX(); ///< to the next pixel to the right, mm
+  Vec3 rowStep = -Vec3::UnitZ();   ///< to the next pixel below, mm
+};
+
+} // namespace fenestra

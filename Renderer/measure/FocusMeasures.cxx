@@ -1,0 +1,141 @@
+#include "measure/FocusMeasures.h"
+
+#include "transport/render/WithMedium.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace fenestra {
+namespace {
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// The greatest depth that the focus has at a pixel and its neighbours.
+double deepestAround(const std::vector<double>& depth, std::size_t width, std::size_t column,
+                     std::size_t row) {
+  double deepest = -infinity;
+  for (std::size_t y = row > 0 ? row - 1 : 0; y <= row + 1 && y * width < depth.size(); ++y)
+    for (std::size_t x = column > 0 ? column - 1 : 0; x <= column + 1 && x < width; ++x)
+      if (const double other = depth[y * width + x]; other < infinity)
+        deepest = std::max(deepest, other);
+  return deepest;
+}
+
+} // namespace
+
+FocusPoints::FocusPoints(const RenderScene& scene, const std::vector<double>& depth) {
+  const auto width = static_cast<std::size_t>(scene.camera.width());
+  const double rounding = 0.5 * scene.camera.pixelPitch();
+  for (std::size_t pixel = 0; pixel < depth.size(); ++pixel) {
+    if (!(depth[pixel] < infinity))
+      continue;
+    const std::size_t row = pixel / width, column = pixel - row * width;
+    const Ray ray =
+        scene.camera.ray(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
+    const double distance = depth[pixel] / scene.camera.depthPerLength(ray);
+    const Interval behind = behindSurface(scene.clip, ray);
+    const double deepest =
+        deepestAround(depth, width, column, row) / scene.camera.depthPerLength(ray);
+    const bool isKept =
+        !behind.empty() && behind.begin <= deepest + rounding && behind.end >= distance - rounding;
+    m_points.push_back({ray, distance, isKept, pixel});
+  }
+}
+
+double FocusPoints::kept() const {
+  if (m_points.empty())
+    return 0.0;
+  const auto count = std::ranges::count_if(m_points, &Point::isKept);
+  return static_cast<double>(count) / static_cast<double>(m_points.size());
+}
+
+double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::uint64_t seed,
+                     const StopFlag& stop) {
+  const std::vector<FocusPoints::Point>& points = focus.points();
+  if (points.empty())
+    return 0.0;
+  const auto share = [&](const auto&, const auto& tracker) {
+    std::vector<double> shown(points.size(), 0.0);
+    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+      const FocusPoints::Point& point = points[i];
+      if (!point.isKept)
+        return;
+      const Interval range = visible(scene.clip, point.ray);
+      Random random(seed, point.pixel, 0);
+      Counters counters;
+      shown[i] = tracker.transmittance(point.ray, {range.begin, point.distance}, random, counters);
+    });
+    return sum(shown) / static_cast<double>(points.size());
+  };
+  return withMedium(scene, share, stop);
+}
+
+std::optional<double> focusLight(const RenderScene& scene, const RenderScene& alone,
+                                 const FocusPoints& focus, std::uint64_t seed,
+                                 const StopFlag& stop) {
+  constexpr std::size_t most = 4096; // points, of those that are kept
+  constexpr std::uint64_t lightsEach = 4;
+  std::vector<const FocusPoints::Point*> points;
+  for (const FocusPoints::Point& point : focus.points())
+    if (point.isKept)
+      points.push_back(&point);
+  const std::size_t stride = points.size() / most + 1;
+  const auto arriving = [&](const RenderScene& through) {
+    const auto sumOfLight = [&](const auto&, const auto& tracker) {
+      std::vector<double> light(points.size() / stride + 1, 0.0);
+      tbb::parallel_for(std::size_t{0}, points.size() / stride, [&](std::size_t i) {
+        const Vec3 position = points[i * stride]->position();
+        for (std::uint64_t k = 0; k < lightsEach; ++k) {
+          Random random(seed, points[i * stride]->pixel, k);
+          const std::optional<LightSample> sample = scene.lights.sample(position, random);
+          if (!sample)
+            continue;
+          Counters counters;
+          light[i] += luminance(sample->radiance) / sample->pdf *
+                      tracker.transmittance({position, sample->direction}, {0.0, sample->distance},
+                                            random, counters);
+        }
+      });
+      return sum(light);
+    };
+    return withMedium(through, sumOfLight, stop);
+  };
+  const double unhindered = arriving(alone);
+  if (!(unhindered > 0.0))
+    return std::nullopt;
+  return arriving(scene) / unhindered;
+}
+
+std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus,
+                                     std::uint64_t seed) {
+  constexpr std::int64_t strata = 64; // along each axis
+  const ContextStyle style{std::shared_ptr<const Mask>(std::shared_ptr<void>(), &focus)};
+  const StyledContext where(style, scene.volume.grid);
+  const Domain domain(scene.volume.grid, scene.crop);
+  const Box box = scene.volume.grid.indexBox();
+  return withMedium(scene, [&](const auto& medium, const auto&) {
+    std::vector<double> matter(strata), removed(strata);
+    tbb::parallel_for(std::int64_t{0}, strata, [&](std::int64_t z) {
+      for (std::int64_t y = 0; y < strata; ++y)
+        for (std::int64_t x = 0; x < strata; ++x) {
+          Random random(seed, static_cast<std::uint64_t>(x + strata * (y + strata * z)), 0);
+          const Vec3 jitter(random.uniform(), random.uniform(), random.uniform());
+          const Vec3 share = (Size3(x, y, z).cast<double>() + jitter) / double{strata};
+          const Vec3 index = box.lower + share.cwiseProduct(box.upper - box.lower);
+          const Vec3 world = scene.volume.grid.indexToWorld * index;
+          if (!domain.contains(index) || where.isFocus(index) || !(medium.extinction(index) > 0.0))
+            continue;
+          matter[static_cast<std::size_t>(z)] += 1.0;
+          removed[static_cast<std::size_t>(z)] += 1.0 - keep(scene.clip, world);
+        }
+    });
+    const double all = sum(matter);
+    return all > 0.0 ? std::optional(sum(removed) / all) : std::nullopt;
+  });
+}
+
+} // namespace fenestra

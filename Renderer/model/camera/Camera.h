@@ -1,0 +1,74 @@
+#pragma once
+// The camera, and view space: origin at the eye (perspective) or on the camera plane
+// (orthographic), x right, y up, depth z along the viewing direction, mm.
+
+#include "base/Vector.h"
+
+namespace fenestra {
+
+enum class Projection { orthographic, perspective };
+
+/// What a user states; world space, mm, degrees.
+struct CameraPose {
+  Projection projection = Projection::orthographic;
+  Vec3 position = Vec3::Zero();
+  Vec3 target = Vec3::UnitY();
+  Vec3 up = Vec3::UnitZ();
+  double scale = 100.0; ///< orthographic: half the viewport's height, mm
+  double angle = 30.0;  ///< perspective: full vertical angle, degrees
+};
+
+class Camera {
+public:
+  /// Throws Error (usage) where position and target coincide, or up is along the view.
+  Camera(const CameraPose& pose, int width, int height);
+
+  int width() const { return m_width; }
+  int height() const { return m_height; }
+  const CameraPose& pose() const { return m_pose; }
+  const Vec3& right() const { return m_right; }
+  const Vec3& up() const { return m_up; }
+  const Vec3& forward() const { return m_forward; }
+  /// Depth of the plane through the target that faces the eye, mm.
+  double targetDepth() const { return m_targetDepth; }
+  /// mm between pixel centres on that plane.
+  double pixelPitch() const { return m_pixelPitch; }
+
+  /// The eye ray through raster position (column, row), both continuous, (0, 0) the top left corner
+  /// of the top left pixel. Unit direction, in world space; starts at depth 0.
+  Ray ray(double column, double row) const { return rayThrough(toPlane(column, row)); }
+
+  /// Where the eye ray through a raster position meets the plane through the target: (x, y), mm.
+  Vec2 toPlane(double column, double row) const {
+    return {(column - 0.5 * m_width) * m_pixelPitch, (0.5 * m_height - row) * m_pixelPitch};
+  }
+
+  /// The raster position (column, row) of (x, y) on that plane.
+  Vec2 toRaster(const Vec2& plane) const {
+    return {plane.x() / m_pixelPitch + 0.5 * m_width, 0.5 * m_height - plane.y() / m_pixelPitch};
+  }
+
+  /// The eye ray through (x, y) of the plane through the target.
+  Ray rayThrough(const Vec2& plane) const {
+    const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
+    if (m_pose.projection == Projection::orthographic)
+      return {m_pose.position + offset, m_forward};
+    return {m_pose.position, (offset + m_targetDepth * m_forward).normalized()};
+  }
+
+  Vec3 toView(const Vec3& world) const {
+    const Vec3 d = world - m_pose.position;
+    return {d.dot(m_right), d.dot(m_up), d.dot(m_forward)};
+  }
+
+  /// How fast depth grows along an eye ray: depth = t * depthPerLength(ray).
+  double depthPerLength(const Ray& eyeRay) const { return eyeRay.direction.dot(m_forward); }
+
+private:
+  CameraPose m_pose;
+  int m_width, m_height;
+  Vec3 m_right, m_up, m_forward;
+  double m_targetDepth, m_pixelPitch;
+};
+
+} // namespace fenestra

@@ -1,0 +1,41 @@
+#pragma once
+// Radiance from infinity: a constant, or a latitude-longitude map whose texels are constant, drawn
+// in proportion to radiance times solid angle.
+
+#include "model/lights/Light.h"
+
+#include <optional>
+
+namespace fenestra {
+
+class EnvironmentSampler {
+public:
+  explicit EnvironmentSampler(EnvironmentLight light);
+
+  /// A unit direction toward the environment, of density pdf().
+  Vec3 sample(const Vec2& u) const;
+  Rgb radiance(const Vec3& direction) const;
+  double pdf(const Vec3& direction) const;
+  /// Radiance averaged over the sphere.
+  const Rgb& mean() const { return m_mean; }
+
+  bool constant() const { return m_light.map.width == 0; }
+
+private:
+  std::size_t texelIndex(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_light.map.width) +
+           static_cast<std::size_t>(column);
+  }
+  std::size_t texelToward(const Vec3& direction) const;
+  Rgb texel(std::size_t index) const;
+  double texelPdf(std::size_t index) const;
+
+  EnvironmentLight m_light;
+  Rgb m_mean = Rgb::Zero();
+  std::vector<double> m_rowSolidAngle; ///< of one texel of each row, sr
+  std::vector<double> m_rowCdf;        ///< height + 1 entries, last 1
+  std::vector<double> m_columnCdf;     ///< (width + 1) entries for each row
+  double m_total = 0.0;                ///< integral of brightness over the sphere
+};
+
+} // namespace fenestra

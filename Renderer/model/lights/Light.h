@@ -1,0 +1,53 @@
+#pragma once
+// The kinds of light, as plain data. Directions and lengths are in world space (mm, RAS) or in the
+// camera's frame; LightSet.h turns them into something that can be sampled.
+
+#include "base/Vector.h"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace fenestra {
+
+/// What choices between lights, and between texels, go by.
+inline double brightness(const Rgb& radiance) {
+  return radiance.maxCoeff();
+}
+
+/// Latitude-longitude radiance, row 0 superior, middle column anterior (design, section 1).
+struct EnvironmentMap {
+  int width = 0, height = 0;
+  std::vector<float> rgb; ///< width * height * 3, row by row from the top
+};
+
+/// Radiance from every direction: a constant, times the map where there is one.
+struct EnvironmentLight {
+  Rgb radiance = Rgb::Ones();
+  EnvironmentMap map = {}; ///< empty (width 0): constant
+};
+
+/// Parallel light travelling along `direction`; `irradiance` on a plane facing it.
+struct DirectionalLight {
+  Vec3 direction = -Vec3::UnitZ(); ///< unit
+  Rgb irradiance = Rgb::Ones();
+};
+
+enum class LightFrame { world, camera };
+
+/// Shines from one side, along `normal`. In the camera's frame x is right, y up, z toward the
+/// viewer, the origin is the volume's centre, and lengths are in radii of its bounding sphere.
+struct AreaLight {
+  enum class Shape { rectangle, disk };
+  Shape shape = Shape::rectangle;
+  Vec3 center = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ(); ///< unit
+  Vec3 up = Vec3::UnitY();  ///< orients a rectangle's second edge; need not be orthogonal to normal
+  Vec2 size = Vec2::Ones(); ///< full edges, or the diameter in x
+  Rgb radiance = Rgb::Ones();
+  LightFrame frame = LightFrame::world;
+};
+
+using Light = std::variant<EnvironmentLight, DirectionalLight, AreaLight>;
+
+} // namespace fenestra

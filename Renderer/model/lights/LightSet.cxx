@@ -1,0 +1,180 @@
+#include "model/lights/LightSet.h"
+
+namespace fenestra {
+namespace {
+
+/// No light's share falls below this part of an equal share, however dark it looks from the
+/// volume's centre: it may matter elsewhere.
+constexpr double leastShare = 0.05;
+
+template <typename... Kinds>
+struct Overloaded : Kinds... {
+  using Kinds::operator()...;
+};
+template <typename... Kinds>
+Overloaded(Kinds...) -> Overloaded<Kinds...>;
+
+} // namespace
+
+LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera) {
+  for (const Light& light : lights)
+    std::visit(Overloaded{
+                   [&](const EnvironmentLight& l) {
+                     m_environments.push_back({EnvironmentSampler(l), 0.0});
+                   },
+                   [&](const DirectionalLight& l) {
+                     m_directionals.push_back({-l.direction.normalized(), l.irradiance, 0.0});
+                   },
+                   [&](const AreaLight& l) { place(l, volume, camera); },
+               },
+               light);
+  chooseShares(volume.worldCenter());
+}
+
+void LightSet::place(const AreaLight& light, const Grid& volume, const Camera& camera) {
+  Mat3 axes = Mat3::Identity();
+  double unit = 1.0;
+  Vec3 origin = Vec3::Zero();
+  if (light.frame == LightFrame::camera) {
+    axes = Mat3(camera.right(), camera.up(), -camera.forward());
+    unit = volume.boundingRadius();
+    origin = volume.worldCenter();
+  }
+  PlacedAreaLight placed;
+  placed.shape = light.shape;
+  placed.center = origin + unit * (axes * light.center);
+  placed.normal = (axes * light.normal).normalized();
+  const Vec3 up = axes * light.up;
+  const Vec3 across = up.cross(placed.normal);
+  placed.right =
+      across.norm() > 1e-9 * up.norm() ? Vec3(across.normalized()) : Frame(placed.normal).tangent;
+  placed.up = placed.normal.cross(placed.right);
+  const bool disk = light.shape == AreaLight::Shape::disk;
+  placed.half = 0.5 * unit * (disk ? Vec2::Constant(light.size.x()) : light.size);
+  placed.area = placed.half.prod() * (disk ? pi : 4.0);
+  placed.radiance = light.radiance;
+  placed.share = 0.0;
+  m_areas.push_back(placed);
+}
+
+/// Each light is drawn in proportion to its irradiance at the volume's centre.
+void LightSet::chooseShares(const Vec3& center) {
+  std::vector<double*> shares;
+  for (SharedEnvironment& environment : m_environments) {
+    if (environment.sampler.constant())
+      continue;
+    environment.share = pi * brightness(environment.sampler.mean());
+    shares.push_back(&environment.share);
+  }
+  for (PlacedDirectionalLight& light : m_directionals) {
+    light.share = brightness(light.irradiance);
+    shares.push_back(&light.share);
+  }
+  for (PlacedAreaLight& light : m_areas) {
+    const Vec3 d = center - light.center;
+    const double cosine = std::max(0.0, light.normal.dot(d.normalized()));
+    light.share = brightness(light.radiance) * light.area * cosine / d.squaredNorm();
+    shares.push_back(&light.share);
+  }
+  double sum = 0.0;
+  for (const double* share : shares)
+    sum += *share;
+  if (!(sum > 0.0) || !std::isfinite(sum)) {
+    for (double* share : shares)
+      *share = 1.0 / static_cast<double>(shares.size());
+    return;
+  }
+  const double floor = leastShare / static_cast<double>(shares.size());
+  for (double* share : shares)
+    *share = floor + (1.0 - leastShare) * *share / sum;
+}
+
+std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, const Vec2& u) const {
+  for (const PlacedAreaLight& light : m_areas) {
+    if (choice < light.share)
+      return light.sample(point, u);
+    choice -= light.share;
+  }
+  for (const PlacedDirectionalLight& light : m_directionals) {
+    if (choice < light.share)
+      return LightSample{light.toward, infinity, light.irradiance, light.share, true};
+    choice -= light.share;
+  }
+  return sampleEnvironment(choice, u);
+}
+
+std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2& u) const {
+  const SharedEnvironment* chosen = nullptr;
+  for (const SharedEnvironment& environment : m_environments) {
+    if (environment.share == 0.0)
+      continue;
+    chosen = &environment; // the last one takes what rounding leaves
+    if (choice < environment.share)
+      break;
+    choice -= environment.share;
+  }
+  if (chosen == nullptr)
+    return std::nullopt;
+  const Vec3 direction = chosen->sampler.sample(u);
+  const LightArrival arrival = environment(direction);
+  if (!(arrival.pdf > 0.0))
+    return std::nullopt;
+  return LightSample{direction, infinity, arrival.radiance, arrival.pdf, false};
+}
+
+LightArrival LightSet::environment(const Vec3& direction) const {
+  LightArrival sum;
+  for (const SharedEnvironment& environment : m_environments) {
+    sum.radiance += environment.sampler.radiance(direction);
+    sum.pdf += environment.share * environment.sampler.pdf(direction);
+  }
+  return sum;
+}
+
+Rgb LightSet::constantEnvironment() const {
+  Rgb sum = Rgb::Zero();
+  for (const SharedEnvironment& environment : m_environments)
+    if (environment.sampler.constant())
+      sum += environment.sampler.mean();
+  return sum;
+}
+
+bool LightSet::hasMaps() const {
+  return std::any_of(m_environments.begin(), m_environments.end(),
+                     [](const SharedEnvironment& e) { return !e.sampler.constant(); });
+}
+
+std::optional<LightSample> PlacedAreaLight::sample(const Vec3& point, const Vec2& u) const {
+  Vec2 at = 2.0 * u - Vec2::Ones();
+  if (shape == AreaLight::Shape::disk) {
+    const double phi = 2.0 * pi * u.y();
+    at = std::sqrt(u.x()) * Vec2(std::cos(phi), std::sin(phi));
+  }
+  const Vec3 d = center + half.x() * at.x() * right + half.y() * at.y() * up - point;
+  const double distance2 = d.squaredNorm();
+  if (!(distance2 >= std::numeric_limits<double>::min()))
+    return std::nullopt; // on the light: no direction
+  const double distance = std::sqrt(distance2);
+  const double cosine = -normal.dot(d) / distance;
+  if (!(cosine > 0.0))
+    return std::nullopt; // behind the light, or in its plane
+  return LightSample{d / distance, distance, radiance, share * distance2 / (area * cosine), false};
+}
+
+std::optional<LightArrival> PlacedAreaLight::arrival(const Ray& ray, double end) const {
+  const double cosine = -normal.dot(ray.direction);
+  if (!(cosine > 0.0))
+    return std::nullopt;
+  const double t = normal.dot(ray.origin - center) / cosine;
+  if (!(t > 0.0) || !(t < end))
+    return std::nullopt;
+  const Vec3 d = ray.at(t) - center;
+  const Vec2 at(d.dot(right) / half.x(), d.dot(up) / half.y());
+  const bool inside =
+      shape == AreaLight::Shape::disk ? at.squaredNorm() <= 1.0 : at.cwiseAbs().maxCoeff() <= 1.0;
+  if (!inside)
+    return std::nullopt;
+  return LightArrival{radiance, share * t * t / (area * cosine)};
+}
+
+} // namespace fenestra

@@ -1,0 +1,174 @@
+#include "model/masks/MaskShaping.h"
+
+#include "base/Error.h"
+
+#include <itkImage.h>
+#include <itkSignedMaurerDistanceMapImageFilter.h>
+#include <itkSmoothingRecursiveGaussianImageFilter.h>
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+using Pixels = itk::Image<float, 3>;
+
+/// Part of a mask's index space, in whole voxels.
+struct Part {
+  Size3 first, size;
+
+  Size3 end() const { return first + size; }
+};
+
+Part wholeOf(const Mask& mask) {
+  return {Size3::Zero(), mask.grid.size};
+}
+
+/// The mask and `reach` mm around it, but no more than a voxel beyond the volume.
+Part around(const Mask& mask, double reach, const Grid& volume) {
+  const Affine toMask = mask.grid.worldToIndex * volume.indexToWorld;
+  Vec3 lower = Vec3::Constant(infinity), upper = -lower;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = toMask * volume.indexBox().corner(i);
+    lower = lower.cwiseMin(corner);
+    upper = upper.cwiseMax(corner);
+  }
+  const Vec3 voxels = (reach * mask.grid.spacing().cwiseInverse()).array().ceil() + 1.0;
+  const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
+  const Vec3 first = (-voxels).cwiseMax((lower.array().floor() - 1.0).matrix()).cwiseMin(0.0);
+  const Vec3 end = (last + voxels).cwiseMin((upper.array().ceil() + 1.0).matrix()).cwiseMax(last);
+  constexpr double fewest = 4.0; // that recursive filters take
+  const Vec3 size = (end - first + Vec3::Ones()).cwiseMax(fewest);
+  if (size.prod() > 0x1p31)
+    throw outputError("--focus", "with its margin it spans more than 2^31 voxels; choose less");
+  return {first.cast<std::int64_t>(), size.cast<std::int64_t>()};
+}
+
+Grid gridOf(const Mask& mask, const Part& part) {
+  Affine indexToWorld = mask.grid.indexToWorld;
+  indexToWorld.translate(part.first.cast<double>());
+  return {part.size, indexToWorld};
+}
+
+/// Of a voxel of the mask's index space; beyond the mask its outermost voxels go on.
+std::uint8_t voxelAt(const Mask& mask, const Size3& at) {
+  const Size3& size = mask.grid.size;
+  const Size3 inside = at.cwiseMax(0).cwiseMin((size.array() - 1).matrix());
+  return mask.voxels[static_cast<std::size_t>(inside.x() +
+                                              size.x() * (inside.y() + size.y() * inside.z()))];
+}
+
+/// visit(voxel in `part`, its number there).
+template <typename Visitor>
+void forVoxels(const Part& part, const Visitor& visit) {
+  std::size_t number = 0;
+  for (std::int64_t z = part.first.z(); z < part.end().z(); ++z)
+    for (std::int64_t y = part.first.y(); y < part.end().y(); ++y)
+      for (std::int64_t x = part.first.x(); x < part.end().x(); ++x)
+        visit(Size3(x, y, z), number++);
+}
+
+/// The indicator over a part of the mask's index space, in mm.
+Pixels::Pointer pixelsOf(const Mask& mask, const Part& part) {
+  const auto image = Pixels::New();
+  Pixels::SizeType size;
+  Pixels::SpacingType spacing;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    size[axis] = static_cast<Pixels::SizeValueType>(part.size[axis]);
+    spacing[axis] = mask.grid.spacing()[axis];
+  }
+  image->SetRegions(size);
+  image->SetSpacing(spacing);
+  image->Allocate();
+  float* const to = image->GetBufferPointer();
+  forVoxels(part, [&](const Size3& voxel, std::size_t number) {
+    to[number] = static_cast<float>(voxelAt(mask, voxel)) / static_cast<float>(mask.full);
+  });
+  return image;
+}
+
+/// A mask of the same segments on a part of the grid, a voxel of which is value(number).
+template <typename Value>
+Mask maskOf(const Mask& from, const Part& part, std::uint8_t full, const Value& value) {
+  Mask mask{gridOf(from, part), {}, 0, from.names, full};
+  mask.voxels.resize(static_cast<std::size_t>(part.size.prod()));
+  for (std::size_t i = 0; i < mask.voxels.size(); ++i) {
+    mask.voxels[i] = value(i);
+    mask.count += mask.voxels[i] >= mask.half();
+  }
+  return mask;
+}
+
+} // namespace
+
+Mask grown(const Mask& mask, double margin, const Grid& volume) {
+  if (margin == 0.0)
+    return mask;
+  const Part part = margin > 0.0 ? around(mask, margin, volume) : wholeOf(mask);
+  // Distances from the outermost voxels of the mask, or of what is not it: 0 there, positive
+  // outside.
+  const Pixels::Pointer pixels = pixelsOf(mask, part);
+  if (margin < 0.0)
+    std::transform(pixels->GetBufferPointer(),
+                   pixels->GetBufferPointer() + pixels->GetBufferedRegion().GetNumberOfPixels(),
+                   pixels->GetBufferPointer(), [](float inside) { return 1.0F - inside; });
+  const auto distance = itk::SignedMaurerDistanceMapImageFilter<Pixels, Pixels>::New();
+  distance->SetInput(pixels);
+  distance->SetUseImageSpacing(true);
+  distance->SetSquaredDistance(false);
+  distance->Update();
+  const float* const from = distance->GetOutput()->GetBufferPointer();
+  const auto reach = static_cast<float>(std::abs(margin) * (1.0 + 1e-6)); // rounding
+  return maskOf(mask, part, 1, [&](std::size_t i) -> std::uint8_t {
+    return margin > 0.0 ? from[i] <= reach : from[i] > reach;
+  });
+}
+
+Mask united(const std::vector<Mask>& masks) {
+  if (masks.size() == 1)
+    return masks.front();
+  const Mask& first = masks.front();
+  // All of them on the first one's voxels.
+  const auto placeOf = [&](const Mask& mask) {
+    const Vec3 place = first.grid.worldToIndex * mask.grid.indexToWorld.translation();
+    return Part{place.array().round().cast<std::int64_t>(), mask.grid.size};
+  };
+  Part all = placeOf(first);
+  for (const Mask& mask : masks) {
+    const Part part = placeOf(mask);
+    const Size3 lower = all.first.cwiseMin(part.first), end = all.end().cwiseMax(part.end());
+    all = {lower, end - lower};
+  }
+  Mask result = maskOf(first, all, 1, [](std::size_t) { return std::uint8_t{0}; });
+  for (const Mask& mask : masks) {
+    const Part part = placeOf(mask);
+    forVoxels(part, [&](const Size3& voxel, std::size_t number) {
+      const Size3 at = voxel - all.first;
+      std::uint8_t& to = result.voxels[static_cast<std::size_t>(
+          at.x() + all.size.x() * (at.y() + all.size.y() * at.z()))];
+      result.count += to < mask.voxels[number];
+      to = std::max(to, mask.voxels[number]);
+    });
+    if (&mask != &first)
+      result.names.insert(result.names.end(), mask.names.begin(), mask.names.end());
+  }
+  return result;
+}
+
+Mask smoothed(const Mask& mask, double deviation, const Grid& volume) {
+  if (deviation == 0.0)
+    return mask;
+  constexpr double farthest = 3.0; // deviations
+  const Part part = around(mask, farthest * deviation, volume);
+  const auto gaussian = itk::SmoothingRecursiveGaussianImageFilter<Pixels, Pixels>::New();
+  gaussian->SetInput(pixelsOf(mask, part));
+  gaussian->SetSigma(deviation); // mm
+  gaussian->Update();
+  const float* const from = gaussian->GetOutput()->GetBufferPointer();
+  constexpr std::uint8_t full = 255;
+  return maskOf(mask, part, full, [&](std::size_t i) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(from[i], 0.0F, 1.0F) * float{full}));
+  });
+}
+
+} // namespace fenestra

@@ -1,0 +1,149 @@
+#include "model/masks/SliceInterpolation.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fenestra {
+namespace {
+
+/// A mask as slices across the axis along which its voxels are longest; lengths in mm.
+class Slices {
+public:
+  explicit Slices(const Mask& mask) : m_mask(mask) {
+    const Vec3 spacing = mask.grid.spacing();
+    m_axis = static_cast<int>(std::max_element(spacing.begin(), spacing.end()) - spacing.begin());
+    m_thickness = spacing[m_axis];
+    const int column = m_axis == 0 ? 1 : 0, row = m_axis == 2 ? 1 : 2;
+    const Size3& size = mask.grid.size;
+    const Size3 steps{1, size.x(), size.x() * size.y()};
+    m_count = {size[column], size[row], size[m_axis]};
+    m_step = {steps[column], steps[row], steps[m_axis]};
+    m_edge = {spacing[column], spacing[row]};
+  }
+
+  int axis() const { return m_axis; }
+  std::int64_t count() const { return m_count[2]; }
+
+  /// How many slices come in one's place: an odd number, so that nothing lies half-way between two
+  /// straight outlines, where it would be neither in nor out.
+  std::int64_t parts() const {
+    constexpr double most = 9.0; // voxels are 8 bits, and memory is not for guesses
+    const double ratio = m_thickness / std::max(m_edge[0], m_edge[1]) * (1.0 + 1e-6); // rounding
+    return 2 * static_cast<std::int64_t>(std::min(ratio, most) / 2.0) + 1;
+  }
+
+  bool isInside(std::int64_t column, std::int64_t row, std::int64_t slice) const {
+    return m_mask.voxels[static_cast<std::size_t>(column * m_step[0] + row * m_step[1] +
+                                                  slice * m_step[2])] >= m_mask.half();
+  }
+
+  /// From each pixel of a slice to the outline in it, negative inside, and no more than a few
+  /// slices' thickness: half a pixel less than to the next pixel of the other kind.
+  std::vector<float> distances(std::int64_t slice) const {
+    const double half = 0.5 * std::min(m_edge[0], m_edge[1]);
+    const std::vector<double> toInside = squaresTo(true, slice),
+                              toOutside = squaresTo(false, slice);
+    std::vector<float> result(toInside.size());
+    std::ranges::transform(toInside, toOutside, result.begin(), [&](double inside, double outside) {
+      return static_cast<float>(inside > 0.0 ? std::sqrt(inside) - half
+                                             : half - std::sqrt(outside));
+    });
+    return result;
+  }
+
+private:
+  double farthest() const { return 2.0 * m_thickness; }
+
+  /// Along each row, from each pixel to the next one that is inside, or that is not.
+  std::vector<double> alongRows(bool inside, std::int64_t slice) const {
+    const auto [columns, rows, slices] = m_count;
+    std::vector<double> result(static_cast<std::size_t>(columns * rows));
+    for (std::int64_t row = 0; row < rows; ++row) {
+      double* const to = result.data() + columns * row;
+      double distance = farthest();
+      const auto passed = [&](std::int64_t column) {
+        return distance = isInside(column, row, slice) == inside ? 0.0 : distance + m_edge[0];
+      };
+      for (std::int64_t column = 0; column < columns; ++column)
+        to[column] = std::min(farthest(), passed(column));
+      distance = farthest();
+      for (std::int64_t column = columns; column-- > 0;)
+        to[column] = std::min(to[column], passed(column));
+    }
+    return result;
+  }
+
+  /// The squared distance from each pixel to the next one that is inside, or that is not.
+  std::vector<double> squaresTo(bool inside, std::int64_t slice) const {
+    const auto [columns, rows, slices] = m_count;
+    const std::vector<double> along = alongRows(inside, slice);
+    std::vector<double> result(along.size(), farthest() * farthest());
+    const auto reach = static_cast<std::int64_t>(farthest() / m_edge[1]);
+    for (std::int64_t row = 0; row < rows; ++row) {
+      double* const to = result.data() + columns * row;
+      const std::int64_t end = std::min(row + reach + 1, rows);
+      for (std::int64_t other = std::max<std::int64_t>(row - reach, 0); other < end; ++other) {
+        const double across = static_cast<double>(other - row) * m_edge[1];
+        const double* const from = along.data() + columns * other;
+        std::transform(from, from + columns, to, to, [&](double distance, double least) {
+          return std::min(least, distance * distance + across * across);
+        });
+      }
+    }
+    return result;
+  }
+
+  const Mask& m_mask;
+  int m_axis = 0;
+  double m_thickness = 0.0;            ///< from slice to slice
+  std::array<std::int64_t, 3> m_count; ///< columns, rows, slices
+  std::array<std::int64_t, 3> m_step;  ///< in the mask's voxels, from one to the next
+  std::array<double, 2> m_edge;        ///< from column to column, and from row to row
+};
+
+/// The grid whose voxels are `parts` times as many along an axis, between the outermost centres.
+Grid divided(const Grid& grid, int axis, std::int64_t parts) {
+  Size3 size = grid.size;
+  size[axis] = (size[axis] - 1) * parts + 1;
+  Affine indexToWorld = grid.indexToWorld;
+  indexToWorld.linear().col(axis) /= static_cast<double>(parts);
+  return {size, indexToWorld};
+}
+
+} // namespace
+
+Mask betweenSlices(const Mask& mask) {
+  const Slices slices(mask);
+  const std::int64_t parts = slices.parts();
+  if (parts == 1)
+    return mask;
+  std::vector<std::vector<float>> distances(static_cast<std::size_t>(slices.count()));
+  tbb::parallel_for(std::size_t{0}, distances.size(), [&](std::size_t slice) {
+    distances[slice] = slices.distances(static_cast<std::int64_t>(slice));
+  });
+  const int axis = slices.axis();
+  Mask result{divided(mask.grid, axis, parts), {}, 0, mask.names};
+  const Size3& size = result.grid.size;
+  result.voxels.resize(static_cast<std::size_t>(result.grid.voxelCount()));
+  const std::int64_t columns = axis == 0 ? size.y() : size.x();
+  tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x) {
+        const Size3 voxel{x, y, z};
+        const auto pixel =
+            static_cast<std::size_t>((axis == 0 ? y : x) + columns * (axis == 2 ? y : z));
+        const auto before = static_cast<std::size_t>(voxel[axis] / parts);
+        const std::size_t after = std::min(before + 1, distances.size() - 1);
+        const float share = static_cast<float>(voxel[axis] % parts) / static_cast<float>(parts);
+        const float distance = std::lerp(distances[before][pixel], distances[after][pixel], share);
+        result.voxels[static_cast<std::size_t>(x + size.x() * (y + size.y() * z))] =
+            distance < 0.0F;
+      }
+  });
+  result.count = std::ranges::count(result.voxels, std::uint8_t{1});
+  return result;
+}
+
+} // namespace fenestra

@@ -1,0 +1,80 @@
+#pragma once
+// The classified volume at a point: what tracking and the estimator ask of it.
+
+#include "model/medium/ContextStyle.h"
+#include "model/medium/TransferFunction.h"
+#include "model/volume/Volume.h"
+
+#include <optional>
+
+namespace fenestra {
+
+/// What the estimator needs to know of a real collision.
+struct Matter {
+  Rgb albedo;
+  Vec3 gradient;             ///< of the scalar, per mm, world axes; zero where nobody asked for it
+  double surfaceProbability; ///< chance that the path scatters at a surface here
+};
+
+/// A view: volume, transfer function and style outlive it. Points are in index space.
+template <typename Voxel>
+class Medium {
+public:
+  Medium(const Grid& grid, const std::vector<Voxel>& voxels, const TransferFunction& transfer,
+         const ContextStyle* style = nullptr)
+      : m_field(grid, voxels), m_transfer(transfer) {
+    if (style)
+      m_context.emplace(*style, grid);
+  }
+
+  /// Extinction in mm^-1.
+  double extinction(const Vec3& index) const {
+    double sigma_t = m_transfer.extinction(m_field.value(index)).value();
+    if (sigma_t != 0.0 && m_context && !m_context->isFocus(index))
+      sigma_t *= m_context->style().extinction;
+    if (sigma_t == 0.0 || !m_transfer.gradientOpacity)
+      return sigma_t;
+    return sigma_t * (*m_transfer.gradientOpacity)(m_field.gradient(index).norm()).value();
+  }
+
+  bool needsGradient(bool wantGradient) const { return wantGradient || m_transfer.shading; }
+  /// `wantGradient` asks for it even where shading does not.
+  Matter matter(const Vec3& index, bool wantGradient) const {
+    const bool oneAlbedo = m_transfer.albedo.knots().size() == 1;
+    const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
+    Matter m{m_transfer.albedo(scalar), Vec3::Zero(), 0.0};
+    if (m_context && !m_context->isFocus(index))
+      m.albedo = m_context->style().paled(m.albedo);
+    if (needsGradient(wantGradient))
+      m.gradient = m_field.gradient(index);
+    if (m_transfer.shading) {
+      const double slope = m.gradient.norm();
+      double sigma_t = m_transfer.extinction(scalar).value();
+      if (m_transfer.gradientOpacity)
+        sigma_t *= (*m_transfer.gradientOpacity)(slope).value();
+      m.surfaceProbability = surfaceProbability(sigma_t, slope);
+    }
+    return m;
+  }
+
+  const TransferFunction& transfer() const { return m_transfer; }
+
+private:
+  /// Kroes, Post, Botha 2012, with opacity and gradient over 1 mm (design, section 1):
+  /// P = o (1 - exp(-25 gamma^3 m)).
+  double surfaceProbability(double sigma_t, double gradientMagnitude) const {
+    const double span = m_transfer.extinction.span();
+    if (!(span > 0.0))
+      return 0.0; // one knot: no scale to call a gradient large
+    const double gamma = m_transfer.shading->gamma;
+    const double opacity = -std::expm1(-sigma_t);
+    const double m = gradientMagnitude / span;
+    return opacity * -std::expm1(-25.0 * gamma * gamma * gamma * m);
+  }
+
+  Field<Voxel> m_field;
+  const TransferFunction& m_transfer;
+  std::optional<StyledContext> m_context;
+};
+
+} // namespace fenestra

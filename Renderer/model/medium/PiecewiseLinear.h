@@ -1,0 +1,66 @@
+#pragma once
+// A function given by knots: linear between them, constant beyond the ends. Two knots at one place
+// make a step, which belongs to its right side.
+
+#include "base/Vector.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace fenestra {
+
+template <int Channels>
+class PiecewiseLinear {
+public:
+  using Value = Array<double, Channels>;
+  struct Knot {
+    double position;
+    Value value;
+  };
+
+  /// Knots in any order (sorted here, stably by position), finite, at least one.
+  explicit PiecewiseLinear(std::vector<Knot> knots);
+
+  Value operator()(double s) const {
+    if (!(s >= m_knots.front().position)) // NaN reads as the low end
+      return m_knots.front().value;
+    if (s >= m_knots.back().position)
+      return m_knots.back().value;
+    const std::size_t i = segment(s);
+    const Knot& a = m_knots[i];
+    const Knot& b = m_knots[i + 1];
+    return a.value + (b.value - a.value) * ((s - a.position) / (b.position - a.position));
+  }
+
+  /// Least and greatest value that any channel takes over [low, high] (both ends included, and both
+  /// sides of a step at either end).
+  std::array<double, 2> range(double low, double high) const;
+
+  const std::vector<Knot>& knots() const { return m_knots; }
+  /// From the first to the last knot, in units of s.
+  double span() const { return m_knots.back().position - m_knots.front().position; }
+
+private:
+  /// The i with position[i] <= s < position[i + 1]; s lies strictly inside the knots. A table of
+  /// equal bins over the span gives the first candidate.
+  std::size_t segment(double s) const {
+    const auto bin = static_cast<std::size_t>((s - m_knots.front().position) * m_binsPerUnit);
+    std::size_t i = m_firstSegment[std::min(bin, m_firstSegment.size() - 1)];
+    while (s >= m_knots[i + 1].position)
+      ++i;
+    return i;
+  }
+
+  std::vector<Knot> m_knots;
+  std::vector<std::uint32_t> m_firstSegment; ///< for each bin, the segment at or before its start
+  double m_binsPerUnit = 0.0;
+};
+
+extern template class PiecewiseLinear<1>;
+extern template class PiecewiseLinear<3>;
+
+using ScalarFunction = PiecewiseLinear<1>;
+using ColorFunction = PiecewiseLinear<3>;
+
+} // namespace fenestra

@@ -1,0 +1,82 @@
+#pragma once
+// What happens to light at a real collision: it scatters by the phase function or at a surface.
+// Conventions: `incoming` is the direction in which the path travels (away from the eye),
+// `outgoing` the direction in which it goes on (toward a light). evaluate() is the factor on
+// radiance per steradian, with albedo and, at surfaces, the cosine included; pdf() is per
+// steradian.
+
+#include "base/Random.h"
+#include "model/medium/TransferFunction.h"
+
+#include <variant>
+
+namespace fenestra {
+
+struct ScatterSample {
+  Vec3 outgoing;
+  Rgb weight; ///< evaluate / pdf; zero ends the path
+  double pdf;
+};
+
+/// Henyey-Greenstein 1941, times the albedo.
+class PhaseScattering {
+public:
+  PhaseScattering(const Vec3& incoming, double g, const Rgb& albedo)
+      : m_peak(g < 0.0 ? Vec3(-incoming) : incoming), m_g(std::abs(g)), m_albedo(albedo) {}
+
+  double pdf(const Vec3& outgoing) const;
+  Rgb evaluate(const Vec3& outgoing) const { return m_albedo * pdf(outgoing); }
+  ScatterSample sample(const Vec2& u) const;
+  ScatterSample sample(Random& random) const { return sample(random.uniform2()); }
+
+private:
+  Vec3 m_peak; ///< a lobe of -g around a direction is one of g around its opposite
+  double m_g;  ///< not negative
+  Rgb m_albedo;
+};
+
+/// A Lambert lobe of the albedo and a GGX lobe (Walter et al. 2007; visible normals by Heitz 2018)
+/// with Schlick's Fresnel term at F0 = 0.04, weighted so that they never reflect more than arrives.
+class SurfaceScattering {
+public:
+  /// `gradient` is not zero; the normal is -gradient turned to the side that the path came from.
+  SurfaceScattering(const Vec3& incoming, const Vec3& gradient, const SurfaceShading& shading,
+                    const Rgb& albedo);
+
+  double pdf(const Vec3& outgoing) const;
+  Rgb evaluate(const Vec3& outgoing) const;
+  /// `choice` decides on the lobe.
+  ScatterSample sample(double choice, const Vec2& u) const;
+  ScatterSample sample(Random& random) const {
+    const double choice = random.uniform();
+    return sample(choice, random.uniform2());
+  }
+
+private:
+  double lambertPdf(const Vec3& l) const { return std::max(l.z(), 0.0) / pi; }
+  double glossyPdf(const Vec3& l) const;
+  double masking(const Vec3& v) const; ///< Smith's G1
+  double normalDensity(const Vec3& h) const;
+  Vec3 sampleVisibleNormal(const Vec2& u) const;
+
+  Frame m_frame; ///< local z is the normal
+  Vec3 m_viewer; ///< local direction back along the path
+  Rgb m_diffuse; ///< weight * albedo
+  double m_specular;
+  double m_roughness;
+  double m_lambertShare; ///< chance that sample() takes the Lambert lobe
+};
+
+using Scattering = std::variant<PhaseScattering, SurfaceScattering>;
+
+inline double scatterPdf(const Scattering& s, const Vec3& outgoing) {
+  return std::visit([&](const auto& kind) { return kind.pdf(outgoing); }, s);
+}
+inline Rgb scatterEvaluate(const Scattering& s, const Vec3& outgoing) {
+  return std::visit([&](const auto& kind) { return kind.evaluate(outgoing); }, s);
+}
+inline ScatterSample scatterSample(const Scattering& s, Random& random) {
+  return std::visit([&](const auto& kind) { return kind.sample(random); }, s);
+}
+
+} // namespace fenestra

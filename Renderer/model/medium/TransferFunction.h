@@ -1,0 +1,34 @@
+#pragma once
+// What a scalar value means optically. This table *is* the medium (design, section 1): the product
+// and any oracle read extinction and albedo from it.
+
+#include "model/medium/PiecewiseLinear.h"
+
+#include <optional>
+#include <string>
+
+namespace fenestra {
+
+/// Surface lobes of hybrid shading: Lambert with the albedo and GGX with Schlick's F0 = 0.04.
+struct SurfaceShading {
+  double diffuse = 0.9;
+  double specular = 0.2;
+  double power = 10.0; ///< Blinn-Phong exponent: roughness^2 = 2 / (power + 2)
+  double gamma = 0.5;  ///< Kroes, Post, Botha 2012: how readily a gradient counts as a surface
+};
+
+struct TransferFunction {
+  ScalarFunction extinction; ///< mm^-1 over the scalar
+  ColorFunction albedo;      ///< linear Rec. 709, each in [0, 1]
+  std::optional<ScalarFunction> gradientOpacity =
+      {};                                     ///< factor over |gradient|, scalar units per mm
+  double g = 0.0;                             ///< Henyey-Greenstein mean cosine, in (-1, 1)
+  std::optional<SurfaceShading> shading = {}; ///< set: hybrid; else the phase function alone
+
+  /// The same function of (s - offset): every knot moved by `offset` scalar units.
+  TransferFunction shifted(double offset) const;
+  /// Extinction multiplied by `factor` >= 0.
+  TransferFunction scaled(double factor) const;
+};
+
+} // namespace fenestra

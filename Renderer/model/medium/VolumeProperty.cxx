@@ -1,0 +1,288 @@
+#include "model/medium/VolumeProperty.h"
+
+#include "base/Error.h"
+
+#include <queue>
+
+namespace fenestra {
+namespace {
+
+constexpr double opacityCap = 0.9999;
+constexpr double tolerance = 1e-4;
+/// Below this share of the function's greatest value the error counts as absolute: a curve like
+/// x^11 would need endless knots on its way to zero.
+constexpr double floorShare = 1e-9;
+constexpr std::size_t maxNodes = 2000; ///< in one curve
+constexpr std::size_t maxKnots = 6000; ///< in one table, the nodes' own not counted
+
+/// VTK keeps the midpoint off the ends.
+double usedMidpoint(double midpoint) {
+  return std::clamp(midpoint, 1e-5, 1.0 - 1e-5);
+}
+
+/// How far the curve has gone from one node's value (0) to the next one's (1) at the share u of the
+/// way; monotonic. vtkPiecewiseFunction::GetTable and vtkColorTransferFunction::GetTable (RGB) have
+/// the same: the midpoint bends u, sharpness compresses it, and a Hermite curve of both end slopes
+/// (1 - sharpness) follows.
+double progress(double u, double midpoint, double sharpness) {
+  const double m = usedMidpoint(midpoint);
+  double s = u < m ? 0.5 * u / m : 0.5 + 0.5 * (u - m) / (1.0 - m);
+  if (sharpness > 0.99)
+    return s < 0.5 ? 0.0 : 1.0;
+  if (sharpness < 0.01)
+    return s;
+  const double power = 1.0 + 10.0 * sharpness;
+  s = s < 0.5 ? 0.5 * std::pow(2.0 * s, power) : 1.0 - 0.5 * std::pow(2.0 * (1.0 - s), power);
+  const double ends = s * (s * (2.0 * s - 3.0) + 1.0); // both slopes' Hermite terms
+  return std::clamp(s * s * (3.0 - 2.0 * s) + (1.0 - sharpness) * ends, 0.0, 1.0);
+}
+
+double valueOf(const OpacityNode& node) {
+  return node.y;
+}
+const Rgb& valueOf(const ColorNode& node) {
+  return node.color;
+}
+
+template <typename Node>
+auto between(const Node& a, const Node& b, double x) {
+  using Value = std::decay_t<decltype(valueOf(a))>;
+  const double u = std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0);
+  return Value(valueOf(a) + (valueOf(b) - valueOf(a)) * progress(u, a.midpoint, a.sharpness));
+}
+
+template <typename Node>
+auto valueAt(const std::vector<Node>& nodes, double x) {
+  const auto next = std::upper_bound(nodes.begin(), nodes.end(), x,
+                                     [](double position, const Node& n) { return position < n.x; });
+  using Value = std::decay_t<decltype(valueOf(*next))>;
+  if (next == nodes.begin() || next == nodes.end())
+    return Value(valueOf(next == nodes.begin() ? nodes.front() : nodes.back()));
+  return between(*(next - 1), *next, x);
+}
+
+/// Knots for map(curve), where `map` takes the nodes' values to the table's. Pieces without kinks
+/// are halved, the worst of all first, until a chord misses none by more than half the tolerance at
+/// its probes, or the knots are used up (which no usual property does).
+template <int Channels, typename Node, typename Map>
+class Tabulator {
+public:
+  using Function = PiecewiseLinear<Channels>;
+  using Knot = typename Function::Knot;
+  using Value = typename Function::Value;
+
+  Tabulator(const std::vector<Node>& nodes, Map map) : m_nodes(nodes), m_map(std::move(map)) {
+    double greatest = 0.0;
+    for (const Node& node : nodes)
+      greatest = std::max(greatest, Value(m_map(valueOf(node))).maxCoeff());
+    m_floor = floorShare * greatest;
+  }
+
+  Function table() {
+    for (std::size_t i = 0; i + 1 < m_nodes.size(); ++i)
+      addSegment(i);
+    emit(m_nodes.size() - 1, m_nodes.back().x, m_map(valueOf(m_nodes.back())));
+    refine();
+    for (; !m_chords.empty(); m_chords.pop())
+      emit(m_chords.top());
+    // Chords come in any order; the two knots of a step keep theirs.
+    std::stable_sort(m_knots.begin(), m_knots.end(), [](const Ordered& a, const Ordered& b) {
+      return std::pair(a.segment, a.knot.position) < std::pair(b.segment, b.knot.position);
+    });
+    std::vector<Knot> knots;
+    for (const Ordered& ordered : m_knots)
+      if (knots.empty() || knots.back().position != ordered.knot.position ||
+          (knots.back().value != ordered.knot.value).any())
+        knots.push_back(ordered.knot);
+    return Function(std::move(knots));
+  }
+
+private:
+  /// A stretch of one segment; its ends are not knots yet but for the first one.
+  struct Chord {
+    std::size_t segment;
+    double begin, end;
+    Value atBegin, atEnd;
+    double error = 0.0;
+
+    bool operator<(const Chord& other) const { return error < other.error; }
+  };
+  struct Ordered {
+    std::size_t segment;
+    Knot knot;
+  };
+
+  Value at(std::size_t segment, double x) const {
+    return m_map(between(m_nodes[segment], m_nodes[segment + 1], x));
+  }
+
+  void emit(std::size_t segment, double position, const Value& value) {
+    m_knots.push_back({segment, {position, value}});
+  }
+  void emit(const Chord& chord) { emit(chord.segment, chord.begin, chord.atBegin); }
+
+  void addSegment(std::size_t i) {
+    const Node& a = m_nodes[i];
+    const Node& b = m_nodes[i + 1];
+    emit(i, a.x, m_map(valueOf(a)));
+    const double middle = a.x + usedMidpoint(a.midpoint) * (b.x - a.x);
+    if (!(b.x > a.x)) // a step
+      emit(i, b.x, m_map(valueOf(b)));
+    else if (a.sharpness > 0.99) {
+      emit(i, middle, m_map(valueOf(a)));
+      emit(i, middle, m_map(valueOf(b)));
+      emit(i, b.x, m_map(valueOf(b)));
+    } else
+      addPieces(i, middle);
+  }
+
+  void addPieces(std::size_t i, double middle) {
+    std::vector<double> ends = {m_nodes[i].x, middle, capCrossing(i), m_nodes[i + 1].x};
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k)
+      if (ends[k] < ends[k + 1])
+        push(i, ends[k], ends[k + 1], at(i, ends[k]), at(i, ends[k + 1]));
+    emit(i, m_nodes[i + 1].x, m_map(valueOf(m_nodes[i + 1])));
+  }
+
+  /// Where opacity reaches its cap within a segment (bisection: it is monotonic there); the
+  /// segment's begin where it does not, or where there is no cap.
+  double capCrossing(std::size_t i) const {
+    double low = m_nodes[i].x, high = m_nodes[i + 1].x;
+    if constexpr (std::is_same_v<Node, OpacityNode>) {
+      const bool cappedLow = m_nodes[i].y > opacityCap;
+      if (cappedLow == (m_nodes[i + 1].y > opacityCap))
+        return low;
+      for (int step = 0; step < 100; ++step) {
+        const double middle = 0.5 * (low + high);
+        const bool capped = between(m_nodes[i], m_nodes[i + 1], middle) > opacityCap;
+        (capped == cappedLow ? low : high) = middle;
+      }
+    }
+    return low;
+  }
+
+  void push(std::size_t segment, double begin, double end, const Value& atBegin,
+            const Value& atEnd) {
+    Chord chord{segment, begin, end, atBegin, atEnd};
+    constexpr int probes = 8;
+    for (int k = 1; k < probes; ++k) {
+      const double t = static_cast<double>(k) / probes;
+      const Value truth = at(segment, begin + t * (end - begin));
+      const Value miss = (atBegin + (atEnd - atBegin) * t - truth).abs();
+      if ((miss > m_floor).any())
+        chord.error = std::max(chord.error, Value(miss / (truth.abs() + m_floor)).maxCoeff());
+    }
+    m_chords.push(chord);
+  }
+
+  void refine() {
+    for (std::size_t added = 0; added < maxKnots && !m_chords.empty(); ++added) {
+      const Chord worst = m_chords.top();
+      const double middle = 0.5 * (worst.begin + worst.end);
+      if (worst.error <= 0.5 * tolerance || !(worst.begin < middle && middle < worst.end))
+        return;
+      m_chords.pop();
+      const Value atMiddle = at(worst.segment, middle);
+      push(worst.segment, worst.begin, middle, worst.atBegin, atMiddle);
+      push(worst.segment, middle, worst.end, atMiddle, worst.atEnd);
+    }
+  }
+
+  const std::vector<Node>& m_nodes;
+  Map m_map;
+  double m_floor = 0.0;
+  std::priority_queue<Chord> m_chords;
+  std::vector<Ordered> m_knots;
+};
+
+template <int Channels, typename Node, typename Map>
+PiecewiseLinear<Channels> tabulated(const std::vector<Node>& nodes, Map map) {
+  return Tabulator<Channels, Node, Map>(nodes, std::move(map)).table();
+}
+
+bool inUnitRange(double x) {
+  return x >= 0.0 && x <= 1.0;
+}
+bool inUnitRange(const Rgb& c) {
+  return (c >= 0.0 && c <= 1.0).all();
+}
+
+template <typename Node>
+void checkNodes(const std::vector<Node>& nodes, const std::string& name,
+                const std::string& source) {
+  if (nodes.empty() || nodes.size() > maxNodes)
+    throw inputError(source, name + ": has " + std::to_string(nodes.size()) +
+                                 " points; give it 1 to " + std::to_string(maxNodes));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::string place = name + ", point " + std::to_string(i + 1) + ": ";
+    const Node& node = nodes[i];
+    if (!(std::abs(node.x) <= 1e38) || (i > 0 && node.x < nodes[i - 1].x))
+      throw inputError(source,
+                       place + "x must be a number of at most 1e38 and not below the point before");
+    if (!inUnitRange(valueOf(node)))
+      throw inputError(source, place + "value is outside 0 to 1; move it inside");
+    if (!inUnitRange(node.midpoint) || !inUnitRange(node.sharpness))
+      throw inputError(source, place + "midpoint and sharpness must be from 0 to 1");
+  }
+}
+
+void checkNumber(bool usable, const std::string& field, const std::string& mend,
+                 const std::string& source) {
+  if (!usable)
+    throw inputError(source, field + ": " + mend);
+}
+
+void check(const VolumeProperty& p, const std::string& source) {
+  const auto notNegative = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  checkNodes(p.scalarOpacity, "scalar opacity", source);
+  checkNodes(p.color, "color", source);
+  if (!p.gradientOpacity.empty())
+    checkNodes(p.gradientOpacity, "gradient opacity", source);
+  checkNumber(p.unitDistance > 0.0 && std::isfinite(p.unitDistance), "scalarOpacityUnitDistance",
+              "must be a length above 0 mm", source);
+  checkNumber(std::abs(p.anisotropy) < 1.0, "scatteringAnisotropy",
+              "must be between -1 and 1, both excluded", source);
+  checkNumber(notNegative(p.diffuse), "diffuse", "must be finite and not negative", source);
+  checkNumber(notNegative(p.specular), "specular", "must be finite and not negative", source);
+  checkNumber(notNegative(p.specularPower), "specularPower", "must be finite and not negative",
+              source);
+}
+
+} // namespace
+
+double opacityAt(const std::vector<OpacityNode>& nodes, double x) {
+  return valueAt(nodes, x);
+}
+
+Rgb colorAt(const std::vector<ColorNode>& nodes, double x) {
+  return valueAt(nodes, x);
+}
+
+Rgb decodeSrgb(const Rgb& encoded) {
+  return encoded.unaryExpr(
+      [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); });
+}
+
+TransferFunction tabulate(const VolumeProperty& property, const std::string& source) {
+  check(property, source);
+  const auto extinction = [unit = property.unitDistance](double opacity) {
+    return ScalarFunction::Value(-std::log1p(-std::min(opacity, opacityCap)) / unit);
+  };
+  const auto unchanged = [](double opacity) { return ScalarFunction::Value(opacity); };
+  const auto isOne = [](const OpacityNode& node) { return node.y == 1.0; };
+
+  TransferFunction result{.extinction = tabulated<1>(property.scalarOpacity, extinction),
+                          .albedo = tabulated<3>(property.color, decodeSrgb),
+                          .g = property.anisotropy};
+  const auto& gradient = property.gradientOpacity;
+  if (!std::all_of(gradient.begin(), gradient.end(), isOne))
+    result.gradientOpacity = tabulated<1>(gradient, unchanged);
+  if (property.shade)
+    result.shading = SurfaceShading{.diffuse = property.diffuse,
+                                    .specular = property.specular,
+                                    .power = property.specularPower};
+  return result;
+}
+
+} // namespace fenestra

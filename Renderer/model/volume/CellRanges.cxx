@@ -1,0 +1,122 @@
+#include "model/volume/CellRanges.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace fenestra {
+namespace {
+
+struct Span {
+  std::int64_t first, last; ///< voxels, both included
+};
+
+/// Voxels that interpolation within cell `c` of one axis touches.
+Span footprint(std::int64_t c, std::int64_t edge, std::int64_t voxels, int apron) {
+  const std::int64_t first = c * edge - 1 - apron;
+  const std::int64_t last = (c + 1) * edge + apron;
+  return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
+}
+
+/// The range of each column of some rows.
+template <typename Voxel>
+class Columns {
+public:
+  explicit Columns(std::int64_t size)
+      : m_low(static_cast<std::size_t>(size)), m_high(m_low.size()) {}
+
+  void clear() {
+    std::fill(m_low.begin(), m_low.end(), std::numeric_limits<Voxel>::max());
+    std::fill(m_high.begin(), m_high.end(), std::numeric_limits<Voxel>::lowest());
+  }
+
+  void add(const Voxel* row) {
+    Voxel* const low = m_low.data();
+    Voxel* const high = m_high.data();
+    for (std::size_t i = 0; i < m_low.size(); ++i) {
+      low[i] = std::min(low[i], row[i]);
+      high[i] = std::max(high[i], row[i]);
+    }
+  }
+
+  std::pair<Voxel, Voxel> range(const Span& span) const {
+    return {*std::min_element(m_low.begin() + span.first, m_low.begin() + span.last + 1),
+            *std::max_element(m_high.begin() + span.first, m_high.begin() + span.last + 1)};
+  }
+
+private:
+  std::vector<Voxel> m_low, m_high;
+};
+
+} // namespace
+
+CellRanges::CellRanges(const Volume& volume, int apron)
+    : m_apron(apron),
+      m_edge(edgeFor(volume.grid)),
+      m_cellCount((volume.grid.size.array() + m_edge.array() - 1) / m_edge.array()),
+      m_low(static_cast<std::size_t>(m_cellCount.prod())),
+      m_high(m_low.size()) {
+  std::visit([&](const auto& voxels) { fill(volume.grid, voxels); }, volume.voxels);
+}
+
+Size3 CellRanges::edgeFor(const Grid& grid) {
+  constexpr double wantedCells = 1 << 18;
+  const Vec3 spacing = grid.spacing();
+  const Vec3 size = grid.size.cast<double>();
+  Vec3 voxels = Vec3::Zero(); // 0 where not settled yet
+  // An axis whose voxels are longer than a cube's edge has cells of one voxel, one that is shorter
+  // than it is one cell; the others share what that leaves, or a thin slice would have a cell for
+  // every voxel.
+  for (int settled = 0; settled < 3; ++settled) {
+    double volume = 1.0; // of the open axes alone
+    double cells = wantedCells;
+    for (int axis = 0; axis < 3; ++axis)
+      if (voxels[axis] == 0.0)
+        volume *= spacing[axis] * size[axis];
+      else
+        cells /= size[axis] / voxels[axis];
+    const double edge = std::pow(volume / cells, 1.0 / (3 - settled)); // mm
+    int farthest = -1;
+    double factor = 0.0; // by which an axis' cells have to miss the cube
+    for (int axis = 0; axis < 3; ++axis)
+      if (voxels[axis] == 0.0) {
+        const double cube = edge / spacing[axis];
+        const double miss = std::max(1.0 / cube, cube / size[axis]);
+        if (farthest < 0 || miss > factor) {
+          farthest = axis;
+          factor = miss;
+        }
+      }
+    voxels[farthest] =
+        std::max(1.0, std::min(std::round(edge / spacing[farthest]), size[farthest]));
+  }
+  return voxels.cast<std::int64_t>();
+}
+
+template <typename Voxel>
+void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels) {
+  // A row of cells is reduced to one row of voxels first, element by element: memory is read in its
+  // order, by vector instructions.
+  const auto fillSlab = [&](std::int64_t cz) {
+    const Span z = footprint(cz, m_edge.z(), grid.size.z(), m_apron);
+    Columns<Voxel> columns(grid.size.x());
+    for (std::int64_t cy = 0; cy < m_cellCount.y(); ++cy) {
+      const Span y = footprint(cy, m_edge.y(), grid.size.y(), m_apron);
+      columns.clear();
+      for (std::int64_t k = z.first; k <= z.last; ++k)
+        for (std::int64_t j = y.first; j <= y.last; ++j)
+          columns.add(voxels.data() + grid.size.x() * (j + grid.size.y() * k));
+      for (std::int64_t cx = 0; cx < m_cellCount.x(); ++cx) {
+        const auto [low, high] = columns.range(footprint(cx, m_edge.x(), grid.size.x(), m_apron));
+        const auto cell =
+            static_cast<std::size_t>(cx + m_cellCount.x() * (cy + m_cellCount.y() * cz));
+        m_low[cell] = static_cast<float>(low);
+        m_high[cell] = static_cast<float>(high);
+      }
+    }
+  };
+  tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), fillSlab);
+}
+
+} // namespace fenestra

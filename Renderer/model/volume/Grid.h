@@ -1,0 +1,35 @@
+#pragma once
+// Where a regular grid of voxels lies in the world.
+
+#include "base/Vector.h"
+
+#include <cstdint>
+
+namespace fenestra {
+
+/// Index space has voxel centres at integers; the grid fills [-0.5, size - 0.5] in each axis.
+struct Grid {
+  Size3 size = Size3::Zero();               ///< voxels in each axis, the fastest first
+  Affine indexToWorld = Affine::Identity(); ///< index to RAS mm; any invertible map
+  Affine worldToIndex = Affine::Identity();
+
+  Grid() = default;
+  Grid(const Size3& sizeIn, const Affine& indexToWorldIn)
+      : size(sizeIn), indexToWorld(indexToWorldIn), worldToIndex(indexToWorldIn.inverse()) {}
+
+  std::int64_t voxelCount() const { return size.prod(); }
+  Box indexBox() const { return {Vec3::Constant(-0.5), size.cast<double>().array() - 0.5}; }
+  /// mm between neighbours along each axis.
+  Vec3 spacing() const { return indexToWorld.linear().columnNorms(); }
+  Vec3 worldCenter() const { return indexToWorld * indexBox().center(); }
+  Vec3 worldCorner(int i) const { return indexToWorld * indexBox().corner(i); }
+  /// Radius, in mm, of the sphere around worldCenter() that holds the box.
+  double boundingRadius() const {
+    double radius = 0.0;
+    for (int i = 0; i < 4; ++i) // opposite corners are equally far
+      radius = std::max(radius, (worldCorner(i) - worldCenter()).norm());
+    return radius;
+  }
+};
+
+} // namespace fenestra

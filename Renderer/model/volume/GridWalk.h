@@ -1,0 +1,113 @@
+#pragma once
+// The cells that a ray crosses in a regular grid, one after the other (Amanatides and Woo 1987, "A
+// Fast Voxel Traversal Algorithm for Ray Tracing").
+
+#include "base/Vector.h"
+
+#include <cstdint>
+
+namespace fenestra {
+
+/// An iterator over the cells along a ray. The ray is in cell space, where cell c fills [c, c + 1]
+/// in each axis; its t is the caller's (world mm, as a rule).
+///
+///     for (GridWalk walk(ray, range, cellCount); !walk.done(); walk.next())
+///       visit(walk.cell(), walk.interval());
+///
+/// For every finite ray the walk ends, visits cells of the grid only, and its intervals tile the
+/// part of `range` that lies inside the grid: the first begins where that part begins, each begins
+/// exactly where the one before ended, the last ends where the part ends. An interval may have no
+/// length (rays through edges and corners). A ray that runs along a face between two cells visits
+/// one of the two. Nothing but done() is valid once the walk is done.
+class GridWalk {
+public:
+  GridWalk(const Ray& ray, const Interval& range, const Size3& cellCount)
+      : m_cells(cellCount), m_origin(ray.origin) {
+    const Box box{Vec3::Zero(), cellCount.cast<double>()};
+    const Interval inside = box.clip(ray, range);
+    m_interval = {inside.begin, inside.begin};
+    m_end = inside.empty() ? inside.begin : inside.end;
+    if (done())
+      return;
+    for (int axis = 0; axis < 3; ++axis)
+      enter(axis, ray.direction[axis], inside.begin);
+    m_cell =
+        m_coordinates.x() + m_cells.x() * (m_coordinates.y() + m_cells.y() * m_coordinates.z());
+    findEnd();
+  }
+
+  bool done() const { return !(m_interval.begin < m_end); }
+
+  void next() {
+    m_interval.begin = m_interval.end;
+    if (m_next[0] < m_next[1] && m_next[0] < m_next[2])
+      step<0>();
+    else if (m_next[1] < m_next[2])
+      step<1>();
+    else
+      step<2>();
+    findEnd();
+  }
+
+  /// Linear index, x fastest.
+  std::int64_t cell() const { return m_cell; }
+  const Size3& coordinates() const { return m_coordinates; }
+  const Interval& interval() const { return m_interval; }
+
+private:
+  /// The cell of one axis that the ray is in just after t, and its next face.
+  void enter(int axis, double direction, double t) {
+    const bool up = direction > 0.0;
+    const double position = direction == 0.0 ? m_origin[axis] : m_origin[axis] + t * direction;
+    const double cell = direction < 0.0 ? std::ceil(position) - 1.0 : std::floor(position);
+    const std::int64_t last = m_cells[axis] - 1;
+    // In this order a NaN (infinity times zero) becomes a cell, too.
+    const double inGrid = std::max(0.0, std::min(static_cast<double>(last), cell));
+    m_coordinates[axis] = static_cast<std::int64_t>(inGrid);
+
+    const double inverse = 1.0 / direction;
+    const bool moves = std::isfinite(inverse); // not so for zero and the least subnormals
+    m_inverse[axis] = inverse;
+    m_step[axis] = up ? 1 : -1;
+    m_ahead[axis] = moves ? (up ? last - m_coordinates[axis] : m_coordinates[axis]) : 0;
+    m_face[axis] = static_cast<double>(m_coordinates[axis] + (up ? 1 : 0));
+    m_next[axis] = faceAt(axis);
+    const std::int64_t stride = axis == 0 ? 1 : axis == 1 ? m_cells.x() : m_cells.x() * m_cells.y();
+    m_stride[axis] = m_step[axis] * stride;
+  }
+
+  /// The axis is a template's argument because a known axis costs half the time.
+  template <int axis>
+  void step() {
+    m_coordinates[axis] += m_step[axis];
+    m_cell += m_stride[axis];
+    m_face[axis] += static_cast<double>(m_step[axis]);
+    --m_ahead[axis];
+    m_next[axis] = faceAt(axis);
+  }
+
+  /// t at the next face of an axis. The outer faces count as infinitely far: the walk ends with its
+  /// interval, so that rounding cannot lead it out of the grid. From the face's own coordinate, not
+  /// by adding up steps: errors do not grow along the ray.
+  double faceAt(int axis) const {
+    return m_ahead[axis] > 0 ? (m_face[axis] - m_origin[axis]) * m_inverse[axis] : infinity;
+  }
+
+  void findEnd() {
+    m_interval.end = std::min(m_end, std::max(m_interval.begin, m_next.minCoeff()));
+  }
+
+  Size3 m_cells;
+  Vec3 m_origin;
+  Vec3 m_inverse = Vec3::Zero(); ///< 1 / direction
+  Vec3 m_face = Vec3::Zero();    ///< coordinate of the next face in each axis
+  Vec3 m_next = Vec3::Zero();    ///< t there
+  Size3 m_coordinates = Size3::Zero();
+  Size3 m_ahead = Size3::Zero(); ///< cells still to come in each axis
+  Size3 m_step = Size3::Zero(), m_stride = Size3::Zero();
+  std::int64_t m_cell = 0;
+  Interval m_interval;
+  double m_end; ///< of the walk
+};
+
+} // namespace fenestra

@@ -1,0 +1,95 @@
+#pragma once
+// The scalar volume: voxels in their storage type, and the continuous field that they define.
+
+#include "model/volume/Grid.h"
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace fenestra {
+
+/// Storage types, x fastest. Readers narrow or widen every file type to the smallest of these that
+/// holds all its values (64-bit and double values that do not fit are rounded to float).
+using Voxels = std::variant<std::vector<std::uint8_t>, std::vector<std::int16_t>,
+                            std::vector<std::uint16_t>, std::vector<float>>;
+
+/// Every voxel is finite: readers replace NaN and -infinity by the least finite value of the volume
+/// and +infinity by the greatest, and say so in `warnings`.
+struct Volume {
+  Grid grid;
+  Voxels voxels;
+  double minimum = 0.0; ///< over all voxels
+  double maximum = 0.0;
+  std::string name; ///< for messages: the file
+  std::vector<std::string> warnings;
+};
+
+/// Fills minimum and maximum from the voxels.
+void computeRange(Volume& volume);
+
+/// The continuous field of `Volume::voxels`: trilinear between voxel centres, clamped in the outer
+/// half voxel. Points are in index space, inside Grid::indexBox(). A view: the volume outlives it.
+template <typename Voxel>
+class Field {
+public:
+  Field(const Grid& grid, const std::vector<Voxel>& voxels)
+      : m_voxels(voxels.data()),
+        m_last((grid.size.array() - 1).cast<double>()),
+        m_lastCell((grid.size.array() - 2).max(0)),
+        m_stride(grid.size.x() > 1 ? 1 : 0, grid.size.y() > 1 ? grid.size.x() : 0,
+                 grid.size.z() > 1 ? grid.size.x() * grid.size.y() : 0),
+        m_row(grid.size.x()),
+        m_slice(grid.size.x() * grid.size.y()),
+        m_indexGradientToWorld(grid.worldToIndex.linear().transpose()) {}
+
+  double value(const Vec3& index) const {
+    const auto [ix, fx] = cell(index, 0);
+    const auto [iy, fy] = cell(index, 1);
+    const auto [iz, fz] = cell(index, 2);
+    const Voxel* v = m_voxels + ix + iy * m_row + iz * m_slice;
+    const double low = bilinear(v, fx, fy);
+    const double high = bilinear(v + m_stride[2], fx, fy);
+    return low + (high - low) * fz;
+  }
+
+  /// Central differences over one voxel to each side, in scalar units per mm, in world axes.
+  Vec3 gradient(const Vec3& index) const {
+    Vec3 difference;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 step = Vec3::Unit(axis);
+      difference[axis] = 0.5 * (value(index + step) - value(index - step));
+    }
+    return m_indexGradientToWorld * difference;
+  }
+
+private:
+  struct Cell {
+    std::int64_t index;
+    double fraction;
+  };
+
+  Cell cell(const Vec3& index, int axis) const {
+    const double x = std::clamp(index[axis], 0.0, m_last[axis]);
+    const auto i = std::min(static_cast<std::int64_t>(x), m_lastCell[axis]);
+    return {i, x - static_cast<double>(i)};
+  }
+
+  double bilinear(const Voxel* v, double fx, double fy) const {
+    const auto lerp = [](double a, double b, double f) { return a + (b - a) * f; };
+    const double near = lerp(static_cast<double>(v[0]), static_cast<double>(v[m_stride[0]]), fx);
+    v += m_stride[1];
+    const double far = lerp(static_cast<double>(v[0]), static_cast<double>(v[m_stride[0]]), fx);
+    return lerp(near, far, fy);
+  }
+
+  const Voxel* m_voxels;
+  Vec3 m_last;
+  Size3 m_lastCell;
+  Size3 m_stride; ///< to the next voxel in each axis, 0 where there is none
+  std::int64_t m_row, m_slice;
+  Mat3 m_indexGradientToWorld;
+};
+
+} // namespace fenestra

@@ -1,0 +1,309 @@
+#include "phantoms/KneeBones.h"
+
+#include "phantoms/Noise.h"
+
+namespace fenestra {
+
+namespace {
+
+constexpr double axisY = -6.0, axisZ = 24.0; ///< the transcondylar axis, along x
+constexpr double grooveX = 1.5;              ///< the trochlear groove's bottom
+constexpr double notchX = 0.5;               ///< the intercondylar notch's middle
+
+/// The sagittal outline of the distal femur around the transcondylar axis: a spiral whose radius of
+/// curvature falls from nearly 40 mm under the trochlea to 20 mm behind.
+struct ProfileNode {
+  double degrees, radius;
+};
+constexpr ProfileNode profileNodes[] = {
+    {-180, 25.4}, {-150, 24.6}, {-125, 23.0}, {-108, 21.9}, {-90, 21.5}, {-70, 22.6},
+    {-50, 25.2},  {-32, 28.8},  {-15, 32.3},  {0, 34.8},    {20, 37.2},  {36, 39.0},
+    {60, 32.0},   {90, 23.0},   {120, 23.5},  {150, 25.8},  {180, 25.4}};
+
+double hermite(double a, double b, double slopeA, double slopeB, double width, double t) {
+  const double u = 1.0 - t;
+  return a * u * u * (1.0 + 2.0 * t) + b * t * t * (3.0 - 2.0 * t) +
+         width * t * u * (slopeA * u - slopeB * t);
+}
+
+double profileAtDegrees(double degrees) {
+  constexpr int last = static_cast<int>(std::size(profileNodes)) - 1;
+  // The outline is closed: node 0 is node `last`, a turn earlier.
+  const auto node = [](int i) {
+    const int turn = i < 0 ? -1 : i > last ? 1 : 0;
+    const ProfileNode& n = profileNodes[i - turn * last];
+    return ProfileNode{n.degrees + 360.0 * turn, n.radius};
+  };
+  int i = 0;
+  while (i + 1 < last && degrees > profileNodes[i + 1].degrees)
+    ++i;
+  const auto slope = [&](int j) {
+    return (node(j + 1).radius - node(j - 1).radius) / (node(j + 1).degrees - node(j - 1).degrees);
+  };
+  const double width = node(i + 1).degrees - node(i).degrees;
+  return hermite(node(i).radius, node(i + 1).radius, slope(i), slope(i + 1), width,
+                 (degrees - node(i).degrees) / width);
+}
+
+/// How far the distal femur reaches at a place: the medial and lateral walls.
+struct Walls {
+  double medial, lateral;
+};
+Walls walls(const Vec3& p) {
+  const double distal = std::max(0.0, 20.0 - p.z());
+  const double narrowing = 0.003 * distal * distal;
+  const double back = p.y() < 0.0 ? 0.0035 * p.y() * p.y() : 0.0;
+  const double front = p.y() > 0.0 ? p.y() * p.y() : 0.0;
+  return {-38.5 + narrowing + back + 0.009 * front, 38.2 - narrowing - back - 0.0065 * front};
+}
+
+/// The notch is open to the back and below; its roof rises backward along Blumensaat's line.
+double notchField(const Vec3& p) {
+  const double roof = ((p.y() - 8.0) * 28.0 + (p.z() - 8.5) * 24.0) / std::hypot(28.0, 24.0);
+  const double sides = std::abs(p.x() - notchX) - 9.2 - 0.05 * std::max(0.0, -10.0 - p.y());
+  return smoothIntersection(roof, sides, 9.0);
+}
+
+/// Turns a field with a slope near 1 into a distance, right to first order (Taubin 1994, "Distance
+/// Approximations for Rasterizing Implicit Curves").
+template <typename Field>
+double firstOrderDistance(const Field& field, const Vec3& p) {
+  constexpr double step = 0.05;
+  const double value = field(p);
+  if (std::abs(value) > 4.0) // far off, the field may have kinks, and nobody asks closely
+    return value;
+  const Vec3 slope{field(p + Vec3{step, 0, 0}) - value, field(p + Vec3{0, step, 0}) - value,
+                   field(p + Vec3{0, 0, step}) - value};
+  return value / std::clamp(slope.norm() / step, 0.3, 2.0);
+}
+
+/// 1 on the trochlea, 0 on the condyles' bearing and rear parts.
+double trochleaShare(double angle, double distalEnd, double frontEnd) {
+  return smoothStep(distalEnd, frontEnd, angle) * (1.0 - smoothStep(1.5, 2.5, angle));
+}
+
+/// The tibia's upper surface: a concave medial and a convex lateral plateau that fall backward, and
+/// the two spines of the eminence.
+double plateauHeight(const Vec3& p) {
+  const auto hill = [&](double x, double y, double rx, double ry) {
+    return std::exp(-std::pow((p.x() - x) / rx, 2) - std::pow((p.y() - y) / ry, 2));
+  };
+  const double slope = 0.05 * (p.y() + 4.0);
+  const double bowls = -1.3 * hill(-21.0, -4.0, 10.0, 14.0) + 0.5 * hill(21.0, -6.0, 9.0, 9.0);
+  const double spines = 7.5 * hill(-4.5, -3.0, 3.6, 7.0) + 6.5 * hill(5.5, -5.0, 3.4, 6.0);
+  const double front = -3.0 * smoothStep(10.0, 24.0, p.y());
+  return -2.6 + slope + bowls + spines + front;
+}
+
+double surfaceNoise(const Vec3& p, std::uint64_t seed) {
+  return 0.35 * valueNoise(p / 7.0, seed) + 0.12 * valueNoise(p / 2.5, seed + 1);
+}
+
+} // namespace
+
+KneeBones::KneeBones()
+    : m_femoralShaft({{26, {0, 4.5}, {35, 17}},
+                      {34, {0, 5.5}, {35, 17.5}},
+                      {42, {0, 7.5}, {31.5, 17}},
+                      {52, {0, 10}, {24.5, 15.5}},
+                      {64, {0, 12}, {18, 14}},
+                      {82, {0, 13}, {14.5, 13}}},
+                     0.25, 8.0),
+      m_tibialShaft({{-66, {-3, -2}, {13, 14.5}},
+                     {-50, {-2, 0}, {15.5, 17}},
+                     {-38, {-0.5, 0}, {20.5, 21}},
+                     {-27, {0, -1}, {28, 23}},
+                     {-16, {0, -2.5}, {34, 24.5}},
+                     {-8, {0, -4}, {35.5, 23.5}},
+                     {-2, {0, -4.5}, {36, 23.5}},
+                     {16, {0, -4.5}, {36, 23.5}}},
+                    0.35, 3.0),
+      m_fibulaShaft({{-66, {34, -20}, {6.5, 6}},
+                     {-42, {35.5, -20}, {6, 6.5}},
+                     {-30, {36.5, -20}, {7, 8}},
+                     {-20, {37.5, -20}, {9, 10}},
+                     {-12, {37, -21}, {8, 9}},
+                     {-7, {37, -22}, {4, 5}}},
+                    0.2, 3.0),
+      m_patellaBody({{17, {1.5, 42}, {5, 4}},
+                     {22, {1.5, 41.5}, {10, 7}},
+                     {29, {1.5, 41}, {17, 9}},
+                     {38, {2, 40.5}, {22, 10}},
+                     {47, {2, 40.3}, {22.5, 10}},
+                     {55, {2, 40.5}, {18, 9}},
+                     {60, {2, 41}, {12, 6}}},
+                    0.2, 4.0),
+      m_femurBox(expanded({{-43, -36, 0}, {43, 36, 82}}, beyond)),
+      m_tibiaBox(expanded({{-41, -33, -66}, {41, 28, 8}}, beyond)),
+      m_patellaBox(expanded(m_patellaBody.box(), beyond)),
+      m_fibulaBox(expanded(m_fibulaShaft.box(), beyond)) {
+  for (int i = 0; i <= profileSteps; ++i)
+    m_profile[static_cast<std::size_t>(i)] = profileAtDegrees(-180.0 + i * 360.0 / profileSteps);
+}
+
+double KneeBones::profile(double angle) const {
+  const double x = (angle / pi + 1.0) * (profileSteps / 2.0);
+  const int i = std::clamp(static_cast<int>(x), 0, profileSteps - 1);
+  const auto at = static_cast<std::size_t>(i);
+  return std::lerp(m_profile[at], m_profile[at + 1], x - i);
+}
+
+/// Condyles and trochlea: one surface around the transcondylar axis. Behind and below, each condyle
+/// is crowned; in front the groove lies between a high lateral and a lower medial facet.
+double KneeBones::wheelField(const Vec3& p) const {
+  const double y = p.y() - axisY, z = p.z() - axisZ;
+  const double angle = std::atan2(z, y);
+  const double medial = std::abs(p.x() - (-23.5 + 0.10 * p.y()));
+  const double lateral = std::abs(p.x() - (23.5 - 0.02 * p.y()));
+  const double aside = smoothUnion(medial, lateral, 8.0);
+  const double rear = smoothStep(2.4, 3.0, std::abs(angle - 0.3));
+  const double crown = -aside * aside * (1.0 + 0.7 * rear) / (2.0 * 26.0);
+  const double groove = -5.5 * std::exp(-std::pow((p.x() - grooveX) / 9.0, 2));
+  const double facets = 2.2 * smoothStep(3.0, 17.0, p.x()) - 0.6 * smoothStep(3.0, 15.0, -p.x());
+  const double outer = std::max(0.0, std::abs(p.x() - 3.0) - 18.0);
+  const double anterior = trochleaShare(angle, -1.35, -0.45);
+  const double relief = std::lerp(crown, groove + facets - outer * outer / 20.0, anterior);
+  return std::hypot(y, z) - profile(angle) - relief;
+}
+
+double KneeBones::femurField(const Vec3& p) const {
+  const Walls wall = walls(p);
+  const double sides = std::max(wall.medial - p.x(), p.x() - wall.lateral);
+  double bone = smoothIntersection(wheelField(p), sides, 9.0);
+  const double medialEpicondyle = ellipsoidDistance(p, {-35, -3, 25}, {5.5, 11, 11});
+  const double lateralEpicondyle = ellipsoidDistance(p, {35, -5, 24}, {5, 9, 9});
+  bone = smoothUnion(bone, std::min(medialEpicondyle, lateralEpicondyle), 8.0);
+  bone = smoothUnion(bone, m_femoralShaft.distance(p), 7.0);
+  return smoothDifference(bone, notchField(p), 8.0);
+}
+
+double KneeBones::femur(const Vec3& point) const {
+  if (!contains(m_femurBox, point))
+    return beyond;
+  const auto field = [this](const Vec3& p) { return femurField(p); };
+  return firstOrderDistance(field, point) + surfaceNoise(point, 11);
+}
+
+double KneeBones::tibiaField(const Vec3& p) const {
+  const double tuberosity = ellipsoidDistance(p, {2, 19, -37}, {9, 6.5, 12});
+  const double medial = ellipsoidDistance(p, {-19.5, -4.5, -8}, {17.5, 26, 15});
+  const double lateral = ellipsoidDistance(p, {19.5, -5.5, -8}, {17, 23, 14});
+  const double condyles = std::min(medial, lateral);
+  const double shaft =
+      smoothUnion(smoothUnion(m_tibialShaft.distance(p), tuberosity, 8.0), condyles, 12.0);
+  // Between the condyles' rear parts the outline is drawn in: the groove of the PCL.
+  const double rearGroove = ellipsoidDistance(p, {0, -34, -6}, {11, 11, 20});
+  return smoothIntersection(smoothDifference(shaft, rearGroove, 6.0), p.z() - plateauHeight(p),
+                            3.5);
+}
+
+double KneeBones::tibia(const Vec3& point) const {
+  if (!contains(m_tibiaBox, point))
+    return beyond;
+  const auto field = [this](const Vec3& p) { return tibiaField(p); };
+  return firstOrderDistance(field, point) + surfaceNoise(point, 21);
+}
+
+double KneeBones::fibula(const Vec3& point) const {
+  if (!contains(m_fibulaBox, point))
+    return beyond;
+  return m_fibulaShaft.distance(point) + surfaceNoise(point, 31);
+}
+
+/// A rounded triangle from the front; behind, two facets meet in a ridge that rides in the groove.
+double KneeBones::patellaField(const Vec3& p) const {
+  const double across = p.x() - 2.0;
+  const double ridge = std::sqrt(across * across + 9.0) - 3.0;
+  const double slope = across > 0.0 ? 0.30 : 0.40;
+  const double apex = 0.35 * std::max(0.0, 30.0 - p.z()); // the lower quarter bears no facet
+  const double facets = 32.0 + slope * ridge + apex - p.y();
+  const double front = std::max(0.0, std::abs(across) - 6.0);
+  const double dome = p.y() - 50.0 + 0.010 * front * front + 0.004 * std::pow(p.z() - 40.0, 2);
+  return smoothIntersection(smoothIntersection(m_patellaBody.distance(p), facets, 4.0), dome, 5.0);
+}
+
+double KneeBones::patella(const Vec3& point) const {
+  if (!contains(m_patellaBox, point))
+    return beyond;
+  const auto field = [this](const Vec3& p) { return patellaField(p); };
+  return firstOrderDistance(field, point) + surfaceNoise(point, 41);
+}
+
+Vec3 KneeBones::femoralSurface(double x, double angle) const {
+  const Vec3 outward{0.0, std::cos(angle), std::sin(angle)};
+  double radius = profile(angle);
+  for (int i = 0; i < 20; ++i) // the field's slope along the radius is near 1
+    radius -= femur(Vec3{x, axisY, axisZ} + radius * outward);
+  return Vec3{x, axisY, axisZ} + radius * outward;
+}
+
+namespace {
+
+/// What a lesion leaves: 1 outside it, 1 - depth on its floor; the wall is steep.
+double lesionShare(const CartilageLesion& lesion, const Vec3& p) {
+  const double y = p.y() - axisY, z = p.z() - axisZ;
+  const double along = std::hypot(y, z) * (std::atan2(z, y) - lesion.angle);
+  const double ragged = 0.5 * valueNoise(p / 2.0, 51);
+  const double fromRim = std::hypot(p.x() - lesion.x, along) + ragged - 0.5 * lesion.diameter;
+  return 1.0 - lesion.depth * (1.0 - smoothStep(-0.35, 0.35, fromRim));
+}
+
+/// Thickness as a share of its range, for a place `margin` mm inside the cartilage's border.
+double tapered(double thickness, double margin) {
+  return thickness * smoothStep(-1.0, 3.2, margin);
+}
+
+} // namespace
+
+double KneeBones::intactFemoralCartilage(const Vec3& p) const {
+  const double y = p.y() - axisY, z = p.z() - axisZ;
+  const double angle = std::atan2(z, y);
+  const double rear = smoothStep(5.0, -20.0, p.y());
+  const double front = 45.0 - 0.005 * std::pow(p.x() - 2.0, 2);
+  const double top = std::lerp(front, 34.0, rear) - p.z();
+  const Walls wall = walls(p);
+  const double sides = std::min(wall.lateral - p.x(), p.x() - wall.medial) - 2.5 - 2.0 * rear;
+  const double corners = smoothUnion(top, sides, std::lerp(3.0, 9.0, rear));
+  const double margin = smoothUnion(corners, notchField(p) - 2.3, 4.0);
+  if (margin <= 0.0)
+    return 0.0;
+  const double trochlea = trochleaShare(angle, -0.9, 0.1);
+  const double bearing = std::exp(-std::pow((angle + 1.35) / 0.6, 2));
+  const double thickness = 1.75 + 0.65 * trochlea + 0.55 * bearing + 0.22 * valueNoise(p / 9.0, 52);
+  return tapered(std::clamp(thickness, 1.4, 2.65), margin);
+}
+
+double KneeBones::femoralCartilage(const Vec3& p) const {
+  const double intact = intactFemoralCartilage(p);
+  if (intact == 0.0)
+    return 0.0;
+  return intact * lesionShare(fullThicknessLesion, p) * lesionShare(partialThicknessLesion, p);
+}
+
+double KneeBones::tibialCartilage(const Vec3& p) const {
+  if (std::abs(p.z()) > beyond)
+    return 0.0;
+  const auto oval = [&](double x, double y, double rx, double ry) {
+    return -ellipsoidDistance({p.x(), p.y(), 0}, {x, y, 0}, {rx, ry, 1});
+  };
+  const double medial = oval(-20.5, -4.5, 15.5, 22.0);
+  const double lateral = oval(20.5, -6.0, 14.5, 18.5);
+  const double margin = std::max(medial, lateral);
+  if (margin <= 0.0)
+    return 0.0;
+  const double center = smoothStep(3.0, 14.0, margin);
+  const double thickness = 1.7 + 0.75 * center + 0.2 * valueNoise(p / 8.0, 53);
+  return tapered(std::clamp(thickness, 1.4, 2.65), margin);
+}
+
+double KneeBones::patellarCartilage(const Vec3& p) const {
+  const double across = (p.x() - 2.0) / 21.0, up = (p.z() - 43.0) / 15.5;
+  const double margin = 17.0 * (1.0 - std::sqrt(across * across + up * up));
+  if (margin <= 0.0 || p.y() > 41.0)
+    return 0.0;
+  const double ridge = std::exp(-std::pow((p.x() - 2.0) / 7.0, 2));
+  const double thickness = 2.0 + 0.5 * ridge + 0.2 * valueNoise(p / 8.0, 54);
+  return tapered(std::clamp(thickness, 1.4, 2.65), margin);
+}
+
+} // namespace fenestra

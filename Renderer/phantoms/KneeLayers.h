@@ -1,0 +1,59 @@
+#pragma once
+// The knee as layers: which shape hides which, what tissue it is, and the segment it belongs to.
+
+#include "phantoms/KneeBones.h"
+#include "phantoms/KneeSignal.h"
+#include "phantoms/KneeSoftTissue.h"
+#include "phantoms/Painter.h"
+
+namespace fenestra {
+
+/// A place, and what most layers ask about it.
+struct KneeSite {
+  Vec3 point;
+  double surface;                       ///< distances in mm: to the skin's
+  double fascia;                        ///< to the sheath around muscles and joint
+  double femur, tibia, fibula, patella; ///< and the bones'
+  double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
+};
+
+using KneeLayer = PaintLayer<KneeSite, KneeTissue>;
+
+class KneeLayers {
+public:
+  KneeLayers();
+
+  /// Front to back: a layer hides those after it.
+  const std::vector<KneeLayer>& layers() const { return m_layers; }
+  const std::vector<PhantomSegment>& segments() const { return m_segments; }
+
+  KneeSite site(const Vec3& point) const;
+
+private:
+  using Distance = std::function<double(const KneeSite&)>;
+
+  /// Returns the new segment's label.
+  std::uint8_t segment(const char* id, const char* name, const Rgb& color);
+  void layer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance);
+  /// Its shape ends at the fascia.
+  void deepLayer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance);
+  void ligament(const char* id, const char* name, Tube tube);
+  void muscle(const char* id, const char* name, const std::vector<Loft>& bellies);
+
+  void addBones();
+  void addCartilage();
+  void addLigaments();
+  void addMenisci();
+  void addJointSpace();
+  void addVessels();
+  void addMuscles();
+  void addCovers();
+
+  KneeBones m_bones;
+  LegOutline m_leg;
+  std::vector<KneeLayer> m_layers;
+  std::vector<PhantomSegment> m_segments;
+  std::uint8_t m_deepFat = 0; ///< label
+};
+
+} // namespace fenestra

@@ -1,0 +1,67 @@
+#pragma once
+// What surrounds the bones of the knee, as shapes in the frame of KneeBones.h.
+
+#include "phantoms/Shapes.h"
+
+namespace fenestra {
+
+/// The leg's outer surface; the kneecap stands out in front.
+class LegOutline {
+public:
+  LegOutline();
+  double distance(const Vec3& point) const;
+
+private:
+  Loft m_loft;
+};
+
+/// Depth of the fascia under the skin's surface, mm: how thick skin and subcutaneous fat are.
+double fasciaDepth(const Vec3& point);
+
+std::vector<Loft> vastusMedialis();
+std::vector<Loft> vastusLateralis();
+std::vector<Loft> quadricepsBelly(); ///< rectus femoris and vastus intermedius
+std::vector<Loft> semimembranosus();
+std::vector<Loft> bicepsFemoris();
+std::vector<Loft> sartoriusAndGracilis();
+std::vector<Loft> medialGastrocnemius();
+std::vector<Loft> lateralGastrocnemius();
+std::vector<Loft> popliteus();
+std::vector<Loft> soleus();
+std::vector<Loft> tibialisAnterior();
+std::vector<Loft> peroneus();
+
+Tube anteriorCruciateLigament();
+Tube posteriorCruciateLigament();
+Tube medialCollateralLigament();
+Tube lateralCollateralLigament();
+Tube patellarLigament();
+Tube quadricepsTendon();
+Tube iliotibialBand();
+Tube semitendinosusTendon();
+Tube poplitealArtery();
+Tube poplitealVein();
+Tube saphenousVein();
+Tube tibialNerve();
+
+/// A meniscus before the joint's faces cut it: a wedge-shaped ring around one plateau, open toward
+/// the eminence.
+struct MeniscusRing {
+  Vec2 center;
+  Vec2 outerRadii;     ///< mm
+  double innerShare;   ///< inner over outer radius, in the middle of the C
+  double openingAngle; ///< half of the C's gap, radians, around the direction to the eminence
+  double opening;      ///< that direction: 0 lateral, pi medial
+
+  double distance(const Vec3& point) const;
+};
+MeniscusRing medialMeniscus();
+MeniscusRing lateralMeniscus();
+
+/// Thin sheets from the kneecap's sides to the condyles.
+double patellarRetinaculum(const Vec3& point);
+double infrapatellarFatPad(const Vec3& point);
+/// The joint cavity above the kneecap, between the quadriceps tendon and the femur.
+double suprapatellarRecess(const Vec3& point);
+
+} // namespace fenestra

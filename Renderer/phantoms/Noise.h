@@ -1,0 +1,21 @@
+#pragma once
+// Noise as a function of position alone: the same on every run, in any order, on any thread.
+
+#include "base/Vector.h"
+
+#include <cstdint>
+
+namespace fenestra {
+
+/// Value noise on the unit lattice, smoothly interpolated; in [-1, 1]. Divide `point` by the wanted
+/// feature size; different seeds are independent fields.
+double valueNoise(const Vec3& point, std::uint64_t seed);
+
+/// Normal, of mean 0 and standard deviation 1.
+double normalNoise(std::uint64_t voxel);
+
+/// Magnitude of a signal with normal noise of standard deviation `sigma` in its two quadratures, as
+/// MR shows it (Gudbjartsson and Patz 1995, "The Rician Distribution of Noisy MRI Data").
+double ricianNoise(double signal, double sigma, std::uint64_t voxel);
+
+} // namespace fenestra

@@ -1,0 +1,21 @@
+#include "phantoms/Phantom.h"
+
+#include "base/Error.h"
+
+namespace fenestra {
+
+void requirePhantomSize(const Size3& size) {
+  if ((size.array() < 16).any() || (size.array() > 1024).any())
+    throw usageError("--size: each number of voxels is to lie between 16 and 1024");
+}
+
+Grid phantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes, const Vec3& center) {
+  const Vec3 spacing = fieldOfView.cwiseQuotient(size.cast<double>());
+  Affine indexToWorld = Affine::Identity();
+  indexToWorld.linear() = axes * Mat3::Diagonal(spacing);
+  const Vec3 middle = 0.5 * (size.cast<double>() - Vec3::Ones());
+  indexToWorld.translation() = center - indexToWorld.linear() * middle;
+  return {size, indexToWorld};
+}
+
+} // namespace fenestra

@@ -1,0 +1,188 @@
+#include "phantoms/Shapes.h"
+
+namespace fenestra {
+
+namespace {
+
+/// Catmull-Rom's curve between b (t = 0) and c (t = 1).
+template <typename T>
+T catmullRom(const T& a, const T& b, const T& c, const T& d, double t) {
+  const T linear = 0.5 * (c - a);
+  const T square = a - 2.5 * b + 2.0 * c - 0.5 * d;
+  const T cube = 0.5 * (d - a) + 1.5 * (b - c);
+  return b + t * (linear + t * (square + t * cube));
+}
+
+constexpr int tubePieces = 6; ///< between two nodes: the corners of the refined axis do not show
+
+std::vector<TubeNode> refined(const std::vector<TubeNode>& nodes) {
+  std::vector<TubeNode> result;
+  const auto last = nodes.size() - 1;
+  for (std::size_t i = 0; i < last; ++i) {
+    const TubeNode& a = nodes[i == 0 ? 0 : i - 1];
+    const TubeNode& d = nodes[std::min(i + 2, last)];
+    for (int piece = 0; piece < tubePieces; ++piece) {
+      const double t = static_cast<double>(piece) / tubePieces;
+      result.push_back({catmullRom(a.point, nodes[i].point, nodes[i + 1].point, d.point, t),
+                        std::lerp(nodes[i].radius, nodes[i + 1].radius, t)});
+    }
+  }
+  result.push_back(nodes.back());
+  return result;
+}
+
+double ellipseDistance(const Vec2& offset, const Vec2& radii, double squareness) {
+  const Vec2 scaled = offset.cwiseQuotient(radii);
+  const double round = scaled.norm();
+  const double square = std::sqrt(scaled.array().square().matrix().norm());
+  const double level = std::lerp(round, square, squareness);
+  const double slope = scaled.cwiseQuotient(radii).norm() / std::max(round, 1e-9);
+  return (level - 1.0) / std::max(slope, 1e-9);
+}
+
+} // namespace
+
+double smoothStep(double low, double high, double x) {
+  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+double smoothUnion(double a, double b, double blend) {
+  const double h = std::max(blend - std::abs(a - b), 0.0);
+  return std::min(a, b) - 0.25 * h * h / blend;
+}
+
+double smoothIntersection(double a, double b, double blend) {
+  return -smoothUnion(-a, -b, blend);
+}
+
+double smoothDifference(double a, double b, double blend) {
+  return smoothIntersection(a, -b, blend);
+}
+
+double ellipsoidDistance(const Vec3& point, const Vec3& center, const Vec3& radii) {
+  const Vec3 scaled = (point - center).cwiseQuotient(radii);
+  const double level = scaled.norm();
+  const double slope = scaled.cwiseQuotient(radii).norm() / std::max(level, 1e-9);
+  return (level - 1.0) / std::max(slope, 1e-9);
+}
+
+Box expanded(const Box& box, double margin) {
+  return {box.lower.array() - margin, box.upper.array() + margin};
+}
+
+bool contains(const Box& box, const Vec3& point) {
+  return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
+}
+
+Box united(const Box& a, const Box& b) {
+  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
+Box mapped(const Affine& map, const Box& box) {
+  Box result{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = map * box.corner(i);
+    result = united(result, {corner, corner});
+  }
+  return result;
+}
+
+double roundedBoxDistance(const Vec3& point, const Vec3& halfSize, double radius) {
+  const Vec3 beyond = point.cwiseAbs().array() - halfSize.array() + radius;
+  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0) - radius;
+}
+
+Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up) {
+  const Vec3 z = axis.normalized();
+  const Vec3 y = (up - up.dot(z) * z).normalized();
+  const Mat3 linear = Mat3::FromRows(z.cross(y), y, z);
+  return Affine(linear, -(linear * origin));
+}
+
+Solid ellipsoid(const Vec3& center, const Vec3& radii) {
+  return {[=](const Vec3& p) { return ellipsoidDistance(p, center, radii); },
+          {center - radii, center + radii}};
+}
+
+Solid block(const Affine& toShape, const Vec3& halfSize, double radius) {
+  return {[=](const Vec3& p) { return roundedBoxDistance(toShape * p, halfSize, radius); },
+          mapped(toShape.inverse(), {-halfSize, halfSize})};
+}
+
+Solid placed(const Affine& toShape, const Loft& loft) {
+  return {[=](const Vec3& p) { return loft.distance(toShape * p); },
+          mapped(toShape.inverse(), loft.box())};
+}
+
+/// A blend reaches out by a quarter of its width.
+Solid unite(const Solid& a, const Solid& b, double blend) {
+  return {[=](const Vec3& p) { return smoothUnion(a.distance(p), b.distance(p), blend); },
+          expanded(united(a.box, b.box), 0.25 * blend)};
+}
+
+Solid intersect(const Solid& a, const Solid& b, double blend) {
+  return {[=](const Vec3& p) { return smoothIntersection(a.distance(p), b.distance(p), blend); },
+          {a.box.lower.cwiseMax(b.box.lower), a.box.upper.cwiseMin(b.box.upper)}};
+}
+
+Loft::Loft(std::vector<LoftSection> sections, double squareness, double capBlend)
+    : m_sections(std::move(sections)), m_squareness(squareness), m_capBlend(capBlend) {
+  Vec2 lower = Vec2::Constant(infinity), upper = Vec2::Constant(-infinity);
+  for (const LoftSection& section : m_sections) {
+    lower = lower.cwiseMin(section.center - section.radii);
+    upper = upper.cwiseMax(section.center + section.radii);
+  }
+  const double overshoot = 2.0; // of a Catmull-Rom curve over its nodes, mm
+  m_box = expanded(
+      {{lower.x(), lower.y(), m_sections.front().z}, {upper.x(), upper.y(), m_sections.back().z}},
+      overshoot);
+}
+
+LoftSection Loft::sectionAt(double z) const {
+  const std::size_t last = m_sections.size() - 1;
+  std::size_t i = 0;
+  while (i + 1 < last && z > m_sections[i + 1].z)
+    ++i;
+  const LoftSection& a = m_sections[i == 0 ? 0 : i - 1];
+  const LoftSection& b = m_sections[i];
+  const LoftSection& c = m_sections[i + 1];
+  const LoftSection& d = m_sections[std::min(i + 2, last)];
+  const double t = std::clamp((z - b.z) / (c.z - b.z), 0.0, 1.0);
+  return {z, catmullRom(a.center, b.center, c.center, d.center, t),
+          catmullRom(a.radii, b.radii, c.radii, d.radii, t).cwiseMax(0.5)};
+}
+
+double Loft::distance(const Vec3& point) const {
+  const LoftSection section = sectionAt(point.z());
+  const double side =
+      ellipseDistance(point.head<2>() - section.center, section.radii, m_squareness);
+  const double ends = std::max(m_sections.front().z - point.z(), point.z() - m_sections.back().z);
+  return smoothIntersection(side, ends, m_capBlend);
+}
+
+Tube::Tube(const std::vector<TubeNode>& nodes, const Vec3& stretch)
+    : m_nodes(refined(nodes)), m_stretch(stretch) {
+  Vec3 lower = Vec3::Constant(infinity), upper = Vec3::Constant(-infinity);
+  for (TubeNode& node : m_nodes) {
+    lower = lower.cwiseMin(node.point - node.radius * stretch);
+    upper = upper.cwiseMax(node.point + node.radius * stretch);
+    node.point = node.point.cwiseQuotient(stretch);
+  }
+  m_box = {lower, upper};
+}
+
+double Tube::distance(const Vec3& point) const {
+  const Vec3 q = point.cwiseQuotient(m_stretch);
+  double nearest = infinity;
+  for (std::size_t i = 0; i + 1 < m_nodes.size(); ++i) {
+    const Vec3 axis = m_nodes[i + 1].point - m_nodes[i].point;
+    const Vec3 offset = q - m_nodes[i].point;
+    const double t = std::clamp(offset.dot(axis) / axis.squaredNorm(), 0.0, 1.0);
+    const double radius = std::lerp(m_nodes[i].radius, m_nodes[i + 1].radius, t);
+    nearest = std::min(nearest, (offset - t * axis).norm() - radius);
+  }
+  return nearest;
+}
+
+} // namespace fenestra

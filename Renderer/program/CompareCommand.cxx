@@ -1,0 +1,93 @@
+#include "program/Commands.h"
+
+#include "base/Error.h"
+#include "base/safe/Inputs.h"
+#include "files/pictures/ImageReader.h"
+#include "files/pictures/ImageWriter.h"
+#include "image/Compare.h"
+#include "program/CommandLine.h"
+
+#include <cstdio>
+
+namespace fenestra {
+namespace {
+
+constexpr const char* compareGroup = "Compare";
+constexpr Flag compareFlags[] = {
+    {"errora", "FILE", compareGroup, "Standard errors of A, where A itself has no error channels"},
+    {"errorb", "FILE", compareGroup, "Standard errors of B, where B itself has no error channels"},
+    {"output", "FILE", compareGroup, "Difference picture: .png .tif .exr .nrrd"},
+};
+
+const CommandSyntax compareSyntax = {
+    "compare",
+    "Compares picture A with reference B: error measures, and z statistics where both carry "
+    "errors.",
+    {{"A", "Picture: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
+    compareFlags,
+};
+
+Image readWithError(const FlagValues& values, const char* name, const char* errorFlag) {
+  Image image = readImage(*values.text(name));
+  if (const auto error = values.text(errorFlag))
+    attachError(image, readImage(*error));
+  return image;
+}
+
+/// Fails before the reading, not after it.
+void declareOutput(const FlagValues& values, Outputs& outputs) {
+  for (const char* name : {"A", "B", "errora", "errorb"})
+    if (const auto input = values.text(name))
+      expectInput(*input);
+  if (const auto output = values.text("output"))
+    declareImage(*output, outputs);
+}
+
+/// The comparison knows pictures, a user knows files.
+Comparison compared(const FlagValues& values, const Image& a, const Image& b) {
+  try {
+    return compareImages(a, b);
+  } catch (const Error& error) {
+    throw Error(error.kind(), *values.text("A") + ", " + *values.text("B") + ": " + error.what());
+  }
+}
+
+void print(const Comparison& c) {
+  std::printf("relMSE      %.6g\n", c.relMse);
+  std::printf("RMSE        %.6g\n", c.rmse);
+  std::printf("PSNR        %.4g dB (peak 1)\n", c.psnr);
+  std::printf("largest     %.6g\n", c.maxDifference);
+  std::printf("mean A      %.6g %.6g %.6g\n", c.meanA[0], c.meanA[1], c.meanA[2]);
+  std::printf("mean B      %.6g %.6g %.6g\n", c.meanB[0], c.meanB[1], c.meanB[2]);
+  if (c.notFinite > 0)
+    std::printf("not finite  %zu\n", c.notFinite);
+  if (!c.z)
+    return;
+  const ZStatistics& z = *c.z;
+  std::printf("z           mean %.4f, deviation %.4f, over %zu values\n", z.mean, z.deviation,
+              z.count);
+  std::printf("|z| > 3     %.4f %% (0.27 %% for normal noise)\n", 100.0 * z.shareAbove3);
+  std::printf("largest |z| %.3f at column %d, row %d, %c\n", z.largest, z.column, z.row, z.channel);
+  std::printf("image mean  %.2f %.2f %.2f standard errors apart\n", z.imageMean[0], z.imageMean[1],
+              z.imageMean[2]);
+}
+
+} // namespace
+
+int compareCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> values = parseCommandLine(compareSyntax, argc, argv, first);
+  if (!values)
+    return 0;
+  Outputs outputs;
+  declareOutput(*values, outputs);
+  const Image a = readWithError(*values, "A", "errora");
+  const Image b = readWithError(*values, "B", "errorb");
+  print(compared(*values, a, b));
+  if (const auto output = values->text("output")) {
+    writeImage(differenceImage(a, b), {}, *output, outputs, "Standard");
+    outputs.commit();
+  }
+  return 0;
+}
+
+} // namespace fenestra

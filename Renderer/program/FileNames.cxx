@@ -1,0 +1,88 @@
+#include "program/FileNames.h"
+
+#include "base/safe/SystemCalls.h"
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool takesFile(const Flag& flag) {
+  return std::string_view(flag.value).find("FILE") != std::string_view::npos;
+}
+
+/// None for what is no name of a file (a look as text) and for what may not be looked at. Throws
+/// Error (input) where that cannot be told.
+fs::file_type typeOf(const fs::path& path) {
+  std::error_code failed;
+  const fs::file_type type = fs::status(path, failed).type();
+  const int code = failed.value();
+  if (type == fs::file_type::none && code != ENAMETOOLONG && code != EACCES && code != ELOOP)
+    throw readingError(path, code, "check its disk");
+  return type;
+}
+
+fs::path realPath(const fs::path& path) {
+  std::error_code failed;
+  fs::path real = fs::canonical(path, failed);
+  if (failed)
+    throw readingError(path, failed.value(), "check the permissions of its folder");
+  return real;
+}
+
+/// A result is named before it is there.
+std::string writtenName(const std::string& name, const fs::path& folder) {
+  std::error_code failed;
+  const fs::path path = fs::absolute(name, failed);
+  if (failed) // where it is cannot be told, so that it cannot be written either
+    return name;
+  return (fs::path(relativeName(path.parent_path().string(), folder)) / path.filename())
+      .lexically_normal()
+      .string();
+}
+
+} // namespace
+
+std::string relativeName(const std::string& name, const fs::path& folder) {
+  std::error_code failed;
+  fs::path there = fs::absolute(name, failed), inside;
+  if (failed) // the working folder is gone: there is nothing of this name
+    return name;
+  while (typeOf(there) == fs::file_type::not_found && there.has_relative_path()) {
+    inside = inside.empty() ? there.filename() : there.filename() / inside; // of an archive
+    there = there.parent_path();
+  }
+  const fs::path from = folder.empty() ? "." : folder;
+  if (typeOf(from) == fs::file_type::not_found) // writing there tells of it
+    return name;
+  const fs::file_type type = typeOf(there);
+  if (type == fs::file_type::none || (!inside.empty() && type != fs::file_type::regular))
+    return name;
+  const fs::path relative = realPath(there).lexically_relative(realPath(from));
+  return (inside.empty() ? relative : relative / inside).string();
+}
+
+std::vector<std::string> relativeArguments(const std::vector<std::string>& words,
+                                           std::span<const Flag> flags, const fs::path& folder) {
+  std::vector<std::string> result;
+  const Flag* pending = nullptr; // whose value is the next word
+  for (const std::string& word : words) {
+    const bool isFlag = !pending && word.starts_with("--");
+    const std::size_t equals = isFlag ? word.find('=') : std::string::npos;
+    const Flag* flag = isFlag ? findFlag(flags, word.substr(2, equals - 2)) : pending;
+    const bool hasValue = !isFlag || equals != std::string::npos;
+    const std::size_t valueAt = isFlag ? equals + 1 : 0;
+    pending = flag && !hasValue && *flag->value ? flag : nullptr;
+    if (!hasValue || (flag ? !takesFile(*flag) : isFlag)) {
+      result.push_back(word);
+      continue;
+    }
+    const std::string value = word.substr(valueAt);
+    result.push_back(word.substr(0, valueAt) + (flag && isWritten(*flag)
+                                                    ? writtenName(value, folder)
+                                                    : relativeName(value, folder)));
+  }
+  return result;
+}
+
+} // namespace fenestra

@@ -1,0 +1,67 @@
+#include "program/Commands.h"
+
+#include "base/Error.h"
+#include "base/safe/Inputs.h"
+#include "files/slicer/SceneFiles.h"
+#include "program/CommandLine.h"
+#include "program/InspectReport.h"
+#include "program/Machine.h"
+#include "program/RenderFlags.h"
+#include "program/SceneFlags.h"
+
+#include <iostream>
+
+namespace fenestra {
+namespace {
+
+constexpr const char* inspectGroup = "Inspect";
+constexpr Flag inspectFlags[] = {
+    {"volume", "NAME", inspectGroup,
+     "As for render: which volume of a scene, or series of a folder"},
+    {"segmentation", "FILE|NAME", inspectGroup, "As for render: a file, or a node of the scene"},
+    {"json", "", inspectGroup,
+     "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
+     "views, cameras, transforms, series, others; render (what it would use), refused (why it "
+     "would not start, else null), warnings, ignored; mm, RAS, ml"},
+};
+
+const CommandSyntax inspectSyntax = {
+    "inspect",
+    "Lists what an input holds, what a render of it would use, and what it would ignore and why.",
+    {{"INPUT", "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
+               "segmentation (.seg.nrrd) or DICOM folder"}},
+    inspectFlags,
+};
+
+} // namespace
+
+int inspectCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> values = parseCommandLine(inspectSyntax, argc, argv, first);
+  if (!values)
+    return 0;
+  useMachine(*values);
+  const std::string input = *values->text("INPUT");
+  FlagValues given(renderSyntax.flags);
+  for (const char* name : {"INPUT", "volume", "segmentation"})
+    if (const auto value = values->text(name))
+      given.add(name, *value);
+  const SceneFlags stored = withSceneFlags(given);
+  const FlagValues& flags = stored.flags;
+  SceneRequest request;
+  request.input = input;
+  request.volume = flags.text("volume");
+  request.segmentation = flags.text("segmentation");
+  if (request.volume && !isSceneFile(input) && !isFolder(input))
+    throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
+  Inspection inspection = inspectInput(request);
+  if (inspection.render)
+    inspection.render->stored = sceneArguments(given, flags);
+  inspection.warnings.insert(inspection.warnings.begin(), stored.leftOut.begin(),
+                             stored.leftOut.end());
+  std::cout << (values->has("json") ? inspectionJson(inspection, input)
+                                    : inspectionText(inspection, input))
+            << std::flush;
+  return 0;
+}
+
+} // namespace fenestra

@@ -1,0 +1,62 @@
+#include "program/Machine.h"
+
+#include "base/Error.h"
+#include "transport/lanes/Tracker.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <future>
+#include <stdexcept>
+
+namespace fenestra {
+namespace {
+
+int threadCount(const FlagValues& flags) {
+  const int cores = tbb::info::default_concurrency();
+  const auto wanted = static_cast<int>(flags.count("threads").value_or(0));
+  return wanted > 0 ? std::min(wanted, cores) : cores;
+}
+
+/// As many threads at once, for a moment: TBB's start each other, and end the process where one
+/// cannot start.
+void tryThreads(int count) {
+  std::promise<void> started;
+  const std::shared_future<void> all = started.get_future().share();
+  std::vector<std::future<void>> threads;
+  threads.reserve(
+      static_cast<std::size_t>(std::max(count, 0))); // one without a place is waited for
+  try {
+    for (int i = 0; i < count; ++i)
+      threads.push_back(std::async(std::launch::async, [all] { all.wait(); }));
+  } catch (...) {
+    started.set_value();
+    throw;
+  }
+  started.set_value();
+}
+
+} // namespace
+
+void useMachine(const FlagValues& flags) {
+  const int count = threadCount(flags);
+  // As long as the process lives: where this ends, TBB starts threads that were not wanted.
+  [[maybe_unused]] static const auto* const limit = new tbb::global_control(
+      tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
+  try {
+    tryThreads(count - 1);
+    tbb::parallel_for(
+        0, count, [](int) {}, tbb::simple_partitioner());
+  } catch (const std::runtime_error&) { // std::system_error, and TBB's own
+    throw outputError("threads", std::to_string(count) +
+                                     " cannot be started; allow more processes (ulimit -u), or "
+                                     "render with --threads 1");
+  }
+  if (const char* pinned = std::getenv("FENESTRA_INSTRUCTIONS"))
+    WideTracker::useInstructionSet(pinned);
+}
+
+} // namespace fenestra

@@ -1,0 +1,111 @@
+#include "program/Commands.h"
+
+#include "base/Error.h"
+#include "base/safe/ShownText.h"
+#include "phantoms/Cube.h"
+#include "phantoms/Fetus.h"
+#include "phantoms/Foot.h"
+#include "phantoms/Knee.h"
+#include "phantoms/PhantomWriter.h"
+#include "program/CommandLine.h"
+#include "program/Machine.h"
+
+#include <cstdio>
+#include <iostream>
+
+namespace fenestra {
+namespace {
+
+constexpr const char* phantomGroup = "Phantom";
+constexpr Flag phantomFlags[] = {
+    {"output", "DIR", phantomGroup,
+     "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
+    {"size",
+     "WxHxD",
+     phantomGroup,
+     "Voxels over the same field of view; N for the cube [knee 300x344x120, foot 300x120x150, "
+     "fetus 160x160x160, cube 512]",
+     {Takes::Kind::text, 16, 1024}}, // of the cube
+    {"edge", "MM", phantomGroup, "The cube's edge [1]", Takes::number(1e-3, 1e5)},
+};
+
+const CommandSyntax phantomSyntax = {
+    "phantom",
+    "Makes a synthetic subject: an image, its segments, a transfer function, and scenes of them.",
+    {{"KIND", "knee (MR), foot (CT), fetus (ultrasound) or cube (the scalar is the z index)"}},
+    phantomFlags,
+};
+
+/// WxHxD in voxels.
+std::optional<Size3> sizeOf(const FlagValues& values) {
+  const auto size = values.text("size");
+  if (!size)
+    return std::nullopt;
+  long x = 0;
+  long y = 0;
+  long z = 0;
+  char rest = 0;
+  if (std::sscanf(size->c_str(), "%ldx%ldx%ld%c", &x, &y, &z, &rest) != 3)
+    throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '" + *size + "'");
+  return Size3{x, y, z};
+}
+
+Phantom makeKnee(const FlagValues& values) {
+  KneeOptions options;
+  options.size = sizeOf(values).value_or(options.size);
+  return makeKneePhantom(options);
+}
+
+Phantom makeFoot(const FlagValues& values) {
+  FootOptions options;
+  options.size = sizeOf(values).value_or(options.size);
+  return makeFootPhantom(options);
+}
+
+Phantom makeFetus(const FlagValues& values) {
+  FetusOptions options;
+  options.size = sizeOf(values).value_or(options.size);
+  return makeFetusPhantom(options);
+}
+
+Phantom makeCube(const FlagValues& values) {
+  CubeOptions options;
+  options.edge = values.number("edge").value_or(options.edge);
+  if (const auto size = values.count("size"))
+    options.size = static_cast<std::int64_t>(*size);
+  return makeCubePhantom(options);
+}
+
+Phantom makePhantom(const std::string& kind, const FlagValues& values) {
+  if (kind != "cube" && values.has("edge"))
+    throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
+  if (kind == "knee")
+    return makeKnee(values);
+  if (kind == "foot")
+    return makeFoot(values);
+  if (kind == "fetus")
+    return makeFetus(values);
+  if (kind == "cube")
+    return makeCube(values);
+  throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");
+}
+
+} // namespace
+
+int phantomCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> values = parseCommandLine(phantomSyntax, argc, argv, first);
+  if (!values)
+    return 0;
+  const std::string kind = *values->text("KIND");
+  const std::string folder = values->text("output").value_or(kind);
+  useMachine(*values);
+  const Phantom phantom = makePhantom(kind, *values);
+  const std::vector<std::string> files = writePhantom(phantom, folder, kind);
+  std::cout << oneLine(folder) << ":";
+  for (const std::string& file : files)
+    std::cout << ' ' << oneLine(file);
+  std::cout << ", " << phantom.segments.size() << " segments" << std::endl;
+  return 0;
+}
+
+} // namespace fenestra

@@ -1,0 +1,151 @@
+#include "program/PresetFlags.h"
+
+#include "base/Error.h"
+#include "session/Defaults.h"
+#include "session/NamedLooks.h"
+#include "session/OrganPresets.h"
+#include "session/SceneInput.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+/// Of these, one that is given replaces what the preset says by another.
+const std::vector<std::vector<std::string>> alternatives = {
+    {"view", "position"},
+    {"projection", "scale", "angle"},
+    {"boundary", "controlpoints", "smoothing"},
+};
+
+/// Slicer hands over every flag that its panel has, so that there the standard says nothing.
+bool isGiven(const FlagValues& given, const std::string& name) {
+  return given.has("returnparameterfile") ? given.differs(name) : given.has(name);
+}
+
+bool isOfClipping(const std::string& name) {
+  return findFlag(renderSyntax.flags, name)->group ==
+         std::string_view(findFlag(renderSyntax.flags, "clip")->group);
+}
+
+/// What a mode of clipping has of its own; the focus has the others in any mode.
+bool isOfAMode(const std::string& name) {
+  constexpr std::string_view ofTheFocus[] = {"margin", "labelsmoothing", "contextdensity",
+                                             "contextsaturation"};
+  return isOfClipping(name) && std::ranges::find(ofTheFocus, name) == std::end(ofTheFocus);
+}
+
+bool decides(const FlagValues& given, const std::string& name) {
+  const auto has = [&](const std::string& flag) { return isGiven(given, flag); };
+  if (isOfAMode(name) && has("clip"))
+    return true;
+  for (const std::vector<std::string>& flags : alternatives)
+    if (std::ranges::find(flags, name) != flags.end())
+      return std::ranges::any_of(flags, has);
+  return has(name);
+}
+
+/// A preset may be a user's file.
+void checkFlags(const OrganPreset& preset, const std::string& source) {
+  for (const auto& [name, value] : preset.flags) {
+    const Flag* flag = findFlag(renderSyntax.flags, name);
+    if (!flag || !shapesLook(*flag))
+      throw inputError(source,
+                       "flags: \"" + name + "\" is no flag of clipping, view or look; remove it");
+  }
+}
+
+SceneRequest filesOf(const FlagValues& given) {
+  SceneRequest request;
+  request.input = *given.text("INPUT");
+  request.volume = given.text("volume");
+  request.segmentation = given.text("segmentation");
+  return request;
+}
+
+/// Those of the segments that the given focus names; all where it names none.
+std::vector<SegmentInfo> inFocus(const FlagValues& given,
+                                 const std::vector<SegmentInfo>& segments) {
+  const std::vector<std::string> focus = given.list("focus");
+  std::vector<SegmentInfo> named;
+  std::ranges::copy_if(segments, std::back_inserter(named), [&](const SegmentInfo& segment) {
+    const std::string names[] = {segment.id, segment.name, std::to_string(segment.labelValue)};
+    return std::ranges::find_first_of(focus, names) != focus.end();
+  });
+  return named.empty() ? segments : named;
+}
+
+OrganPreset presetFor(const FlagValues& given, const std::optional<SegmentNames>& names) {
+  const std::string name = *given.text("preset");
+  if (name != "auto")
+    return namedPreset(name);
+  if (!names)
+    throw usageError("--preset auto: goes by the names of segments; add --segmentation FILE, or "
+                     "name a preset");
+  if (names->segments.empty())
+    throw inputError(names->source, "--preset auto: its segments have no names, only values; name "
+                                    "a preset and give --focus A,B,...");
+  std::vector<OrganPreset> presets;
+  for (const std::string& own : ownPresets("presets"))
+    presets.push_back(namedPreset(own));
+  return fittingPreset(
+      presets, inFocus(given, names->segments), names->source,
+      [&given](Modality modality) { return suits(modality, loadVolume(filesOf(given)).volume); });
+}
+
+/// Commas in an id as --focus takes them.
+std::string escaped(const std::string& id) {
+  std::string text;
+  for (const char c : id)
+    text += c == ',' ? std::string("\\,") : std::string(1, c);
+  return text;
+}
+
+void addFocus(const OrganPreset& preset, const SegmentNames& names, FlagValues& flags) {
+  if (names.segments.empty())
+    throw inputError(names.source, "--preset " + preset.name +
+                                       ": its segments have no names, only values; say which are "
+                                       "meant with --focus A,B,...");
+  const std::vector<SegmentInfo> focus = focusOf(preset.focus, names.segments);
+  if (focus.empty())
+    throw inputError(names.source, "--preset " + preset.name + ": none of its segments is one (" +
+                                       listedNames(names.segments) +
+                                       "); give --focus A,B,..., or another preset");
+  for (const SegmentInfo& segment : focus)
+    flags.add("focus", escaped(segment.id));
+}
+
+} // namespace
+
+PresetFlags withPreset(const FlagValues& given) {
+  PresetFlags result{given};
+  if (!given.has("preset"))
+    return result;
+  const bool givenFocus = given.has("focus");
+  const bool byNames = given.text("preset") == "auto" || !givenFocus;
+  const auto names = byNames ? loadSegmentNames(filesOf(given)) : std::nullopt;
+  const OrganPreset preset = presetFor(given, names);
+  checkFlags(preset, *given.text("preset"));
+  FlagValues& flags = result.flags;
+  if (!givenFocus && names)
+    addFocus(preset, *names, flags);
+  for (const auto& [name, value] : preset.flags) {
+    if (decides(given, name) || (isOfClipping(name) && !flags.has("focus")))
+      continue;
+    flags.remove(name);
+    flags.add(name, value);
+    if (name == "transfer")
+      result.transferFor = preset.modality;
+  }
+  flags.remove("preset");
+  flags.add("preset", preset.name);
+  return result;
+}
+
+RenderOptions renderOptions(const PresetFlags& flags) {
+  RenderOptions options = renderOptions(flags.flags);
+  options.scene.transferFor = flags.transferFor;
+  return options;
+}
+
+} // namespace fenestra

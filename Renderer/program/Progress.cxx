@@ -1,0 +1,164 @@
+#include "program/Progress.h"
+
+#include <cstdio>
+#include <sys/ioctl.h>
+#include <system_error>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+std::string clock(double seconds) {
+  if (!(seconds < 360000.0))
+    return "--:--";
+  const int s = static_cast<int>(seconds + 0.5);
+  char text[32];
+  if (s >= 3600)
+    std::snprintf(text, sizeof text, "%d:%02d:%02d", s / 3600, s / 60 % 60, s % 60);
+  else
+    std::snprintf(text, sizeof text, "%d:%02d", s / 60, s % 60);
+  return text;
+}
+
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string bar(double fraction, std::size_t width) {
+  const auto full = static_cast<std::size_t>(fraction * static_cast<double>(width));
+  return std::string("[") + std::string(full, '#') + std::string(width - full, '.') + "] ";
+}
+
+/// Of the terminal, which may change while we run.
+std::size_t columns() {
+  winsize size = {};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+} // namespace
+
+Progress::Progress(ProgressMode mode, const RenderSettings& settings, std::uint64_t pixels,
+                   const RenderMonitor& monitor, const FrameCount& frames)
+    : m_mode(mode),
+      m_settings(settings),
+      m_pixels(static_cast<double>(pixels)),
+      m_monitor(monitor),
+      m_frames(frames) {
+  if (m_mode == ProgressMode::automatic)
+    m_mode = ::isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::none;
+  if (m_mode == ProgressMode::xml) {
+    std::puts("<filter-start>\n<filter-name>fenestra</filter-name>\n"
+              "<filter-comment>Path tracing</filter-comment>\n</filter-start>");
+    std::fflush(stdout);
+  }
+  if (m_mode == ProgressMode::none)
+    return;
+  try {
+    m_thread = std::thread([this] { run(); });
+  } catch (const std::system_error&) { // no thread is left, and the picture counts for more
+  }
+}
+
+Progress::~Progress() {
+  if (!m_thread.joinable())
+    return;
+  {
+    const std::lock_guard lock(m_mutex);
+    m_done = true;
+  }
+  m_wake.notify_one();
+  m_thread.join();
+}
+
+void Progress::nextFrame() {
+  const std::lock_guard lock(m_mutex);
+  ++m_frame;
+  m_frameWatch = Stopwatch();
+}
+
+void Progress::run() {
+  std::unique_lock lock(m_mutex);
+  while (!m_wake.wait_for(lock, std::chrono::milliseconds(100), [this] { return m_done; }))
+    show(false);
+  show(true);
+}
+
+double Progress::fraction() const {
+  const double toDo = m_frames.all - m_frames.finished;
+  return toDo > 0.0 ? std::min(1.0, (m_frame + frameFraction()) / toDo) : 1.0;
+}
+
+double Progress::frameFraction() const {
+  const double paths = static_cast<double>(m_monitor.paths);
+  double most = paths / (static_cast<double>(m_settings.samples) * m_pixels);
+  most = std::max(most, m_frameWatch.seconds() / m_settings.seconds);
+  const double noise = m_monitor.noise;
+  if (m_settings.noise > 0.0 && noise > 0.0) // variance falls as one over the samples
+    most = std::max(most, std::pow(m_settings.noise / noise, 2.0));
+  return std::clamp(most, 0.0, 1.0);
+}
+
+void Progress::show(bool last) {
+  const double now = last && !m_monitor.stop ? 1.0 : fraction();
+  m_fraction = std::max(m_fraction, now);
+  if (m_mode == ProgressMode::xml)
+    return showTags(m_fraction, last);
+  if (last)
+    std::fputs("\r\033[K", stderr); // what is said at the end stands alone
+  else
+    showBar(m_fraction);
+  std::fflush(stderr);
+}
+
+void Progress::showTags(double done, bool last) const {
+  std::string comment;
+  for (const std::string& field : reached())
+    comment += (comment.empty() ? "" : ", ") + field;
+  std::printf("<filter-progress>%.4f</filter-progress>\n<filter-comment>%s</filter-comment>\n",
+              done, comment.c_str());
+  if (last)
+    std::printf("<filter-end>\n<filter-name>fenestra</filter-name>\n<filter-time>%.2f"
+                "</filter-time>\n</filter-end>\n",
+                m_watch.seconds());
+  std::fflush(stdout);
+}
+
+std::vector<std::string> Progress::reached() const {
+  const double samples = static_cast<double>(m_monitor.paths) / m_pixels;
+  const double noise = m_monitor.noise;
+  std::vector<std::string> fields;
+  if (m_frames.all > 1)
+    fields.push_back("frame " +
+                     std::to_string(std::min(m_frames.finished + m_frame + 1, m_frames.all)) +
+                     " of " + std::to_string(m_frames.all));
+  fields.push_back(
+      formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
+  if (noise < infinity)
+    fields.push_back(formatted("noise %.3f", noise));
+  return fields;
+}
+
+void Progress::showBar(double done) const {
+  const double seconds = m_watch.seconds();
+  const double left = done > 0.0 ? seconds * (1.0 - done) / done : infinity;
+  std::vector<std::string> fields = {formatted("%3.0f %%", 100.0 * done), clock(left) + " left"};
+  for (const std::string& field : reached())
+    fields.push_back(field);
+
+  // A line that wraps cannot be taken back: what does not fit is left out, the bar first.
+  constexpr std::size_t longest = 24;
+  constexpr std::size_t frame = 3;
+  const std::size_t width = columns() - 1;
+  std::string line;
+  for (const std::string& field : fields)
+    if (line.size() + 2 + field.size() <= width)
+      line += (line.empty() ? "" : "  ") + field;
+  if (line.size() + frame + longest / 3 <= width)
+    line = bar(done, std::min(longest, width - line.size() - frame)) + line;
+  std::fprintf(stderr, "\r%s\033[K", line.c_str());
+}
+
+} // namespace fenestra

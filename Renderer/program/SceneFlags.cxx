@@ -1,0 +1,116 @@
+#include "program/SceneFlags.h"
+
+#include "base/TextStream.h"
+#include "base/safe/ShownText.h"
+#include "files/pictures/ImageFormat.h"
+#include "files/slicer/MrmlScene.h"
+#include "program/PresetFlags.h"
+#include "session/NamedLooks.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace fenestra {
+namespace {
+
+/// Flags that decide one thing together; any other flag decides by itself.
+const std::vector<std::vector<std::string>> kinds = {
+    {"view", "position", "target", "up", "projection", "scale", "angle"},
+    {"clip", "boundary", "controlpoints", "smoothing", "plane", "hole", "holemargin", "ghost",
+     "offset", "soft"},
+    {"samples", "seconds", "noise"},
+    {"focus", "segmentation", "margin"},
+    {"lights", "environment"},
+};
+
+bool isDecided(const std::string& name, const FlagValues& given) {
+  const auto has = [&](const std::string& flag) { return given.has(flag); };
+  for (const std::vector<std::string>& kind : kinds)
+    if (std::find(kind.begin(), kind.end(), name) != kind.end())
+      return std::any_of(kind.begin(), kind.end(), has);
+  return has(name);
+}
+
+/// Whether a render would open a file that the value names.
+bool isFile(const std::string& name, const std::string& value, const std::filesystem::path& input) {
+  if (name == "environment")
+    return imageFormat(value) == ImageFormat::exr;
+  if (name == "preset")
+    return isFileName("presets", value);
+  if (name == "lights")
+    return isFileOfLights(value);
+  return name == "transfer" && isFileOfTransfer(value, input);
+}
+
+/// Numbers that are none are refused later, as if they had been given.
+bool isTooMuch(const std::string& name, const std::string& value) {
+  constexpr int mostPixels = 4096; // in each direction
+  constexpr std::uint64_t mostSamples = 65536;
+  int width = 0, height = 0;
+  if (name == "size" && std::sscanf(value.c_str(), "%dx%d", &width, &height) == 2)
+    return std::max(width, height) > mostPixels;
+  if (name != "samples")
+    return false;
+  FlagValues samples(renderSyntax.flags);
+  samples.add(name, value);
+  return samples.count(name) > mostSamples;
+}
+
+/// Why a scene's own value is not taken; empty where it is.
+std::string objection(const MrmlScene& scene, const std::string& name, const std::string& value,
+                      const std::filesystem::path& input) {
+  if (name == "volume" || name == "segmentation")
+    return scene.document.find(value) ? "" : "is no node of the scene";
+  if (isTooMuch(name, value))
+    return "is more than a scene may ask for";
+  return isFile(name, value, input) ? "names a file, which a scene may not choose" : "";
+}
+
+std::string leftOut(const MrmlNode& node, const std::string& name, const std::string& value,
+                    const std::string& why) {
+  TextWriter line;
+  line << node.tag << ' ' << shown(node) << ": " << name << " \"" << value << "\" " << why
+       << "; give --" << name << ' ' << value;
+  return line.str();
+}
+
+} // namespace
+
+SceneFlags withSceneFlags(const FlagValues& given) {
+  SceneFlags result{given};
+  FlagValues& merged = result.flags;
+  const std::filesystem::path input = *given.text("INPUT");
+  if (!isSceneFile(input))
+    return result;
+  const MrmlScene scene(input);
+  const std::vector<const MrmlNode*> nodes = scene.document.withTag("FenestraRender");
+  if (nodes.empty())
+    return result;
+  const MrmlNode& node = *nodes.back();
+  const FlagValues deciding = withPreset(given).flags;
+  for (const Flag& flag : renderSyntax.flags) {
+    const std::string name = flag.name;
+    const bool isNode = name == "volume" || name == "segmentation";
+    const std::string value = isNode ? node.referenced(name) : node.text(name);
+    if (!shapesPicture(flag) || value.empty() || isDecided(name, deciding))
+      continue;
+    if (const std::string why = objection(scene, name, value, input); !why.empty())
+      result.leftOut.push_back(leftOut(node, name, shown(value), why));
+    else
+      merged.add(name, value);
+  }
+  if (!merged.has("focus") && !given.has("segmentation")) // which one was chosen does not matter
+    merged.remove("segmentation");
+  return result;
+}
+
+std::vector<std::string> sceneArguments(const FlagValues& given, const FlagValues& merged) {
+  const std::vector<std::string> before = given.arguments();
+  std::vector<std::string> stored;
+  for (const std::string& argument : merged.arguments())
+    if (std::find(before.begin(), before.end(), argument) == before.end())
+      stored.push_back(argument);
+  return stored;
+}
+
+} // namespace fenestra

@@ -1,0 +1,174 @@
+#include "program/ServeInput.h"
+
+#include "base/Error.h"
+#include "base/safe/JsonNode.h"
+#include "base/safe/ShownText.h"
+#include "files/looks/LightReader.h"
+#include "program/CommandLine.h"
+#include "program/PresetFlags.h"
+#include "program/Stop.h"
+#include "session/NamedLooks.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <unistd.h>
+#include <utility>
+
+namespace fenestra {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t longestLine = 1 << 20;
+
+/// A value as the command line has it.
+std::string valueText(const std::string& name, const json& value) {
+  if (value.is_string())
+    return value.get<std::string>();
+  if (value.is_number())
+    return value.dump();
+  throw usageError(name + ": expected a text, a number or a list of them");
+}
+
+/// A list's items, commas in them kept apart from those between them.
+std::string listText(const std::string& name, const json& list) {
+  std::string text;
+  for (const json& item : list) {
+    text += text.empty() ? "" : ",";
+    for (const char c : valueText(name, item))
+      text += c == ',' ? std::string("\\,") : std::string(1, c);
+  }
+  return text;
+}
+
+} // namespace
+
+bool ServeAnswers::say(const nlohmann::ordered_json& answer) {
+  const std::string line = answer.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
+  const std::lock_guard lock(m_mutex);
+  return std::fwrite(line.data(), 1, line.size(), stdout) == line.size() &&
+         std::fflush(stdout) == 0;
+}
+
+bool ServeAnswers::error(const json& id, const std::string& message) {
+  return say({{"event", "error"}, {"id", id}, {"message", message}});
+}
+
+ServeChange parseChange(const std::string& line, json& id) {
+  ServeChange change{parseJson(line, "a line")};
+  if (change.flags.is_object() && change.flags.contains("id")) {
+    constexpr std::size_t longestId = 256;
+    const json& given = change.flags["id"];
+    const bool isShort =
+        given.is_string() && given.get_ref<const std::string&>().size() <= longestId;
+    if (!given.is_null() && !given.is_number() && !isShort)
+      throw usageError("id: must be a number, a text of at most 256 bytes, or null");
+    change.id = id = given;
+  }
+  return change;
+}
+
+FlagValues changedFlags(const json& change, const FlagValues& flags) {
+  if (!change.is_object())
+    throw usageError("expected a JSON object of flags, as {\"view\": \"left\"}");
+  std::vector<std::string_view> names;
+  for (const Flag& flag : renderSyntax.flags)
+    names.push_back(flag.name);
+  FlagValues result = flags;
+  for (const auto& [name, value] : change.items()) {
+    if (name == "id")
+      continue;
+    const Flag* flag = findFlag(renderSyntax.flags, name);
+    if (!flag) {
+      const std::string_view likely = nearest(name, names);
+      throw usageError(oneLine(name) + ": no such flag" +
+                       (likely.empty() ? "" : "; did you mean " + std::string(likely) + "?"));
+    }
+    if (!shapesPicture(*flag))
+      throw usageError(name + ": cannot change while serving; start another server");
+    result.remove(name);
+    const std::string text = value.is_null()    ? ""
+                             : value.is_array() ? listText(name, value)
+                                                : valueText(name, value);
+    if (!text.empty())
+      result.add(name, text);
+  }
+  return result;
+}
+
+void checkChange(const json& change, const FlagValues& flags) {
+  const SceneRequest scene = renderOptions(withPreset(flags)).scene;
+  const bool isPreset = change.contains("preset"); // may name any of them
+  if (isPreset || change.contains("lights"))
+    namedLights(scene.lights);
+  if (scene.transfer && (isPreset || change.contains("transfer")))
+    namedTransfer(*scene.transfer, scene.input);
+  if (scene.environmentMap && change.contains("environment"))
+    readEnvironmentMap(*scene.environmentMap);
+}
+
+ServeInput::ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers)
+    : m_monitor(monitor), m_answers(answers), m_wanted(start) {
+  m_thread = std::thread([this] { read(); });
+  m_thread.detach(); // ends with the process
+}
+
+ServeChanges ServeInput::next() {
+  std::unique_lock lock(m_mutex);
+  m_changed.wait(lock, [&] { return !m_new.empty(); });
+  m_monitor.stop = false;
+  return std::exchange(m_new, {});
+}
+
+void ServeInput::takeBack(const FlagValues& shown) {
+  const std::lock_guard lock(m_mutex);
+  m_wanted = shown;
+  for (const ServeChange& change : m_new)
+    m_wanted = changedFlags(change.flags, m_wanted);
+}
+
+void ServeInput::read() {
+  std::string line;
+  bool tooLong = false;
+  for (;;) {
+    std::array<char, 4096> part;
+    const ssize_t size = ::read(STDIN_FILENO, part.data(), part.size());
+    if (size < 0 && errno == EINTR)
+      continue;
+    if (size <= 0)
+      endProcess(0);
+    for (const char c : std::string_view(part.data(), static_cast<std::size_t>(size))) {
+      if (c != '\n') {
+        tooLong = tooLong || line.size() == longestLine;
+        if (!tooLong)
+          line += c;
+        continue;
+      }
+      if (tooLong)
+        m_answers.error(nullptr, "a line of more than a million characters");
+      else if (line.find_first_not_of(" \t\r") != std::string::npos)
+        takeLine(line);
+      line.clear();
+      tooLong = false;
+    }
+  }
+}
+
+void ServeInput::takeLine(const std::string& line) {
+  json id = nullptr;
+  try {
+    ServeChange change = parseChange(line, id);
+    const std::lock_guard lock(m_mutex);
+    FlagValues wanted = changedFlags(change.flags, m_wanted);
+    checkChange(change.flags, wanted);
+    m_wanted = std::move(wanted);
+    m_new.push_back(std::move(change));
+    m_monitor.stop = true;
+  } catch (const Error& error) {
+    m_answers.error(id, error.what());
+  }
+  m_changed.notify_one();
+}
+
+} // namespace fenestra

@@ -1,0 +1,112 @@
+#include "program/Stop.h"
+
+#include "base/Error.h"
+#include "base/safe/Leftovers.h"
+#include "base/safe/Outputs.h"
+
+#include <csignal>
+#include <ctime>
+#include <string_view>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+std::atomic<std::atomic<bool>*> flag = nullptr;
+std::atomic<int> firstSignal = 0;
+std::atomic<std::int64_t> firstTime = 0; ///< of it, ms
+static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
+
+std::int64_t milliseconds() {
+  timespec now = {};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
+}
+
+/// One event may come as several signals: a terminal that is closed sends HUP twice.
+bool isEcho() {
+  constexpr std::int64_t together = 300; // ms
+  return milliseconds() - firstTime < together;
+}
+
+/// Once, whichever threads end the process.
+void say(std::string_view line) {
+  static std::atomic<bool> isSaid = false;
+  if (isSaid.exchange(true))
+    return;
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
+}
+
+/// What may run in a signal handler alone, and nothing else.
+void end() {
+  if (firstSignal == SIGPIPE)
+    say("fenestra: standard output: nobody reads it any more\n");
+  else if (resultsWerePlaced())
+    say("fenestra: stopped on request\n");
+  else
+    say("fenestra: stopped on request; nothing was written\n");
+  removeLeftovers();
+  ::_exit(stopStatus());
+}
+
+void onSignal(int signal) {
+  const int before = errno;
+  std::atomic<bool>* const stop = flag;
+  if (firstSignal == 0) {
+    firstTime = milliseconds();
+    firstSignal = signal;
+    if (stop)
+      *stop = true;
+    else
+      endWhenPossible(end);
+  } else if (!stop || !isEcho()) {
+    endWhenPossible(end);
+  }
+  errno = before;
+}
+
+} // namespace
+
+void handleStops() {
+  struct sigaction action = {};
+  action.sa_handler = onSignal;
+  action.sa_flags = SA_RESTART;
+  sigfillset(&action.sa_mask);
+  ::signal(SIGXFSZ, SIG_IGN); // the call that writes tells of it, as of a full disk
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGPIPE}) {
+    struct sigaction before = {};
+    if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      ::sigaction(signal, &action, nullptr);
+  }
+}
+
+bool stopRequested() {
+  return firstSignal != 0;
+}
+
+int stopStatus() {
+  return firstSignal == SIGPIPE ? static_cast<int>(ErrorKind::output) : stoppedStatus;
+}
+
+void endProcess(int status) {
+  static std::atomic<int> last;
+  last = status;
+  endWhenPossible([] {
+    removeLeftovers();
+    ::_exit(last);
+  });
+  for (;;)
+    ::pause();
+}
+
+StopInstead::StopInstead(std::atomic<bool>& stop) {
+  flag = &stop;
+  if (firstSignal != 0)
+    stop = true;
+}
+
+StopInstead::~StopInstead() {
+  flag = nullptr;
+}
+
+} // namespace fenestra

@@ -1,0 +1,133 @@
+#include "base/Error.h"
+#include "base/safe/Apart.h"
+#include "base/safe/Leftovers.h"
+#include "base/safe/PrivateFolder.h"
+#include "base/safe/ShownText.h"
+#include "program/CommandLine.h"
+#include "program/Commands.h"
+#include "program/Stop.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace {
+
+using Command = int (*)(int argc, char** argv, int first);
+
+struct NamedCommand {
+  std::string_view name;
+  Command run;
+};
+
+constexpr NamedCommand commands[] = {
+    {"render", fenestra::renderCommand},   {"inspect", fenestra::inspectCommand},
+    {"compare", fenestra::compareCommand}, {"phantom", fenestra::phantomCommand},
+    {"serve", fenestra::serveCommand},     {"turntable", fenestra::turntableCommand},
+};
+
+/// A word alone that is nearly a subcommand and no file is meant as one.
+void refuseMisspelt(std::string_view word) {
+  std::vector<std::string_view> names;
+  for (const NamedCommand& command : commands)
+    names.push_back(command.name);
+  const std::string_view likely = fenestra::nearest(word, names);
+  std::error_code failed;
+  if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
+    throw fenestra::usageError("'" + std::string(word) +
+                               "': neither a file nor a subcommand; did you mean fenestra " +
+                               std::string(likely) + "?");
+}
+
+int dispatch(int argc, char** argv) {
+  const std::string_view word = argc > 1 ? argv[1] : "";
+  const auto* named =
+      std::find_if(std::begin(commands), std::end(commands),
+                   [word](const NamedCommand& command) { return command.name == word; });
+  if (named != std::end(commands))
+    return named->run(argc, argv, 2);
+  refuseMisspelt(word);
+  return fenestra::renderCommand(argc, argv, 1);
+}
+
+void say(std::string_view text) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+}
+
+/// Whatever an exception says, on one line; memory may be what there is none of.
+int fail(int status, std::string_view line) {
+  static char buffer[8192];
+  const std::size_t size = std::min(line.size(), sizeof buffer);
+  std::copy_n(line.begin(), size, buffer);
+  fenestra::makeOneLine({buffer, size});
+  say("fenestra: ");
+  say({buffer, size});
+  say("\n");
+  return status;
+}
+
+constexpr int outputStatus = static_cast<int>(fenestra::ErrorKind::output);
+
+int run(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const fenestra::Error& error) {
+    return fail(error.exitStatus(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(outputStatus, "out of memory; use a smaller volume or picture");
+  } catch (const std::exception& error) {
+    return fail(outputStatus, error.what());
+  }
+}
+
+/// A stream that was closed must not become a file that is read or written. Nobody reads what goes
+/// to /dev/full, and writing there fails as it would have.
+void openStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0)
+      ::open(stream == STDIN_FILENO ? "/dev/null" : "/dev/full", O_RDWR); // the lowest number
+}
+
+/// What a command printed is a result as well.
+int finishOutput(int status) {
+  const bool isWhole = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
+  if (isWhole || status != 0)
+    return status;
+  return fail(outputStatus, "standard output: cannot be written; is there room, and a reader?");
+}
+
+/// Tries again to remove what could not be removed, and says where the user has to.
+int removeRest(int status) {
+  fenestra::removeLeftovers();
+  try {
+    for (const std::filesystem::path& path : fenestra::remainingLeftovers()) {
+      say("fenestra: warning: temporary file left: ");
+      say(path.native());
+      say("; remove it\n");
+    }
+  } catch (const std::bad_alloc&) {
+    say("fenestra: warning: temporary files are left; run any command again to remove them\n");
+  }
+  return status;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  openStandardStreams();
+  fenestra::serveApart(argc, argv); // does not return where this is the child
+  fenestra::handleStops();
+  fenestra::removeAbandonedFolders();
+  const int status = removeRest(finishOutput(run(argc, argv)));
+  // Everything is written. Destructors of libraries' static objects have nothing to do for us, take
+  // a tenth of a short command, and print where memory fails (HDF5's).
+  std::_Exit(status == 0 && fenestra::stopRequested() ? fenestra::stopStatus() : status);
+}

@@ -1,0 +1,223 @@
+#include "session/Defaults.h"
+
+#include "base/Error.h"
+
+#include <map>
+
+namespace fenestra {
+namespace {
+
+ViewDirection namedView(const std::string& name, const std::optional<ViewDirection>& automatic) {
+  static const std::map<std::string, ViewDirection> views = {
+      {"anterior", {Vec3::UnitY(), Vec3::UnitZ()}}, {"posterior", {-Vec3::UnitY(), Vec3::UnitZ()}},
+      {"right", {Vec3::UnitX(), Vec3::UnitZ()}},    {"left", {-Vec3::UnitX(), Vec3::UnitZ()}},
+      {"superior", {Vec3::UnitZ(), Vec3::UnitY()}}, {"inferior", {-Vec3::UnitZ(), Vec3::UnitY()}},
+  };
+  if (name == "auto" && automatic)
+    return *automatic;
+  const auto known = views.find(name);
+  if (known == views.end())
+    throw usageError("--view: '" + name +
+                     "' is unknown; use anterior, posterior, left, right, superior, inferior, or "
+                     "auto with a focus");
+  return known->second;
+}
+
+/// Quantiles of the voxels' values, from at most about a million of them.
+std::vector<double> quantiles(const Volume& volume, const std::vector<double>& fractions) {
+  return std::visit(
+      [&](const auto& voxels) {
+        const std::size_t stride = voxels.size() / 1'000'000 + 1;
+        std::vector<double> values;
+        for (std::size_t i = 0; i < voxels.size(); i += stride)
+          values.push_back(static_cast<double>(voxels[i]));
+        std::sort(values.begin(), values.end());
+        std::vector<double> result;
+        for (const double f : fractions)
+          result.push_back(
+              values[static_cast<std::size_t>(f * static_cast<double>(values.size() - 1))]);
+        return result;
+      },
+      volume.voxels);
+}
+
+/// The threshold that best parts a sample of values in two (Otsu 1979), from a 256-bin histogram
+/// of [low, high].
+double backgroundLevel(const Volume& volume, double low, double high) {
+  constexpr int bins = 256;
+  std::vector<double> histogram(bins, 0.0);
+  std::visit(
+      [&](const auto& voxels) {
+        const std::size_t stride = voxels.size() / 1'000'000 + 1;
+        for (std::size_t i = 0; i < voxels.size(); i += stride) {
+          const double x = (static_cast<double>(voxels[i]) - low) / (high - low);
+          histogram[static_cast<std::size_t>(std::clamp(x, 0.0, 1.0) * (bins - 1))] += 1.0;
+        }
+      },
+      volume.voxels);
+  double total = 0.0;
+  double moment = 0.0;
+  for (int i = 0; i < bins; ++i) {
+    total += histogram[static_cast<std::size_t>(i)];
+    moment += i * histogram[static_cast<std::size_t>(i)];
+  }
+  double below = 0.0;
+  double belowMoment = 0.0;
+  double best = -1.0;
+  int threshold = 0;
+  for (int i = 0; i < bins; ++i) {
+    below += histogram[static_cast<std::size_t>(i)];
+    belowMoment += i * histogram[static_cast<std::size_t>(i)];
+    if (below == 0.0 || below == total)
+      continue;
+    const double gap = belowMoment / below - (moment - belowMoment) / (total - below);
+    const double between = below * (total - below) * gap * gap;
+    if (between > best) {
+      best = between;
+      threshold = i;
+    }
+  }
+  return low + (high - low) * (threshold + 1.0) / bins;
+}
+
+/// A vector times the power of two that brings it near length 1: squares neither overflow nor
+/// vanish then, and what is normalized has the same digits as without.
+Vec3 ofUsualLength(const Vec3& v) {
+  const double greatest = v.cwiseAbs().maxCoeff();
+  if (greatest == 0.0 || !std::isfinite(greatest))
+    return v;
+  const int exponent = std::ilogb(greatest);
+  return v.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
+}
+
+/// Of the least box along a domain's grid that holds it, world mm.
+Vec3 centerOf(const Domain& domain) {
+  Vec3 lower = Vec3::Constant(infinity);
+  Vec3 upper = -lower;
+  for (const Vec3& corner : domain.indexCorners()) {
+    lower = lower.cwiseMin(corner);
+    upper = upper.cwiseMax(corner);
+  }
+  return domain.grid().indexToWorld * Box{lower, upper}.center();
+}
+
+struct Extent {
+  double across = 0.0, up = 0.0; ///< half extents along the view's right and up, mm
+};
+
+/// Of a domain around its centre, seen along a view.
+Extent seen(const Domain& domain, const Vec3& right, const Vec3& up) {
+  const Vec3 center = centerOf(domain);
+  Extent extent;
+  for (const Vec3& corner : domain.indexCorners()) {
+    const Vec3 d = domain.grid().indexToWorld * corner - center;
+    extent.across = std::max(extent.across, std::abs(d.dot(right)));
+    extent.up = std::max(extent.up, std::abs(d.dot(up)));
+  }
+  return extent;
+}
+
+} // namespace
+
+std::optional<std::string> transferPresetFor(const Volume& volume) {
+  return suits(Modality::ct, volume) ? std::optional<std::string>("ct-soft") : std::nullopt;
+}
+
+bool suits(Modality modality, const Volume& volume) {
+  // Air, or padding beyond it (-2000, -8192, -32768 occur), and bone.
+  const bool hounsfield = volume.minimum <= -500.0 && volume.maximum >= 200.0;
+  return hounsfield == (modality == Modality::ct);
+}
+
+std::array<double, 2> usualRange(const Volume& volume) {
+  const std::vector<double> levels = quantiles(volume, {0.005, 0.995});
+  return {levels[0], levels[1] > levels[0] ? levels[1] : volume.maximum};
+}
+
+TransferFunction relativeTransfer(const Volume& volume) {
+  const double unit =
+      100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm
+  const std::array<double, 2> range = usualRange(volume);
+  const double low = range[0];
+  const double high = range[1];
+  if (!(high > low))
+    return {ScalarFunction({{low, ScalarFunction::Value(0.02 * unit)}}),
+            ColorFunction({{low, Rgb(0.9, 0.85, 0.8)}})};
+
+  const double background = backgroundLevel(volume, low, high);
+  const auto between = [&](double f) { return background + f * (high - background); };
+  const auto knot = [](double s, double sigma_t) {
+    return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
+  };
+  const double start = background - 0.35 * (background - low);
+  return {ScalarFunction({knot(start, 0.0), knot(background, 0.8 * unit),
+                          knot(between(0.3), 2.5 * unit), knot(high, 5.0 * unit)}),
+          ColorFunction({{start, Rgb(0.55, 0.22, 0.16)},
+                         {between(0.15), Rgb(0.74, 0.36, 0.27)},
+                         {between(0.45), Rgb(0.86, 0.60, 0.47)},
+                         {between(0.75), Rgb(0.94, 0.82, 0.68)},
+                         {high, Rgb(0.97, 0.93, 0.86)}}),
+          {},
+          0.0,
+          SurfaceShading{}};
+}
+
+CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
+                     int height, const std::optional<ViewDirection>& automatic) {
+  constexpr double surroundings = 1.6; // how much more than the focus is framed
+  constexpr double margin = 1.05;      // around the whole volume
+  constexpr double defaultAngle = 30.0;
+  const ViewDirection named = namedView(view.name.value_or("anterior"), automatic);
+
+  const Grid& grid = domain.grid();
+  const Domain volume = domain.indexCorners().empty() ? Domain(grid) : domain;
+  CameraPose pose;
+  pose.projection = view.projection.value_or(Projection::orthographic);
+  pose.angle = view.angle.value_or(defaultAngle);
+  pose.target = view.target.value_or(focus ? focus->grid.worldCenter() : centerOf(volume));
+  const Vec3 back =
+      view.position ? Vec3((*view.position - pose.target).normalized()) : named.fromTarget;
+  pose.up = view.up.value_or(
+      std::abs(back.dot(named.up)) > 0.999 * back.norm() ? Vec3(Vec3::UnitY()) : named.up);
+  const Vec3 right = ofUsualLength(pose.up).cross(back).normalized();
+  const Vec3 up = back.cross(right);
+
+  // The whole volume, or the focus with its surroundings where that is less.
+  const double aspect = static_cast<double>(width) / height;
+  const auto halfHeight = [&](const Domain& domain) {
+    const Extent extent = seen(domain, right, up);
+    return std::max(extent.up, extent.across / aspect);
+  };
+  double half = margin * halfHeight(volume);
+  if (focus)
+    half = std::min(half, surroundings * halfHeight(focus->grid));
+  pose.scale = view.scale.value_or(half);
+
+  // The eye stands outside the volume; in perspective at least as far as the usual angle asks, and
+  // where that is still inside, further away with a narrower one.
+  const double outside = margin * grid.boundingRadius() + (pose.target - grid.worldCenter()).norm();
+  const double distance = std::max(outside, half / std::tan(pose.angle * pi / 360.0));
+  if (!view.angle && !view.position)
+    pose.angle = 360.0 / pi * std::atan2(half, distance);
+  pose.position = view.position.value_or(pose.target + distance * back);
+  return pose;
+}
+
+CameraPose adjustedView(const ViewRequest& view, const CameraPose& scene) {
+  CameraPose pose = scene;
+  pose.projection = view.projection.value_or(scene.projection);
+  const bool perspective = pose.projection == Projection::perspective;
+  if (perspective && view.scale)
+    throw usageError("--scale: the scene's camera is a perspective one; use --angle, or add "
+                     "--projection orthographic");
+  if (!perspective && view.angle)
+    throw usageError("--angle: the scene's camera is an orthographic one; use --scale, or add "
+                     "--projection perspective");
+  pose.target = view.target.value_or(scene.target);
+  pose.up = view.up.value_or(scene.up);
+  pose.scale = view.scale.value_or(scene.scale);
+  pose.angle = view.angle.value_or(scene.angle);
+  return pose;
+}
+
+} // namespace fenestra

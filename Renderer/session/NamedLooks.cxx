@@ -1,0 +1,144 @@
+#include "session/NamedLooks.h"
+
+#include "base/Error.h"
+#include "base/safe/EmbeddedResources.h"
+#include "base/safe/ShownText.h"
+#include "base/safe/SystemCalls.h"
+#include "files/looks/LightReader.h"
+#include "files/looks/LookText.h"
+#include "files/slicer/MrmlScene.h"
+#include "files/slicer/SlicerPresets.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+namespace fenestra {
+namespace {
+
+/// What `name` means under Resources/<kind>/: the text of a preset, empty where there is none.
+std::string_view ownPreset(const std::string& kind, const std::string& name) {
+  return embeddedResource(kind + "/" + name + ".json");
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names)
+    text += (text.empty() ? "" : ", ") + shown(name);
+  return text;
+}
+
+bool isFoundAsFile(const std::string& name) {
+  std::error_code failed;
+  return std::filesystem::exists(name, failed);
+}
+
+/// A file that may only not be looked at is said to be so; other names can be a preset's as well.
+Error unknownPreset(const std::string& flag, const std::string& name, const std::string& known) {
+  std::error_code failed;
+  if (name.find('/') != std::string::npos && !std::filesystem::exists(name, failed) && failed)
+    return readingError(name, failed.value(), "check the permissions of its folder");
+  return inputError(name,
+                    "no such file, and no preset of that name; --" + flag + " takes " + known);
+}
+
+/// Volume properties of a scene by name or id, and Slicer's presets.
+class SlicerTransfers {
+public:
+  explicit SlicerTransfers(const std::filesystem::path& input) {
+    if (isSceneFile(input))
+      m_scene.emplace(input);
+    if (const auto presets = findSlicerPresets()) {
+      m_presets.emplace(*presets);
+      m_file = presets->string();
+    }
+  }
+
+  std::optional<NamedTransfer> find(const std::string& name) {
+    if (m_scene)
+      for (const MrmlNode* node : m_scene->document.withTag("VolumeProperty"))
+        if (node->name == name || node->id == name)
+          return NamedTransfer{{readSceneProperty(*m_scene, *node)}};
+    if (auto function = m_presets ? m_presets->find(name) : std::nullopt)
+      return NamedTransfer{{std::move(*function)}, m_file};
+    return std::nullopt;
+  }
+
+  /// What there is, for a message.
+  std::string known() const {
+    std::vector<std::string> inScene;
+    if (m_scene)
+      for (const MrmlNode* node : m_scene->document.withTag("VolumeProperty"))
+        inScene.push_back(node->name);
+    std::string text = inScene.empty() ? "" : "; of the scene " + listed(inScene);
+    text += m_presets ? "; of Slicer " + listed(m_presets->names())
+                      : "; Slicer's own presets are known where SLICER_HOME names its folder";
+    return text;
+  }
+
+private:
+  std::optional<MrmlScene> m_scene;
+  std::optional<SlicerPresets> m_presets;
+  std::string m_file; ///< of the presets
+};
+
+} // namespace
+
+std::vector<std::string> ownPresets(const std::string& kind) {
+  constexpr std::string_view ending = ".json";
+  std::vector<std::string> names;
+  for (const std::string& path : embeddedResourceNames(kind + "/"))
+    if (path.ends_with(ending))
+      names.push_back(path.substr(kind.size() + 1, path.size() - kind.size() - 1 - ending.size()));
+  return names;
+}
+
+bool isFileName(const std::string& kind, const std::string& name) {
+  return ownPreset(kind, name).empty() &&
+         (name.find_first_of("/.") != std::string::npos || isFoundAsFile(name));
+}
+
+NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path& input) {
+  if (isLookText(name))
+    return {parseTransferLook(name, "--transfer")};
+  if (const std::string_view text = ownPreset("transfer", name); !text.empty())
+    return {parseTransferLook(text, name)};
+  if (isFoundAsFile(name))
+    return {readTransferLook(name), name};
+  SlicerTransfers slicer(input);
+  if (auto transfer = slicer.find(name))
+    return std::move(*transfer);
+  throw unknownPreset("transfer", name,
+                      "a file or one of " + listed(ownPresets("transfer")) + slicer.known());
+}
+
+bool isFileOfTransfer(const std::string& name, const std::filesystem::path& input) {
+  if (isLookText(name) || !isFileName("transfer", name))
+    return false;
+  return name.find('/') != std::string::npos || isFoundAsFile(name) ||
+         !SlicerTransfers(input).find(name);
+}
+
+NamedLights namedLights(const std::string& name) {
+  if (isLookText(name))
+    return {parseLights(name, "--lights")};
+  if (const std::string_view text = ownPreset("lights", name); !text.empty())
+    return {parseLights(text, name)};
+  if (!isFoundAsFile(name))
+    throw unknownPreset("lights", name, "a file or one of " + listed(ownPresets("lights")));
+  return {readLights(name), name};
+}
+
+bool isFileOfLights(const std::string& name) {
+  return isLookText(name) ? namesFiles(name, "--lights") : isFileName("lights", name);
+}
+
+OrganPreset namedPreset(const std::string& name) {
+  if (const std::string_view text = ownPreset("presets", name); !text.empty())
+    return parsePreset(text, name);
+  if (!isFoundAsFile(name))
+    throw unknownPreset("preset", name, "auto, a file, or one of " + listed(ownPresets("presets")));
+  return readPreset(name);
+}
+
+} // namespace fenestra

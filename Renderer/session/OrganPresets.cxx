@@ -1,0 +1,85 @@
+#include "session/OrganPresets.h"
+
+#include "base/Error.h"
+#include "base/safe/ShownText.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+using Fits = std::vector<const OrganPreset*>;
+
+bool matchesAny(const std::vector<std::string>& patterns, const std::string& name) {
+  return std::ranges::any_of(
+      patterns, [&](const std::string& pattern) { return matchesName(pattern, name); });
+}
+
+bool hasAny(const std::vector<std::string>& codes, const SegmentInfo& segment) {
+  return std::ranges::any_of(codes, [&](const std::string& code) {
+    return code == segment.type || code == segment.type + "~" + segment.region;
+  });
+}
+
+bool modalitiesDiffer(const Fits& fits) {
+  return std::ranges::any_of(
+      fits, [&](const OrganPreset* preset) { return preset->modality != fits.front()->modality; });
+}
+
+std::string listedFits(const Fits& fits, const std::vector<SegmentInfo>& segments) {
+  std::string text;
+  for (const OrganPreset* preset : fits)
+    text += (text.empty() ? "" : ", ") + preset->name + " (" +
+            listedNames(focusOf(preset->focus, segments)) + ")";
+  return text;
+}
+
+} // namespace
+
+std::vector<SegmentInfo> focusOf(const FocusPatterns& patterns,
+                                 const std::vector<SegmentInfo>& segments) {
+  std::vector<SegmentInfo> focus;
+  std::ranges::copy_if(segments, std::back_inserter(focus), [&](const SegmentInfo& segment) {
+    return (matchesAny(patterns.names, segment.name) || hasAny(patterns.codes, segment)) &&
+           !matchesAny(patterns.except, segment.name);
+  });
+  return focus;
+}
+
+std::string listedNames(const std::vector<SegmentInfo>& segments) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, segments.size()); ++i)
+    text += (i == 0 ? "" : ", ") + shown(segments[i].name);
+  if (segments.size() > most)
+    text += " and " + std::to_string(segments.size() - most) + " more";
+  return text;
+}
+
+const OrganPreset& fittingPreset(const std::vector<OrganPreset>& presets,
+                                 const std::vector<SegmentInfo>& segments,
+                                 const std::string& source,
+                                 const std::function<bool(Modality)>& suits) {
+  Fits fits;
+  for (const OrganPreset& preset : presets)
+    if (!focusOf(preset.focus, segments).empty())
+      fits.push_back(&preset);
+  const Fits all = fits;
+  std::erase_if(fits, [&](const OrganPreset* preset) {
+    return std::ranges::any_of(all, [&](const OrganPreset* other) {
+      return std::ranges::find(other->before, preset->name) != other->before.end();
+    });
+  });
+  if (fits.size() > 1 && modalitiesDiffer(fits))
+    std::erase_if(fits, [&](const OrganPreset* preset) { return !suits(preset->modality); });
+  if (fits.empty())
+    throw inputError(source, "--preset auto: no preset knows a segment of it (" +
+                                 listedNames(segments) +
+                                 "); name a preset and give --focus A,B,...");
+  if (fits.size() > 1)
+    throw inputError(source, "--preset auto: several presets fit, " + listedFits(fits, segments) +
+                                 "; name one");
+  return *fits.front();
+}
+
+} // namespace fenestra

@@ -1,0 +1,101 @@
+#include "session/Picture.h"
+
+#include "base/Error.h"
+
+namespace fenestra {
+namespace {
+
+using Plane = std::vector<float>;
+
+/// A channel from a function of the pixel's sums.
+template <typename Value>
+Plane plane(const Film& film, Value&& value) {
+  Plane result;
+  result.reserve(film.pixelCount());
+  for (const PixelSums& pixel : film.pixels())
+    result.push_back(static_cast<float>(value(pixel)));
+  return result;
+}
+
+double perSample(double sum, const PixelSums& pixel) {
+  return pixel.samples > 0 ? sum / static_cast<double>(pixel.samples) : 0.0;
+}
+
+double meanDepth(const PixelSums& pixel) {
+  return pixel.collided > 0 ? pixel.depth / static_cast<double>(pixel.collided) : infinity;
+}
+
+/// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity where
+/// nothing lies behind it.
+Plane clipPlane(const Camera& camera, const Clip& clip) {
+  Plane result;
+  for (int row = 0; row < camera.height(); ++row)
+    for (int column = 0; column < camera.width(); ++column) {
+      const Ray ray = camera.ray(column + 0.5, row + 0.5);
+      const Interval range = behindSurface(clip, ray);
+      const double start = range.empty() ? infinity : range.begin * camera.depthPerLength(ray);
+      result.push_back(static_cast<float>(start));
+    }
+  return result;
+}
+
+} // namespace
+
+LayerSet layerSet(const std::vector<std::string>& names) {
+  if (names.empty())
+    return {};
+  LayerSet layers{false, false, false, false, false, false, false};
+  const std::map<std::string, bool LayerSet::*> known = {
+      {"color", &LayerSet::color},    {"depth", &LayerSet::depth},   {"clip", &LayerSet::clip},
+      {"albedo", &LayerSet::albedo},  {"normal", &LayerSet::normal}, {"error", &LayerSet::error},
+      {"samples", &LayerSet::samples}};
+  for (const std::string& name : names) {
+    const auto it = known.find(name);
+    if (it == known.end())
+      throw usageError("--layers: '" + name +
+                       "' is unknown; use color, depth, clip, albedo, normal, error, samples");
+    layers.*(it->second) = true;
+  }
+  return layers;
+}
+
+Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers) {
+  Image image;
+  image.width = film.width();
+  image.height = film.height();
+  const char* const rgb[] = {"R", "G", "B"};
+  const char* const xyz[] = {"X", "Y", "Z"};
+  for (int c = 0; c < 3; ++c) {
+    const std::string color = rgb[c];
+    if (layers.color)
+      image.channels[color] = plane(film, [c](const PixelSums& p) { return p.mean[c]; });
+    if (layers.error)
+      image.channels["error." + color] =
+          plane(film, [c](const PixelSums& p) { return p.standardError()[c]; });
+    if (layers.albedo)
+      image.channels["albedo." + color] =
+          plane(film, [c](const PixelSums& p) { return perSample(p.albedo[c], p); });
+    if (layers.normal)
+      image.channels[std::string("normal.") + xyz[c]] =
+          plane(film, [c](const PixelSums& p) { return perSample(p.normal[c], p); });
+  }
+  if (layers.color)
+    image.channels["A"] = plane(film, [](const PixelSums& p) { return perSample(p.alpha, p); });
+  if (layers.depth)
+    image.channels["Z"] = plane(film, meanDepth);
+  if (layers.clip && !std::holds_alternative<ClipNone>(clip))
+    image.channels["clip.Z"] = clipPlane(camera, clip);
+  if (layers.samples)
+    image.channels["samples.N"] =
+        plane(film, [](const PixelSums& p) { return static_cast<double>(p.samples); });
+  return image;
+}
+
+ImagePlane picturePlane(const Camera& camera) {
+  const Vec3 target = camera.pose().target;
+  const Vec2 corner = camera.toPlane(0.5, 0.5);
+  return {target + corner.x() * camera.right() + corner.y() * camera.up(),
+          camera.pixelPitch() * camera.right(), -camera.pixelPitch() * camera.up()};
+}
+
+} // namespace fenestra

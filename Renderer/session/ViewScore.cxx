@@ -1,0 +1,189 @@
+#include "session/ViewScore.h"
+
+#include "model/medium/Medium.h"
+
+#include <tbb/parallel_for.h>
+
+namespace fenestra {
+
+namespace {
+
+/// The n-th point of a sequence that fills the unit square evenly and along no axis of it (Roberts
+/// 2018, "The unreasonable effectiveness of quasirandom sequences").
+Vec2 evenPoint(std::size_t n) {
+  const auto fraction = [](double x) { return x - std::floor(x); };
+  const auto i = static_cast<double>(n) + 0.5;
+  return {fraction(i * 0.7548776662466927), fraction(i * 0.5698402909980532)};
+}
+
+bool isFocus(const Mask& focus, const Vec3& world) {
+  const Vec3 nearest = (focus.grid.worldToIndex * world).array().round();
+  const Size3& size = focus.grid.size;
+  if ((nearest.array() < 0.0).any() || (nearest.array() >= size.cast<double>().array()).any())
+    return false;
+  const Size3 i = nearest.cast<std::int64_t>();
+  return focus.voxels[static_cast<std::size_t>(i.x() + size.x() * (i.y() + size.y() * i.z()))] >=
+         focus.half();
+}
+
+} // namespace
+
+/// What parallel rays meet of the focus first.
+class ViewScorer::FocusDepths {
+public:
+  FocusDepths(const FocusCells& cells, const Domain& domain, const Vec3& fromTarget,
+              std::size_t rays)
+      : m_cells(cells), m_domain(domain), m_frame(fromTarget) {
+    const Box box = cells.box();
+    const Affine cellToWorld = cells.cellToWorld();
+    m_center = cellToWorld * box.center();
+    for (int i = 0; i < 8; ++i)
+      m_half = m_half.cwiseMax(local(cellToWorld * box.corner(i)).cwiseAbs());
+    trace(rays);
+  }
+
+  /// mm².
+  double area() const { return 4.0 * m_half.x() * m_half.y() * met(); }
+  double met() const { return m_meetings / m_rays; }
+  /// From there on a world point is removed; mm along the view from the focus's centre.
+  double surfaceAt(const Vec3& point) const {
+    const Vec2 at = binPosition(point.head<2>());
+    if ((at.array() < 0.0).any() || (at.array() >= double{bins}).any())
+      return m_mean;
+    const Bin& bin = m_bins[binIndex(at)];
+    return bin.count > 0.0 ? bin.sum / bin.count : m_mean;
+  }
+  /// Across the view, and depth along it, from the focus's centre; mm.
+  Vec3 local(const Vec3& world) const {
+    const Vec3 across = m_frame.toLocal(world - m_center);
+    return {across.x(), across.y(), -across.z()};
+  }
+
+private:
+  static constexpr int bins = 32; ///< along each axis
+  struct Bin {
+    double sum = 0.0, count = 0.0; ///< of depths
+  };
+
+  Vec2 binPosition(const Vec2& across) const {
+    return bins * (0.5 * (across.cwiseQuotient(m_half.head<2>()).array() + 1.0)).matrix();
+  }
+  static std::size_t binIndex(const Vec2& at) {
+    return static_cast<std::size_t>(at.x()) + bins * static_cast<std::size_t>(at.y());
+  }
+
+  void trace(std::size_t rays) {
+    m_rays = static_cast<double>(rays);
+    for (std::size_t next = 0; next < rays;) {
+      FocusRays batch;
+      std::array<Vec2, FocusRays::capacity> across;
+      for (; next < rays && !batch.full(); ++next) {
+        const Vec2 even = 2.0 * evenPoint(next) - Vec2::Ones();
+        const Vec2 at = even.cwiseProduct(m_half.head<2>());
+        across[batch.size] = at;
+        add(batch, at);
+      }
+      m_cells.findMeetings(batch);
+      for (std::size_t i = 0; i < batch.size; ++i)
+        if (batch.meeting[i] < infinity)
+          found(across[i], batch.meeting[i] - m_half.z());
+    }
+    m_mean = m_meetings > 0.0 ? m_mean / m_meetings : 0.0;
+  }
+
+  /// A ray from in front of the focus, its part inside the domain.
+  void add(FocusRays& batch, const Vec2& across) const {
+    const Vec3 start = m_center + m_frame.toWorld({across.x(), across.y(), m_half.z()});
+    const Ray world{start, -m_frame.normal};
+    const Interval inDomain = m_domain.clip(transformed(m_domain.grid().worldToIndex, world));
+    const Ray ray = transformed(m_cells.worldToCell(), world);
+    const Interval range = m_cells.box().clip(ray, inDomain);
+    if (range.empty())
+      return;
+    const std::size_t i = batch.size++;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      batch.origin[axis][i] = ray.origin[static_cast<int>(axis)];
+      batch.direction[axis][i] = ray.direction[static_cast<int>(axis)];
+    }
+    batch.begin[i] = range.begin;
+    batch.end[i] = range.end;
+  }
+
+  void found(const Vec2& across, double depth) {
+    m_meetings += 1.0;
+    m_mean += depth;
+    Bin& bin = m_bins[binIndex(binPosition(across).cwiseMin(bins - 1e-6).cwiseMax(0.0))];
+    bin.sum += depth;
+    bin.count += 1.0;
+  }
+
+  const FocusCells& m_cells;
+  const Domain& m_domain;
+  Frame m_frame; ///< its normal points to the eye
+  Vec3 m_center;
+  Vec3 m_half = Vec3::Zero(); ///< of the cells' box, mm
+  double m_rays = 0.0, m_meetings = 0.0;
+  double m_mean = 0.0; ///< depth
+  std::array<Bin, std::size_t{bins} * bins> m_bins{};
+};
+
+ViewScorer::ViewScorer(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
+                       const Mask& focus)
+    : m_domain(domain), m_focus(focus) {
+  gatherContext(volume, transfer, focus);
+}
+
+void ViewScorer::gatherContext(const Volume& volume, const TransferFunction& transfer,
+                               const Mask& focus) {
+  constexpr double cellsAlong = 32.0;
+  const Grid& grid = volume.grid;
+  const Vec3 edges = grid.spacing().cwiseProduct(grid.size.cast<double>());
+  m_matterEdge = edges.maxCoeff() / cellsAlong;
+  const Size3 count =
+      (edges / m_matterEdge).array().round().max(1.0).cast<std::int64_t>().min(grid.size.array());
+  std::vector<std::vector<Matter>> layers(static_cast<std::size_t>(count.z()));
+  std::visit(
+      [&](const auto& voxels) {
+        const Medium medium(grid, voxels, transfer);
+        const Vec3 cell = grid.size.cast<double>().cwiseQuotient(count.cast<double>());
+        tbb::parallel_for(std::int64_t{0}, count.z(), [&](std::int64_t z) {
+          for (std::int64_t y = 0; y < count.y(); ++y)
+            for (std::int64_t x = 0; x < count.x(); ++x) {
+              const Vec3 middle = Size3(x, y, z).cast<double>() + Vec3::Constant(0.5);
+              const Vec3 index = cell.cwiseProduct(middle) - Vec3::Constant(0.5);
+              const Vec3 world = grid.indexToWorld * index;
+              if (!m_domain.contains(index) || isFocus(focus, world))
+                continue;
+              const double opacity = -std::expm1(-m_matterEdge * medium.extinction(index));
+              if (opacity > 0.0)
+                layers[static_cast<std::size_t>(z)].push_back({world, opacity});
+            }
+        });
+      },
+      volume.voxels);
+  for (const std::vector<Matter>& layer : layers)
+    m_context.insert(m_context.end(), layer.begin(), layer.end());
+}
+
+double ViewScorer::removedShare(const FocusDepths& focus) const {
+  double removed = 0.0, all = 0.0;
+  for (const Matter& matter : m_context) {
+    const Vec3 at = focus.local(matter.center);
+    const double inFront = (focus.surfaceAt(at) - at.z()) / m_matterEdge;
+    removed += matter.weight * std::clamp(inFront + 0.5, 0.0, 1.0);
+    all += matter.weight;
+  }
+  return all > 0.0 ? removed / all : 0.0;
+}
+
+ViewScore ViewScorer::operator()(const Vec3& fromTarget, std::size_t rays) const {
+  const FocusDepths focus(m_focus, m_domain, fromTarget, rays);
+  ViewScore score{.area = focus.area(), .met = focus.met()};
+  if (score.area > 0.0)
+    score.removed = removedShare(focus);
+  const double custom = 1.0 + 0.05 * fromTarget.y() - 0.1 * fromTarget.z() * fromTarget.z();
+  score.score = score.area * (1.0 - score.removed) * custom;
+  return score;
+}
+
+} // namespace fenestra

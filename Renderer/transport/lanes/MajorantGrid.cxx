@@ -1,0 +1,211 @@
+#include "transport/lanes/MajorantGrid.h"
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <bit>
+
+namespace fenestra {
+namespace {
+
+/// An array of cells with a border of one.
+struct Bordered {
+  Size3 size;
+
+  std::size_t count() const { return static_cast<std::size_t>(size.prod()); }
+  std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return static_cast<std::size_t>(x + size.x() * (y + size.y() * z));
+  }
+  /// Calls visit(x, y, z) for all of a layer that are not border.
+  template <typename Visit>
+  void forEachInLayer(std::int64_t z, Visit&& visit) const {
+    for (std::int64_t y = 1; y < size.y() - 1; ++y)
+      for (std::int64_t x = 1; x < size.x() - 1; ++x)
+        visit(x, y, z);
+  }
+  /// In the order of their indices.
+  template <typename Visit>
+  void forEachInner(Visit&& visit) const {
+    for (std::int64_t z = 1; z < size.z() - 1; ++z)
+      forEachInLayer(z, visit);
+  }
+  /// In any order.
+  template <typename Visit>
+  void forEachInParallel(Visit&& visit) const {
+    tbb::parallel_for(std::int64_t{1}, size.z() - 1,
+                      [&](std::int64_t z) { forEachInLayer(z, visit); });
+  }
+};
+
+/// The number of empty cells around each empty one inside the border: two sweeps (Rosenfeld and
+/// Pfaltz 1966), exact for distances that count diagonals as 1. Nothing is known beyond the border.
+/// `filled` cells have -1.
+std::vector<std::int32_t> emptyAround(const Bordered& at, const std::vector<float>& majorants) {
+  constexpr std::int32_t unknown = 1000000;
+  std::vector<std::int32_t> cells(at.count(), 0);
+  at.forEachInner([&](auto x, auto y, auto z) {
+    cells[at.index(x, y, z)] = majorants[at.index(x, y, z)] > 0.0F ? -1 : unknown;
+  });
+  // `side` is -1 for the neighbours that the first sweep has seen, 1 for the second's.
+  const auto relax = [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t side) {
+    std::int32_t& cell = cells[at.index(x, y, z)];
+    if (cell < 0)
+      return;
+    // A filled neighbour allows none, an empty one itself and as many as are around it.
+    const auto neighbour = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
+      cell = std::min(cell, cells[at.index(x + dx, y + dy, z + dz)] + 1);
+    };
+    for (std::int64_t dy = -1; dy <= 1; ++dy)
+      for (std::int64_t dx = -1; dx <= 1; ++dx)
+        neighbour(dx, dy, side);
+    for (std::int64_t dx = -1; dx <= 1; ++dx)
+      neighbour(dx, side, 0);
+    neighbour(side, 0, 0);
+  };
+  at.forEachInner([&](auto x, auto y, auto z) { relax(x, y, z, -1); });
+  at.forEachInner([&](auto x, auto y, auto z) {
+    relax(at.size.x() - 1 - x, at.size.y() - 1 - y, at.size.z() - 1 - z, 1);
+  });
+  return cells;
+}
+
+/// Each cell inside the border becomes the greatest of the 27 around it.
+void dilate(const Bordered& at, std::vector<float>& cells, std::vector<float>& room) {
+  for (const std::size_t stride : {at.index(1, 0, 0), at.index(0, 1, 0), at.index(0, 0, 1)}) {
+    at.forEachInParallel([&](auto x, auto y, auto z) {
+      const std::size_t i = at.index(x, y, z);
+      room[i] = std::max({cells[i - stride], cells[i], cells[i + stride]});
+    });
+    cells.swap(room);
+  }
+}
+
+/// How far a cell's bound reaches, and the bound there.
+struct Reach {
+  std::vector<float> bound;
+  std::vector<std::uint8_t> cells;
+};
+
+/// Sums over boxes of cells.
+class BoxSums {
+public:
+  BoxSums(const Bordered& at, const std::vector<float>& cells) : m_at(at), m_sums(cells.size()) {
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      m_sums[i] = static_cast<double>(cells[i]);
+    for (const std::size_t stride : {at.index(1, 0, 0), at.index(0, 1, 0), at.index(0, 0, 1)})
+      at.forEachInner([&](auto x, auto y, auto z) {
+        const std::size_t i = at.index(x, y, z);
+        m_sums[i] += m_sums[i - stride];
+      });
+  }
+
+  /// The mean of those from (x, y, z) that are at most `reach` away, none beyond the border.
+  float mean(std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t reach) const {
+    const Size3 low = (Size3(x, y, z).array() - reach).max(1);
+    const Size3 high = (Size3(x, y, z).array() + reach).min(m_at.size.array() - 2);
+    const auto upTo = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+      return m_sums[m_at.index(i, j, k)];
+    };
+    const auto slice = [&](std::int64_t k) {
+      return upTo(high.x(), high.y(), k) - upTo(low.x() - 1, high.y(), k) -
+             upTo(high.x(), low.y() - 1, k) + upTo(low.x() - 1, low.y() - 1, k);
+    };
+    return static_cast<float>((slice(high.z()) - slice(low.z() - 1)) /
+                              static_cast<double>((high - low + Size3::Ones()).prod()));
+  }
+
+private:
+  const Bordered& m_at;
+  std::vector<double> m_sums;
+};
+
+/// The reach that costs least, a mm: of steps into cells, and of the null collisions by which a
+/// bound is looser than the cells' own. A lane passes some 0.7 edges of a single cell, and those of
+/// its reach. A step costs `stepCost` of a look-up (measured; it changes no expectation).
+Reach findReach(const Bordered& at, const std::vector<float>& majorants,
+                const std::vector<bool>& cut, double edge) {
+  constexpr double stepCost = 0.15;
+  const BoxSums sums(at, majorants);
+  Reach best{majorants, std::vector<std::uint8_t>(at.count(), 0)};
+  std::vector<float> least(at.count(), static_cast<float>(stepCost / (edge * 0.7)));
+  std::vector<float> bounds(majorants);
+  std::vector<float> room(at.count(), 0.0F);
+  for (std::size_t i = 0; i < at.count(); ++i)
+    if (cut[i]) // is walked alone
+      bounds[i] = std::numeric_limits<float>::infinity();
+  // A cell that gains neither by one more nor by two is taken not to gain by three.
+  std::atomic<bool> some = true;
+  for (std::uint32_t reach = 1; some && reach <= WideCells::mostReach; ++reach) {
+    some = false;
+    dilate(at, bounds, room);
+    const auto step = static_cast<float>(stepCost / (edge * (0.7 + reach)));
+    at.forEachInParallel([&](auto x, auto y, auto z) {
+      const std::size_t i = at.index(x, y, z);
+      if (majorants[i] == 0.0F || best.cells[i] + 2U < reach)
+        return;
+      some.store(true, std::memory_order_relaxed);
+      const float here = bounds[i] - sums.mean(x, y, z, reach) + step;
+      if (here < least[i]) {
+        least[i] = here;
+        best.bound[i] = bounds[i];
+        best.cells[i] = static_cast<std::uint8_t>(reach);
+      }
+    });
+  }
+  return best;
+}
+
+std::uint32_t biasFor(float greatest) {
+  constexpr std::uint32_t exponents = 31; // one is kept for rounding up
+  const std::uint32_t exponent = std::bit_cast<std::uint32_t>(greatest) >> 23;
+  return (exponent - std::min(exponent, exponents - 1)) << 23;
+}
+
+/// Not below the majorant.
+std::uint32_t majorantCode(float majorant, std::uint32_t bias) {
+  const auto bits = std::bit_cast<std::uint32_t>(majorant);
+  constexpr std::uint32_t below = (1U << WideCells::majorantShift) - 1;
+  return bits <= bias ? 1 : (bits - bias + below) >> WideCells::majorantShift;
+}
+
+} // namespace
+
+WideCells::WideCells(const MajorantGrid& majorants) {
+  const Size3& count = majorants.cellCount();
+  const Bordered at{count.array() + 2};
+  std::vector<float> bound(at.count(), 0.0F);
+  std::vector<bool> cut(at.count(), false);
+  std::int64_t next = 0;
+  at.forEachInner([&](auto x, auto y, auto z) {
+    const MajorantGrid::Cell& cell = majorants.cell(next++);
+    bound[at.index(x, y, z)] = cell.majorant;
+    cut[at.index(x, y, z)] = cell.cut;
+  });
+  const double edge = std::cbrt(std::abs(1.0 / majorants.worldToCell().linear().determinant()));
+  const std::vector<std::int32_t> around = emptyAround(at, bound);
+  const Reach reach = findReach(at, bound, cut, edge);
+  bias = biasFor(*std::max_element(bound.begin(), bound.end()));
+  codes.assign(at.count() + 1, 0);
+  for (std::size_t i = 0; i < at.count(); ++i) {
+    if (bound[i] > 0.0F)
+      codes[i] = static_cast<std::int16_t>(majorantCode(reach.bound[i], bias) << (reachBits + 1) |
+                                           static_cast<std::uint32_t>(reach.cells[i] << 1) |
+                                           (cut[i] ? 1U : 0U));
+    else if (around[i] > 0)
+      codes[i] = static_cast<std::int16_t>(
+          std::bit_cast<std::uint32_t>(static_cast<float>(-around[i])) >> 16);
+  }
+}
+
+WideCells::Cell WideCells::cell(std::size_t place) const {
+  const std::int32_t code = codes[place];
+  if (code <= 0) {
+    const auto around = std::bit_cast<float>(static_cast<std::uint32_t>(code) << 16);
+    return {0.0F, static_cast<std::uint32_t>(-around), false};
+  }
+  const auto filled = static_cast<std::uint32_t>(code);
+  return {std::bit_cast<float>((filled >> (reachBits + 1) << majorantShift) + bias),
+          filled >> 1 & mostReach, (filled & 1) != 0};
+}
+
+} // namespace fenestra

@@ -1,0 +1,346 @@
+// What a lane asks of the volume at a point in index space: the extinction, and what clipping keeps
+// of it. Compiled once for each instruction set (see WideTracker.cxx).
+
+#if defined(FENESTRA_WIDE_LOOKUP_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_WIDE_LOOKUP_INL_H
+#undef FENESTRA_WIDE_LOOKUP_INL_H
+#else
+#define FENESTRA_WIDE_LOOKUP_INL_H
+#endif
+
+#include "clip/keep/Seams.h"
+#include "transport/lanes/TrackerTables.h"
+// After foreach_target.h:
+#include "base/Lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+
+/// Indices as numbers in memory.
+struct alignas(64) Indices : std::array<std::int32_t, HWY_MAX_BYTES / sizeof(std::int32_t)> {
+  explicit HWY_INLINE Indices(I index) { hn::Store(index, ints, data()); }
+};
+
+/// A number from each of `count` places, which need not be aligned to it. Loads one by one are less
+/// work for the processor than gathers, once the indices are in memory.
+template <typename Number, std::size_t count, typename Element>
+HWY_INLINE auto loadEach(const Element* memory, const std::int32_t* index) {
+  constexpr hn::CappedTag<Number, count> d;
+  if constexpr (count == 1)
+    return hn::LoadU(d, reinterpret_cast<const Number*>(memory + *index));
+#if HWY_TARGET != HWY_SCALAR
+  else
+    return hn::Combine(d, loadEach<Number, count / 2>(memory, index + count / 2),
+                       loadEach<Number, count / 2>(memory, index));
+#endif
+}
+
+/// 32 bits from memory[i] on for each i.
+template <typename Element>
+HWY_INLINE I loadInts(const Element* memory, const Indices& index) {
+  return loadEach<std::int32_t, hn::MaxLanes(ints)>(memory, index.data());
+}
+
+/// Two floats that lie together, of each lane.
+struct Pairs {
+  F first, second;
+};
+
+/// memory[i] and memory[i + 1] for each i.
+HWY_INLINE Pairs loadPairs(const float* memory, const Indices& index) {
+#if HWY_TARGET == HWY_SCALAR
+  return {hn::Set(floats, memory[index[0]]), hn::Set(floats, memory[index[0] + 1])};
+#else
+  constexpr std::size_t half = hn::MaxLanes(floats) / 2;
+  const F low = hn::BitCast(floats, loadEach<std::int64_t, half>(memory, index.data()));
+  const F high = hn::BitCast(floats, loadEach<std::int64_t, half>(memory, index.data() + half));
+  return {hn::ConcatEven(floats, high, low), hn::ConcatOdd(floats, high, low)};
+#endif
+}
+
+/// The voxels around a point: four rows along x, where `first` begins and `second` goes on.
+using Corners = std::array<Pairs, 4>;
+
+/// How far each row's beginning is from the first one's, in voxels.
+HWY_INLINE std::array<std::int32_t, 4> rowsOf(const WideField& field) {
+  const std::int32_t up = field.axes[1].stride;
+  const std::int32_t deep = field.axes[2].stride;
+  return {0, up, deep, deep + up};
+}
+
+HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, I first) {
+  Corners c;
+  const std::array<std::int32_t, 4> rows = rowsOf(field);
+  const Indices index(first);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    c[i] = loadPairs(voxels + rows[i], index);
+  return c;
+}
+
+/// Of 16 bits: 32 take both voxels; `lower` and `upper` make floats of them.
+template <typename Voxel, typename Lower, typename Upper>
+HWY_INLINE Corners cornersInPairs(const WideField& field, const Voxel* voxels, I first,
+                                  Lower&& lower, Upper&& upper) {
+  Corners c;
+  const std::array<std::int32_t, 4> rows = rowsOf(field);
+  const Indices index(first);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const I both = loadInts(voxels + rows[i], index);
+    c[i] = {hn::ConvertTo(floats, lower(both)), hn::ConvertTo(floats, upper(both))};
+  }
+  return c;
+}
+HWY_INLINE Corners cornersAt(const WideField& field, const std::int16_t* voxels, I first) {
+  return cornersInPairs(
+      field, voxels, first, [](I both) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(both)); },
+      [](I both) { return hn::ShiftRight<16>(both); });
+}
+HWY_INLINE Corners cornersAt(const WideField& field, const std::uint16_t* voxels, I first) {
+  const I low = hn::Set(ints, 0xffff);
+  return cornersInPairs(
+      field, voxels, first, [&](I both) { return hn::And(both, low); },
+      [&](I both) { return hn::And(hn::ShiftRight<16>(both), low); });
+}
+HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels, I first) {
+  Corners c;
+  const std::array<std::int32_t, 4> rows = rowsOf(field);
+  const I low = hn::Set(ints, 0xff);
+  const I lastFour = hn::Set(ints, static_cast<std::int32_t>(field.count - 4));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    // Four bytes are read: not beyond the last voxel.
+    const I row = hn::Add(first, hn::Set(ints, rows[i]));
+    const I from = hn::Min(row, lastFour);
+    const I shift = hn::ShiftLeft<3>(hn::Sub(row, from));
+    const I four = loadInts(voxels, Indices(from));
+    const I both = hn::Shr(four, shift);
+    c[i] = {hn::ConvertTo(floats, hn::And(both, low)),
+            hn::ConvertTo(floats, hn::And(hn::ShiftRight<8>(both), low))};
+  }
+  return c;
+}
+
+/// A point among voxel centres, clamped in the outer half voxel.
+struct Place {
+  I first;      ///< index of the lowest of the eight voxels around it
+  F3 fractions; ///< from there
+};
+
+HWY_INLINE Place placeOf(const WideField& field, const Point& p) {
+  const auto cell = [&](std::size_t axis, F x, F& fraction) {
+    const WideField::Axis& a = field.axes[axis];
+    // In this order a NaN becomes 0.
+    const F inside = hn::Max(hn::Min(x, all(a.last)), hn::Zero(floats));
+    const I index = hn::Min(hn::ConvertTo(ints, inside), hn::Set(ints, a.lastCell));
+    fraction = hn::Sub(inside, hn::ConvertTo(floats, index));
+    return index;
+  };
+  Place place;
+  const I x = cell(0, p.x, place.fractions.x);
+  const I y = cell(1, p.y, place.fractions.y);
+  const I z = cell(2, p.z, place.fractions.z);
+  place.first = hn::Add(x, hn::Add(hn::Mul(y, hn::Set(ints, field.axes[1].stride)),
+                                   hn::Mul(z, hn::Set(ints, field.axes[2].stride))));
+  return place;
+}
+
+/// Asks for the voxels around the places of all lanes to be brought near.
+template <typename Voxel>
+HWY_INLINE void prefetch(const WideField& field, const Place& place) {
+  const auto* voxels = static_cast<const Voxel*>(field.voxels);
+  const Indices first(place.first);
+  const std::array<std::int32_t, 4> rows = rowsOf(field);
+  for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
+    for (const std::int32_t row : rows)
+      hwy::Prefetch(voxels + first[lane] + row);
+}
+
+/// The scalar, trilinear between voxel centres.
+template <typename Voxel>
+HWY_INLINE F scalarAt(const WideField& field, const Place& place) {
+  const Corners c = cornersAt(field, static_cast<const Voxel*>(field.voxels), place.first);
+  const F3& f = place.fractions;
+  const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, f.x); };
+  const F low = lerp(along(c[0]), along(c[1]), f.y);
+  const F high = lerp(along(c[2]), along(c[3]), f.y);
+  return lerp(low, high, f.z);
+}
+template <typename Voxel>
+HWY_INLINE F scalarAt(const WideField& field, const Point& p) {
+  return scalarAt<Voxel>(field, placeOf(field, p));
+}
+
+/// A scalar's place in a table.
+struct Segment {
+  I index;
+  F beyondStart; ///< scalar units from the segment's start; not finite in the first one
+};
+
+HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
+  s = hn::Min(s, all(std::numeric_limits<float>::max())); // interpolation can overflow
+  const auto lastBin = static_cast<float>(table.binSegment.size() - 1);
+  const F bin = hn::Mul(hn::Sub(s, all(table.binStart)), all(table.binsPerUnit));
+  const I inTable = hn::ConvertTo(ints, hn::Max(hn::Min(bin, all(lastBin)), hn::Zero(floats)));
+  I segment = hn::GatherIndex(ints, table.binSegment.data(), inTable);
+  for (;;) {
+    const Pairs ends = loadPairs(table.position.data(), Indices(segment));
+    const M beyond = hn::Ge(s, ends.second);
+    if (hn::AllFalse(floats, beyond))
+      return {segment, hn::Sub(s, ends.first)};
+    segment =
+        hn::IfThenElse(hn::RebindMask(ints, beyond), hn::Add(segment, hn::Set(ints, 1)), segment);
+  }
+}
+
+/// A channel's value there; not negative.
+HWY_INLINE F valueIn(const WideTable::Channel& channel, const Segment& at) {
+  const auto [value, slope] = loadPairs(&channel[0].value, Indices(hn::ShiftLeft<1>(at.index)));
+  // Constant segments may begin at -infinity.
+  const F rise =
+      hn::IfThenZeroElse(hn::Eq(slope, hn::Zero(floats)), hn::Mul(at.beyondStart, slope));
+  return notBelow0(hn::Add(value, rise));
+}
+
+/// Extinction (mm^-1) of a scalar.
+HWY_INLINE F extinctionOf(const WideScene& scene, F s) {
+  return valueIn(scene.extinction.channels[0], segmentOf(scene.extinction, s));
+}
+
+/// How far a ray inside [lower, upper]^3 goes until it leaves; 0 where rounding put it outside.
+HWY_INLINE F toFaces(const F3& lower, const F3& upper, const F3& origin, const F3& direction) {
+  const auto along = [](F low, F high, F o, F d) {
+    const F zero = hn::Zero(floats);
+    const F face = hn::IfThenElse(hn::Lt(d, zero), low, high);
+    const F t = hn::Div(hn::Sub(face, o), d);
+    return hn::IfThenElse(hn::Eq(d, zero), all(std::numeric_limits<float>::infinity()), t);
+  };
+  const F x = along(lower.x, upper.x, origin.x, direction.x);
+  const F y = along(lower.y, upper.y, origin.y, direction.y);
+  const F z = along(lower.z, upper.z, origin.z, direction.z);
+  return notBelow0(hn::Min(hn::Min(x, y), z));
+}
+
+/// mm to where a ray from inside leaves the domain; index space, t in mm.
+HWY_INLINE F lengthInside(const WideScene& scene, const F3& origin, const F3& direction) {
+  const F toBox = toFaces(all3(scene.lower), all3(scene.upper), origin, direction);
+  if (!scene.cropped)
+    return toBox;
+  const F one = all(1.0F);
+  const F minusOne = all(-1.0F);
+  const F toCrop = toFaces({minusOne, minusOne, minusOne}, {one, one, one},
+                           mapPoint(scene.toCrop, origin), mapDirection(scene.toCrop, direction));
+  return hn::Min(toBox, toCrop);
+}
+
+/// Continuous index of a coordinate in mm among a depth buffer's samples (DepthAxis::index).
+HWY_INLINE F depthIndex(const WideScene::DepthAxis& axis, F coordinate) {
+  const F pixel = hn::MulSub(coordinate, all(axis.perPitch), all(axis.start));
+  const F fine = hn::Max(hn::Min(pixel, all(axis.lastInside)), hn::Zero(floats));
+  const F index =
+      hn::MulAdd(hn::Sub(pixel, fine), all(axis.perFactor), hn::Add(fine, all(axis.before)));
+  return hn::Max(hn::Min(index, all(axis.last)), hn::Zero(floats));
+}
+
+/// Where a style leaves everything as it is.
+HWY_INLINE M isFocus(const WideScene::Context& context, const Point& p) {
+  return hn::Ge(scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)),
+                all(context.level));
+}
+
+/// The surface in seams, at (x, y), for the lanes that ask for it; `surface` for the others.
+inline F askSeams(const Seams& seams, M isAsked, I seam, F x, F y, F depth, double softness,
+                  F surface) {
+  constexpr std::size_t lanes = HWY_MAX_BYTES / sizeof(float);
+  static_assert(lanes <= Seams::mostQuestions);
+  const Indices numbers(seam);
+  struct alignas(64) Floats : std::array<float, lanes> {};
+  Floats xs, ys, depths, surfaces, asked;
+  hn::Store(x, floats, xs.data());
+  hn::Store(y, floats, ys.data());
+  hn::Store(depth, floats, depths.data());
+  hn::Store(surface, floats, surfaces.data());
+  hn::Store(hn::IfThenElseZero(isAsked, all(1.0F)), floats, asked.data());
+  std::array<Seams::Question, lanes> questions;
+  std::array<std::size_t, lanes> lane;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < hn::Lanes(floats); ++i)
+    if (asked[i] > 0.0F) {
+      lane[count] = i;
+      questions[count++] = {numbers[i], Vec2(xs[i], ys[i]), surfaces[i], depths[i] - softness};
+    }
+  seams.answer(std::span(questions).first(count));
+  for (std::size_t i = 0; i < count; ++i)
+    surfaces[lane[i]] = static_cast<float>(questions[i].surface);
+  return hn::Load(floats, surfaces.data());
+}
+
+/// `surface`, or in seams, for the lanes of `which`, what that is for a point at (x, y) and `depth`
+/// (ClipDepth::surfaceFor).
+HWY_INLINE F sewn(const WideScene& scene, M which, I sample, F x, F y, F depth, F surface) {
+  const I seam = hn::GatherIndex(ints, scene.seams->numbers().data(), sample);
+  const auto isSeam = hn::Gt(seam, hn::Set(ints, -1));
+  if (hn::AllFalse(ints, isSeam))
+    return surface;
+  const I first = hn::ShiftLeft<1>(hn::Max(seam, hn::Zero(ints)));
+  const float* const reaches = &scene.seams->reaches().data()->least;
+  const F least = hn::Min(surface, hn::GatherIndex(floats, reaches, first));
+  const F greatest =
+      hn::Max(surface, hn::GatherIndex(floats, reaches + 1, first)); // least and greatest alternate
+  const M isNear =
+      hn::And(hn::Ge(depth, least), hn::Le(depth, hn::Add(greatest, all(scene.softness))));
+  const M isAsked = both(which, both(hn::RebindMask(floats, isSeam), isNear));
+  if (hn::AllFalse(floats, isAsked))
+    return surface;
+  return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
+}
+
+/// What clipping keeps (clip/keep/Clip.h's keep, for all its kinds) for the lanes of `which`.
+inline F keep(const WideScene& scene, const Point& p, M which) {
+  const F depth = apply(scene.toView[2], p); // from the target
+  F scale = all(1.0F);
+  M before = hn::Lt(depth, depth); // the eye: none
+  if (scene.perspective) {
+    const F fromEye = hn::Add(depth, all(scene.targetDepth));
+    before = hn::Le(fromEye, hn::Zero(floats));
+    scale = hn::Div(all(scene.targetDepth), fromEye);
+  }
+  const auto edge = [&](F behind) {
+    const F zero = hn::Zero(floats), one = all(1.0F), ghost = all(scene.ghost);
+    const F rise =
+        scene.perSoftness > 0.0F ? hn::Min(hn::Mul(behind, all(scene.perSoftness)), one) : one;
+    const F share = hn::IfThenElse(hn::Lt(behind, zero), ghost, lerp(ghost, one, rise));
+    return hn::IfThenElse(before, zero, share);
+  };
+  if (scene.clipKind == WideScene::ClipKind::plane)
+    return edge(hn::Neg(apply(scene.toPlane, p)));
+  const F x = hn::Mul(apply(scene.toView[0], p), scale);
+  const F y = hn::Mul(apply(scene.toView[1], p), scale);
+  const F column = depthIndex(scene.depthX, x);
+  const F row = depthIndex(scene.depthY, y);
+  const I columns = hn::Set(ints, scene.depthColumns);
+  F surface;
+  if (scene.clipKind == WideScene::ClipKind::depthNearest) {
+    const I c = hn::ConvertTo(ints, hn::Add(column, all(0.5F)));
+    const I r = hn::ConvertTo(ints, hn::Add(row, all(0.5F)));
+    surface = hn::GatherIndex(floats, scene.depths, hn::Add(hn::Mul(r, columns), c));
+  } else {
+    const I one = hn::Set(ints, 1);
+    const I c0 = hn::ConvertTo(ints, column);
+    const I r0 = hn::ConvertTo(ints, row);
+    const I c1 = hn::Min(hn::Add(c0, one), hn::ConvertTo(ints, all(scene.depthX.last)));
+    const I r1 = hn::Min(hn::Add(r0, one), hn::ConvertTo(ints, all(scene.depthY.last)));
+    const F fc = hn::Sub(column, hn::ConvertTo(floats, c0));
+    const F fr = hn::Sub(row, hn::ConvertTo(floats, r0));
+    const auto at = [&](I c, I r) {
+      return hn::GatherIndex(floats, scene.depths, hn::Add(hn::Mul(r, columns), c));
+    };
+    surface = lerp(lerp(at(c0, r0), at(c1, r0), fc), lerp(at(c0, r1), at(c1, r1), fc), fr);
+    if (scene.seams)
+      surface = sewn(scene, which, hn::Add(hn::Mul(r0, columns), c0), x, y, depth, surface);
+  }
+  return edge(hn::Sub(depth, surface));
+}
+
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

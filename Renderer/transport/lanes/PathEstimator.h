@@ -1,0 +1,125 @@
+#pragma once
+// Many paths at once, for speed: all of a batch fly, then all scatter, then all look at their
+// lights, and paths that have ended make room for new ones. A path depends on its own random
+// numbers alone, so its sample is the same whichever others it travels with.
+
+#include "model/volume/Domain.h"
+#include "transport/lanes/PathSteps.h"
+
+#include <memory>
+#include <optional>
+
+namespace fenestra {
+
+/// Where a path begins: raster position, its random numbers from there on, and a name under which
+/// its sample is handed in.
+struct PathStart {
+  double column, row;
+  Random random;
+  std::uint64_t ticket;
+};
+
+class PathWave {
+public:
+  /// A view of all that it is given. The tracker looks at the same `stop`: what it leaves then is
+  /// dropped here.
+  PathWave(const Domain& domain, const WideTracker& tracker, const WideEvents& events,
+           const EyeRays& eye, const StopFlag& stop)
+      : m_domain(domain), m_tracker(tracker), m_events(events), m_eye(eye), m_stop(stop) {}
+
+  /// Traces all paths that source.next() gives, at most `atOnce` together, and hands in
+  /// source.deliver(ticket, sample) of each, in any order. Returns false where `stop` became true
+  /// before all had ended.
+  template <typename Source>
+  bool trace(Source& source, std::size_t atOnce, Counters& counters) const {
+    const auto batch = std::make_unique<Batch>();
+    const auto begin = [&](std::size_t place) {
+      const std::optional<PathStart> from = source.next();
+      if (from)
+        this->begin(*batch, place, *from);
+      counters.paths += from ? 1 : 0;
+      return from.has_value();
+    };
+    std::size_t& size = batch->paths.rays.size;
+    while (size < std::min(atOnce, RayBatch::capacity) && begin(size))
+      ++size;
+    while (size > 0) {
+      m_tracker.sampleCollisions(batch->paths.rays, counters);
+      if (stopped())
+        return false;
+      m_events.scatter(batch->paths, batch->lights, counters);
+      look(*batch, counters);
+      if (stopped())
+        return false;
+      // The last first: what moves into a gap has not ended.
+      for (std::size_t i = batch->paths.endedCount; i-- > 0;) {
+        const std::size_t place = batch->paths.ended[i];
+        source.deliver(batch->origins[place].ticket, sample(*batch, place));
+        if (!begin(place) && place != --size) {
+          batch->paths.move(size, place);
+          batch->origins[place] = batch->origins[size];
+        }
+      }
+    }
+    return true;
+  }
+
+private:
+  bool stopped() const { return m_stop.load(std::memory_order_relaxed); }
+
+  /// A path's eye ray.
+  struct Origin {
+    std::uint64_t ticket = 0;
+    double row = 0.0;
+    Ray ray;
+    double begin = 0.0; ///< mm along it to where the batch's ray begins
+  };
+  struct Batch {
+    PathBatch paths;
+    LightBatch lights;
+    std::array<Origin, RayBatch::capacity> origins;
+  };
+
+  void begin(Batch& batch, std::size_t place, PathStart from) const {
+    const Ray ray = m_eye.ray(from.column, from.row);
+    batch.paths.begin(place, ray.direction, from.random.bits());
+    const auto seed = static_cast<std::uint32_t>(from.random.bits() >> 32);
+    const double begins = setInside(batch.paths.rays, place, m_domain, ray, m_eye.range(ray), seed);
+    batch.origins[place] = {from.ticket, from.row, ray, begins};
+  }
+
+  void look(Batch& batch, Counters& counters) const {
+    LightBatch& lights = batch.lights;
+    m_tracker.estimateTransmittances(lights.rays, counters);
+    for (std::size_t i = 0; i < lights.rays.size; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        batch.paths.radiance[c][lights.path[i]] += lights.radiance[c][i] * lights.rays.result[i];
+  }
+
+  PathSample sample(const Batch& batch, std::size_t place) const {
+    const Origin& origin = batch.origins[place];
+    const PathBatch& paths = batch.paths;
+    if (paths.bounces[place] == 0) // escaped, unless it must not scatter at all
+      return std::isinf(paths.rays.result[place]) ? m_eye.escaped(origin.row, origin.ray)
+                                                  : PathSample{};
+    const auto triple = [&](const Columns3& columns) {
+      return Rgb(columns[0][place], columns[1][place], columns[2][place]);
+    };
+    PathSample sample;
+    sample.radiance = triple(paths.radiance);
+    sample.albedo = triple(paths.firstAlbedo);
+    sample.normal = triple(paths.firstNormal);
+    const double distance = origin.begin + static_cast<double>(paths.firstDistance[place]);
+    sample.depth = m_eye.depth(origin.ray, distance);
+    sample.scatterings = static_cast<double>(paths.bounces[place]);
+    return sample;
+  }
+
+  Domain m_domain;
+  const WideTracker& m_tracker;
+  const WideEvents& m_events;
+  const EyeRays& m_eye;
+  const StopFlag& m_stop;
+};
+
+} // namespace fenestra

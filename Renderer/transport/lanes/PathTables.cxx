@@ -1,0 +1,79 @@
+#include "transport/lanes/PathTables.h"
+
+namespace fenestra {
+namespace {
+
+/// Half edges of an area light and what else the lanes ask of it.
+EventScene::Area narrowArea(const PlacedAreaLight& light, const Vec3& from) {
+  const Vec3 right = light.half.x() * light.right;
+  const Vec3 up = light.half.y() * light.up;
+  return {light.shape == AreaLight::Shape::disk,
+          narrow3(light.center - from),
+          narrow3(light.normal),
+          narrow3(right),
+          narrow3(up),
+          narrow(1.0 / right.squaredNorm()),
+          narrow(1.0 / up.squaredNorm()),
+          narrow(light.area),
+          narrow3(light.radiance),
+          narrow(light.share)};
+}
+
+double roughnessOf(const SurfaceShading& shading) {
+  return std::sqrt(2.0 / (shading.power + 2.0));
+}
+
+} // namespace
+
+bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
+                        const LightSet& lights) {
+  constexpr double leastRoughness = 1e-2;
+  constexpr double greatestG = 0.9999;
+  constexpr double farthest = 1e15; // mm; squares of it and areas are far from a float's end
+  constexpr double brightest = 1e20;
+  const auto fits = [&](const PlacedAreaLight& light) {
+    return (light.center - grid.worldCenter()).norm() < farthest &&
+           light.half.maxCoeff() < farthest && light.radiance.maxCoeff() < brightest;
+  };
+  return std::abs(transfer.g) <= greatestG &&
+         !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness) &&
+         std::all_of(lights.areas().begin(), lights.areas().end(), fits);
+}
+
+EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
+                       std::uint64_t mostBounces, bool normalsWanted)
+    : albedo(transfer.albedo),
+      g(narrow(transfer.g)),
+      hybrid(transfer.shading && transfer.extinction.span() > 0.0),
+      diffuse(0.0F),
+      specular(0.0F),
+      roughness(1.0F),
+      surfaceRate(0.0F),
+      wantNormals(normalsWanted || transfer.shading),
+      bounces(static_cast<std::int32_t>(
+          std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
+      constantEnvironment(narrow3(lights.constantEnvironment())),
+      maps(lights.hasMaps() ? &lights : nullptr) {
+  if (hybrid) {
+    const SurfaceShading& shading = *transfer.shading;
+    const double total = std::max(1.0, shading.diffuse + shading.specular);
+    diffuse = narrow(shading.diffuse / total);
+    specular = narrow(shading.specular / total);
+    roughness = narrow(roughnessOf(shading));
+    surfaceRate = narrow(25.0 * std::pow(shading.gamma, 3));
+  }
+  Affine local = grid.indexToWorld;
+  local.translation() -= grid.worldCenter();
+  toLocal = affineRows(local);
+  localToIndex = affineRows(Affine(grid.worldToIndex.linear()));
+  const double span = transfer.extinction.span();
+  const double scale = 0.5 / (span > 0.0 ? span : 1.0);
+  indexDifferenceToGradient =
+      affineRows(Affine(Mat3(scale * grid.worldToIndex.linear().transpose())));
+  for (const PlacedAreaLight& light : lights.areas())
+    areas.push_back(narrowArea(light, grid.worldCenter()));
+  for (const PlacedDirectionalLight& light : lights.directionals())
+    directionals.push_back({narrow3(light.toward), narrow3(light.irradiance), narrow(light.share)});
+}
+
+} // namespace fenestra

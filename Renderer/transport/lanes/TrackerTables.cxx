@@ -1,0 +1,153 @@
+// Building what the lanes of WideTracker read.
+
+#include "transport/lanes/Tracker.h"
+
+namespace fenestra {
+namespace {
+
+WideScene::DepthAxis wide(const DepthAxis& axis) {
+  return {narrow(1.0 / axis.pitch),
+          narrow(axis.start),
+          static_cast<float>(axis.inside - 1),
+          static_cast<float>(axis.before),
+          narrow(1.0 / axis.factor),
+          static_cast<float>(axis.size() - 1)};
+}
+
+/// Affine map of index space: `normal` in world space, times a world point, plus `offset`.
+std::array<float, 4> row(const Grid& grid, const Vec3& normal, const Vec3& from, double offset) {
+  const Vec3 n = grid.indexToWorld.linear().transpose() * normal;
+  const double o = normal.dot(grid.indexToWorld.translation() - from) + offset;
+  return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
+}
+
+WideField fieldOf(const void* voxels, const Grid& grid) {
+  WideField field{voxels, grid.voxelCount()};
+  std::int64_t stride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t size = grid.size[axis];
+    field.axes[static_cast<std::size_t>(axis)] = {
+        static_cast<float>(size - 1),
+        static_cast<std::int32_t>(std::max<std::int64_t>(size - 2, 0)),
+        static_cast<std::int32_t>(size > 1 ? stride : 0)};
+    stride *= size;
+  }
+  return field;
+}
+
+WideScene::VoxelType typeOf(const Voxels& voxels) {
+  return static_cast<WideScene::VoxelType>(voxels.index());
+}
+
+} // namespace
+
+double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
+                 const Interval& range, std::uint32_t seed) {
+  const Affine& worldToIndex = domain.grid().worldToIndex;
+  const Ray indexRay = transformed(worldToIndex, ray);
+  const Interval inside = domain.clip(indexRay, range);
+  if (inside.empty()) {
+    rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0, seed);
+    return 0.0;
+  }
+  const Vec3 origin = inside.begin > 0.0 ? worldToIndex * ray.at(inside.begin) : indexRay.origin;
+  rays.set(i, {origin, indexRay.direction}, inside.end - inside.begin, seed);
+  return inside.begin;
+}
+
+bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer) {
+  constexpr double deepest = 1e5; // rounding moves a collision by 0.6 % of a free path, at most
+  const std::int64_t count = volume.grid.voxelCount();
+  constexpr std::int64_t most = std::int64_t{1} << 31; // indices of 32 bits
+  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most)
+    return false;
+  double greatest = 0.0;
+  for (const auto& knot : transfer.extinction.knots())
+    greatest = std::max(greatest, knot.value[0]);
+  return greatest * 2.0 * volume.grid.boundingRadius() <= deepest;
+}
+
+WideTracker::WideTracker(const Volume& volume, const Domain& domain,
+                         const TransferFunction& transfer, const MajorantGrid& majorants,
+                         const Clip& clip, const ContextStyle* style, const StopFlag& stop)
+    : m_stop(stop) {
+  m_scene.type = typeOf(volume.voxels);
+  m_scene.field = fieldOf(
+      std::visit([](const auto& v) { return static_cast<const void*>(v.data()); }, volume.voxels),
+      volume.grid);
+  setCells(majorants);
+  m_scene.extinction = WideTable(transfer.extinction);
+  setDomain(domain);
+  setClip(clip, volume.grid);
+  if (style)
+    setContext(*style, volume.grid);
+}
+
+void WideTracker::setDomain(const Domain& domain) {
+  const Box& box = domain.box();
+  m_scene.lower = narrow3(box.lower);
+  m_scene.upper = narrow3(box.upper);
+  const Affine* toCrop = domain.toCrop();
+  m_scene.cropped = toCrop != nullptr;
+  if (toCrop)
+    m_scene.toCrop = affineRows(*toCrop);
+}
+
+void WideTracker::setCells(const MajorantGrid& majorants) {
+  const Size3& cells = majorants.cellCount();
+  const Size3 bordered = cells.array() + 2;
+  std::int64_t cellStride = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    m_scene.axes[static_cast<std::size_t>(axis)] = {
+        static_cast<float>(majorants.edge()[axis]),
+        narrow(1.0 / static_cast<double>(majorants.edge()[axis])), static_cast<float>(cells[axis]),
+        std::nextafter(static_cast<float>(cells[axis]), 0.0F), static_cast<float>(cellStride)};
+    m_scene.firstCell += static_cast<float>(cellStride);
+    cellStride *= bordered[axis];
+  }
+  m_scene.cells = WideCells(majorants);
+}
+
+void WideTracker::setClip(const Clip& clip, const Grid& grid) {
+  if (std::holds_alternative<ClipNone>(clip))
+    return;
+  const auto setCamera = [&](const Camera& camera) {
+    const Vec3& eye = camera.pose().position;
+    m_scene.perspective = camera.pose().projection == Projection::perspective;
+    m_scene.targetDepth = narrow(camera.targetDepth());
+    m_scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
+                      row(grid, camera.forward(), eye, -camera.targetDepth())};
+  };
+  const auto setEdge = [&](const ClipEdge& edge) {
+    m_scene.ghost = narrow(edge.ghost);
+    m_scene.softness = narrow(edge.softness);
+    m_scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
+  };
+  if (const auto* plane = std::get_if<ClipPlane>(&clip)) {
+    m_scene.clipKind = WideScene::ClipKind::plane;
+    setEdge(plane->edge);
+    setCamera(plane->camera);
+    m_scene.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
+    return;
+  }
+  const auto& depth = std::get<ClipDepth>(clip);
+  m_scene.clipKind = depth.lookup == ClipDepth::Lookup::linear ? WideScene::ClipKind::depthLinear
+                                                               : WideScene::ClipKind::depthNearest;
+  setEdge(depth.edge);
+  setCamera(depth.camera);
+  m_scene.depthX = wide(depth.buffer->xAxis());
+  m_scene.depthY = wide(depth.buffer->yAxis());
+  m_scene.depths = depth.buffer->depthsFromReference().data();
+  m_scene.depthColumns = static_cast<std::int32_t>(depth.buffer->columns());
+  m_scene.seams = depth.seams.get();
+}
+
+void WideTracker::setContext(const ContextStyle& style, const Grid& grid) {
+  const Mask& focus = *style.focus;
+  m_scene.context = {fieldOf(focus.voxels.data(), focus.grid),
+                     affineRows(focus.grid.worldToIndex * grid.indexToWorld),
+                     0.5F * static_cast<float>(focus.full), narrow(style.extinction),
+                     narrow(style.saturation)};
+}
+
+} // namespace fenestra

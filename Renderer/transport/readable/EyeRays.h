@@ -1,0 +1,55 @@
+#pragma once
+// Where paths begin, and what they show where they meet nothing.
+
+#include "clip/keep/Clip.h"
+#include "image/Film.h"
+#include "model/camera/Background.h"
+#include "model/lights/LightSet.h"
+
+namespace fenestra {
+
+/// A view: what it is made of outlives it.
+class EyeRays {
+public:
+  EyeRays(const Camera& camera, const Clip& clip, const LightSet& lights,
+          const Background& background)
+      : m_camera(camera), m_clip(clip), m_lights(lights), m_background(background) {}
+
+  /// Through raster position (column, row).
+  Ray ray(double column, double row) const { return m_camera.ray(column, row); }
+  /// Its part that clipping leaves.
+  Interval range(const Ray& ray) const { return visible(m_clip, ray); }
+  /// In view space, `distance` along it; mm.
+  double depth(const Ray& ray, double distance) const {
+    return distance * m_camera.depthPerLength(ray);
+  }
+
+  /// An eye ray that met nothing shows the background: one colour over a whole row of pixels, so
+  /// that where a sample falls inside its pixel adds no noise.
+  PathSample escaped(double row, const Ray& ray) const {
+    PathSample sample;
+    switch (m_background.kind) {
+    case Background::Kind::color:
+      sample.radiance = m_background.color;
+      break;
+    case Background::Kind::gradient:
+      sample.radiance = m_background.at(1.0 - (std::floor(row) + 0.5) / m_camera.height());
+      break;
+    case Background::Kind::transparent:
+      sample.alpha = 0.0;
+      break;
+    case Background::Kind::environment:
+      sample.radiance = m_lights.environment(ray.direction).radiance;
+      break;
+    }
+    return sample;
+  }
+
+private:
+  const Camera& m_camera;
+  const Clip& m_clip;
+  const LightSet& m_lights;
+  const Background& m_background;
+};
+
+} // namespace fenestra

@@ -1,0 +1,89 @@
+#include "transport/readable/MajorantGrid.h"
+
+#include <tbb/parallel_for.h>
+
+namespace fenestra {
+namespace {
+
+/// The transfer function's maximum over [low, high], widened by what interpolating between two
+/// values of that size can round to.
+double greatest(const ScalarFunction& f, double low, double high) {
+  const double rounding =
+      4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
+  return f.range(low - rounding, high + rounding)[1];
+}
+
+/// Greatest |gradient| (scalar units per mm) where all interpolated values differ by at most
+/// `spread`: every central difference is at most half of it a voxel.
+double gradientBound(const Grid& grid, double spread) {
+  return 0.5 * spread * grid.worldToIndex.linear().transpose().columnNorms().sum();
+}
+
+float roundedUp(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
+Corners cornersOf(const Affine& cellToWorld, const Vec3& cell) {
+  Corners corners;
+  const Box box{cell, cell.array() + 1.0};
+  for (int i = 0; i < 8; ++i)
+    corners[static_cast<std::size_t>(i)] = cellToWorld * box.corner(i);
+  return corners;
+}
+
+/// The most that a style leaves of the extinction in a cell.
+double greatestFactor(const ContextStyle& style, const Affine& cellToWorld, const Vec3& cell) {
+  Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (const Vec3& corner : cornersOf(cellToWorld, cell)) {
+    const Vec3 index = style.focus->grid.worldToIndex * corner;
+    box = {box.lower.cwiseMin(index), box.upper.cwiseMax(index)};
+  }
+  return meetsMask(*style.focus, box) ? 1.0 : style.extinction;
+}
+
+} // namespace
+
+MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
+                           const TransferFunction& transfer, const Clip& clip,
+                           const ContextStyle* style)
+    : m_cellCount(ranges.cellCount()), m_edge(ranges.edge()), m_cells(ranges.size()) {
+  m_worldToCell = scalingBy(ranges.edge().cast<double>().cwiseInverse()) *
+                  (translationBy(Vec3::Constant(0.5)) * grid.worldToIndex);
+  const Affine cellToWorld = m_worldToCell.inverse();
+
+  const auto bound = [&](std::size_t cell) {
+    const double low = ranges.low(cell);
+    const double high = ranges.high(cell);
+    const double extinction = greatest(transfer.extinction, low, high);
+    if (extinction == 0.0 || !transfer.gradientOpacity)
+      return extinction;
+    return extinction * greatest(*transfer.gradientOpacity, 0.0, gradientBound(grid, high - low));
+  };
+  const auto keptOf = [&](const Vec3& cell) {
+    return std::holds_alternative<ClipNone>(clip) ? Kept::all
+                                                  : keptIn(clip, cornersOf(cellToWorld, cell));
+  };
+  tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), [&](std::int64_t z) {
+    for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
+      for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {
+        const auto cell = static_cast<std::size_t>(x + m_cellCount.x() * (y + m_cellCount.y() * z));
+        double majorant = bound(cell);
+        bool isCut = false;
+        if (majorant > 0.0) {
+          const Vec3 lower = Size3(x, y, z).cast<double>();
+          const Kept kept = keptOf(lower);
+          majorant *= kept.most * (style ? greatestFactor(*style, cellToWorld, lower) : 1.0);
+          isCut = majorant > 0.0 && !(kept.isUniform && kept.most == 1.0);
+        }
+        m_cells[cell] = {roundedUp(majorant), isCut};
+      }
+  });
+}
+
+std::size_t MajorantGrid::emptyCount() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(m_cells, [](const Cell& cell) { return cell.majorant == 0.0F; }));
+}
+
+} // namespace fenestra

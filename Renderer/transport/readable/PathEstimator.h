@@ -1,0 +1,51 @@
+#pragma once
+// The readable truth: one scalar, unbiased path through the clipped volume. Everything faster must
+// agree with it.
+
+#include "transport/readable/PathSteps.h"
+#include "transport/readable/Tracker.h"
+
+namespace fenestra {
+
+/// `Distances` finds collisions and transmittances as Tracker does.
+template <typename Voxel, typename Distances = Tracker<Voxel>>
+class PathEstimator {
+public:
+  /// A view of all that it is given.
+  PathEstimator(const Grid& grid, const Medium<Voxel>& medium, const Distances& tracker,
+                const LightSet& lights, const Camera& camera, const Clip& clip,
+                const PathSettings& settings, const StopFlag& stop)
+      : m_steps(grid, medium, lights, camera, clip, settings), m_tracker(tracker), m_stop(stop) {}
+
+  /// One path through raster position (column, row). Nothing where `stop` became true before it had
+  /// ended: with albedo 1 in a dense medium a path can take minutes.
+  std::optional<PathSample> trace(double column, double row, Random& random,
+                                  Counters& counters) const {
+    ++counters.paths;
+    Path path = m_steps.begin(column, row, random);
+    while (!PathSteps<Voxel>::ended(path) && !stopped()) {
+      const double distance =
+          m_tracker.sampleCollision(path.ray, path.range, path.random, counters);
+      if (!m_steps.arrive(path, distance))
+        break;
+      ++counters.collisions;
+      const std::optional<ShadowRay> light = m_steps.scatter(path, distance, counters);
+      if (!light)
+        continue;
+      ++counters.shadowRays;
+      path.sample.radiance +=
+          light->radiance *
+          m_tracker.transmittance(light->ray, {0.0, light->distance}, path.random, counters);
+    }
+    return stopped() ? std::nullopt : std::optional(path.sample);
+  }
+
+private:
+  bool stopped() const { return m_stop.load(std::memory_order_relaxed); }
+
+  PathSteps<Voxel> m_steps;
+  const Distances& m_tracker;
+  const StopFlag& m_stop;
+};
+
+} // namespace fenestra

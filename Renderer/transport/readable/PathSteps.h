@@ -1,0 +1,167 @@
+#pragma once
+// What a path means, event by event: where it begins, what it gathers where it arrives, how it
+// scatters. This is the readable truth; WideEvents does the same for many paths at once.
+//
+// Radiative transfer, one extinction for the three channels:
+//   L(x, w) = T(x, exit) L_light(w) + ∫ T(x, y) sigma_t(y) ∫ f(y, w, w') L(y, w') dw' dy
+// with f = albedo * phase function, or surface lobes (design, section 1). Collisions are drawn from
+// T sigma_t, so a path's weight changes by f / pdf alone; at each collision one light is sampled
+// (next-event estimation) and combined with what the scattered ray itself meets by the balance
+// heuristic (Veach 1997, eq. 9.8).
+
+#include "image/Film.h"
+#include "model/lights/LightSet.h"
+#include "model/medium/Medium.h"
+#include "model/medium/Scattering.h"
+#include "transport/readable/Counters.h"
+#include "transport/readable/EyeRays.h"
+
+#include <optional>
+
+namespace fenestra {
+
+struct PathSettings {
+  Background background;
+  std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max(); ///< scatterings, at most
+  bool wantNormals = false; ///< fill PathSample::normal even where shading needs no gradient
+};
+
+/// Russian roulette decides on paths whose greatest weight is below this.
+inline constexpr double rouletteBelow = 0.5;
+
+/// A path under way: the ray that it travels next, and what it has gathered.
+struct Path {
+  Random random;
+  double row;     ///< raster position of its eye ray
+  Ray ray;        ///< world space
+  Interval range; ///< of the ray, mm, that is left by clipping
+  Rgb weight = Rgb::Ones();
+  double scatterPdf = 0.0;   ///< of the ray's direction, per steradian
+  std::uint64_t bounces = 0; ///< scatterings so far
+  PathSample sample = {};
+};
+
+/// Light that was sampled at a collision: `radiance` arrives, times the transmittance of the ray.
+struct ShadowRay {
+  Ray ray;         ///< world space
+  double distance; ///< mm to the light; infinity for lights at infinity
+  Rgb radiance;
+};
+
+/// A view of the scene. Random numbers come from the path's own stream, in the order of its steps.
+template <typename Voxel>
+class PathSteps {
+public:
+  PathSteps(const Grid& grid, const Medium<Voxel>& medium, const LightSet& lights,
+            const Camera& camera, const Clip& clip, const PathSettings& settings)
+      : m_worldToIndex(grid.worldToIndex),
+        m_medium(medium),
+        m_lights(lights),
+        m_eye(camera, clip, lights, settings.background),
+        m_settings(settings) {}
+
+  /// A path through raster position (column, row).
+  Path begin(double column, double row, const Random& random) const {
+    const Ray ray = m_eye.ray(column, row);
+    return {random, row, ray, m_eye.range(ray)};
+  }
+
+  /// The path's ray has its next collision after `distance` mm, or none (infinity). Gathers what
+  /// the ray met before it; returns whether the path goes on from there.
+  bool arrive(Path& path, double distance) const {
+    if (path.bounces > 0)
+      path.sample.radiance += path.weight * arriving(path.ray, distance, path.scatterPdf);
+    else if (distance == infinity)
+      path.sample = m_eye.escaped(path.row, path.ray);
+    return distance < infinity && path.bounces < m_settings.bounces;
+  }
+
+  /// The path collides after `distance` mm: samples a light, and where the path goes on; sets its
+  /// new ray. A weight of zero ends it.
+  std::optional<ShadowRay> scatter(Path& path, double distance, Counters& counters) const {
+    const Vec3 point = path.ray.at(distance);
+    const bool first = path.bounces == 0;
+    const bool wantGradient = first && m_settings.wantNormals;
+    counters.gradients += m_medium.needsGradient(wantGradient) ? 1 : 0;
+    const Matter matter = m_medium.matter(m_worldToIndex * point, wantGradient);
+    if (first)
+      recordFirst(path, distance, matter);
+    const Scattering scattering = chooseScattering(path.ray.direction, matter, path.random);
+    std::optional<ShadowRay> light = sampledLight(point, scattering, path);
+    const ScatterSample scattered = scatterSample(scattering, path.random);
+    path.weight *= scattered.weight;
+    roulette(path);
+    path.scatterPdf = scattered.pdf;
+    path.ray = {point, scattered.outgoing};
+    path.range = {};
+    ++path.bounces;
+    path.sample.scatterings += 1.0;
+    return light;
+  }
+
+  static bool ended(const Path& path) { return !(path.weight.maxCoeff() > 0.0); }
+
+private:
+  void recordFirst(Path& path, double distance, const Matter& matter) const {
+    PathSample& sample = path.sample;
+    sample.depth = m_eye.depth(path.ray, distance);
+    sample.albedo = matter.albedo;
+    const double slope = matter.gradient.norm();
+    if (slope > 0.0)
+      sample.normal =
+          matter.gradient / (path.ray.direction.dot(matter.gradient) < 0.0 ? slope : -slope);
+  }
+
+  Scattering chooseScattering(const Vec3& incoming, const Matter& matter, Random& random) const {
+    const TransferFunction& transfer = m_medium.transfer();
+    if (matter.surfaceProbability > 0.0 && random.uniform() < matter.surfaceProbability)
+      return SurfaceScattering(incoming, matter.gradient, *transfer.shading, matter.albedo);
+    return PhaseScattering(incoming, transfer.g, matter.albedo);
+  }
+
+  /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
+  /// into it.
+  std::optional<ShadowRay> sampledLight(const Vec3& point, const Scattering& scattering,
+                                        Path& path) const {
+    const std::optional<LightSample> light = m_lights.sample(point, path.random);
+    if (!light)
+      return std::nullopt;
+    const Rgb factor = scatterEvaluate(scattering, light->direction);
+    if (!(factor.maxCoeff() > 0.0) || !(light->radiance.maxCoeff() > 0.0))
+      return std::nullopt;
+    const double other = light->delta ? 0.0 : fenestra::scatterPdf(scattering, light->direction);
+    const Rgb radiance = path.weight * factor * light->radiance / (light->pdf + other);
+    return ShadowRay{{point, light->direction}, light->distance, radiance};
+  }
+
+  /// Light that a scattered ray meets by itself before its next collision (or at infinity).
+  Rgb arriving(const Ray& ray, double distance, double scatterPdf) const {
+    const auto weigh = [&](const LightArrival& arrival) -> Rgb {
+      return arrival.radiance * (scatterPdf / (scatterPdf + arrival.pdf));
+    };
+    Rgb sum = m_lights.areaArrivals(ray, distance, weigh);
+    if (distance == infinity)
+      sum += weigh(m_lights.environment(ray.direction));
+    return sum;
+  }
+
+  /// Russian roulette on what the path can still contribute.
+  static void roulette(Path& path) {
+    const double most = path.weight.maxCoeff();
+    if (most >= rouletteBelow)
+      return;
+    const double chance = most / rouletteBelow;
+    if (path.random.uniform() < chance)
+      path.weight /= chance;
+    else
+      path.weight.setZero();
+  }
+
+  Affine m_worldToIndex;
+  const Medium<Voxel>& m_medium;
+  const LightSet& m_lights;
+  EyeRays m_eye;
+  const PathSettings& m_settings;
+};
+
+} // namespace fenestra

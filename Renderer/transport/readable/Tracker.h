@@ -1,0 +1,123 @@
+#pragma once
+// Free paths and transmittance through the clipped, classified volume, by null collisions against a
+// majorant grid (Woodcock et al. 1965; Novak et al. 2018 for the terms). Exact: no step size.
+
+#include "base/Random.h"
+#include "model/medium/Medium.h"
+#include "model/volume/Domain.h"
+#include "model/volume/GridWalk.h"
+#include "transport/readable/Counters.h"
+#include "transport/readable/MajorantGrid.h"
+#include "transport/readable/StopFlag.h"
+
+namespace fenestra {
+
+/// What tentative collisions mean, whoever finds them: `walk(visit)` calls visit(t, share of it
+/// that is real) at each, until it returns false. The first real one's t, or infinity.
+template <typename Walk>
+double firstRealCollision(Walk&& walk, Random& random) {
+  double distance = infinity;
+  walk([&](double t, double realShare) {
+    if (random.uniform() >= realShare)
+      return true; // a null collision
+    distance = t;
+    return false;
+  });
+  return distance;
+}
+
+/// Ratio tracking (Novak et al. 2014), with Russian roulette where little is left.
+template <typename Walk>
+double ratioTracked(Walk&& walk, Random& random) {
+  constexpr double rouletteBelow = 0.1;
+  double ratio = 1.0;
+  walk([&](double, double realShare) {
+    ratio *= std::max(0.0, 1.0 - realShare);
+    if (ratio < rouletteBelow)
+      ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
+    return ratio > 0.0;
+  });
+  return ratio;
+}
+
+/// A view: medium, majorants, clip and stop outlive it. Rays are in world space, unit direction.
+/// Once `stop` is true walks end where they are, and what is returned means nothing.
+template <typename Voxel>
+class Tracker {
+public:
+  Tracker(const Domain& domain, const Medium<Voxel>& medium, const MajorantGrid& majorants,
+          const Clip& clip, const StopFlag& stop = neverStopped)
+      : m_domain(domain), m_medium(medium), m_majorants(majorants), m_clip(clip), m_stop(stop) {}
+
+  /// Distance (mm) to the next real collision within `range`, or infinity.
+  double sampleCollision(const Ray& ray, const Interval& range, Random& random,
+                         Counters& counters) const {
+    const auto walk = [&](auto&& visit) { walkTentative(ray, range, random, counters, visit); };
+    return firstRealCollision(walk, random);
+  }
+
+  /// Unbiased estimate of the transmittance over `range`.
+  double transmittance(const Ray& ray, const Interval& range, Random& random,
+                       Counters& counters) const {
+    const auto walk = [&](auto&& visit) { walkTentative(ray, range, random, counters, visit); };
+    return ratioTracked(walk, random);
+  }
+
+private:
+  /// Calls visit(t, keep * extinction / majorant) at each tentative collision until it returns
+  /// false. One exponential optical depth is spent across cell borders and drawn anew after each
+  /// collision.
+  template <typename Visit>
+  void walkTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
+                     Visit&& visit) const {
+    const Affine& worldToIndex = m_domain.grid().worldToIndex;
+    // Cells may reach beyond the volume and its crop: the domain itself bounds the walk.
+    const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
+    if (inside.empty())
+      return;
+    // Lengths count from where the ray enters: free paths keep their digits, however far away it
+    // began.
+    const Ray entering{ray.at(inside.begin), ray.direction};
+    const Ray indexRay = transformed(worldToIndex, entering);
+    GridWalk walk(transformed(m_majorants.worldToCell(), entering),
+                  {0.0, inside.end - inside.begin}, m_majorants.cellCount());
+    double opticalDepth = random.exponential();
+    std::uint32_t steps = 0;
+    for (; !walk.done(); walk.next()) {
+      const MajorantGrid::Cell& cell = m_majorants.cell(walk.cell());
+      const double majorant = cell.majorant;
+      ++counters.cells;
+      if (majorant == 0.0) {
+        ++counters.skippedCells;
+        continue;
+      }
+      double t = walk.interval().begin;
+      for (;;) {
+        const double toBorder = (walk.interval().end - t) * majorant;
+        if (opticalDepth >= toBorder) {
+          opticalDepth -= toBorder;
+          break;
+        }
+        t += opticalDepth / majorant;
+        double extinction = cell.cut ? keep(m_clip, entering.at(t)) : 1.0;
+        if (extinction > 0.0) {
+          ++counters.lookups;
+          extinction *= m_medium.extinction(indexRay.at(t));
+        }
+        if (!visit(inside.begin + t, extinction / majorant))
+          return;
+        if (++steps % stepsBetweenLooks == 0 && m_stop.load(std::memory_order_relaxed))
+          return;
+        opticalDepth = random.exponential();
+      }
+    }
+  }
+
+  Domain m_domain;
+  const Medium<Voxel>& m_medium;
+  const MajorantGrid& m_majorants;
+  const Clip& m_clip;
+  const StopFlag& m_stop;
+};
+
+} // namespace fenestra

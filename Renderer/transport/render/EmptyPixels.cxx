@@ -1,0 +1,62 @@
+#include "transport/render/EmptyPixels.h"
+
+#include "model/camera/BoxProjection.h"
+
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+namespace fenestra {
+namespace {
+
+/// Pixels; more than rounding moves a projection.
+constexpr double slack = 0.01;
+
+/// The tiles, first and last, that raster coordinates between `low` and `high` fall into; the first
+/// lies behind the last where there is none. Every tile where they are NaN.
+std::pair<int, int> tilesBetween(double low, double high, int pixels, int tileSize) {
+  if (low - slack >= pixels || high + slack < 0.0)
+    return {0, -1};
+  const double last = pixels - 1.0;
+  const double from = low - slack > 0.0 ? std::min(low - slack, last) : 0.0;
+  const double to = high + slack < last ? std::max(high + slack, 0.0) : last;
+  return {static_cast<int>(from) / tileSize, static_cast<int>(to) / tileSize};
+}
+
+} // namespace
+
+EmptyPixels::EmptyPixels(const Camera& camera, const MajorantGrid& majorants)
+    : m_across(static_cast<std::size_t>((camera.width() + tileSize - 1) / tileSize)) {
+  const int down = (camera.height() + tileSize - 1) / tileSize;
+  const std::size_t tiles = m_across * static_cast<std::size_t>(down);
+  const BoxProjection cells(camera, majorants.worldToCell().inverse());
+  const double perPitch = 1.0 / camera.pixelPitch();
+  tbb::combinable<std::vector<std::uint8_t>> parts(
+      [&] { return std::vector<std::uint8_t>(tiles); });
+  const auto fill = [&](const BoxProjection::Bounds& bounds, std::vector<std::uint8_t>& isFull) {
+    const double middle = 0.5 * camera.height();
+    const auto [left, right] =
+        tilesBetween(0.5 * camera.width() + bounds.lower.x() * perPitch,
+                     0.5 * camera.width() + bounds.upper.x() * perPitch, camera.width(), tileSize);
+    const auto [top, bottom] =
+        tilesBetween(middle - bounds.upper.y() * perPitch, middle - bounds.lower.y() * perPitch,
+                     camera.height(), tileSize);
+    for (int row = top; row <= bottom; ++row)
+      for (int column = left; column <= right; ++column)
+        isFull[static_cast<std::size_t>(row) * m_across + static_cast<std::size_t>(column)] = 1;
+  };
+  const Size3& count = majorants.cellCount();
+  tbb::parallel_for(std::int64_t{0}, count.z(), [&](std::int64_t z) {
+    std::vector<std::uint8_t>& isFull = parts.local();
+    std::int64_t cell = z * count.x() * count.y();
+    for (std::int64_t y = 0; y < count.y(); ++y)
+      for (std::int64_t x = 0; x < count.x(); ++x)
+        if (majorants.cell(cell++).majorant > 0.0F)
+          fill(cells.of({x, y, z}), isFull);
+  });
+  m_isFull.resize(tiles);
+  parts.combine_each([&](const std::vector<std::uint8_t>& part) {
+    std::transform(part.begin(), part.end(), m_isFull.begin(), m_isFull.begin(), std::bit_or<>());
+  });
+}
+
+} // namespace fenestra

@@ -1,0 +1,32 @@
+#pragma once
+// Pixels that need no more than one sample.
+
+#include "model/camera/Camera.h"
+#include "transport/readable/MajorantGrid.h"
+
+#include <vector>
+
+namespace fenestra {
+
+/// Pixels through whose whole area, the footprint of the box filter, no eye ray meets a majorant
+/// cell that holds anything. Before a background that is constant over each pixel all their samples
+/// are equal.
+class EmptyPixels {
+public:
+  /// None is known to be empty.
+  EmptyPixels() = default;
+  EmptyPixels(const Camera& camera, const MajorantGrid& majorants);
+
+  bool contains(int column, int row) const {
+    return !m_isFull.empty() && m_isFull[static_cast<std::size_t>(row / tileSize) * m_across +
+                                         static_cast<std::size_t>(column / tileSize)] == 0;
+  }
+
+private:
+  static constexpr int tileSize = 4; ///< pixels
+
+  std::size_t m_across = 0; ///< tiles in a row
+  std::vector<std::uint8_t> m_isFull;
+};
+
+} // namespace fenestra

@@ -1,0 +1,191 @@
+#include "transport/render/Render.h"
+
+#include "base/Stopwatch.h"
+#include "transport/readable/PathEstimator.h"
+#include "transport/render/EmptyPixels.h"
+#include "transport/render/SamplePlan.h"
+#include "transport/render/TileStream.h"
+#include "transport/render/WithMedium.h"
+
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <numeric>
+
+namespace fenestra {
+namespace {
+
+/// A noise estimate from fewer samples a pixel is too uncertain to stop by.
+constexpr std::uint64_t leastForNoise = 16;
+
+/// One path after the other.
+template <typename Voxel>
+struct OneByOne {
+  PathEstimator<Voxel> estimator;
+
+  template <typename Source>
+  bool trace(Source& source, std::size_t /*atOnce*/, Counters& counters) const {
+    while (std::optional<PathStart> from = source.next()) {
+      const std::optional<PathSample> sample =
+          estimator.trace(from->column, from->row, from->random, counters);
+      if (!sample)
+        return false;
+      source.deliver(from->ticket, *sample);
+    }
+    return true;
+  }
+};
+
+/// Passes grow, so that a picture is there early and overhead stays small later; their sizes are
+/// fixed, so that a stop by noise falls on the same sample count on every machine.
+std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
+  constexpr std::uint64_t largest = 16;
+  const std::uint64_t grown = std::clamp<std::uint64_t>(done, 1, largest);
+  const std::uint64_t wanted = settings.passSamples > 0 ? settings.passSamples : grown;
+  return std::min(wanted, settings.samples - done);
+}
+
+/// The same toward a noise target. The pilot ends with the same sample whatever the passes are.
+/// Passes grow anew after it, for some pixels may get far more than the mean, and the last is as
+/// small as the noise so far says, variance falling as one over the samples.
+std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan& plan,
+                              const RenderSettings& settings) {
+  if (done < leastForNoise)
+    return std::min(passSize(done, settings), leastForNoise - done);
+  constexpr double mostInOnePixel = 256.0;
+  const double missing = static_cast<double>(done) * (std::pow(noise / settings.noise, 2.0) - 1.0);
+  const double room = mostInOnePixel / plan.at(done + 1).greatestShare();
+  const auto most = static_cast<std::uint64_t>(std::max(1.0, std::min(missing, room)));
+  return std::min({passSize(done - leastForNoise, settings), settings.samples - done, most});
+}
+
+/// What one stage of the plan has beyond the one before. Returns false when it was stopped before
+/// all was done; tiles are done whole or not at all.
+template <typename Tracer>
+bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
+                const EmptyPixels& empty, std::uint64_t seed, Film& film, Counters& total,
+                RenderMonitor& monitor) {
+  Pass pass(from, to, empty, seed, film, monitor.paths);
+  const int threads = tbb::this_task_arena::max_concurrency();
+  // So many that all threads come to have some, and their tails are short.
+  const std::size_t atOnce =
+      std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)));
+  tbb::combinable<Counters> counters;
+  tbb::parallel_for(
+      0, threads,
+      [&](int) {
+        TileStream stream(pass);
+        if (!monitor.stop.load(std::memory_order_relaxed))
+          tracer.trace(stream, atOnce, counters.local());
+      },
+      tbb::simple_partitioner());
+  counters.combine_each([&](const Counters& local) { total += local; });
+  return pass.whole();
+}
+
+/// Whether all eye rays through a pixel that meet nothing show the same.
+bool isConstantInPixels(const Background& background, const LightSet& lights) {
+  return background.kind != Background::Kind::environment || !lights.hasMaps();
+}
+
+/// What passes take.
+class Pace {
+public:
+  explicit Pace(double secondsInAll) : m_secondsInAll(secondsInAll) {}
+
+  void passed(std::uint64_t samples) {
+    const double now = m_watch.seconds();
+    m_perSample = (now - m_last) / static_cast<double>(samples);
+    m_last = now;
+  }
+  /// How many samples the time that is left allows, if they take what the last ones took.
+  std::uint64_t affordable() const {
+    if (!(m_secondsInAll < infinity) || m_perSample == 0.0)
+      return std::numeric_limits<std::uint64_t>::max();
+    const double left = m_secondsInAll - m_watch.seconds();
+    return static_cast<std::uint64_t>(std::clamp(left / m_perSample, 0.0, 1e9));
+  }
+
+private:
+  double m_secondsInAll;
+  Stopwatch m_watch;
+  double m_last = 0.0, m_perSample = 0.0;
+};
+
+template <typename Tracer>
+RenderResult renderPasses(const Tracer& tracer, const std::string& target, const RenderScene& scene,
+                          const RenderSettings& settings, RenderMonitor& monitor) {
+  RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0, target};
+  const EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
+                                ? EmptyPixels(scene.camera, scene.majorants)
+                                : EmptyPixels();
+  for (int row = 0; row < result.film.height(); ++row)
+    for (int column = 0; column < result.film.width(); ++column)
+      result.film.at(column, row).isCertain = empty.contains(column, row);
+  const bool towardNoise = settings.noise > 0.0;
+  Pace pace(settings.seconds);
+  SamplePlan plan;
+  while (result.finishedSamples < settings.samples) {
+    const std::uint64_t done = result.finishedSamples;
+    const std::uint64_t size = towardNoise ? passTowardNoise(done, monitor.noise, plan, settings)
+                                           : passSize(done, settings);
+    const std::uint64_t count = std::min(size, pace.affordable());
+    if (count == 0) {
+      result.reason = StopReason::seconds;
+      return result;
+    }
+    if (done > 0 && monitor.between)
+      monitor.between(result);
+    if (!renderPass(tracer, plan.at(done), plan.at(done + count), empty, settings.seed, result.film,
+                    result.counters, monitor)) {
+      result.reason = StopReason::request;
+      return result;
+    }
+    pace.passed(count);
+    result.finishedSamples += count;
+    monitor.noise = result.film.noise();
+    if (!towardNoise || result.finishedSamples < leastForNoise)
+      continue;
+    if (monitor.noise <= settings.noise) {
+      result.reason = StopReason::noise;
+      return result;
+    }
+    if (result.finishedSamples == leastForNoise)
+      plan = SamplePlan(result.film);
+  }
+  return result;
+}
+
+} // namespace
+
+RenderResult render(const RenderScene& scene, const RenderSettings& settings,
+                    RenderMonitor& monitor) {
+  const int cores = tbb::info::default_concurrency(); // TBB complains about more
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
+  return arena.execute([&] {
+    const auto work = [&]<typename Voxel>(const Medium<Voxel>& medium,
+                                          const Tracker<Voxel>& tracker) {
+      if (settings.transport == Transport::fast &&
+          WideTracker::serves(scene.volume, scene.transfer) &&
+          EventScene::serves(scene.volume.grid, scene.transfer, scene.lights)) {
+        const Domain domain(scene.volume.grid, scene.crop);
+        const WideTracker wide(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
+                               scene.style, monitor.stop);
+        const WideEvents events(wide.scene(),
+                                EventScene(scene.volume.grid, scene.transfer, scene.lights,
+                                           settings.path.bounces, settings.path.wantNormals));
+        const EyeRays eye(scene.camera, scene.clip, scene.lights, settings.path.background);
+        const PathWave wave(domain, wide, events, eye, monitor.stop);
+        return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor);
+      }
+      const OneByOne<Voxel> readable{PathEstimator<Voxel>(scene.volume.grid, medium, tracker,
+                                                          scene.lights, scene.camera, scene.clip,
+                                                          settings.path, monitor.stop)};
+      return renderPasses(readable, "scalar", scene, settings, monitor);
+    };
+    return withMedium(scene, work, monitor.stop);
+  });
+}
+
+} // namespace fenestra

@@ -1,0 +1,135 @@
+#include "transport/render/SamplePlan.h"
+
+#include "base/Random.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+/// No pixel counts as less noisy than this part of the mean: what is rare hides from few samples.
+constexpr double leastNoise = 0.25;
+constexpr int reach = 2; ///< pixels to each side that are asked
+
+/// Variance of one sample over (x^2 + 0.01), the mean of the channels.
+double relativeVariance(const PixelSums& pixel) {
+  if (pixel.isCertain)
+    return 0.0;
+  const Rgb variance = pixel.deviation / static_cast<double>(pixel.samples - 1);
+  return (variance / (pixel.mean.square() + 0.01)).mean();
+}
+
+/// Of a path: what it costs to begin one, and its scatterings.
+double cost(const PixelSums& pixel) {
+  constexpr double beginning = 0.15;
+  return beginning + pixel.scatterings / static_cast<double>(pixel.samples);
+}
+
+/// The mean over the pixels around one, without itself.
+double around(const std::vector<double>& values, int width, int height, int column, int row) {
+  double sum = 0.0;
+  int count = -1;
+  for (int y = std::max(row - reach, 0); y <= std::min(row + reach, height - 1); ++y)
+    for (int x = std::max(column - reach, 0); x <= std::min(column + reach, width - 1); ++x) {
+      ++count;
+      if (x != column || y != row)
+        sum += values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
+    }
+  return sum / count;
+}
+
+/// Uniform in [0, 1), one for each pixel.
+double ditherOf(std::size_t pixel) {
+  return static_cast<double>(mixBits(pixel + 1) >> 11) * 0x1p-53;
+}
+
+} // namespace
+
+SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().greatest) {
+  const std::size_t uncertain = pilot.pixelCount() - pilot.sampleCounts().certainPixels;
+  if (uncertain < leastPixels)
+    return;
+  std::vector<double> variances, costs;
+  for (const PixelSums& pixel : pilot.pixels()) {
+    variances.push_back(relativeVariance(pixel));
+    costs.push_back(cost(pixel));
+  }
+  m_noise.resize(variances.size());
+  tbb::parallel_for(0, pilot.height(), [&](int row) {
+    for (int column = 0; column < pilot.width(); ++column) {
+      const auto here = [&](const std::vector<double>& values) {
+        return around(values, pilot.width(), pilot.height(), column, row);
+      };
+      if (pilot.at(column, row).isCertain)
+        continue;
+      m_noise[static_cast<std::size_t>(row) * static_cast<std::size_t>(pilot.width()) +
+              static_cast<std::size_t>(column)] =
+          static_cast<float>(std::sqrt(here(variances) / here(costs)));
+    }
+  });
+  double sum = 0.0;
+  for (const float s : m_noise)
+    sum += static_cast<double>(s);
+  if (!(sum > 0.0) || !std::isfinite(sum)) {
+    m_noise.clear();
+    return;
+  }
+  const auto least = static_cast<float>(leastNoise * sum / static_cast<double>(uncertain));
+  m_sorted.reserve(uncertain);
+  for (std::size_t i = 0; i < m_noise.size(); ++i)
+    if (!pilot.pixels()[i].isCertain) {
+      m_noise[i] = std::max(m_noise[i], least);
+      m_sorted.push_back(m_noise[i]);
+    }
+  tbb::parallel_sort(m_sorted.begin(), m_sorted.end());
+  m_sumFrom.resize(m_sorted.size() + 1);
+  for (std::size_t i = m_sorted.size(); i-- > 0;)
+    m_sumFrom[i] = m_sumFrom[i + 1] + static_cast<double>(m_sorted[i]);
+}
+
+/// Pixels have max(pilot, perNoise s) samples. Where the first k of the sorted ones stay at the
+/// pilot, the mean says what perNoise is; k is the least for which the next one's share is at least
+/// the pilot.
+SamplePlan::Stage SamplePlan::at(std::uint64_t mean) const {
+  Stage stage;
+  stage.m_plan = this;
+  stage.m_mean = mean;
+  if (m_noise.empty() || mean <= m_pilot)
+    return stage;
+  const auto pilot = static_cast<double>(m_pilot);
+  const double total = static_cast<double>(mean) * static_cast<double>(m_sorted.size());
+  const auto perNoise = [&](std::size_t k) {
+    return (total - pilot * static_cast<double>(k)) / m_sumFrom[k];
+  };
+  std::size_t low = 0;
+  std::size_t high = m_sorted.size() - 1;
+  while (low < high) {
+    const std::size_t k = (low + high) / 2;
+    if (perNoise(k) * static_cast<double>(m_sorted[k]) >= pilot)
+      high = k;
+    else
+      low = k + 1;
+  }
+  stage.m_perNoise = perNoise(low);
+  return stage;
+}
+
+std::uint64_t SamplePlan::Stage::count(std::size_t pixel) const {
+  if (!(m_perNoise > 0.0))
+    return m_mean;
+  const double share = m_perNoise * static_cast<double>(m_plan->m_noise[pixel]);
+  return std::max(m_plan->m_pilot, static_cast<std::uint64_t>(share + ditherOf(pixel)));
+}
+
+double SamplePlan::Stage::greatestShare() const {
+  if (!(m_perNoise > 0.0))
+    return 1.0;
+  const double most = m_perNoise * static_cast<double>(m_plan->m_sorted.back());
+  return std::max(1.0, most / static_cast<double>(m_mean));
+}
+
+} // namespace fenestra
