@@ -59,20 +59,21 @@ PlaneRequest planeRequest(const std::vector<double>& numbers) {
 
 ClipRequest clipRequest(const FlagValues& flags) {
   ClipRequest clip;
+  SurfaceOptions& surface = clip.surface;
   if (flags.differs("clip"))
     clip.mode = clipMode(*flags.word("clip"));
   if (const auto boundary = flags.word("boundary"))
-    clip.boundary = *boundary == "exact" ? Boundary::exact : Boundary::spline;
+    surface.boundary = *boundary == "exact" ? Boundary::exact : Boundary::spline;
   if (const auto n = flags.count("controlpoints"))
-    clip.controlPoints = static_cast<int>(*n);
-  clip.smoothing = flags.number("smoothing").value_or(clip.smoothing);
+    surface.controlPoints = static_cast<int>(*n);
+  surface.smoothing = flags.number("smoothing").value_or(surface.smoothing);
   if (const auto numbers = flags.numbers("plane", 6))
     clip.plane = planeRequest(*numbers);
-  clip.hole = {holeShape(flags.word("hole").value_or("cylinder")),
-               flags.number("holemargin").value_or(clip.hole.margin)};
+  surface.hole = {holeShape(flags.word("hole").value_or("cylinder")),
+                  flags.number("holemargin").value_or(surface.hole.margin)};
   clip.ghost = flags.number("ghost").value_or(clip.ghost);
-  clip.offset = flags.number("offset").value_or(clip.offset);
-  clip.softness = flags.number("soft").value_or(clip.softness);
+  surface.offset = flags.number("offset").value_or(surface.offset);
+  surface.edge.softness = flags.number("soft").value_or(surface.edge.softness);
 
   const bool hasFocus = flags.has("focus");
   const ClipMode mode = clip.modeWith(hasFocus);
@@ -80,7 +81,7 @@ ClipRequest clipRequest(const FlagValues& flags) {
     throw usageError("--clip: " + *flags.text("clip") + " needs a focus; add --focus");
   if (mode == ClipMode::plane && !clip.plane && !hasFocus)
     throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ, or a --focus to place it by");
-  refuseUnused(flags, mode, clip.boundary);
+  refuseUnused(flags, mode, surface.boundary);
   return clip;
 }
 

@@ -30,13 +30,9 @@ struct PlaneRequest {
 struct ClipRequest {
   std::optional<ClipMode> mode = {}; ///< by default `surface` when there is a focus, else `none`
   std::optional<PlaneRequest> plane = {}; ///< by default the focus's own (FocusPlane.h)
-  Boundary boundary = Boundary::spline;
-  int controlPoints = 50;
-  double smoothing = 0.5; ///< p of the approximating thin plate spline
-  HoleOptions hole = {};
-  double ghost = 0.1;    ///< share of the extinction left in front of the surface, in mode `ghost`
-  double offset = 0.0;   ///< mm that the cut is moved away from the eye
-  double softness = 0.0; ///< mm behind the cut over which matter comes back
+  double ghost = 0.1; ///< share of the extinction left in front of the surface, in mode `ghost`
+  /// A plane takes its offset and softness; `mode` decides its mode and its edge's ghost.
+  SurfaceOptions surface = {};
 
   ClipMode modeWith(bool focus) const {
     return mode.value_or(focus ? ClipMode::surface : ClipMode::none);

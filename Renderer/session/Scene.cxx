@@ -240,24 +240,18 @@ ClipPlane Scene::placedPlane(const ClipRequest& request,
   ClipPlane plane = request.plane
                         ? ClipPlane{*m_camera, request.plane->origin, request.plane->normal}
                         : focusPlane(*m_camera, *depth);
-  plane.point += request.offset * m_camera->forward();
-  plane.edge = {0.0, request.softness};
+  plane.point += request.surface.offset * m_camera->forward();
+  plane.edge = {0.0, request.surface.edge.softness};
   return plane;
 }
 
 void Scene::buildDepthClip(ClipMode mode, const SceneRequest& scene) {
-  const ClipRequest& request = scene.clip;
   const bool isSurface = mode == ClipMode::surface || mode == ClipMode::ghost;
-  const bool isGhost = mode == ClipMode::ghost;
-  SurfaceOptions options;
+  SurfaceOptions options = scene.clip.surface;
   options.mode = isSurface ? SurfaceMode::surface
                            : (mode == ClipMode::hole ? SurfaceMode::hole : SurfaceMode::cutaway);
-  options.controlPoints = request.controlPoints;
-  options.smoothing = request.smoothing;
-  options.boundary = request.boundary;
-  options.hole = request.hole;
-  options.offset = request.offset;
-  options.edge = {isGhost ? double{static_cast<float>(request.ghost)} : 0.0, request.softness};
+  if (mode == ClipMode::ghost)
+    options.edge.ghost = double{static_cast<float>(scene.clip.ghost)};
   ClippingSurface surface =
       buildSteadySurface(*m_camera, domain(), *focus(), options, scene.steadyDegrees);
   m_focusDepth = viewportDepths(surface.focus, *m_camera);

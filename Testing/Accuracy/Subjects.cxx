@@ -103,7 +103,7 @@ View viewAround(const FocusField& field, int number, int count, int size, double
 Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary) {
   SceneRequest request = requestFor(subject);
   request.clip.mode = ClipMode::surface;
-  request.clip.boundary = boundary == "exact" ? Boundary::exact : Boundary::spline;
+  request.clip.surface.boundary = boundary == "exact" ? Boundary::exact : Boundary::spline;
   request.view.position = view.position;
   request.view.target = view.target;
   request.view.up = view.up;

@@ -33,6 +33,8 @@ struct SurfaceOptions {
   HoleOptions hole = {};
   double offset = 0.0; ///< mm that the surface is moved away from the eye, or toward it (negative)
   ClipEdge edge = {};
+
+  bool operator==(const SurfaceOptions&) const = default;
 };
 
 /// Of a spline f, |f(x) - z| in mm over the focus samples on the contours: how far it misses their
