@@ -18,12 +18,12 @@ namespace {
 
 using Flags = qSlicerFenestraClipping::Flags;
 
-constexpr const char* byPresetMode = "preset"; ///< known only when it is rendered
+constexpr const char* byPresetMode = "preset"; ///< the mode is known only at rendering
 const QStringList& cutting() {
   static const QStringList modes = {"surface", "ghost", "cutaway", "hole", "plane", byPresetMode};
   return modes;
 }
-const QStringList anyMode; ///< a focus is all that it needs
+const QStringList anyMode; ///< empty list: any mode with a focus
 
 QString flagOf(const Flags& flags, const char* name) {
   const auto found = flags.find(name);
@@ -62,7 +62,7 @@ qSlicerFenestraClipping::qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, Q
   m_details = details;
   buildDetails(new QFormLayout(details));
   m_form->addRow(details);
-  for (QComboBox* box : {m_clip, m_plane}) // even where no flag changes
+  for (QComboBox* box : {m_clip, m_plane}) // also if no flag changes
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             &qSlicerFenestraClipping::showMode);
   for (QComboBox* box : {m_clip, m_boundary, m_hole, m_plane})
@@ -146,7 +146,7 @@ qSlicerFenestraClipping::Plane qSlicerFenestraClipping::plane() const {
   return static_cast<Plane>(m_plane->currentData().toInt());
 }
 
-/// Of the renderer's, by its word.
+/// Clipping mode, in the renderer's word.
 QString qSlicerFenestraClipping::mode(bool byPreset) const {
   const QString word = m_clip->currentData().toString();
   return word.isEmpty() ? (byPreset ? byPresetMode : "surface") : word;
@@ -185,7 +185,7 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
   if (clips)
     choose(m_clip, flagOf(flags, "clip"));
   const QString now = mode(byPreset);
-  if (clips && (now == "surface" || now == "ghost")) // the renderer's standard is not the panel's
+  if (clips && (now == "surface" || now == "ghost")) // the renderer's default, not the panel's
     choose(m_boundary, flags.count("boundary") > 0 ? flagOf(flags, "boundary") : "spline");
   if (now == "hole")
     choose(m_hole, flagOf(flags, "hole"));
@@ -228,8 +228,8 @@ void qSlicerFenestraClipping::reset() {
   m_isFresh = true;
 }
 
-/// After slices are interpolated a voxel's smoothing is enough. The scan's own stairs, of what its
-/// voxels on the border mix, need twice as much.
+/// Interpolated slices need 1 voxel of label smoothing. Partial-volume steps at the border need 2
+/// voxels of softness.
 void qSlicerFenestraClipping::begin(double voxel) {
   if (!m_isFresh)
     return;
@@ -256,7 +256,7 @@ void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool 
   flags["clip"] = clips ? word(m_clip) : "";
   flags["boundary"] = clips && surface ? word(m_boundary) : "";
   if (flags["boundary"] != "spline")
-    flags["controlpoints"] = flags["smoothing"] = ""; // the spline's alone
+    flags["controlpoints"] = flags["smoothing"] = ""; // flags of the spline only
   flags["hole"] = clips && now == "hole" ? word(m_hole) : "";
   flags["margin"] = hasFocus ? m_margins->flag().toStdString() : "";
   for (const Number& number : m_numbers) {

@@ -15,31 +15,31 @@ class QDoubleSpinBox;
 class QFormLayout;
 struct qSlicerFenestraSegment;
 
-/// \brief How the focus is uncovered: the flags of clipping as widgets, of which those are shown
-/// that the chosen way has.
+/// \brief How the focus is uncovered: widgets for the flags of clipping; shows those of the chosen
+/// mode.
 ///
-/// A value that does not matter now is not among the flags, but stays in its widget.
+/// A widget keeps its value while its flag has no effect and is not passed.
 class qSlicerFenestraClipping : public QWidget {
   Q_OBJECT
 
 public:
   using Flags = std::map<std::string, std::string>;
-  /// Where a plane comes from.
+  /// Source of the plane: the renderer, a plane node, or a stored flag.
   enum class Plane { automatic, node, fixed };
 
-  /// `planeNode` chooses among the scene's planes; it becomes this widget's.
+  /// `planeNode` chooses among the scene's planes; this widget becomes its parent.
   explicit qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, QWidget* parent = nullptr);
 
-  /// `byPreset`: there is an organ preset, which clips and has a focus where nothing else says so.
+  /// Shows the flags. `byPreset`: an organ preset is chosen, which sets clip and focus unless other
+  /// flags do.
   void show(const Flags& flags, Plane plane, const QList<qSlicerFenestraSegment>& focus,
             bool byPreset);
-  /// Standard values, in what does not matter now, too.
+  /// Sets all widgets to defaults, also those hidden now.
   void reset();
-  /// With the first focus: what takes the stairs of voxels off it, whose shortest edge is `voxel`
-  /// mm. Nothing where the user, or the shown flags, have chosen.
+  /// Sets smoothing and softness that remove voxel steps. `voxel`: shortest edge of a voxel, mm.
+  /// Call with the first focus; no effect once the user or the shown flags have chosen.
   void begin(double voxel);
-  /// Puts all flags of clipping, empty where they are not to be given. `plane`: what a plane of the
-  /// scene is as a flag.
+  /// Sets all flags of clipping; empty: not passed. `plane`: flag value of the chosen plane node.
   void take(Flags& flags, const std::string& plane, bool hasFocus, bool byPreset) const;
   Plane plane() const;
   const qMRMLNodeComboBox* planeNode() const { return m_planeNode; }
@@ -48,14 +48,14 @@ signals:
   void changed();
 
 private:
-  /// A flag that is a number of widgets' units.
+  /// Number widget of a flag.
   struct Number {
     const char* flag;
     QDoubleSpinBox* box;
-    double unit;       ///< of the flag, in a unit of the box
-    double standard;   ///< of the box
-    QStringList modes; ///< that use it
-    QString shown;     ///< the flag as it is shown, which may have more digits than the box
+    double unit;       ///< flag value per unit of the box
+    double standard;   ///< default, in the box's units
+    QStringList modes; ///< clipping modes that use the flag; empty: all
+    QString shown;     ///< flag text as shown, possibly with more digits than the box
     double shownValue;
   };
 
@@ -74,10 +74,10 @@ private:
   qSlicerFenestraMargins* m_margins;
   QList<Number> m_numbers;
   QFormLayout* m_form;
-  QWidget* m_details;      ///< needs a focus
-  bool m_hasFocus = false; ///< as shown
-  bool m_isFresh = true;   ///< nothing was chosen
-  bool m_byPreset = false; ///< as shown
+  QWidget* m_details;      ///< enabled only with a focus
+  bool m_hasFocus = false; ///< of the flags last shown
+  bool m_isFresh = true;   ///< nothing chosen yet
+  bool m_byPreset = false; ///< of the flags last shown
 };
 
 #endif

@@ -59,7 +59,7 @@ void qSlicerFenestraMargins::show(const QString& flag, const QList<qSlicerFenest
   build(focus);
   const bool each = numbers.size() > 1 && numbers.size() == focus.size();
   {
-    const QSignalBlocker quiet(m_each); // its numbers are shown next
+    const QSignalBlocker quiet(m_each); // the numbers are shown below
     m_each->setChecked(each);
   }
   if (!each)

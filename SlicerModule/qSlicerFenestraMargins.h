@@ -12,14 +12,14 @@ struct qSlicerFenestraSegment {
   QString id, name;
 };
 
-/// How much the focus's segments are grown, in mm: one for all, or one each.
+/// Margins by which the focus segments grow, mm; one for all, or one each.
 class qSlicerFenestraMargins : public QWidget {
   Q_OBJECT
 
 public:
   explicit qSlicerFenestraMargins(QWidget* parent = nullptr);
 
-  /// The flag's numbers, in the order of the segments.
+  /// Shows the numbers of the flag `margin`, which follow the order of the segments.
   void show(const QString& flag, const QList<qSlicerFenestraSegment>& focus);
   QString flag() const;
 
@@ -35,7 +35,7 @@ private:
   QFormLayout* m_rows;
   QList<qSlicerFenestraSegment> m_focus;
   QList<QDoubleSpinBox*> m_boxes;  ///< one a segment of the focus
-  QMap<QString, double> m_margins; ///< by segment: they outlive that it is not focus for a while
+  QMap<QString, double> m_margins; ///< mm by segment; kept for segments outside the focus
 };
 
 #endif

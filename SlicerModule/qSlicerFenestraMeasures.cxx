@@ -16,7 +16,7 @@ struct Known {
   QString name, help;
 };
 
-/// In the order of what matters to who looks.
+/// Known measures, the most important for a viewer first.
 QList<Known> known() {
   const auto tr = [](const char* text) { return QObject::tr(text); };
   return {
@@ -44,9 +44,9 @@ QList<Known> known() {
 }
 
 QString number(double value, Unit unit) {
-  if (unit == Unit::share) // 99.98 % is not all
+  if (unit == Unit::share) // 99.98 % must not read as 100.0 %
     return QString::number(100.0 * value, 'f', value > 0.99 && value < 1.0 ? 2 : 1);
-  if (value < 0.001) // nobody wants to read 4.1e-07 mm
+  if (value < 0.001) // not 4.1e-07 mm
     return QString::number(value, 'f', 3);
   return value < 9.95 ? QString::number(value, 'g', 2) : QString::number(value, 'f', 0);
 }
@@ -65,7 +65,7 @@ QString suffix(Unit unit) {
   return {};
 }
 
-/// A number, or a distribution's mean, 95th percentile and greatest.
+/// Text of a number, or of a distribution: mean, 95th percentile and maximum.
 QString inWords(const QJsonValue& value, Unit unit) {
   if (value.isDouble())
     return number(value.toDouble(), unit) + suffix(unit);

@@ -7,20 +7,20 @@
 
 #include "qSlicerFenestraModuleExport.h"
 
-/// What the renderer measured of a picture, for people.
+/// Measures of a picture by the renderer, in words for users.
 namespace qSlicerFenestraMeasures {
 
 struct Measure {
   QString name, value, help;
 };
 
-/// Those of the statistics that are kept with a picture.
+/// Statistics to be stored with a picture.
 Q_SLICER_QTMODULES_FENESTRA_EXPORT QJsonObject kept(const QJsonObject& statistics);
 
-/// In words, those that are there.
+/// Existing measures, in words.
 Q_SLICER_QTMODULES_FENESTRA_EXPORT QList<Measure> inWords(const QJsonObject& measures);
 
-/// "4.2 s", "42 s", "3 min 7 s".
+/// Duration as text: "4.2 s", "42 s", "3 min 7 s".
 Q_SLICER_QTMODULES_FENESTRA_EXPORT QString duration(double seconds);
 
 } // namespace qSlicerFenestraMeasures

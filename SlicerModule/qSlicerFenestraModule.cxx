@@ -44,7 +44,7 @@ QStringList qSlicerFenestraModule::associatedNodeTypes() const {
   return {"vtkMRMLFenestraRenderNode"};
 }
 
-/// Beside this library, where Slicer finds it as a command line module, too.
+/// Path beside this library, where Slicer also finds the renderer as a command line module.
 QString qSlicerFenestraModule::program() const {
   const QDir folder = QFileInfo(this->path()).dir();
 #ifdef Q_OS_WIN

@@ -5,7 +5,7 @@
 
 #include "qSlicerFenestraModuleExport.h"
 
-/// The module: what Slicer shows of it, and its parts.
+/// The module as Slicer loads it: names, texts, and its parts.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraModule : public qSlicerLoadableModule {
   Q_OBJECT
   Q_PLUGIN_METADATA(IID "org.slicer.modules.loadable.qSlicerLoadableModule/1.0");
@@ -25,7 +25,7 @@ public:
   QStringList dependencies() const override;
   QStringList associatedNodeTypes() const override;
 
-  /// The renderer that comes with this module.
+  /// Path of the renderer installed with this module.
   QString program() const;
 
 protected:

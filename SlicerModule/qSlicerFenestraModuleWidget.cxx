@@ -36,7 +36,7 @@ using Node = vtkMRMLFenestraRenderNode;
 qSlicerFenestraModuleWidget::qSlicerFenestraModuleWidget(QWidget* parent) : Superclass(parent) {}
 
 qSlicerFenestraModuleWidget::~qSlicerFenestraModuleWidget() {
-  delete m_session; // its signals would find a panel that is half gone
+  delete m_session; // before the panel: signals would reach a half-destroyed one
 }
 
 vtkSlicerFenestraLogic* qSlicerFenestraModuleWidget::fenestra() const {
@@ -135,7 +135,7 @@ void qSlicerFenestraModuleWidget::exit() {
   Superclass::exit();
 }
 
-/// What was said of it goes with it.
+/// Drops the session's scene and the messages about it.
 void qSlicerFenestraModuleWidget::onSceneClosed() {
   m_sceneIsNew = true;
   m_session->closeScene();
@@ -146,8 +146,8 @@ void qSlicerFenestraModuleWidget::onSceneImported() {
   m_sceneIsNew = true;
 }
 
-/// Only now do the panel's boxes know its nodes; and a scene that is opened closes another one
-/// before, in the same batch.
+/// Called at the end of a batch: only then do the panel's boxes know the nodes, and opening a scene
+/// closes the old one in the same batch.
 void qSlicerFenestraModuleWidget::useNewScene() {
   if (m_sceneIsNew)
     useScene();
@@ -193,7 +193,8 @@ void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   updateButtons();
 }
 
-/// Twice: a view that the layout has just made takes the picture when it has its size.
+/// Shows the result twice: a view just made by the layout fits the picture only once it has its
+/// size.
 void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
   const vtkWeakPointer<Node> shown = render;
   QTimer::singleShot(0, this, [this, shown, times] {
@@ -207,7 +208,7 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
   });
 }
 
-/// Writing takes as long as it takes: who does not want to wait, presses again.
+/// Writing may take long: a second press ends the render without it.
 void qSlicerFenestraModuleWidget::stop() {
   m_session->stop();
   if (m_session->rendering())
@@ -234,7 +235,7 @@ void qSlicerFenestraModuleWidget::showPicture(const QImage& picture, const qFene
                                      .arg(noise, qSlicerFenestraMeasures::duration(what.seconds)));
 }
 
-/// Now and then: where no graphics card draws Slicer's window, a change in it takes a while.
+/// Updates at most every `interval`: without a graphics card, Slicer's window redraws slowly.
 void qSlicerFenestraModuleWidget::onProgress(double part, double seconds) {
   constexpr int interval = 500; // milliseconds
   if (m_session->stopping() || (m_told.isValid() && m_told.elapsed() < interval))
@@ -259,7 +260,7 @@ QString qSlicerFenestraModuleWidget::inWords(Node* render, qFenestraOutcome::Kin
     return kind == Kind::killed ? tr("Ended at once, without a picture.")
                                 : tr("Stopped before there was a picture.");
   const QString description = QString::fromUtf8(render->GetDescription());
-  if (description.isEmpty()) // its statistics were not written any more
+  if (description.isEmpty()) // the statistics were not written
     return whole ? tr("Done.") : tr("Stopped.");
   return (whole ? tr("Done: %1.") : tr("Stopped: %1.")).arg(description);
 }
@@ -271,7 +272,7 @@ void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& 
   else
     say(inWords(render, outcome.kind));
   if (render) {
-    const QSignalBlocker unheard(m_panel->renders); // it is shown below
+    const QSignalBlocker unheard(m_panel->renders); // shown below
     m_panel->renders->setCurrentNode(render);
   }
   showChosen();
@@ -285,7 +286,7 @@ void qSlicerFenestraModuleWidget::say(const QString& message, const QString& det
   m_panel->details->setChecked(false);
 }
 
-/// What the last render said, once the user has gone on.
+/// Clears the last render's message, once the user has moved on.
 void qSlicerFenestraModuleWidget::forget() {
   if (!m_session->rendering())
     say({});
@@ -309,14 +310,14 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   m_panel->resume->setVisible(m_session->canResume(render));
 }
 
-/// Where a picture is shown already, the chosen one takes its place.
+/// Replaces the picture shown, if any, by the chosen one.
 void qSlicerFenestraModuleWidget::onRenderChosen() {
   showChosen();
   if (chosen() && fenestra()->GetShownRender())
     showResult(chosen());
 }
 
-/// What there is to see of the chosen picture.
+/// Shows description, player and measures of the chosen picture.
 void qSlicerFenestraModuleWidget::showChosen() {
   updateButtons();
   Node* render = chosen();
@@ -352,7 +353,7 @@ void qSlicerFenestraModuleWidget::save() {
     return say(tr("Its files went with the session that made it. Press Repeat, then save."));
   const QString png = turns ? tr("Pictures, numbered (*.png)") : tr("Picture (*.png)");
   const QString exr = tr("Linear colour and depth (*.exr)");
-  // Asked below, for the names that are written: the ending may be missing, or a number.
+  // Overwriting is confirmed below, for the final names: an ending or a number may be added.
   const QString chosen = QFileDialog::getSaveFileName(
       this, turns ? tr("Save the frames, numbered") : tr("Save the picture"),
       QString::fromUtf8(render->GetName()) + ".png", turns ? png : png + ";;" + exr, nullptr,

@@ -28,7 +28,7 @@ public:
   void enter() override;
   void exit() override;
 
-  /// None before the module's logic is known.
+  /// Null before the module's logic is known.
   qSlicerFenestraSession* session() const { return m_session; }
 
 public slots:
@@ -73,9 +73,9 @@ private:
   qSlicerFenestraPanel* m_panel = nullptr;
   qSlicerFenestraSettings* m_settings = nullptr;
   qSlicerFenestraSession* m_session = nullptr;
-  bool m_sceneIsNew = false; ///< closed or loaded, and not yet used
-  QString m_reached;         ///< of the render under way, in words
-  QElapsedTimer m_told;      ///< since progress was last shown
+  bool m_sceneIsNew = false; ///< scene closed or loaded, and not yet used
+  QString m_reached;         ///< samples and noise of the render under way, in words
+  QElapsedTimer m_told;      ///< time since progress was last shown
 };
 
 #endif

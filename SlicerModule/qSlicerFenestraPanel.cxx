@@ -33,15 +33,15 @@ QComboBox* choices(const QString& name, const QList<Choice>& all, const QString&
   auto* box = new QComboBox;
   box->setObjectName(name);
   box->setToolTip(help);
-  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon); // long words fit, too
+  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon); // long texts fit
   for (const Choice& choice : all)
     box->addItem(choice.text, choice.data);
   return box;
 }
 
-/// Adds, or takes away, a choice behind the first `index` ones.
+/// Adds or removes a choice at `index`.
 void offerChoice(QComboBox* box, int index, const Choice& choice, bool offered) {
-  const QSignalBlocker unheard(box); // what is chosen stays chosen
+  const QSignalBlocker unheard(box); // the selection stays
   const int found = box->findData(choice.data);
   if (offered && found < 0)
     box->insertItem(index, choice.text, choice.data);
@@ -49,7 +49,7 @@ void offerChoice(QComboBox* box, int index, const Choice& choice, bool offered) 
     box->removeItem(found);
 }
 
-/// The renderer's, in words.
+/// Anatomy presets of the renderer, with their names for users.
 QList<Choice> anatomies() {
   const auto tr = [](const char* text) { return QObject::tr(text); };
   return {{tr("Knee cartilage (MR)"), "knee-cartilage"},
@@ -66,7 +66,7 @@ QList<Choice> anatomies() {
 QLabel* words(const QString& name) {
   auto* label = new QLabel;
   label->setObjectName(name);
-  label->setTextFormat(Qt::PlainText); // it may hold a scene's words, which are nobody's pages
+  label->setTextFormat(Qt::PlainText); // texts of a scene must not be read as HTML
   label->setWordWrap(true);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
@@ -371,7 +371,7 @@ void qSlicerFenestraPanel::offerPresets(bool chosen) {
 
 void qSlicerFenestraPanel::showWithheld(const std::map<std::string, std::string>& what,
                                         bool files) {
-  constexpr std::size_t most = 200; // characters of a value: a label is no page
+  constexpr std::size_t most = 200; // shown characters of a value
   QStringList lines = {tr("Not followed, of what this scene says:")};
   for (const auto& [name, value] : what)
     lines << QString::fromStdString(name + ": " + value.substr(0, most));

@@ -24,45 +24,45 @@ class QVBoxLayout;
 class vtkMRMLScene;
 struct qFenestraAbilities;
 
-/// The module's widgets from top to bottom, and nothing that they do.
+/// The module's widgets from top to bottom, without behaviour.
 class qSlicerFenestraPanel : public QWidget {
   Q_OBJECT
 
 public:
   explicit qSlicerFenestraPanel(QWidget* parent = nullptr);
 
-  /// Offers what only newer renderers know.
+  /// Adds choices that only newer renderers support.
   void offer(const qFenestraAbilities& abilities);
-  /// With an anatomy preset there are choices that are left to it: data "preset" for the view, and
-  /// none for others.
+  /// Adds or removes the choices that leave a flag to the anatomy preset; data: "preset" for the
+  /// view, empty for others.
   void offerPresets(bool chosen);
-  /// What the scene says of flags and is not followed, word by word; `files`: it names files.
+  /// Shows flags of the scene that are withheld, name and value; `files`: some name files.
   void showWithheld(const std::map<std::string, std::string>& what, bool files);
 
-  /// Chooses by data; the first where it is none of the choices. A file that the user allowed as
-  /// the value of `flag` is made one of them.
+  /// Selects the item with `data`, else the first. If `data` is the value of `flag` and names a
+  /// file that the user allowed, adds an item.
   static void choose(QComboBox* box, const QString& data, const char* flag);
   static bool namesFile(const char* flag, const QString& value);
 
   QPushButton* sample;
   qMRMLNodeComboBox* volume;
   qMRMLNodeComboBox* segmentation;
-  QComboBox* preset; ///< hidden where there are none
+  QComboBox* preset; ///< hidden if the renderer has none
   QListWidget* focus;
   QLabel* focusHint;
-  QLabel* withheld;   ///< what the scene says and is not followed; hidden where there is nothing
-  QPushButton* allow; ///< those of it that are files
+  QLabel* withheld;   ///< flags of the scene that are withheld; hidden if there are none
+  QPushButton* allow; ///< allows the withheld files
   qSlicerFenestraClipping* clipping;
 
-  QComboBox* view; ///< data: the flag's word; empty: a 3-D view's camera
+  QComboBox* view; ///< data: the flag's word; empty: the camera of a 3-D view
   qMRMLNodeComboBox* view3D;
-  QCheckBox* follow; ///< the 3-D view's camera, live
+  QCheckBox* follow; ///< follow the camera of the 3-D view live
   QComboBox* transfer;
   QComboBox* rig;
-  ctkSliderWidget* strengths[4]; ///< per cent: key, fill, rim, environment
+  ctkSliderWidget* strengths[4]; ///< per cent; key, fill, rim, environment
   QComboBox* background;
 
-  QComboBox* quality; ///< data: "samples noise seconds"; none: as the boxes say
+  QComboBox* quality; ///< data: "samples noise seconds"; empty: values of the boxes
   QSpinBox* samples;
   QDoubleSpinBox* noise;   ///< 0: no limit
   QDoubleSpinBox* seconds; ///< 0: no limit
@@ -72,7 +72,7 @@ public:
   QWidget* animation;
   QSpinBox* frames;
   QDoubleSpinBox* degrees;
-  QDoubleSpinBox* steady; ///< degrees; 0: as each frame by itself
+  QDoubleSpinBox* steady; ///< degrees; 0: each frame by itself
   QPushButton* turn;
 
   QCheckBox* showPreview;

@@ -31,7 +31,7 @@ qSlicerFenestraPlayer::qSlicerFenestraPlayer(QWidget* parent) : QWidget(parent) 
   row->addWidget(m_slider, 1);
   row->addWidget(m_where);
   row->addWidget(m_speed);
-  // The next frame is due when the one before is drawn: a slow screen is not overrun.
+  // The timer restarts after each frame is drawn: a slow screen is not overrun.
   m_timer.setSingleShot(true);
   connect(&m_timer, &QTimer::timeout, this, &qSlicerFenestraPlayer::step);
   connect(m_play, &QToolButton::toggled, this, &qSlicerFenestraPlayer::play);

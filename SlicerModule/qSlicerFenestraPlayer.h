@@ -9,19 +9,20 @@ class QSlider;
 class QSpinBox;
 class QToolButton;
 
-/// Goes through frames, one after the other and around.
+/// Plays frames one after the other, in a loop.
 class qSlicerFenestraPlayer : public QWidget {
   Q_OBJECT
 
 public:
   explicit qSlicerFenestraPlayer(QWidget* parent = nullptr);
 
-  /// Of another animation, or one that has grown; it stands still then.
+  /// Sets the number of frames, for another animation or for more frames of the same; stops
+  /// playing.
   void setFrames(int count);
   int frame() const;
 
 signals:
-  /// From 0.
+  /// Emits the frame's index, from 0.
   void frameChanged(int frame);
 
 private:

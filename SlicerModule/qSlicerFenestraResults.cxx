@@ -39,7 +39,7 @@ QString turntableLine(Node* render) {
            QString::fromStdString(render->GetFlag("degrees")));
 }
 
-/// With the render, what the renderer says about it.
+/// Stores the statistics' line and measures in the node.
 void describe(Node* render, const QJsonObject& stats) {
   const QString line = render->IsTurntable() ? turntableLine(render) : statsLine(stats);
   render->SetDescription(line.toUtf8().constData());

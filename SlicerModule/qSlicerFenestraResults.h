@@ -9,22 +9,22 @@
 #include "vtkMRMLFenestraRenderNode.h"
 #include <vtkWeakPointer.h>
 
-/// \brief Where the files of this scene's renders lie: each render's in a folder of its own.
+/// \brief Folders of this scene's renders, one folder a render.
 ///
 /// A result belongs to a node, not to the node's ID: IDs begin again with every scene.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraResults {
 public:
-  /// Also describes the node: by what the renderer says in the folder's statistics.
+  /// Stores the folder, and describes the node by the statistics in the folder.
   void add(vtkMRMLFenestraRenderNode* render, const QString& folder);
   void clear() { m_all.clear(); }
 
-  /// Empty where this session did not make the render.
+  /// Folder of a render; empty: not made in this session.
   QString folderOf(vtkMRMLFenestraRenderNode* render) const;
-  /// The picture as it was written, or empty.
+  /// The picture's file as written; empty: none.
   QString fileOf(vtkMRMLFenestraRenderNode* render, const QString& ending) const;
-  /// The same of a turntable: its frames.
+  /// The turntable's frame files; empty: none.
   QStringList framesOf(vtkMRMLFenestraRenderNode* turntable) const;
-  /// Whether it is a turntable without all of its frames, whose scene is still there.
+  /// True for a turntable without all of its frames, whose scene file still exists.
   bool lacksFrames(vtkMRMLFenestraRenderNode* render) const;
 
 private:

@@ -25,7 +25,7 @@ qFenestraOutcome failure(const QString& message, const QString& details = {}) {
   return {Ended::failed, message, details};
 }
 
-/// What a preview must load anew when it changes.
+/// Data whose change requires a new preview: volume, segmentation, transforms, crop.
 std::string dataOf(const FenestraScene::Contents& contents) {
   std::ostringstream text;
   text.precision(17);
@@ -39,7 +39,7 @@ std::string dataOf(const FenestraScene::Contents& contents) {
   return text.str();
 }
 
-/// What the renderer said, without the names of files that only this session knows.
+/// The renderer's message, without names of files in this session's folder.
 QString inWords(QString message, const QString& folder) {
   const int colon = message.indexOf(": ");
   if (colon > 0 && message.startsWith(folder))
@@ -49,7 +49,7 @@ QString inWords(QString message, const QString& folder) {
   return message;
 }
 
-/// Of the picture's shape, and quickly made.
+/// Size with the picture's aspect, at most 256 x 256: quick to render.
 std::string previewSize(const std::string& size) {
   const QStringList words = QString::fromStdString(size).split('x');
   const QSize one = QSize(words.value(0, "512").toInt(), words.value(1, "512").toInt())
@@ -63,7 +63,7 @@ void removeFolder(const QString& folder) {
     QDir(folder).removeRecursively();
 }
 
-/// The views are drawn once, after all that is added.
+/// Pauses drawing of the views, which then are drawn once, after all additions.
 struct Paused {
   explicit Paused(vtkMRMLApplicationLogic* logic) : application(logic) {
     if (application)
@@ -89,7 +89,7 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
       m_files(std::make_shared<Files>()),
       m_queue(program) {
   m_worker.setMaxThreadCount(1);
-  constexpr int interval = 60; // milliseconds: what a drag of the mouse does is not all told
+  constexpr int interval = 60; // ms; a drag's changes are merged
   m_soon.setSingleShot(true);
   m_soon.setInterval(interval);
   m_preview.setDelay(0);
@@ -129,7 +129,7 @@ void qSlicerFenestraSession::work(const std::function<void()>& job) {
   m_worker.start(QRunnable::create(job));
 }
 
-/// In the main thread; not at all where this is gone by then.
+/// Runs the job in the main thread, unless this object is gone by then.
 void qSlicerFenestraSession::later(const std::function<void()>& job) {
   QMetaObject::invokeMethod(this, job, Qt::QueuedConnection);
 }
@@ -182,7 +182,7 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   return node;
 }
 
-/// All flags are told beside the scene: the renderer trusts a user more than a scene.
+/// Passes all flags on the command line: the renderer trusts a user more than a scene.
 QStringList qSlicerFenestraSession::arguments(Node* render, const QString& scene,
                                               bool withSurface) const {
   QStringList all = render->IsTurntable() ? QStringList{"turntable", scene} : QStringList{scene};
@@ -217,13 +217,13 @@ void qSlicerFenestraSession::stop() {
 void qSlicerFenestraSession::closeScene() {
   m_preview.stop();
   m_results.clear();
-  const QList<int> ids = m_renders.keys(); // those that wait end at once
+  const QList<int> ids = m_renders.keys(); // waiting ones end at once
   for (const int id : ids) {
     m_renders[id].stopped = true;
     m_queue.stop(id);
-    m_queue.stop(id); // of the one under way nothing is to be kept
+    m_queue.stop(id); // discards results of the one under way
   }
-  m_files = std::make_shared<Files>(); // the old ones go with the last process that uses them
+  m_files = std::make_shared<Files>(); // the last process using the old files removes them
   m_shownData.clear();
   m_previewFolder.clear();
 }
@@ -232,7 +232,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
   const QString folder = m_renders[id].folder;
   emit renderStopped();
   Node* node = m_renders[id].node;
-  const bool turns = node && node->IsTurntable(); // what is finished is kept, whatever happens
+  const bool turns = node && node->IsTurntable(); // finished frames are kept, whatever happens
   const bool isThere =
       turns ? !vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()).empty()
             : outcome.kind != Ended::failed && QFileInfo::exists(folder + "/radiance.nrrd");
@@ -257,7 +257,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
   });
 }
 
-/// A step at a time, with the event loop in between, in which the user may close the scene.
+/// Adds one step, then returns to the event loop, in which the user may close the scene.
 void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
                                        const std::function<void(Node*, int)>& add, int step) {
   Node* node = m_renders[id].node;
@@ -276,7 +276,7 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
   const Render render = m_renders.take(id);
   vtkSmartPointer<Node> node = render.node.GetPointer();
   const bool kept = node && node->GetScene() && node->GetNodeReference(Node::PictureRole);
-  if (!kept || !canResume(node)) // which needs them
+  if (!kept || !canResume(node)) // resuming needs these files
     for (const char* file : {"scene.mrml", "volume.nrrd", "segmentation.seg.nrrd", "roi.mrk.json"})
       if (!render.folder.isEmpty())
         QFile::remove(render.folder + "/" + file);
@@ -325,7 +325,7 @@ void qSlicerFenestraSession::follow() {
   if (!m_previewed || !m_previewed->GetScene() || rendering())
     return;
   if (m_starting)
-    return m_soon.start(); // what changed meanwhile is told then
+    return m_soon.start(); // changes are sent then
   try {
     const FenestraScene::Contents contents =
         m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
@@ -359,7 +359,7 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
   });
 }
 
-/// A node's flags, as they are told to a preview.
+/// The node's flags, adapted to a preview.
 QJsonObject qSlicerFenestraSession::previewFlags(Flags flags,
                                                  const FenestraScene::Contents& contents) const {
   for (const char* name : {"seconds", "seed", "samples"})
@@ -376,7 +376,7 @@ QJsonObject qSlicerFenestraSession::previewFlags(Flags flags,
   return all;
 }
 
-/// Named after what is in it: another transfer function is another file.
+/// File named by a hash of its content: another transfer function is another file.
 QString qSlicerFenestraSession::propertyFile(const FenestraScene::Contents& contents) const {
   const QByteArray text = QByteArray::fromStdString(contents.property);
   const QString name = QCryptographicHash::hash(text, QCryptographicHash::Sha1).toHex();
@@ -392,7 +392,7 @@ void qSlicerFenestraSession::tellPreview(const QJsonObject& flags) {
   QJsonObject changed;
   for (auto flag = m_told.begin(); flag != m_told.end(); ++flag)
     if (!flags.contains(flag.key()))
-      changed[flag.key()] = QJsonValue::Null; // no more given
+      changed[flag.key()] = QJsonValue::Null; // no longer given
   for (auto flag = flags.begin(); flag != flags.end(); ++flag)
     if (m_told.value(flag.key()) != flag.value())
       changed[flag.key()] = flag.value();

@@ -23,12 +23,12 @@
 #include "vtkSlicerFenestraLogic.h"
 #include <vtkWeakPointer.h>
 
-/// \brief What the panel has done: one preview that follows the settings, and renders one after the
+/// \brief Work of the panel: one preview that follows the settings, and renders one after the
 /// other.
 ///
-/// Files are written and read in a thread of its own, below a private folder that goes with the
-/// scene; the scene is touched in the main thread alone. While a render is under way there is no
-/// preview, which would take its time.
+/// Files are written and read in a worker thread, below a private folder that is removed with the
+/// scene; the scene is changed in the main thread only. While a render is under way there is no
+/// preview, which would slow the render down.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject {
   Q_OBJECT
 
@@ -38,61 +38,63 @@ public:
   ~qSlicerFenestraSession() override;
 
   enum class Kind { picture, turntable };
-  /// Adds a render of the settings to the scene and to the queue. Null where something is missing:
-  /// `ended` says what.
+  /// Adds a render of the settings to the scene and to the queue. Null if something is missing:
+  /// `ended` reports the reason.
   vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings, Kind kind = Kind::picture);
-  /// Whether frames of a turntable are missing that this session can add.
+  /// True if the turntable is incomplete and can be resumed here.
   bool canResume(vtkMRMLFenestraRenderNode* turntable) const;
-  /// Goes on with it: its frames are more then.
+  /// Renders the missing frames.
   void resume(vtkMRMLFenestraRenderNode* turntable);
-  /// Ends the render under way, which keeps what it has; called again, without.
+  /// Ends the render under way, keeping finished results; a second call discards them.
   void stop();
-  /// The render under way has been told to end.
+  /// True once the render under way has been asked to end.
   bool stopping() const { return rendering() && m_renders.first().stopped; }
-  /// The scene is closed: its renders, results and files go with it.
+  /// Ends all renders and drops results and files of the closed scene.
   void closeScene();
   bool rendering() const { return !m_renders.isEmpty(); }
   int waiting() const { return rendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 
-  /// Shows the settings as they are from now on, or no more where there are none.
+  /// Previews the settings from now on; null: ends the preview.
   void preview(vtkMRMLFenestraRenderNode* settings);
 
-  /// Makes the renderer's synthetic knee, and then tells its scene's path, or what failed.
+  /// Makes the renderer's synthetic knee, then calls `then` with the scene's path, or with a
+  /// failure.
   void makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
 
   const qSlicerFenestraResults& results() const { return m_results; }
 
 public slots:
-  /// Something may have changed: settings, camera, volume, segments, transfer function.
+  /// Updates the preview. Call when settings, camera, volume, segments or transfer function may
+  /// have changed.
   void refresh();
 
 signals:
-  /// What the renderer knows; once, soon after the session began.
+  /// Abilities of the renderer; once, soon after the session began.
   void learned(const qFenestraAbilities& abilities);
   void previewed(const QImage& picture, const qFenestraPicture& what);
-  /// A sentence for the user; what was shown stays.
+  /// A sentence for the user; the last preview stays.
   void previewRefused(const QString& message);
   void started(vtkMRMLFenestraRenderNode* render);
-  /// `part` of the work, after `seconds`.
+  /// `part`: finished share, 0 to 1; `seconds`: time so far.
   void progressed(vtkMRMLFenestraRenderNode* render, double part, double seconds);
   /// Samples and noise of the render under way, in words.
   void reached(const QString& words);
-  /// The process of the render under way is no more; its result is still to be read.
+  /// The process of the render under way has ended; its result is not read yet.
   void renderStopped();
-  /// With its result in the scene, where there is one.
+  /// The render's result, if any, is in the scene.
   void ended(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
 
 private:
   static constexpr const char* folderPrefix = "fenestra-slicer-";
-  /// Of one scene: the working thread's.
+  /// Files of one scene; used in the worker thread.
   struct Files {
     qFenestraFolder folder{QDir::tempPath(), folderPrefix};
     FenestraScene::Writer writer{folder.path().toStdString()};
   };
   struct Render {
     vtkWeakPointer<vtkMRMLFenestraRenderNode> node;
-    std::shared_ptr<Files> files; ///< which stay until its process has ended
-    QString folder;               ///< empty until it is written
+    std::shared_ptr<Files> files; ///< kept until the process has ended
+    QString folder;               ///< empty until the scene is written
     bool stopped = false;
   };
 
@@ -117,8 +119,9 @@ private:
 
   vtkSlicerFenestraLogic* m_logic;
   QString m_program;
-  std::shared_ptr<Files> m_files; ///< of the scene that is open
-  /// The sample, once it is made: of no patient, and a scene that was saved may refer to it.
+  std::shared_ptr<Files> m_files; ///< of the open scene
+  /// Folder of the sample, once made. Outlives the scene: it holds no patient's data, and saved
+  /// scenes may refer to it.
   std::unique_ptr<qFenestraFolder> m_sample;
   QThreadPool m_worker;
 
@@ -130,9 +133,9 @@ private:
   int m_last = 0;
 
   qFenestraPreview m_preview;
-  QTimer m_soon; ///< several changes at once are one
+  QTimer m_soon; ///< merges changes within a short time
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed;
-  std::string m_shownData; ///< what the preview's scene holds
+  std::string m_shownData; ///< data of the preview's scene
   QString m_previewFolder;
   QJsonObject m_told;
   bool m_starting = false;

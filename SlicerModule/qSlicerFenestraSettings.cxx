@@ -33,7 +33,7 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 constexpr auto choose = qSlicerFenestraPanel::choose;
-constexpr const char* rigAttribute = "Fenestra.Lights"; ///< "rig key fill rim environment"
+constexpr const char* rigAttribute = "Fenestra.Lights"; ///< value: "rig key fill rim environment"
 
 std::string chosenIn(const QComboBox* box) {
   return box->currentData().toString().toStdString();
@@ -44,7 +44,7 @@ QString flagOf(const std::map<std::string, std::string>& flags, const char* name
   return found == flags.end() ? QString() : QString::fromStdString(found->second);
 }
 
-/// Empty, and so not given, where there is no limit.
+/// Flag value of a limit; empty, thus not passed: no limit.
 std::string limit(double value) {
   return value > 0.0 ? QString::number(value, 'g', 6).toStdString() : std::string();
 }
@@ -108,13 +108,13 @@ void qSlicerFenestraSettings::copy(Node* render) {
   const int wasModifying = m_node->StartModify();
   for (const char* role : {Node::VolumeRole, Node::SegmentationRole, Node::ViewRole})
     m_node->SetNodeReferenceID(role, render->GetNodeReferenceID(role));
-  m_node->SetNodeReferenceID(Node::PlaneRole, nullptr); // it may have moved
+  m_node->SetNodeReferenceID(Node::PlaneRole, nullptr); // the plane may have moved
   m_node->SetAttribute(rigAttribute, render->GetAttribute(rigAttribute));
   m_node->CopyFlags(render);
   m_node->EndModify(wasModifying);
 }
 
-/// The first volume, segmentation and 3-D view that a user may choose.
+/// Chooses the first volume, segmentation and 3-D view that a user may choose.
 void qSlicerFenestraSettings::chooseDefaults() {
   const auto byDefault = [this](const char* role, const char* className) {
     if (m_node->GetNodeReference(role))
@@ -130,7 +130,7 @@ void qSlicerFenestraSettings::chooseDefaults() {
   };
   byDefault(Node::VolumeRole, "vtkMRMLScalarVolumeNode");
   byDefault(Node::SegmentationRole, "vtkMRMLSegmentationNode");
-  if (!hasPreset()) // which may be meant to choose the view
+  if (!hasPreset()) // a preset may choose the view
     byDefault(Node::ViewRole, "vtkMRMLViewNode");
 }
 
@@ -310,7 +310,7 @@ void qSlicerFenestraSettings::showQuality(const Flags& flags) {
   const QStringList size = flagOf(flags, "size").split('x');
   m_panel->width->setValue(size.value(0, "512").toInt());
   m_panel->height->setValue(size.value(1, "512").toInt());
-  if (flags.count("frames") == 0) // of a picture that was repeated
+  if (flags.count("frames") == 0) // flags of a repeated picture, not of a turntable
     return;
   m_panel->frames->setValue(flagOf(flags, "frames").toInt());
   m_panel->degrees->setValue(flags.count("degrees") > 0 ? flagOf(flags, "degrees").toDouble()
@@ -361,7 +361,8 @@ void qSlicerFenestraSettings::takeClipping(Flags& flags) {
                 byPreset || !flags["focus"].empty(), byPreset);
 }
 
-/// What is the preset's is left to it, until the user chooses; without one it is as at first.
+/// Leaves the preset's flags to the preset until the user chooses; without a preset, restores the
+/// defaults.
 void qSlicerFenestraSettings::takePreset() {
   if (!m_node || m_showing)
     return;
@@ -379,11 +380,11 @@ void qSlicerFenestraSettings::takePreset() {
   take();
 }
 
-/// Of a 3-D view's camera: followed, or as it is at this moment.
+/// Takes the flags of the view. A 3-D view's camera is followed, or stored as it is now.
 void qSlicerFenestraSettings::takeView(Flags& flags) {
   const std::string word = chosenIn(m_panel->view);
   const bool byPreset = word == "preset";
-  const bool best = word == "auto" && flags["preset"].empty() && flags["focus"].empty(); // of what?
+  const bool best = word == "auto" && flags["preset"].empty() && flags["focus"].empty(); // no focus
   const std::string view = byPreset || best ? "" : word;
   m_node->SetNodeReferenceID(Node::ViewRole,
                              byPreset ? nullptr : idOf(m_panel->view3D->currentNode()));

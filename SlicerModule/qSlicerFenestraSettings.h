@@ -17,27 +17,26 @@ class qSlicerFenestraPanel;
 class vtkMRMLNode;
 class vtkSlicerFenestraLogic;
 
-/// \brief Keeps a node of settings and the panel's choices the same: what one says, the other
-/// shows.
+/// \brief Keeps a settings node and the panel's choices equal: each shows the changes of the other.
 ///
-/// It also watches what the settings name: volume, segmentation and camera.
+/// Observes the nodes that the settings name: volume, segmentation, camera and plane.
 class qSlicerFenestraSettings : public QObject {
   Q_OBJECT
   QVTK_OBJECT
 
 public:
-  /// Both outlive this.
+  /// Panel and logic must outlive this object.
   qSlicerFenestraSettings(qSlicerFenestraPanel* panel, vtkSlicerFenestraLogic* logic,
                           QObject* parent = nullptr);
 
-  /// Of the scene's settings, with defaults for what they leave open; null: none.
+  /// Connects the panel to the scene's settings, with defaults for unset ones; null: disconnects.
   void use(vtkMRMLFenestraRenderNode* node);
   vtkMRMLFenestraRenderNode* node() const { return m_node; }
-  /// Those of a render, to render it again.
+  /// Copies the settings of a render, to repeat the render.
   void copy(vtkMRMLFenestraRenderNode* render);
 
 signals:
-  /// The settings, or something that they name.
+  /// The settings, or a node that they name, have changed.
   void changed();
 
 private slots:
@@ -72,8 +71,8 @@ private:
   qSlicerFenestraPanel* m_panel;
   vtkSlicerFenestraLogic* m_logic;
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_node;
-  vtkWeakPointer<vtkMRMLNode> m_volume, m_segmentation, m_camera, m_plane; ///< watched
-  bool m_showing = false; ///< the panel is being set, not used
+  vtkWeakPointer<vtkMRMLNode> m_volume, m_segmentation, m_camera, m_plane; ///< observed
+  bool m_showing = false; ///< the panel is being set by the program, not by the user
 };
 
 #endif

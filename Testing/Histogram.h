@@ -1,6 +1,6 @@
 #pragma once
-// Does a sampling routine draw what its pdf says? Directions are binned on the sphere and compared
-// with the integral of the pdf over each bin.
+// Test whether a sampling routine draws what its pdf states: directions are binned on the sphere
+// and compared with the integral of the pdf over each bin.
 
 #include "base/Random.h"
 
@@ -29,7 +29,7 @@ struct SphereBins {
   }
 };
 
-/// The integral of pdf(direction) over each bin, by the midpoint rule on `fine` x `fine` points.
+/// Integral of pdf(direction) over each bin: midpoint rule on `fine` x `fine` points.
 template <typename Pdf>
 std::vector<double> binIntegrals(Pdf&& pdf, int fine) {
   std::vector<double> expected(SphereBins::count, 0.0);
@@ -43,8 +43,8 @@ std::vector<double> binIntegrals(Pdf&& pdf, int fine) {
   return expected;
 }
 
-/// Pearson's chi-squared of observed counts against expected ones, bins under 10 expected pooled,
-/// as a standard normal deviate (Wilson and Hilferty 1931).
+/// Pearson's chi-squared of observed against expected counts (bins with fewer than 10 expected are
+/// pooled), as a standard normal deviate (Wilson and Hilferty 1931).
 inline double chiSquaredDeviate(const std::vector<double>& observed,
                                 const std::vector<double>& expected) {
   double chi2 = 0.0;
@@ -69,8 +69,8 @@ inline double chiSquaredDeviate(const std::vector<double>& observed,
   return (std::cbrt(chi2 / freedom) - (1.0 - a)) / std::sqrt(a);
 }
 
-/// `draw(random)` returns a direction, or zero for a draw that ended without one; `pdf` is per
-/// steradian and integrates to `mass` (1 where every draw has a direction).
+/// `draw(random)`: a direction, or zero if the draw ended without one. `pdf`: per steradian,
+/// integrates to `mass` (1 if every draw has a direction).
 template <typename Draw, typename Pdf>
 void expectSamplingMatchesPdf(Draw&& draw, Pdf&& pdf, double mass = 1.0, int fine = 60) {
   const std::vector<double> integrals = binIntegrals(pdf, fine);

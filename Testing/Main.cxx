@@ -1,5 +1,5 @@
-// main of the tests. Ends with 77 where a case was skipped and none failed, so that ctest shows it,
-// and with 1 where no case ran: a filter that has gone stale is no success.
+// Main function of the tests. Exit status 77 if a case was skipped and none failed, so that ctest
+// reports the skip, and 1 if no case ran: a stale filter is no success.
 
 #ifdef FENESTRA_TEST_APART
 #include "base/safe/Apart.h"

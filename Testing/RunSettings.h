@@ -1,10 +1,10 @@
 #pragma once
-// What the environment asks of a run of the tests:
+// Environment variables of a test run:
 //   FENESTRA_LONG          set: the long version
-//   FENESTRA_BRIEF         a number: divides how many samples are drawn, for slow builds
-//   FENESTRA_SEED          a number: other seeds
-//   FENESTRA_COMBINATIONS  a number: how many of the matrix, for slow builds
-//   FENESTRA_REPORT        a folder: leave fragments of the report there
+//   FENESTRA_BRIEF         number that divides the counts of samples, for slow builds
+//   FENESTRA_SEED          number that selects other seeds
+//   FENESTRA_COMBINATIONS  number of the matrix's combinations, for slow builds
+//   FENESTRA_REPORT        folder for fragments of the report
 
 #include <algorithm>
 #include <cmath>
@@ -32,31 +32,31 @@ inline std::uint64_t brevity() {
   return brevity;
 }
 
-/// Samples of a test that has no long version.
+/// Sample count of a test that has no long version.
 template <typename Count>
 Count briefly(Count samples) {
   const auto whole = static_cast<std::uint64_t>(samples);
   return static_cast<Count>((whole + brevity() - 1) / brevity());
 }
 
-/// Samples of a test: in the long version 16 times as many, for a quarter of the error.
+/// Sample count of a test: 16 times as many in the long version, for a quarter of the error.
 template <typename Count>
 Count budget(Count samples) {
   return static_cast<Count>(briefly(static_cast<std::uint64_t>(samples) * (isLongRun() ? 16 : 1)));
 }
 
-/// The greatest error that a test allows itself, lest it find nothing: wider in a brief run.
+/// Greatest standard error with which a test still finds errors; wider in a brief run.
 inline double allowedError(double error) {
   return error * std::sqrt(static_cast<double>(brevity()));
 }
 
-/// 1 where nothing else is asked for.
+/// FENESTRA_SEED; 1 if unset.
 inline std::uint64_t seedBase() {
   static const std::uint64_t base = numberFromEnvironment("FENESTRA_SEED").value_or(1);
   return base;
 }
 
-/// A test's own seed, moved by the seed base.
+/// Seed of a test, shifted by the seed base.
 inline std::uint64_t seeded(std::uint64_t seed) {
   return seed + 1000003 * (seedBase() - 1);
 }

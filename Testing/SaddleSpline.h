@@ -1,5 +1,5 @@
 #pragma once
-// The thin plate spline as its equations stand, for tests: no unit disc, no null space.
+// Thin plate spline solved from its textbook equations, for tests: no unit disc, no null space.
 
 #include "base/Vector.h"
 
@@ -10,10 +10,9 @@
 
 namespace fenestra::testing_clipping {
 
-/// The plain saddle system in mm, [K + lambda I, P; P', 0] [w; a] = [z; 0] with
-/// lambda = (1 - p) / p, solved in Scalar by Gaussian elimination with partial pivoting (twenty
-/// lines: a library's, for a Scalar of its own, takes a compiler a minute). p is above 0, and the
-/// sites determine a plane.
+/// Plain saddle system in mm, [K + lambda I, P; P', 0] [w; a] = [z; 0] with lambda = (1 - p) / p,
+/// solved in Scalar by Gaussian elimination with partial pivoting (twenty lines; a library's takes
+/// the compiler a minute for such a Scalar). Requires p > 0 and sites that determine a plane.
 template <typename Scalar>
 class SaddleSpline {
 public:
@@ -33,7 +32,7 @@ public:
     m_solution = solved(std::move(system));
   }
 
-  /// f, rounded at last.
+  /// f(x), computed in Scalar and rounded at the end.
   double operator()(const Vec2& x) const {
     const std::size_t n = m_sites.size();
     Scalar sum =
@@ -46,7 +45,7 @@ public:
 private:
   using Row = std::vector<Scalar>;
 
-  /// The solution of A x = b, where a row is one of A and then b's value.
+  /// Solution of A x = b; each row holds a row of A, then its entry of b.
   static Row solved(std::vector<Row> rows) {
     using std::abs;
     const std::size_t count = rows.size();

@@ -11,8 +11,8 @@
 
 namespace fenestra::testing {
 
-/// Programs that include this run on the instruction set that FENESTRA_INSTRUCTIONS names, as
-/// `fenestra` does, or end where the machine does not have it.
+/// Selects FENESTRA_INSTRUCTIONS at the start of any program that includes this header, as
+/// `fenestra` does; the program ends if the machine lacks that instruction set.
 inline const bool instructionSetIsPinned = [] {
   const char* name = std::getenv("FENESTRA_INSTRUCTIONS");
   if (name)
@@ -46,7 +46,7 @@ inline ScalarFunction::Knot knot(double s, double sigma_t) {
   return {s, ScalarFunction::Value(sigma_t)};
 }
 
-/// Extinction sigma_t * s and one albedo.
+/// Extinction sigma_t * s (mm^-1, s: scalar) and one albedo for all scalars.
 inline TransferFunction linearTransfer(double sigma_t, const Rgb& albedo, double g = 0.0) {
   TransferFunction transfer{
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {1.0, ScalarFunction::Value(sigma_t)}}),
@@ -55,7 +55,7 @@ inline TransferFunction linearTransfer(double sigma_t, const Rgb& albedo, double
   return transfer;
 }
 
-/// Owns what a RenderScene refers to.
+/// Owner of everything that a RenderScene refers to.
 struct TestScene {
   Volume volume;
   TransferFunction transfer;
@@ -78,8 +78,8 @@ struct TestScene {
   }
 };
 
-/// Mean and standard error over all pixels and channels' average, from the pixels' own means: valid
-/// where all pixels estimate the same value.
+/// Mean and standard error over all pixels and channels, from the pixels' means: valid if all
+/// pixels estimate the same value.
 struct Estimate {
   double mean = 0.0, error = 0.0;
 };
@@ -89,7 +89,7 @@ inline Estimate imageEstimate(const Film& film) {
   double variance = 0.0;
   for (const PixelSums& pixel : film.pixels()) {
     estimate.mean += pixel.mean.mean();
-    // Channels of one path are correlated: their mean's error is at most their errors' mean.
+    // Channels of one path are correlated: error of their mean <= mean of their errors.
     variance += std::pow(pixel.standardError().mean(), 2.0);
   }
   const auto n = static_cast<double>(film.pixelCount());

@@ -1,5 +1,5 @@
 #pragma once
-// Files that go away with their test.
+// Files that are removed with their test.
 
 #include <unistd.h>
 

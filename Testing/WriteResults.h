@@ -1,5 +1,5 @@
 #pragma once
-// Results of a single writer, declared, written and in place in one call.
+// Results of a single writer: declared, written and committed in one call.
 
 #include "base/safe/Inputs.h"
 #include "base/safe/Outputs.h"
@@ -7,7 +7,7 @@
 
 namespace fenestra {
 
-/// Tests read what they have written, and write it again.
+/// Removes the path from the ledger of inputs: tests overwrite files that they have read.
 inline void forgetIfRead(const std::filesystem::path& path) {
   if (const auto file = fileId(path))
     forgetInput(*file);

@@ -9,6 +9,11 @@ git ls-files '*.h' '*.cxx' | xargs clang-format --dry-run --Werror || die "run c
 twice=$(git ls-files 'Renderer/*.h' | xargs grep -hoE '^(struct|class) \w+( final)?( :| \{)' | awk '{ print $2 }' |
   sort | uniq -d)
 [ -z "$twice" ] || die "two types have one name, which the linker takes for one: $twice"
+say "words"
+# The rest of CONTRIBUTING.md's rules needs a reader.
+openings=$(git ls-files '*.h' '*.cxx' |
+  xargs grep -nE '///?<? ?(Of|What|Those|The same|As) ' || true)
+[ -z "$openings" ] || die "a comment begins with a noun or a verb: $openings"
 say "clang-tidy"
 # A folder's sources at once: what they include is parsed once. One instruction set is enough: the
 # lanes' sources are the same for all.

@@ -1,7 +1,8 @@
 #pragma once
 // Debian's ITK 5.2 was configured for g++ alone: its itk_compiler_detection.h stops clang with
 // "Unsupported compiler". CMake puts this file before every source that includes ITK; for clang,
-// which knows all of C++17, it answers what that header would, and for others it is empty.
+// which knows all of C++17, the file defines what that header would; for other compilers the file
+// is empty.
 
 #ifdef __clang__
 #define ITK_COMPILER_DETECTION_H

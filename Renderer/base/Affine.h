@@ -1,5 +1,5 @@
 #pragma once
-// Linear and affine maps of space. What is not called for every ray is out of line.
+// Linear and affine maps of space. Functions that are not called for every ray are out of line.
 
 #include "base/Tuple.h"
 
@@ -7,7 +7,7 @@ namespace fenestra {
 
 using Vec3 = Vector<double, 3>;
 
-/// 3 x 3 numbers, by columns.
+/// 3 x 3 matrix, stored by columns.
 class Mat3 {
 public:
   Mat3() = default; ///< uninitialised
@@ -36,7 +36,7 @@ public:
 
   constexpr double trace() const { return m_columns[0][0] + m_columns[1][1] + m_columns[2][2]; }
   double determinant() const;
-  /// By cofactors. Infinite or NaN for a singular matrix.
+  /// Inverse by cofactors; infinite or NaN for a singular matrix.
   Mat3 inverse() const;
   Vec3 columnNorms() const;
   Vec3 rowSums() const;
@@ -59,7 +59,7 @@ private:
   Vec3 m_columns[3];
 };
 
-/// The order of the sums is the one that Eigen chose: pictures keep their bits.
+/// Sums are in Eigen's order, which keeps pictures bit-identical.
 constexpr Vec3 operator*(const Mat3& m, const Vec3& v) {
   const Vec3 &a = m.col(0), &b = m.col(1), &c = m.col(2);
   return {(a[0] * v[0] + b[0] * v[1]) + c[0] * v[2], (a[1] * v[0] + b[1] * v[1]) + c[1] * v[2],
@@ -95,7 +95,7 @@ public:
   constexpr Vec3& translation() { return m_translation; }
 
   Affine inverse() const;
-  /// Composes with a translation that is applied first.
+  /// Composes with a translation, applied before this map.
   void translate(const Vec3& by) { m_translation = m_linear * by + m_translation; }
   bool allFinite() const { return m_linear.allFinite() && m_translation.allFinite(); }
   bool isApprox(const Affine& o, double relative = 1e-12) const;

@@ -1,6 +1,6 @@
 #pragma once
-// Numbers of one's own are checked where they are read; what is composed of them (transforms above
-// a node, a box or a grid under them) once more, here, wherever they came from.
+// Checks of composed maps (transforms above a node, a box or a grid under transforms), whatever
+// their source. Single numbers are checked where they are read.
 
 #include "base/Error.h"
 #include "base/Vector.h"
@@ -10,12 +10,12 @@
 
 namespace fenestra {
 
-/// Makes the Error of what is wrong: adds the file and the field, or the flag.
+/// Makes an Error from a description: adds the file and the field, or the flag.
 using Complaint = std::function<Error(const std::string& what)>;
 
-/// The map, where it can be inverted with digits to spare, whatever its scale: columns from 1e-9 to
-/// 1e9 long, a translation within 1e9 mm, and unit columns that span more than a millionth of a
-/// cube. Beyond, a point keeps no fraction of a voxel. Throws otherwise.
+/// Returns `map` if invertible with digits to spare: lengths of columns in (1e-9, 1e9),
+/// |translation| < 1e9 mm in each axis, |determinant| of the normalised columns > 1e-6. Throws
+/// otherwise: beyond these bounds a point keeps no fraction of a voxel.
 inline Affine checkedMap(const Affine& map, const Complaint& complaint) {
   constexpr double largest = 1e9, flattest = 1e-6;
   const auto scales = map.linear().columnNorms().array();

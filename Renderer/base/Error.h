@@ -1,6 +1,6 @@
 #pragma once
 // Every failure that a user can cause is an Error: one line that names the file (or flag), the
-// field and the mend. The kind is the process's exit status.
+// field and the remedy. The kind is the process's exit status.
 
 #include <stdexcept>
 #include <string>
@@ -9,7 +9,7 @@ namespace fenestra {
 
 enum class ErrorKind {
   usage = 2,  ///< the command line is wrong
-  input = 3,  ///< a file or what it holds is wrong
+  input = 3,  ///< a file or its content is wrong
   output = 4, ///< a result cannot be written, or a resource is missing
 };
 

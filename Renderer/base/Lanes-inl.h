@@ -1,6 +1,6 @@
-// Vectors of floats, one number a lane, and what all code in lanes needs: arithmetic in three
-// dimensions, random numbers, angles. Compiled once for each instruction set (Highway's
-// foreach_target); include it after that.
+// Vectors of floats, one number a lane, and tools shared by all lane code: arithmetic in three
+// dimensions, random numbers, angles. Compiled once for each instruction set: include after
+// Highway's foreach_target.h.
 
 #if defined(FENESTRA_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_LANES_INL_H
@@ -44,7 +44,7 @@ HWY_INLINE M both(M a, M b) {
 HWY_INLINE M noLane() {
   return hn::FirstN(floats, 0);
 }
-/// One bit a lane, and back.
+/// Mask as one bit a lane; maskOf() is the inverse.
 HWY_INLINE std::uint64_t bitsOf(M m) {
   std::uint64_t packed = 0;
   hn::StoreMaskBits(floats, m, reinterpret_cast<std::uint8_t*>(&packed));
@@ -53,7 +53,7 @@ HWY_INLINE std::uint64_t bitsOf(M m) {
 HWY_INLINE M maskOf(std::uint64_t packed) {
   return hn::LoadMaskBits(floats, reinterpret_cast<const std::uint8_t*>(&packed));
 }
-/// Calls visit(lane) for those of `which`.
+/// Calls visit(lane) for every lane of `which`.
 template <typename Visit>
 HWY_INLINE void forEachLane(M which, Visit&& visit) {
   for (std::uint64_t left = bitsOf(which); left != 0; left &= left - 1)
@@ -66,7 +66,7 @@ HWY_INLINE F lerp(F a, F b, F f) {
 HWY_INLINE F notBelow0(F x) {
   return hn::Max(x, hn::Zero(floats));
 }
-/// sqrt of x, 0 where rounding made it negative.
+/// sqrt(max(x, 0)): rounding may have made x negative.
 HWY_INLINE F root(F x) {
   return hn::Sqrt(notBelow0(x));
 }
@@ -120,7 +120,7 @@ HWY_INLINE F3 selectElseZero(M which, const F3& v) {
           hn::IfThenElseZero(which, v.z)};
 }
 
-/// One row of an affine map.
+/// Applies one row of an affine map.
 HWY_INLINE F apply(const std::array<float, 4>& row, const F3& p) {
   return hn::MulAdd(all(row[0]), p.x,
                     hn::MulAdd(all(row[1]), p.y, hn::MulAdd(all(row[2]), p.z, all(row[3]))));
@@ -135,7 +135,7 @@ HWY_INLINE F3 mapDirection(const AffineRows& map, const F3& d) {
   return {row(map[0]), row(map[1]), row(map[2])};
 }
 
-/// A mixer of 32 bits with low bias (the Hash Prospector project).
+/// Bit mixer of 32 bits with low bias (the Hash Prospector project).
 HWY_INLINE U mixBits(U x) {
   x = hn::Mul(hn::Xor(x, hn::ShiftRight<16>(x)), hn::Set(bits, 0x21f0aaadU));
   x = hn::Mul(hn::Xor(x, hn::ShiftRight<15>(x)), hn::Set(bits, 0x735a2d97U));
@@ -169,7 +169,7 @@ HWY_INLINE F uniform(U& counter) {
 /// polynomial of Cephes' logf).
 HWY_INLINE F logOf(F x) {
   const I raw = hn::BitCast(ints, x);
-  const I root = hn::Set(ints, 0x3f3504f3); // of 1/2: the mantissa goes from there to twice that
+  const I root = hn::Set(ints, 0x3f3504f3); // sqrt(1/2): mantissas lie in [root, 2 root)
   const I power = hn::ShiftRight<23>(hn::Sub(raw, root));
   const F mantissa = hn::BitCast(floats, hn::Sub(raw, hn::ShiftLeft<23>(power)));
   const F e = hn::ConvertTo(floats, power);
@@ -185,8 +185,8 @@ HWY_INLINE F logOf(F x) {
   return hn::MulAdd(e, all(0.693359375F), hn::Add(f, low));
 }
 
-/// Exponential with mean 1: precise near 0 and far out, as each half of the unit interval is
-/// counted from its own end.
+/// Exponential with mean 1, precise near 0 and in the tail: each half of the unit interval is
+/// measured from its own end.
 HWY_INLINE F exponential(U& counter) {
   const U h = nextBits(counter);
   const U top = hn::Set(bits, 0x80000000U);
@@ -195,12 +195,12 @@ HWY_INLINE F exponential(U& counter) {
   // -log(1 - u) where the exponential is small, -log(u) where it is large.
   const F one = all(1.0F);
   const F x = hn::IfThenElse(near, hn::Sub(one, u), u);
-  const F lost = hn::IfThenElseZero(near, hn::Sub(hn::Sub(one, x), u)); // of 1 - u, in rounding
+  const F lost = hn::IfThenElseZero(near, hn::Sub(hn::Sub(one, x), u)); // rounding error of 1 - u
   return hn::Neg(hn::Add(logOf(x), lost));
 }
 
-/// Cosine and sine of an angle in turns, 0 <= turns <= 1, to 1e-7: Taylor's series in the quarter
-/// turn around the nearest multiple of one.
+/// Cosine and sine of an angle in turns, 0 <= turns <= 1, to 1e-7: Taylor series about the nearest
+/// multiple of a quarter turn.
 struct CosineSine {
   F cosine, sine;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Doubles as lanes read them.
+// Conversions from double to the floats that lanes read.
 
 #include "base/Vector.h"
 

@@ -1,6 +1,6 @@
 #pragma once
-// Random numbers as a function of (seed, pixel, sample): whoever computes a sample, in whichever
-// order, on however many threads, draws the same numbers.
+// Random numbers as a function of (seed, pixel, sample), independent of the order of samples and
+// of the number of threads.
 
 #include "base/Vector.h"
 

@@ -7,10 +7,10 @@ namespace fenestra {
 
 class Stopwatch {
 public:
-  /// Since construction or the last lap().
+  /// Time since construction or the last lap().
   double seconds() const { return since(Clock::now()); }
 
-  /// The same, and starts anew.
+  /// Returns seconds() and restarts.
   double lap() {
     const Clock::time_point now = Clock::now();
     const double seconds = since(now);

@@ -1,6 +1,6 @@
 #pragma once
-// Streams that throw std::bad_alloc where memory fails. Those of the standard library keep it to
-// themselves: a text then ends early, and a file is written that says less than it should.
+// Streams that throw std::bad_alloc if memory runs out. The standard library's streams swallow the
+// exception: a text then ends early, and a truncated file is written.
 
 #include <fstream>
 #include <ios>

@@ -1,8 +1,8 @@
 #pragma once
-// Vector (a place or direction) and Array (unrelated numbers, as a colour's): 1 to 4 numbers of one
-// type. Both add and scale; of two arrays, * and < go part by part. Members bear Eigen's names.
-// Eigen itself solves our equations and stays out of this header, for its templates took half of
-// the time of compiling. Sums and dots go left to right: pictures keep their bits.
+// Vector (point or direction) and Array (unrelated numbers, for example a colour): 1 to 4 numbers
+// of one type. Both add and scale; * and < of two arrays are elementwise. Members have Eigen's
+// names. Eigen solves our equations but stays out of this header: its templates took half of the
+// compile time. Sums and dot products run left to right, which keeps pictures bit-identical.
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +57,7 @@ public:
   constexpr void setZero() { self() = Zero(); }
   constexpr void setConstant(T value) { self() = Constant(value); }
 
-  /// f of each part.
+  /// Applies f to each part.
   template <typename F>
   constexpr auto unaryExpr(F&& f) const {
     Kind<decltype(f(m_parts[0])), N> result;
@@ -96,7 +96,7 @@ public:
   bool allFinite() const {
     return std::all_of(begin(), end(), [](T part) { return std::isfinite(part); });
   }
-  /// True if no part is farther from 0 than `most`.
+  /// True if |part| <= most for every part.
   bool isZero(T most = T(1e-12)) const {
     return std::all_of(begin(), end(), [most](T part) { return std::abs(part) <= most; });
   }
@@ -164,7 +164,7 @@ private:
   constexpr const Self& self() const { return static_cast<const Self&>(*this); }
 };
 
-/// "x y z".
+/// Prints "x y z".
 template <template <typename, int> class Kind, typename T, int N>
 std::ostream& operator<<(std::ostream& out, const Tuple<Kind, T, N>& tuple) {
   for (int i = 0; i < N; ++i)
@@ -212,7 +212,7 @@ public:
   Array log() const {
     return this->unaryExpr([](T part) { return std::log(part); });
   }
-  /// For arrays of bool.
+  /// all() and any() are meant for T = bool.
   constexpr bool all() const {
     return std::all_of(this->begin(), this->end(), [](T part) { return bool(part); });
   }
@@ -307,7 +307,7 @@ public:
   constexpr T dot(const Vector& o) const { return cwiseProduct(o).sum(); }
   constexpr T squaredNorm() const { return dot(*this); }
   T norm() const { return std::sqrt(squaredNorm()); }
-  /// Unit vector; the vector 0 is returned as it is.
+  /// Unit vector; 0 for the vector 0.
   Vector normalized() const {
     const T square = squaredNorm();
     return square > T(0) ? *this / std::sqrt(square) : *this;

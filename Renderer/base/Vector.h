@@ -1,5 +1,5 @@
 #pragma once
-// The few types that every concept speaks: points and directions, colours, rays, intervals, boxes.
+// Types shared by all folders: points and directions, colours, rays, intervals, boxes.
 // Spaces are named where a value is declared: "world" is RAS in mm, "index" counts voxels (voxel
 // centres at integers), "view" is defined in model/camera/Camera.h.
 

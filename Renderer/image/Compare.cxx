@@ -68,12 +68,13 @@ struct Pair {
   double rounding(std::size_t c, std::size_t i) const {
     return 0x1p-24 * std::max(std::abs((*a[c])[i]), std::abs((*b[c])[i]));
   }
-  /// To the rounding of a float.
+  /// True if the values are equal to the rounding of a float.
   bool agrees(std::size_t c, std::size_t i) const {
     return std::abs(difference(c, i)) <= 2.0 * rounding(c, i);
   }
-  /// No draw of a normal z: both errors are 0 to the rounding of a float, or one is and the values
-  /// agree to it. So it is where neither renderer met anything, whatever error one of them states.
+  /// True if the value carries no statistical information: both errors are 0, or one is 0 and the
+  /// values are equal (background, whatever error one renderer states); 0 and equal to the rounding
+  /// of a float. Excluded from z.
   bool saysNothing(std::size_t c, std::size_t i) const {
     const bool exactA = std::abs((*errorA[c])[i]) <= rounding(c, i);
     const bool exactB = std::abs((*errorB[c])[i]) <= rounding(c, i);
@@ -81,7 +82,7 @@ struct Pair {
   }
 };
 
-/// What differences make of one channel.
+/// Adds the differences of one channel to `result`, as sums.
 void accumulate(const Pair& pair, std::size_t c, Comparison& result) {
   const bool hasErrorB = complete(pair.errorB);
   for (std::size_t i = 0; i < pair.pixels; ++i) {
@@ -131,7 +132,7 @@ ZStatistics zStatistics(const Pair& pair, int width) {
   return z;
 }
 
-/// The z of largest modulus of a pixel; 0 where they say nothing.
+/// z of largest modulus among a pixel's channels; a channel that says nothing counts as 0.
 double largestZ(const Pair& pair, std::size_t i) {
   double largest = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -162,7 +163,7 @@ std::vector<double> signedDifferences(const Pair& pair) {
   return values;
 }
 
-/// A picture whose noise is known.
+/// A picture with standard errors.
 struct Estimates {
   Planes means, errors;
   const std::vector<float>* samples;
@@ -204,7 +205,7 @@ TileSums sumTile(const Image& image, const Estimates& estimates, std::size_t c, 
   return sums;
 }
 
-/// Of one value (agreementProbability).
+/// p-value of one channel of one pixel (see agreementProbability).
 double differenceProbability(const Estimates& a, const Estimates& b, std::size_t c, std::size_t i) {
   const double nA = a.count(i), nB = b.count(i);
   const double mean = (nA * a.mean(c, i) + nB * b.mean(c, i)) / (nA + nB);
@@ -283,7 +284,7 @@ double agreementProbability(const Image& a, const Image& b) {
       if (pair.saysNothing(c, i) && pair.agrees(c, i))
         continue;
       const double p = differenceProbability(estimatesA, estimatesB, c, i);
-      least = std::isnan(p) ? 0.0 : std::min(least, p); // exact, or not finite
+      least = std::isnan(p) ? 0.0 : std::min(least, p); // NaN: exact, or not finite
       ++count;
     }
   return count == 0.0 ? 1.0 : -std::expm1(count * std::log1p(-least)); // 1 - (1 - p)^count

@@ -1,5 +1,5 @@
 #pragma once
-// How far a picture is from a reference, and whether its own noise explains the difference.
+// Distance of a picture from a reference, and whether noise explains the difference.
 
 #include "image/Image.h"
 
@@ -8,58 +8,57 @@
 
 namespace fenestra {
 
-/// Statistics of z = (a - b) / sqrt(se_a^2 + se_b^2) over pixels and R, G, B; of two independent
-/// unbiased renders with honest errors it has mean 0 and deviation 1. Values are left out
-/// where both standard errors are 0 to the rounding of a float, or one is and the values agree to
-/// it (a background that neither renderer saw anything in front of).
+/// Statistics of z = (a - b) / sqrt(se_a^2 + se_b^2) over pixels and R, G, B: mean 0 and deviation
+/// 1 for two independent unbiased renders with honest errors. Excluded are values whose standard
+/// errors are both 0, and equal values of which one standard error is 0 (background); 0 and equal
+/// to the rounding of a float.
 struct ZStatistics {
   std::size_t count = 0; ///< values in the statistics
   double mean = 0.0, deviation = 0.0;
-  double shareAbove3 = 0.0; ///< of |z| > 3; 0.0027 for normal noise
-  double largest = 0.0;     ///< |z|
-  int column = 0, row = 0;  ///< where the largest is
-  char channel = 'R';       ///< which it is
+  double shareAbove3 = 0.0; ///< share of |z| > 3; 0.0027 for normal noise
+  double largest = 0.0;     ///< largest |z|
+  int column = 0, row = 0;  ///< pixel of the largest
+  char channel = 'R';       ///< channel of the largest
   /// Difference of the image means in combined standard errors.
   Rgb imageMean = Rgb::Zero();
 };
 
-/// A value that is not finite in either picture makes the measures that it enters NaN or infinite.
+/// Values that are not finite make the measures that contain them NaN or infinite.
 struct Comparison {
-  double relMse = 0.0; ///< mean of (a - b)^2 / (b^2 + 0.01), less that of se_b^2 if b states errors
+  double relMse = 0.0; ///< mean of ((a - b)^2 - se_b^2) / (b^2 + 0.01); se_b: 0 if b has no errors
   double rmse = 0.0;
   double psnr = infinity; ///< dB, peak 1; infinity for equal pictures
   double maxDifference = 0.0;
   Rgb meanA = Rgb::Zero(), meanB = Rgb::Zero();
   std::size_t notFinite = 0;    ///< values that are not finite in a or b
-  std::optional<ZStatistics> z; ///< where both pictures carry error.R, error.G, error.B
+  std::optional<ZStatistics> z; ///< set if both pictures have error.R, error.G, error.B
 };
 
 /// Compares R, G and B of a render `a` with those of a reference `b`. Throws Error (input) for
 /// different sizes or missing channels.
 Comparison compareImages(const Image& a, const Image& b);
 
-/// A picture of the differences, R, G, B: white where there is none, red where a is above b, blue
-/// where it is below. It shows the mean difference of the three channels, in full colour at the
-/// largest; or, where both pictures carry errors, the z of largest modulus, in full colour at 5.
-/// Black where a difference is not finite. Throws as compareImages does.
+/// Picture (R, G, B) of the differences: white: none, red: a > b, blue: a < b, black: not finite.
+/// Shows the mean difference of the three channels, in full colour at the largest; or, if both
+/// pictures have errors, the z of largest modulus, in full colour at 5. Throws like compareImages.
 Image differenceImage(const Image& a, const Image& b);
 
-/// Means over square tiles of `size` pixels (fewer at the right and lower border, so one tile of a
-/// great size is the whole picture): R, G, B, their standard errors, and the sum of samples.N.
-/// Needs error.R, error.G, error.B and samples.N, and throws Error (input) where one is missing.
+/// Means of R, G, B over square tiles of `size` pixels (fewer at the right and lower border; a
+/// great size makes the picture one tile), with standard errors, and the sum of samples.N if
+/// present. Throws Error (input) without R, G, B, error.R, error.G or error.B.
 Image tileMeans(const Image& image, int size);
 
-/// How probable a difference as large as the largest of any R, G or B is between two renders of one
-/// scene with independent seeds: Student's t of each value, corrected for the number of values
-/// (Šidák 1967). The two share their variance a sample. A mean of few bright paths is skewed as a
-/// count of them is, so t has no more degrees of freedom than the shorter render would have paths,
-/// were they equally bright (mean^2 / se^2): its tails are then the heavier ones. Exact values (see
-/// ZStatistics) that differ make the probability 0; so does what is not finite. Throws as tileMeans
-/// does, and for a missing samples.N and different sizes.
+/// p-value of the largest difference of any R, G or B between two renders of one scene with
+/// independent seeds: Student's t of each value, with a variance per sample pooled over both
+/// renders, corrected for the number of values (Šidák 1967). A mean of few bright paths is skewed
+/// like a count, so the degrees of freedom are at most mean^2 / se^2 of the shorter render (its
+/// number of paths, were all equally bright), which makes the tails of t the heavier ones. 0 if
+/// exact values (see ZStatistics) differ or a value is not finite. Throws like tileMeans, and for a
+/// missing samples.N or different sizes.
 double agreementProbability(const Image& a, const Image& b);
 
-/// Takes R, G, B of `error`, a picture of standard errors, as the error channels of `image`. Throws
-/// Error (input) for different sizes or missing channels.
+/// Copies R, G, B of `error`, a picture of standard errors, to the error channels of `image`.
+/// Throws Error (input) for different sizes or missing channels.
 void attachError(Image& image, const Image& error);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// What a render accumulates, pixel by pixel, and what it shows.
+// Sums of a render's samples, pixel by pixel, with their noise.
 
 #include "base/Vector.h"
 
@@ -8,18 +8,18 @@
 
 namespace fenestra {
 
-/// What one path contributes to its pixel.
+/// Contribution of one path to its pixel.
 struct PathSample {
-  Rgb radiance = Rgb::Zero(); ///< premultiplied, background included where it is opaque
-  double alpha = 1.0;         ///< 0 where an eye ray passes through to a transparent background
-  double depth = infinity;    ///< of the first collision, mm in view space; infinity where none
+  Rgb radiance = Rgb::Zero(); ///< premultiplied, an opaque background included
+  double alpha = 1.0;         ///< 0: the eye ray reaches a transparent background
+  double depth = infinity;    ///< of the first collision, mm in view space; infinity: no collision
   Rgb albedo = Rgb::Zero();   ///< at the first collision
-  Vec3 normal = Vec3::Zero(); ///< unit, world axes, at the first collision; zero where none
-  double scatterings = 0.0;   ///< of the path: what it cost
+  Vec3 normal = Vec3::Zero(); ///< unit, world axes, at the first collision; zero: none
+  double scatterings = 0.0;   ///< count along the path: its cost
 };
 
-/// Running sums of one pixel, in double. Samples are added in their own order, so that the sums do
-/// not depend on how passes or threads cut them.
+/// Running sums of one pixel, in double. Samples are added in the order of their indices, so that
+/// sums do not depend on passes or threads.
 struct PixelSums {
   std::uint64_t samples = 0;
   Rgb mean = Rgb::Zero();      ///< of radiance
@@ -30,14 +30,14 @@ struct PixelSums {
   Rgb albedo = Rgb::Zero();
   Vec3 normal = Vec3::Zero();
   double scatterings = 0.0;
-  bool isCertain = false; ///< more samples would be equal to the one that there is
+  bool isCertain = false; ///< every further sample would equal the first
 
   void add(const PathSample& sample);
-  /// Standard error of the mean radiance; 0 below two samples, where it is certain rightly so.
+  /// Standard error of the mean radiance; 0 below two samples, which is right only if isCertain.
   Rgb standardError() const;
 };
 
-/// Of the pixels that are not certain; of all where all are.
+/// Samples per pixel, over pixels with isCertain = false; over all pixels if all are certain.
 struct SampleCounts {
   std::uint64_t least = 0, greatest = 0;
   double mean = 0.0;
@@ -59,8 +59,8 @@ public:
   const PixelSums& at(int column, int row) const { return m_pixels[index(column, row)]; }
   const std::vector<PixelSums>& pixels() const { return m_pixels; }
 
-  /// sqrt(mean over pixels and channels of se^2 / (x^2 + 0.01)); infinity below two samples a
-  /// pixel that is not certain.
+  /// sqrt(mean over pixels and channels of se^2 / (x^2 + 0.01)), where certain pixels count as 0;
+  /// infinity if a pixel that is not certain has fewer than two samples.
   double noise() const;
   SampleCounts sampleCounts() const;
 

@@ -1,6 +1,5 @@
 #pragma once
-// A finished picture as named float planes: what writers write, readers read and `compare`
-// compares.
+// A finished picture as named float planes, for writers, readers and `compare`.
 
 #include "base/Vector.h"
 
@@ -23,7 +22,7 @@ struct Image {
   }
 };
 
-/// Where a picture lies in the world: what a NRRD output carries so that Slicer shows it in place.
+/// Position of a picture in the world, stored in NRRD files so that Slicer shows the picture there.
 struct ImagePlane {
   Vec3 topLeft = Vec3::Zero();     ///< centre of the top left pixel, RAS mm
   Vec3 columnStep = Vec3::UnitX(); ///< to the next pixel to the right, mm

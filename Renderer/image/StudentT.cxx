@@ -31,7 +31,7 @@ double betaFraction(double a, double b, double x) {
   return fraction;
 }
 
-/// I_x(a, b); `y` is 1 - x without its rounding.
+/// I_x(a, b); `y` is 1 - x, without the rounding of that difference.
 double regularizedBeta(double x, double y, double a, double b) {
   if (x <= 0.0 || y <= 0.0)
     return x <= 0.0 ? 0.0 : 1.0;

@@ -3,8 +3,7 @@
 
 namespace fenestra {
 
-/// Probability of |t| at least this large with so many degrees of freedom (> 0, not only whole
-/// ones).
+/// P(|T| >= |t|) for Student's t with `freedom` degrees of freedom (> 0, whole or not).
 double studentTail(double t, double freedom);
 
 } // namespace fenestra

@@ -9,7 +9,7 @@ namespace fenestra {
 
 namespace {
 
-/// Null without a clip.
+/// Camera of the clip; null for ClipNone.
 const Camera* cameraOf(const Clip& clip) {
   if (const auto* plane = std::get_if<ClipPlane>(&clip))
     return &plane->camera;
@@ -23,15 +23,15 @@ bool hasSteps(const Clip& clip) {
   return depth && depth->lookup == ClipDepth::Lookup::nearest;
 }
 
-/// A crossing of the outline: the focus's own sample and the one before, and two beyond.
+/// Crossing of the outline: two samples on the inner side, two beyond.
 struct Edge {
-  Vec2 inside, outside; ///< mm; the outline is between them
-  double own, inner;    ///< depths of the focus, mm; infinity where `inner` is none
-  double near, far;     ///< depths at which the context begins at the samples beyond
-  bool jumps;           ///< the focus does, at its own sample
+  Vec2 inside, outside; ///< last focus sample and first beyond, mm
+  double own, inner;    ///< focus depths at `inside` and one sample before, mm; infinity: no focus
+  double near, far;     ///< context depths at `outside` and one sample further, mm
+  bool jumps;           ///< true: the focus's depth jumps at `inside`
 };
 
-/// The outline's crossings that have context beyond.
+/// Crossings of the outline that have context beyond.
 class Outline {
 public:
   Outline(const Clip& clip, const Domain& volume, const FocusDepth& focus)
@@ -43,7 +43,7 @@ public:
 
   const std::vector<Edge>& edges() const { return m_edges; }
 
-  /// Where what is left of the volume begins on the ray through (x, y); infinity where nothing is.
+  /// Depth, mm, at which the remaining volume begins on the ray through (x, y); infinity: none.
   double contextAt(const Vec2& position) const {
     const Ray ray = m_camera.rayThrough(position);
     const Interval part =
@@ -93,13 +93,13 @@ private:
   std::vector<Edge> m_edges;
 };
 
-/// Where the focus ends.
+/// Point at which the focus ends.
 struct OutlinePoint {
-  double depth; ///< of the last of the focus
+  double depth; ///< of the focus just inside, mm
   Vec2 beyond;  ///< just outside
 };
 
-/// Where it ends on the way from inside to outside, to 2^-24 of it.
+/// Outline points between `inside` and `outside`, to 2^-24 of the distance.
 std::vector<OutlinePoint> outlinePoints(const FocusTracer& tracer, const std::vector<Edge>& edges) {
   std::vector<OutlinePoint> points;
   std::vector<Vec2> in, middle(edges.size());
@@ -136,7 +136,7 @@ BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const M
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Edge& edge = outline.edges()[i];
     ++measures.crossings;
-    // Where the focus falls away steeply before it ends, that is a jump as well.
+    // A steep fall of the focus before its end is a jump as well.
     if (edge.jumps || std::abs(points[i].depth - edge.own) > depthJump)
       continue;
     const double context = outline.contextAt(points[i].beyond);

@@ -1,6 +1,6 @@
 #pragma once
-// How well what is left of the context meets the focus, along the focus's outline: the same for
-// every kind of clip.
+// Quality of a clip: how well the remaining context meets the focus along the focus's outline.
+// Measured alike for every kind of clip.
 
 #include "base/Distribution.h"
 #include "clip/focus/FocusDepth.h"
@@ -9,22 +9,22 @@
 
 namespace fenestra {
 
-/// On the focus's outline, which is found by bisection between a sample of the focus and a
-/// neighbour that is none, the focus has a depth, and just beyond it the context begins at one:
-/// where the clip leaves it, or where the eye ray enters the volume. Where the clip has steps
-/// (cutaway, hole) that is of samples beyond, continued linearly.
+/// Focus depth against context depth along the outline, whose points are found by bisection between
+/// a focus sample and a neighbour outside the focus. Context depth: where the context begins just
+/// beyond the outline, at the clip's surface or where the eye ray enters the volume. For clips with
+/// steps (cutaway, hole): extrapolated linearly from the two samples beyond.
 struct BoundaryMeasures {
-  Distribution gap; ///< mm between the two depths there, without depth jumps
-  /// Between the slopes of two samples on each side, mm of depth per mm, without depth jumps.
+  Distribution gap; ///< |context depth - focus depth|, mm, without depth jumps
+  /// Difference of the slopes of two samples on each side, mm of depth per mm, without depth jumps.
   Distribution slopeJump;
-  double depthJumps = 0.0; ///< share of the outline where the focus's own depth jumps
+  double depthJumps = 0.0; ///< share of the crossings where the focus's own depth jumps
   std::size_t crossings = 0;
 };
 
-/// mm by which a focus sample's depth differs from a neighbour's where the focus is said to jump.
+/// Threshold, mm: the focus jumps at a sample if a neighbour's depth differs by more.
 constexpr double depthJump = 2.0;
 
-/// `depths` are those of `focus`, for the clip's camera.
+/// `depths`: of `focus`, from the clip's camera. Zeros for ClipNone.
 BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
                                  const FocusDepth& depths);
 

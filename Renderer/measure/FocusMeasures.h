@@ -1,11 +1,11 @@
 #pragma once
-// What a clip does for the focus, and what it costs the context.
+// Gain of a clip for the focus, and its cost for the context.
 
 #include "transport/render/Render.h"
 
 namespace fenestra {
 
-/// What the eye meets of the focus at the pixels' centres.
+/// Points of the focus that the eye meets at the pixels' centres.
 class FocusPoints {
 public:
   /// `depth`: mm in view space, row by row from the top; infinity where the focus is missed.

@@ -7,7 +7,7 @@ namespace fenestra {
 
 namespace {
 
-/// The least circle around the axis that holds the focus, as far as it is seen; mm.
+/// Greatest distance of a visible point of the focus from the axis, mm.
 double focusRadius(const SeenSurface& surface, const Vec3& axis) {
   const Camera& camera = surface.camera;
   const Vec3 along = axis.stableNormalized();

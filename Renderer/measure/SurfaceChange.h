@@ -1,6 +1,6 @@
 #pragma once
-// How a clipping surface changes while the eye goes around its focus: what a turntable is judged
-// by.
+// Change of a clipping surface while the eye goes around its focus: the measure of a turntable's
+// steadiness.
 
 #include "clip/focus/FocusDepth.h"
 #include "clip/keep/Clip.h"
@@ -9,29 +9,29 @@
 
 namespace fenestra {
 
-/// A clipping surface as the pixels of a picture see it, row by row from the top.
+/// Clipping surface at a picture's pixels, row by row from the top.
 struct SeenSurface {
   Camera camera;
   std::vector<Region> regions;
-  std::vector<double> depths; ///< of the surface: the focus's own where it is seen; mm
+  std::vector<double> depths; ///< of the surface, mm; in the region focus: of the focus
 };
 
-/// `focusDepth`: of the focus at each pixel, infinity where it is missed.
+/// `focusDepth`: depth of the focus at each pixel, mm; infinity: missed.
 SeenSurface seenSurface(const ClipDepth& clip, const std::vector<double>& focusDepth,
                         const Domain& volume);
 
-/// What happens while the eye turns by a degree; mm.
+/// Changes per degree of turn, mm.
 struct SurfaceChange {
-  /// By how much the surface's depth differs, over all pixels that are context before and after.
+  /// Change of the surface's depth over all pixels that are context before and after.
   double mean = 0.0, p95 = 0.0, max = 0.0;
-  /// How far the farthest point from the axis, of the focus that is seen, moves.
+  /// Way of the visible focus's point farthest from the axis.
   double focus = 0.0;
 
-  /// By how much the surface's greatest change is beyond what the focus itself does.
+  /// Part of the surface's greatest change beyond the motion of the focus.
   double excess() const { return std::max(0.0, max - focus); }
 };
 
-/// Of two cameras with one target, `degrees` apart around the axis that leads through it.
+/// Change between two cameras with one target, `degrees` apart around `axis` through the target.
 SurfaceChange changeBetween(const SeenSurface& before, const SeenSurface& after, const Vec3& axis,
                             double degrees);
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int64_t publishedSize = 512;
 const Size3 publishedFocus{255, 255, 391};
-constexpr int greatest = 255; ///< scalar
+constexpr int greatest = 255; ///< largest scalar
 
 std::int16_t sliceScalar(std::int64_t slice, std::int64_t count) {
   const auto last = static_cast<double>(count - 1);
@@ -52,7 +52,7 @@ VolumeProperty cubeProperty(double edge) {
   VolumeProperty property;
   property.scalarOpacity = {{-greatest, 0.99}, {greatest, 0.99}};
   property.gradientOpacity = {{0, 1}, {255, 1}};
-  // Not pure: where a component is 0, light that scatters more than once is lost.
+  // Not pure: a component of 0 would lose all light scattered more than once.
   property.color = {
       {-greatest, {0.15, 0.25, 1.0}}, {0, {0.80, 0.50, 0.85}}, {greatest, {1.0, 0.20, 0.15}}};
   property.unitDistance = edge / 100.0;

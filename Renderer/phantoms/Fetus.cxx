@@ -17,12 +17,12 @@ enum class FetusTissue { skin, inside, cord, wall, fluid };
 
 struct FetusSite {
   Vec3 point;
-  double surface; ///< mm to the subject's outside: there is none in view
+  double surface; ///< mm to the subject's outside, which is not in view
 };
 
 using FetusLayer = PaintLayer<FetusSite, FetusTissue>;
 
-/// Echoes are the brighter the more a tissue scatters; 0 to 255.
+/// Echo strength, 0 to 255; larger for tissue that scatters more.
 double echo(FetusTissue tissue, const Vec3& p) {
   switch (tissue) {
   case FetusTissue::skin:
@@ -39,7 +39,7 @@ double echo(FetusTissue tissue, const Vec3& p) {
   return 6.0;
 }
 
-/// The fetus in its fluid as the painter asks for it.
+/// The fetus in its fluid, a Subject of Painter.
 class FetusSubject {
 public:
   using Site = FetusSite;
@@ -62,7 +62,7 @@ public:
   Site site(const Vec3& point) const { return {point, -infinity}; }
   double signal(FetusTissue tissue, const Site& site) const { return echo(tissue, site.point); }
 
-  /// Speckle of the size of a pulse, weaker sound with depth, and noise.
+  /// Applies speckle of pulse size, attenuation with depth, and noise.
   std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const {
     const double speckle =
         1.0 + 0.24 * valueNoise(point / 1.3, 21) + 0.14 * valueNoise(point / 0.7, 22);
@@ -77,7 +77,7 @@ private:
     return {[solid, by](const Vec3& p) { return solid.distance(p) + by; }, solid.box};
   }
 
-  /// Two loops of it, before the chin.
+  /// Two loops of the cord in front of the chin.
   static Solid cord() {
     const auto shape = std::make_shared<const Tube>(std::vector<TubeNode>{{{-52, 34, -34}, 4.5},
                                                                           {{-34, 46, -40}, 4.5},
@@ -88,7 +88,7 @@ private:
     return {[shape](const Vec3& p) { return shape->distance(p); }, shape->box()};
   }
 
-  /// Of the uterus, with the placenta on it: around a cavity that is wider than the head.
+  /// Uterine wall with the placenta, around a cavity wider than the head.
   static Solid wall() {
     const auto distance = [](const Vec3& p) {
       const double wave = 2.0 * valueNoise(p / 17.0, 31) + 1.0 * valueNoise(p / 7.0, 32);

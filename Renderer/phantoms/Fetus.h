@@ -1,20 +1,19 @@
 #pragma once
-// A fetus of some 28 weeks as obstetric ultrasound shows it: the head, from in front.
+// Fetus of about 28 weeks as obstetric ultrasound shows it: the head, from in front.
 
 #include "phantoms/Phantom.h"
 
 namespace fenestra {
 
 struct FetusOptions {
-  /// Voxels right to left, anterior to posterior, inferior to superior, of the fetus. The field of
-  /// view is the same for every size: 112 x 112 x 112 mm.
+  /// Voxels right to left, anterior to posterior, inferior to superior, of the fetus.
+  /// Field of view: 112 x 112 x 112 mm for every size.
   Size3 size{160, 160, 160};
 };
 
-/// The same voxels on every run and any number of threads. Values are 0 to 255, with speckle and
-/// shadows as sound leaves them. The face, with a hand beside it, is a segment, which the wall of
-/// the uterus and a loop of the cord hide from in front. Throws Error (usage) where a size is less
-/// than 16 or more than 1024.
+/// Fetal head. Voxels do not depend on run or number of threads. Values are 0 to 255, with speckle
+/// and shadows of ultrasound. The face, with a hand beside it, is one segment, hidden from in front
+/// by the uterine wall and a loop of the cord. Throws Error (usage) if a size < 16 or > 1024.
 Phantom makeFetusPhantom(const FetusOptions& options = {});
 
 /// Skin tones; fluid is transparent.

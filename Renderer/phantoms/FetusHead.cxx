@@ -17,7 +17,7 @@ Solid mirrored(const Solid& solid) {
            mirror({solid.box.lower.x(), solid.box.upper.y(), solid.box.upper.z()})}};
 }
 
-/// On both sides of the middle.
+/// `right` and its mirror image.
 Solid paired(const Solid& right) {
   return unite(right, mirrored(right), 0.1);
 }
@@ -38,7 +38,7 @@ Solid bulk() {
   return unite(head, tube({{{0, -6, -28}, 15}, {{0, -12, -50}, 13}, {{0, -16, -80}, 19}}), 12);
 }
 
-/// Sockets with closed lids in them, each with the slit between upper and lower lid.
+/// Face with eye sockets, closed lids, and the slits between the lids.
 Solid withEyes(const Solid& head) {
   Solid face = without(head, paired(ellipsoid({13, 42, -5}, {9, 9, 6})), 7);
   face = unite(face, paired(ellipsoid({12.5, 30.5, -5}, {7, 6, 5.5})), 2.5);

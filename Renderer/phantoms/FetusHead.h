@@ -1,13 +1,13 @@
 #pragma once
-// The head of a fetus as one smooth shape. For phantom's own sources.
+// Head of a fetus as one smooth shape. Internal to the phantom library.
 
 #include "phantoms/Shapes.h"
 
 namespace fenestra {
 
-/// World: the middle of the head near the origin, the face anterior, superior up.
+/// Head in the world: its middle near the origin, face anterior, superior up.
 Solid fetusHead();
-/// A fist beside its chin.
+/// Fist beside the chin.
 Solid fetusHand();
 
 } // namespace fenestra

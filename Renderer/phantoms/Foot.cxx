@@ -10,7 +10,7 @@ namespace {
 const Vec3 footFieldOfView{280.0, 112.0, 140.0}; ///< mm along the voxel axes
 const Vec3 footFieldCenter{-2.0, 131.0, 64.0};   ///< world
 
-/// The foot as the painter asks for it.
+/// The foot, a Subject of Painter.
 struct FootSubject {
   using Site = FootSite;
   using Layer = FootLayer;
@@ -21,14 +21,14 @@ struct FootSubject {
   const std::vector<Layer>& layers() const { return foot.layers(); }
   Site site(const Vec3& point) const { return foot.site(point); }
   double signal(FootTissue tissue, const Site& site) const { return foot.signal(tissue, site); }
-  /// Scanners clip at both ends of twelve bits.
+  /// Adds noise, and clips to 12 bits like a scanner.
   std::int16_t acquired(double signal, const Vec3&, std::uint64_t voxel) const {
     const double noisy = std::clamp(signal + footNoise * normalNoise(voxel), -1024.0, 3071.0);
     return static_cast<std::int16_t>(std::lround(noisy));
   }
 };
 
-/// Layer 1: what a threshold finds.
+/// Adds layer 1: all voxels of at least footBoneThreshold.
 void addThresholdedBones(Phantom& phantom) {
   const auto& voxels = std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
   std::vector<std::uint8_t> bones(voxels.size());

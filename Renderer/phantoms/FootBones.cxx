@@ -8,7 +8,7 @@ namespace fenestra {
 namespace {
 
 const Vec3 superior = Vec3::UnitZ();
-constexpr double jointBlend = 1.5; ///< mm: how round a joint face's rim is
+constexpr double jointBlend = 1.5; ///< mm; rounding of a joint face's rim
 
 Solid calcaneusShape() {
   const Vec3 heel(-2.0, 12.0, 29.0), front(15.0, 82.0, 41.0);
@@ -31,7 +31,8 @@ Solid calcaneusShape() {
   return unite(shape, sustentaculum, 6.0);
 }
 
-/// The trochlea is a cylinder's upper half, the head a ball in front of and medial to it.
+/// The trochlea is the upper half of a cylinder; the head is a ball, anterior and medial to the
+/// trochlea.
 Solid talusShape() {
   const Vec3 axis(1.0, 0.05, 0.0);
   const Loft trochlea({{-15.5, {0, 0}, {20.5, 20.5}},
@@ -84,7 +85,7 @@ Solid fibulaShape() {
   return placed(Affine::Identity(), loft);
 }
 
-/// Boat-shaped: its hollow rear is cut by the talus's head.
+/// Boat-shaped; the talus's head cuts the hollow rear.
 Solid navicularShape() {
   const Affine frame = toShape({-19, 106, 55}, {-0.28, 1.0, -0.12}, {-0.35, 0.0, 1.0});
   const Solid body = block(frame, {17.5, 12.5, 8.5}, 7.0);
@@ -95,7 +96,7 @@ Solid cuboidShape() {
   const Solid body =
       block(toShape({19, 102, 37}, {0.12, 1.0, -0.28}, {0.35, 0.0, 1.0}), {12.5, 12, 18.8}, 8.5);
   return unite(body, ellipsoid({16, 96, 26}, {9, 6, 6}),
-               5.0); // the ridge above the peroneal groove
+               5.0); // ridge above the peroneal groove
 }
 
 } // namespace
@@ -129,9 +130,9 @@ void FootBones::addHindfoot() {
 
 void FootBones::addLegStumps() {
   FootBone tibia{"tibia", "Tibia", tibiaShape(), {}};
-  tibia.gap = 2.6; // the ankle's two cartilages
+  tibia.gap = 2.6; // two cartilages in the ankle
   tibia.base = {-3, 60, 78};
-  tibia.head = {-6, 52, 250}; // most of the shaft is beyond the field of view
+  tibia.head = {-6, 52, 250}; // most of the shaft is outside the field of view
   tibia.cortex = 1.2;
   tibia.shaftCortex = 4.0;
   add(tibia, {"talus", "calcaneus"});

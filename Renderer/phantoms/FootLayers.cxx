@@ -23,7 +23,7 @@ FootLayers::FootLayers() {
   addSoftTissue();
 }
 
-/// Skin lies over bones and raised tendons with little between.
+/// Distance to the skin, mm; the skin bulges over bones and raised tendons.
 double FootLayers::surface(const Vec3& p, double nearestBone) const {
   constexpr double overBone = 4.2, overTendon = 2.6, blend = 5.0;
   double surface = smoothUnion(m_outline.distance(p), nearestBone - overBone, blend);
@@ -106,7 +106,7 @@ void FootLayers::addBones() {
 void FootLayers::addSoftTissue() {
   const auto cartilage = segment("joints", "Joint cartilage and capsules", {0.435, 0.722, 0.824});
   layer(cartilage, FootTissue::cartilage, everywhere, [](const FootSite& s) {
-    constexpr double halfWidth = 2.3; // mm: of the gap that a capsule bridges
+    constexpr double halfWidth = 2.3; // mm; half of the gap that a capsule bridges
     return std::max(0.5 * (s.bones[s.nearest] + s.second) - halfWidth,
                     s.surface + footSkinThickness);
   });

@@ -1,5 +1,5 @@
 #pragma once
-// The foot as layers: which shape hides which, what tissue it is, and the segment it belongs to.
+// Layers of the foot: order of the shapes, their tissues, and their segments.
 
 #include "phantoms/FootBones.h"
 #include "phantoms/FootSoftTissue.h"
@@ -9,14 +9,14 @@ namespace fenestra {
 
 enum class FootTissue { cortex, marrow, cartilage, tendon, vessel, muscle, fat, skin };
 
-/// A place, and what most layers ask about it.
+/// A place with the distances that most layers need.
 struct FootSite {
   Vec3 point;
   double surface;             ///< mm to the skin's surface
   double fascia;              ///< mm to the bottom of the subcutaneous fat
   FootBones::Distances bones; ///< mm
-  std::size_t nearest;        ///< the bone
-  double second;              ///< mm to the next bone
+  std::size_t nearest;        ///< index of the nearest bone
+  double second;              ///< mm to the second nearest bone
   double shaft;               ///< FootBones::shaft of the nearest bone
 };
 
@@ -26,7 +26,7 @@ class FootLayers {
 public:
   FootLayers();
 
-  /// Front to back: a layer hides those after it.
+  /// Layers front to back: each hides the later ones.
   const std::vector<FootLayer>& layers() const { return m_layers; }
   const std::vector<PhantomSegment>& segments() const { return m_segments; }
 
@@ -37,10 +37,10 @@ public:
 private:
   using Distance = std::function<double(const FootSite&)>;
 
-  /// Returns the new segment's label.
+  /// Adds a segment; returns its label.
   std::uint8_t segment(const std::string& id, const std::string& name, const Rgb& color);
   void layer(std::uint8_t label, FootTissue tissue, const Box& box, Distance distance);
-  /// They end `depth` mm under the skin's surface.
+  /// Adds tubes, cut off `depth` mm under the skin's surface.
   void tubes(std::uint8_t label, FootTissue tissue, const std::vector<Tube>& tubes, double depth);
 
   void addBones();

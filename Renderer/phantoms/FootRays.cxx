@@ -4,7 +4,7 @@ namespace fenestra {
 
 namespace {
 
-/// What differs between the bones of a kind.
+/// Parameters that differ between bones of a kind.
 struct Entry {
   Vec3 base, head;
   Vec2 baseRadii, shaftRadii, headRadii;
@@ -25,7 +25,7 @@ const Entry proximalPhalanges[] = {
     {{16.2, 192, 16.5}, {16.8, 212, 18}, {5.6, 5.2}, {3.1, 3.3}, {4.4, 4}, 0.6},
     {{31, 181, 15}, {30, 198, 16}, {5.6, 5}, {3.2, 3.2}, {4.4, 3.9}, 0.5}};
 
-/// The great toe has none.
+/// Toes 2 to 5; the great toe has no middle phalanx.
 const Entry middlePhalanges[] = {
     {{-13, 230, 20}, {-12.6, 242.5, 17}, {4.6, 4.2}, {3.6, 3.3}, {4.3, 3.7}, 0.3},
     {{2.6, 223, 19}, {3, 234, 15.8}, {4.4, 4}, {3.5, 3.2}, {4.1, 3.5}, 0.3},
@@ -39,7 +39,7 @@ const Entry distalPhalanges[] = {
     {{16.5, 223.8, 13.5}, {16.4, 233.5, 10}, {3.9, 3.3}, {2.5, 2.4}, {3.2, 2.4}, 0.0},
     {{29.4, 208, 12}, {29, 217, 9.5}, {3.9, 3.2}, {2.5, 2.3}, {3.2, 2.3}, 0.0}};
 
-/// Cortex and spongiosa of a kind of bone.
+/// Cortex, mm, and spongiosa, HU, of a kind of bone.
 struct Substance {
   double cortex, shaftCortex, spongiosa;
 };

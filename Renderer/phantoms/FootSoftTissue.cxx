@@ -6,7 +6,7 @@ namespace fenestra {
 
 namespace {
 
-/// Of the sole over the floor, mm: the medial arch.
+/// Height of the sole over the floor, mm: the medial arch.
 double soleHeight(const Vec3& p) {
   const double across = (p.x() + 40.0) / 24.0, along = (p.y() - 112.0) / 42.0;
   return 16.0 * std::exp(-across * across - along * along);
@@ -28,7 +28,7 @@ FootOutline::FootOutline() {
                   {160, {-1, 51}, {37, 42}}},
                  0.1, 12.0);
   m_leg = placed(Affine::Identity(), leg);
-  // Along y, sections across and up.
+  // Loft along y; sections across and up.
   const Loft body({{1.0, {0, 27}, {17, 20}},
                    {8.0, {0, 27}, {25, 27}},
                    {24.0, {0, 29}, {30, 30}},
@@ -43,7 +43,7 @@ FootOutline::FootOutline() {
                   0.35, 9.0);
   Solid shape = placed(toShape(Vec3::Zero(), Vec3::UnitY(), Vec3::UnitZ()), body);
   const auto sole = [](const Vec3& p) { return soleHeight(p) - p.z(); };
-  // The web of the toes runs back from the great toe to the little one.
+  // The web of the toes runs backward from the great toe to the little one.
   const auto web = [](const Vec3& p) {
     return (p.y() - 208.0 + 0.40 * (p.x() + 15.0)) / std::hypot(1.0, 0.40);
   };
@@ -238,8 +238,7 @@ std::vector<Tube> footMuscles() {
           band({{{-4, 36, 175}, 9}, {{-5, 37, 110}, 7}, {{-8, 38, 84}, 3.5}}, 1.2),
           band({{{2, 78, 175}, 10}, {{2, 80, 125}, 7}, {{3, 85, 102}, 3}}, 1.7),
           band({{{24, 42, 175}, 9}, {{26, 44, 115}, 6}, {{27, 44, 92}, 3}}, 1.0),
-          // Of the sole, first layer: abductor hallucis, flexor digitorum brevis, abductor of the
-          // fifth.
+          // Sole, first layer: abductor hallucis, flexor digitorum brevis, abductor of the fifth.
           Tube({{{-14, 26, 17}, 5},
                 {{-27, 60, 26}, 7.5},
                 {{-37, 105, 28}, 6.5},

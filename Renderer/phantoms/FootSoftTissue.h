@@ -1,5 +1,5 @@
 #pragma once
-// What surrounds the bones of a right foot, as shapes in the frame of FootBones.h.
+// Soft tissue of a right foot, as shapes in the frame of FootBones.h.
 
 #include "phantoms/Shapes.h"
 
@@ -7,7 +7,7 @@
 
 namespace fenestra {
 
-/// The skin's surface without what bones and tendons push out; mm.
+/// Surface of the skin without the bulges of bones and tendons; mm.
 class FootOutline {
 public:
   FootOutline();
@@ -24,10 +24,10 @@ Tube achillesTendon();
 Tube plantarAponeurosis();
 std::vector<Tube> footVessels();
 
-/// Bellies in the leg, and the short muscles of sole and dorsum.
+/// Muscle bellies in the leg, and the short muscles of sole and dorsum.
 std::vector<Tube> footMuscles();
 
-/// Thickness of skin and subcutaneous fat, mm: thick under the sole.
+/// Thickness of skin and subcutaneous fat, mm; large under the sole.
 double footFasciaDepth(const Vec3& point);
 
 } // namespace fenestra

@@ -10,7 +10,7 @@ namespace {
 const Vec3 kneeFieldOfView{120.0, 137.6, 120.0}; ///< mm along the voxel axes
 const Vec3 kneeFieldCenter{0.0, -2.0, 6.8};      ///< world
 
-/// The knee as the painter asks for it.
+/// The knee, a Subject of Painter.
 struct KneeSubject {
   using Site = KneeSite;
   using Layer = KneeLayer;

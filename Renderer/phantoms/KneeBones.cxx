@@ -6,12 +6,12 @@ namespace fenestra {
 
 namespace {
 
-constexpr double axisY = -6.0, axisZ = 24.0; ///< the transcondylar axis, along x
-constexpr double grooveX = 1.5;              ///< the trochlear groove's bottom
-constexpr double notchX = 0.5;               ///< the intercondylar notch's middle
+constexpr double axisY = -6.0, axisZ = 24.0; ///< transcondylar axis, along x
+constexpr double grooveX = 1.5;              ///< bottom of the trochlear groove
+constexpr double notchX = 0.5;               ///< middle of the intercondylar notch
 
-/// The sagittal outline of the distal femur around the transcondylar axis: a spiral whose radius of
-/// curvature falls from nearly 40 mm under the trochlea to 20 mm behind.
+/// Sagittal outline of the distal femur around the transcondylar axis: a spiral whose radius of
+/// curvature falls from nearly 40 mm under the trochlea to 20 mm at the rear.
 struct ProfileNode {
   double degrees, radius;
 };
@@ -45,7 +45,7 @@ double profileAtDegrees(double degrees) {
                  (degrees - node(i).degrees) / width);
 }
 
-/// How far the distal femur reaches at a place: the medial and lateral walls.
+/// Medial and lateral walls of the distal femur at a place: x, mm.
 struct Walls {
   double medial, lateral;
 };
@@ -57,7 +57,7 @@ Walls walls(const Vec3& p) {
   return {-38.5 + narrowing + back + 0.009 * front, 38.2 - narrowing - back - 0.0065 * front};
 }
 
-/// The notch is open to the back and below; its roof rises backward along Blumensaat's line.
+/// Field of the notch, open to the rear and below; its roof rises backward along Blumensaat's line.
 double notchField(const Vec3& p) {
   const double roof = ((p.y() - 8.0) * 28.0 + (p.z() - 8.5) * 24.0) / std::hypot(28.0, 24.0);
   const double sides = std::abs(p.x() - notchX) - 9.2 - 0.05 * std::max(0.0, -10.0 - p.y());
@@ -70,20 +70,20 @@ template <typename Field>
 double firstOrderDistance(const Field& field, const Vec3& p) {
   constexpr double step = 0.05;
   const double value = field(p);
-  if (std::abs(value) > 4.0) // far off, the field may have kinks, and nobody asks closely
+  if (std::abs(value) > 4.0) // kinks of the field lie far away, where accuracy does not matter
     return value;
   const Vec3 slope{field(p + Vec3{step, 0, 0}) - value, field(p + Vec3{0, step, 0}) - value,
                    field(p + Vec3{0, 0, step}) - value};
   return value / std::clamp(slope.norm() / step, 0.3, 2.0);
 }
 
-/// 1 on the trochlea, 0 on the condyles' bearing and rear parts.
+/// Share of the trochlea: 1 on it, 0 on the bearing and rear parts of the condyles.
 double trochleaShare(double angle, double distalEnd, double frontEnd) {
   return smoothStep(distalEnd, frontEnd, angle) * (1.0 - smoothStep(1.5, 2.5, angle));
 }
 
-/// The tibia's upper surface: a concave medial and a convex lateral plateau that fall backward, and
-/// the two spines of the eminence.
+/// Height of the tibia's upper surface, mm: a concave medial and a convex lateral plateau that fall
+/// backward, and the two spines of the eminence.
 double plateauHeight(const Vec3& p) {
   const auto hill = [&](double x, double y, double rx, double ry) {
     return std::exp(-std::pow((p.x() - x) / rx, 2) - std::pow((p.y() - y) / ry, 2));
@@ -148,8 +148,8 @@ double KneeBones::profile(double angle) const {
   return std::lerp(m_profile[at], m_profile[at + 1], x - i);
 }
 
-/// Condyles and trochlea: one surface around the transcondylar axis. Behind and below, each condyle
-/// is crowned; in front the groove lies between a high lateral and a lower medial facet.
+/// Condyles and trochlea as one surface around the transcondylar axis. At the rear and below, each
+/// condyle is crowned; in front the groove lies between a high lateral and a lower medial facet.
 double KneeBones::wheelField(const Vec3& p) const {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double angle = std::atan2(z, y);
@@ -191,7 +191,7 @@ double KneeBones::tibiaField(const Vec3& p) const {
   const double condyles = std::min(medial, lateral);
   const double shaft =
       smoothUnion(smoothUnion(m_tibialShaft.distance(p), tuberosity, 8.0), condyles, 12.0);
-  // Between the condyles' rear parts the outline is drawn in: the groove of the PCL.
+  // The outline recedes between the rear parts of the condyles: the groove of the PCL.
   const double rearGroove = ellipsoidDistance(p, {0, -34, -6}, {11, 11, 20});
   return smoothIntersection(smoothDifference(shaft, rearGroove, 6.0), p.z() - plateauHeight(p),
                             3.5);
@@ -210,12 +210,12 @@ double KneeBones::fibula(const Vec3& point) const {
   return m_fibulaShaft.distance(point) + surfaceNoise(point, 31);
 }
 
-/// A rounded triangle from the front; behind, two facets meet in a ridge that rides in the groove.
+/// Rounded triangle in front; two facets at the rear meet in a ridge that runs in the groove.
 double KneeBones::patellaField(const Vec3& p) const {
   const double across = p.x() - 2.0;
   const double ridge = std::sqrt(across * across + 9.0) - 3.0;
   const double slope = across > 0.0 ? 0.30 : 0.40;
-  const double apex = 0.35 * std::max(0.0, 30.0 - p.z()); // the lower quarter bears no facet
+  const double apex = 0.35 * std::max(0.0, 30.0 - p.z()); // the lower quarter has no facet
   const double facets = 32.0 + slope * ridge + apex - p.y();
   const double front = std::max(0.0, std::abs(across) - 6.0);
   const double dome = p.y() - 50.0 + 0.010 * front * front + 0.004 * std::pow(p.z() - 40.0, 2);
@@ -239,7 +239,8 @@ Vec3 KneeBones::femoralSurface(double x, double angle) const {
 
 namespace {
 
-/// What a lesion leaves: 1 outside it, 1 - depth on its floor; the wall is steep.
+/// Share of the cartilage left by a lesion: 1 outside it, 1 - depth on its floor; the wall is
+/// steep.
 double lesionShare(const CartilageLesion& lesion, const Vec3& p) {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double along = std::hypot(y, z) * (std::atan2(z, y) - lesion.angle);
@@ -248,7 +249,7 @@ double lesionShare(const CartilageLesion& lesion, const Vec3& p) {
   return 1.0 - lesion.depth * (1.0 - smoothStep(-0.35, 0.35, fromRim));
 }
 
-/// Thickness as a share of its range, for a place `margin` mm inside the cartilage's border.
+/// Thickness `margin` mm inside the cartilage's border: rises from 0 to `thickness`.
 double tapered(double thickness, double margin) {
   return thickness * smoothStep(-1.0, 3.2, margin);
 }

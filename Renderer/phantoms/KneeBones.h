@@ -1,8 +1,8 @@
 #pragma once
-// The bones of a right knee in extension, and the cartilage on them, as distance functions.
+// Bones of a right knee in extension, and their cartilage, as distance functions.
 //
 // World is RAS, mm: x to the lateral side (R), y anterior, z superior; the origin is the middle of
-// the joint line, under the intercondylar notch. The proportions are an adult's.
+// the joint line, under the intercondylar notch. Adult proportions.
 
 #include "phantoms/Shapes.h"
 
@@ -10,40 +10,40 @@
 
 namespace fenestra {
 
-/// A round defect of the femoral cartilage: on the transverse axis at `x`, `angle` below anterior.
+/// Round defect of the femoral cartilage, centred at `x` along the transverse axis and `angle`
+/// around it.
 struct CartilageLesion {
   double x;        ///< mm
   double angle;    ///< radians around the transcondylar axis, 0 anterior, -pi/2 distal
   double diameter; ///< mm
-  double depth;    ///< share of the cartilage that is gone
+  double depth;    ///< share of the cartilage that is missing
 };
 
-/// On the medial slope of the lower trochlea: the notch is behind it, not more cartilage,
-/// so that a view from in front through the lesion meets the bone of its floor.
+/// Lesion on the medial slope of the lower trochlea, with the notch behind, not more cartilage: a
+/// view from in front through the lesion meets the bone of its floor.
 inline constexpr CartilageLesion fullThicknessLesion{-4.8, -0.48, 8.0, 1.0};
-/// On the lateral condyle.
+/// Lesion on the lateral condyle.
 inline constexpr CartilageLesion partialThicknessLesion{22.5, -0.62, 9.0, 0.5};
 
 class KneeBones {
 public:
   KneeBones();
 
-  /// Distances in mm to the bones' outer surfaces; `beyond` where a bone is farther off than that.
+  /// Distances to the bones' outer surfaces, mm; `beyond` if a bone is farther than `beyond`.
   double femur(const Vec3& point) const;
   double tibia(const Vec3& point) const;
   double fibula(const Vec3& point) const;
   double patella(const Vec3& point) const;
   static constexpr double beyond = 8.0;
 
-  /// Cartilage in mm over the bone's surface near `point`, 0 off the joint's faces; lesions
-  /// included.
+  /// Thickness of the cartilage, mm, on the bone's surface near `point`; 0 off the joint's faces;
+  /// lesions included.
   double femoralCartilage(const Vec3& point) const;
-  double intactFemoralCartilage(const Vec3& point) const; ///< as it would be without lesions
+  double intactFemoralCartilage(const Vec3& point) const; ///< without lesions
   double tibialCartilage(const Vec3& point) const;
   double patellarCartilage(const Vec3& point) const;
 
-  /// Where the femur's surface lies under a place of the trochlea or a condyle, x and angle as in
-  /// CartilageLesion.
+  /// Point on the femur's surface, on the trochlea or a condyle; x and angle as in CartilageLesion.
   Vec3 femoralSurface(double x, double angle) const;
 
 private:
@@ -54,7 +54,7 @@ private:
   double profile(double angle) const;
 
   static constexpr int profileSteps = 360;
-  std::array<double, profileSteps + 1> m_profile; ///< the femur's sagittal radius by angle
+  std::array<double, profileSteps + 1> m_profile; ///< sagittal radius of the femur by angle
   Loft m_femoralShaft, m_tibialShaft, m_fibulaShaft, m_patellaBody;
   Box m_femurBox, m_tibiaBox, m_patellaBox, m_fibulaBox;
 };

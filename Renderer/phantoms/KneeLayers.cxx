@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kneeSkinThickness = 1.5;
 constexpr double fasciaThickness = 0.6;
-constexpr double film = 0.7; ///< mm of fluid on the joint's faces
+constexpr double film = 0.7; ///< mm; fluid on the joint's faces
 
 const Rgb cartilageColor{0.435, 0.722, 0.824};
 const Rgb meniscusColor{0.663, 0.784, 0.702};
@@ -16,14 +16,14 @@ const Rgb ligamentColor{0.718, 0.839, 0.827};
 const Rgb muscleColor{0.753, 0.408, 0.345};
 const Rgb fatColor{0.902, 0.863, 0.275};
 
-/// Epiphyses have a thin shell; toward the shafts it grows.
+/// Thickness of the cortex, mm: a thin shell at the epiphyses, thicker toward the shafts.
 double cortexThickness(const Vec3& p) {
   const double shaft = std::max({0.0, p.z() - 50.0, -25.0 - p.z()});
   return 1.15 + 0.045 * shaft + 0.15 * valueNoise(p / 6.0, 91);
 }
 
-/// Distance to the surface of a bone with its cartilage, `extra` mm thicker; far where there is
-/// none.
+/// Distance to the surface of a bone with its cartilage, `extra` mm thicker; `beyond` where there
+/// is no cartilage.
 double cover(double bone, double cartilage, double extra) {
   return cartilage > 0.05 ? bone - cartilage - extra : KneeBones::beyond;
 }
@@ -85,7 +85,7 @@ void KneeLayers::ligament(const char* id, const char* name, Tube tube) {
             [tube = std::move(tube)](const KneeSite& s) { return tube.distance(s.point); });
 }
 
-/// Fat keeps neighbouring muscles apart.
+/// Adds a muscle with a layer of fat, which separates neighbouring muscles.
 void KneeLayers::muscle(const char* id, const char* name, const std::vector<Loft>& bellies) {
   const auto label = segment(id, name, muscleColor);
   for (const Loft& belly : bellies) {

@@ -1,5 +1,5 @@
 #pragma once
-// The knee as layers: which shape hides which, what tissue it is, and the segment it belongs to.
+// Layers of the knee: order of the shapes, their tissues, and their segments.
 
 #include "phantoms/KneeBones.h"
 #include "phantoms/KneeSignal.h"
@@ -8,12 +8,12 @@
 
 namespace fenestra {
 
-/// A place, and what most layers ask about it.
+/// A place with the distances that most layers need.
 struct KneeSite {
   Vec3 point;
-  double surface;                       ///< distances in mm: to the skin's
-  double fascia;                        ///< to the sheath around muscles and joint
-  double femur, tibia, fibula, patella; ///< and the bones'
+  double surface;                       ///< mm to the skin's surface
+  double fascia;                        ///< mm to the sheath around muscles and joint
+  double femur, tibia, fibula, patella; ///< mm to the bones' surfaces
   double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
 };
 
@@ -23,7 +23,7 @@ class KneeLayers {
 public:
   KneeLayers();
 
-  /// Front to back: a layer hides those after it.
+  /// Layers front to back: each hides the later ones.
   const std::vector<KneeLayer>& layers() const { return m_layers; }
   const std::vector<PhantomSegment>& segments() const { return m_segments; }
 
@@ -32,10 +32,10 @@ public:
 private:
   using Distance = std::function<double(const KneeSite&)>;
 
-  /// Returns the new segment's label.
+  /// Adds a segment; returns its label.
   std::uint8_t segment(const char* id, const char* name, const Rgb& color);
   void layer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance);
-  /// Its shape ends at the fascia.
+  /// Adds a layer, cut off at the fascia.
   void deepLayer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance);
   void ligament(const char* id, const char* name, Tube tube);
   void muscle(const char* id, const char* name, const std::vector<Loft>& bellies);
@@ -53,7 +53,7 @@ private:
   LegOutline m_leg;
   std::vector<KneeLayer> m_layers;
   std::vector<PhantomSegment> m_segments;
-  std::uint8_t m_deepFat = 0; ///< label
+  std::uint8_t m_deepFat = 0; ///< label of the deep fat
 };
 
 } // namespace fenestra

@@ -4,8 +4,8 @@ namespace fenestra {
 
 VolumeProperty kneeProperty() {
   VolumeProperty property;
-  // Air and flow voids are empty. Cartilage is far denser than what its border's values pass
-  // through on the way from fluid (215) or bone's cortex (66), so that no muscle red shows on it.
+  // Air and flow voids are transparent. Cartilage is far denser than the values between its own and
+  // those of fluid (215) or cortex (66): partial volume shows no muscle red on its border.
   property.scalarOpacity = {{0, 0},      {46, 0},     {70, 0.30},  {130, 0.42}, {185, 0.20},
                             {240, 0.14}, {300, 0.30}, {350, 0.42}, {400, 0.40}, {450, 0.75},
                             {500, 0.97}, {580, 0.97}, {650, 0.60}, {740, 0.45}, {1200, 0.50}};

@@ -7,7 +7,7 @@ namespace fenestra {
 
 namespace {
 
-/// 1 on thin, crumpled sheets through space about `size` mm apart, fading in and out; else 0.
+/// 1 on thin, crumpled sheets about `size` mm apart that fade in and out; 0 elsewhere.
 double septa(const Vec3& p, const Vec3& size, double thickness, std::uint64_t seed) {
   const Vec3 bend{valueNoise(p / 5.0, seed + 100), valueNoise(p / 5.0, seed + 101),
                   valueNoise(p / 5.0, seed + 102)};
@@ -28,12 +28,12 @@ double fatSignal(const Vec3& p, double strands) {
   return 860.0 + lobules - strands * septa(p, {6.0, 6.0, 8.0}, 0.16, 76);
 }
 
-/// The scars of the growth plates: dark, slightly wavy sheets.
+/// Scars of the growth plates: dark, slightly wavy sheets.
 double physis(const Vec3& p) {
   const double wave = 1.6 * valueNoise(p / 9.0, 77) + 0.004 * (p.x() * p.x() - 500.0);
   const double femoral = std::abs(p.z() - 35.0 + wave + 0.12 * p.y());
   const double tibial = std::abs(p.z() + 17.0 + wave - 0.05 * p.y());
-  const double kneecap = smoothStep(28.0, 31.0, p.y()); // it has none
+  const double kneecap = smoothStep(28.0, 31.0, p.y()); // the kneecap has no growth plate
   return (1.0 - kneecap) * (1.0 - smoothStep(0.3, 1.1, std::min(femoral, tibial)));
 }
 

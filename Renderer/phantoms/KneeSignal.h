@@ -1,5 +1,5 @@
 #pragma once
-// What a T1-weighted scan shows of each tissue.
+// Signals of tissues in a T1-weighted scan.
 
 #include "base/Vector.h"
 
@@ -25,9 +25,9 @@ enum class KneeTissue {
 /// Signal with the tissue's own texture, before bias field and noise; `point` in the knee's frame.
 double tissueSignal(KneeTissue tissue, const Vec3& point);
 
-/// The receive coils' sensitivity: smooth, within 0.85 and 1.15.
+/// Sensitivity of the receive coils: smooth, from 0.85 to 1.15.
 double biasField(const Vec3& point);
 
-inline constexpr double noiseSigma = 11.0; ///< of a quadrature: signal-to-noise of muscle is 32
+inline constexpr double noiseSigma = 11.0; ///< of each quadrature; muscle: signal / noise = 32
 
 } // namespace fenestra

@@ -33,7 +33,7 @@ double LegOutline::distance(const Vec3& p) const {
 }
 
 double fasciaDepth(const Vec3& p) {
-  // Thick behind and medially, thin over the kneecap, the tubercle and the shin.
+  // Thick at the rear and medially, thin over the kneecap, the tubercle and the shin.
   const double behind = smoothStep(20.0, -45.0, p.y());
   const double medial = smoothStep(10.0, -45.0, p.x()) * smoothStep(40.0, 10.0, p.y());
   return 3.4 + 3.0 * behind + 1.8 * medial + 0.7 * valueNoise(p / 16.0, 62);
@@ -151,7 +151,7 @@ Tube lateralCollateralLigament() {
 }
 
 Tube patellarLigament() {
-  // Its fibres run on over the front of the kneecap, thinner.
+  // Fibres continue over the front of the kneecap, thinner.
   return Tube({{{2, 49.8, 54}, 1.2},
                {{2, 50.6, 40}, 1.2},
                {{2, 48, 25}, 1.9},
@@ -227,12 +227,12 @@ double MeniscusRing::distance(const Vec3& p) const {
   const double scale = outerRadii.mean();
   double turn = std::atan2(scaled.y(), scaled.x()) - opening;
   turn = std::abs(std::remainder(turn, 2.0 * pi));
-  // The horns are slimmer than the body and end round.
+  // The horns are slimmer than the body, with round ends.
   const double horns = smoothStep(openingAngle + 0.9, openingAngle, turn);
   const double inner = std::lerp(innerShare, 0.5 * (1.0 + innerShare), horns);
   const double ring = std::max(share - 1.0, inner - share) * scale;
   const double ends = (openingAngle - turn) * share * scale;
-  // From the thin inner edge the wedge grows to 6 mm at the rim.
+  // The wedge grows from the thin inner edge to 6 mm at the rim.
   const double height = 0.6 + 5.4 * std::clamp((share - inner) / (1.0 - inner), 0.0, 1.0);
   const double faces = std::max(p.z() - height, -3.6 - p.z());
   return smoothIntersection(smoothIntersection(ring, ends, 3.0), faces, 2.0);

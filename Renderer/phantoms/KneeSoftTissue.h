@@ -1,11 +1,11 @@
 #pragma once
-// What surrounds the bones of the knee, as shapes in the frame of KneeBones.h.
+// Soft tissue of the knee, as shapes in the frame of KneeBones.h.
 
 #include "phantoms/Shapes.h"
 
 namespace fenestra {
 
-/// The leg's outer surface; the kneecap stands out in front.
+/// Outer surface of the leg; the kneecap protrudes in front.
 class LegOutline {
 public:
   LegOutline();
@@ -15,7 +15,7 @@ private:
   Loft m_loft;
 };
 
-/// Depth of the fascia under the skin's surface, mm: how thick skin and subcutaneous fat are.
+/// Depth of the fascia under the skin's surface, mm: thickness of skin and subcutaneous fat.
 double fasciaDepth(const Vec3& point);
 
 std::vector<Loft> vastusMedialis();
@@ -44,14 +44,14 @@ Tube poplitealVein();
 Tube saphenousVein();
 Tube tibialNerve();
 
-/// A meniscus before the joint's faces cut it: a wedge-shaped ring around one plateau, open toward
+/// Meniscus before the joint's faces cut it: a wedge-shaped ring around one plateau, open toward
 /// the eminence.
 struct MeniscusRing {
   Vec2 center;
   Vec2 outerRadii;     ///< mm
-  double innerShare;   ///< inner over outer radius, in the middle of the C
-  double openingAngle; ///< half of the C's gap, radians, around the direction to the eminence
-  double opening;      ///< that direction: 0 lateral, pi medial
+  double innerShare;   ///< inner / outer radius, in the middle of the C
+  double openingAngle; ///< half of the C's gap, radians, around `opening`
+  double opening;      ///< direction to the eminence: 0 lateral, pi medial
 
   double distance(const Vec3& point) const;
 };
@@ -61,7 +61,7 @@ MeniscusRing lateralMeniscus();
 /// Thin sheets from the kneecap's sides to the condyles.
 double patellarRetinaculum(const Vec3& point);
 double infrapatellarFatPad(const Vec3& point);
-/// The joint cavity above the kneecap, between the quadriceps tendon and the femur.
+/// Joint cavity above the kneecap, between the quadriceps tendon and the femur.
 double suprapatellarRecess(const Vec3& point);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Noise as a function of position alone: the same on every run, in any order, on any thread.
+// Noise as a function of position alone: independent of run, order and thread.
 
 #include "base/Vector.h"
 
@@ -7,11 +7,11 @@
 
 namespace fenestra {
 
-/// Value noise on the unit lattice, smoothly interpolated; in [-1, 1]. Divide `point` by the wanted
+/// Value noise on the unit lattice, smoothly interpolated; in [-1, 1]. Divide `point` by the
 /// feature size; different seeds are independent fields.
 double valueNoise(const Vec3& point, std::uint64_t seed);
 
-/// Normal, of mean 0 and standard deviation 1.
+/// Normal noise with mean 0 and standard deviation 1.
 double normalNoise(std::uint64_t voxel);
 
 /// Magnitude of a signal with normal noise of standard deviation `sigma` in its two quadratures, as

@@ -1,5 +1,5 @@
 #pragma once
-// Turns layers of shapes into voxels.
+// Conversion of layers of shapes to voxels.
 
 #include "phantoms/Phantom.h"
 #include "phantoms/Shapes.h"
@@ -10,7 +10,7 @@
 
 namespace fenestra {
 
-/// A shape that hides those after it.
+/// Shape that hides later ones.
 template <typename Site, typename Tissue>
 struct PaintLayer {
   std::uint8_t label;
@@ -19,27 +19,27 @@ struct PaintLayer {
   std::function<double(const Site&)> distance; ///< mm, negative inside
 };
 
-/// mm: soft borders reach this far past a shape.
+/// mm; reach of soft borders beyond a shape.
 inline constexpr double boxMargin = 1.5;
 inline const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
 inline const Rgb boneColor{0.945, 0.839, 0.569};
 
-/// Paints places of a grid, from the front layer back until nothing more shows.
+/// Paints places of a grid, from the front layer back until the voxel is full.
 ///
-/// A Subject has `Site`, a place with what its layers ask about it, among that `surface`, the mm to
-/// the subject's outside; `Layer`, a PaintLayer; `background`, the signal around the subject;
-/// `layers()`, front to back; `site(point)`, world; `signal(tissue, site)`; and
-/// `acquired(signal, point, voxel)`, what the scanner makes of it: an int16.
+/// A Subject has: `Site`, a place with the data that its layers need, such as `surface`, mm to the
+/// subject's outside; `Layer`, a PaintLayer; `background`, the signal around the subject;
+/// `layers()`, front to back; `site(point)`, world; `signal(tissue, site)`; and `acquired(signal,
+/// point, voxel)`, the scanner's value, int16.
 template <typename Subject>
 class Painter {
 public:
   using Layer = typename Subject::Layer;
 
-  /// What is at a place.
+  /// Signal and label at a place.
   struct Sample {
     double signal = 0.0;
     std::uint8_t label = 0;
-    double border = infinity; ///< mm to the next border that could show
+    double border = infinity; ///< mm to the nearest border in a visible layer
   };
 
   Painter(const Subject& subject, const Grid& grid)
@@ -48,7 +48,7 @@ public:
         m_sliceStep(grid.indexToWorld.linear().col(2)),
         m_softness(0.6 * std::cbrt(grid.spacing().prod())) {}
 
-  /// The layers that a row of voxels along the first axis can meet.
+  /// Layers that a row of voxels along the first axis can meet.
   std::vector<const Layer*> layersOfRow(const Vec3& start, std::int64_t count) const {
     const double length = m_rowStep.norm();
     const Ray row{start, m_rowStep / length};
@@ -60,8 +60,8 @@ public:
     return layers;
   }
 
-  /// A slice is as thick as it is far from the next: a voxel shows the mean across it, which takes
-  /// more than its middle only where a border is near.
+  /// Mean over the slice's thickness, which equals the slice distance; near a border from three
+  /// places, elsewhere from the middle alone.
   Sample voxel(const std::vector<const Layer*>& row, const Vec3& center) const {
     Sample middle = paint(row, center);
     if (middle.border > reach())
@@ -73,7 +73,7 @@ public:
   }
 
 private:
-  /// How far from a voxel's middle, in mm, a border still shows in it.
+  /// Largest distance from a voxel's middle, mm, at which a border shows in the voxel.
   double reach() const { return m_softness + m_sliceStep.norm() / 3.0; }
 
   bool mayHold(const Layer& layer, const Vec3& point) const {
@@ -89,13 +89,13 @@ private:
     if (site.surface > m_softness)
       return sample;
     sample.signal = 0.0;
-    double visible = 1.0; // what the layers so far leave of the voxel
+    double visible = 1.0; // share of the voxel not yet covered
     for (const Layer* layer : row) {
       if (!mayHold(*layer, point))
         continue;
       const double distance = layer->distance(site);
       sample.border = std::min(sample.border, std::abs(distance));
-      // A voxel on a border holds some of either side: the partial volume effect.
+      // A voxel on a border holds a share of either side: the partial volume effect.
       const double share = smoothStep(m_softness, -m_softness, distance);
       if (share == 0.0)
         continue;
@@ -111,12 +111,12 @@ private:
   }
 
   const Subject& m_subject;
-  Vec3 m_rowStep, m_sliceStep; ///< from a voxel to the next in its row, from a slice to the next
-  double m_softness;           ///< mm: half the width of a border
+  Vec3 m_rowStep, m_sliceStep; ///< vectors between neighbours in a row, and between slices
+  double m_softness;           ///< mm; half the width of a border
 };
 
-/// The subject's volume, named `name`, and one layer of its labels, on the whole grid. The same on
-/// every run and any number of threads.
+/// The subject's volume, named `name`, and one layer of labels on the whole grid. Independent of
+/// run and number of threads.
 template <typename Subject>
 Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string& name) {
   const Painter painter(subject, grid);

@@ -60,8 +60,8 @@ void set(pugi::xml_node node, const Attributes& attributes) {
     node.append_attribute(name) = value.c_str();
 }
 
-/// Otherwise pugixml leaves out what there is no memory for, and says so in results that nobody
-/// reads at every attribute.
+/// Makes pugixml throw std::bad_alloc. Otherwise it drops attributes for want of memory, and
+/// returns that in results that nobody checks.
 void throwWithoutMemory() {
   const auto allocate = [](std::size_t size) {
     void* const memory = std::malloc(size);
@@ -74,7 +74,8 @@ std::string reference(const char* role, const std::string& ids) {
   return std::string(role) + ":" + ids + ";";
 }
 
-/// What vtkMRMLDisplayNode writes of every display node; `colors` where there is a table of them.
+/// Sets what vtkMRMLDisplayNode writes for every display node; `colors`: id of a colour table;
+/// null: none.
 void setDisplay(pugi::xml_node node, const char* color, const char* visibility,
                 const char* visibility2D, const char* view = "", const char* colors = nullptr) {
   set(node, {{"color", color},
@@ -130,7 +131,8 @@ pugi::xml_node addStorage(pugi::xml_node scene, const char* tag, const char* id,
   return node;
 }
 
-/// A parallel camera's pose that frames the volume's box in a square, with a margin of a twentieth.
+/// Pose of a parallel camera that frames the volume's box in a square, with a margin of a
+/// twentieth.
 struct Framing {
   Vec3 backward, up;
   double scale; ///< half the height, mm
@@ -148,7 +150,7 @@ struct Framing {
   }
 };
 
-/// View and camera belong together by their singleton tag, which is the layout's name for them.
+/// Adds a view and its camera, paired by their singleton tag, which is the layout's name for them.
 /// Slicer makes the camera parallel by the view's render mode, and then takes its scale from the
 /// view's field of view (vtkMRMLViewDisplayableManager::UpdateRenderMode).
 void addView(pugi::xml_node scene, const Framing& framing) {
@@ -247,7 +249,8 @@ void addVolume(pugi::xml_node scene, const Phantom& phantom, const std::string& 
              {"ijkToRASDirections", directionsText}});
 }
 
-/// Both names of the source representation: "Master" until 5.2, "Source" since.
+/// Adds the segmentation, with both names of the source representation: "Master" until 5.2,
+/// "Source" since.
 void addSegmentation(pugi::xml_node scene, const Phantom& phantom, const std::string& name,
                      const std::string& file) {
   std::string properties;
@@ -280,8 +283,8 @@ void addSegmentation(pugi::xml_node scene, const Phantom& phantom, const std::st
              {"segmentListFilterOptions", ""}});
 }
 
-/// The property's functions stand in the scene too, for 5.2 writes them there, and in a .vp, the
-/// one file of a property that all versions read.
+/// Adds the rendering. The property's functions stand in the scene, where 5.2 writes them, and in a
+/// .vp, the one file of a property that all versions read.
 void addRendering(pugi::xml_node scene, const Phantom& phantom, const std::string& name,
                   const std::string& file) {
   pugi::xml_node display =

@@ -1,5 +1,5 @@
 #pragma once
-// A phantom as a Slicer scene: what Slicer 5.2 to 5.12 write of a volume with volume rendering.
+// Phantom as a Slicer scene, as Slicer 5.2 to 5.12 write a volume with volume rendering.
 
 #include "phantoms/Phantom.h"
 
@@ -7,23 +7,23 @@
 
 namespace fenestra {
 
-/// The names of a scene's files, relative to its folder or absolute; not encoded.
+/// Names of a scene's files, relative to its folder or absolute; not encoded.
 struct PhantomFileNames {
   std::string volume, segmentation, property, roi;
 };
 
-/// The text of a .mrml, its nodes named after `name`: Volume, Segmentation, VolumeProperty and
+/// Text of a .mrml, its nodes named after `name`: Volume, Segmentation, VolumeProperty and
 /// MarkupsROI, each with its storage and display; GPU volume rendering of the volume, not cropped;
-/// and view 1 with its camera, parallel, which frames the volume from where
-/// Phantom::towardViewer says. World is RAS; numbers have six digits, as Slicer's.
+/// view 1 with its parallel camera, which frames the volume seen from Phantom::towardViewer. World
+/// is RAS; numbers have six digits, as Slicer's.
 std::string phantomScene(const Phantom& phantom, const std::string& name,
                          const PhantomFileNames& files);
 
-/// The text of the region of interest's .mrk.json: the box that the volume's voxels fill, in LPS.
+/// Text of the region of interest's .mrk.json: the box that the volume's voxels fill, LPS mm.
 std::string phantomRoi(const Phantom& phantom);
 
-/// As Slicer writes file names and segment ids in attributes: all but letters, digits and "-_./"
-/// become %XX.
+/// Encodes a file name or segment id as Slicer does in attributes: all but letters, digits and
+/// "-_./" become %XX.
 std::string urlEncoded(const std::string& text);
 
 } // namespace fenestra

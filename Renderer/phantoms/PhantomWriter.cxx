@@ -29,8 +29,8 @@ struct Extent {
   bool isEmpty() const { return last.x() < first.x(); }
 };
 
-/// First and last voxel of all labels of a layer, in its own voxels. Slicer, which gives a layer
-/// the extent of its first segment and crops the others to that, writes the same to each of them.
+/// First and last voxel of all labels of a layer, in its own voxels. Slicer writes this extent for
+/// each segment of a layer, since it crops the layer to the extent of its first segment.
 Extent layerExtent(const std::vector<std::uint8_t>& labels, const Size3& size) {
   Extent extent;
   std::size_t at = 0;
@@ -42,7 +42,7 @@ Extent layerExtent(const std::vector<std::uint8_t>& labels, const Size3& size) {
   return extent;
 }
 
-/// "0 -1" in each axis where there is none.
+/// Text of an extent; empty: "0 -1" in each axis.
 std::string extentText(const Extent& extent) {
   TextWriter text;
   for (int axis = 0; axis < 3; ++axis)
@@ -123,7 +123,7 @@ struct PhantomFile {
   std::string name, content;
 };
 
-/// A scene for the archive, whose data have a folder of their own, and around it all that it names.
+/// Archive of a scene and of the files that it names, which have a folder of their own.
 std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& path,
                           const std::string& name, const PhantomFileNames& files,
                           const std::vector<PhantomFile>& written) {
@@ -139,7 +139,7 @@ std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& p
   return sealed(encodeZip(entries, std::string(unsealedMark), path));
 }
 
-/// The first bytes of a file, as many as `text` has, are `text`.
+/// True if the file begins with `text`.
 bool beginsWith(const std::filesystem::path& path, const std::string& text) {
   std::string bytes(text.size(), '\0');
   return std::ifstream(path, std::ios::binary)
@@ -152,7 +152,7 @@ bool holds(const std::filesystem::path& path, const std::string& content) {
   return std::filesystem::file_size(path, failed) == content.size() && beginsWith(path, content);
 }
 
-/// As it was before there were marks.
+/// Text as written before there were marks.
 std::string withoutMark(std::string text) {
   const std::size_t at = text.find("Written by Fenestra");
   const std::size_t line = text.rfind('\n', at) + 1;

@@ -4,7 +4,7 @@ namespace fenestra {
 
 namespace {
 
-/// Catmull-Rom's curve between b (t = 0) and c (t = 1).
+/// Point of a Catmull-Rom curve between b (t = 0) and c (t = 1).
 template <typename T>
 T catmullRom(const T& a, const T& b, const T& c, const T& d, double t) {
   const T linear = 0.5 * (c - a);
@@ -13,7 +13,7 @@ T catmullRom(const T& a, const T& b, const T& c, const T& d, double t) {
   return b + t * (linear + t * (square + t * cube));
 }
 
-constexpr int tubePieces = 6; ///< between two nodes: the corners of the refined axis do not show
+constexpr int tubePieces = 6; ///< per pair of nodes: enough to hide the corners
 
 std::vector<TubeNode> refined(const std::vector<TubeNode>& nodes) {
   std::vector<TubeNode> result;
@@ -115,7 +115,7 @@ Solid placed(const Affine& toShape, const Loft& loft) {
           mapped(toShape.inverse(), loft.box())};
 }
 
-/// A blend reaches out by a quarter of its width.
+/// The box grows by blend / 4, the reach of a blend.
 Solid unite(const Solid& a, const Solid& b, double blend) {
   return {[=](const Vec3& p) { return smoothUnion(a.distance(p), b.distance(p), blend); },
           expanded(united(a.box, b.box), 0.25 * blend)};
@@ -133,7 +133,7 @@ Loft::Loft(std::vector<LoftSection> sections, double squareness, double capBlend
     lower = lower.cwiseMin(section.center - section.radii);
     upper = upper.cwiseMax(section.center + section.radii);
   }
-  const double overshoot = 2.0; // of a Catmull-Rom curve over its nodes, mm
+  const double overshoot = 2.0; // mm; of a Catmull-Rom curve over its nodes
   m_box = expanded(
       {{lower.x(), lower.y(), m_sections.front().z}, {upper.x(), upper.y(), m_sections.back().z}},
       overshoot);

@@ -20,7 +20,7 @@ HoleShape holeShape(const std::string& word) {
   return word == "sphere" ? HoleShape::sphere : HoleShape::cylinder;
 }
 
-/// Flags that only some modes use.
+/// Flags used by some modes only.
 struct ModeFlags {
   std::vector<const char*> names;
   std::vector<ClipMode> modes;

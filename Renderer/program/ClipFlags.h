@@ -1,12 +1,12 @@
 #pragma once
-// The flags that say what is removed from view, and how the focus differs from the rest.
+// Flags of clipping, and of how focus and context differ.
 
 #include "program/Flags.h"
 #include "session/RenderRequest.h"
 
 namespace fenestra {
 
-/// Both throw Error (usage) for flags that contradict each other or do nothing.
+/// Both throw Error (usage) for flags that contradict each other or have no effect.
 ClipRequest clipRequest(const FlagValues& flags);
 FocusRequest focusRequest(const FlagValues& flags);
 

@@ -40,7 +40,7 @@ bool isSwitch(const Flag& flag) {
   return *flag.value == 0;
 }
 
-/// A value that is missing, or that is the next flag; or one that a switch has.
+/// Error for a value that is missing or is the next flag, and for a switch with a value.
 Error wrongValue(const Flag& flag) {
   if (isSwitch(flag))
     return usageError(std::string("--") + flag.name + ": is a switch; write it without a value");
@@ -48,7 +48,7 @@ Error wrongValue(const Flag& flag) {
                     " " + flag.value);
 }
 
-/// Words on their way into values, by a command's syntax.
+/// Parses words into values, by a command's syntax.
 class Parser {
 public:
   explicit Parser(const CommandSyntax& syntax) : m_syntax(syntax), m_values(syntax.flags) {}
@@ -95,7 +95,7 @@ private:
     m_values.add(flag->name, std::string(value));
   }
 
-  /// A word by itself.
+  /// Value that is a word of its own, after the flag.
   static std::string_view checkedValue(const Flag& flag, std::string_view word) {
     if (word.starts_with("--"))
       throw wrongValue(flag);
@@ -116,8 +116,8 @@ private:
 
   const CommandSyntax& m_syntax;
   FlagValues m_values;
-  std::span<const std::string_view> m_words; ///< that are left
-  std::size_t m_positionals = 0;             ///< that were given
+  std::span<const std::string_view> m_words; ///< not parsed yet
+  std::size_t m_positionals = 0;             ///< parsed so far
 };
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swapped neighbours.
@@ -140,7 +140,7 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 } // namespace
 
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
-  constexpr std::size_t longest = 32; // no name is longer, and a path may be
+  constexpr std::size_t longest = 32; // no name is longer, but a path may be
   std::string_view best;
   std::size_t least = std::min<std::size_t>(3, word.size() / 3 + 1); // more is no misspelling
   if (word.empty() || word.size() > longest)

@@ -1,6 +1,6 @@
 #pragma once
-// The subcommands. Each takes the arguments after its own name and returns the exit status; errors
-// are thrown (base/Error.h) and reported by main.
+// Subcommands. Each takes the arguments after its own name and returns the exit status; errors are
+// thrown (base/Error.h) and reported by main.
 
 namespace fenestra {
 

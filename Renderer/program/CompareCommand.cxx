@@ -34,7 +34,7 @@ Image readWithError(const FlagValues& values, const char* name, const char* erro
   return image;
 }
 
-/// Fails before the reading, not after it.
+/// Throws Error before the pictures are read, not after.
 void declareOutput(const FlagValues& values, Outputs& outputs) {
   for (const char* name : {"A", "B", "errora", "errorb"})
     if (const auto input = values.text(name))
@@ -43,7 +43,7 @@ void declareOutput(const FlagValues& values, Outputs& outputs) {
     declareImage(*output, outputs);
 }
 
-/// The comparison knows pictures, a user knows files.
+/// Adds the file names to an error: compareImages knows pictures only.
 Comparison compared(const FlagValues& values, const Image& a, const Image& b) {
   try {
     return compareImages(a, b);

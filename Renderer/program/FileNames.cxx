@@ -11,8 +11,8 @@ bool takesFile(const Flag& flag) {
   return std::string_view(flag.value).find("FILE") != std::string_view::npos;
 }
 
-/// None for what is no name of a file (a look as text) and for what may not be looked at. Throws
-/// Error (input) where that cannot be told.
+/// Type of the file; none if `path` names no file (a look as text) or may not be examined. Throws
+/// Error (input) if the file system fails.
 fs::file_type typeOf(const fs::path& path) {
   std::error_code failed;
   const fs::file_type type = fs::status(path, failed).type();
@@ -30,11 +30,11 @@ fs::path realPath(const fs::path& path) {
   return real;
 }
 
-/// A result is named before it is there.
+/// Relative name of a result, which does not exist yet.
 std::string writtenName(const std::string& name, const fs::path& folder) {
   std::error_code failed;
   const fs::path path = fs::absolute(name, failed);
-  if (failed) // where it is cannot be told, so that it cannot be written either
+  if (failed) // without a working folder the result cannot be written either
     return name;
   return (fs::path(relativeName(path.parent_path().string(), folder)) / path.filename())
       .lexically_normal()
@@ -46,14 +46,14 @@ std::string writtenName(const std::string& name, const fs::path& folder) {
 std::string relativeName(const std::string& name, const fs::path& folder) {
   std::error_code failed;
   fs::path there = fs::absolute(name, failed), inside;
-  if (failed) // the working folder is gone: there is nothing of this name
+  if (failed) // the working folder is gone: no file has this name
     return name;
   while (typeOf(there) == fs::file_type::not_found && there.has_relative_path()) {
-    inside = inside.empty() ? there.filename() : there.filename() / inside; // of an archive
+    inside = inside.empty() ? there.filename() : there.filename() / inside; // in an archive
     there = there.parent_path();
   }
   const fs::path from = folder.empty() ? "." : folder;
-  if (typeOf(from) == fs::file_type::not_found) // writing there tells of it
+  if (typeOf(from) == fs::file_type::not_found) // the later write reports the missing folder
     return name;
   const fs::file_type type = typeOf(there);
   if (type == fs::file_type::none || (!inside.empty() && type != fs::file_type::regular))
@@ -65,7 +65,7 @@ std::string relativeName(const std::string& name, const fs::path& folder) {
 std::vector<std::string> relativeArguments(const std::vector<std::string>& words,
                                            std::span<const Flag> flags, const fs::path& folder) {
   std::vector<std::string> result;
-  const Flag* pending = nullptr; // whose value is the next word
+  const Flag* pending = nullptr; // flag whose value is the next word
   for (const std::string& word : words) {
     const bool isFlag = !pending && word.starts_with("--");
     const std::size_t equals = isFlag ? word.find('=') : std::string::npos;

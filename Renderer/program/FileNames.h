@@ -1,6 +1,6 @@
 #pragma once
-// Names of files as results keep them: relative to the folder of the result, so that pictures which
-// are passed on do not tell where, and under whose name, a patient's files lie.
+// File names as results store them: relative to the folder of the result, so that pictures passed
+// on do not reveal where, and under whose name, a patient's files lie.
 
 #include "program/Flags.h"
 
@@ -10,12 +10,12 @@
 
 namespace fenestra {
 
-/// `name` as seen from `folder`; members of an archive behind the archive's name. Names of nothing
-/// stay as they are.
+/// `name` relative to `folder`; for a member of an archive, the archive's name, then the member's.
+/// A name without a file is returned unchanged.
 std::string relativeName(const std::string& name, const std::filesystem::path& folder);
 
-/// Words of a command line in which files are named as seen from `folder`: positional ones, and
-/// values of flags that take a file.
+/// Words of a command line with file names made relative to `folder`: positionals, and values of
+/// flags that take a file.
 std::vector<std::string> relativeArguments(const std::vector<std::string>& words,
                                            std::span<const Flag> flags,
                                            const std::filesystem::path& folder);

@@ -168,7 +168,7 @@ std::vector<std::string> FlagValues::arguments() const {
   std::vector<std::string> arguments;
   for (const auto& [name, values] : m_values)
     for (const std::string& value : values)
-      if (!findFlag(m_flags, name)) // a positional one
+      if (!findFlag(m_flags, name)) // a positional argument
         arguments.push_back(value);
       else
         arguments.push_back("--" + name + (value.empty() ? "" : "=" + value));

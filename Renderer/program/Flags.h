@@ -1,5 +1,5 @@
 #pragma once
-// Flags as data: one table describes them, and --help, parsing and Slicer's description read it.
+// Flags as data: one table, read by --help, by parsing and by Slicer's description.
 
 #include "base/Vector.h"
 
@@ -12,23 +12,23 @@
 
 namespace fenestra {
 
-/// What a flag's value may be. Parsing refuses the rest, and Slicer's panel offers no more.
+/// Values that a flag accepts. Parsing refuses all others, and Slicer's panel offers no others.
 struct Takes {
   enum class Kind {
-    text,    ///< anything; what it means is decided elsewhere
+    text,    ///< any text; checked by the code that uses the flag
     list,    ///< texts separated by commas
-    numbers, ///< separated by commas
+    numbers, ///< numbers separated by commas
     number,
     whole,
-    word,      ///< one of few
-    labels,    ///< a segmentation, which is read
-    picture,   ///< a picture, which is written
-    surface,   ///< a mesh, which is written
-    report,    ///< a text file, which is written
-    slicersOwn ///< a flag that every program of Slicer's has and none describes
+    word,      ///< one of `words`
+    labels,    ///< segmentation file, read
+    picture,   ///< picture file, written
+    surface,   ///< mesh file, written
+    report,    ///< text file, written
+    slicersOwn ///< flag of all of Slicer's programs, described by none
   };
   Kind kind = Kind::text;
-  double least = -infinity, greatest = infinity; ///< of numbers
+  double least = -infinity, greatest = infinity; ///< range of each number
   const char* words = "";                        ///< separated by bars
 
   static constexpr Takes list() { return {Kind::list}; }
@@ -51,12 +51,12 @@ struct Takes {
 
 struct Flag {
   const char* name;  ///< one lower-case word, without dashes
-  const char* value; ///< what the value looks like; empty for a switch
+  const char* value; ///< placeholder in the help, such as FILE; empty: a switch
   const char* group; ///< heading in the help
   const char* text;  ///< one sentence of help
   Takes takes = {};
-  /// What Slicer's panel starts with: what leaving the flag out means, too, but for layers, since
-  /// Slicer takes one file. Empty where no value means that.
+  /// Default value, shown in Slicer's panel. Empty: no default. (Exception: `layers`; the panel
+  /// starts with "color", since Slicer takes one file.)
   const char* standard = "";
 };
 
@@ -65,7 +65,7 @@ struct Positional {
   const char* text; ///< one sentence of help
 };
 
-/// What a command takes: positional arguments first, by name, then flags.
+/// Syntax of a command: positional arguments first, by name, then flags.
 struct CommandSyntax {
   const char* name;
   const char* summary;
@@ -73,18 +73,18 @@ struct CommandSyntax {
   std::span<const Flag> flags;
 };
 
-/// Flag values as the user gave them; accessors convert by the table's rule, and throw Error
+/// Flag values as the user gave them. Accessors convert by the flag's `takes`, and throw Error
 /// (usage) that names the flag.
 class FlagValues {
 public:
   explicit FlagValues(std::span<const Flag> flags) : m_flags(flags) {}
 
   bool has(const std::string& name) const { return m_values.contains(name); }
-  /// Given, and not its standard value.
+  /// True if the flag was given with another value than its default.
   bool differs(const std::string& name) const;
   std::optional<std::string> text(const std::string& name) const;
   std::vector<std::string> texts(const std::string& name) const;
-  /// A finite number in the flag's range.
+  /// Finite number in the flag's range.
   std::optional<double> number(const std::string& name) const;
   std::optional<std::uint64_t> count(const std::string& name) const;
   std::optional<Vec3> triple(const std::string& name) const;
@@ -95,9 +95,9 @@ public:
   /// All values of a repeatable flag, split at commas; "\," is a comma.
   std::vector<std::string> list(const std::string& name) const;
 
-  /// All that was given, "name: value" a line.
+  /// All given values, "name: value" a line.
   std::string echo() const;
-  /// All that was given, as arguments that give it again.
+  /// All given values as arguments of a command line.
   std::vector<std::string> arguments() const;
 
   void add(const std::string& name, const std::string& value) { m_values[name].push_back(value); }
@@ -110,16 +110,16 @@ private:
   std::map<std::string, std::vector<std::string>> m_values;
 };
 
-/// The flag of that name; null where there is none.
+/// Flag with that name; null: none.
 const Flag* findFlag(std::span<const Flag> flags, std::string_view name);
 
-/// True if its value names a file that is written: a picture, a surface or a report.
+/// True if the value names a file to be written: picture, surface or report.
 bool isWritten(const Flag& flag);
 
-/// Six digits at most.
+/// Decimal text with at most six digits.
 std::string shortNumber(double x);
 
-/// The parts of a text between separators; at least one.
+/// Parts of `text` between separators; at least one.
 std::vector<std::string> splitAt(std::string_view text, char separator);
 
 } // namespace fenestra

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t page = 80, column = 30;
 
-/// A name and its explanation, which stands in a column of its own.
+/// Line of a name and its explanation, in two columns.
 std::string entry(std::string_view name, std::string_view text) {
   const std::string margin(column, ' ');
   std::string lines(margin, 0, 2);

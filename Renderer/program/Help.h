@@ -1,5 +1,5 @@
 #pragma once
-// What --help prints of a command.
+// Text of --help for a command.
 
 #include "program/Flags.h"
 
@@ -11,8 +11,7 @@ namespace fenestra {
 /// Summary, positional arguments and flags by group, in lines of 80 characters.
 std::string helpText(const CommandSyntax& syntax);
 
-/// The words of a text in lines of at most `width` characters; longer words have lines of their
-/// own.
+/// Words of `text` in lines of at most `width` characters; a longer word has its own line.
 std::string wrapped(std::string_view text, std::size_t width);
 
 } // namespace fenestra

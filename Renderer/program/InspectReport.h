@@ -1,5 +1,5 @@
 #pragma once
-// What `fenestra inspect` prints.
+// Output of `fenestra inspect`.
 
 #include "session/Inspection.h"
 
@@ -7,11 +7,11 @@
 
 namespace fenestra {
 
-/// Lines of at most 100 characters; long lists are cut, and say so.
+/// Lines of at most 100 characters; a list that is cut says how much is missing.
 std::string inspectionText(const Inspection& inspection, const std::string& input);
 
-/// One JSON document, everything in it; lengths in mm (volumes of segments in ml), places in RAS,
-/// colours display-encoded in [0, 1]; null is what there is not. Its keys stay:
+/// One JSON document with the whole inspection. Lengths in mm, volumes of segments in ml, places in
+/// RAS, colours display-encoded in [0, 1]; null: absent. The keys are stable:
 ///
 ///     input, kind ("scene" | "volume" | "segmentation" | "dicom"), version
 ///     volumes [NODE]

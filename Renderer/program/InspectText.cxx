@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t width = 100; ///< of a line
+constexpr std::size_t width = 100; ///< characters in a line
 constexpr std::size_t longestName = 36, longestId = 48, longestFile = 90;
 constexpr std::size_t mostNodes = 20, mostSegments = 100; ///< listed one by one
 
@@ -23,7 +23,7 @@ std::size_t characters(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), startsCharacter));
 }
 
-/// At most `most` characters, the last ones "..." where some are left out.
+/// `text`, or its first characters and "...": at most `most` characters.
 std::string clipped(std::string text, std::size_t most) {
   text = oneLine(std::move(text));
   if (characters(text) <= most)
@@ -62,7 +62,7 @@ std::string grid(const Size3& size, const Vec3& spacing) {
   return joined(size, " x ") + " voxels of " + joined(spacing, " x ") + " mm";
 }
 
-/// Whole, where it is a file's.
+/// Shown name: a file's in full, a node's clipped.
 std::string nameOf(const std::string& name, const std::string& id) {
   return clipped(name, id.empty() ? longestFile : longestName);
 }
@@ -89,7 +89,7 @@ std::string pose(const CameraPose& pose) {
 
 using Row = std::vector<std::string>;
 
-/// Blanks behind the text (or before it) up to `columns` characters.
+/// `text` and blanks, `columns` characters wide; `right`: blanks first.
 std::string padded(const std::string& text, std::size_t columns, bool right) {
   const std::string blanks(columns - std::min(columns, characters(text)), ' ');
   return right ? blanks + text : text + blanks;
@@ -101,7 +101,7 @@ public:
 
   void heading(const std::string& text) { m_text += "\n" + text + "\n"; }
 
-  /// Wrapped; the first line starts with `label`, the others as far in.
+  /// Adds wrapped text; the first line starts with `label`, the others are indented by its width.
   void paragraph(const std::string& label, const std::string& text) {
     const std::string lines = wrapped(oneLine(text), width - characters(label));
     const std::string margin(characters(label), ' ');
@@ -113,7 +113,8 @@ public:
     m_text += '\n';
   }
 
-  /// Columns as wide as their widest cell; those named in `right` end flush.
+  /// Adds rows; each column is as wide as its widest cell. Column i is aligned right if right[i] is
+  /// '>'.
   void table(const std::string& indent, const std::vector<Row>& rows, const std::string& right) {
     std::vector<std::size_t> columns;
     for (const Row& row : rows)
@@ -136,7 +137,7 @@ private:
   std::string m_text;
 };
 
-/// A node in a list: what stands behind its name and id, and in lines below.
+/// Node in a list, the remark behind its name and id, and the rows below.
 struct Entry {
   const NodeSummary* node;
   std::string remark = {};
@@ -161,8 +162,8 @@ void addRemark(std::string& remark, const std::string& more) {
     remark += (remark.empty() ? "" : ", ") + more;
 }
 
-/// "* name  id  remark": the remark has a line of its own where it is too long. An asterisk marks
-/// what a render uses.
+/// Adds lines "* name  id  remark"; a remark that is too long has a line of its own. An asterisk
+/// marks nodes that a render uses.
 void listNodes(Page& page, const std::string& heading, const std::vector<Entry>& entries) {
   if (entries.empty())
     return;

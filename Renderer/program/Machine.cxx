@@ -21,14 +21,14 @@ int threadCount(const FlagValues& flags) {
   return wanted > 0 ? std::min(wanted, cores) : cores;
 }
 
-/// As many threads at once, for a moment: TBB's start each other, and end the process where one
-/// cannot start.
+/// Starts `count` threads at once, to find out whether they can run: TBB's threads start each
+/// other, and end the process where one cannot start.
 void tryThreads(int count) {
   std::promise<void> started;
   const std::shared_future<void> all = started.get_future().share();
   std::vector<std::future<void>> threads;
   threads.reserve(
-      static_cast<std::size_t>(std::max(count, 0))); // one without a place is waited for
+      static_cast<std::size_t>(std::max(count, 0))); // a future without a place would block
   try {
     for (int i = 0; i < count; ++i)
       threads.push_back(std::async(std::launch::async, [all] { all.wait(); }));
@@ -43,14 +43,14 @@ void tryThreads(int count) {
 
 void useMachine(const FlagValues& flags) {
   const int count = threadCount(flags);
-  // As long as the process lives: where this ends, TBB starts threads that were not wanted.
+  // Never destroyed: after its destruction TBB would start more than `count` threads.
   [[maybe_unused]] static const auto* const limit = new tbb::global_control(
       tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
   try {
     tryThreads(count - 1);
     tbb::parallel_for(
         0, count, [](int) {}, tbb::simple_partitioner());
-  } catch (const std::runtime_error&) { // std::system_error, and TBB's own
+  } catch (const std::runtime_error&) { // std::system_error, and TBB's own errors
     throw outputError("threads", std::to_string(count) +
                                      " cannot be started; allow more processes (ulimit -u), or "
                                      "render with --threads 1");

@@ -1,14 +1,14 @@
 #pragma once
-// What renders may use of this machine.
+// Use of this machine's cores and instruction sets.
 
 #include "program/Flags.h"
 
 namespace fenestra {
 
-/// Holds all work of this process to the threads that --threads asks for, at most one a core, and
-/// starts them, before anything else uses some; and pins the instruction set that the environment
-/// variable FENESTRA_INSTRUCTIONS names. Throws Error (usage) where this machine does not have it,
-/// (output) where it has no room for the threads.
+/// Limits this process to --threads threads, at most one a core, and starts them before other code
+/// uses threads; pins the instruction set that the environment variable FENESTRA_INSTRUCTIONS
+/// names. Throws Error: usage if the machine lacks that instruction set, output if the threads
+/// cannot be started.
 void useMachine(const FlagValues& flags);
 
 } // namespace fenestra

@@ -25,7 +25,7 @@ constexpr Flag phantomFlags[] = {
      phantomGroup,
      "Voxels over the same field of view; N for the cube [knee 300x344x120, foot 300x120x150, "
      "fetus 160x160x160, cube 512]",
-     {Takes::Kind::text, 16, 1024}}, // of the cube
+     {Takes::Kind::text, 16, 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "The cube's edge [1]", Takes::number(1e-3, 1e5)},
 };
 
@@ -36,7 +36,7 @@ const CommandSyntax phantomSyntax = {
     phantomFlags,
 };
 
-/// WxHxD in voxels.
+/// Size WxHxD in voxels.
 std::optional<Size3> sizeOf(const FlagValues& values) {
   const auto size = values.text("size");
   if (!size)

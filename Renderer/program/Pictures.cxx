@@ -14,7 +14,7 @@
 namespace fenestra {
 namespace {
 
-/// As a shell takes it back.
+/// Quotes an argument for a shell.
 std::string quoted(const std::string& argument) {
   const char* const plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
@@ -74,7 +74,7 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
       outputs.add(*file);
 }
 
-/// Linux grants memory that it does not have, and ends the process when it is used.
+/// Compared with physical memory: Linux grants more, and ends the process when it is used.
 void checkMemory(const SceneRequest& scene) {
   constexpr double bytesPerPixel = 2.0 * sizeof(PixelSums); // the film, and its channels as written
   constexpr double gigabyte = 1e9;
@@ -103,7 +103,7 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
                    const std::string& command, Outputs& outputs) {
   Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
   image.header = header(scene, options, result, command);
-  // All at once where threads are left: what packs one does not keep another waiting.
+  // All files at once if threads are free: compressing one does not delay another.
   std::vector<std::future<void>> files;
   for (const std::filesystem::path& path : options.outputs)
     files.push_back(std::async([&image, &scene, &path, &outputs] {

@@ -11,14 +11,14 @@
 namespace fenestra {
 namespace {
 
-/// Of these, one that is given replaces what the preset says by another.
+/// Groups of flags: a given flag replaces all that the preset says of its group.
 const std::vector<std::vector<std::string>> alternatives = {
     {"view", "position"},
     {"projection", "scale", "angle"},
     {"boundary", "controlpoints", "smoothing"},
 };
 
-/// Slicer hands over every flag that its panel has, so that there the standard says nothing.
+/// False for a default that Slicer hands over: its panel passes every flag.
 bool isGiven(const FlagValues& given, const std::string& name) {
   return given.has("returnparameterfile") ? given.differs(name) : given.has(name);
 }
@@ -28,7 +28,7 @@ bool isOfClipping(const std::string& name) {
          std::string_view(findFlag(renderSyntax.flags, "clip")->group);
 }
 
-/// What a mode of clipping has of its own; the focus has the others in any mode.
+/// True for flags of one clipping mode; the other clipping flags belong to the focus in any mode.
 bool isOfAMode(const std::string& name) {
   constexpr std::string_view ofTheFocus[] = {"margin", "labelsmoothing", "contextdensity",
                                              "contextsaturation"};
@@ -45,7 +45,7 @@ bool decides(const FlagValues& given, const std::string& name) {
   return has(name);
 }
 
-/// A preset may be a user's file.
+/// Throws Error (input) for flags that a preset may not set: a preset may be a user's file.
 void checkFlags(const OrganPreset& preset, const std::string& source) {
   for (const auto& [name, value] : preset.flags) {
     const Flag* flag = findFlag(renderSyntax.flags, name);
@@ -63,7 +63,7 @@ SceneRequest filesOf(const FlagValues& given) {
   return request;
 }
 
-/// Those of the segments that the given focus names; all where it names none.
+/// Segments named by the given focus; all if it names none.
 std::vector<SegmentInfo> inFocus(const FlagValues& given,
                                  const std::vector<SegmentInfo>& segments) {
   const std::vector<std::string> focus = given.list("focus");
@@ -93,7 +93,7 @@ OrganPreset presetFor(const FlagValues& given, const std::optional<SegmentNames>
       [&given](Modality modality) { return suits(modality, loadVolume(filesOf(given)).volume); });
 }
 
-/// Commas in an id as --focus takes them.
+/// Escapes commas in an id, as --focus expects.
 std::string escaped(const std::string& id) {
   std::string text;
   for (const char c : id)

@@ -31,7 +31,7 @@ std::string bar(double fraction, std::size_t width) {
   return std::string("[") + std::string(full, '#') + std::string(width - full, '.') + "] ";
 }
 
-/// Of the terminal, which may change while we run.
+/// Width of the terminal in characters, queried each time: a user may change it.
 std::size_t columns() {
   winsize size = {};
   const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -58,7 +58,7 @@ Progress::Progress(ProgressMode mode, const RenderSettings& settings, std::uint6
     return;
   try {
     m_thread = std::thread([this] { run(); });
-  } catch (const std::system_error&) { // no thread is left, and the picture counts for more
+  } catch (const std::system_error&) { // no thread is left; the picture matters more
   }
 }
 
@@ -96,7 +96,7 @@ double Progress::frameFraction() const {
   double most = paths / (static_cast<double>(m_settings.samples) * m_pixels);
   most = std::max(most, m_frameWatch.seconds() / m_settings.seconds);
   const double noise = m_monitor.noise;
-  if (m_settings.noise > 0.0 && noise > 0.0) // variance falls as one over the samples
+  if (m_settings.noise > 0.0 && noise > 0.0) // variance is proportional to 1 / samples
     most = std::max(most, std::pow(m_settings.noise / noise, 2.0));
   return std::clamp(most, 0.0, 1.0);
 }
@@ -107,7 +107,7 @@ void Progress::show(bool last) {
   if (m_mode == ProgressMode::xml)
     return showTags(m_fraction, last);
   if (last)
-    std::fputs("\r\033[K", stderr); // what is said at the end stands alone
+    std::fputs("\r\033[K", stderr); // leaves an empty line for the final report
   else
     showBar(m_fraction);
   std::fflush(stderr);
@@ -148,7 +148,7 @@ void Progress::showBar(double done) const {
   for (const std::string& field : reached())
     fields.push_back(field);
 
-  // A line that wraps cannot be taken back: what does not fit is left out, the bar first.
+  // A wrapped line cannot be erased: fields that do not fit are left out, the bar first.
   constexpr std::size_t longest = 24;
   constexpr std::size_t frame = 3;
   const std::size_t width = columns() - 1;

@@ -1,5 +1,5 @@
 #pragma once
-// Tells a person or Slicer how far a render is, from a thread of its own.
+// Progress of a render, reported to a person or to Slicer from a separate thread.
 
 #include "base/Stopwatch.h"
 #include "program/RenderFlags.h"
@@ -12,15 +12,14 @@
 
 namespace fenestra {
 
-/// Pictures that are rendered one after the other.
+/// Count of the pictures that a command renders one after the other.
 struct FrameCount {
-  int finished = 0; ///< before these
+  int finished = 0; ///< by earlier runs
   int all = 1;
 };
 
-/// Shows progress from construction to destruction: a bar on standard error, which goes away at the
-/// end, or Slicer's tags on standard output. `automatic` is a bar where standard error is a
-/// terminal.
+/// Shows progress from construction to destruction: a bar on standard error, erased at the end, or
+/// Slicer's tags on standard output. `automatic`: a bar if standard error is a terminal.
 class Progress {
 public:
   Progress(ProgressMode mode, const RenderSettings& settings, std::uint64_t pixels,
@@ -29,7 +28,7 @@ public:
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// A picture is finished; the monitor tells of the next one by now.
+  /// Counts a picture as finished. Call after resetting the monitor for the next picture.
   void nextFrame();
 
 private:
@@ -37,11 +36,12 @@ private:
   void show(bool last);
   void showTags(double done, bool last) const;
   void showBar(double done) const;
-  /// Frames, samples and noise, in words.
+  /// Texts of frame, samples a pixel and noise.
   std::vector<std::string> reached() const;
-  /// Of all that is to be done, in [0, 1].
+  /// Finished share of all the work, in [0, 1].
   double fraction() const;
-  /// Of a picture: the nearest to its end of samples, seconds and noise, in [0, 1].
+  /// Finished share of the current picture, in [0, 1]: the largest of those by samples, seconds and
+  /// noise.
   double frameFraction() const;
 
   ProgressMode m_mode;
@@ -49,12 +49,12 @@ private:
   double m_pixels;
   const RenderMonitor& m_monitor;
   FrameCount m_frames;
-  int m_frame = 0; ///< finished since
+  int m_frame = 0; ///< frames finished since construction
   Stopwatch m_watch, m_frameWatch;
   std::mutex m_mutex;
   std::condition_variable m_wake;
   bool m_done = false;
-  double m_fraction = 0.0; ///< shown last: noise can grow between passes, progress does not
+  double m_fraction = 0.0; ///< last shown; never decreases, although noise can grow between passes
   std::thread m_thread;
 };
 

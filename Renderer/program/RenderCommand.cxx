@@ -58,7 +58,7 @@ void warn(const RenderOptions& options, const std::vector<std::string>& warnings
         << "fenestra: warning: " << oneLine(warning) << '\n';
 }
 
-/// What the scene has to tell, beside seconds.
+/// Enters the scene's own results and times.
 void describe(const Scene& scene, RenderStats& stats) {
   stats.stages = scene.seconds();
   stats.mismatch = scene.mismatch();
@@ -74,13 +74,13 @@ void describe(const Scene& scene, RenderStats& stats) {
     stats.focusVoxels = scene.focus()->grid.voxelCount();
 }
 
-/// From the scene to its pictures in their place, and then what was measured of them. Returns the
-/// exit status.
+/// Renders the scene, puts its pictures in place, then measures them for the statistics. Returns
+/// the exit status.
 int renderScene(const RenderOptions& options, const std::string& command, Outputs& outputs) {
   const Stopwatch total;
   RenderStats stats;
   const Scene scene(options.scene);
-  outputs.checkInputs(); // with all that the scene turned out to be made of
+  outputs.checkInputs(); // now also files that the scene refers to
   warn(options, scene.warnings());
 
   RenderMonitor monitor;
@@ -104,7 +104,7 @@ int renderScene(const RenderOptions& options, const std::string& command, Output
 
   if (options.stats) {
     const Stopwatch measure;
-    if (!monitor.stop) // which does not wait for measures
+    if (!monitor.stop) // a stop does not wait for measures
       stats.focus = measureFocus(scene, options.settings.seed, monitor.stop);
     stats.measure = measure.seconds();
     describe(scene, stats);

@@ -21,7 +21,7 @@ constexpr const char* qualityGroup = "Quality";
 constexpr const char* outputGroup = "More";
 constexpr const char* slicerGroup = "3D Slicer's own";
 
-constexpr double unlimited = 0x1p40; // samples, scatterings
+constexpr double unlimited = 0x1p40; // limit of samples and of scatterings
 
 constexpr Flag renderFlags[] = {
     {"segmentation", "FILE|NAME", sceneGroup,
@@ -168,7 +168,7 @@ ViewRequest viewRequest(const FlagValues& flags, bool sceneCamera) {
   view.up = flags.triple("up");
   view.scale = flags.number("scale");
   view.angle = flags.number("angle");
-  // Where a scene's camera may apply, its projection is known only later.
+  // A scene's camera may apply, whose projection is not known yet.
   if (sceneCamera && !view.projection && view.followsScene())
     return view;
   const bool perspective = view.projection == Projection::perspective;
@@ -202,9 +202,9 @@ bool isNrrd(const std::filesystem::path& path) {
   return imageFormat(path) == ImageFormat::nrrd;
 }
 
-/// Linear R,G,B; `otherwise` says what else the flag takes.
+/// Linear R,G,B; `otherwise`: the flag's other values, for the message.
 Rgb color(const FlagValues& flags, const std::string& name, const std::string& otherwise) {
-  constexpr double brightest = 1e12; // what is made of it fits a float
+  constexpr double brightest = 1e12; // keeps products within a float's range
   const std::string text = *flags.text(name);
   const bool numbers = text.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
   Rgb value = numbers ? Rgb(flags.triple(name)->array()) : Rgb::Constant(-1.0);
@@ -258,11 +258,11 @@ ProgressMode progressMode(const FlagValues& flags) {
   return word == "none" ? ProgressMode::none : ProgressMode::automatic;
 }
 
-/// INPUT.png in the current folder, without the input's own endings. Throws Error (usage) where
-/// nothing is left of its name.
+/// INPUT.png in the current folder, without the input's own endings. Throws Error (usage) if no
+/// name is left.
 std::filesystem::path defaultOutput(const std::filesystem::path& input) {
   std::filesystem::path named = input.lexically_normal();
-  if (!named.has_filename()) // a folder's name with a slash behind it
+  if (!named.has_filename()) // folder name with a slash at its end
     named = named.parent_path();
   if (std::error_code failed; named.filename() == "." || named.filename() == "..")
     named = std::filesystem::canonical(named, failed);
@@ -284,7 +284,7 @@ std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
   return files;
 }
 
-/// Of a clip that is a depth buffer.
+/// File of the clipping surface. Throws Error (usage) unless the clip is by depth.
 std::optional<std::filesystem::path> surfaceFile(const FlagValues& flags,
                                                  const SceneRequest& scene) {
   const auto file = flags.text("surface");

@@ -13,7 +13,7 @@
 namespace fenestra {
 namespace {
 
-/// Flags that decide one thing together; any other flag decides by itself.
+/// Groups of flags: a given flag decides its whole group; a flag in no group decides itself alone.
 const std::vector<std::vector<std::string>> kinds = {
     {"view", "position", "target", "up", "projection", "scale", "angle"},
     {"clip", "boundary", "controlpoints", "smoothing", "plane", "hole", "holemargin", "ghost",
@@ -31,7 +31,7 @@ bool isDecided(const std::string& name, const FlagValues& given) {
   return has(name);
 }
 
-/// Whether a render would open a file that the value names.
+/// True if a render would open a file that the value names.
 bool isFile(const std::string& name, const std::string& value, const std::filesystem::path& input) {
   if (name == "environment")
     return imageFormat(value) == ImageFormat::exr;
@@ -42,9 +42,10 @@ bool isFile(const std::string& name, const std::string& value, const std::filesy
   return name == "transfer" && isFileOfTransfer(value, input);
 }
 
-/// Numbers that are none are refused later, as if they had been given.
+/// True beyond the limits of a scene's flags. A text that is no number is refused later, like one
+/// that a user gave.
 bool isTooMuch(const std::string& name, const std::string& value) {
-  constexpr int mostPixels = 4096; // in each direction
+  constexpr int mostPixels = 4096; // limit of width and of height
   constexpr std::uint64_t mostSamples = 65536;
   int width = 0, height = 0;
   if (name == "size" && std::sscanf(value.c_str(), "%dx%d", &width, &height) == 2)
@@ -56,7 +57,7 @@ bool isTooMuch(const std::string& name, const std::string& value) {
   return samples.count(name) > mostSamples;
 }
 
-/// Why a scene's own value is not taken; empty where it is.
+/// Reason why a scene's stored value is not taken; empty: taken.
 std::string objection(const MrmlScene& scene, const std::string& name, const std::string& value,
                       const std::filesystem::path& input) {
   if (name == "volume" || name == "segmentation")
@@ -99,7 +100,7 @@ SceneFlags withSceneFlags(const FlagValues& given) {
     else
       merged.add(name, value);
   }
-  if (!merged.has("focus") && !given.has("segmentation")) // which one was chosen does not matter
+  if (!merged.has("focus") && !given.has("segmentation")) // the stored choice does not matter
     merged.remove("segmentation");
   return result;
 }

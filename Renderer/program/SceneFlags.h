@@ -1,7 +1,7 @@
 #pragma once
-// Flags that come with a Slicer scene: the extension keeps what a picture was made with in a node
-// of the scene, <FenestraRender focus="Femur" clip="surface" ...
-// references="volume:ID;segmentation:ID;">, so that rendering the scene makes the picture again.
+// Flags stored in a Slicer scene: the extension keeps the flags of a picture in a node of the
+// scene, <FenestraRender focus="Femur" clip="surface" ... references="volume:ID;segmentation:ID;">,
+// so that rendering the scene reproduces the picture.
 
 #include "program/Flags.h"
 
@@ -9,18 +9,18 @@ namespace fenestra {
 
 struct SceneFlags {
   FlagValues flags;
-  std::vector<std::string> leftOut = {}; ///< what is stored and not taken, and why; a line each
+  std::vector<std::string> leftOut = {}; ///< stored flags not taken, with the reason; a line each
 };
 
-/// Flags of `fenestra render` with what the scene named by INPUT stores; of several nodes the last
-/// counts. Flags that are given win: any of the view, of clipping, or of when to stop replaces all
-/// stored ones of its kind, and a preset that is given those that it says. Other inputs change
-/// nothing. A scene comes from others: names of files are left out (presets, volume properties by
-/// name, and looks as text are taken), as are more than 4096 x 4096 pixels or 65536 samples. Throws
-/// Error (input) for a damaged scene.
+/// Flags of `fenestra render` merged with those stored in the scene INPUT; the last of several
+/// nodes counts; inputs other than scenes change nothing. Given flags win: one of view, of
+/// clipping, or of when to stop replaces all stored ones of its kind; a given preset replaces the
+/// stored flags that it sets. A scene comes from others, so these are left out: names of files
+/// (presets, volume properties by name, and looks as text are taken), more than 4096 x 4096 pixels,
+/// more than 65536 samples. Throws Error (input) for a damaged scene.
 SceneFlags withSceneFlags(const FlagValues& given);
 
-/// The stored ones among them, as arguments.
+/// Stored flags in `merged`, as arguments.
 std::vector<std::string> sceneArguments(const FlagValues& given, const FlagValues& merged);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
-// `fenestra serve`: a scene stays loaded, changes come in, pictures go out. What a change does not
-// touch is not made again (Scene::changed), and the render under way gives way to it.
+// `fenestra serve`: a scene stays loaded, changes come in, pictures go out. Stages that a change
+// does not touch are not rebuilt (Scene::changed), and a change stops the render under way.
 
 #include "base/Error.h"
 #include "base/Stopwatch.h"
@@ -17,7 +17,7 @@
 namespace fenestra {
 namespace {
 
-/// Made when it is asked for: what it takes over from render is initialised in another source.
+/// Built on first use: renderSyntax is initialised in another source.
 const CommandSyntax& serveSyntax() {
   static const CommandSyntax syntax = {
       "serve",
@@ -33,7 +33,7 @@ const CommandSyntax& serveSyntax() {
   return syntax;
 }
 
-/// Nobody reads our answers: nobody wants pictures.
+/// Thrown when standard output is closed: nobody waits for pictures.
 struct Unheard {};
 
 class Server {
@@ -44,7 +44,8 @@ public:
         m_outputs(outputs),
         m_input(m_flags, m_monitor, m_answers) {}
 
-  /// Until the process ends, or nobody listens. Throws Error where there is no first scene.
+  /// Runs until the process ends. Throws Error if there is no first scene, Unheard if standard
+  /// output is closed.
   void run() {
     m_options = renderOptions(withPreset(m_flags));
     m_options->scene.leftOut = m_leftOut;
@@ -61,9 +62,9 @@ public:
   }
 
 private:
-  /// Makes the scene of all changes together. Where that cannot be, of those that can: each half by
-  /// itself, down to single ones, which are answered; what they changed stays as it was. Returns
-  /// whether all could be.
+  /// Builds the scene of all changes together. If that fails, tries each half separately, down to
+  /// single changes; a single change that fails is answered with the error and has no effect.
+  /// Returns whether all changes were taken together.
   bool take(std::span<const ServeChange> changes) {
     try {
       FlagValues flags = m_flags;
@@ -106,7 +107,7 @@ private:
       publish(result, true);
   }
 
-  /// The first at once, others not more often than anybody looks.
+  /// Publishes the first picture at once, later ones at most every `interval`.
   void publishIfDue(const RenderResult& result) {
     constexpr double interval = 0.1; // seconds
     if (m_monitor.stop || (m_published && m_published->seconds() < interval))
@@ -114,13 +115,13 @@ private:
     publish(result, false);
   }
 
-  /// Returns whether the files are written. What keeps them from it (a full disk) is told, but for
-  /// pictures on the way once only; the next one may have room again.
+  /// Returns whether the files are written. A failure (a full disk) is reported, for intermediate
+  /// pictures only once each; the next picture may have room again.
   bool write(const RenderResult& result, bool last) {
     try {
       writePictures(*m_options, *m_scene, result, shellCommand(m_flags.arguments(), *m_options),
                     m_outputs);
-      m_outputs.commit(Outputs::Durability::none); // another one follows soon
+      m_outputs.commit(Outputs::Durability::none); // the next picture follows soon
       return true;
     } catch (const Error& error) {
       if ((last || m_failure != error.what()) && !m_answers.error(m_id, error.what()))
@@ -151,19 +152,19 @@ private:
     m_published.emplace();
   }
 
-  FlagValues m_flags; ///< what the scene is of
+  FlagValues m_flags; ///< flags of the current scene
   std::vector<std::string> m_leftOut;
-  nlohmann::json m_id = nullptr; ///< of the last change
-  Stopwatch m_since;             ///< it came
+  nlohmann::json m_id = nullptr; ///< of the last change taken
+  Stopwatch m_since;             ///< time since that change arrived
   Outputs& m_outputs;
   RenderMonitor m_monitor;
   ServeAnswers m_answers;
   ServeInput m_input;
   std::optional<RenderOptions> m_options;
   std::optional<Scene> m_scene;
-  bool m_complete = false;              ///< the scene's picture
-  std::optional<Stopwatch> m_published; ///< since the last picture of this scene
-  std::string m_failure;                ///< to write a picture of this scene, as it was told
+  bool m_complete = false;              ///< true: the scene's picture is finished
+  std::optional<Stopwatch> m_published; ///< time since the scene's last picture; nullopt: none yet
+  std::string m_failure;                ///< last reported failure to write a picture of this scene
   std::set<std::string> m_warned;
 };
 
@@ -181,7 +182,7 @@ int serveCommand(int argc, char** argv, int first) {
   useMachine(*given);
   const SceneFlags start = withSceneFlags(*given);
   const RenderOptions options = renderOptions(withPreset(start.flags));
-  // Both live as long as the process, as its reading thread does.
+  // Never destroyed: the reading thread, which lives as long as the process, uses both.
   Outputs& outputs = *new Outputs;
   declareOutputs(options, outputs);
   checkMemory(options.scene);

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 constexpr std::size_t longestLine = 1 << 20;
 
-/// A value as the command line has it.
+/// Value as text of the command line.
 std::string valueText(const std::string& name, const json& value) {
   if (value.is_string())
     return value.get<std::string>();
@@ -31,7 +31,7 @@ std::string valueText(const std::string& name, const json& value) {
   throw usageError(name + ": expected a text, a number or a list of them");
 }
 
-/// A list's items, commas in them kept apart from those between them.
+/// Items separated by commas; commas within an item are escaped.
 std::string listText(const std::string& name, const json& list) {
   std::string text;
   for (const json& item : list) {
@@ -99,7 +99,7 @@ FlagValues changedFlags(const json& change, const FlagValues& flags) {
 
 void checkChange(const json& change, const FlagValues& flags) {
   const SceneRequest scene = renderOptions(withPreset(flags)).scene;
-  const bool isPreset = change.contains("preset"); // may name any of them
+  const bool isPreset = change.contains("preset"); // may name lights and a transfer function
   if (isPreset || change.contains("lights"))
     namedLights(scene.lights);
   if (scene.transfer && (isPreset || change.contains("transfer")))
@@ -111,7 +111,7 @@ void checkChange(const json& change, const FlagValues& flags) {
 ServeInput::ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers)
     : m_monitor(monitor), m_answers(answers), m_wanted(start) {
   m_thread = std::thread([this] { read(); });
-  m_thread.detach(); // ends with the process
+  m_thread.detach(); // ends with the process only
 }
 
 ServeChanges ServeInput::next() {

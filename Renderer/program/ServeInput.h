@@ -1,5 +1,5 @@
 #pragma once
-// What a server is told while it works: changes, one JSON object a line, and the end of them.
+// Input of a server while it works: changes, one JSON object a line, until the end of input.
 
 #include "base/Stopwatch.h"
 #include "program/RenderFlags.h"
@@ -12,52 +12,50 @@
 
 namespace fenestra {
 
-/// Answers on standard output: one JSON object a line, whole lines from whichever thread.
+/// Answers on standard output: one JSON object a line; lines of several threads do not mix.
 class ServeAnswers {
 public:
-  /// Returns false where nobody reads any more.
+  /// Returns false if standard output is closed.
   bool say(const nlohmann::ordered_json& answer);
-  /// `id` is that of the change, or null.
+  /// `id`: the change's, or null.
   bool error(const nlohmann::json& id, const std::string& message);
 
 private:
   std::mutex m_mutex;
 };
 
-/// A line.
+/// One line of input.
 struct ServeChange {
   nlohmann::json flags;        ///< {"flag": value, …}
   nlohmann::json id = nullptr; ///< null, a number, or a text of at most 256 bytes
-  Stopwatch since = {};        ///< it came
+  Stopwatch since = {};        ///< time since arrival
 };
 using ServeChanges = std::vector<ServeChange>;
 
-/// What a line says. Throws Error for what is no JSON or has another id; `id` is its own as soon as
-/// it is known.
+/// Parses a line. Sets `id` as soon as the line's id is known, for the answer to an error. Throws
+/// Error for a line that is not JSON or whose id has another type.
 ServeChange parseChange(const std::string& line, nlohmann::json& id);
 
-/// The flags after a line's changes: {"flag": value, …}, where a value is what the command line
-/// takes: a text, a number, or a list of them; null takes the flag back. Throws Error (usage) for
-/// what cannot change or be understood.
+/// Flags after a line's changes {"flag": value, …}. A value is a text, a number, or a list of them,
+/// as on the command line; null removes the flag. Throws Error (usage) for a flag that is unknown
+/// or cannot change.
 FlagValues changedFlags(const nlohmann::json& change, const FlagValues& flags);
 
-/// Throws Error where the flags after a change cannot be together (usage), or a look that the
-/// change names cannot be read (input).
+/// Throws Error: usage if the flags after a change contradict each other, input if a look that the
+/// change names cannot be read.
 void checkChange(const nlohmann::json& change, const FlagValues& flags);
 
-/// Reads standard input in a thread of its own. A change stops the render under way; the end of
-/// input ends the process, as signals do (program/Stop), but for a picture that is being put in
-/// place.
+/// Reads standard input in its own thread. A change stops the render under way. The end of input
+/// ends the process as signals do (program/Stop), after any picture that is being put in place.
 class ServeInput {
 public:
   ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers);
   ServeInput(const ServeInput&) = delete;
   ServeInput& operator=(const ServeInput&) = delete;
 
-  /// Blocks until there are changes, and takes them; from then on nothing stops the render but
-  /// newer ones.
+  /// Blocks until there are changes, and takes them; afterwards only newer changes stop the render.
   ServeChanges next();
-  /// Some of what was taken cannot be shown: newer changes are to what is shown.
+  /// Call if changes that were taken cannot be shown: newer changes then apply to `shown`.
   void takeBack(const FlagValues& shown);
 
 private:
@@ -66,10 +64,10 @@ private:
 
   RenderMonitor& m_monitor;
   ServeAnswers& m_answers;
-  std::mutex m_mutex; ///< of what is wanted, and of monitor.stop
+  std::mutex m_mutex; ///< guards m_wanted, m_new and monitor.stop
   std::condition_variable m_changed;
-  FlagValues m_wanted; ///< after all changes
-  ServeChanges m_new;  ///< that nobody has taken
+  FlagValues m_wanted; ///< flags after all changes
+  ServeChanges m_new;  ///< changes not yet taken by next()
   std::thread m_thread;
 };
 

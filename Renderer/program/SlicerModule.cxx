@@ -12,7 +12,7 @@ void addText(pugi::xml_node parent, const char* name, const std::string& text) {
   parent.append_child(name).text().set(text.c_str());
 }
 
-/// The flag's own name, so that panel and command line can be told from each other.
+/// Label: the flag's own name, so that a panel's field can be matched to a flag.
 std::string labelOf(const std::string& name) {
   std::string label = name;
   label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
@@ -26,7 +26,7 @@ pugi::xml_node addParameters(pugi::xml_node module, const char* label, const cha
   return group;
 }
 
-/// Slicer's type of a flag. Numbers and words are always handed over, so they need a standard.
+/// Slicer's type of a flag. Slicer always passes numbers and words, so such flags need a default.
 const char* typeOf(const Flag& flag) {
   const bool optional = *flag.standard == 0;
   switch (flag.takes.kind) {
@@ -53,7 +53,7 @@ const char* typeOf(const Flag& flag) {
   return "string";
 }
 
-/// A slider where the range is one that a hand can set.
+/// Adds a slider if the range is narrow enough to set by hand.
 void addConstraints(pugi::xml_node parameter, const Flag& flag, const std::string& type) {
   constexpr double widest = 1e6;
   const bool whole = type == "integer";

@@ -1,6 +1,6 @@
 #pragma once
-// The renderer as a command line module of 3D Slicer: the flags in the words of Slicer's execution
-// model, from which Slicer makes a panel, and the values that a render hands back to it.
+// The renderer as a command line module of 3D Slicer: its flags in the terms of Slicer's execution
+// model, from which Slicer builds a panel, and the values that a render returns to Slicer.
 
 #include "program/Flags.h"
 
@@ -9,10 +9,10 @@
 
 namespace fenestra {
 
-/// What a render reached; Slicer shows it under the panel.
+/// Measured result of a render; Slicer shows it under the panel.
 struct ReturnValue {
   const char* name;
-  const char* type; ///< Slicer's
+  const char* type; ///< Slicer's type name
   const char* text;
 };
 inline constexpr ReturnValue returnValues[] = {
@@ -21,12 +21,12 @@ inline constexpr ReturnValue returnValues[] = {
     {"renderSeconds", "double", "Time of the rendering alone, by the clock"},
 };
 
-/// The module description, an XML document: the first positional argument as a volume, then every
-/// flag but Slicer's own, in the order of the table, and the return values. A flag without a
-/// standard value is a text, which Slicer leaves out where it is empty.
+/// Module description, an XML document: the first positional argument as a volume, then every flag
+/// but Slicer's own, in the table's order, then the return values. A flag without a default is a
+/// text, which Slicer leaves out if empty.
 std::string slicerDescription(const CommandSyntax& syntax);
 
-/// One of `values` for each of returnValues, in Slicer's form: "name = value", a line each.
+/// Lines "name = value" in Slicer's form; values[i] belongs to returnValues[i].
 std::string returnValuesText(const std::vector<double>& values);
 
 } // namespace fenestra

@@ -15,7 +15,7 @@ nlohmann::ordered_json jsonOf(const Distribution& values) {
   return {{"mean", values.mean}, {"p95", values.p95}, {"max", values.max}};
 }
 
-/// What the clip is worth.
+/// Adds the measures of the clip.
 void addClip(nlohmann::ordered_json& json, const RenderStats& stats) {
   if (stats.mismatch)
     json["boundaryMismatchMm"] = jsonOf(*stats.mismatch);

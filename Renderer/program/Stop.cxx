@@ -14,7 +14,7 @@ namespace {
 
 std::atomic<std::atomic<bool>*> flag = nullptr;
 std::atomic<int> firstSignal = 0;
-std::atomic<std::int64_t> firstTime = 0; ///< of it, ms
+std::atomic<std::int64_t> firstTime = 0; ///< of the first signal, ms
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
 std::int64_t milliseconds() {
@@ -23,13 +23,13 @@ std::int64_t milliseconds() {
   return std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
 }
 
-/// One event may come as several signals: a terminal that is closed sends HUP twice.
+/// True shortly after the first signal: a closed terminal sends HUP twice.
 bool isEcho() {
   constexpr std::int64_t together = 300; // ms
   return milliseconds() - firstTime < together;
 }
 
-/// Once, whichever threads end the process.
+/// Writes the line to standard error, only on the first call, whichever threads end the process.
 void say(std::string_view line) {
   static std::atomic<bool> isSaid = false;
   if (isSaid.exchange(true))
@@ -37,7 +37,7 @@ void say(std::string_view line) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
 }
 
-/// What may run in a signal handler alone, and nothing else.
+/// Async-signal-safe.
 void end() {
   if (firstSignal == SIGPIPE)
     say("fenestra: standard output: nobody reads it any more\n");
@@ -72,7 +72,7 @@ void handleStops() {
   action.sa_handler = onSignal;
   action.sa_flags = SA_RESTART;
   sigfillset(&action.sa_mask);
-  ::signal(SIGXFSZ, SIG_IGN); // the call that writes tells of it, as of a full disk
+  ::signal(SIGXFSZ, SIG_IGN); // the write call then returns an error, as with a full disk
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGPIPE}) {
     struct sigaction before = {};
     if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)

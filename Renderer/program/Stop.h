@@ -1,8 +1,8 @@
 #pragma once
-// Signals that ask the process to end: INT, TERM, HUP (the terminal was closed), QUIT, XCPU, and
-// PIPE (nobody reads standard output any more). At first they end it at once; where that would cost
-// finished work they set a flag instead, and the second signal ends it at once. What was ignored
-// when the process began (nohup) stays ignored.
+// Signals that ask the process to end: INT, TERM, HUP (terminal closed), QUIT, XCPU, and PIPE
+// (standard output closed). By default the first signal ends the process at once; where that would
+// cost finished work, the first sets a flag (StopInstead) and the second ends the process. Signals
+// ignored when the process began (nohup) stay ignored.
 
 #include <atomic>
 
@@ -10,21 +10,22 @@ namespace fenestra {
 
 inline constexpr int stoppedStatus = 5;
 
-/// From now on those signals are handled: before anything is read or made.
+/// Installs the handlers. Call before files are read or made.
 void handleStops();
 
-/// Whether any of those signals has come.
+/// True once any of those signals has come.
 bool stopRequested();
 
-/// Exit status of a command that was asked to stop: stoppedStatus, or that of an output error where
-/// nobody reads standard output.
+/// Exit status of a command that was asked to stop: stoppedStatus, or the status of an output error
+/// if standard output is closed.
 int stopStatus();
 
-/// Ends the process, whatever other threads are about, as soon as no result is being put in place.
-/// Leaves no temporary file.
+/// Ends the process, whatever other threads are doing, as soon as no result is being put in place.
+/// Removes temporary files.
 [[noreturn]] void endProcess(int status);
 
-/// While it lives, the first signal sets `stop` instead of ending the process. One at a time.
+/// Makes the first signal set `stop` instead of ending the process, for the object's lifetime. At
+/// most one instance at a time.
 class StopInstead {
 public:
   explicit StopInstead(std::atomic<bool>& stop);

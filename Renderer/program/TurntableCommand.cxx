@@ -1,5 +1,5 @@
-// `fenestra turntable`: a rotation as numbered frames. A scene is made once; of each frame only
-// what depends on the camera (Scene::changed).
+// `fenestra turntable`: a rotation as numbered frames. The scene is built once; for each frame only
+// the stages that depend on the camera are rebuilt (Scene::changed).
 
 #include "base/Error.h"
 #include "base/TextStream.h"
@@ -27,7 +27,7 @@
 namespace fenestra {
 namespace {
 
-/// Frame by frame, those that are not finished.
+/// Renders all frames that are not finished, one by one.
 class Turntable {
 public:
   Turntable(const TurntableOptions& options, TurntableRecord& record, RenderMonitor& monitor,
@@ -41,12 +41,12 @@ public:
         m_scene(options.render.scene),
         m_start(m_scene.camera().pose()) {}
 
-  /// Whether a view is being made that nobody waits for any more.
+  /// True if a view is still being built after a stop, and will not be used.
   bool isPreparing() const { return m_preparing.valid(); }
   int rendered() const { return m_record.finishedCount() - m_before; }
 
   void run() {
-    m_outputs.checkInputs(); // with all that the scene turned out to be made of
+    m_outputs.checkInputs(); // now also files that the scene refers to
     m_record.setInputs(m_options, m_scene);
     m_record.write(m_outputs);
     if (const auto warning = m_record.warning())
@@ -68,7 +68,7 @@ public:
     }
   }
 
-  /// Seconds, changes of the surface, warnings.
+  /// JSON text: frames, seconds, changes of the surface, warnings.
   std::string statsJson(double seconds) const {
     nlohmann::ordered_json json = {{"frames", m_options.frames},
                                    {"finished", m_record.finishedCount()},
@@ -82,14 +82,14 @@ public:
   }
 
 private:
-  /// What a frame shows, before it is rendered.
+  /// Scene of a frame, before rendering.
   struct View {
     Scene scene;
     std::optional<SeenSurface> surface;
-    std::optional<SurfaceChange> change; ///< of the surface since the frame before
+    std::optional<SurfaceChange> change; ///< since the preceding frame
   };
 
-  /// Returns whether it is finished, and not stopped.
+  /// Returns whether the frame is finished; false: stopped.
   bool renderFrame(int frame, const RenderSettings& settings) {
     if (!waitForView(frame))
       return false;
@@ -108,14 +108,14 @@ private:
     return true;
   }
 
-  /// Once each.
+  /// Prints each distinct warning once.
   void warn(const std::string& warning) {
     if (m_warnings.insert(warning).second)
       std::cerr << "fenestra: warning: " << oneLine(warning) << '\n';
   }
 
-  /// In a thread of its own where one starts, since a stop does not wait for surfaces; returns
-  /// whether it is there.
+  /// Builds the view in another thread if one can start: a stop does not wait for surfaces. Returns
+  /// whether the view is ready; false: stopped.
   bool waitForView(int frame) {
     m_preparing = std::async([this, frame] { return viewOf(frame); });
     while (m_preparing.wait_for(std::chrono::milliseconds(10)) == std::future_status::timeout)
@@ -141,7 +141,7 @@ private:
     return view;
   }
 
-  /// Nothing where the clip is no surface.
+  /// Visible part of the clipping surface; nullopt: the clip is no surface.
   static std::optional<SeenSurface> seen(const Scene& scene) {
     const auto* clip = std::get_if<ClipDepth>(&scene.clip());
     if (!clip || clip->lookup != ClipDepth::Lookup::linear)
@@ -169,17 +169,17 @@ private:
   RenderMonitor& m_monitor;
   Outputs& m_outputs;
   std::string m_command;
-  int m_before; ///< finished
+  int m_before; ///< frames finished by earlier runs
   Scene m_scene;
   CameraPose m_start;
-  std::optional<SeenSurface> m_surface; ///< of the frame:
-  int m_surfaceFrame = -2;              ///< none so far
+  std::optional<SeenSurface> m_surface; ///< surface of frame m_surfaceFrame
+  int m_surfaceFrame = -2;              ///< -2: no frame so far
   std::set<std::string> m_warnings;
-  std::future<View> m_preparing; ///< left to itself by a stop
+  std::future<View> m_preparing; ///< abandoned by a stop
 };
 
-/// Before the long work. Going on, a frame that is not finished replaces nothing but Fenestra's own
-/// work: what else lies in its place was put there since.
+/// Declares all frames before the long work. When resuming, an unfinished frame may replace only
+/// Fenestra's own files: other files in its place were put there since.
 void declareFrames(const TurntableOptions& options, const TurntableRecord& record,
                    Outputs& outputs) {
   for (int frame = 0; frame < options.frames; ++frame) {
@@ -196,10 +196,10 @@ void declareFrames(const TurntableOptions& options, const TurntableRecord& recor
   checkMemory(options.render.scene);
 }
 
-/// Held as long as the frames are written. Throws Error: usage where another process has them;
-/// output.
+/// Locks, to be held while the frames are written. Throws Error: usage if another process holds
+/// one; output.
 std::vector<std::unique_ptr<NameLock>> lockFrames(const TurntableOptions& options) {
-  std::map<std::filesystem::path, std::filesystem::path> names; // as given, by what they are
+  std::map<std::filesystem::path, std::filesystem::path> names; // as given, by canonical path
   for (const std::filesystem::path& output : options.render.outputs) {
     const std::filesystem::path name = recordPath(output);
     std::error_code failed;
@@ -246,7 +246,7 @@ int turntableCommand(int argc, char** argv, int first) {
   TurntableOptions options = turntableOptions(flags);
   options.render.scene.leftOut = stored.leftOut;
   for (const std::filesystem::path& input : options.render.inputs)
-    expectInput(input); // no --restart replaces one
+    expectInput(input); // --restart replaces no input
   const auto locks = lockFrames(options);
   TurntableRecord record(options, flags.flags);
   RenderMonitor monitor;
@@ -256,10 +256,10 @@ int turntableCommand(int argc, char** argv, int first) {
   const Stopwatch total;
   Turntable turntable(options, record, monitor, outputs,
                       shellCommand({argv + 1, argv + argc}, options.render));
-  const StopInstead stopInstead(monitor.stop); // a frame under way is given up
+  const StopInstead stopInstead(monitor.stop); // the frame under way is discarded
   turntable.run();
   const bool hasNews = turntable.rendered() > 0 || record.finishedCount() == options.frames;
-  if (options.render.stats && hasNews) // else they would be of pictures that are not there
+  if (options.render.stats && hasNews) // otherwise the statistics would describe missing pictures
     outputs.write(*options.render.stats, turntable.statsJson(total.seconds()));
   outputs.commit();
   report(options, record, turntable.rendered(), total.seconds());

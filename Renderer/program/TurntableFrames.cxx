@@ -52,7 +52,7 @@ TurntableOptions turntableOptions(const PresetFlags& given) {
       throw usageError(std::string("--") + name +
                        ": is for a single picture; use it with fenestra render, or drop it");
   TurntableOptions options{renderOptions(given)};
-  options.render.scene.measure = false; // the statistics are of all frames
+  options.render.scene.measure = false; // the statistics cover all frames
   options.frames = static_cast<int>(flags.count("frames").value_or(36));
   options.degrees = flags.number("degrees").value_or(options.degrees);
   const double usual = std::min(10.0, 2.0 * std::abs(options.angle(1)));

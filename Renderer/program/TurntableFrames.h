@@ -1,43 +1,44 @@
 #pragma once
-// The flags of `fenestra turntable`, and what they make of each frame.
+// Flags of `fenestra turntable`, and the options that follow for each frame.
 
 #include "program/PresetFlags.h"
 
 namespace fenestra {
 
-inline constexpr int mostFrames = 10000; ///< four digits
+inline constexpr int mostFrames = 10000; ///< numbers have four digits
 
 struct TurntableOptions {
-  RenderOptions render; ///< of any frame, but for its view and its files
+  RenderOptions render; ///< of all frames; view and files differ by frame
   int frames = 36;
   double degrees = 360.0;
   bool restart = false;
 
-  /// Degrees from the first frame to this one: a full turn's frames follow each other for ever.
+  /// Degrees from frame 0 to `frame`. Divides by `frames`, not frames - 1: a full turn loops
+  /// without a repeated frame.
   double angle(int frame) const { return degrees * frame / frames; }
-  /// Whether the first frame follows the last.
+  /// True if the last frame leads back to frame 0.
   bool isClosed() const { return degrees != 0.0 && std::remainder(degrees, 360.0) == 0.0; }
 };
 
-/// What render takes, and what is a turntable's own.
+/// Syntax of render, with the turntable's own flags.
 const CommandSyntax& turntableSyntax();
 
 /// Throws Error (usage).
 TurntableOptions turntableOptions(const PresetFlags& given);
 
-/// turn.png's frame 7 is turn_0007.png.
+/// Picture of a frame: turn.png's frame 7 is turn_0007.png.
 std::filesystem::path framePath(const std::filesystem::path& output, int frame);
 
-/// Of what of a turntable is finished: turn.png's is turn.turntable.json.
+/// Record of the finished frames: turn.png's is turn.turntable.json.
 std::filesystem::path recordPath(const std::filesystem::path& output);
 
-/// The frame's own files.
+/// Render options with the frame's own file names.
 RenderOptions frameOptions(const TurntableOptions& options, int frame);
 
-/// All that the writer of images makes for a frame.
+/// All files that the image writer makes for a frame.
 std::vector<std::filesystem::path> frameFiles(const TurntableOptions& options, int frame);
 
-/// A picture of what `start` sees, by an eye that has gone around the target from there.
+/// Request for the view of `start` with the eye turned around the target by `degrees`.
 SceneRequest turnedRequest(const SceneRequest& request, const CameraPose& start, double degrees);
 
 } // namespace fenestra

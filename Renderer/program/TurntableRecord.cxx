@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What the frames' pictures depend on, as arguments.
+/// Arguments on which the pictures of the frames depend.
 json requestedArguments(const FlagValues& flags, const std::filesystem::path& folder) {
   FlagValues request = flags;
   for (const char* name : {"threads", "progress", "stats", "restart"})
@@ -32,7 +32,7 @@ std::uint64_t digest(const std::vector<T>& voxels) {
   return stateOf({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)}).digest;
 }
 
-/// A file as it is now, so that another one of its name is noticed.
+/// Name, size and time of a file, so that a replaced file is noticed.
 json fileState(const std::filesystem::path& path, const std::filesystem::path& folder) {
   std::error_code none;
   const auto bytes = std::filesystem::file_size(path, none);
@@ -48,7 +48,7 @@ json inputStates(const TurntableOptions& options, const Scene& scene,
   for (const std::string& file : scene.files())
     files.insert(file);
   json states = json::array();
-  for (const std::filesystem::path& file : files) // what is in an archive changes with it
+  for (const std::filesystem::path& file : files) // a member of an archive changes with the archive
     if (std::error_code failed; std::filesystem::is_regular_file(file, failed))
       states.push_back(fileState(file, folder));
   return states;
@@ -59,9 +59,9 @@ ContentState contentAt(const std::filesystem::path& path) {
   return stateOf(std::string(std::istreambuf_iterator<char>(file), {}));
 }
 
-/// Whether a frame's file is as it was recorded. One that is gone or empty is rendered again;
-/// throws Error (usage) for any other: frames are placed whole, so a shorter one is no torn frame
-/// but somebody's work.
+/// True if a frame's file is as recorded; false if missing or empty: to be rendered again. Throws
+/// Error (usage) for any other file: frames are placed whole, so a shorter one is no torn frame but
+/// somebody's work.
 bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
   std::error_code failed;
   const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
@@ -76,11 +76,11 @@ bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
                    "command renders it again");
 }
 
-/// Throws Error (input) where it is no JSON. Of untrusted size: as large as the record of as many
-/// frames as there may be, each of so many files.
+/// Reads a record file. Limits its untrusted size to that of a record of `mostFrames` frames with
+/// `filesOfFrame` files each. Throws Error (input) if it is no JSON.
 json readRecord(const std::filesystem::path& path, std::size_t filesOfFrame) {
-  constexpr int partsOfFrame = 16, partsOfFile = 7;     // values and keys, as write() has them
-  constexpr int bytesOfFrame = 400, bytesOfFile = 1700; // a name of 255 letters, all escaped
+  constexpr int partsOfFrame = 16, partsOfFile = 7;     // values and keys that write() makes
+  constexpr int bytesOfFrame = 400, bytesOfFile = 1700; // with a name of 255 letters, all escaped
   const int files = static_cast<int>(std::min<std::size_t>(filesOfFrame, 100));
   const std::string text =
       readText(path, largestText + std::uint64_t{mostFrames} *
@@ -89,7 +89,7 @@ json readRecord(const std::filesystem::path& path, std::size_t filesOfFrame) {
                    mostJsonParts + mostFrames * (partsOfFrame + files * partsOfFile));
 }
 
-/// The record of any turntable of any version of Fenestra.
+/// True for the record of any turntable of any version of Fenestra.
 bool isRecord(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const json document = json::parse(file, nullptr, false);
@@ -98,7 +98,7 @@ bool isRecord(const std::filesystem::path& path) {
          document["request"].contains("version");
 }
 
-/// Of what may lie in files that only a header names.
+/// Digests of the voxels, which may lie in files that only a header names.
 json voxelDigests(const Scene& scene) {
   json digests = {
       {"volume", std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels)}};
@@ -107,8 +107,8 @@ json voxelDigests(const Scene& scene) {
   return digests;
 }
 
-/// What the record of another turntable tells of, is there, and is no frame of these options. Empty
-/// where the record cannot be read: it is about to be replaced.
+/// Existing files of the turntable in `record` that are no frames of these options. Empty if the
+/// record cannot be read: it is about to be replaced.
 std::vector<std::filesystem::path> filesBeyond(const TurntableOptions& options,
                                                const std::filesystem::path& record) {
   std::set<std::filesystem::path> beyond;
@@ -132,7 +132,7 @@ std::vector<std::filesystem::path> filesBeyond(const TurntableOptions& options,
   return {beyond.begin(), beyond.end()};
 }
 
-/// Elements of one array that another does not have.
+/// Elements of `some` missing from `others`, separated by blanks.
 std::string elementsBeyond(const json& some, const json& others) {
   const std::set<json> known(others.begin(), others.end());
   std::string text;
@@ -143,8 +143,8 @@ std::string elementsBeyond(const json& some, const json& others) {
   return text;
 }
 
-/// Throws Error (input), naming file and field, unless a record's request is what `difference` and
-/// others take for granted.
+/// Throws Error (input), naming file and field, unless a record's request has the structure that
+/// `difference` and other readers rely on.
 void checkRequest(const JsonNode& request) {
   request.allowOnly({"version", "arguments", "inputs", "voxels"});
   request.at("version").text();
@@ -154,7 +154,7 @@ void checkRequest(const JsonNode& request) {
     input.at("file").text();
 }
 
-/// In what a record's request is not this one.
+/// Text of the first difference between a record's request and the current one.
 std::string difference(const json& there, const json& here) {
   if (there["arguments"] != here["arguments"]) {
     const std::string before = elementsBeyond(there["arguments"], here["arguments"]);
@@ -199,7 +199,7 @@ TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValu
   else if (!options.restart)
     refuseOthers(options);
   if (const auto file = isThere ? fileId(m_path) : std::nullopt)
-    forgetInput(*file); // which is written again
+    forgetInput(*file); // the record is rewritten, so it is no input
 }
 
 std::optional<std::string> TurntableRecord::warning() const {
@@ -214,7 +214,7 @@ std::optional<std::string> TurntableRecord::warning() const {
 void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
   for (int frame = 0; frame < options.frames; ++frame)
     for (const std::filesystem::path& file : frameFiles(options, frame))
-      if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs are refused as such
+      if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs have their own refusal
         throw usageError(file.string() + ": is there, and no " + m_path.string() +
                          " tells what it is of; choose another --output, or add --restart to "
                          "replace it");
@@ -234,7 +234,7 @@ void TurntableRecord::read(const TurntableOptions& options) {
   for (const JsonNode& finished : root.at("finished").elements()) {
     const auto frame = static_cast<int>(finished.at("frame").numberIn(0, options.frames - 1));
     const std::vector<std::filesystem::path> files = frameFiles(options, frame);
-    const auto recorded = finished.find("files"); // which older versions did not write
+    const auto recorded = finished.find("files"); // absent in files of older versions
     const auto states = recorded ? recorded->elements() : std::vector<JsonNode>();
     bool isWhole = states.size() == files.size();
     for (std::size_t i = 0; isWhole && i < files.size(); ++i)

@@ -34,7 +34,7 @@ constexpr NamedCommand commands[] = {
     {"serve", fenestra::serveCommand},     {"turntable", fenestra::turntableCommand},
 };
 
-/// A word alone that is nearly a subcommand and no file is meant as one.
+/// Throws Error (usage) for a word that names no file and nearly a subcommand.
 void refuseMisspelt(std::string_view word) {
   std::vector<std::string_view> names;
   for (const NamedCommand& command : commands)
@@ -62,7 +62,7 @@ void say(std::string_view text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
-/// Whatever an exception says, on one line; memory may be what there is none of.
+/// Prints an exception's message on one line, without allocating: memory may have run out.
 int fail(int status, std::string_view line) {
   static char buffer[8192];
   const std::size_t size = std::min(line.size(), sizeof buffer);
@@ -88,15 +88,15 @@ int run(int argc, char** argv) {
   }
 }
 
-/// A stream that was closed must not become a file that is read or written. Nobody reads what goes
-/// to /dev/full, and writing there fails as it would have.
+/// Opens closed standard streams, so that no file gets their numbers. Reads find an empty file;
+/// writes to /dev/full fail as they would have.
 void openStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0)
-      ::open(stream == STDIN_FILENO ? "/dev/null" : "/dev/full", O_RDWR); // the lowest number
+      ::open(stream == STDIN_FILENO ? "/dev/null" : "/dev/full", O_RDWR); // gets number `stream`
 }
 
-/// What a command printed is a result as well.
+/// Fails if standard output cannot be written: printed text is also a result.
 int finishOutput(int status) {
   const bool isWhole = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
   if (isWhole || status != 0)
@@ -104,7 +104,7 @@ int finishOutput(int status) {
   return fail(outputStatus, "standard output: cannot be written; is there room, and a reader?");
 }
 
-/// Tries again to remove what could not be removed, and says where the user has to.
+/// Retries the removal of temporary files, and names those that the user has to remove.
 int removeRest(int status) {
   fenestra::removeLeftovers();
   try {
@@ -123,11 +123,11 @@ int removeRest(int status) {
 
 int main(int argc, char** argv) {
   openStandardStreams();
-  fenestra::serveApart(argc, argv); // does not return where this is the child
+  fenestra::serveApart(argc, argv); // the child does not return
   fenestra::handleStops();
   fenestra::removeAbandonedFolders();
   const int status = removeRest(finishOutput(run(argc, argv)));
-  // Everything is written. Destructors of libraries' static objects have nothing to do for us, take
-  // a tenth of a short command, and print where memory fails (HDF5's).
+  // Everything is written. Destructors of libraries' static objects do no useful work, take a tenth
+  // of a short command's time, and print if memory fails (HDF5's).
   std::_Exit(status == 0 && fenestra::stopRequested() ? fenestra::stopStatus() : status);
 }

@@ -10,7 +10,7 @@ namespace {
 constexpr double degree = pi / 180.0;
 constexpr double goldenAngle = 2.399963229728653;
 
-/// Evenly all around.
+/// Directions spread evenly over the sphere.
 std::vector<Vec3> allDirections(int count) {
   std::vector<Vec3> directions;
   for (int i = 0; i < count; ++i) {
@@ -21,7 +21,7 @@ std::vector<Vec3> allDirections(int count) {
   return directions;
 }
 
-/// Evenly over a disc.
+/// Points spread evenly over a disc.
 std::vector<Vec2> discPoints(int count, double radius) {
   std::vector<Vec2> points;
   for (int i = 0; i < count; ++i) {
@@ -31,7 +31,7 @@ std::vector<Vec2> discPoints(int count, double radius) {
   return points;
 }
 
-/// The frame's normal, turned by angles about its two other axes, radians.
+/// Frame's normal, tilted toward its two other axes by `angles`, radians.
 Vec3 turned(const Frame& frame, const Vec2& angles) {
   const double angle = angles.norm();
   const double perAngle = angle > 0.0 ? std::sin(angle) / angle : 1.0;
@@ -46,7 +46,7 @@ std::vector<double> scoresOf(const ViewScorer& score, const std::vector<Vec3>& d
   return scores;
 }
 
-/// Of directions all around, each with those near it.
+/// Best of directions all around, each scored by a weighted mean over its neighbours.
 Vec3 coarseBest(const ViewScorer& score) {
   constexpr double near = 15.0 * degree;
   constexpr std::size_t rays = 1024;
@@ -69,9 +69,9 @@ Vec3 coarseBest(const ViewScorer& score) {
   return best;
 }
 
-/// From the middle of the points to the top of the quadratic that fits their scores best, those
-/// within about `near` most; `near` toward it where it is not as near as that. By the normal
-/// equations: with lengths in `near` they are far from singular.
+/// Step from the middle of the points to the top of the quadratic fitted to their scores, with
+/// Gaussian weights of deviation `near`; at most `near` long, uphill if there is no top. By normal
+/// equations, which are far from singular with `near` as the unit of length.
 Vec2 stepToTop(const std::vector<Vec2>& points, const std::vector<double>& scores, double near) {
   using Terms = Eigen::Matrix<double, 6, 1>;
   Eigen::Matrix<double, 6, 6> products = Eigen::Matrix<double, 6, 6>::Zero();

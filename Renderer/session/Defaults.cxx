@@ -23,7 +23,7 @@ ViewDirection namedView(const std::string& name, const std::optional<ViewDirecti
   return known->second;
 }
 
-/// Quantiles of the voxels' values, from at most about a million of them.
+/// Quantiles of the voxels' values, from at most about a million voxels.
 std::vector<double> quantiles(const Volume& volume, const std::vector<double>& fractions) {
   return std::visit(
       [&](const auto& voxels) {
@@ -41,8 +41,7 @@ std::vector<double> quantiles(const Volume& volume, const std::vector<double>& f
       volume.voxels);
 }
 
-/// The threshold that best parts a sample of values in two (Otsu 1979), from a 256-bin histogram
-/// of [low, high].
+/// Otsu's threshold (1979) of a sample of the values, from a 256-bin histogram of [low, high].
 double backgroundLevel(const Volume& volume, double low, double high) {
   constexpr int bins = 256;
   std::vector<double> histogram(bins, 0.0);
@@ -80,8 +79,8 @@ double backgroundLevel(const Volume& volume, double low, double high) {
   return low + (high - low) * (threshold + 1.0) / bins;
 }
 
-/// A vector times the power of two that brings it near length 1: squares neither overflow nor
-/// vanish then, and what is normalized has the same digits as without.
+/// Vector times the power of two that brings its length near 1: squares neither overflow nor
+/// vanish, and the normalized vector has the same digits as without scaling.
 Vec3 ofUsualLength(const Vec3& v) {
   const double greatest = v.cwiseAbs().maxCoeff();
   if (greatest == 0.0 || !std::isfinite(greatest))
@@ -90,7 +89,7 @@ Vec3 ofUsualLength(const Vec3& v) {
   return v.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
 }
 
-/// Of the least box along a domain's grid that holds it, world mm.
+/// Centre of a domain's bounding box along its grid, world mm.
 Vec3 centerOf(const Domain& domain) {
   Vec3 lower = Vec3::Constant(infinity);
   Vec3 upper = -lower;
@@ -105,7 +104,7 @@ struct Extent {
   double across = 0.0, up = 0.0; ///< half extents along the view's right and up, mm
 };
 
-/// Of a domain around its centre, seen along a view.
+/// Extent of a domain around its centre, seen along a view.
 Extent seen(const Domain& domain, const Vec3& right, const Vec3& up) {
   const Vec3 center = centerOf(domain);
   Extent extent;
@@ -164,7 +163,7 @@ TransferFunction relativeTransfer(const Volume& volume) {
 
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
                      int height, const std::optional<ViewDirection>& automatic) {
-  constexpr double surroundings = 1.6; // how much more than the focus is framed
+  constexpr double surroundings = 1.6; // framed size / size of the focus
   constexpr double margin = 1.05;      // around the whole volume
   constexpr double defaultAngle = 30.0;
   const ViewDirection named = namedView(view.name.value_or("anterior"), automatic);
@@ -182,7 +181,7 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   const Vec3 right = ofUsualLength(pose.up).cross(back).normalized();
   const Vec3 up = back.cross(right);
 
-  // The whole volume, or the focus with its surroundings where that is less.
+  // Frames the whole volume, or the focus with its surroundings if smaller.
   const double aspect = static_cast<double>(width) / height;
   const auto halfHeight = [&](const Domain& domain) {
     const Extent extent = seen(domain, right, up);
@@ -193,8 +192,8 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
     half = std::min(half, surroundings * halfHeight(focus->grid));
   pose.scale = view.scale.value_or(half);
 
-  // The eye stands outside the volume; in perspective at least as far as the usual angle asks, and
-  // where that is still inside, further away with a narrower one.
+  // The eye stands outside the volume, and in perspective at least as far as pose.angle demands; a
+  // farther eye gets a narrower angle.
   const double outside = margin * grid.boundingRadius() + (pose.target - grid.worldCenter()).norm();
   const double distance = std::max(outside, half / std::tan(pose.angle * pi / 360.0));
   if (!view.angle && !view.position)

@@ -15,8 +15,8 @@ struct TypeName {
   const char* operator()(const std::vector<float>&) const { return "float"; }
 };
 
-/// Whether most neighbours of voxels above the least value are alike, as in a label map and in no
-/// scan: of the label maps at hand 59 % and more are, of the scans 8 % at most.
+/// True if most pairs of neighbouring voxels above the least value are equal, as in label maps (at
+/// least 59 % in those at hand) and in no scan (at most 8 %).
 bool looksLikeLabels(const Volume& volume) {
   constexpr double most = 0.5;
   if (volume.minimum < 0.0 || std::holds_alternative<std::vector<float>>(volume.voxels))
@@ -53,8 +53,8 @@ SegmentationSummary readSegments(const std::filesystem::path& path,
   return summary;
 }
 
-/// What a render of a volume makes of it, and whether it could be a label map. The volume is let
-/// go before segments are read.
+/// Use of a volume by a render, and whether the volume could be a label map. The volume itself is
+/// released before segments are read.
 struct FileVolume {
   std::optional<Grid> grid = {};
   std::optional<RenderUse> render = {};
@@ -79,7 +79,7 @@ FileVolume inspectVolume(const SceneRequest& request) {
     result.warnings = (*scene)->warnings();
     return result;
   }
-  std::optional<Error> unreadable; // what kept the scene from being made may come later
+  std::optional<Error> unreadable; // unused: the scene may have failed after the volume
   if (const auto input = attempted([&] { return loadVolume(request); }, unreadable)) {
     describeVolume(input->volume);
     result.warnings = input->volume.warnings;

@@ -1,7 +1,7 @@
 #pragma once
-// What an input holds, and what a render of it would use: plain data, for `fenestra inspect`.
-// Lengths are in mm, places in the world (RAS); nodes refer to each other by id, empty where there
-// is none. Text is as the files have it: whoever prints it sees to control characters.
+// Contents of an input, and the parts that a render would use: plain data, for `fenestra inspect`.
+// Lengths are in mm, places in the world (RAS). Nodes refer to each other by id; empty: none. Text
+// is unchanged from the files: printers have to escape control characters.
 
 #include "model/camera/Camera.h"
 #include "model/volume/Volume.h"
@@ -15,16 +15,16 @@
 namespace fenestra {
 
 struct FileSummary {
-  std::string name; ///< as the scene has it, with its URL escapes undone
+  std::string name; ///< as in the scene, URL escapes decoded
   bool there = true;
 };
 
-/// What every node has. `problem` is the line of the error that reading it ended in, else empty.
+/// Common part of all nodes. `problem`: line of the error on reading the node; empty: none.
 struct NodeSummary {
   std::string id, name;
   std::vector<FileSummary> files = {};
-  std::string transform = {}; ///< the one right above it
-  bool used = false;          ///< by a render
+  std::string transform = {}; ///< id of the transform right above the node
+  bool used = false;          ///< true: a render uses the node
   std::string problem = {};
 };
 
@@ -35,11 +35,11 @@ struct SegmentSummary {
   Rgb color = Rgb::Zero(); ///< display-encoded
   std::int64_t voxels = 0;
   double milliliters = 0.0;
-  Box bounds = {}; ///< of its voxels; empty (at 0) without any
+  Box bounds = {}; ///< of the segment's voxels; empty (at 0): none
   bool shown = true;
 };
 
-/// A segmentation or a label map; without segments where it has a problem.
+/// Segmentation or label map; no segments if node.problem is set.
 struct SegmentationSummary {
   NodeSummary node;
   bool isLabelMap = false;
@@ -53,7 +53,7 @@ struct RenderingSummary {
   NodeSummary node;
   std::string volume, property, roi;
   bool cropping = false;
-  bool followsDisplay = false; ///< its look is the slice display's window
+  bool followsDisplay = false; ///< look: the slice display's window
   bool shown = true;           ///< in Slicer's 3-D views
 };
 
@@ -65,13 +65,13 @@ struct ViewSummary {
 
 struct CameraSummary {
   NodeSummary node;
-  std::string layout;                  ///< of the view that it belongs to
-  std::optional<CameraPose> pose = {}; ///< nothing where it has a problem
+  std::string layout;                  ///< of the camera's view
+  std::optional<CameraPose> pose = {}; ///< nothing: the node has a problem
 };
 
 struct TransformSummary {
   NodeSummary node;
-  std::optional<Affine> toWorld = {}; ///< with all above it; nothing where one has a problem
+  std::optional<Affine> toWorld = {}; ///< with all transforms above; nothing: one has a problem
 };
 
 struct SeriesSummary {
@@ -83,9 +83,9 @@ struct VolumeUse {
   std::string id, name;
   Size3 size;
   Vec3 spacing, center;
-  std::string voxelType; ///< as it is kept: uint8, int16, uint16 or float
+  std::string voxelType; ///< in memory: uint8, int16, uint16 or float
   double minimum, maximum;
-  std::vector<std::string> transforms = {}; ///< that move it, the nearest first
+  std::vector<std::string> transforms = {}; ///< ids of those above the volume, nearest first
 };
 
 enum class LookSource { volumeProperty, volumeDisplay, preset, range };
@@ -101,32 +101,32 @@ struct CropUse {
 };
 
 struct CameraUse {
-  std::string id, name; ///< empty where the view is framed for want of a camera
+  std::string id, name; ///< empty: no camera, a default view
   CameraPose pose;
 };
 
 struct BackgroundUse {
-  std::string view; ///< its id
+  std::string view; ///< id
   Rgb bottom, top;  ///< display-encoded
 };
 
-/// Each is nothing where it cannot be read (Inspection::refused says why), or there is none.
+/// Parts that a render uses. Nothing: none, or unreadable (Inspection::refused says why).
 struct RenderUse {
   std::optional<VolumeUse> volume = {};
   std::optional<LookUse> look = {};
   std::optional<CropUse> crop = {};
   std::optional<CameraUse> camera = {};
   std::optional<BackgroundUse> background = {};
-  std::string segmentation = {};        ///< a focus is looked for in it: an id, or a file
-  std::string segmentationProblem = {}; ///< why that is open
-  std::vector<std::string> stored = {}; ///< flags that the scene has from Fenestra's extension
+  std::string segmentation = {};        ///< id or file that is searched for a focus
+  std::string segmentationProblem = {}; ///< reason why `segmentation` is undecided
+  std::vector<std::string> stored = {}; ///< flags stored in the scene by Fenestra's extension
 };
 
 enum class InputKind { scene, volume, segmentation, dicom };
 
 struct Inspection {
   InputKind kind = InputKind::volume;
-  std::string version = {}; ///< of Slicer, as the scene has it
+  std::string version = {}; ///< of Slicer, from the scene
   std::vector<NodeSummary> volumes = {};
   std::vector<SegmentationSummary> segmentations = {};
   std::vector<RenderingSummary> renderings = {};
@@ -136,17 +136,17 @@ struct Inspection {
   std::vector<CameraSummary> cameras = {};
   std::vector<TransformSummary> transforms = {};
   std::vector<SeriesSummary> series = {};
-  std::map<std::string, std::size_t> others = {}; ///< how many, by tag
+  std::map<std::string, std::size_t> others = {}; ///< number of other nodes, by tag
 
-  std::optional<RenderUse> render = {}; ///< nothing where it is open what would be rendered
-  std::string refused = {};             ///< the line that a render ends in; empty where it works
+  std::optional<RenderUse> render = {}; ///< nothing: undecided what a render shows
+  std::string refused = {};             ///< error line of a render; empty: success
   std::vector<std::string> warnings = {};
   std::vector<std::string> ignored = {};
 };
 
-/// Of the request the input, the volume and the segmentation count. Reads what a render would, and
-/// every segmentation, camera and transform (of more than 64 of a kind the rest is only named).
-/// Throws Error where the input is neither scene nor volume nor segmentation.
+/// Uses only request.input, .volume and .segmentation. Reads the files that a render would, and
+/// every segmentation, camera and transform (after 64 of a kind only names). Throws Error if the
+/// input is neither scene nor volume nor segmentation.
 Inspection inspectInput(const SceneRequest& request);
 
 } // namespace fenestra

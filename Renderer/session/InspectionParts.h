@@ -1,5 +1,5 @@
 #pragma once
-// What the inspections of scenes and of plain files share. For scene's own sources.
+// Parts shared by the inspections of scenes and of plain files. For scene's own sources.
 
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
@@ -11,7 +11,7 @@
 
 namespace fenestra {
 
-/// What `read` returns, or nothing and the Error that it ended in.
+/// Result of `read`; nothing: `failure` holds the Error thrown.
 template <typename Read>
 auto attempted(Read&& read, std::optional<Error>& failure) -> std::optional<decltype(read())> {
   try {
@@ -22,7 +22,7 @@ auto attempted(Read&& read, std::optional<Error>& failure) -> std::optional<decl
   }
 }
 
-/// The same, with the Error's line.
+/// Result of `read`; nothing: `line` holds the line of the Error thrown.
 template <typename Read>
 auto attempted(Read&& read, std::string& line) -> std::optional<decltype(read())> {
   std::optional<Error> failure;
@@ -34,10 +34,10 @@ auto attempted(Read&& read, std::string& line) -> std::optional<decltype(read())
 
 VolumeUse volumeUse(const Volume& volume);
 
-/// By modality and range: what a volume gets that nobody set up.
+/// Look of a volume without settings, by modality and range.
 LookUse defaultLook(const Volume& volume);
 
-/// Fills in what it holds; segments are shown unless `shown` says otherwise.
+/// Fills `summary` from the segmentation; segments without an entry in `shown` are shown.
 void describe(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
               SegmentationSummary& summary);
 

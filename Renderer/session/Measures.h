@@ -1,5 +1,5 @@
 #pragma once
-// What a picture's clip is worth, as the stats report it.
+// Quality of a picture's clip, for the stats.
 
 #include "session/Scene.h"
 
@@ -7,13 +7,13 @@ namespace fenestra {
 
 struct FocusReport {
   double kept = 0.0;        ///< share of the focus's pixels whose focus point clipping leaves
-  double coverage = 0.0;    ///< share of them that is shown unoccluded
-  double withoutClip = 0.0; ///< the same if nothing were clipped
+  double coverage = 0.0;    ///< share of the focus's pixels shown unoccluded
+  double withoutClip = 0.0; ///< coverage without a clip
   std::optional<double> light = {};          ///< relative to the focus alone
-  std::optional<double> contextRemoved = {}; ///< share of the matter that is not focus
+  std::optional<double> contextRemoved = {}; ///< removed share of the context's matter
 };
 
-/// Of a scene that has measured its focus's depth; nothing of others, and where it is stopped.
+/// Report for a scene with focusDepth(); nothing: none, or stopped.
 std::optional<FocusReport> measureFocus(const Scene& scene, std::uint64_t seed,
                                         const StopFlag& stop);
 

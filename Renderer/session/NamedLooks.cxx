@@ -16,7 +16,7 @@
 namespace fenestra {
 namespace {
 
-/// What `name` means under Resources/<kind>/: the text of a preset, empty where there is none.
+/// Text of the preset `name` under Resources/<kind>/; empty: none.
 std::string_view ownPreset(const std::string& kind, const std::string& name) {
   return embeddedResource(kind + "/" + name + ".json");
 }
@@ -33,7 +33,8 @@ bool isFoundAsFile(const std::string& name) {
   return std::filesystem::exists(name, failed);
 }
 
-/// A file that may only not be looked at is said to be so; other names can be a preset's as well.
+/// Error for an unknown name. A path in a folder without permission gets a reading error; any other
+/// name could be a preset's as well.
 Error unknownPreset(const std::string& flag, const std::string& name, const std::string& known) {
   std::error_code failed;
   if (name.find('/') != std::string::npos && !std::filesystem::exists(name, failed) && failed)
@@ -42,7 +43,7 @@ Error unknownPreset(const std::string& flag, const std::string& name, const std:
                     "no such file, and no preset of that name; --" + flag + " takes " + known);
 }
 
-/// Volume properties of a scene by name or id, and Slicer's presets.
+/// Volume properties of a scene, by name or id, and Slicer's presets.
 class SlicerTransfers {
 public:
   explicit SlicerTransfers(const std::filesystem::path& input) {
@@ -64,7 +65,7 @@ public:
     return std::nullopt;
   }
 
-  /// What there is, for a message.
+  /// Known names, for a message.
   std::string known() const {
     std::vector<std::string> inScene;
     if (m_scene)
@@ -79,7 +80,7 @@ public:
 private:
   std::optional<MrmlScene> m_scene;
   std::optional<SlicerPresets> m_presets;
-  std::string m_file; ///< of the presets
+  std::string m_file; ///< of Slicer's presets
 };
 
 } // namespace

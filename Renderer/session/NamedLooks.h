@@ -1,6 +1,6 @@
 #pragma once
-// Looks by name: presets that travel with the program, files, nodes of a Slicer scene, and the
-// presets of a 3D Slicer that is there.
+// Looks by name: presets compiled into the program, files, nodes of a Slicer scene, and the presets
+// of an installed 3D Slicer.
 
 #include "files/looks/PresetReader.h"
 #include "files/looks/TransferReader.h"
@@ -12,35 +12,36 @@
 
 namespace fenestra {
 
-/// Names of the program's own: `kind` is a folder of Resources, as "transfer".
+/// Names of the program's own presets. `kind`: a folder of Resources, e.g. "transfer".
 std::vector<std::string> ownPresets(const std::string& kind);
 
-/// Whether a name means a file and no preset: it has a folder or an ending, or is there.
+/// True if `name` is no own preset, and has a folder or an ending, or is an existing file.
 bool isFileName(const std::string& kind, const std::string& name);
 
 struct NamedTransfer {
   TransferLook look;
-  std::string file = {}; ///< that was read, where it is one of its own
+  std::string file = {}; ///< file read; empty: JSON, own preset or scene
 };
-/// The JSON itself, else the program's preset of that name, a file, a volume property of the scene
-/// `input` (by name or id), or one of Slicer's presets. Throws Error (input), which lists the names
-/// that there are.
+/// Transfer function from the JSON itself, else the program's preset of that name, a file, a volume
+/// property of the scene `input` (by name or id), or one of Slicer's presets. Throws Error (input)
+/// that lists the known names.
 NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path& input);
 
-/// Whether namedTransfer would open a file of the name.
+/// True if namedTransfer would open a file of that name.
 bool isFileOfTransfer(const std::string& name, const std::filesystem::path& input);
 
 struct NamedLights {
   std::vector<Light> lights;
-  std::string file = {}; ///< that was read
+  std::string file = {}; ///< file read; empty: JSON or own preset
 };
-/// The JSON itself, else the program's preset of that name, or a file. Throws Error (input).
+/// Lights from the JSON itself, else the program's preset of that name, or a file. Throws Error
+/// (input).
 NamedLights namedLights(const std::string& name);
 
-/// Whether namedLights would open a file: of the name, or one that the JSON names.
+/// True if namedLights would open a file: of that name, or named in the JSON.
 bool isFileOfLights(const std::string& name);
 
-/// An organ preset of the program, or a file. Throws Error (input).
+/// Organ preset of the program, or from a file. Throws Error (input).
 OrganPreset namedPreset(const std::string& name);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Which segments an organ preset means, and which preset segments mean.
+// Segments that an organ preset means, and the preset that fits segments.
 
 #include "files/looks/PresetReader.h"
 #include "files/segments/SegmentationReader.h"
@@ -10,17 +10,17 @@
 
 namespace fenestra {
 
-/// Those of the segments that the preset's patterns or codes name, in their order.
+/// Segments that the preset's patterns or codes name, in the order of `segments`.
 std::vector<SegmentInfo> focusOf(const FocusPatterns& patterns,
                                  const std::vector<SegmentInfo>& segments);
 
-/// "liver, left lung, …": enough of them for a message.
+/// Names for a message, at most 12: "liver, left lung, …".
 std::string listedNames(const std::vector<SegmentInfo>& segments);
 
-/// The one of `presets` that fits the segments: it finds a focus among them, and none that fits,
-/// too, comes before it. Of several whose modalities differ, those count for which `suits` says so;
-/// it is asked only then. Throws Error (input), with `source` for the segmentation, where none fits
-/// or several do.
+/// Preset of `presets` that finds a focus among the segments, unless another one that does comes
+/// before it (OrganPreset::before). Several of different modalities: only presets with
+/// suits(modality) count; `suits` is called in this case only. Throws Error (input), naming
+/// `source` as the segmentation, if none or several remain.
 const OrganPreset& fittingPreset(const std::vector<OrganPreset>& presets,
                                  const std::vector<SegmentInfo>& segments,
                                  const std::string& source,

@@ -7,7 +7,7 @@ namespace {
 
 using Plane = std::vector<float>;
 
-/// A channel from a function of the pixel's sums.
+/// Channel from a function of the pixel's sums.
 template <typename Value>
 Plane plane(const Film& film, Value&& value) {
   Plane result;
@@ -25,8 +25,8 @@ double meanDepth(const PixelSums& pixel) {
   return pixel.collided > 0 ? pixel.depth / static_cast<double>(pixel.collided) : infinity;
 }
 
-/// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity where
-/// nothing lies behind it.
+/// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity:
+/// nothing lies behind the surface.
 Plane clipPlane(const Camera& camera, const Clip& clip) {
   Plane result;
   for (int row = 0; row < camera.height(); ++row)

@@ -1,5 +1,5 @@
 #pragma once
-// What a user asks for: plain data, filled by the command line (and whoever else drives a render).
+// Request of a user: plain data, filled by the command line (or another driver of a render).
 
 #include "clip/surface/ClippingSurface.h"
 #include "model/camera/Camera.h"
@@ -16,13 +16,13 @@ namespace fenestra {
 
 enum class ClipMode { none, plane, cutaway, surface, hole, ghost };
 
-/// Those that are a depth buffer, and need a focus for it.
+/// True for clips by a depth buffer, which need a focus.
 constexpr bool isDepthClip(ClipMode mode) {
   return mode != ClipMode::none && mode != ClipMode::plane;
 }
 
 struct PlaneRequest {
-  Vec3 origin, normal; ///< RAS mm; what the normal points at is removed
+  Vec3 origin, normal; ///< RAS mm; the side that the normal points at is removed
 
   bool operator==(const PlaneRequest&) const = default;
 };
@@ -41,18 +41,18 @@ struct ClipRequest {
   bool operator==(const ClipRequest&) const = default;
 };
 
-/// How the focus's labels become its mask, and what the rest looks like.
+/// Shaping of the focus's labels into a mask, and look of the context.
 struct FocusRequest {
   MaskShaping shaping = {};
-  double contextExtinction = 1.0; ///< multiplies the extinction outside the focus, 0 to 1
-  double contextSaturation = 1.0; ///< of the colours there, 0 to 1
+  double contextExtinction = 1.0; ///< factor of the extinction outside the focus, 0 to 1
+  double contextSaturation = 1.0; ///< factor of the colours' saturation there, 0 to 1
 
   bool isStyled() const { return contextExtinction != 1.0 || contextSaturation != 1.0; }
 
   bool operator==(const FocusRequest&) const = default;
 };
 
-/// Where the eye is: a named direction, or a pose of which unset parts are derived from the scene.
+/// Position of the eye: a named direction, or a pose, its unset members derived from the scene.
 struct ViewRequest {
   std::optional<Projection> projection = {}; ///< by default the scene's, else orthographic
   /// anterior, posterior, left, right, superior, inferior; auto: AutomaticView.h, with a focus
@@ -61,7 +61,7 @@ struct ViewRequest {
   std::optional<double> scale = {}; ///< orthographic: half the viewport's height, mm
   std::optional<double> angle = {}; ///< perspective: full vertical angle, degrees
 
-  /// The camera of a Slicer scene applies, with what else is set here changed.
+  /// True: the camera of a Slicer scene applies, changed by the other members set here.
   bool followsScene() const { return !name && !position; }
   bool isAutomatic() const { return name == "auto"; }
 
@@ -70,7 +70,7 @@ struct ViewRequest {
 
 struct SceneRequest {
   std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
-  std::optional<std::string> volume = {};       ///< which one of several: a node, or a DICOM series
+  std::optional<std::string> volume = {};       ///< choice among several: a node, or a DICOM series
   std::optional<std::string> segmentation = {}; ///< a node of the scene, or a file
   std::vector<std::string> focus = {};          ///< ids, names or label values
   std::optional<std::string> transfer =
@@ -83,15 +83,15 @@ struct SceneRequest {
   ViewRequest view;
   ClipRequest clip;
   int width = 512, height = 512;
-  bool measure = false; ///< what the clip is worth: the focus is traced even where no clip needs it
+  bool measure = false; ///< measures the clip; traces the focus even if no clip needs it
   FocusRequest focusLook = {};
-  /// A clipping surface is steadied over so many degrees to both sides
+  /// Degrees to both sides over which a clipping surface is steadied
   /// (clip/surface/SteadySurface.h).
   double steadyDegrees = 0.0;
-  /// What `transfer` was made for, where an organ preset chose it: a volume that is known to be
-  /// something else gets the look that suits it, and a warning.
+  /// Modality that `transfer` was made for, if an organ preset chose it. A volume known to be of
+  /// another modality gets the look that suits it, and a warning.
   std::optional<Modality> transferFor = {};
-  /// What was asked for and is no part of this, and why: first of the scene's warnings.
+  /// Requested things that this request leaves out, with reasons: first of the scene's warnings.
   std::vector<std::string> leftOut = {};
 };
 

@@ -45,8 +45,8 @@ std::string nameOf(Modality modality) {
   return "ultrasound";
 }
 
-/// Null collisions take time in proportion to the greatest extinction: without a limit a file could
-/// ask for paths that never end.
+/// Throws Error (input) above a limit of the extinction: null collisions take time in proportion to
+/// the greatest extinction, and a file could make paths endless.
 void checkExtinction(const TransferFunction& transfer, const Volume& volume,
                      const std::string& name) {
   constexpr double thickest = 1e7; // optical depth across the volume
@@ -62,7 +62,7 @@ void checkExtinction(const TransferFunction& transfer, const Volume& volume,
   throw inputError(name, line.str());
 }
 
-/// The focus depths at the viewport's pixels.
+/// Focus depths at the viewport's pixels, mm.
 std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera) {
   std::vector<double> depths;
   for (int row = 0; row < camera.height(); ++row)
@@ -162,7 +162,8 @@ void Scene::readFocus(const SceneRequest& request) {
   m_focus = focus ? std::make_shared<const FocusInput>(std::move(*focus)) : nullptr;
 }
 
-/// The request's (it is read), else the scene's, else what suits the volume.
+/// Chooses the request's transfer function (m_named), else the scene's, else one that suits the
+/// volume.
 void Scene::chooseTransfer(const SceneRequest& request) {
   m_lookWarnings.clear();
   const bool unsuitable = request.transferFor && !suits(*request.transferFor, volume());

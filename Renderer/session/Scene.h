@@ -1,8 +1,8 @@
 #pragma once
-// From a request to everything that transport needs, in stages that each depend on those before:
-// volume, focus, transfer function, camera, lights, clip, ranges of cells, majorants. A scene is a
-// value that never changes; another request makes a scene that shares with it whatever does not
-// depend on what is different.
+// Scene: everything that transport needs, made from a request in stages, each depending on earlier
+// stages: volume, focus, transfer function, camera, lights, clip, ranges of cells, majorants. A
+// scene is a value that never changes; the scene of another request shares all stages that do not
+// depend on the difference.
 
 #include "clip/surface/ClippingSurface.h"
 #include "clip/surface/FocusPlane.h"
@@ -15,12 +15,12 @@
 
 namespace fenestra {
 
-/// Wall-clock seconds by stage, as the stats report them; 0 for stages that were shared.
+/// Wall-clock seconds by stage, for the stats; 0: shared.
 struct StageSeconds {
   double load = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0;
 };
 
-/// The stages that were made for a scene, and not shared with the one before.
+/// Stages made for a scene; false: shared with the scene before.
 struct StagesMade {
   bool volume = false, focus = false, transfer = false, camera = false, lights = false,
        clip = false, ranges = false, majorants = false;
@@ -34,8 +34,8 @@ public:
   /// Error.
   explicit Scene(const SceneRequest& request);
 
-  /// What Scene(request) would be, but only stages that depend on what differs from this scene's
-  /// request are made. Files are taken not to have changed. Throws Error.
+  /// Scene(request), of which only stages that depend on a difference from this scene's request are
+  /// made. Files are assumed unchanged. Throws Error.
   Scene changed(const SceneRequest& request) const;
 
   RenderScene forRender() const {
@@ -43,45 +43,45 @@ public:
             *m_camera, m_clip,      m_settings.crop, style()};
   }
   const Volume& volume() const { return m_volume->volume; }
-  /// The volume's box, or what a Slicer scene's cropping box leaves of it.
+  /// Volume's box, or its part inside a Slicer scene's cropping box.
   Domain domain() const { return {volume().grid, m_settings.crop}; }
-  /// The mask of the focus; null where there is none.
+  /// Mask of the focus; null: none.
   const Mask* focus() const { return m_focus ? &m_focus->mask : nullptr; }
   const TransferFunction& transfer() const { return *m_transfer; }
-  /// Which transfer function it is: a file, a preset, or that it follows the volume's range.
+  /// Source of the transfer function: a file, a preset, a node, or "by the volume's range".
   const std::string& look() const { return m_look; }
   const Camera& camera() const { return *m_camera; }
   const Clip& clip() const { return m_clip; }
-  /// How what is not focus differs; null where it looks as it is.
+  /// Style of the context; null: unchanged.
   const ContextStyle* style() const { return m_style ? &*m_style : nullptr; }
-  /// Depth of the focus at each pixel's centre, mm, infinity where it is missed; empty without a
-  /// focus, and in the clip modes none and plane unless the clip is to be measured.
+  /// Depth of the focus at each pixel's centre, mm; infinity: missed. Empty without a focus, and,
+  /// unless the clip is measured, in the clip modes none and plane (with a given plane).
   const std::vector<double>& focusDepth() const { return m_focusDepth; }
-  /// How far the spline misses the focus's boundary, or an exact surface where that is measured;
-  /// nothing in the other clip modes.
+  /// mm by which the spline misses the focus's boundary, or an exact surface if measured; nothing
+  /// in the other clip modes.
   const std::optional<BoundaryMismatch>& mismatch() const { return m_mismatch; }
-  /// How the context meets the focus's outline, where it is to be measured.
+  /// Measures of the clip along the focus's outline; nothing: not measured.
   const std::optional<BoundaryMeasures>& boundary() const { return m_boundary; }
-  /// Of a spline; empty for other clips.
+  /// Control points of a spline; empty for other clips.
   const std::vector<ControlPoint>& controlPoints() const { return m_controlPoints; }
   const CellRanges& ranges() const { return *m_ranges; }
   const StageSeconds& seconds() const { return m_seconds; }
   const StagesMade& made() const { return m_made; }
   std::vector<std::string> warnings() const;
-  /// Files that were read, for this scene or for those that it shares stages with.
+  /// Files read for the stages of this scene, shared stages included.
   std::vector<std::string> files() const;
-  /// What a Slicer scene shows where no ray meets anything; nothing for other inputs.
+  /// Background of a Slicer scene, where rays meet nothing; nothing for other inputs.
   const std::optional<Background>& background() const { return m_settings.background; }
 
 private:
-  /// `before`: the request that the stages so far were made for; null where there are none.
+  /// `before`: request of the stages so far; null: none.
   void make(const SceneRequest& request, const SceneRequest* before);
   void readFocus(const SceneRequest& request);
   void chooseTransfer(const SceneRequest& request);
   void placeCamera(const SceneRequest& request);
   void buildClip(const SceneRequest& request);
   void styleContext(const FocusRequest& request);
-  /// `depth` of the focus is needed where the request names no plane.
+  /// `depth`: of the focus, needed if the request names no plane.
   ClipPlane placedPlane(const ClipRequest& request, const std::optional<FocusDepth>& depth) const;
   void buildDepthClip(ClipMode mode, const SceneRequest& scene);
 
@@ -89,14 +89,14 @@ private:
   std::shared_ptr<const VolumeInput> m_volume;
   SceneSettings m_settings;
   std::shared_ptr<const FocusInput> m_focus;
-  std::optional<NamedTransfer> m_named; ///< as the request names it
+  std::optional<NamedTransfer> m_named; ///< named by the request
   std::optional<TransferFunction> m_transfer;
   std::string m_look;
-  std::optional<ViewDirection> m_automaticView; ///< once it was asked for
+  std::optional<ViewDirection> m_automaticView; ///< set on first use
   std::vector<std::string> m_lookWarnings;
   std::optional<Camera> m_camera;
-  std::shared_ptr<const std::vector<Light>> m_lightList; ///< as they were read
-  std::string m_lightFile;                               ///< empty where they are of no file
+  std::shared_ptr<const std::vector<Light>> m_lightList; ///< as read
+  std::string m_lightFile;                               ///< empty: not from a file
   std::shared_ptr<const LightSet> m_lights;
   Clip m_clip;
   std::optional<ContextStyle> m_style;

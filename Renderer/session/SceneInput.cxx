@@ -55,14 +55,14 @@ VolumeInput volumeInFiles(const SceneRequest& request) {
   return input;
 }
 
-/// A segmentation file, whatever the input is.
+/// Focus from a segmentation file, for any kind of input.
 FocusInput focusInFile(const SceneRequest& request, const Grid& volume) {
   return {readSegmentation(*request.segmentation, &volume)
               .mask(request.focus, volume, request.focusLook.shaping),
           {*request.segmentation}};
 }
 
-/// The segmentation by its name in the scene, else a file of that name.
+/// Focus from the segmentation of that name in the scene, else from a file of that name.
 FocusInput focusInScene(const SceneRequest& request, const Grid& volume) {
   MrmlScene scene(request.input);
   const ScenePlan plan = planFor(scene, request);

@@ -1,7 +1,6 @@
 #pragma once
-// What a request's files hold, whatever they are: a volume, a DICOM folder, or a Slicer scene with
-// all that was set up in it. Three parts, so that a changed request reads only what it changes;
-// each throws Error.
+// Contents of a request's files: a volume, a DICOM folder, or a Slicer scene with its settings.
+// Three parts, so that a changed request reads only the changed parts; each throws Error.
 
 #include "files/segments/SegmentationReader.h"
 #include "model/camera/Camera.h"
@@ -19,12 +18,11 @@ namespace fenestra {
 
 struct VolumeInput {
   Volume volume;
-  std::vector<std::string> files = {}; ///< that were read
+  std::vector<std::string> files = {}; ///< files read
 };
 VolumeInput loadVolume(const SceneRequest& request);
 
-/// Of a Slicer scene, beside its volume; each is nothing where the scene does not say, or the
-/// request says otherwise.
+/// Settings of a Slicer scene. Nothing: not set in the scene, or overridden by the request.
 struct SceneSettings {
   std::optional<TransferFunction> transfer = {};
   std::string transferName = {};
@@ -33,26 +31,26 @@ struct SceneSettings {
   std::optional<Background> background = {};
 
   std::vector<std::string> warnings = {};
-  std::vector<std::string> files = {}; ///< that were read
+  std::vector<std::string> files = {}; ///< files read
 };
 SceneSettings loadSettings(const SceneRequest& request, const Volume& volume);
-/// Whether loadSettings reads the same for both, of one scene.
+/// True if loadSettings reads equal settings for both requests, from one scene.
 bool sameSettings(const SceneRequest& a, const SceneRequest& b);
 
 struct FocusInput {
   Mask mask;
-  std::vector<std::string> files; ///< that were read
+  std::vector<std::string> files; ///< files read
 };
-/// The names of all segments among which a focus would be looked for, without their labels.
+/// Names of all segments that would be searched for a focus, without labels.
 struct SegmentNames {
   std::string source;                ///< names the segmentation in messages
-  std::vector<SegmentInfo> segments; ///< empty where they have no names
+  std::vector<SegmentInfo> segments; ///< empty: segments have no names
 };
-/// Nothing where there is no segmentation. Of the request the input, the volume and the
-/// segmentation count.
+/// Names of the segments; nothing without a segmentation. Reads only request.input, .volume and
+/// .segmentation.
 std::optional<SegmentNames> loadSegmentNames(const SceneRequest& request);
 
-/// The segments that the request asks for; nothing where it asks for none.
+/// Mask of the requested segments; nothing if none are requested.
 std::optional<FocusInput> loadFocus(const SceneRequest& request, const Grid& volume);
 
 } // namespace fenestra

@@ -1,4 +1,4 @@
-// The inspection of Slicer scenes: first every node by itself, then what a render makes of them.
+// Inspection of Slicer scenes: the parts that a render uses, then every node by itself.
 
 #include "files/slicer/ScenePlan.h"
 #include "session/Defaults.h"
@@ -48,7 +48,7 @@ private:
   const MrmlDocument& document() const { return m_scene.document; }
   const Grid* volumeGrid() const { return m_grid ? &*m_grid : nullptr; }
 
-  /// As for a render with a focus; where only its segmentation is open, as for one without.
+  /// Plans a render with a focus; if only the focus's segmentation is undecided, one without.
   void plan() {
     SceneChoice choice{m_request.volume, m_request.segmentation, true};
     const auto planned = [&] { return planRender(document(), choice); };
@@ -93,7 +93,8 @@ private:
     noteUsed(use);
   }
 
-  /// Volume, look and camera: by doing what a render does. Where that fails, what can be read.
+  /// Finds volume, look and camera by making a Scene; if the Scene fails, by reading volume and
+  /// look.
   void readRender(RenderUse& use) {
     const auto scene =
         attempted([&] { return std::make_unique<Scene>(m_request); }, m_result.refused);
@@ -113,7 +114,7 @@ private:
     }
   }
 
-  /// `look` is what the render says of it (Scene::look).
+  /// `look`: Scene::look of the render.
   LookUse lookUse(const Volume& volume, const std::string& look) const {
     const MrmlNode* property = m_plan->property;
     if (property && look == property->name)
@@ -170,7 +171,7 @@ private:
         ++m_result.others[node.tag];
   }
 
-  /// Of which volume each display is.
+  /// Maps each display to its volume.
   void findOwners() {
     for (const MrmlNode& node : document().nodes())
       if (const auto displays = node.references.find("display");
@@ -188,7 +189,7 @@ private:
     return result;
   }
 
-  /// Files take time: of many nodes the first ones are read, and those that a render uses.
+  /// True for nodes after the first 64 that no render uses: reading files takes time.
   static bool isSkipped(std::size_t before, NodeSummary& node) {
     constexpr std::size_t mostRead = 64;
     if (before < mostRead || node.used)
@@ -252,13 +253,13 @@ private:
     return result;
   }
 
-  /// A segmentation that the scene does not hold may be a file.
+  /// Inspects a requested segmentation that is not in the scene, but may be a file.
   void inspectChosenFile() {
     if (!m_plan || m_plan->segmentation || !m_request.segmentation)
       return;
     const std::filesystem::path path = *m_request.segmentation;
     std::error_code failed;
-    if (!std::filesystem::exists(path, failed) && !failed) { // else its reader tells why
+    if (!std::filesystem::exists(path, failed) && !failed) { // else its reader reports why
       m_result.render->segmentationProblem =
           "--segmentation " + path.string() + ": is neither in the scene nor a file";
       return;
@@ -278,7 +279,7 @@ private:
   std::optional<Grid> m_grid; ///< of the volume
   std::set<const MrmlNode*> m_used;
   std::map<std::string, std::string> m_owners;
-  std::string m_unused; ///< problems that are listed with their nodes, or as the refusal
+  std::string m_unused; ///< problems reported elsewhere: with their nodes, or in `refused`
   Inspection m_result;
 };
 

@@ -8,7 +8,7 @@ namespace fenestra {
 
 namespace {
 
-/// The n-th point of a sequence that fills the unit square evenly and along no axis of it (Roberts
+/// Point n of a sequence that fills the unit square evenly, not aligned with its axes (Roberts
 /// 2018, "The unreasonable effectiveness of quasirandom sequences").
 Vec2 evenPoint(std::size_t n) {
   const auto fraction = [](double x) { return x - std::floor(x); };
@@ -28,7 +28,7 @@ bool isFocus(const Mask& focus, const Vec3& world) {
 
 } // namespace
 
-/// What parallel rays meet of the focus first.
+/// Depths at which parallel rays first meet the focus.
 class ViewScorer::FocusDepths {
 public:
   FocusDepths(const FocusCells& cells, const Domain& domain, const Vec3& fromTarget,
@@ -42,10 +42,10 @@ public:
     trace(rays);
   }
 
-  /// mm².
+  /// Area of the focus's projection, mm².
   double area() const { return 4.0 * m_half.x() * m_half.y() * met(); }
   double met() const { return m_meetings / m_rays; }
-  /// From there on a world point is removed; mm along the view from the focus's centre.
+  /// Depth, mm from the focus's centre, of the clip's surface at a point of `local` coordinates.
   double surfaceAt(const Vec3& point) const {
     const Vec2 at = binPosition(point.head<2>());
     if ((at.array() < 0.0).any() || (at.array() >= double{bins}).any())
@@ -53,7 +53,7 @@ public:
     const Bin& bin = m_bins[binIndex(at)];
     return bin.count > 0.0 ? bin.sum / bin.count : m_mean;
   }
-  /// Across the view, and depth along it, from the focus's centre; mm.
+  /// Coordinates from the focus's centre, mm: two across the view, and depth along the view.
   Vec3 local(const Vec3& world) const {
     const Vec3 across = m_frame.toLocal(world - m_center);
     return {across.x(), across.y(), -across.z()};
@@ -62,7 +62,7 @@ public:
 private:
   static constexpr int bins = 32; ///< along each axis
   struct Bin {
-    double sum = 0.0, count = 0.0; ///< of depths
+    double sum = 0.0, count = 0.0; ///< of depths, mm
   };
 
   Vec2 binPosition(const Vec2& across) const {
@@ -91,7 +91,7 @@ private:
     m_mean = m_meetings > 0.0 ? m_mean / m_meetings : 0.0;
   }
 
-  /// A ray from in front of the focus, its part inside the domain.
+  /// Adds the part inside the domain of a ray that starts in front of the focus.
   void add(FocusRays& batch, const Vec2& across) const {
     const Vec3 start = m_center + m_frame.toWorld({across.x(), across.y(), m_half.z()});
     const Ray world{start, -m_frame.normal};
@@ -119,11 +119,11 @@ private:
 
   const FocusCells& m_cells;
   const Domain& m_domain;
-  Frame m_frame; ///< its normal points to the eye
+  Frame m_frame; ///< normal: toward the eye
   Vec3 m_center;
-  Vec3 m_half = Vec3::Zero(); ///< of the cells' box, mm
+  Vec3 m_half = Vec3::Zero(); ///< half extents of the cells' box, mm
   double m_rays = 0.0, m_meetings = 0.0;
-  double m_mean = 0.0; ///< depth
+  double m_mean = 0.0; ///< mean depth, mm
   std::array<Bin, std::size_t{bins} * bins> m_bins{};
 };
 

@@ -42,7 +42,7 @@ vtkStandardNewMacro(vtkSlicerFenestraLogic);
 namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
-constexpr int ResultLayout = 5617; // above all of Slicer's own
+constexpr int ResultLayout = 5617; // larger than the numbers of Slicer's own layouts
 constexpr const char* ResultLayoutXml =
     "<layout type=\"horizontal\" split=\"true\">"
     "<item splitSize=\"600\"><view class=\"vtkMRMLSliceNode\" singletontag=\"Fenestra\">"
@@ -79,7 +79,7 @@ FenestraScene::Image ReadFloats(const std::string& file) {
   return image;
 }
 
-/// Row 0 at the top, as in the renderer's volumes, and without transparency; a slice a file.
+/// Reads picture files as slices: row 0 at the top, as in the renderer's volumes, no transparency.
 vtkSmartPointer<vtkImageData> ReadPictures(const std::vector<std::string>& files) {
   vtkNew<vtkStringArray> names;
   for (const std::string& file : files)
@@ -102,7 +102,7 @@ std::string FrameFile(const std::string& folder, int frame) {
   return folder + "/frame_" + number + ".png";
 }
 
-/// As the eye saw a picture's slice: its rows run to the right, its columns down.
+/// Turns the slice view to the picture as the eye saw it: rows to the right, columns down.
 void FaceFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
   double directions[3][3];
   picture->GetIJKToRASDirections(directions);
@@ -132,7 +132,7 @@ bool Shows(vtkMRMLSliceLogic* view, const char* picture) {
   return picture && shown && std::strcmp(picture, shown) == 0;
 }
 
-/// A grey window over what is finite.
+/// Sets a grey window over the finite values.
 void ShowFinite(vtkMRMLVolumeNode* volume, const FenestraScene::Image& depth) {
   auto* display = vtkMRMLScalarVolumeDisplayNode::SafeDownCast(volume->GetDisplayNode());
   const auto* values = static_cast<const float*>(depth.data.get());
@@ -271,7 +271,7 @@ std::string vtkSlicerFenestraLogic::GetPlaneFlag(vtkMRMLNode* node) {
 bool vtkSlicerFenestraLogic::HasSurface(const std::map<std::string, std::string>& flags) {
   const auto clip = flags.find("clip");
   const std::string mode = clip == flags.end() ? "" : clip->second;
-  if (mode.empty() || mode == "auto") // so do all presets
+  if (mode.empty() || mode == "auto") // all presets clip by surface
     return flags.count("focus") > 0 || flags.count("preset") > 0;
   return mode != "none" && mode != "plane";
 }
@@ -280,12 +280,12 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
   std::vector<std::string> arguments = {"--stats=stats.json"};
   if (render->IsTurntable())
     arguments.push_back("--output=frame.png");
-  else // layers that take long to pack would make a stop wait
+  else // layers that compress slowly would delay a stop
     arguments.insert(arguments.end(), {"--output=picture.png", "--output=picture.exr",
                                        "--output=radiance.nrrd", "--layers=color,depth"});
   if (withSurface && !render->IsTurntable())
     arguments.push_back("--surface=surface.vtp");
-  for (const auto& [name, value] : render->GetFlags()) // a value stays one, whatever it begins with
+  for (const auto& [name, value] : render->GetFlags()) // "=" keeps a value that begins with a dash
     arguments.push_back("--" + name + "=" + value);
   return arguments;
 }
@@ -346,12 +346,12 @@ void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
   vtkMRMLDisplayNode* display = model->GetDisplayNode();
   display->SetColor(0.44, 0.69, 0.78);
   display->SetOpacity(0.5);
-  display->SetVisibility(false); // it lies in front of what the user looks at
+  display->SetVisibility(false); // the surface lies in front of the anatomy
   render->SetNodeReferenceID(Node::SurfaceRole, model->GetID());
 }
 
-/// A slice view of the picture's plane is not to show segments and models that lie in it: the
-/// picture is moved toward the eye, beyond the volume.
+/// Matrix of the picture, moved toward the eye beyond the volume: a slice view in its plane then
+/// shows no segments and models that lie there.
 FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
                                                             const FenestraScene::Matrix& ijkToRas) {
   auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
@@ -368,7 +368,7 @@ FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
   return moved;
 }
 
-/// They are no place in the anatomy: a millimetre a pixel, far from it.
+/// Frames have no place in the anatomy: placed far from it, with 1 mm pixels.
 void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
     return picture->SetAndObserveImageData(frames);
@@ -438,7 +438,7 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   composite->SetForegroundVolumeID(nullptr);
   composite->SetLabelVolumeID(nullptr);
   FaceFrame(picture, 0, slice);
-  const int* view = slice->GetDimensions(); // without them the picture's sides are cut off
+  const int* view = slice->GetDimensions(); // otherwise the picture's sides are cut off
   logic->FitSliceToBackground(view[0], view[1]);
 }
 

@@ -21,75 +21,72 @@ class vtkMRMLSliceLogic;
 class vtkMRMLVolumeNode;
 class vtkPolyData;
 
-/// What a render left, read from its files. Of a turntable there is the picture alone, with a
-/// frame in each of its slices.
+/// Result of a render, read from its files. A turntable has only `picture`, with one frame a slice.
 struct vtkSlicerFenestraResult {
-  FenestraScene::Image radiance;         ///< linear RGBA, where the picture lies in the world
-  FenestraScene::Image depth;            ///< mm from the eye; infinite where nothing is
+  FenestraScene::Image radiance;         ///< linear RGBA, placed in the world
+  FenestraScene::Image depth;            ///< mm from the eye; infinite: nothing seen
   vtkSmartPointer<vtkImageData> picture; ///< display colours, row 0 at the top
-  vtkSmartPointer<vtkPolyData> surface;  ///< the clipping surface, RAS; none where none clips
+  vtkSmartPointer<vtkPolyData> surface;  ///< clipping surface, RAS; null: none
 };
 
-/// What a user can mend, in one sentence that says how.
+/// Problem that a user can solve; one sentence that says how.
 struct vtkSlicerFenestraComplaint : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// \brief Between Slicer's scene and the renderer's files.
+/// \brief Exchange between Slicer's scene and the renderer's files.
 ///
-/// Nothing here waits: writing and reading files is for other threads (FenestraScene::Writer,
-/// ReadResult), taking what they need and adding what they bring is quick.
+/// All calls are quick: files are written and read in other threads (FenestraScene::Writer,
+/// ReadResult).
 class VTK_SLICER_FENESTRA_MODULE_LOGIC_EXPORT vtkSlicerFenestraLogic : public vtkSlicerModuleLogic {
 public:
   static vtkSlicerFenestraLogic* New();
   vtkTypeMacro(vtkSlicerFenestraLogic, vtkSlicerModuleLogic);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// The settings that the panel edits; made where there are none. A singleton of the scene;
-  /// renders are copies of it.
+  /// Settings that the panel edits; created if missing. A singleton of the scene; renders are
+  /// copies.
   vtkMRMLFenestraRenderNode* GetSettings();
-  /// A node of its own for a render, with the settings as they are now: what a 3-D view's camera
-  /// looked at is a fixed view from now on. A turntable's has the settings' flags of turntables.
+  /// Adds a node for a render with the current settings; a followed camera becomes a fixed view. A
+  /// turntable's node keeps the flags of turntables.
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
 
-  /// Everything that the renderer needs but the flags, without a copy of the voxels. `folder` is
-  /// private: what Slicer can only write as files passes through it. Throws
-  /// vtkSlicerFenestraComplaint.
+  /// All that the renderer needs except the flags, without a copy of the voxels. `folder`: private,
+  /// for data that Slicer can only write as files. Throws vtkSlicerFenestraComplaint.
   FenestraScene::Contents Snapshot(vtkMRMLFenestraRenderNode* render,
                                    const std::filesystem::path& folder);
-  /// The node's flags, with those of its 3-D view's camera where nothing else says where to look
-  /// from.
+  /// The node's flags, and those of its 3-D view's camera unless another flag sets the view.
   std::map<std::string, std::string> GetFlags(vtkMRMLFenestraRenderNode* render);
   static std::map<std::string, std::string> GetCameraFlags(vtkMRMLCameraNode* camera);
-  /// The flag for a plane of the Markups module; empty where it is none, or not placed yet.
+  /// Flag value of a plane of the Markups module; empty: no plane, or not placed yet.
   static std::string GetPlaneFlag(vtkMRMLNode* plane);
-  /// The camera of the node's 3-D view; none where the flags fix a view.
+  /// Camera of the node's 3-D view; null: the flags set the view.
   vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
 
-  /// Of a render into `folder`, under the names of GetArguments. Throws
-  /// FenestraScene::FileError. For any thread.
+  /// Reads a result from `folder`, where files have the names of GetArguments. Throws
+  /// FenestraScene::FileError. Thread-safe.
   static vtkSlicerFenestraResult ReadResult(const std::string& folder);
-  /// Flags of the command line that make a render of the node, and leave what ReadResult reads.
+  /// Command line flags for rendering the node, with outputs that ReadResult reads.
   static std::vector<std::string> GetArguments(vtkMRMLFenestraRenderNode* render, bool withSurface);
-  /// A turntable's finished frames in `folder`, from the first one on.
+  /// Finished frames of a turntable in `folder`, from frame 0 to the first missing one.
   static std::vector<std::string> GetFrameFiles(const std::string& folder);
-  /// Whether a clipping surface comes with these flags.
+  /// True if a render with these flags has a clipping surface.
   static bool HasSurface(const std::map<std::string, std::string>& flags);
 
-  /// Adds the result's nodes and lets the render refer to them: a node each step, from 0, for the
-  /// application can answer its user in between. A turntable that went on shows more frames then.
+  /// Adds nodes of the result, referenced by the render: one a step, so that the application stays
+  /// responsive between steps, 0 to ResultSteps - 1. For a resumed turntable, replaces the frames.
   void AddResult(vtkMRMLFenestraRenderNode* render, const vtkSlicerFenestraResult& result,
                  int step);
   static constexpr int ResultSteps = 4;
-  /// Shows the scene's newest volume in the slice views, which loading a scene leaves as they are.
+  /// Shows the scene's newest volume in the slice views; loading a scene does not change them.
   void ShowNewestVolume();
-  /// Shows the render's picture beside a 3-D view, in a layout of the module's own.
+  /// Shows the render's picture beside a 3-D view, in the module's own layout.
   void ShowResult(vtkMRMLFenestraRenderNode* render);
-  /// The one whose picture the user sees in that layout; null: none.
+  /// Render whose picture the module's layout shows; null: none.
   vtkMRMLFenestraRenderNode* GetShownRender();
-  /// Another frame of a turntable, in the same view.
+  /// Shows another frame of a turntable, in the same view.
   void ShowFrame(vtkMRMLFenestraRenderNode* render, int frame);
-  /// 1 where it is no turntable's; 0 without a picture.
+  /// Frames in the render's picture; 1: not a turntable; 0: no picture.
   static int GetNumberOfFrames(vtkMRMLFenestraRenderNode* render);
 
 protected:
@@ -100,7 +97,7 @@ protected:
 
   void RegisterNodes() override;
   void SetMRMLSceneInternal(vtkMRMLScene* scene) override;
-  /// Lets the scene's layout know the module's, in which the scene may have been saved.
+  /// Registers the module's layout, in which the scene may have been saved.
   void OnMRMLSceneStartImport() override;
 
 private:

@@ -72,8 +72,8 @@ FenestraScene::Matrix ToMatrix(vtkMatrix4x4* matrix) {
   return copy;
 }
 
-/// The image's array, which its new owner keeps alive; `ijkToRas` is of index 0, which an image's
-/// extent need not begin with.
+/// Image that shares the array and keeps it alive. `ijkToRas` is for index 0, which need not be
+/// where the extent begins.
 FenestraScene::Image Shared(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
   FenestraScene::Image shared;
   vtkSmartPointer<vtkDataArray> array = image->GetPointData()->GetScalars();
@@ -123,7 +123,7 @@ vtkMRMLVolumeRenderingDisplayNode* RenderingOf(vtkMRMLScalarVolumeNode* volume) 
   return first;
 }
 
-/// A file that goes with this, whatever happens.
+/// File that is removed at the end of scope, also after an exception.
 struct PassingFile {
   explicit PassingFile(const std::filesystem::path& file) : path(file) {}
   ~PassingFile() {
@@ -136,10 +136,11 @@ struct PassingFile {
   std::filesystem::path path;
 };
 
-/// As Slicer itself would save it: its storage knows what this version's properties hold.
+/// Takes the property as Slicer saves it: Slicer's storage knows the fields of this version's
+/// properties.
 void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
                   FenestraScene::Contents& contents) {
-  vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own is not to look as if it were saved
+  vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own must not count as saved
   copy->Copy(property);
   const auto storage =
       vtkSmartPointer<vtkMRMLStorageNode>::Take(property->CreateDefaultStorageNode());
@@ -184,7 +185,7 @@ void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, FenestraScene::Contents
   contents.crop.push_back({text.str(), FenestraScene::identity});
 }
 
-/// Segments as labels; of surfaces, in a copy that the scene does not see.
+/// Segmentation with binary labelmaps; if it has only surfaces, a converted copy outside the scene.
 vtkSmartPointer<vtkSegmentation> WithLabels(vtkMRMLSegmentationNode* node) {
   const std::string labels = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
   vtkSmartPointer<vtkSegmentation> segmentation = node->GetSegmentation();
@@ -204,7 +205,7 @@ bool IsEmpty(vtkOrientedImageData* labels) {
          labels->GetNumberOfPoints() == 0;
 }
 
-/// What says of which anatomy a segment is.
+/// Terminology tag of the segment, which names its anatomy.
 std::string Tags(vtkSegment* segment) {
   std::string entry;
   if (!segment->GetTag(vtkSegment::GetTerminologyEntryTagName(), entry) || entry.empty())
@@ -212,7 +213,7 @@ std::string Tags(vtkSegment* segment) {
   return std::string(vtkSegment::GetTerminologyEntryTagName()) + ":" + entry + "|";
 }
 
-/// A layer on the lattice of the first one; where its own is another, its nearest labels there.
+/// Layer on the lattice of the first one; labels on another lattice are resampled (nearest).
 FenestraScene::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* first) {
   vtkSmartPointer<vtkOrientedImageData> image = labels;
   if (!vtkOrientedImageDataResample::DoGeometriesMatch(labels, first)) {

@@ -9,15 +9,16 @@
 class vtkMRMLScalarVolumeNode;
 class vtkMRMLSegmentationNode;
 
-/// What the renderer needs of Slicer's nodes, taken without copying voxels: arrays are shared, and
-/// live as long as who wants them. Functions throw vtkSlicerFenestraComplaint.
+/// Data of Slicer's nodes for the renderer, without copies of voxels: arrays are shared, and freed
+/// with their last owner. Functions throw vtkSlicerFenestraComplaint.
 namespace vtkSlicerFenestraSnapshot {
 void TakeVolume(vtkMRMLScalarVolumeNode* volume, FenestraScene::Contents& contents);
-/// The volume rendering that the user set up, if any: its property, which passes through a file in
-/// the private `folder`, and its crop box.
+/// Takes the user's volume rendering, if any: its crop box and its property, which passes through a
+/// file in the private `folder`.
 void TakeRendering(vtkMRMLScalarVolumeNode* volume, const std::filesystem::path& folder,
                    FenestraScene::Contents& contents);
-/// All segments, hidden and unsaved ones, too. Those of `focus` must be there and not empty.
+/// Takes all segments, also hidden and unsaved ones. Segments in `focus` must exist and not be
+/// empty.
 void TakeSegmentation(vtkMRMLSegmentationNode* segmentation, const std::vector<std::string>& focus,
                       FenestraScene::Contents& contents);
 } // namespace vtkSlicerFenestraSnapshot

@@ -12,19 +12,19 @@
 class vtkMRMLModelNode;
 class vtkMRMLVolumeNode;
 
-/// \brief What a picture was made of, and what came of it.
+/// \brief Settings and results of a picture.
 ///
-/// Settings are flags of the renderer's command line, kept as they are there and written into the
-/// scene as attributes of the same names, so that `fenestra scene.mrml` makes the picture again. Of
-/// several such nodes the renderer follows the last.
+/// Settings are flags of the renderer's command line with their values, saved as attributes of the
+/// same names, so that `fenestra scene.mrml` reproduces the picture. Of several such nodes the
+/// renderer uses the last.
 ///
-/// Anybody may have made a scene. So what a scene's attributes say is checked: what is no value of
-/// a flag's, and files that the scene names, are kept and written again, but withheld: no flags.
+/// Scenes come from others, so attributes are checked when read: invalid values, and files that the
+/// scene names, are withheld: kept and saved again, but not flags.
 ///
-/// References: `volume`, `segmentation`, `view` (whose camera is followed as long as no flag says
-/// where to look from), `plane` (which the flag `plane` follows), and results: `picture` (display
-/// colours; of a turntable its frames, one behind the other), `radiance` (linear RGBA), `depth`
-/// (mm) and `surface` (the clipping surface, a model).
+/// References: `volume`, `segmentation`, `view` (its camera is followed unless a flag sets the
+/// view), `plane` (source of the flag `plane`), and results: `picture` (display colours; of a
+/// turntable all frames, one slice each), `radiance` (linear RGBA), `depth` (mm) and `surface` (the
+/// clipping surface, a model).
 class VTK_SLICER_FENESTRA_MODULE_MRML_EXPORT vtkMRMLFenestraRenderNode : public vtkMRMLNode {
 public:
   static vtkMRMLFenestraRenderNode* New();
@@ -39,27 +39,29 @@ public:
 
   /// Flags that a node can hold; others are neither set nor read.
   static const std::vector<std::string>& GetFlagNames();
-  /// Those of them that are of `fenestra turntable` alone; a scene does not hand them on.
+  /// Flags in GetFlagNames() of `fenestra turntable` alone; the renderer does not take them from
+  /// scenes.
   static const std::vector<std::string>& GetTurntableFlagNames();
-  /// Whether the picture is a turntable's frames. (Settings have such flags, too.)
+  /// True if the picture holds frames of a turntable; false for settings, which have such flags
+  /// too.
   bool IsTurntable() { return !this->GetSingletonTag() && !this->GetFlag("frames").empty(); }
 
-  /// Values as the command line takes them. An empty one is a flag that is not given.
+  /// Values as on the command line; empty: flag not given.
   void SetFlag(const std::string& name, const std::string& value);
   std::string GetFlag(const std::string& name) const;
   void SetFlags(const std::map<std::string, std::string>& flags);
   const std::map<std::string, std::string>& GetFlags() const { return this->Flags; }
 
-  /// What the node's scene says and is no flag; setting that flag forgets it.
+  /// Attributes of the node's scene that are not flags; setting a flag removes its withheld value.
   const std::map<std::string, std::string>& GetWithheld() const { return this->Withheld; }
-  /// Whether it names files.
+  /// True if a withheld value names a file.
   bool WithholdsFiles() const;
-  /// The user allows it: the files are flags from now on.
+  /// Turns withheld files into flags, once the user allows them.
   void AllowFiles();
-  /// Flags, and what is withheld, as another node has them.
+  /// Copies flags and withheld values from another node.
   void CopyFlags(vtkMRMLFenestraRenderNode* node);
 
-  /// Ids, names or label values of the focus segments: the flag `focus`, split at its commas.
+  /// Focus segments by id, name or label value: the flag `focus`, split at its commas.
   void SetFocus(const std::vector<std::string>& segments);
   std::vector<std::string> GetFocus() const;
 
@@ -72,7 +74,7 @@ public:
   static const char* const DepthRole;
   static const char* const SurfaceRole;
 
-  /// Of a result: what the renderer measured, as its statistics say it (.json, an object).
+  /// Attribute of a result: measures from the renderer's statistics, a JSON object.
   static const char* const MeasuresAttribute;
 
 protected:

@@ -4,7 +4,7 @@
 #include <QRegularExpression>
 #include <QXmlStreamReader>
 
-/// As a word of its own, in the description.
+/// True if the flag's description has `word` as a separate word.
 bool qFenestraAbilities::names(const QString& flag, const QString& word) const {
   const QRegularExpression alone("(^|[\\s(,])" + QRegularExpression::escape(word) + "([\\s),.]|$)");
   return alone.match(flags.value(flag).text).hasMatch();
@@ -20,7 +20,7 @@ QMap<QString, qFenestraAbilities::Flag> qFenestraAbilities::flagsIn(const QStrin
     if (!xml.isStartElement())
       continue;
     if (xml.name() == QLatin1String("parameters"))
-      name.clear(); // what follows is a group's
+      name.clear(); // a group of flags follows
     else if (xml.name() == QLatin1String("name"))
       name = xml.readElementText(), flag = {};
     else if (xml.name() == QLatin1String("description") && !name.isEmpty())
@@ -53,7 +53,7 @@ void qFenestraQuestion::hear(const qFenestraOutcome& outcome) {
     m_child.run(m_program, {"turntable", "--help"}, QDir::tempPath());
     return;
   }
-  // Where there is no such command, the help is that of a render.
+  // Old renderers take "turntable" for a file, and print the help of a render.
   if (m_described && good && m_said.contains("--frames"))
     m_abilities.turntable = m_said;
   emit told(m_abilities);

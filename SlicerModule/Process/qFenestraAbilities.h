@@ -1,5 +1,5 @@
 #pragma once
-// What the renderer knows, asked of itself, so that a user is offered nothing that it refuses.
+// Abilities of the renderer, queried from the program, so that users see no choice that it refuses.
 
 #include "qFenestraProgram.h"
 
@@ -7,11 +7,11 @@
 
 struct qFenestraAbilities {
   struct Flag {
-    QString text;      ///< the description
-    QStringList words; ///< all that it takes, where those are fixed
+    QString text;      ///< description
+    QStringList words; ///< all values of a flag with fixed choices
   };
-  QMap<QString, Flag> flags; ///< of a picture, by name
-  QString turntable;         ///< the help of `fenestra turntable`; empty where there is none
+  QMap<QString, Flag> flags; ///< flags of a picture, by name
+  QString turntable;         ///< help text of `fenestra turntable`; empty: no such command
 
   bool takes(const QString& flag, const QString& word) const {
     return flags.value(flag).words.contains(word);
@@ -19,11 +19,11 @@ struct qFenestraAbilities {
   bool names(const QString& flag, const QString& word) const;
   bool turns() const { return !turntable.isEmpty(); }
 
-  /// Of the description for Slicer (.xml); no flags where it is none.
+  /// Flags in the description for Slicer (XML); none if it is invalid.
   static QMap<QString, Flag> flagsIn(const QString& description);
 };
 
-/// Asks once. Who is not answered knows nothing: `told` comes with empty abilities, too.
+/// Queries the renderer once. Without an answer, `told` is emitted with empty abilities.
 class qFenestraQuestion : public QObject {
   Q_OBJECT
 
@@ -40,5 +40,5 @@ private:
   QString m_program, m_said;
   qFenestraProgram m_child;
   qFenestraAbilities m_abilities;
-  bool m_described = false; ///< and the turntable is asked for
+  bool m_described = false; ///< the turntable has been queried
 };

@@ -10,10 +10,10 @@ namespace {
 bool copied(const qFenestraCopy& copy) {
   QFile in(copy.source);
   QSaveFile out(copy.target);
-  // Unbuffered: Qt's commit does not hear of what its buffer could not write any more.
+  // Unbuffered: Qt's commit does not report a failed write of its last buffer.
   if (!in.open(QIODevice::ReadOnly) || !out.open(QIODevice::WriteOnly | QIODevice::Unbuffered))
     return false;
-  constexpr qint64 most = 1 << 20; // bytes at once
+  constexpr qint64 most = 1 << 20; // bytes per read
   while (!in.atEnd()) {
     const QByteArray part = in.read(most);
     if (part.isEmpty() || out.write(part) != part.size())

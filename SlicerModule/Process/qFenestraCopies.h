@@ -1,5 +1,5 @@
 #pragma once
-// Files that a user saves: copied under other names, over files that they agreed to lose.
+// Files that a user saves: copies under new names, replacing files that the user agreed to lose.
 
 #include <QString>
 #include <QStringList>
@@ -10,19 +10,19 @@ struct qFenestraCopy {
 
 class qFenestraCopies {
 public:
-  /// `chosen` is what the user typed; without the ending it gets it.
+  /// `chosen`: the user's text; `ending` is added if missing.
   static qFenestraCopies picture(const QString& source, const QString& chosen,
                                  const QString& ending);
-  /// turn.png stands for turn_0000.png and so on, numbered as the sources are.
+  /// turn.png stands for turn_0000.png and so on, numbered like the sources.
   static qFenestraCopies frames(const QStringList& sources, const QString& chosen);
 
-  /// Of the names that are written, those that are there already, and so are to be asked for.
+  /// Target files that exist: the user must be asked before they are replaced.
   QStringList existing() const;
-  /// Writes one after the other; each is whole before it takes the place of another file. Returns
-  /// the name of the first that failed, which is as it was before; empty where none did.
+  /// Copies one file after the other; each is complete before it replaces another file. Returns the
+  /// first target that failed, which is left unchanged; empty: none.
   QString write() const;
 
-  /// The name that is written, or the first and the last one.
+  /// Target name, or the first and the last.
   QString names() const;
 
 private:

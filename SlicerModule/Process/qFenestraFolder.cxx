@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* lockName = "lock";
 
-/// Opens a lock and takes it without waiting; -1 where another process holds it, or it is none of
-/// this user's.
+/// Opens a lock and takes it without waiting; -1: another process holds it, or it belongs to
+/// another user.
 int take(const QString& file, int flags) {
   const int lock = ::open(QFile::encodeName(file).constData(),
                           flags | O_RDWR | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
@@ -27,7 +27,8 @@ int take(const QString& file, int flags) {
   return -1;
 }
 
-/// Those without a lock are too young to be judged, and hold nothing.
+/// Removes folders with a free lock. Folders without a lock are kept: just created, and still
+/// empty.
 void removeAbandoned(const QDir& parent, const QString& prefix) {
   const QStringList names = parent.entryList({prefix + "*"}, QDir::Dirs | QDir::NoSymLinks);
   for (const QString& name : names) {
@@ -46,7 +47,7 @@ qFenestraFolder::qFenestraFolder(const QString& parent, const QString& prefix)
     : QTemporaryDir((removeAbandoned(parent, prefix), parent + "/" + prefix + "XXXXXX")) {
   if (!isValid())
     return;
-  const QString young = filePath("lock.young"); // nobody sees the lock before it is held
+  const QString young = filePath("lock.young"); // the lock gets its name once it is held
   m_lock = take(young, O_CREAT | O_EXCL);
   QFile::rename(young, filePath(lockName));
 }
@@ -57,7 +58,7 @@ qFenestraFolder::~qFenestraFolder() {
     ::close(m_lock);
 }
 
-#else // abandoned folders stay
+#else // without flock: abandoned folders remain
 
 qFenestraFolder::qFenestraFolder(const QString& parent, const QString& prefix)
     : QTemporaryDir(parent + "/" + prefix + "XXXXXX") {}

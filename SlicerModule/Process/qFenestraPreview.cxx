@@ -17,7 +17,7 @@ void qFenestraPreview::start(const QString& program, const QStringList& argument
   m_child = new qFenestraProgram(this);
   connect(m_child, &qFenestraProgram::said, this, &qFenestraPreview::hear);
   connect(m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
-  connect(m_child, &QObject::destroyed, [files] {}); // the connection holds them
+  connect(m_child, &QObject::destroyed, [files] {}); // the connection keeps the files
   m_child->run(program, QStringList{"serve"} + arguments, folder);
 }
 
@@ -33,9 +33,9 @@ void qFenestraPreview::stop() {
     return child->deleteLater();
   connect(child, &qFenestraProgram::ended, child, &QObject::deleteLater);
   constexpr int grace = 150;
-  child->closeWriteChannel(); // a server ends with its input
+  child->closeWriteChannel(); // a server ends at the end of its input
   child->stop();
-  QTimer::singleShot(grace, child, &qFenestraProgram::stop); // nothing of it is to be kept
+  QTimer::singleShot(grace, child, &qFenestraProgram::stop); // kills: no result is to be kept
 }
 
 void qFenestraPreview::change(const QJsonObject& flags) {

@@ -1,6 +1,6 @@
 #pragma once
-// A preview that follows what a user does: a `fenestra serve`, told of changes when hands rest for
-// a moment, and its pictures as they get better.
+// Preview that follows the user's changes: sends them to a `fenestra serve` after a short rest, and
+// receives its pictures as they improve.
 
 #include "qFenestraProgram.h"
 
@@ -11,10 +11,10 @@
 
 struct qFenestraPicture {
   QStringList files;
-  int samples = 0;      ///< a pixel
-  double noise = -1.0;  ///< relative; negative where it is not known yet
-  double seconds = 0.0; ///< since the change
-  bool done = false;    ///< it will not get better
+  int samples = 0;      ///< samples a pixel
+  double noise = -1.0;  ///< relative noise; negative: not known yet
+  double seconds = 0.0; ///< time since the change
+  bool done = false;    ///< last picture of the change
 };
 
 class qFenestraPreview : public QObject {
@@ -23,26 +23,26 @@ class qFenestraPreview : public QObject {
 public:
   explicit qFenestraPreview(QObject* parent = nullptr);
 
-  /// Milliseconds without another change before one is told.
+  /// Milliseconds without another change before changes are sent.
   void setDelay(int milliseconds) { m_rest.setInterval(milliseconds); }
 
-  /// `fenestra serve arguments…`; a preview under way ends. `files` are held until the child has
-  /// ended, also where it is stopped before.
+  /// Starts `fenestra serve arguments…`, and ends the preview under way. `files` are kept until the
+  /// child has ended, also after stop().
   void start(const QString& program, const QStringList& arguments, const QString& folder,
              const std::shared_ptr<const void>& files = {});
-  /// Does not wait: the child ends by itself, unheard, and with this at the latest.
+  /// Returns at once: the child ends by itself, unheard, at the latest with this object.
   void stop();
   bool running() const { return m_child && m_child->state() != QProcess::NotRunning; }
-  /// Its files are relative to this folder.
+  /// Folder to which the picture's files are relative.
   QString folder() const { return m_child ? m_child->workingDirectory() : QString(); }
 
-  /// Flags and their values as `fenestra serve` takes them; later ones win.
+  /// Changes flags, with values as `fenestra serve` takes them; later values win.
   void change(const QJsonObject& flags);
 
 signals:
-  /// Of the last change; pictures that a newer one has overtaken are not told.
+  /// Picture of the last change; pictures of earlier changes are dropped.
   void refreshed(const qFenestraPicture& picture);
-  /// The last change could not be followed; what was shown stays.
+  /// The last change was refused; the last picture stays.
   void refused(const QString& message);
   void ended(const qFenestraOutcome& outcome);
 
@@ -50,8 +50,8 @@ private:
   void tell();
   void hear(const QString& line);
 
-  qFenestraProgram* m_child = nullptr; ///< null: none is heard
+  qFenestraProgram* m_child = nullptr; ///< null: no server
   QTimer m_rest;
-  QJsonObject m_changes; ///< not told yet
-  int m_told = 0;        ///< changes so far
+  QJsonObject m_changes; ///< not sent yet
+  int m_told = 0;        ///< changes sent so far; also the last change's id
 };

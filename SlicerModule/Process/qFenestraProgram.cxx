@@ -8,14 +8,15 @@
 
 namespace {
 
-/// In the child, between fork and exec: it gets a signal when its parent ends, even by a crash.
+/// Runs in the child, between fork and exec: the child gets a signal when its parent ends, even by
+/// a crash.
 void endWithParent() {
 #ifdef Q_OS_LINUX
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
 #endif
 }
 
-/// The renderer's own line, without its name.
+/// Last line of the renderer's messages, without the program's name.
 QString lastLine(const QString& text) {
   QString line = text.trimmed().section('\n', -1);
   const QString name = QStringLiteral("fenestra: ");
@@ -39,7 +40,7 @@ qFenestraProgram::qFenestraProgram(QObject* parent) : QProcess(parent) {
         qFenestraOutcome::Kind::failed,
         tr("The renderer could not be started. Is the Fenestra extension installed whole?"),
         QStringLiteral("%1: %2").arg(program(), errorString())};
-    // Not while start() is under way: who hears it may start again.
+    // Deferred beyond start(): a receiver may start again.
     QMetaObject::invokeMethod(
         this, [this, outcome] { finish(outcome); }, Qt::QueuedConnection);
   });
@@ -115,7 +116,7 @@ qFenestraOutcome qFenestraProgram::outcomeOf(int code, QProcess::ExitStatus stat
   if (m_killed && crashed)
     return {Kind::killed, {}, errors};
   if (crashed ? m_stopped && code == SIGTERM : code == stoppedOnRequest)
-    return {Kind::stopped, {}, errors}; // by the signal itself where it could not listen yet
+    return {Kind::stopped, {}, errors}; // ended by the signal itself before it could handle signals
   if (crashed)
     return {Kind::failed,
             tr("The renderer ended unexpectedly. If the computer ran out of memory, try a smaller "

@@ -1,17 +1,17 @@
 #pragma once
-// The renderer as a child process. It does not see the libraries that Slicer brings, and it never
-// outlives Slicer, however that ends.
+// The renderer as a child process: it does not see Slicer's libraries, and never outlives Slicer,
+// however Slicer ends.
 
 #include <QProcess>
 #include <QProcessEnvironment>
 
-/// How a child ended, in words for who started it.
+/// End of a child, in words for the caller.
 struct qFenestraOutcome {
-  /// `stopped`: at the user's word, with what it had; `killed`: without.
+  /// `stopped`: on request, results so far kept; `killed`: on request, results lost.
   enum class Kind { done, stopped, killed, failed };
   Kind kind = Kind::done;
-  QString message; ///< one sentence that says what to do; empty where nothing failed
-  QString details; ///< what the renderer itself said
+  QString message; ///< one sentence with advice; empty: no failure
+  QString details; ///< the renderer's own messages
 };
 
 class qFenestraProgram : public QProcess {
@@ -19,21 +19,21 @@ class qFenestraProgram : public QProcess {
 
 public:
   explicit qFenestraProgram(QObject* parent = nullptr);
-  /// Stops the child and waits for it: no zombie is left.
+  /// Stops the child and waits for its end: leaves no zombie.
   ~qFenestraProgram() override;
 
-  /// Starts `program` in `folder`. `ended` follows, also where it cannot be started.
+  /// Starts `program` in `folder`. `ended` follows, also if the start fails.
   void run(const QString& program, const QStringList& arguments, const QString& folder);
 
-  /// Asks the child to end, which writes what it has finished, however long that takes. Asked
-  /// again, kills it.
+  /// Asks the child to end; it first writes its finished results, however long that takes. A second
+  /// call kills the child.
   void stop();
 
-  /// An environment without what a launcher set for its own program's libraries.
+  /// `environment` without the variables that a launcher set for its own program's libraries.
   static QProcessEnvironment isolated(QProcessEnvironment environment);
 
 signals:
-  /// A line of the child's standard output, without its end.
+  /// One line of the child's standard output, without its line end.
   void said(const QString& line);
   void ended(const qFenestraOutcome& outcome);
 

@@ -4,7 +4,7 @@
 
 namespace {
 
-/// The text of a line that is one of Slicer's tags; empty for other lines.
+/// Text inside a line that is one of Slicer's tags; empty for other lines.
 QString inside(const QString& line, const char* tag) {
   const QString begin = QStringLiteral("<filter-%1>").arg(tag);
   const QString end = QStringLiteral("</filter-%1>").arg(tag);

@@ -1,11 +1,11 @@
 #pragma once
-// Renders that run one after the other, each a `fenestra` of its own.
+// Queue of renders, run one after the other; each is a `fenestra` process.
 
 #include "qFenestraProgram.h"
 
 #include <QQueue>
 
-/// What is to be rendered: arguments of `fenestra`, run in a folder.
+/// Job of the queue: arguments of `fenestra`, run in a folder.
 struct qFenestraJob {
   int id = 0;
   QStringList arguments;
@@ -19,16 +19,16 @@ public:
   /// `program`: the renderer's path.
   explicit qFenestraQueue(const QString& program, QObject* parent = nullptr);
 
-  /// Starts the render, or lets it wait its turn.
+  /// Starts the render, or queues it.
   void add(const qFenestraJob& job);
-  /// Ends the render under way, which keeps what it has (stopped again: not), or forgets the
+  /// Ends the render under way, keeping finished results (second call: discards them), or removes a
   /// waiting one.
   void stop(int id);
   int waiting() const { return static_cast<int>(m_waiting.size()); }
 
-  /// The part that is done, of a line that the renderer says; -1 where it says something else.
+  /// Finished share in a line of the renderer's output, 0 to 1; -1: another kind of line.
   static double progressIn(const QString& line);
-  /// What it has reached, in words; empty where it says something else.
+  /// Samples and noise in a line of the renderer's output; empty: another kind of line.
   static QString commentIn(const QString& line);
 
 signals:

@@ -7,15 +7,15 @@
 namespace FenestraScene {
 namespace {
 
-constexpr std::size_t longest = 100000; // bytes: one argument of a command may have 131,071
+constexpr std::size_t longest = 100000; // bytes; an argument of a command may have 131,071
 
 bool isWhole(const std::string& text) {
-  constexpr std::size_t digits = 20; // those of 2^64
+  constexpr std::size_t digits = 20; // as many as 2^64 has
   return !text.empty() && text.size() <= digits &&
          text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// Numbers of any size that a double holds; neither infinite nor "nan", which streams do not read.
+/// True for numbers of any size that a double holds; infinity and "nan" are not read by streams.
 bool areNumbers(const std::string& text, bool several) {
   std::istringstream in(text);
   in.imbue(std::locale::classic());
@@ -43,8 +43,9 @@ bool isSize(const std::string& text) {
          isWhole(text.substr(times + 1));
 }
 
-/// A JSON text opens a file by its member "file", which an escape could hide; any other value is a
-/// name, which without these characters is a file in the session's own folder at most.
+/// True if a look names a file. A JSON text opens a file by its member "file", which an escape
+/// could hide; another value is a name, which without these characters can only be a file in the
+/// session's own folder.
 bool namesFile(const std::string& look) {
   if (look.front() == '{')
     return look.find("\"file\"") != std::string::npos || look.find('\\') != std::string::npos;
@@ -69,7 +70,7 @@ bool isKind(FlagKind kind, const std::string& value) {
   case FlagKind::look:
     break;
   }
-  return value.find('\0') == std::string::npos; // which would end an argument
+  return value.find('\0') == std::string::npos; // a zero byte would end an argument
 }
 
 } // namespace

@@ -1,13 +1,13 @@
 #pragma once
-// Flags of the renderer's command line that a scene's node may hold, and what a scene that anybody
-// may have made says of them.
+// Flags of the renderer's command line that a scene's node may hold, and checks of their values in
+// scenes from unknown sources.
 
 #include <string>
 #include <vector>
 
 namespace FenestraScene {
 
-/// What a flag's value looks like. Limits are the renderer's to check.
+/// Form of a flag's value. The renderer checks the limits.
 enum class FlagKind {
   text,
   word,    ///< lower-case letters
@@ -28,11 +28,11 @@ const std::vector<Flag>& flags();
 
 enum class Verdict {
   good,
-  file, ///< names a file, by itself or inside its JSON text: opening it is the user's to allow
-  bad   ///< no value of this flag's, or no flag
+  file, ///< names a file, by itself or inside its JSON text: the user must allow opening it
+  bad   ///< no value of this flag, or no flag
 };
 
-/// Of a flag's value that a scene holds.
+/// Checks a flag's value stored in a scene.
 Verdict verdictOn(const std::string& name, const std::string& value);
 
 } // namespace FenestraScene

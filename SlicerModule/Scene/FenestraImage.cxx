@@ -16,7 +16,7 @@ bool littleEndian() {
   return first == 1;
 }
 
-/// NRRD is left-posterior-superior where Slicer is right-anterior-superior.
+/// Element of the matrix in LPS, the frame of NRRD; Slicer's is RAS.
 double lps(const Matrix& matrix, std::size_t row, std::size_t column) {
   const double value = matrix[4 * row + column];
   return row < 2 && value != 0.0 ? -value : value;
@@ -55,7 +55,7 @@ FileError failed(const std::filesystem::path& file, const std::string& why) {
   return FileError(file.string() + ": " + why);
 }
 
-/// "(a,b,c)" of LPS to a column of RAS.
+/// Reads "(a,b,c)", LPS, into a column of a RAS matrix.
 void readPoint(const std::string& text, Matrix& matrix, std::size_t column) {
   std::istringstream in(text);
   char mark = 0;
@@ -163,7 +163,7 @@ Image readNrrd(const std::filesystem::path& file) {
       throw std::invalid_argument("ends too soon");
     image.data = std::shared_ptr<const void>(data, data.get());
     return image;
-  } catch (const std::logic_error& error) { // numbers that are none, too
+  } catch (const std::logic_error& error) { // also texts that are no numbers
     throw failed(file, error.what());
   }
 }

@@ -24,8 +24,8 @@ void writeText(const std::string& text, const std::filesystem::path& file) {
     throw FileError(file.string() + ": could not be written; is the disk full?");
 }
 
-/// A scene's text, a node after the other. Values are this file's own: no user's text, nothing to
-/// escape.
+/// Text of a scene, one node after the other. Values come from this file, not from users: nothing
+/// needs escaping.
 class Nodes {
 public:
   using Attributes = std::vector<std::pair<std::string, std::string>>;
@@ -37,7 +37,7 @@ public:
         m_text << ' ' << name << "=\"" << value << '"';
     m_text << "></" << tag << ">\n";
   }
-  /// Returns the reference to put with others; none for the identity.
+  /// Returns the reference to the transform; empty: identity.
   std::string addTransform(const std::string& id, const Matrix& toWorld) {
     if (toWorld == identity)
       return {};
@@ -100,7 +100,7 @@ std::string sceneText(const Contents& contents) {
   return nodes.text();
 }
 
-/// Line ends would end a NRRD field.
+/// `text` without line ends, which would end a NRRD field.
 std::string oneLine(std::string text) {
   for (char& c : text)
     if (c == '\n' || c == '\r')
@@ -128,7 +128,7 @@ Image withSegmentFields(const Segmentation& segmentation) {
   return image;
 }
 
-/// A layer's values into its component of a larger box.
+/// Copies a layer's values into its component of a larger box.
 template <typename From, typename To>
 void place(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
   const auto* in = static_cast<const From*>(layer.labels.data.get());

@@ -1,8 +1,7 @@
 #pragma once
-// What the renderer needs of Slicer's scene, and how it is written into a folder: a small scene of
-// its own that `fenestra scene.mrml` renders, with flags that are told beside it: what a scene
-// holds the renderer trusts less. No Slicer, no VTK: built and tested everywhere, and free to run
-// in any thread.
+// Slicer's data for the renderer, written into a folder: a small scene for `fenestra scene.mrml`.
+// Flags are passed on the command line, since the renderer trusts a scene less. Independent of
+// Slicer and VTK: built and tested everywhere, usable in any thread.
 
 #include "FenestraImage.h"
 
@@ -13,51 +12,50 @@ namespace FenestraScene {
 
 struct Segment {
   std::string id, name;
-  int label = 0;         ///< its voxels' value in its layer
-  std::size_t layer = 0; ///< the component that holds it, for segments may overlap
-  std::string tags;      ///< "key:value|...": its terminology
+  int label = 0;         ///< value of its voxels in its layer
+  std::size_t layer = 0; ///< component that holds it; segments may overlap
+  std::string tags;      ///< terminology, "key:value|..."
 };
 
-/// Labels of segments that do not overlap; all layers of a segmentation have one lattice.
+/// Labels of segments that do not overlap; all layers of a segmentation share one lattice.
 struct Layer {
   Image labels;
-  std::array<long, 3> begin = {0, 0, 0}; ///< of its first voxel on that lattice
+  std::array<long, 3> begin = {0, 0, 0}; ///< lattice index of its first voxel
 };
 
 struct Segmentation {
   std::vector<Layer> layers;
   std::vector<Segment> segments;
-  Matrix toWorld = identity; ///< of the transforms above it
+  Matrix toWorld = identity; ///< of its parent transforms
 };
 
 struct Roi {
-  std::string markup; ///< a .mrk.json's text
+  std::string markup; ///< text of a .mrk.json
   Matrix toWorld = identity;
 };
 
-/// A value of `key` stands for the same volume (or segmentation) as long as it is the same; empty
-/// is like no other.
+/// Equal values of a key mean the same volume (or segmentation); an empty key equals no other.
 struct Contents {
   Image volume;
   std::string volumeKey;
   Matrix volumeToWorld = identity;
-  Segmentation segmentation; ///< of no segments: none
+  Segmentation segmentation; ///< without segments: none
   std::string segmentationKey;
-  std::string property; ///< the volume property's file, as text; empty: the renderer's choice
-  std::string propertyEnding = ".vp"; ///< of that file
+  std::string property; ///< text of the volume property's file; empty: the renderer chooses
+  std::string propertyEnding = ".vp"; ///< of the property's file
   std::vector<Roi> crop;
 };
 
-/// All layers side by side, a component each, over the smallest box that holds them.
+/// All layers as components of one image, over the smallest box that holds them.
 Image composed(const std::vector<Layer>& layers);
 
-/// Writes scenes into numbered folders below a private one; what did not change since the scene
-/// before is linked, not written again.
+/// Writes scenes into numbered folders below a private one; files unchanged since the preceding
+/// scene are linked, not written again.
 class Writer {
 public:
   explicit Writer(std::filesystem::path folder) : m_folder(std::move(folder)) {}
 
-  /// Returns the path of the new scene, "<folder>/<number>/scene.mrml". Throws FileError.
+  /// Writes a scene and returns its path, "<folder>/<number>/scene.mrml". Throws FileError.
   std::filesystem::path write(const Contents& contents);
 
 private:

@@ -1,7 +1,7 @@
-// The clipping surface's boundary, checked independently on twelve views of a knee, a liver and a
-// vertebra; prints the table that Testing/Report keeps.
+// Independent check of the clipping surface's boundary on twelve views of a knee, a liver and a
+// vertebra; prints the table kept in Testing/Report.
 //
-//     BoundaryCheck [PIXELS [VIEWS]]     (512 a side, 12 views)
+//     BoundaryCheck [PIXELS [VIEWS]]     (default: 512 a side, 12 views)
 
 #include "BoundaryMeasure.h"
 #include "Subjects.h"
@@ -16,7 +16,7 @@
 namespace fenestra::accuracy {
 namespace {
 
-/// The worst of some views, for the summary.
+/// Worst figures over several views, for the summary.
 struct Worst {
   double jumpShare = 0.0, rayJumpShare = 0.0, strict = 1.0, halfVoxel = 1.0, halfVoxelSmooth = 1.0;
   Distances gap, cut;
@@ -36,7 +36,7 @@ struct Worst {
   }
 };
 
-/// A row's end: what Worst and BoundaryMeasure have in common.
+/// Prints the end of a row: figures that Worst and BoundaryMeasure share.
 template <typename Figures>
 void printFigures(const Figures& f) {
   std::printf(" %.1f %% | %.3f | %.3f | %.3f | %.3f %% | %.3f | %.3f | %.2f %% | %.2f %% | %.1f %% "
@@ -76,7 +76,7 @@ void sweep(const Subject& subject, int size, int views) {
   }
 }
 
-/// With smoothed labels, from above or below.
+/// Subject with smoothed labels, seen from above or below.
 Subject seenSmooth(Subject subject, double smoothing, double elevation) {
   char name[100];
   std::snprintf(name, sizeof name, "%s, labels smoothed by %g mm, seen from %g° %s",

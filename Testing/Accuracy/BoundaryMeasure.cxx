@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t raysAcrossPixel = 4;
 
-/// In [0, 1), from nothing but a number (splitmix64).
+/// Hash of a number to [0, 1) (splitmix64).
 double jitter(std::uint64_t number) {
   std::uint64_t x = (number + 1) * 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -19,7 +19,7 @@ double jitter(std::uint64_t number) {
   return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
 }
 
-/// The first of the four pixel centres around a raster position.
+/// Four pixel centres around a raster position; `first`: the top left one.
 struct Cell {
   std::size_t first;
 
@@ -103,7 +103,7 @@ void FocusView::traceOutline() {
     }
 }
 
-/// The ray whose part of a pixel a raster position is in.
+/// Ray whose part of a pixel contains a raster position.
 std::size_t FocusView::rayNear(const Vec2& raster) const {
   const auto part = [&](double x) {
     return std::min(static_cast<std::size_t>(x * double{raysAcrossPixel}), m_across - 1);
@@ -190,7 +190,7 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
 
 PictureMatch FocusView::match(const std::vector<float>& depths, const Surface& surface) const {
   constexpr double tolerance = 0.1; // mm: some free paths
-  constexpr double between = 0.25;  // of a pixel, points that are looked at
+  constexpr double between = 0.25;  // pixels between the examined points
   const auto size = static_cast<std::size_t>(m_view.size);
   PictureMatch result;
   for (std::size_t row = 1; row + 1 < size; ++row)

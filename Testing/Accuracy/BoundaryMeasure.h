@@ -1,18 +1,17 @@
 #pragma once
-// How a clipping surface meets the focus: on jittered rays, four by four to a pixel.
+// Measures how a clipping surface meets the focus, on jittered rays, 4 x 4 to a pixel.
 //
-// The surface is asked for its depth wherever a ray goes; what the focus is there, the check finds
-// by itself (FocusField.h, Views.h).
-// - A ray on the focus is unoccluded where nothing, to a tolerance, is kept in front of it: where
-//   the surface is not nearer to the eye than the focus.
-// - The gap is measured on the outline, found between each ray that meets the focus and a neighbour
-//   that does not, by bisection: how far the surface just outside stands in front of, or behind,
-//   the focus's last point. Where it stands in front by more than it does just inside there is a
-//   cliff up to the context.
-// - A depth jump is a difference of over 2 mm among the focus's depths at the four pixel centres
-//   around and at the ray itself, or among the outline's own in the parts of pixels around: where
-//   one part of the focus ends before another, its outline has two depths. Shares with and without
-//   are told.
+// The surface is queried for its depth on every ray; the depth of the focus there is found by the
+// check's own code (FocusField.h, Views.h).
+// - Unoccluded: a ray on the focus with depth of focus - depth of surface <= tolerance.
+// - Gap: |depth of the focus's last point - depth of the surface just outside|, on the outline,
+//   which is found by bisection between each ray that meets the focus and a neighbour that misses.
+//   Where the surface stands farther in front just outside than just inside, there is a cliff up to
+//   the context.
+// - Depth jump: a difference > jumpDepth among the depths of the focus at the ray and the four
+//   pixel centres around, or among the outline's depths in the parts of pixels around: where one
+//   part of the focus ends before another, its outline has two depths. Shares are reported with and
+//   without jumps.
 
 #include "FocusField.h"
 #include "Views.h"
@@ -23,43 +22,43 @@ namespace fenestra::accuracy {
 
 constexpr double jumpDepth = 2.0;       ///< mm
 constexpr double wideGap = 0.2;         ///< mm
-constexpr double strictTolerance = 0.2; ///< mm of what may be kept in front of an unoccluded focus
+constexpr double strictTolerance = 0.2; ///< mm kept in front of an unoccluded focus, at most
 
 struct Distances {
   double mean = 0.0, p95 = 0.0, max = 0.0; ///< mm
-  double wide = 0.0;                       ///< share over wideGap
+  double wide = 0.0;                       ///< share of points above wideGap
 };
 
 struct BoundaryMeasure {
   double outlinePoints = 0.0;
-  double jumpShare = 0.0; ///< of the outline's points, left out of `gap` and `cut`
-  Distances gap;          ///< of the surface just outside, either way
-  Distances cut;          ///< of the focus's last point in front of the surface
-  double rays = 0.0;      ///< on the focus
-  double strict = 0.0;    ///< share unoccluded, to strictTolerance
-  double halfVoxel = 0.0; ///< to half of the labelmap's longest voxel edge, as it knows no better
-  double rayJumpShare = 0.0;    ///< of the rays
-  double halfVoxelSmooth = 0.0; ///< as halfVoxel, of rays without a depth jump
-  double centreGap = 0.0; ///< mm, at most, of the surface in front of the focus at pixel centres
+  double jumpShare = 0.0;    ///< share of the outline's points; left out of `gap` and `cut`
+  Distances gap;             ///< |surface just outside - focus's last point|
+  Distances cut;             ///< depth of the surface behind the focus's last point; 0 if in front
+  double rays = 0.0;         ///< rays that meet the focus
+  double strict = 0.0;       ///< share of rays unoccluded, to strictTolerance
+  double halfVoxel = 0.0;    ///< share unoccluded, to half of the labelmap's longest voxel edge
+  double rayJumpShare = 0.0; ///< share of rays at a depth jump
+  double halfVoxelSmooth = 0.0; ///< halfVoxel over the rays without a depth jump
+  double centreGap = 0.0;       ///< greatest mm kept in front of the focus at a pixel centre
 };
 
 struct PictureMatch {
-  double pixels = 0.0; ///< looked at
-  double share = 0.0;  ///< of them whose depth is one that the surface has within them
+  double pixels = 0.0; ///< pixels examined
+  double share = 0.0;  ///< share of these whose depth is within the surface's range there
 };
 
 /// Depth of a clipping surface, mm from the eye's plane, at a raster position.
 using Surface = std::function<double(const Vec2&)>;
 
-/// What is known of a view before any surface is.
+/// Focus as seen in a view, independent of any surface.
 class FocusView {
 public:
   FocusView(const FocusField& field, const View& view);
 
   BoundaryMeasure measure(const Surface& surface) const;
 
-  /// Whether a picture of depths, as depthsInPicture makes it, shows the surface that `measure`
-  /// asks: on the context's pixels beside the focus.
+  /// Compares a picture of depths (depthsInPicture) with the surface that `measure` queries, on the
+  /// context's pixels beside the focus.
   PictureMatch match(const std::vector<float>& depths, const Surface& surface) const;
 
 private:
@@ -67,7 +66,7 @@ private:
     Vec2 raster;
     double depth;
   };
-  /// The last of the focus, and just outside.
+  /// Last point of the focus, and the raster position just outside.
   struct Edge {
     Point inner;
     Vec2 outer;
@@ -85,13 +84,13 @@ private:
   const FocusField& m_field;
   View m_view;
   std::size_t m_across;          ///< rays in a row
-  std::vector<double> m_centres; ///< depth of the focus at pixel centres, infinite where it is not
-  std::vector<double> m_rays;    ///< the same of the rays
+  std::vector<double> m_centres; ///< depth of the focus at pixel centres; infinity: ray misses
+  std::vector<double> m_rays;    ///< depth of the focus on the rays; infinity: ray misses
   std::vector<Edge> m_outline;
   struct DepthRange {
     double least, greatest;
   };
-  std::vector<DepthRange> m_outlineDepths; ///< in each ray's part of a pixel
+  std::vector<DepthRange> m_outlineDepths; ///< per ray's part of a pixel; least > greatest: none
 };
 
 } // namespace fenestra::accuracy

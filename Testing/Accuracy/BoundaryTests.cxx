@@ -1,4 +1,4 @@
-// A knee's clipping surface against rays of the test's own.
+// Clipping surface of a knee against rays traced by the test.
 
 #include "BoundaryMeasure.h"
 #include "Subjects.h"
@@ -11,7 +11,7 @@ using namespace fenestra::accuracy;
 
 namespace {
 
-/// A ball of 20 voxels' radius: where rays meet it is known to what its voxels make of it.
+/// Ball of 20 voxels' radius; intersections are known to the accuracy of its voxels.
 TEST(FocusField, MeetsABall) {
   Indicator ball{Size3(50, 50, 50), Affine::Identity(), {}};
   const Vec3 centre(24.0, 25.0, 26.0);
@@ -33,7 +33,7 @@ TEST(FocusField, MeetsABall) {
   }
 }
 
-/// Along an axis the level 0.5 between two voxels is half way.
+/// Along an axis the level 0.5 lies half way between two voxels.
 TEST(FocusField, MeetsABoxAtItsFace) {
   Indicator box{Size3(8, 8, 8), Affine::Identity(), std::vector<std::uint8_t>(512, 0)};
   for (std::size_t z = 2; z < 6; ++z)
@@ -47,9 +47,9 @@ TEST(FocusField, MeetsABoxAtItsFace) {
 }
 
 struct Seen {
-  int number; ///< of twelve views
+  int number; ///< number of the view, of twelve
   bool isPerspective;
-  double smoothing; ///< of the labels, mm
+  double smoothing; ///< smoothing of the labels, mm
   double elevation; ///< degrees
 };
 
@@ -80,7 +80,7 @@ TEST(Boundary, MeetsTheFocusOfAKnee) {
   }
 }
 
-/// What is true of the surface just beyond the focus is true of the context in the picture.
+/// The picture shows the context just beyond the focus at the surface's depth.
 TEST(Boundary, IsInThePictureWhatTheSurfaceIs) {
   const TemporaryFolder folder;
   Subject knee = makeKnee(folder.path(), "150x172x60");

@@ -8,11 +8,11 @@ namespace fenestra::accuracy {
 
 namespace {
 
-constexpr std::uint8_t farthest = 12; ///< cells that are looked at around one
-constexpr double rounding = 1e-14;    ///< of the field
-constexpr double step = 1.0 / 16.0;   ///< in voxels, of the fastest axis
+constexpr std::uint8_t farthest = 12; ///< greatest radius searched for emptiness, in cells
+constexpr double rounding = 1e-14;    ///< rounding error of the field
+constexpr double step = 1.0 / 16.0;   ///< step, in voxels along the ray's fastest axis
 
-/// The bound between no (t = a) and yes (t = b).
+/// Boundary between false (t = a) and true (t = b).
 template <typename Predicate>
 double bisected(double a, double b, const Predicate& predicate) {
   for (int i = 0; i < 48; ++i) {
@@ -22,7 +22,7 @@ double bisected(double a, double b, const Predicate& predicate) {
   return b;
 }
 
-/// Where a function with one summit between a and b is greatest.
+/// Maximum of a function with one maximum between a and b.
 template <typename Function>
 double summit(double a, double b, const Function& f) {
   for (int i = 0; i < 80; ++i) {
@@ -35,7 +35,7 @@ double summit(double a, double b, const Function& f) {
   return 0.5 * (a + b);
 }
 
-/// Where a ray that is at an index at t next comes to a face between cells.
+/// Next t at which a ray, at `index` for t, meets a face between cells.
 double nextFace(const Vec3& index, const Vec3& direction, double t) {
   double least = infinity;
   for (int axis = 0; axis < 3; ++axis) {
@@ -47,7 +47,7 @@ double nextFace(const Vec3& index, const Vec3& direction, double t) {
   return least;
 }
 
-/// Each value becomes the least of it and its neighbours', across corners, too.
+/// Replaces each value by the least value of its 3 x 3 x 3 neighbourhood.
 void spreadLeast(std::vector<std::uint8_t>& values, const Size3& size) {
   const std::int64_t strides[] = {1, size.x(), size.x() * size.y()};
   std::vector<std::uint8_t> old;
@@ -119,7 +119,7 @@ void FocusField::markEmptiness() {
                                                 at.x())] != 0)
             m_emptiness[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
         }
-  // After as many rounds each knows how far away the nearest cell is that holds something.
+  // After `farthest` rounds each cell knows its distance to the nearest cell that is not empty.
   std::vector<std::uint8_t> reached = m_emptiness;
   for (std::uint8_t round = 1; round < farthest; ++round) {
     spreadLeast(reached, m_cells);
@@ -168,8 +168,8 @@ double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const
   const auto isInAt = [&](double s) { return value(s) >= 0.5; };
   const double voxel = 1.0 / d.cwiseAbs().maxCoeff(); // mm
   const double stride = step * voxel;
-  // Steps end at the faces of cells, between which the field is smooth. Where it rises after one
-  // end and falls before the other, it may be in the focus for less than a step between them.
+  // Steps end at the faces of cells, between which the field is smooth. A field that rises after
+  // one end and falls before the other may exceed 1/2 for less than a step in between.
   const double near = 1e-6 * stride;
   const auto rises = [&](double from, double to) { return value(to) > value(from) + rounding; };
   for (bool isFirst = true; t <= end; isFirst = false) {

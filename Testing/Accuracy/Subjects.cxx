@@ -27,7 +27,7 @@ void runFenestra(const std::string& arguments) {
     throw std::runtime_error("failed: " + command);
 }
 
-/// As a flag's value has it.
+/// Vector as the value of a flag.
 std::string listed(const Vec3& v) {
   std::ostringstream text;
   text.precision(17);
@@ -57,7 +57,7 @@ Subject makeKnee(const std::filesystem::path& folder, const std::string& size) {
   const std::filesystem::path knee = folder / "knee";
   runFenestra("phantom knee --output " + quoted(knee.string()) +
               (size.empty() ? "" : " --size " + size));
-  constexpr int femoralCartilage = 5; // as the phantom numbers its segments
+  constexpr int femoralCartilage = 5; // number of this segment in the phantom
   return {"knee", knee / "knee.mrml", knee / "knee.seg.nrrd", "FemoralCartilage", femoralCartilage};
 }
 

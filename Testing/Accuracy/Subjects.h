@@ -1,5 +1,5 @@
 #pragma once
-// Who is looked at, and the clipping surface of them.
+// Subjects of the boundary check, and their clipping surfaces.
 
 #include "BoundaryMeasure.h"
 
@@ -10,32 +10,32 @@ namespace fenestra::accuracy {
 
 struct Subject {
   std::string name;
-  std::filesystem::path input;    ///< what is rendered
+  std::filesystem::path input;    ///< volume or scene to render
   std::filesystem::path labelmap; ///< on the volume's grid
-  std::string focus;              ///< as --focus has it
-  int label;                      ///< in the labelmap
-  double smoothing = 0.0;         ///< of the labels, mm, as --labelsmoothing has it
-  double elevation = 0.0;         ///< degrees above the horizon from which it is seen
+  std::string focus;              ///< value of --focus
+  int label;                      ///< value of the focus in the labelmap
+  double smoothing = 0.0;         ///< of the labels, mm (--labelsmoothing)
+  double elevation = 0.0;         ///< elevation of the views above the horizon, degrees
 };
 
-/// The knee that `fenestra phantom` makes, in a folder; `size` in voxels as its flag has it, or "".
+/// Knee from `fenestra phantom`, written to a folder; `size` in voxels as in --size, or "".
 Subject makeKnee(const std::filesystem::path& folder, const std::string& size);
 
-/// Of smoothed labels this is what the renderer has made of them: how it smooths is not the
-/// question here.
+/// Indicator of the subject's focus; for smoothed labels, the renderer's smoothed labels (the check
+/// does not test the smoothing).
 Indicator readIndicator(const Subject& subject);
 
-/// One of `count` views around the patient's superior axis, of the whole focus; the first is from
-/// the front. `elevation` in degrees.
+/// View `number` of `count` around the patient's superior axis, framing the whole focus; number 0
+/// is from the front. `elevation` in degrees.
 View viewAround(const FocusField& field, int number, int count, int size, double elevation = 0.0);
 
-/// The clipping surface of `--clip surface --boundary …`, whose depth (mm from the eye's plane) is
-/// a function of raster positions: what is to be checked.
+/// Clipping surface of `--clip surface --boundary …`, the subject of the check: depth (mm from the
+/// eye's plane) at a raster position.
 Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary);
 
-/// A picture of everything opaque, clipped: depth of what is seen at each pixel, mm, row by row
-/// from the top. Written to a folder on the way. Of an orthographic view, of a subject that is a
-/// Slicer scene.
+/// Depth of the visible point at each pixel, mm, row by row from the top, in a clipped picture with
+/// everything opaque. Writes the picture to `folder`. Requires an orthographic view and a Slicer
+/// scene.
 std::vector<float> depthsInPicture(const Subject& subject, const View& view,
                                    const std::string& boundary,
                                    const std::filesystem::path& folder);

@@ -1,6 +1,6 @@
 #pragma once
-// Cameras of the boundary check: what --position, --target, --up and --scale or --angle mean, by
-// the check's own arithmetic.
+// Cameras of the boundary check: --position, --target, --up and --scale or --angle, by the check's
+// own arithmetic.
 
 #include "base/Vector.h"
 
@@ -13,7 +13,7 @@ namespace fenestra::accuracy {
 struct View {
   Vec3 position, target, up;
   bool isPerspective = false;
-  double halfHeight = 1.0; ///< of what is seen on the plane through the target, mm
+  double halfHeight = 1.0; ///< half the visible height on the plane through the target, mm
   int size = 1;            ///< pixels a side
 
   struct EyeRay {

@@ -1,5 +1,5 @@
 #pragma once
-// What others do, around the product's own path estimator: delta tracking against one majorant for
+// Other renderers' trackers for the product's path estimator: delta tracking with one majorant for
 // the whole volume, and the fixed steps of medical renderers. Both have Tracker's members.
 
 #include "transport/render/Render.h"
@@ -9,9 +9,9 @@
 
 namespace fenestra::benchmarks {
 
-/// The part of a ray inside the volume, entered at length 0.
+/// Part of a ray inside the volume; length 0 is the entry.
 struct Crossing {
-  double start, length; ///< mm; empty where the length is not positive
+  double start, length; ///< mm; length <= 0: ray misses
   Ray world, index;
 
   Crossing(const Domain& domain, const Ray& ray, const Interval& range) {
@@ -47,7 +47,7 @@ public:
   }
 
 private:
-  /// Over the volume's whole range of scalars.
+  /// Greatest extinction over the volume's range of scalars, mm^-1.
   static double greatestExtinction(const RenderScene& scene) {
     const TransferFunction& transfer = scene.transfer;
     const double greatest =
@@ -80,14 +80,14 @@ private:
   double m_majorant; ///< mm^-1
 };
 
-/// Fixed steps from a random start (Kroes, Post, Botha 2012, section 3, as Exposure Render steps):
-/// a path collides at the sample where the summed optical depth passes an exponential one; light is
-/// dimmed by Beer and Lambert's law over the sum, and counts as lost below 1/1000. Biased: what
-/// lies between samples is not seen, and exp(-sum) is on average more than what it estimates.
+/// Fixed steps from a random start (Kroes, Post, Botha 2012, section 3, as in Exposure Render): a
+/// path collides at the sample where the summed optical depth exceeds an exponential deviate;
+/// transmittance is exp(-sum), or 0 below 1/1000. Biased: matter between samples is missed, and
+/// exp(-sum) is on average too large.
 template <typename Voxel>
 class MarchingTracker {
 public:
-  /// `step` in voxels: of the shortest edge, as medical renderers count.
+  /// `step`: in voxels of the shortest edge, as in medical renderers.
   MarchingTracker(const RenderScene& scene, const Medium<Voxel>& medium, double step)
       : m_domain(scene.volume.grid, scene.crop),
         m_medium(medium),
@@ -142,8 +142,8 @@ private:
   double m_step; ///< mm
 };
 
-/// Settings' samples of every pixel, independent ones, by the readable estimator with the tracker
-/// that `makeTracker(medium)` gives. Stops at samples alone.
+/// Renders independent samples of every pixel by the readable estimator, with the tracker from
+/// `makeTracker(medium)`. Stops at settings.samples only.
 template <typename MakeTracker>
 Film tracePicture(const RenderScene& scene, const RenderSettings& settings,
                   MakeTracker&& makeTracker) {

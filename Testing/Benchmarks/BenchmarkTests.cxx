@@ -1,5 +1,5 @@
-// The benchmark measures what it says: its baselines, its numbers, and a run of the whole program
-// on small pictures. No test looks at how long something took.
+// Tests of the benchmark: its baselines, its figures, and a run of the whole program on small
+// pictures. No test measures time.
 
 #include "Benchmarks/Baselines.h"
 #include "Benchmarks/Report.h"
@@ -47,7 +47,7 @@ TEST_P(UnbiasedMode, AgreesWithTheReadableOne) {
 INSTANTIATE_TEST_SUITE_P(Modes, UnbiasedMode, ::testing::Values("product", "adaptive", "global"),
                          [](const auto& info) { return std::string(info.param); });
 
-/// Mean of R over the picture, relative to another picture's, less 1; and one standard error.
+/// Mean of R over the picture, relative to another picture's, minus 1; and its standard error.
 std::pair<double, double> biasOf(const Image& image, const Image& truth) {
   const Image a = tileMeans(image, image.width), b = tileMeans(truth, truth.width);
   const double mean = b.find("R")->front();
@@ -55,7 +55,7 @@ std::pair<double, double> biasOf(const Image& image, const Image& truth) {
           std::hypot(a.find("error.R")->front(), b.find("error.R")->front()) / mean};
 }
 
-/// A foot in voxels of 6 mm: steps of one miss its skin.
+/// Foot in voxels of 6 mm: steps of one voxel miss its skin.
 TEST(Marching, IsBiasedAndLessSoWithShorterSteps) {
   const RenderOptions options = caseOf(std::string("foot product") + foot).options();
   const Scene scene(options.scene);
@@ -66,8 +66,8 @@ TEST(Marching, IsBiasedAndLessSoWithShorterSteps) {
   EXPECT_LT(std::abs(half), std::abs(whole)) << half << " ± " << halfError;
 }
 
-/// What a tracker says of a ray across a homogeneous wall a quarter of a millimetre thick, in
-/// voxels of one: the mean transmittance, and how often a flight passes.
+/// Ray across a homogeneous wall a quarter of a voxel thick (voxels of 1 mm): a tracker's mean
+/// transmittance, and its share of passing flights.
 class Wall {
 public:
   static constexpr double sigma_t = 3.0;
@@ -114,8 +114,8 @@ TEST(GlobalTracker, SeesThinWalls) {
   EXPECT_NEAR(passing, expected, Wall::tolerance);
 }
 
-/// A march sees a sample in the wall once in four times: the mean of what it lets through is 3/4 +
-/// exp(-sigma_t step) / 4, not exp(-sigma_t step / 4).
+/// One march in four has a sample in the wall: the mean transmittance is 3/4 + exp(-sigma_t step) /
+/// 4, not exp(-sigma_t step / 4).
 TEST(Marching, ShinesThroughThinWalls) {
   const auto [light, passing] = Wall().cross([](const auto& scene, const auto& medium) {
     return MarchingTracker<float>(scene, medium, 1.0);
@@ -125,7 +125,7 @@ TEST(Marching, ShinesThroughThinWalls) {
   EXPECT_NEAR(passing, expected, Wall::tolerance);
 }
 
-/// relMSE falls as 1 / seconds, at efficiency 20.
+/// Curve with relMSE = 1 / (20 seconds): efficiency 20.
 std::vector<Point> idealCurve(std::initializer_list<double> seconds) {
   std::vector<Point> curve;
   for (const double s : seconds)
@@ -169,7 +169,7 @@ TEST(CurveRecords, AreReplacedBySceneAndMode) {
   EXPECT_EQ(all[2].mode, "product");
 }
 
-/// The program itself, on three scenes of which one is not there.
+/// Run of the program on three scenes, one of which is missing.
 class WholeRun : public ::testing::Test {
 protected:
   static int runProgram(const TemporaryFolder& folder) {

@@ -1,6 +1,6 @@
-// How long a viewer waits for the first new sample after a change: what a preview does all day.
+// Time from a change to the first new sample, which the user of a preview waits for all day.
 //
-//     ChangeBenchmark FOCUS ARGUMENTS...     (another focus; what `fenestra` renders)
+//     ChangeBenchmark FOCUS ARGUMENTS...     (FOCUS: the changed focus; ARGUMENTS: of `fenestra`)
 
 #include "base/Error.h"
 #include "base/Stopwatch.h"

@@ -19,7 +19,7 @@ double cpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Of one render.
+/// Measurements of one render.
 struct Sample {
   double cpuSeconds, relMse;
   double bias, ownError, referenceError; ///< of the image mean, relative to the reference's
@@ -32,8 +32,8 @@ Sample measure(const Mode& mode, const Scene& scene, const RenderSettings& setti
   const double seconds = cpuSeconds() - before;
   const Image image = imageOf(film, scene);
 
-  // The whole picture as one tile. Channels of one path are correlated: their mean's error is at
-  // most their errors' mean.
+  // The whole picture is one tile. Channels of one path are correlated: error of their mean <= mean
+  // of their errors.
   const int whole = std::max(image.width, image.height);
   const Image mean = tileMeans(image, whole), truth = tileMeans(reference, whole);
   Sample sample{seconds, compareImages(image, reference).relMse, 0.0, 0.0, 0.0};
@@ -55,7 +55,7 @@ Point summarise(std::uint64_t samples, const std::vector<Sample>& renders) {
   point.cpuSeconds = mean([](const Sample& s) { return s.cpuSeconds; });
   point.relMse = mean([](const Sample& s) { return s.relMse; });
   point.bias = mean([](const Sample& s) { return s.bias; });
-  // The reference's is the same for all seeds.
+  // The reference's error is the same for all seeds.
   point.biasError = std::hypot(mean([](const Sample& s) { return s.ownError; }) / std::sqrt(n),
                                renders.front().referenceError);
   if (renders.size() > 1)

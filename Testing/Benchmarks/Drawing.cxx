@@ -12,7 +12,7 @@ constexpr int panelsPerRow = 3;
 constexpr double panelWidth = 360.0, panelHeight = 310.0, legendHeight = 34.0;
 constexpr double left = 52.0, right = 14.0, top = 28.0, bottom = 44.0; ///< margins of a panel
 
-/// Okabe and Ito's colours: told apart by colour-blind readers, too.
+/// Okabe and Ito's colours, which colour-blind readers can distinguish.
 constexpr std::array<const char*, 7> colours = {"#d55e00", "#0072b2", "#009e73", "#e69f00",
                                                 "#cc79a7", "#56b4e9", "#000000"};
 
@@ -23,10 +23,10 @@ const char* colourOf(const std::string& mode) {
   return colours[i % colours.size()];
 }
 
-/// A logarithmic axis over whole decades.
+/// Logarithmic axis over whole decades.
 struct Axis {
   int first = 1000, last = -1000; ///< powers of ten
-  double from = 0.0, to = 1.0;    ///< where they are, pixels
+  double from = 0.0, to = 1.0;    ///< positions of `first` and `last`, pixels
 
   void include(double value) {
     first = std::min(first, static_cast<int>(std::floor(std::log10(value))));
@@ -134,7 +134,7 @@ void drawLegend(std::ostream& svg) {
 std::string drawCurves(const std::vector<CurveRecord>& curves) {
   const std::vector<Panel> panels = panelsOf(curves);
   const int count = static_cast<int>(panels.size());
-  const int columns = std::clamp(count, 2, panelsPerRow); // two: the legend's width
+  const int columns = std::clamp(count, 2, panelsPerRow); // at least two, for the legend's width
   const int rows = (count + columns - 1) / columns;
   const double width = columns * panelWidth, height = legendHeight + rows * panelHeight;
   std::ostringstream svg;

@@ -49,7 +49,7 @@ struct Options {
   std::filesystem::path output;
 };
 
-/// WxH.
+/// Width and height from --size, "WxH".
 std::optional<std::pair<int, int>> sizeOf(const FlagValues& values) {
   const auto text = values.text("size");
   if (!text)
@@ -141,7 +141,7 @@ int benchmark(int argc, char** argv) {
     if (!options.scenes.empty() &&
         std::ranges::find(options.scenes, scene.name) == options.scenes.end())
       continue;
-    // After each scene: a run that is stopped leaves what it has.
+    // Written after each scene: a stopped run leaves its finished scenes.
     writeReport(options.output,
                 merged(readCurves(options.output), measureScene(scene, options), names),
                 notes(options));

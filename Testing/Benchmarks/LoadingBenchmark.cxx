@@ -1,8 +1,7 @@
-// How long it takes, and how much memory, from the start to the first sample of a large volume:
-// against ITK's bare read of the same file. Each runs in a process of its own, in turns; the least
-// of some runs counts.
+// Time and memory from the start to the first sample of a large volume, against ITK's bare read of
+// the same file. Each runs in its own process, in turns; the least of several runs counts.
 //
-//     LoadingBenchmark [EDGE [RUNS]]     (512 voxels, 3 runs)
+//     LoadingBenchmark [EDGE [RUNS]]     (default: 512 voxels, 3 runs)
 
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
@@ -33,7 +32,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// A body with fat, muscle, lungs and ribs, and noise as a CT has it: gzip makes it half as large.
+/// Body with fat, muscle, lungs and ribs, with noise as in a CT: gzip halves its size.
 std::vector<std::int16_t> body(std::int64_t edge) {
   std::vector<std::int16_t> voxels;
   voxels.reserve(static_cast<std::size_t>(edge * edge * edge));
@@ -123,7 +122,7 @@ void print(const std::string& name, const Cost& cost) {
             << '\n';
 }
 
-/// Bare and whole, in turns.
+/// Compares the bare read with the whole program, in turns.
 void compare(const std::string& self, const Path& folder, const std::string& name, int runs) {
   const std::string file = folder / name;
   Cost bare;

@@ -1,4 +1,4 @@
-// The parts of a path and of the first pass, one by one, on one thread (README.md here).
+// Parts of a path and of the first pass, one by one, on one thread (README.md here).
 
 #include "Scenes.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int pictureSize = 512;
 
-/// The knee with its clip, all parts of it at hand.
+/// Knee with its clip, with access to all parts.
 struct Subject {
   std::string label;
   SceneRequest request;
@@ -46,9 +46,9 @@ struct Subject {
   }
 };
 
-using Voxel = std::int16_t; ///< of the phantoms
+using Voxel = std::int16_t; ///< storage type of the phantoms
 
-/// What tracking reads, and places and rays to ask about: as many as cycle through the caches.
+/// Tracking's data, with positions and rays to query: enough of these to cycle through the caches.
 struct Probe {
   static constexpr std::size_t count = 1 << 14;
   const Subject& subject;
@@ -58,9 +58,9 @@ struct Probe {
   RenderScene parts = subject.scene.forRender();
   Tracker<Voxel> tracker{subject.domain(), medium, parts.majorants, parts.clip};
   std::vector<Ray> eyeRays;
-  std::vector<Vec3> collisions; ///< world, first ones of eye rays
-  std::vector<Vec3> inside;     ///< the same, index space
-  std::vector<Ray> scattered;   ///< from there, anywhere
+  std::vector<Vec3> collisions; ///< world; first collisions of eye rays
+  std::vector<Vec3> inside;     ///< collisions in index space
+  std::vector<Ray> scattered;   ///< from the collisions, in random directions
   std::vector<Vec3> anywhere;   ///< index space
   Random random{1, 2, 3};
   Counters counters;
@@ -83,7 +83,7 @@ struct Probe {
   }
 };
 
-/// Times visit(i) over i = 0 … count - 1, again and again.
+/// Times visit(i) over i = 0 … count - 1, repeatedly.
 template <typename Visit>
 void cycle(benchmark::State& state, const std::string& label, std::size_t count, Visit&& visit) {
   std::size_t i = 0;
@@ -160,7 +160,7 @@ void addFirstPass(const Subject& subject) {
       Boundary::exact);
 }
 
-/// The first scene with a focus of a phantom that is there.
+/// First clipped knee in the table whose phantom exists.
 SceneCase chooseScene() {
   for (const char* phantoms : {FENESTRA_BENCHMARK_FOLDER, FENESTRA_SAMPLES})
     for (const SceneCase& scene : readScenes(FENESTRA_BENCHMARK_TABLE, {"", "", phantoms}))

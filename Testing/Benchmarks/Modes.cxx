@@ -18,7 +18,7 @@ Film renderGlobal(const RenderScene& scene, const RenderSettings& settings) {
   });
 }
 
-/// `step` in voxels.
+/// Renders with steps of `step` voxels.
 Film renderMarching(const RenderScene& scene, const RenderSettings& settings, double step) {
   return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
     return MarchingTracker<Voxel>(scene, medium, step);
@@ -33,7 +33,7 @@ constexpr Mode table[] = {
     {"adaptive",
      "the same toward a noise target: noisier pixels get more samples, after a pilot of 16",
      [](const RenderScene& scene, RenderSettings settings) {
-       settings.noise = 1e-6; // never reached: the number of samples ends it
+       settings.noise = 1e-6; // never reached: the number of samples ends the render
        return renderProduct(scene, settings);
      }},
     {"readable", "the scalar estimator, null collisions in a majorant grid, independent samples",

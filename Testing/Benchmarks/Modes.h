@@ -1,5 +1,5 @@
 #pragma once
-// The ways to render that are compared.
+// Render modes that the benchmark compares.
 
 #include "transport/render/Render.h"
 
@@ -11,11 +11,11 @@ namespace fenestra::benchmarks {
 struct Mode {
   const char* name;
   const char* description; ///< for the report, half a sentence
-  /// Samples and seed of the settings count; nothing else stops it.
+  /// Renders with the settings' samples and seed; other limits are ignored.
   Film (*render)(const RenderScene& scene, RenderSettings settings);
 };
 
-/// All of them, in the report's order. A new one is a line of this table (Modes.cxx).
+/// All modes, in the report's order. A new mode is a line of the table in Modes.cxx.
 std::span<const Mode> modes();
 
 /// Throws Error (usage) for an unknown name.

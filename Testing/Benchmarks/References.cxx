@@ -19,7 +19,7 @@
 namespace fenestra::benchmarks {
 namespace {
 
-/// No render that is measured has them.
+/// Seeds that no measured render uses.
 constexpr std::uint64_t firstReferenceSeed = std::uint64_t{1} << 40;
 
 constexpr const char* colours[] = {"R", "G", "B"};
@@ -28,7 +28,7 @@ std::vector<float>& channel(Image& image, const std::string& name) {
   return image.channels.at(name);
 }
 
-/// Adds one more picture to the mean of `parts` pictures that are as good.
+/// Adds one more picture to the mean of `parts` pictures of equal quality.
 void addPart(Image& sum, const Image& part, double parts) {
   for (const char* name : colours) {
     std::vector<float>& mean = channel(sum, name);
@@ -43,8 +43,8 @@ void addPart(Image& sum, const Image& part, double parts) {
   }
 }
 
-/// Mean of independent pictures of equally many samples, each by its own seed, until it is good
-/// enough or time is up.
+/// Mean of independent pictures with equal sample counts, each with its own seed, until the noise
+/// target or the time limit is reached.
 template <typename RenderPart>
 Image accumulate(const ReferenceSettings& wanted, RenderPart&& renderPart) {
   const Stopwatch watch;
@@ -66,7 +66,7 @@ Image byProduct(const Scene& scene, RenderSettings settings, const ReferenceSett
   });
 }
 
-/// A file's, or a preset's.
+/// Lights from a file, or from a preset.
 std::vector<Light> lightsOf(const std::string& name) {
   const std::string_view preset = embeddedResource("lights/" + name + ".json");
   return preset.empty() ? readLights(name) : parseLights(preset, name);
@@ -111,7 +111,7 @@ std::optional<Reference> independentReference(const SceneCase& sceneCase, const 
   return Reference(*std::move(image), "independent");
 }
 
-/// What a kept reference has to be of.
+/// Text that identifies the request of a cached reference.
 std::string identity(const SceneCase& sceneCase, const Scene& scene,
                      const ReferenceSettings& wanted) {
   std::string text = std::to_string(scene.camera().width()) + "x" +

@@ -1,5 +1,5 @@
 #pragma once
-// The pictures that renders are measured against.
+// Reference pictures, against which renders are measured.
 
 #include "Scenes.h"
 
@@ -9,27 +9,27 @@
 namespace fenestra::benchmarks {
 
 struct ReferenceSettings {
-  std::filesystem::path folder; ///< where pictures that were made once are kept
-  double noise = 0.03;          ///< Film::noise() at which a picture that is made here is done
-  double seconds = 1800.0;      ///< and how long it may take
+  std::filesystem::path folder; ///< cache of references
+  double noise = 0.03;          ///< target of Film::noise() for a new reference
+  double seconds = 1800.0;      ///< time limit of a new reference
 };
 
 struct Reference {
   Image image; ///< R, G, B and their standard errors
   std::string maker;
-  double relMse = 0.0; ///< of the reference itself, by its standard errors
+  double relMse = 0.0; ///< of the reference itself, from its standard errors
 
   Reference(Image imageIn, std::string makerIn);
 };
 
-/// An independent reference where the scene has one of the picture's size, else the one kept in the
-/// folder, else made now and kept. One that is kept says in its header of which command line it is;
-/// it is made anew where that has changed, but not where the files that it names have. Throws
-/// Error.
+/// Returns the scene's independent reference if there is one of the picture's size, else the
+/// reference cached in the folder, else a new one, which is cached. The header of a cached
+/// reference holds its command line; the reference is rebuilt if that line has changed, but not if
+/// files named in the line have. Throws Error.
 Reference findReference(const SceneCase& sceneCase, const Scene& scene,
                         const RenderSettings& settings, const ReferenceSettings& wanted);
 
-/// R, G, B and their standard errors.
+/// Image with R, G, B and their standard errors.
 Image imageOf(const Film& film, const Scene& scene);
 
 } // namespace fenestra::benchmarks

@@ -39,7 +39,7 @@ std::vector<std::string> cellsOf(const std::string& line) {
   return cells;
 }
 
-/// In the order of csvHeader.
+/// Adds a row of cells in the order of csvHeader.
 void addRow(const std::vector<std::string>& cells, std::vector<CurveRecord>& curves) {
   if (curves.empty() || curves.back().scene != cells[0] || curves.back().mode != cells[1])
     curves.push_back({cells[0], cells[1], cells[2], std::stod(cells[3])});
@@ -61,7 +61,7 @@ const CurveRecord* find(const std::vector<CurveRecord>& curves, const std::strin
   return found == curves.end() ? nullptr : &*found;
 }
 
-/// Each once, in their order.
+/// Names of the scenes, each once, in their order.
 std::vector<std::string> scenesOf(const std::vector<CurveRecord>& curves) {
   std::vector<std::string> scenes;
   for (const CurveRecord& curve : curves)
@@ -87,7 +87,7 @@ std::string efficiencyCell(const CurveRecord& curve) {
   return out.str();
 }
 
-/// Of the point with the most samples.
+/// Bias of the point with the most samples.
 std::string biasCell(const CurveRecord& curve) {
   const Point& point = curve.points.back();
   std::ostringstream out;
@@ -96,7 +96,7 @@ std::string biasCell(const CurveRecord& curve) {
   return out.str();
 }
 
-/// A row a scene: `first` of one of its curves, and `cell` of each.
+/// Writes a table with a row per scene: `first` of one of its curves, then `cell` of each curve.
 template <typename First, typename Cell>
 void writeTable(std::ostream& out, const std::vector<CurveRecord>& curves, const char* second,
                 First&& first, Cell&& cell) {

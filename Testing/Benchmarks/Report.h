@@ -1,5 +1,5 @@
 #pragma once
-// What a run leaves behind: every point as CSV, curves as a picture, efficiencies as a table.
+// Report of a run: every point as CSV, curves as SVG, efficiencies as a table.
 
 #include "Curve.h"
 
@@ -9,32 +9,33 @@
 
 namespace fenestra::benchmarks {
 
-/// A mode's curve of a scene. A scene that is not present has one curve without mode and points.
+/// Curve of a mode in a scene. A missing scene has one record, without mode and points.
 struct CurveRecord {
   std::string scene, mode;
-  std::string reference;        ///< who made it
-  double referenceRelMse = 0.0; ///< its own
+  std::string reference;        ///< maker of the reference
+  double referenceRelMse = 0.0; ///< relMSE of the reference itself
   std::vector<Point> points = {};
 };
 
-/// curves.csv of a folder, nothing where there is none. Throws Error (input) for another file.
+/// Reads curves.csv of a folder; empty if the file is missing. Throws Error (input) for an invalid
+/// file.
 std::vector<CurveRecord> readCurves(const std::filesystem::path& folder);
 
-/// `kept` with what is `measured` in the place of what was known of the same scene and mode; in the
-/// order of the scenes' names and of modes().
+/// `kept`, with records of the same scene and mode replaced by those in `measured`; ordered by
+/// `scenes`, then modes().
 std::vector<CurveRecord> merged(const std::vector<CurveRecord>& kept,
                                 const std::vector<CurveRecord>& measured,
                                 const std::vector<std::string>& scenes);
 
-/// curves.csv, curves.svg and README.md. `machine` and what else a reader has to know of the run is
-/// in `notes`, a paragraph. Throws Error (output).
+/// Writes curves.csv, curves.svg and README.md. `notes`: a paragraph on the machine and the run.
+/// Throws Error (output).
 void writeReport(const std::filesystem::path& folder, const std::vector<CurveRecord>& curves,
                  const std::string& notes);
 
-/// curves.svg: a log-log panel a scene, relMSE over CPU seconds.
+/// SVG with a log-log panel per scene: relMSE over CPU seconds.
 std::string drawCurves(const std::vector<CurveRecord>& curves);
 
-/// The relMSE at which efficiency is quoted.
+/// RelMSE at which efficiency is quoted.
 inline constexpr double quotedRelMse = 1e-3;
 
 } // namespace fenestra::benchmarks

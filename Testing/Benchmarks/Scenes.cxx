@@ -12,8 +12,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// One argument a line, as `fenestra` takes them from the file's own folder: files beside it get
-/// their whole path.
+/// Arguments from a file, one a line, relative to its folder: names of files there become full
+/// paths.
 Words readArguments(const std::filesystem::path& path) {
   Words words;
   std::ifstream file(path);
@@ -53,7 +53,7 @@ public:
   }
 
 private:
-  /// The words of a line, each "@name" replaced by the words that it stands for.
+  /// Words of a line, with each "@name" replaced by its definition.
   Words split(const std::string& line) const {
     Words words;
     std::istringstream stream(line);
@@ -97,7 +97,7 @@ private:
     return scene;
   }
 
-  /// A word with its folder, which is noted where it is missing.
+  /// Word with its folder's path; sets scene.missing if the file does not exist.
   std::string placed(const std::string& word, SceneCase& scene) const {
     for (const auto& [name, folder] : m_folders)
       if (word.starts_with(name)) {

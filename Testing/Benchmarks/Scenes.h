@@ -1,5 +1,5 @@
 #pragma once
-// The scenes of scenes.txt: each is a command line of `fenestra`.
+// Scenes of scenes.txt; each is a command line of `fenestra`.
 
 #include "program/RenderFlags.h"
 
@@ -9,7 +9,7 @@
 
 namespace fenestra::benchmarks {
 
-/// Where the table's {reference}, {data} and {phantoms} are.
+/// Folders for the table's {reference}, {data} and {phantoms}.
 struct Folders {
   std::filesystem::path reference, data, phantoms;
 };
@@ -17,20 +17,20 @@ struct Folders {
 enum class ReferenceMaker {
   independent, ///< other renderers: FILE_best.exr and FILE_best_se.exr beside FILE.arguments
   oracle,      ///< Testing/Oracle; for scenes without a clip
-  product,     ///< the renderer itself with other seeds, where the oracle would take hours
+  product,     ///< the renderer itself with other seeds, if the oracle would take hours
 };
 
 struct SceneCase {
   std::string name;
   ReferenceMaker maker = ReferenceMaker::product;
   std::filesystem::path independent;  ///< FILE of an independent reference
-  std::vector<std::string> arguments; ///< of `fenestra`
-  std::string missing;                ///< a file that it needs and that is not there, or empty
+  std::vector<std::string> arguments; ///< arguments of `fenestra`
+  std::string missing; ///< a file that the scene needs and that does not exist, or empty
 
   RenderOptions options() const; ///< Throws Error (usage).
 };
 
-/// Throws Error (input) where the table is not one.
+/// Throws Error (input) for an invalid table.
 std::vector<SceneCase> readScenes(const std::filesystem::path& table, const Folders& folders);
 
 } // namespace fenestra::benchmarks

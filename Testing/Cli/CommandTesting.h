@@ -1,5 +1,5 @@
 #pragma once
-// Small files to run the executable on, and what every refusal has to look like.
+// Small input files for the executable, and the form of every refusal.
 
 #include "Process.h"
 #include "TemporaryFolder.h"
@@ -19,8 +19,8 @@ struct NrrdText {
   std::string encoding = "raw";
   std::string fields = {}; ///< further lines
 
-  /// A volume of 1 mm voxels with its first voxel's centre at the origin; other numbers of axes
-  /// have no space.
+  /// Volume with 1 mm voxels and its first voxel's centre at the origin; without a space unless it
+  /// has three axes.
   std::string with(const std::string& samples) const {
     const auto axes = 1 + std::count(sizes.begin(), sizes.end(), ' ');
     std::string text = "NRRD0004\ntype: " + type + "\ndimension: " + std::to_string(axes) + "\n";
@@ -32,7 +32,7 @@ struct NrrdText {
   }
 };
 
-/// 4x4x4 values of 16 bits that differ.
+/// 4x4x4 different 16-bit values.
 inline std::string ramp() {
   std::string samples;
   for (char value = 0; value < 64; ++value)
@@ -62,7 +62,7 @@ inline std::string segments() {
   return text.with(labels);
 }
 
-/// A volume and its segments, in the folder of the test.
+/// Folder with a volume and its segments.
 class SmallScene : public testing::Test {
 protected:
   SmallScene() {
@@ -70,7 +70,7 @@ protected:
     folder.write("segments.seg.nrrd", segments());
   }
 
-  /// `fenestra volume.nrrd … ` at 16x16 pixels and 2 samples a pixel.
+  /// Runs `fenestra volume.nrrd … ` at 16x16 pixels and 2 samples a pixel.
   Outcome renderWith(const Arguments& arguments) const {
     Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "2"};
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -80,7 +80,7 @@ protected:
   TemporaryFolder folder;
 };
 
-/// A knee of 60x68x24 voxels, made by the executable: once a program, in knee/ of the folder.
+/// Folder with a knee of 60x68x24 voxels in knee/, made once a program by the executable.
 inline const TemporaryFolder& kneeFolder() {
   static const TemporaryFolder folder;
   static const Outcome made =
@@ -97,16 +97,16 @@ inline std::set<std::string> filesIn(const std::filesystem::path& folder) {
   return names;
 }
 
-/// A command line that must be refused.
+/// Command line that must be refused.
 struct Refusal {
   std::string name;
   Arguments arguments;
   int status;
-  std::string text; ///< part of the one line
+  std::string text; ///< part of the error line
 };
 
-/// Runs each and expects its exit status, one line on standard error, nothing on standard output,
-/// and no file more or less.
+/// Runs each command line; expects its exit status, one line on standard error, nothing on standard
+/// output, and an unchanged set of files.
 inline void expectRefused(const std::vector<Refusal>& refusals,
                           const std::filesystem::path& folder) {
   const std::set<std::string> before = filesIn(folder);

@@ -1,5 +1,5 @@
-// Every file of the folder of real data, and what is expected of it: a picture, or a refusal for
-// the stated reason. Skips, visibly, where the folder is absent.
+// Expected result for every file of the folder of real data: a picture, or a refusal for a stated
+// reason. Skipped, visibly, if the folder is missing.
 
 #include "CommandTesting.h"
 
@@ -8,9 +8,9 @@ namespace {
 
 const std::filesystem::path data = FENESTRA_DATA;
 
-/// A command line on real files ("@" stands for the folder); an empty `refusal` expects a picture.
+/// Command line on real files ("@": the folder); an empty `refusal` expects a picture.
 struct Expectation {
-  std::string files; ///< that it tests, separated by blanks; a trailing * stands for any ending
+  std::string files; ///< tested files, separated by blanks; a trailing * matches any ending
   std::string arguments;
   std::string refusal = {};
 };
@@ -128,7 +128,7 @@ const std::vector<Expectation>& expectations() {
       {"slicer_scenes/slicer_core/volume-property-schema-v1.0.0.json",
        chest + "--transfer @/slicer_scenes/slicer_core/volume-property-schema-v1.0.0.json",
        "unknown key"},
-      {"slicer_scenes/slicer_core/AnnotationROI.acsv", // is read as a region in a unit test
+      {"slicer_scenes/slicer_core/AnnotationROI.acsv", // read as a region in a unit test
        "@/slicer_scenes/slicer_core/AnnotationROI.acsv", "has no known extension"},
   };
   return table;

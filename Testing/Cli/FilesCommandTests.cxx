@@ -1,4 +1,4 @@
-// Files that cannot be read or written: one line, exit status 3 or 4, nothing left behind.
+// Files that cannot be read or written: one line, exit status 3 or 4, no file left behind.
 
 #include "CommandTesting.h"
 
@@ -150,7 +150,7 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
       folder.path());
 }
 
-/// As those of a folder that another user keeps closed, but for root as well.
+/// Unreadable path like another user's closed folder, but also for root.
 TEST_F(FilesCommand, SaysWhereFilesMayNotBeLookedAt) {
   std::filesystem::create_symlink("loop", folder / "loop");
   folder.write("s.mrml", R"(<MRML><Volume id="v" references="storage:s;"/>)"
@@ -246,7 +246,7 @@ TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
       folder.path());
 }
 
-/// One grey pixel, uncompressed.
+/// TIFF of one grey pixel, uncompressed.
 std::string tiffOf(std::uint16_t orientation) {
   const auto bytes = [](std::uint32_t value, int count) {
     std::string text;

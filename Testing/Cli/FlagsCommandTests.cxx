@@ -1,4 +1,4 @@
-// Wrong usage: one line that names the flag and the mend, exit status 2.
+// Wrong usage: exit status 2 and one line that names the flag and the remedy.
 
 #include "CommandTesting.h"
 
@@ -9,7 +9,7 @@ namespace {
 
 class FlagsCommand : public SmallScene {
 protected:
-  /// `volume.nrrd flags…` must be refused as wrong usage.
+  /// Refusal of `volume.nrrd flags…` as wrong usage.
   static Refusal refusal(Arguments flags, const std::string& text) {
     std::string name;
     for (const std::string& flag : flags)
@@ -228,7 +228,7 @@ TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
       {{"render", "--help"}, {"INPUT", "focus", "output"}},
       {{"compare", "--help"}, {"A", "B", "errora", "errorb", "output", "help", "version"}},
       {{"phantom", "--help"}, {"KIND", "output", "size", "edge", "help", "version"}},
-      {{"missing.nrrd", "--samples", "x", "--help"}, {"focus"}}, // whatever else is wrong
+      {{"missing.nrrd", "--samples", "x", "--help"}, {"focus"}}, // despite other errors
   };
   for (const auto& [arguments, names] : commands) {
     const Outcome outcome = run(arguments, folder.path());

@@ -1,5 +1,5 @@
-// `fenestra inspect`: what it says of small inputs, word by word in JSON, and that it says what a
-// render then does.
+// `fenestra inspect`: its output for small inputs, word by word in JSON, and its agreement with a
+// render.
 
 #include "CommandTesting.h"
 
@@ -39,7 +39,7 @@ protected:
     folder.write("scene.mrml", "<MRML version=\"Slicer 5.6.2 32448\">" + nodes + "</MRML>");
   }
 
-  /// Runs it, expects success, and that the text says something as well.
+  /// JSON of an inspection that must succeed, with a text that is not empty.
   Json inspect(Arguments arguments) const {
     arguments.insert(arguments.begin(), "inspect");
     text = run(arguments, folder.path()).out;
@@ -58,7 +58,8 @@ protected:
     return inspect(arguments);
   }
 
-  /// What is said to be refused has to be, in the same words; what is not must render.
+  /// Expects a render to be refused in the words of the inspection, or to succeed if it reports no
+  /// refusal.
   void expectAsRendered(const Json& said, const std::string& input) const {
     const Outcome rendered =
         run({input, "--size", "4x4", "--samples", "1", "--output", "a.png"}, folder.path());
@@ -68,7 +69,7 @@ protected:
       EXPECT_EQ(rendered.err, "fenestra: " + said["refused"].get<std::string>() + "\n");
   }
 
-  mutable std::string text; ///< of the last inspection
+  mutable std::string text; ///< output of the last inspection
 };
 
 std::vector<std::string> lines(const std::string& text) {
@@ -280,8 +281,8 @@ TEST_F(InspectCommand, SaysWhichPartIsDamaged) {
   EXPECT_NE(text.find("gone away.nrrd (missing)"), std::string::npos) << text;
 }
 
-/// An HDF5 file of symbols in a tree of five levels, each of whose nodes has `children` entries,
-/// all of them the same node below: a walk meets children^5 leaves.
+/// HDF5 file of symbols in a tree of five levels; the `children` entries of each node all point to
+/// one node below: a walk meets children^5 leaves.
 std::string fanningTree(std::size_t children) {
   using namespace std::string_literals;
   const auto number = [](std::uint64_t value, std::size_t size) { // little-endian, as here
@@ -292,7 +293,7 @@ std::string fanningTree(std::size_t children) {
   const std::size_t leaf = firstNode + 5 * nodeSize, heap = leaf + 8 + 4 * 40;
   std::string file = "\x89HDF\r\n\x1a\n"s + std::string(5, '\0') + "\x08\x08" +
                      std::string(49, '\0') + number(root, 8);
-  file += "\1"s + std::string(7, '\0') + number(24, 4) + number(0, 4); // the root's header
+  file += "\1"s + std::string(7, '\0') + number(24, 4) + number(0, 4); // header of the root
   file += number(0x11, 2) + number(16, 2) + number(0, 4) + number(firstNode, 8) + number(heap, 8);
   for (std::size_t level = 0; level < 5; ++level) {
     const std::size_t begin = firstNode + level * nodeSize;
@@ -370,7 +371,7 @@ TEST_F(InspectCommand, RefusesWhatIsNoInput) {
 struct RealScene {
   std::string file;
   std::size_t volumes, segmentations, properties;
-  std::string refused; ///< part of the line; empty where it renders
+  std::string refused; ///< part of the line; empty: renders
 };
 
 TEST_F(InspectCommand, DescribesRealScenes) {

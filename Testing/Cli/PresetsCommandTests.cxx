@@ -1,4 +1,4 @@
-// Organ presets and Slicer's presets by name, through the command line.
+// Organ presets, and Slicer's presets by name, through the command line.
 
 #include "CommandTesting.h"
 #include "files/pictures/ImageReader.h"
@@ -11,7 +11,7 @@
 namespace fenestra::PresetsCommandTests {
 namespace {
 
-/// `fenestra knee.nrrd …` in the folder of the knee, at 16x16 pixels and 2 samples a pixel.
+/// Runs `fenestra knee.nrrd …` in the knee's folder, at 16x16 pixels and 2 samples a pixel.
 Outcome renderKnee(const Arguments& arguments, const std::string& input = "knee/knee.nrrd") {
   Arguments all = {input, "--size", "16x16", "--samples", "2", "--output", "preset.exr"};
   all.insert(all.end(), arguments.begin(), arguments.end());
@@ -24,7 +24,7 @@ Arguments withSegments(const Arguments& arguments) {
   return all;
 }
 
-/// The lines that --echo prints.
+/// Lines printed by --echo.
 std::set<std::string> echoed(Arguments arguments, const std::string& input = "knee/knee.nrrd") {
   arguments.push_back("--echo");
   const Outcome outcome = renderKnee(arguments, input);
@@ -77,9 +77,9 @@ TEST(PresetsCommand, FlagsWinOverThePreset) {
                            "scale: 70", "lights: studio", "preset: knee-cartilage"})
     EXPECT_TRUE(lines.contains(line)) << line;
   EXPECT_FALSE(has(lines, "boundary"));
-  EXPECT_TRUE(has(lines, "labelsmoothing")); // the focus's own in any mode
+  EXPECT_TRUE(has(lines, "labelsmoothing")); // kept: the focus's own in any mode
   EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
-  // One that the preset's surface cannot have, too.
+  // Likewise with a flag that conflicts with the preset's surface.
   const auto others = echoed(withSegments(
       {"--preset", "knee-cartilage", "--controlpoints", "20", "--position", "0,300,0"}));
   EXPECT_TRUE(others.contains("clip: surface"));
@@ -87,7 +87,7 @@ TEST(PresetsCommand, FlagsWinOverThePreset) {
   EXPECT_FALSE(has(others, "view"));
 }
 
-/// Slicer's panel hands over all flags, most with their standard values.
+/// Slicer's panel passes all flags, most with their default values.
 TEST(PresetsCommand, InSlicersPanelTheStandardSaysNothing) {
   const auto lines = echoed(withSegments({"--preset", "knee-cartilage", "--clip", "auto",
                                           "--boundary", "spline", "--controlpoints", "50",
@@ -111,7 +111,7 @@ TEST(PresetsCommand, WithoutASegmentationItIsALookAndAView) {
   EXPECT_FALSE(has(lines, "clip"));
 }
 
-/// The clip and the look are meant for another volume: what was asked for is shown all the same.
+/// Clip and look are for another modality: the requested picture is rendered all the same.
 TEST(PresetsCommand, ALookForAnotherModalityGivesWay) {
   const Outcome outcome = renderKnee(withSegments({"--preset", "liver", "--focus", "Femur"}));
   EXPECT_EQ(outcome.status, 0);
@@ -174,7 +174,7 @@ TEST(PresetsCommand, RefusalsNameWhatThereIs) {
       folder.path());
 }
 
-/// What was stored with a scene, and what is asked for now.
+/// Preset on the command line against flags stored with a scene.
 TEST(PresetsCommand, APresetThatIsGivenWinsOverWhatASceneStores) {
   const TemporaryFolder& folder = kneeFolder();
   const std::string scene = bytesOf(folder / "knee/knee.mrml");
@@ -228,7 +228,7 @@ TEST(PresetsCommand, AServerTakesAPresetAndTakesItBack) {
 // ---- Slicer's presets
 // ----------------------------------------------------------------------------
 
-/// A Slicer for the time of a test.
+/// Slicer installation for the duration of a test.
 class SlicerHome {
 public:
   explicit SlicerHome(const std::filesystem::path& folder) {

@@ -18,12 +18,12 @@
 namespace fenestra {
 namespace {
 
-/// Seconds that a process is waited for.
+/// Time limit of a process, seconds.
 double longest() {
   return 30.0 * static_cast<double>(testing::brevity());
 }
 
-/// A position of its own, for the child and the reader share one otherwise.
+/// Content by a separate file position: child and reader would share a position otherwise.
 std::string content(int file) {
   const std::ifstream stream("/proc/self/fd/" + std::to_string(file), std::ios::binary);
   return {std::istreambuf_iterator<char>(stream.rdbuf()), {}};

@@ -1,4 +1,4 @@
-// Who hears of progress, and what.
+// Progress: its receivers and its content.
 
 #include "CommandTesting.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 class ProgressCommand : public SmallScene {
 protected:
-  /// A render of about half a second, which leaves time for some reports.
+  /// Render of about half a second: long enough for several reports.
   Outcome withProgress(const Arguments& flags) const {
     Arguments all = {"volume.nrrd", "--size", "32x32", "--seconds", "0.5"};
     all.insert(all.end(), flags.begin(), flags.end());

@@ -1,4 +1,4 @@
-// What a render leaves behind: pictures, statistics, and what it says.
+// Outputs of a render: pictures, statistics and messages.
 
 #include "CommandTesting.h"
 #include "files/pictures/ImageReader.h"
@@ -50,7 +50,7 @@ TEST_F(RendersCommand, WritesEveryFormatAndComparesThemWithThemselves) {
     const Outcome outcome = run({"compare", name, name}, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("\nlargest     0\n"), std::string::npos) << name << outcome.out;
-    // relMSE is less the reference's own variance where the picture states it
+    // relMSE has the reference's own variance subtracted if the picture states it
     EXPECT_EQ(outcome.out.starts_with("relMSE      0\n"), name != "A.EXR") << outcome.out;
   }
   EXPECT_TRUE(readImage(folder / "A.EXR").find("normal.X"));
@@ -249,7 +249,7 @@ TEST_F(RendersCommand, ReplacesAPictureAndNothingElse) {
   folder.write("named.png", "somebody's picture");
   ASSERT_EQ(renderWith({"--output", "named.png"}).status, 0);
   EXPECT_EQ(readImage(folder / "named.png").width, 16);
-  ASSERT_EQ(renderWith({}).status, 0); // volume.png, which nobody named
+  ASSERT_EQ(renderWith({}).status, 0); // volume.png, a default name
   ASSERT_EQ(renderWith({}).status, 0);
   EXPECT_EQ(readImage(folder / "volume.png").width, 16);
   folder.write("volume.png", "somebody's picture");

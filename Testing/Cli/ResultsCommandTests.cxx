@@ -1,4 +1,4 @@
-// What becomes of results: where they go, what they replace, and what they tell of their inputs.
+// Results: their places, the files that they replace, and their record of inputs.
 
 #include "CommandTesting.h"
 #include "files/pictures/ImageReader.h"
@@ -93,7 +93,7 @@ TEST_F(ResultsCommand, TurntablesRenderEmptyFramesAgain) {
   EXPECT_EQ(bytesOf(folder / "turn_0000.png"), whole);
 }
 
-/// Longer, cut, and another file altogether.
+/// Frames replaced by a longer file, a cut file, and an unrelated file.
 TEST_F(ResultsCommand, TurntablesReplaceNothingThatWasPutInAFramesPlace) {
   ASSERT_EQ(turn().status, 0);
   const std::string whole = bytesOf(folder / "turn_0000.png");
@@ -117,7 +117,7 @@ TEST_F(ResultsCommand, TurntablesFollowNoLinkThatWasPutInAFramesPlace) {
   EXPECT_EQ(bytesOf(folder / "mine.txt"), "mine");
 }
 
-/// A run that was killed between a frame and its record leaves a frame that bears the mark.
+/// A run killed between a frame and its record leaves a frame that bears the mark.
 TEST_F(ResultsCommand, TurntablesGoingOnReplaceUnrecordedFramesOfTheirOwnAlone) {
   for (const std::string ending : {".png", ".exr", ".tif", ".nrrd"}) {
     const Arguments arguments = {"turntable", "volume.nrrd", "--size", "8x8",      "--samples",
@@ -199,7 +199,7 @@ TEST_F(ResultsCommand, ARecordThatIsNoneIsNotReplaced) {
   const Outcome outcome = turn({"--restart"});
   EXPECT_EQ(outcome.status, 2) << outcome.err;
   EXPECT_EQ(bytesOf(folder / "turn.turntable.json"), "somebody's notes");
-  folder.write("turn.turntable.json", // as earlier versions wrote it
+  folder.write("turn.turntable.json", // format of earlier versions
                R"({"request": {"version": "0.1", "arguments": []}, "finished": []})");
   EXPECT_EQ(turn({"--restart"}).status, 0);
 }

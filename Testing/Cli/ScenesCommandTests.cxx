@@ -1,5 +1,5 @@
 // Slicer scenes through the command line. The picture of a solid box is compared with its outline
-// as the scene's own numbers have it, by a projection written here from VTK's conventions.
+// by the scene's own numbers, projected by code written here from VTK's conventions.
 
 #include "CommandTesting.h"
 #include "files/pictures/ImageReader.h"
@@ -23,7 +23,7 @@ struct ViewNumbers {
   double parallelScale, viewAngle;
 };
 
-/// Boxes as maps from [-1, 1]^3 to the world: the picture shows where they all overlap.
+/// Boxes as maps from [-1, 1]^3 to the world; the picture shows their intersection.
 using Boxes = std::vector<Map>;
 
 bool meets(const Vector& origin, const Vector& direction, const Boxes& boxes) {
@@ -42,7 +42,7 @@ bool meets(const Vector& origin, const Vector& direction, const Boxes& boxes) {
   return from < to;
 }
 
-/// Whether the ray through a place of the picture, in pixels from its upper left, meets the boxes.
+/// True if the ray through a raster position, in pixels from the upper left, meets the boxes.
 bool isCovered(const ViewNumbers& view, const Boxes& boxes, int size, double column, double row) {
   const Vector forward = (view.focalPoint - view.position).normalized();
   const Vector right = forward.cross(view.viewUp).normalized();
@@ -57,8 +57,8 @@ bool isCovered(const ViewNumbers& view, const Boxes& boxes, int size, double col
 
 constexpr int size = 96;
 
-/// Renders the scene with every scalar opaque, and expects the boxes' outline: all pixels but those
-/// that an edge crosses.
+/// Renders the scene with every scalar opaque; expects the boxes' outline in all pixels not crossed
+/// by an edge.
 void expectOutline(const TemporaryFolder& folder, const std::string& scene,
                    const Arguments& arguments, const ViewNumbers& view, const Boxes& boxes) {
   folder.write("solid.json", R"({"extinction": [[0, 1000]], "albedo": [[0, 0.5, 0.5, 0.5]]})");
@@ -96,7 +96,7 @@ void expectOutline(const TemporaryFolder& folder, const std::string& scene,
       wrong += uniform && alpha[pixel] != (covered ? 1.0F : 0.0F);
     }
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(inside, size * size / 20); // there is something to see, and its outline is in view
+  EXPECT_GT(inside, size * size / 20); // the boxes are visible, and their outline is in view
   EXPECT_GT(edges, 10);
 }
 
@@ -111,7 +111,7 @@ Map mapOf(std::initializer_list<double> rows) {
   return map;
 }
 
-/// The numbers of a map's sixteen, row by row.
+/// Sixteen numbers of a map, row by row.
 std::string textOf(const Map& map) {
   std::ostringstream text;
   text.precision(17);
@@ -121,7 +121,7 @@ std::string textOf(const Map& map) {
   return text.str();
 }
 
-/// The 4x4x4 volume of NrrdText in [-1, 1]^3, RAS.
+/// Map of [-1, 1]^3 onto the 4x4x4 volume of NrrdText, RAS.
 Map cubeOfVolume() {
   return mapOf({-2, 0, 0, -1.5, 0, -2, 0, -1.5, 0, 0, 2, 1.5});
 }
@@ -232,14 +232,14 @@ TEST_F(ScenesCommand, FindsTheFocusInTheScenesSegmentationOrInAFile) {
   EXPECT_EQ(with({"--focus", "A", "--segmentation", "parts", "--output", "named.exr"}).status, 0);
   EXPECT_EQ(*readImage(folder / "own.exr").find("clip.Z"),
             *readImage(folder / "named.exr").find("clip.Z"));
-  // A file has no transform above it: its voxel lies beside the volume, which has been moved.
+  // A file has no transform: its voxel lies beside the volume, which a transform has moved.
   const Outcome file =
       with({"--focus", "A", "--segmentation", "segments.seg.nrrd", "--output", "file.exr"});
   EXPECT_EQ(file.status, 3);
   EXPECT_NE(file.err.find("cannot be seen"), std::string::npos) << file.err;
 }
 
-/// What the extension stores with a picture makes it again; flags that are given win, with all of
+/// The flags stored with a picture reproduce it; flags on the command line win, with all flags of
 /// their kind.
 TEST_F(ScenesCommand, RepeatsThePictureThatTheSceneStores) {
   const std::string plain = scene(R"(parallelProjection="true" parallelScale="4")", false);
@@ -342,7 +342,7 @@ TEST_F(ScenesCommand, NamesTheFilesOfAnArchiveAsTheyAreThere) {
 // ---- scenes that Slicer wrote
 // --------------------------------------------------------------------
 
-/// The .mrml of an archive that Slicer wrote.
+/// Text of the .mrml in an archive written by Slicer.
 std::string sceneOf(const std::filesystem::path& archive) {
   int failure = 0;
   zip_t* zip = zip_open(archive.c_str(), ZIP_RDONLY, &failure);
@@ -387,7 +387,7 @@ protected:
             attribute(scene, "Camera", "parallelProjection") == "true",
             numbersOf(attribute(scene, "Camera", "parallelScale")).at(0),
             numbersOf(attribute(scene, "Camera", "viewAngle")).at(0)};
-    // 128 x 128 x 34 voxels, from the scene's copy of the volume's geometry
+    // 128 x 128 x 34 voxels; geometry from the scene's copy
     const auto spacing = numbersOf(attribute(scene, "Volume", "spacing"));
     const auto origin = numbersOf(attribute(scene, "Volume", "origin"));
     const Vector half(64 * spacing[0], 64 * spacing[1], 17 * spacing[2]);

@@ -1,4 +1,4 @@
-// `fenestra serve`: changes in, pictures out; what it does with bad lines, and how it ends.
+// `fenestra serve`: changes in, pictures out; its answers to bad lines, and its end.
 
 #include "CommandTesting.h"
 #include "RunSettings.h"
@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Seconds; about 0.1 on an idle machine, and more in slow builds.
+/// Seconds; an idle machine takes about 0.1, slow builds more.
 const double soon = 2.0 * static_cast<double>(testing::brevity());
 
 class ServeCommand : public SmallScene {
@@ -39,7 +39,7 @@ protected:
     return process.waitForOutput("\"error\",\"id\":" + id + ",\"message\":\"[^\n]*" + message);
   }
 
-  /// The picture that `fenestra volume.nrrd …` makes with these flags.
+  /// Picture of `fenestra volume.nrrd …` with these flags.
   Image rendered(const Arguments& flags) const {
     Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "4", "--output", "b.exr"};
     all.insert(all.end(), flags.begin(), flags.end());
@@ -148,10 +148,10 @@ TEST_F(ServeCommand, BadLinesChangeNothing) {
   }
   process.write("{\"id\": 99, \"view\": \"left\"}\n");
   ASSERT_TRUE(waitForPicture(process, "99")) << process.output();
-  expectShown({"--view", "left"}); // and nothing of what was refused
+  expectShown({"--view", "left"}); // and no refused change
 }
 
-/// Sent together, so that the server takes them together.
+/// Lines sent together, which the server reads together.
 TEST_F(ServeCommand, ABadLineTakesNoGoodOneAway) {
   Process process(serving(), folder.path());
   ASSERT_TRUE(waitForPicture(process, "null"));
@@ -177,7 +177,7 @@ TEST_F(ServeCommand, ABadLineTakesNoGoodOneAway) {
   EXPECT_EQ(refused, bad.size());
 }
 
-/// As on a full disk: the render under way goes on, and so does the server.
+/// A failing write, as on a full disk: the current render and the server go on.
 TEST_F(ServeCommand, AFailureToWriteIsAnswered) {
   const std::filesystem::path place = folder / "results";
   std::filesystem::create_directory(place);
@@ -201,7 +201,7 @@ TEST_F(ServeCommand, EndsWithItsInput) {
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
     EXPECT_LT(outcome.seconds, soon);
-    EXPECT_EQ(filesIn(folder.path()).size(), 3u); // two inputs, the picture
+    EXPECT_EQ(filesIn(folder.path()).size(), 3u); // two inputs and the picture
   }
 }
 

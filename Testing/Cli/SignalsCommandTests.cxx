@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM: exit status 5, at once; finished passes are kept, files are whole.
+// Ctrl-C and SIGTERM: exit status 5 at once; finished passes are kept, files are complete.
 
 #include "CommandTesting.h"
 #include "RunSettings.h"
@@ -14,7 +14,7 @@
 namespace fenestra::SignalsCommandTests {
 namespace {
 
-/// Seconds; about 0.1 on an idle machine, and more in slow builds.
+/// Seconds; an idle machine takes about 0.1, slow builds more.
 const double soon = 2.0 * static_cast<double>(testing::brevity());
 
 class SignalsCommand : public SmallScene, public ::testing::WithParamInterface<int> {};
@@ -48,7 +48,7 @@ TEST_P(SignalsCommand, KeepsFinishedPasses) {
 TEST_P(SignalsCommand, EndsAtOnceAtTheSecond) {
   folder.write("a.exr", "old");
   const auto before = filesIn(folder.path());
-  // No pass ends within the test, and a path takes long: matter that scatters and never absorbs.
+  // No pass ends within the test, and a path takes long: the matter scatters and never absorbs.
   folder.write("dense.json", R"({"extinction": [[0, 1e4], [64, 1e4]], "albedo": [[0, 1, 1, 1]]})");
   Process process({"volume.nrrd", "--transfer", "dense.json", "--size", "1024x1024", "--samples",
                    "100000", "--bounces", "1000000", "--progress", "xml", "--output", "a.exr"},
@@ -66,7 +66,7 @@ TEST_P(SignalsCommand, EndsAtOnceAtTheSecond) {
 }
 
 TEST_P(SignalsCommand, StaysIgnoredWhereItWasAtTheStart) {
-  std::signal(GetParam(), SIG_IGN); // as nohup and background jobs have it
+  std::signal(GetParam(), SIG_IGN); // as set by nohup and for background jobs
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "500", "--progress", "xml",
                    "--output", "a.png"},
                   folder.path());
@@ -90,7 +90,7 @@ TEST_P(SignalsCommand, LeavesNothingOfAnArchive) {
   process.send(GetParam());
   EXPECT_EQ(process.wait().status, 5);
   EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
-  std::filesystem::remove(knee / "never.png"); // where a pass was finished
+  std::filesystem::remove(knee / "never.png"); // exists if a pass was finished
 }
 
 TEST_P(SignalsCommand, WritesNothingBeforeTheFirstPass) {

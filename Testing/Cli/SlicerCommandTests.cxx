@@ -1,6 +1,5 @@
-// The executable as a command line module of Slicer: its description by the rules of Slicer's
-// execution model (whose parser refuses the module at the first fault), and a run as Slicer does
-// it.
+// Executable as a command line module of Slicer: its description by the rules of Slicer's execution
+// model (whose parser refuses the module at the first fault), and a run in Slicer's way.
 
 #include "CommandTesting.h"
 
@@ -19,7 +18,7 @@ const Names numberTypes = {"integer", "double"};
 const Names simpleTypes = {"integer", "double", "string", "boolean", "string-enumeration"};
 const Names vectorTypes = {"string-vector", "double-vector"};
 
-/// Attributes that each type may have.
+/// Attributes allowed for each type.
 const std::map<std::string, Names> attributesOf = {
     {"integer", {}},
     {"double", {}},
@@ -56,7 +55,7 @@ void checkConstraints(const pugi::xml_node& parameter, const std::string& name) 
   EXPECT_GT(constraints.child("step").text().as_double(), 0.0) << name;
 }
 
-/// Slicer hands over whatever stands in a number or a choice, so that there must be a value.
+/// Slicer passes the content of every number or choice field, so each needs a default.
 void checkDefault(const pugi::xml_node& parameter, const std::string& name, bool returned) {
   const std::string type = parameter.name();
   const std::string start = parameter.child_value("default");
@@ -119,7 +118,7 @@ protected:
     return document;
   }
 
-  /// All flags as Slicer's panel has them before anybody touches it.
+  /// All flags with the values of an untouched panel in Slicer.
   static Arguments untouchedPanel(const pugi::xml_document& document) {
     Arguments flags;
     for (const pugi::xml_node& group : document.child("executable").children("parameters"))
@@ -198,8 +197,8 @@ TEST_F(SlicerCommand, TheFileBesideTheExecutableSaysTheSame) {
 }
 
 TEST_F(SlicerCommand, RendersAsSlicerRunsIt) {
-  // A small picture of few samples, else as the panel stands: what it hands over contradicts
-  // nothing.
+  // Small picture with few samples; other flags as in the untouched panel, whose values must not
+  // conflict.
   Arguments arguments = untouchedPanel(description());
   const auto size = std::find(arguments.begin(), arguments.end(), "--size");
   ASSERT_NE(size, arguments.end());

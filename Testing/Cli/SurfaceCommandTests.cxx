@@ -1,4 +1,4 @@
-// `--surface`: the clipping surface as a mesh, of what it is refused for, and what is left behind.
+// `--surface`: the clipping surface as a mesh, its refusals, and leftover files.
 
 #include "CommandTesting.h"
 #include "files/pictures/ImageReader.h"
@@ -22,7 +22,7 @@ Arguments kneeWith(const Arguments& more) {
   return all;
 }
 
-/// x, y, z and depth of every vertex of a .ply as Fenestra writes it, and how many faces.
+/// Content of a .ply written by Fenestra: x, y, z and depth of every vertex, number of faces.
 struct PlyContent {
   std::vector<std::array<float, 4>> vertices;
   std::size_t faces = 0;
@@ -45,7 +45,7 @@ PlyContent readPly(const std::filesystem::path& path) {
 
 class SurfaceCommand : public testing::TestWithParam<const char*> {
 protected:
-  /// In a folder with the knee.
+  /// Renders in the knee's folder.
   Outcome rendered(const Arguments& more) const { return run(kneeWith(more), kneeFolder().path()); }
   std::string in(const std::string& name) const { return (folder / name).string(); }
 
@@ -86,7 +86,7 @@ TEST_P(SurfaceCommand, LiesWhereThePicturesClipChannelHasIt) {
   for (std::string word; camera >> word;)
     if (word.starts_with("--position="))
       std::sscanf(word.c_str(), "--position=%lf,%lf,%lf", &eye[0], &eye[1], &eye[2]);
-  // Seen from the left, depth grows along +R, columns along -A and rows along -S, 1.5 mm a pixel.
+  // View from the left: depth grows along +R, columns along -A, rows along -S, 1.5 mm a pixel.
   std::size_t inside = 0;
   for (const auto& [x, y, z, depth] : readPly(folder / "a.ply").vertices) {
     EXPECT_NEAR(x, eye[0] + depth, 1e-3);

@@ -1,4 +1,4 @@
-// A machine that starts no more threads, as at the limit of a user's processes.
+// Machine that starts no more threads, as at the limit of a user's processes.
 
 #include "CommandTesting.h"
 
@@ -19,8 +19,8 @@ namespace {
 
 using ThreadsCommand = SmallScene;
 
-/// From now on neither this process nor those that it starts get a thread; processes they do. A
-/// limit (RLIMIT_NPROC) would not hold for root.
+/// Refuses new threads, but not processes, to this process and its children from now on. A limit
+/// (RLIMIT_NPROC) would not hold for root.
 bool refuseThreads() {
   constexpr auto refused = SECCOMP_RET_ERRNO | EAGAIN;
   sock_filter filter[] = {
@@ -37,7 +37,7 @@ bool refuseThreads() {
          ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
 }
 
-/// Ends without destructors: folders of other tests live on in the parent.
+/// Ends without destructors: the parent still uses the folders of other tests.
 [[noreturn]] void runWithoutThreads(Arguments arguments, const std::filesystem::path& folder) {
   if (!refuseThreads())
     std::_Exit(77);

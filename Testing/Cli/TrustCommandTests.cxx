@@ -1,4 +1,5 @@
-// Scenes come from others: what one of them may make the program read, write and take.
+// Scenes from untrusted sources: limits on the files they make the program read and write, and on
+// resources.
 
 #include "CommandTesting.h"
 #include "files/pictures/ImageReader.h"
@@ -16,20 +17,20 @@ const std::string scene = R"(<MRML version="Slicer 5.6.2 32448">
 
 class TrustCommand : public SmallScene {
 protected:
-  /// A scene whose render node says this.
+  /// Writes a scene whose render node has these attributes.
   void writeScene(const std::string& attributes) const {
     folder.write("scene.mrml",
                  scene + "<FenestraRender id=\"f\" name=\"now\" " + attributes + "/></MRML>");
   }
 
-  /// `fenestra scene.mrml … --output NAME`.
+  /// Runs `fenestra scene.mrml … --output NAME`.
   Outcome render(const std::string& name, const Arguments& flags = {}) const {
     Arguments all = {"scene.mrml", "--output", name};
     all.insert(all.end(), flags.begin(), flags.end());
     return run(all, folder.path());
   }
 
-  /// The picture without what the scene says.
+  /// Picture without the scene's stored flags.
   std::map<std::string, std::vector<float>> plain(const Arguments& flags) const {
     writeScene("");
     EXPECT_EQ(render("plain.exr", flags).status, 0);
@@ -55,7 +56,7 @@ TEST_F(TrustCommand, AStoredRenderWritesAndRunsNothing) {
   EXPECT_EQ(readImage(folder / "picture.exr").width, 8);
 }
 
-/// Each is a file that is no such look: read, it would end the render.
+/// Each file is no valid look: reading it would end the render.
 TEST_F(TrustCommand, AStoredRenderNamesNoFiles) {
   const Arguments small = {"--size", "8x8", "--samples", "1", "--progress", "none"};
   const auto expected = plain(small);
@@ -78,7 +79,7 @@ TEST_F(TrustCommand, AStoredRenderNamesNoFiles) {
         << outcome.err;
     EXPECT_NE(outcome.err.find("; give --" + flag + " "), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.err.find("another's"), std::string::npos) << outcome.err;
-    if (flag != "segmentation") { // instead of which the scene's own is taken
+    if (flag != "segmentation") { // the scene's own is used instead
       EXPECT_EQ(readImage(folder / "picture.exr").channels, expected) << attribute;
     }
   }
@@ -107,7 +108,7 @@ TEST_F(TrustCommand, AStoredRenderAsksForNoMoreThanAPictureTakes) {
   EXPECT_NE(fewer.err.find("; give --samples 100000000"), std::string::npos) << fewer.err;
 }
 
-/// What a header in an archive names lies in the archive, too.
+/// A header in an archive may name only files of the archive.
 TEST_F(TrustCommand, AnArchiveReadsNothingOutsideItself) {
   const std::string outside = folder.write("outside.raw", std::string(64, 'x')).string();
   const auto archive = [&](const std::string& header, bool asMeta) {

@@ -1,5 +1,5 @@
-// `fenestra turntable`: its frames are what render makes, and none is made twice. And --view auto,
-// as the first of them may be chosen.
+// `fenestra turntable`: its frames equal those of render, and none is rendered twice. Also --view
+// auto, which may choose the first frame's view.
 
 #include "CommandTesting.h"
 #include "base/Stopwatch.h"
@@ -17,8 +17,8 @@ const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
 
 class TurntableCommand : public SmallScene {
 protected:
-  /// `fenestra turntable volume.nrrd` of the segment A, four frames of 16x16 pixels and 2 samples
-  /// a pixel.
+  /// Arguments of `fenestra turntable volume.nrrd` for segment A: four frames of 16x16 pixels and 2
+  /// samples a pixel.
   static Arguments turntable(const Arguments& more) {
     Arguments all = {"turntable", "volume.nrrd", "--size", "16x16", "--frames", "4"};
     all.insert(all.end(), focus.begin(), focus.end());
@@ -30,7 +30,7 @@ protected:
   Outcome turn(const Arguments& more) const { return run(turntable(more), folder.path()); }
 
   static std::string frame(int number) { return "turn_000" + std::to_string(number) + ".exr"; }
-  /// The flags of its camera, as its header has them.
+  /// Camera flags from a frame's header.
   Arguments cameraOf(const std::string& file) const {
     std::istringstream words(readImage(folder / file).header.at("camera"));
     Arguments flags;
@@ -38,7 +38,7 @@ protected:
       flags.push_back(word);
     return flags;
   }
-  /// One of these flags' three numbers.
+  /// Three numbers of one of these flags.
   Vec3 vectorOf(const std::string& file, const std::string& flag) const {
     for (const std::string& word : cameraOf(file))
       if (word.starts_with(flag)) {
@@ -50,7 +50,7 @@ protected:
       }
     throw std::runtime_error(file + " has no " + flag);
   }
-  /// From its target.
+  /// Unit direction from a frame's target to its eye.
   Vec3 toEye(const std::string& file) const {
     return (vectorOf(file, "--position=") - vectorOf(file, "--target=")).normalized();
   }
@@ -144,7 +144,7 @@ TEST_F(TurntableCommand, GoesOnAfterAnInterruptionBitForBit) {
     EXPECT_EQ(readImage(folder / ("whole_000" + std::to_string(i) + ".exr")).channels,
               readImage(folder / frame(i)).channels)
         << i;
-  // The files differ by the command in their headers.
+  // The files differ in their headers, by the command.
   const nlohmann::json atOnce = nlohmann::json::parse(bytesOf(folder / "whole.turntable.json"));
   for (const std::size_t i : {0, 1, 2, 3})
     EXPECT_EQ(atOnce["finished"][i]["surfaceChange"], resumed["finished"][i]["surfaceChange"]);
@@ -227,7 +227,7 @@ TEST_F(TurntableCommand, ReadsTheLongestRecord) {
   nlohmann::json whole = record();
   const nlohmann::json finished = whole["finished"].at(1);
   for (int frame = static_cast<int>(whole["finished"].size()); frame < 10000; ++frame) {
-    whole["finished"].push_back(finished); // of files that are lost
+    whole["finished"].push_back(finished); // of lost files
     whole["finished"].back()["frame"] = frame;
   }
   folder.write("turn.turntable.json", whole.dump(1));
@@ -244,7 +244,7 @@ TEST_F(TurntableCommand, WaitsForNoSurfaceToStop) {
   const Stopwatch watch;
   Process process(arguments, folder.path());
   ASSERT_TRUE(process.waitForOutput("frame 2 of 4"));
-  const double frame = watch.seconds(); // most of it for its surfaces
+  const double frame = watch.seconds(); // most of it for surfaces
   process.send(SIGINT);
   const Outcome outcome = process.wait();
   std::cout << "stopped within " << outcome.seconds << " s, after a frame of " << frame << " s\n";
@@ -308,7 +308,7 @@ TEST_F(TurntableCommand, ShowsTheKneesCartilagesFromInFront) {
   }
 }
 
-/// Each names the file and what is wrong in it.
+/// Each refusal names the file and the error in it.
 TEST_F(TurntableCommand, RefusesRecordsOfOtherTypes) {
   const std::string request = R"("version": "0.1", "arguments": ["a"], "inputs": [{"file": "b"}])";
   const std::vector<std::pair<std::string, std::string>> records = {

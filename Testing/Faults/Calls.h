@@ -1,5 +1,5 @@
 #pragma once
-// System calls that touch files: which they are, and what one of them was about.
+// System calls that touch files: their selection and their description.
 
 #include <span>
 #include <string>
@@ -11,13 +11,14 @@ struct sock_filter;
 
 namespace fenestra::faults {
 
-/// Stops, with RET_TRACE, at calls that touch files, a file's mmap among them; lets others pass.
+/// Filter that stops with RET_TRACE at calls that touch files, a file's mmap included; other calls
+/// pass.
 std::span<const sock_filter> fileCallFilter();
 
-/// Renames, links, unlinks and writes: what a signal must not come between.
+/// True for renames, links, unlinks and writes: calls that a signal must not interrupt.
 bool isCommitting(const user_regs_struct& registers);
 
-/// "openat /dev/shm/x/o.png", of a thread that is stopped before the call.
+/// Text such as "openat /dev/shm/x/o.png" for a thread stopped before the call.
 std::string described(pid_t thread, const user_regs_struct& registers);
 
 } // namespace fenestra::faults

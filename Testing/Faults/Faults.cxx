@@ -1,8 +1,8 @@
-// Makes everything fail in turn that a request meets, and says what that does to it.
-// usage: Faults FENESTRA [RUNS]                            all, or some of each kind, evenly spread
-//        Faults FENESTRA REQUEST KIND NUMBER [VALUE]       one, as a violation is reproduced
-// Prints tables in Markdown. Exit status 1 where a run violates what must hold, 77 where processes
-// cannot be traced here.
+// Injects every fault in turn into a request's runs, and reports the consequences.
+// usage: Faults FENESTRA [RUNS]                            all, or RUNS of each kind, evenly spread
+//        Faults FENESTRA REQUEST KIND NUMBER [VALUE]       one, to reproduce a violation
+// Prints tables in Markdown. Exit status 1 if a run violates an invariant, 77 if processes cannot
+// be traced here.
 #include "Judge.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace fenestra::faults {
 namespace {
 
-constexpr int skipped = 77; ///< exit status that ctest takes for it
+constexpr int skipped = 77; ///< exit status by which ctest reports a skipped test
 
 struct KindOfFault {
   Fault::Kind kind;
@@ -67,7 +67,7 @@ long placesOf(const Subject& subject, const KindOfFault& kind) {
   return kind.kind == Fault::Kind::allocation ? outcome.allocations : outcome.commits;
 }
 
-/// All places, or `most` of them.
+/// Cases for all places, or for `most` places evenly spread.
 std::vector<Case> casesOf(const Subject& subject, const KindOfFault& kind, long most) {
   std::vector<Case> cases;
   const long places = placesOf(subject, kind);
@@ -84,12 +84,12 @@ Result resultOf(const Case& one, const Place& place) {
   return result;
 }
 
-/// Says every minute how far work is, for who waits for hours.
+/// Reports progress every minute, since a run takes hours.
 class Progress {
 public:
   explicit Progress(std::size_t whole) : m_whole(whole) {}
 
-  /// From one thread. `done` is above 0 and at most the whole.
+  /// Called from one thread; 0 < `done` <= whole.
   void tell(std::size_t done) {
     using std::chrono::duration_cast, std::chrono::minutes;
     const Clock::duration spent = Clock::now() - m_start;
@@ -114,7 +114,7 @@ std::string nameOf(const Case& one) {
   return *one.kind->valueName ? name + " " + one.kind->valueName : name;
 }
 
-/// Says it at once, for who would mend it before hours have passed.
+/// Reports violations at once: a run takes hours.
 void tellWrong(const Case& one, const Result& result) {
   for (const std::string& line : result.wrong)
     std::fprintf(stderr, "%s: %s\n", nameOf(one).c_str(), line.c_str());
@@ -140,7 +140,7 @@ std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, u
   return results;
 }
 
-/// How often something came up, and where first.
+/// Number of occurrences, and the place of the first.
 struct Tally {
   long runs = 0;
   std::string first;
@@ -163,7 +163,7 @@ void printTallies(const char* title, const char* what,
     std::printf("| %s | %ld | %s |\n", text.c_str(), tally.runs, tally.first.c_str());
 }
 
-/// Runs of a request and a kind of fault, in the order of the tables' columns.
+/// Totals for a request and a kind of fault, in the order of the tables' columns.
 struct Row {
   long places = 0, runs = 0, met = 0, ends[6] = {}, deaths = 0, wrong = 0;
 
@@ -183,7 +183,7 @@ struct Row {
   }
 };
 
-/// Returns whether nothing is wrong.
+/// Prints the tables; returns true if there is no violation.
 bool print(const std::vector<Case>& cases, const std::vector<Result>& results) {
   std::puts("# Faults, in turn\n\n"
             "| request | fault | places | runs | met it | ended 0 | 2 | 3 | 4 | 5 | by a signal | "
@@ -212,7 +212,7 @@ bool print(const std::vector<Case>& cases, const std::vector<Result>& results) {
   return violations.empty();
 }
 
-/// The case that words name: REQUEST KIND NUMBER [VALUE].
+/// Case given by the words REQUEST KIND NUMBER [VALUE].
 std::optional<Case> caseOf(const std::vector<Subject>& subjects, char** words, int count) {
   for (const Subject& subject : subjects)
     for (const KindOfFault& kind : kinds)
@@ -258,7 +258,7 @@ int runFaults(int count, char** words) {
       const std::vector<Case> more = casesOf(subject, kind, most);
       cases.insert(cases.end(), more.begin(), more.end());
     }
-  // A sample is a test beside others.
+  // A sample of faults runs as a test, beside other tests.
   const unsigned threads = count == 3 ? 1 : std::max(1U, std::thread::hardware_concurrency());
   return print(cases, runAll(cases, tools, threads)) ? 0 : 1;
 }

@@ -16,7 +16,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-/// Exit statuses that a run with the fault may have.
+/// Exit statuses allowed for a run with the fault.
 std::vector<int> allowedStatuses(const Fault& fault) {
   switch (fault.kind) {
   case Fault::Kind::none:
@@ -73,7 +73,7 @@ Lines leftovers(const Subject& subject, const Files& files, const Place& place) 
   return wrong;
 }
 
-/// Of files that were not changed in the midst of a write: each old or new.
+/// Violations: files that are neither old nor new, torn in the middle of a write.
 Lines tornFiles(const Subject& subject, const Files& files) {
   Lines wrong;
   for (const Lines& group : subject.request->groups)
@@ -86,7 +86,7 @@ Lines tornFiles(const Subject& subject, const Files& files) {
   return wrong;
 }
 
-/// Groups that are of one request each, and the stats of that.
+/// Violations: groups whose files stem from two requests, or whose stats are of another request.
 Lines mixedFiles(const Subject& subject, const Files& files, bool isDone) {
   Lines wrong;
   bool allNew = true, anyNew = false;
@@ -112,7 +112,7 @@ void append(Lines& lines, const Lines& more) {
       lines.push_back(line);
 }
 
-/// Without template arguments and parameters.
+/// Function name without template arguments and parameters.
 std::string withoutArguments(const std::string& function) {
   std::string name;
   int depth = 0;
@@ -146,7 +146,7 @@ Lines judge(const Subject& subject, const Fault& fault, const Place& place, Outc
   append(wrong, tornFiles(subject, files));
   if (!areAs(files, subject.before, subject.inputs))
     wrong.push_back("an input is changed or gone");
-  // What a kill, or a death that is no fault of ours, may leave is gone after the next run.
+  // Leftovers of a kill, or of a death outside our code, must be gone after the next run.
   if (outcome.signal == 0) {
     append(wrong, mixedFiles(subject, files, outcome.status == 0));
     append(wrong, leftovers(subject, files, place));
@@ -184,7 +184,7 @@ std::string functionOf(const Frame& frame) {
 Culprit culprit(const std::vector<Frame>& frames) {
   constexpr const char* runtime[] = {"libc.so", "libstdc++", "libgcc_s",
                                      "libm.so", "ld-linux",  "libfaults"};
-  std::string nameless; // the module of a function without a name: who called it there has one
+  std::string nameless; // module of a nameless function: its caller there may have a name
   for (const Frame& frame : frames) {
     const std::string module = std::filesystem::path(frame.module).filename().string();
     const bool isRuntime =

@@ -9,7 +9,7 @@
 namespace fenestra::faults {
 namespace {
 
-/// A part of the bytes.
+/// Part of the bytes.
 struct Span {
   std::size_t begin = 0, length = 0;
 
@@ -19,7 +19,7 @@ struct Span {
 using Spans = std::vector<Span>;
 
 std::size_t below(std::mt19937_64& random, std::size_t limit) {
-  return limit == 0 ? 0 : random() % limit; // the same on every machine
+  return limit == 0 ? 0 : random() % limit; // equal on every machine
 }
 
 template <typename Container>
@@ -64,7 +64,7 @@ constexpr std::string_view extremes[] = {
     "18446744073709551616",
 };
 
-/// What comes before samples and tables of bytes.
+/// Text before samples and tables of bytes.
 std::string_view textOf(std::string_view bytes) {
   return bytes.substr(0, bytes.find('\0'));
 }
@@ -87,7 +87,7 @@ Spans numbersIn(std::string_view bytes) {
   return found;
 }
 
-/// name="value", and the space before.
+/// Spans of name="value" with the space before.
 Spans attributesIn(std::string_view bytes) {
   Spans found;
   for (std::size_t at = 0; (at = bytes.find("=\"", at)) != bytes.npos;) {
@@ -118,7 +118,7 @@ Span blockIn(std::string_view bytes, std::mt19937_64& random) {
   return {begin, 1 + below(random, most)};
 }
 
-/// Leaves a part out, or has it again, elsewhere, many times, or exchanged for its like.
+/// Removes a part, repeats, moves or multiplies it, or exchanges it for its like.
 void change(std::string& bytes, Span part, Span other, std::mt19937_64& random) {
   const std::string text = bytes.substr(part.begin, part.length);
   switch (below(random, 5)) {
@@ -155,7 +155,7 @@ void changeNumber(std::string& bytes, std::mt19937_64& random) {
   bytes.replace(number.begin, number.length, anyOf(extremes, random));
 }
 
-/// Long names and values find buffers.
+/// Lengthens the bytes at one place: long names and values find buffers.
 void lengthen(std::string& bytes, std::mt19937_64& random) {
   const std::size_t at = below(random, bytes.size());
   bytes.insert(at, std::string(std::size_t{1} << below(random, 18), bytes[at]));

@@ -1,5 +1,5 @@
 #pragma once
-// Damages a file as hands, programs and disks do: in its numbers, attributes, lines, blocks and
+// Damages a file as people, programs and disks do: in its numbers, attributes, lines, blocks and
 // bytes.
 
 #include <random>
@@ -7,7 +7,7 @@
 
 namespace fenestra::faults {
 
-/// A function of the bytes and the numbers drawn alone.
+/// Damaged bytes; a function of the bytes and the random numbers only.
 std::string mutated(std::string bytes, std::mt19937_64& random);
 
 } // namespace fenestra::faults

@@ -1,7 +1,7 @@
 // Renders and inspects damaged files of every format. usage: Mutations FENESTRA FIRST LAST
-// A mutation is a function of its number. Prints what they came to as tables in Markdown; exit
-// status 1 where one crashed, hung, took more than 2 GB, said more than one line or left a file. A
-// mutation alone (FIRST = LAST) leaves its files in mutation-FIRST/ of the current folder.
+// Mutations are functions of their number. Prints the outcomes as tables in Markdown; exit status 1
+// if a run crashed, hung, took more than 2 GB, printed more than one line or left a file. A single
+// mutation (FIRST = LAST) leaves its files in mutation-FIRST/ of the current folder.
 #include "Judge.h"
 #include "Mutation.h"
 
@@ -19,12 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// A file to be damaged, others that belong to it, and what reads them.
+/// File to damage, with the files that belong to it, and the command that reads it.
 struct Victim {
   std::string name;
   Files files;
-  bool isPacked = false; ///< into a.mrb, the others beside it
-  Words words;           ///< of a render, or of a comparison
+  bool isPacked = false; ///< packed into a.mrb, with other files beside
+  Words words;           ///< arguments of a render or a comparison
 };
 
 class Samples {
@@ -37,14 +37,14 @@ public:
       throw std::runtime_error(name + " is not there");
     return bytes;
   }
-  /// Of the fuzz targets, without the digit that chooses the format.
+  /// Seed of a fuzz target, without the digit that selects the format.
   std::string seed(const std::string& name) const { return of("../Fuzz/Corpus/" + name).substr(1); }
 
 private:
   fs::path m_data;
 };
 
-/// traps/scene.mrml with the files that it names, one of which is the victim.
+/// Adds traps/scene.mrml and the files that it names; each is the victim once.
 void addScene(std::vector<Victim>& victims, const Samples& samples) {
   Files files;
   for (const char* name :
@@ -56,7 +56,7 @@ void addScene(std::vector<Victim>& victims, const Samples& samples) {
   }
 }
 
-/// Scenes whose volume is moved by a transform of a file.
+/// Adds scenes whose volume is moved by a transform file.
 void addTransforms(std::vector<Victim>& victims, const Samples& samples) {
   for (const char* name : {"affine.h5", "affine.mat", "affine.tfm", "composite.tfm"}) {
     const std::string scene =
@@ -91,7 +91,7 @@ void addVolumes(std::vector<Victim>& victims, const Samples& samples) {
          {"render", "d"}});
 }
 
-/// Looks, segments and maps beside a volume.
+/// Adds transfer functions, segmentations and maps beside a volume.
 void addFlags(std::vector<Victim>& victims, const Samples& samples) {
   const Files volume = {{"plain.nrrd", samples.of("traps/plain.nrrd")}};
   const auto add = [&](const std::string& name, const std::string& content, Words words,
@@ -132,7 +132,7 @@ std::vector<Victim> makeVictims(const Samples& samples) {
   return victims;
 }
 
-/// The files of a mutation in a folder, and its command.
+/// Writes the files of a mutation into the place's folder; returns the command.
 Words prepare(const Victim& victim, long number, const Place& place) {
   std::mt19937_64 random(static_cast<std::uint64_t>(number));
   Files files = victim.files;
@@ -155,7 +155,7 @@ Words prepare(const Victim& victim, long number, const Place& place) {
   return words;
 }
 
-/// What is wrong; nothing where the file was taken or refused as it should be.
+/// Violation of a run; empty if the file was accepted or refused properly.
 std::string finding(const Outcome& outcome, const Files& before, const Place& place) {
   constexpr long mostMemory = 2'000'000; // kB
   if (outcome.hung)
@@ -210,7 +210,7 @@ std::vector<Result> tryAll(const std::vector<Victim>& victims, long first, long 
   return results;
 }
 
-/// Returns whether nothing was found.
+/// Prints the tables; returns true if there is no finding.
 bool print(const std::vector<Victim>& victims, const std::vector<Result>& results, long first) {
   struct Row {
     long runs = 0, taken = 0, refused = 0;
@@ -237,7 +237,7 @@ bool print(const std::vector<Victim>& victims, const std::vector<Result>& result
   return findings.empty();
 }
 
-/// What is needed to see a finding again by hand.
+/// Keeps the files and the command that reproduce a finding by hand.
 void keep(const std::vector<Victim>& victims, long number, const Tools& tools) {
   const Place place(tools);
   const Victim& victim = victims[static_cast<std::size_t>(number) % victims.size()];

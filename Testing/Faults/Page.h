@@ -1,29 +1,30 @@
 #pragma once
-// Memory that the program and the library preloaded into the process under test share.
+// Memory shared by the test program and the library preloaded into the process under test.
 
 #include <atomic>
 #include <cstdint>
 
 namespace fenestra::faults {
 
-/// Names the file that is the page, to the preloaded library.
+/// Environment variable that holds the page's file, for the preloaded library.
 inline constexpr const char* pageVariable = "FENESTRA_FAULTS_PAGE";
 
-/// Mark of a system call that says that `main` begins: lseek(-1, 0, mainBegins), which fails.
+/// Argument of the system call that marks the start of `main`: lseek(-1, 0, mainBegins), which
+/// fails.
 inline constexpr int mainBegins = 0x4d41;
 
 struct Frame {
   char module[200];       ///< path of the executable or library
-  char function[300];     ///< its exported symbol, mangled; empty where it has none
-  std::uintptr_t address; ///< in the module
+  char function[300];     ///< exported symbol, mangled; empty: none
+  std::uintptr_t address; ///< offset in the module
 };
 
 struct Page {
-  std::atomic<std::int64_t> allocations; ///< asked for since `main` began
-  std::int64_t failing;                  ///< number of the one that fails, from 1; 0 for none
-  std::atomic<int> signal;               ///< that ended the process; 0 where none did
+  std::atomic<std::int64_t> allocations; ///< requests since `main` began
+  std::int64_t failing;                  ///< number of the failing allocation, from 1; 0: none
+  std::atomic<int> signal;               ///< signal that ended the process; 0: none
   int frameCount;
-  Frame frames[40]; ///< of the thread that the signal met, innermost first
+  Frame frames[40]; ///< stack of the thread that received the signal, innermost first
 };
 
 } // namespace fenestra::faults

@@ -1,5 +1,5 @@
-// Preloaded into the process under test: counts allocations from `main` on and makes one fail,
-// tells the tracer that `main` begins, and says in which function a process died.
+// Library preloaded into the process under test: counts allocations from `main` on and makes one
+// fail, signals to the tracer that `main` begins, and records the stack at a crash.
 #include "Page.h"
 
 #include <cerrno>
@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 extern "C" {
-// Of glibc, which names its own allocator so.
+// Names of glibc's own allocator.
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
@@ -27,7 +27,7 @@ namespace {
 
 using fenestra::faults::Page;
 
-Page* page = nullptr; ///< none until `main` begins
+Page* page = nullptr; ///< null until `main` begins
 
 bool fails() {
   if (!page || ++page->allocations != page->failing)
@@ -36,7 +36,7 @@ bool fails() {
   return true;
 }
 
-/// Where the process dies, into the page; then the signal does what it does without a handler.
+/// Writes the stack at a crash into the page; then lets the signal take its default action.
 void onDeath(int signal) {
   int none = 0;
   if (page->signal.compare_exchange_strong(none, signal)) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the program under test is asked for, and where it runs.
+// Command lines of the program under test, and the folders in which they run.
 
 #include "Tracer.h"
 
@@ -9,26 +9,26 @@ namespace fenestra::faults {
 
 struct Request {
   std::string name;
-  std::vector<std::string> words;               ///< of the command line, without the executable
-  std::vector<std::string> before;              ///< of the one that wrote what is there already
-  std::vector<std::vector<std::string>> groups; ///< files that are all of one request
-  std::string stats;                            ///< JSON that follows the groups; may be empty
-  std::string record;                           ///< JSON that may be ahead of some; may be empty
+  std::vector<std::string> words;  ///< arguments, without the executable
+  std::vector<std::string> before; ///< arguments of the run that wrote the files already there
+  std::vector<std::vector<std::string>> groups; ///< files that must stem from one request
+  std::string stats;  ///< name of the JSON file written after the groups; may be empty
+  std::string record; ///< name of the JSON file that may precede some groups; may be empty
 };
 
-/// A render with all kinds of files, two frames of a turntable, a phantom.
+/// Requests: a render with all kinds of files, two frames of a turntable, a phantom.
 const std::vector<Request>& requests();
 
 struct Tools {
   std::filesystem::path executable, preload, data;
 };
 
-/// Content by name; folders end with a slash and have none.
+/// Content by name; folders end with a slash and have no content.
 using Files = std::map<std::string, std::string>;
 
 std::string bytesOf(const std::filesystem::path& path);
 
-/// A folder for runs, in memory where there is some, and an empty TMPDIR beside it.
+/// Folder for runs, in /dev/shm if writable, with an empty TMPDIR beside.
 class Place {
 public:
   explicit Place(const Tools& tools);
@@ -36,9 +36,9 @@ public:
   Place(const Place&) = delete;
   Place& operator=(const Place&) = delete;
 
-  /// Both folders anew, with these files.
+  /// Empties both folders and writes these files.
   void fill(const Files& files) const;
-  /// Runs in them as they are.
+  /// Runs a command in the folders without changing their files first.
   Outcome run(const std::vector<std::string>& words, const Fault& fault) const;
 
   std::filesystem::path folder() const { return m_root / "folder"; }
@@ -47,14 +47,14 @@ public:
   Files temporaries() const { return filesIn(temporary()); }
 
 private:
-  /// Of a folder and of those in it.
+  /// Files of a folder and its subfolders.
   static Files filesIn(const std::filesystem::path& folder);
 
   const Tools& m_tools;
   std::filesystem::path m_root;
 };
 
-/// A request, and its files as they are before and after a run without a fault.
+/// Request with its files before and after a run without a fault.
 struct Subject {
   const Request* request;
   Files before, after;

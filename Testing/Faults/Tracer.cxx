@@ -29,9 +29,9 @@ extern char** environ;
 namespace fenestra::faults {
 namespace {
 
-constexpr auto longest = std::chrono::seconds(20); ///< that a run may take
+constexpr auto longest = std::chrono::seconds(20); ///< time limit of a run
 
-/// A file in memory.
+/// File in memory.
 class MemoryFile {
 public:
   explicit MemoryFile(const char* name) : m_file(::memfd_create(name, MFD_CLOEXEC)) {
@@ -43,7 +43,7 @@ public:
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   int number() const { return m_file; }
-  /// As this process sees it, and those that it starts while it lives.
+  /// Path of the file, valid in this process and in children while this process lives.
   std::string path() const {
     return "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(m_file);
   }
@@ -78,7 +78,7 @@ private:
   Page* m_page;
 };
 
-/// Kills a process that takes too long.
+/// Kills a process at the time limit.
 class Watchdog {
 public:
   explicit Watchdog(pid_t process)
@@ -93,7 +93,7 @@ public:
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// Whether it had to.
+  /// Ends the watch; true if the process was killed.
   bool end() {
     {
       const std::lock_guard lock(m_mutex);
@@ -112,11 +112,11 @@ private:
   std::thread m_thread;
 };
 
-/// What the child needs, made before the fork: it may not allocate.
+/// Data for the child, prepared before the fork: the child must not allocate.
 struct Start {
   Start(const Command& command, const SharedPage& page) : folder(command.folder) {
     variables = {"TMPDIR=" + command.temporary.string(), "LD_PRELOAD=" + command.preload.string(),
-                 std::string(pageVariable) + "=" + page.path()}; // the first of a name counts
+                 std::string(pageVariable) + "=" + page.path()}; // of equal names the first counts
     for (char** variable = environ; *variable; ++variable)
       variables.emplace_back(*variable);
     for (const std::string& word : command.words)
@@ -154,7 +154,7 @@ struct Start {
   ::_exit(127);
 }
 
-/// The process of a thread.
+/// Process of a thread.
 pid_t processOf(pid_t thread) {
   std::ifstream status("/proc/" + std::to_string(thread) + "/status");
   for (std::string line; std::getline(status, line);)
@@ -169,7 +169,7 @@ public:
   Trace(pid_t root, const Fault& fault, Outcome& outcome)
       : m_root(root), m_fault(fault), m_outcome(outcome) {}
 
-  /// Until nothing of it is left.
+  /// Follows until all of its processes have ended.
   void follow() {
     int state = 0;
     rusage usage = {};
@@ -184,7 +184,7 @@ public:
   }
 
 private:
-  /// Looks at a stopped thread; returns the signal that it goes on with.
+  /// Examines a stopped thread; returns the signal with which it continues.
   long signalAfter(pid_t thread, int state) {
     const int event = state >> 16;
     if (event == PTRACE_EVENT_SECCOMP)
@@ -229,7 +229,7 @@ private:
     m_outcome.commits += isCommitting(registers) ? 1 : 0;
     if (m_fault.kind == Fault::Kind::call && m_outcome.calls == m_fault.number) {
       m_outcome.place = described(thread, registers);
-      registers.orig_rax = ~0ULL; // no call at all
+      registers.orig_rax = ~0ULL; // skips the call
       registers.rax = static_cast<unsigned long long>(-static_cast<long long>(m_fault.value));
       ::ptrace(PTRACE_SETREGS, thread, nullptr, &registers);
     }
@@ -254,12 +254,12 @@ private:
   pid_t m_root;
   const Fault& m_fault;
   Outcome& m_outcome;
-  std::set<pid_t> m_begun;            ///< processes whose `main` has
-  std::map<pid_t, pid_t> m_processes; ///< of threads
+  std::set<pid_t> m_begun;            ///< processes that have reached `main`
+  std::map<pid_t, pid_t> m_processes; ///< process of each thread
   std::vector<pid_t> m_children;
 };
 
-/// Waits for the child's stop and has it followed from there on.
+/// Waits for the child's stop and starts following it.
 bool attach(pid_t child) {
   int state = 0;
   constexpr long options = PTRACE_O_TRACESECCOMP | PTRACE_O_TRACEFORK | PTRACE_O_TRACEVFORK |

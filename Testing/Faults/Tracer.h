@@ -1,5 +1,5 @@
 #pragma once
-// Runs a command and makes one thing go wrong in it.
+// Runs a command with one injected fault.
 
 #include "Page.h"
 
@@ -12,14 +12,14 @@ namespace fenestra::faults {
 struct Fault {
   enum class Kind {
     none,
-    counting,   ///< none, but places for faults are counted
+    counting,   ///< no fault; places for faults are counted
     call,       ///< a call that touches files fails with the error `value`
-    allocation, ///< one fails
-    signal,     ///< `value` comes at a rename, link, unlink or write
-    ignored,    ///< the same, where it was ignored when the process began
+    allocation, ///< an allocation fails
+    signal,     ///< the signal `value` arrives at a rename, link, unlink or write
+    ignored,    ///< like `signal`, but ignored since the process began
   };
   Kind kind = Kind::none;
-  long number = 0; ///< which one of its places since `main` began, from 1
+  long number = 0; ///< index of the fault's place since `main` began, from 1
   int value = 0;
 };
 
@@ -29,22 +29,22 @@ struct Command {
   std::filesystem::path preload; ///< the library
 };
 
-/// What a run came to.
+/// Result of a run.
 struct Outcome {
   int status = -1;    ///< exit status; -1 where a signal ended the process
-  int signal = 0;     ///< that did
-  bool hung = false;  ///< and was killed
+  int signal = 0;     ///< signal that ended the process; 0: none
+  bool hung = false;  ///< killed at the time limit
   std::string errors; ///< standard error
-  std::string place;  ///< the call that the fault met; empty where it met none
-  long calls = 0, commits = 0, allocations = 0; ///< how many there were; calls where it was traced
+  std::string place;  ///< call that met the fault; empty: none
+  long calls = 0, commits = 0, allocations = 0; ///< numbers of each; calls only if traced
   long peakKilobytes = 0;                       ///< of resident memory
-  std::vector<Frame> frames; ///< where it died of a fault of its own, innermost first
+  std::vector<Frame> frames;                    ///< stack at a crash, innermost first
 };
 
-/// Whether this machine, and whoever runs this, may do so.
+/// True if this machine and user permit tracing.
 bool canTrace();
 
-/// Runs it to its end. From several threads at a time, if need be.
+/// Runs a command to its end. Safe to call from several threads.
 Outcome run(const Command& command, const Fault& fault);
 
 } // namespace fenestra::faults

@@ -1,5 +1,5 @@
-// Sends damaged DICOM and transform files through the child that reads them: each is read, or
-// refused by an Error (input) of one line that names it. usage: ApartMutations COUNT [SEED]
+// Sends damaged DICOM and transform files through the child that reads them: each must be read, or
+// refused by an Error (input) of one line that names the file. usage: ApartMutations COUNT [SEED]
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
@@ -30,8 +30,8 @@ std::vector<Seed> seedsOf(const Path& folder) {
   return seeds;
 }
 
-/// A few of: another byte, an extreme number, a stretch that is gone, moved or repeated, an early
-/// end.
+/// Applies up to six mutations: another byte, an extreme number, a removed, moved or repeated
+/// range, an early end.
 std::string mutated(std::string bytes, Random& random) {
   const auto below = [&random](std::size_t limit) {
     return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);

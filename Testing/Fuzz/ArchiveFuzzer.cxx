@@ -20,7 +20,7 @@ void put(std::string& bytes, std::size_t at, std::uint32_t value) {
     std::memcpy(&bytes[at], &value, sizeof(value));
 }
 
-/// Gives stored entries the checksums of what they hold, or no mutation of that would be read.
+/// Corrects the checksums of stored entries; otherwise no mutated entry would be read.
 std::string withChecksums(std::string zip) {
   for (std::size_t at = 0; (at = zip.find("PK\1\2", at)) != std::string::npos; at += 4) {
     const std::uint64_t local = get<std::uint32_t>(zip, at + 42);

@@ -1,5 +1,5 @@
-// DICOM: the input is what the child says of a file, which is whatever a child that a file has
-// taken over says. ApartMutations sends files.
+// DICOM: the input is a child's answer about a file, which may be any bytes if a malicious file
+// controls the child. ApartMutations sends files.
 #include "Harness.h"
 
 #include "files/medical/DicomPixels.h"

@@ -1,5 +1,5 @@
-// All fuzz targets in one executable. FENESTRA_FUZZ_TARGET in the environment names the one that
-// runs.
+// All fuzz targets in one executable. The environment variable FENESTRA_FUZZ_TARGET selects the
+// target to run.
 #include "Harness.h"
 #include "base/safe/Apart.h"
 
@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     std::exit(2);
   }
   chosen = found->second;
-  // Keeps what the product prints away from libFuzzer's own lines.
+  // Separates the product's output from libFuzzer's own lines.
   std::cout.rdbuf(nullptr);
   std::cerr.rdbuf(nullptr);
   return 0;

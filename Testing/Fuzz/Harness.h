@@ -1,7 +1,7 @@
 #pragma once
-// What every fuzz target does: put the input where a reader finds it, and see that the reader takes
-// or refuses it. Whatever else a reader does (another exception, a crash, a sanitizer's report, too
-// much time or memory) is a finding, and libFuzzer says so.
+// Common part of the fuzz targets: puts the input where a reader finds it, and checks that the
+// reader accepts or refuses it. Any other outcome (another exception, a crash, a sanitizer's
+// report, too much time or memory) is a finding, which libFuzzer reports.
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
@@ -20,13 +20,13 @@
 
 namespace fenestra::fuzzing {
 
-/// A folder of the process's own, under TMPDIR: in memory where that is, as run.sh sees to.
+/// Folder of this process under TMPDIR, which run.sh puts in memory.
 inline const TemporaryFolder& folder() {
   static const TemporaryFolder made;
   return made;
 }
 
-/// The input as the file `name` in folder(), rewritten each time.
+/// Writes the input to the file `name` in folder(), replacing the previous input.
 inline std::filesystem::path asFile(std::string_view bytes, const std::string& name) {
   const std::filesystem::path path = folder() / name;
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
@@ -39,7 +39,7 @@ inline std::filesystem::path asFile(std::string_view bytes, const std::string& n
   return path;
 }
 
-/// What a reader may do to its user: an Error of one line that says something.
+/// Runs a reader, which may throw only an Error whose text is one line, not empty.
 template <typename Read>
 void readOrRefuse(Read&& read) {
   try {
@@ -51,18 +51,18 @@ void readOrRefuse(Read&& read) {
   }
 }
 
-/// One of several file names, chosen by the input's first byte, which is taken off.
+/// File name chosen by the input's first byte, which is removed from the input.
 template <std::size_t N>
 std::string chooseName(std::string_view& input, const std::array<const char*, N>& names) {
   if (input.empty())
     return names[0];
   const auto first = static_cast<unsigned char>(input[0]);
   input.remove_prefix(1);
-  // Seeds are text that people write: they start with a digit.
+  // Seeds are text written by people: they start with a digit.
   return names[(first >= '0' ? first - std::size_t{'0'} : first) % N];
 }
 
-/// A fuzz target by its name, which FENESTRA_FUZZ_TARGET chooses (Fuzzers.cxx).
+/// Fuzz target by name; FENESTRA_FUZZ_TARGET chooses one (Fuzzers.cxx).
 struct Target {
   using Function = void (*)(std::string_view);
   Target(const char* name, Function function) { all()[name] = function; }
@@ -74,7 +74,7 @@ struct Target {
 
 } // namespace fenestra::fuzzing
 
-/// A target's one function: `statements` see the input as `std::string_view input`.
+/// Defines a target's function; its body sees the input as `std::string_view input`.
 #define FENESTRA_FUZZ(name, input)                                                                 \
   static void fuzz##name(std::string_view input);                                                  \
   static const fenestra::fuzzing::Target target##name(#name, fuzz##name);                          \

@@ -1,4 +1,4 @@
-// usage: MakeSeeds FOLDER: writes the seeds that are not text, into FOLDER/<target>/ and
+// usage: MakeSeeds FOLDER: writes the seeds that are not text into FOLDER/<target>/ and
 // FOLDER/../Apart/.
 #include "Regression/SampleFiles.h"
 #include "SceneNeighbours.h"
@@ -30,7 +30,7 @@ void save(const fs::path& folder, const std::string& name, const std::string& by
   std::ofstream(folder / name, std::ios::binary) << bytes;
 }
 
-/// 3x3x2 voxels of 16 bits with both of NIfTI's ways to say where they are.
+/// Volume of 3x3x2 16-bit voxels with both of NIfTI's transforms (qform and sform).
 std::string nifti() {
   std::string header(352, '\0');
   const auto put = [&header](std::size_t at, auto value) {
@@ -41,7 +41,7 @@ std::string nifti() {
   put(70, std::int16_t{4}); // int16
   put(72, std::int16_t{16});
   put(76, std::array<float, 8>{1.0f, 1.0f, 1.0f, 2.0f, 1.0f, 1.0f, 1.0f, 1.0f});
-  put(108, 352.0f);          // where voxels start
+  put(108, 352.0f);          // offset of the voxels
   put(112, 1.0f);            // slope
   put(252, std::int16_t{1}); // qform
   put(254, std::int16_t{1}); // sform
@@ -79,7 +79,7 @@ void makePictures(const fs::path& corpus) {
   Image image{3, 2, {}, {{"seed", "1"}}};
   for (const char* channel : {"R", "G", "B", "A"})
     image.channels[channel] = {0.0f, 0.1f, 0.5f, 1.0f, 1.0f, 1.0f};
-  // The digit chooses the format.
+  // The digit selects the format.
   for (const auto& [digit, name] : {std::pair{"0", "picture.exr"},
                                     {"1", "picture.png"},
                                     {"2", "picture.tif"},
@@ -106,7 +106,7 @@ void makeTransforms(const fs::path& corpus) {
   save("affine.mat", itk::MatlabTransformIOTemplate<double>::New());
 }
 
-/// What a child says of such files.
+/// Writes a child's answers about such files.
 void makeAnswers(const fs::path& corpus) {
   AnswerWriter composite;
   for (const char* type : {"CompositeTransform_double_3_3", "AffineTransform_double_3_3",
@@ -153,7 +153,8 @@ void makeSlices(const fs::path& corpus) {
   }
 }
 
-/// The scene of Corpus/Scene with its files. deflated.mrb is the same, packed by Info-ZIP.
+/// Writes the scene of Corpus/Scene with its files. deflated.mrb holds the same, packed by
+/// Info-ZIP.
 void makeArchive(const fs::path& corpus) {
   std::string scene = bytesOf(corpus / "Scene/new.mrml");
   const std::string attribute = "fileName=\"";

@@ -1,4 +1,4 @@
-// Pictures that are compared or shine as environments; the first byte chooses the format.
+// Pictures to compare or to use as environments; the first byte selects the format.
 #include "Harness.h"
 
 #include "files/pictures/ImageReader.h"

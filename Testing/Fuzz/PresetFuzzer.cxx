@@ -1,4 +1,4 @@
-// Organ presets, and a name that their patterns are held against.
+// Organ presets, with a name to match against their patterns.
 #include "Harness.h"
 
 #include "files/looks/PresetReader.h"

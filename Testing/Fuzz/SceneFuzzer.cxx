@@ -1,4 +1,4 @@
-// Slicer scenes (.mrml), beside files that they may name.
+// Slicer scenes (.mrml), beside the files that a scene may name.
 #include "SceneInputs.h"
 #include "SceneNeighbours.h"
 

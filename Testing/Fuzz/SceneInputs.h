@@ -1,5 +1,5 @@
 #pragma once
-// Loads a Slicer scene as a render does, with a focus and without.
+// Loads a Slicer scene as a render does, with and without a focus.
 
 #include "Harness.h"
 

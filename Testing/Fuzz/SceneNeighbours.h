@@ -1,5 +1,5 @@
 #pragma once
-// Files that a scene refers to, one of each kind: the least that reads.
+// Smallest valid files to which a scene refers, one of each kind.
 
 #include "Harness.h"
 
@@ -29,7 +29,7 @@ inline std::map<std::string, std::string> sceneNeighbours() {
   };
 }
 
-/// Has them in folder() from the first call on.
+/// Writes the neighbours to folder() at the first call.
 inline void writeSceneNeighbours() {
   static const bool written = [] {
     for (const auto& [name, content] : sceneNeighbours())

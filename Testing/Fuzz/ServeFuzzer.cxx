@@ -1,4 +1,4 @@
-// A line that a server is told. Looks are read, nothing else, and nothing is written.
+// One line of a server's input. Only looks are read, and nothing is written.
 #include "Harness.h"
 
 #include "program/ServeInput.h"

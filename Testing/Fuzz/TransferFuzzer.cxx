@@ -1,4 +1,4 @@
-// Transfer functions: own ones, and Slicer's volume properties as text and as JSON.
+// Transfer functions: Fenestra's own, and Slicer's volume properties as text and as JSON.
 #include "Harness.h"
 
 #include "files/looks/TransferReader.h"

@@ -1,5 +1,5 @@
-// Linear transform files: the input is what the child says of one, which is whatever a child that a
-// file has taken over says. ApartMutations sends files.
+// Linear transform files: the input is a child's answer about a file, which may be any bytes if a
+// malicious file controls the child. ApartMutations sends files.
 #include "Harness.h"
 
 #include "files/slicer/TransformFile.h"

@@ -1,4 +1,4 @@
-// Volumes of every format; the first byte chooses it. A detached header's samples are
+// Volumes of every format; the first byte selects the format. Samples of a detached header are in
 // `samples.raw`.
 #include "Harness.h"
 

@@ -1,6 +1,6 @@
-// A whole request, from bytes to pixels: a scene's text, a line `---`, and its volume, v.nrrd; the
-// other files that it may name lie beside it. The first byte says whether there is a focus. What
-// scene and volume make together (places, boxes, cameras, majorants, paths) is met nowhere else.
+// Whole request, from bytes to pixels: a scene's text, a line `---`, and its volume, v.nrrd; other
+// files that the scene may name lie beside. The first byte selects whether there is a focus. Only
+// this target tests combinations of scene and volume (positions, boxes, cameras, majorants, paths).
 #include "Harness.h"
 #include "SceneNeighbours.h"
 
@@ -18,7 +18,7 @@ using namespace fenestra;
 constexpr std::int64_t mostVoxels = 32 * 32 * 32;
 constexpr std::uint64_t mostBounces = 8;
 
-/// Asks a render to stop after half a second. Dense matter may take that long, and stopping must
+/// Requests that a render stop after half a second: dense matter may take that long, stopping must
 /// not.
 class Budget {
 public:

@@ -7,7 +7,7 @@
 namespace fenestra::oracle {
 namespace {
 
-/// The interpolated indicator of a mask at an index position; 0 outside its voxels.
+/// Trilinear indicator of a mask at an index position; 0 outside its voxels.
 double indicator(const Mask& mask, const Vec3& index) {
   double sum = 0.0;
   const Vec3 base = index.array().floor();
@@ -30,7 +30,7 @@ double indicator(const Mask& mask, const Vec3& index) {
   return sum;
 }
 
-/// The place in [low, high] at which a function with one summit there is highest.
+/// Maximum in [low, high] of a function with one maximum there.
 template <typename Function>
 double summit(const Function& f, double low, double high) {
   for (int i = 0; i < 60; ++i) {
@@ -40,20 +40,20 @@ double summit(const Function& f, double low, double high) {
   return 0.5 * (low + high);
 }
 
-/// What a ray sees of a focus.
+/// View of a focus along a ray.
 struct Sight {
-  double t;      ///< where the indicator first reaches 1/2, or its summit; or infinity
-  double height; ///< the indicator there
+  double t;      ///< first t with indicator >= 1/2, else the summit; infinity: neither
+  double height; ///< indicator at t
 
-  /// Leaves a summit for one behind it that lacks so much less of 1/2 that it is not hidden.
+  /// Replaces the summit by a later one if 1/2 - `there` < (1/2 - height) / 64.
   void pass(double top, double there) {
     if (there > 0.25 && (height <= 0.25 || 0.5 - there < (0.5 - height) / 64.0))
       *this = {top, there};
   }
 };
 
-/// Within the volume: sampled twenty-five times a voxel, and at every summit between samples, where
-/// a ray may graze the surface; then bisected.
+/// Sight along a ray within the volume: sampled twenty-five times a voxel and at every summit
+/// between samples, where a ray may graze the surface; then bisected.
 Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray, const Interval& range) {
   const Affine worldToIndex = mask.grid.indexToWorld.inverse();
   Interval part = matter.inBox(ray.origin, ray.direction);
@@ -98,17 +98,17 @@ double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
   return sight.height >= 0.5 ? sight.t : infinity;
 }
 
-/// The spline as its equations stand.
+/// Spline solved from its textbook equations.
 using Spline = testing_clipping::SaddleSpline<long double>;
 
-/// Where the eye meets the focus.
+/// Intersection of an eye ray with the focus.
 struct Meeting {
   Vec2 onPlane;
   Vec3 world;
   double depth;
 };
 
-/// The depths that a hole has beside the focus.
+/// Depths of a hole beside the focus.
 class Hole {
 public:
   Hole(const HoleDescription& description, const View& view, const std::vector<Meeting>& meetings)
@@ -142,7 +142,7 @@ public:
   }
 
 private:
-  /// The far solution of |origin + t direction - center| = radius.
+  /// Larger solution t of |origin + t direction - center| = radius.
   double bowl(const Ray& ray) const {
     const Vec3 from = ray.origin - m_center;
     const double a = ray.direction.squaredNorm(), b = 2.0 * from.dot(ray.direction),
@@ -199,8 +199,8 @@ double kept(const Edge& edge, double behind) {
   return edge.ghost + (1.0 - edge.ghost) * std::min(1.0, behind / edge.softness);
 }
 
-/// Where a coordinate lies among samples that rise or fall: the one before it and the share of the
-/// way to the next; beyond the ends it lies at the end.
+/// Position of a coordinate among monotone samples: the sample before and the share of the way to
+/// the next one, clamped at the ends.
 struct Place {
   std::size_t before;
   double share;

@@ -1,5 +1,5 @@
 #pragma once
-// What a clip leaves, from its description.
+// Keep at a point, computed from a clip's description.
 
 #include "Matter.h"
 #include "View.h"
@@ -11,13 +11,13 @@ double indicatorAt(const Mask& mask, const Vec3& world);
 
 class Clipping {
 public:
-  /// For a depth clip, builds the whole buffer.
+  /// Builds the whole buffer for a depth clip.
   Clipping(const ClipDescription& description, const View& view, const Matter& matter);
 
-  /// 0 to 1.
+  /// Share of the extinction that the clip leaves, 0 to 1.
   double keep(const Vec3& world) const;
 
-  /// Depths of a depth clip, mm, row by row; -infinity where a cutaway removes nothing.
+  /// Depth buffer of a depth clip, mm, row by row; -infinity where a cutaway removes nothing.
   const std::vector<double>& depths() const { return m_depths; }
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// What a picture's pixels are believed to be, and how sure that is.
+// Estimates of a picture's pixels, with their variances.
 
 #include "base/Vector.h"
 
@@ -8,20 +8,21 @@
 
 namespace fenestra::oracle {
 
-/// What one path says of its pixel.
+/// Contribution of one path to its pixel.
 struct PathEstimate {
   Rgb radiance = Rgb::Zero();
   bool collides = false;
-  double depth = 0.0;       ///< of the first collision, mm; 0 where there is none
-  Rgb albedo = Rgb::Zero(); ///< at the first collision; 0 where there is none
+  double depth = 0.0;       ///< of the first collision, mm; 0: no collision
+  Rgb albedo = Rgb::Zero(); ///< at the first collision; 0: no collision
 };
 
-/// The first collision, as numbers to compare: how often, how deep (0 where none), how bright.
+/// First collision as numbers, or averages of them: collided (0 or 1), depth (mm; 0: no collision),
+/// mean albedo.
 using FirstCollision = Array<double, 3>;
 
 struct PixelEstimate {
   double samples = 0.0;
-  /// Of radiance: mean, and sums of its deviation's square and cube (Pébay 2008).
+  /// Radiance: mean, and sums of squared and cubed deviations (Pébay 2008).
   Rgb mean = Rgb::Zero(), squares = Rgb::Zero(), cubes = Rgb::Zero();
   FirstCollision first = FirstCollision::Zero(), firstSquares = FirstCollision::Zero();
 
@@ -39,7 +40,7 @@ struct PixelEstimate {
     firstSquares += ahead * (value - first);
   }
 
-  /// Of the mean; 0 below two samples.
+  /// Variance of the mean; 0 with fewer than two samples.
   Rgb variance() const {
     return samples > 1.0 ? Rgb(squares / (samples * (samples - 1.0))) : Rgb(Rgb::Zero());
   }

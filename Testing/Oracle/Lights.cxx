@@ -3,7 +3,7 @@
 namespace fenestra::oracle {
 namespace {
 
-/// Largest distance of a corner of the voxels' box from its middle.
+/// Largest distance of a corner of the volume's box from its centre, mm.
 double boundingRadius(const Grid& grid, const Vec3& center) {
   double radius = 0.0;
   for (int corner = 0; corner < 8; ++corner) {

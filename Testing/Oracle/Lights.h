@@ -1,20 +1,20 @@
 #pragma once
-// Light that a ray meets by itself, and the parallel light that it never can.
+// Lights that a ray can hit (environments, areas), and directional lights, which it cannot.
 
 #include "Scatter.h"
 #include "View.h"
 
 namespace fenestra::oracle {
 
-/// In the world, mm.
+/// Area light in world space, mm.
 struct PlacedArea {
   AreaLight::Shape shape;
   Vec3 center, normal, right, up;
-  Vec2 size; ///< full edges; the diameter twice
+  Vec2 size; ///< full edges; for a disk, the diameter in both
   Rgb radiance;
 
   double area() const;
-  /// Where a ray meets it from either side, or infinity.
+  /// Distance at which a ray hits the light from either side; infinity: ray misses.
   double meeting(const Ray& ray) const;
 };
 
@@ -22,12 +22,13 @@ class Lights {
 public:
   Lights(const std::vector<Light>& lights, const Grid& volume, const View& view);
 
-  /// Of all environments, from a direction of travel toward them.
+  /// Radiance of all environments; `direction`: of travel, toward the environment.
   Rgb environment(const Vec3& direction) const;
-  /// Of all area lights that a ray meets on their shining side before `end`, mm.
+  /// Radiance of all area lights that a ray hits on their emitting side before `end`, mm.
   Rgb areas(const Ray& ray, double end) const;
   bool hasAreas() const { return !m_areas.empty(); }
-  /// Toward a uniform point of one of the area lights, and the density of that, per steradian.
+  /// Direction from `point` to a uniform point on one of the area lights; areaDensity: its pdf per
+  /// steradian.
   Vec3 towardArea(const Vec3& point, Generator& generator) const;
   double areaDensity(const Ray& ray) const;
   const std::vector<DirectionalLight>& directionals() const { return m_directionals; }

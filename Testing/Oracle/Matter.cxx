@@ -3,11 +3,11 @@
 namespace fenestra::oracle {
 namespace {
 
-/// Knots are sorted; a step belongs to its right side.
+/// Value at s of sorted knots; at a step, the value on its right.
 template <int Channels>
 auto valueAt(const PiecewiseLinear<Channels>& f, double s) {
   const auto& knots = f.knots();
-  std::size_t right = 0; // the first knot beyond s
+  std::size_t right = 0; // first knot with position > s
   while (right < knots.size() && knots[right].position <= s)
     ++right;
   if (right == 0)
@@ -53,8 +53,7 @@ bool Matter::inside(const Vec3& world) const {
   return !m_worldToCrop || (*m_worldToCrop * world).cwiseAbs().maxCoeff() <= 1.0;
 }
 
-/// The sum of eight voxels, each weighted by how near it is; beyond the outermost centres the point
-/// counts as being there.
+/// Trilinear sum of eight voxels; points beyond the outermost voxel centres are clamped to these.
 double Matter::scalarAtIndex(const Vec3& index) const {
   Size3 base;
   Vec3 share;

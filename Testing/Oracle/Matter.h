@@ -1,5 +1,5 @@
 #pragma once
-// The classified volume at a point, straight from the voxels and the medium table's knots.
+// Classified volume at a point, straight from the voxels and the knots of the medium's table.
 
 #include "OracleScene.h"
 
@@ -9,22 +9,21 @@ class Matter {
 public:
   Matter(const Volume& volume, const TransferFunction& transfer, const std::optional<Affine>& crop);
 
-  /// Whether a world point is in the volume's box and in what the crop leaves of it.
+  /// True if a world point lies in the volume's box and in the crop.
   bool inside(const Vec3& world) const;
-  /// Extinction, mm^-1; only inside.
+  /// Extinction, mm^-1; valid inside only.
   double extinction(const Vec3& world) const;
   Rgb albedo(const Vec3& world) const;
-  /// Of the scalar, per mm, world axes.
+  /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;
-  /// Chance that a collision scatters at a surface (design, section 1).
+  /// Probability that a collision scatters at a surface (design, section 1).
   double surfaceProbability(const Vec3& world) const;
-  /// No extinction anywhere is greater.
+  /// Upper bound of the extinction, mm^-1.
   double majorant() const { return m_majorant; }
   double g() const { return m_transfer.g; }
   const SurfaceShading& shading() const { return *m_transfer.shading; }
 
-  /// The part of a world ray, from t = 0 on, that is inside the volume's box; empty where it
-  /// misses.
+  /// Interval of a world ray, t >= 0, inside the volume's box; empty: ray misses.
   Interval inBox(const Vec3& origin, const Vec3& direction) const;
 
 private:

@@ -23,7 +23,7 @@ public:
       throw std::invalid_argument("the oracle has no gradient background");
   }
 
-  /// One path through a point of the picture, in pixels from its top left corner.
+  /// Traces one path through a raster position, in pixels from the picture's top left corner.
   PathEstimate path(double column, double row, Generator& generator) const {
     const double pitch = 2.0 * m_view.halfHeight / m_scene.height;
     Ray ray = m_view.through((column - 0.5 * m_scene.width) * pitch,
@@ -59,8 +59,8 @@ public:
   const Clipping& clipping() const { return m_clipping; }
 
 private:
-  /// Distance to the next real collision: tentative ones against one majorant for everything, each
-  /// tested where it is.
+  /// Distance to the next real collision, by delta tracking with one majorant for the whole volume;
+  /// every tentative collision is tested at its place.
   double collision(const Ray& ray, Generator& generator) const {
     const double majorant = m_matter.majorant();
     const Interval part = m_matter.inBox(ray.origin, ray.direction);
@@ -111,8 +111,8 @@ private:
     return m_scene.style->saturation * own + (1.0 - m_scene.style->saturation) * grey;
   }
 
-  /// What parallel lights send toward the eye from a collision: all, or nothing where a flight
-  /// toward them collides.
+  /// Radiance from parallel lights, scattered toward the eye at a collision: all of a light, or 0
+  /// if a flight toward the light collides.
   Rgb parallelLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
     Rgb sum = Rgb::Zero();
     for (const DirectionalLight& light : m_lights.directionals()) {
@@ -123,8 +123,8 @@ private:
     return sum;
   }
 
-  /// What area lights send: one probe, drawn as often toward a light as the path itself would go,
-  /// meets them by itself.
+  /// Radiance from area lights by one probe, which goes half the time toward a light and half the
+  /// time as the path would, and counts the lights that it hits.
   Rgb areaLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
     if (!m_lights.hasAreas())
       return Rgb::Zero();
@@ -137,8 +137,8 @@ private:
     return light * scatterer.f(probe.direction) / density;
   }
 
-  /// Russian roulette for paths that hardly matter. (With analog absorption a dark medium would
-  /// show so few bright paths that their mean would not know its own error.)
+  /// Russian roulette for paths of low weight. (With analog absorption a dark medium would show too
+  /// few bright paths to estimate the error of their mean.)
   static bool survives(Rgb& weight, Generator& generator) {
     constexpr double least = 0.05;
     const double most = weight.maxCoeff();

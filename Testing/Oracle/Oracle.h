@@ -6,8 +6,8 @@
 
 namespace fenestra::oracle {
 
-/// `samples` independent paths a pixel. `depths` takes those of a depth clip's buffer (Clipping.h).
-/// Throws std::invalid_argument for a gradient background.
+/// Traces `samples` independent paths a pixel. `depths` receives a depth clip's buffer
+/// (Clipping.h). Throws std::invalid_argument for a gradient background.
 Estimates render(const OracleScene& scene, std::uint64_t samples, std::uint64_t seed,
                  std::vector<double>* depths = nullptr);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the oracle renders: the product's plain data, and nothing that computes.
+// Input of the oracle: the product's plain data, without code that computes.
 
 #include "model/camera/Background.h"
 #include "model/camera/Camera.h"
@@ -15,27 +15,27 @@
 
 namespace fenestra::oracle {
 
-/// What is removed keeps `ghost` of its extinction, and behind the surface all of it comes back
-/// over `softness` mm.
+/// Edge of a clip: removed matter keeps `ghost` of its extinction; behind the surface the full
+/// extinction returns over `softness` mm.
 struct Edge {
   double ghost = 0.0, softness = 0.0;
 };
 
-/// Removes the half-space that the normal points at; world mm.
+/// Removes the half-space into which the normal points; world mm.
 struct PlaneClip {
   Vec3 point, normal; ///< the normal is a unit vector
   Edge edge = {};
 };
 
-/// A hole toward the focus, `margin` mm wider than it.
+/// Hole toward the focus, `margin` mm wider than the focus.
 struct HoleDescription {
   enum class Shape { box, cylinder, sphere };
   Shape shape = Shape::box;
   double margin = 0.0;
 };
 
-/// Removes what is nearer to the eye than the focus (cutaway), than the clipping surface, or than
-/// the bottom of a hole.
+/// Removes everything nearer to the eye than the focus (cutaway), the clipping surface, or the
+/// bottom of a hole.
 struct DepthClip {
   bool isCutaway = false;
   Mask focus;
@@ -44,15 +44,15 @@ struct DepthClip {
   std::vector<double> depths;        ///< of the control points, mm
   double smoothing = 0.5;            ///< p of the thin plate spline
   std::optional<HoleDescription> hole = {};
-  /// Where it is not empty: the depths of samples that are not focus, as they are to be taken.
+  /// Depths, mm, of the samples that are not focus; empty: computed.
   std::vector<double> given = {};
-  /// Cells between samples where the surface is the focus's own depth, by the number of their first
-  /// sample; between two depths where all samples around are focus, mm, the offset included.
+  /// Cell between samples in which the surface is the focus's own depth, keyed by its first sample.
+  /// `least`, `greatest`: range of that depth if all samples around are focus, mm, offset included.
   struct Seam {
     double least = -infinity, greatest = infinity;
   };
   std::map<std::size_t, Seam> seams = {};
-  double offset = 0.0; ///< mm that all of it lies farther from the eye
+  double offset = 0.0; ///< shift of the surface away from the eye, mm
   Edge edge = {};
 
   bool hasSteps() const { return isCutaway || hole; }
@@ -60,7 +60,7 @@ struct DepthClip {
 
 using ClipDescription = std::variant<std::monostate, PlaneClip, DepthClip>;
 
-/// Outside a focus the extinction is multiplied, and the albedo paled toward its luminance.
+/// Style of the context: its extinction is multiplied, its albedo blended toward its luminance.
 struct StyleDescription {
   Mask focus;
   double extinction = 1.0, saturation = 1.0;
@@ -73,8 +73,8 @@ struct OracleScene {
   CameraPose pose = {};
   int width = 16, height = 16;
   ClipDescription clip = {};
-  std::optional<Affine> crop = {}; ///< maps [-1, 1]^3 onto the part of the volume that is there
-  Background background = {};      ///< no gradient
+  std::optional<Affine> crop = {}; ///< maps [-1, 1]^3 onto the part kept; empty: all is kept
+  Background background = {};      ///< any but a gradient
   std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max();
   std::optional<StyleDescription> style = {};
 };

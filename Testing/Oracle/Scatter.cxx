@@ -3,13 +3,13 @@
 namespace fenestra::oracle {
 namespace {
 
-/// Any unit vector across `direction`.
+/// Some unit vector perpendicular to `direction`.
 Vec3 across(const Vec3& direction) {
   const Vec3 axis = std::abs(direction.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY();
   return direction.cross(axis).normalized();
 }
 
-/// A unit vector at a given cosine to a direction, all around it.
+/// Random unit vector at a given cosine to a direction.
 Vec3 about(const Vec3& direction, double cosine, Generator& generator) {
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   const double phi = 2.0 * pi * uniform(generator);
@@ -18,12 +18,13 @@ Vec3 about(const Vec3& direction, double cosine, Generator& generator) {
   return (cosine * direction + sine * std::cos(phi) * u + sine * std::sin(phi) * v).normalized();
 }
 
-/// The inversion below cancels near 0, where 0 itself is as good: density() weighs it right.
+/// The inversion below cancels near g = 0; drawing with 0 instead is unbiased, since density() uses
+/// the same g.
 double invertible(double g) {
   return std::abs(g) < 1e-3 ? 0.0 : g;
 }
 
-/// By inversion of Henyey and Greenstein's distribution of the cosine.
+/// Direction by inversion of Henyey and Greenstein's distribution of the cosine.
 Vec3 drawHenyeyGreenstein(const Vec3& incoming, double g, Generator& generator) {
   const double u = uniform(generator);
   if (g == 0.0)
@@ -33,7 +34,7 @@ Vec3 drawHenyeyGreenstein(const Vec3& incoming, double g, Generator& generator) 
   return about(incoming, cosine, generator);
 }
 
-/// GGX's roughness squared, of a Blinn-Phong exponent.
+/// Square of GGX's roughness for a Blinn-Phong exponent.
 double roughness2(const SurfaceShading& shading) {
   return 2.0 / (shading.power + 2.0);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What happens at a collision.
+// Scattering at a collision.
 
 #include "OracleScene.h"
 
@@ -14,11 +14,11 @@ inline double uniform(Generator& generator) {
   return static_cast<double>(generator() >> 11) * 0x1p-53;
 }
 
-/// Henyey and Greenstein 1941, per steradian; `cosine` between the directions of travel.
+/// Henyey and Greenstein 1941, per steradian; `cosine`: between the directions of travel.
 double henyeyGreenstein(double cosine, double g);
 
-/// A collision at which a path scatters by the phase function, or at a surface whose gradient is
-/// not zero. f is the factor on radiance per steradian, with albedo and, at surfaces, the cosine.
+/// Collision at which a path scatters by the phase function, or at a surface (gradient not zero).
+/// f: factor on radiance per steradian, with albedo and, at surfaces, the cosine.
 class Scatterer {
 public:
   static Scatterer byPhase(const Vec3& incoming, const Rgb& albedo, double g);
@@ -26,9 +26,9 @@ public:
                              const SurfaceShading& shading);
 
   Rgb f(const Vec3& outgoing) const;
-  /// A direction to go on, and its density per steradian: the phase function's; at a surface half
-  /// the time Lambert's, else the mirror of `incoming` at a GGX microfacet (Walter et al. 2007,
-  /// eq. 35, 36 and 38).
+  /// Random direction of travel; density(): its pdf per steradian. Drawn from the phase function;
+  /// at a surface half the time from Lambert's law, else as the mirror of `incoming` at a GGX
+  /// microfacet (Walter et al. 2007, eq. 35, 36 and 38).
   Vec3 draw(Generator& generator) const;
   double density(const Vec3& outgoing) const;
 
@@ -39,7 +39,7 @@ private:
   Rgb m_albedo;
   double m_g = 0.0;
   std::optional<SurfaceShading> m_shading;
-  Vec3 m_normal = Vec3::Zero(); ///< unit, toward where the path came from
+  Vec3 m_normal = Vec3::Zero(); ///< unit, toward the path's origin
 };
 
 } // namespace fenestra::oracle

@@ -1,5 +1,5 @@
 #pragma once
-// Eye rays and view space, from the pose alone.
+// Eye rays and view space, computed from the pose alone.
 
 #include "OracleScene.h"
 
@@ -7,7 +7,7 @@ namespace fenestra::oracle {
 
 struct View {
   Vec3 eye, right, up, forward;   ///< world
-  double targetDepth, halfHeight; ///< mm; the second on the plane through the target
+  double targetDepth, halfHeight; ///< mm; halfHeight on the plane through the target
   bool isPerspective;
 
   explicit View(const CameraPose& pose)
@@ -20,7 +20,7 @@ struct View {
     halfHeight = isPerspective ? targetDepth * std::tan(pose.angle * pi / 180.0 / 2.0) : pose.scale;
   }
 
-  /// The eye ray through (x, y), mm, of the plane through the target; unit direction.
+  /// Eye ray through (x, y), mm, on the plane through the target; unit direction.
   Ray through(double x, double y) const {
     const Vec3 onPlane = eye + targetDepth * forward + x * right + y * up;
     if (isPerspective)
@@ -30,7 +30,7 @@ struct View {
 
   double depth(const Vec3& world) const { return (world - eye).dot(forward); }
 
-  /// (x, y) where the eye ray through a point meets the plane through the target.
+  /// (x, y), mm, at which the eye ray through a point meets the plane through the target.
   Vec2 onPlane(const Vec3& world) const {
     const Vec3 d = world - eye;
     const double scale = isPerspective ? targetDepth / d.dot(forward) : 1.0;

@@ -15,7 +15,7 @@ namespace fenestra::testing {
 
 namespace {
 
-/// The words of a line, each "@name" replaced by the words that it stands for.
+/// Words of a line, with each "@name" replaced by its definition.
 std::vector<std::string> words(const std::string& line,
                                const std::map<std::string, std::vector<std::string>>& names) {
   std::vector<std::string> result;
@@ -30,7 +30,7 @@ std::vector<std::string> words(const std::string& line,
   return result;
 }
 
-/// "name" or "name:baseline".
+/// Case of "name" or "name:baseline".
 RegressionCase named(const std::string& text, std::uint64_t samples,
                      std::vector<std::string> arguments) {
   const std::size_t colon = text.find(':');
@@ -72,7 +72,7 @@ Image renderCase(const RegressionCase& c, std::uint64_t seed, std::uint64_t samp
                  const std::filesystem::path& folder, const std::filesystem::path& output) {
   std::filesystem::create_directories(output.parent_path());
   Arguments arguments = c.arguments;
-  // As short as it can be said: the picture keeps it.
+  // The shortest form of the arguments, since the picture's header stores them.
   arguments.insert(arguments.end(),
                    {"--seed", std::to_string(seed), "--samples", std::to_string(samples),
                     "--layers", "color,error,samples", "--progress", "none", "--output",

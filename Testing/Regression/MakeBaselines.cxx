@@ -7,9 +7,9 @@
 
 namespace {
 
-/// Unlike any test's.
+/// Seed that no test uses.
 constexpr std::uint64_t seed = 20001;
-/// A baseline has this many times the samples of its test: its noise adds 6 % to the test's own.
+/// Factor between the samples of a baseline and of its test: the baseline adds 6 % to the noise.
 constexpr std::uint64_t moreSamples = 8;
 
 } // namespace

@@ -1,4 +1,4 @@
-// Every case of cases.txt against its baseline, and proof that the comparison finds what it is for.
+// Every case of cases.txt against its baseline, and proof that the comparison finds planted faults.
 #include "Cases.h"
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
@@ -25,7 +25,7 @@ std::filesystem::path resultFolder(const RegressionCase& c) {
   return std::filesystem::path(FENESTRA_REGRESSION_RESULTS) / c.name;
 }
 
-/// Writes what a person needs to see what is wrong, and says where.
+/// Writes the pictures needed to see an error; returns a text that names their folder.
 std::string errorImages(const Image& image, const Image& baseline,
                         const std::filesystem::path& folder) {
   const Image z = differenceImage(image, baseline);
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Regression, ::testing::ValuesIn(readCases()),
 // ---- planted faults
 // -----------------------------------------------------------------------------
 
-/// Replaces what stands once in a file.
+/// Replaces a text that occurs once in a file.
 void replaceIn(const std::filesystem::path& path, const std::string& from, const std::string& to) {
   std::string bytes = bytesOf(path);
   const std::size_t at = bytes.find(from);
@@ -67,12 +67,12 @@ void replaceIn(const std::filesystem::path& path, const std::string& from, const
 struct Fault {
   std::string name;
   std::string inCase;
-  /// Spoils a copy of Testing/Data, or the arguments.
+  /// Plants the fault in a copy of Testing/Data, or in the arguments.
   std::function<void(const std::filesystem::path& data, RegressionCase& c)> plant;
 };
 
-/// The voxels of plain.nrrd and fog.nrrd are 1.6 mm wide, and lie in x and y from 19.2 mm to
-/// -19.2 mm in LPS.
+/// plain.nrrd and fog.nrrd have voxels of 1.6 mm, which extend in x and y from 19.2 mm to -19.2 mm
+/// in LPS.
 const std::vector<Fault> faults = {
     {"HalfVoxelShift", "plain",
      [](const auto& data, RegressionCase&) {

@@ -19,16 +19,17 @@ namespace {
 
 constexpr double fieldOfView = 40.0; // mm, around the origin
 
-/// Where voxels lie: RAS mm.
+/// Positions of voxels: RAS mm.
 struct Axes {
   Size3 size;
-  Mat3 steps; ///< a column is the way to the next voxel along that axis
+  Mat3 steps; ///< column: step to the next voxel along that axis
   Vec3 first; ///< centre of the first voxel
 
   Vec3 place(int i, int j, int k) const { return first + steps * Vec3(i, j, k); }
 };
 
-/// Unit directions in columns; the grid is centred at the origin and fills the field of view.
+/// Axes along unit directions (columns); the grid is centred at the origin and fills the field of
+/// view.
 Axes axesAlong(const Mat3& directions, const Vec3& spacing) {
   Axes axes;
   axes.size = (fieldOfView / spacing.array()).round().cast<std::int64_t>();
@@ -43,7 +44,7 @@ Mat3 columns(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 const Mat3 straight = Mat3::Identity();
 
-/// 20 degrees about an axis that is none of the world's.
+/// Rotation by 20 degrees about an axis oblique to the world's axes.
 Mat3 tilted() {
   return rotationBy(0.35, Vec3(1.0, 2.0, -1.5).normalized()).linear();
 }
@@ -119,7 +120,7 @@ std::string triple(const Vec3& v) {
   return text.str();
 }
 
-/// Up to and without the empty line.
+/// Header without the empty line at its end.
 std::string header(const Nrrd& nrrd) {
   const Vec3 toSpace =
       nrrd.space == "right-anterior-superior" ? Vec3(1.0, 1.0, 1.0) : Vec3(-1.0, -1.0, 1.0);
@@ -149,7 +150,7 @@ void write(const std::filesystem::path& path, const std::string& bytes) {
     throw std::runtime_error(path.string() + ": cannot be written");
 }
 
-/// The subject, `offset` added to its scalars.
+/// Writes the subject, with `offset` added to its scalars.
 template <typename T>
 void writeVolume(const std::filesystem::path& path, const Nrrd& nrrd, double offset = 0.0) {
   const Value value = [offset](const Vec3& p) { return subject(p) + offset; };
@@ -170,7 +171,7 @@ void writeVolume(const std::filesystem::path& path, const Nrrd& nrrd, double off
 // ---- traps
 // --------------------------------------------------------------------------------------
 
-/// Axes that are not the world's.
+/// Writes volumes with axes that are not the world's.
 void writeGeometries(const std::filesystem::path& folder, double s) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ(), cube = Vec3::Constant(s);
   writeVolume<std::uint8_t>(folder / "plain.nrrd", {"uint8", axesAlong(straight, cube)});
@@ -188,7 +189,7 @@ void writeGeometries(const std::filesystem::path& folder, double s) {
   writeVolume<std::uint8_t>(folder / "sheared.nrrd", {"uint8", sheared});
 }
 
-/// Sample types and encodings.
+/// Writes volumes of every sample type and encoding.
 void writeEncodings(const std::filesystem::path& folder, double s) {
   const Axes axes = axesAlong(straight, Vec3::Constant(s));
   const std::string lps = "left-posterior-superior";
@@ -230,7 +231,7 @@ Value labels(std::vector<std::pair<double (*)(const Vec3&), int>> organs) {
 void writeSegments(const std::filesystem::path& folder, double s) {
   const std::string common = "Segmentation_ContainedRepresentationNames:=Binary labelmap|\n"
                              "Segmentation_MasterRepresentation:=Binary labelmap\n";
-  // Overlapping ones, of one value in two layers, in voxels of their own.
+  // Overlapping segments: one value in two layers, on a grid of their own.
   const Axes fine = axesAlong(straight, Vec3::Constant(0.8 * s));
   Nrrd layers{"uint8",
               fine,
@@ -244,7 +245,7 @@ void writeSegments(const std::filesystem::path& folder, double s) {
       fine, {labels({{liver, 1}, {tumour, 7}}), labels({{heart, 1}, {tumour, 2}})});
   write(folder / "layers.seg.nrrd", header(layers) + "\n" + gzipped(both));
 
-  // Part of the volume's grid only: the origin is the part's own already.
+  // Part of the volume's grid; the origin is already the part's own.
   Axes part = axesAlong(straight, Vec3::Constant(s));
   const Size3 offset = part.size / 2;
   part.first = part.place(offset.x(), offset.y(), 0);
@@ -261,7 +262,7 @@ void writeSegments(const std::filesystem::path& folder, double s) {
   write(folder / "cropped.seg.nrrd",
         header(cropped) + "\n" + rawSamples<std::int16_t>(part, {labels({{liver, 300}})}));
 
-  // A plain label map whose values have gaps.
+  // Plain label map with gaps between its values.
   const Axes tilt = axesAlong(tilted(), Vec3::Constant(s));
   write(folder / "labels.nrrd",
         header({"uint8", tilt}) + "\n" +

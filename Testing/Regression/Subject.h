@@ -1,5 +1,5 @@
 #pragma once
-// What the format traps show: a body with four organs, no two alike and none on an axis, so that
+// Subject of the format traps: a body with four organs, no two alike and none on an axis, so that
 // every flip, swap and shift of axes shows.
 
 #include "base/Vector.h"
@@ -8,7 +8,7 @@
 
 namespace fenestra::testing {
 
-/// 1 inside by more than half a millimetre, 0 outside by as much.
+/// Partial coverage by a shape: 1 for distances <= -1/2 mm, 0 for distances >= 1/2 mm.
 inline double coverage(double signedDistance) {
   return std::clamp(0.5 - signedDistance, 0.0, 1.0);
 }
@@ -27,13 +27,13 @@ inline double heart(const Vec3& p) {
 inline double tumour(const Vec3& p) {
   return sphere(p, {-5.0, 9.0, 8.0}, 3.0);
 }
-/// A rod that ends.
+/// Rod with a flat end at S 3.
 inline double spine(const Vec3& p) {
   const double across = std::hypot(p.x() - 4.0, p.y() + 6.0) - 3.0;
   return std::max(across, p.z() - 3.0);
 }
 
-/// From 0 (air) to 250; the body has about 60.
+/// Scalar of the subject, 0 (air) to 250; the body has about 60.
 inline double subject(const Vec3& p) {
   const double body = (p.cwiseQuotient(Vec3(17.0, 15.0, 16.0)).norm() - 1.0) * 15.0;
   double value = 60.0 * coverage(body);

@@ -1,4 +1,4 @@
-// Files of patients: where a session keeps them, how they go, and what saving them costs.
+// Patients' files: the place where a session keeps them, their removal, and the cost of saving.
 
 #include "TemporaryFolder.h"
 
@@ -73,7 +73,7 @@ TEST(SlicerFolder, IsPrivateAndGoesWithItsSession) {
   EXPECT_FALSE(QDir(path).exists());
 }
 
-/// Whatever its number in another container may be.
+/// A session's process number may differ in another container.
 TEST(SlicerFolder, OfALivingSessionStaysAndOfACrashedOneGoes) {
   const TemporaryFolder parent;
   Neighbour neighbour(parent);
@@ -125,7 +125,7 @@ TEST_F(SlicerCopies, ThatFailLeaveTheOldFileAndNoOther) {
   ::getrlimit(RLIMIT_FSIZE, &before);
   ::signal(SIGXFSZ, SIG_IGN);
   struct rlimit full = before;
-  full.rlim_cur = 4096; // as a disk that is full
+  full.rlim_cur = 4096; // like a full disk
   ::setrlimit(RLIMIT_FSIZE, &full);
   const QString failed = qFenestraCopies::picture(path("new.png"), path("old.png"), ".png").write();
   ::setrlimit(RLIMIT_FSIZE, &before);

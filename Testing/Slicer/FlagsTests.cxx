@@ -1,4 +1,4 @@
-// What a scene that anybody may have made says of flags: which of it is followed.
+// Flags in a scene from an untrusted source: those that are accepted.
 
 #include "FenestraFlags.h"
 #include "qFenestraAbilities.h"
@@ -79,7 +79,7 @@ TEST(SlicerFlags, FilesAreFoundAlsoInsideTexts) {
     EXPECT_EQ(verdictOn(name, value), Verdict::file) << name << ": " << value;
 }
 
-/// The renderer's own description of its numbers and words is the truth.
+/// Reference: the renderer's own description of its numbers and words.
 TEST(SlicerFlags, KindsAreTheRenderers) {
   QProcess child;
   child.start(FENESTRA_EXECUTABLE, {"--xml"});
@@ -89,7 +89,7 @@ TEST(SlicerFlags, KindsAreTheRenderers) {
   for (const FenestraScene::Flag& flag : FenestraScene::flags()) {
     const QString name = QString::fromStdString(flag.name);
     if (name == "frames" || name == "degrees" || name == "steady")
-      continue; // a turntable's
+      continue; // of turntables
     ASSERT_TRUE(known.contains(name)) << flag.name;
     EXPECT_EQ(flag.kind == FlagKind::word, !known[name].words.isEmpty()) << flag.name;
     for (const QString& word : known[name].words)

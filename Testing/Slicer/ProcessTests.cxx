@@ -1,5 +1,5 @@
-// Renders and previews as the extension runs them, with the renderer itself: what is heard of them,
-// and how they end.
+// Renders and previews as run by the extension, with the renderer itself: their reports and their
+// end.
 
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
@@ -29,7 +29,7 @@ const QString program = FENESTRA_EXECUTABLE;
 const int longest = 30000 * static_cast<int>(testing::brevity()); ///< milliseconds
 const int soon = 1000 * static_cast<int>(testing::brevity());     ///< 200 on an idle machine
 
-/// Runs the event loop until something holds; false after `longest`.
+/// Runs the event loop until the condition holds; false after `longest`.
 bool waitFor(const std::function<bool()>& condition) {
   QElapsedTimer watch;
   watch.start();
@@ -68,7 +68,7 @@ struct Ended {
   qFenestraOutcome outcome;
 };
 
-/// What a queue told.
+/// Reports of a queue.
 struct Heard {
   std::vector<int> started;
   std::vector<double> parts;
@@ -160,13 +160,13 @@ TEST_F(SlicerProcess, ACrashIsNoEndOfTheWorld) {
                    [&](const qFenestraOutcome& outcome) { outcomes.push_back(outcome); });
   child.run(program, job(1, {"--samples", "100000000"}).arguments, path());
   ASSERT_TRUE(child.waitForStarted());
-  ::kill(static_cast<pid_t>(child.processId()), SIGKILL); // as the system does for lack of memory
+  ::kill(static_cast<pid_t>(child.processId()), SIGKILL); // as the kernel does, short of memory
   ASSERT_TRUE(waitFor([&] { return !outcomes.empty(); }));
   EXPECT_EQ(outcomes[0].kind, Kind::failed);
   EXPECT_TRUE(outcomes[0].message.contains("memory"));
 }
 
-/// A renderer of a few words of shell: what it does when it is told to stop.
+/// Renderer made of a few words of shell that react to the stop signal.
 struct Stopped {
   explicit Stopped(const TemporaryFolder& folder, const char* whenTold) {
     QObject::connect(&child, &qFenestraProgram::ended,
@@ -190,7 +190,7 @@ struct Stopped {
   qFenestraProgram child;
 };
 
-/// Longer than any clock that a hand would set for it. The window answers meanwhile.
+/// Longer than any plausible timeout. The window must respond meanwhile.
 TEST_F(SlicerProcess, NoClockEndsARendererThatWrites) {
   Stopped stopped(folder, "sleep 2; echo picture >kept.png; exit 5");
   bool answered = false;
@@ -271,7 +271,7 @@ TEST_F(SlicerProcess, ChildrenDoNotSeeSlicersLibraries) {
   EXPECT_EQ(environment.keys(), QStringList{"HOME"});
 }
 
-/// A child outlives neither its object nor, by the signal that it asked for, its parent.
+/// A child ends with its object and, by the signal that it requested, with its parent.
 TEST_F(SlicerProcess, NoChildIsLeftBehind) {
   qint64 id = 0;
   {
@@ -285,7 +285,7 @@ TEST_F(SlicerProcess, NoChildIsLeftBehind) {
   int tell[2];
   ASSERT_EQ(::pipe(tell), 0);
   const pid_t parent = ::fork();
-  if (parent == 0) { // a Slicer that crashes
+  if (parent == 0) { // a crashing Slicer
     qFenestraProgram child;
     child.run(program, job(1, {"--samples", "100000000"}).arguments, path());
     child.waitForStarted();
@@ -300,7 +300,7 @@ TEST_F(SlicerProcess, NoChildIsLeftBehind) {
   ::waitpid(parent, nullptr, 0);
   ASSERT_GT(orphan, 0);
   const auto gone = [&] {
-    QFile status(QString("/proc/%1/stat").arg(orphan)); // a zombie of nobody's is gone as well
+    QFile status(QString("/proc/%1/stat").arg(orphan)); // a reaped or zombie process counts as gone
     return !status.open(QIODevice::ReadOnly) || status.readAll().contains(") Z ");
   };
   EXPECT_TRUE(waitFor(gone));
@@ -339,7 +339,7 @@ TEST_F(SlicerPreview, FollowsChangesWhenHandsRest) {
   EXPECT_EQ(pictures.back().files, QStringList{"p.png"});
   EXPECT_TRUE(exists("p.png"));
   pictures.clear();
-  // A hand that moves: one change is told, the last of each kind.
+  // Fast changes: one change is sent, the last of each kind.
   for (const char* view : {"left", "right", "superior"}) {
     preview.change({{"view", view}});
     preview.change({{"samples", 4}});
@@ -372,7 +372,7 @@ TEST_F(SlicerPreview, StopsAtOnce) {
   std::cout << "stopped within " << watch.elapsed() << " ms\n";
   EXPECT_LT(watch.elapsed(), soon);
   EXPECT_FALSE(preview.running());
-  // The child ends by itself, unheard.
+  // The child ends by itself, without further reports.
   EXPECT_TRUE(waitFor([this] { return preview.findChildren<qFenestraProgram*>().isEmpty(); }));
   EXPECT_TRUE(outcomes.empty());
 }

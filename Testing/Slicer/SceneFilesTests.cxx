@@ -1,4 +1,4 @@
-// Scenes that the extension writes for the renderer, read back and rendered.
+// Scenes written by the extension for the renderer, read back and rendered.
 
 #include "TemporaryFolder.h"
 

@@ -1,5 +1,5 @@
-// Rendering toward a noise target shares samples out by what a pilot shows. Over many seeds its
-// mean is that of pictures with the same number everywhere.
+// Adaptive sampling, steered by a pilot, against uniform sampling: the means over many seeds must
+// agree.
 
 #include "RunSettings.h"
 #include "Support.h"
@@ -9,8 +9,8 @@
 namespace fenestra::testing::AdaptiveTests {
 namespace {
 
-/// A small bright light beside a ball in the dark: few paths find it by themselves, so that the
-/// samples of a pixel are as skewed as they come.
+/// Small bright light beside a ball in the dark: few paths find the light by chance, which makes
+/// the samples of a pixel very skewed.
 TestScene skewedScene() {
   const Grid grid = centredGrid({12, 12, 12}, {1.0, 1.0, 1.0});
   const Vec3 centre(5.5, 5.5, 5.5);
@@ -45,7 +45,7 @@ struct Moments {
 
 constexpr int tile = 16;
 
-/// Of the mean over each tile, seed by seed.
+/// Moments of each tile's mean over seeds.
 std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, int seeds,
                                std::uint64_t firstSeed) {
   std::vector<Moments> tiles(static_cast<std::size_t>(scene.width * scene.height / (tile * tile)));
@@ -66,7 +66,7 @@ std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, 
 
 TEST(AdaptiveSampling, HasNoBias) {
   const TestScene scene = skewedScene();
-  const int seeds = std::max(8, budget(24)); // fewer say little of their own spread
+  const int seeds = std::max(8, budget(24)); // fewer seeds estimate their spread badly
   RenderSettings adaptive;
   adaptive.samples = 1U << 20;
   adaptive.noise = allowedError(0.05);

@@ -1,5 +1,5 @@
 #pragma once
-// What tests against closed forms share: estimates, and their comparison.
+// Estimates and comparisons for tests against closed forms.
 
 #include "RunSettings.h"
 #include "Support.h"
@@ -9,7 +9,7 @@
 namespace fenestra::testing {
 
 struct RgbEstimate {
-  Rgb mean = Rgb::Zero(), error = Rgb::Zero(); ///< error: standard, of the mean
+  Rgb mean = Rgb::Zero(), error = Rgb::Zero(); ///< error: standard error of the mean
 
   RgbEstimate operator*(double factor) const { return {factor * mean, factor * error}; }
 };
@@ -18,7 +18,7 @@ inline RgbEstimate operator+(const RgbEstimate& a, const RgbEstimate& b) {
   return {a.mean + b.mean, (a.error.square() + b.error.square()).sqrt()};
 }
 
-/// Mean radiance of a picture. Its pixels need not be alike: each brings its own error.
+/// Mean radiance of a picture, with every pixel's own error: pixels may differ.
 inline RgbEstimate pictureEstimate(const Film& film) {
   RgbEstimate sum;
   Rgb variance = Rgb::Zero();
@@ -30,9 +30,9 @@ inline RgbEstimate pictureEstimate(const Film& film) {
   return {sum.mean / n, variance.sqrt() / n};
 }
 
-/// Every channel within 4 standard errors of what is expected, which itself is known to `known`
-/// (relative). The standard error is at most `sharpness` of the expected value, so that a bias of 6
-/// times that is found all but surely.
+/// Expects |mean - expected| <= 4 standard errors + `known` * expected in every channel (`known`:
+/// relative error of `expected`), and a standard error <= `sharpness` * expected. A bias of 6
+/// `sharpness` * expected is then found almost surely.
 inline void expectMean(const RgbEstimate& estimate, const Rgb& expected, double sharpness,
                        double known = 0.0) {
   for (int c = 0; c < 3; ++c) {

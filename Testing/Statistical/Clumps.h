@@ -1,13 +1,13 @@
 #pragma once
-// A small volume of random voxels whose extinction is not monotone in the scalar, and pictures that
-// show all of it.
+// Small volume of random voxels, with an extinction that is not monotone in the scalar, and
+// pictures that show all of it.
 
 #include "Anchors.h"
 
 namespace fenestra::testing {
 
-/// Absorbs by the scalar: `dark` at 0, `bright` at 1. A turned grid of unequal spacing, about 2 mm
-/// in radius; a third of the light that meets it passes.
+/// Volume with albedo `dark` at scalar 0 and `bright` at 1, on a rotated grid of unequal spacing,
+/// about 2 mm in radius; a third of the incident light passes.
 inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
   Grid grid = centredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
   const Affine turn(rotationBy(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
@@ -25,9 +25,8 @@ inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
   return scene;
 }
 
-/// Light scattered out of the scene's volume along -`sight`, of parallel light that travels along
-/// `light` with irradiance 1: radiance integrated over a picture plane that holds all of it, mm^2
-/// per steradian.
+/// Radiance scattered toward -`sight`, integrated over a picture plane that holds the whole volume,
+/// mm^2 per steradian. Light: parallel, travelling along `light` with irradiance 1.
 inline RgbEstimate scatteredOut(TestScene& scene, const Vec3& light, const Vec3& sight,
                                 std::uint64_t samples, std::uint64_t seed) {
   const double radius = scene.volume.grid.boundingRadius();

@@ -14,7 +14,7 @@ oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& sums = film.pixels()[i];
     oracle::PixelEstimate& pixel = estimates.pixels[i];
-    pixel.samples = static_cast<double>(samples); // a certain pixel's would all be alike
+    pixel.samples = static_cast<double>(samples); // all samples, even for certain pixels
     pixel.mean = sums.mean;
     pixel.squares = sums.deviation;
     pixel.first =
@@ -24,7 +24,7 @@ oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
   return estimates;
 }
 
-/// Adds up pixels: the mean of their means.
+/// Sums over pixels, for the mean of their means.
 struct Sums {
   Rgb mean = Rgb::Zero(), variance = Rgb::Zero();
   oracle::FirstCollision first = oracle::FirstCollision::Zero();
@@ -44,8 +44,8 @@ struct Sums {
   }
 };
 
-/// Of the radiance of one path, in three channels, over a whole picture: what is rare in one pixel
-/// shows in others.
+/// Skewness of one path's radiance in each channel over a whole picture: events that are rare in
+/// one pixel occur in others.
 Rgb skewnessOf(const oracle::Estimates& picture) {
   Rgb squares = Rgb::Zero(), cubes = Rgb::Zero();
   double samples = 0.0;
@@ -62,7 +62,7 @@ Rgb skewnessOf(const oracle::Estimates& picture) {
   return skewness;
 }
 
-/// Over a square of pixels.
+/// Sums over a square of pixels.
 Sums sumsOf(const oracle::Estimates& picture, int left, int top, int size) {
   Sums sums;
   for (int row = top; row < top + size; ++row)
@@ -71,7 +71,7 @@ Sums sumsOf(const oracle::Estimates& picture, int left, int top, int size) {
   return sums;
 }
 
-/// The least of many probabilities, corrected for their number.
+/// Least of many probabilities, corrected for their number.
 class Least {
 public:
   void add(const std::optional<double>& probability) {
@@ -86,7 +86,7 @@ private:
   double m_least = 1.0, m_count = 0.0;
 };
 
-/// Over squares of `size` pixels; `visit` is called with what one channel of each says.
+/// Compares squares of `size` pixels; `visit` receives the probability of one channel of each.
 template <typename Visit>
 double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
   const Rgb skewness = skewnessOf(outcome.truth);
@@ -114,8 +114,9 @@ void comparePicture(Outcome& outcome) {
   Least least;
   for (int c = 0; c < 3; ++c)
     least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
-  const double share = 0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels); // that collides
-  // First collisions are drawn alike by both, so the product's vary as the oracle's do.
+  const double share = 0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels); // colliding paths
+  // Both draw first collisions from the same distribution, so the oracle's variance serves for
+  // both.
   for (int i = 0; i < 3; ++i) {
     double variance = b.firstVariance[i] / (b.pixels * b.pixels);
     if (variance ==
@@ -147,7 +148,7 @@ void compareDepths(const std::vector<double>& product, const std::vector<double>
     if (difference < 0.01)
       outcome.depthDifference = std::max(outcome.depthDifference, difference);
     else
-      ++outcome.depthDisagreements; // focus for one of them only
+      ++outcome.depthDisagreements; // focus for one renderer only
   }
 }
 

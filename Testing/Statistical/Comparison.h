@@ -1,6 +1,6 @@
 #pragma once
-// One combination of the matrix, rendered by the product and by the oracle, and what their
-// difference says at three scales: pixels, tiles of 4 x 4 pixels, and the whole picture.
+// One combination of the matrix, rendered by the product and by the oracle, and the significance of
+// their difference at three scales: pixels, tiles of 4 x 4 pixels, the whole picture.
 
 #include "Matrix.h"
 #include "Oracle/Estimates.h"
@@ -22,43 +22,43 @@ struct MatrixSettings {
 
 struct Outcome {
   Combination combination;
-  /// How probable the largest difference is: over all pixels and channels; over all tiles and
-  /// channels; over the picture's channels, share of paths that collide, depth and albedo.
+  /// Probability of the largest difference: over all pixels and channels; over all tiles and
+  /// channels; over the picture's channels, share of colliding paths, depth and albedo.
   double pixels = 1.0, tiles = 1.0, picture = 1.0;
-  /// One channel a tile, and of the picture: independent of each other, so uniform in [0, 1]. Only
-  /// of even paths (isEven): others' are too rarely near 0 or 1.
+  /// Probabilities of one channel a tile, and of the picture: independent, hence uniform in [0, 1].
+  /// Only from even means (isEven): those of uneven means are too rarely near 0 or 1.
   std::vector<double> tileProbabilities;
   std::optional<double> pictureProbability;
-  /// Of the same channel: the picture's difference over the oracle's mean, and over its own error.
+  /// Picture's channel: (product - oracle) / oracle's mean, and / standard error of the difference.
   double difference = 0.0, deviate = 0.0;
-  /// Largest difference of the two depth buffers, mm, over samples that the two agree to be focus
-  /// or not; and how many they do not agree on.
+  /// Largest difference of the two depth buffers, mm, over samples on whose kind (focus or not)
+  /// both agree; and number of samples on which they disagree.
   double depthDifference = 0.0;
   int depthDisagreements = 0;
   oracle::Estimates product, truth; ///< for error images
 
-  /// Of all three scales together.
+  /// Probability of all three scales together.
   double probability() const;
 };
 
-/// What the oracle makes of a combination.
+/// Oracle's render of a combination.
 struct Truth {
   oracle::Estimates picture;
-  std::vector<double> depths; ///< of a depth clip's buffer, mm, row by row
+  std::vector<double> depths; ///< depth clip's buffer, mm, row by row
 };
 
 Truth renderTruth(const Combination& c, const MatrixSettings& settings);
 Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings, Truth truth);
 
-/// A hypothesis about all combinations together, and how probable what was seen is under it.
+/// Hypothesis about all combinations together, and the probability of the observation under it.
 struct Verdict {
   std::string name;
   double count;
   double probability;
 };
 
-/// Pixels, tiles, pictures; uniformity of the tiles' and the pictures' probabilities; the pictures'
-/// mean deviate.
+/// Verdicts on pixels, tiles and pictures; on uniformity of the tiles' and the pictures'
+/// probabilities; on the pictures' mean deviate.
 std::vector<Verdict> verdicts(const std::vector<Outcome>& outcomes);
 
 } // namespace fenestra::testing

@@ -1,4 +1,4 @@
-// Cropping against closed forms, and against a volume that has the crop's own shape.
+// Cropping against closed forms, and against a volume of the crop's shape.
 
 #include "Support.h"
 
@@ -11,14 +11,13 @@ Volume ones(const Grid& grid) {
   return makeVolume(grid, [](const Vec3&) { return 1.0; });
 }
 
-/// Maps [-1, 1]^3 onto a turned box of half edges `half` around `center`.
+/// Map of [-1, 1]^3 onto a rotated box of half edges `half` around `center`.
 Affine turnedBox(const Vec3& center, const Vec3& half, double angle) {
   return translationBy(center) * rotationBy(angle, Vec3(1.0, -2.0, 0.5).normalized()) *
          scalingBy(half);
 }
 
-/// Length of a ray, from 0 on, between the three pairs of a parallelepiped's faces: what is on the
-/// inner side of all six planes.
+/// Length of a ray, t >= 0, inside a parallelepiped: on the inner side of all six planes.
 double chord(const Affine& box, const Ray& ray) {
   double begin = 0.0;
   double end = infinity;
@@ -38,7 +37,7 @@ double chord(const Affine& box, const Ray& ray) {
   return std::max(0.0, end - begin);
 }
 
-/// Sum of differences from what is expected, and of their variance.
+/// Sum of differences from expectations, and its variance.
 struct Differences {
   double sum = 0.0, variance = 0.0;
 
@@ -55,7 +54,7 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
   const Volume volume = ones(centredGrid({30, 30, 30}, {1.0, 1.0, 1.0}));
   const double sigma_t = 0.2;
   const TransferFunction transfer = linearTransfer(sigma_t, Rgb::Zero());
-  const TransferFunction looser = transfer.scaled(2.0); // so that not every collision is real
+  const TransferFunction looser = transfer.scaled(2.0); // not every collision is real
   Affine box = turnedBox({0.3, -0.4, 0.2}, {3.0, 5.0, 4.0}, 0.7);
   if (GetParam()) // sheared, as by a transform above the box
     box = Affine(Mat3::FromRows({1.0, 0.3, 0.0}, {0.0, 1.0, -0.2}, {0.1, 0.0, 0.8})) * box;
@@ -67,7 +66,7 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
   Differences passed, survived;
   for (std::uint64_t i = 0; i < 200000; ++i) {
     Random random(31, i, 0);
-    // From outside the volume, from between the boxes, and from inside the crop.
+    // Origins outside the volume, between the boxes, and inside the crop.
     const double distance = i % 3 == 0 ? 40.0 : i % 3 == 1 ? 9.0 : 2.0;
     const Vec3 origin = distance * uniformDirection(random.uniform2());
     const Vec3 through = 4.0 * uniformDirection(random.uniform2());
@@ -107,12 +106,12 @@ TestScene litScene(Volume volume, const Shape& shape) {
   return scene;
 }
 
-/// Eye, scatter and light rays all end where the voxels would: a box cropped from a larger constant
-/// volume looks like a volume of that box, whichever way it is turned against the voxels.
+/// Eye, scattered and light rays all end at the crop: a box cropped from a larger constant volume
+/// looks like a volume of that box, at any rotation against the voxels.
 TEST_P(CroppedPicture, LooksLikeAVolumeOfThatShape) {
   const Vec3 half(5.0, 4.0, 3.0);
   const Affine box = turnedBox({1.0, 0.0, -1.0}, half, GetParam().angle);
-  // A grid of 10 x 8 x 6 voxels of 1 mm that fills the box.
+  // Grid of 10 x 8 x 6 voxels of 1 mm that fills the box.
   const Affine indexToWorld =
       box * scalingBy(Vec3(half.cwiseInverse())) * translationBy(Vec3(-4.5, -3.5, -2.5));
   const TestScene cut = litScene(ones(Grid({10, 8, 6}, indexToWorld)), GetParam());
@@ -142,7 +141,7 @@ TEST_P(CroppedPicture, LooksLikeAVolumeOfThatShape) {
   }
   EXPECT_GT(count, 200.0);
   EXPECT_LT(count, 500.0) << "some pixels must see beside the box";
-  // Pixels that few paths meet are far from normal: their chi-squared spreads more.
+  // Pixels hit by few paths are far from normal: their chi-squared spreads more.
   EXPECT_NEAR(chiSquared, count, 6.0 * std::sqrt(2.0 * count));
   EXPECT_NEAR(all.z(), 0.0, 4.0);
 }

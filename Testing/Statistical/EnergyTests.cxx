@@ -1,5 +1,5 @@
-// Energy: of parallel light that meets a heterogeneous volume, what comes out in all directions and
-// what is absorbed add up to what does not pass straight through.
+// Energy balance of parallel light in a heterogeneous volume: scattered + absorbed = not
+// transmitted.
 
 #include "Clumps.h"
 #include "StraightIntegral.h"
@@ -7,8 +7,8 @@
 namespace fenestra::testing::EnergyTests {
 namespace {
 
-/// Places in a square of half edge `half` that faces `direction`, `u` in [0, 1)^2, `half` before
-/// the volume's centre.
+/// Ray along `direction` from a square of half edge `half` that faces `direction`, 2 `half` before
+/// the volume's centre; `u` in [0, 1)^2 selects the point.
 Ray parallelRay(const Grid& grid, const Vec3& direction, double half, const Vec2& u) {
   const Frame frame(direction);
   return {grid.worldCenter() - 2.0 * half * direction +
@@ -16,8 +16,8 @@ Ray parallelRay(const Grid& grid, const Vec3& direction, double half, const Vec2
           direction};
 }
 
-/// What does not pass of light of irradiance 1: 1 - exp(-optical depth), integrated over a plane
-/// that faces it by the midpoint rule on `lines`^2 rays, mm^2.
+/// Light of irradiance 1 that collides, mm^2: 1 - exp(-optical depth), integrated over a plane that
+/// faces the light by the midpoint rule on `lines`^2 rays.
 double stopped(const TestScene& scene, const Vec3& light, int lines) {
   const StraightIntegral integral(scene.volume, scene.transfer);
   const double half = scene.volume.grid.boundingRadius();
@@ -29,10 +29,10 @@ double stopped(const TestScene& scene, const Vec3& light, int lines) {
   return sum * 4.0 * half * half / (lines * lines);
 }
 
-/// Light scattered into all directions: pictures along two random directions in each of many parts
-/// of the sphere of one size, which tell how much directions differ within a part.
+/// Light scattered into all directions: two random directions in each of many equal parts of the
+/// sphere, whose difference estimates the variance within a part.
 RgbEstimate scatteredAround(TestScene& scene, const Vec3& light, std::uint64_t seed) {
-  constexpr int rows = 20; // around the light's way
+  constexpr int rows = 20; // rows around the light's direction
   constexpr int columns = 12;
   const Frame frame(light);
   RgbEstimate sum;
@@ -62,7 +62,7 @@ Rgb albedoAt(const TransferFunction& transfer, double scalar) {
   return knots[0].value + scalar * (knots[1].value - knots[0].value);
 }
 
-/// Henyey and Greenstein's cosine by inversion.
+/// Direction by inversion of Henyey and Greenstein's distribution of the cosine.
 Vec3 scattered(const Vec3& direction, double g, const Vec2& u) {
   const double s = (1.0 - g * g) / (1.0 - g + 2.0 * g * u.x());
   const double cosine = g == 0.0 ? 2.0 * u.x() - 1.0 : (1.0 + g * g - s * s) / (2.0 * g);
@@ -74,14 +74,15 @@ Vec3 scattered(const Vec3& direction, double g, const Vec2& u) {
       .normalized();
 }
 
-/// Free paths against one majorant; at each real collision a share 1 - albedo is absorbed.
+/// Absorbed share of a walk's power: free paths with one majorant; a real collision absorbs 1 -
+/// albedo.
 Rgb absorbedOf(const TestScene& scene, const StraightIntegral& medium, Ray ray, Random& random) {
   double majorant = 0.0;
   for (const auto& knot : scene.transfer.extinction.knots())
     majorant = std::max(majorant, knot.value.value());
   Rgb absorbed = Rgb::Zero();
   Rgb power = Rgb::Ones();
-  while (power.maxCoeff() > 1e-4) { // what is left then is as good as nothing
+  while (power.maxCoeff() > 1e-4) { // the rest is negligible
     const Interval inside = medium.inside(ray);
     const double distance = std::max(inside.begin, 0.0) - std::log1p(-random.uniform()) / majorant;
     if (!(distance < inside.end))
@@ -98,7 +99,7 @@ Rgb absorbedOf(const TestScene& scene, const StraightIntegral& medium, Ray ray, 
   return absorbed;
 }
 
-/// Of light of irradiance 1, mm^2.
+/// Absorbed light for irradiance 1, mm^2.
 RgbEstimate absorbed(const TestScene& scene, const Vec3& light, std::uint64_t seed) {
   const StraightIntegral medium(scene.volume, scene.transfer);
   const double half = scene.volume.grid.boundingRadius();
@@ -120,7 +121,7 @@ RgbEstimate absorbed(const TestScene& scene, const Vec3& light, std::uint64_t se
 // ---- the balance
 // ---------------------------------------------------------------------------------
 
-/// Relative error of stopped() with so many lines.
+/// Relative error of stopped() with this number of lines.
 constexpr double known = 3e-4;
 constexpr int lines = 120;
 

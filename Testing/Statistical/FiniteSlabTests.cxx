@@ -1,10 +1,10 @@
-// Slabs of finite thickness that scatter isotropically, against the integral equation for their
-// source function, solved here. With optical depth t from the lit face on and thickness T,
+// Finite slabs with isotropic scattering, against the integral equation for their source function,
+// solved here. With optical depth t from the lit face and thickness T,
 //   S(t) = w (J0(t) + 1/2 ∫_0^T E1(|t - s|) S(s) ds)
 //   I(mu) = ∫_0^T S(t) exp(-t / mu) dt / mu           (from t = 0; likewise from t = T)
-// (Chandrasekhar, Radiative Transfer, 1960, ch. I), where J0 is the light that arrives unscattered:
-// of an environment of radiance L, L/2 (E2(t) + E2(T - t)); of parallel light of irradiance F on a
-// plane that faces it, F / (4 pi) exp(-t / mu0).
+// (Chandrasekhar, Radiative Transfer, 1960, ch. I). J0, the light that arrives unscattered: L/2
+// (E2(t) + E2(T - t)) for an environment of radiance L; F / (4 pi) exp(-t / mu0) for parallel light
+// of irradiance F on a plane that faces the light.
 
 #include "Slab.h"
 
@@ -25,20 +25,21 @@ double expIntegral3(double x) {
 }
 
 struct SlabLight {
-  double environment = 0.0; ///< radiance, on both faces
-  double irradiance = 0.0;  ///< on a plane that faces the light, from above
+  double environment = 0.0; ///< radiance on both faces
+  double irradiance = 0.0;  ///< from above, on a plane that faces the light
   double mu0 = 1.0;
 };
 
-/// S as constant in each of some cells, finest at the faces, where its slope is infinite; the
-/// equation is averaged over each cell (Galerkin), all integrals of the kernel exact.
+/// Source function, constant in each of several cells, which are finest at the faces, where its
+/// slope is infinite. The equation is averaged over each cell (Galerkin), with exact integrals of
+/// the kernel.
 class SourceFunction {
 public:
   SourceFunction(double thickness, double albedo, const SlabLight& light, int cells)
       : m_edges(cells + 1) {
     for (int i = 0; i <= cells; ++i)
       m_edges[i] = 0.5 * thickness * (1.0 - std::cos(pi * i / cells));
-    Eigen::MatrixXd e3(cells + 1, cells + 1); // of the distance between two edges
+    Eigen::MatrixXd e3(cells + 1, cells + 1); // E3 of the distance between two edges
     for (int i = 0; i <= cells; ++i)
       for (int j = 0; j <= i; ++j)
         e3(i, j) = e3(j, i) = expIntegral3(m_edges[i] - m_edges[j]);
@@ -54,7 +55,7 @@ public:
     m_values = system.partialPivLu().solve(direct);
   }
 
-  /// Radiance that leaves the upper or the lower face.
+  /// Radiance that leaves the upper face, and the lower face.
   double above(double mu) const { return emergent(mu, false); }
   double below(double mu) const { return emergent(mu, true); }
 
@@ -94,8 +95,8 @@ constexpr double known = 1e-4;
 constexpr std::array<View, 3> views = {{{1.0, false}, {0.25, false}, {0.7, true}}};
 const Rgb albedos(0.5, 0.9, 1.0);
 
-/// What leaves a slab of the albedos, from two grids extrapolated: halving the cells leaves a
-/// quarter of the error.
+/// Radiance that leaves slabs of these albedos, extrapolated from two grids: half the cell size has
+/// a quarter of the error.
 class Emission {
 public:
   Emission(double thickness, const SlabLight& light, int cells = 240) {
@@ -131,7 +132,7 @@ TEST(Emission, IsKnownAsWellAsStated) {
       for (const View& view : views) {
         const Rgb radiance = emission.toward(view);
         EXPECT_LT((radiance / refined.toward(view) - 1.0).abs().maxCoeff(), known);
-        if (light.environment > 0.0) { // where nothing absorbs, as bright as the environment
+        if (light.environment > 0.0) { // without absorption as bright as the environment
           EXPECT_NEAR(radiance[2], 1.0 - std::exp(-thickness / view.mu), 1e-9);
         }
       }
@@ -161,7 +162,7 @@ TEST_P(FiniteSlab, ShinesAsTheIntegralEquationSays) {
   for (const View& view : views) {
     SCOPED_TRACE(std::to_string(view.mu) + (view.fromBelow ? " from below" : " from above"));
     look(scene, downward(view.fromBelow ? -view.mu : view.mu));
-    // Hardly any light comes through eight free paths of a dark medium.
+    // Very little light crosses eight free paths of a dark medium.
     const double sharpness = view.fromBelow && thickness > 5.0 ? 0.3 : 0.01;
     expectMean(seen(scene, samples, seed++), emission.toward(view), sharpness, known);
   }

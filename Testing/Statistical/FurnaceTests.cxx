@@ -1,5 +1,5 @@
-// The furnace: albedo 1 in a constant environment of 1 shows 1 everywhere, whatever the medium, the
-// projection, the clip and the crop.
+// Furnace: albedo 1 in a constant environment of 1 shows 1 everywhere, for every medium,
+// projection, clip and crop.
 
 #include "Support.h"
 
@@ -24,14 +24,14 @@ Volume volumeOf(MediumKind kind) {
   });
 }
 
-/// Non-monotone: nothing at both ends of the range, dense in a thin band between.
+/// Non-monotone extinction: 0 at both ends of the range, dense in a thin band between.
 TransferFunction spikes() {
   return {ScalarFunction({knot(0.0, 0.0), knot(0.45, 0.0), knot(0.5, 4.0), knot(0.55, 0.0),
                           knot(0.9, 0.0), knot(0.9, 1.5), knot(1.0, 0.2)}),
           ColorFunction({{0.0, Rgb::Ones()}})};
 }
 
-/// A ball of radius 4 mm, off-centre.
+/// Ball of radius 4 mm, off-centre.
 Mask ball() {
   const Grid grid = centredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
   Mask mask{grid, {}, 0, {"ball"}};
@@ -45,7 +45,7 @@ Mask ball() {
   return mask;
 }
 
-/// Turned; cuts through the ball and two of the volume's corners.
+/// Rotated crop that cuts the ball and two of the volume's corners.
 CropBox turnedCrop() {
   return CropBox(translationBy({0.5, -2.0, 1.0}) *
                  rotationBy(0.5, Vec3(1.0, 1.0, -2.0).normalized()) *

@@ -9,12 +9,12 @@ namespace {
 // ---- the design
 // --------------------------------------------------------------------------------
 
-/// The level of a factor in combination `index`.
+/// Level of a factor in combination `index`.
 int level(int factor, int index, int levels) {
   std::vector<int> order(static_cast<std::size_t>(levels));
   std::iota(order.begin(), order.end(), 0);
   Generator generator(static_cast<std::uint64_t>(1000 * factor + index / levels));
-  for (std::size_t i = order.size() - 1; i > 0; --i) // as std::shuffle, alike with every library
+  for (std::size_t i = order.size() - 1; i > 0; --i) // std::shuffle, but the same everywhere
     std::swap(order[i], order[generator() % (i + 1)]);
   return order[static_cast<std::size_t>(index % levels)];
 }
@@ -28,7 +28,7 @@ Combination combination(int index) {
   Combination c;
   c.index = index;
   c.view = static_cast<ViewFactor>(next(4));
-  c.clip = static_cast<ClipFactor>(next(4)); // of the first four
+  c.clip = static_cast<ClipFactor>(next(4)); // one of the first four
   c.light = static_cast<LightFactor>(next(6));
   c.g = anisotropies[next(7)];
   c.albedo = static_cast<AlbedoFactor>(next(6));
@@ -40,12 +40,12 @@ Combination combination(int index) {
   c.background = static_cast<BackgroundFactor>(next(3));
   c.bounces = bounces[next(5)];
   const auto edge = static_cast<EdgeFactor>(next(4));
-  const auto style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // none in half of them
+  const auto style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // half of them: none
   constexpr double offsets[] = {0.0, 0.7, -0.7};
   const double offset = offsets[next(3)];
   const bool isOtherKind = next(2) == 0;
   if (index % 4 == 1 ||
-      index % 4 == 2) { // the others are plain: errors of all else show there best
+      index % 4 == 2) { // the others are plain, which shows errors of other factors best
     c.edge = edge;
     c.style = style;
     c.offset = offset;
@@ -54,8 +54,8 @@ Combination combination(int index) {
     if (isOtherKind && c.clip == ClipFactor::cutaway)
       c.clip = ClipFactor::hole;
   }
-  // Parallel light reaches the eye through the phase function's peak alone: at g = 0.99 hardly a
-  // path in ten thousand shows it, and no mean of them is anywhere near normal.
+  // Parallel light reaches the eye only through the phase function's peak: at g = 0.99 hardly one
+  // path in ten thousand shows the light, and means are far from normal.
   const bool hasParallel = c.light == LightFactor::directional || c.light == LightFactor::several;
   if (hasParallel && c.g > 0.9)
     c.g = 0.9;
@@ -94,7 +94,7 @@ Grid gridOf(const Combination& c, Generator& generator) {
   return {};
 }
 
-/// Smooth hills over the world, from 0 to 1.
+/// Smooth hills over the world, 0 to 1.
 struct Hills {
   Vec3 a, b, c;
 
@@ -157,7 +157,7 @@ Volume volumeOf(const Combination& c, Generator& generator) {
 // ---- the medium
 // --------------------------------------------------------------------------------
 
-/// Knots over [0, 1] of the scalar's range.
+/// Function with knots placed relative to the scalar's range, [0, 1].
 ScalarFunction overRange(const Range& range, std::initializer_list<std::array<double, 2>> knots) {
   std::vector<ScalarFunction::Knot> placed;
   for (const auto& [u, value] : knots)
@@ -212,7 +212,7 @@ TransferFunction transferOf(const Combination& c) {
   TransferFunction transfer{extinctionOf(c.transfer, range), albedoOf(c.albedo, range)};
   transfer.g = c.g;
   const auto overGradient = [&](std::initializer_list<std::array<double, 2>> knots) {
-    std::vector<ScalarFunction::Knot> placed; // positions in spans per mm
+    std::vector<ScalarFunction::Knot> placed; // positions in ranges per mm
     for (const auto& [slope, value] : knots)
       placed.push_back({slope * span, ScalarFunction::Value(value)});
     return ScalarFunction(placed);
@@ -280,7 +280,7 @@ CameraPose poseOf(const Combination& c, Generator& generator) {
       c.view == ViewFactor::perspective || c.view == ViewFactor::perspectiveInside;
   const bool wantsInside =
       c.view == ViewFactor::orthographicInside || c.view == ViewFactor::perspectiveInside;
-  // A clipping surface is made for an eye that sees the focus from outside.
+  // A clipping surface requires an eye outside the volume.
   const bool isInside = wantsInside && (c.clip == ClipFactor::none || c.clip == ClipFactor::plane);
   pose.projection = isPerspective ? Projection::perspective : Projection::orthographic;
   pose.target = 1.5 * randomDirection(generator);

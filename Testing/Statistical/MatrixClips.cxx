@@ -5,7 +5,7 @@
 namespace fenestra::testing {
 namespace {
 
-/// Two balls, of which one has a hole right through.
+/// Two balls, one of which has a hole right through.
 Mask focusOf() {
   const Grid grid = centredGrid({17, 17, 17}, Vec3::Constant(0.75));
   Mask mask{grid, {}, 0, {"balls"}};
@@ -22,8 +22,8 @@ Mask focusOf() {
   return mask;
 }
 
-/// The surface is taken as it is at samples; between them the oracle finds it where it may be told
-/// from the focus.
+/// Describes the product's exact surface: its depths at the samples are given; between samples the
+/// oracle finds the depth itself in the seams.
 void describeExact(const ClipDepth& surface, oracle::DepthClip& clip) {
   const DepthBuffer& buffer = *surface.buffer;
   for (std::int64_t i = 0; i < buffer.size(); ++i)

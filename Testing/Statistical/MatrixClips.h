@@ -1,6 +1,6 @@
 #pragma once
-// What the matrix's scenes remove, and how what is not focus looks: for the product and, described,
-// for the oracle.
+// Clips and context styles of the matrix's scenes: built for the product, and described for the
+// oracle.
 
 #include "Matrix.h"
 
@@ -19,7 +19,7 @@ inline Vec3 randomDirection(Generator& generator) {
   return uniformDirection({u, uniform(generator, 0.0, 1.0)});
 }
 
-/// Needs the scene's camera, volume and crop.
+/// Requires the scene's camera, volume and crop.
 void placeClip(const Combination& c, Generator& generator, MatrixScene& scene);
 
 void styleContext(StyleFactor factor, MatrixScene& scene);

@@ -21,7 +21,7 @@ Histogram histogramOf(const std::vector<double>& probabilities) {
   return histogram;
 }
 
-/// One histogram in a box of 320 x 180, with what is expected and two standard deviations about it.
+/// Draws one histogram, 320 x 180, with the expected height and two standard deviations about it.
 void drawHistogram(std::ostream& svg, int left, const std::vector<double>& probabilities,
                    const std::string& title) {
   constexpr double width = 320.0, height = 180.0, top = 40.0;

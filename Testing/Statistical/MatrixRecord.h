@@ -1,11 +1,12 @@
 #pragma once
-// What a run over the matrix leaves behind.
+// Report of a run over the matrix.
 
 #include "Comparison.h"
 
 namespace fenestra::testing {
 
-/// matrix.md (tables) and probabilities.svg (histograms), where a report is wanted (RunSettings.h).
+/// Writes matrix.md (tables) and probabilities.svg (histograms) if a report is requested
+/// (RunSettings.h).
 void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Verdict>& verdicts,
                   const MatrixSettings& settings);
 

@@ -1,4 +1,4 @@
-// The product against the oracle over the whole matrix.
+// Product against oracle over the whole matrix.
 
 #include "Comparison.h"
 #include "MatrixRecord.h"
@@ -16,7 +16,7 @@
 namespace fenestra::testing {
 namespace {
 
-/// Writes what a person needs to see what is wrong, and says where.
+/// Writes the pictures needed to see an error; returns a text that names their folder.
 std::string errorImages(const Outcome& c) {
   const std::filesystem::path folder =
       std::filesystem::path(FENESTRA_MATRIX_RESULTS) / std::to_string(c.combination.index);
@@ -28,8 +28,8 @@ std::string errorImages(const Outcome& c) {
   return "see product.exr, oracle.exr and z.png in " + folder.string();
 }
 
-/// The oracle's picture of a combination, rendered at the first call: its seed does not depend on
-/// the product's transport, so both are compared with the same one.
+/// Oracle's picture of a combination, rendered at the first call. Its seed does not depend on the
+/// product's transport: both transports are compared with the same picture.
 const Truth& truthOf(const Combination& c, const MatrixSettings& settings) {
   static std::map<int, Truth> truths;
   const auto found = truths.find(c.index);

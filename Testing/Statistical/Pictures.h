@@ -6,7 +6,7 @@
 
 namespace fenestra::testing {
 
-/// R, G, B, error.R, error.G, error.B and samples.N.
+/// Image with R, G, B, error.R, error.G, error.B and samples.N.
 inline Image imageOf(const oracle::Estimates& estimates) {
   Image image{estimates.width, estimates.height, {}, {}};
   constexpr const char* colours[] = {"R", "G", "B"};

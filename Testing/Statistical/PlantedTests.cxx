@@ -1,4 +1,4 @@
-// Every planted error (Faults/README.md) is found by the suite that MatrixTests runs.
+// Every planted error (Faults/README.md) must be found by the suite of MatrixTests.
 
 #include "Comparison.h"
 #include "Faults/Planted.h"
@@ -15,8 +15,8 @@ namespace {
 
 struct Fault {
   std::string name, why;
-  Transport transport; ///< that shows it
-  int foundIn = -1;    ///< the first combination that shows it
+  Transport transport; ///< transport in which it shows
+  int foundIn = -1;    ///< first combination in which it shows
   double probability = 1.0;
 };
 
@@ -30,7 +30,7 @@ std::vector<Fault> readFaults() {
   return faults;
 }
 
-/// Turns one error on for as long as it lives.
+/// Switches one error on for the object's lifetime.
 struct Planting {
   explicit Planting(std::string_view name) { plantedFault = faultKey(name); }
   ~Planting() { plantedFault = 0; }
@@ -50,7 +50,7 @@ void record(const std::vector<Fault>& faults) {
 }
 
 TEST(PlantedErrors, AreAllFound) {
-  constexpr int count = 240; // of the suite: what one combination has to show follows from it
+  constexpr int count = 240; // combinations in the suite; sets the bound for a single one
   MatrixSettings settings;
   std::vector<Fault> faults = readFaults();
   ASSERT_GE(faults.size(), 12U);

@@ -1,8 +1,8 @@
-// Reciprocity: light that travels along b and leaves a volume against a, all of it together, is as
-// much as light that travels along a and leaves against b, because extinction does not know
-// directions and the phase function only the angle between them. Hybrid surfaces are excluded: as a
-// share of what collides, what they scatter is their reflectance times the cosine toward the light
-// but not that toward the viewer (design, section 1), so exchanging the two changes it.
+// Reciprocity: the light that travels along b and leaves a volume against a, in total, equals the
+// light that travels along a and leaves against b, because extinction does not depend on direction
+// and the phase function only on the angle between directions. Hybrid surfaces are excluded: they
+// scatter a share of collisions, their reflectance times the cosine toward the light but not toward
+// the viewer (design, section 1), so exchanging the two changes the result.
 
 #include "Clumps.h"
 
@@ -13,8 +13,8 @@ namespace {
 
 enum class Cut { none, plane };
 
-/// A plate that is clear at one end and dense and bright at the other: the ways through its faces
-/// and its ends differ as much as can be, and so would what errors make of them.
+/// Plate that is clear at one end, dense and bright at the other: paths through its faces and its
+/// ends differ as much as possible, and so do the effects of errors.
 Volume plate() {
   Random random(92, 0, 0);
   return makeVolume(centredGrid({9, 6, 3}, Vec3::Constant(0.6)),
@@ -23,7 +23,7 @@ Volume plate() {
 
 class Reciprocity : public ::testing::TestWithParam<std::tuple<double, Cut>> {};
 
-/// Keeps more than half of the volume; the camera means nothing to it in parallel projection.
+/// Clip that keeps more than half of the volume; the camera is irrelevant in parallel projection.
 Clip cutOf(Cut cut, const CameraPose& pose) {
   if (cut == Cut::none)
     return ClipNone{};

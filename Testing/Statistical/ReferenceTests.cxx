@@ -1,5 +1,5 @@
-// The scenes of ../shared/reference against pictures that independent renderers converged, through
-// the product's own command line.
+// Scenes of ../shared/reference against converged pictures of independent renderers, through the
+// product's own command line.
 
 #include "Oracle/Oracle.h"
 #include "Pictures.h"
@@ -26,10 +26,10 @@ namespace {
 struct ReferenceCase {
   const char* name;
   std::uint64_t samples;
-  double noise = 0.0; ///< the target, where there is one
+  double noise = 0.0; ///< noise target; 0: none
 };
 
-/// What `fenestra` makes of NAME.arguments, one argument a line, in that folder.
+/// Options of `fenestra` from NAME.arguments, one argument a line, in the reference folder.
 RenderOptions readArguments(const ReferenceCase& c) {
   std::filesystem::current_path(FENESTRA_REFERENCE);
   std::vector<std::string> words = {"fenestra"};
@@ -73,7 +73,7 @@ bool present() {
   return std::filesystem::exists(std::string(FENESTRA_REFERENCE) + "/S1.arguments");
 }
 
-/// A line of the report's table.
+/// Appends a line to the report's table.
 void record(const std::string& who, const ZStatistics& z) {
   if (const std::optional<std::filesystem::path> folder = reportFolder())
     std::ofstream(*folder / "references.md", std::ios::app)
@@ -81,8 +81,8 @@ void record(const std::string& who, const ZStatistics& z) {
         << z.deviation << " | " << z.imageMean << " |\n";
 }
 
-/// How z of tiles may be distributed: bounds of four standard errors of each, S2 filling three
-/// quarters of its picture.
+/// Bounds on the distribution of z over tiles: four standard errors of each figure, for S2, which
+/// fills three quarters of its picture.
 struct Bounds {
   int tile; ///< pixels to a side
   double mean, deviation;
@@ -111,8 +111,8 @@ class Reference : public ::testing::TestWithParam<ReferenceCase> {};
 TEST_P(Reference, AgreesWithinStatistics) {
   if (!present())
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
-  // Near the thin shells of S2 a pixel's samples are so skewed that its z has mean 0 only from
-  // thousands of samples on; a tile's has it from hundreds.
+  // Near the thin shells of S2 a pixel's samples are so skewed that its z needs thousands of
+  // samples for mean 0; a tile's z needs hundreds.
   const Bounds bounds = brevity() > 1 ? Bounds{16, 0.3, 0.2}
                         : isLongRun() ? Bounds{1, 0.02, 0.03}
                                       : Bounds{4, 0.07, 0.05};
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OracleReference,
                                            ReferenceCase{"S2", isLongRun() ? 128U : 4U}),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// Albedo 1 in an environment of 1, and no weight but 1: every path says 1.
+/// Albedo 1 in an environment of 1 without weights: every path returns 1.
 TEST(OracleReferenceFurnace, S3hetIsOneEverywhere) {
   if (!present())
     GTEST_SKIP() << "no reference scenes at " << FENESTRA_REFERENCE;

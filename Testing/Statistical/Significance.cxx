@@ -17,7 +17,7 @@ double square(double x) {
 std::optional<double> welchProbability(const Estimated& a, const Estimated& b) {
   const double difference = a.mean - b.mean;
   const double variance = a.variance + b.variance;
-  // What numbers that are equal can round to: the product's lanes compute in float.
+  // Rounding error of equal numbers: the product's lanes compute in float.
   const double rounding = 1e-6 * std::max(std::abs(a.mean), std::abs(b.mean));
   if (std::abs(difference) <= rounding && variance <= square(rounding))
     return std::nullopt;

@@ -1,5 +1,5 @@
 #pragma once
-// How probable a difference is where there is none.
+// Probabilities of differences under the hypothesis that there is none.
 
 #include <cstddef>
 #include <optional>
@@ -7,40 +7,40 @@
 
 namespace fenestra::testing {
 
-/// A mean, and how sure it is.
+/// Mean of samples, with its uncertainty.
 struct Estimated {
   double mean = 0.0;
   double variance = 0.0; ///< of the mean
-  double samples = 0.0;  ///< that it is the mean of
-  double skewness = 0.0; ///< of one sample, where it is known
+  double samples = 0.0;  ///< number of samples
+  double skewness = 0.0; ///< of one sample; 0 if unknown
 };
 
-/// How probable a difference as large as that between two estimates of one value is, by Welch's t
-/// (1947) with Satterthwaite's degrees of freedom. A mean of few bright paths is skewed as a count
-/// of them is, so there are no more degrees of freedom than there would be paths, were they equally
-/// bright, and than n / skewness^2: the tails are then the heavier ones. None where both are exact
-/// and agree; 0 where both are exact and differ, or something is not a number.
+/// Two-sided probability of the difference between two estimates of one value, by Welch's t (1947)
+/// with Satterthwaite's degrees of freedom. A mean of few bright paths is skewed like their count,
+/// so the degrees of freedom are limited by the number of equally bright paths and by n /
+/// skewness^2: lower limits give heavier tails. Empty if both estimates are exact and agree; 0 if
+/// both are exact and differ, or a value is not finite.
 std::optional<double> welchProbability(const Estimated& a, const Estimated& b);
 
-/// Whether no few paths decide on a mean: n / skewness^2 of at least 100. Where they do, they
-/// decide on its error as well, and t is too often near 1: over sixteen seed bases of the matrix,
-/// all tiles' probabilities were uniform to 0.011 (Kolmogorov and Smirnov's distance, probability
-/// 3e-6), those of even ones to 0.006 (0.27); by the readable transport 0.009 (1e-4) and 0.007
-/// (0.14).
+/// True if a mean is not decided by few paths: n / skewness^2 >= 100. Few paths also decide on the
+/// error of their mean, and t is then too often near 1. Measured over sixteen seed bases of the
+/// matrix: the probabilities of all tiles were uniform to 0.011 (Kolmogorov and Smirnov's distance,
+/// probability 3e-6), of even tiles to 0.006 (0.27); by the readable transport to 0.009 (1e-4) and
+/// 0.007 (0.14).
 bool isEven(const Estimated& e);
 
-/// Of the least of `count` independent probabilities being this small (Šidák 1967).
+/// Probability that the least of `count` independent probabilities is <= `least` (Šidák 1967).
 double sidak(double least, double count);
 
-/// A suite of `count` independent probabilities, each held to this, fails once in a thousand runs
-/// by chance.
+/// Bound on each of `count` independent probabilities such that the suite fails by chance once in a
+/// thousand runs.
 double leastProbability(std::size_t count);
 
-/// Of probabilities that should be uniform in [0, 1] straying this far from it: Kolmogorov and
-/// Smirnov's largest distance, in Stephens' approximation (1970). 1 for none.
+/// Probability that uniform values in [0, 1] deviate at least as far: Kolmogorov and Smirnov's
+/// largest distance, in Stephens' approximation (1970). 1 for an empty list.
 double uniformityProbability(std::vector<double> probabilities);
 
-/// Two-sided, of a normal deviate.
+/// Two-sided tail probability of a normal deviate.
 double normalTail(double z);
 
 } // namespace fenestra::testing

@@ -1,6 +1,6 @@
-// One scattering in a homogeneous slab under parallel light, in closed form. With thickness T in
-// free paths, light of irradiance F on a plane that faces it at mu0 to the slab's normal, and phase
-// function p,
+// Single scattering in a homogeneous slab under parallel light, in closed form. With thickness T in
+// free paths, light of irradiance F on a plane that faces the light, at mu0 to the slab's normal,
+// and phase function p,
 //   reflected:   I(mu) = w p F mu0 / (mu + mu0) (1 - exp(-T / mu - T / mu0))
 //   transmitted: I(mu) = w p F mu0 / (mu - mu0) (exp(-T / mu) - exp(-T / mu0))
 // (Chandrasekhar, Radiative Transfer, 1960, ch. IX: the first of successive scatterings).
@@ -10,7 +10,7 @@
 namespace fenestra::testing::SingleScatterTests {
 namespace {
 
-/// Henyey and Greenstein 1941, per steradian, by the cosine between the light's ways before and
+/// Henyey and Greenstein 1941, per steradian; `cosine`: between the directions of travel before and
 /// after.
 double henyeyGreenstein(double g, double cosine) {
   return (1.0 - g * g) / (4.0 * pi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));

@@ -1,12 +1,12 @@
 #pragma once
-// A homogeneous slab with its faces across z, for tests that know what it shows. Angles are given
-// by their cosine to the z axis.
+// Homogeneous slab with faces across z, for tests with known radiance. Angles are given by their
+// cosine to the z axis.
 
 #include "Anchors.h"
 
 namespace fenestra::testing {
 
-/// A slab of side x side x thickness mm, the same medium everywhere, seen from above, z down.
+/// Slab of side x side x thickness mm of one medium, seen from above, z down.
 inline TestScene slab(double side, double thickness, const Rgb& albedo, double sigma_t = 1.0) {
   const Grid grid = centredGrid({2, 2, 2}, {side / 2.0, side / 2.0, thickness / 2.0});
   TestScene scene{makeVolume(grid, [](const Vec3&) { return 1.0; }),
@@ -22,15 +22,15 @@ inline TestScene slab(double side, double thickness, const Rgb& albedo, double s
   return scene;
 }
 
-/// As wide as infinite for all that a double can tell: what leaks through the sides of a slab a few
-/// free paths thick decays by exp(-r / (a free path's length or two)) over 10000 of them.
+/// Slab that is infinitely wide in double precision: the loss through the sides of a slab a few
+/// free paths thick decays by exp(-r / (one or two free paths)) over 10000 free paths.
 inline TestScene endlessSlab(double thickness, const Rgb& albedo) {
   TestScene scene = slab(20000.0, thickness, albedo);
   scene.pose.scale = 1.0;
   return scene;
 }
 
-/// A unit direction downward (upward for mu < 0).
+/// Unit direction downward; upward for mu < 0.
 inline Vec3 downward(double mu, double azimuth = 0.0) {
   const double sine = std::sqrt(1.0 - mu * mu);
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), -mu};
@@ -42,7 +42,7 @@ inline void look(TestScene& scene, const Vec3& direction) {
   scene.pose.position = -1000.0 * direction; // above the face, however oblique
 }
 
-/// What the scene's camera sees; nothing but black shines through.
+/// Mean radiance in the scene's camera, against a black background.
 inline RgbEstimate seen(const TestScene& scene, std::uint64_t samples, std::uint64_t seed,
                         std::uint64_t bounces = PathSettings().bounces) {
   RenderSettings settings;

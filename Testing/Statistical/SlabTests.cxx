@@ -1,4 +1,4 @@
-// A homogeneous slab against closed forms: transmittance, and what a half-space reflects.
+// Homogeneous slab against closed forms: transmittance, and the reflectance of a half-space.
 
 #include "Slab.h"
 
@@ -17,7 +17,7 @@ TEST_P(SlabTransmittance, IsExponential) {
   settings.path.background.kind = Background::Kind::environment;
   const Estimate estimate = imageEstimate(scene.render(settings).film);
   const double expected = std::exp(-depth);
-  // Exactly 0 or 1 a sample: the binomial error is known even where no sample passed.
+  // Every sample is exactly 0 or 1: the binomial error is known even if no sample passed.
   const double error = std::sqrt(expected * (1.0 - expected) / (64.0 * 2000.0));
   EXPECT_NEAR(estimate.mean, expected, 4.0 * error);
 }
@@ -31,7 +31,7 @@ TEST(RatioTracking, ShadowThroughASlabIsExponential) {
   const CellRanges ranges(scene.volume, 0);
   const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, ClipNone{});
   const auto& voxels = std::get<std::vector<float>>(scene.volume.voxels);
-  // Twice the extinction as majorant, so that ratios are not all 0: a scaled grid.
+  // Majorant twice the extinction, so that not all ratios are 0: a scaled grid.
   const TransferFunction doubled = scene.transfer.scaled(2.0);
   const MajorantGrid loose(scene.volume.grid, ranges, doubled, ClipNone{});
   const Medium<float> medium(scene.volume.grid, voxels, scene.transfer);
@@ -54,7 +54,7 @@ TEST(RatioTracking, ShadowThroughASlabIsExponential) {
   }
 }
 
-/// Chandrasekhar's H for isotropic scattering, by iterating his integral equation
+/// Chandrasekhar's H for isotropic scattering, by iteration of his integral equation
 /// 1/H(mu) = sqrt(1 - w) + w/2 ∫ mu' H(mu') / (mu + mu') dmu' (Radiative Transfer, 1960, ch. V).
 class ChandrasekharH {
 public:
@@ -96,7 +96,7 @@ TEST_P(HalfSpace, ReflectsAsChandrasekharSays) {
   RenderSettings settings;
   settings.samples = albedo > 0.95 ? 400 : 1000;
   const Estimate estimate = imageEstimate(scene.render(settings).film);
-  EXPECT_NEAR(estimate.mean, reflectance, 4.0 * estimate.error + 5e-5); // four digits are given
+  EXPECT_NEAR(estimate.mean, reflectance, 4.0 * estimate.error + 5e-5); // four digits given
   EXPECT_LT(estimate.error, 0.004);
 }
 
@@ -104,19 +104,19 @@ INSTANTIATE_TEST_SUITE_P(Albedos, HalfSpace,
                          ::testing::Values(HalfSpaceCase{0.5, 0.1152}, HalfSpaceCase{0.9, 0.4149},
                                            HalfSpaceCase{0.99, 0.7527}));
 
-/// Nearly a half-space: what comes back from below 60 free paths is less than exp(-2 · 0.17 · 60)
-/// of it, 0.17 a free path being the slowest decay at albedo 0.99.
+/// Thickness of nearly a half-space: light returned from below 60 free paths is less than exp(-2 ·
+/// 0.17 · 60) of all, with 0.17 per free path the slowest decay at albedo 0.99.
 constexpr double deep = 60.0;
 const Rgb halfSpaceAlbedo(0.5, 0.9, 0.99);
-constexpr double knownH = 2e-4; ///< relative, of H: its reflectances above have four digits
+constexpr double knownH = 2e-4; ///< relative error of H: its reflectances above have four digits
 
 std::array<ChandrasekharH, 3> halfSpaceH() {
   return {ChandrasekharH(halfSpaceAlbedo[0]), ChandrasekharH(halfSpaceAlbedo[1]),
           ChandrasekharH(halfSpaceAlbedo[2])};
 }
 
-/// Under a constant environment of 1, seen at an angle: 1 - sqrt(1 - w) H(mu), by reciprocity with
-/// the albedo of a half-space for parallel light.
+/// Reflectance under a constant environment of 1 at an angle: 1 - sqrt(1 - w) H(mu), by reciprocity
+/// with the albedo of a half-space for parallel light.
 TEST(HalfSpace, ReflectsAnEnvironmentAtAnyAngle) {
   const std::array<ChandrasekharH, 3> h = halfSpaceH();
   std::uint64_t seed = 20;
@@ -131,8 +131,8 @@ TEST(HalfSpace, ReflectsAnEnvironmentAtAnyAngle) {
   }
 }
 
-/// The law of diffuse reflection (Chandrasekhar, ch. III and V): under parallel light
-/// of irradiance F on a plane that faces it, I(mu) = w F / (4 pi) mu0 / (mu + mu0) H(mu) H(mu0).
+/// Law of diffuse reflection (Chandrasekhar, ch. III and V): under parallel light of irradiance F
+/// on a plane that faces the light, I(mu) = w F / (4 pi) mu0 / (mu + mu0) H(mu) H(mu0).
 TEST(HalfSpace, ReflectsParallelLightByTheLawOfDiffuseReflection) {
   const std::array<ChandrasekharH, 3> h = halfSpaceH();
   std::uint64_t seed = 30;

@@ -3,7 +3,7 @@
 namespace fenestra::testing {
 namespace {
 
-/// Where the slope of c1 + 2 c2 u + 3 c3 u^2 changes its sign in (0, 1), with 0 and 1, in order.
+/// Roots of c1 + 2 c2 u + 3 c3 u^2 in (0, 1), with 0 and 1, in order.
 std::vector<double> monotonePieces(double c1, double c2, double c3) {
   std::vector<double> ends = {0.0, 1.0};
   const auto add = [&ends](double u) {
@@ -13,7 +13,7 @@ std::vector<double> monotonePieces(double c1, double c2, double c3) {
   const double discriminant = c2 * c2 - 3.0 * c1 * c3;
   if (discriminant > 0.0) {
     const double q = -(c2 + std::copysign(std::sqrt(discriminant), c2));
-    add(q / (3.0 * c3)); // of a quadratic or a line: infinite where there is none
+    add(q / (3.0 * c3)); // of a quadratic or a line: infinite if there is no root
     add(c1 / q);
   }
   std::sort(ends.begin(), ends.end());
@@ -74,8 +74,8 @@ double StraightIntegral::scalar(const Vec3& point) const {
   return scalarInCell(index, index);
 }
 
-/// Trilinear in the cell that holds `inCell`: of a stretch within a cell, both ends are the same
-/// one's. Beyond the outermost centres it is that of the edge.
+/// Trilinear scalar at `index` in the cell that contains `inCell`: both ends of a segment use one
+/// cell. Constant beyond the outermost voxel centres.
 double StraightIntegral::scalarInCell(const Vec3& index, const Vec3& inCell) const {
   double value = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -106,7 +106,7 @@ StraightIntegral::Cubic StraightIntegral::cubicBetween(const Vec3& from, const V
   return {value[0], d1 - d2 / 3.0 + 2.0 * d3 / 9.0, d2 - d3, d3};
 }
 
-/// Where the scalar passes a knot, by bisection.
+/// Positions at which the scalar crosses a knot, by bisection.
 void StraightIntegral::addCrossings(const Cubic& cubic, std::vector<double>& breaks) const {
   const std::vector<double> ends = monotonePieces(cubic.c1, cubic.c2, cubic.c3);
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
@@ -124,8 +124,7 @@ void StraightIntegral::addCrossings(const Cubic& cubic, std::vector<double>& bre
     }
 }
 
-/// Between the places where it passes a knot, extinction is a cubic of u: two points of Gauss are
-/// exact.
+/// Between crossings of knots, extinction is a cubic of u: Gauss' rule with two points is exact.
 double StraightIntegral::meanExtinction(const Cubic& cubic) const {
   std::vector<double> breaks = {0.0, 1.0};
   addCrossings(cubic, breaks);

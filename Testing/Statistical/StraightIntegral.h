@@ -1,6 +1,6 @@
 #pragma once
-// The medium, and the optical depth of a ray, exact to rounding and independent of tracking: from
-// the voxels and the knots of the medium's table alone.
+// Medium and optical depth along a ray, exact to rounding and independent of tracking: from the
+// voxels and the knots of the medium's table alone.
 
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Volume.h"
@@ -11,22 +11,22 @@ namespace fenestra::testing {
 
 class StraightIntegral {
 public:
-  /// No clip, no gradient opacity.
+  /// Requires a scene without clip and gradient opacity.
   StraightIntegral(const Volume& volume, const TransferFunction& transfer);
 
-  /// Where a ray (world, unit direction) is inside the box that the voxels fill, from t = 0 on.
+  /// Interval of a ray (world, unit direction), t >= 0, inside the volume's box.
   Interval inside(const Ray& ray) const;
-  /// At a point (world) inside the box, and at a scalar.
+  /// Scalar at a point (world) inside the box; extinction at a scalar, mm^-1.
   double scalar(const Vec3& point) const;
   double extinction(double scalar) const;
-  /// Of the part of the ray that is inside and within `range`, mm.
+  /// Optical depth of the ray's part that is inside the box and within `range`, mm.
   double opticalDepth(const Ray& ray, const Interval& range = {}) const;
 
 private:
   struct Knot {
     double position, extinction;
   };
-  /// The scalar along a ray within one cell between voxel centres: a cubic in u, from 0 to 1.
+  /// Scalar along a ray within one cell between voxel centres: a cubic in u, 0 to 1.
   struct Cubic {
     double c0, c1, c2, c3;
     double operator()(double u) const { return c0 + u * (c1 + u * (c2 + u * c3)); }

@@ -1,4 +1,4 @@
-// Transmittance and free paths through heterogeneous media against exact optical depths.
+// Transmittance and free paths in heterogeneous media against exact optical depths.
 
 #include "Anchors.h"
 #include "Significance.h"
@@ -23,7 +23,7 @@ TransferFunction table(const std::vector<std::pair<double, double>>& knots) {
   return {ScalarFunction(list), ColorFunction({{0.0, Rgb::Ones()}})};
 }
 
-/// Voxels drawn uniformly from [0, 1].
+/// Voxels drawn uniformly from [0, greatest].
 template <typename Voxel = float>
 Volume noise(const Size3& size, const Vec3& spacing, double greatest = 1.0) {
   Random random(77, static_cast<std::uint64_t>(size.prod()), 0);
@@ -31,21 +31,21 @@ Volume noise(const Size3& size, const Vec3& spacing, double greatest = 1.0) {
                            [&](const Vec3&) { return greatest * random.uniform(); });
 }
 
-/// The scalar is x's index, 0 to 5; extinction is proportional to it.
+/// Scalar equal to the index along x, 0 to 5; extinction proportional to the scalar.
 constexpr double rampSlope = 0.12;
 Volume ramp() {
   return makeVolume(centredGrid({6, 4, 5}, {1.3, 0.7, 0.9}), [](const Vec3& p) { return p.x(); });
 }
 
-/// A turned grid of unequal spacing.
+/// Rotated grid of unequal spacing.
 Volume turned(Volume volume) {
   const Affine turn(rotationBy(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
   volume.grid = Grid(volume.grid.size, turn * volume.grid.indexToWorld);
   return volume;
 }
 
-/// A linear ramp; one trilinear cell; a spike inside the range, with nothing on both sides; steps,
-/// in 8 bit; all kinds of knots, dense, so that little light passes.
+/// Subjects: a linear ramp; one trilinear cell; a spike inside the range, with 0 on both sides;
+/// steps, in 8 bit; all kinds of knots, dense, so that little light passes.
 std::vector<Subject> subjects() {
   return {{"ramp", ramp(), table({{0.0, 0.0}, {5.0, 5.0 * rampSlope}})},
           {"cell", turned(noise({2, 2, 2}, {2.0, 1.5, 2.5})), table({{0.0, 0.0}, {1.0, 1.5}})},
@@ -61,7 +61,7 @@ Subject subject(int index) {
   return std::move(subjects()[static_cast<std::size_t>(index)]);
 }
 
-/// Toward a point inside, from outside or from another point inside.
+/// Ray toward a point inside, from outside or from another point inside.
 Ray randomRay(const Volume& volume, Random& random) {
   const auto inside = [&] {
     const Box box = volume.grid.indexBox();
@@ -80,7 +80,7 @@ Ray randomRay(const Volume& volume, Random& random) {
 TEST(StraightIntegral, IsThatOfALinearRampInClosedForm) {
   const Subject ramp = subject(0);
   const StraightIntegral integral(ramp.volume, ramp.transfer);
-  // Of clamp(x, 0, 5), which is what the outer half voxels make of x.
+  // Antiderivative of clamp(x, 0, 5): the outer half voxels clamp x.
   const auto antiderivative = [](double x) {
     return x < 0.0 ? 0.0 : x < 5.0 ? 0.5 * x * x : 12.5 + 5.0 * (x - 5.0);
   };
@@ -96,7 +96,7 @@ TEST(StraightIntegral, IsThatOfALinearRampInClosedForm) {
   }
 }
 
-/// By the midpoint rule on Medium's own extinction.
+/// Reference: midpoint rule on Medium's own extinction.
 TEST(StraightIntegral, IsTheLimitOfSmallSteps) {
   for (int index = 0; index < 5; ++index) {
     const Subject s = subject(index);
@@ -125,7 +125,7 @@ TEST(StraightIntegral, IsTheLimitOfSmallSteps) {
 // ---- the tracker
 // ---------------------------------------------------------------------------------
 
-/// Sum of differences from what is expected, and of their variance, by how much is expected.
+/// Sums of differences from expectations and of their squares, binned by expectation.
 class Differences {
 public:
   void add(double estimate, double expected) {
@@ -137,7 +137,7 @@ public:
     bin.squares += difference * difference;
   }
 
-  /// Within 4 standard errors wherever the expectation is known to 2 percent.
+  /// Expects sums within 4 standard errors in every bin whose expectation is known to 2 percent.
   void expectNone(const std::string& what) const {
     int sharp = 0;
     for (const Bin& bin : m_bins) {
@@ -158,14 +158,14 @@ private:
   Bin m_bins[3];
 };
 
-/// A ray to be followed, with random numbers of its own.
+/// Ray to follow, with its own random numbers.
 struct Travel {
   Ray ray;
   Interval range;
   Random random;
 };
 
-/// Follows rays one by one, or in lanes: results in the rays' order.
+/// Follows rays one by one, or in lanes; results are in the rays' order.
 class Follower {
 public:
   virtual ~Follower() = default;
@@ -248,7 +248,7 @@ private:
   WideTracker m_tracker;
 };
 
-/// "scalar", or the lanes of an instruction set; none where the machine does not have it.
+/// Follower "scalar", or the lanes of an instruction set; null if the machine lacks that set.
 std::unique_ptr<Follower> followerOf(const Subject& subject, const MajorantGrid& majorants,
                                      const Clip& clip, const std::string& name) {
   if (name == "scalar")
@@ -267,7 +267,7 @@ std::unique_ptr<Follower> followerOf(const Subject& subject, const MajorantGrid&
   return std::make_unique<WideFollower>(subject, majorants, clip);
 }
 
-/// A subject, and what follows its rays.
+/// Subject, and the follower of its rays.
 class Tracking : public ::testing::TestWithParam<std::tuple<int, std::string>> {
 protected:
   void SetUp() override {
@@ -293,7 +293,7 @@ TEST_P(Tracking, PassesWhatTheExactTransmittanceSays) {
   for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
     Random random(seeded(6), i, 0);
     const Ray ray = randomRay(m_subject.volume, random);
-    // As far as a near light, or everything.
+    // Range up to a near light, or infinite.
     const Interval inside = m_integral.inside(ray);
     const double end =
         i % 2 == 0 ? infinity : inside.begin + random.uniform() * (inside.end - inside.begin);
@@ -311,8 +311,8 @@ TEST_P(Tracking, PassesWhatTheExactTransmittanceSays) {
   survived.expectNone("survival");
 }
 
-/// The optical depth to the collision, as a share of the rays that collide before: uniform. Where a
-/// ray passes, any share above that of all its collisions, drawn here.
+/// Optical depth at the collision, as a share of the rays that collide before it: uniform. Rays
+/// that pass get a random share above that of all their collisions.
 TEST_P(Tracking, DrawsCollisionsByTheExactDistribution) {
   std::vector<Travel> travels;
   for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
@@ -330,7 +330,7 @@ TEST_P(Tracking, DrawsCollisionsByTheExactDistribution) {
   EXPECT_GT(uniformityProbability(shares), 1e-4);
 }
 
-/// A ray's result is its own, whatever else is in the batch.
+/// A ray's result does not depend on the other rays of the batch.
 TEST_P(Tracking, FollowsARayTheSameWayInAnyCompany) {
   std::vector<Travel> travels;
   for (std::uint64_t i = 0; i < 1000; ++i) {
@@ -346,7 +346,7 @@ TEST_P(Tracking, FollowsARayTheSameWayInAnyCompany) {
   }
 }
 
-/// What is in front of an exact surface, by what follows its rays.
+/// Matter in front of an exact surface, by each follower of rays.
 class SeamTracking : public ::testing::TestWithParam<std::string> {
 protected:
   void TearDown() override {
@@ -354,8 +354,8 @@ protected:
   }
 };
 
-/// Short ways along the eye's where the surface is not what it is between samples: past the end of
-/// a ball, in fog that little passes.
+/// Short segments of eye rays where the surface between samples differs from the samples: past the
+/// edge of a ball, in fog that little light passes.
 TEST_P(SeamTracking, AsksTheFocusWhereSamplesSayTooLittle) {
   const Grid grid = centredGrid({40, 40, 40}, Vec3::Ones());
   const Subject fog{"fog", makeVolume(grid, [](const Vec3&) { return 1.0; }),
@@ -400,7 +400,8 @@ TEST_P(SeamTracking, AsksTheFocusWhereSamplesSayTooLittle) {
       apart += passed[i] - expected[i];
       squares += std::pow(passed[i] - expected[i], 2);
     }
-    // Where floats see the outline elsewhere, one in some thousand is on its other side.
+    // Lanes in float see the outline slightly displaced: some of a thousand rays lie on its other
+    // side.
     EXPECT_NEAR(apart, 0.0, 4.0 * std::sqrt(squares) + 2e-3 * static_cast<double>(passed.size()));
   }
 }

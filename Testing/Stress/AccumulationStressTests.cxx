@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint64_t million = 1'000'000;
 
-/// 2x2 pixels of a small scattering volume, bright on one side.
+/// 2x2 pixels of a small scattering volume, brighter on one side.
 TestScene smallScene() {
   TestScene scene{makeVolume(centredGrid({3, 3, 3}, Vec3::Ones()),
                              [](const Vec3& p) { return 0.4 + 0.1 * p.x(); }),
@@ -25,7 +25,7 @@ TestScene smallScene() {
   return scene;
 }
 
-/// Samples first ... first + count - 1 of a pixel, as a render draws them.
+/// Samples first ... first + count - 1 of a pixel, drawn as in a render.
 std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, std::uint64_t first,
                                   std::uint64_t count) {
   std::vector<PathSample> samples;
@@ -43,7 +43,7 @@ std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, s
 }
 
 struct Moments {
-  long double mean = 0.0L, deviation = 0.0L; ///< of the red channel, in two passes
+  long double mean = 0.0L, deviation = 0.0L; ///< red channel, computed in two passes
 };
 
 Moments twoPasses(const std::vector<PathSample>& samples) {
@@ -69,7 +69,7 @@ TEST(AMillionSamples, AddUpAsInTwoPasses) {
   EXPECT_NEAR(sums.mean[0] / static_cast<double>(exact.mean), 1.0, 1e-12);
   EXPECT_NEAR(sums.deviation[0] / static_cast<double>(exact.deviation), 1.0, 1e-12);
 
-  // A large offset must not cost the variance's digits: relative to the offset's roundoff.
+  // A large offset must not cost the variance's digits, beyond the offset's own roundoff.
   PixelSums shifted;
   std::vector<PathSample> far = samples;
   for (PathSample& sample : far) {
@@ -111,7 +111,7 @@ TEST(AMillionSamples, DoNotDriftAndAreWhatARenderAdds) {
 TEST(SampleCounters, DoNotWrapBeyond32Bits) {
   constexpr std::uint64_t before = (std::uint64_t{1} << 32) - 1;
   PixelSums sums;
-  sums.samples = before; // as after so many samples of radiance 1
+  sums.samples = before; // state after this number of samples of radiance 1
   sums.collided = before;
   sums.mean = Rgb::Ones();
   sums.alpha = static_cast<double>(before);
@@ -124,7 +124,7 @@ TEST(SampleCounters, DoNotWrapBeyond32Bits) {
   EXPECT_EQ(sums.collided, before + 2);
   EXPECT_EQ(sums.alpha, static_cast<double>(before) + 2.0);
   const double n = static_cast<double>(before) + 2.0;
-  EXPECT_NEAR((sums.mean[0] - 1.0) * n, 2.0, 1e-5); // roundoff of a mean of 1, times n
+  EXPECT_NEAR((sums.mean[0] - 1.0) * n, 2.0, 1e-5); // roundoff of a mean near 1, times n
   EXPECT_NEAR(sums.deviation[0], 2.0 * (n - 2.0) / n, 1e-9);
   EXPECT_NEAR(sums.standardError()[0] * n, std::sqrt(2.0), 1e-8);
 }

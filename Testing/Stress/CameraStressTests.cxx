@@ -1,4 +1,4 @@
-// Cameras inside the volume, on faces and corners of voxels, of extreme angles and picture sizes,
+// Cameras inside the volume, on faces and corners of voxels, with extreme angles and picture sizes,
 // against the chord of each ray; and the sharpest phase functions.
 
 #include "StressSupport.h"
@@ -18,8 +18,8 @@ TestScene absorber(const CameraPose& pose, int width, int height) {
           height};
 }
 
-/// The eye ray through a raster position by the conventions: rows from the top, `scale` half the
-/// picture's height, `angle` all of it.
+/// Eye ray through a raster position: rows from the top, `scale` half the picture's height, `angle`
+/// the full height.
 Ray eyeRay(const CameraPose& pose, int width, int height, double column, double row) {
   const Vec3 forward = (pose.target - pose.position).normalized();
   const Vec3 right = forward.cross(pose.up).normalized();
@@ -33,10 +33,10 @@ Ray eyeRay(const CameraPose& pose, int width, int height, double column, double 
   return {pose.position, (forward + slope * offset).normalized()};
 }
 
-/// Each pixel against the mean of exp(-sigma chord) over it: the sum of z^2 to 4 of its standard
-/// errors, and the sum of the differences. Samples are 0 or 1, so the variance is known. The mean
-/// is that of a raster of rays, finer where more samples would see its error at the box's
-/// silhouette.
+/// Expects each pixel to match the mean of exp(-sigma chord) over its area: the sum of z^2 to 4 of
+/// its standard errors, and the sum of the differences. Samples are 0 or 1, so the variance is
+/// known. The expected mean is taken over a raster of rays, finer in the long version, whose
+/// samples resolve the raster's error at the box's silhouette.
 void expectChords(const TestScene& scene, int samples) {
   const int fine = isLongRun() ? 128 : 16;
   const RenderResult result = renderIn(scene, samples);
@@ -80,7 +80,7 @@ CameraPose pose(Projection projection, const Vec3& position, const Vec3& forward
 }
 
 TEST(InsideCameras, SeeTheChordBeforeThem) {
-  // Voxel centres at halves in x and z, at integers in y.
+  // Voxel centres lie at half-integers in x and z, at integers in y.
   const Vec3 positions[] = {{0.5, 0.0, 0.5},  {0.0, 0.0, 0.0}, {0.0, 0.5, 1.0}, {0.5, 0.5, 0.5},
                             {3.0, 0.0, 0.0},  {3.0, 2.5, 2.0}, {3.0, 2.5, 0.3}, {2.9, 2.4, 1.9},
                             {-3.0, 0.1, 0.2}, {0.0, -2.5, 0.0}};
@@ -95,7 +95,7 @@ TEST(InsideCameras, SeeTheChordBeforeThem) {
                                 .any();
         SCOPED_TRACE((std::ostringstream() << position << " | " << direction).str());
         if (leaves && projection == Projection::orthographic && direction.cwiseAbs().sum() == 1.0)
-          ASSERT_EQ(imageEstimate(renderIn(scene, 4).film).mean, 1.0); // nothing before it
+          ASSERT_EQ(imageEstimate(renderIn(scene, 4).film).mean, 1.0); // nothing ahead
         else if (!leaves)
           expectChords(scene, budget(200));
       }
@@ -115,7 +115,7 @@ TEST(FieldOfView, OfAMillionthDegreeIsAnOrthographicPicture) {
   CameraPose far = near;
   far.projection = Projection::perspective;
   far.angle = angle;
-  // 4.6e8 mm away half the angle spans 4 mm.
+  // At 4.6e8 mm half the angle spans 4 mm.
   far.position = near.position.normalized() * (4.0 / std::tan(angle * pi / 360.0));
   TestScene scene = absorber(near, 16, 16);
   scene.volume = makeVolume(scene.volume.grid, [](const Vec3& p) {
@@ -157,7 +157,7 @@ TEST(SharpScattering, IsAFurnaceInABoundedNumberOfCollisions) {
     scene.transfer = linearTransfer(1.0, Rgb::Ones(), g);
     const RenderResult result = renderIn(scene, budget(200));
     expectOne(result);
-    // Straight on or straight back: 4 mm thick on average, a walk in one dimension.
+    // Scattering straight on or straight back in 4 mm on average: a walk in one dimension.
     const double collisions = static_cast<double>(result.counters.collisions) /
                               static_cast<double>(result.counters.paths);
     EXPECT_TRUE(collisions > 1.0 && collisions < 40.0) << collisions;
@@ -178,12 +178,12 @@ TEST(SharpScattering, OfMirrorsReflectsNoMoreThanArrives) {
   for (const double power : {0.0, 1e4, 1e8, 1e16, 1e300}) {
     const Estimate estimate = imageEstimate(renderIn(mirrors(power), budget(100)).film);
     EXPECT_LT(estimate.mean, 1.0 + 4.0 * estimate.error) << power;
-    EXPECT_GT(estimate.mean, 0.1) << power; // 0.3 diffuse, seen once, and what is behind
+    EXPECT_GT(estimate.mean, 0.1) << power; // 0.3 diffuse, seen once, and the background
   }
 }
 
 TEST(SharpScattering, OfMirrorsHasALimit) {
-  const Film sharp = renderIn(mirrors(1e6), budget(300), 1).film; // lobes of a thousandth
+  const Film sharp = renderIn(mirrors(1e6), budget(300), 1).film; // lobes 1/1000 wide
   expectSamePicture(sharp, renderIn(mirrors(1e16), budget(300), 2).film);
   expectSamePicture(sharp, renderIn(mirrors(1e300), budget(300), 3).film);
 }

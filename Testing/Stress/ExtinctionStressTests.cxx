@@ -1,5 +1,5 @@
-// Extinction from 1e-8 to 1e8 per mm in one volume, against closed forms and against the same scene
-// in another unit of length; and how much work the worst case is.
+// Extinctions from 1e-8 to 1e8 per mm in one volume, against closed forms and against the same
+// scene in another unit of length; and the amount of work in the worst case.
 
 #include "StressSupport.h"
 
@@ -17,7 +17,7 @@ TransferFunction logarithmicRamp(double last, int knots, const Rgb& albedo) {
   return {ScalarFunction(std::move(table)), ColorFunction({{0.0, albedo}})};
 }
 
-/// Integral of a table over [from, to] inside its knots, of which no two coincide.
+/// Integral of a table over [from, to] within its knots, no two of which coincide.
 double integral(const ScalarFunction& f, double from, double to) {
   std::vector<double> ends = {from, to};
   for (const auto& k : f.knots())
@@ -30,7 +30,7 @@ double integral(const ScalarFunction& f, double from, double to) {
   return sum;
 }
 
-/// Voxels along z that count 0, 1, 2, ...; `across` mm wide.
+/// Layers along z with scalars 0, 1, 2, ...; `across` mm wide.
 Volume layers(int count, double spacing, double across) {
   return makeVolume(centredGrid({2, 2, count}, {across / 2.0, across / 2.0, spacing}),
                     [](const Vec3& p) { return p.z(); });
@@ -39,8 +39,8 @@ Volume layers(int count, double spacing, double across) {
 // ---- along one ray
 
 struct RampCase {
-  double begin; ///< the scalar where the ray begins
-  double depth; ///< optical depth up to its end
+  double begin; ///< scalar at the ray's start
+  double depth; ///< optical depth to the ray's end
 };
 
 class LogarithmicRamp : public ::testing::TestWithParam<RampCase> {};
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Stretches, LogarithmicRamp,
                                            RampCase{7.0, 3.0}, RampCase{7.9, 1.0}));
 
 TEST(NullCollisions, TheThinEndOfEverythingIsClear) {
-  // Optical depth 1.6e-10 under a majorant of 1e8: the ratio may lose that, and roundoff.
+  // Optical depth 1.6e-10 under a majorant of 1e8: the ratio may lose that depth and roundoff.
   const Volume volume = makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(0.002)),
                                    [](const Vec3& p) { return p.x(); });
   const RayProbe<> probe(volume, {ScalarFunction({knot(0.0, thinnest), knot(0.0, thinnest),
@@ -92,8 +92,8 @@ TEST(NullCollisions, TheThinEndOfEverythingIsClear) {
   }
 }
 
-// ---- half-spaces: whatever its profile, a layered medium that lets nothing through and has one
-// albedo reflects as Chandrasekhar's half-space does
+// ---- half-spaces: every opaque layered medium of one albedo reflects as Chandrasekhar's
+// half-space, whatever its profile
 
 struct Profile {
   const char* name;
@@ -101,7 +101,7 @@ struct Profile {
 };
 
 constexpr int depthVoxels = 33;
-constexpr double opaque = 1e6; ///< beside clear voxels 1e8 would take a minute of null collisions
+constexpr double opaque = 1e6; ///< 1e8 beside clear voxels would take a minute of null collisions
 
 TransferFunction dense(const Rgb& albedo) {
   return {ScalarFunction({knot(0.0, densest)}), ColorFunction({{0.0, albedo}})};
@@ -113,7 +113,7 @@ TransferFunction stepped(const Rgb& albedo) {
   return {ScalarFunction({knot(0.0, thinnest), knot(20.3, thinnest), knot(20.3, opaque)}),
           ColorFunction({{0.0, albedo}})};
 }
-/// Three thin layers of optical depth 0.3 to 0.6 between clear ones, then an opaque one.
+/// Three thin layers of optical depth 0.3 to 0.6 between clear layers, then an opaque layer.
 TransferFunction striped(const Rgb& albedo) {
   return {ScalarFunction({knot(0.0, thinnest), knot(10.0, thinnest), knot(10.0, 2000.0),
                           knot(10.4, 2000.0), knot(10.4, thinnest), knot(20.0, thinnest),
@@ -123,7 +123,7 @@ TransferFunction striped(const Rgb& albedo) {
           ColorFunction({{0.0, albedo}})};
 }
 
-/// As deep as lanes serve, from clear to opaque.
+/// Greatest optical depth that lanes accept, from clear to opaque.
 constexpr double deepestOfLanes = 1.6e5;
 TransferFunction deep(const Rgb& albedo) {
   return {ScalarFunction({knot(0.0, 0.0), knot(depthVoxels - 1, deepestOfLanes)}),
@@ -135,19 +135,19 @@ class HalfSpaceProfile : public ::testing::TestWithParam<ReflectanceCase> {};
 
 TEST_P(HalfSpaceProfile, ReflectsAsChandrasekharSays) {
   const auto& [profile, reflectance] = GetParam();
-  TestScene scene{layers(depthVoxels, 0.0005, 0.4), // 0.0165 mm deep: nothing leaves at the sides
+  TestScene scene{layers(depthVoxels, 0.0005, 0.4), // 0.0165 mm deep: no loss at the sides
                   profile.transfer(Rgb::Constant(reflectance.first)),
                   {EnvironmentLight{}},
                   {},
                   8,
                   8};
-  scene.pose.position = {0.0, 0.0, -1.0}; // the thin end first
+  scene.pose.position = {0.0, 0.0, -1.0}; // the thin end faces the eye
   scene.pose.target = Vec3::Zero();
   scene.pose.up = Vec3::UnitY();
   scene.pose.scale = 0.001;
   const RenderResult result = renderIn(scene, budget(250));
   const Estimate estimate = imageEstimate(result.film);
-  EXPECT_NEAR(estimate.mean, reflectance.second, 4.0 * estimate.error + 5e-5); // four digits
+  EXPECT_NEAR(estimate.mean, reflectance.second, 4.0 * estimate.error + 5e-5); // four digits given
   EXPECT_LT(estimate.error, allowedError(0.005));
   RecordProperty("lookupsPerPath", std::to_string(result.counters.lookups / result.counters.paths));
 }
@@ -172,7 +172,7 @@ TEST(HalfSpace, LanesServeTheDeepOneAndNoDeeper) {
 
 // ---- whole pictures
 
-/// 8^3 voxels, 0 and 1 in turn.
+/// 8^3 voxels, alternating 0 and 1.
 Volume checkerboard(double spacing) {
   return makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(spacing)),
                     [](const Vec3& p) { return std::fmod(p.x() + p.y() + p.z(), 2.0); });
@@ -187,7 +187,7 @@ TransferFunction contrast(double high, const Rgb& albedo) {
   return {ScalarFunction({knot(0.5, thinnest), knot(0.5, high)}), ColorFunction({{0.0, albedo}})};
 }
 
-/// Seen from a corner.
+/// Scene seen from a corner.
 TestScene cornerScene(Volume volume, const TransferFunction& transfer) {
   const double radius = volume.grid.boundingRadius();
   TestScene scene{std::move(volume), transfer, {EnvironmentLight{}}, {}, 8, 8};
@@ -198,7 +198,7 @@ TestScene cornerScene(Volume volume, const TransferFunction& transfer) {
 }
 
 TEST(ExtremeContrast, IsAFurnaceWhereNothingIsAbsorbed) {
-  for (const double high : {1.0, 1e3, 5e4}) { // an optical depth of up to 800
+  for (const double high : {1.0, 1e3, 5e4}) { // optical depth <= 800
     const TestScene scene = cornerScene(checkerboard(0.002), contrast(high, Rgb::Ones()));
     expectOne(renderIn(scene, budget(high > 1e4 ? 32 : 128)));
   }
@@ -206,7 +206,7 @@ TEST(ExtremeContrast, IsAFurnaceWhereNothingIsAbsorbed) {
 
 using SceneMaker = TestScene (*)(double unit);
 
-/// 1 mm is `unit` mm: lengths grow with it, extinctions shrink. Powers of two change no bit.
+/// Scene with lengths multiplied and extinctions divided by `unit`. Powers of two change no bit.
 TestScene rampScene(double unit) {
   return cornerScene(diagonalRamp(0.002 * unit),
                      logarithmicRamp(1.0, 64, Rgb(0.9, 0.5, 0.0)).scaled(1.0 / unit));
@@ -244,7 +244,7 @@ TEST(UnitOfLength, DoesNotChangeABitOfThePicture) {
 }
 
 TEST(ExtremeContrast, TakesBoundedTime) {
-  // One crossing takes at most (majorant x length) tentative collisions, and Poisson's spread.
+  // One crossing takes at most (majorant x length) tentative collisions, plus Poisson's spread.
   const double crossing = densest * 0.016 * std::sqrt(3.0);
   const auto greatest = static_cast<std::uint64_t>(crossing + 6.0 * std::sqrt(crossing));
   for (const TestScene& scene : {rampScene(1.0), checkerScene(1.0)}) {
@@ -265,7 +265,7 @@ TEST(ExtremeContrast, TakesBoundedTime) {
   }
 }
 
-// A camera so far away that a free path is no longer than the spacing of doubles at the volume.
+// Distances at which a free path is no longer than the spacing of doubles at the volume.
 TEST(FarCamera, SeesTheSameTransmittance) {
   const Volume volume = makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(20.0)),
                                    [](const Vec3& p) { return p.x() < 4.0 ? 0.0 : 1.0; });

@@ -1,4 +1,4 @@
-// Where a volume lies shall not matter: extreme spacings, far origins, oblique, sheared and
+// Invariance to the volume's placement: extreme spacings, far origins, oblique, sheared and
 // mirrored axes, against the same scene in easy numbers.
 
 #include "StressSupport.h"
@@ -25,7 +25,7 @@ TestScene bumpScene() {
   return scene;
 }
 
-/// The whole scene, camera included, elsewhere.
+/// Whole scene, camera included, in another place.
 TestScene moved(TestScene scene, const Affine& map) {
   Grid& grid = scene.volume.grid;
   grid = Grid(grid.size, map * grid.indexToWorld);
@@ -54,8 +54,8 @@ TEST_P(Placed, ShowsTheSamePicture) {
 }
 
 TEST_P(Placed, KeepsTheDigitsOfAVoxel) {
-  // What is left of a coordinate of size c: half an ulp of c for each of a few operations, in
-  // voxels. At 1e6 mm and 1 mm voxels: 1e-9 of a voxel.
+  // Rounding of a coordinate of size c: half an ulp of c for each of a few operations, in voxels.
+  // At 1e6 mm and 1 mm voxels: 1e-9 of a voxel.
   const Grid grid = moved(bumpScene(), GetParam().map).volume.grid;
   const double far = 100.0 + grid.indexToWorld.translation().cwiseAbs().maxCoeff();
   const double bound = 16.0 * 0x1p-53 * far / grid.spacing().minCoeff();
@@ -90,7 +90,7 @@ TEST(MirroredAxes, ShowTheSamePicture) {
   }
 }
 
-/// A field that is linear in the world, on any grid; what differs is outside the crop.
+/// Field that is linear in the world, on any grid; grids differ only outside the crop.
 TestScene linearScene(const Size3& size, const Mat3& axes) {
   Affine map;
   map.linear() = axes;
@@ -114,8 +114,8 @@ TEST(ShearedAxes, ShowTheSamePicture) {
   const int samples = budget(400);
   const RenderResult expected = renderIn(straight, samples, 5);
   expectSamePicture(expected.film, renderIn(linearScene({50, 50, 30}, sheared), samples, 6).film);
-  // The flat parallelepiped holds a small part of the crop only; compare what both hold by eye rays
-  // through an even smaller crop.
+  // The flat parallelepiped holds only a small part of the crop; the part common to both is
+  // compared by eye rays through an even smaller crop.
   TestScene small = straight;
   small.crop = CropBox(Affine(scalingBy(Vec3(0.01, 0.01, 0.5))));
   small.pose.scale = 0.3;
@@ -133,7 +133,7 @@ double needleValue(double i, double j, double z) {
   return 0.5 + 0.3 * std::sin(1.1 * i + 0.4 * j) + 0.2 * std::sin(z / 30.0 + j);
 }
 
-/// 24x24 needles, two slices; or the same field on slices of 20 mm.
+/// 24x24 needles of two slices; or the same field on slices of 20 mm.
 Volume needles(bool resampled) {
   const auto value = [](const Vec3& p, double z) { // linear between z = -50 and 50, clamped
     const double f = std::clamp((z + 50.0) / 100.0, 0.0, 1.0);
@@ -174,7 +174,7 @@ TEST(Needles, TransmitAlongTheirDiagonalsAsTheirIntegralSays) {
     const Vec3 to = volume.grid.worldCorner(7 - i);
     const Ray ray{from, (to - from).normalized()};
     const double length = (to - from).norm();
-    // The field by its formula: bilinear across, from the voxels' values; midpoint rule.
+    // Reference: the field's formula, bilinear across the voxels' values, midpoint rule.
     constexpr int steps = 20000;
     double depth = 0.0;
     const auto& voxels = std::get<std::vector<float>>(volume.voxels);

@@ -1,4 +1,4 @@
-// Rays along faces, edges, diagonals and through corners, and within rounding of them.
+// Rays along faces, edges, diagonals and through corners, exactly and within rounding.
 
 #include "StressSupport.h"
 
@@ -29,7 +29,7 @@ Volume ones(const Grid& grid) {
   return makeVolume(grid, [](const Vec3&) { return 1.0; });
 }
 
-/// A ray given in index space.
+/// World ray of a ray given in index space.
 Ray toWorld(const Grid& grid, const Vec3& origin, const Vec3& direction) {
   return {grid.indexToWorld * origin, (grid.indexToWorld.linear() * direction).normalized()};
 }
@@ -38,7 +38,7 @@ class Grazing : public ::testing::TestWithParam<int> {
 protected:
   Grazing() : m_grid(grids()[static_cast<std::size_t>(GetParam())].grid), m_volume(ones(m_grid)) {}
 
-  /// Rounding of a world coordinate, and what it moves a chord by, mm.
+  /// Rounding of a world coordinate, and its effect on a chord, mm.
   double rounding() const {
     return 64.0 * 0x1p-53 * (20.0 + m_grid.indexToWorld.translation().cwiseAbs().maxCoeff());
   }
@@ -54,7 +54,7 @@ protected:
   Volume m_volume;
 };
 
-/// Components of a direction that is "along" something.
+/// Off-axis components of an axis-parallel direction.
 constexpr double slopes[] = {0.0, -0.0, 5e-324, -5e-324, 1e-300, -1e-300, 1e-17, -1e-17};
 
 TEST_P(Grazing, AlongFacesAndEdgesOfTheVolumeIsAllOrNothing) {
@@ -62,7 +62,7 @@ TEST_P(Grazing, AlongFacesAndEdgesOfTheVolumeIsAllOrNothing) {
   const Box box = m_grid.indexBox();
   int inside = 0, outside = 0;
   for (int along = 0; along < 3; ++along)
-    for (int corner = 0; corner < 4; ++corner) // which edge
+    for (int corner = 0; corner < 4; ++corner) // selects the edge
       for (const bool edge : {false, true})
         for (const int ulps : {-1, 0, 1})
           for (const double slope : slopes) {
@@ -79,7 +79,7 @@ TEST_P(Grazing, AlongFacesAndEdgesOfTheVolumeIsAllOrNothing) {
             const double walked = probe.walkedLength(ray);
             (walked > 0.5 * full ? inside : outside) += 1;
             EXPECT_LT(walked, full + rounding());
-            // A turned ray's rounded slope may lead out of the face on its way.
+            // The rounded slope of a rotated ray may lead out of the face.
             EXPECT_TRUE(isTurned() || walked > full - rounding() || walked == 0.0)
                 << walked << " of " << full;
           }
@@ -105,7 +105,7 @@ TEST_P(Grazing, NextToAFaceIsTheChord) {
         }
 }
 
-/// Directions through corners of voxels: 26 neighbours, and knight's moves.
+/// Directions through corners of voxels: the 26 neighbours and knight's moves.
 std::vector<Vec3> latticeDirections() {
   std::vector<Vec3> directions;
   for (int x = -2; x <= 2; ++x)
@@ -122,7 +122,7 @@ TEST_P(Grazing, ThroughCentresFacesEdgesAndCornersOfVoxelsIsTheChord) {
   for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0.5, 0.5),
                              Vec3(0.5, std::nextafter(0.5, 1.0), std::nextafter(0.5, 0.0))})
     for (const Vec3& direction : latticeDirections())
-      for (const double back : {0.0, 8.0}) { // from inside, and from outside
+      for (const double back : {0.0, 8.0}) { // from inside and from outside
         const Vec3 start = Vec3(2, 2, 1) + offset;
         const Ray ray = toWorld(m_grid, start - back * direction, direction);
         const double expected = chord(m_grid, ray);
@@ -151,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(Grids, Grazing, ::testing::Range(0, 4), [](const auto& 
   return std::string(grids()[static_cast<std::size_t>(info.param)].name);
 });
 
-// Where faces are exact in binary, a ray that lies in one counts as inside, as Box::clip says.
+// Faces that are exact in binary: a ray that lies in such a face counts as inside (Box::clip).
 TEST(ExactFaces, CountAsInside) {
   const Grid grid = centredGrid({6, 4, 2}, Vec3::Ones());
   const Volume volume = ones(grid);

@@ -1,4 +1,4 @@
-// Every sampling routine at both ends of the random range: u = 0 and the largest u below 1.
+// Sampling routines at both ends of the random range: u = 0 and the largest u below 1.
 
 #include "StressSupport.h"
 
@@ -55,12 +55,12 @@ TEST(DirectionEnds, AreUnit) {
 
 struct PhaseCase {
   double g;
-  double precision; ///< relative, of the density: rounding of the direction over the lobe's width
+  double precision; ///< relative error of the density: the direction's rounding / lobe width
 };
 
 class PhaseEnds : public ::testing::TestWithParam<PhaseCase> {};
 
-/// 1 - cos of Henyey and Greenstein's inverse for |g|, in long double.
+/// Inverse of Henyey and Greenstein's distribution, as 1 - cos, for |g|, in long double.
 long double oneMinusCosine(long double g, long double u) {
   if (g == 0.0L)
     return 2.0L * u;
@@ -95,14 +95,14 @@ INSTANTIATE_TEST_SUITE_P(MeanCosines, PhaseEnds,
 
 // ---- surface lobes
 
-/// Unit incidence whose cosine with the normal z is `cosine`, as exactly as doubles allow.
+/// Unit direction of incidence with this cosine to the normal z, as exact as doubles allow.
 Vec3 incidence(double cosine) {
   return {std::sqrt((1.0 - cosine) * (1.0 + cosine)), 0.0, -cosine};
 }
 
 TEST(SurfaceEnds, GiveUnitDirectionsAndBoundedWeights) {
-  // A mixture of lobes drawn in proportion to albedo and Fresnel term at the viewer: a weight is
-  // at most the greatest Fresnel term over the least, 1 / F0 = 25.
+  // The mixture of lobes is drawn in proportion to albedo and the viewer's Fresnel term: a weight
+  // is at most the greatest Fresnel term over the least, 1 / F0 = 25.
   constexpr double greatestWeight = 25.0 * (1.0 + 1e-9);
   constexpr double most = std::numeric_limits<double>::max();
   const Vec2 strengths[] = {{1, 0}, {0, 1}, {0.9, 0.2}, {0, 0}, {1e-300, 1e-300}, {1e300, 1e300}};
@@ -139,7 +139,7 @@ Camera camera() {
   return {pose, 8, 8};
 }
 
-/// 8 x 4 texels, of which `isLit(column, row)` are 1 times `radiance`.
+/// Map of 8 x 4 texels; texels with `isLit(column, row)` have this radiance, others 0.
 template <typename IsLit>
 EnvironmentLight mapLight(IsLit&& isLit, float radiance = 1.0F) {
   EnvironmentLight light;
@@ -171,7 +171,8 @@ TEST(EnvironmentEnds, AreUnitAndInOrNextToALitTexel) {
       const Vec3 direction = sampler.sample(u);
       EXPECT_NEAR(direction.norm(), 1.0, 4e-16);
       EXPECT_TRUE(sampler.pdf(direction) >= 0.0 && std::isfinite(sampler.pdf(direction)));
-      // On a texel's border it may read as the neighbour's: a lit texel is next to it.
+      // A direction on a texel's border may read as the neighbour's: a lit texel must lie next to
+      // it.
       double greatest = 0.0;
       for (int i = 0; i < 32; ++i) { // around, above and below
         const double phi = 2.0 * pi * (i + 0.3) / 16.0;
@@ -217,7 +218,8 @@ std::vector<std::vector<Light>> lightings() {
 }
 
 TEST(LightEnds, GiveUnitDirectionsAndFiniteContributions) {
-  // Above, in the plane of, behind and on the area lights at the origin; next to and far from them.
+  // Points above, in the plane of, behind and on the area lights at the origin; next to and far
+  // from the lights.
   const Vec3 points[] = {{0, 0, 1},   {0.5, 0.5, 0},       {0, 0, -1},        {0, 0, 0},
                          {-1, -1, 0}, {1, 0, 1e-300},      {0, 0, 5e-324},    {1e-200, 0, 1e-200},
                          {0, 0, 1e9}, {0, 1e-160, 1e-161}, {1e6, 1e6, 1e-300}};
@@ -235,7 +237,7 @@ TEST(LightEnds, GiveUnitDirectionsAndFiniteContributions) {
           ASSERT_GT(sample->distance, 0.0);
           ASSERT_GT(sample->pdf, 0.0);
           ASSERT_TRUE(sample->radiance.allFinite());
-          // An infinite density (grazing, or a light without area) leaves a contribution of 0.
+          // An infinite pdf (grazing, or a light without area) must give a contribution of 0.
           ASSERT_TRUE((sample->radiance / sample->pdf).allFinite()) << point;
         }
   }
@@ -250,7 +252,7 @@ TEST(LightEnds, ALightInTheVolumesCentreLeavesUsableShares) {
   EXPECT_NEAR(set.environment(Vec3::UnitX()).pdf, 0.5 * 0.25 / pi, 1e-12);
 }
 
-// ---- distances and whole paths, which take a Random: each draw in turn is at an end
+// ---- distances and whole paths, which take a Random: each of its draws in turn is at an end
 
 constexpr std::uint64_t endBits[] = {0, ~std::uint64_t{0}};
 
@@ -280,7 +282,7 @@ TEST(TrackingEnds, StayInTheRange) {
       }
 }
 
-/// One path whose draws end with a chosen one; its radiance and what it took.
+/// Sample of one path, with its counters; one of its draws is chosen (randomWithDraw).
 PathSample tracedPath(const TestScene& scene, Random random, Counters& counters) {
   return withEstimator(scene, [&](const auto& estimator) {
     return *estimator.trace(0.5 * scene.width, 0.5 * scene.height, random, counters);
@@ -301,7 +303,7 @@ TEST(PathEnds, AreBoundedByTheirCollisions) {
           Counters counters;
           const Random random = randomWithDraw(draw, bits);
           const Rgb radiance = tracedPath(scene, random, counters).radiance;
-          // At each collision the sampled light and the arriving light, weighted by the balance
+          // At each collision the sampled light and the light that is hit, weighted by the balance
           // heuristic, add at most one weight each.
           const double weight = hybrid ? 25.0 : 1.0;
           const double bound = 2.0 * weight * static_cast<double>(counters.collisions + 1);

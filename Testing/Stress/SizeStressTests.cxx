@@ -8,7 +8,7 @@
 namespace fenestra::testing::SizeStressTests {
 namespace {
 
-/// The continuous field by its definition, from the voxel array: trilinear, clamped.
+/// Continuous field from the voxel array, by definition: trilinear, clamped.
 template <typename Voxel>
 double fieldAt(const Volume& volume, const Vec3& index) {
   const auto& voxels = std::get<std::vector<Voxel>>(volume.voxels);
@@ -33,7 +33,7 @@ double fieldAt(const Volume& volume, const Vec3& index) {
   return sum;
 }
 
-/// Integral of the field along a ray's whole chord, by the midpoint rule.
+/// Integral of the field along the segment, by the midpoint rule.
 template <typename Voxel>
 double fieldIntegral(const Volume& volume, const Vec3& from, const Vec3& to, int steps = 20000) {
   double sum = 0.0;
@@ -52,7 +52,7 @@ class SmallSizes : public ::testing::TestWithParam<std::array<int, 3>> {
 protected:
   SmallSizes() {
     const Size3 size(GetParam()[0], GetParam()[1], GetParam()[2]);
-    // A volume of about 6 mm in each axis, turned.
+    // Rotated volume of about 6 mm along each axis.
     Grid grid = centredGrid(size, Vec3(6.0, 5.0, 7.0).cwiseQuotient(size.cast<double>()));
     grid = Grid(size, rotationBy(0.6, Vec3(1, 2, 3).normalized()) * grid.indexToWorld);
     m_volume = makeVolume(grid, [](const Vec3& p) {
@@ -87,7 +87,7 @@ TEST_P(SmallSizes, HaveTheGradientOfTheirFieldAndNoneAlongSingleVoxels) {
     const Vec3 index = randomIndex(grid, random);
     const Vec3 gradient = probe.medium().matter(index, true).gradient;
     for (int axis = 0; axis < 3; ++axis) {
-      // Along index axis a the derivative is the gradient's component along that column.
+      // The derivative along index axis a is the gradient's component along column a.
       const Vec3 step = Vec3::Unit(axis);
       const double expected =
           0.5 * (fieldAt<float>(m_volume, index + step) - fieldAt<float>(m_volume, index - step));
@@ -104,7 +104,7 @@ TEST_P(SmallSizes, AreAFurnace) {
     scene.pose.target = Vec3::Zero();
     scene.pose.scale = 6.0;
     if (hybrid)
-      scene.transfer.shading = SurfaceShading{1.0, 0.0, 10.0, 0.5}; // Lambert alone loses nothing
+      scene.transfer.shading = SurfaceShading{1.0, 0.0, 10.0, 0.5}; // Lambert alone loses no energy
     expectOne(renderIn(scene, budget(50)));
   }
 }
@@ -185,7 +185,7 @@ constexpr bool isSanitized() {
 #endif
 }
 
-/// Blocks of 16^3 voxels in two opposite corners, 100 and 200; 0 elsewhere.
+/// Volume with blocks of 16^3 voxels of 100 and 200 in two opposite corners; 0 elsewhere.
 Volume hugeVolume(std::int64_t side) {
   std::vector<std::uint8_t> voxels(static_cast<std::size_t>(side * side * side));
   for (std::int64_t k = 0; k < 16; ++k)
@@ -233,7 +233,7 @@ TEST(MoreThan31Bits, AreReadToTheirFarEnd) {
     probe.expectTransmittance({from, direction.normalized()}, {0.0, (last - from).norm()},
                               std::exp(-depth), budget(4000));
   }
-  // A picture of the far block is one of a small volume that is its last corner.
+  // The far block must look like a small volume that equals the last corner.
   scene.pose.position = last + Vec3(3, 4, 5);
   scene.pose.target = last - Vec3::Constant(0.8);
   scene.pose.scale = 1.5;

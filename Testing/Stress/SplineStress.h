@@ -1,5 +1,5 @@
 #pragma once
-// Sites and values for the stress of the thin plate spline, and its solution in 50 digits.
+// Sites and values for stress tests of the thin plate spline, and its solution in 50 digits.
 
 #include "SaddleSpline.h"
 #include "SplineCondition.h"
@@ -27,12 +27,12 @@ struct SplineData {
   ThinPlateSpline spline(double smoothing) const { return {sites, values, smoothing}; }
   SaddleSpline<FiftyDigits> exact(double smoothing) const { return {sites, values, smoothing}; }
 
-  /// The range of the values, mm.
+  /// Range of the values, mm.
   double range() const {
     const auto [least, greatest] = std::ranges::minmax(values);
     return greatest - least;
   }
-  /// The greatest distance from the first site, mm.
+  /// Greatest distance from the first site, mm.
   double extent() const {
     double extent = 0.0;
     for (const Vec2& site : sites)
@@ -46,7 +46,7 @@ inline Vec2 inDisc(Random& random, double radius) {
   return radius * std::sqrt(random.uniform()) * Vec2(std::cos(angle), std::sin(angle));
 }
 
-/// Sites all over a disc, values anywhere in `range` mm above 500.
+/// Random sites over a disc, random values in [500, 500 + range] mm.
 inline SplineData scattered(Random& random, int count, double radius, const Vec2& center,
                             double range) {
   SplineData data;
@@ -55,8 +55,8 @@ inline SplineData scattered(Random& random, int count, double radius, const Vec2
   return data;
 }
 
-/// Eight of the sites, 1e-9 mm beside them, `near` places within three extents of them, and 10 m
-/// away all around.
+/// Evaluation points: eight of the sites, points 1e-9 mm beside these, `near` points within three
+/// extents of the first site, and four points 10 m away.
 inline std::vector<Vec2> places(Random& random, const SplineData& data, int near) {
   std::vector<Vec2> places;
   for (std::size_t i = 0; i < data.sites.size(); i += 1 + data.sites.size() / 8) {
@@ -70,8 +70,8 @@ inline std::vector<Vec2> places(Random& random, const SplineData& data, int near
   return places;
 }
 
-/// The norm of every bound here: the greatest |f - g| / (range of the values + |g|) over the
-/// places; infinity where f is not finite anywhere.
+/// Error norm of every bound here: greatest |f - g| / (range of the values + |g|) over the places;
+/// infinity if f is not finite at some place.
 template <typename F, typename G>
 double greatestError(const F& f, const G& g, const std::vector<Vec2>& places, double range) {
   double worst = 0.0;
@@ -82,7 +82,7 @@ double greatestError(const F& f, const G& g, const std::vector<Vec2>& places, do
   return worst;
 }
 
-/// What ThinPlateSpline.h promises, and no less than 1e-9.
+/// Bound promised in ThinPlateSpline.h, at least 1e-9.
 inline double splineBound(const ThinPlateSpline& spline) {
   return std::max(1e-9, 1e-14 * conditionNumber(spline));
 }

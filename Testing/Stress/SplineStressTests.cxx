@@ -1,5 +1,5 @@
-// The thin plate spline against its solution in 50 digits, on ordinary sites and on those that try
-// to break it; against what degenerate sites determine; against itself in other units, places and
+// Thin plate spline against its solution in 50 digits, on ordinary and on adversarial sites;
+// against the functions that degenerate sites determine; against itself in other units, places and
 // orders. Errors are relative to |f| and the range of the values (greatestError).
 
 #include "SplineStress.h"
@@ -17,13 +17,14 @@ namespace {
 constexpr std::array smoothings{0.0, 5e-324, 1e-300, 1e-12, 0.5, 1.0 - 1e-6, 1.0};
 constexpr std::array origins{0.0, 120.3, 1e6};
 
-/// p = 0 is the limit of the saddle system, which has none there: at 1e-30 it is nearer than
-/// double.
+/// Smoothing for the saddle system, which does not exist at p = 0: its solution at 1e-30 is closer
+/// to the limit than double precision.
 double aboveZero(double smoothing) {
   return std::max(smoothing, 1e-30);
 }
 
-/// The spline of `data` is the exact one of `same`, which are the same data or what they count as.
+/// Expects the spline of `data` to be the exact spline of `same`: the same data, or their merged
+/// equivalent.
 void expectExact(const SplineData& data, const SplineData& same, double smoothing) {
   Random random(7, 0, 0);
   const ThinPlateSpline spline = data.spline(smoothing);
@@ -65,10 +66,10 @@ TEST(SplineStress, IsTheFiftyDigitSolutionOnRandomSites) {
 }
 
 TEST(SplineStress, AThousandSitesAreSolvedToo) {
-  // In a disc of 1 mm, where the saddle system is good enough for long double.
+  // Disc of 1 mm, in which the saddle system is well enough conditioned for long double.
   Random random(2, 0, 0);
   const SplineData data = scattered(random, 1000, 1.0, {0.3, -0.2}, 500.0);
-  const double p = 1.0 / (1.0 + 1e-4); // as p = 0.5 in a disc of 100 mm
+  const double p = 1.0 / (1.0 + 1e-4); // equals p = 0.5 in a disc of 100 mm
   const ThinPlateSpline spline = data.spline(p);
   const SaddleSpline<long double> exact(data.sites, data.values, p);
   EXPECT_LE(greatestError(spline, exact, places(random, data, 50), data.range()),
@@ -107,7 +108,7 @@ TEST(SplineStress, ClustersAtTwoScales) {
     }
     for (const double smoothing : {0.0, 1e-12, 0.5, 1.0 - 1e-6, 1.0}) {
       SCOPED_TRACE(std::to_string(width) + " mm, p " + std::to_string(smoothing));
-      // At p = 1 sites 1e-8 of the disc apart count as one.
+      // At p = 1, sites closer than 1e-8 of the disc are merged.
       expectExact(data, smoothing == 1.0 && width == 1e-6 ? centers : data, smoothing);
     }
   }
@@ -147,7 +148,7 @@ TEST(SplineStress, SitesInNextToNoSpace) {
   }
 }
 
-// ---- what degenerate sites determine
+// ---- functions that degenerate sites determine
 
 TEST(SplineStress, NoSitesGiveZero) {
   for (const double smoothing : smoothings) {
@@ -193,7 +194,7 @@ TEST(SplineStress, CollinearSitesGiveTheLeastSquaresLineAlongThem) {
             for (const double aside : {0.0, radius, -1e4}) {
               const auto line = static_cast<double>((z - slope * t) / n + slope * place);
               const Vec2 x = Vec2(origin, -origin) + place * along + aside * across;
-              // Coordinates are rounded, those of the sites and of x, and so is a slope.
+              // Rounding of coordinates (the sites' and x's) and of the slope.
               const double reach = std::hypot(place, aside);
               const double rounded = 1e-15 * (origin * (1.0 + reach / radius) + reach);
               ASSERT_NEAR(spline(x), line,
@@ -224,7 +225,7 @@ TEST(SplineStress, ThreeSitesGiveTheirPlane) {
         data.add(o + Vec2(size, 0), 2.0);
         data.add(o + Vec2(0, size), 501.0);
         for (const Vec2& at : {Vec2(0, 0), Vec2(1, 1), Vec2(-7, 1e4)}) {
-          // The coordinates, at 1e6, are themselves rounded.
+          // Coordinates at 1e6 are themselves rounded.
           const Vec2 x = o + size * at, u = (x - o) / (data.sites[1].x() - o.x());
           const double plane = 1.0 + u.x() + 500.0 * u.y();
           const double error = 1e-9 + 1e-15 * origin / size;
@@ -233,9 +234,9 @@ TEST(SplineStress, ThreeSitesGiveTheirPlane) {
       }
 }
 
-// ---- the same f in other words
+// ---- invariances
 
-/// The spline of `moved` at moved(x) is the one of `data` at x.
+/// Expects the spline of `moved` at map(x) to equal the spline of `data` at x.
 template <typename Map>
 void expectSame(const SplineData& data, double p, const SplineData& moved, double movedP,
                 const Map& map, double bound) {
@@ -260,7 +261,7 @@ TEST(SplineStress, DoesNotDependOnTheUnit) {
         const SplineData data = scattered(random, count, 40.0, {120, -300}, 40.0);
         const auto inUnit = [&](const Vec2& x) -> Vec2 { return x / unit; };
         const double same = 1.0 / (1.0 + lambda / (unit * unit));
-        const double rounded = lambda > 0.0 ? 1e-16 * unit * unit / lambda : 0.0; // 1 - p is
+        const double rounded = lambda > 0.0 ? 1e-16 * unit * unit / lambda : 0.0; // of 1 - p
         expectSame(data, 1.0 / (1.0 + lambda), mapped(data, inUnit), same, inUnit, 1e-9 + rounded);
       }
 }
@@ -268,7 +269,7 @@ TEST(SplineStress, DoesNotDependOnTheUnit) {
 TEST(SplineStress, ShiftsWithItsSites) {
   Random random(11, 0, 0);
   SplineData data = scattered(random, 50, 40.0, {0, 0}, 40.0);
-  for (Vec2& site : data.sites) // to 2^-12 mm, so that the shift does not round
+  for (Vec2& site : data.sites) // multiples of 2^-12 mm, so that the shift is exact
     site = (site * 4096.0).array().round() / 4096.0;
   for (const Vec2& by : {Vec2(1, -7), Vec2(1e3, 2e3), Vec2(-1e6, 1e6)})
     for (const double smoothing : smoothings) {
@@ -292,7 +293,7 @@ TEST(SplineStress, TurnsWithItsSites) {
           const double c = std::cos(angle), s = std::sin(angle);
           return {c * x.x() - s * x.y() + origin, s * x.x() + c * x.y() - origin};
         };
-        // 1e6 mm away coordinates are rounded by 1e-10 mm, and so are slopes' effects on f.
+        // At 1e6 mm coordinates are rounded by 1e-10 mm, which slopes turn into errors of f.
         const double bound = origin > 1e5 ? 1e-7 : 1e-9;
         expectSame(data, smoothing, mapped(data, turn), smoothing, turn, bound);
       }
@@ -312,7 +313,7 @@ TEST(SplineStress, DoesNotDependOnTheOrderOfSites) {
 
 // ---- condition numbers
 
-/// A wavy closed curve, like a contour.
+/// Wavy closed curve, like a contour.
 SplineData outline(int count, double radius) {
   SplineData data;
   for (int i = 0; i < count; ++i) {
@@ -352,10 +353,10 @@ TEST(SplineStress, ConditionNumbersStaySmall) {
       if (count == 50 && *layout == 'o') {
         EXPECT_LE(*std::ranges::max_element(conditions), 3e3);
       }
-      // |phi| <= 4 ln 4 in the unit disc, so that K's norm is at most 5.6 N; outlines are 1.3 wide.
+      // |phi| <= 4 ln 4 in the unit disc, hence |K| <= 5.6 N; outlines are 1.3 wide.
       EXPECT_LE(conditions[0], 1.0 + 5.6 * 1.69 * count);
       EXPECT_LE(conditions[1], 1.0 + 5.6 * 1.69 * count * 1e4);
-      EXPECT_LE(conditions[2], 5.6 * count * 1e12); // or sites would have counted as one
+      EXPECT_LE(conditions[2], 5.6 * count * 1e12); // closer sites would be merged
     }
 }
 

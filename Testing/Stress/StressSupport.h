@@ -1,6 +1,6 @@
 #pragma once
-// What the stress tests share: estimates along one ray, chords, comparing two pictures,
-// and random numbers whose draws are chosen.
+// Helpers of the stress tests: estimates along one ray, chords, comparison of two pictures, and
+// random generators with chosen draws.
 
 #include "RunSettings.h"
 #include "Support.h"
@@ -12,7 +12,7 @@ namespace fenestra::testing {
 
 inline constexpr double largestUniform = 1.0 - 0x1p-53;
 
-/// The x with mixBits(x) = y: every step of the mixer can be undone.
+/// Inverse of mixBits: every step of the mixer is invertible.
 constexpr std::uint64_t unmixBits(std::uint64_t y) {
   const auto unshift = [](std::uint64_t x, int by) {
     std::uint64_t result = x;
@@ -20,7 +20,7 @@ constexpr std::uint64_t unmixBits(std::uint64_t y) {
       result = x ^ (result >> by);
     return result;
   };
-  const auto inverse = [](std::uint64_t odd) { // Newton: each step doubles the bits that are right
+  const auto inverse = [](std::uint64_t odd) { // Newton: each step doubles the correct bits
     std::uint64_t x = odd;
     for (int step = 0; step < 5; ++step)
       x *= 2 - odd * x;
@@ -31,8 +31,8 @@ constexpr std::uint64_t unmixBits(std::uint64_t y) {
   return unshift(y, 30);
 }
 
-/// A Random whose `draw`-th call of bits(), counted from 1, returns `bits`; the others are as
-/// random as ever. So 0 and the largest u reach code that only takes a Random.
+/// Random whose `draw`-th call of bits(), counted from 1, returns `bits`; other draws stay random.
+/// Feeds 0 and the largest u to code that takes only a Random.
 inline Random randomWithDraw(int draw, std::uint64_t bits) {
   constexpr std::uint64_t gamma = 0x9e3779b97f4a7c15ULL; // as in Random
   const std::uint64_t state = unmixBits(bits) - static_cast<std::uint64_t>(draw) * gamma;
@@ -40,8 +40,7 @@ inline Random randomWithDraw(int draw, std::uint64_t bits) {
   return {0, 0, (unmixBits(state) ^ seeded) - gamma};
 }
 
-/// Length of a ray inside a grid's box from t = 0 on, mm; in long double, by no code of the
-/// product.
+/// Length of a ray inside a grid's box, t >= 0, mm; in long double, without the product's code.
 inline double chord(const Grid& grid, const Ray& ray) {
   using Vector = Eigen::Matrix<long double, 3, 1>;
   const auto precise = [](const Vec3& v) { return Vector(v.x(), v.y(), v.z()); };
@@ -69,7 +68,7 @@ inline double chord(const Grid& grid, const Ray& ray) {
   return static_cast<double>(std::max(0.0L, end - begin));
 }
 
-/// What a ray meets in a classified volume; the volume outlives it.
+/// Medium, majorants and tracker of a classified volume; the volume must outlive the probe.
 template <typename Voxel = float>
 class RayProbe {
 public:
@@ -87,8 +86,8 @@ public:
   const MajorantGrid& majorants() const { return m_majorants; }
   const Medium<Voxel>& medium() const { return m_medium; }
 
-  /// Free paths and ratio tracking against a known transmittance. Both estimates lie in [0, 1], so
-  /// their variance is at most T (1 - T). Returns what `n` rays of each took.
+  /// Compares free paths and ratio tracking with a known transmittance. Both estimates lie in
+  /// [0, 1]: variance <= T (1 - T). Returns the counters of `n` rays of each.
   Counters expectTransmittance(const Ray& ray, const Interval& range, double expected,
                                int n) const {
     double free = 0.0;
@@ -105,7 +104,7 @@ public:
     return counters;
   }
 
-  /// The length of the ray that the walk over majorant cells covers, without gaps or overlaps, mm.
+  /// Length of the ray covered by the walk over majorant cells, mm; expects no gaps or overlaps.
   double walkedLength(const Ray& ray) const {
     const Interval inside =
         m_domain.clip(transformed(m_domain.grid().worldToIndex, ray), Interval{});
@@ -131,7 +130,7 @@ private:
   Domain m_domain;
 };
 
-/// Calls `work` with the estimator of a scene's paths, as a render makes it.
+/// Calls `work` with the path estimator of a scene, built as in a render.
 template <typename Work>
 auto withEstimator(const TestScene& scene, Work&& work) {
   const Camera camera(scene.pose, scene.width, scene.height);
@@ -143,9 +142,9 @@ auto withEstimator(const TestScene& scene, Work&& work) {
                                    camera, scene.clip, settings, stop));
 }
 
-/// Two pictures of independent seeds that shall differ by chance alone: their means to 4 standard
-/// errors, and the sum of squared z over the pixels to 4 of its own (Wilson and Hilferty 1931).
-/// Pixels without variance in both have to be equal.
+/// Expects two pictures of independent seeds to differ by chance alone: their means to 4 standard
+/// errors, the sum of squared z over the pixels to 4 of its own (Wilson and Hilferty 1931). Pixels
+/// without variance in both must be equal.
 inline void expectSamePicture(const Film& a, const Film& b) {
   ASSERT_EQ(a.pixelCount(), b.pixelCount());
   double difference = 0.0, variance = 0.0, chi2 = 0.0;
@@ -179,7 +178,7 @@ inline void expectEqualBits(const Film& a, const Film& b) {
   }
 }
 
-/// `samples` a pixel against an environment that shows behind the volume, too.
+/// Renders `samples` a pixel against an environment, visible behind the volume.
 inline RenderResult renderIn(const TestScene& scene, int samples, std::uint64_t seed = 1) {
   RenderSettings settings;
   settings.samples = static_cast<std::uint64_t>(samples);
@@ -188,7 +187,7 @@ inline RenderResult renderIn(const TestScene& scene, int samples, std::uint64_t 
   return scene.render(settings);
 }
 
-/// A furnace: albedo 1 in an environment of 1.
+/// Furnace: expects radiance 1 for albedo 1 in an environment of 1.
 inline void expectOne(const RenderResult& result) {
   const Estimate estimate = imageEstimate(result.film);
   EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-7);

@@ -1,5 +1,5 @@
-// The clipping surface of awkward focuses and views: every depth is finite, the focus keeps its
-// own, keep is defined everywhere and says what visible and keptIn say.
+// Clipping surface of awkward focuses and views: every depth is finite, the focus keeps its own
+// depth, keep is defined everywhere and agrees with visible and keptIn.
 
 #include "Unit/ClippingTesting.h"
 #include "base/Error.h"
@@ -28,9 +28,9 @@ struct View {
   }
 };
 
-// ---- what holds of every surface
+// ---- properties of every surface
 
-/// Between the nearest and the farthest depth of the focus, and a length that slopes may carry it.
+/// Expects a depth in the focus's range, extended by a length for extrapolated slopes.
 void expectBounded(double depth, const ClippingSurface& surface, const View& view) {
   double least = infinity, greatest = -infinity;
   for (std::int64_t i = 0; i < surface.focus.depth.size(); ++i)
@@ -43,8 +43,8 @@ void expectBounded(double depth, const ClippingSurface& surface, const View& vie
   ASSERT_LE(depth, greatest + reach);
 }
 
-/// Focus samples keep their depth; others have the spline of the control points, or some finite
-/// depth that is not far away, or, in a cutaway and beside a hole, nothing to remove.
+/// Expects focus samples to keep their depth, and other samples to have the spline's depth, or some
+/// finite depth near the focus, or, in a cutaway and beside a hole, nothing to remove.
 void expectDepths(const View& view, const ClippingSurface& surface, const SurfaceOptions& options) {
   const auto& clip = std::get<ClipDepth>(surface.clip);
   std::vector<Vec2> sites;
@@ -56,7 +56,7 @@ void expectDepths(const View& view, const ClippingSurface& surface, const Surfac
   const ThinPlateSpline spline(sites, depths, options.smoothing);
   const DepthBuffer& buffer = *clip.buffer;
   const double depth = clip.camera.targetDepth();
-  const std::int64_t stride = 1 + buffer.rows() / 200; // not to take long
+  const std::int64_t stride = 1 + buffer.rows() / 200; // fewer rows, for speed
   for (std::int64_t row = 0; row < buffer.rows(); row += stride)
     for (std::int64_t column = 0; column < buffer.columns(); ++column) {
       const std::int64_t i = buffer.sample(column, row);
@@ -76,12 +76,12 @@ void expectDepths(const View& view, const ClippingSurface& surface, const Surfac
       } else {
         const double f = spline(buffer.position(column, row));
         ASSERT_TRUE(std::isfinite(buffer.at(i)));
-        ASSERT_NEAR(buffer.at(i), f, 1e-6 * (std::abs(f) + depth)); // a float's
+        ASSERT_NEAR(buffer.at(i), f, 1e-6 * (std::abs(f) + depth)); // a float's precision
       }
     }
 }
 
-/// Distinct focus samples, no more than were asked for; the mismatch is in order.
+/// Expects distinct focus samples, at most the requested number, and consistent mismatches.
 void expectControlPoints(const ClippingSurface& surface, const SurfaceOptions& options) {
   const auto asked = static_cast<std::size_t>(options.controlPoints);
   EXPECT_GE(surface.controlPoints.size(), 1U);
@@ -101,7 +101,7 @@ void expectControlPoints(const ClippingSurface& surface, const SurfaceOptions& o
             surface.controlPoints.size() < std::min<std::size_t>(3, asked) ? 1 : 0);
 }
 
-/// 0 or 1 in the volume, around it, as far as double goes, and where the projection has no answer.
+/// Expects 0 or 1 in and around the volume, up to double's limits, and where projection fails.
 void expectKeepEverywhere(const View& view, const Clip& clip) {
   Random random(1, 0, 0);
   const Camera& camera = view.camera;
@@ -125,7 +125,7 @@ void expectKeepEverywhere(const View& view, const Clip& clip) {
   }
 }
 
-/// Eye rays are kept from where visible says, and not before.
+/// Expects eye rays to be kept from the start of visible on, and not before.
 void expectVisible(const View& view, const Clip& clip) {
   Random random(2, 0, 0);
   const Camera& camera = view.camera;
@@ -135,7 +135,7 @@ void expectVisible(const View& view, const Clip& clip) {
     const Interval seen = visible(clip, ray);
     ASSERT_TRUE(std::isfinite(seen.begin) && seen.begin >= 0.0);
     ASSERT_EQ(seen.end, infinity);
-    // Rounding of the place, times the slope of the surface there, is a depth.
+    // Rounding of a position times the surface's slope is an error of depth.
     const double step = 1e-9 * (ray.origin.norm() + seen.begin + camera.targetDepth()) + 1e-6;
     ASSERT_EQ(keep(clip, ray.at(seen.begin + step)), 1.0) << seen.begin;
     ASSERT_EQ(keep(clip, ray.at(2.0 * seen.begin + 1e3)), 1.0) << seen.begin;
@@ -146,7 +146,7 @@ void expectVisible(const View& view, const Clip& clip) {
   }
 }
 
-/// Boxes are never called wholly kept, or removed, where a point of theirs is not.
+/// Expects no box to be reported as wholly kept, or removed, if a point of it is not.
 void expectBoxes(const View& view, const Clip& clip) {
   Random random(3, 0, 0);
   const double radius = view.volume.boundingRadius();
@@ -166,8 +166,8 @@ void expectBoxes(const View& view, const Clip& clip) {
   }
 }
 
-/// At the centres of the picture's focus pixels the cut ends where the focus begins; an exact one
-/// may end behind, where the focus falls away steeply.
+/// Expects the cut to end where the focus begins, at the centres of the picture's focus pixels; an
+/// exact cut may end behind, where the focus falls away steeply.
 void expectFocusShown(const View& view, const ClippingSurface& surface, Boundary boundary) {
   const DepthBuffer& buffer = surface.focus.depth;
   for (int row = 0; row < view.camera.height(); ++row)
@@ -196,8 +196,8 @@ void expectSound(const View& view, const SurfaceOptions& options) {
   expectFocusShown(view, surface, options.boundary);
 }
 
-/// With every edge and however far it is moved: keep is a share, never less than the ghost in front
-/// of the eye, and boxes bound it.
+/// For every edge and offset, expects keep in [0, 1], at least the ghost in front of the eye, and
+/// bounded by boxes.
 void expectEdges(const View& view) {
   Random random(4, 0, 0);
   const double radius = view.volume.boundingRadius();
@@ -229,7 +229,7 @@ void expectEdges(const View& view) {
     }
 }
 
-/// In every mode, at every smoothing, with few and many control points; large buffers take long.
+/// Tests every mode, smoothing and number of control points; for large buffers only one.
 void expectSound(const View& view) {
   if (DepthBuffer(view.camera, view.volume).size() > 40'000)
     return expectSound(view, {.controlPoints = 30, .smoothing = 1.0});
@@ -250,7 +250,7 @@ void expectSound(const View& view) {
 
 const Grid cube = centredGrid({32, 32, 32});
 
-/// `scale` mm up and down at the centre, from 100 mm before it.
+/// Tests views from 100 mm in front, `scale` mm up and down at the centre.
 void expectSoundFromFront(const Mask& focus, double scale, const Grid& volume = cube) {
   for (const auto projection : projections)
     for (const auto& [width, height] : {std::pair{40, 30}, std::pair{5, 13}}) {
@@ -291,7 +291,7 @@ TEST(SurfaceStress, AFocusThatFillsTheView) {
   const Mask everything = maskOf(cube, [](const Vec3&) { return true; });
   for (const double scale : {5.0, 15.9, 16.0, 40.0})
     expectSoundFromFront(everything, scale);
-  for (const auto projection : projections) { // the face is at -16, whichever way a ray meets it
+  for (const auto projection : projections) { // the face is at -16 for every ray
     const View view{anteriorCamera(projection, 50.0, 7.0, 20, 20), cube, everything};
     const FocusDepth focus = view.surface({}).focus;
     for (int pixel = 0; pixel < 400; ++pixel) {
@@ -324,7 +324,7 @@ TEST(SurfaceStress, Holes) {
 }
 
 TEST(SurfaceStress, ASheetSeenEdgeOn) {
-  // One voxel thick, along the view: exactly, and where the sheet is a staircase.
+  // Sheet one voxel thick along the view: exactly parallel, and where the sheet is a staircase.
   for (const double tilt : {0.0, 1e-3, 0.3}) {
     const Mask sheet = maskOf(cube, [&](const Vec3& p) {
       const double x = p.x() - tilt * p.y();
@@ -336,7 +336,7 @@ TEST(SurfaceStress, ASheetSeenEdgeOn) {
 }
 
 TEST(SurfaceStress, DepthJumps) {
-  // Stripes and a chequerboard of plates, each two voxels thick, 500 mm apart.
+  // Stripes and a chequerboard of plates, two voxels thick each, 500 mm apart.
   const Grid deep = centredGrid({32, 32, 32}, {1.0, 20.0, 1.0});
   const auto plate = [](const Vec3& p, bool isNear) {
     return std::abs(p.y() + (isNear ? 250.0 : -250.0)) < 20.0;
@@ -356,7 +356,7 @@ TEST(SurfaceStress, DepthJumps) {
 
 // ---- the views
 
-/// The middle pixel looks at the target.
+/// Camera whose middle pixel looks at the target.
 Camera camera(Projection projection, const Vec3& from, const Vec3& to, double scale,
               double angle = 40.0, const Vec3& up = {0.1, 0.2, 1.0}) {
   CameraPose pose;
@@ -399,7 +399,7 @@ TEST(SurfaceStress, TheCameraInsideTheFocus) {
 }
 
 TEST(SurfaceStress, LooksAlongAxesAndDiagonalsThroughFacesAndCorners) {
-  const Mask box = boxMask(cube, {-6, -6, -6}, {6, 6, 6}); // voxel centres at halves
+  const Mask box = boxMask(cube, {-6, -6, -6}, {6, 6, 6}); // voxel centres at half-integers
   for (const auto projection : projections)
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(1, 1, 0), Vec3(1, 1, 1)})
       for (const double offset : {0.0, 0.5}) {
@@ -418,7 +418,7 @@ TEST(SurfaceStress, FieldsOfView) {
                    cube, ball});
     }
   expectSound({camera(Projection::orthographic, {0, -60, 0.2}, Vec3::Zero(), 100.0), cube, ball});
-  // The picture is a point of the focus, 1e-6 mm wide.
+  // Picture of one point of the focus, 1e-6 mm wide.
   expectSound({camera(Projection::orthographic, {0, -60, 0.2}, Vec3::Zero(), 5e-7), cube, ball});
   expectSound({camera(Projection::perspective, {0, -60, 0.2}, Vec3::Zero(), 1, 1e-6), cube, ball});
 }
@@ -473,19 +473,19 @@ TEST(SurfaceStress, AFocusThatNoRayMeetsIsRefused) {
   const Mask ball = sphereMask(cube, 4.0);
   const Camera ahead = anteriorCamera(Projection::perspective, 100.0, 20.0, 16, 16);
   expectRefused(ahead, cube, maskOf(cube, [](const Vec3&) { return false; }));
-  // Behind the eye, and the eye in the volume.
+  // Focus behind the eye, and the eye in the volume.
   expectRefused(camera(Projection::perspective, {0, 12, 0}, {0, 20, 0}, 1.0), cube, ball);
   expectRefused(camera(Projection::orthographic, {0, 12, 0}, {0, 20, 0}, 5.0), cube, ball);
-  // Smaller than a pixel, between the samples.
+  // Focus smaller than a pixel, between the samples.
   expectRefused(anteriorCamera(Projection::orthographic, 100.0, 1e3, 16, 16), cube, oneVoxel());
-  // Cropped away; and a box that leaves nothing at all.
+  // Cropped focus, and a crop box that leaves no volume.
   Affine crop = Affine::Identity();
   crop.translation() = Vec3(10, 0, 0);
   crop.linear() *= 2.0;
   expectRefused(ahead, Domain(cube, CropBox(crop)), ball);
   crop.translation() = Vec3(1e4, 0, 0);
   expectRefused(ahead, Domain(cube, CropBox(crop)), ball);
-  // In another place than the volume.
+  // Focus away from the volume.
   Mask elsewhere = ball;
   Affine moved = cube.indexToWorld;
   moved.translation() += Vec3(0, 0, 1e6);

@@ -1,5 +1,4 @@
-// Transfer functions at their extremes, and volumes of one value, against the integral of the
-// function by hand.
+// Extreme transfer functions, and volumes of one value, against the function's integral by hand.
 
 #include "StressSupport.h"
 
@@ -13,15 +12,14 @@ using Knots = std::vector<ScalarFunction::Knot>;
 constexpr double lowest = -200.0; // scalars of the volume
 constexpr double highest = 300.0;
 
-/// 11 layers of 1 mm along z.
+/// Volume of 11 layers of 1 mm along z.
 Volume scalarRamp() {
   return makeVolume<std::int16_t>(centredGrid({2, 2, 11}, Vec3::Ones()), [](const Vec3& p) {
     return lowest + (highest - lowest) * p.z() / 10.0;
   });
 }
 
-/// The function's value just right of s (a step belongs to its right side), from its knots in
-/// order.
+/// Value just right of s (a step belongs to its right side), from sorted knots.
 double valueAt(const Knots& knots, double s) {
   double value = knots.front().value[0];
   for (std::size_t i = 0; i < knots.size(); ++i) {
@@ -36,7 +34,7 @@ double valueAt(const Knots& knots, double s) {
   return value;
 }
 
-/// Its integral over the volume's scalars: trapezia between knots.
+/// Integral of the function over the volume's scalars: trapezia between knots.
 double integral(const Knots& knots) {
   std::vector<double> ends = {lowest, highest};
   for (const auto& k : knots)
@@ -46,14 +44,14 @@ double integral(const Knots& knots) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double width = ends[i + 1] - ends[i];
-    if (width > 1e-6) // linear inside: two interior points make the line
+    if (width > 1e-6) // linear inside: two interior points determine the line
       sum += 0.5 * width *
              (valueAt(knots, ends[i] + 0.25 * width) + valueAt(knots, ends[i] + 0.75 * width));
   }
   return sum;
 }
 
-/// Of a ray along the ramp: half a voxel of either end's scalar, and 10 mm between.
+/// Optical depth of a ray along the ramp: 10 mm, plus half a voxel of the scalar at either end.
 double opticalDepth(const Knots& knots) {
   return 0.5 * valueAt(knots, lowest) + integral(knots) / (highest - lowest) * 10.0 +
          0.5 * valueAt(knots, highest);
@@ -61,7 +59,7 @@ double opticalDepth(const Knots& knots) {
 
 struct TransferCase {
   const char* name;
-  Knots knots; ///< in order
+  Knots knots; ///< sorted by position
 };
 
 const double next = std::nextafter(50.0, 51.0);
@@ -100,7 +98,7 @@ class TransferExtremes : public ::testing::TestWithParam<TransferCase> {};
 TEST_P(TransferExtremes, TransmitAsTheirIntegralSays) {
   const Volume volume = scalarRamp();
   const double expected = std::exp(-opticalDepth(GetParam().knots));
-  Knots unsorted = GetParam().knots; // any order of places; coincident ones keep theirs
+  Knots unsorted = GetParam().knots; // any order of positions; coincident knots keep their order
   std::stable_sort(unsorted.begin(), unsorted.end(),
                    [](const auto& a, const auto& b) { return a.position > b.position; });
   for (const Knots& knots : {GetParam().knots, unsorted}) {
@@ -150,7 +148,7 @@ TEST_P(PropertyExtremes, TransmitAsTheFormulaSays) {
   property.unitDistance = GetParam().unitDistance;
   const Volume volume = scalarRamp();
   const RayProbe<std::int16_t> probe(volume, tabulate(property, "test"));
-  // -ln(1 - opacity) / unit distance, opacity at most 0.9999, along 0.5 mm around scalar 50.
+  // Reference: -ln(1 - opacity) / unit distance, opacity <= 0.9999, along 0.5 mm around scalar 50.
   double depth = 0.0;
   constexpr int steps = 20000;
   for (int k = 0; k < steps; ++k) {
@@ -158,7 +156,7 @@ TEST_P(PropertyExtremes, TransmitAsTheFormulaSays) {
     const double opacity = std::min(opacityAt(property.scalarOpacity, s), 0.9999);
     depth -= std::log1p(-opacity) / property.unitDistance * 0.5 / steps;
   }
-  // The table's relative error is at most 1e-4.
+  // The table's relative error is <= 1e-4.
   ASSERT_LT(depth, 8.0);
   probe.expectTransmittance({{0.2, -0.3, -0.25}, Vec3::UnitZ()}, {0.0, 0.5}, std::exp(-depth),
                             budget(20000));

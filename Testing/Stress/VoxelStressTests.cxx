@@ -1,6 +1,6 @@
-// Voxels that are no ordinary numbers, of every type that files have: what is read is what the
-// documented replacement gives, and it shows the picture of a file that holds just that. And how
-// much extinction a scene may have.
+// Unusual voxel values of every storage type: the reader must store the documented replacement, and
+// the picture must equal that of a file with the replaced values. And limits on a scene's
+// extinction.
 
 #include "StressSupport.h"
 #include "Unit/MedicalFiles.h"
@@ -10,10 +10,11 @@
 namespace fenestra::testing::VoxelStressTests {
 namespace {
 
-/// 4x4x4 voxels, 1 mm.
+/// Geometry of 4x4x4 voxels of 1 mm.
 const FileGeometry cube{.size = {4, 4, 4}};
 
-/// Ordinary values from 0 to 94 (in steps of 1.5 where the type has them), with `odd` ones between.
+/// Ordinary values 0 to 94 (steps of 1.5 if the type has fractions), with the values `odd` in
+/// between.
 template <typename T>
 std::vector<T> samplesWith(const std::vector<T>& odd) {
   std::vector<T> samples(64);
@@ -24,8 +25,8 @@ std::vector<T> samplesWith(const std::vector<T>& odd) {
   return samples;
 }
 
-/// NaN and -infinity become the least finite value, +infinity the greatest, and what float cannot
-/// hold its ends.
+/// Documented replacement: NaN and -infinity become the least finite value, +infinity the greatest;
+/// values beyond float are clamped to its range.
 template <typename T>
 std::vector<float> replaced(const std::vector<T>& samples) {
   std::vector<long double> finite;
@@ -54,7 +55,7 @@ Film filmOf(SceneRequest request, int samples) {
   return render(scene.forRender(), settings, monitor).film;
 }
 
-/// The whole command line's defaults, in an environment of 1.
+/// Picture by the command line's defaults, in an environment of 1.
 Film pictureOf(const std::filesystem::path& volume, const std::optional<std::string>& transfer) {
   SceneRequest request;
   request.input = volume;
@@ -63,7 +64,7 @@ Film pictureOf(const std::filesystem::path& volume, const std::optional<std::str
   return filmOf(request, 16);
 }
 
-/// What the reader stores, and its picture, under a given look and under the default.
+/// Compares the stored voxels and the pictures, under a given look and under the default look.
 template <typename T>
 void expectReplaced(const std::vector<T>& odd) {
   const TemporaryFolder folder;
@@ -168,7 +169,7 @@ TEST(ConstantFiles, ShowTheSameHazeByDefaultWhateverTheirValue) {
     expectEqualBits(shown(value), usual);
 }
 
-// ---- how much extinction a scene may have
+// ---- limits on a scene's extinction
 
 std::string denseLook(double extinction) {
   std::ostringstream text;
@@ -188,7 +189,7 @@ TEST(ExtinctionLimit, IsAnOpticalDepthOfTenMillion) {
   const auto look = folder.write("at.json", denseLook(0.999 * limit));
   // Every eye ray meets a half-space of albedo 0.9 head-on: Chandrasekhar's reflectance.
   const Estimate estimate = imageEstimate(pictureOf(folder / "v.nrrd", look));
-  EXPECT_GT(estimate.mean, 0.25); // what passes beside the volume shows black
+  EXPECT_GT(estimate.mean, 0.25); // rays beside the volume show black
   SceneRequest request;
   request.input = folder / "v.nrrd";
   request.transfer = look;

@@ -1,5 +1,5 @@
-// Work in a process of its own: what it may not do, what would have ended this process, and answers
-// that are none. The jobs below run in the child, which is this executable.
+// Work in a child process: restrictions on the child, crashes that would have ended this process,
+// and invalid answers. The jobs below run in the child, which is this executable.
 
 #include "base/safe/Apart.h"
 
@@ -30,7 +30,7 @@ constexpr std::uint64_t manyBytes = std::uint64_t{2} << 30;
 
 const ApartJob echo("test-echo", [](const std::string& question) { return question; });
 
-/// What the question names.
+/// Misbehaves in the way that the question names.
 std::string misbehave(const std::string& how) {
   if (how == "throw")
     throw std::runtime_error("no");
@@ -100,7 +100,7 @@ TEST(Apart, leavesLittleMemory) {
 }
 #endif
 
-/// One word of what the child may do, for the test below.
+/// Words for each action that the child is allowed, for the test below.
 std::string allowed(const std::string& path) {
   std::string found;
   if (::open(path.c_str(), O_WRONLY | O_CREAT, 0600) >= 0)
@@ -135,7 +135,7 @@ const ApartJob allowing("test-allowed", allowed);
 TEST(Apart, inheritsNothingAndMayChangeNothing) {
   const TemporaryFolder folder;
   const std::string path = folder / "made";
-  const int file = ::open("/dev/null", O_RDONLY); // inherited by what does not close it
+  const int file = ::open("/dev/null", O_RDONLY); // inherited unless the child closes it
   sigset_t blocked, before;
   ::sigemptyset(&blocked);
   ::sigaddset(&blocked, SIGINT);
@@ -146,7 +146,7 @@ TEST(Apart, inheritsNothingAndMayChangeNothing) {
   ::signal(SIGTERM, handler);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(file);
-  // Kernels without Landlock let it make one, which stays empty.
+  // Kernels without Landlock let the child make a file, which stays empty.
   if (const std::string made = "made a file; "; found.starts_with(made)) {
     EXPECT_EQ(std::filesystem::file_size(path), 0u);
     found = found.substr(made.size());
@@ -164,7 +164,7 @@ TEST(Apart, saysThatNoProcessCanBeStarted) {
   try {
     child.ask("hello", most);
   } catch (const Error& error) {
-    ::setrlimit(RLIMIT_NOFILE, &before); // first, for sanitizers look at an object through a pipe
+    ::setrlimit(RLIMIT_NOFILE, &before); // first: sanitizers inspect objects through a pipe
     line = error.kind() == ErrorKind::output ? error.what() : "of another kind";
   }
   ::setrlimit(RLIMIT_NOFILE, &before);
@@ -188,7 +188,8 @@ TEST(Apart, worksBesideOtherThreads) {
     EXPECT_EQ(count, 4);
 }
 
-/// A process that asks, says its child's number, and has it sleep; then it is killed.
+/// A process queries a child, reports the child's number, and has the child sleep; then the process
+/// is killed.
 TEST(Apart, endsWithItsParent) {
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
@@ -207,7 +208,7 @@ TEST(Apart, endsWithItsParent) {
   ::kill(parent, SIGKILL);
   ::waitpid(parent, nullptr, 0);
   pollfd ended{process, POLLIN, 0};
-  constexpr int patience = 60'000; // ms; it would sleep for ever
+  constexpr int patience = 60'000; // ms; the child would sleep for ever
   EXPECT_EQ(::poll(&ended, 1, patience), 1);
   ::close(process);
   ::close(pipe[0]);

@@ -1,4 +1,4 @@
-// --view auto: what it sees of analytic bodies, and that it stays where it is.
+// --view auto: its measures of analytic bodies, and its stability.
 
 #include "session/AutomaticView.h"
 
@@ -11,14 +11,14 @@
 namespace fenestra::testing::AutomaticViewTests {
 namespace {
 
-/// A cube of 60 mm that the context fills, thin enough to be seen through.
+/// Cube of 60 mm filled by a transparent context.
 class ViewOfCube : public ::testing::Test {
 protected:
   const Grid grid = centredGrid({30, 30, 30}, {2.0, 2.0, 2.0});
   const TransferFunction transfer = linearTransfer(0.01, Rgb::Constant(0.8));
   Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
 
-  /// Voxels of 1 mm whose centres the predicate holds for, in the cube.
+  /// Mask of 1 mm voxels in the cube whose centres satisfy the predicate.
   template <typename Predicate>
   static Mask focusWhere(const Predicate& predicate) {
     Mask mask;
@@ -54,7 +54,8 @@ TEST_F(ViewOfCube, ScoresABallAsItsClosedFormSays) {
   constexpr double radius = 15.0, edge = 60.0, disc = pi * radius * radius;
   const Mask ball = focusWhere([](const Vec3& p) { return p.norm() <= radius; });
   const ViewScorer score = scorer(ball);
-  // In front of the ball's near half, and beside it of the plane at that half's mean depth.
+  // Context in front of the ball's near half, and beside it in front of the plane at that half's
+  // mean depth.
   const double inFront = disc * (edge / 2.0 - 2.0 / 3.0 * radius);
   const double beside = (edge * edge - disc) * (edge / 2.0 - 2.0 / 3.0 * radius);
   const double context = std::pow(edge, 3.0) - 4.0 / 3.0 * disc * radius;

@@ -1,4 +1,4 @@
-// What is shown where eye rays meet nothing.
+// Background where eye rays meet nothing.
 
 #include "Support.h"
 
@@ -7,7 +7,7 @@
 namespace fenestra::testing::BackgroundTests {
 namespace {
 
-/// An empty volume in front of a background, 4 x 8 pixels.
+/// Picture of 4 x 8 pixels of an empty volume in front of a background.
 Film behindNothing(const Background& background, double sigma_t = 0.0, int threads = 0) {
   TestScene scene{
       makeVolume(centredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
@@ -33,7 +33,7 @@ TEST(Background, RunsFromBottomToTopInDisplayValues) {
   for (int row = 0; row < 8; ++row)
     for (int column = 0; column < 4; ++column) {
       const PixelSums& pixel = film.at(column, row);
-      const double height = (7.5 - row) / 8.0; // row 0 is the top one
+      const double height = (7.5 - row) / 8.0; // row 0 is at the top
       const Rgb encoded = (1.0 - height) * bottom + height * top;
       const Rgb expected =
           ((encoded + 0.055) / 1.055).unaryExpr([](double v) { return std::pow(v, 2.4); });
@@ -57,7 +57,7 @@ TEST(Background, ShowsThroughTheVolumeTheSameOnAnyThread) {
   const Film two = behindNothing(background, 0.3, 2);
   for (std::size_t i = 0; i < one.pixelCount(); ++i) {
     EXPECT_TRUE((one.pixels()[i].mean == two.pixels()[i].mean).all());
-    // Black matter of 4 mm: some paths meet it, the others show all of the background.
+    // Black matter of 4 mm: some paths hit the matter, the others show the full background.
     const Rgb behind = background.at((7.5 - static_cast<double>(i / 4)) / 8.0);
     const double share = one.pixels()[i].mean[0] / behind[0];
     EXPECT_NEAR(share, std::exp(-1.2), 5.0 * std::sqrt(0.25 / 50.0));

@@ -1,5 +1,5 @@
-// Soft edges and ghosts, holes, planes that place themselves, and how the context's outline is
-// measured: against geometry.
+// Soft edges and ghosts, holes, automatic planes, and measures along the context's outline, against
+// geometry.
 
 #include "ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array projections{Projection::orthographic, Projection::perspective};
 
-/// A ball of radius 12 mm in the middle of a cube of 80 mm, seen from 100 mm in front of it.
+/// Ball of radius 12 mm in the centre of a cube of 80 mm, seen from 100 mm in front.
 struct Ball {
   Grid volume = centredGrid({80, 80, 80});
   Mask focus = maskOf(volume, [](const Vec3& p) { return p.norm() < 12.0; });
@@ -158,8 +158,8 @@ TEST_P(Holes, ASphereLeavesABowl) {
   options.mode = SurfaceMode::hole;
   options.hole = {HoleShape::sphere, 8.0};
   const Clip clip = ball.surface(options).clip;
-  // The ball that was pushed in holds the visible half, or less, of the focus: it is found again
-  // from its bottom along three rays.
+  // The pressed-in ball holds the visible half of the focus or less; the ball is reconstructed from
+  // its bottom along three rays.
   const auto& depth = std::get<ClipDepth>(clip);
   const auto bottom = [&](double x, double y) {
     return fromBuffer(ball.camera, Vec3(x, y, depth.surface({x, y})));
@@ -189,7 +189,7 @@ TEST(FocusPlane, IsThePlaneOfAFlatFocus) {
     const Camera camera = anteriorCamera(projection, 150, 40, 128, 128);
     const ClipPlane plane = focusPlane(camera, traceFocus(camera, volume, focus));
     EXPECT_GT(plane.normal.dot(normal), std::cos(4.0 * pi / 180.0));
-    // Of the slab it is the side that the eye sees, to half a voxel.
+    // The plane is the slab's side toward the eye, to half a voxel.
     EXPECT_NEAR(plane.point.dot(normal), 4.0, 0.6);
     EXPECT_LT(plane.normal.dot(camera.forward()), 0.0);
   }
@@ -203,7 +203,7 @@ TEST(FocusPlane, FacesTheEyeWhereThereIsOneSample) {
   EXPECT_LT((plane.normal + camera.forward()).norm(), 1e-9);
 }
 
-/// A cuboid focus whose front face is at a depth of 84 mm, in a cube whose face is at 60 mm.
+/// Cuboid focus with its front face at a depth of 84 mm, in a cube with its face at 60 mm.
 struct Cuboid {
   Grid volume = centredGrid({80, 80, 80});
   Mask focus = boxMask(volume, {-16, -16, -24}, {16, 16, 24});
@@ -245,12 +245,12 @@ TEST(BoundaryMeasures, AreATiltedPlanesDistanceAndSlope) {
   const Cuboid model;
   const FocusDepth focus = traceFocus(model.camera, model.volume, model.focus);
   const double front = focus.depth.at(focus.depth.viewportSample(80, 80));
-  // Depth front + 0.25 x over the view: 0 to 4 mm from the face along its outline.
+  // Depth front + 0.25 x over the view: gaps of 0 to 4 mm along the face's outline.
   const Vec3 through = fromBuffer(model.camera, Vec3(0, 0, front));
   const Vec3 normal = 0.25 * model.camera.right() - model.camera.forward();
   const Clip clip = ClipPlane{model.camera, through, normal.normalized()};
   const BoundaryMeasures measures = measureBoundary(clip, model.volume, model.focus, focus);
-  // The cuboid's edges are rounded by half a voxel, and fall away there.
+  // The cuboid's edges are rounded by half a voxel, where the surface falls away.
   EXPECT_NEAR(measures.gap.max, 4.0, 0.6);
   EXPECT_NEAR(measures.gap.mean, 0.5 * (4.0 + 2.0), 0.4) << "4 on two sides, 0 to 4 on the others";
   const BoundaryMeasures flat =
@@ -271,7 +271,7 @@ TEST(BoundaryMeasures, CountTheFocusOwnJumpsApart) {
   options.boundary = Boundary::exact;
   const ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);
   const BoundaryMeasures measures = measureBoundary(surface.clip, volume, focus, surface.focus);
-  // Two samples to each side of the jump, above and below.
+  // Two samples on each side of the jump, at its top and its bottom.
   EXPECT_NEAR(measures.depthJumps * static_cast<double>(measures.crossings), 4.0, 4.0);
   EXPECT_GT(measures.depthJumps, 0.0);
   EXPECT_LT(measures.gap.max, 3.0);

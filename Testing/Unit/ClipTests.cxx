@@ -1,4 +1,4 @@
-// keep, visible and keptIn say the same; the surface meets the focus; errors name their mend.
+// keep, visible and keptIn agree; the surface meets the focus; errors name their remedy.
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array projections{Projection::orthographic, Projection::perspective};
 
-/// The paper's model, smaller: a cuboid focus in the middle of a cube.
+/// Smaller version of the paper's model: a cuboid focus in the centre of a cube.
 struct Model {
   Grid volume = centredGrid({64, 64, 64});
   Mask focus = boxMask(volume, {-16, -16, -24}, {16, 16, 24});
@@ -24,7 +24,7 @@ struct Model {
   }
 };
 
-/// A knee-like focus: a bent thin shell, seen aslant.
+/// Knee-like focus: a bent thin shell, seen obliquely.
 struct Shell {
   Grid volume = centredGrid({60, 50, 40}, {1.0, 1.2, 1.5});
   Mask focus = maskOf(volume, [](const Vec3& p) {
@@ -97,7 +97,7 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
           const Interval seen = visible(clip, ray);
           const double step = 1e-6 * (1.0 + 1e-4 * distance);
           if (!seen.empty()) {
-            // Next to an eye that is far away (x, y) has no digits left.
+            // Next to a distant eye (x, y) has lost its digits.
             const double inside =
                 std::min(seen.begin > 0.0 ? step : 1e-3 * distance, 0.5 * (seen.end - seen.begin));
             ASSERT_EQ(keep(clip, ray.at(seen.begin + inside)), 1.0);
@@ -148,7 +148,7 @@ TEST(Clip, BoxesAreKeptOrRemovedAsTheirPointsAre) {
           foundWhole += verdict == Kept::all;
           whole += kept == 60;
         }
-        // Not merely cautious: small boxes that are clipped, or not touched, are found.
+        // Not merely conservative: small boxes that are removed, or kept, are recognised.
         EXPECT_GE(found, c == 0 ? 0 : c == 3 ? empty / 3 : empty * 3 / 4) << "clip " << c;
         EXPECT_GE(foundWhole, whole / 3) << "clip " << c;
       }
@@ -156,7 +156,7 @@ TEST(Clip, BoxesAreKeptOrRemovedAsTheirPointsAre) {
 }
 
 TEST(Clip, ABoxAcrossTheEyesPlaneIsSeenInEveryDirection) {
-  // 20 mm deep, but for what is seen far to the right, at the edge of the buffer.
+  // Depth 20 mm, except far to the right, at the edge of the buffer.
   const Camera camera = anteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
   auto buffer = std::make_shared<DepthBuffer>(camera, centredGrid({100, 100, 100}));
   for (std::int64_t i = 0; i < buffer->size(); ++i)
@@ -195,7 +195,7 @@ TEST(ClippingSurface, ShowsTheFocusAtItsOwnDepth) {
     }
 }
 
-/// A cube seen along its axis has an answer: the plane of its front face.
+/// A cube seen along its axis has a known surface: the plane of its front face.
 TEST(ClippingSurface, AFlatFocusContinuesAsItsPlane) {
   const Model model;
   const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 80, 80);
@@ -237,7 +237,7 @@ TEST(ClippingSurface, LeavesTheFocusWithinItsStatedMismatch) {
     EXPECT_LE(surface.mismatch->p95, surface.mismatch->max);
     EXPECT_GT(surface.mismatch->max, 0.0);
     const auto& buffer = *std::get<ClipDepth>(surface.clip).buffer;
-    // From one sample to the next the spline itself moves by its slope, seen outside the focus.
+    // From one sample to the next the spline changes by its slope, measured outside the focus.
     double slope = 0.0, worst = 0.0;
     for (std::int64_t row = 0; row < buffer.rows(); ++row)
       for (std::int64_t column = 1; column < buffer.columns(); ++column) {
@@ -266,7 +266,7 @@ TEST(ClippingSurface, DoesNotDependOnFraming) {
     const Vec3 p = randomPoint(random, -30, 30);
     different += keep(a, p) != keep(b, p);
   }
-  EXPECT_LT(different, 20); // samples coincide; where the contour starts does not matter
+  EXPECT_LT(different, 20); // samples coincide; the contour's start does not matter
 }
 
 TEST(ClippingSurface, SaysWhenTheFocusIsOutsideThePicture) {

@@ -1,5 +1,5 @@
 #pragma once
-// Grids, masks and cameras for the tests of the clipping surface.
+// Grids, masks and cameras for tests of the clipping surface.
 
 #include "base/Random.h"
 #include "clip/focus/FocusDepth.h"
@@ -19,7 +19,7 @@ inline Vec3 randomPoint(Random& random, double low, double high) {
   return {uniform(random, low, high), uniform(random, low, high), uniform(random, low, high)};
 }
 
-/// Voxels of `spacing` mm around the world's origin.
+/// Grid with voxels of `spacing` mm, centred at the world's origin.
 inline Grid centredGrid(const Size3& size, const Vec3& spacing = Vec3::Ones()) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal(spacing);
@@ -27,7 +27,7 @@ inline Grid centredGrid(const Size3& size, const Vec3& spacing = Vec3::Ones()) {
   return {size, map};
 }
 
-/// The voxels whose centres, in world mm, satisfy the predicate.
+/// Mask of the voxels whose centres, world mm, satisfy the predicate.
 template <typename Predicate>
 Mask maskOf(const Grid& grid, const Predicate& predicate) {
   Mask mask;
@@ -53,8 +53,8 @@ inline Mask sphereMask(const Grid& grid, double radius) {
   return maskOf(grid, [&](const Vec3& p) { return p.norm() <= radius; });
 }
 
-/// Looks along +A (y grows with depth) at the origin from `distance` mm; `scale` is half the height
-/// of what is seen there in either projection.
+/// Camera that looks along +A (y grows with depth) at the origin from `distance` mm; `scale`: half
+/// the visible height at the origin in either projection, mm.
 inline Camera anteriorCamera(Projection projection, double distance, double scale, int width,
                              int height) {
   CameraPose pose;
@@ -66,7 +66,7 @@ inline Camera anteriorCamera(Projection projection, double distance, double scal
   return {pose, width, height};
 }
 
-/// A focus region drawn with '#', 1 mm a sample, its depths column + 10 row.
+/// Focus region drawn with '#'; 1 mm a sample, depth = column + 10 row.
 inline FocusDepth drawnFocus(const std::vector<std::string>& rows) {
   const auto width = static_cast<int>(rows[0].size());
   const auto height = static_cast<int>(rows.size());

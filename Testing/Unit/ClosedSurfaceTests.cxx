@@ -1,5 +1,4 @@
-// Surfaces of known shapes, in every way that VTK writes its arrays, and files that are not what
-// they say.
+// Surfaces of known shapes, in every encoding of VTK's arrays, and invalid files.
 
 #include "files/segments/ClosedSurface.h"
 
@@ -31,7 +30,7 @@ Shape box(const Vec3& lower, const Vec3& upper) {
   return shape;
 }
 
-/// An octahedron that is divided and pushed out.
+/// Subdivided octahedron with its points moved onto the sphere.
 Shape sphere(const Vec3& center, double radius, int divisions) {
   Shape shape{
       {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitX(), -Vec3::UnitY(), -Vec3::UnitZ()},
@@ -75,7 +74,7 @@ std::string base64(const std::string& bytes) {
 
 enum class Writing { ascii, plain, deflated };
 
-/// What stands between an array's tags. Blocks are small, so that there are several.
+/// Text between an array's tags. Small blocks, hence several.
 template <typename T>
 std::string encoded(const std::vector<T>& values, Writing writing) {
   std::ostringstream text;
@@ -149,7 +148,7 @@ Path writeBlocks(const TemporaryFolder& folder, const std::vector<std::string>& 
                      "version=\"1.0\"><vtkMultiBlockDataSet>\n";
   for (const std::string& file : files)
     text += "<DataSet index=\"0\" file=\"" + file + "\"></DataSet>\n";
-  std::filesystem::remove(folder / "s.seg.vtm"); // quicker than writing over it
+  std::filesystem::remove(folder / "s.seg.vtm"); // faster than overwriting
   return folder.write("s.seg.vtm", text + "</vtkMultiBlockDataSet></VTKFile>\n");
 }
 
@@ -226,7 +225,7 @@ TEST(ClosedSurface, keepsOverlapsInLayers) {
   EXPECT_THROW(segmentation.mask({"id3"}, grid), Error);
 }
 
-/// The part of a surface beyond the volume is left out, and the focus goes on over its faces.
+/// A surface is cut at the volume, and the focus continues across the volume's faces.
 TEST(ClosedSurface, endsAtTheVolume) {
   const TemporaryFolder folder;
   const Grid grid(Size3(10, 10, 10), Affine::Identity());
@@ -247,16 +246,16 @@ TEST(ClosedSurface, makesItsOwnGridWithoutAVolume) {
   EXPECT_NEAR(count / 8.0, 128.0 * 64 * 32, 0.03 * 128 * 64 * 32);
 }
 
-/// Rows through edges and corners: each crossing counts once.
+/// Rows through edges and corners count each crossing once.
 TEST(ClosedSurface, countsEdgesOnce) {
   const Shape onPlanes = box(Vec3(2, 2, 2), Vec3(6, 6, 6));
   const auto runs = voxelRuns(onPlanes.points, onPlanes.triangles, Size3(10, 10, 10));
   ASSERT_TRUE(runs);
-  EXPECT_EQ(runs->size(), 16u); // of five planes the last is outside, in y and z
+  EXPECT_EQ(runs->size(), 16u); // the last of five planes is outside, in y and z
   std::mt19937 random(3);
   for (int i = 0; i < 50; ++i) {
     Shape shape = sphere(Vec3(8, 8, 8), 5, 3);
-    for (Vec3& point : shape.points) // corners on rows, flat triangles, turned-over ones
+    for (Vec3& point : shape.points) // corners on rows, flat triangles, reversed triangles
       point = (point * (i % 2 ? 1.0 : 2.0)).array().round() / (i % 2 ? 1.0 : 2.0) +
               (i % 5 == 0 ? static_cast<double>(random() % 3) : 0.0);
     EXPECT_TRUE(voxelRuns(shape.points, shape.triangles, Size3(20, 20, 20))) << i;
@@ -319,7 +318,7 @@ TEST(ClosedSurface, survivesDamage) {
   EXPECT_GT(readable, 50);
 }
 
-/// Of numbers that pack well: 200 kB would be 1.5 GiB.
+/// Zeros compress well: 200 kB would expand to 1.5 GiB.
 TEST(ClosedSurface, refusesArraysThatDoNotFit) {
   const TemporaryFolder folder;
   constexpr std::uint64_t block = 1 << 20, blocks = 1536;
@@ -347,11 +346,11 @@ TEST(ClosedSurface, refusesArraysThatDoNotFit) {
     folder.write("large.vtp", with(array));
     expectRefused(folder / "large.vtp", writeBlocks(folder, {"large.vtp"}), "more than 1 GiB");
   }
-  folder.write("unused.vtp", with("Segmentation_MasterRepresentation")); // is not looked into
+  folder.write("unused.vtp", with("Segmentation_MasterRepresentation")); // must not be opened
   EXPECT_EQ(readSegmentation(writeBlocks(folder, {"unused.vtp"})).segments().size(), 1u);
 }
 
-/// SlicerRT's examples hold contours alone.
+/// SlicerRT's examples contain only contours.
 TEST(ClosedSurface, refusesRealContours) {
   const Path folder = Path(FENESTRA_DATA) / "slicer_scenes" / "slicerrt_scenes";
   if (!std::filesystem::exists(folder))

@@ -1,4 +1,4 @@
-// Comparisons of pictures whose statistics are known.
+// Comparisons of pictures with known statistics.
 
 #include "base/Error.h"
 #include "base/Random.h"
@@ -24,7 +24,7 @@ Image withError(Image image, float error) {
   return image;
 }
 
-/// Normal values (Box and Muller 1958).
+/// Image of normal values (Box and Muller 1958).
 Image noisyImage(int size, float mean, float deviation, std::uint64_t seed) {
   Image image = constantImage(size, size, mean);
   Random random(seed, 0, 0);
@@ -71,7 +71,7 @@ TEST(CompareImages, TakesTheReferencesOwnVarianceOff) {
   const Image reference = noisyImage(200, 1.0f, 0.01f, 1);
   const Image exact = constantImage(200, 200, 1.0f);
   const double own = 1e-4 / 1.01;
-  // A mean of 120000 squares of normal values.
+  // Mean of 120000 squares of normal values.
   const double tolerance = 5.0 * own * std::sqrt(2.0 / 120000.0);
   EXPECT_NEAR(compareImages(exact, reference).relMse, 0.0, tolerance);
   Image silent = reference;
@@ -192,13 +192,13 @@ TEST(AttachError, MakesTheStoredReferencesComparable) {
   Image silent = reference;
   for (const char* name : {"error.R", "error.G", "error.B"})
     silent.channels.erase(name);
-  // Its README states the relative variance of the reference: 7e-5.
+  // README of the reference: relative variance 7e-5.
   const double ownVariance = -compareImages(silent, reference).relMse;
   EXPECT_GT(ownVariance, 6e-5);
   EXPECT_LT(ownVariance, 8e-5);
 }
 
-// ---- whether two renders can be of one scene
+// ---- probability that two renders are of one scene
 // --------------------------------------------------------
 
 Image withSamples(Image image, float samples) {
@@ -206,7 +206,7 @@ Image withSamples(Image image, float samples) {
   return image;
 }
 
-/// Two independent ones of equal means and honest errors.
+/// Render of a constant picture with correct errors, independent for each seed.
 Image render(std::uint64_t seed, float mean = 0.5f) {
   return withSamples(noisyImage(32, mean, 0.01f, seed), 1e4f);
 }
@@ -258,13 +258,13 @@ TEST(AgreementProbability, TakesExactValuesAtTheirWord) {
   Image other = black;
   other.channels["B"][3] = 0.5f;
   EXPECT_EQ(agreementProbability(black, other), 0.0);
-  other.channels["error.B"][3] = 0.5f; // one of few samples met something
+  other.channels["error.B"][3] = 0.5f; // one of few samples hit something
   EXPECT_GT(agreementProbability(black, other), 0.05);
 }
 
 TEST(AgreementProbability, ExpectsFewBrightPathsToScatter) {
-  // Pixels that one path in two hundred makes bright, 100 and 800 samples: in 4096 pixels several
-  // have four such paths of 100, which a normal distribution would call impossible.
+  // One path in two hundred is bright, with 100 and 800 samples: among 4096 pixels several have
+  // four bright paths of 100, which a normal distribution would exclude.
   const auto sparse = [](std::uint64_t seed, int samples) {
     Image image =
         withSamples(withError(constantImage(64, 64, 0.0f), 0.0f), static_cast<float>(samples));

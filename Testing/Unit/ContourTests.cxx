@@ -1,4 +1,4 @@
-// Contours of drawn regions: loops, lengths, holes, and control points spaced uniformly on them.
+// Contours of drawn regions: loops, lengths, holes, and control points at uniform spacing.
 
 #include "ClippingTesting.h"
 #include "clip/focus/Contour.h"
@@ -29,8 +29,8 @@ std::vector<std::string> randomPicture(Random& random, int width, int height, do
   return rows;
 }
 
-/// Connected parts of the picture's samples of one kind, diagonally joined or not; the outside of
-/// the picture is a border of dots.
+/// Number of connected parts of one kind of sample, with or without diagonal connections; the
+/// picture has a border of dots.
 int parts(const std::vector<std::string>& rows, char kind, bool diagonal) {
   const int width = static_cast<int>(rows[0].size()) + 2,
             height = static_cast<int>(rows.size()) + 2;
@@ -130,7 +130,7 @@ TEST(Contour, EveryCrossingLiesOnOneLoopWhateverTheRegion) {
   }
 }
 
-/// A disc of radius 40 mm with a hole of radius 15 mm, and a small disc beside it.
+/// Disc of radius 40 mm with a hole of radius 15 mm, and a small disc beside.
 FocusDepth discs() {
   std::vector<std::string> rows(100, std::string(140, '.'));
   for (std::size_t y = 0; y < rows.size(); ++y)
@@ -177,8 +177,8 @@ TEST(ControlPoints, AreUniformInArcLength) {
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double gap =
         i + 1 < angles.size() ? angles[i + 1] - angles[i] : angles[0] + 2 * pi - angles[i];
-    // Spacing 5 mm; sites lie within a sample of their place, and a staircase is up to 8 % longer
-    // where it runs between the axes and the diagonals.
+    // Spacing 5 mm; sites lie within one sample of their place, and a staircase is up to 8 % longer
+    // between the axes and the diagonals.
     EXPECT_NEAR(gap * 40.0, 2 * pi * 40.0 / 50.0, 1.9);
   }
 }

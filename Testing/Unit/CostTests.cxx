@@ -1,5 +1,5 @@
-// What reading costs: counted instructions, not time, of n parts against 2 n. Under valgrind, which
-// counts them; skipped where it is not installed.
+// Cost of reading: instructions for n parts against 2 n, counted by valgrind instead of time.
+// Skipped without valgrind.
 
 #include "base/safe/JsonNode.h"
 #include "files/medical/MedicalHeader.h"
@@ -19,7 +19,7 @@
 namespace fenestra::CostTests {
 namespace {
 
-constexpr const char* countsVariable = "FENESTRA_COUNTS"; ///< the files that valgrind writes
+constexpr const char* countsVariable = "FENESTRA_COUNTS"; ///< files written by valgrind
 
 /// Instructions of one call.
 double instructions(const std::function<void()>& work) {
@@ -41,7 +41,7 @@ std::string repeated(int n, const std::function<std::string(const std::string&)>
   return text;
 }
 
-/// Prepares what has n parts, and returns what reads it.
+/// Prepares an input of n parts; returns the function that reads the input.
 using Prepare = std::function<std::function<void()>(int n)>;
 
 std::function<void()> planOf(const std::string& nodes) {
@@ -106,7 +106,7 @@ std::vector<Case> cases(const TemporaryFolder& folder) {
   };
 }
 
-/// This test again, under valgrind; false where that cannot be.
+/// Runs this test again under valgrind; false if valgrind cannot run.
 bool isCounted(const TemporaryFolder& folder) {
   const std::string counts = folder / "counts";
   const pid_t child = ::fork();

@@ -1,4 +1,4 @@
-// How much of the focus is shown, and stopping inside a long path.
+// Coverage of the focus, and stopping within a long path.
 
 #include "Support.h"
 
@@ -11,8 +11,8 @@
 namespace fenestra::testing::CoverageTests {
 namespace {
 
-/// A cube of 20 mm around the origin, extinction 0.1 per mm, seen from in front (anterior); the
-/// focus is met 5 mm behind its face in every pixel.
+/// Cube of 20 mm around the origin, extinction 0.1 per mm, seen from anterior; every pixel meets
+/// the focus 5 mm behind the cube's face.
 struct Cube {
   TestScene scene{
       makeVolume(centredGrid({10, 10, 10}, {2.0, 2.0, 2.0}), [](const Vec3&) { return 1.0; }),
@@ -45,7 +45,7 @@ struct Cube {
 };
 
 TEST(FocusCoverage, IsTheTransmittanceToTheFocus) {
-  // 256 estimates of exp(-0.5) that are 0 or 1.
+  // Mean of 256 estimates of exp(-0.5), each 0 or 1.
   EXPECT_NEAR(Cube().coverage(ClipNone{}), std::exp(-0.5), 4.0 * std::sqrt(0.25 / 256.0));
 }
 
@@ -62,8 +62,7 @@ TEST(FocusCoverage, CountsAFocusThatIsCutAwayAsNotShown) {
 
 TEST(Render, StopsInsideAPathThatWouldTakeMinutes) {
   TestScene scene = Cube().scene;
-  scene.transfer =
-      linearTransfer(20000.0, Rgb::Ones()); // nothing absorbs, and hardly anything leaves
+  scene.transfer = linearTransfer(20000.0, Rgb::Ones()); // no absorption, and almost no escape
   const Camera camera(scene.pose, scene.width, scene.height);
   const LightSet lights(scene.lights, scene.volume.grid, camera);
   const CellRanges ranges(scene.volume, 0);

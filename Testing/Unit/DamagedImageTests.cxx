@@ -1,4 +1,4 @@
-// Pictures' files that are damaged, or made to do harm.
+// Picture files that are damaged or malicious.
 
 #include "ImageTesting.h"
 
@@ -11,8 +11,7 @@ namespace fenestra::DamagedImageTests {
 using namespace std::string_literals;
 using namespace testing_images;
 
-/// For the leak sanitizer, if there is one: ITK's NRRD reader forgets a few bytes of a damaged
-/// file.
+/// Suppression for the leak sanitizer: ITK's NRRD reader leaks a few bytes of a damaged file.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libITKNrrdIO";
 }
@@ -65,17 +64,17 @@ TEST_F(DamagedFiles, CannotClaimMoreThanTheyHold) {
   EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "too short"), ErrorKind::input);
   store(path("b.nrrd"), head + "sizes: 4 40000 2\n\n1234");
   EXPECT_EQ(kindOf([&] { readImage(path("b.nrrd")); }, "32768"), ErrorKind::input);
-  // An attribute of 2 GB, right after the magic number and the version.
+  // Attribute of 2 GB, right after the magic number and the version.
   std::string exr = contentOf(written(renderedImage(), "a.exr"));
   exr.replace(8, 0, std::string("note\0string\0\xff\xff\xff\x7f", 16));
   store(path("a.exr"), exr);
   EXPECT_EQ(kindOf([&] { readImage(path("a.exr")); }, "attribute"), ErrorKind::input);
-  // A list of channels that ends before its size does: OpenEXR would take what follows for an
-  // attribute.
+  // List of channels that ends before its declared size: OpenEXR would take the following bytes for
+  // an attribute.
   exr.replace(8, 16, std::string("c\0chlist\0\x0d\0\0\0\0w\0string\0\xff\xff\xff\x7f", 26));
   store(path("a.exr"), exr);
   EXPECT_EQ(kindOf([&] { readImage(path("a.exr")); }, "does not fill"), ErrorKind::input);
-  // A PNG's width and height are bytes 16 to 23; libpng looks at the checksum first or at them.
+  // Width and height of a PNG are bytes 16 to 23; libpng checks either these or the checksum first.
   std::string png = contentOf(written(renderedImage(), "a.png"));
   png.replace(16, 8, std::string("\0\0\x70\0\0\0\x70\0", 8));
   store(path("a.png"), png);
@@ -87,8 +86,8 @@ TEST_F(DamagedFiles, CannotTakeMoreMemoryThanAPictureMakesSenseWith) {
                            "kinds: vector domain domain\n";
   store(path("a.nrrd"), head + "sizes: 4 16384 8192\n\n" + std::string(200'000, '\0'));
   EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "536870912 samples"), ErrorKind::input);
-  // A writer that stops early leaves zeros among the places of its blocks of lines, of which the
-  // first one follows them at once.
+  // A writer that stops early leaves zeros in the table of offsets to blocks of lines; the first
+  // block follows that table.
   std::string exr = contentOf(written(renderedImage(40, 70), "a.exr"));
   constexpr std::size_t places = 8 * ((70 + 15) / 16);
   const auto placeAt = [&exr](std::size_t at) {
@@ -119,7 +118,7 @@ TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {
     EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
 }
 
-/// Teem's messages have room for 1024 bytes of a line, and its sizes for 16 axes.
+/// Teem's messages hold 1024 bytes of a line, and its arrays hold sizes of 16 axes.
 TEST_F(DamagedFiles, CannotOverflowTheReader) {
   const std::string head = "NRRD0004\ntype: float\nencoding: raw\nendian: little\n";
   const std::string plain = head + "dimension: 2\nsizes: 4 4\n", ones(1000, '1');

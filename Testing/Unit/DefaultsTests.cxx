@@ -1,4 +1,4 @@
-// What a scene gets where its user says nothing.
+// Defaults of a scene.
 
 #include "session/Defaults.h"
 #include "session/Picture.h"
@@ -71,11 +71,11 @@ TEST(FrameView, FramesTheFocusTheSameInBothProjections) {
 
 TEST(FrameView, FramesWhatACropLeaves) {
   const Grid grid = ramp(0, 1).grid; // 80 x 60 x 40 mm
-  // A turned box that reaches beyond the volume's right side.
+  // Rotated box that reaches beyond the volume's right face.
   const CropBox crop(translationBy(grid.worldCenter() + Vec3(30, 0, 0)) *
                      rotationBy(pi / 4, Vec3::UnitY()) * scalingBy(Vec3::Constant(10.0)));
   const Camera camera(frameView({}, Domain(grid, crop), nullptr, 64, 64), 64, 64);
-  // Across: from the turned box's corner to the volume's face, 24.14 mm; up: 28.28 mm.
+  // Width: from the rotated box's corner to the volume's face, 24.14 mm; height: 28.28 mm.
   const double across = 10.0 * std::numbers::sqrt2 + 10.0;
   const Vec3 center = grid.worldCenter() + Vec3(40.0 - 0.5 * across, 0.0, 0.0);
   EXPECT_LT((camera.pose().target - center).norm(), 1e-6);

@@ -1,4 +1,4 @@
-// Where the buffer's samples lie, how far they reach, and what is between and beyond them.
+// Positions and extent of the buffer's samples, interpolation between and clamping beyond.
 
 #include "ClippingTesting.h"
 #include "base/Error.h"
@@ -100,7 +100,7 @@ TEST(DepthBuffer, InterpolatesLinearFunctionsExactlyAcrossBothDensities) {
     const Vec2 p = randomPoint(random, i % 2 ? -250 : -7, i % 2 ? 250 : 7).head<2>();
     EXPECT_NEAR(buffer.depth(p), plane(p), 2e-5);
   }
-  EXPECT_NEAR(buffer.depth({1e6, 0.0}), plane({250.0, 0.0}), 0.1); // the edge's value
+  EXPECT_NEAR(buffer.depth({1e6, 0.0}), plane({250.0, 0.0}), 0.1); // clamped to the edge
 }
 
 TEST(DepthBuffer, NearestIsTheSampleWhosePixelIsMet) {

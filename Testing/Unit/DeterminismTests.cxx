@@ -1,4 +1,4 @@
-// The picture is a function of scene, seed and sample counts alone.
+// A picture is a function of scene, seed and sample counts only.
 
 #include "Support.h"
 

@@ -1,4 +1,4 @@
-// DICOM series that GDCM writes here, a real one, and files that are not what they say.
+// DICOM series written here by GDCM, a real series, and invalid files.
 
 #include "files/medical/DicomSeries.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// A slice as a scanner writes it; LPS.
+/// Slice as written by a scanner; LPS.
 struct SliceFile {
   unsigned width = 5, height = 4;
   Vec3 position = Vec3::Zero();
@@ -27,14 +27,14 @@ struct SliceFile {
   double rowSpacing = 2.0, columnSpacing = 0.5;
   std::string uid = "1.2.3", number = "7", description = "head";
   std::string intercept = "0", slope = "1";
-  std::int16_t first = 0; ///< stored values count up from it
-  bool compress = false;  ///< as JPEG 2000, lossless
+  std::int16_t first = 0; ///< stored values count up from this one
+  bool compress = false;  ///< lossless JPEG 2000
   unsigned components = 1;
 };
 
 Path write(const Path& path, const SliceFile& slice) {
   const unsigned width = slice.width, height = slice.height;
-  const Quiet quiet; // what is not there yet is warned of
+  const Quiet quiet; // GDCM warns of missing files
   const auto io = itk::GDCMImageIO::New();
   io->SetFileName(path.string());
   io->KeepOriginalUIDOn();
@@ -61,7 +61,7 @@ Path write(const Path& path, const SliceFile& slice) {
   set("0020|0011", slice.number);
   set("0028|1052", slice.intercept);
   set("0028|1053", slice.slope);
-  set("0028|0100", "16"); // what floats are stored as
+  set("0028|0100", "16"); // storage type for floats
   set("0028|0101", "16");
   set("0028|0102", "15");
   set("0028|0103", "1");
@@ -73,7 +73,7 @@ Path write(const Path& path, const SliceFile& slice) {
     return path;
   }
   io->SetPixelType(itk::IOPixelEnum::SCALAR);
-  // What is written is rescaled, in float where that has fractions.
+  // GDCM rescales the written values, in float if they have fractions.
   const double intercept = std::stod(slice.intercept), slope = std::stod(slice.slope);
   std::vector<std::int16_t> whole(width * height);
   std::vector<float> fractions(width * height);
@@ -87,7 +87,7 @@ Path write(const Path& path, const SliceFile& slice) {
   return path;
 }
 
-/// `count` slices along the normal, in files whose names say nothing of their order.
+/// Writes `count` slices along the normal, in files whose names do not give their order.
 void writeStack(const TemporaryFolder& folder, SliceFile slice, int count, double step) {
   const Vec3 begin = slice.position;
   for (int i = 0; i < count; ++i) {
@@ -160,11 +160,11 @@ TEST(DicomSeries, decompresses) {
   SliceFile slice{.width = 60, .height = 50, .intercept = "-1024", .first = -3, .compress = true};
   const Path file = write(folder / "one.dcm", slice);
   const std::string bytes = bytesOf(file);
-  ASSERT_NE(bytes.find("\xff\x4f\xff\x51"), std::string::npos); // a codestream's begin
+  ASSERT_NE(bytes.find("\xff\x4f\xff\x51"), std::string::npos); // start of a codestream
   const Volume volume = readDicomVolume({file}, "x");
   for (int i = 0; i < 3000; ++i)
     ASSERT_EQ(valueAt(volume, i % 60, i / 60, 0), i - 3 - 1024);
-  std::string wider = bytes; // its own width, beyond what is declared
+  std::string wider = bytes; // width in the codestream, greater than declared
   wider[wider.find("\xff\x4f\xff\x51") + 8] = 1;
   folder.write("wider.dcm", wider);
   const Path half = folder.write("half.dcm", bytes.substr(0, bytes.size() - 40));
@@ -257,7 +257,7 @@ void expectRefused(const Path& named, const Path& folder, const std::string& tex
   fenestra::expectRefused(named, text, [&] { readOnly(folder); });
 }
 
-/// Slices at these depths, in files 0.dcm, 1.dcm, ...
+/// Writes slices at these depths, in files 0.dcm, 1.dcm, ...
 void writeDepths(const TemporaryFolder& folder, const std::vector<double>& depths) {
   for (std::size_t i = 0; i < depths.size(); ++i)
     write(folder / (std::to_string(i) + ".dcm"), {.position = {0, 0, depths[i]}});
@@ -298,7 +298,7 @@ TEST(DicomSeries, refusesSlicesThatDiffer) {
   expectRefused(spaced / "2.dcm", spaced.path(), "PixelSpacing: differs");
 }
 
-/// The begin of an element's value in a file's bytes; its type is implicit.
+/// Overwrites the start of an element's value in a file's bytes; the element's type is implicit.
 void replace(std::string& bytes, const std::string& tag, const std::string& value) {
   const std::size_t at = bytes.find(tag);
   ASSERT_NE(at, std::string::npos);
@@ -335,7 +335,7 @@ TEST(DicomSeries, refusesWhatIsNoStackOfGreySlices) {
                           [&] { findDicomSeries(folder / "absent"); });
 }
 
-/// Whatever becomes of the bytes: read, or refused on one line.
+/// Damaged bytes must be read, or refused on one line.
 TEST(DicomSeries, survivesDamage) {
   const TemporaryFolder folder;
   const std::string whole = bytesOf(write(folder / "a.dcm", {}));
@@ -360,8 +360,8 @@ TEST(DicomSeries, survivesDamage) {
   EXPECT_GT(readable, 3);
 }
 
-/// The same head, as a series (whose rescale intercept says 0, though its air is 0) and as the
-/// volume that another program made of it, in HU.
+/// One head, as a series (with rescale intercept 0, although its air is 0) and as the volume in HU
+/// that another program made of it.
 TEST(DicomSeries, readsARealSeries) {
   const Path folder = Path(FENESTRA_DATA) / "head_ct_slicer_dicom";
   if (!std::filesystem::exists(folder))
@@ -382,8 +382,8 @@ TEST(DicomSeries, readsARealSeries) {
       }
 }
 
-/// What once ended the process inside GDCM's decoder may be read or refused, as memory happens to
-/// lie.
+/// Stream that once crashed GDCM's decoder; whether it is read or refused depends on the memory
+/// layout.
 TEST(DicomSeries, survivesAStreamThatItsDecoderDoesNot) {
   const auto damaged = Path(__FILE__).parent_path() / "../Fuzz/Apart/Dicom/jpeg2000-stream.dcm";
   ASSERT_TRUE(std::filesystem::exists(damaged));

@@ -1,4 +1,4 @@
-// The display views: the tone curve's properties, and alpha.
+// Display views: properties of the tone curve, and alpha.
 
 #include "base/Error.h"
 #include "files/pictures/DisplayTransform.h"
@@ -13,7 +13,7 @@ namespace {
 constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
 
-/// IEC 61966-2-1.
+/// Inverse of the sRGB encoding (IEC 61966-2-1).
 double decodedSrgb(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }

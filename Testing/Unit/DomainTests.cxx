@@ -1,4 +1,4 @@
-// A cropped volume's domain against its definition: a point is inside where it is in both boxes.
+// Domain of a cropped volume against its definition: a point is inside if both boxes contain it.
 
 #include "model/volume/Domain.h"
 
@@ -17,7 +17,7 @@ Vec3 randomPoint(Random& random, double size) {
   return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
 }
 
-/// Rotated, sheared and stretched about the origin, sometimes mirrored.
+/// Map that rotates, shears and stretches about the origin, and sometimes mirrors.
 Affine randomMap(Random& random, double size) {
   Affine map = Affine::Identity();
   const Mat3 anything(randomPoint(random, 1), randomPoint(random, 1), randomPoint(random, 1));
@@ -37,7 +37,8 @@ Grid randomGrid(Random& random) {
                     translationBy(-0.5 * (size.array() - 1).cast<double>().matrix())};
 }
 
-/// How far a world point is outside, in the boxes' own units: 0 on the surface, negative inside.
+/// Distance of a world point outside the domain, in the boxes' own units; 0: on the surface,
+/// negative: inside.
 double outside(const Grid& grid, const CropBox& crop, const Vec3& world) {
   const Vec3 index = grid.worldToIndex * world;
   const Box box = grid.indexBox();
@@ -55,7 +56,7 @@ TEST(Domain, IsWhatBothBoxesHold) {
     const Vec3 through = crop.boxToWorld * randomPoint(random, 1.0);
     Ray ray{randomPoint(random, 6.0), Vec3::Zero()};
     ray.direction = (through - ray.origin).normalized();
-    if (trial % 3 == 0) // along an axis of the world, or of one of the boxes
+    if (trial % 3 == 0) // along an axis of the world, or of a box
       ray.direction = Vec3::Unit(trial % 9 / 3);
     else if (trial % 3 == 1)
       ray.direction = (trial % 2 ? crop.boxToWorld : grid.indexToWorld).linear().col(trial % 9 / 3);

@@ -1,4 +1,4 @@
-// Pixels that provably meet nothing take one sample, and no others do.
+// Pixels that provably meet nothing take one sample; other pixels do not.
 
 #include "Support.h"
 #include "transport/render/EmptyPixels.h"
@@ -8,7 +8,7 @@
 namespace fenestra::testing::EmptyPixelsTests {
 namespace {
 
-/// A small opaque ball off the middle of an empty box, turned against the view.
+/// Small opaque ball off the centre of an empty box, rotated against the view.
 TestScene ballScene(Projection projection, double distance) {
   Affine map = Affine::Identity();
   map.linear() = rotationBy(0.4, Vec3(1, 2, 3).normalized()).linear() * 1.5;
@@ -40,7 +40,7 @@ TEST_P(EmptyPixelsOf, AreThoseThatNoSampleOfAnyMeets) {
   RenderSettings settings;
   settings.samples = 64;
   const Film film = scene.render(settings).film;
-  TestScene mapped = scene; // whose environment is no constant: nothing is certain
+  TestScene mapped = scene; // environment is not constant: no pixel is certain
   mapped.lights = {EnvironmentLight{Rgb::Ones(), {2, 1, {1, 1, 1, 2, 2, 2}}}};
   settings.path.background.kind = Background::Kind::environment;
   settings.samples = 256;

@@ -43,7 +43,7 @@ TEST(Film, NoiseFollowsItsDefinition) {
     film.at(0, 0).add(sample);
     film.at(0, 1).add({}); // black, without error
   }
-  // se^2 = 1, x = 2: half of the pixels have 1 / 4.01.
+  // se^2 = 1, x = 2: half of the pixels contribute 1 / 4.01.
   EXPECT_NEAR(film.noise(), std::sqrt(0.5 / 4.01), 1e-12);
 }
 

@@ -1,4 +1,4 @@
-// The focus's depth is exact: against planes, against dense marching of the same indicator.
+// Exactness of the focus's depth: against planes and against dense marching of the same indicator.
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
@@ -25,7 +25,7 @@ double trilinear(const std::array<double, 8>& v, const Vec3& p) {
   return sum;
 }
 
-/// The mask's indicator at a world point, straight from its definition.
+/// Indicator of the mask at a world point, by definition.
 double indicator(const Mask& mask, const Vec3& world) {
   const Vec3 index = mask.grid.worldToIndex * world;
   const Vec3 floor = index.array().floor();
@@ -43,7 +43,7 @@ double depthAt(const FocusDepth& focus, const Vec2& position) {
   return focus.depth.nearest(position);
 }
 
-/// Rays through and beside a mask of 3^3 voxels, in its cells, and in the world.
+/// Rays through and beside a mask of 3^3 voxels, in its cells and in the world.
 struct SomeRays {
   FocusRays inCells;
   std::vector<Ray> inWorld;
@@ -89,10 +89,10 @@ TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
   EXPECT_GT(met, briefly(500));
 }
 
-/// The near end of a ridge may be told for its summit.
+/// Tolerance within which the near end of a ridge may be returned as its summit.
 constexpr double ridge = 1.01e-4;
 
-/// The summit of a ray that misses a mask, by stepping.
+/// Summit on a ray that misses a mask, by stepping.
 double summitOf(const Mask& mask, const Ray& ray, double begin, double end) {
   constexpr double step = 0.003;
   double best = 0.0, before = 0.0, here = 0.0;
@@ -137,7 +137,7 @@ TEST(FocusCells, KnowTheSummitsOfRaysThatMissThem) {
         hidden += greatest > rays.height[i] + 0.01;
         const double stepped = summitOf(mask, worldRays[i], rays.begin[i], rays.end[i]);
         if (std::abs(rays.height[i] - stepped) > 2e-3)
-          ++other; // a hill that is hidden by a hair, or not, may be told either way by stepping
+          ++other; // stepping may decide either way on a hill that is barely hidden
         else if (stepped == greatest) {
           EXPECT_GE(rays.height[i], greatest - ridge);
         }
@@ -222,7 +222,7 @@ TEST(FocusDepth, RegionsTellFocusContextAndOutside) {
   EXPECT_EQ(count[static_cast<std::size_t>(Region::outside)], 40 * 40 - 20 * 20);
 }
 
-/// Every hit is on the 0.5 level, and nothing of the focus is in front of it.
+/// Expects every hit on the level 0.5, with no focus in front.
 void compareWithMarching(const Camera& camera, const Domain& volume, const Mask& mask) {
   const FocusDepth focus = traceFocus(camera, volume, mask);
   const double step = 0.02;
@@ -361,7 +361,8 @@ TEST(FocusDepth, TheVolumesFaceCutsAFocusThatReachesBeyondIt) {
 TEST(FocusDepth, ACropCutsTheFocusAndItsContext) {
   const Grid volume = centredGrid({40, 40, 40});
   const Mask mask = sphereMask(volume, 10.0);
-  // Keeps what is behind a plane through the origin that falls 1 mm of depth a mm to the right.
+  // Crop that keeps matter behind a plane through the origin, whose depth grows 1 mm per mm to the
+  // right.
   const CropBox crop(rotationBy(-pi / 4, Vec3::UnitZ()) * translationBy({0.0, 30.0, 0.0}) *
                      scalingBy(Vec3(60.0, 30.0, 18.0)));
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);

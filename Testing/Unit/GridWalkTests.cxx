@@ -1,4 +1,4 @@
-// Every cell, in order, whatever the ray: GridWalk against its promises and against brute force.
+// Every cell in order, for every ray: GridWalk against its contract and against brute force.
 
 #include "RunSettings.h"
 #include "base/Random.h"
@@ -15,10 +15,10 @@ namespace {
 
 struct Walked {
   std::int64_t cells = 0;
-  double worstOutside = 0.0; ///< how far, in cells, an interval's middle lies outside its cell
+  double worstOutside = 0.0; ///< greatest distance of an interval's middle outside its cell, cells
 };
 
-/// Walks the ray and checks every promise that holds for any finite ray.
+/// Walks the ray and checks the guarantees that hold for every finite ray.
 Walked checkedWalk(const Ray& ray, const Interval& range, const Size3& cells) {
   Walked walked;
   const Interval inside = Box{Vec3::Zero(), cells.cast<double>()}.clip(ray, range);
@@ -57,7 +57,7 @@ double signedUniform(Random& random) {
   return 2.0 * random.uniform() - 1.0;
 }
 
-/// A coordinate that likes faces, corners, zeros and extremes.
+/// Coordinate that is often a face, a corner, zero or an extreme.
 double awkward(Random& random, double extent) {
   switch (random.bits() % 6) {
   case 0:
@@ -180,7 +180,7 @@ TEST(GridWalk, RaysThroughCornersTileTheirRange) {
   Random random(13, 14, 15);
   const Size3 cells(9, 10, 11);
   for (int trial = 0; trial < briefly(500000) && !HasFailure(); ++trial) {
-    Vec3 from, to; // half of the corners lie in the grid's surface, where the walk begins
+    Vec3 from, to; // half of the corners lie on the grid's surface, where the walk begins
     for (int axis = 0; axis < 3; ++axis) {
       from[axis] = 30.0 * signedUniform(random);
       to[axis] = static_cast<double>(random.bits() % static_cast<std::uint64_t>(cells[axis] + 1));

@@ -1,4 +1,4 @@
-// Pictures to files and back: what is kept, and what a failure leaves.
+// Round trips of pictures through files: the retained values, and the effects of a failure.
 
 #include "ImageTesting.h"
 #include "base/safe/EmbeddedResources.h"
@@ -32,7 +32,7 @@ Image onePixel(float r, float g, float b, float a) {
   return {1, 1, {{"R", {r}}, {"G", {g}}, {"B", {b}}, {"A", {a}}}, {}};
 }
 
-/// While it lives, no file grows past `bytes`, as on a full disk.
+/// Full disk: during the object's life no file grows beyond `bytes`.
 class FullDisk {
 public:
   explicit FullDisk(rlim_t bytes) : m_handler(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -147,12 +147,12 @@ TEST_F(NrrdFiles, AreOpaqueWithoutAlphaAndAloneWithoutDepth) {
 
 TEST_F(NrrdFiles, ReplaceNoDepthPictureThatIsNotTheirs) {
   const Image image = renderedImage();
-  written(image, "view.nrrd"); // whose depth bears the mark
+  written(image, "view.nrrd"); // its depth file bears the mark
   written(image, "view.nrrd");
   std::string depth = contentOf(path("view-Z.nrrd"));
   const std::size_t mark = depth.find("Software:=");
   store(path("view-Z.nrrd"), depth.erase(mark, depth.find('\n', mark) + 1 - mark));
-  written(image, "view.nrrd"); // as earlier versions wrote it: the same grid
+  written(image, "view.nrrd"); // format of earlier versions: the same grid
   store(path("view-Z.nrrd"), "somebody else's");
   EXPECT_EQ(kindOf([&] { written(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
   EXPECT_EQ(contentOf(path("view-Z.nrrd")), "somebody else's");
@@ -177,7 +177,7 @@ TEST_F(DisplayFiles, ThatNobodyNamedReplaceOnlyOurs) {
 }
 
 TEST_F(NrrdFiles, LieOnThePlaneInLps) {
-  // Seen from anterior: the patient's right is on the picture's left, superior is up.
+  // View from anterior: the patient's right is on the picture's left, superior is up.
   const ImagePlane plane{{90.0, 100.0, 80.0}, {-0.5, 0.0, 0.0}, {0.0, 0.0, -0.25}};
   const std::string content = contentOf(written(renderedImage(), "view.nrrd", plane));
   const std::string header = content.substr(0, content.find("\n\n"));
@@ -263,7 +263,8 @@ TEST_F(ImageFiles, ThatFailLeaveNothingBehindAndKeepTheFormer) {
     writeImage(image, {}, path(name));
     const std::string before = contentOf(path(name));
     const std::size_t count = fileCount();
-    // Full at once, midway, and within the last block, where a buffered writer no longer looks.
+    // Limits at the start, midway, and within the last block, where a buffered writer no longer
+    // checks.
     for (const std::size_t limit : {std::size_t{0}, before.size() / 2, before.size() - 1}) {
       const FullDisk full(limit);
       ::testing::internal::CaptureStderr();

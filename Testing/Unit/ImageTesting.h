@@ -1,5 +1,5 @@
 #pragma once
-// Pictures to write, and a folder to write them into.
+// Pictures to write, and a folder for them.
 
 #include "WriteResults.h"
 #include "base/Error.h"
@@ -28,7 +28,7 @@ inline void store(const fs::path& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
-/// The kind of Error that something throws; its text must be one line that names the file.
+/// Kind of the Error thrown by `action`; expects a text of one line that contains `named`.
 inline ErrorKind kindOf(const std::function<void()>& action, const std::string& named = "") {
   try {
     action();
@@ -42,7 +42,7 @@ inline ErrorKind kindOf(const std::function<void()>& action, const std::string& 
   return {};
 }
 
-/// A gradient in every channel that a render has.
+/// Image with a gradient in every channel of a render.
 inline Image renderedImage(int width = 13, int height = 7) {
   Image image{width, height, {}, {{"seed", "7"}, {"command", "fenestra a.nrrd --size 13x7"}}};
   float start = 0.0f;

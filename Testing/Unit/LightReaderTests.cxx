@@ -1,4 +1,4 @@
-// Lights from JSON, environment maps from EXR, and what is refused.
+// Lights from JSON, environment maps from EXR, and refusals.
 
 #include "WriteResults.h"
 #include "base/safe/EmbeddedResources.h"

@@ -14,7 +14,7 @@ Camera camera() {
   return {pose, 8, 8};
 }
 
-/// Rows of very different brightness, one black texel, one far brighter than the rest.
+/// Map with rows of very different brightness, one black texel, one far brighter than the rest.
 EnvironmentMap roughMap() {
   EnvironmentMap map{12, 6, {}};
   for (int i = 0; i < 72; ++i) {
@@ -49,14 +49,14 @@ TEST(EnvironmentSampler, LooksWhereTheDesignSays) {
     lit.rgb[static_cast<std::size_t>(3 * (column + 4 * row))] = 1.0F;
     return EnvironmentSampler({Rgb::Ones(), lit});
   };
-  // Columns 1 and 2 meet at anterior; right is a quarter turn to the right of it.
+  // Columns 1 and 2 meet at anterior; right is a quarter turn to the right.
   EXPECT_EQ(light(2, 0).radiance(Vec3(0.1, 1, 0.5).normalized())[0], 1.0);
   EXPECT_EQ(light(1, 0).radiance(Vec3(-0.1, 1, 0.5).normalized())[0], 1.0);
   EXPECT_EQ(light(2, 1).radiance(Vec3(1, 0.1, -0.5).normalized())[0], 1.0);
   EXPECT_EQ(light(3, 1).radiance(Vec3(1, -0.1, -0.5).normalized())[0], 1.0);
 }
 
-/// LightSet::sample() draws directions as areaArrivals() and environment() say it does.
+/// Expects LightSet::sample() to draw directions by the pdfs of areaArrivals() and environment().
 void expectConsistent(const std::vector<Light>& lights, const Vec3& point, int fine) {
   const LightSet set(lights, grid, camera());
   const auto draw = [&](Random& r) -> Vec3 {

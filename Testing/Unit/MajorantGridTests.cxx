@@ -26,7 +26,7 @@ std::vector<Voxel> noise(const Size3& size, double low, double high) {
   return voxels;
 }
 
-/// No point of the volume has more extinction than its cell's majorant.
+/// Expects extinction <= the cell's majorant at every point.
 template <typename Voxel>
 void expectConservative(const TransferFunction& transfer, double low, double high) {
   Affine map = Affine::Identity();
@@ -101,7 +101,7 @@ TEST(MajorantGrid, DropsClippedAndEmptyCellsAndMarksThoseThatAreCut) {
   pose.position = {16, 16, 100};
   pose.target = {16, 16, 16};
   pose.up = Vec3::UnitY();
-  // Through the middle of a layer of cells; above it is removed.
+  // Clip plane through the middle of a layer of cells; the part above is removed.
   const Clip plane = ClipPlane{Camera(pose, 8, 8), Vec3(0, 0, 15.9), Vec3::UnitZ()};
   const MajorantGrid clipped(grid, ranges, opaque, plane);
   const double layer = 1.0 / static_cast<double>(clipped.cellCount().z());

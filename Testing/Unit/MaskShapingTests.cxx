@@ -1,4 +1,4 @@
-// Margins and smooth labels, against balls and slabs.
+// Margins and smoothed labels, against balls and slabs.
 
 #include "ClippingTesting.h"
 #include "base/Error.h"
@@ -15,7 +15,7 @@ namespace {
 
 const Grid volume = centredGrid({61, 61, 41}, {1.0, 1.0, 1.5});
 
-/// As readers make them: cropped to the segment, and a voxel more.
+/// Mask as returned by readers: cropped to the segment plus one voxel.
 Mask ball(double radius) {
   return maskOf(centredGrid({33, 33, 25}, {1.0, 1.0, 1.5}),
                 [&](const Vec3& p) { return p.norm() <= radius; });
@@ -32,7 +32,7 @@ double ballOf(double radius) {
 TEST(MaskShaping, GrowsABallByItsMargin) {
   for (const double margin : {1.5, 4.0, 9.0}) {
     const Mask grownBall = grown(ball(10.0), margin, volume);
-    // Voxel centres within the margin of voxel centres: half a voxel's uncertainty.
+    // Voxels whose centres lie within the margin of focus centres: uncertain by half a voxel.
     EXPECT_GT(millimetres3(grownBall), ballOf(10.0 + margin - 0.7));
     EXPECT_LT(millimetres3(grownBall), ballOf(10.0 + margin + 0.5));
     EXPECT_LT(grownBall.grid.worldCenter().norm(), 1e-9);
@@ -53,7 +53,7 @@ TEST(MaskShaping, ReachesAVoxelBeyondTheVolumeAtMost) {
 }
 
 TEST(MaskShaping, KeepsAFocusThatTheVolumeCutsWholeThere) {
-  // Its outermost voxels along x are focus: it goes on beyond.
+  // Outermost voxels along x are focus: the focus continues beyond.
   const Mask slab = maskOf(centredGrid({61, 21, 21}), [](const Vec3& p) {
     return std::abs(p.y()) < 6.5 && std::abs(p.z()) < 6.5;
   });
@@ -74,7 +74,7 @@ TEST(MaskShaping, UnitesSegmentsWhereverTheirVoxelsLie) {
   EXPECT_EQ(united({a, a}).count, a.count);
 }
 
-/// Greatest distance of the visible surface from a sphere of `radius`, over its middle.
+/// Range of the visible surface's distances from a sphere of `radius`, over its central part, mm.
 double stairs(const Mask& mask, double radius) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100, 20, 128, 128);
   const FocusDepth focus = traceFocus(camera, volume, mask);
@@ -111,7 +111,7 @@ TEST(MaskShaping, AFlatFaceStaysWhereItIs) {
   EXPECT_NEAR(depth(smoothed(box, 1.0, volume)), depth(box), 0.01) << "a byte's rounding";
 }
 
-/// Spread of what the visible surface misses y = slope z by, along its normal, mm.
+/// Range of the visible surface's distances from y = slope z along its normal, mm.
 double stairsOfASlope(const Mask& mask, double slope) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100, 5, 128, 128);
   const FocusDepth focus = traceFocus(camera, volume, mask);

@@ -1,5 +1,5 @@
 #pragma once
-// Small medical image files for tests, in a folder that goes away with its test.
+// Small medical image files for tests, in a folder that is removed with its test.
 
 #include "Refusals.h"
 
@@ -16,7 +16,7 @@ std::string rawBytes(const std::vector<T>& samples) {
   return {reinterpret_cast<const char*>(samples.data()), samples.size() * sizeof(T)};
 }
 
-/// Geometry as ITK writes it: LPS.
+/// Geometry in ITK's convention: LPS.
 struct FileGeometry {
   std::vector<std::size_t> size = {3, 4, 2};
   std::vector<std::vector<double>> directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -27,7 +27,7 @@ struct FileGeometry {
   std::map<std::string, std::string> fields = {};
 };
 
-/// Has ITK write the samples, in the format that the file's name ends with.
+/// Writes the samples through ITK, in the format of the file name's ending.
 template <typename T>
 void writeFile(const std::filesystem::path& path, const std::vector<T>& samples,
                const FileGeometry& geometry = {});

@@ -1,5 +1,4 @@
-// Headers of volumes that are sound but say what is not read: what is refused, in true words, and
-// what is told.
+// Valid volume headers with unsupported content: refusals with correct reasons, and warnings.
 
 #include "files/medical/VolumeReader.h"
 
@@ -18,7 +17,7 @@ protected:
   static void refuse(const Path& path, const std::string& text) {
     expectRefused(path, text, [&path] { readVolume(path); });
   }
-  /// Of 3x4x2 samples; `lines` end with a line break each.
+  /// File of 3x4x2 samples; each of `lines` ends with a line break.
   Path nrrd(const std::string& lines, const std::string& encoding = "raw",
             const std::string& data = std::string(24, 'x')) const {
     return folder.write("v.nrrd", "NRRD0004\ntype: unsigned char\ndimension: 3\nsizes: 3 4 2\n"

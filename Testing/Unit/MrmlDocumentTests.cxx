@@ -1,4 +1,4 @@
-// MRML as XML: nodes, attributes, references of old and new scenes, and what is no scene.
+// MRML as XML: nodes, attributes, references of old and new scenes, and files that are not scenes.
 
 #include "SceneTesting.h"
 

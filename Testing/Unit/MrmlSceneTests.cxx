@@ -1,4 +1,4 @@
-// What nodes mean: geometry, transforms, cropping boxes, cameras, looks, visibility.
+// Meaning of nodes: geometry, transforms, cropping boxes, cameras, looks, visibility.
 
 #include "SceneTesting.h"
 
@@ -144,7 +144,7 @@ TEST(MrmlScene, readsTheOldInverseForm) {
   expectSame(toWorld(scene, node(scene, "n")), turnedMap.inverse());
 }
 
-/// An ITK text transform that shifts by (1, 2, 3) in LPS.
+/// ITK text transform that shifts by (1, 2, 3) in LPS.
 const std::string shiftFile = "#Insight Transform File V1.0\n#Transform 0\n"
                               "Transform: TranslationTransform_double_3_3\n"
                               "Parameters: 1 2 3.0000000001\nFixedParameters:\n";
@@ -174,7 +174,7 @@ TEST(MrmlScene, knowsHowOldScenesMeantTheirFiles) {
   EXPECT_EQ(shifted("Transform", R"(readWriteAsTransformToParent="true")").translation(),
             -toParent);
   EXPECT_EQ(shifted("LinearTransform", R"(readWriteAsTransformToParent="true")").translation(),
-            toParent); // Slicer wrote it the wrong way round
+            toParent); // Slicer wrote the inverse
   EXPECT_EQ(shifted("LinearTransform", R"(readWriteAsTransformToParent="false")").translation(),
             -toParent);
 }
@@ -289,7 +289,7 @@ TEST(MrmlScene, readsCameras) {
   const CameraPose parallel =
       poseOf(R"(parallelProjection="true" parallelScale="80" viewAngle="20")");
   EXPECT_EQ(parallel.projection, Projection::orthographic);
-  EXPECT_EQ(parallel.scale, 80.0); // half the height, as ours
+  EXPECT_EQ(parallel.scale, 80.0); // half the height, as in Fenestra
   EXPECT_EQ(parallel.position, Vec3(1, 2, 3));
   EXPECT_EQ(parallel.target, Vec3(1, 102, 3));
   EXPECT_EQ(parallel.up, Vec3(0, 0, 1));

@@ -1,4 +1,4 @@
-// Numbers of a scene that are fine alone, and what is composed of them.
+// Numbers in a scene that are valid alone but not in composition.
 
 #include "SceneTesting.h"
 
@@ -9,14 +9,14 @@ const MrmlNode& node(const MrmlScene& scene, const std::string& id) {
   return *scene.document.find(id);
 }
 
-/// A node t of three rows of four numbers, under the node `above`.
+/// Node t of three rows of four numbers, under the node `above`.
 std::string transform(const std::string& rows, const std::string& id = "t",
                       const std::string& above = "") {
   return "<LinearTransform id=\"" + id + "\" transformNodeRef=\"" + above +
          "\" matrixTransformToParent=\"" + rows + " 0 0 0 1\"/>";
 }
 
-/// t, t1, t2, ...: each under the next one.
+/// Nodes t, t1, t2, ...: each under the next.
 std::string chain(const std::string& rows, int count) {
   const auto name = [](int i) { return std::string("t").append(std::to_string(i)); };
   std::string nodes = transform(rows, "t", "t1");
@@ -25,7 +25,7 @@ std::string chain(const std::string& rows, int count) {
   return nodes;
 }
 
-/// With these no point keeps a fraction of a voxel, or paths never end.
+/// Maps under which a point loses the precision of a voxel, or paths never end.
 TEST(MrmlTransform, refusesMapsThatLeadOutOfWhatCanBeComputed) {
   const SceneFolder folder;
   const auto refuse = [&](const std::string& transforms, const std::string& because) {
@@ -63,7 +63,7 @@ TEST(MrmlTransform, followsNoChainBeyondWhatARenderDoes) {
   EXPECT_EQ(countAbove(chain(rows, 2000)), 1000u);
 }
 
-/// A scene can name a file that takes long often.
+/// A scene can name a slow file many times.
 TEST(MrmlTransform, readsAFileOnce) {
   const SceneFolder folder;
   const std::string nodes = R"(<N id="n" transformNodeRef="a"/>
@@ -75,7 +75,7 @@ TEST(MrmlTransform, readsAFileOnce) {
   folder.write("t.tfm", text + "1 2 3\nFixedParameters: \n");
   MrmlScene scene = folder.scene(nodes);
   const Affine read = toWorld(scene, node(scene, "n"));
-  EXPECT_TRUE(read.translation().isApprox(Vec3(2, 4, -6))); // twice, from the parent, of LPS
+  EXPECT_TRUE(read.translation().isApprox(Vec3(2, 4, -6))); // applied twice; inverse, in LPS
   folder.write("t.tfm", "damaged");
   EXPECT_TRUE(toWorld(scene, node(scene, "n")).isApprox(read));
 

@@ -1,4 +1,4 @@
-// Which segments a preset takes for its focus, and which preset is taken for segments.
+// Segments that a preset selects as its focus, and presets selected for segments.
 
 #include "base/safe/EmbeddedResources.h"
 #include "session/Defaults.h"
@@ -87,7 +87,7 @@ TEST(OrganPresets, listsThoseThatFitWhereSeveralDo) {
   });
 }
 
-/// The program's own presets that take the segment for their focus.
+/// Built-in presets that select the segment as their focus.
 Texts presetsOf(const SegmentInfo& segment) {
   Texts names;
   for (const std::string& name : ownPresets("presets"))
@@ -96,7 +96,7 @@ Texts presetsOf(const SegmentInfo& segment) {
   return names;
 }
 
-/// Names as TotalSegmentator, Slicer's terminology and usual label lists have them.
+/// Names used by TotalSegmentator, by Slicer's terminology and in common label lists.
 TEST(OrganPresets, theProgramsOwnKnowUsualNames) {
   const std::vector<std::pair<std::string, Texts>> meant = {
       {"liver", {"liver", "Liver", "Liver_1"}},
@@ -120,7 +120,7 @@ TEST(OrganPresets, theProgramsOwnKnowUsualNames) {
     EXPECT_EQ(presetsOf(segment(none)), Texts{}) << none;
 }
 
-/// What a focus is on is known by its code alone, too.
+/// A segment's code alone is sufficient.
 TEST(OrganPresets, theProgramsOwnKnowSlicersCodes) {
   EXPECT_EQ(presetsOf(segment("S", "SCT^10200004")), Texts{"liver"});
   EXPECT_EQ(presetsOf(segment("S", "SCT^39607008", "SCT^1")), Texts{"lungs"});
@@ -142,7 +142,7 @@ TEST(OrganPresets, aVolumesRangeSaysWhetherItIsCt) {
   EXPECT_TRUE(suits(Modality::us, volume(0, 255)));
 }
 
-/// 100 000 values from 0 to 99 999, each once: percentiles are known.
+/// 100 000 values, 0 to 99 999, each once: percentiles are known.
 TEST(OrganPresets, whatIsUsualIsBetweenThePercentiles) {
   const Volume volume =
       testing::makeVolume(testing::centredGrid({100, 100, 10}, Vec3::Ones()),

@@ -1,5 +1,5 @@
-// Results: what they may replace, that they appear together, and what a failure or another run
-// finds.
+// Results: the files that they may replace, their joint appearance, and the state after a failure
+// or another run.
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
@@ -27,7 +27,7 @@ using namespace std::string_literals;
 
 class OutputFiles : public testing::Test {
 protected:
-  /// The message of what `action` throws, which must be an Error of `kind` on one line.
+  /// Message of the Error thrown by `action`, which must be of `kind` and on one line.
   template <typename Action>
   static std::string refusal(ErrorKind kind, Action&& action) {
     try {
@@ -126,7 +126,7 @@ TEST_F(OutputFiles, AreNoInputsOfTheSameProcess) {
   outputs.write(folder / "a", "new");
   outputs.commit();
   refusal(ErrorKind::input, [&] { requireFile(folder / "a", ""); });
-  fs::remove(folder / "a"); // and its number is free for others
+  fs::remove(folder / "a"); // its inode number is free for others
   folder.write("a", "another one");
   requireFile(folder / "a", "");
 }
@@ -179,7 +179,7 @@ TEST_F(OutputFiles, RefuseWhatItsOwnerKeepsInAStickyFolder) {
   ::chmod((folder / "theirs.png").c_str(), 0666);
   ::chmod(folder.path().c_str(), 01777);
   ASSERT_EQ(::chown((folder / "theirs.png").c_str(), owner, owner), 0);
-  outputs.add(folder / "theirs.png"); // which root may
+  outputs.add(folder / "theirs.png"); // allowed for root
   ASSERT_EQ(::seteuid(other), 0);
   EXPECT_NE(refusal(ErrorKind::output, [&] { Outputs().add(folder / "theirs.png"); })
                 .find("belongs to somebody else"),
@@ -223,14 +223,13 @@ TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
   const std::string ours = sealed("x " + std::string(unsealedMark) + "12345 y");
   folder.write("ours", ours);
   folder.write("ours.end", sealed(std::string(1 << 20, 'x') + std::string(unsealedMark)));
-  for (const std::size_t before :
-       {9U, 19U, 25U}) // across the ends of blocks, if that is their size
+  for (const std::size_t before : {9U, 19U, 25U}) // across block ends, if blocks are 1 MB
     folder.write("ours." + std::to_string(before),
                  sealed(std::string((1 << 20) - before, 'x') + std::string(unsealedMark) + "1 2"));
   folder.write("edited", "an" + ours);
   folder.write("edited.end", ours + " and more");
   folder.write("claimed", std::string(unsealedMark));
-  std::string many; // each would be a checksum of the whole file
+  std::string many; // each mark would need a checksum of the whole file
   for (int i = 0; i < 100; ++i)
     many += unsealedMark;
   folder.write("many", many);
@@ -282,7 +281,7 @@ TEST_F(OutputFiles, OfOtherRunsAreNotTakenFromThemInTheirCommit) {
   file.write("new");
   file.finish(TemporaryFile::Sync::none);
   file.place();
-  removeAbandonedFiles(folder.path()); // as another run does
+  removeAbandonedFiles(folder.path()); // as in another run
   file.takeBack();
   EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
@@ -348,7 +347,7 @@ TEST_F(OutputFiles, NamesAreLockedByOneAtATime) {
   refusal(ErrorKind::output, [&] { NameLock(folder / "nowhere/a"); });
 }
 
-/// As a path in an archive may be.
+/// Names as long as a path in an archive may be.
 TEST_F(OutputFiles, WithNamesThatAreTooLongAreNotLeft) {
   { const Leftover file(folder / std::string(300, 'x'), Leftover::Kind::file); }
   EXPECT_EQ(remainingLeftovers(), std::vector<fs::path>());
@@ -356,7 +355,7 @@ TEST_F(OutputFiles, WithNamesThatAreTooLongAreNotLeft) {
 
 TEST_F(OutputFiles, OfAnotherProcessAreNotTakenForAbandoned) {
   const TemporaryFile file(folder / "a");
-  removeAbandonedFiles(folder.path()); // another descriptor: another lock, as in another process
+  removeAbandonedFiles(folder.path()); // another descriptor and lock, as in another process
   EXPECT_EQ(fileCount(), 1u);
 }
 
@@ -378,8 +377,8 @@ TEST(Inputs, HaveABudget) {
   EXPECT_THROW(requireFile(file, "", 99), Error);
 }
 
-/// The system ends a name there, so that a folder's name with more behind it holds the folder's
-/// files, whose names are the folder's again.
+/// The system ends a name at a zero byte: a folder's name with a zero byte and more text would
+/// contain the folder's files, whose names again are the folder's.
 TEST_F(OutputFiles, WithAZeroByteInTheirNamesAreNone) {
   const fs::path file = read("a");
   const std::string zero(1, '\0');

@@ -1,4 +1,4 @@
-// The synthetic fetus: what its segments hold, what hides the face, and that it is always the same.
+// Synthetic fetus: contents of its segments, occlusion of the face, and reproducibility.
 
 #include "base/Error.h"
 #include "phantoms/Fetus.h"
@@ -30,7 +30,7 @@ TEST(PhantomFetus, ValuesAreEightBitsOfUltrasound) {
   EXPECT_GT(*std::max_element(voxels.begin(), voxels.end()), 150);
 }
 
-/// The head is about an ellipsoid of 35 x 43 x 36 mm, with face, jaw and neck.
+/// The head is roughly an ellipsoid of 35 x 43 x 36 mm, with face, jaw and neck.
 TEST(PhantomFetus, SegmentsAreAsLargeAsTheirAnatomy) {
   const double voxel = std::pow(112.0 / 64.0, 3.0) / 1000.0; // ml
   ASSERT_EQ(smallFetus().segments.size(), 3u);
@@ -42,7 +42,7 @@ TEST(PhantomFetus, SegmentsAreAsLargeAsTheirAnatomy) {
   EXPECT_GT(countOf(0), countOf(1) / 2); // fluid around it
 }
 
-/// From in front, a ray to any part of the face meets the uterine wall first.
+/// A ray from the front to any part of the face meets the uterine wall first.
 TEST(PhantomFetus, TheWallHidesTheFace) {
   const Phantom& fetus = smallFetus();
   const auto& labels = fetus.labels.layers.front();

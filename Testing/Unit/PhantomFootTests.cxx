@@ -117,7 +117,7 @@ TEST(PhantomFoot, IsARightFootWithItsBonesInTheirPlaces) {
   EXPECT_LT(at("achilles_tendon").y(), at("tibia").y() - 20.0);
 }
 
-/// A joint's two bones come near each other but do not touch.
+/// Two bones of a joint come close but do not touch.
 TEST(PhantomFoot, JointsAreNarrowGaps) {
   const FootBones bones;
   const auto index = [&](const std::string& id) {

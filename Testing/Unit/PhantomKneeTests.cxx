@@ -46,7 +46,7 @@ double medianOf(const Phantom& phantom, const std::string& id) {
   return *middle;
 }
 
-/// Cartilage along the bone's normal, from the bone to where the cartilage ends; mm.
+/// Thickness of the cartilage along the bone's normal, mm.
 double thicknessAbove(const KneeBones& bones, const Vec3& surface) {
   constexpr double h = 0.05;
   const Vec3 normal =
@@ -188,8 +188,8 @@ TEST(PhantomKnee, TheLesionsAreOnTheFrontAndUndersideOfTheCondyles) {
   }
 }
 
-// Else a view of the femoral cartilage from in front would be clipped down to the rear of the
-// condyles beside the trochlea and behind the lesion.
+// Otherwise a view of the femoral cartilage from the front would be clipped down to the rear of the
+// condyles, beside the trochlea and behind the lesion.
 TEST(PhantomKnee, SeenFromInFrontTheFemoralCartilageHidesItsRear) {
   const Phantom& knee = smallKnee();
   const std::uint8_t label = labelOf(knee, "FemoralCartilage");

@@ -33,7 +33,7 @@ Vec3 triple(const pugi::xml_node& node, const char* attribute) {
   return values.size() == 3 ? Vec3(values[0], values[1], values[2]) : Vec3(Vec3::Zero());
 }
 
-/// The knee's voxel axes are none of the world's: a scene that confuses them shows.
+/// Knee whose voxel axes are not the world's, so that confused axes are detected.
 struct PhantomSceneFiles : ::testing::Test {
   TemporaryFolder folder;
   Phantom phantom = makeKneePhantom({{32, 36, 16}});
@@ -64,7 +64,7 @@ struct PhantomSceneFiles : ::testing::Test {
       EXPECT_EQ(text(node(tag), name), value) << tag << ' ' << name;
   }
 
-  /// The ids that a node's `references` give to a role.
+  /// Ids in a node's `references` for one role.
   static std::vector<std::string> referred(const pugi::xml_node& node, const std::string& role) {
     std::istringstream roles(node.attribute("references").value());
     for (std::string entry; std::getline(roles, entry, ';');)
@@ -247,7 +247,7 @@ TEST_F(PhantomSceneFiles, TheCameraBelongsToTheViewAndFramesTheVolume) {
   EXPECT_NEAR(up.norm(), 1.0, 1e-5);
   EXPECT_GT(up.z(), 0.8);
   const double scale = numbers(camera, "parallelScale").at(0);
-  EXPECT_EQ(numbers(view, "fieldOfView").at(0), scale); // what Slicer sets the camera to
+  EXPECT_EQ(numbers(view, "fieldOfView").at(0), scale); // Slicer sets the camera to this value
   double reach = 0.0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 offset = grid.worldCorner(i) - target;
@@ -272,7 +272,7 @@ TEST_F(PhantomSceneFiles, TheRegionOfInterestIsTheVolumesBoxInLps) {
                             o = vector("orientation");
   ASSERT_EQ(o.size(), 9u);
   const Grid& grid = phantom.volume.grid;
-  Affine boxToWorld = Affine::Identity(); // from [-1/2, 1/2]^3
+  Affine boxToWorld = Affine::Identity(); // map of [-1/2, 1/2]^3
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
       boxToWorld.linear()(row, column) = flip[row] * o[static_cast<std::size_t>(3 * row + column)] *
@@ -339,7 +339,7 @@ TEST_F(PhantomSceneFiles, TheArchiveBearsNoDateOfItsOwn) {
   for (const std::string& name : zip.names()) {
     zip_stat_t stat;
     ASSERT_EQ(zip_stat(zip.archive, name.c_str(), 0, &stat), 0);
-    const std::tm* date = std::localtime(&stat.mtime); // zip knows no time zone
+    const std::tm* date = std::localtime(&stat.mtime); // zip stores no time zone
     EXPECT_EQ(date->tm_year + 1900, 1980) << name;
     EXPECT_EQ(date->tm_yday, 0) << name;
   }
@@ -376,7 +376,7 @@ TEST(PhantomScene, AVpHoldsOpacitiesOfAMillimetre) {
     EXPECT_TRUE(document.load_string(text.c_str()));
     return numbers(document.child("MRML").child("VolumeProperty"), "scalarOpacity").at(2);
   };
-  EXPECT_NEAR(opacityOf(100.0), 0.99, 1e-12); // the unit is the edge's hundredth
+  EXPECT_NEAR(opacityOf(100.0), 0.99, 1e-12); // the unit is 1/100 of the edge
   EXPECT_NEAR(opacityOf(200.0), 1.0 - std::sqrt(0.01), 1e-12);
   EXPECT_NEAR(opacityOf(50.0), 0.9999, 1e-12);
 }

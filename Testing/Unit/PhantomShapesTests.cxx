@@ -47,7 +47,7 @@ TEST(PhantomShapes, ALoftPassesThroughItsSections) {
 }
 
 TEST(PhantomShapes, ABlockIsABoxWithRoundEdgesInItsOwnAxes) {
-  // Across, up and along: x, z and y of the world.
+  // Axes across, up and along: x, z and y of the world.
   const Solid solid = block(toShape({1, 2, 3}, Vec3::UnitY(), Vec3::UnitZ()), {4, 5, 6}, 2.0);
   EXPECT_NEAR(solid.distance({1, 2, 3}), -4.0, 1e-12);
   EXPECT_NEAR(solid.distance({8, 2, 3}), 3.0, 1e-12);
@@ -102,8 +102,8 @@ TEST(PhantomNoise, RicianMomentsAreThoseOfTheLiterature) {
     muscle += m / n;
     square += m * m / n;
   }
-  // Gudbjartsson and Patz 1995: Rayleigh where there is no signal, nearly normal where it is
-  // strong.
+  // Gudbjartsson and Patz 1995: Rayleigh distribution without signal, nearly normal for a strong
+  // signal.
   EXPECT_NEAR(air, sigma * std::sqrt(pi / 2.0), 0.1);
   EXPECT_NEAR(muscle, std::sqrt(350.0 * 350.0 + sigma * sigma), 0.15);
   EXPECT_NEAR(std::sqrt(square - muscle * muscle), sigma, 0.1);

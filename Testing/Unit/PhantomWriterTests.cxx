@@ -45,7 +45,7 @@ std::string field(const itk::NrrdImageIO& io, const std::string& key) {
   return value;
 }
 
-/// The place of a voxel as the file states it, turned from LPS to RAS.
+/// Position of a voxel as stated in the file, converted from LPS to RAS.
 Vec3 worldOf(const itk::NrrdImageIO& io, const Vec3& index) {
   Vec3 lps;
   for (unsigned axis = 0; axis < 3; ++axis)
@@ -84,7 +84,7 @@ TEST_F(PhantomFiles, TheSegmentationNamesEverySegmentAsSlicerDoes) {
   EXPECT_EQ(field(*io, "Segment" + std::to_string(phantom.segments.size()) + "_ID"), "");
 }
 
-// Slicer crops all of a layer to its first segment's.
+// Slicer crops a whole layer to the extent of its first segment.
 TEST_F(PhantomFiles, ASegmentsExtentHoldsItsLayer) {
   const std::string first = field(*open("knee.seg.nrrd"), "Segment0_Extent");
   EXPECT_EQ(field(*open("knee.seg.nrrd"), "Segment3_Extent"), first);
@@ -136,7 +136,7 @@ std::string contentOf(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The folder as versions before the mark left it.
+/// Removes the marks, which earlier versions did not write.
 void removeMarks(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::string text = contentOf(entry.path());
@@ -151,10 +151,10 @@ void removeMarks(const std::filesystem::path& folder) {
 
 TEST_F(PhantomFiles, ReplaceTheirLikeAndThoseOfEarlierVersions) {
   writePhantom(phantom, folder, "knee");
-  writePhantom(makeKneePhantom({{24, 28, 16}}), folder, "knee"); // by their marks
+  writePhantom(makeKneePhantom({{24, 28, 16}}), folder, "knee"); // recognised by the marks
   writePhantom(phantom, folder, "knee");
   removeMarks(folder);
-  writePhantom(phantom, folder, "knee"); // by volume and scene
+  writePhantom(phantom, folder, "knee"); // recognised by volume and scene
 }
 
 TEST_F(PhantomFiles, ReplaceNothingThatWasEdited) {

@@ -13,7 +13,7 @@ ScalarFunction::Knot knot(double s, double y) {
   return {s, ScalarFunction::Value(y)};
 }
 
-/// By definition: a search from the left.
+/// Value by definition: linear search.
 double plain(const Knots& knots, double s) {
   if (s < knots.front().position)
     return knots.front().value.value();
@@ -35,7 +35,7 @@ TEST(PiecewiseLinear, EqualsItsDefinitionOnRandomKnots) {
     double s = -10.0;
     const int count = 1 + static_cast<int>(random.uniform() * 40);
     for (int i = 0; i < count; ++i) {
-      // Very uneven gaps, and now and then a step.
+      // Very uneven gaps, and sometimes a step.
       s += random.uniform() < 0.2 ? 0.0 : std::pow(random.uniform(), 8.0) * 100.0;
       knots.push_back(knot(s, random.uniform()));
     }

@@ -1,4 +1,4 @@
-// Organ presets: what their files say, what is refused, and which names a pattern matches.
+// Organ presets: content of their files, refusals, and matches of name patterns.
 
 #include "base/safe/EmbeddedResources.h"
 #include "files/looks/PresetReader.h"
@@ -83,7 +83,7 @@ TEST(PresetReader, matchesWordsInAnyCaseAndSpelling) {
   EXPECT_FALSE(matchesName("-", "lung"));
 }
 
-/// Time would grow as a power of the number of stars if each were tried everywhere.
+/// Time would grow as a power of the number of stars if every star were tried everywhere.
 TEST(PresetReader, matchesPatternsOfManyStarsInNoTime) {
   std::string stars;
   for (int i = 0; i < 60; ++i)
@@ -104,7 +104,7 @@ TEST(PresetReader, readsEveryPresetThatTravelsWithTheProgram) {
       EXPECT_FALSE(embeddedResource("presets/" + other + ".json").empty()) << other;
     for (const auto& [flag, value] : preset.flags)
       if (flag == "transfer") {
-        // Of MR and ultrasound nobody knows the scalars.
+        // Scalars of MR and ultrasound are unknown in advance.
         const TransferLook look =
             parseTransferLook(embeddedResource("transfer/" + value + ".json"), value);
         EXPECT_EQ(look.relative, preset.modality != Modality::ct);

@@ -1,5 +1,5 @@
 #pragma once
-// Files that a reader has to refuse, and how it says so.
+// Files that a reader must refuse, and the form of the refusal.
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
@@ -11,8 +11,8 @@
 
 namespace fenestra {
 
-/// Expects an Error (input) of one line that names the file and contains `text`, and nothing on the
-/// standard error stream.
+/// Expects an Error (input) of one line that contains the file's name and `text`, and no output on
+/// standard error.
 template <typename Call>
 void expectRefused(const std::filesystem::path& path, const std::string& text, Call&& call) {
   ::testing::internal::CaptureStderr();

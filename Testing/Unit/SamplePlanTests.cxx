@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t pilotSamples = 16;
 
-/// A pilot whose pixels are 0.5 on average and deviate by `deviation(column, row)`.
+/// Pilot with pixels of mean 0.5 and standard deviation `deviation(column, row)`.
 template <typename Deviation>
 Film pilotOf(int width, int height, Deviation&& deviation, double scatterings = 1.0) {
   Film film(width, height);
@@ -25,7 +25,7 @@ Film pilotOf(int width, int height, Deviation&& deviation, double scatterings = 
   return film;
 }
 
-/// Noisy on the left, quiet on the right.
+/// Deviation: noisy on the left, quiet on the right.
 double leftDeviation(int column, int) {
   return column < 32 ? 0.4 : 0.1;
 }
@@ -81,7 +81,7 @@ TEST(SamplePlan, GivesEveryPixelThePilotAndNeverTakesBack) {
   }
 }
 
-/// But for what they change of all pixels' noise together.
+/// A pixel's own samples influence its count only through all pixels' noise together.
 TEST(SamplePlan, APixelsOwnSamplesDoNotDecideOnTheirNumber) {
   const SamplePlan plain(pilotOf(64, 64, leftDeviation));
   const SamplePlan other(pilotOf(64, 64, [](int column, int row) {

@@ -1,4 +1,4 @@
-// Samples on their way from a file, block by block, into the smallest type that holds them all.
+// Samples read from a file block by block into the smallest type that holds them all.
 
 #include "files/medical/VolumeReader.h"
 
@@ -17,12 +17,12 @@
 namespace fenestra::SampleReadingTests {
 namespace {
 
-constexpr std::size_t count = 600'000; // some blocks, the last one not full
+constexpr std::size_t count = 600'000; // several blocks, the last one partial
 const std::string sizes = "100 100 60";
 
 using Store = SampleStore<std::uint8_t, std::int16_t, std::uint16_t, float>;
 
-/// Small whole numbers but for one, late.
+/// Small integers, except for one sample near the end.
 template <typename T>
 std::vector<T> samplesWith(T odd) {
   std::vector<T> samples(count);
@@ -80,7 +80,7 @@ TEST(SampleReading, widensWhatIsThereWhenALateSampleAsksForIt) {
 
 TEST(SampleReading, widensMoreThanOnce) {
   std::vector<std::int32_t> samples = samplesWith<std::int32_t>(-7);
-  samples[300'000] = 40'000; // to uint16, then to float for the negative one
+  samples[300'000] = 40'000; // to uint16, then to float for the negative sample
   const Store::Vectors vectors = stored(samples);
   const auto& kept = std::get<std::vector<float>>(vectors);
   EXPECT_TRUE(std::equal(kept.begin(), kept.end(), samples.begin(), samples.end(),
@@ -193,7 +193,7 @@ TEST(SampleReading, refusesStreamsOfAnotherLength) {
   refuse("long.nrrd", head + gzip(samples + "x"));
   refuse("cut.nrrd", head + zipped.substr(0, zipped.size() - 3));
   std::string wrong = zipped;
-  wrong[wrong.size() - 8] = static_cast<char>(~wrong[wrong.size() - 8]); // of the checksum
+  wrong[wrong.size() - 8] = static_cast<char>(~wrong[wrong.size() - 8]); // byte of the checksum
   refuse("checksum.nrrd", head + wrong);
   refuse("cut.mha", meta("CompressedData = True\n") + zlib(samples).substr(0, 5000));
 }

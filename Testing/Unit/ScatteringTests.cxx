@@ -58,7 +58,7 @@ TEST(HenyeyGreensteinExtremes, StayUnitAndFinite) {
 }
 
 struct SurfaceCase {
-  double cosine; ///< of the viewer
+  double cosine; ///< cosine of the viewer's direction
   SurfaceShading shading;
 };
 
@@ -75,8 +75,8 @@ protected:
 
 TEST_P(Surface, SamplingMatchesPdf) {
   const SurfaceScattering s = surface();
-  // Directions below the surface have no density: their share of the glossy lobe is what is
-  // missing.
+  // Directions below the surface have no density: the missing mass is their share of the glossy
+  // lobe.
   double below = 0.0;
   constexpr int n = 200000;
   for (int i = 0; i < n; ++i) {
@@ -99,7 +99,7 @@ TEST_P(Surface, ReflectsNoMoreThanArrives) {
     Random random(5, static_cast<std::uint64_t>(i), 0);
     reflected += s.sample(random).weight / n;
   }
-  const Rgb direct = [&] { // the same by the midpoint rule
+  const Rgb direct = [&] { // reference: midpoint rule
     Rgb sum = Rgb::Zero();
     const int fine = 400;
     for (int i = 0; i < fine; ++i)

@@ -1,4 +1,4 @@
-// A changed request makes the scene that it would make from nothing, and only what depends on it.
+// A changed request gives the same scene as a fresh request, and rebuilds only dependent parts.
 
 #include "session/Scene.h"
 
@@ -15,7 +15,7 @@ struct Change {
   StagesMade made;
 };
 
-/// A ball in a box of 16^3 voxels, and two labels in it.
+/// Ball in a box of 16^3 voxels, and two labels in the ball.
 class SceneChange : public ::testing::TestWithParam<Change> {
 protected:
   SceneChange() {

@@ -1,4 +1,4 @@
-// Where a scene's files are: beside a .mrml, inside a .mrb, and names that lead elsewhere.
+// Locations of a scene's files: beside a .mrml, inside a .mrb, and names that lead elsewhere.
 
 #include "SceneTesting.h"
 
@@ -46,7 +46,7 @@ TEST(SceneFiles, findsFilesInAnArchiveAndCleansUp) {
     EXPECT_EQ(files.sceneText(), "<MRML/>");
     unpacked = files.locate("Data/a%20b.txt");
     EXPECT_EQ(bytesOf(unpacked), "inside");
-    EXPECT_EQ(unpacked.filename(), "a b.txt"); // readers go by extensions
+    EXPECT_EQ(unpacked.filename(), "a b.txt"); // readers depend on extensions
     EXPECT_EQ(files.locate("Data/a%20b.txt"), unpacked);
     EXPECT_EQ(located(files, "../other.txt"), "beside");
     EXPECT_EQ(
@@ -81,7 +81,7 @@ TEST(SceneFiles, unpacksWhatAFileNamesWithIt) {
   EXPECT_EQ(bytesOf(files.locate("v.nhdr").parent_path() / "Data/v.raw"), "samples");
   EXPECT_EQ(files.locate("Data/v.raw"), files.locate("v.nhdr").parent_path() / "Data/v.raw");
   EXPECT_EQ(bytesOf(files.locate("b.vtm").parent_path() / "b/1.vtp"), "surface");
-  files.locate("w.nhdr"); // whose reader refuses what it names
+  files.locate("w.nhdr"); // refused later by its reader
 }
 
 TEST(SceneFiles, namesFilesOnOneLine) {
@@ -105,7 +105,7 @@ TEST(SceneFiles, unpacksNothingBeforeItIsAskedFor) {
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
     files.locate("big");
     EXPECT_FALSE(std::filesystem::is_empty(temporary.path()));
-    removeLeftovers(); // what a signal does
+    removeLeftovers(); // as a signal's handler does
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
   }
   unsetenv("TMPDIR");
@@ -179,7 +179,7 @@ TEST(SceneFiles, unpacksNoMoreThanASceneHolds) {
 TEST(SceneFiles, refusesDamagedAndBoundlessEntries) {
   const TemporaryFolder folder;
   std::mt19937 random(1);
-  std::string noise(4000, ' '); // does not compress, so it is stored
+  std::string noise(4000, ' '); // incompressible, hence stored
   std::generate(noise.begin(), noise.end(), [&] { return static_cast<char>(random() & 0xff); });
   writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}, {"data", noise}});
   std::string bytes = bytesOf(folder / "a.mrb");
@@ -190,7 +190,7 @@ TEST(SceneFiles, refusesDamagedAndBoundlessEntries) {
   SceneFiles files(damaged);
   expectRefused(damaged, "data in it is damaged", [&] { files.locate("data"); });
 
-  // The uncompressed size in the central directory, set to 4 GB less one.
+  // Uncompressed size in the central directory, set to 4 GB less one.
   bytes = bytesOf(folder / "a.mrb");
   const std::size_t directory = bytes.find("PK\x01\x02", bytes.find("PK\x01\x02") + 4);
   ASSERT_NE(directory, std::string::npos);

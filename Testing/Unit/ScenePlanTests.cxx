@@ -1,4 +1,4 @@
-// Which nodes of a scene a picture shows, and what is refused or ignored, and why.
+// Nodes of a scene that a picture shows; refused and ignored nodes, with reasons.
 
 #include "files/slicer/ScenePlan.h"
 
@@ -31,7 +31,7 @@ TEST(ScenePlan, takesTheVolumeThatIsRenderedInSlicer) {
                                        <GPURayCastVolumeRendering id="d2" visibility="true"/>)"),
             "v2");
   EXPECT_EQ(volumeOf(threeVolumes + R"(<CPURayCastVolumeRendering id="d2" visibility="false"/>)"),
-            "v2"); // nothing else has settings
+            "v2"); // the only volume with settings
   EXPECT_EQ(volumeOf(threeVolumes + R"(<Selection references="ActiveVolume:v3;"/>)"), "v3");
   EXPECT_EQ(volumeOf(threeVolumes + R"(<Selection activeVolumeID="v1"/>)"), "v1");
   EXPECT_EQ(volumeOf(R"(<Volume id="v"/><LabelMapVolume id="l"/><Volume id="m" labelMap="1"/>

@@ -36,7 +36,7 @@ inline const std::string volumeNode = R"(
 <Volume id="vol1" name="CT" references="storage:store1;" spacing="9 9 9" origin="7 7 7"
   ijkToRASDirections="0 1 0 1 0 0 0 0 1"/>)";
 
-/// A zip archive of the files, with each name as it is.
+/// Writes a zip archive of the files, with names unchanged.
 inline void writeArchive(const std::filesystem::path& path,
                          const std::map<std::string, std::string>& files) {
   int failure = 0;

@@ -1,4 +1,4 @@
-// Between samples the exact surface is the focus's own depth.
+// Exact surface between samples: the focus's own depth.
 
 #include "ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array projections{Projection::orthographic, Projection::perspective};
 
-/// A ball, which falls away steeply where it ends; seen by pixels smaller than its voxels.
+/// Ball, steep at its outline, seen by pixels smaller than its voxels.
 struct Ball {
   Domain volume{centredGrid({60, 60, 60})};
   Mask focus = sphereMask(centredGrid({60, 60, 60}), 20.3);
@@ -26,7 +26,7 @@ struct Ball {
   }
 };
 
-/// A ray's depth in the focus, by stepping.
+/// Depth of a ray in the focus, by stepping.
 double focusDepth(const Ball& ball, const Vec2& at) {
   const Ray ray = ball.camera.rayThrough(at);
   const Mask& mask = ball.focus;
@@ -51,7 +51,7 @@ double focusDepth(const Ball& ball, const Vec2& at) {
   return infinity;
 }
 
-/// Where a way from the axis leaves the ball.
+/// Point at which a radial line leaves the ball.
 struct End {
   Vec2 inside, outside; ///< 1e-7 mm apart
 };
@@ -120,7 +120,8 @@ TEST(Seams, GoOverIntoTheSamplesWithoutASteep) {
 }
 
 TEST(Seams, AreAskedOnlyWhereItMatters) {
-  // keep asks for no more of the surface than it needs; told the whole of it, it is the same.
+  // keep queries only as much of the surface as it needs; the result equals that of the full
+  // surface.
   for (const Projection projection : projections)
     for (const double softness : {0.0, 1.5}) {
       const Ball ball(projection);

@@ -1,4 +1,4 @@
-// What Slicer's tags say of segments, which is read without their labels.
+// Slicer's tags of segments, which are read without the labels.
 
 #include "files/segments/SegmentationReader.h"
 

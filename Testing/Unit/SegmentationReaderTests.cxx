@@ -1,4 +1,4 @@
-// Labelmaps and Slicer segmentations, and the masks that become of their segments.
+// Labelmaps and Slicer segmentations, and the masks made of their segments.
 
 #include "files/medical/VolumeReader.h"
 #include "files/segments/SegmentationReader.h"
@@ -24,7 +24,7 @@ int at(const Mask& mask, const Vec3& world) {
   return mask.voxels[static_cast<std::size_t>(index(mask.grid, v.x(), v.y(), v.z()))];
 }
 
-/// 6^3 voxels of 1 mm from the origin, with a label here and there.
+/// Labelmap of 6^3 voxels of 1 mm from the origin, with some labels.
 Segmentation labelmap(const std::vector<std::pair<Size3, int>>& labels, Vec3 origin = Vec3::Zero(),
                       double spacing = 1.0) {
   const Grid grid = unitGrid(Size3::Constant(6), origin, spacing);
@@ -62,8 +62,8 @@ TEST(SegmentationReader, endsWithZerosInsideTheVolume) {
 
 TEST(SegmentationReader, continuesOverTheVolumesOwnFaces) {
   const Segmentation s = labelmap({{{0, 0, 5}, 1}, {{1, 0, 5}, 2}});
-  // The volume shares the lower faces of x and y, and the upper one of z lies two voxels further
-  // in.
+  // The volume shares the labelmap's lower faces of x and y; its upper z face lies two voxels
+  // further in.
   const Mask mask = s.mask({"1", "2"}, unitGrid({8, 12, 8}, {0, 0, 0}, 1.0));
   EXPECT_EQ(mask.count, 2);
   EXPECT_EQ(at(mask, {-1, 0, 5}), 1);
@@ -87,13 +87,13 @@ TEST(SegmentationReader, sharesFacesWithinHalfAVoxelOnly) {
   EXPECT_FALSE(continued(0.6));
   EXPECT_FALSE(continued(-0.6));
   EXPECT_TRUE(continued(0.5, 2.0)); // faces at -0.5 and -0.5
-  // A labelmap that abuts the volume from outside shares nothing.
+  // A labelmap that touches the volume from outside shares no face.
   EXPECT_EQ(at(s.mask({"1"}, unitGrid({6, 9, 9}, {-6, -3, -3})), {-1, 3, 3}), 0);
 }
 
 TEST(SegmentationReader, sharesFacesOfFlippedAndTurnedGrids) {
   const Segmentation s = labelmap({{{0, 3, 3}, 1}});
-  // Fills the same box as the labelmap, axes permuted.
+  // Grid that fills the labelmap's box, with permuted axes.
   const Affine flipped(Mat3({0, 1, 0}, {0, 0, -1}, {-1, 0, 0}), {5, 0, 5});
   EXPECT_EQ(at(s.mask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
   const Affine oblique = rotationBy(0.4, Vec3::UnitZ());
@@ -121,7 +121,7 @@ TEST(SegmentationReader, readsPlainLabelmapsOfEveryFormat) {
     }
 }
 
-/// Slicer's fields for segment n.
+/// Adds Slicer's fields for segment n.
 void describe(FileGeometry& geometry, int n, const std::string& id, const std::string& name,
               const std::string& value, const std::string& layer) {
   const std::string prefix = "Segment" + std::to_string(n) + "_";
@@ -233,12 +233,12 @@ TEST(SegmentationReader, refusesWhatIsNoSegmentation) {
   refuse("Segment0_LabelValue");
 }
 
-// ---- what Slicer's files have been known to hold
+// ---- variants found in Slicer's files
 // ----------------------------------------------------------------------------------
 
 /// World centre of a segment's voxels.
 Vec3 centroid(const Segmentation& segmentation, const std::string& selector) {
-  const Grid elsewhere = unitGrid({1, 1, 1}, Vec3::Constant(1e6)); // which shares no face
+  const Grid elsewhere = unitGrid({1, 1, 1}, Vec3::Constant(1e6)); // shares no face
   const Mask mask = segmentation.mask({selector}, elsewhere);
   Vec3 sum = Vec3::Zero();
   for (std::int64_t z = 0; z < mask.grid.size.z(); ++z)
@@ -283,11 +283,11 @@ TEST(SegmentationReader, countsNoValueWithoutASegment) {
   describe(geometry, 1, "b", "tumour", "300", "1");
   std::vector<std::int16_t> labels(48, 0);
   labels[0] = labels[2] = 7;      // liver
-  labels[4] = 5;                  // no segment's
+  labels[4] = 5;                  // no segment's value
   labels[6] = 300;                // tumour's value, in the liver's layer
-  labels[1] = 7;                  // the other way round
+  labels[1] = 7;                  // liver's value, in the tumour's layer
   labels[5] = labels[9] = 300;    // tumour
-  labels[11] = labels[13] = -300; // no segment's
+  labels[11] = labels[13] = -300; // no segment's value
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   EXPECT_EQ(s.mask({"liver"}, s.grid()).count, 2);
@@ -309,7 +309,7 @@ TEST(SegmentationReader, takesOldAndBrokenColours) {
   for (std::size_t n = 0; n < 6; ++n) {
     const std::string prefix = std::string("Segment") + std::to_string(n);
     geometry.fields[prefix + "_DefaultColor"] = colors[n];
-    if (n < 5) // the last has a Color, too, which goes first
+    if (n < 5) // the last has a Color as well, which takes precedence
       geometry.fields.erase(prefix + "_Color");
   }
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
@@ -346,7 +346,7 @@ TEST(SegmentationReader, placesTheOldestFilesByTheirExtent) {
                         .spacing = {2, 3, 4},
                         .origin = {100, 200, -50}};
   geometry.fields["Segmentation_Extent"] = "10 12 20 23 5 6";
-  for (const int n : {0, 1}) { // a frame each, all with value 1
+  for (const int n : {0, 1}) { // one frame each, with value 1
     const std::string prefix = "Segment" + std::to_string(n) + "_";
     geometry.fields[prefix + "ID"] = n == 0 ? "a" : "b";
     geometry.fields[prefix + "Name"] = n == 0 ? "liver" : "tumour";
@@ -410,7 +410,7 @@ TEST(SegmentationReader, refusesABrokenGzipStream) {
 }
 
 TEST(SegmentationReader, tellsWhatEachSegmentHolds) {
-  // Axes turned: index x runs along S, y along -R, z along A.
+  // Permuted axes: index x runs along S, y along -R, z along A.
   const Affine map(Mat3({0, 0, 1}, {-2, 0, 0}, {0, 3, 0}), {10, 20, 30});
   const Grid grid({4, 5, 6}, map);
   std::vector<std::uint8_t> labels(240, 0); // two layers
@@ -464,7 +464,7 @@ TEST(SegmentationReader, readsRealSegmentations) {
   EXPECT_EQ(legacy.mask({"Expanded_5_5_5_Bladder"}, legacy.grid()).count, 84024);
 }
 
-/// The oldest form, against the surfaces of the same patient (EclipseProstate_Structures.seg, RAS):
+/// Oldest format, against the surfaces of the same patient (EclipseProstate_Structures.seg, RAS):
 /// the bladder expanded by 5 mm, and its union with the target volume.
 TEST(SegmentationReader, placesRealOldFilesWhereThePatientsSurfacesAre) {
   const std::filesystem::path folder = data("slicer_scenes/slicerrt_scenes");

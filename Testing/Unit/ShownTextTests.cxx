@@ -1,4 +1,4 @@
-// What messages show of files' text.
+// Text of files as shown in messages.
 
 #include "base/safe/ShownText.h"
 
@@ -17,16 +17,16 @@ TEST(ShownText, isValidUtf8OnOneLine) {
       {"Sch\xe4"
        "del",
        "Sch?del"},                  // Latin-1
-      {"\x80\xbf", "??"},           // no first byte
-      {"\xc0\xaf", "??"},           // longer than need be
-      {"\xe0\x9f\xbf", "???"},      // the same
-      {"\xf0\x8f\xbf\xbf", "????"}, // the same
+      {"\x80\xbf", "??"},           // not a first byte
+      {"\xc0\xaf", "??"},           // overlong
+      {"\xe0\x9f\xbf", "???"},      // overlong
+      {"\xf0\x8f\xbf\xbf", "????"}, // overlong
       {"\xed\xa0\x80", "???"},      // a surrogate
       {"\xf4\x90\x80\x80", "????"}, // beyond the last
-      {"\xff\xfe", "??"},           // none ever
+      {"\xff\xfe", "??"},           // never valid
       {"\xe9\xa0", "??"},           // cut off
       {"\xf0\x9f\xa6", "???"},      // cut off
-      {"\xc3\n", "? "},             // and a control
+      {"\xc3\n", "? "},             // and a control character
   };
   for (const auto& [text, shownAs] : bad)
     EXPECT_EQ(oneLine(text), shownAs);

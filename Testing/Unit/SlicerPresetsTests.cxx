@@ -1,4 +1,4 @@
-// The presets of a 3D Slicer that is there: where they are looked for, and what is read.
+// Presets of an installed 3D Slicer: the searched folders, and the content.
 
 #include "files/slicer/SlicerPresets.h"
 
@@ -16,7 +16,7 @@ constexpr const char* presetsText = R"(<?xml version="1.0" encoding="UTF-8"?>
   <VolumeProperty name="Broken" scalarOpacity="3 0 0 100" colorTransfer="4 0 1 1 1"/>
 </MRML>)";
 
-/// An environment variable for the time of a test.
+/// Environment variable for the duration of a test.
 class Environment {
 public:
   Environment(const char* name, const std::string& value) : m_name(name) {
@@ -33,7 +33,7 @@ private:
   std::optional<std::string> m_before;
 };
 
-/// A folder as Slicer installs it.
+/// Folder as installed by Slicer.
 std::filesystem::path installed(const TemporaryFolder& folder, const std::string& home,
                                 const std::string& version) {
   const auto place =

@@ -1,5 +1,5 @@
-// The exact boundary's continuation against what is known of it: constants, the plate under tension
-// along a straight edge, jumps of depth.
+// Continuation of the exact boundary against known solutions: constants, the plate under tension
+// along a straight edge, depth jumps.
 
 #include "ClippingTesting.h"
 #include "clip/surface/SmoothFill.h"
@@ -13,7 +13,7 @@ using namespace testing_clipping;
 
 namespace {
 
-/// A buffer of 100 mm, and which of its samples are focus, at which depth.
+/// Buffer of 100 mm, with the depths of its focus samples.
 struct Sheet {
   Camera camera;
   DepthBuffer buffer;
@@ -48,7 +48,7 @@ TEST(SmoothFill, ContinuesAConstantDepthWithIt) {
     EXPECT_NEAR(sheet.buffer.at(sample), 290.0, 1e-4);
 }
 
-/// u'''' = u'' / length² with u(0) = 0, u'(0) = slope, and level at the buffer's end.
+/// Solution of u'''' = u'' / length² with u(0) = 0, u'(0) = slope, level at the buffer's end.
 class StraightEdge : public ::testing::TestWithParam<std::pair<double, double>> {};
 
 TEST_P(StraightEdge, IsThePlateUnderTension) {
@@ -57,7 +57,7 @@ TEST_P(StraightEdge, IsThePlateUnderTension) {
     Sheet sheet(pixels, [slope = slope](const Vec2& x) {
       return x.x() < -20.0 ? std::optional(300.0 + slope * (x.x() + 20.0)) : std::nullopt;
     });
-    double edge = -100.0, end = 0.0; // the focus's last sample, and the buffer's
+    double edge = -100.0, end = 0.0; // last sample of the focus, and of the buffer
     for (std::int64_t column = 0; column < sheet.buffer.columns(); ++column)
       (sheet.isFocus(column) ? edge : end) = sheet.at(column).x();
     const double range = (end - edge) / length;
@@ -107,7 +107,7 @@ TEST(SmoothFill, DoesNotRingWhereTheDepthJumps) {
   }
 }
 
-/// A jump is as steep as the samples beside the boundary, and the gentler the farther away.
+/// A jump is as steep as the samples beside the boundary, and gentler with distance.
 TEST(SmoothFill, EasesAJumpWithTheDistanceFromIt) {
   Sheet sheet(256, [](const Vec2& x) -> std::optional<double> {
     if (std::abs(x.x()) >= 20.0)
@@ -131,7 +131,7 @@ TEST(SmoothFill, EasesAJumpWithTheDistanceFromIt) {
   EXPECT_LT(steepestStepAt(30.0), 0.7 * steepestStepAt(25.0));
 }
 
-/// Beyond a small viewport samples are coarser; a sheet of one column or row is one, too.
+/// Samples are coarser beyond a small viewport; a single column or row is a sheet as well.
 TEST(SmoothFill, ServesAnyShapeOfBuffer) {
   for (const double across : {100.0, 30.0})
     for (const int pixels : {1, 2, 33, 100}) {

@@ -1,4 +1,4 @@
-// A render that is stopped while its paths are under way, whatever they meet.
+// Stopping a render while its paths are under way, for all kinds of matter.
 
 #include "Support.h"
 
@@ -12,8 +12,8 @@
 namespace fenestra::testing::StopTests {
 namespace {
 
-/// A cell's majorant is 1 / mm and a voxel's edge 1e8 mm, but hardly a point of a ray near the
-/// middle has any extinction: some 1e8 null collisions a ray.
+/// Scene whose corner cells have majorant 1 / mm and voxels of 1e8 mm, although almost no point of
+/// a ray there has any extinction: about 1e8 null collisions a ray.
 TestScene endlessScene() {
   const Grid grid = centredGrid({4, 4, 4}, Vec3::Constant(1e8));
   TestScene s{makeVolume(grid, [](const Vec3& p) { return p.isZero() ? 255.0 : 0.0; }),
@@ -27,7 +27,7 @@ TestScene endlessScene() {
   return s;
 }
 
-/// Calls work(scene, majorants, ray): a ray through the cells of that majorant.
+/// Calls work(scene, majorants, ray) with a ray through such cells.
 template <typename Work>
 void alongEndlessRay(Work&& work) {
   const TestScene s = endlessScene();
@@ -66,7 +66,7 @@ TEST(Stop, endsTheLanesOfABatch) {
   });
 }
 
-/// Without it each would take minutes.
+/// Each measure would take minutes without the stop.
 TEST(Stop, endsMeasuresWhoseWalksDoNotEnd) {
   const TestScene s = endlessScene();
   const Camera camera(s.pose, s.width, s.height);
@@ -80,8 +80,7 @@ TEST(Stop, endsMeasuresWhoseWalksDoNotEnd) {
   focusLight(scene, scene, behind, 1, stop);
 }
 
-/// Nobody waits for a path: one that is under way is dropped, and its tile with it; tiles whose
-/// paths have all ended count whole.
+/// A stopped path is dropped, together with its tile; tiles whose paths have all ended count whole.
 TEST(Stop, endsARenderWhosePathsDoNotEnd) {
   const TestScene s = endlessScene();
   const Camera camera(s.pose, s.width, s.height);
@@ -98,7 +97,7 @@ TEST(Stop, endsARenderWhosePathsDoNotEnd) {
     monitor.stop = true;
     const RenderResult result = rendering.get();
     EXPECT_EQ(result.reason, StopReason::request);
-    constexpr int tile = 8; // pixels; those in the corner of the volume do not end
+    constexpr int tile = 8; // pixels; paths in the volume's corner do not end
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     for (int row = 0; row < s.height; ++row)
       for (int column = 0; column < s.width; ++column) {

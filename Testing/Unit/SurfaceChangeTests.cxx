@@ -1,5 +1,4 @@
-// A clipping surface on a turntable: what its changes are measured to be, and how they are
-// steadied.
+// Clipping surface on a turntable: the measures of its changes, and its steadying.
 
 #include "ClippingTesting.h"
 #include "clip/surface/SteadySurface.h"
@@ -25,7 +24,7 @@ TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
   EXPECT_EQ(turnedAroundTarget(pose, 77.0).up, pose.up);
 }
 
-/// A picture of 4 x 4 pixels of 1 mm with a level surface at the target's depth, all of it context.
+/// Picture of 4 x 4 pixels of 1 mm with a level surface at the target's depth, all context.
 SeenSurface levelSurface() {
   const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 2.0, 4, 4);
   return {camera, std::vector<Region>(16, Region::context), std::vector<double>(16, 100.0)};
@@ -57,7 +56,7 @@ TEST(SurfaceChange, IsMeasuredAgainstTheFocussOwnSpeed) {
   EXPECT_EQ(changeBetween(before, before, Vec3::UnitZ(), 1.0).focus, 0.0) << "no focus is seen";
 }
 
-/// Balls of 7 and 5 mm that come out from behind each other, in a block, and cameras around them.
+/// Balls of 7 and 5 mm that emerge from behind each other, in a block, with cameras around.
 class TurnedBalls : public ::testing::Test {
 protected:
   const Grid grid = centredGrid({80, 80, 40});
@@ -96,7 +95,7 @@ protected:
 
 TEST_F(TurnedBalls, AreSeenWithTheDepthsOfTheSurface) {
   const SeenSurface seen = seenAt(0.0, 0.0);
-  // The near ball's foremost point, in the middle of the picture, and no further focus beside it.
+  // Foremost point of the near ball in the picture's centre, and no focus near the left edge.
   EXPECT_EQ(seen.regions[30 * 60 + 30], Region::focus);
   EXPECT_NEAR(seen.depths[30 * 60 + 30], 200.0 - 14.0 - 7.0, 0.5);
   EXPECT_EQ(seen.regions[30 * 60 + 2], Region::context);

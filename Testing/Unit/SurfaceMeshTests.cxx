@@ -1,6 +1,6 @@
-// The clipping surface's mesh: its points are samples of the buffer, on their rays, at their
-// depths; its triangles face the eye, meet at whole edges, and miss no sample by more than they
-// may.
+// Mesh of the clipping surface: its points are samples of the buffer, on their rays, at their
+// depths; its triangles face the eye, meet at whole edges, and deviate from samples by at most the
+// tolerance.
 
 #include "ClippingTesting.h"
 #include "clip/mesh/SurfaceMesh.h"
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array projections{Projection::orthographic, Projection::perspective};
 
-/// The clip of a buffer with depths by (x, y).
+/// Clip with a buffer of depths given by (x, y).
 template <typename Depth>
 ClipDepth clipOf(const Camera& camera, const Grid& volume, const Depth& depth) {
   DepthBuffer buffer(camera, volume);
@@ -29,7 +29,7 @@ ClipDepth clipOf(const Camera& camera, const Grid& volume, const Depth& depth) {
   return {camera, std::make_shared<const DepthBuffer>(std::move(buffer)), std::move(pyramid)};
 }
 
-/// Looks aslant at the origin.
+/// Camera that looks obliquely at the origin.
 Camera slantedCamera(Projection projection, int width = 48, int height = 36) {
   CameraPose pose;
   pose.projection = projection;
@@ -45,7 +45,7 @@ double waves(const Camera& camera, const Vec2& p) {
   return camera.targetDepth() + 5.0 * std::sin(0.1 * p.x()) - 3.0 * std::cos(0.2 * p.y());
 }
 
-/// Surfaces that are not kind to a mesh, by name.
+/// Surfaces that are difficult to mesh, by name.
 using Shape = std::function<double(const Vec2&)>;
 std::map<std::string, Shape> shapes(const Camera& camera) {
   const double at = camera.targetDepth(), pitch = camera.pixelPitch();
@@ -66,7 +66,7 @@ std::map<std::string, Shape> shapes(const Camera& camera) {
   };
 }
 
-/// On the plane through the target, mm: counter-clockwise is positive.
+/// Signed area on the plane through the target, mm²; counter-clockwise is positive.
 double flatArea(const Vec2& a, const Vec2& b, const Vec2& c) {
   return 0.5 * ((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x());
 }
@@ -76,7 +76,7 @@ Vec3 normalOf(const SurfaceMesh& mesh, const std::array<std::uint32_t, 3>& trian
   return (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]);
 }
 
-/// What holds for any mesh: finite points, all of them used, whose triangles face the eye.
+/// Expects properties of any mesh: finite points, all used, and triangles that face the eye.
 void expectWellMade(const SurfaceMesh& mesh, const Camera& camera) {
   ASSERT_FALSE(mesh.triangles.empty());
   ASSERT_EQ(mesh.points.size(), mesh.depths.size());
@@ -152,7 +152,7 @@ TEST(SurfaceMesh, CoversTheVolumesProjection) {
     std::vector<Vec2> corners;
     for (int i = 0; i < 8; ++i)
       corners.push_back(toBuffer(camera, volume.worldCorner(i)).head<2>());
-    double hull = 0.0; // the area of the projection, by edges with all corners to their left
+    double hull = 0.0; // area of the projection, from edges with all corners on their left
     for (const Vec2& a : corners)
       for (const Vec2& b : corners) {
         const Vec2 edge = b - a;
@@ -195,8 +195,8 @@ TEST(SurfaceMesh, LeavesOutWhatHasNoDepthOrIsBehindTheEye) {
   EXPECT_TRUE(surfaceMesh(clipOf(parallel, volume, none), volume, 1e-3).points.empty());
 }
 
-/// The greatest distance along depth of samples from the mesh, and how often each is covered by it:
-/// found from the triangles in the world alone.
+/// Greatest depth difference between samples and mesh, and number of triangles over each sample,
+/// computed from the world triangles alone.
 struct MeshError {
   double greatest = 0.0;
   std::map<std::pair<std::int64_t, std::int64_t>, int> covered; ///< column and row, not on edges
@@ -237,8 +237,8 @@ MeshError errorOf(const SurfaceMesh& mesh, const ClipDepth& clip) {
   return error;
 }
 
-/// Every edge has one triangle on each side, or is of the outline; and no point lies within an edge
-/// of the outline, as it would where a triangle beside it were halved alone.
+/// Expects one triangle on each side of an edge, or an edge of the outline; and no point inside an
+/// edge of the outline, as if one triangle beside the edge were halved alone.
 void expectNoCracks(const SurfaceMesh& mesh, const Camera& camera) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -294,7 +294,7 @@ TEST(SurfaceMesh, IsNowhereFartherFromASampleThanItMayBe) {
 
 TEST(SurfaceMesh, CoversEveryCellOfWhichThreeSamplesHaveADepth) {
   const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 10.0, 37, 50);
-  const Grid volume = centredGrid({60, 60, 60}); // all of the viewport, and coarser around it
+  const Grid volume = centredGrid({60, 60, 60}); // covers the viewport, and is coarser around it
   for (const auto& [name, shape] : shapes(camera)) {
     const ClipDepth clip = clipOf(camera, volume, shape);
     const DepthBuffer& buffer = *clip.buffer;
@@ -321,7 +321,7 @@ TEST(SurfaceMesh, HasAsManyTrianglesAsTheSurfaceNeeds) {
   const Grid volume = centredGrid({30, 30, 30});
   for (const Projection projection : projections) {
     const Camera camera = anteriorCamera(projection, 300.0, 15.0, 200, 200);
-    // A plane, which in perspective has no depth that is linear over the picture.
+    // Plane, whose depth in perspective is not linear over the picture.
     const auto plane = [&](const Vec2& p) {
       const Vec3 normal(0.3, 1.0, -0.2);
       const Ray ray = camera.rayThrough(p);
@@ -336,7 +336,7 @@ TEST(SurfaceMesh, HasAsManyTrianglesAsTheSurfaceNeeds) {
     EXPECT_EQ(two.points.size(), 4u);
     EXPECT_LE(errorOf(two, flat).greatest, tolerance);
 
-    // A step costs what its own edge needs; noise needs every sample, and no more.
+    // A step costs as many triangles as its own edge needs; noise needs every sample, but no more.
     const auto step = [&](const Vec2& p) { return plane(p) + (p.x() < 0.31 * p.y() ? 0.0 : 9.0); };
     const auto columns = static_cast<std::size_t>(flat.buffer->columns());
     EXPECT_LT(surfaceMesh(clipOf(camera, volume, step), volume, tolerance).triangles.size(),

@@ -1,4 +1,4 @@
-// Surfaces as files: what is in them, read back here.
+// Surface files: their content, read back here.
 
 #include "base/Error.h"
 #include "clip/mesh/SurfaceWriter.h"
@@ -22,7 +22,7 @@ void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path)
   outputs.commit();
 }
 
-/// Two triangles of four points.
+/// Mesh of two triangles on four points.
 SurfaceMesh roof() {
   SurfaceMesh mesh;
   mesh.points = {{-1.5, 2.0, 100.125}, {3.0, 4.1, -5.0}, {1e-3, 0.0, 7.0}, {1234.5678, 8.0, 9.0}};
@@ -31,7 +31,7 @@ SurfaceMesh roof() {
   return mesh;
 }
 
-/// Takes numbers off the front of a file's bytes.
+/// Reader of numbers from the front of a file's bytes.
 class Bytes {
 public:
   explicit Bytes(std::string bytes) : m_bytes(std::move(bytes)) {}
@@ -63,7 +63,7 @@ private:
   std::size_t m_at = 0;
 };
 
-/// Of base64 digits, whole bytes alone.
+/// Bytes of base64 digits; a partial byte is dropped.
 std::string decoded(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;

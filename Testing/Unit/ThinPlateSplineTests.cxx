@@ -1,4 +1,4 @@
-// The spline solved in the unit disc is the spline that the equations state in mm.
+// The spline solved in the unit disc equals the spline of the equations in mm.
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
@@ -20,7 +20,7 @@ struct Data {
   ThinPlateSpline spline(double smoothing) const { return {sites, values, smoothing}; }
 };
 
-/// Sites on a wavy closed curve around (120, -300) mm, about `radius` mm from it.
+/// Sites on a wavy closed curve around (120, -300) mm, at about `radius` mm.
 Data outline(int count, double radius) {
   Data data;
   for (int i = 0; i < count; ++i) {
@@ -103,7 +103,7 @@ TEST(ThinPlateSpline, TurnsShiftsAndScalesWithItsSites) {
     Data moved = data;
     for (Vec2& site : moved.sites)
       site = s * turned(site) + Vec2(-300, 1000);
-    // lambda goes with s^2: in mm, the same shape larger is smoothed less.
+    // lambda scales with s^2: in mm, a larger copy of a shape is smoothed less.
     const double lambda = (1.0 - 0.5) / 0.5 * s * s;
     const ThinPlateSpline a = data.spline(0.5), b = moved.spline(1.0 / (1.0 + lambda));
     for (const Vec2& x : {Vec2(0, 0), Vec2(17, -33), Vec2(-90, 120)}) {
@@ -130,7 +130,7 @@ TEST(ThinPlateSpline, RowsAgreeWithPoints) {
   }
 }
 
-/// The greatest difference from f over a tile of samples `pitch` mm apart.
+/// Greatest difference from f over a tile of samples at `pitch` mm.
 double greatestTileError(const ThinPlateSpline& spline, const Vec2& corner, double pitch,
                          std::size_t columns, std::size_t rows, double tolerance) {
   std::vector<double> x(columns), y(rows), values(columns * rows);
@@ -148,7 +148,7 @@ double greatestTileError(const ThinPlateSpline& spline, const Vec2& corner, doub
 TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
   Random random(4, 0, 0);
   double greatest = 0.0;
-  std::uint64_t trials = 0; // a brief run makes some of them
+  std::uint64_t trials = 0; // a brief run makes a part of them
   for (const double radius : {0.5, 60.0, 300.0})
     for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0})
       for (const int count : {2, 3, 50, 300}) {
@@ -161,7 +161,7 @@ TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
           for (const double away : {0.0, 1.0, 3.0, 30.0, 3e3})
             for (const auto& [columns, rows] : {std::pair{64, 64}, {64, 1}, {1, 1}, {5, 13}}) {
               const Vec2 corner = away * radius * randomPoint(random, -1, 1).head<2>();
-              ++trials; // of each four another shape
+              ++trials; // every fourth shifts the shape
               if ((trials + trials / 4) % fenestra::testing::brevity() != 0)
                 continue;
               const double error =

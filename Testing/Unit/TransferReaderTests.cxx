@@ -1,4 +1,4 @@
-// Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and files that are neither.
+// Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and invalid files.
 
 #include "files/looks/TransferReader.h"
 #include "model/medium/VolumeProperty.h"
@@ -83,7 +83,7 @@ TEST(TransferReader, namesThePlaceOfWhatIsWrong) {
   expectRefused(large, "has more than 4 MB", [&large] { readTransferLook(large); });
 }
 
-/// A .vp.json around the given members of its property and component.
+/// Text of a .vp.json with these members in its property and component.
 std::string slicer(const std::string& property, const std::string& component) {
   return R"({"@schema": "x", "volumeProperties": [{"effectiveRange": [0, "bad"], )" + property +
          R"("components": [{)" + component + R"(

@@ -1,5 +1,4 @@
-// Every linear transform that ITK writes, against what ITK itself does with a point; and files that
-// are not what they say.
+// Every linear transform that ITK writes, against ITK's own result for a point; and invalid files.
 
 #include "files/slicer/TransformFile.h"
 
@@ -58,7 +57,8 @@ std::filesystem::path write(const TemporaryFolder& folder, const std::string& ex
   return path;
 }
 
-/// The file maps LPS points as ITK's object does; ours maps the same points in RAS, the other way.
+/// Expects the file to map LPS points as ITK's object, and the read transform to map these points
+/// in RAS, in the inverse direction.
 template <typename Real>
 void expectSameMap(const itk::Transform<Real, 3, 3>* transform,
                    const Extensions& extensions = everyExtension) {
@@ -82,7 +82,7 @@ void expectSameMap(const itk::Transform<Real, 3, 3>* transform,
   }
 }
 
-/// A rotation about a centre, with numbers of no symmetry.
+/// Rotation about a centre, with asymmetric numbers.
 template <typename Transform>
 typename Transform::Pointer turned() {
   auto transform = Transform::New();
@@ -105,7 +105,7 @@ typename Transform::Pointer turned() {
                            typename Transform::ScalarType(0.3));
   else if constexpr (requires { transform->Rotate3D(axis, 0.7); })
     transform->Rotate3D(axis, static_cast<typename Transform::ScalarType>(0.7));
-  if (transform->GetNumberOfParameters() >= 6) // else no parameter keeps it
+  if (transform->GetNumberOfParameters() >= 6) // otherwise no parameter stores the shift
     transform->SetTranslation(shift);
   return transform;
 }
@@ -137,7 +137,7 @@ typename Transform::Pointer stretched() {
   auto transform = turned<Transform>();
   const double stretch[] = {1.5, 0.5, 2.0};
   transform->SetScale(stretch);
-  transform->SetCenter(transform->GetCenter()); // some of ITK's left their offset as it was
+  transform->SetCenter(transform->GetCenter()); // some of ITK's kept an old offset
   return transform;
 }
 
@@ -195,7 +195,7 @@ TEST(TransformFile, readsColumnsOfTheOtherByteOrder) {
   EXPECT_TRUE(readLinearTransform(path, TransformSense::fromParent).isApprox(expected, 1e-15));
 }
 
-/// As the HDF5 library writes by itself, and older ITK did: groups are symbol tables.
+/// File as written by the HDF5 library itself and by older ITK: groups are symbol tables.
 std::filesystem::path writeOldHdf5(const TemporaryFolder& folder, int count) {
   const auto path = folder / "old.h5";
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -326,12 +326,12 @@ TEST(TransformFile, refusesWhatIsNoTransform) {
   expectRefused(binary, "is larger than 64 MB");
 }
 
-/// HDF5's own ways to have a library open other files: parts of a file that is read apart.
+/// HDF5's means of opening other files through the library; in a file that is read apart.
 TEST(TransformFile, refusesHdf5ThatLeadsElsewhere) {
   const TemporaryFolder folder;
   const auto other = folder.write("other.raw", std::string(80, '\0'));
   using Lead = std::function<void(hid_t file)>;
-  const Lead values = [&](hid_t file) { // a data set whose values lie in another file
+  const Lead values = [&](hid_t file) { // data set with its values in another file
     const hsize_t size = 10;
     const hid_t space = H5Screate_simple(1, &size, nullptr), kept = H5Pcreate(H5P_DATASET_CREATE);
     ASSERT_GE(H5Pset_external(kept, other.c_str(), 0, 80), 0);
@@ -357,7 +357,7 @@ TEST(TransformFile, refusesHdf5ThatLeadsElsewhere) {
   }
 }
 
-/// Whatever becomes of the bytes: read, or refused on one line.
+/// Damaged bytes must be read, or refused on one line.
 TEST(TransformFile, survivesDamage) {
   const TemporaryFolder folder;
   const auto composite = itk::CompositeTransform<double, 3>::New();
@@ -387,7 +387,7 @@ TEST(TransformFile, survivesDamage) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-/// What Slicer 5.2.2 wrote, and the matrix that it wrote beside it.
+/// File written by Slicer 5.2.2, and the matrix stored beside.
 TEST(TransformFile, readsSlicersFile) {
   const auto scene = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_5_2_written" /
                      "chest_transformed_cropped.mrb";

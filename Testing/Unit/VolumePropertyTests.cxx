@@ -1,4 +1,4 @@
-// The medium's table against the formulas that it stands for.
+// Table of the medium against the formulas that it approximates.
 
 #include "base/Error.h"
 #include "model/medium/VolumeProperty.h"
@@ -21,7 +21,7 @@ double extinctionFormula(const VolumeProperty& p, double x) {
   return -std::log1p(-std::min(opacityAt(p.scalarOpacity, x), 0.9999)) / p.unitDistance;
 }
 
-/// Greatest relative error of the table's extinction, as far as it exceeds the documented floor.
+/// Greatest relative error of the table's extinction, beyond the documented floor.
 double worstExtinctionError(const VolumeProperty& p, const TransferFunction& f) {
   const double low = p.scalarOpacity.front().x, high = p.scalarOpacity.back().x;
   double greatest = 0.0;
@@ -39,7 +39,7 @@ double worstExtinctionError(const VolumeProperty& p, const TransferFunction& f) 
   return worst;
 }
 
-/// vtkPiecewiseFunction::GetTable between two nodes, written as VTK writes it.
+/// Port of vtkPiecewiseFunction::GetTable between two nodes.
 double vtkValue(const OpacityNode& a, const OpacityNode& b, double x) {
   const double m = std::clamp(a.midpoint, 0.00001, 0.99999);
   double s = (x - a.x) / (b.x - a.x);

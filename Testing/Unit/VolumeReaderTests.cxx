@@ -1,4 +1,4 @@
-// Round trips through every format and sample type, and files that are not what they say.
+// Round trips through every format and sample type, and invalid files.
 
 #include "files/medical/VolumeReader.h"
 
@@ -14,7 +14,7 @@ const std::vector<Stored>& as(const Volume& volume) {
   return std::get<std::vector<Stored>>(volume.voxels);
 }
 
-/// 24 samples of the default geometry.
+/// Ramp of 24 samples, for the default geometry.
 template <typename T>
 std::vector<T> ramp(double first, double step) {
   std::vector<T> samples(24);
@@ -29,7 +29,7 @@ void expectRoundTrip(const std::vector<T>& samples) {
   for (const char* name : {"v.nrrd", "v.nhdr", "v.nii", "v.nii.gz", "v.mha", "v.mhd"})
     for (const bool compress : {false, true}) {
       if (std::string(name).starts_with("v.nii") && sizeof(T) == 8 && std::is_integral_v<T>)
-        continue; // ITK does not write 64-bit integers there
+        continue; // ITK does not write 64-bit integers to NIfTI
       const auto path = folder / name;
       writeFile(path, samples, {.compress = compress});
       const Volume volume = readVolume(path);
@@ -124,7 +124,7 @@ TEST(VolumeReader, convertsObliqueGeometryToRas) {
   }
 }
 
-/// A raw NRRD by hand: `head` holds the fields that vary.
+/// Raw NRRD written by hand; `head`: the fields that vary.
 std::string nrrd(const std::string& head, const std::string& data,
                  const std::string& encoding = "raw") {
   return "NRRD0004\ntype: unsigned char\nencoding: " + encoding + "\n" + head + "\n\n" + data;
@@ -219,7 +219,7 @@ TEST(VolumeReader, refusesWhatIsMissingOrUnknown) {
 TEST(VolumeReader, refusesTruncatedFiles) {
   const TemporaryFolder folder;
   std::vector<std::uint16_t> samples(8000);
-  for (std::size_t i = 0; i < samples.size(); ++i) // not to be compressed away
+  for (std::size_t i = 0; i < samples.size(); ++i) // incompressible
     samples[i] = static_cast<std::uint16_t>(i * i * 40503u);
   for (const char* name : {"v.nrrd", "v.nii", "v.nii.gz", "v.mha"})
     for (const bool compress : {false, true}) {
@@ -274,7 +274,7 @@ TEST(VolumeReader, refusesSizesThatTheFileCannotHold) {
   expectRefusal(meta("100 100", ""), "DimSize");
   expectRefusal(meta("3 3 3\nNDims = 4000", ""), "NDims");
   expectRefusal(meta("3 3 3\nNDims" + std::string(1, '\0') + " = -1\nDimSize = 1", ""), "damaged");
-  // MetaIO reads on and on after these.
+  // MetaIO reads endlessly after such fields.
   expectRefusal(meta("3 3 3\nElementSpacing: 1 = 1", ""), "damaged");
   expectRefusal(meta("3 3 3\nComment = a\x05"
                      "b",
@@ -291,7 +291,7 @@ TEST(VolumeReader, refusesSizesThatTheFileCannotHold) {
   expectRefusal(folder.write("huge.nii", nifti), "truncated");
 }
 
-/// ITK's NRRD library copies lines, names and numbers into 1024 bytes, and sizes into 16 places.
+/// ITK's NRRD library copies lines, names and numbers into 1024 bytes, and sizes into 16 entries.
 TEST(VolumeReader, refusesNrrdHeadersThatTeemDoesNotSurvive) {
   const TemporaryFolder folder;
   const std::string sizes = "dimension: 3\nsizes: 3 4 2\n";

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t edge = 96;
 
-/// mm^-1 at a voxel.
+/// Extinction at a voxel, mm^-1.
 using Extinction = double (*)(const Vec3&);
 
 /// Cells of a volume of 1 mm voxels whose scalars are extinctions.
@@ -60,7 +60,7 @@ struct Walk {
   }
 };
 
-/// What a cell says of those that it reaches holds; of one in sixteen.
+/// Checks the bounds that a cell states for the cells within its reach; for one cell in sixteen.
 void expectBounds(const Walk& walk) {
   walk.forEach([&](const Size3& c) {
     if ((c.x() + 3 * c.y() + 7 * c.z()) % 16 != 0)
@@ -69,7 +69,7 @@ void expectBounds(const Walk& walk) {
     const MajorantGrid::Cell& own = walk.narrow(c);
     ASSERT_EQ(cell.majorant == 0.0F, own.majorant == 0.0F) << c;
     ASSERT_EQ(cell.cut, own.cut) << c;
-    if (cell.reach == 0) { // six bits, rounded up, from the greatest down
+    if (cell.reach == 0) { // six bits, rounded up, relative to the greatest
       ASSERT_LE(cell.majorant, own.majorant * 1.016F + walk.greatest * 1e-8F) << c;
     }
     const Size3 around = Size3::Constant(static_cast<std::int64_t>(cell.reach));
@@ -80,7 +80,7 @@ void expectBounds(const Walk& walk) {
   });
 }
 
-/// Dense in a ball, thin mist below it, nothing above.
+/// Extinction: dense in a ball, thin mist below, 0 above.
 double ballInMist(const Vec3& p) {
   const bool inBall = (p - Vec3::Constant(0.5 * edge)).norm() < 0.2 * edge;
   const double mist = p.z() < 0.6 * edge ? 1e-3 * (1.0 + p.x() / edge) : 0.0;

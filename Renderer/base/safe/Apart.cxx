@@ -24,9 +24,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* subcommand = "read-apart"; // which no user calls
+constexpr const char* subcommand = "read-apart"; // not for users
 constexpr int childConnection = 3;
-constexpr std::uint64_t longestQuestion = 1 << 16; // less than a socket holds
+constexpr std::uint64_t longestQuestion = 1 << 16; // bytes; less than a socket holds
 
 // ---- frames: a length of 8 bytes, then as many bytes
 // ---------------------------------------------
@@ -47,7 +47,7 @@ bool sendFrame(int connection, const std::string& bytes) {
          sendAll(connection, bytes);
 }
 
-/// Whether there is something to receive before `deadline`, if there is one.
+/// Waits for bytes to receive. False: none before `deadline`; nullopt: no deadline.
 bool waits(int connection, std::optional<Clock::time_point> deadline) {
   using std::chrono::milliseconds;
   pollfd event{connection, POLLIN, 0};
@@ -97,7 +97,7 @@ struct Jobs {
   bool served = false; ///< this program's main calls serveApart
 };
 
-/// Of this program.
+/// Jobs of this program.
 Jobs& jobs() {
   static Jobs known;
   return known;
@@ -109,7 +109,7 @@ Jobs& jobs() {
     std::string answer;
     try {
       answer = job.answer(*question);
-    } catch (...) { // the parent says what there is to say
+    } catch (...) { // the parent reports the error
       answer.clear();
     }
     if (!sendFrame(childConnection, answer))
@@ -118,10 +118,10 @@ Jobs& jobs() {
   ::_exit(0);
 }
 
-// ---- starting it
+// ---- starting a child
 // --------------------------------------------------------------------------------
 
-/// How a child begins: no file but its end of the connection, no signal of the parent's.
+/// Attributes of a new child: no file but its end of the connection, default signal handlers.
 class Beginning {
 public:
   explicit Beginning(int connection) {
@@ -146,7 +146,7 @@ public:
   Beginning(const Beginning&) = delete;
   Beginning& operator=(const Beginning&) = delete;
 
-  /// The process, or 0.
+  /// Starts the child for `job`; returns the process id, or 0: failed.
   pid_t spawn(std::string job) const {
     std::string program = "fenestra", word = subcommand, parent = std::to_string(::getpid());
     const std::array<char*, 5> arguments = {program.data(), word.data(), job.data(), parent.data(),

@@ -1,11 +1,10 @@
 #pragma once
 // Reading in a process of its own, for libraries that do not survive damaged files: GDCM and HDF5.
 //
-// The child is this very program (/proc/self/exe, so of the same build even where the file has been
-// replaced since), started anew: it has nothing of the parent's memory, files, threads and locks.
-// So a program whose readers work apart calls serveApart first of all in main, as fenestra, its
-// tests and its fuzz targets do; in any other, asking throws std::logic_error instead of running
-// that program's main again.
+// The child runs the parent's own executable (/proc/self/exe: the same build, even if the file has
+// been replaced since) and inherits no memory, files, threads or locks. A program whose readers
+// work apart calls serveApart first in main, as fenestra, its tests and its fuzz targets do. In any
+// other program Apart::ask throws std::logic_error instead of running that program's main again.
 
 #include <cstdint>
 #include <optional>
@@ -13,16 +12,18 @@
 
 namespace fenestra {
 
-/// What a child may take for one question before it is ended.
+/// Limits of a child, which is killed beyond `seconds`; beyond `bytes` its allocations fail.
 struct ApartLimits {
-  unsigned seconds = 5;                         ///< of a processor; by the clock, thrice as many
-  std::uint64_t bytes = std::uint64_t{2} << 30; ///< of address space, its libraries' included
+  unsigned seconds = 5; ///< processor time for a question, s; 3 times as long by the clock
+  std::uint64_t bytes = std::uint64_t{2} << 30; ///< address space, libraries included
 };
 
-/// Work for a child: bytes in, bytes out. A constant at namespace scope, beside who asks.
+/// Work for a child: bytes in, bytes out. Declared as a constant at namespace scope, next to the
+/// caller of Apart::ask.
 class ApartJob {
 public:
-  /// An empty answer, as an exception, says that there is none: the file is not what it should be.
+  /// Answers a question in the child. Empty string or exception: no answer, since the file is not
+  /// of the expected format.
   using Answer = std::string (*)(const std::string& question);
 
   ApartJob(std::string name, Answer answer, ApartLimits limits = {});
@@ -37,10 +38,11 @@ private:
   ApartLimits m_limits;
 };
 
-/// One child, started when first asked, and again after it was ended. It has no standard streams
-/// and no other files of the parent's; it may open 32 files, write none and leave no core; its
-/// signals are the defaults, and the terminal's do not reach it. It ends with the thread that
-/// started it: ask from one thread, which outlives the object.
+/// One child process, started by the first question and restarted after a failure. The child has no
+/// standard streams and no files of the parent; it may open 32 files, write none and leave no core;
+/// its signal handlers are the defaults, and signals of the terminal do not reach it. The kernel
+/// kills the child when the thread that started it ends: call `ask` from one thread, which outlives
+/// the object.
 class Apart {
 public:
   explicit Apart(const ApartJob& job) : m_job(job) {}
@@ -48,9 +50,9 @@ public:
   Apart(const Apart&) = delete;
   Apart& operator=(const Apart&) = delete;
 
-  /// The child's answer, of at most `most` bytes, which nobody has checked; empty where there is
-  /// none. Nothing where the child crashed, took more than its limits, or answered at more length.
-  /// `question` has at most 64 kB. Throws Error (output) where no process can be started.
+  /// Returns the child's answer, unchecked, at most `most` bytes; empty: the job gave no answer.
+  /// nullopt: `question` exceeds 64 kB, or the child crashed, exceeded its limits or answered with
+  /// more than `most` bytes. Throws Error (output) where no process can be started.
   std::optional<std::string> ask(const std::string& question, std::uint64_t most);
 
 private:
@@ -58,11 +60,12 @@ private:
   void end();
 
   const ApartJob& m_job;
-  int m_child = 0;       ///< its process, or 0
-  int m_connection = -1; ///< a socket
+  int m_child = 0;       ///< process id; 0: not running
+  int m_connection = -1; ///< socket to the child; -1: none
 };
 
-/// In a child, answers until its parent is done or gone, and does not return.
+/// In a child: answers questions until the parent closes the connection or dies, and does not
+/// return. In any other process: enables Apart::ask and returns.
 void serveApart(int argc, char** argv);
 
 } // namespace fenestra

@@ -1,6 +1,6 @@
 #pragma once
-// Texts and lists of numbers in an answer (Apart.h): a count of 8 bytes, then as many characters or
-// doubles.
+// Encoding of texts and lists of numbers in an answer (Apart.h): a count (8 bytes), then that many
+// characters or doubles.
 
 #include <cmath>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace fenestra {
 
-/// For the child.
+/// Encodes an answer, in the child.
 class AnswerWriter {
 public:
   void put(std::string_view text) { append(text.size(), text.data(), text.size()); }
@@ -30,14 +30,15 @@ private:
   std::string m_bytes;
 };
 
-/// For the parent, which trusts no byte: whatever is not as it was put throws std::runtime_error.
+/// Decodes an answer, in the parent. Throws std::runtime_error for a truncated answer, or a number
+/// that is not finite.
 class AnswerReader {
 public:
   explicit AnswerReader(std::string_view bytes) : m_bytes(bytes) {}
 
   bool atEnd() const { return m_bytes.empty(); }
   std::string text() { return std::string(take(count())); }
-  /// Each is finite.
+  /// Finite numbers, in the order written.
   std::vector<double> numbers() {
     const std::uint64_t count = this->count();
     if (count > m_bytes.size() / sizeof(double))

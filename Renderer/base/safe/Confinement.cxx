@@ -31,7 +31,8 @@ bool limit(__rlimit_resource resource, rlim_t most) {
   return ::setrlimit(resource, &both) == 0;
 }
 
-/// Takes every right to write, make and remove; kernels without Landlock leave them.
+/// Gives up every right to write, make, remove and execute files; no effect on kernels without
+/// Landlock.
 void changeNoFolder() {
   landlock_ruleset_attr rights{};
   rights.handled_access_fs =
@@ -51,7 +52,7 @@ void changeNoFolder() {
 bool confined(std::uint64_t bytes, const char* parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (std::to_string(::getppid()) != parent)
-    return false; // it died before this could be asked for
+    return false; // the parent died before PR_SET_PDEATHSIG
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   changeNoFolder();
   constexpr rlim_t mostFiles = 32;

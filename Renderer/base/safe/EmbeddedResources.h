@@ -1,6 +1,5 @@
 #pragma once
-// The files under Resources/ that travel inside the executable (Resources/CMakeLists.txt picks
-// them).
+// Files of Resources/ that are compiled into the executable (Resources/CMakeLists.txt lists them).
 
 #include <string>
 #include <string_view>
@@ -8,11 +7,11 @@
 
 namespace fenestra {
 
-/// The text of a file by its path under Resources/, like "color/fenestra.ocio"; empty where there
-/// is none of that name, for names can be a user's.
+/// Text of the file at `name`, a path under Resources/ like "color/fenestra.ocio". Empty: no such
+/// file (`name` may come from a user).
 std::string_view embeddedResource(std::string_view name);
 
-/// The names that start with `prefix`, like "transfer/", sorted.
+/// Paths under Resources/ that start with `prefix`, like "transfer/", sorted.
 std::vector<std::string> embeddedResourceNames(std::string_view prefix);
 
 } // namespace fenestra

@@ -1,6 +1,5 @@
 #pragma once
-// Headers that are lines of text at the front of a file, as of NRRD and MetaImage. For io's own
-// sources.
+// Text headers at the front of a file: NRRD and MetaImage.
 
 #include "base/Error.h"
 
@@ -58,8 +57,8 @@ inline Error damaged(const std::filesystem::path& path, const std::string& forma
                     "is not a " + format + " file, or its header is damaged; write it again");
 }
 
-/// Samples lie millimetres apart to everyone who reads them. Throws Error (input) where a field
-/// says another length; what is none, as a time, passes.
+/// Throws Error (input) where `unit` is a length other than mm: all readers take lengths as mm.
+/// Units of other quantities, such as time, pass.
 inline void checkMillimetres(const std::filesystem::path& path, const std::string& field,
                              const std::string& unit) {
   static const std::set<std::string> others = {
@@ -73,23 +72,24 @@ inline void checkMillimetres(const std::filesystem::path& path, const std::strin
                      field + ": \"" + unit + "\" is not read; scale the geometry to \"mm\"");
 }
 
-/// To libraries a zero byte or a lone \r ends a line, so that they would read another one than we
-/// do.
+/// Finds control characters other than a tab. Libraries end a line at a zero byte or a lone \r, and
+/// would read another header than this code.
 inline bool hasControls(std::string_view line) {
   return std::any_of(line.begin(), line.end(),
                      [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
 }
 
-/// The text header at the front of a file, line by line; it may be followed by binary samples.
+/// Reads the text header at the front of a file line by line. Binary samples may follow.
 class HeaderLines {
 public:
   explicit HeaderLines(const std::filesystem::path& path) : m_file(path, std::ios::binary) {
-    std::error_code unknown; // of a pipe, say; then the size is the largest there is
+    std::error_code unknown; // file_size of a pipe fails and returns the largest number
     m_limit = std::min<std::uint64_t>(std::filesystem::file_size(path, unknown), longestHeader);
-    m_text.reserve(m_limit); // lines stay where they are while more are read
+    m_text.reserve(m_limit); // views of lines stay valid while more lines are read
   }
 
-  /// The next line without its end; nothing where there is none that ends within the limit.
+  /// Next line, without its line end. nullopt: end of the file, or a line that goes beyond
+  /// longestHeader.
   std::optional<std::string_view> next() {
     const std::size_t end = endOfLine();
     if (m_position >= m_text.size() || (end == std::string::npos && m_text.size() == longestHeader))
@@ -102,11 +102,11 @@ public:
     return line;
   }
 
-  /// Of the byte after the lines read so far.
+  /// Offset in the file of the byte after the lines read so far.
   std::uint64_t position() const { return std::min(m_position, m_text.size()); }
 
 private:
-  /// Reads on until a line ends.
+  /// Reads until the current line ends; returns the position of its '\n', or npos.
   std::size_t endOfLine() {
     for (std::size_t from = m_position;;) {
       if (const std::size_t end = m_text.find('\n', from); end != std::string::npos)
@@ -117,7 +117,7 @@ private:
     }
   }
 
-  /// False at the end of the file, or at the limit.
+  /// Reads the next block. False: end of the file or limit reached.
   bool readMore() {
     constexpr std::size_t block = 16 << 10;
     const std::size_t before = m_text.size();

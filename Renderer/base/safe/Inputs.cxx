@@ -48,8 +48,8 @@ std::optional<FileId> idOf(int folder, const char* path, int flags) {
                        : 0};
 }
 
-/// A canonical folder; none: anywhere. (A pointer: a thread's object with a destructor ends the
-/// process where there is no memory for it.)
+/// Canonical folder to which this thread's reads are confined; null: not confined. (A pointer: a
+/// thread_local object with a destructor ends the process where memory is short.)
 thread_local const std::filesystem::path* confinement = nullptr;
 
 bool isWithin(const std::filesystem::path& path, const std::filesystem::path& folder) {
@@ -67,7 +67,7 @@ std::filesystem::file_type typeOf(const std::filesystem::path& path) {
   return type;
 }
 
-/// The system would take such a name for the one that ends before its zero byte.
+/// True for names that system calls would cut at a zero byte.
 bool hasZeroByte(const std::filesystem::path& path) {
   return path.native().find('\0') != std::string::npos;
 }
@@ -98,7 +98,7 @@ void requireFile(const std::filesystem::path& path, const std::string& mend, std
   if (hasZeroByte(path))
     throw inputError(path.c_str(),
                      "is followed by a zero byte, which no name holds; write it again");
-  // Before it is looked at: a name on an automount or a server would tell others of itself.
+  // Checked first: a name on an automount or a server would reveal the access to others.
   if (confinement && !isWithin(path, *confinement))
     throw inputError(path.string(),
                      "is outside the archive that names it, or not in it; save the scene again");

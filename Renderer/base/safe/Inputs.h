@@ -1,7 +1,6 @@
 #pragma once
-// Ledger of every file that the process reads: no result may replace one of them, whatever the
-// name. requireFile is the one door to it, and every reader goes through that before it opens a
-// file.
+// Ledger of every file that the process reads: no result may replace such a file, under any name.
+// Every reader calls requireFile before it opens a file.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,11 +13,11 @@ namespace fenestra {
 
 inline constexpr std::uint64_t anySize = std::numeric_limits<std::uint64_t>::max();
 
-/// A file whatever its names: links to it have the same. A number that is free is given to another
-/// file, which was born later.
+/// Identity of a file, equal for all its names and links. `born` distinguishes a later file that
+/// reuses the inode number.
 struct FileId {
   std::uint64_t device = 0, inode = 0;
-  std::int64_t born = 0; ///< ns since 1970; 0 where the disk does not tell
+  std::int64_t born = 0; ///< birth, ns since 1970; 0: not reported by the disk
 
   friend bool operator==(const FileId& a, const FileId& b) { return a.all() == b.all(); }
   friend bool operator<(const FileId& a, const FileId& b) { return a.all() < b.all(); }
@@ -29,28 +28,29 @@ private:
   }
 };
 
-/// Empty where there is nothing of this name. Follows links.
+/// Identity of the file behind `path`; links are followed. nullopt: no such file.
 std::optional<FileId> fileId(const std::filesystem::path& path);
-/// Of an open file.
+/// Identity of an open file.
 std::optional<FileId> fileId(int descriptor);
 
-/// Whether there is anything of this name, or a folder. Follows links. Throws Error (input) where
-/// that cannot be told.
+/// True if a file or folder is at `path`; isFolder: if a folder is. Links are followed. Throws
+/// Error (input) where the system cannot say.
 bool isThere(const std::filesystem::path& path);
 bool isFolder(const std::filesystem::path& path);
 
-/// Enters `path` into the ledger. Throws Error (input) unless it is a file of at most `most` bytes
-/// inside the folder that InputsWithin names, and no result of this process; `mend` says what to
-/// name instead of a folder.
+/// Enters `path` into the ledger. Throws Error (input) unless `path` is a readable file of at most
+/// `most` bytes, inside the folder of InputsWithin if one is set, and no result of this process.
+/// `mend`: advice in the message for a folder.
 void requireFile(const std::filesystem::path& path, const std::string& mend,
                  std::uint64_t most = anySize);
 
-/// Enters what is at `path` into the ledger, if anything: a file, or those in a folder. For names
-/// of files that are read later, or that belong to what is read.
+/// Enters the file at `path`, or the files directly in the folder at `path`, into the ledger. No
+/// effect where neither exists. For files that are read later, or that belong to a file that is
+/// read.
 void expectInput(const std::filesystem::path& path);
 
-/// While it lives, this thread reads nothing outside `folder`, whatever the files in it name: for
-/// what came out of an archive.
+/// Confines this thread's reads to `folder` during the object's life, whatever the files in
+/// `folder` name. For unpacked archives.
 class InputsWithin {
 public:
   explicit InputsWithin(const std::filesystem::path& folder);
@@ -63,14 +63,14 @@ private:
   const std::filesystem::path* m_before;
 };
 
-/// The name under which a file was read; empty where it was not.
+/// Name under which `file` was first read; nullopt: not in the ledger.
 std::optional<std::filesystem::path> inputNamed(const FileId& file);
 
-/// Takes a file out of the ledger: one that this process has just made (what had its number before
-/// is gone), or that is read only to be written again.
+/// Removes a file from the ledger: a file that this process has just made (the earlier owner of its
+/// inode number is gone), or that is read only to be written again.
 void forgetInput(const FileId& file);
 
-/// A result that was put in place: requireFile refuses it until forgetResult.
+/// Registers the result in place at `path`: requireFile refuses that file until forgetResult.
 void enterResult(const std::filesystem::path& path);
 void forgetResult(const std::filesystem::path& path);
 

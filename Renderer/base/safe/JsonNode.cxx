@@ -141,7 +141,7 @@ void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {
       for (const std::string_view k : keys)
         known += (known.empty() ? "" : ", ") + std::string(k);
       const std::string shown =
-          nlohmann::json(key).dump(-1, ' ', true); // one line, whatever it holds
+          nlohmann::json(key).dump(-1, ' ', true); // one line, whatever the key holds
       throw error("unknown key " + shown.substr(0, 80) + "; known ones are " + known);
     }
 }

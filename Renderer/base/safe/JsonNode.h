@@ -1,5 +1,5 @@
 #pragma once
-// JSON from untrusted files, read so that every complaint names its place. For io's own sources.
+// JSON from untrusted files; every error names its place.
 
 #include "base/Error.h"
 
@@ -14,24 +14,23 @@
 
 namespace fenestra {
 
-/// Bytes of a text file of ours, or of Slicer's but for its scenes: parsed, it takes some 25 times
-/// as many.
+/// Largest text file, bytes, but for Slicer's scenes. Parsed JSON takes some 25 times as many.
 inline constexpr std::uint64_t largestText = std::uint64_t{4} << 20;
 
 /// The content of a text file. Throws Error (input) where it cannot be read or exceeds `most`
 /// bytes.
 std::string readText(const std::filesystem::path& path, std::uint64_t most = largestText);
 
-/// Values and keys in such a file.
+/// Most values and keys of a JSON text.
 inline constexpr int mostJsonParts = 200'000;
 
-/// Throws Error (input) for anything but one JSON value nested at most 64 deep, and for more than
-/// `mostParts` values and keys in it.
+/// Parses one JSON value. Throws Error (input) for other text, for nesting deeper than 64, and for
+/// more than `mostParts` values and keys.
 nlohmann::json parseJson(std::string_view text, const std::string& source,
                          int mostParts = mostJsonParts);
 
-/// A value and where it is, like "lights[2].radiance". A view: the document outlives it. Every
-/// accessor throws Error (input) where the value is not what it asks for.
+/// View of a JSON value, with its place in the document, like "lights[2].radiance". The document
+/// must outlive the view. Accessors throw Error (input) for a value of another type or range.
 class JsonNode {
 public:
   JsonNode(const nlohmann::json& document, std::string source)
@@ -47,20 +46,20 @@ public:
   /// An array of exactly `count` numbers from low to high.
   std::vector<double> numbers(std::size_t count, double low, double high) const;
 
-  /// Of an array.
+  /// Elements of an array.
   std::vector<JsonNode> elements() const;
 
-  /// Of an object.
+  /// Member of an object. Missing key: find returns nullopt, at throws Error (input).
   std::optional<JsonNode> find(const std::string& key) const;
   JsonNode at(const std::string& key) const;
   /// Keys and values, in the keys' order.
   std::vector<std::pair<std::string, JsonNode>> members() const;
   void allowOnly(std::initializer_list<std::string_view> keys) const;
 
-  /// The value as JSON again, on one line.
+  /// Value as JSON text, on one line.
   std::string json() const;
 
-  /// Names the file and the place.
+  /// Error (input) that names the file and the place, then says `mend`.
   Error error(const std::string& mend) const;
 
 private:

@@ -65,17 +65,17 @@ void forTemporaryNames(const std::filesystem::path& folder, std::string_view pre
 
 namespace {
 
-/// Of a system call's error code. No file has a name that is too long.
+/// True for error codes that mean that no such file exists. No file has a name that is too long.
 bool saysNothingIsThere(int code) {
   return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
 }
 
 } // namespace
 
-/// A place in the list. Entries are used again and never freed, so that a signal handler may walk
-/// the list at any moment.
+/// Entry of the list. Entries are reused, never freed: a signal handler may walk the list at any
+/// time.
 struct Leftover::Entry {
-  std::filesystem::path path; ///< constant while it is listed
+  std::filesystem::path path; ///< constant while listed
   Kind kind = Kind::file;
   std::atomic<bool> isTaken = false;
   std::atomic<bool> isListed = false;
@@ -83,7 +83,7 @@ struct Leftover::Entry {
 
   static std::atomic<Entry*> first;
 
-  /// An entry that nobody uses, taken.
+  /// Takes a free entry, or a new one.
   static Entry* take() {
     for (Entry* entry = first; entry; entry = entry->next)
       if (!entry->isTaken.exchange(true))
@@ -108,9 +108,9 @@ namespace {
 
 static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-std::atomic<int> uninterrupted = 0;             ///< threads
-std::atomic<void (*)()> endRequested = nullptr; ///< what a signal has asked for
-thread_local int depth = 0;                     ///< of nested Uninterrupted
+std::atomic<int> uninterrupted = 0;             ///< number of threads that are Uninterrupted
+std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
+thread_local int depth = 0;                     ///< number of nested Uninterrupted in this thread
 
 void leave() {
   if (--uninterrupted == 0)
@@ -130,7 +130,7 @@ Leftover::Leftover(const std::filesystem::path& path, Kind kind) {
 
 Leftover::~Leftover() {
   if (m_entry->isListed && !m_entry->remove() && !saysNothingIsThere(errno))
-    return; // stays listed: the end of the process tries again
+    return; // the name stays listed: the end of the process tries again
   m_entry->isListed = false;
   m_entry->isTaken = false;
 }
@@ -147,7 +147,7 @@ void removeLeftovers() {
   for (const auto* entry = Leftover::Entry::first.load(); entry; entry = entry->next)
     if (entry->isListed && entry->kind == Leftover::Kind::file)
       entry->remove();
-  for (bool isDone = false; !isDone;) { // folders in folders: as long as one goes
+  for (bool isDone = false; !isDone;) { // nested folders: repeat until none can be removed
     isDone = true;
     for (const auto* entry = Leftover::Entry::first.load(); entry; entry = entry->next)
       if (entry->isListed && entry->kind == Leftover::Kind::folder && entry->remove())

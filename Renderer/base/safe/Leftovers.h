@@ -1,5 +1,6 @@
 #pragma once
-// Names that must not outlive the process, and moments at which a signal must not end it.
+// Temporary names, removed when the process ends, by a signal as well; and sections of code that no
+// signal may end the process in.
 
 #include <filesystem>
 #include <functional>
@@ -9,20 +10,18 @@
 
 namespace fenestra {
 
-/// Of files that are made beside results.
+/// Prefix of files that are made beside results.
 inline constexpr std::string_view temporaryFilePrefix = ".fenestra-";
 
-/// `prefix`, twelve random digits and a checksum of them, like
-/// ".fenestra-0123456789ab-89abcdef.tmp": what has such a name may be removed, so it must not be
-/// anybody's by chance.
+/// Name of `prefix`, 12 random digits and a checksum, like ".fenestra-0123456789ab-89abcdef.tmp".
+/// Files with such names are removed; the checksum keeps a user's file from having one by chance.
 std::string temporaryName(std::string_view prefix);
-/// The same, with digits that follow from `what`: one that processes find without telling each
-/// other.
+/// Temporary name whose digits are a hash of `what`, and so the same in every process.
 std::string temporaryNameOf(std::string_view prefix, std::string_view what);
 bool isTemporaryName(std::string_view name, std::string_view prefix);
 
-/// Calls `use` with each path of such a name in the folder, for whoever sweeps what others have
-/// left: where the folder cannot be read, or memory fails, the rest stays to the next.
+/// Calls `use` with the path of each temporary name in `folder`. Stops silently where the folder
+/// cannot be read or memory fails: a later run handles the rest.
 void forTemporaryNames(const std::filesystem::path& folder, std::string_view prefix,
                        const std::function<void(const std::filesystem::path&)>& use);
 
@@ -31,15 +30,16 @@ class Leftover {
 public:
   enum class Kind { file, folder };
 
-  /// Lists `path`, which need not be there yet. Throws std::bad_alloc before anything is made.
+  /// Lists `path`, which need not exist yet. Throws std::bad_alloc, before the caller makes the
+  /// file.
   Leftover(const std::filesystem::path& path, Kind kind);
-  /// Removes the name; a folder only where it is empty by then.
+  /// Removes the file, or the folder if empty.
   ~Leftover();
   Leftover(const Leftover&) = delete;
   Leftover& operator=(const Leftover&) = delete;
 
   const std::filesystem::path& path() const;
-  /// The name stays, whatever happens.
+  /// Unlists the name: the file stays.
   void keep();
 
 private:
@@ -50,14 +50,15 @@ private:
   Entry* m_entry;
 };
 
-/// Removes every listed name: files, then folders from the inside out. Makes system calls alone, as
-/// a signal handler must.
+/// Removes every listed name: files, then folders from the inside out. Async-signal-safe: system
+/// calls only.
 void removeLeftovers();
 
-/// Names that could not be removed, for the user to do it.
+/// Listed names that still exist, for a message to the user.
 std::vector<std::filesystem::path> remainingLeftovers();
 
-/// Moment between two states of the disk, as between making a name and listing it. Nests.
+/// Section in which no signal may end the process, as from listing a name to making its file.
+/// Nests.
 class Uninterrupted {
 public:
   Uninterrupted();
@@ -66,8 +67,8 @@ public:
   Uninterrupted& operator=(const Uninterrupted&) = delete;
 };
 
-/// Calls `end`, which ends the process, now or as soon as no thread is Uninterrupted; returns in
-/// the second case. For a signal handler.
+/// Calls `end`, which ends the process: at once, or, after this function has returned, as soon as
+/// no thread is Uninterrupted. For a signal handler.
 void endWhenPossible(void (*end)());
 
 } // namespace fenestra

@@ -15,7 +15,7 @@
 namespace fenestra {
 namespace {
 
-/// False where another process has it.
+/// Tries to lock `file`. False: another process holds the lock.
 bool tryLock(int file) {
   return repeated([file] { return ::flock(file, LOCK_EX | LOCK_NB); }) == 0 || errno != EWOULDBLOCK;
 }
@@ -26,9 +26,9 @@ void waitABit() {
 
 } // namespace
 
-/// In the order of their numbers, so that two runs do not wait for each other.
+/// Locks folders in the order of their ids, so that two runs cannot deadlock.
 FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
-  constexpr double longest = 2.0; // s: a script may hold the folder for as long as it runs us
+  constexpr double longest = 2.0; // s; a script may lock the folder while it runs Fenestra
   std::map<FileId, std::filesystem::path> ordered;
   for (const std::filesystem::path& folder : folders)
     if (const auto id = fileId(folder))
@@ -52,7 +52,7 @@ FolderLocks::~FolderLocks() {
 }
 
 NameLock::NameLock(const std::filesystem::path& path) {
-  constexpr double longest = 0.2; // s: who looks for abandoned files locks them for a moment
+  constexpr double longest = 0.2; // s; removeAbandonedFiles locks files for much less
   const std::filesystem::path lock =
       path.parent_path() / temporaryNameOf(temporaryFilePrefix, path.filename().string());
   const Stopwatch waited;
@@ -60,7 +60,8 @@ NameLock::NameLock(const std::filesystem::path& path) {
     waitABit();
 }
 
-/// A file that another process has removed since it was opened is locked for nobody.
+/// Fails where another process has removed the file after it was opened: no other process would see
+/// that lock.
 void NameLock::take(const std::filesystem::path& lock, const std::filesystem::path& path) {
   const Uninterrupted making;
   m_name.emplace(lock, Leftover::Kind::file);
@@ -71,7 +72,7 @@ void NameLock::take(const std::filesystem::path& lock, const std::filesystem::pa
     m_file = file;
     return;
   }
-  m_name->keep(); // another process's, or none
+  m_name->keep(); // the file is another process's, or missing
   m_name.reset();
   if (file < 0)
     throw writingError(path, code);
@@ -79,7 +80,7 @@ void NameLock::take(const std::filesystem::path& lock, const std::filesystem::pa
 }
 
 NameLock::~NameLock() {
-  m_name.reset(); // before others can lock it
+  m_name.reset(); // remove the name before the lock is released
   if (m_file >= 0)
     ::close(m_file);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Locks between processes (flock), which end with the process that has them, however it ends. On a
-// disk without locks everybody goes on.
+// Locks between processes (flock), released when their process ends in any way. On a disk without
+// locks every caller proceeds.
 
 #include "base/safe/Leftovers.h"
 
@@ -12,7 +12,7 @@
 namespace fenestra {
 
 /// Keeps other runs from placing results in the same folders, so that results of two runs do not
-/// mix. Placing takes milliseconds: who waited for seconds goes on without a lock.
+/// mix. Placing takes milliseconds: after 2 s of waiting the caller proceeds without the lock.
 class FolderLocks {
 public:
   /// Folders that cannot be read are left out.
@@ -25,13 +25,13 @@ private:
   std::vector<int> m_files;
 };
 
-/// A name in a folder, which one process has at a time: for whoever writes under that name for
-/// long. A file with a temporary name beside it is what is locked; it goes with this object, and
-/// the next run in the folder removes what SIGKILL has left of it.
+/// Lock on a result's name, held by one process at a time, for results that take long to write.
+/// Locks a temporary file beside the result, which is removed with this object, or after SIGKILL by
+/// the next run in the folder.
 class NameLock {
 public:
-  /// Takes the lock unless another process has it. Throws Error (output) where no file can be made
-  /// in the folder of `path`.
+  /// Takes the lock unless another process holds the lock. Throws Error (output) where no file can
+  /// be made in the folder of `path`.
   explicit NameLock(const std::filesystem::path& path);
   ~NameLock();
   NameLock(const NameLock&) = delete;

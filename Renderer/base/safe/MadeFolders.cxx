@@ -36,14 +36,14 @@ void MadeFolders::make(const std::filesystem::path& folder) {
   if (std::filesystem::is_directory(folder, failed))
     return;
   make(folder.parent_path());
-  if (!folder.has_filename()) // a slash at the end
+  if (!folder.has_filename()) // `folder` ends in a slash
     return;
   const Uninterrupted making;
   m_made.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
   if (::mkdir(folder.c_str(), 0777) == 0)
     return;
   const int code = errno;
-  m_made.back()->keep(); // what is there is not ours
+  m_made.back()->keep(); // the existing name is not ours
   throw cannotBeMade(folder, code);
 }
 

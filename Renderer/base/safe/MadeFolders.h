@@ -9,8 +9,8 @@
 
 namespace fenestra {
 
-/// Makes `folder` and those above it. Those that it made and that nothing was written into go with
-/// it. Throws Error (output).
+/// Makes `folder` and the missing folders above it. The destructor removes those of them that are
+/// still empty. Throws Error (output).
 class MadeFolders {
 public:
   explicit MadeFolders(const std::filesystem::path& folder);

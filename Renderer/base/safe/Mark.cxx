@@ -25,7 +25,7 @@ std::string digitsOf(uLong sum) {
   return digits;
 }
 
-/// Of everything but the digits at `at` and what is behind them.
+/// Checksum of `content` without the digits at `at` and the `behind` bytes after them.
 std::string checksum(std::string_view content, std::size_t at) {
   const std::size_t rest = std::min(content.size(), at + checksumDigits + behind);
   return digitsOf(checksumOf(checksumOf(0, content.substr(0, at)), content.substr(rest)));
@@ -33,7 +33,7 @@ std::string checksum(std::string_view content, std::size_t at) {
 
 using TakeBlock = std::function<void(std::string_view block, std::uint64_t begin)>;
 
-/// Block by block, for it may have any size.
+/// Passes the file, which may have any size, to `take` block by block.
 void readBlocks(const std::filesystem::path& path, const TakeBlock& take) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> block(1 << 20);
@@ -45,12 +45,12 @@ void readBlocks(const std::filesystem::path& path, const TakeBlock& take) {
   }
 }
 
-/// Where the digits of the last marks are. A file of ours has one, behind those of the files that
-/// it may hold.
+/// Offsets of the digits of the last marks. A file of ours has its own mark last, after the marks
+/// of files that it contains.
 std::vector<std::uint64_t> marksIn(const std::filesystem::path& path) {
   constexpr std::ptrdiff_t mostMarks = 4; // each costs a pass through the file
   std::vector<std::uint64_t> marks;
-  std::string text; // a block behind the end of the one before, too short to hold a mark
+  std::string text; // tail of the previous block, too short to hold a mark, then the current block
   readBlocks(path, [&](std::string_view block, std::uint64_t begin) {
     const std::uint64_t textBegin = begin - text.size();
     text += block;
@@ -64,12 +64,12 @@ std::vector<std::uint64_t> marksIn(const std::filesystem::path& path) {
   return marks;
 }
 
-/// Whether the digits at `at` are the checksum.
+/// True if the digits at `at` equal the checksum.
 bool isSealed(const std::filesystem::path& path, std::uint64_t at) {
   uLong sum = 0;
   std::string digits;
   readBlocks(path, [&](std::string_view block, std::uint64_t begin) {
-    const auto part = [&](std::uint64_t from, std::uint64_t to) { // as much as the block has of it
+    const auto part = [&](std::uint64_t from, std::uint64_t to) { // intersection with the block
       const std::uint64_t end = begin + block.size();
       const std::uint64_t first = std::clamp(from, begin, end), last = std::clamp(to, begin, end);
       return block.substr(static_cast<std::size_t>(first - begin),

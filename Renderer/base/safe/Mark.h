@@ -1,6 +1,6 @@
 #pragma once
-// Sign that Fenestra wrote a file as it is: a mark with a checksum of the rest, so that what
-// somebody has edited since is told from it.
+// Mark that Fenestra wrote a file, with a checksum of the rest: a file edited since then has no
+// valid mark.
 
 #include <filesystem>
 #include <string>
@@ -8,17 +8,16 @@
 
 namespace fenestra {
 
-/// What an encoder puts where its format has a place for text, once. seal() writes the checksum
-/// (CRC-32, eight digits) in the place of the zeros; four bytes behind them are not in it, for PNG
-/// has a checksum of its own there.
+/// Text that an encoder writes once, into a text field of its format. sealed() replaces the zeros
+/// by the checksum (CRC-32, 8 digits) of all other bytes but the 4 after the digits, where PNG has
+/// a checksum of its own.
 inline constexpr std::string_view unsealedMark = "Written by Fenestra 00000000";
 
 /// `content` with its last unsealed mark sealed.
 std::string sealed(std::string content);
 
-/// Whether the file has a mark, among its last few, whose checksum is right. False where it cannot
-/// be read. It may have any size: it is never in memory as a whole, and its time grows with that
-/// alone.
+/// True if one of the file's last 4 marks has the right checksum; false also where the file cannot
+/// be read. Reads block by block: constant memory, time linear in the file's size.
 bool bearsMark(const std::filesystem::path& path);
 
 } // namespace fenestra

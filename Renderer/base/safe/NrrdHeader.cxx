@@ -12,15 +12,15 @@ using namespace header;
 
 namespace {
 
-/// Lines of a header, with those of its list of files: teem compares each key with all before it.
+/// Most lines of a header, list of files included: teem compares each key with all earlier ones.
 constexpr int mostLines = 10'000;
-/// Bytes of a line or a path that teem may repeat in a message, for which it has 1024.
+/// Longest line and path, bytes: teem may copy them into a message of 1024.
 constexpr std::size_t longestLine = 500, longestPath = 900;
 
 using Fields = std::map<std::string, std::string>;
 
-/// ITK keeps sizes in 32 bits and hands teem a buffer of those; teem has room for 16 axes, and
-/// writes one more where there are too many sizes.
+/// Checks dimension and sizes. ITK keeps sizes in 32 bits and passes teem a buffer of those; teem
+/// has room for 16 axes, and writes one more where there are too many sizes.
 void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
   const auto dimension = fields.find("dimension");
   const auto axes = dimension == fields.end() ? std::nullopt : wholeNumber(dimension->second);
@@ -36,7 +36,7 @@ void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
   }
 }
 
-/// Of the vectors in parentheses; nothing where one is none.
+/// Lengths of the vectors in parentheses; nullopt: malformed vector.
 std::optional<std::vector<double>> vectorLengths(const std::string& text) {
   std::vector<double> lengths;
   for (std::size_t open = text.find('('); open != std::string::npos;
@@ -58,7 +58,7 @@ std::optional<std::vector<double>> vectorLengths(const std::string& text) {
   return lengths;
 }
 
-/// Those that to ITK lie in space: all that hold no list, vector or colour.
+/// Number of axes that ITK places in space: all but lists, vectors and colours.
 std::size_t placedAxes(const Fields& fields) {
   const auto kinds = fields.find("kinds");
   if (kinds == fields.end())
@@ -70,11 +70,11 @@ std::size_t placedAxes(const Fields& fields) {
   return placed;
 }
 
-/// ITK takes those that are missing to be of 1 mm.
+/// Checks space directions; ITK takes missing ones as 1 mm.
 void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields,
                       const std::string& text) {
   const auto lengths = vectorLengths(text);
-  constexpr double largest = 1e9; // mm, as of any spacing
+  constexpr double largest = 1e9; // mm; limit of every spacing
   const auto isUsable = [](double length) { return length >= 1.0 / largest && length <= largest; };
   if (!lengths || !std::all_of(lengths->begin(), lengths->end(), isUsable))
     throw inputError(path.string(), "space directions: each must be a vector of 1e-9 to 1e9 mm, or "
@@ -84,7 +84,7 @@ void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields,
                                         " vectors; write one for each axis in space");
 }
 
-/// Each text in quotes.
+/// Checks each unit, a text in quotes.
 void checkNrrdUnits(const std::filesystem::path& path, const std::string& field,
                     const std::string& text) {
   for (std::size_t open = text.find('"'); open != std::string::npos;) {
@@ -100,8 +100,8 @@ bool isBesideSpace(const Fields& fields) {
   return fields.contains("space") || fields.contains("spacedimension");
 }
 
-/// Where along its axes the samples lie: beside a space teem wants them in its directions, and
-/// without spacings ITK takes mins, and 1 mm.
+/// Checks spacings, axis mins and axis maxs: beside a space teem wants space directions instead;
+/// without spacings ITK takes the mins, and 1 mm.
 void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
   for (const auto& [key, name, mend] :
        {std::tuple("spacings", "spacings", "write space directions"),
@@ -128,7 +128,7 @@ void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
                                         " axes do not lie in a space of three; extract one frame");
 }
 
-/// Without a number ITK silently takes its default.
+/// Checks the geometry; refuses NaN, for which ITK silently takes its default.
 void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
   for (const auto& [key, name] : {std::pair("spacedirections", "space directions"),
                                   {"spaceorigin", "space origin"},
@@ -145,7 +145,7 @@ void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) 
       checkNrrdUnits(path, name, it->second);
 }
 
-/// The lines of an NRRD header: whatever teem makes of one, its messages hold it.
+/// Lines of an NRRD header, short enough for teem's messages.
 class NrrdLines {
 public:
   explicit NrrdLines(const std::filesystem::path& path) : m_path(path), m_lines(path) {}
@@ -166,12 +166,13 @@ public:
     return line;
   }
 
-  /// Text of the application's own, of any length. As to teem, a field's ": " comes first.
+  /// True for "key:=value", a text of any length of the application's own. A ": " before the ":="
+  /// makes the line a field, as in teem.
   static bool isKeyValue(std::string_view line) {
     return line.substr(0, line.find(": ")).find(":=") != std::string_view::npos;
   }
 
-  /// Of the byte after the lines read so far.
+  /// Offset in the file of the byte after the lines read so far.
   std::uint64_t position() const { return m_lines.position(); }
 
 private:
@@ -192,7 +193,7 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
     std::string key = lower(std::string(line->substr(0, colon)));
     std::erase(key, ' ');
     const auto [field, isNew] = fields.emplace(key, trimmed(line->substr(colon + 2)));
-    if (!isNew) // whichever of them teem takes
+    if (!isNew) // whichever value teem would take
       throw inputError(path.string(), key.substr(0, 40) + ": is there twice; remove one");
     if (key == "datafile" && field->second.starts_with("LIST"))
       break; // the file names follow
@@ -208,13 +209,13 @@ void checkNrrdPath(const std::filesystem::path& path) {
                                         " bytes; move it to a folder with a shorter one");
 }
 
-/// Teem reads each number as a text into 1024 bytes, however long it is.
+/// Teem copies each number's text into 1024 bytes, however long it is.
 void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
                       const std::filesystem::path& header) {
   std::ifstream file(path, std::ios::binary);
   file.seekg(static_cast<std::streamoff>(offset));
   std::vector<char> block(1 << 20);
-  std::size_t length = 0; // of the number so far
+  std::size_t length = 0; // characters of the current number
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
     for (const char c : std::string_view(block.data(), static_cast<std::size_t>(file.gcount()))) {
       length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
@@ -242,7 +243,7 @@ NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
   if (const auto data = header.fields.find("datafile");
       data != header.fields.end() && data->second.starts_with("LIST"))
     for (auto line = lines.next(); line; line = lines.next()) {
-      if (trimmed(*line).empty()) // to teem the name of a file
+      if (trimmed(*line).empty()) // teem takes it for a file name
         throw inputError(path.string(), "data file: its LIST has an empty line; remove that");
       header.files.emplace_back(trimmed(*line));
     }

@@ -1,5 +1,5 @@
 #pragma once
-// The header of a NRRD, read before ITK's reader trusts it. For io's own sources.
+// NRRD header, checked before ITK's reader sees the file.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,24 +10,24 @@
 namespace fenestra {
 
 struct NrrdHeaderText {
-  /// By their keys in lower case and without blanks: of names with and without, teem takes both.
+  /// Values by key; keys in lower case without blanks (teem accepts "axis mins" and "axismins").
   std::map<std::string, std::string> fields;
-  std::vector<std::string> files; ///< where the data file is a LIST
-  std::uint64_t end = 0;          ///< byte after the header
+  std::vector<std::string> files; ///< data files, where "data file" is a LIST
+  std::uint64_t end = 0;          ///< offset of the byte after the header
 };
 
-/// Throws Error (input) where it is none, states what ITK's reader is known not to survive, or a
-/// geometry that it would replace by its own.
+/// Throws Error (input) for a file that is no NRRD, for values known to crash ITK's reader, and for
+/// a geometry that ITK would silently replace.
 NrrdHeaderText readNrrdHeader(const std::filesystem::path& path);
 
-/// Whether it says how far voxels lie apart; otherwise ITK takes them to be 1 mm.
+/// True if the header states the distances between voxels; otherwise ITK assumes 1 mm.
 bool saysSpacing(const NrrdHeaderText& header);
 
-/// Throws Error (input) where teem could not repeat the path in a message.
+/// Throws Error (input) where the path may exceed teem's message buffer.
 void checkNrrdPath(const std::filesystem::path& path);
 
-/// Throws Error (input) where samples that are written as text, from byte `offset` of the file on,
-/// hold a number that teem has no room for. `header` is named in the message.
+/// Throws Error (input) where samples written as text, from byte `offset` of `file` on, hold a
+/// number longer than teem's buffer. The message names `header`.
 void checkNrrdNumbers(const std::filesystem::path& file, std::uint64_t offset,
                       const std::filesystem::path& header);
 

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "samples are written as they lie");
 
-/// "(x,y,z)" in LPS, whose first two axes are RAS turned round; "+ 0.0" for no "-0" in the header.
+/// "(x,y,z)" in LPS, whose first two axes are RAS negated; "+ 0.0" for no "-0" in the header.
 std::string lpsText(const Vec3& ras) {
   TextWriter text;
   text.precision(17);

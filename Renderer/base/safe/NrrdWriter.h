@@ -13,23 +13,23 @@ namespace fenestra {
 /// Further lines of the header, "key:=value".
 using NrrdFields = std::vector<std::pair<std::string, std::string>>;
 
-/// What a NRRD says of its samples, which follow it.
+/// Fields of a NRRD header; the samples follow the header.
 struct NrrdHeader {
   enum class Encoding { raw, gzip };
 
-  std::string type;             ///< of a sample, as NRRD names it: "short", "float"
-  std::string leadingKind = {}; ///< of an axis before those of space; empty: there is none
-  std::size_t leadingCount = 1; ///< samples a voxel, along that axis
-  Size3 size;                   ///< voxels in each axis, the fastest first
+  std::string type;             ///< sample type in NRRD's words: "short", "float"
+  std::string leadingKind = {}; ///< kind of an axis before the spatial axes; empty: no such axis
+  std::size_t leadingCount = 1; ///< samples per voxel, along that axis
+  Size3 size;                   ///< voxels along each axis, fastest first
   Affine indexToWorld = Affine::Identity(); ///< index to RAS mm; written as LPS
   Encoding encoding = Encoding::gzip;
   NrrdFields fields = {};
 };
 
-/// The lines up to the empty one, with it.
+/// Header lines up to the empty one, inclusive.
 std::string nrrdText(const NrrdHeader& header);
 
-/// The whole file. `samples`: as they lie in memory, little endian.
+/// Content of the whole file. `samples`: bytes in memory order, little endian.
 std::string encodeNrrd(const NrrdHeader& header, std::string_view samples);
 
 } // namespace fenestra

@@ -10,7 +10,8 @@
 
 namespace fenestra {
 
-/// All of them, whatever the locale; nothing where there is anything else, or one is not finite.
+/// Parses all numbers, independent of the locale. nullopt: other text, or a number that is not
+/// finite.
 inline std::optional<std::vector<double>> parseNumbers(std::string_view text) {
   std::vector<double> numbers;
   const char* at = text.data();

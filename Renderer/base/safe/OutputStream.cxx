@@ -14,7 +14,7 @@
 namespace fenestra {
 namespace {
 
-/// The number in /dev/fd/N and its like.
+/// N of /dev/fd/N and similar paths; nullopt: other paths.
 std::optional<int> descriptorNumber(const std::string& path) {
   if (path == "/dev/stdout")
     return STDOUT_FILENO;
@@ -54,11 +54,11 @@ void OutputStream::send() {
     return;
   const std::string content = std::exchange(m_content, {});
   if (m_descriptor >= 0) {
-    std::cout.flush(); // what was said before comes before
+    std::cout.flush(); // earlier output comes first
     std::fflush(stdout);
     return writeAll(m_descriptor, content, m_path);
   }
-  // Without a reader opening would wait for ever.
+  // Opening without O_NONBLOCK would wait for ever where no process reads the pipe.
   const int file = ::open(m_path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0)
     throw outputError(m_path.string(), "nobody reads this pipe; start its reader first");

@@ -1,6 +1,5 @@
 #pragma once
-// A result that is no file: standard output, an open descriptor, a named pipe. For
-// base/safe/Outputs.
+// Result that is no file: standard output, an open descriptor, a named pipe. For base/safe/Outputs.
 
 #include "base/safe/Inputs.h"
 
@@ -13,16 +12,16 @@ namespace fenestra {
 
 class OutputStream {
 public:
-  /// /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N or a named pipe; empty for other paths.
-  /// Throws Error (output) where the descriptor is not open.
+  /// Stream for /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N or a named pipe; nullopt:
+  /// other paths. Throws Error (output) where the descriptor is not open for writing.
   static std::optional<OutputStream> named(const std::filesystem::path& path);
 
-  /// What is behind a descriptor, or the pipe.
+  /// Identity of the file behind the descriptor, or of the pipe.
   std::optional<FileId> id() const;
 
   /// Keeps `content` until it is sent.
   void keep(std::string_view content) { m_content = content; }
-  /// Writes what was kept, once. Throws Error (output), also where nobody reads a pipe.
+  /// Writes the kept content, once. Throws Error (output), also where no process reads the pipe.
   void send();
 
 private:
@@ -30,7 +29,7 @@ private:
       : m_path(std::move(path)), m_descriptor(descriptor) {}
 
   std::filesystem::path m_path;
-  int m_descriptor; ///< -1: a named pipe, opened when it is written
+  int m_descriptor; ///< -1: named pipe, opened by send
   std::string m_content;
 };
 

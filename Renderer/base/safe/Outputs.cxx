@@ -23,10 +23,10 @@ namespace fs = std::filesystem;
 
 std::atomic<bool> anyIsPlaced = false;
 
-/// Where writing to `path` writes: links are followed, into nothing as well. Its folder is
-/// canonical, so that one file has one name. Throws Error (output).
+/// File that writing to `path` would change: links are followed, dangling ones as well. The folder
+/// is canonical, so that one file has one name. Throws Error (output).
 fs::path targetOf(const fs::path& path) {
-  constexpr int mostLinks = 40; // Linux's own limit
+  constexpr int mostLinks = 40; // Linux's limit
   std::error_code failed;
   fs::path target = fs::absolute(path, failed);
   if (failed)
@@ -39,8 +39,8 @@ fs::path targetOf(const fs::path& path) {
   return folder / target.filename();
 }
 
-/// Whether this process could not rename over the file: in a sticky folder, as /tmp, only the
-/// owners of the file and of the folder may (rename(2), EPERM).
+/// True if this process may not rename over the file: in a sticky folder, as /tmp, only the owners
+/// of the file and of the folder may (rename(2), EPERM).
 bool isKeptByItsOwner(const struct stat& file, const fs::path& folder) {
   struct stat status = {};
   const uid_t user = ::geteuid();
@@ -79,7 +79,7 @@ Error writtenTwice(const fs::path& path) {
 
 void syncFolder(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  // A folder that may be written and not read keeps its names when it likes.
+  // A folder that may be written but not read cannot be synced.
   const bool isSynced = file >= 0 ? ::fsync(file) == 0 || errno == EINVAL : errno == EACCES;
   const int code = errno;
   if (file >= 0)
@@ -100,17 +100,17 @@ bool resultsWerePlaced() {
 
 struct Outputs::Result {
   fs::path named;
-  std::optional<OutputStream> stream;  ///< instead of a file
-  fs::path target;                     ///< of a file
-  std::unique_ptr<TemporaryFile> file; ///< written and not yet in place
+  std::optional<OutputStream> stream;  ///< set: the result is a stream, not a file
+  fs::path target;                     ///< path of the file, links followed
+  std::unique_ptr<TemporaryFile> file; ///< content written, not yet in place
 
-  IsOurs isOurs; ///< empty where the user named it
+  IsOurs isOurs; ///< empty: the user named the result
   std::optional<ContentState> written;
 
   std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
   void requireOurs() const {
     std::error_code failed;
-    // An empty file holds nothing of anybody's.
+    // An empty file holds nobody's data.
     if (isOurs && fs::exists(target, failed) && !fs::is_empty(target, failed) && !isOurs(target))
       throw usageError(named.string() + ": is there, and Fenestra did not write it; move it away, "
                                         "or choose another --output");
@@ -189,7 +189,7 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
   std::optional<FolderLocks> locks(folders);
   const Uninterrupted replacing;
   std::size_t placed = 0;
-  std::set<FileId> taken; // by results of this commit: names may be one where a disk ignores case
+  std::set<FileId> taken; // placed files; two names may be one file where a disk ignores case
   try {
     for (Result* result : files) {
       const std::optional<FileId> before = result->id();

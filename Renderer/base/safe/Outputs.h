@@ -1,6 +1,6 @@
 #pragma once
-// What a command writes: declared before the long work, refused where that would cost the user a
-// file, and put in place together when it is complete. Nothing else in Renderer writes results.
+// Results of a command: declared before the long work, refused where they would cost the user a
+// file, put in place together when complete. Nothing else in Renderer writes results.
 
 #include "base/safe/Inputs.h"
 #include "base/safe/Mark.h"
@@ -21,7 +21,7 @@ namespace fenestra {
 
 class TemporaryFile;
 
-/// By which a file is told from another.
+/// Size and digest of a content, which identify a result.
 struct ContentState {
   std::uint64_t bytes = 0, digest = 0;
 
@@ -29,7 +29,7 @@ struct ContentState {
 };
 ContentState stateOf(std::string_view content);
 
-/// Whether this process has put a result in place. For signal handlers, too.
+/// True once this process has put a result in place. Async-signal-safe.
 bool resultsWerePlaced();
 
 class Outputs {
@@ -40,33 +40,35 @@ public:
   Outputs& operator=(const Outputs&) = delete;
 
   /// Declares a result that the user has named. Links are followed; /dev/stdout, /dev/fd/N and
-  /// pipes are streams, written after all files. Throws Error: usage where it is a file that was
-  /// read (base/safe/Inputs) or another result, or has a temporary file's name; output where it is
+  /// pipes are streams, written after all files. Throws Error: usage where `path` is a file that
+  /// was read (base/safe/Inputs), another result or a temporary file's name; output where `path` is
   /// a folder, a device or write-protected, or no file can be made in its folder.
   void add(const std::filesystem::path& path);
 
-  /// Says whether an existing file is Fenestra's work, and so may be replaced unasked.
+  /// True if Fenestra wrote the existing file, which may then be replaced unasked.
   using IsOurs = std::function<bool(const std::filesystem::path&)>;
-  /// The same for a name that the user has not given. Throws Error (usage) also where a file is
-  /// there that is neither ours nor empty.
+  /// Declares a result whose name the user has not given. Throws as add, and Error (usage) where
+  /// `path` is a file that is neither ours nor empty.
   void addUnnamed(const std::filesystem::path& path, const IsOurs& isOurs = bearsMark);
 
-  /// Asks the ledger of inputs again, after more files were read. Throws Error (usage).
+  /// Repeats add's check against the ledger of inputs, after more files were read. Throws Error
+  /// (usage).
   void checkInputs() const;
-  /// Takes results out of that ledger, after a request that reads one of them was refused.
+  /// Removes the results from the ledger of inputs, after a request that reads a result was
+  /// refused.
   void forgetRefused() const;
 
-  /// The whole content of a declared result, complete on the disk but not in place. From any
+  /// Writes the whole content of a declared result to the disk, not yet in place. Callable from any
   /// thread. Throws Error (output), a full disk included.
   void write(const std::filesystem::path& path, std::string_view content);
-  /// Of what was written last; empty where nothing was.
+  /// State of the content written last; nullopt: none.
   std::optional<ContentState> written(const std::filesystem::path& path) const;
 
   enum class Durability { synced, none };
-  /// Puts everything in place that was written since the last commit, all or nothing: a result that
-  /// cannot take its name takes the earlier ones back, and of two processes with the same results
-  /// one places all of its own after the other. No signal ends the process in between.
-  /// Throws Error: usage where a result became an input meanwhile; output.
+  /// Puts all content written since the last commit in place, all or nothing: after a failure the
+  /// results placed before are taken back. Two processes with the same results place theirs one
+  /// after the other. No signal ends the process meanwhile. Throws Error: usage where a result
+  /// became an input since; output.
   void commit(Durability durability = Durability::synced);
 
 private:
@@ -75,11 +77,10 @@ private:
   Result& declare(const std::filesystem::path& path);
   void place(const std::vector<Result*>& files, Durability durability);
 
-  std::map<std::filesystem::path, std::unique_ptr<Result>>
-      m_results;                                      ///< by the name that was given
+  std::map<std::filesystem::path, std::unique_ptr<Result>> m_results; ///< by the name given to add
   std::set<std::pair<FileId, std::string>> m_targets; ///< folder and name of all results
-  std::set<FileId> m_files;                           ///< that were there when they were declared
-  std::set<std::filesystem::path> m_folders;          ///< in which a file can be made
+  std::set<FileId> m_files;                           ///< existing files of declared names
+  std::set<std::filesystem::path> m_folders;          ///< folders in which a file can be made
 };
 
 } // namespace fenestra

@@ -29,8 +29,8 @@ Error cannotMake(const std::filesystem::path& path) {
                                                           "write to"));
 }
 
-/// Descriptor of a folder of this user's, and for this user alone, that no process has locked, and
-/// locked by it; -1 otherwise.
+/// Locks a folder of this user, accessible to this user alone, that no process has locked. Returns
+/// its descriptor; -1: failed.
 int lockAbandoned(const std::filesystem::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   struct stat status = {};
@@ -44,13 +44,13 @@ int lockAbandoned(const std::filesystem::path& folder) {
 
 } // namespace
 
-/// A folder's maker locks it after making it: where an abandoned one was taken for it in between,
-/// it is gone, and another is made.
+/// False: another name is needed. A folder is locked after it is made; in between another run may
+/// take it for abandoned and remove it.
 bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
   const Uninterrupted making;
   m_entries.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
   if (::mkdir(folder.c_str(), S_IRWXU) != 0) {
-    m_entries.back()->keep(); // what is there is not ours
+    m_entries.back()->keep(); // the existing name is not ours
     if (errno == EEXIST)
       return false;
     throw cannotMake(folder);
@@ -75,7 +75,7 @@ PrivateFolder::PrivateFolder() {
 }
 
 PrivateFolder::~PrivateFolder() {
-  while (!m_entries.empty()) // what is in a folder before it
+  while (!m_entries.empty()) // contents before their folder
     m_entries.pop_back();
   if (m_lock >= 0)
     ::close(m_lock);
@@ -108,7 +108,7 @@ void removeAbandonedFolders() {
   std::filesystem::path parent;
   try {
     parent = temporaryFiles();
-  } catch (const std::exception&) { // there is none, or no memory: whoever needs it says so
+  } catch (const std::exception&) { // no folder or memory: reported where the folder is needed
     return;
   }
   forTemporaryNames(parent, folderPrefix, [](const std::filesystem::path& folder) {

@@ -1,6 +1,6 @@
 #pragma once
-// Temporary folder that only this user can read, and that goes away even where a signal ends the
-// process, or where SIGKILL did and another run comes by.
+// Temporary folder, readable by this user alone. Removed with the object, by a signal that ends the
+// process, or after SIGKILL by a later run.
 
 #include "base/safe/Leftovers.h"
 
@@ -13,8 +13,8 @@ namespace fenestra {
 
 class PrivateFolder {
 public:
-  /// Folder in the place for temporary files (TMPDIR), locked (flock) as long as it is in use.
-  /// Throws Error (output) where that cannot be written.
+  /// Makes a folder in TMPDIR, locked (flock) while in use. Throws Error (output) where TMPDIR
+  /// cannot be written.
   PrivateFolder();
   ~PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;
@@ -22,20 +22,20 @@ public:
 
   const std::filesystem::path& path() const { return m_entries.front()->path(); }
 
-  /// New file of this relative, normal path without "..", and the folders it needs. It must not
-  /// be there yet. Throws Error (output).
+  /// Makes an empty file at `relative` (normal, without "..") and the folders above it; returns its
+  /// full path. Throws Error (output), also where the file exists.
   std::filesystem::path add(const std::filesystem::path& relative);
 
 private:
   void addFolder(const std::filesystem::path& folder);
   bool makeLocked(const std::filesystem::path& folder);
 
-  std::vector<std::unique_ptr<Leftover>> m_entries; ///< the folder, then what is in it as it came
+  std::vector<std::unique_ptr<Leftover>> m_entries; ///< the folder, then its content as made
   int m_lock = -1;
 };
 
-/// Removes what runs that were killed have left: private folders of this user that no process has
-/// locked. Where that fails they stay.
+/// Removes the private folders that killed runs of this user have left: no process has them locked.
+/// Ignores failures.
 void removeAbandonedFolders();
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Text from files in messages: on one line, valid UTF-8, and short where it can be.
+// Text from files, for messages: on one line, valid UTF-8, cut to 80 bytes by shown().
 
 #include <algorithm>
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace fenestra {
 
-/// Bytes of the UTF-8 character at the front of `text`; 0 where there is none (The Unicode Standard
-/// 15.0, table 3-7).
+/// Bytes of the UTF-8 character at the front of `text`; 0: empty, or not valid UTF-8 (The Unicode
+/// Standard 15.0, table 3-7).
 inline std::size_t characterSize(std::string_view text) {
   const auto byte = [&text](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -28,7 +28,7 @@ inline std::size_t characterSize(std::string_view text) {
   return size;
 }
 
-/// Control characters become blanks, bytes that are no UTF-8 question marks.
+/// Replaces control characters by blanks, and bytes that are not UTF-8 by question marks.
 inline void makeOneLine(std::span<char> text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t size = characterSize({text.data() + at, text.size() - at});
@@ -45,7 +45,7 @@ inline std::string oneLine(std::string text) {
   return text;
 }
 
-/// At most 80 bytes of it, whole characters.
+/// First 80 bytes at most, cut between characters, on one line.
 inline std::string shown(const std::string& text) {
   std::size_t end = std::min<std::size_t>(text.size(), 80);
   for (int i = 0; i < 3 && end < text.size() && end > 0; ++i)
@@ -54,7 +54,7 @@ inline std::string shown(const std::string& text) {
   return oneLine(text.substr(0, end));
 }
 
-/// The text with every `from` in it replaced.
+/// Text with every `from` replaced by `to`.
 inline std::string replacedAll(std::string_view text, std::string_view from, std::string_view to) {
   std::string result;
   for (std::size_t at = text.find(from); at != std::string_view::npos; at = text.find(from)) {

@@ -1,6 +1,6 @@
 #pragma once
-// System calls on files as they are meant: repeated where a signal interrupts them, and what their
-// error codes mean for a user, with the mend.
+// System calls on files, repeated where a signal interrupts them; messages for their error codes,
+// with the mend for a user.
 
 #include "base/Error.h"
 
@@ -18,8 +18,7 @@ inline std::string systemMessage(int code) {
   return std::generic_category().message(code);
 }
 
-/// Mend for a file or folder that cannot be read or written whatever its name; empty where the name
-/// or its folder is what is wrong.
+/// Mend for failures that another name would not cure; empty: name or folder is at fault.
 inline std::string resourceMend(int code) {
   switch (code) {
   case EIO:
@@ -34,7 +33,7 @@ inline std::string resourceMend(int code) {
   }
 }
 
-/// The same for reading, and `other` where neither a resource nor the name is what is wrong.
+/// Mend for a failed read; `other`: for codes that are neither of the name nor of a resource.
 inline std::string readingMend(int code, const std::string& other) {
   switch (code) {
   case ELOOP:
@@ -47,7 +46,7 @@ inline std::string readingMend(int code, const std::string& other) {
   }
 }
 
-/// The same for writing, and `other` where the name is what is wrong.
+/// Mend for a failed write; `other`: for codes that are not of a resource.
 inline std::string writingMend(int code, const std::string& other) {
   switch (code) {
   case ENOSPC:
@@ -62,7 +61,7 @@ inline std::string writingMend(int code, const std::string& other) {
   }
 }
 
-/// A result that cannot be written.
+/// Error for a result that cannot be written.
 inline Error writingError(const std::filesystem::path& path, int code) {
   return outputError(
       path.string(),
@@ -70,13 +69,13 @@ inline Error writingError(const std::filesystem::path& path, int code) {
           writingMend(code, "name a file in an existing folder that you may write to"));
 }
 
-/// An input that cannot be read.
+/// Error for an input that cannot be read.
 inline Error readingError(const std::filesystem::path& path, int code, const std::string& other) {
   return inputError(path.string(),
                     "cannot be read: " + systemMessage(code) + "; " + readingMend(code, other));
 }
 
-/// What `call` returns once no signal interrupts it.
+/// Calls `call` until no signal interrupts the call (EINTR); returns its result.
 template <typename Call>
 auto repeated(Call&& call) {
   auto result = call();
@@ -85,7 +84,7 @@ auto repeated(Call&& call) {
   return result;
 }
 
-/// All of `content` to a descriptor; `path` names it. Throws Error (output).
+/// Writes all of `content` to the descriptor `file`. Throws Error (output), which names `path`.
 inline void writeAll(int file, std::string_view content, const std::filesystem::path& path) {
   while (!content.empty()) {
     const auto written = repeated([&] { return ::write(file, content.data(), content.size()); });

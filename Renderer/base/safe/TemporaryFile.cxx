@@ -17,15 +17,14 @@ std::filesystem::path shortNameBeside(const std::filesystem::path& target) {
   return target.parent_path() / temporaryName(temporaryFilePrefix);
 }
 
-/// Rights of a new file: what umask leaves. Asked before there are threads.
+/// Mode of a new file: 0666 less umask. Queried before threads start, since umask is the process's.
 const mode_t usualMode = [] {
   const mode_t mask = ::umask(077);
   ::umask(mask);
   return 0666 & ~mask;
 }();
 
-/// Rights beyond the mode, where the disk has some (acl(5)): given to `to` as `from` has them.
-/// False where they cannot be.
+/// Copies the access list (acl(5)), if any, from `from` to `to`. False: cannot be set.
 bool copyAccessList(const std::filesystem::path& from, int to) {
   constexpr const char* attribute = "system.posix_acl_access";
   std::array<char, 4096> list;
@@ -35,7 +34,8 @@ bool copyAccessList(const std::filesystem::path& from, int to) {
   return ::fsetxattr(to, attribute, list.data(), static_cast<std::size_t>(size), 0) == 0;
 }
 
-/// Others' rights stay what they were: where the group is another one, it gets those of others.
+/// Mode of the earlier file; where its group could not be kept, the group's rights are cut to those
+/// that others have.
 mode_t keptMode(const struct stat& before, bool isOfItsGroup) {
   const mode_t mode = before.st_mode & 0777;
   const mode_t groupAsOthers = (mode & 07) << 3;
@@ -48,12 +48,12 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(tar
   open();
   if (m_file < 0)
     throw writingError(m_target, errno);
-  if (const auto file = fileId(m_file)) // on a disk that tells no births
+  if (const auto file = fileId(m_file)) // it reuses a number; births may be unknown
     forgetInput(*file);
 }
 
-/// Locked after it is made: where a later run took it for abandoned in between, it has no name any
-/// more, and another one is made.
+/// Makes the file, then locks it; makes another where a later run has removed it in between as
+/// abandoned.
 void TemporaryFile::open() {
   for (;;) {
     const Uninterrupted making;
@@ -76,7 +76,7 @@ void TemporaryFile::open() {
 }
 
 TemporaryFile::~TemporaryFile() {
-  m_before.reset(); // names go before their locks
+  m_before.reset(); // names are removed before their locks
   m_name.reset();
   for (const int file : {m_file, m_replaced})
     if (file >= 0)
@@ -98,7 +98,7 @@ void TemporaryFile::finish(Sync sync) {
   }
   if (repeated([&] { return ::fchmod(m_file, mode); }) != 0)
     throw writingError(m_target, errno);
-  const mode_t ownersAlone = mode & 0700; // an access list that is lost was the group's bits
+  const mode_t ownersAlone = mode & 0700; // without the list its mask, the group's bits, is void
   if (isThere && !copyAccessList(m_target, m_file) && ::fchmod(m_file, ownersAlone) != 0)
     throw writingError(m_target, errno);
   if (sync == Sync::disk && repeated([&] { return ::fsync(m_file); }) != 0 && errno != EINVAL)
@@ -109,7 +109,7 @@ void TemporaryFile::place() {
   const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
   m_replaced = ::open(target, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (m_replaced >= 0) // where it can be read, other runs must not take it for abandoned
+  if (m_replaced >= 0) // locked where readable: other runs must not take it for abandoned
     ::flock(m_replaced, LOCK_SH | LOCK_NB);
   const auto rename = [&](unsigned flags) {
     return repeated([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
@@ -124,8 +124,8 @@ void TemporaryFile::place() {
     throw writingError(m_target, errno);
 }
 
-/// For disks that cannot exchange names. Where they have no links either, there is nothing to take
-/// back to.
+/// Places the file on disks that cannot exchange names, with a hard link to the earlier file.
+/// Without hard links placing cannot be undone.
 void TemporaryFile::placeByLink() {
   m_before.emplace(shortNameBeside(m_target), Leftover::Kind::file);
   const bool isKept = ::link(m_target.c_str(), m_before->path().c_str()) == 0;
@@ -135,7 +135,7 @@ void TemporaryFile::placeByLink() {
   m_placed = isFresh ? Placed::fresh : isKept ? Placed::linked : Placed::no;
 }
 
-/// Another run may have placed a result of the same name since.
+/// False where another run has since placed a result of the same name.
 bool TemporaryFile::isPlaced() const {
   return fileId(m_target) == fileId(m_file);
 }
@@ -145,7 +145,7 @@ void TemporaryFile::takeBack() noexcept {
     m_placed = Placed::no;
   const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
-  const auto again = [](auto&& call) { // a failure may pass: once more
+  const auto again = [](auto&& call) { // retries once: a failure may be temporary
     if (call() != 0)
       static_cast<void>(call());
   };

@@ -1,6 +1,6 @@
 #pragma once
-// A result in the making: complete on the disk under a short name beside its place before it takes
-// that. For base/safe/Outputs.
+// Result being written: complete on the disk under a short name beside its target before it is
+// renamed. For base/safe/Outputs.
 
 #include "base/safe/Inputs.h"
 #include "base/safe/Leftovers.h"
@@ -10,12 +10,12 @@
 
 namespace fenestra {
 
-/// Its name is a temporary one (base/safe/Leftovers), listed there and locked (flock): a later run
-/// in the folder removes those that SIGKILL has left.
+/// File with a temporary name (base/safe/Leftovers), listed there and locked (flock): a later run
+/// in the folder removes files that SIGKILL has left.
 class TemporaryFile {
 public:
-  /// Empty, for its owner alone, in the folder of `target`, for which errors are told. Throws Error
-  /// (output).
+  /// Makes an empty file, accessible to its owner alone, in the folder of `target`. Throws Error
+  /// (output), which names `target`.
   explicit TemporaryFile(const std::filesystem::path& target);
   ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;
@@ -25,13 +25,12 @@ public:
   void write(std::string_view content);
 
   enum class Sync { disk, none };
-  /// Gives it the mode and owner of the file at `target`, else what a new file has; where the owner
-  /// or group cannot be set, others get no more rights than they had. Then syncs. Throws Error
-  /// (output).
+  /// Sets mode, owner and access list as the file at `target` has them, or as a new file has; where
+  /// owner or group cannot be set, nobody gains rights. Then syncs. Throws Error (output).
   void finish(Sync sync);
 
-  /// Takes the name `target`; the file that had it, if any, gets this one's, and goes with it.
-  /// Throws Error (output), and nothing has changed then.
+  /// Renames this file to `target`; an existing target takes the temporary name, and is removed
+  /// with this object. Throws Error (output), and then has changed nothing.
   void place();
   /// Undoes place(), after another file of the group could not be placed.
   void takeBack() noexcept;
@@ -44,9 +43,9 @@ private:
   bool isPlaced() const;
 
   std::filesystem::path m_target;
-  std::optional<Leftover> m_name, m_before; ///< the second where the disk cannot exchange names
+  std::optional<Leftover> m_name, m_before; ///< m_before: the earlier file (placeByLink)
   int m_file = -1;
-  int m_replaced = -1; ///< the file before, locked while it bears a temporary name; -1: none
+  int m_replaced = -1; ///< the earlier file, locked while its name is temporary; -1: none
   Placed m_placed = Placed::no;
 };
 

@@ -25,7 +25,7 @@ Error zipError(const std::filesystem::path& path, const std::string& reason) {
   return outputError(path.string(), "cannot be made: " + reason + "; close other programs");
 }
 
-/// What the content refers to lives until the archive is closed.
+/// Adds one entry. The memory of its content must live until the archive is closed.
 void addEntry(zip_t* archive, const ZipEntry& entry, const std::filesystem::path& path) {
   const auto fail = [&] { return zipError(path, zip_strerror(archive)); };
   zip_source_t* source = zip_source_buffer(archive, entry.content.data(), entry.content.size(), 0);
@@ -67,7 +67,7 @@ std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& c
       source ? zip_open_from_source(source.get(), ZIP_TRUNCATE, &error) : nullptr);
   if (!archive)
     throw zipError(path, zip_error_strerror(&error));
-  zip_source_keep(source.get()); // closing the archive frees one
+  zip_source_keep(source.get()); // closing the archive frees one reference
   for (const ZipEntry& entry : entries)
     addEntry(archive.get(), entry, path);
   if (zip_set_archive_comment(archive.get(), comment.data(),

@@ -9,13 +9,12 @@
 namespace fenestra {
 
 struct ZipEntry {
-  std::string name; ///< in the archive, with slashes
+  std::string name; ///< path in the archive, with slashes
   std::string_view content;
 };
 
-/// Stores the entries in this order as they are (what is large is compressed already), all dated
-/// 1980-01-01, and `comment` at the end. Throws Error (output) where memory is short; `path` is
-/// named then.
+/// Archive of the entries in this order, uncompressed (large ones already are), dated 1980-01-01,
+/// with `comment` at the end. Throws Error (output), naming `path`, where memory is short.
 std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& comment,
                       const std::filesystem::path& path);
 

@@ -1,6 +1,6 @@
 #pragma once
-// A cubic, which a trilinear function is along a ray through one cell, and where it first reaches
-// 0.
+// Cubic that a trilinear function is along a ray through one cell, and the least s at which the
+// cubic is >= 0.
 
 #include "base/Vector.h"
 
@@ -16,24 +16,22 @@ struct Cubic {
   double slope(double s) const { return c[1] + s * (2.0 * c[2] + s * 3.0 * c[3]); }
 };
 
-/// Where the cubic's slope changes sign in (0, 1), ascending; 1 stands for "nowhere".
+/// Values of s in (0, 1) where the cubic's slope changes sign, ascending; 1: none.
 inline std::array<double, 2> turningPoints(const Cubic& cubic) {
   const double a = 3.0 * cubic.c[3], halfB = cubic.c[2], c = cubic.c[1];
   const double discriminant = halfB * halfB - a * c;
   if (!(discriminant > 0.0))
     return {1.0, 1.0};
   const double q = -(halfB + std::copysign(std::sqrt(discriminant), halfB)); // nothing cancels
-  const auto inside = [](double s) {
-    return s > 0.0 && s < 1.0 ? s : 1.0;
-  }; // not for NaN, infinity
+  const auto inside = [](double s) { return s > 0.0 && s < 1.0 ? s : 1.0; }; // 1 for NaN, infinity
   const auto [first, second] = std::minmax({inside(q / a), inside(c / q)});
   return {first, second};
 }
 
-/// The root of a cubic that rises monotonically from below 0 at `low` to at least 0 at `high`:
-/// Newton's steps from the chord's root, bisection wherever they leave the bracket.
+/// Root of a cubic that rises monotonically, with cubic(low) < 0 <= cubic(high): Newton's steps
+/// from the chord's root, bisection wherever a step leaves the bracket.
 inline double rootBetween(const Cubic& cubic, double low, double high) {
-  constexpr double rounding = 1e-15; // of s, which is at most 1
+  constexpr double rounding = 1e-15; // of s in [0, 1]
   const double atLow = cubic(low);
   double s = low + (high - low) * (atLow / (atLow - cubic(high)));
   for (int step = 0; step < 100 && high - low > rounding; ++step) {
@@ -41,18 +39,18 @@ inline double rootBetween(const Cubic& cubic, double low, double high) {
     (value < 0.0 ? low : high) = s;
     const double newton = s - value / cubic.slope(s);
     if (std::abs(newton - s) <= rounding)
-      break; // before it is held against the bracket, of which s is an end
+      break; // before the bracket test: s is an end of the bracket already
     s = newton > low && newton < high ? newton : 0.5 * (low + high);
   }
   return s;
 }
 
-/// The least s in [0, 1] at which the cubic is not below 0; infinity where there is none.
+/// Least s in [0, 1] with cubic(s) >= 0; infinity: none.
 inline double firstNonNegative(const Cubic& cubic) {
   const std::array<double, 4>& c = cubic.c;
   if (c[0] >= 0.0)
     return 0.0;
-  // Bernstein's coefficients bound the cubic; it rises where they do.
+  // Bernstein's coefficients bound the cubic; where they ascend, the cubic ascends.
   const double b1 = c[0] + c[1] / 3.0, b2 = b1 + (c[1] + c[2]) / 3.0, b3 = cubic(1.0);
   if (std::max({b1, b2, b3}) < 0.0)
     return infinity;

@@ -7,21 +7,21 @@ namespace fenestra {
 
 namespace {
 
-/// Toward the neighbour on each side; side + 1 turns from columns to rows.
+/// Steps toward the neighbour on each side; side + 1 turns from columns to rows.
 constexpr std::array<SampleStep, 4> steps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
 constexpr std::uint8_t turned(int side, int quarters) {
   return static_cast<std::uint8_t>((side + quarters) & 3);
 }
 
-/// The crossing that follows on the contour. In the square of samples ahead, with the focus sample
-/// and its outside neighbour behind, the contour goes by the two samples in front.
+/// Next crossing on the contour, decided by the two farther samples of the square ahead, whose
+/// nearer two are the focus sample and its outside neighbour.
 Crossing following(const FocusDepth& focus, const Crossing& crossing) {
   const SampleStep out = outward(crossing);
   const SampleStep ahead = steps[turned(crossing.side, 1)];
   const std::int32_t column = crossing.column + ahead.column;
   const std::int32_t row = crossing.row + ahead.row;
-  if (focus.isFocus(column + out.column, row + out.row)) // also where they touch only diagonally
+  if (focus.isFocus(column + out.column, row + out.row)) // joins diagonal touches
     return {column + out.column, row + out.row, turned(crossing.side, 3)};
   if (focus.isFocus(column, row))
     return {column, row, crossing.side};
@@ -36,7 +36,7 @@ ControlPoint controlPoint(const DepthBuffer& buffer, const Crossing& crossing) {
   return {buffer.position(crossing.column, crossing.row), buffer.at(sampleOf(buffer, crossing))};
 }
 
-/// The control points of the crossings' samples, each sample once, in the order of the buffer.
+/// Control points of the crossings' samples, each sample once, in the order of the buffer.
 std::vector<ControlPoint> distinctSamples(const DepthBuffer& buffer, Contour crossings) {
   const auto sample = [&](const Crossing& crossing) { return sampleOf(buffer, crossing); };
   std::ranges::sort(crossings, {}, sample);
@@ -69,7 +69,7 @@ SampleStep outward(const Crossing& crossing) {
 std::vector<Contour> traceContours(const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
   std::vector<std::uint8_t> visited(static_cast<std::size_t>(buffer.size())); // a bit for each side
-  const auto visit = [&](const Crossing& crossing) { // false where it was visited before
+  const auto visit = [&](const Crossing& crossing) { // false: visited before
     std::uint8_t& sides = visited[static_cast<std::size_t>(sampleOf(buffer, crossing))];
     const bool isNew = !(sides >> crossing.side & 1U);
     sides = static_cast<std::uint8_t>(sides | 1U << crossing.side);

@@ -16,7 +16,7 @@ struct Rectangle {
   }
 };
 
-/// Of the volume's box, on the plane through the target, mm.
+/// Bounds of the volume's projection on the plane through the target, mm.
 Rectangle projection(const Camera& camera, const Grid& volume) {
   const Vec2 limit = Vec2::Constant(camera.targetDepth() * std::tan(75.0 * pi / 180.0));
   Rectangle rectangle;
@@ -27,7 +27,7 @@ Rectangle projection(const Camera& camera, const Grid& volume) {
     } else if (corner.z() > 0.0) {
       const Vec2 seen = corner.head<2>() * (camera.targetDepth() / corner.z());
       rectangle.extend(seen.cwiseMax(-limit).cwiseMin(limit));
-    } else { // behind the eye: its edges may run out of the picture anywhere
+    } else { // behind the eye: the box's edges may leave the picture anywhere
       rectangle.extend(-limit);
       rectangle.extend(limit);
     }
@@ -35,12 +35,12 @@ Rectangle projection(const Camera& camera, const Grid& volume) {
   return rectangle;
 }
 
-/// The axis's `before` and `after` such that its samples reach from a to b, mm.
+/// Sets `before` and `after` of the axis such that its samples reach from a to b, mm.
 void spread(DepthAxis& axis, double factor, double a, double b) {
   const double first = std::min(a / axis.pitch, b / axis.pitch) - axis.start;
   const double last = std::max(a / axis.pitch, b / axis.pitch) - axis.start;
   const auto beyond = [factor](double pixels) {
-    constexpr double most = 1e9; // more than any buffer has; its square is no overflow
+    constexpr double most = 1e9; // more than any buffer has; the square does not overflow
     return static_cast<std::int64_t>(std::ceil(std::clamp(pixels / factor, 0.0, most)));
   };
   axis.factor = factor;
@@ -78,7 +78,7 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
     return size() <= limit;
   };
   double fitting = 1.0;
-  while (!fits(fitting)) // at last one sample is left on each side, which the limit allows
+  while (!fits(fitting)) // ends: the limit allows one sample on each side
     fitting *= 2.0;
   for (double failing = 0.5 * fitting; failing >= 1.0 && fitting - failing > 1.0;) {
     const double middle = std::floor(0.5 * (failing + fitting));

@@ -1,5 +1,5 @@
 #pragma once
-// The clipping surface's support: depths over the plane through the target that faces the eye.
+// Support of the clipping surface: depths over the plane through the target that faces the eye.
 
 #include "model/camera/Camera.h"
 #include "model/volume/Grid.h"
@@ -21,19 +21,19 @@ struct DepthAxis {
 
   std::int64_t size() const { return before + inside + after; }
 
-  /// mm of a sample; of samples that would follow, too, for indices out of range.
+  /// Coordinate of a sample, mm; extrapolated for indices out of range.
   double coordinate(std::int64_t sample) const {
     const auto pixel = static_cast<double>(sample - before);
     const double fine = inViewport(pixel);
     return pitch * (start + fine + factor * (pixel - fine));
   }
 
-  /// Continuous index of a coordinate in mm, in [0, size - 1]: beyond the edge is at the edge.
+  /// Continuous index of a coordinate (mm), clamped to [0, size - 1].
   double index(double coordinate) const {
     const double pixel = coordinate / pitch - start;
     const double fine = inViewport(pixel);
     const double index = static_cast<double>(before) + fine + (pixel - fine) / factor;
-    return std::max(0.0, std::min(static_cast<double>(size() - 1), index)); // NaN is the edge, too
+    return std::max(0.0, std::min(static_cast<double>(size() - 1), index)); // NaN: size - 1
   }
 
 private:
@@ -43,13 +43,13 @@ private:
 };
 
 /// Depths in mm over (x, y) in mm, where the eye rays meet the plane through the target. Spans the
-/// viewport and the volume's projection (in perspective what is seen at up to 75 degrees from the
-/// axis); beyond its samples the edge's depth holds. Row 0 is at the top, as in pictures.
+/// viewport and the volume's projection (in perspective up to 75 degrees from the axis). Beyond the
+/// samples the edge sample's depth holds. Row 0 is at the top, as in pictures.
 class DepthBuffer {
 public:
-  /// Every depth infinite. Beyond the viewport the samples are as dense as the viewport's pixels
-  /// where 4 Mpixel allow it (or 5/4 of the viewport, where that is more). Throws Error (usage) for
-  /// a viewport without extent.
+  /// Depths start at infinity. Samples beyond the viewport are as dense as its pixels, or as dense
+  /// as max(4 Mpixel, 5/4 of the viewport) allows. Throws Error (usage) for a viewport without
+  /// extent.
   DepthBuffer(const Camera& camera, const Grid& volume);
 
   const DepthAxis& xAxis() const { return m_x; }
@@ -60,7 +60,7 @@ public:
   std::int64_t sample(std::int64_t column, std::int64_t row) const {
     return row * columns() + column;
   }
-  /// The sample at the centre of a pixel of the viewport.
+  /// Sample at the centre of a pixel of the viewport.
   std::int64_t viewportSample(std::int64_t column, std::int64_t row) const {
     return sample(m_x.before + column, m_y.before + row);
   }
@@ -68,23 +68,23 @@ public:
     return {m_x.coordinate(column), m_y.coordinate(row)};
   }
 
-  /// Row by row from the top, less the depth of the camera's target.
+  /// Depths less reference(), mm, row by row from the top.
   const std::vector<float>& depthsFromReference() const { return m_depths; }
-  /// That depth.
+  /// Depth of the camera's target, mm.
   double reference() const { return m_reference; }
   double at(std::int64_t sample) const { return m_reference + m_depths[index(sample)]; }
   void set(std::int64_t sample, double depth) {
     m_depths[index(sample)] = static_cast<float>(depth - m_reference);
   }
 
-  /// Moves all of it away from the eye, mm.
+  /// Moves all depths `offset` mm away from the eye.
   void move(double offset);
 
-  /// A cell between four samples, and a place in it.
+  /// Cell between four samples, and a place in the cell.
   struct Cell {
-    std::int64_t column, row;         ///< of its first sample
-    std::int64_t nextColumn, nextRow; ///< of its last
-    Vec2 fraction;                    ///< from the first
+    std::int64_t column, row;         ///< of the cell's first sample
+    std::int64_t nextColumn, nextRow; ///< of the cell's last sample
+    Vec2 fraction;                    ///< of the place, from first to last, 0 to 1
   };
   Cell cell(const Vec2& position) const {
     const Neighbours x = neighbours(m_x, position.x());
@@ -92,7 +92,7 @@ public:
     return {x.low, y.low, x.high, y.high, Vec2(x.fraction, y.fraction)};
   }
 
-  /// Linear in each axis between samples, which must be finite.
+  /// Depth, bilinear between the four samples, which must be finite.
   double depthIn(const Cell& cell) const {
     const auto lerp = [](double a, double b, double f) { return a + (b - a) * f; };
     const auto row = [&](std::int64_t r) {
@@ -103,7 +103,7 @@ public:
   }
   double depth(const Vec2& position) const { return depthIn(cell(position)); }
 
-  /// The nearest sample's.
+  /// Depth of the nearest sample.
   double nearest(const Vec2& position) const {
     const auto column = static_cast<std::int64_t>(m_x.index(position.x()) + 0.5);
     const auto row = static_cast<std::int64_t>(m_y.index(position.y()) + 0.5);
@@ -124,8 +124,8 @@ private:
   static std::size_t index(std::int64_t sample) { return static_cast<std::size_t>(sample); }
 
   DepthAxis m_x, m_y;
-  double m_reference;          ///< the target's depth: what a float keeps is the distance from it,
-  std::vector<float> m_depths; ///< so that nothing is lost when the eye is far away
+  double m_reference;          ///< mm, depth of the camera's target
+  std::vector<float> m_depths; ///< mm, less m_reference: float suffices even for a far eye
 };
 
 } // namespace fenestra

@@ -13,26 +13,26 @@ namespace {
 constexpr std::int64_t edge = FocusCells::blockSize;
 constexpr std::int64_t corners = edge + 1; ///< voxels along an edge of a block
 
-/// The least voxel above the foothill.
+/// Least value of a voxel above the foothill.
 std::uint8_t leastVoxel(const Mask& mask) {
   return static_cast<std::uint8_t>(std::floor(FocusCells::foothill * mask.full) + 1.0);
 }
 
-/// The mask's voxels around blocks of cells.
+/// Access to the mask's voxels around blocks of cells.
 class Voxels {
 public:
   explicit Voxels(const Mask& mask)
       : m_voxels(mask.voxels.data()), m_size(mask.grid.size), m_least(leastVoxel(mask)) {}
 
-  /// Whether they are above the foothill, of two neighbours along x each, for the four cells of a
-  /// block's row: bits 0 and 1 of a byte a cell, the first one lowest. Voxel `y`, `z`; 0 outside
-  /// the mask.
+  /// One byte per cell for the four cells of a block's row, first cell lowest. Bits 0 and 1: the
+  /// cell's two neighbours along x, in the row of voxels `y`, `z`, are above the foothill. 0
+  /// outside the mask.
   std::uint32_t pairs(std::int64_t blockX, std::int64_t y, std::int64_t z) const {
     if (y < 0 || z < 0 || y >= m_size.y() || z >= m_size.z())
       return 0;
     const std::int64_t first = blockX * edge - 1;
     const std::uint8_t* row = m_voxels + m_size.x() * (y + m_size.y() * z);
-    std::uint64_t word = 0; // of little-endian bytes, 0 or 1
+    std::uint64_t word = 0; // little-endian bytes, 0 or 1
     if (m_least == 1 && first >= 0 && first + 8 <= m_size.x()) {
       std::memcpy(&word, row + first, sizeof(word));
     } else {
@@ -55,8 +55,8 @@ private:
   std::uint8_t m_least;
 };
 
-/// Which blocks of a layer, x fastest, have such a voxel at any corner of their cells: row
-/// by row, the greatest of all rows' voxels at a row of blocks' corners, and then block by block.
+/// Blocks of a layer, x fastest: 1 for a voxel above the foothill at any corner of the block's
+/// cells. Computed from the greatest voxel per x over the rows around each row of blocks.
 std::vector<std::uint8_t> occupied(const Mask& mask, const Size3& blocks, std::int64_t blockZ) {
   const Size3& size = mask.grid.size;
   const auto range = [&](std::int64_t block, int axis) { // first and end
@@ -83,7 +83,7 @@ std::vector<std::uint8_t> occupied(const Mask& mask, const Size3& blocks, std::i
   return result;
 }
 
-/// Four bits a row of a block's cells; whether all are set.
+/// Fills the corners of a block's cells; true if all bits are set.
 bool cornersOf(const Voxels& voxels, const Size3& block,
                std::array<std::uint8_t, edge * edge * edge>& result) {
   std::array<std::array<std::uint32_t, corners>, corners> pairs;
@@ -103,7 +103,7 @@ bool cornersOf(const Voxels& voxels, const Size3& block,
   return isWhole;
 }
 
-/// The voxels around a block's cells; the least of them.
+/// Fills the voxels around a block's cells and returns the least.
 std::uint8_t valuesOf(const Voxels& voxels, const Size3& block,
                       std::array<std::uint8_t, 128>& result) {
   std::uint8_t least = 255;
@@ -144,7 +144,7 @@ FocusCells::FocusCells(const Mask& mask)
   });
   const std::size_t perLayer = static_cast<std::size_t>(m_blocks.x() * m_blocks.y());
   for (std::size_t z = 0; z < layers.size(); ++z) {
-    // Counted from the layer's own first one so far.
+    // Numbers so far count the layer's own mixed blocks: -1, -2 and so on.
     const auto before = static_cast<std::int32_t>(m_corners.size());
     for (std::size_t i = z * perLayer; i < (z + 1) * perLayer; ++i)
       if (m_blockCorners[i] < 0)
@@ -155,7 +155,7 @@ FocusCells::FocusCells(const Mask& mask)
         m_values.push_back(block.values);
     }
   }
-  m_corners.emplace_back(); // lanes read four bytes where they need one
+  m_corners.emplace_back(); // padding: lanes read four bytes for one
 }
 
 double FocusCells::indicator(const Vec3& point) const {
@@ -188,7 +188,7 @@ FocusCells::Layout FocusCells::layout() const {
           m_values.empty() ? nullptr : m_values.front().data(), m_perValue};
 }
 
-/// Those of a layer that are mixed; the layer's blocks refer to them by -1, -2 and so on.
+/// Mixed blocks of a layer; m_blockCorners numbers them -1, -2 and so on within the layer.
 std::vector<FocusCells::Block> FocusCells::blocksOfLayer(const Mask& mask, std::int64_t z) {
   const Voxels voxels(mask);
   const std::vector<std::uint8_t> isOccupied = occupied(mask, m_blocks, z);

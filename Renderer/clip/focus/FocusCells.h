@@ -1,5 +1,5 @@
 #pragma once
-// A mask's cells, and where rays meet its surface in them.
+// Cells of a mask, and the points at which rays meet the mask's surface in its cells.
 
 #include "model/volume/Mask.h"
 
@@ -9,66 +9,67 @@
 
 namespace fenestra {
 
-/// Rays that are followed together, in the space of FocusCells; a structure of arrays.
+/// Rays traced together, in the cell space of FocusCells; a structure of arrays.
 struct FocusRays {
   static constexpr std::size_t capacity = 256;
-  using Column = std::array<double, capacity + 8>; ///< and room for whole vectors
+  using Column = std::array<double, capacity + 8>; ///< padded to whole vectors
 
-  FocusRays() {} // its columns are not cleared: a few rays cost no more than a few rays
+  /// Leaves the arrays uninitialised: clearing 256 entries costs more than tracing a few rays.
+  FocusRays() {}
 
   std::size_t size = 0;
   alignas(64) std::array<Column, 3> origin, direction;
-  alignas(64) Column begin, end; ///< of the range that is looked at; it lies inside the cells
-  alignas(64) Column meeting;    ///< what was found
-  /// Of rays that meet nothing, as findSummits finds it.
+  alignas(64) Column begin, end; ///< range of t to search; inside FocusCells::box()
+  alignas(64) Column meeting;    ///< t at which the mask is met; infinity: missed
+  /// Summit's t, and the indicator there; only from findSummits, for rays that miss the mask.
   alignas(64) Column summit, height;
 
   bool full() const { return size == capacity; }
 };
 
-/// Dual cells: cell c lies between the voxel centres c - 1 and c of each axis, so that the
-/// outermost cells hold the fall to 0 outside the mask's grid. In cell space it fills [c, c + 1].
-/// Cells come in blocks of 4^3; a block that holds any of the mask, and not all, keeps one byte a
-/// cell, so that a block is one line of the cache.
+/// Dual cells: cell c lies between the voxel centres c - 1 and c of each axis and fills [c, c + 1]
+/// of cell space; the outermost cells hold the fall to 0 outside the mask's grid. Cells come in
+/// blocks of 4^3: empty (no voxel above the foothill), whole (all voxels >= 1/2) or mixed. A mixed
+/// block keeps one byte a cell, one line of the cache in all.
 class FocusCells {
 public:
   static constexpr std::int64_t blockSize = 4; ///< cells
 
-  /// Of a mask, which it needs no more. Throws Error (input) for one of more than 2^30 voxels.
+  /// Keeps no reference to `mask`. Throws Error (input) for a mask of more than 2^30 voxels.
   explicit FocusCells(const Mask& mask);
 
   const Affine& worldToCell() const { return m_worldToCell; }
   Affine cellToWorld() const { return m_worldToCell.inverse(); }
-  /// All cells.
+  /// Box of all cells, in cell space.
   Box box() const { return {Vec3::Zero(), m_count.cast<double>()}; }
 
-  /// The least t in each ray's range at which it is in the mask (indicator >= 0.5), else infinity.
+  /// Fills rays.meeting: least t in each ray's range with indicator >= 1/2; infinity: none.
   void findMeetings(FocusRays& rays) const;
 
-  /// The same, and of rays that meet nothing the t of their summit, where the indicator is greatest
-  /// (the least such t), and how high it is there; no summit is known where it is `foothill` or
-  /// less, and its height is `foothill`. Where a ray just misses the mask its summit is where it
-  /// would meet it. Where it just misses two parts, as faces in one plane or a ridge along it, the
-  /// nearer one hides the other: a summit is left for one behind it only if that lacks less than a
-  /// share of what it lacks itself of 1/2.
+  /// Fills rays.meeting and, for rays that miss the mask, rays.summit and rays.height. Summit:
+  /// least t at which the indicator is greatest, for a ray that just misses the mask the t at which
+  /// the ray would meet the mask. Height: indicator there; `foothill`: no summit (indicator <=
+  /// foothill). With several hills on a ray (faces in one plane, a ridge along the ray) the nearer
+  /// hides the farther: (1) the summit is the top of the first hill above the foothill; (2) a later
+  /// hill of height h2 replaces a summit of height h1 only if 1/2 - h2 < lessHidden * (1/2 - h1).
   void findSummits(FocusRays& rays) const;
   static constexpr double foothill = 0.25;
   static constexpr double lessHidden = 1.0 / 64.0;
 
-  /// The indicator at a point of the cells' space; 0 in cells without a voxel above the foothill.
+  /// Indicator at a point of cell space; 0 all over empty blocks, 1 all over whole ones.
   double indicator(const Vec3& point) const;
 
-  /// What walks read: of each block which corners it has, and these, 64 bytes each.
+  /// Arrays that the walks read.
   struct Layout {
-    const std::int32_t* blocks;
-    const std::uint8_t* corners;
+    const std::int32_t* blocks;  ///< per block: its number in `corners` and `values`
+    const std::uint8_t* corners; ///< BlockCorners, 64 bytes each
     Size3 blockCount;
-    const std::uint8_t* values; ///< of each block's voxels; null where the corners say it all
-    double perValue;            ///< indicator
+    const std::uint8_t* values; ///< BlockValues, 128 bytes each; null: voxels are 0 and 1 only
+    double perValue;            ///< indicator per unit of a value
   };
 
-  /// Calls back with each block, block (i, j, k) filling [i, i + 1]... of cell space / blockSize,
-  /// that has a voxel above the foothill at any corner of its cells.
+  /// Calls back with each block that is not empty; block (i, j, k) fills [i, i + 1]... of cell
+  /// space / blockSize.
   template <typename Visitor>
   void visitOccupied(const Visitor& visit) const {
     std::size_t block = 0;
@@ -79,7 +80,7 @@ public:
             visit(Size3(x, y, z));
   }
 
-  /// Calls back with each cell of a block that has a voxel above the foothill at any corner.
+  /// Calls back with each cell of `block` that has a corner above the foothill.
   template <typename Visitor>
   void visitCells(const Size3& block, const Visitor& visit) const {
     const BlockCorners& corners = m_corners[static_cast<std::size_t>(
@@ -93,11 +94,11 @@ public:
   }
 
 private:
-  /// Of each cell of a block, x fastest, whether the indicator at its eight corners is above the
-  /// foothill, a bit each, x fastest. A cell without any is not met.
+  /// One byte per cell of a block, x fastest; bit i is set if corner i of the cell, x fastest, is
+  /// above the foothill. 0: the walks skip the cell.
   using BlockCorners = std::array<std::uint8_t, blockSize * blockSize * blockSize>;
-  static constexpr std::int32_t noBlock = 0, wholeBlock = 1; ///< with none of the mask, and only it
-  /// The voxels around the cells of a block, x fastest, and what makes them two lines of the cache.
+  static constexpr std::int32_t noBlock = 0, wholeBlock = 1; ///< numbers in m_corners
+  /// Voxels at the corners of a block's cells, 5^3, x fastest, padded to two lines of the cache.
   using BlockValues = std::array<std::uint8_t, 128>;
 
   struct Block {
@@ -113,9 +114,9 @@ private:
   Size3 m_count;  ///< cells
   Size3 m_blocks; ///< blocks of cells
   Affine m_worldToCell;
-  std::vector<std::int32_t> m_blockCorners; ///< of each block, which of m_corners
+  std::vector<std::int32_t> m_blockCorners; ///< per block: index into m_corners
   std::vector<BlockCorners> m_corners;
-  std::vector<BlockValues> m_values; ///< as m_corners; empty where voxels are 0 and 1 alone
+  std::vector<BlockValues> m_values; ///< parallel to m_corners; empty: voxels are 0 and 1 only
   double m_perValue;
 };
 

@@ -10,7 +10,7 @@
 
 namespace fenestra {
 
-/// The camera's eye rays in the cells' space: each is found there, and none transformed.
+/// Camera's eye rays, built in cell space directly: no ray is transformed.
 class CellRays {
 public:
   CellRays(const Camera& camera, const FocusCells& cells)
@@ -22,10 +22,10 @@ public:
         m_forward(cells.worldToCell().linear() * camera.forward()) {}
 
   struct EyeRay {
-    Ray ray; ///< its parameter in world mm
+    Ray ray; ///< in cell space, its parameter in world mm
     double depthPerLength;
   };
-  /// As Camera::rayThrough.
+  /// Camera::rayThrough in cell space.
   EyeRay through(const Vec2& plane) const {
     const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
     if (m_orthographic)
@@ -42,15 +42,15 @@ private:
 
 namespace {
 
-/// Rays that are traced together. What is met is told to `meet(number of the ray, sight)`, with
-/// summits also what is passed.
+/// Rays that are traced together. Calls meet(number of the ray, sight) for each ray that meets the
+/// focus, with summits also for each ray that has one.
 template <bool withSummits, typename Meet>
 class FocusBatch {
 public:
   FocusBatch(const FocusCells& cells, const Meet& meet)
       : m_cells(cells), m_box(cells.box()), m_meet(meet) {}
 
-  /// A ray of the cells' space.
+  /// Adds a ray in cell space.
   void add(std::int64_t number, const Ray& ray, const Interval& range, double depthPerLength) {
     const Interval inside = m_box.clip(ray, range);
     if (inside.empty())
@@ -90,7 +90,7 @@ private:
   FocusRays::Column m_depthPerLength;
 };
 
-/// Whether nothing of the focus reaches out of the volume or its crop.
+/// True if the domain contains the whole grid of the focus.
 bool isInside(const FocusCells& cells, const Domain& volume) {
   const Affine toIndex = volume.grid().worldToIndex * cells.cellToWorld();
   const Box box = cells.box();
@@ -100,7 +100,7 @@ bool isInside(const FocusCells& cells, const Domain& volume) {
   return true;
 }
 
-/// The part of a world ray in the volume's domain.
+/// Part of a world ray in the volume's domain.
 Interval inVolume(const Domain& volume, const Ray& ray) {
   return volume.clip(transformed(volume.grid().worldToIndex, ray));
 }
@@ -116,7 +116,7 @@ FocusTracer::FocusTracer(const Camera& camera, const Domain& volume, const Mask&
 
 FocusTracer::~FocusTracer() = default;
 
-/// The part of an eye ray in which it can meet the focus inside the volume's domain.
+/// Part of an eye ray in which the ray can meet the focus inside the volume's domain.
 Interval FocusTracer::inDomain(const Vec2& position) const {
   return m_isWhole ? Interval{} : inVolume(m_volume, m_camera.rayThrough(position));
 }
@@ -132,7 +132,7 @@ FocusDepth FocusTracer::depths() const {
     return !inVolume(m_volume, m_camera.rayThrough(depth.position(column, row))).empty();
   };
   const auto traceRow = [&](std::int64_t row, auto& batch) {
-    // The domain is convex: all between two samples that meet it do.
+    // The domain is convex: all samples between two that meet the domain meet it.
     auto [first, end] = domainFootprint.columns(depth, row);
     while (first < end && !meetsVolume(first, row))
       ++first;

@@ -1,5 +1,5 @@
 #pragma once
-// Where the eye first meets the focus.
+// Depth at which each eye ray first meets the focus.
 
 #include "clip/focus/DepthBuffer.h"
 #include "model/volume/Domain.h"
@@ -12,12 +12,12 @@
 
 namespace fenestra {
 
-/// What an eye ray meets: the focus; the volume's domain but not the focus; neither.
+/// Kind of an eye ray: misses the volume's domain; meets the domain only; meets the focus.
 enum class Region : std::uint8_t { outside, context, focus };
 
 struct FocusDepth {
-  DepthBuffer depth;           ///< of the focus, infinite elsewhere
-  std::vector<Region> regions; ///< of each sample of `depth`
+  DepthBuffer depth;           ///< of the focus, mm; infinity: missed
+  std::vector<Region> regions; ///< one per sample of `depth`
 
   bool isFocus(std::int64_t column, std::int64_t row) const {
     return column >= 0 && row >= 0 && column < depth.columns() && row < depth.rows() &&
@@ -28,39 +28,38 @@ struct FocusDepth {
 class CellRays;
 class FocusCells;
 
-/// What to look at along an eye ray.
+/// Stretch of an eye ray to search.
 struct Glance {
   Vec2 position;   ///< (x, y) of the ray, mm
   Interval depths; ///< mm
 };
 
-/// What is seen there.
+/// Result for a glance.
 struct Sight {
-  /// Where the ray meets the focus; else, where it passes it, of the first point at which the
-  /// focus's indicator is greatest. A ray that leaves the focus goes from one to the other without
-  /// a step.
+  /// mm, where the ray meets the focus, else at the ray's summit (FocusCells); infinity: neither.
+  /// Continuous from ray to ray across the outline of the focus.
   double depth = infinity;
-  double indicator = 0.0; ///< 1/2 where the focus is met; 0 where it is foothill or less
+  double indicator = 0.0; ///< 1/2: focus met; (foothill, 1/2): summit's height; 0: neither
 };
 
-/// Follows eye rays to a focus, of which and of the volume it keeps what it needs.
+/// Intersects eye rays with the surface of a focus. Copies what it needs of mask and volume.
 class FocusTracer {
 public:
   FocusTracer(const Camera& camera, const Domain& volume, const Mask& focus);
   ~FocusTracer();
 
-  /// As traceFocus.
+  /// Result of traceFocus.
   FocusDepth depths() const;
 
-  /// Of the rays through these (x, y), mm; infinity where they miss the focus.
+  /// Depths of the focus on the rays through these (x, y), mm; infinity: missed.
   std::vector<double> depthsAt(const std::vector<Vec2>& positions) const;
 
-  /// One sight for each glance; `meet` tells of what is met alone, and costs less. For few of them,
-  /// or in parallel: they are looked at here and now.
+  /// Fills sights[i] for glances[i]. `meet`: meetings only (cheaper); `look`: summits as well. Not
+  /// threaded inside: to be called in parallel.
   void meet(std::span<const Glance> glances, std::span<Sight> sights) const;
   void look(std::span<const Glance> glances, std::span<Sight> sights) const;
 
-  /// Whether the ray through (x, y) is in the focus, and the volume, at this depth, mm.
+  /// True if the ray through (x, y) is in focus and domain at this depth, mm.
   bool isFocus(const Vec2& position, double depth) const;
 
   const Camera& camera() const { return m_camera; }
@@ -75,12 +74,12 @@ private:
   Domain m_volume;
   std::unique_ptr<const FocusCells> m_cells;
   std::unique_ptr<const CellRays> m_rays;
-  bool m_isWhole; ///< nothing of the focus reaches out of the volume or its crop
+  bool m_isWhole; ///< true: the domain contains the focus's whole grid
 };
 
-/// The depth at which the ray of each sample first meets the 0.5 level of the focus inside the
-/// volume's domain and in front of the eye: exact, to rounding. A ray that starts, or enters the
-/// domain, inside the focus meets it there. The buffer spans the whole volume, cropped or not.
+/// Depth at which the ray of each sample first meets the 0.5 level of the focus inside the volume's
+/// domain and in front of the eye: exact, to rounding. A ray that starts, or enters the domain,
+/// inside the focus meets the focus there. The buffer spans the whole volume, cropped or not.
 FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus);
 
 } // namespace fenestra

@@ -1,6 +1,6 @@
 // FocusCells::findMeetings and findSummits, in SIMD lanes: as many rays as there are lanes walk
-// through the cells together (Amanatides and Woo 1987), over blocks that hold nothing in one step.
-// In double: a meeting is as exact as one ray's by itself would be.
+// through the cells together (Amanatides and Woo 1987), over empty blocks in one step. Lanes are
+// double: a meeting is as exact as for a single ray.
 
 #include "base/LaneTargets.h"
 #include "clip/focus/CellCubic.h"
@@ -38,15 +38,15 @@ HWY_INLINE M isNot0(I x) {
   return hn::Ne(hn::PromoteTo(doubles, x), hn::Zero(doubles));
 }
 
-/// One axis of the rays' walk, mirrored where a ray goes down, so that all go up. All blocks are
-/// whole.
+/// One axis of the rays' walk, mirrored for rays of negative direction, so that all rays go up. The
+/// cells' number is rounded up to whole blocks.
 struct Axis {
-  D origin, direction; ///< the direction is not negative
-  D inverse;           ///< of the direction; infinity for rays that do not move along this axis
-  D cell;              ///< where the rays are
-  D face;              ///< of the cell, or of its block where that is empty, ahead
+  D origin, direction; ///< direction >= 0
+  D inverse;           ///< 1 / direction; infinity: no motion along this axis
+  D cell;              ///< current cells of the rays
+  D face;              ///< next face ahead: of the cell, or of the block if empty
   M mirrored;
-  double cells; ///< a multiple of a block's
+  double cells; ///< number of cells, a multiple of blockSize
 
   Axis(D o, D d, D t, std::int64_t blocks)
       : direction(hn::Abs(d)),
@@ -58,7 +58,7 @@ struct Axis {
     cell = hn::Max(hn::Min(cellAt(t), all(cells - 1.0)), hn::Zero(doubles));
   }
 
-  /// The next face's t, infinity for the last one: a walk ends with its range.
+  /// t of the next face; infinity: the last face (the range ends the walk).
   HWY_INLINE D findFace(M emptyBlock) {
     constexpr double edge = FocusCells::blockSize;
     const D block = hn::Floor(hn::Mul(cell, all(1.0 / edge)));
@@ -68,18 +68,18 @@ struct Axis {
     return hn::IfThenElse(inner, hn::Mul(hn::Sub(face, origin), inverse), all(infinity));
   }
 
-  /// Walks that go on are at t: beyond the face ahead where `through` says so, else before it, and
-  /// never back.
+  /// Moves the walks of `which` to t: into the cell beyond the face for `through`, else at most up
+  /// to the face; never back.
   HWY_INLINE void advance(M which, M through, D t) {
     const D before = hn::Min(hn::Max(cellAt(t), cell), hn::Sub(face, all(1.0)));
     cell = hn::IfThenElse(which, hn::IfThenElse(through, face, before), cell);
   }
 
-  /// The cell's own number.
+  /// Cell's number, not mirrored.
   HWY_INLINE D number() const {
     return hn::IfThenElse(mirrored, hn::Sub(all(cells - 1.0), cell), cell);
   }
-  /// Where the ray is in the cell itself, from 0 to 1; and how far it goes in `length`.
+  /// Ray's position in the cell, 0 to 1, and its way along this axis in `length`; not mirrored.
   HWY_INLINE D fractionAt(D t) const {
     const D f = hn::Sub(position(t), cell);
     return hn::IfThenElse(mirrored, hn::Sub(all(1.0), f), f);
@@ -103,7 +103,7 @@ HWY_INLINE unsigned bitsOf(M mask) {
   return packed[0];
 }
 
-/// Cubics that rise from below 0 to 0 or beyond, over parts of rays.
+/// Cubics, over parts of rays, that rise from < 0 to >= 0.
 class Roots {
 public:
   void add(const Cubic& cubic, double begin, double length, std::size_t ray) {
@@ -115,7 +115,7 @@ public:
     ++m_size;
   }
 
-  /// As rootBetween(cubic, 0, 1) finds them.
+  /// Writes rays.meeting from the roots, found as by rootBetween(cubic, 0, 1).
   void solve(FocusRays& rays) {
     for (std::size_t i = m_size; i % hn::Lanes(doubles) != 0; ++i)
       for (Column* column : {&m_c[0], &m_c[1], &m_c[2], &m_c[3], &m_begin, &m_length})
@@ -169,16 +169,16 @@ private:
   std::array<std::size_t, FocusRays::capacity> m_ray;
 };
 
-/// A ray along a flat face passes level ground, whose summit is where it begins: what is higher by
-/// less than this, of an indicator, is level; what is as near, in mm, is the same place.
+/// Tolerance of a plateau: heights (indicator units) and places (mm) that differ by less are equal.
+/// Rays along a flat face pass a plateau, whose beginning is the summit.
 constexpr double level = 1e-8;
 
-/// The edge of a face may be seen end-on: a ray beside it misses all of it, here by more, there by
-/// less. All of a hill that is lower than its summit by less than this hides what is behind it, as
-/// another hill does (FocusCells::lessHidden).
+/// Tolerance of a ridge, indicator units: points of a hill less than this below its summit belong
+/// to one ridge, which hides what is behind (FocusCells::lessHidden). A face seen edge-on needs it:
+/// a ray beside the face misses it by slightly different distances along the ray.
 constexpr double ridge = 1e-4;
 
-/// Rays i, i + 1 and so on, one in each lane.
+/// Walk of rays i, i + 1 and so on, one in each lane.
 template <bool withSummits>
 class Walk {
 public:
@@ -197,7 +197,7 @@ public:
     m_tops.fill(-infinity);
   }
 
-  /// To be called when none is busy: tells the summits.
+  /// Writes the summits to the rays; to be called when no lane is busy.
   void finish() {
     for (std::size_t i = m_first;
          withSummits && i < std::min(m_first + hn::Lanes(doubles), m_rays.size); ++i) {
@@ -214,7 +214,7 @@ public:
             m_cells.blockCount[static_cast<int>(a)]};
   }
 
-  /// Into the next cell or block.
+  /// Steps into the next cell or block.
   HWY_INLINE void step() {
     const I x = hn::DemoteTo(ints, m_axes[0].number());
     const I y = hn::DemoteTo(ints, m_axes[1].number());
@@ -259,9 +259,9 @@ public:
   }
 
 private:
-  /// Ends the walks that meet the surface in their cells: those whose cubic's coefficients in
-  /// Bernstein's form, which bound it, are not all below 0 are looked at one by one. `values` is
-  /// the place of the first of their cells' values.
+  /// Ends the walks that meet the surface in their cells. Bernstein's coefficients bound a cubic:
+  /// only cubics with a coefficient >= 0, or near the summit so far, are solved. `values`: index of
+  /// a cell's first value.
   HWY_INLINE void meet(M which, I corners, I values, D exit) {
     const std::array<D, 8> v = m_cells.values ? smoothed(values) : sharp(corners);
     const D length = hn::Sub(exit, m_t);
@@ -311,7 +311,7 @@ private:
     solve(possible, {c0, c1, c2, c3}, rises, length);
   }
 
-  /// The indicator - 1/2 at the corners of cells, x fastest.
+  /// Indicator - 1/2 at the corners of cells, x fastest.
   HWY_INLINE static std::array<D, 8> sharp(I corners) {
     const auto value = [&](std::int32_t i) {
       const I bit = hn::And(corners, allInts(1 << i));
@@ -335,8 +335,8 @@ private:
     return v;
   }
 
-  /// Cubics that rise all the way, to 0 or beyond it, meet it: where, is found later for many at
-  /// once. The others are looked at one by one.
+  /// Searches the cubics of `which` one by one. Cubics of `rises` have one root for certain: added
+  /// to m_roots, which finds many roots at once later.
   HWY_INLINE void solve(M which, const std::array<D, 4>& c, M rises, D length) {
     alignas(64) std::array<Lane, 7> lanes;
     for (std::size_t i = 0; i < 4; ++i)
@@ -365,7 +365,7 @@ private:
     m_busy = hn::Gt(hn::Load(doubles, lanes[6].data()), hn::Zero(doubles));
   }
 
-  /// Through a cell in which nothing is met.
+  /// Updates the summit in a cell without a meeting.
   void climb(std::size_t lane, const Cubic& cubic, double begin, double length) {
     const std::array<double, 2> turns = turningPoints(cubic);
     bool isOnTop = begin - m_tops[lane] < level;
@@ -382,13 +382,13 @@ private:
     }
   }
 
-  /// Of the hill that has the summit so far.
+  /// True if a height on the summit's own hill replaces the summit so far.
   bool isHigher(std::size_t lane, double height) const {
     const double least = std::min(ridge, -height / FocusCells::lessHidden);
     return height > m_heights[lane] + std::max(level, least);
   }
 
-  /// Of a hill behind the one that has the summit so far.
+  /// True if a height on a later hill replaces the summit so far (FocusCells::findSummits).
   bool isNewSummit(std::size_t lane, double height) const {
     return m_summits[lane] == -infinity ? height > m_heights[lane] + level
                                         : height > FocusCells::lessHidden * m_heights[lane];
@@ -401,8 +401,8 @@ private:
   D m_t, m_end;
   M m_busy;
   std::array<Axis, 3> m_axes;
-  Lane m_heights, m_summits; ///< so far: the indicator - 1/2, and where
-  Lane m_tops;               ///< where the summit's ridge ends
+  Lane m_heights, m_summits; ///< so far: indicator - 1/2, and t
+  Lane m_tops;               ///< t at which the summit's ridge ends
 };
 
 template <bool withSummits>
@@ -410,7 +410,7 @@ void walkAll(const FocusCells::Layout& cells, FocusRays& rays) {
   Roots roots;
   const std::size_t lanes = hn::Lanes(doubles);
   for (std::size_t i = 0; i < rays.size; i += 2 * lanes) {
-    // Two at a time: while one waits for the cells that it has asked for, the other computes.
+    // Two walks take turns: while one waits for its cells from memory, the other computes.
     Walk<withSummits> one(cells, rays, roots, i);
     if (i + lanes < rays.size) {
       Walk<withSummits> other(cells, rays, roots, i + lanes);
@@ -446,7 +446,7 @@ HWY_EXPORT(findAllSummits);
 
 namespace {
 
-/// Nothing is met so far, and what whole vectors read beyond the last ray is a number.
+/// Sets all meetings to infinity, and finite values beyond the last ray, where whole vectors read.
 void prepare(FocusRays& rays) {
   std::fill_n(rays.meeting.begin(), rays.size, infinity);
   for (std::size_t i = rays.size; i < std::min(rays.size + 16, rays.begin.size()); ++i) {

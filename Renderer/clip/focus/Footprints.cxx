@@ -8,22 +8,22 @@ namespace fenestra {
 
 namespace {
 
-/// Of a sample: more than rounding moves a projection.
+/// Slack, in samples: more than rounding moves a projection.
 constexpr double sampleSlack = 0.01;
 
-/// View space to the plane through the target.
+/// Scale from view space to the plane through the target.
 double perDepth(const Camera& camera, double depth) {
   return camera.pose().projection == Projection::perspective ? camera.targetDepth() / depth : 1.0;
 }
 
-/// The samples from the one before to the one behind coordinates a and b.
+/// Last sample before the lesser and first behind the greater of coordinates a and b.
 std::pair<std::int64_t, std::int64_t> samplesAround(const DepthAxis& axis, double a, double b) {
   const auto [low, high] = std::minmax({axis.index(a), axis.index(b)});
   return {static_cast<std::int64_t>(std::max(0.0, low - sampleSlack)),
           std::min(axis.size() - 1, static_cast<std::int64_t>(std::ceil(high + sampleSlack)))};
 }
 
-/// Those that rays between two positions pass.
+/// Cells that rays between two positions pass.
 CellRange cellsBetween(const DepthBuffer& buffer, const Vec2& lower, const Vec2& upper) {
   CellRange cells{};
   std::tie(cells.left, cells.right) = samplesAround(buffer.xAxis(), lower.x(), upper.x());
@@ -32,7 +32,7 @@ CellRange cellsBetween(const DepthBuffer& buffer, const Vec2& lower, const Vec2&
 }
 
 /// Calls function(block, depths, seen) for each block of the focus's cells that is not behind the
-/// eye, with its depths, mm, and the buffer's cells whose rays can pass it.
+/// eye. `depths`: of the block, mm. `seen`: cells of the buffer whose rays can pass the block.
 template <typename Function>
 void visitSeen(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells,
                const Function& function) {
@@ -45,7 +45,7 @@ void visitSeen(const Camera& camera, const DepthBuffer& buffer, const FocusCells
   });
 }
 
-/// Tiles of cells, to pass over many at once.
+/// Tiles of cells, marked if isAskedFor is set for any cell of the tile: a tile is skipped at once.
 class AskedTiles {
 public:
   AskedTiles(const CellRange& range, const std::vector<std::uint8_t>& isAskedFor)
@@ -93,7 +93,7 @@ DomainFootprint::Columns DomainFootprint::columns(const DepthBuffer& buffer,
                                                   std::int64_t row) const {
   if (!m_isInFront)
     return {0, buffer.columns()};
-  // The convex hull's part between the rows next to this one.
+  // Part of the corners' convex hull between the rows next to this one.
   const DepthAxis& axis = buffer.yAxis();
   const auto [low, high] = std::minmax({axis.coordinate(row - 1), axis.coordinate(row + 1)});
   double first = infinity, last = -infinity;

@@ -1,6 +1,6 @@
 #pragma once
-// Which samples of a depth buffer can meet something at all: found from its projection, so that no
-// ray is traced for the others.
+// Samples of a depth buffer whose rays can meet a volume or a focus, found by projection: no ray is
+// traced for the other samples.
 
 #include "clip/focus/DepthBuffer.h"
 #include "clip/focus/FocusCells.h"
@@ -10,13 +10,13 @@
 
 namespace fenestra {
 
-/// For each row of a depth buffer, samples outside of which no ray meets a volume's domain.
+/// Per row of a depth buffer: columns outside of which no ray meets a volume's domain.
 class DomainFootprint {
 public:
   DomainFootprint(const Camera& camera, const Domain& domain);
 
-  /// Between two columns, the second excluded, lie all samples of the row that meet the domain:
-  /// those and a few more, or every one where the domain reaches behind the eye.
+  /// Columns [first, end): all samples of the row whose rays meet the domain, and a few more; the
+  /// whole row if the domain reaches behind the eye.
   struct Columns {
     std::int64_t first, end;
   };
@@ -24,15 +24,15 @@ public:
 
 private:
   std::vector<Vec2> m_corners; ///< on the plane through the target, mm
-  bool m_isInFront = true;     ///< all of it; else the projection has no bounds
+  bool m_isInFront = true;     ///< false: domain reaches behind the eye, unbounded projection
 };
 
-/// For each tile of samples the range of depths in which their rays can meet the focus.
+/// Per tile of samples: range of depths in which the tile's rays can meet the focus.
 class FocusFootprint {
 public:
   FocusFootprint(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells);
 
-  /// mm; empty where no block of the focus is seen.
+  /// Range for a sample's tile, mm; empty: no block of the focus is seen.
   Interval depths(std::int64_t column, std::int64_t row) const {
     return m_tiles[static_cast<std::size_t>(column / tileSize + row / tileSize * m_across)];
   }
@@ -44,7 +44,7 @@ private:
   std::vector<Interval> m_tiles;
 };
 
-/// A rectangle of cells between samples, each told by its first sample; right and bottom are
+/// Rectangle of cells between samples, a cell being named by its first sample; right and bottom are
 /// excluded.
 struct CellRange {
   std::int64_t left, right, top, bottom;
@@ -52,18 +52,17 @@ struct CellRange {
   std::int64_t columns() const { return right - left; }
   std::int64_t rows() const { return bottom - top; }
   std::size_t size() const { return static_cast<std::size_t>(columns() * rows()); }
-  /// A cell's place, row by row.
+  /// Index of a cell, row by row.
   std::size_t at(std::int64_t column, std::int64_t row) const {
     return static_cast<std::size_t>(column - left + columns() * (row - top));
   }
 };
 
-/// A rectangle that holds all cells whose rays can meet the focus or pass a summit of it
-/// (FocusCells).
+/// Rectangle that holds all cells whose rays can meet the focus or have a summit (FocusCells).
 CellRange focusRange(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells);
 
-/// For each cell of a range the depths, mm, between which its rays can meet the focus or pass a
-/// summit of it; empty where they can not, and in cells that are not asked for.
+/// Per cell of `range`: depths, mm, between which the cell's rays can meet the focus or have a
+/// summit; empty: none, or isAskedFor is 0.
 std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buffer,
                                    const FocusCells& cells, const CellRange& range,
                                    const std::vector<std::uint8_t>& isAskedFor);

@@ -6,8 +6,8 @@ namespace fenestra {
 
 namespace {
 
-/// How far, in mm, a box has to be inside the removed part: far more than rounding, far less than
-/// anyone sees.
+/// mm, least distance of a box from the surface to count as removed or kept whole: far more than
+/// rounding, far below visibility.
 constexpr double slack = 1e-6;
 
 Interval behindPart(const ClipNone&, const Ray&) {
@@ -26,17 +26,16 @@ Interval behindPart(const ClipPlane& clip, const Ray& eyeRay) {
 
 Interval behindPart(const ClipDepth& clip, const Ray& eyeRay) {
   const double depthPerLength = clip.camera.depthPerLength(eyeRay);
-  // Any point of the ray has its (x, y); at the target's depth rounding matters least.
+  // All points of the ray have the same (x, y); at the target's depth rounding matters least.
   const Vec3 point = eyeRay.at(clip.camera.targetDepth() / depthPerLength);
   const double depth = clip.surface(toBuffer(clip.camera, point).head<2>());
   return {std::max(0.0, depth / depthPerLength), infinity};
 }
 
-/// Where a box lies between two parts of space.
+/// Position of a box relative to a part of space.
 enum class Side { inside, across, outside };
 
-/// Of a box that is at a distance of `least` to `greatest` behind the surface, mm; in perspective
-/// it lies on some side of the eye.
+/// Bound for a box at a distance of `least` to `greatest` behind the surface, mm.
 Kept keptBehind(const ClipEdge& edge, double least, double greatest, Side inFrontOfEye) {
   if (inFrontOfEye == Side::outside)
     return Kept::none;
@@ -47,7 +46,7 @@ Kept keptBehind(const ClipEdge& edge, double least, double greatest, Side inFron
   return Kept::some;
 }
 
-/// What of a stretch of depths, mm, lies in front of the eye.
+/// Position of a stretch of depths, mm, relative to the space in front of the eye.
 Side inFrontOfEye(const Camera& camera, double nearest, double farthest) {
   if (behindEye(camera, farthest + slack))
     return Side::outside;
@@ -84,7 +83,7 @@ Kept keptBox(const ClipDepth& clip, const Corners& corners) {
   const Side side = inFrontOfEye(clip.camera, nearest, farthest);
   if (side == Side::outside)
     return Kept::none;
-  if (side == Side::across) { // its projection has no bounds
+  if (side == Side::across) { // the box's projection is unbounded
     lower.setConstant(-infinity);
     upper.setConstant(infinity);
   }

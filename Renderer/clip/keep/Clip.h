@@ -1,6 +1,6 @@
 #pragma once
-// What is removed from view, and the parts of rays and boxes that are. A clip multiplies the
-// extinction by keep(point), from 0 to 1.
+// Kinds of clip, and keep at points, on rays and in boxes. A clip multiplies the extinction by
+// keep(point), from 0 to 1.
 
 #include "clip/focus/DepthBuffer.h"
 #include "clip/keep/DepthPyramid.h"
@@ -23,30 +23,29 @@ inline Vec3 toBuffer(const Camera& camera, const Vec3& world) {
   return {view.x() * scale, view.y() * scale, view.z()};
 }
 
-/// The world point that toBuffer takes to (x, y) and this depth: the eye ray through (x, y) has it
-/// there.
+/// Inverse of toBuffer: the world point at depth at.z(), mm, on the eye ray through (x, y).
 inline Vec3 fromBuffer(const Camera& camera, const Vec3& at) {
   const Ray ray = camera.rayThrough(at.head<2>());
   return ray.at(at.z() / camera.depthPerLength(ray));
 }
 
-/// In perspective every clip but ClipNone removes what is not in front of the eye.
+/// True for depth <= 0 in perspective, where keep = 0 for every clip but ClipNone.
 inline bool behindEye(const Camera& camera, double depth) {
   return camera.pose().projection == Projection::perspective && !(depth > 0.0);
 }
 
-/// How keep goes from what is removed to what is not.
+/// Profile of keep across the surface.
 struct ClipEdge {
-  double ghost = 0.0;    ///< keep of what is removed: 0, or a small share, a float's value
-  double softness = 0.0; ///< mm behind the surface over which keep rises to 1, linearly
+  double ghost = 0.0;    ///< keep in front of the surface: 0, or a small share, a float's value
+  double softness = 0.0; ///< mm behind the surface over which keep rises linearly to 1
 
-  /// keep at a distance behind the surface, mm.
+  /// keep at `behind` mm behind the surface; negative: in front.
   double operator()(double behind) const {
     if (behind < 0.0)
       return ghost;
     return behind < softness ? ghost + (1.0 - ghost) * (behind / softness) : 1.0;
   }
-  /// Nothing is kept in front of the surface.
+  /// True: keep = 0 in front of the surface.
   bool isHard() const { return ghost == 0.0; }
 
   bool operator==(const ClipEdge&) const = default;
@@ -58,29 +57,29 @@ struct ClipNone {};
 struct ClipPlane {
   Camera camera;
   Vec3 point;  ///< world mm
-  Vec3 normal; ///< world, not zero; unit where the edge is soft
+  Vec3 normal; ///< world, not zero; unit if edge.softness > 0
   ClipEdge edge = {};
 
-  /// mm behind the plane.
+  /// Signed distance behind the plane, mm if the normal is unit.
   double behind(const Vec3& world) const { return (point - world).dot(normal); }
 };
 
-/// Removes what is nearer to the eye than a depth buffer.
+/// Removes all points nearer to the eye than the surface of a depth buffer.
 struct ClipDepth {
   enum class Lookup { nearest, linear };
 
   Camera camera;
-  std::shared_ptr<const DepthBuffer> buffer; ///< -infinity where nothing is removed (nearest only)
-  std::shared_ptr<const DepthPyramid> pyramid; ///< of the buffer, and the seams
+  std::shared_ptr<const DepthBuffer> buffer;   ///< -infinity: nothing removed (nearest only)
+  std::shared_ptr<const DepthPyramid> pyramid; ///< bounds of buffer and seams
   Lookup lookup = Lookup::linear;
   ClipEdge edge = {};
-  std::shared_ptr<const Seams> seams = nullptr; ///< of an exact boundary; null elsewhere
+  std::shared_ptr<const Seams> seams = nullptr; ///< null unless the boundary is exact
 
-  /// The depth at (x, y), mm, below which everything is removed.
+  /// Surface depth at (x, y), mm: points of smaller depth are removed.
   double surface(const Vec2& position) const { return surfaceFor(position, {-infinity, infinity}); }
 
-  /// The same, or where it is certain that it does not lie between two depths, mm, any depth on the
-  /// same side of both.
+  /// Surface depth at `position`, mm. If it lies outside `between`, only the side is guaranteed,
+  /// not the value.
   double surfaceFor(const Vec2& position, const Interval& between) const {
     if (lookup == Lookup::nearest)
       return buffer->nearest(position);
@@ -96,7 +95,7 @@ private:
 
 using Clip = std::variant<ClipNone, ClipPlane, ClipDepth>;
 
-/// What remains of the extinction at a world point: a share from 0 to 1.
+/// Share of the extinction that remains at a world point, 0 to 1.
 inline double keep(const ClipNone&, const Vec3&) {
   return 1.0;
 }
@@ -111,7 +110,7 @@ inline double keep(const ClipDepth& clip, const Vec3& world) {
   const Vec3 at = toBuffer(clip.camera, world);
   if (behindEye(clip.camera, at.z()))
     return 0.0;
-  // It may be any depth that leaves the point in front, or behind the edge.
+  // surface < between.begin: keep = 1; surface > between.end: keep = ghost.
   const Interval between{at.z() - clip.edge.softness, at.z()};
   return clip.edge(at.z() - clip.surfaceFor(at.head<2>(), between));
 }
@@ -120,21 +119,21 @@ inline double keep(const Clip& clip, const Vec3& world) {
   return std::visit([&](const auto& kind) { return keep(kind, world); }, clip);
 }
 
-/// The part of an eye ray, t >= 0, that lies behind the clip's surface: one interval, for every
-/// kind of clip. With a hard edge nothing else of the ray is kept.
+/// Part of an eye ray, t >= 0, behind the clip's surface: one interval for every kind of clip. With
+/// a hard edge keep = 0 on the rest of the ray.
 Interval behindSurface(const Clip& clip, const Ray& eyeRay);
 
-/// The part of an eye ray, t >= 0, outside of which keep is 0: an eye ray may start at its begin
-/// and need not look beyond its end.
+/// Interval of an eye ray, t >= 0, outside of which keep = 0: paths may start at its begin, and end
+/// at its end.
 Interval visible(const Clip& clip, const Ray& eyeRay);
 
 /// World corners of a box, in any order.
 using Corners = std::array<Vec3, 8>;
 
-/// What is known of keep in the convex hull of some corners.
+/// Bound of keep over the convex hull of some corners.
 struct Kept {
-  double most;    ///< it is nowhere more
-  bool isUniform; ///< it is that everywhere; may be false where it is so, too
+  double most;    ///< keep <= most
+  bool isUniform; ///< true: keep = most everywhere; false: unknown
 
   static const Kept none, some, all;
 

@@ -6,7 +6,7 @@ namespace fenestra {
 
 namespace {
 
-/// The samples that interpolation between two coordinates reads; rounding included.
+/// Samples that interpolation between two coordinates reads; rounding included.
 struct SampleRange {
   std::int64_t first, last;
 
@@ -20,7 +20,7 @@ struct SampleRange {
 
 } // namespace
 
-/// Of columns * rows entries; below(i) is entry i.
+/// Level above one of columns * rows entries; below(i): its entry i.
 template <typename Below>
 DepthPyramid::Level DepthPyramid::halved(std::int64_t columns, std::int64_t rows,
                                          const Below& below) {
@@ -65,8 +65,8 @@ DepthPyramid::Bounds DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2&
                                           const Vec2& b) const {
   const SampleRange columns(buffer.xAxis(), a.x(), b.x());
   const SampleRange rows(buffer.yAxis(), a.y(), b.y());
-  // An entry of m_levels[l - 1] spans 2^l samples: a quarter of the range or more, which so meets
-  // five at most along each axis, and hardly more than itself.
+  // An entry of m_levels[l - 1] spans 2^l samples. Level l is chosen so that the range spans at
+  // most 5 x 5 entries, and the entries reach little beyond the range.
   const auto longest = std::max(columns.last - columns.first, rows.last - rows.first);
   const auto bits =
       static_cast<std::ptrdiff_t>(std::bit_width(static_cast<std::uint64_t>(longest)));

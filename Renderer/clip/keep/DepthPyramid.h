@@ -1,5 +1,5 @@
 #pragma once
-// The least and the greatest depth over any rectangle of a depth buffer, from a few look-ups.
+// Least and greatest depth over any rectangle of a depth buffer, from a few look-ups.
 
 #include "clip/focus/DepthBuffer.h"
 #include "clip/keep/Seams.h"
@@ -17,12 +17,12 @@ public:
     double least, greatest; ///< mm
   };
 
-  /// Bounds of what the buffer returns, interpolated or not, or its seams, anywhere in the
-  /// rectangle between two positions in mm: the extreme samples of it and its near surroundings.
+  /// Bounds of the surface depth (nearest, linear, or in seams) over the rectangle between two
+  /// positions, mm. Samples near the rectangle count as well, so bounds may be wider.
   Bounds bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const;
 
 private:
-  /// As the buffer keeps them: less the depth of the camera's target.
+  /// Depths less the buffer's reference, mm.
   struct Extremes {
     float least, greatest;
   };

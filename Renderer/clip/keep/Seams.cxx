@@ -12,7 +12,7 @@ namespace fenestra {
 
 namespace {
 
-/// Of each cell whether the focus may end in it: not all four samples around it are focus.
+/// Per cell of `range`: 0: all four samples around the cell are focus; 1: the focus may end there.
 std::vector<std::uint8_t> outerCells(const FocusDepth& focus, const CellRange& range) {
   std::vector<std::uint8_t> isOuter(range.size());
   const auto outside = [&](std::int64_t sample) {
@@ -29,14 +29,14 @@ std::vector<std::uint8_t> outerCells(const FocusDepth& focus, const CellRange& r
   return isOuter;
 }
 
-/// What the samples around each cell and those around them, four by four, see, as deep again as
-/// they are apart: a hole between them may reach a little farther. Less the buffer's reference.
+/// Depth range of the 4 x 4 samples around each cell, made twice as long away from the eye: a hole
+/// may be deeper than its samples. mm, relative to the target.
 std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRange& range) {
   constexpr std::int64_t across = 4;
   constexpr float nothing = std::numeric_limits<float>::infinity();
   const auto columns = static_cast<std::size_t>(range.columns());
   std::vector<float> row(columns + across - 1);
-  // First of four neighbours in a row, then of four such rows.
+  // Ranges of four neighbours in a row, then of four such rows.
   std::vector<Seams::Reach> sights(columns * static_cast<std::size_t>(range.rows() + across - 1));
   const auto both = [](const Seams::Reach& a, const Seams::Reach& b) {
     return Seams::Reach{std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
@@ -48,7 +48,7 @@ std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRang
           buffer.sample(std::clamp<std::int64_t>(range.left - 1 + static_cast<std::int64_t>(i), 0,
                                                  buffer.columns() - 1),
                         std::clamp<std::int64_t>(r, 0, buffer.rows() - 1)))];
-    const auto at = [&](std::size_t i) { // beside the focus a sample sees nothing
+    const auto at = [&](std::size_t i) { // empty for a sample beside the focus
       return Seams::Reach{row[i], row[i] < nothing ? row[i] : -nothing};
     };
     for (std::size_t i = 0; i < columns; ++i)
@@ -62,7 +62,7 @@ std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRang
   return sights;
 }
 
-/// Questions that are looked at together.
+/// Questions that are traced together.
 struct Batch {
   std::size_t size = 0;
   std::array<Seams::Question*, Seams::mostQuestions> question;
@@ -104,7 +104,7 @@ Seams::Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
   findRim(focus, range);
 }
 
-/// What can be seen from the four cells around a sample.
+/// Reaches of the four cells around a sample, joined, mm.
 Interval Seams::reachAround(const DepthBuffer& buffer, std::int64_t column,
                             std::int64_t row) const {
   Interval depths{infinity, -infinity};
@@ -165,7 +165,7 @@ void Seams::answer(std::span<Question> questions) const {
   for (Question& question : questions) {
     const Interval reach = reachOf(question);
     if (m_tracer->isFocus(question.position, toFocus + question.from))
-      question.surface = reach.begin - toFocus; // it has been met
+      question.surface = reach.begin - toFocus; // the focus is met at `from` or before
     else if (isInner(question.seam))
       inner.add(question, reach);
     else

@@ -1,20 +1,21 @@
 #pragma once
-// Where the exact surface meets the focus, between the samples.
+// Seams: cells of the buffer in which the exact surface meets the focus between the samples.
 //
-// A buffer's samples are too far apart to say where a focus ends, and how deep it is between them.
-// In the cells where it may be seen, the seams, the surface is asked of the focus itself, whenever
-// a point is looked up: where the eye ray through the point meets the focus, the surface is there.
-// Where it just misses it, the surface goes on at the ray's summit, where it comes nearest to the
-// focus (FocusCells): on the outline that is where the focus ends, so that the two meet without a
-// step; and as the summit falls from 1/2 to the foothill, about half a voxel on, the surface goes
-// over into the buffer's samples, linearly. Those samples that still see a summit, the rim, have
-// its depth: it is the rim that the surface is filled from, so that it leaves the focus where the
-// focus ends and not where its last sample was.
+// Samples are too far apart to resolve the outline of the focus and its depth between them. In a
+// seam every look-up of a point therefore queries the focus itself, along the eye ray through the
+// point:
+// - the ray meets the focus: the surface is there;
+// - the ray just misses: the surface is at the ray's summit (FocusCells). On the outline the summit
+//   is the edge of the focus, so the surface has no step there. As the summit's height falls from
+//   1/2 to the foothill, within about half a voxel, the surface passes linearly into the buffer's
+//   interpolated depth.
+// Rim samples, beside the focus but with a summit, get the summit's depth. The fill starts at the
+// rim, so that the surface leaves the focus at its outline and not at the last focus sample.
 //
-// A seam's reach bounds what its rays can see; a point in front of or behind it is not asked for.
-// In an inner seam, where all samples are focus, it is what the samples around see, and as much
-// again behind it: the surface follows the focus onto no spike and into no pit that is narrower
-// than samples are apart and sticks out of that.
+// A seam's reach bounds the depths that its rays can meet; points outside the reach need no query.
+// In an inner seam, where all samples are focus, the reach is the range of the samples around, made
+// twice as long away from the eye. Spikes and pits that are narrower than the sample spacing and
+// leave the reach are cut off.
 
 #include "clip/focus/FocusDepth.h"
 
@@ -26,37 +27,37 @@ class Seams {
 public:
   Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus);
 
-  /// A sample beside the focus.
+  /// Sample beside the focus whose ray has a summit.
   struct Rim {
     std::int64_t sample;
-    double depth; ///< mm
+    double depth; ///< of the summit, mm
   };
   const std::vector<Rim>& rim() const { return m_rim; }
 
-  /// Moves the surface away from the eye, mm.
+  /// Moves the surface `offset` mm away from the eye.
   void move(double offset);
 
-  /// Of each sample the number of the seam between it and the next column and row; none is -1.
+  /// numbers()[s]: seam of the cell whose top-left sample is s; -1: none.
   const std::vector<std::int32_t>& numbers() const { return m_numbers; }
 
-  /// Less the depth of the camera's target, mm.
+  /// Range of depths, mm, relative to the target.
   struct Reach {
     float least, greatest;
   };
-  /// Of each seam: nothing that its rays see takes the surface out of it.
+  /// reaches()[seam]: bounds of the depths of focus and summits on the seam's rays.
   const std::vector<Reach>& reaches() const { return m_reaches; }
 
-  /// All samples around it are focus.
+  /// True: all four samples around the seam are focus.
   bool isInner(std::int32_t seam) const { return m_isInner[static_cast<std::size_t>(seam)]; }
 
-  /// Depths are less that of the camera's target, mm.
+  /// Query at one point; depths in mm, relative to the target.
   struct Question {
     std::int32_t seam;
     Vec2 position;  ///< in the seam, mm
-    double surface; ///< between the buffer's samples there
-    double from;    ///< a surface that is nearer to the eye may be told as any nearer depth
+    double surface; ///< in: interpolated from the buffer's samples; out: exact
+    double from;    ///< depths <= `from` need not be exact: any value <= `from` may be returned
   };
-  /// Makes `surface` what it is, for up to mostQuestions.
+  /// Replaces each question's `surface` by the exact surface depth. At most `mostQuestions` a call.
   void answer(std::span<Question> questions) const;
   static constexpr std::size_t mostQuestions = 16;
 
@@ -65,11 +66,11 @@ private:
   void findRim(const FocusDepth& focus, const CellRange& range);
 
   std::shared_ptr<const FocusTracer> m_tracer;
-  double m_reference; ///< the depth of the camera's target
+  double m_reference; ///< depth of the camera's target, mm
   double m_offset = 0.0;
   std::vector<std::int32_t> m_numbers;
   std::vector<Reach> m_reaches;
-  std::vector<bool> m_isInner; ///< of each seam
+  std::vector<bool> m_isInner; ///< per seam
   std::vector<Rim> m_rim;
 };
 

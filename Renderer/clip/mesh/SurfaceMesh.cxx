@@ -1,7 +1,7 @@
 // Right-triangulated irregular networks: Evans, Kirkpatrick and Townsend, Algorithmica 30 (2001).
 // Squares are cut along a diagonal, and right triangles are halved from the right angle's corner to
-// the middle of the edge across, again and again. Two triangles share such an edge; they are halved
-// together or not at all, so no corner ever lies on another triangle's edge.
+// the middle of the edge across, again and again. The two triangles that share such an edge are
+// halved together or not at all: no corner ever lies on another triangle's edge.
 
 #include "clip/mesh/SurfaceMesh.h"
 
@@ -18,8 +18,8 @@ namespace {
 
 constexpr double noDepth = std::numeric_limits<double>::quiet_NaN();
 
-/// The samples that a mesh is made of, in a rectangle that just holds them: columns and rows count
-/// from its first.
+/// Samples of a mesh, in their bounding rectangle; columns and rows count from the rectangle's
+/// first.
 class MeshSamples {
 public:
   MeshSamples(const ClipDepth& clip, const Domain& volume)
@@ -42,7 +42,7 @@ public:
   std::size_t sample(std::int64_t column, std::int64_t row) const {
     return static_cast<std::size_t>(row * m_columns + column);
   }
-  /// mm; NaN where there is none.
+  /// Depth of a sample, mm; NaN: none.
   double depth(std::int64_t column, std::int64_t row) const {
     return m_depths[sample(column, row)];
   }
@@ -50,9 +50,9 @@ public:
   Vec2 position(std::int64_t column, std::int64_t row) const {
     return {x()[column], m_y[static_cast<std::size_t>(row)]};
   }
-  /// Of every column, mm.
+  /// Coordinates of all columns, mm.
   const double* x() const { return m_x.data(); }
-  /// The continuous column at x, mm.
+  /// Continuous column at x, mm.
   double column(double x) const {
     return m_buffer.xAxis().index(x) - static_cast<double>(m_firstColumn);
   }
@@ -70,7 +70,7 @@ private:
       m_footprint.push_back(footprint.columns(m_buffer, row));
   }
 
-  /// Around all samples of the footprint that have a depth.
+  /// Bounds all samples of the footprint that have a depth.
   void findRectangle() {
     std::int64_t endColumn = 0, endRow = 0;
     m_firstColumn = m_buffer.columns();
@@ -94,7 +94,7 @@ private:
     return std::isfinite(depth) && !behindEye(m_camera, depth);
   }
 
-  /// Of a sample of the buffer that is a corner of a cell in the footprint.
+  /// Depth of a sample of the buffer, mm; NaN: none, or no corner of a cell in the footprint.
   double depthOf(std::int64_t column, std::int64_t row) const {
     DomainFootprint::Columns around{m_buffer.columns(), 0};
     for (std::int64_t near = std::max(std::int64_t{0}, row - 1);
@@ -109,32 +109,31 @@ private:
 
   const Camera& m_camera;
   const DepthBuffer& m_buffer;
-  std::vector<DomainFootprint::Columns> m_footprint; ///< of every row of the buffer
+  std::vector<DomainFootprint::Columns> m_footprint; ///< per row of the buffer
   std::int64_t m_firstColumn = 0, m_firstRow = 0, m_columns = 0, m_rows = 0;
   std::vector<double> m_x, m_y;
   std::vector<double> m_depths; ///< row by row
 };
 
-/// A corner of halved squares: a sample's column and row. Squares may reach beyond the last column
-/// and row: corners there are taken to lie on it, and triangles without an area are left out.
+/// Corner of halved squares: a sample's column and row. Squares may reach beyond the last column
+/// and row: corners there are moved onto the last, and triangles without an area are left out.
 struct Corner {
   std::int64_t column, row;
 };
 
-/// Right-angled at its apex; halved from there to the middle of a and b.
+/// Triangle with its right angle at the apex; halved from the apex to the middle of a and b.
 struct Triangle {
   Corner a, b, apex;
 };
 
-/// The two triangles of a square; or two that have a and b in common and are halved together.
+/// Two triangles with a and b in common, halved together: a square, or both sides of an edge.
 struct Pair {
   Corner a, b;
   std::array<Corner, 2> apexes;
 };
 
-/// The square of this side and place among squares of that side. Its diagonal goes to the one
-/// corner that is a middle of larger squares, so that halves of large squares are made of small
-/// ones'.
+/// Square (column, row) among squares of edge `side`. Its diagonal starts at the corner that is
+/// also the midpoint of the parent square, so that halved triangles nest.
 Pair squarePair(std::int64_t column, std::int64_t row, std::int64_t side) {
   const bool isLeft = column % 2 != 0, isUpper = row % 2 != 0;
   const std::int64_t left = column * side, upper = row * side;
@@ -143,7 +142,7 @@ Pair squarePair(std::int64_t column, std::int64_t row, std::int64_t side) {
   return {odd, even, {{{odd.column, even.row}, {even.column, odd.row}}}};
 }
 
-/// On both sides of the edge of squares that is 2 s long and has this middle.
+/// Triangles on both sides of the squares' edge of length 2 s around `middle`.
 Pair edgePair(const Corner& middle, std::int64_t s) {
   const Corner left{middle.column - s, middle.row}, right{middle.column + s, middle.row};
   const Corner upper{middle.column, middle.row - s}, lower{middle.column, middle.row + s};
@@ -151,8 +150,8 @@ Pair edgePair(const Corner& middle, std::int64_t s) {
                                     : Pair{upper, lower, {left, right}};
 }
 
-/// A plane over (x, y) that triangles of a mesh lie in. What is linear there is the depth, or in
-/// perspective its reciprocal.
+/// Plane of a mesh triangle over (x, y): its height, linear in (x, y), is the depth, in perspective
+/// 1 / depth.
 class MeshPlane {
 public:
   MeshPlane(const std::array<Vec3, 3>& corners, bool isPerspective)
@@ -165,8 +164,7 @@ public:
     m_slope = Vec2(du * v.y() - dv * u.y(), dv * u.x() - du * v.x()) / area;
   }
 
-  /// Of some samples of a row, at y: whether it is nowhere farther than the tolerance from their
-  /// depths, and all have one.
+  /// True if all samples, in a row at y, have a depth, within `tolerance` of the plane.
   bool isNear(const double* x, const double* depths, std::int64_t count, double y,
               double tolerance) const {
     const double start = m_height + m_slope.y() * (y - m_origin.y()) - m_slope.x() * m_origin.x();
@@ -215,8 +213,8 @@ public:
 private:
   static constexpr auto unnumbered = std::numeric_limits<std::uint32_t>::max();
 
-  /// From the smallest pairs to the largest: those that must be halved, and then all that they are
-  /// halves of.
+  /// Marks the pairs to halve, from the smallest to the largest: every pair that must be, and every
+  /// pair whose half contains a marked one.
   void chooseHalved() {
     for (std::int64_t s = 1; s < m_side; s *= 2) {
       for (std::int64_t row = 0; row - s < m_lastRow; row += s)
@@ -236,12 +234,12 @@ private:
     if (!isHalved(middle) && !std::ranges::any_of(pair.apexes, mustBeHalved))
       return;
     m_isHalved[index(middle)] = true;
-    for (const Corner& apex : pair.apexes) // the middle of what this is a half of
+    for (const Corner& apex : pair.apexes) // an apex is the middle of the parent pair
       if (isInside(apex))
         m_isHalved[index(apex)] = true;
   }
 
-  /// Of squares, which may be more than the samples.
+  /// True if the corner lies in the squares, which may reach beyond the samples.
   bool isInside(const Corner& corner) const {
     return corner.column >= 0 && corner.column <= m_squaresAcross * m_side && corner.row >= 0 &&
            corner.row <= m_squaresDown * m_side;
@@ -258,7 +256,7 @@ private:
     const Corner sample = onSamples(corner);
     return m_samples.depth(sample.column, sample.row);
   }
-  /// Positive for triangles that are counter-clockwise as the eye sees them.
+  /// Twice the area, in samples; > 0: counter-clockwise as seen from the eye.
   std::int64_t area(const Triangle& triangle) const {
     const Corner a = onSamples(triangle.a), b = onSamples(triangle.b);
     const Corner apex = onSamples(triangle.apex);
@@ -269,7 +267,7 @@ private:
            (t.b.column - t.a.column) * (t.apex.row - t.a.row);
   }
 
-  /// Whether the triangle may stay whole: all samples in it are near enough, or none has a depth.
+  /// True if the triangle may stay whole: all samples are within tolerance, or none has a depth.
   bool isGood(const Triangle& triangle) const {
     if (area(triangle) == 0)
       return true;
@@ -299,8 +297,7 @@ private:
     return true;
   }
 
-  /// The columns in and on a triangle, whose points are in the order of rows, at a y between them;
-  /// the second excluded.
+  /// Columns [first, end) in and on a triangle at y. `points`: sorted by row.
   std::pair<std::int64_t, std::int64_t> columnsAt(const std::array<Vec3, 3>& points,
                                                   double y) const {
     constexpr double rounding = 1e-6; // of a column
@@ -331,8 +328,8 @@ private:
     }
   }
 
-  /// In a cell between four samples whose diagonal has a depth at one end: the triangle of that end
-  /// and the other two. Both halves of the cell come here; the upper one makes it.
+  /// Adds the one triangle of a cell whose diagonal has a depth at one end only: that end and the
+  /// two apexes. Called for both halves of the cell; the upper half adds the triangle.
   void addAcross(const Triangle& half) {
     const auto& [a, b, apex] = half;
     const Corner opposite{a.column + b.column - apex.column, a.row + b.row - apex.row};
@@ -349,7 +346,7 @@ private:
       m_mesh.triangles.push_back({number(triangle.a), number(triangle.b), number(triangle.apex)});
   }
 
-  /// Of the point there, which is made when it is first wanted.
+  /// Number of the corner's point, which is added on first use.
   std::uint32_t number(const Corner& corner) {
     const Corner sample = onSamples(corner);
     std::uint32_t& number = m_numbers[m_samples.sample(sample.column, sample.row)];
@@ -364,10 +361,10 @@ private:
   const MeshSamples& m_samples;
   double m_tolerance;
   std::int64_t m_lastColumn, m_lastRow;
-  std::int64_t m_side; ///< of the squares to begin with, a power of two: one row or column of them
+  std::int64_t m_side; ///< samples, edge of the first squares (one row or column), a power of two
   std::int64_t m_squaresAcross, m_squaresDown;
-  std::vector<bool> m_isHalved;         ///< pairs, by their middle
-  std::vector<std::uint32_t> m_numbers; ///< of the points at samples
+  std::vector<bool> m_isHalved;         ///< per middle of a pair
+  std::vector<std::uint32_t> m_numbers; ///< per sample: number of its point
   SurfaceMesh m_mesh;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie");
 
-/// The bytes of a number, or of several.
+/// Appends the bytes of one number or several.
 template <typename T>
 void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -39,7 +39,7 @@ std::string toBase64(const std::string& bytes) {
   return text;
 }
 
-/// A <DataArray> of VTK's, its bytes inline.
+/// VTK's <DataArray> with inline bytes.
 template <typename Item>
 std::string dataArray(const char* name, const char* type, int components,
                       const std::vector<Item>& items) {

@@ -56,7 +56,8 @@ BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
   return Distribution::of(std::move(misses));
 }
 
-/// The spline wherever the focus is not: in tiles, which are halved where many sites are near.
+/// Fills samples outside the focus from the spline, in tiles, which are halved if many sites are
+/// near.
 class SplineFill {
 public:
   SplineFill(DepthBuffer& buffer, const std::vector<Region>& regions, const ThinPlateSpline& spline)
@@ -78,17 +79,17 @@ public:
   }
 
 private:
-  /// Samples: a first column and row, and how many.
+  /// Rectangle of samples: first column and row, and counts.
   struct Tile {
     std::int64_t column, row, columns, rows;
   };
 
   static constexpr std::int64_t widest = ThinPlateSpline::mostColumns;
   static constexpr std::int64_t narrowest = 8;
-  /// Kernels to evaluate one by one that cost about as much as four tiles' expansions.
+  /// Number of kernels that cost, one by one, about as much as four tiles' expansions.
   static constexpr std::int64_t mostKernels = 2048;
-  /// mm; less than what floats lose 10 mm from the target (measured over phantoms and scans: all
-  /// depths differ from those of single rows by at most one unit of a float's last place).
+  /// mm; below the rounding of floats 10 mm from the target (measured over phantoms and scans: all
+  /// depths differ from evaluateRow's by at most one unit of a float's last place).
   static constexpr double tolerance = 1e-6;
 
   void fill(const Tile& tile) const {
@@ -141,20 +142,20 @@ private:
   std::vector<double> m_x, m_y; ///< mm, of the columns and rows
 };
 
-/// mm within which a surface with an exact boundary loses the focus's slope: a part of the volume's
-/// size that keeps it inside the volume's depths.
+/// Length, mm, over which a surface with an exact boundary loses the focus's slope: a share of the
+/// volume's size that keeps the surface inside the volume's depths.
 double levellingLength(const Domain& volume) {
   return 0.05 * (volume.grid().worldCorner(7) - volume.grid().worldCorner(0)).norm();
 }
 
-/// Nothing is removed where the focus is not.
+/// Sets -infinity outside the focus: nothing is removed there.
 void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
   for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
     if (regions[static_cast<std::size_t>(sample)] != Region::focus)
       buffer.set(sample, -infinity);
 }
 
-/// An exact boundary's surface, which begins where the focus ends.
+/// Fills the surface of an exact boundary, from the rim on.
 void fillFromRim(DepthBuffer& buffer, const FocusDepth& focus, const Seams& seams, double length) {
   std::vector<Region> known = focus.regions;
   for (const auto& [sample, depth] : seams.rim()) {
@@ -164,7 +165,7 @@ void fillFromRim(DepthBuffer& buffer, const FocusDepth& focus, const Seams& seam
   fillSmoothly(buffer, known, length);
 }
 
-/// The spline of the focus's outline, and what it is judged by.
+/// Fits the spline to the focus's outline; sets control points, mismatch and warnings of `surface`.
 ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& options) {
   const std::vector<Contour> contours = traceContours(surface.focus);
   surface.controlPoints = placeControlPoints(surface.focus, contours, options.controlPoints);

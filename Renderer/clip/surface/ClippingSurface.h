@@ -1,5 +1,5 @@
 #pragma once
-// The first pass of the method: from a view and a focus to the clip that shows it.
+// First pass of the method: from a view and a focus to the clip that shows the focus.
 
 #include "base/Distribution.h"
 #include "clip/focus/Contour.h"
@@ -14,12 +14,12 @@
 namespace fenestra {
 
 enum class SurfaceMode {
-  cutaway, ///< removes what is in front of the focus only
+  cutaway, ///< removes only the matter in front of the focus
   surface, ///< the volumetric clipping surface: the cut continues into the focus's surroundings
   hole,    ///< a channel from the eye to the focus
 };
 
-/// How a surface continues from the focus into its surroundings.
+/// Continuation of a surface from the focus into its surroundings.
 enum class Boundary {
   spline, ///< the paper's: a thin plate spline through some control points
   exact,  ///< from every point of the focus's boundary, with the focus's slope (SmoothFill.h)
@@ -27,25 +27,24 @@ enum class Boundary {
 
 struct SurfaceOptions {
   SurfaceMode mode = SurfaceMode::surface;
-  int controlPoints = 50; ///< on the focus's contours, 1 to 1000
+  int controlPoints = 50; ///< number on the focus's contours, 1 to 1000
   double smoothing = 0.5; ///< p of the thin plate spline, 0 to 1
   Boundary boundary = Boundary::spline;
   HoleOptions hole = {};
-  double offset = 0.0; ///< mm that the surface is moved away from the eye, or toward it (negative)
+  double offset = 0.0; ///< mm, shift of the surface away from the eye; negative: toward the eye
   ClipEdge edge = {};
 
   bool operator==(const SurfaceOptions&) const = default;
 };
 
-/// Of a spline f, |f(x) - z| in mm over the focus samples on the contours: how far it misses their
-/// depth.
+/// |f(x) - z|, mm, of a spline f over the focus samples (x, depth z) on the contours.
 using BoundaryMismatch = Distribution;
 
 struct ClippingSurface {
   Clip clip;                                  ///< a ClipDepth
   FocusDepth focus;                           ///< over the samples of the clip's buffer
-  std::vector<ControlPoint> controlPoints{};  ///< of a spline only
-  std::optional<BoundaryMismatch> mismatch{}; ///< of a spline only
+  std::vector<ControlPoint> controlPoints{};  ///< spline only, else empty
+  std::optional<BoundaryMismatch> mismatch{}; ///< spline only, else empty
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
   std::vector<std::string> warnings{};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// One axis of a level of the exact fill: where its samples are, and what second derivatives weigh.
+// One axis of a level of the exact fill: coordinates of samples, weights of second derivatives.
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,12 @@
 
 namespace fenestra {
 
-/// Weights of the two neighbours in a second derivative along an axis.
+/// Weights of the two neighbours in a second derivative along an axis, mm^-2.
 struct Stencil {
   float before, after;
 };
 
-/// Samples of one axis: where they are, and the stencils there. At the ends the slope is 0.
+/// Sample coordinates, mm, and stencils of one axis. Boundary condition: slope 0 at both ends.
 class FillAxis {
 public:
   explicit FillAxis(std::vector<double> coordinates) : m_at(std::move(coordinates)) {
@@ -30,7 +30,7 @@ public:
   }
 
   std::size_t size() const { return m_at.size(); }
-  /// From sample i to the next, mm.
+  /// Distance from sample i to the next, mm.
   double spacing(std::size_t i) const { return std::abs(m_at[i + 1] - m_at[i]); }
   FillAxis halved() const {
     std::vector<double> coarse;
@@ -42,7 +42,7 @@ public:
   Stencil stencil(std::size_t i) const { return {m_before[i], m_after[i]}; }
   const float* before() const { return m_before.data(); }
   const float* after() const { return m_after.data(); }
-  double greatest() const { return m_greatest; }           ///< sum of a stencil
+  double greatest() const { return m_greatest; }           ///< before + after of a stencil
   double width(std::size_t i) const { return m_width[i]; } ///< of sample i, mm
 
 private:

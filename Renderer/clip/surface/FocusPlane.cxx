@@ -4,10 +4,10 @@ namespace fenestra {
 
 namespace {
 
-/// The x with the least |S x - r|, of several the shortest. S = (xx, xy; xy, yy) has eigenvalues of
-/// 0 or more, and r is a sum of its columns.
+/// Shortest x with the least |S x - r|. S = (xx, xy; xy, yy) has eigenvalues >= 0, and r is a sum
+/// of S's columns.
 Vec2 shortestSolution(double xx, double xy, double yy, const Vec2& r) {
-  constexpr double singular = 1e-12; // of eigenvalues to each other: samples on one line
+  constexpr double singular = 1e-12; // ratio of eigenvalues: samples on one line
   const double trace = xx + yy, determinant = xx * yy - xy * xy;
   if (determinant > singular * trace * trace)
     return Vec2(yy * r.x() - xy * r.y(), xx * r.y() - xy * r.x()) / determinant;
@@ -17,7 +17,7 @@ Vec2 shortestSolution(double xx, double xy, double yy, const Vec2& r) {
 } // namespace
 
 ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus) {
-  std::vector<Vec3> points; // that are seen, in view space
+  std::vector<Vec3> points; // visible points of the focus, in view space
   Vec3 center = Vec3::Zero();
   const DepthBuffer& depth = focus.depth;
   for (std::int64_t row = 0; row < depth.rows(); ++row)

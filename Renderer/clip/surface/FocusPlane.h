@@ -1,14 +1,14 @@
 #pragma once
-// A cutting plane that nobody has to place.
+// Cutting plane placed automatically.
 
 #include "clip/focus/FocusDepth.h"
 #include "clip/keep/Clip.h"
 
 namespace fenestra {
 
-/// The plane that comes nearest to what the eye sees of the focus: of all that are not seen edge-on
-/// the one with the least squared distance from it in depth. Its normal points towards the eye.
-/// At least one sample has to be focus; too few to tilt it, and it faces the eye.
+/// Least-squares plane, in depth, through the visible points of the focus, never seen edge-on. The
+/// normal points towards the eye. Needs at least one focus sample; with too few samples to
+/// determine a tilt the plane faces the eye.
 ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus);
 
 } // namespace fenestra

@@ -33,7 +33,7 @@ void fillContext(DepthBuffer& buffer, const FocusDepth& focus, const Bottom& bot
         buffer.set(buffer.sample(column, row), bottom(buffer.position(column, row)));
 }
 
-/// Where the eye ray through (x, y) leaves a ball; -infinity where it misses it.
+/// Depth at which the eye ray through (x, y) leaves a ball, mm; -infinity: missed.
 double farSide(const Camera& camera, const Vec2& at, const Vec3& center, double radius) {
   const Ray ray = camera.rayThrough(at);
   const double nearest = (center - ray.origin).dot(ray.direction);

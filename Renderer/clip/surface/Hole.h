@@ -8,8 +8,8 @@ namespace fenestra {
 
 enum class HoleShape {
   box,      ///< upright, flat at the depth of the focus's farthest visible point
-  cylinder, ///< the same, round
-  sphere,   ///< as if a ball around the visible focus were pushed in
+  cylinder, ///< round, else like a box
+  sphere,   ///< far side of a ball around the visible focus
 };
 
 struct HoleOptions {
@@ -19,8 +19,8 @@ struct HoleOptions {
   bool operator==(const HoleOptions&) const = default;
 };
 
-/// Fills the samples of `buffer` that are not focus: the bottom of the hole, or -infinity beside
-/// it. At least one has to be focus.
+/// Fills the samples of `buffer` that are not focus: depth of the hole's bottom, mm; -infinity:
+/// beside the hole. At least one sample has to be focus.
 void fillHole(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera,
               const HoleOptions& options);
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a thin plate spline spends its time on, in SIMD lanes. The instruction set is chosen when
-// the program runs (Highway).
+// Sums that take most of a thin plate spline's time, in SIMD lanes. The instruction set is chosen
+// at run time (Highway).
 
 #include "base/Vector.h"
 

@@ -9,7 +9,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// The longest expansion: 3^-24 is as small as rounding lets a sum become.
+/// Terms of the longest expansion: 3^-24 is about the rounding of a sum.
 constexpr Eigen::Index longest = 24;
 
 /// Rounding of a sum, relative to the sum of its terms' sizes.

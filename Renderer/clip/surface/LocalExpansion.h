@@ -1,7 +1,7 @@
 #pragma once
-// The kernels of a thin plate spline, seen from afar: a polynomial over a disc that they lie well
-// outside of (as the local expansions of Greengard and Rokhlin 1987, "A Fast Algorithm for Particle
-// Simulations", for the biharmonic kernel).
+// Far kernels of a thin plate spline as a polynomial over a disc well away from their sites (like
+// the local expansions of Greengard and Rokhlin 1987, "A Fast Algorithm for Particle Simulations",
+// for the biharmonic kernel).
 
 #include "clip/surface/KernelSums.h"
 
@@ -19,21 +19,21 @@ namespace fenestra {
 ///   (1 - q) ln(1 - q) = -q + sum over k >= 2 of q^k / (k (k - 1)),
 /// so that the sum of the terms is the real part of P(tau) + conj(tau) Q(tau), with
 ///   P_k = 2 / (k (k - 1)) sum w |d|^2 e^k,  Q_k = -2 radius^2 / (k (k - 1)) sum w e^(k - 1)
-/// for k >= 2. What comes after k = K is no more than
+/// for k >= 2. The remainder after k = K is at most
 ///   2 / (K (K + 1)) sum |w| |d|^2 |e|^(K + 1) (1 + |e|) / (1 - |e|).
 class LocalExpansion {
 public:
-  /// |e| up to which terms are expanded: a compromise of how many terms are, and how long.
+  /// Greatest |e| of expanded terms: a compromise between their number and the expansion's length.
   static constexpr double farthest = 1.0 / 3.0;
 
-  /// Within `tolerance` of the terms' sum all over the disc, rounding included; nothing where
-  /// double precision cannot give that. Every |e| has to be at most `farthest`.
+  /// Expansion within `tolerance` of the terms' sum all over the disc, rounding included; nothing
+  /// if double precision cannot reach `tolerance`. Every |e| has to be at most `farthest`.
   static std::optional<LocalExpansion> of(std::span<const KernelTerm> terms, const Vec2& center,
                                           double radius, double tolerance);
 
   void addPlane(double atCenter, double alongX, double alongY);
 
-  /// The sum at center + (x[i], y) for every i, all within the disc.
+  /// Sum of the terms at center + (x[i], y) for every i, all points within the disc.
   void evaluateRow(std::span<const double> x, double y, std::span<double> values) const;
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// A part of a raster of samples, by tiles: where it is worth working.
+// Part of a raster of samples, by tiles: where work is worthwhile.
 
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace fenestra {
 
-/// Samples of a row.
+/// Samples [begin, end) of a row.
 struct SampleRun {
   std::size_t row, begin, end;
 };
@@ -22,7 +22,7 @@ public:
         m_across((columns + edge - 1) / edge),
         m_marks(m_across * ((rows + edge - 1) / edge), 0) {}
 
-  /// Marks the sample's tile and those around it.
+  /// Marks the sample's tile and the tiles around it.
   void markAround(std::size_t column, std::size_t row) {
     const std::size_t x = column / edge, y = row / edge;
     for (std::size_t j = y > 0 ? y - 1 : 0; j < std::min(y + 2, m_marks.size() / m_across); ++j)
@@ -30,7 +30,7 @@ public:
         m_marks[j * m_across + i] = 1;
   }
 
-  /// The samples of marked tiles, and those up to `margin`, 0 or 1, beside them.
+  /// Samples of marked tiles, and up to `margin`, 0 or 1, samples beside the tiles.
   std::vector<SampleRun> runs(std::size_t margin) const {
     std::vector<SampleRun> runs;
     for (std::size_t row = 0; row < m_rows; ++row) {

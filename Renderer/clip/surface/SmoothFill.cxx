@@ -15,7 +15,7 @@ namespace fenestra {
 
 namespace {
 
-/// L along a row, of arrays that lie apart from each other.
+/// Stencil of L (the Laplacian) along a row.
 struct RowStencil {
   const float *before, *after;
   Stencil y;
@@ -34,7 +34,7 @@ void curveRow(const RowStencil& l, const float* in, float* __restrict out) {
     out[i] = l(in, i);
 }
 
-/// A step of the iteration; of the depths u, whose curvature is L u.
+/// One step of the iteration along a row: updates the depths u from their curvature L u.
 void moveRow(const RowStencil& l, const float* curvature, const float* free, float tension,
              float keep, float step, float* __restrict change, float* __restrict depth) {
   for (std::size_t i = 0; i < l.count; ++i) {
@@ -43,7 +43,7 @@ void moveRow(const RowStencil& l, const float* curvature, const float* free, flo
   }
 }
 
-/// One resolution. Rows are stored with a sample's margin all around, which stencils do not weigh.
+/// One resolution. A margin of one sample surrounds the stored rows; stencils give it weight 0.
 class FillLevel {
 public:
   FillLevel(FillAxis x, FillAxis y)
@@ -57,22 +57,22 @@ public:
   std::size_t columns() const { return m_x.size(); }
   std::size_t rows() const { return m_y.size(); }
   bool isSmall() const { return std::max(columns(), rows()) <= 8; }
-  /// Whether it can be solved directly in little time and memory.
+  /// True if `solve` takes little time and memory.
   bool isSolvable() const { return columns() * rows() <= 8192; }
-  /// mm, where the samples are densest.
+  /// Least distance of samples, mm.
   double pitch() const { return 1.0 / std::sqrt(0.5 * std::max(m_x.greatest(), m_y.greatest())); }
 
   float& depth(std::size_t column, std::size_t row) { return m_depth[index(column, row)]; }
   float depth(std::size_t column, std::size_t row) const { return m_depth[index(column, row)]; }
   bool isFree(std::size_t column, std::size_t row) const { return m_free[index(column, row)] != 0; }
-  /// `covered`: the share of the sample's square that is focus, which makes it one.
+  /// `covered`: share of the sample's square that is focus, 0 to 1; 0: free sample, else focus.
   void set(std::size_t column, std::size_t row, float depth, float covered) {
     const std::size_t at = index(column, row);
     m_depth[at] = depth;
     m_covered[at] = covered;
     m_free[at] = covered > 0.0f ? 0.0f : 1.0f;
   }
-  /// The focus ends at the centres of its outermost samples.
+  /// Trims `covered` so that the focus ends at the centres of its outermost samples.
   void trimFocus() {
     const std::vector<float> whole = m_covered;
     for (std::size_t at = m_stride + 1; at + m_stride + 1 < whole.size(); ++at)
@@ -85,7 +85,7 @@ public:
       }
   }
 
-  /// Of half the resolution: samples are the means of four, and focus where any of them is.
+  /// Level of half the resolution: a sample is the mean of four, and focus if any of the four is.
   FillLevel halved() const {
     FillLevel coarse(m_x.halved(), m_y.halved());
     for (std::size_t row = 0; row < coarse.rows(); ++row)
@@ -103,16 +103,15 @@ public:
     return coarse;
   }
 
-  /// Continues the depths along the boundary into the focus, with its slopes as far as they are
-  /// allowed, and out of it, with ever less slope: step by step, as far as a coarse sample may
-  /// reach. This is what the boundary looks like to coarser levels, whose samples do not end where
-  /// the focus does.
+  /// Continues the boundary's depths by `length`, step by step: into the focus with the focus's own
+  /// slopes, limited to steepestBoundary, and out of the focus with slopes that decay. Coarser
+  /// levels need both: their samples do not end where the focus ends.
   void continueBoundary(double length) {
     const std::vector<float> own = m_depth;
     std::vector<std::uint8_t> known(m_depth.size(), 0);
     findBoundary();
     std::vector<std::size_t> front, next;
-    for (const float free : {0.0f, 1.0f}) { // into the focus first: slopes out of it begin there
+    for (const float free : {0.0f, 1.0f}) { // inward first: the outward pass reads those slopes
       front.clear();
       for (const Edge& edge : m_edges) {
         known[edge.at] = 1;
@@ -136,10 +135,10 @@ public:
     }
   }
 
-  /// The free samples, cubic between the centres of the coarser ones.
+  /// Fills the free samples, cubic between the centres of the coarser samples.
   void start(const FillLevel& coarse) {
-    // Weights of the coarse samples from two before to two behind a sample's own, for a sample in
-    // its first half; in its second half they are mirrored.
+    // Weights of four neighbouring coarse samples, for a fine sample in the first half of its
+    // coarse one; mirrored for the second half.
     constexpr float weights[] = {-5.0f / 128, 35.0f / 128, 105.0f / 128, -7.0f / 128};
     forRows([&](std::size_t row) {
       const std::size_t count = coarse.columns();
@@ -148,7 +147,7 @@ public:
         return static_cast<std::size_t>(
             std::clamp<std::ptrdiff_t>(at, 0, static_cast<std::ptrdiff_t>(size) - 1));
       };
-      std::vector<float> across(count + 4); // with two of a margin
+      std::vector<float> across(count + 4); // with a margin of two
       for (std::ptrdiff_t i = 0; i < 4; ++i) {
         const std::ptrdiff_t step = row % 2 == 0 ? i - 2 : 2 - i;
         const float weight = weights[i];
@@ -176,7 +175,7 @@ public:
   }
 
   /// `steps` of Chebyshev's iteration for  L L u - L u / length² = 0  at the free samples near the
-  /// boundary: away from it the coarser level's surface is as good.
+  /// boundary: elsewhere the coarser level's surface is as good.
   void relax(double length, int steps) {
     stiffen(stiffest);
     SampleTiles tiles(columns(), rows());
@@ -187,7 +186,7 @@ public:
     const double high = highest(tension);
     const double low = high / (0.25 * steps * steps);
     const double centre = 0.5 * (high + low), radius = 0.5 * (high - low);
-    // Only what is near is touched.
+    // Memory away from the boundary is never touched.
     const auto curvature = std::make_unique_for_overwrite<float[]>(m_depth.size());
     const auto change = std::make_unique_for_overwrite<float[]>(m_depth.size());
     for (const SampleRun& run : curved) // stencils reach a sample further
@@ -209,7 +208,7 @@ public:
     }
   }
 
-  /// The solution itself; for a few thousand samples.
+  /// Solves directly; for a few thousand samples.
   void solve(double length) {
     stiffen(1e6f);
     std::vector<int> unknown(m_depth.size(), -1);
@@ -222,8 +221,8 @@ public:
       edgeAt[edge.at] = &edge;
     Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
     std::vector<Eigen::Triplet<double>> entries;
-    // Adds `factor` times the curvature at a sample to an equation. Of the matrix, which is
-    // symmetric, one half is enough.
+    // Adds `factor` times the curvature at a sample to an equation; of the symmetric matrix only
+    // the lower half.
     const auto addCurvature = [&](int row, std::size_t at, double factor) {
       const auto add = [&](std::size_t neighbour, double weight) {
         if (unknown[neighbour] >= 0) {
@@ -267,10 +266,10 @@ public:
   }
 
 private:
-  /// A boundary that is thinner would only be slower to find.
+  /// Stiffness in `relax`: more only slows convergence.
   static constexpr float stiffest = 3.0f;
 
-  /// Of the operator's eigenvalues.
+  /// Upper bound of the operator's eigenvalues.
   double highest(double tension) const {
     const double most = 2.0 * (m_x.greatest() + m_y.greatest());
     return stiffest * most * (most + tension);
@@ -283,12 +282,12 @@ private:
         function(at);
   }
 
-  /// mm². Times it, L is symmetric.
+  /// Area of a sample, mm²; area * L is symmetric.
   double area(std::size_t at) const {
     return m_x.width(at % m_stride - 1) * m_y.width(at / m_stride - 1);
   }
 
-  /// Of a sample: each neighbour and its weight in L.
+  /// Calls back with each neighbour of a sample and the neighbour's weight in L.
   template <typename Function>
   void forWeights(std::size_t at, const Function& function) const {
     const Stencil x = m_x.stencil(at % m_stride - 1), y = m_y.stencil(at / m_stride - 1);
@@ -299,7 +298,7 @@ private:
         function(neighbour, double{weight});
   }
 
-  /// Of a sample: each neighbour, the way to it in memory, and its distance in mm.
+  /// Calls back with each neighbour of a sample, its offset in memory, and its distance, mm.
   template <typename Function>
   void forNeighbours(std::size_t at, const Function& function) const {
     const auto stride = static_cast<std::ptrdiff_t>(m_stride);
@@ -314,7 +313,7 @@ private:
       function(at + m_stride, stride, m_y.spacing(row));
   }
 
-  /// From the neighbours that are known.
+  /// Depth continued from the known neighbours (mean).
   float continued(std::size_t at, const std::vector<float>& own,
                   const std::vector<std::uint8_t>& known, double length) const {
     float sum = 0.0f, count = 0.0f;
@@ -334,8 +333,8 @@ private:
     return sum / count;
   }
 
-  /// A focus sample beside free ones, for L there: what its focus neighbours, limited in slope, and
-  /// itself bring, and the weights of the others.
+  /// Focus sample beside free ones: L there is `fixed`, from the sample itself and its focus
+  /// neighbours (limited in slope), plus weights times the depths of its free neighbours.
   struct Edge {
     std::size_t at;
     float fixed;
@@ -346,7 +345,7 @@ private:
     return (row + 1) * m_stride + column + 1;
   }
 
-  /// The focus samples beside free ones.
+  /// Finds the focus samples beside free ones.
   void findBoundary() {
     const auto stride = static_cast<std::ptrdiff_t>(m_stride);
     for (std::size_t row = 0; row < rows(); ++row) {
@@ -357,7 +356,7 @@ private:
     }
   }
 
-  /// `stiffness`: the most that the boundary may be stiffer than the plate.
+  /// Computes m_edges. `stiffness`: upper limit of the ratio (boundary weight / plate weight).
   void stiffen(float stiffness) {
     if (m_edges.empty())
       findBoundary();
@@ -369,7 +368,7 @@ private:
     const std::size_t at = index(column, row);
     const Stencil x = m_x.stencil(column), y = m_y.stencil(row);
     Edge edge{at, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-    // Only the part of the sample's square that is not focus is bent.
+    // Only the part of the sample's square outside the focus is bent.
     const float bend = 1.0f / std::max(1.0f - m_covered[at], 1.0f / stiffness);
     const auto add = [&](float weight, std::size_t neighbour, double distance, float& free) {
       if (m_free[neighbour] != 0.0f) {
@@ -391,7 +390,7 @@ private:
     return edge;
   }
 
-  /// Where a row is so short that another thread is no help, this one does several.
+  /// Calls back with each row, in parallel; short rows share a thread.
   template <typename Function>
   void forRows(const Function& function) const {
     const std::size_t grain = 1 + 32768 / columns();
@@ -401,7 +400,7 @@ private:
     });
   }
 
-  /// Neighbouring runs are short: a thread does several.
+  /// Calls back with each run, in parallel; runs are short and share a thread.
   template <typename Function>
   static void forRuns(const std::vector<SampleRun>& runs, const Function& function) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), 256), [&](const auto& range) {
@@ -410,7 +409,7 @@ private:
     });
   }
 
-  /// L of the depths.
+  /// Computes the curvature L u along `runs` and at the boundary.
   void curve(const std::vector<SampleRun>& runs, float* curvature) const {
     forRuns(runs, [&](const SampleRun& run) {
       const std::size_t first = index(run.begin, run.row);
@@ -440,9 +439,9 @@ private:
 
   FillAxis m_x, m_y;
   std::size_t m_stride;
-  std::vector<float> m_depth;   ///< from the buffer's reference
-  std::vector<float> m_free;    ///< 1, or 0 for focus and the margin
-  std::vector<float> m_covered; ///< shares of the samples that are focus
+  std::vector<float> m_depth;   ///< mm, less the buffer's reference
+  std::vector<float> m_free;    ///< 1; 0: focus, margin
+  std::vector<float> m_covered; ///< share of each sample's square that is focus
   std::vector<Edge> m_edges;
 };
 
@@ -472,7 +471,7 @@ void fillSmoothly(DepthBuffer& buffer, const std::vector<Region>& regions, doubl
   levels.push_back(finest(buffer, regions));
   levels.back().trimFocus();
   levels.back().continueBoundary(length);
-  // A coarser level would not see the plate bend.
+  // Coarser levels would not resolve the plate's bending.
   while (!levels.back().isSmall() &&
          (levels.back().pitch() < 0.25 * length || !levels.back().isSolvable()))
     levels.push_back(levels.back().halved());

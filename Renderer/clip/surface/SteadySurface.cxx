@@ -8,14 +8,14 @@ namespace fenestra {
 
 namespace {
 
-/// Of each sample from the nearest that is focus, mm: along steps to the eight neighbours, which is
-/// at most 8 % too far.
+/// Distance of each sample from the nearest focus sample, mm: along steps to the eight neighbours,
+/// at most 8 % too long.
 std::vector<double> distancesFromFocus(const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
   std::vector<double> distances;
   for (const Region region : focus.regions)
     distances.push_back(region == Region::focus ? 0.0 : infinity);
-  // Row by row from the top, then from the bottom: from neighbours that are done by then.
+  // Row by row from the top, then from the bottom, from neighbours visited before.
   for (const std::int64_t way : {1, -1}) {
     const auto shorten = [&](std::int64_t column, std::int64_t row, std::int64_t x,
                              std::int64_t y) {
@@ -38,7 +38,7 @@ std::vector<double> distancesFromFocus(const FocusDepth& focus) {
   return distances;
 }
 
-/// From 0 at the focus to 1 at `width` from it, level at both.
+/// Share of the mean: 0 at the focus, 1 at distances >= `width`, slope 0 at both.
 double shareOfMean(double distance, double width) {
   const double x = std::min(1.0, distance / width);
   return x * x * (3.0 - 2.0 * x);

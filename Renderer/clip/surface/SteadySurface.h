@@ -1,19 +1,19 @@
 #pragma once
-// A clipping surface for frames of a turn, in which nothing may jump.
+// Clipping surface for frames of a turn, without jumps from frame to frame.
 //
 // When the focus's outline changes its course (one part comes out from behind another, or control
-// points fall elsewhere), the surface around it changes at once. Here it is, away from the focus,
-// the mean of the surfaces of cameras that stand a little before and after on the same turn, at the
-// same (x, y): what one camera's surface does suddenly, this one does over the angle between them.
-// Near the focus it stays its own, so that focus and context meet as they did: from the focus's
-// edge on, the mean comes in smoothly, over as far as the turn may move the focus in the picture.
+// points fall elsewhere), the surface of one camera jumps. A steady surface is, away from the
+// focus, the mean at the same (x, y) of the surfaces of cameras a little before and after on the
+// same turn: the jump is spread over the angle between these cameras. Near the focus the camera's
+// own surface stays, so that focus and context meet as before; the share of the mean rises smoothly
+// with the distance from the focus, over as far as the turn may move the focus in the picture.
 
 #include "clip/surface/ClippingSurface.h"
 
 namespace fenestra {
 
-/// The surface of five cameras, from `degrees` before to `degrees` after (model/camera/Turn.h),
-/// with binomial weights. With 0 degrees, and in the other modes, what buildClippingSurface builds.
+/// Surface of five cameras, from `degrees` before to `degrees` after (camera/Turn.h), with binomial
+/// weights. For 0 degrees, and in modes other than `surface`: the result of buildClippingSurface.
 ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                    const SurfaceOptions& options, double degrees);
 

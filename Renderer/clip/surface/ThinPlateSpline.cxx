@@ -11,14 +11,14 @@ namespace {
 /// Keeps the logarithm finite at a site, where its factor is 0.
 constexpr double tiny = 1e-300;
 
-/// lambda - phi below which two sites are not told apart: it is the least eigenvalue that they
-/// cause, and a few digits of the solution have to survive it.
+/// Least lambda - phi of two distinct sites, the smallest eigenvalue that the two cause: below the
+/// bound too few digits of the solution survive.
 constexpr double indistinct = 1e-12;
 
 /// Squared radii beyond which the sum of the kernels loses too much to cancellation.
 constexpr double farSquared = 256.0;
 
-/// How far, in mm, the coordinates of a site may be from what they stand for.
+/// Rounding error of a site's coordinates, mm.
 double roundingAt(const Vec2& site) {
   return 8.0 * std::numeric_limits<double>::epsilon() * site.cwiseAbs().maxCoeff();
 }
@@ -47,8 +47,8 @@ Eigen::MatrixXd kernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
 /// Q = H0 H1 H2 with Hk = I - vk vk'. The columns of Q after the third span the null space of P'.
 class PolynomialsQr {
 public:
-  /// `singular`: singular values below this share of the largest are 0. The sites' centroid is 0,
-  /// so that the largest is that of the constant, to rounding.
+  /// `singular`: singular values below this share of the largest count as 0. The sites' centroid is
+  /// 0: the largest is that of the constant, to rounding.
   PolynomialsQr(const Eigen::MatrixX2d& sites, double singular) : m_v(sites.rows(), 3) {
     m_v << Eigen::VectorXd::Ones(sites.rows()), sites;
     for (Eigen::Index k = 0; k < 3; ++k)
@@ -91,7 +91,7 @@ public:
     return k.bottomRightCorner(n, n);
   }
 
-  /// The a with the least |P a - z|, the flattest where several are.
+  /// Flattest a with the least |P a - z|.
   Vec3 leastSquares(const Eigen::VectorXd& z) const {
     const Eigen::VectorXd all = turned(z);
     const Eigen::Index given = std::min<Eigen::Index>(3, all.size());
@@ -113,8 +113,8 @@ public:
   }
 
 private:
-  /// Makes the column its reflection's v, 0 where nothing is left to reflect, and turns those after
-  /// it.
+  /// Replaces column k by its reflection's v (0: nothing left to reflect) and reflects the later
+  /// columns.
   void reflect(Eigen::Index k) {
     const Eigen::Index above = std::min(k, m_v.rows());
     auto v = m_v.col(k);
@@ -149,8 +149,8 @@ struct Samples {
   std::vector<double> values;
 };
 
-/// Sites that lambda leaves indistinct become the first of them, with their mean value: so those
-/// that stay are as far apart as they have to be.
+/// Replaces sites that lambda leaves indistinct by the first of them, with their mean value: the
+/// remaining sites are far enough apart.
 Samples merged(const Samples& samples, double lambda) {
   Samples kept;
   std::vector<double> counts;
@@ -208,7 +208,7 @@ std::vector<Vec2> ThinPlateSpline::toUnitDisc(std::span<const Vec2> sites) {
 void ThinPlateSpline::fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values) {
   const Eigen::MatrixX2d u = rows(sites);
   const PolynomialsQr p(u, std::max(1e-9, roundingAt(m_origin) * m_perScale));
-  m_plane = p.leastSquares(values); // all there is where lambda is infinite or no plane determined
+  m_plane = p.leastSquares(values); // final if lambda is infinite or no plane is determined
   const Eigen::Index n = values.size();
   if (!std::isfinite(m_lambda) || p.rank() < 3 || n == 3)
     return;

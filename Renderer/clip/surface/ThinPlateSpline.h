@@ -1,5 +1,5 @@
 #pragma once
-// The approximating thin plate spline (Duchon 1977; Wahba 1990, "Spline Models for Observational
+// Approximating thin plate spline (Duchon 1977; Wahba 1990, "Spline Models for Observational
 // Data", section 2.4) that carries the focus's depth into its surroundings.
 
 #include "clip/surface/LocalExpansion.h"
@@ -22,11 +22,11 @@ namespace fenestra {
 /// With w' = s^2 w the system in u is (K' + lambda / s^2 I) w' + P' a' = z, with the same f.
 ///
 /// Rounding: f is right to 1e-14 times the condition number, relative to |f| and to the range of
-/// the values, at any distance from the sites; tilt across nearly collinear sites is as ill defined
-/// as they are. Where all but nothing is smoothed, the f through sites much nearer to each other
-/// than the disc is wide runs away between their values, and at last is lost to rounding. Sites
-/// nearer than r with lambda / s^2 - phi(r / s) < 1e-12, so 1.9e-7 s at p = 1, therefore count as
-/// one, the first of them, with their mean value.
+/// the values, at any distance from the sites; tilt across nearly collinear sites is ill defined.
+/// With almost no smoothing, f through sites much nearer to each other than the disc is wide runs
+/// away between the sites' values, and at last is lost to rounding. Sites nearer than r with
+/// lambda / s^2 - phi(r / s) < 1e-12 (r = 1.9e-7 s at p = 1) therefore become one: the first of
+/// them, with their mean value.
 class ThinPlateSpline {
 public:
   /// Sites (mm) and values (mm), equally many, finite; smoothing p in [0, 1].
@@ -38,19 +38,19 @@ public:
   void evaluateRow(std::span<const double> x, double y, std::span<double> values) const;
 
   /// f at (x[i], y[j]) for every i and j, row by row, to within `tolerance` mm beyond the rounding
-  /// of f itself, at a small part of the cost: terms far from the tile are summed as one
-  /// polynomial. Where double precision is short for that, or everything is near, it does as
-  /// evaluateRow. At most mostColumns of x; x and y each ascend or descend.
+  /// of f itself, at a small part of evaluateRow's cost: terms far from the tile are summed as one
+  /// polynomial. Equals evaluateRow if double precision cannot reach `tolerance`, or all terms are
+  /// near. At most mostColumns of x; x and y each ascend or descend.
   void evaluateTile(std::span<const double> x, std::span<const double> y, double tolerance,
                     std::span<double> values) const;
 
-  /// Terms that evaluateTile computes one by one, and so what a tile costs.
+  /// Number of terms that evaluateTile computes one by one: the cost of a tile.
   std::int64_t termsNear(std::span<const double> x, std::span<const double> y) const;
 
-  static constexpr Eigen::Index mostColumns = 64; ///< they stay in the first cache
+  static constexpr Eigen::Index mostColumns = 64; ///< fits the first cache
 
-  /// The system that was solved: sites in the unit disc with their weights w', none where there was
-  /// no system, and lambda / s^2.
+  /// Solution of the system: sites in the unit disc with their weights w' (empty if there was no
+  /// system), and lambda / s^2.
   const std::vector<KernelTerm>& terms() const { return m_terms; }
   double lambda() const { return m_lambda; }
 
@@ -70,13 +70,13 @@ private:
     }
   };
 
-  /// mm to the unit disc.
+  /// Conversion from mm to the unit disc.
   double toDiscX(double x) const { return (x - m_origin.x()) * m_perScale - m_centroid.x(); }
   double toDiscY(double y) const { return (y - m_origin.y()) * m_perScale - m_centroid.y(); }
-  /// Around a tile.
+  /// Disc around a tile.
   Disc discAround(std::span<const double> x, std::span<const double> y) const;
 
-  /// The sum of w'_i phi(|u - u_i|) for |u| > 1, where the terms are as large as |u|^2 ln |u|^2 and
+  /// Sum of w'_i phi(|u - u_i|) for |u| > 1, where the terms are as large as |u|^2 ln |u|^2 and
   /// nearly cancel. With e_i = |u - u_i|^2 - |u|^2 and P' w' = 0 the sum is m ln |u|^2 +
   /// sum w'_i (|u|^2 + e_i) ln(1 + e_i / |u|^2), m being the moment, and its terms are no larger
   /// than 4 |u|.

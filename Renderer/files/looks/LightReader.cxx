@@ -9,8 +9,8 @@
 namespace fenestra {
 namespace {
 
-constexpr double largest = 1e30;   ///< of radiances and lengths: products of two stay finite
-constexpr float brightest = 1e12f; ///< of a map, as of the flags' colours: pictures stay finite
+constexpr double largest = 1e30;   ///< largest radiance and length; products of two stay finite
+constexpr float brightest = 1e12f; ///< largest value of a map, and of colours in flags
 
 Vec3 readVector(const JsonNode& node) {
   const auto v = node.numbers(3, -largest, largest);
@@ -29,7 +29,7 @@ Rgb readRadiance(const JsonNode& node) {
   return {v[0], v[1], v[2]};
 }
 
-/// One that a message of one line can name.
+/// File name without zero bytes and line breaks, fit for a message of one line.
 std::string readFileName(const JsonNode& node) {
   std::string name = node.text();
   if (name.find_first_of(std::string_view("\0\n\r", 3)) != std::string::npos)
@@ -53,7 +53,7 @@ Light readDirectional(const JsonNode& node) {
   return DirectionalLight{readDirection(node.at("direction")), readRadiance(node.at("irradiance"))};
 }
 
-/// Two edges, or a diameter: one number, or the same number twice.
+/// Edges of a rectangle, or diameter of a disk: one number, or the same number twice.
 Vec2 readSize(const JsonNode& node, AreaLight::Shape shape) {
   const bool disk = shape == AreaLight::Shape::disk;
   std::vector<double> size;

@@ -1,11 +1,11 @@
 #pragma once
-// Looks by name, or by what they are.
+// Looks given by name, or as JSON text.
 
 #include <string_view>
 
 namespace fenestra {
 
-/// Whether what names lights or a transfer function is no name but their JSON itself.
+/// True if `look` (lights or a transfer function) is JSON itself, not a name.
 inline bool isLookText(std::string_view look) {
   return look.starts_with('{');
 }

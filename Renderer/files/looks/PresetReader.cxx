@@ -9,7 +9,7 @@ namespace fenestra {
 namespace {
 
 constexpr std::size_t longestPattern = 200;
-constexpr std::size_t longestName = 1000; ///< of a segment, as far as it is looked at
+constexpr std::size_t longestName = 1000; ///< characters of a segment's name that are compared
 
 std::vector<std::string> readTexts(const JsonNode& node) {
   std::vector<std::string> texts;
@@ -62,7 +62,7 @@ FocusPatterns readFocus(const JsonNode& node) {
   return focus;
 }
 
-/// A flag's value as the command line has it: a text, a number, numbers, or a look itself.
+/// Value of a flag as on the command line: a text, a number, numbers, or a look's JSON.
 std::string readValue(const JsonNode& node) {
   if (node.isObject() || node.isNumber())
     return node.json();
@@ -88,7 +88,7 @@ bool isUpper(char c) {
   return std::isupper(static_cast<unsigned char>(c)) != 0;
 }
 
-/// In lower case; `globs` are characters of words, too.
+/// Words of `text` in lower case; characters in `globs` count as parts of words.
 std::vector<std::string> wordsOf(std::string_view text, std::string_view globs) {
   std::vector<std::string> words;
   char before = ' ';
@@ -104,7 +104,7 @@ std::vector<std::string> wordsOf(std::string_view text, std::string_view globs) 
   return words;
 }
 
-/// In time of the product of both lengths at most: only the last * is ever taken back.
+/// Backtracks to the last * only: time at most the product of both lengths.
 bool matchesGlob(std::string_view glob, std::string_view word) {
   std::size_t g = 0;
   std::size_t w = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Reads organ presets: what makes one command enough for an anatomy (Resources/presets/README.md).
+// Reads organ presets: flags and focus for an anatomy (Resources/presets/README.md).
 
 #include "model/volume/Modality.h"
 
@@ -11,36 +11,37 @@
 
 namespace fenestra {
 
-/// Which segments of a segmentation are the focus.
+/// Patterns of the segments that are the focus.
 struct FocusPatterns {
-  /// A segment's name matches where words of it that follow each other match those of a pattern:
-  /// in any case, `*` any text in a word and `?` any character, other signs and changes of case
-  /// between words alike.
+  /// Patterns of names. A name matches if consecutive words of it match the words of a pattern, in
+  /// upper or lower case; `*` is any text in a word, `?` any character. Other signs, and changes to
+  /// upper case, separate words.
   std::vector<std::string> names;
-  std::vector<std::string> except = {}; ///< patterns of names that are not meant
-  /// Terminology codes of what a segment is, "SCT^39607008"; "SCT^4147007~SCT^12738006" for that
-  /// in a region.
+  std::vector<std::string> except = {}; ///< patterns of excluded names
+  /// Terminology codes of a segment's type, like "SCT^39607008", or type~region, like
+  /// "SCT^4147007~SCT^12738006".
   std::vector<std::string> codes = {};
 };
 
 struct OrganPreset {
-  std::string name; ///< the file's, without its ending
+  std::string name; ///< file name without extension
   std::string title;
   Modality modality;
   FocusPatterns focus;
-  std::vector<std::string> before = {}; ///< presets that are not meant where this one is
-  /// Names and values of the command line, in their order by name.
+  std::vector<std::string> before = {}; ///< presets that `auto` passes over where this one fits
+  /// Flags of the command line and their values, sorted by name.
   std::vector<std::pair<std::string, std::string>> flags = {};
-  std::string tested = {}; ///< the data that it was looked at with
+  std::string tested = {}; ///< data on which the preset was tried
 };
 
-/// Throws Error (input) that names file and field.
+/// Reads a preset file. Throws Error (input) that names file and field.
 OrganPreset readPreset(const std::filesystem::path& path);
 
-/// The same from text. `source` names it in messages, and the preset.
+/// Reads a preset from JSON text. `source`, a path, names the text in messages, and its stem the
+/// preset.
 OrganPreset parsePreset(std::string_view json, const std::string& source);
 
-/// Whether a segment's name matches a pattern of FocusPatterns.
+/// True if a segment's name matches one of FocusPatterns::names.
 bool matchesName(std::string_view pattern, std::string_view name);
 
 } // namespace fenestra

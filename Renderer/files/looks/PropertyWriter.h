@@ -7,22 +7,22 @@
 
 namespace fenestra {
 
-/// The content of a .vp.json, which Slicer reads from 5.10 on. `effectiveRange` is the volume's
-/// scalars' range.
+/// Content of a .vp.json (Slicer 5.10 and later). `minimum`, `maximum`: range of the volume's
+/// scalars.
 std::string propertyJson(const VolumeProperty& property, double minimum, double maximum);
 
-/// The three functions of a property as Slicer's strings: the number of values, then x and y, or x
-/// and three colours, of each node. They know neither a unit distance nor the nodes' midpoint and
-/// sharpness (here default): opacities are those of 1 mm, right at the nodes, and between them
-/// where they are equal or the unit is 1 mm already.
+/// Functions of a property as Slicer's strings: number of values, then x and y (or x, r, g, b) per
+/// node. The strings hold no unit distance, midpoint or sharpness (defaults are assumed): opacities
+/// are converted to a unit of 1 mm, exactly at the nodes; between nodes exactly only where the two
+/// are equal, or the unit is 1 mm already.
 struct PropertyTexts {
   std::string scalarOpacity, gradientOpacity, color;
 };
 PropertyTexts propertyTexts(const VolumeProperty& property);
 
-/// The content of a .vp, which every Slicer reads.
+/// Content of a .vp, which every Slicer reads.
 std::string propertyVp(const VolumeProperty& property);
 
-inline constexpr double ambientLight = 0.1; ///< what Slicer's files say; Fenestra knows none
+inline constexpr double ambientLight = 0.1; ///< ambient term of Slicer's files; Fenestra has none
 
 } // namespace fenestra

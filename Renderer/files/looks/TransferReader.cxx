@@ -10,7 +10,7 @@
 namespace fenestra {
 namespace {
 
-constexpr double largestValue = 1e30; ///< of scalars and extinctions: their spans stay finite
+constexpr double largestValue = 1e30; ///< largest scalar and extinction; differences stay finite
 constexpr double mostForward = 0.999; ///< g = 1 would never scatter
 
 double finite(const JsonNode& node) {
@@ -88,7 +88,7 @@ double orElse(const std::optional<JsonNode>& node, double fallback) {
   return node ? finite(*node) : fallback;
 }
 
-/// What both kinds of point share; x must be there.
+/// Fields that both kinds of point share; x is required.
 template <typename Node>
 Node readPoint(const JsonNode& point) {
   Node node;
@@ -160,7 +160,7 @@ VolumeProperty readSlicer(const JsonNode& root) {
 // ---- Slicer's .vp, and the same texts as a scene's attributes
 // ----------------------------------
 
-/// The texts of a property by the names that MRML gives them, in the order of a .vp's lines.
+/// MRML's names of a property's texts, in the order of a .vp's lines.
 constexpr const char* propertyFields[] = {"interpolation", "shade",           "diffuse",
                                           "ambient",       "specular",        "specularPower",
                                           "scalarOpacity", "gradientOpacity", "colorTransfer"};
@@ -182,8 +182,8 @@ public:
     return all[0];
   }
 
-  /// `<count> x v... x v...` in rows of `width`; Slicer moves an x that does not grow to the one
-  /// before (and 10 units in the last place more).
+  /// Parses `<count> x v... x v...` into rows of `width`. An x below the previous one is set to the
+  /// previous one (Slicer adds 10 units in the last place).
   std::vector<std::vector<double>> rows(const std::string& field, std::size_t width) const {
     const auto all = numbers(field);
     if (all.empty() || all[0] != static_cast<double>(all.size() - 1) ||
@@ -224,7 +224,7 @@ private:
   std::string m_source;
 };
 
-/// Light that arrives from nowhere (ambient) has no place in path tracing.
+/// Reads all but ambient light, which path tracing does not have.
 VolumeProperty readProperty(const PropertyFields& texts) {
   VolumeProperty property;
   if (texts.has("shade"))
@@ -253,7 +253,7 @@ VolumeProperty readPropertyLines(std::string_view content, const std::string& so
     content.remove_prefix(std::min(end + 1, content.size()));
   }
   const PropertyFields property(texts, PropertyForm::lines, source);
-  for (const char* field : {"interpolation", "ambient"}) // of no use here, but of the format
+  for (const char* field : {"interpolation", "ambient"}) // unused, but required by the format
     property.number(field);
   return readProperty(property);
 }

@@ -10,28 +10,28 @@
 
 namespace fenestra {
 
-/// A transfer function, and what its scalars are.
+/// Transfer function, and whether its scalars have a unit.
 struct TransferLook {
   TransferFunction function;
-  /// Of no unit, as in MR and ultrasound: 0 stands for the least value that is usual in a volume,
-  /// 1 for the greatest, and `over` makes a medium of it.
+  /// True: scalars without a unit, as in MR and ultrasound; 0 and 1 stand for the least and the
+  /// greatest usual value of a volume (see `over`).
   bool relative = false;
 
-  /// The function with 0 at `low` and 1 at `high` where it is relative, else as it is.
+  /// Function with 0 moved to `low` and 1 to `high` if relative; unchanged otherwise.
   TransferFunction over(double low, double high) const;
 };
 
-/// By extension: `.vp` (Slicer, text), `.vp.json` (Slicer; its first property's first component),
-/// `.json` (Fenestra). Throws Error (input).
+/// Reads by extension: `.vp` (Slicer, text), `.vp.json` (Slicer; its first property's first
+/// component), `.json` (Fenestra). Throws Error (input).
 TransferLook readTransferLook(const std::filesystem::path& path);
-/// The same where scalars have to be a volume's own. Throws Error (input) where they are relative.
+/// Reads a transfer function of absolute scalars. Throws Error (input) for relative ones.
 TransferFunction readTransferFunction(const std::filesystem::path& path);
 
-/// The text of a `.json` of either kind. `source` names it in messages.
+/// Parses a `.json` of either kind. `source` names the text in messages.
 TransferLook parseTransferLook(std::string_view json, const std::string& source);
 TransferFunction parseTransferFunction(std::string_view json, const std::string& source);
 
-/// A volume property as the attributes of a scene's node, which have the names and forms of a
+/// Parses a volume property from the attributes of a scene's node, whose values have the form of a
 /// .vp's lines.
 TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
                                        const std::string& source);

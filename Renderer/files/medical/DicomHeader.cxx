@@ -33,14 +33,14 @@ std::string withoutPadding(std::string text) {
   return text;
 }
 
-/// Decimal strings between backslashes; none where one is no number.
+/// Numbers of decimal strings between backslashes; empty: one is not a number.
 std::vector<double> decimals(std::string text) {
   std::replace(text.begin(), text.end(), '\\', ' ');
   std::erase(text, '+');
   return parseNumbers(text).value_or(std::vector<double>{});
 }
 
-/// One whole number; 0 where it is none.
+/// Number of a field; 0: not one number from 0 to 2^31.
 unsigned fieldCount(const std::string& text) {
   const std::vector<double> numbers = decimals(text);
   const bool one = numbers.size() == 1 && numbers[0] >= 0.0 && numbers[0] <= 0x1p31;
@@ -57,14 +57,14 @@ template <std::vector<double> DicomHeader::*field>
 void keepNumbers(DicomHeader& header, const std::string& text) {
   header.*field = decimals(text);
 }
-/// One number that samples are rescaled by: none where it is missing, NaN where it is no number.
+/// Keeps slope or intercept; empty: missing; NaN: not one number.
 template <std::vector<double> DicomHeader::*field>
 void keepRescale(DicomHeader& header, const std::string& text) {
   const std::vector<double> numbers = decimals(text);
   if (!text.empty())
     header.*field = {numbers.size() == 1 ? numbers[0] : std::nan("")};
 }
-/// What is missing stays as it is.
+/// Keeps a number; if the field is missing, the default.
 template <unsigned DicomHeader::*field>
 void keepCount(DicomHeader& header, const std::string& text) {
   if (!text.empty())
@@ -133,7 +133,7 @@ std::string headerAnswer(const std::string& path) {
   return answer.bytes();
 }
 
-/// Whether the file goes on for the voxels' `bytes`; GDCM fills up what is cut off.
+/// True if the file holds all `bytes` of the voxels: GDCM silently fills up what is cut off.
 bool holdsVoxels(const std::string& path, std::uint64_t bytes) {
   const Tag pixelData(0x7fe0, 0x0010);
   gdcm::Reader reader;
@@ -154,7 +154,7 @@ std::string voxelsAnswer(const std::string& path) {
   return whole && image.GetBuffer(voxels.data()) ? voxels : std::string();
 }
 
-/// A question is one of these and a path.
+/// First character of a question; a path follows.
 constexpr char wantsHeader = 'h', wantsVoxels = 'v';
 
 std::string answerDicom(const std::string& question) {
@@ -188,7 +188,7 @@ std::optional<DicomHeader> DicomFiles::header(const Path& path) {
   try {
     if (answer)
       return dicomHeader(*answer);
-  } catch (const std::runtime_error&) { // no answer
+  } catch (const std::runtime_error&) { // malformed answer
   }
   throw inputError(path.string(), "DICOM header: cannot be read; export the series again, or take "
                                   "the file out of its folder");

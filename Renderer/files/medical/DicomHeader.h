@@ -1,7 +1,6 @@
 #pragma once
-// What DICOM files say of their images, and their voxels, read by GDCM in a process of its own:
-// GDCM takes memory for whatever length a file declares, and ends its process where a file is
-// damaged. For io's own sources.
+// Headers and voxels of DICOM files, read by GDCM in a child process: GDCM takes memory for
+// whatever length a file declares, and ends its process where a file is damaged.
 
 #include "base/safe/Apart.h"
 
@@ -17,46 +16,47 @@ namespace fenestra {
 struct DicomHeader {
   std::string seriesUid, seriesNumber, seriesDescription, modality;
   std::string photometric;
-  std::vector<double> position;     ///< ImagePositionPatient: of the first voxel's centre, LPS mm
-  std::vector<double> orientation;  ///< ImageOrientationPatient: along a row, along a column; LPS
+  std::vector<double> position;     ///< ImagePositionPatient: first voxel's centre, LPS mm
+  std::vector<double> orientation;  ///< ImageOrientationPatient: along a row, along a column, LPS
   std::vector<double> pixelSpacing; ///< mm between rows, between columns
-  std::vector<double> slope, intercept; ///< one number each (NaN where it is none), or missing
+  std::vector<double> slope, intercept; ///< one number; NaN: not a number; empty: missing
   unsigned rows = 0, columns = 0, samples = 1, frames = 1;
-  unsigned bits = 0, bitsStored = 0, highBit = 0, isSigned = 0; ///< of a voxel
-  bool image = false;                                           ///< its kind of object has one
-  bool compressed = false;                                      ///< its voxels are
-  bool whole = false; ///< what comes before the voxels can be read
+  unsigned bits = 0, bitsStored = 0, highBit = 0, isSigned = 0; ///< layout of a voxel
+  bool image = false;      ///< this kind of object has an image
+  bool compressed = false; ///< voxels are compressed
+  bool whole = false;      ///< all before the voxels can be read
 };
 
-/// Objects without an image (structures, plans, reports) have no rows.
+/// True for images: objects without one (structures, plans, reports) have no rows.
 inline bool isImage(const DicomHeader& header) {
   return header.image || header.rows > 0;
 }
 
-/// Bytes of the voxels that it promises.
+/// Bytes of the voxels that the header declares.
 inline std::uint64_t imageBytes(const DicomHeader& header) {
   return std::uint64_t{header.rows} * header.columns * (header.bits / 8);
 }
 
-/// One child process for the files of a folder.
+/// Reader of a folder's files, with one child process.
 class DicomFiles {
 public:
   DicomFiles();
 
-  /// Nothing where the file cannot be read or is not DICOM (its preamble and "DICM" are missing).
-  /// `whole` is false where it is damaged, or deflated as a whole. Throws Error (input) where
-  /// reading breaks the child or takes more than it may.
+  /// Header of a file; nullopt: unreadable, or not DICOM (preamble and "DICM" are missing). `whole`
+  /// is false for a damaged or wholly deflated file. Throws Error (input) where the child crashes
+  /// or exceeds its limits.
   std::optional<DicomHeader> header(const std::filesystem::path& path);
 
-  /// rows * columns voxels of bits / 8 bytes, little-endian, decompressed, not yet rescaled. Throws
-  /// Error (input) where there are not as many.
+  /// Voxels, rows * columns of bits / 8 bytes each, little-endian, decompressed, not yet rescaled.
+  /// Throws Error (input) for another number of voxels.
   std::string voxels(const std::filesystem::path& path, const DicomHeader& header);
 
 private:
   Apart m_child;
 };
 
-/// The header in what the child answered, which may be anything: then std::runtime_error.
+/// Header in the child's answer, which is untrusted. Throws std::runtime_error for a malformed
+/// answer.
 DicomHeader dicomHeader(std::string_view answer);
 
 } // namespace fenestra

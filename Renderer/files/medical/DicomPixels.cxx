@@ -10,7 +10,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// The value in the stored bits of each voxel.
+/// Values of the voxels' stored bits.
 class StoredValues {
 public:
   StoredValues(const DicomHeader& h, const std::string& voxels)
@@ -58,7 +58,7 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
            "as .nrrd and name that");
   if (!std::isfinite(slopeOf(h)) || !std::isfinite(interceptOf(h)))
     refuse("RescaleSlope or RescaleIntercept: is not one finite number; export the series again");
-  // Lossless codecs make next to nothing of an empty picture; beyond that, a thousandth at most.
+  // Lossless codecs pack an empty picture into next to nothing, and any other 1000 to 1 at most.
   constexpr std::uint64_t ratio = 1000, emptyPicture = 1 << 24;
   const std::uint64_t stored = std::filesystem::file_size(path);
   const std::uint64_t most = h.compressed ? std::max(emptyPicture, stored * ratio) : stored;

@@ -1,5 +1,5 @@
 #pragma once
-// From the stored voxels of one DICOM slice to scalars. For io's own sources.
+// Scalars from the stored voxels of a DICOM slice.
 
 #include "files/medical/DicomHeader.h"
 
@@ -12,12 +12,11 @@ namespace fenestra {
 
 using DicomSamples = std::variant<std::vector<std::int32_t>, std::vector<double>>;
 
-/// Throws Error (input) unless the header's numbers are those of an image, and its file can hold
-/// it.
+/// Throws Error (input) unless the header describes an image that its file can hold.
 void checkDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
 
-/// Rescaled: std::int32_t, or double where that has fractions or is larger. Takes a header that
-/// checkDicomPixels lets pass, and what DicomFiles::voxels gives for it.
+/// Scalars after slope and intercept: std::int32_t, or double for fractions and larger values.
+/// `header` has passed checkDicomPixels; `voxels` come from DicomFiles::voxels.
 DicomSamples rescaledVoxels(const DicomHeader& header, const std::string& voxels);
 
 } // namespace fenestra

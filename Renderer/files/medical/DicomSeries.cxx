@@ -50,7 +50,7 @@ std::vector<Path> candidates(const Path& folder) {
   return content.files;
 }
 
-/// Numbers sort as numbers.
+/// Key that sorts numbers as numbers: shorter ones first.
 auto sortKey(const DicomSeries& series) {
   return std::tuple(series.number.size(), series.number, series.uid);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// DICOM series: which there are in a folder, and one of them as a volume.
+// DICOM series: those in a folder, and a volume from a series.
 
 #include "model/volume/Volume.h"
 
@@ -10,33 +10,33 @@
 
 namespace fenestra {
 
-/// One file a slice.
+/// Series of slices, one file each.
 struct DicomSeries {
-  std::string uid, number, description, modality; ///< what is missing is empty
+  std::string uid, number, description, modality; ///< empty: missing
   std::vector<std::filesystem::path> files;       ///< sorted by name
 };
 
-/// The series of images in the folder itself (in the folders below only where it holds no file at
-/// all), sorted by number, then uid. Files that are not DICOM, and objects without an image
-/// (DICOMDIR, structures, plans), are passed over. Throws Error (input) where there is no series.
+/// Series of images in the folder itself (in the folders below only if it holds no file), sorted by
+/// number, then uid. Skips files that are not DICOM, and objects without an image (DICOMDIR,
+/// structures, plans). Throws Error (input) where there is no series.
 std::vector<DicomSeries> findDicomSeries(const std::filesystem::path& folder);
 
-/// The only one, or the one that `selector` names by uid, else number, else description. Throws
-/// Error (input), listing them and naming --volume, where that is none or several. `folder` is for
-/// messages.
+/// Series that `selector` names by uid, else number, else description; without a selector the only
+/// series. Throws Error (input), listing the series and naming --volume, where none or several
+/// match. `folder` is for messages.
 const DicomSeries& chooseSeries(const std::vector<DicomSeries>& series,
                                 const std::optional<std::string>& selector,
                                 const std::string& folder);
 
-/// The slices sorted by their positions along their normal, with rescale slope and intercept
-/// applied; the step between slices is that of their positions, so that a tilted gantry is right as
-/// well. Slices off their even places by more than 2 % of the step are warned of. Throws Error
-/// (input), naming the file, where slices are missing or repeated, any is more than half a step or
-/// half a pixel off, sizes or orientations differ, a file holds several frames or colours, lacks
-/// its geometry, or is damaged or not DICOM.
+/// Volume of the slices, sorted along their normal, with rescale slope and intercept applied. The
+/// step between slices is that of their positions, so that a tilted gantry is right as well. Warns
+/// of slices more than 2 % of the step off even places. Throws Error (input), naming the file, for
+/// missing or repeated slices, slices more than half a step or half a pixel off, different sizes or
+/// orientations, several frames or colours, missing geometry, and files that are damaged or not
+/// DICOM.
 Volume readDicomVolume(const DicomSeries& series);
 
-/// The same of a list of files, as a scene names them; `name` is the volume's, for messages.
+/// Volume of a scene's list of files; `name`: the volume's, for messages.
 Volume readDicomVolume(const std::vector<std::filesystem::path>& files, const std::string& name);
 
 } // namespace fenestra

@@ -1,4 +1,4 @@
-// From a series' slices to a volume.
+// Volume from a series' slices.
 
 #include "base/Error.h"
 #include "base/TextStream.h"
@@ -14,13 +14,13 @@ namespace {
 
 using Path = std::filesystem::path;
 
-constexpr double largestLength = 1e9; ///< mm, as for other files
+constexpr double largestLength = 1e9; ///< mm; limit of other files as well
 
 struct Slice {
   Path path;
   DicomHeader header;
-  Vec3 position;      ///< of its first voxel's centre, LPS mm
-  double depth = 0.0; ///< along the normal
+  Vec3 position;      ///< first voxel's centre, LPS mm
+  double depth = 0.0; ///< position along the normal, mm
 };
 
 std::string millimetres(double length) {
@@ -63,7 +63,7 @@ Slice openSlice(DicomFiles& files, const Path& path) {
 // ---- all files
 // ---------------------------------------------------------------------------------
 
-/// Along a row and along a column, in LPS; at right angles.
+/// Directions along a row and along a column, LPS; at right angles.
 struct Axes {
   Vec3 row, column;
   Vec3 normal() const { return row.cross(column).normalized(); }
@@ -109,7 +109,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Slices are sorted. Throws where one is missing or repeated.
+/// Throws Error (input) where one of the sorted slices is missing or repeated.
 void checkGaps(const std::vector<Slice>& slices) {
   std::vector<double> gaps;
   for (std::size_t i = 1; i < slices.size(); ++i)
@@ -130,7 +130,7 @@ void checkGaps(const std::vector<Slice>& slices) {
   }
 }
 
-/// From a slice to the next, LPS mm; warns where they are not even.
+/// Step from a slice to the next, LPS mm; warns of uneven slices.
 Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes,
             std::vector<std::string>& warnings) {
   if (slices.size() == 1)

@@ -18,13 +18,13 @@ using namespace header;
 
 namespace {
 
-/// Deflate packs at most 1032 bytes into one.
+/// Bound of deflate's greatest ratio, 1032.
 constexpr std::uint64_t greatestRatio = 1100;
 
-/// Data files are named relative to their header's folder.
+/// Adds a data file, named relative to the header's folder.
 void addFile(const std::filesystem::path& path, std::string_view name, StoredSamples& stored) {
   const std::filesystem::path file = path.parent_path() / std::filesystem::path(name);
-  if (name == "-") // to libraries the standard input
+  if (name == "-") // libraries read the standard input
     throw inputError(path.string(), "data file: \"-\" is no file; name one beside the header");
   try {
     requireFile(file, "name a file with samples");
@@ -74,7 +74,7 @@ bool isGzip(const std::string& encoding) {
   return isOneOf(encoding, {"gzip", "gz"});
 }
 
-/// What there is for ITK to read, told before it fails.
+/// Refuses encodings, dimensions and byte skips that ITK does not read, before it fails.
 void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
   const std::string encoding = lower(fields["encoding"]);
   if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
@@ -83,7 +83,7 @@ void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
   if (const auto axes = wholeNumber(fields["dimension"]); axes && *axes < 3)
     throw inputError(path.string(), "is a picture of " + std::to_string(*axes) +
                                         " axes, not a volume; name one of three");
-  constexpr std::int64_t mostSkipped = 1 << 20; // teem inflates them one by one
+  constexpr std::int64_t mostSkipped = 1 << 20; // teem inflates skipped bytes one by one
   if (isGzip(encoding) && fields.contains("byteskip")) {
     const auto skipped = wholeNumber(fields["byteskip"]);
     if (!skipped || *skipped < 0 || *skipped > mostSkipped)
@@ -100,7 +100,7 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   StoredSamples stored;
   stored.hasSpacing = saysSpacing(header);
   const std::string encoding = lower(fields["encoding"]);
-  stored.compressed = encoding != "raw" && encoding != "hex"; // a text's digit can be 8 bytes
+  stored.compressed = encoding != "raw" && encoding != "hex"; // a digit of text can be 8 bytes
   locateNrrdFiles(path, header, stored);
   for (const std::filesystem::path& file : stored.files) {
     checkNrrdPath(file);
@@ -121,8 +121,8 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
 // ---- MetaImage
 // -----------------------------------------------------------------------------------
 
-/// MetaIO copies text into 255 bytes, and takes as many numbers as the dimension asks for, whether
-/// they are there or not.
+/// Checks lengths: MetaIO copies text into 255 bytes, and takes as many numbers as the dimension
+/// needs, present or not.
 void checkMetaField(const std::filesystem::path& path, const std::string& key,
                     std::string_view value, std::int64_t dimension) {
   const bool isVector = isOneOf(key, {"DimSize", "ElementSpacing", "ElementSize", "Offset",
@@ -139,7 +139,7 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
                                         " numbers; give it " + std::to_string(needed));
 }
 
-/// What MetaIO reads and nobody applies, or takes for something else.
+/// Refuses values that MetaIO reads but nobody applies, or that it misreads.
 void checkMetaMeaning(const std::filesystem::path& path, const std::string& key,
                       const std::string& value) {
   const auto refuseUnless = [&](double neutral) {
@@ -170,7 +170,7 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
     if (equals == std::string_view::npos || hasControls(trimmed(*line)))
       throw damaged(path, "MetaImage");
     const std::string_view name = line->substr(0, equals);
-    if (name.find(':') != std::string_view::npos) // which MetaIO takes for an equals sign
+    if (name.find(':') != std::string_view::npos) // MetaIO takes a colon for an equals sign
       throw damaged(path, "MetaImage");
     const std::string key(trimmed(name));
     fields[key] = trimmed(line->substr(equals + 1));

@@ -48,7 +48,7 @@ std::size_t framesOf(const itk::ImageIOBase& io) {
   return io.GetNumberOfDimensions() > 3 ? io.GetDimensions(3) : 1;
 }
 
-/// The number of axes that matter is three; a fourth may hold several frames where `allowed`.
+/// Size of three axes; a fourth may hold several frames where `allowed`.
 Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
   const unsigned axes = io.GetNumberOfDimensions();
   if (axes < 3)
@@ -81,7 +81,7 @@ Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Compo
     spacing[static_cast<int>(axis)] = io.GetSpacing(axis);
     origin[static_cast<int>(axis)] = io.GetOrigin(axis);
   }
-  constexpr double largest = 1e9; // mm; beyond, a point keeps no fraction of a voxel
+  constexpr double largest = 1e9; // mm; beyond, points lose fractions of a voxel
   if (!((spacing.array() > 1.0 / largest).all() && (spacing.array() < largest).all()))
     throw inputError(path.string(),
                      "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
@@ -94,7 +94,7 @@ Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Compo
   return {size, Affine(lpsToRas * directions * Mat3::Diagonal(spacing), lpsToRas * origin)};
 }
 
-/// The greatest number where there are more.
+/// Number of samples; UINT64_MAX: overflow.
 std::uint64_t sampleCount(const itk::ImageIOBase& io) {
   std::uint64_t samples = io.GetNumberOfComponents();
   for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
@@ -134,7 +134,7 @@ SampleType typeOf(const std::filesystem::path& path, const itk::ImageIOBase& io)
   }
 }
 
-/// All samples at once, in whatever encoding ITK knows.
+/// Reads all samples at once, in any encoding that ITK knows.
 std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std::size_t bytes) {
   itk::ImageIORegion region(io.GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
@@ -148,7 +148,7 @@ std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std
   };
 }
 
-/// Refuses more samples than the files can hold.
+/// Samples of the files. Throws Error (input) for more than the files can hold.
 SampleSource samplesOf(const std::filesystem::path& path, const StoredSamples& stored,
                        itk::ImageIOBase& io) {
   SampleSource source{.type = typeOf(path, io), .count = sampleCount(io)};
@@ -157,7 +157,7 @@ SampleSource samplesOf(const std::filesystem::path& path, const StoredSamples& s
   if (__builtin_mul_overflow(source.count, sampleBytes, &declared))
     declared = UINT64_MAX;
   checkCapacity(path, stored, declared);
-  // Where a voxel's components lie apart, ITK brings them together.
+  // ITK brings a voxel's components together where they lie apart.
   const bool ordered = io.GetNumberOfComponents() == 1 || stored.isListFirst;
   const bool known = sampleBytes == 1 || stored.order;
   if (!((stored.isRaw || stored.isStream) && ordered && known)) {
@@ -191,7 +191,7 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
   const auto io = makeImageIo(format);
   io->SetFileName(path.string());
   io->ReadImageInformation();
-  // Of the formats, NRRD alone keeps a list of layers.
+  // NRRD alone keeps a list of layers.
   if (format != MedicalFormat::nrrd)
     allowed = Components::one;
   checkPixels(path, *io, allowed);

@@ -1,7 +1,6 @@
 #pragma once
-// Reads NRRD, NIfTI and MetaImage files: what their headers mean through ITK, their samples by our
-// own code where they are raw or one stream, in one pass. For io's own sources: VolumeReader.h and
-// SegmentationReader.h make of it what a scene needs.
+// Reads NRRD, NIfTI and MetaImage files: headers through ITK; samples by our own code, in one pass,
+// where they are raw or one stream. Scenes use VolumeReader.h and SegmentationReader.h.
 
 #include "files/medical/SampleSource.h"
 #include "model/volume/Grid.h"
@@ -14,24 +13,22 @@
 namespace fenestra {
 
 struct MedicalImage {
-  Grid grid = {}; ///< to RAS, whatever the file says
+  Grid grid = {}; ///< index to RAS mm, whatever the file's space
   std::size_t components = 1;
-  bool frames = false; ///< components lie one whole frame after the other, else those of a voxel
-                       ///< together; x fastest
+  bool frames = false; ///< components: one frame after the other; else by voxel; x fastest
   std::map<std::string, std::string> fields = {}; ///< NRRD's key:=value pairs
   std::vector<std::string> warnings = {};         ///< each names the file
 };
 
 enum class Components { one, any };
 
-/// What is made of the samples, which are read only now.
+/// Consumer of the samples, which are read while it runs.
 using TakeSamples = std::function<void(const MedicalImage&, const SampleSource&)>;
 
-/// Exactly three axes (further ones of size 1 are dropped), real scalars; several of them in a
-/// voxel only where `allowed`: a NRRD's list, or the frames along its fourth axis. Calls `take`
-/// once. Throws Error (input), one line, for anything else: missing or damaged files, more samples
-/// than the file can hold (before memory is taken for them), geometry that no point can be mapped
-/// through.
+/// Calls `take` once, with an image of three axes (further ones of size 1 are dropped) and real
+/// scalars; several per voxel only where `allowed`: a NRRD's list, or the frames along its fourth
+/// axis. Throws Error (input), one line, for other images, missing or damaged files, more samples
+/// than the file can hold (before memory is taken for them), and singular geometry.
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
                       const TakeSamples& take);
 

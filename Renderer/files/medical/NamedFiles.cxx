@@ -16,10 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
-constexpr std::size_t mostFiles = 10'000;                ///< that one file names
+constexpr std::size_t mostFiles = 10'000;                ///< names in one file
 constexpr std::uint64_t largestMultiBlock = 64ULL << 20; ///< bytes of a .vtm
 
-/// Whether a number, and nothing else, is between `start` and `end` of the name.
+/// True if the name is `start`, a number, `end`.
 bool isNumbered(std::string_view name, std::string_view start, std::string_view end) {
   if (name.size() < start.size() + end.size() || !name.starts_with(start) || !name.ends_with(end))
     return false;
@@ -28,7 +28,7 @@ bool isNumbered(std::string_view name, std::string_view start, std::string_view 
   return number.find_first_not_of("0123456789+- ") == std::string_view::npos;
 }
 
-/// "s%03d.raw 1 99 1": the files in its folder that are named so, whatever their numbers.
+/// Adds the existing files of a pattern like "s%03d.raw 1 99 1", whatever their numbers.
 void addSeries(const fs::path& folder, std::string_view pattern, Paths& files) {
   const std::size_t percent = pattern.find('%');
   const std::size_t conversion = pattern.find_first_not_of("0123456789+- #.", percent + 1);
@@ -45,8 +45,8 @@ void addSeries(const fs::path& folder, std::string_view pattern, Paths& files) {
       files.push_back(entry->path());
 }
 
-/// What a header says of its samples: a file, "LIST" and files on the lines that follow, or a
-/// pattern.
+/// Adds the files that a header names for its samples: one, "LIST" and those on the following
+/// lines, or a pattern.
 void addNamed(const fs::path& header, std::string_view value, HeaderLines& lines, Paths& files) {
   const fs::path folder = header.parent_path();
   if (value.starts_with("LIST")) {
@@ -61,7 +61,7 @@ void addNamed(const fs::path& header, std::string_view value, HeaderLines& lines
     addSeries(folder, value, files);
 }
 
-/// The line that says where the samples are: "data file: NAME" or "ElementDataFile = NAME".
+/// Files that the line "data file: NAME" or "ElementDataFile = NAME" names.
 Paths namedInHeader(const fs::path& path, std::string_view separator, std::string_view key) {
   Paths files;
   HeaderLines lines(path);

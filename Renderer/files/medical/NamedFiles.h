@@ -1,15 +1,14 @@
 #pragma once
-// Files that hold a part of another one, which names them.
+// Files that another file names as its parts.
 
 #include <filesystem>
 #include <vector>
 
 namespace fenestra {
 
-/// Where the samples of a .nrrd, .nhdr, .mha or .mhd and the surfaces of a .vtm are said to be, be
-/// they there or not, and the other half of an Analyze pair. Of numbered series those that are
-/// there. Whatever is damaged, or no such file, names none: this tells what belongs together, and
-/// readers tell what is wrong.
+/// Paths of the sample files that a .nrrd, .nhdr, .mha or .mhd names, of the surfaces of a .vtm,
+/// and of the other half of an Analyze pair, whether they exist or not; of numbered series, the
+/// existing files. Empty for damaged and other files: readers report what is wrong.
 std::vector<std::filesystem::path> filesNamedBy(const std::filesystem::path& path);
 
 } // namespace fenestra

@@ -18,7 +18,7 @@ Error damaged(const std::filesystem::path& path) {
   return inputError(path.string(), "is damaged or truncated; copy or write it again");
 }
 
-/// Plain and compressed files alike.
+/// Reads plain and compressed files alike.
 class Stream {
 public:
   explicit Stream(const std::filesystem::path& path)
@@ -44,7 +44,7 @@ public:
       throw damaged(m_path);
   }
 
-  /// Reading on makes zlib compare checksums, if the stream ends soon.
+  /// Reads on, so that zlib compares checksums if the stream ends within 1024 bytes.
   void checkEnd() {
     std::array<char, 1024> rest;
     if (gzread(m_file.get(), rest.data(), rest.size()) < 0)
@@ -68,8 +68,8 @@ T fieldAt(const HeaderBytes& bytes, std::size_t at, bool swapped) {
   return value;
 }
 
-/// What says where voxels are, as far as it applies: ITK ends the process over numbers in it that
-/// are not finite, or cease to be when they are squared.
+/// True if the geometry fields that apply are below 1e9: ITK ends the process for numbers that are
+/// not finite, or whose squares are not.
 bool isPlaced(const HeaderBytes& bytes, bool swapped) {
   const auto sane = [&](std::size_t at, std::size_t count) {
     for (std::size_t end = at + 4 * count; at < end; at += 4)
@@ -82,14 +82,14 @@ bool isPlaced(const HeaderBytes& bytes, bool swapped) {
   return sane(76, 4) && (!qform || sane(256, 6)) && (!sform || sane(280, 12));
 }
 
-/// The fields of nifti_1_header that samples depend on.
+/// Fields of nifti_1_header that samples depend on.
 struct Header {
   bool swapped = false;
   std::int16_t type = 0;
   float offset = 0.0f, slope = 0.0f, intercept = 0.0f;
 
   bool rescales() const { return isScaled() && (slope != 1.0f || intercept != 0.0f); }
-  /// As 0, what is no number means: as they are.
+  /// False for a slope of 0 or NaN: samples as they are.
   bool isScaled() const { return !std::isnan(slope) && slope != 0.0f; }
 };
 

@@ -1,7 +1,6 @@
 #pragma once
-// Reads the samples of a NIfTI-1 file. ITK's library for that turns samples that are not finite
-// into zeros, unasked, and holds all of them twice; a child (Apart.h) would copy them once more.
-// For io's own sources.
+// Reads the samples of a NIfTI-1 file. ITK's library silently turns samples that are not finite
+// into zeros, and holds all samples twice; a child (Apart.h) would copy them once more.
 
 #include "files/medical/SampleSource.h"
 
@@ -10,12 +9,12 @@
 
 namespace fenestra {
 
-/// Throws Error (input) where there is no NIfTI-1 header of one part: what the library would
-/// complain about on the standard error stream.
+/// Throws Error (input) unless the file has a NIfTI-1 header of one part; the library would
+/// complain on the standard error stream.
 void checkNiftiHeader(const std::filesystem::path& path);
 
-/// The first `count` samples of a .nii or .nii.gz. Throws Error (input) where they cannot be there;
-/// so does reading them where they are not.
+/// First `count` samples of a .nii or .nii.gz. Throws Error (input) for more samples than the file
+/// can hold; reading them throws where the file ends before.
 SampleSource niftiSamples(const std::filesystem::path& path, std::size_t count);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Libraries that complain on std::cerr do so to no one; what matters becomes an Error.
+// Silence for libraries that complain on std::cerr; their failures become Errors.
 
 #include <itkObject.h>
 
@@ -7,7 +7,7 @@
 
 namespace fenestra {
 
-/// While one of these lives, std::cerr goes nowhere and ITK's warnings are off.
+/// Discards std::cerr during the object's life, and turns ITK's warnings off for good.
 class Quiet {
 public:
   Quiet() : m_before(std::cerr.rdbuf(nullptr)) { itk::Object::SetGlobalWarningDisplay(false); }

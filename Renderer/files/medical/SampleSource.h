@@ -1,6 +1,6 @@
 #pragma once
-// Samples that are still in their file, and the way from there to a store: block by block, so that
-// only the store is as large as the volume. For io's own sources.
+// Samples in their file, and their transfer to a store block by block, so that only the store is as
+// large as the volume.
 
 #include "files/medical/SampleSurvey.h"
 
@@ -16,7 +16,7 @@
 
 namespace fenestra {
 
-/// Which of them it holds counts, not its value.
+/// Type of a sample: the alternative counts, not its value.
 using SampleType =
     std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
                  std::uint32_t, std::int64_t, std::uint64_t, float, double>;
@@ -28,11 +28,11 @@ struct Rescaling {
 struct SampleSource {
   SampleType type = {};
   std::size_t count = 0;
-  bool swapped = false; ///< the bytes of a sample are in the other order than the machine's
+  bool swapped = false; ///< byte order is not the machine's
   std::optional<Rescaling> rescaling = {};
-  /// Fills memory with the next bytes of the file. Throws where they are not there.
+  /// Fills memory with the next bytes of the file. Throws where the file ends before.
   std::function<void(void*, std::size_t)> read = {};
-  /// After the last sample: throws where the file turns out to be damaged. May be empty.
+  /// Called after the last sample; throws where the file proves to be damaged. May be empty.
   std::function<void()> finish = {};
 };
 
@@ -44,7 +44,7 @@ void swapBytes(T& x) {
   std::memcpy(&x, bytes.data(), sizeof(T));
 }
 
-/// Samples of the file's type T, rescaled ones as `Rescaled`.
+/// Block of samples of the file's type T; rescaled ones are `Rescaled`.
 template <typename T>
 class SampleBlock {
 public:

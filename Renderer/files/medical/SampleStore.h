@@ -1,6 +1,6 @@
 #pragma once
-// Keeps samples in the smallest type that holds them all, as they come: a file's own, wider type
-// never takes memory as a whole. For io's own sources.
+// Keeps samples in the smallest type that holds all of them so far: a file's own, wider type never
+// takes memory as a whole.
 
 #include "files/medical/SampleSurvey.h"
 
@@ -12,17 +12,17 @@
 
 namespace fenestra {
 
-/// `Stored` are in order of preference. Integers hold whole numbers in their range; a float holds
-/// anything, rounded, and what is beyond its range as the end of it.
+/// `Stored`: types in order of preference. Integers hold whole numbers in their range; a float
+/// holds any number, rounded and clamped to its range.
 template <typename... Stored>
 class SampleStore {
 public:
   using Vectors = std::variant<std::vector<Stored>...>;
 
-  /// Takes no memory before the samples come.
+  /// Reserves room for `count` samples; pages are touched only as samples come.
   explicit SampleStore(std::size_t count) : m_count(count) { begin<0>(); }
 
-  /// `s` is the survey of `block`. Once no type holds all samples, none is kept.
+  /// Appends a block, whose survey is `s`. Drops all samples once no type holds them.
   template <typename T>
   void append(std::span<const T> block, const SampleSurvey& s) {
     m_survey.add(s);
@@ -35,7 +35,7 @@ public:
   const SampleSurvey& survey() const { return m_survey; }
   bool holdsAll() const { return m_index < sizeof...(Stored); }
 
-  /// The least and the greatest of what take() gives.
+  /// Least and greatest sample that take() returns.
   std::array<double, 2> range() const {
     return std::visit(
         [this]<typename To>(const std::vector<To>&) -> std::array<double, 2> {
@@ -45,8 +45,8 @@ public:
         m_samples);
   }
 
-  /// All samples, where holdsAll(); those that were not finite as the least finite one, or the
-  /// greatest for +infinity. Leaves nothing behind.
+  /// Moves all samples out; requires holdsAll(). NaN and -infinity become the least finite sample,
+  /// +infinity the greatest.
   Vectors take() {
     if (!m_survey.finite()) {
       std::visit([this](auto& samples) { this->mend(samples); }, m_samples);
@@ -80,7 +80,7 @@ private:
     m_index = index;
   }
 
-  /// Moves what is there to the type of that index.
+  /// Converts the samples to the type of index `wanted`; drops them if there is no such type.
   template <std::size_t index = 0>
   void change(std::size_t wanted) {
     if constexpr (index < sizeof...(Stored)) {
@@ -97,7 +97,8 @@ private:
     }
   }
 
-  /// In parts: growing fills with zeros, which costs little where it stays in the cache.
+  /// Appends in parts: growing fills with zeros, which costs little while a part stays in the
+  /// cache.
   template <typename T, typename To>
   static void copy(std::span<const T> from, std::vector<To>& to) {
     if constexpr (std::is_same_v<T, To>)
@@ -120,7 +121,7 @@ private:
                            : static_cast<float>(std::clamp(x, -most, most)); // NaN stays
     }
     if constexpr (std::is_floating_point_v<To>)
-      return static_cast<To>(static_cast<double>(x)); // so that range() rounds as samples do
+      return static_cast<To>(static_cast<double>(x)); // range() then rounds as samples do
     return static_cast<To>(x);
   }
 
@@ -136,7 +137,7 @@ private:
   }
 
   std::size_t m_count;
-  std::size_t m_index = 0; ///< of the type, one beyond where there is none
+  std::size_t m_index = 0; ///< index of the type; sizeof...(Stored): none
   Vectors m_samples;
   SampleSurvey m_survey;
 };

@@ -55,7 +55,7 @@ void SampleStream::finish() {
     throw damaged();
 }
 
-/// Some of the bytes that are asked for, or a status other than Z_OK.
+/// Inflates some of the requested bytes, or sets a status other than Z_OK.
 void SampleStream::inflateNext() {
   if (m_stream.avail_in == 0) {
     m_file.read(m_input.data(), static_cast<std::streamsize>(m_input.size()));

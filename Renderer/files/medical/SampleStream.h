@@ -1,6 +1,5 @@
 #pragma once
-// The bytes of samples as they are stored, or inflated from one zlib or gzip stream. For io's own
-// sources.
+// Bytes of samples, as stored, or inflated from one zlib or gzip stream.
 
 #include "base/Error.h"
 #include "files/medical/MedicalHeader.h"
@@ -12,7 +11,7 @@
 
 namespace fenestra {
 
-/// Reads what locateSamples has found to be `isRaw` or `isStream`, from its first byte on.
+/// Reads samples that locateSamples found to be `isRaw` or `isStream`, from the first byte on.
 class SampleStream {
 public:
   /// `path` is for messages; `declared` bytes have passed checkCapacity.
@@ -22,11 +21,11 @@ public:
   SampleStream(const SampleStream&) = delete;
   SampleStream& operator=(const SampleStream&) = delete;
 
-  /// The next bytes. Throws Error (input) where they are not there.
+  /// Reads the next bytes. Throws Error (input) where the samples end before.
   void read(void* to, std::size_t bytes);
 
-  /// When the declared bytes have been read: throws Error (input) unless a compressed stream ends
-  /// there, with the checksum that it states.
+  /// Call after the declared bytes are read: throws Error (input) unless a compressed stream ends
+  /// there, with the right checksum.
   void finish();
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// What samples are, as far as it decides how to store them. For io's own sources.
+// Properties of samples that decide how they are stored.
 
 #include "base/Vector.h"
 
@@ -11,10 +11,10 @@
 
 namespace fenestra {
 
-/// Doubles tell apart all that matters: whatever fits an integer type of 32 bits is exact in them.
+/// Range and kind of samples. Doubles suffice: they hold every integer of 32 bits exactly.
 struct SampleSurvey {
-  double least = infinity, greatest = -infinity; ///< of the finite ones
-  bool whole = true;                             ///< the finite ones are whole numbers
+  double least = infinity, greatest = -infinity; ///< range of the finite samples
+  bool whole = true;                             ///< all finite samples are whole numbers
   std::size_t notANumber = 0, infinite = 0;
 
   bool finite() const { return notANumber + infinite == 0; }

@@ -14,11 +14,12 @@ namespace {
 
 const char* const display = "sRGB";
 
-/// Far above where any view reaches white; OpenColorIO overflows near the largest floats.
+/// Upper limit of radiance, far above white in any view: OpenColorIO overflows near the largest
+/// floats.
 constexpr float brightest = 65504.0f;
 
 ocio::ConstConfigRcPtr loadConfig() {
-  ocio::SetLoggingFunction([](const char*) {}); // what matters is thrown, standard error is ours
+  ocio::SetLoggingFunction([](const char*) {}); // silent on standard error: failures are thrown
   TextReader text{std::string(embeddedResource("color/fenestra.ocio"))};
   return ocio::Config::CreateFromStream(text);
 }
@@ -28,7 +29,7 @@ const ocio::ConstConfigRcPtr& config() {
   return loaded;
 }
 
-/// All views of the display: the list that environment variables do not shorten.
+/// Views of the display: the full list, which environment variables cannot shorten.
 std::vector<std::string> viewNames() {
   std::vector<std::string> names;
   for (int i = 0; i < config()->getNumViews(ocio::VIEW_DISPLAY_DEFINED, display); ++i)
@@ -49,7 +50,7 @@ std::string checkedView(const std::string& view) {
   throw usageError("display view " + view + ": is unknown; choose one of " + known);
 }
 
-/// In [0, brightest]; NaN becomes 0.
+/// Clamps to [0, brightest]; NaN becomes 0.
 float sanitized(float value) {
   return value > 0.0f ? std::min(value, brightest) : 0.0f;
 }
@@ -65,7 +66,8 @@ DisplayTransform::DisplayTransform(const std::string& view) {
   transform->setSrc(ocio::ROLE_SCENE_LINEAR);
   transform->setDisplay(display);
   transform->setView(checkedView(view).c_str());
-  // Lossless: the default's fast approximations of log and exp move black and differ by machine.
+  // Lossless, since the default's fast approximations of log and exp move black and differ by
+  // machine.
   m_processor = std::make_unique<Processor>(Processor{
       config()->getProcessor(transform)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS)});
 }

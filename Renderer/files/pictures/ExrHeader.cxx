@@ -11,7 +11,7 @@ namespace fenestra {
 
 namespace {
 
-/// Bytes of the types that have a size of their own ("OpenEXR File Layout", openexr.com).
+/// Bytes of attribute types of fixed size ("OpenEXR File Layout", openexr.com).
 const std::map<std::string, std::uint32_t> fixedSizes = {
     {"box2f", 16},   {"box2i", 16},         {"compression", 1}, {"chromaticities", 32},
     {"double", 8},   {"deepImageState", 1}, {"envmap", 1},      {"float", 4},
@@ -27,7 +27,7 @@ std::uint32_t number(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-/// Channels, each a name and 16 bytes, and an empty name.
+/// True for channels (each a name and 16 bytes), then an empty name.
 bool isChannelList(const std::string& value) {
   std::size_t at = 0;
   while (at < value.size() && value[at] != '\0') {
@@ -44,14 +44,15 @@ bool isStringVector(const std::string& value) {
   return at == value.size();
 }
 
-/// Width, height, and so many pixels of four bytes.
+/// True for width, height, and that many pixels of four bytes.
 bool isPreview(const std::string& value) {
   const std::uint64_t width = number(value, 0), height = number(value, 4);
   return value.size() >= 8 && width <= value.size() && height <= value.size() &&
          8 + 4 * width * height == value.size();
 }
 
-/// OpenEXR reads types that it does not know by their size.
+/// True if `value` is one whole value of `type`. Unknown types pass: OpenEXR reads them by their
+/// size.
 bool fillsItsSize(const std::string& type, const std::string& value) {
   if (const auto fixed = fixedSizes.find(type); fixed != fixedSizes.end())
     return value.size() == fixed->second;
@@ -63,7 +64,7 @@ bool fillsItsSize(const std::string& type, const std::string& value) {
     return isPreview(value);
   if (type == "floatvector")
     return value.size() % 4 == 0;
-  return type != "idmanifest"; // which only deep pixels need
+  return type != "idmanifest"; // needed by deep pixels alone
 }
 
 } // namespace
@@ -71,11 +72,11 @@ bool fillsItsSize(const std::string& type, const std::string& value) {
 void checkExrAttributes(const std::filesystem::path& path) {
   Throwing<std::ifstream> file(path, std::ios::binary);
   const auto length = static_cast<std::int64_t>(std::filesystem::file_size(path));
-  file.seekg(5); // in the version field
+  file.seekg(5); // flags of the version field
   const bool severalParts = (file.get() & 0x10) != 0;
   file.seekg(8);
   std::string name, type, size(4, '\0'), value;
-  do { // each part has a header, after the last comes an empty one
+  do { // one header per part, and an empty one after the last
     while (std::getline(file, name, '\0') && !name.empty() && std::getline(file, type, '\0')) {
       file.read(size.data(), 4);
       if (!file || number(size, 0) > length - file.tellg())

@@ -1,5 +1,5 @@
 #pragma once
-// Which picture files there are.
+// Formats of picture files.
 
 #include <filesystem>
 #include <optional>
@@ -10,7 +10,7 @@ enum class ImageFormat { exr, nrrd, png, tiff };
 
 inline constexpr const char* imageExtensions = ".exr, .nrrd, .png or .tif";
 
-/// By extension, in either case; nothing where it is unknown.
+/// Format by extension, in either case; nullopt: unknown.
 std::optional<ImageFormat> imageFormat(const std::filesystem::path& path);
 
 } // namespace fenestra

@@ -25,12 +25,13 @@ namespace fenestra {
 namespace {
 
 constexpr std::int64_t largestSide = 32768;
-/// Pixels times channels: 1 GiB of floats, so that two pictures to compare, or a map of light and
-/// its picture, take about 2 GiB.
+/// Most pixels times channels: 1 GiB of floats, so that two pictures to compare, or a map of light
+/// and its picture, take about 2 GiB.
 constexpr std::int64_t mostSamples = std::int64_t{1} << 28;
 
-/// Untrusted sizes, before memory is taken for them. No format packs more than about 4096 samples
-/// in a byte (deflate reaches 1032 bytes a byte, 1-bit pictures are rare); tiny files may.
+/// Checks untrusted sizes before memory is taken. No format packs more than about 4096 samples into
+/// a byte (deflate: 1032 bytes per byte, 1-bit pictures are rare); 2^20 more are allowed for tiny
+/// files.
 void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                std::int64_t channels) {
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
@@ -77,7 +78,7 @@ std::map<std::string, std::string> ownAttributes(const Imf::Header& header) {
 }
 
 Image readExr(const std::filesystem::path& path) {
-  // OpenEXR allocates tables of offsets and tiles before we see the header.
+  // OpenEXR allocates tables of offsets and tiles before it returns the header.
   checkExrAttributes(path);
   constexpr int side = static_cast<int>(largestSide);
   Imf::Header::setMaxImageSize(side, side);
@@ -105,7 +106,7 @@ Image readExr(const std::filesystem::path& path) {
   return image;
 }
 
-/// Channel names by the number of components, none where it is not ours; empty names mean grey.
+/// Channel names by the number of components; no names: not supported; empty name: grey.
 std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
   if (components == 3)
     return {"R", "G", "B"};
@@ -116,7 +117,7 @@ std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
   return components == 1 ? std::vector<std::string>{""} : std::vector<std::string>{"", "A"};
 }
 
-/// Interleaved samples to planes; integers become [0, 1].
+/// Splits interleaved samples into planes; integers become [0, 1].
 template <typename T>
 void unpack(const std::vector<char>& bytes, const std::vector<std::string>& names, Image& image) {
   const T* const samples = reinterpret_cast<const T*>(bytes.data());
@@ -135,7 +136,7 @@ void unpack(const std::vector<char>& bytes, const std::vector<std::string>& name
   }
 }
 
-/// By libpng's simplified interface, which brings every kind of PNG to 8 bit.
+/// Reads by libpng's simplified interface, which converts every kind of PNG to 8 bit.
 Image readPng(const std::filesystem::path& path) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -160,7 +161,7 @@ std::uint32_t tiffField(TIFF* tiff, std::uint32_t tag) {
   return value;
 }
 
-/// What readTiff reads: rows of interleaved unsigned samples, grey or RGB.
+/// Throws Error (input) unless the file has rows of interleaved unsigned samples, grey or RGB.
 void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
   const auto bits = tiffField(tiff, TIFFTAG_BITSPERSAMPLE);
   const auto samples = tiffField(tiff, TIFFTAG_SAMPLESPERPIXEL);
@@ -189,7 +190,7 @@ std::vector<char> readTiffRows(TIFF* tiff, std::size_t rowBytes, std::uint32_t h
 }
 
 Image readTiff(const std::filesystem::path& path) {
-  TIFFSetErrorHandler(nullptr); // standard error is ours
+  TIFFSetErrorHandler(nullptr); // silent on standard error
   TIFFSetWarningHandler(nullptr);
   // m: no memory mapping, in which a file that shrinks kills its reader.
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(path.c_str(), "rm"), TIFFClose);
@@ -201,7 +202,7 @@ Image readTiff(const std::filesystem::path& path) {
   TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
   const auto samples = tiffField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
   const bool wide = tiffField(tiff.get(), TIFFTAG_BITSPERSAMPLE) == 16;
-  checkSize(path, width, height, samples < 3 ? samples + 2 : samples); // grey becomes three
+  checkSize(path, width, height, samples < 3 ? samples + 2 : samples); // grey becomes R, G, B
   const auto bytes =
       readTiffRows(tiff.get(), std::size_t{width} * samples * (wide ? 2 : 1), height);
   Image image{static_cast<int>(width), static_cast<int>(height), {}, {}};
@@ -213,7 +214,7 @@ Image readTiff(const std::filesystem::path& path) {
   return image;
 }
 
-/// Its further axes, if any, hold one slice.
+/// True if every axis beyond the second has size 1.
 bool isOnePicture(const itk::ImageIOBase& io) {
   bool one = io.GetNumberOfDimensions() >= 2;
   for (unsigned axis = 2; axis < io.GetNumberOfDimensions(); ++axis)

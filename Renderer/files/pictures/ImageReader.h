@@ -12,9 +12,9 @@ namespace fenestra {
 ///   attributes "fenestra.<key>".
 /// - `.nrrd`: one slice as writeImage writes it: R, G, B, A of four components, R, G, B of three, Z
 ///   of one.
-/// - `.png`, `.tif`, `.tiff`: R, G, B and, if there, A as display values in [0, 1], neither decoded
-///   nor premultiplied; grey is copied to R, G, B.
-/// Throws Error (input) for anything else: damaged or incomplete files, more than 32768 pixels a
+/// - `.png`, `.tif`, `.tiff`: R, G, B and, if present, A as display values in [0, 1], neither
+///   decoded nor premultiplied; grey is copied to R, G, B.
+/// Throws Error (input) for other extensions, damaged or incomplete files, more than 32768 pixels a
 /// side, more pixels than the file can hold, or more than 2^28 samples in all channels.
 Image readImage(const std::filesystem::path& path);
 

@@ -29,7 +29,8 @@ namespace fenestra {
 
 namespace {
 
-/// OpenEXR keeps some failures to itself (of memory, in its tasks and destructors).
+/// Throws std::bad_alloc for an incomplete EXR: OpenEXR hides failures of memory in its tasks and
+/// destructors.
 void requireComplete(const std::string& exr) {
   Imf::StdISStream stream;
   stream.str(exr);
@@ -70,7 +71,7 @@ bool isOpaque(const std::vector<float>& rgba) {
   return true;
 }
 
-/// Values in [0, 1] as integers from 0 to the largest, without alpha where it says nothing.
+/// Integers from 0 to the largest of T for values in [0, 1]; no alpha if all pixels are opaque.
 template <typename T>
 std::vector<T> quantized(const std::vector<float>& rgba) {
   const bool opaque = isOpaque(rgba);
@@ -90,8 +91,8 @@ std::string bigEndian(std::uint32_t number) {
   return bytes;
 }
 
-/// With the mark in a tEXt chunk behind the first one, IHDR (PNG specification, 11.3.4.3): libpng's
-/// simple interface writes none.
+/// Inserts the mark as a tEXt chunk after the first one, IHDR (PNG specification, 11.3.4.3):
+/// libpng's simple interface writes none.
 std::string withMark(std::string png) {
   constexpr std::size_t afterHeader = 8 + 25; // signature and IHDR
   const std::string chunk = "tEXtSoftware" + std::string(1, '\0') + std::string(unsealedMark);
@@ -151,13 +152,14 @@ std::string encodeTiff(const Image& image, const std::vector<float>& rgba) {
   return sealed(stream.str());
 }
 
-/// The slice is as thick as a pixel is wide; right-handed, so that Slicer need not flip it.
+/// Index to world of the slice, which is as thick as a pixel is wide; right-handed, so that Slicer
+/// need not flip it.
 Affine sliceToWorld(const ImagePlane& plane) {
   const Vec3 normal = plane.columnStep.cross(plane.rowStep).normalized();
   return Affine({plane.columnStep, plane.rowStep, normal * plane.columnStep.norm()}, plane.topLeft);
 }
 
-/// `values`: one or more floats by pixel.
+/// `values`: one or more floats per pixel.
 std::string encodeSlice(const Image& image, const ImagePlane& plane,
                         const std::vector<float>& values) {
   const std::size_t components = values.size() / image.channels.at("R").size();
@@ -187,7 +189,7 @@ std::filesystem::path depthPath(const std::filesystem::path& path) {
   return path.parent_path() / (path.stem().string() + "-Z.nrrd");
 }
 
-/// The lines of a NRRD header that say where its voxels lie.
+/// Header lines of a NRRD that give its geometry: space, directions, origin.
 std::vector<std::string> gridLines(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   Throwing<std::ifstream> file(path, std::ios::binary);
@@ -198,8 +200,8 @@ std::vector<std::string> gridLines(const std::filesystem::path& path) {
   return lines;
 }
 
-/// Whether a depth picture is Fenestra's: by its mark, or, before there were marks, by the grid
-/// that it shares with the colours beside it.
+/// True if Fenestra wrote the depth picture: by its mark, or (files older than marks) by the grid
+/// that it shares with the colours.
 bool isOurDepth(const std::filesystem::path& depth, const std::filesystem::path& colour) {
   const std::vector<std::string> lines = gridLines(depth);
   return bearsMark(depth) || (lines.size() == 3 && lines == gridLines(colour));

@@ -14,7 +14,7 @@ namespace fenestra {
 /// declared:
 /// - `.exr`: every channel as 32-bit float, and the header as string attributes "fenestra.<key>".
 /// - `.nrrd`: R, G, B, A (1 without A) as a float vector volume of one slice that lies on `plane`
-///   in the world, and Z, if there is one, as a scalar volume beside it, "<stem>-Z.nrrd".
+///   in the world, and Z, if present, as a scalar volume beside it, "<stem>-Z.nrrd".
 /// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through the display transform's `view` (by
 ///   default its first), sRGB, with straight alpha if any pixel is not opaque.
 /// Equal pictures give equal bytes, and all bear Fenestra's mark. Throws Error: usage for another
@@ -22,13 +22,12 @@ namespace fenestra {
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 Outputs& outputs, const std::string& view = "");
 
-/// The files that writeImage makes for this path. Throws Error (usage) for another extension.
+/// Files that writeImage makes for this path. Throws Error (usage) for another extension.
 std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path);
 
 enum class NamedBy { user, standard };
-/// Declares those files: before a long render, not after it. A depth picture beside a `.nrrd` is
-/// replaced only where Fenestra wrote it, and so is a picture that has its standard name. Throws
-/// what Outputs does.
+/// Declares the files of imageFiles, before a long render. A depth picture beside a `.nrrd`, and a
+/// picture with its standard name, replace only files that Fenestra wrote. Throws as Outputs does.
 void declareImage(const std::filesystem::path& path, Outputs& outputs,
                   NamedBy namedBy = NamedBy::user);
 

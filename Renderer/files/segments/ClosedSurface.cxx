@@ -18,10 +18,10 @@ namespace {
 using Path = std::filesystem::path;
 constexpr const char* mend = "export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
 
-/// The files that a .vtm names, in its folder or below.
+/// Files that a .vtm names. Throws Error (input) for names outside its folder.
 std::vector<Path> blocksOf(const Path& path) {
   pugi::xml_document document;
-  const std::string text = readText(path); // names alone
+  const std::string text = readText(path); // holds names alone
   const bool read = static_cast<bool>(document.load_buffer(text.data(), text.size()));
   const pugi::xml_node file = document.child("VTKFile");
   if (!read || std::string_view(file.attribute("type").value()) != "vtkMultiBlockDataSet")
@@ -79,7 +79,7 @@ std::vector<Surface> surfacesOf(const Path& path) {
   return surfaces;
 }
 
-/// Of the points, in a grid's index space.
+/// Bounds of the points, in a grid's index space.
 Box boundsOf(const std::vector<Surface>& surfaces, const Affine& worldToIndex) {
   Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
   for (const Surface& surface : surfaces)
@@ -101,7 +101,7 @@ Grid gridAround(const Box& bounds) {
   return {(extent / spacing).array().ceil().cast<std::int64_t>() + 1, indexToWorld};
 }
 
-/// The part of the reference that the surfaces may touch.
+/// Part of the reference that the surfaces may touch.
 Grid cropped(const Grid& reference, const Box& bounds) {
   const Vec3 last = reference.size.cast<double>().array() - 1.0;
   const Vec3 lower = bounds.lower.array().floor().max(0.0).min(last.array());
@@ -111,14 +111,14 @@ Grid cropped(const Grid& reference, const Box& bounds) {
   return {(upper - lower).array().cast<std::int64_t>().max(0) + 1, indexToWorld};
 }
 
-/// Labels of one layer after the other, as few as overlaps allow.
+/// Labels in layers; a segment takes the first layer in which it overlaps no other.
 class Layers {
 public:
   using Label = std::int16_t;
 
   Layers(const Size3& size, const Path& path) : m_size(size), m_path(path) {}
 
-  /// The layer that took the segment.
+  /// Adds a segment; returns its layer.
   std::size_t add(const std::vector<VoxelRun>& runs, Label label) {
     std::size_t layer = 0;
     while (layer < m_layers.size() && !isFree(m_layers[layer], runs))
@@ -136,7 +136,7 @@ public:
 
   std::size_t count() const { return m_layers.size(); }
 
-  /// The layers of a voxel together.
+  /// Labels with a voxel's layers together.
   std::vector<Label> together() && {
     if (m_layers.size() == 1)
       return std::move(m_layers[0]);

@@ -5,14 +5,14 @@
 
 namespace fenestra {
 
-/// Labels are the voxels of `reference` (the volume's grid) whose centres the surfaces hold;
-/// without one, of a grid along RAS axes with 256 voxels along the longest extent. Surfaces are in
-/// RAS, as Slicer writes them. Segments that overlap lie in several layers. Throws Error (input):
-/// files that the .vtm names outside its folder, planar contours without a surface, surfaces with
-/// holes, damaged files.
+/// Labels of the voxels of `reference` (the volume's grid) whose centres are inside the surfaces;
+/// null: a grid along RAS axes, of voxels of 1/256 of the longest extent. Surfaces are in RAS, as
+/// Slicer writes them. Overlapping segments lie in several layers. Throws Error (input): files that
+/// the .vtm names outside its folder, planar contours without a surface, surfaces with holes,
+/// damaged files.
 Segmentation readClosedSurfaces(const std::filesystem::path& path, const Grid* reference);
 
-/// What names its segments.
+/// Segments of such a file, without labels.
 std::vector<SegmentInfo> readClosedSurfaceInfos(const std::filesystem::path& path);
 
 } // namespace fenestra

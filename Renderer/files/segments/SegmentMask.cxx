@@ -12,10 +12,11 @@
 namespace fenestra {
 namespace {
 
-/// Which faces (lower, upper) of a labelmap lie on the volume's.
+/// Flags of a labelmap's faces (axis; lower, upper) that lie on a face of the volume.
 using SharedFaces = std::array<std::array<bool, 2>, 3>;
 
-/// Faces are shared where all corners are within half a voxel, with the labelmap on the inner side.
+/// True if all corners of the face are within half a voxel of a face of the volume, with the
+/// labelmap on the inner side.
 bool isShared(const Grid& labelmap, const Grid& volume, int axis, int side) {
   const Affine toVolume = volume.worldToIndex * labelmap.indexToWorld;
   const Vec3 center = toVolume * labelmap.indexBox().center();
@@ -44,7 +45,7 @@ SharedFaces sharedFaces(const Grid& labelmap, const Grid& volume) {
   return shared;
 }
 
-/// Some values of a label, asked for once or more for every voxel.
+/// Set of label values, queried at least once for every voxel.
 template <typename Label>
 class ChosenValues {
 public:
@@ -72,7 +73,7 @@ private:
   std::conditional_t<(sizeof(Label) <= 2), Table, std::set<Label>> m_values;
 };
 
-/// The focus in one labelmap: which of its voxels are chosen, and their mask.
+/// Focus in one labelmap: its chosen voxels, and their mask.
 template <typename Label>
 class Focus {
 public:
@@ -144,7 +145,8 @@ private:
     return {{first, y, z}, {last, y, z}};
   }
 
-  /// Of a voxel that may lie one beyond the labelmap; counts those of the segments.
+  /// Mask value of a voxel, which may lie one beyond the labelmap; counts chosen voxels of the
+  /// labelmap.
   std::uint8_t value(Size3 voxel, const SharedFaces& shared, std::int64_t& count) const {
     bool beyond = false;
     for (int axis = 0; axis < 3; ++axis) {
@@ -164,7 +166,7 @@ private:
   const Grid& m_grid;
   std::size_t m_layerCount;
   const std::vector<Label>& m_labels;
-  std::vector<ChosenValues<Label>> m_values; ///< chosen ones of each layer
+  std::vector<ChosenValues<Label>> m_values; ///< chosen values of each layer
 };
 
 } // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// From labels to the mask of a focus. For io's own sources.
+// Mask of a focus from labels.
 
 #include "files/segments/SegmentationReader.h"
 
@@ -17,9 +17,9 @@ struct VoxelExtent {
   }
 };
 
-/// The grid, the voxels and their count of the mask that `chosen` segments have in a labelmap,
-/// cropped to them and continued over the faces that the labelmap shares with `volume`, as
-/// Segmentation::mask says. Leaves the mask as it is where they have no voxel.
+/// Sets grid, voxels and their count of `mask` to the `chosen` segments of a labelmap, cropped to
+/// them and continued over the faces that the labelmap shares with `volume`, as Segmentation::mask
+/// says. Leaves `mask` unchanged where the segments have no voxel.
 void fillMask(const Grid& labelmap, std::size_t layerCount, const Segmentation::Labels& labels,
               const std::vector<SegmentInfo>& chosen, const Grid& volume, Mask& mask);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Slicer's tags of a segment. For io's own sources.
+// Slicer's tags of a segment. For sources of files alone.
 
 #include "base/TextStream.h"
 #include "files/segments/SegmentationReader.h"
@@ -8,9 +8,9 @@
 
 namespace fenestra {
 
-/// The codes in "...|TerminologyEntry:LIST~CATEGORY~TYPE~MODIFIER~LIST~REGION~MODIFIER|...", each
-/// of them SCHEME^VALUE^MEANING (vtkSegment, vtkSlicerTerminologiesModuleLogic). Whatever is not so
-/// says nothing.
+/// Reads the codes of type and region in
+/// "...|TerminologyEntry:LIST~CATEGORY~TYPE~MODIFIER~LIST~REGION~MODIFIER|...", each
+/// SCHEME^VALUE^MEANING (vtkSegment, vtkSlicerTerminologiesModuleLogic). Ignores malformed tags.
 inline void readTerminology(std::string_view tags, SegmentInfo& info) {
   constexpr std::string_view key = "TerminologyEntry:";
   const std::size_t at = tags.find(key);

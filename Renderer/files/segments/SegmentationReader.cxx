@@ -37,7 +37,7 @@ Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
   return samples.take();
 }
 
-/// From one frame after the other to the layers of a voxel together.
+/// Labels with a voxel's layers together, from one frame after the other.
 Segmentation::Labels interleaved(const Segmentation::Labels& frames, std::size_t count) {
   return std::visit(
       [count](const auto& labels) -> Segmentation::Labels {
@@ -51,7 +51,7 @@ Segmentation::Labels interleaved(const Segmentation::Labels& frames, std::size_t
       frames);
 }
 
-/// One segment a value, in their order.
+/// Segments of a labelmap, one per value, in ascending order.
 std::vector<SegmentInfo> segmentsOf(const Segmentation::Labels& labels, const std::string& source) {
   std::set<std::int32_t> values;
   std::visit(
@@ -84,9 +84,9 @@ std::optional<std::int32_t> labelValue(std::string_view text) {
   return value;
 }
 
-/// The oldest files keep the geometry of the whole reference image, in RAS, and say in
-/// Segmentation_Extent which part of it their voxels are. (A bladder of such a file meets the same
-/// patient's bladder surface only so.)
+/// Grid of the file's voxels. The oldest files keep the geometry of the whole reference image, in
+/// RAS, and state in Segmentation_Extent which part of it their voxels are. (Only with this a
+/// bladder of such a file meets the same patient's bladder surface.)
 Grid placed(const Grid& grid, const std::map<std::string, std::string>& fields,
             const std::string& source) {
   const auto extent = fields.find("Segmentation_Extent");
@@ -151,7 +151,7 @@ private:
     info.labelValue = number(n, "LabelValue", 1);
     if (info.labelValue == 0)
       throw inputError(m_source, key(n, "LabelValue") + ": 0 is the background; use another");
-    // Older files do not say: with several layers it is the segment's own.
+    // Older files state no layer: with several layers it is the segment's own.
     const std::int32_t layer =
         number(n, "Layer", layerCount == 1 ? 0 : static_cast<std::int32_t>(n));
     if (std::cmp_less(layer, 0) || std::cmp_greater_equal(layer, layerCount))
@@ -165,7 +165,7 @@ private:
     return info;
   }
 
-  /// A colour is decoration here: whatever is wrong with it, grey will do.
+  /// Colour of segment n, as decoration: `fallback` if missing or malformed.
   Rgb color(std::size_t n, const Rgb& fallback) const {
     const std::string* text = find(n, "Color") ? find(n, "Color") : find(n, "DefaultColor");
     Rgb rgb = fallback;
@@ -196,7 +196,7 @@ struct ValueStatistics {
 
 using StatisticsOfValues = std::map<std::int32_t, ValueStatistics>;
 
-/// Adds one layer's voxels to those of the values that are there.
+/// Adds one layer's voxels to the statistics of the values in `values`.
 template <typename Label>
 void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_t layer,
                  std::size_t layerCount, StatisticsOfValues& values) {
@@ -218,7 +218,7 @@ void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_
       }
 }
 
-/// Of whole voxels, along the world's axes.
+/// Bounds of whole voxels, along the world's axes.
 Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
   const Box voxels{extent.lower.cast<double>().array() - 0.5,
                    extent.upper.cast<double>().array() + 0.5};
@@ -250,7 +250,7 @@ std::string listed(const std::vector<SegmentInfo>& segments) {
 Segmentation::Segmentation(std::string source, Grid grid, std::size_t layerCount, Labels labels,
                            std::vector<SegmentInfo> segments)
     : m_source(std::move(source)),
-      m_grid(std::move(grid)),
+      m_grid(grid),
       m_layerCount(layerCount),
       m_labels(std::move(labels)),
       m_segments(std::move(segments)) {}
@@ -324,7 +324,7 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
     return grown(shaping.smoothing > 0.0 ? betweenSlices(mask) : mask, margin, volume);
   };
   std::vector<Mask> masks;
-  if (shaping.margins.size() <= 1) // as a whole: no gaps where segments touch
+  if (shaping.margins.size() <= 1) // the union first: no gaps where segments touch
     masks.push_back(shaped(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
   else
     for (std::size_t i = 0; i < chosen.size(); ++i)

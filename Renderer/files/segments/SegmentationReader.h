@@ -18,21 +18,20 @@ struct SegmentInfo {
   std::string name;
   std::int32_t labelValue = 1; ///< never 0, which is the background
   std::size_t layer = 0;
-  Rgb color = Rgb::Constant(0.5); ///< display-encoded, as Slicer has it
-  /// What it is and, where that is said, in which part of the body: terminology codes as Slicer
-  /// tags them, like "SCT^39607008".
+  Rgb color = Rgb::Constant(0.5); ///< display-encoded
+  /// Terminology codes of type and body region, like "SCT^39607008"; empty: not stated.
   std::string type = {}, region = {};
 };
 
 struct SegmentStatistics {
   std::int64_t voxels = 0;
-  Box bounds = {}; ///< along RAS axes, mm; holds its voxels whole; empty (at 0) without voxels
+  Box bounds = {}; ///< along RAS axes, mm, around whole voxels; empty (at 0) without voxels
 };
 
 /// Labels in layers: segments of different layers may overlap.
 class Segmentation {
 public:
-  /// The smallest type that holds all values; the layers of a voxel together, x fastest.
+  /// Labels in the smallest type that holds all values; a voxel's layers together, x fastest.
   using Labels =
       std::variant<std::vector<std::uint8_t>, std::vector<std::int16_t>, std::vector<std::int32_t>>;
 
@@ -41,18 +40,17 @@ public:
                std::vector<SegmentInfo> segments);
 
   const Grid& grid() const { return m_grid; }
-  /// To another place, of the same size.
+  /// Replaces the grid by one of the same size.
   void moveTo(const Grid& grid) { m_grid = grid; }
   const std::vector<SegmentInfo>& segments() const { return m_segments; }
 
-  /// What each segment holds, in their order: one pass over the labels.
+  /// Statistics of each segment, in their order: one pass over the labels.
   std::vector<SegmentStatistics> statistics() const;
 
-  /// The union of the segments that the selectors name, each by id, else by name, else by label
-  /// value; cropped, and continued over the faces that the labelmap shares with `volume`, as Mask.h
-  /// says. A face is shared where it is parallel to a face of the volume and within half a voxel of
-  /// it. Throws Error (input) where a selector names no segment or several, or no voxel is chosen
-  /// or left by `shaping`.
+  /// Union of the segments that the selectors name, each by id, else by name, else by label value;
+  /// cropped, and continued over the faces that the labelmap shares with `volume`, as Mask.h says:
+  /// faces parallel to a face of the volume, and within half a voxel of it. Throws Error (input)
+  /// where a selector names no segment or several, or no voxel is chosen or left by `shaping`.
   Mask mask(const std::vector<std::string>& selectors, const Grid& volume,
             const MaskShaping& shaping = {}) const;
 
@@ -66,17 +64,16 @@ private:
   std::vector<SegmentInfo> m_segments;
 };
 
-/// Slicer's `.seg.nrrd`, or a labelmap in any format and geometry that readVolume takes: one
-/// segment "Segment_<value>" for each value other than 0. Where voxels lie is the file's geometry
-/// alone, which includes Segmentation_ReferenceImageExtentOffset; only in the oldest files, known
-/// by their Segmentation_Extent, it does not, and is in RAS. SegmentN_Extent is not looked at:
-/// labels say where a segment is. A `.vtm` holds closed surfaces, which become labels of
-/// `reference`, the volume's grid (ClosedSurface.h); otherwise that is not looked at. Throws Error
-/// (input).
+/// Reads Slicer's `.seg.nrrd`; a labelmap in any format and geometry that readVolume takes: one
+/// segment "Segment_<value>" for each value other than 0; or a `.vtm` of closed surfaces, which
+/// become labels on `reference`, the volume's grid (ClosedSurface.h; unused otherwise). Geometry is
+/// the file's, which includes Segmentation_ReferenceImageExtentOffset; only that of the oldest
+/// files, known by their Segmentation_Extent, does not, and is in RAS. SegmentN_Extent is ignored:
+/// labels show where a segment is. Throws Error (input).
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr);
 
-/// What names the segments of such a file, without reading its labels; empty where the file says
-/// nothing of segments, as a labelmap. Throws Error (input).
+/// Segments of such a file, without reading its labels; empty: the file names none, as a labelmap.
+/// Throws Error (input).
 std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path);
 
 } // namespace fenestra

@@ -16,9 +16,9 @@ namespace {
 constexpr const char* labelmapMend =
     "; export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
 
-/// Something that makes no sense; the file's name is added above.
+/// Thrown for malformed content; readVtkSurface adds the file's name.
 struct DamagedSurface {};
-/// More than the allowance.
+/// Thrown where the allowance is exceeded.
 struct LargeSurface {};
 
 void take(SurfaceAllowance& allowance, std::uint64_t count, std::uint64_t size = 1) {
@@ -37,7 +37,7 @@ int base64Digit(char c) {
   return at == digits.npos ? -1 : static_cast<int>(at);
 }
 
-/// Of groups of four, the last of which may end in "=".
+/// Decodes groups of four digits, the last of which may end in "=".
 std::string fromBase64(std::string_view text) {
   if (text.size() % 4 != 0)
     throw DamagedSurface();
@@ -69,7 +69,7 @@ T numberAt(std::string_view bytes, std::uint64_t index) {
   return value;
 }
 
-/// How the file keeps its arrays, and what they may take.
+/// Encoding of the file's arrays, and their allowance.
 struct Coding {
   SurfaceAllowance& allowance;
   bool wideHeaders = false; ///< 64 bit
@@ -92,7 +92,8 @@ std::string plainBytes(std::string_view text, const Coding& coding) {
   return bytes;
 }
 
-/// The header (blocks, bytes of a block, of the last one, of each when deflated), then the blocks.
+/// Inflates an array: a header (blocks, bytes of a block, of the last one, of each when deflated),
+/// then the blocks.
 std::string inflatedBytes(std::string_view text, const Coding& coding) {
   const auto encodedSize = [](std::uint64_t bytes) { return (bytes + 2) / 3 * 4; };
   const std::size_t word = coding.headerSize();
@@ -154,14 +155,14 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
   const std::string format = array.attribute("format").value();
   if (format == "ascii") {
     const std::string_view text = array.text().get();
-    take(coding.allowance, text.size() / 2, sizeof(double)); // a digit and a blank, at least
+    take(coding.allowance, text.size() / 2, sizeof(double)); // at least a digit and a blank each
     auto numbers = parseNumbers(text);
     if (!numbers)
       throw DamagedSurface();
     return *std::move(numbers);
   }
   if (format != "binary")
-    throw DamagedSurface(); // appended, which Slicer does not write
+    throw DamagedSurface(); // "appended", which Slicer does not write
   const std::string bytes = binary(array, coding);
   const std::string type = array.attribute("type").value();
   if (type == "Float32")
@@ -179,7 +180,7 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
   throw DamagedSurface();
 }
 
-/// The first string.
+/// First string of an array.
 std::string textOf(const pugi::xml_node& array, const Coding& coding) {
   std::string text;
   if (std::string_view(array.attribute("format").value()) == "ascii")
@@ -200,7 +201,7 @@ pugi::xml_node arrayNamed(const pugi::xml_node& parent, const char* name) {
   return parent.find_child_by_attribute("DataArray", "Name", name);
 }
 
-/// Adds a fan for each polygon, or what a strip stands for.
+/// Adds the triangles of polygons (fans) or strips.
 void addTriangles(const pugi::xml_node& cells, const Coding& coding, bool strips,
                   std::size_t firstPoint, std::size_t pointCount, Triangles& triangles) {
   if (!arrayNamed(cells, "offsets"))

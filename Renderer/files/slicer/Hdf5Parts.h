@@ -1,12 +1,12 @@
 #pragma once
-// For the child that reads transforms.
+// Check of HDF5 files, for the child that reads transforms.
 
 #include <string>
 
 namespace fenestra {
 
-/// Whether all that a HDF5 file holds is in it: no link, raw storage or virtual data set in another
-/// file, which the library would open whatever it is. False where the file cannot be read.
+/// True if an HDF5 file is self-contained: no link, raw storage or virtual data set lies in another
+/// file, which the library would open unchecked. False where the file cannot be read.
 bool holdsAllItsParts(const std::string& path);
 
 } // namespace fenestra

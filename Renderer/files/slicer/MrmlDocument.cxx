@@ -11,7 +11,7 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t mostNodes = 100'000, mostAttributes = 1'000'000; ///< of a scene
+constexpr std::size_t mostNodes = 100'000, mostAttributes = 1'000'000; ///< limits of a scene
 
 /// Attributes that hold references in older files, by the role that they have now.
 const std::map<std::string, std::string>& legacyRoles() {
@@ -75,7 +75,7 @@ MrmlNode readNode(const pugi::xml_node& element) {
   return node;
 }
 
-/// Gathers names of files from elements at any depth, without a call for each level of it.
+/// Collects file names from elements at any depth, without recursion.
 struct FileNames final : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node& element) override {
     for (const pugi::xml_attribute& attribute : element.attributes()) {

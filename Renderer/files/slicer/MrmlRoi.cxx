@@ -12,7 +12,7 @@ namespace {
 
 constexpr double largest = 1e9; ///< mm
 
-/// [-1, 1]^3 to a box of half edges along the columns of `axes`. Throws where it is flat.
+/// Map of [-1, 1]^3 to a box with `halfEdges` along the columns of `axes`. Throws for a flat box.
 template <typename Fail>
 Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges, const Fail& fail) {
   if (!(halfEdges.array() > 0.0).all())
@@ -41,7 +41,7 @@ bool isLps(const JsonNode& markup) {
   const auto system = markup.find("coordinateSystem");
   if (!system)
     return true;          // Slicer's default
-  if (system->isNumber()) // of the first files: vtkMRMLStorageNode's enumeration
+  if (system->isNumber()) // in the first files: vtkMRMLStorageNode's enumeration
     return system->number() != 0.0;
   const std::string name = system->text();
   if (name != "LPS" && name != "RAS")

@@ -15,7 +15,7 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-/// What a storage node says of the geometry in a volume's file (vtkITKArchetypeImageSeriesReader).
+/// Grid of a volume's file, changed by the storage node as in vtkITKArchetypeImageSeriesReader.
 Grid placed(const MrmlNode* storage, const Grid& fromFile) {
   if (!storage)
     return fromFile;
@@ -30,7 +30,7 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
   return {fromFile.size, indexToWorld};
 }
 
-/// A node's grid in the world.
+/// Grid of a node in the world.
 Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& above,
                 const Grid& grid) {
   return checkedGrid(grid.size, above * grid.indexToWorld, [&](const std::string& what) {
@@ -39,7 +39,7 @@ Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& abov
   });
 }
 
-/// The files that hold a node's data.
+/// Names of the files that hold a node's data. Throws Error (input) where there are none.
 std::vector<std::string> dataFiles(const MrmlScene& scene, const MrmlNode& node) {
   std::vector<std::string> names = storedFiles(scene, node);
   if (names.empty())
@@ -106,7 +106,7 @@ std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& nod
 Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
   const Affine above = toWorld(scene, node);
   Volume volume = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
-    // A volume's file comes alone or with its samples beside it; otherwise the files are slices.
+    // A medical image (its samples may be in further files), else DICOM slices.
     return medicalFormat(files.front()) ? readVolume(files.front())
                                         : readDicomVolume(files, node.name);
   });

@@ -1,7 +1,7 @@
 #pragma once
-// What the nodes of a Slicer scene mean, as far as a picture depends on it. Each function takes the
-// scene and a node of it, follows the node's references, and throws Error (input) that names the
-// node where it cannot be followed rightly.
+// Meaning of a Slicer scene's nodes, as far as a picture depends on them. Each function takes the
+// scene and a node, follows the node's references, and throws Error (input), naming the node, where
+// a reference or a value cannot be honoured.
 
 #include "files/segments/SegmentationReader.h"
 #include "files/slicer/MrmlDocument.h"
@@ -28,66 +28,67 @@ struct MrmlScene {
 
   SceneFiles files;
   MrmlDocument document;
-  /// What each transform's file said, be it an error: nodes may name one often, and reading one
-  /// takes a process.
+  /// Result of reading each transform file, errors included: many nodes may name one file, and
+  /// reading takes a child process.
   std::map<std::pair<std::string, TransformSense>, std::variant<Affine, Error>> transformFiles;
 };
 
-/// Label maps have a tag of their own now, and an attribute in older scenes.
+/// True for a label map: by its own tag, in older scenes by an attribute.
 bool isLabelMap(const MrmlNode& node);
 bool isScalarVolume(const MrmlNode& node);
-/// A display node of some volume rendering method.
+/// True for a display node of any volume rendering method.
 bool isVolumeRendering(const MrmlNode& node);
-/// A display node that shows its object in 3-D views.
+/// True for a display node that shows its object in 3-D views.
 bool isShown(const MrmlNode& display);
 
-/// The name by which a view and its camera find each other; older scenes have it elsewhere.
+/// Layout name, by which a view and its camera are paired; older scenes use singletonTag.
 std::string layoutOf(const MrmlNode& viewOrCamera);
 
-/// Files of a node's storage, the first one first; empty where it has none.
+/// File names of a node's storage, fileName first; empty: no storage.
 std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node);
 
-/// The ids of the transforms above a node, the nearest first; those of a loop once, of a chain as
-/// many as toWorld follows.
+/// Ids of the transforms above a node, nearest first; each once in a loop, and at most as many as
+/// toWorld follows.
 std::vector<std::string> transformsAbove(const MrmlDocument& document, const MrmlNode& node);
 
-/// The node's own space to the world, RAS mm: the product of the linear transforms above it. Their
-/// storage files, which have all digits, win over the scene's own six. Non-linear ones are refused.
+/// Map from the node's own space to the world, RAS mm: product of the linear transforms above it.
+/// Storage files (all digits) win over the scene's matrices (six digits). Throws Error (input) for
+/// a non-linear transform.
 Affine toWorld(MrmlScene& scene, const MrmlNode& node);
 
-/// A scalar volume, in the world. Its geometry is the file's (the scene's copy of it is not read)
-/// with what the storage node says of it: centerImage, UseOrientationFromFile.
+/// Scalar volume, in the world. Geometry: the file's (not the scene's copy), changed by the storage
+/// node's centerImage and UseOrientationFromFile.
 Volume readSceneVolume(MrmlScene& scene, const MrmlNode& volume);
 
-/// A segmentation or a label map, in the world; closed surfaces become labels on the grid of
-/// `volume`, which is in the world, too.
+/// Segmentation or label map, in the world. Closed surfaces become labels on the grid of `volume`,
+/// which is in the world as well.
 Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node,
                                    const Grid* volume = nullptr);
 
-/// What names its segments, without their labels; empty where the file names none.
+/// Segments of such a node, without their labels; empty: the file names none.
 std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node);
 
-/// Whether each segment is shown in 3-D, by id, as the segmentation's display says; segments that
-/// it does not name are.
+/// Visibility in 3-D by segment id, from the segmentation's display; segments that the map lacks
+/// are visible.
 std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node);
 
-/// What a volume property node says: its storage file, else its own attributes.
+/// Transfer function of a volume property node: from its storage file, else from its attributes.
 TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property);
 
-/// What Slicer makes of a volume's slice display where a rendering follows it
-/// (vtkSlicerVolumeRenderingLogic::CopyScalarDisplayToVolumeRenderingDisplayNode): opaque by its
-/// threshold or window, grey over its window. `range` is the volume's. Nothing where the display
-/// has no window, or a colour table other than grey: then the saved property is what is known.
+/// Transfer function that Slicer derives from a volume's slice display for a rendering that follows
+/// it (vtkSlicerVolumeRenderingLogic::CopyScalarDisplayToVolumeRenderingDisplayNode): opaque within
+/// threshold or window, grey over the window. `range`: the volume's scalars. nullopt: no window, or
+/// a colour table other than grey; then the saved property applies.
 std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const MrmlNode& display,
                                                 const std::array<double, 2>& range);
 
-/// A region of interest of any age, with the transforms above it.
+/// Region of interest of any age, in the world.
 CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi);
 
-/// A camera node, in the world: Slicer stores it with the transform above it applied.
+/// Pose of a camera node, in the world: Slicer stores it with the transform above it applied.
 CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera);
 
-/// Display-encoded colours of a view's background.
+/// Background of a view, display-encoded.
 struct ViewBackground {
   Rgb bottom = Rgb::Zero(), top = Rgb::Zero();
 };

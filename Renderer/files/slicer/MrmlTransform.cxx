@@ -1,4 +1,4 @@
-// Transforms above nodes, and what is placed by them: cameras.
+// Transforms above nodes, and cameras, which transforms place.
 
 #include "files/slicer/MrmlScene.h"
 #include "model/camera/CheckedPose.h"
@@ -8,10 +8,10 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t deepest = 1000; ///< transforms above a node
+constexpr std::size_t deepest = 1000; ///< most transforms above a node
 
-/// Sixteen numbers, row by row, that are an invertible affine map; nothing where the attribute is
-/// missing. Throws where it is anything else.
+/// Invertible affine map of 16 numbers, row by row; nullopt: attribute missing. Throws Error
+/// (input) for any other value.
 std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
                                const std::string& attribute) {
   if (!node.find(attribute))
@@ -23,7 +23,7 @@ std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
   };
   if (!numbers || numbers->size() != 16)
     throw refuse("must be 16 numbers");
-  const auto row = [&numbers](std::size_t i) { // three of its four
+  const auto row = [&numbers](std::size_t i) { // first three of the row's four
     return Vec3((*numbers)[4 * i], (*numbers)[4 * i + 1], (*numbers)[4 * i + 2]);
   };
   if (row(3) != Vec3::Zero() || numbers->back() != 1.0)
@@ -32,8 +32,8 @@ std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
   return checkedMap(Affine(Mat3::FromRows(row(0), row(1), row(2)), translation), refuse);
 }
 
-/// Files hold the map from the parent. Old scenes could say otherwise, and linear transforms said
-/// so the wrong way round (vtkMRMLLinearTransformNode::ReadXMLAttributes).
+/// Sense of a node's file: from the parent, unless an old scene says otherwise; linear transforms
+/// said so the wrong way round (vtkMRMLLinearTransformNode::ReadXMLAttributes).
 TransformSense senseOf(const MrmlNode& node) {
   const std::string* said = node.find("readWriteAsTransformToParent");
   if (!said)
@@ -134,8 +134,8 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
   pose.scale = number("parallelScale", pose.scale, 1e9);
   pose.angle = number("viewAngle", pose.angle, 179.0);
 
-  // The pose is stored as it is in the world, with the transform above it applied; only what has
-  // changed of that since then still moves it (vtkMRMLCameraNode::TransformPoints).
+  // The stored pose is in the world, with `appliedTransform` applied; only later changes of the
+  // transforms above still move the camera (vtkMRMLCameraNode::TransformPoints).
   if (camera.references.contains("transform")) {
     const Affine applied = matrixOf(scene, camera, "appliedTransform").value_or(Affine::Identity());
     const Affine since = toWorld(scene, camera) * applied.inverse();

@@ -17,11 +17,11 @@ namespace {
 
 constexpr std::int64_t mostEntries = 1'000'000;
 
-/// Deflate packs at most 1032 bytes into one; what claims more is no archive of Slicer's.
+/// Deflate's greatest ratio, unpacked to packed bytes. No archive of Slicer's claims more.
 constexpr std::uint64_t greatestRatio = 1032;
 
-/// Bytes that all files of an archive may unpack to: a volume of zeros packs well, a whole scene
-/// does not.
+/// Most bytes that all files of an archive may unpack to: a volume of zeros packs better than 100
+/// to 1, a whole scene does not.
 std::uint64_t mostUnpacked(std::uint64_t archiveBytes) {
   return (std::uint64_t{1} << 30) + 100 * archiveBytes;
 }
@@ -65,7 +65,8 @@ struct SceneArchive::Zip {
     return stat;
   }
 
-  /// Exactly as many bytes as declared, or an Error.
+  /// Passes the entry's bytes to `take`. Throws Error (input) unless they are `size` bytes with the
+  /// right checksum.
   void read(std::uint64_t entry, const std::filesystem::path& file, std::uint64_t size,
             const Chunk& take) const {
     const std::unique_ptr<zip_file_t, Close> stream(zip_fopen_index(archive.get(), entry, 0));
@@ -135,7 +136,7 @@ void SceneArchive::extract(const std::filesystem::path& file,
   if (size > std::filesystem::space(destination.parent_path(), unknown).available && !unknown)
     throw cannotUnpack(ENOSPC);
   errno = 0;
-  // Where the end of the process has removed it, it is not made anew.
+  // Mode `in`: does not make the file again if the end of the process has removed it.
   std::ofstream out(destination, std::ios::binary | std::ios::in);
   m_zip->read(entry, file, size, [&](std::string_view chunk) {
     if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size())))

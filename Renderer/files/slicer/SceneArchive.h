@@ -1,5 +1,5 @@
 #pragma once
-// A .mrb: a zip archive with a scene and its files. For io's own sources.
+// A .mrb: a zip archive with a scene and its files. For sources of files alone.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,18 +11,19 @@ namespace fenestra {
 
 class SceneArchive {
 public:
-  /// Throws Error (input) where it is no archive, or holds names that lead out of it.
+  /// Throws Error (input) where `path` is no archive, or an entry's name leads out of the archive.
   explicit SceneArchive(const std::filesystem::path& path);
   ~SceneArchive();
 
-  /// The files in it, by normal relative path: of each its number in the archive. Of several with
-  /// one path it is the first.
+  /// Number of each file in the archive, by normal relative path; of several files with one path
+  /// the first.
   const std::map<std::filesystem::path, std::uint64_t>& files() const { return m_files; }
 
   /// Writes one of files() into an existing, empty file. Throws Error: input where the entry is
-  /// damaged, encrypted or larger than it can be, output where there is no room.
+  /// damaged, encrypted or larger than its packed bytes allow; output where there is no room.
   void extract(const std::filesystem::path& file, const std::filesystem::path& destination) const;
-  /// The same into a string of at most `most` bytes.
+  /// Content of one of files(). Throws Error (input) as extract does, and for more than `most`
+  /// bytes.
   std::string text(const std::filesystem::path& file, std::uint64_t most) const;
 
 private:

@@ -20,14 +20,14 @@ std::ptrdiff_t depth(const std::filesystem::path& file) {
   return std::distance(file.begin(), file.end());
 }
 
-/// For Linux, which an archive's names do not ask.
+/// True for names beyond Linux's limits, which an archive may hold.
 bool isTooLong(const std::filesystem::path& path) {
   return path.native().size() >= PATH_MAX ||
          std::any_of(path.begin(), path.end(),
                      [](const auto& part) { return part.native().size() > NAME_MAX; });
 }
 
-/// Slicer takes the scene closest to the root: those deeper belong to sequences.
+/// Scene closest to the root, as in Slicer: deeper ones belong to sequences.
 std::filesystem::path mainScene(const SceneArchive& archive, const std::filesystem::path& path) {
   std::vector<std::filesystem::path> closest;
   for (const auto& [file, entry] : archive.files()) {
@@ -58,7 +58,7 @@ std::filesystem::path mainScene(const SceneArchive& archive, const std::filesyst
 } // namespace
 
 std::string decodedUrl(std::string text) {
-  // In this order: the escape of % comes last, as it was made first.
+  // Order matters: % was escaped first, so its escape is undone last.
   constexpr std::pair<std::string_view, std::string_view> escapes[] = {
       {"%22", "\""}, {"%3C", "<"}, {"%3E", ">"}, {"%27", "'"}, {"%20", " "}, {"%25", "%"}};
   for (const auto& [escape, character] : escapes)
@@ -87,7 +87,7 @@ SceneFiles::SceneFiles(const std::filesystem::path& path) : m_source(path.string
 SceneFiles::~SceneFiles() = default;
 
 std::filesystem::path SceneFiles::resolved(const std::string& fileName) const {
-  return (m_folder / decodedUrl(fileName)).lexically_normal(); // or an absolute name
+  return (m_folder / decodedUrl(fileName)).lexically_normal(); // an absolute name replaces m_folder
 }
 
 void SceneFiles::expect(const std::string& fileName) const {

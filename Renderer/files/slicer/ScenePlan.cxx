@@ -33,7 +33,7 @@ std::string listed(const Nodes& nodes) {
   return text + (nodes.size() > most ? ", ..." : "");
 }
 
-/// By id, else by name; nothing where none has it.
+/// Node by id, else by name; null: none. Throws Error (input) where several have the name.
 const MrmlNode* named(const MrmlDocument& document, const Nodes& nodes, const std::string& name,
                       const std::string& flag) {
   const Nodes byId = those(nodes, [&](const MrmlNode& node) { return node.id == name; });
@@ -46,7 +46,7 @@ const MrmlNode* named(const MrmlDocument& document, const Nodes& nodes, const st
   return byName.empty() ? nullptr : byName.front();
 }
 
-/// The first display of the volume that matches.
+/// First display of the volume that matches; null: none.
 template <typename Matches>
 const MrmlNode* displayOf(const MrmlDocument& document, const MrmlNode& volume, Matches&& matches) {
   const auto displays = volume.references.find("display");
@@ -57,7 +57,7 @@ const MrmlNode* displayOf(const MrmlDocument& document, const MrmlNode& volume, 
   return nullptr;
 }
 
-/// The volume's volume rendering display: the one that is shown, else the first.
+/// Volume rendering display of the volume: a shown one, else the first; null: none.
 const MrmlNode* renderingOf(const MrmlDocument& document, const MrmlNode& volume) {
   const MrmlNode* visible = displayOf(document, volume, [](const MrmlNode& display) {
     return isVolumeRendering(display) && isShown(display);
@@ -76,7 +76,7 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
     throw inputError(document.source(),
                      "has no scalar volume \"" + *choice + "\"; it has " + listed(volumes));
   }
-  // What is rendered in Slicer, else what could be, else what is active there, else the only one.
+  // Candidates in this order: rendered in Slicer, renderable, active in Slicer, all.
   const Nodes rendered = those(volumes, [&](const MrmlNode& volume) {
     const MrmlNode* display = renderingOf(document, volume);
     return display && isShown(*display);
@@ -120,7 +120,7 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoi
                                       "--segmentation FILE");
 }
 
-/// How likely it is the view that the user looked at.
+/// Rank of a view: the user most likely looked at the view of the greatest rank.
 int likelihood(const MrmlNode& view) {
   const bool inLayout = view.text("attributes").find("MappedInLayout:1") != std::string::npos;
   return 4 * view.flag("active", false) + 2 * inLayout + view.flag("visibility", true);
@@ -141,7 +141,8 @@ const MrmlNode* chooseView(const MrmlDocument& document, const MrmlNode* renderi
   return best == views.end() ? nullptr : *best;
 }
 
-/// Paired by the layout's name; in older scenes the camera names the view.
+/// Camera of a view: by layout name, in older scenes by the view's id, else the only camera; null:
+/// none.
 const MrmlNode* cameraOf(const MrmlDocument& document, const MrmlNode* view) {
   const Nodes cameras = document.withTag("Camera");
   if (view) {
@@ -156,7 +157,7 @@ const MrmlNode* cameraOf(const MrmlDocument& document, const MrmlNode* view) {
   return cameras.size() == 1 ? cameras.front() : nullptr;
 }
 
-/// Projections of the greatest or least value along a ray have no light to trace.
+/// Refuses maximum and minimum intensity projections, which have no light to trace.
 void refuseTechnique(const MrmlDocument& document, const MrmlNode* node,
                      const std::string& attribute) {
   if (!node)
@@ -164,7 +165,7 @@ void refuseTechnique(const MrmlDocument& document, const MrmlNode* node,
   static const std::map<std::string, std::string> refused = {
       {"MaximumIntensityProjection", "a maximum intensity projection"},
       {"MinimumIntensityProjection", "a minimum intensity projection"},
-      {"2", "a maximum intensity projection"}, // older scenes number them
+      {"2", "a maximum intensity projection"}, // number in older scenes
       {"3", "a minimum intensity projection"}};
   if (const auto technique = refused.find(node->text(attribute)); technique != refused.end())
     throw document.error(*node, attribute + " is " + technique->second +
@@ -185,7 +186,7 @@ void addAll(const Nodes& nodes, const std::string& why, std::vector<std::string>
       list.push_back(said(*node, why));
 }
 
-/// What a rendering has that a path tracer lacks.
+/// Lists settings of the rendering that a path tracer lacks.
 void listRendering(const MrmlDocument& document, ScenePlan& plan) {
   const MrmlNode& rendering = *plan.rendering;
   if (!isShown(rendering))

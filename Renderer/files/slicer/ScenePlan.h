@@ -1,5 +1,5 @@
 #pragma once
-// Which nodes of a Slicer scene a picture shows: as Slicer shows them, or as the user chooses.
+// Nodes of a Slicer scene that a picture shows: as in Slicer, or as the user chooses.
 
 #include "files/slicer/MrmlScene.h"
 
@@ -9,29 +9,29 @@
 
 namespace fenestra {
 
-/// What the user says; names or ids.
+/// Nodes that the user chooses, by id or name; nullopt: no choice.
 struct SceneChoice {
   std::optional<std::string> volume = {};
   std::optional<std::string> segmentation = {};
-  bool needsSegmentation = false; ///< there is a focus to find in it
+  bool needsSegmentation = false; ///< a focus must be found
 };
 
-/// Nodes are the document's; null where there is none.
+/// Chosen nodes, owned by the document; null: none.
 struct ScenePlan {
-  const MrmlNode* volume = nullptr;       ///< always there
-  const MrmlNode* rendering = nullptr;    ///< the volume's volume rendering display
-  const MrmlNode* property = nullptr;     ///< of the rendering
-  const MrmlNode* followed = nullptr;     ///< the slice display whose window the rendering follows
-  const MrmlNode* roi = nullptr;          ///< that crops the rendering
-  const MrmlNode* segmentation = nullptr; ///< or label map
+  const MrmlNode* volume = nullptr;       ///< never null
+  const MrmlNode* rendering = nullptr;    ///< volume rendering display of the volume
+  const MrmlNode* property = nullptr;     ///< volume property of the rendering
+  const MrmlNode* followed = nullptr;     ///< slice display whose window the rendering follows
+  const MrmlNode* roi = nullptr;          ///< box that crops the rendering
+  const MrmlNode* segmentation = nullptr; ///< segmentation or label map
   const MrmlNode* view = nullptr;
-  const MrmlNode* camera = nullptr;       ///< of the view
-  std::vector<std::string> warnings = {}; ///< "what: why": the picture differs from Slicer's
-  std::vector<std::string> ignored = {};  ///< "what: why", of what else the scene holds
+  const MrmlNode* camera = nullptr;       ///< camera of the view
+  std::vector<std::string> warnings = {}; ///< "node: reason", unlike in Slicer
+  std::vector<std::string> ignored = {};  ///< "node: reason", for nodes and settings left out
 };
 
-/// Throws Error (input) where the choice is open (it lists what there is), names nothing, or the
-/// view's technique is none that a path tracer has.
+/// Throws Error (input) where the choice is ambiguous (the message lists the candidates), names no
+/// volume, or a technique has no equivalent in path tracing.
 ScenePlan planRender(const MrmlDocument& document, const SceneChoice& choice);
 
 } // namespace fenestra

@@ -12,8 +12,8 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// In share/Slicer-VERSION/qt-loadable-modules (qSlicerLoadableModule's share directory); of
-/// several versions the last by name.
+/// presets.xml in share/Slicer-VERSION/qt-loadable-modules (qSlicerLoadableModule's share
+/// directory); of several versions the last by name.
 std::optional<Path> presetsIn(const Path& home) {
   std::vector<Path> found;
   std::error_code failed;
@@ -29,7 +29,7 @@ std::optional<Path> presetsIn(const Path& home) {
   return last == found.end() ? std::nullopt : std::optional<Path>(*last);
 }
 
-/// The folder of Slicer's launcher, which links may lead to.
+/// Folder of the first Slicer launcher in PATH, links resolved.
 std::optional<Path> homeInPath() {
   const char* const path = std::getenv("PATH");
   TextReader folders(path ? path : "");

@@ -11,8 +11,8 @@
 
 namespace fenestra {
 
-/// presets.xml of the Slicer in the folder that SLICER_HOME names, which Slicer sets for programs
-/// that it starts, else of the one whose launcher is first in PATH; nothing where there is none.
+/// presets.xml of the Slicer in SLICER_HOME (set by Slicer for programs that it starts), else of
+/// the first Slicer launcher in PATH; nullopt: none.
 std::optional<std::filesystem::path> findSlicerPresets();
 
 /// Slicer's presets: volume property nodes in a MRML file.
@@ -21,7 +21,7 @@ public:
   /// Throws Error (input).
   explicit SlicerPresets(const std::filesystem::path& path);
 
-  /// Nothing where none has the name. Throws Error (input) where it is damaged.
+  /// Preset of this name; nullopt: none. Throws Error (input) where the preset is damaged.
   std::optional<TransferFunction> find(const std::string& name) const;
   std::vector<std::string> names() const;
 

@@ -15,9 +15,9 @@ namespace {
 using Path = std::filesystem::path;
 
 constexpr std::uint64_t largestFile = 64 << 20;
-constexpr std::uint64_t largestTextFile = 1 << 20; ///< hundreds of matrices
+constexpr std::uint64_t largestTextFile = 1 << 20; ///< room for hundreds of matrices
 
-/// In LPS, in the file's own sense.
+/// Product of the file's transforms, in LPS, in the file's own sense.
 Affine composed(const Path& path, const std::vector<TransformRecord>& records) {
   if (records.empty())
     throwDamagedTransform(path);
@@ -48,7 +48,7 @@ void checkExtension(const Path& path) {
                                   ".hdf5 or .mat file");
 }
 
-/// ITK would open whatever a text names.
+/// Refuses texts that name further files: ITK would open them.
 void checkNamesNoFile(const Path& path) {
   if (readText(path, largestFile).find("ComponentTransformFile") != std::string::npos)
     throw inputError(path.string(), "ComponentTransformFile: further files are not read; save "
@@ -85,8 +85,8 @@ Affine answeredTransform(const Path& path, std::string_view answer, TransformSen
     throw;
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception&) { // ITK's, of matrices that are not what their class says, and of
-                                    // answers that are none
+  } catch (const std::exception&) { // ITK's: a matrix that its class forbids; AnswerReader's: a
+                                    // malformed answer
     throwDamagedTransform(path);
   }
 }

@@ -27,7 +27,7 @@ bool hasParameters(const TransformRecord& record, std::size_t count, std::size_t
          (record.fixed.empty() || (record.fixed.size() >= 3 && record.fixed.size() <= mostFixed));
 }
 
-/// A matrix about a centre, which ITK's class makes of its parameters.
+/// Matrix and offset that ITK's class computes from its parameters.
 template <typename Transform>
 Affine matrixOffset(const Path& path, const TransformRecord& record) {
   const auto transform = Transform::New();
@@ -43,7 +43,7 @@ Affine matrixOffset(const Path& path, const TransformRecord& record) {
   if (!record.fixed.empty())
     transform->SetFixedParameters(fill(transform->GetFixedParameters(), record.fixed));
   transform->SetParameters(fill(transform->GetParameters(), record.parameters));
-  transform->SetCenter(transform->GetCenter()); // some kinds leave their offset as it was
+  transform->SetCenter(transform->GetCenter()); // recomputes the offset, which some classes do not
   Affine map;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column)

@@ -1,17 +1,17 @@
 #pragma once
-// What ITK's linear transforms do, by their names and parameters. For io's own sources.
+// Matrices of ITK's linear transforms, by type name and parameters.
 
 #include "base/Vector.h"
 #include "files/slicer/TransformRecords.h"
 
 namespace fenestra {
 
-/// Whether one of these names (or a composite, whose parts must be).
+/// True for the name of a linear transform, or of a composite (whose parts must be linear).
 bool isLinearTransform(const std::string& type);
 
-/// The map that the numbers mean, in the file's own space and sense. Throws Error (input) where
-/// they are not as many as the type has; ITK's exceptions where they are not what it allows (a
-/// rigid matrix that is not orthogonal).
+/// Map of the record, in the file's own space and sense. Throws Error (input) for a wrong number of
+/// parameters; ITK's exceptions for values that the type forbids (a rigid matrix that is not
+/// orthogonal).
 Affine transformMatrix(const std::filesystem::path& path, const TransformRecord& record);
 
 } // namespace fenestra

@@ -25,7 +25,7 @@ constexpr std::uint64_t longestAnswer = mostRecords * 2048;
 // ---- in the child
 // -------------------------------------------------------------------------------
 
-/// A transform of any type, known or not, with the numbers that its file has for it.
+/// Transform of any type, known or not, that keeps its file's numbers.
 class RecordedTransform : public itk::TransformBaseTemplate<double> {
 public:
   using Pointer = itk::SmartPointer<RecordedTransform>;
@@ -58,7 +58,7 @@ private:
   FixedParametersType m_fixed;
 };
 
-/// Makes one of whatever type ITK's readers ask for, before any factory of ITK's own does.
+/// Makes a RecordedTransform for every type that ITK's readers request, before ITK's own factories.
 class RecordingFactory : public itk::ObjectFactoryBase {
 public:
   static void registerFirst() {
@@ -83,7 +83,7 @@ itk::TransformIOBaseTemplate<double>::Pointer readerOf(const std::string& extens
   return itk::TxtTransformIOTemplate<double>::New().GetPointer();
 }
 
-/// No more than one too many.
+/// First mostNumbers + 1 numbers: one too many shows that there are more.
 template <typename Parameters>
 std::vector<double> firstOf(const Parameters& parameters) {
   const auto count = std::min<std::size_t>(parameters.Size(), mostNumbers + 1);
@@ -107,20 +107,20 @@ std::string answerTransform(const std::string& question) {
   return answer.bytes();
 }
 
-// A tree of symbols may fan out without end; a transform takes a few milliseconds.
+// HDF5's tree of symbols may fan out without end; reading a transform takes a few milliseconds.
 const ApartJob transformJob("transform", answerTransform, {.seconds = 3});
 
 // ---- here
 // ---------------------------------------------------------------------------------------
 
-/// From "Type_scalar_axes_axes".
+/// "Type" of "Type_scalar_axes_axes". Throws Error (input) unless linear and of three axes.
 std::string linearType(const Path& path, const std::string& name) {
   std::string type = name.substr(0, name.find('_'));
   if (!isLinearTransform(type))
     throw inputError(path.string(), "Transform: " + shown(name) +
                                         " is not linear; harden it in Slicer (Data module, Harden "
                                         "transform) and save again");
-  if (name != type + "_double_3_3") // which ITK makes of _float_
+  if (name != type + "_double_3_3") // ITK's readers turn _float_ into _double_
     throw inputError(path.string(), "Transform: " + shown(name) +
                                         " is not a transform of three axes; save one that is");
   return type;
@@ -146,7 +146,7 @@ std::vector<TransformRecord> transformRecords(const Path& path, std::string_view
 }
 
 std::string transformAnswer(const Path& path) {
-  // Starting one takes longer than a transform: a thread's lasts for all that it reads.
+  // Starting a child takes longer than reading a transform: each thread keeps its child.
   thread_local Apart child(transformJob);
   const auto answer = child.ask(path.string(), longestAnswer);
   if (!answer || answer->empty())

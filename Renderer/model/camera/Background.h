@@ -1,5 +1,5 @@
 #pragma once
-// What an eye ray shows where it passes through the volume.
+// Background: radiance of an eye ray that passes through the volume.
 
 #include "model/medium/VolumeProperty.h"
 

@@ -1,18 +1,18 @@
 #pragma once
-// What eye rays see of many boxes that are alike: bounds of their projections.
+// Bounds of the projections of many equal boxes.
 
 #include "model/camera/Camera.h"
 
 namespace fenestra {
 
-/// Boxes [i, i + 1]^3 of some space, i whole numbers, that an affine map takes to the world.
+/// Boxes [i, i + 1], i three whole numbers, in a space that an affine map takes to the world.
 class BoxProjection {
 public:
   BoxProjection(const Camera& camera, const Affine& boxesToWorld);
 
-  /// Every eye ray that meets the box passes the plane through the target between `lower` and
-  /// `upper` (mm), and is in the box at these depths alone. All are infinite where a perspective
-  /// box reaches behind the eye, and `depths` is empty where it lies there whole.
+  /// Every eye ray that meets the box crosses the plane through the target between `lower` and
+  /// `upper` (mm), and is inside the box at `depths` (mm) only. Perspective: `lower` and `upper`
+  /// are infinite if the box reaches behind the eye, and `depths` is empty if all of the box does.
   struct Bounds {
     Interval depths;
     Vec2 lower, upper;
@@ -23,7 +23,7 @@ private:
   bool m_perspective;
   double m_targetDepth;
   Affine m_boxesToView;
-  Vec3 m_half; ///< extent of any box in view space
+  Vec3 m_half; ///< half extent of any box in view space, mm
 };
 
 } // namespace fenestra

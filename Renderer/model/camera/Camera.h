@@ -8,7 +8,7 @@ namespace fenestra {
 
 enum class Projection { orthographic, perspective };
 
-/// What a user states; world space, mm, degrees.
+/// Camera parameters as a user states them; world space, mm, degrees.
 struct CameraPose {
   Projection projection = Projection::orthographic;
   Vec3 position = Vec3::Zero();
@@ -20,7 +20,7 @@ struct CameraPose {
 
 class Camera {
 public:
-  /// Throws Error (usage) where position and target coincide, or up is along the view.
+  /// Throws Error (usage) if checkedPose() refuses `pose`.
   Camera(const CameraPose& pose, int width, int height);
 
   int width() const { return m_width; }
@@ -29,26 +29,26 @@ public:
   const Vec3& right() const { return m_right; }
   const Vec3& up() const { return m_up; }
   const Vec3& forward() const { return m_forward; }
-  /// Depth of the plane through the target that faces the eye, mm.
+  /// Depth of the target plane (through the target, facing the eye), mm.
   double targetDepth() const { return m_targetDepth; }
-  /// mm between pixel centres on that plane.
+  /// Distance between pixel centres on the target plane, mm.
   double pixelPitch() const { return m_pixelPitch; }
 
   /// The eye ray through raster position (column, row), both continuous, (0, 0) the top left corner
   /// of the top left pixel. Unit direction, in world space; starts at depth 0.
   Ray ray(double column, double row) const { return rayThrough(toPlane(column, row)); }
 
-  /// Where the eye ray through a raster position meets the plane through the target: (x, y), mm.
+  /// Point (x, y) in which the eye ray through a raster position meets the target plane, mm.
   Vec2 toPlane(double column, double row) const {
     return {(column - 0.5 * m_width) * m_pixelPitch, (0.5 * m_height - row) * m_pixelPitch};
   }
 
-  /// The raster position (column, row) of (x, y) on that plane.
+  /// Raster position (column, row) of (x, y) on the target plane.
   Vec2 toRaster(const Vec2& plane) const {
     return {plane.x() / m_pixelPitch + 0.5 * m_width, 0.5 * m_height - plane.y() / m_pixelPitch};
   }
 
-  /// The eye ray through (x, y) of the plane through the target.
+  /// Eye ray through (x, y) of the target plane.
   Ray rayThrough(const Vec2& plane) const {
     const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
     if (m_pose.projection == Projection::orthographic)
@@ -61,7 +61,7 @@ public:
     return {d.dot(m_right), d.dot(m_up), d.dot(m_forward)};
   }
 
-  /// How fast depth grows along an eye ray: depth = t * depthPerLength(ray).
+  /// Growth of depth along an eye ray: depth = t * depthPerLength(ray).
   double depthPerLength(const Ray& eyeRay) const { return eyeRay.direction.dot(m_forward); }
 
 private:

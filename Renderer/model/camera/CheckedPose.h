@@ -1,13 +1,13 @@
 #pragma once
-// A camera's pose that is composed: a scene's under its transforms, or one of flags and defaults.
+// Composed camera poses: a scene's camera under transforms, or flags with defaults.
 
 #include "base/Checked.h"
 #include "model/camera/Camera.h"
 
 namespace fenestra {
 
-/// The pose, where a camera can take it: places within 1e12 mm, apart from each other, and up not
-/// along the view. Throws otherwise.
+/// Returns `pose` if valid: position and target differ and lie within 1e12 mm, and up is neither
+/// zero nor along the view. Throws otherwise.
 CameraPose checkedPose(const CameraPose& pose, const Complaint& complaint);
 
 } // namespace fenestra

@@ -10,12 +10,12 @@ struct Pick {
   double remainder; ///< position inside the picked bin, [0, 1)
 };
 
-/// The bin of a cumulative table of `bins + 1` entries (0 first, 1 last) that u falls into; bins of
-/// probability 0 are never picked.
+/// Picks the bin that contains u from a cumulative table of `bins + 1` entries (0 first, 1 last);
+/// bins of probability 0 are never picked.
 Pick pick(const double* cdf, int bins, double u) {
   const double* end = cdf + bins + 1;
   const double* above = std::upper_bound(cdf, end, u);
-  if (above == end) // only by rounding: the last bin that has any probability
+  if (above == end) // only by rounding: the last bin of probability > 0
     above = std::lower_bound(cdf, end, cdf[bins]);
   const int index = std::max(0, static_cast<int>(above - cdf) - 1);
   const double width = cdf[index + 1] - cdf[index];

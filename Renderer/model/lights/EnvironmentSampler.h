@@ -1,6 +1,6 @@
 #pragma once
-// Radiance from infinity: a constant, or a latitude-longitude map whose texels are constant, drawn
-// in proportion to radiance times solid angle.
+// Radiance from infinity: a constant, or a latitude-longitude map of constant texels, sampled in
+// proportion to brightness times solid angle.
 
 #include "model/lights/Light.h"
 
@@ -12,7 +12,7 @@ class EnvironmentSampler {
 public:
   explicit EnvironmentSampler(EnvironmentLight light);
 
-  /// A unit direction toward the environment, of density pdf().
+  /// Draws a unit direction toward the environment, with density pdf().
   Vec3 sample(const Vec2& u) const;
   Rgb radiance(const Vec3& direction) const;
   double pdf(const Vec3& direction) const;
@@ -32,7 +32,7 @@ private:
 
   EnvironmentLight m_light;
   Rgb m_mean = Rgb::Zero();
-  std::vector<double> m_rowSolidAngle; ///< of one texel of each row, sr
+  std::vector<double> m_rowSolidAngle; ///< solid angle of one texel of each row, sr
   std::vector<double> m_rowCdf;        ///< height + 1 entries, last 1
   std::vector<double> m_columnCdf;     ///< (width + 1) entries for each row
   double m_total = 0.0;                ///< integral of brightness over the sphere

@@ -1,6 +1,6 @@
 #pragma once
 // The kinds of light, as plain data. Directions and lengths are in world space (mm, RAS) or in the
-// camera's frame; LightSet.h turns them into something that can be sampled.
+// camera's frame; LightSet.h prepares lights for sampling.
 
 #include "base/Vector.h"
 
@@ -10,7 +10,7 @@
 
 namespace fenestra {
 
-/// What choices between lights, and between texels, go by.
+/// Weight of a radiance in choices between lights and between texels.
 inline double brightness(const Rgb& radiance) {
   return radiance.maxCoeff();
 }
@@ -21,13 +21,13 @@ struct EnvironmentMap {
   std::vector<float> rgb; ///< width * height * 3, row by row from the top
 };
 
-/// Radiance from every direction: a constant, times the map where there is one.
+/// Radiance from every direction: a constant, times the map if present.
 struct EnvironmentLight {
   Rgb radiance = Rgb::Ones();
   EnvironmentMap map = {}; ///< empty (width 0): constant
 };
 
-/// Parallel light travelling along `direction`; `irradiance` on a plane facing it.
+/// Parallel light travelling along `direction`; `irradiance` on a plane facing the light.
 struct DirectionalLight {
   Vec3 direction = -Vec3::UnitZ(); ///< unit
   Rgb irradiance = Rgb::Ones();
@@ -35,7 +35,7 @@ struct DirectionalLight {
 
 enum class LightFrame { world, camera };
 
-/// Shines from one side, along `normal`. In the camera's frame x is right, y up, z toward the
+/// Emits from one side, along `normal`. In the camera's frame x is right, y up, z toward the
 /// viewer, the origin is the volume's centre, and lengths are in radii of its bounding sphere.
 struct AreaLight {
   enum class Shape { rectangle, disk };
@@ -43,7 +43,7 @@ struct AreaLight {
   Vec3 center = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ(); ///< unit
   Vec3 up = Vec3::UnitY();  ///< orients a rectangle's second edge; need not be orthogonal to normal
-  Vec2 size = Vec2::Ones(); ///< full edges, or the diameter in x
+  Vec2 size = Vec2::Ones(); ///< full edges; disk: diameter in x
   Rgb radiance = Rgb::Ones();
   LightFrame frame = LightFrame::world;
 };

@@ -3,8 +3,8 @@
 namespace fenestra {
 namespace {
 
-/// No light's share falls below this part of an equal share, however dark it looks from the
-/// volume's centre: it may matter elsewhere.
+/// Least share of a light, relative to an equal share: a light that is dark at the volume's centre
+/// may matter elsewhere.
 constexpr double leastShare = 0.05;
 
 template <typename... Kinds>
@@ -108,7 +108,7 @@ std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2
   for (const SharedEnvironment& environment : m_environments) {
     if (environment.share == 0.0)
       continue;
-    chosen = &environment; // the last one takes what rounding leaves
+    chosen = &environment; // the last map takes the remainder of rounding
     if (choice < environment.share)
       break;
     choice -= environment.share;

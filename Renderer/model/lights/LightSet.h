@@ -1,9 +1,8 @@
 #pragma once
-// The lights of a scene, ready to be sampled: next-event estimation draws from them, and directions
-// that scattering drew ask for their radiance and for the density with which sample() would have
-// drawn the same (for multiple importance sampling). A constant environment is never drawn:
-// scattered rays find it as well, and need no second ray for it. Area lights are emitters only:
-// they block nothing, and an eye ray does not see them.
+// The lights of a scene: samples for next-event estimation; and, for directions drawn by
+// scattering, the arriving radiance and the density of sample() (for multiple importance sampling).
+// A constant environment is never sampled: scattered rays meet it anyway, without a second ray.
+// Area lights only emit: they block nothing, and eye rays do not see them.
 
 #include "base/Random.h"
 #include "model/camera/Camera.h"
@@ -20,11 +19,11 @@ struct LightSample {
   double distance; ///< mm; infinity for environment and directional lights
   Rgb radiance;    ///< arriving; for a directional light its irradiance
   double pdf;      ///< per steradian, the choice of the light included; for a directional light
-                   ///< the chance of that choice alone
-  bool delta;      ///< a directional light: scattering can never draw its direction
+                   ///< the probability of that choice alone
+  bool delta;      ///< true for a directional light: scattering never draws its direction
 };
 
-/// Radiance that arrives along a direction, and the density of sample() there.
+/// Radiance arriving from a direction, and the density of sample() for that direction.
 struct LightArrival {
   Rgb radiance = Rgb::Zero();
   double pdf = 0.0;
@@ -33,17 +32,17 @@ struct LightArrival {
 /// An area light in the world.
 struct PlacedAreaLight {
   AreaLight::Shape shape;
-  Vec3 center, normal, right, up; ///< right, up: unit edges' directions
+  Vec3 center, normal, right, up; ///< right, up: unit vectors along the edges
   Vec2 half;                      ///< half edges, or the radius (twice), mm
   double area;                    ///< mm^2
   Rgb radiance;
-  double share; ///< chance that LightSet::sample() takes this light
+  double share; ///< probability that LightSet::sample() takes this light
 
   std::optional<LightSample> sample(const Vec3& point, const Vec2& u) const;
   std::optional<LightArrival> arrival(const Ray& ray, double end) const;
 };
 struct PlacedDirectionalLight {
-  Vec3 toward; ///< from the scene to the light
+  Vec3 toward; ///< unit, from the scene to the light
   Rgb irradiance;
   double share;
 };
@@ -53,21 +52,23 @@ public:
   /// Lights in the camera's frame are placed around the volume's centre.
   LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera);
 
-  /// None where the drawn light does not reach the point, or there is no light to draw.
+  /// Sample of one light, chosen by its share; empty if that light does not reach the point, or
+  /// without lights to sample.
   std::optional<LightSample> sample(const Vec3& point, Random& random) const {
     const double choice = random.uniform();
     return sample(point, choice, random.uniform2());
   }
-  /// `choice` decides on the light.
+  /// `choice`, in [0, 1), selects the light.
   std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
 
-  /// Of an environment, where there is one to draw.
+  /// Sample of an environment map; empty without maps. `choice`: [0, 1) less the shares of all area
+  /// and directional lights.
   std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
-  /// Of all environments together.
+  /// Radiance and density of all environments together.
   LightArrival environment(const Vec3& direction) const;
 
-  /// All area lights that the ray meets before `end` (mm), summed with `weigh(arrival)` each.
+  /// Sum of weigh(arrival) over all area lights that the ray meets before `end` (mm).
   template <typename Weigh>
   Rgb areaArrivals(const Ray& ray, double end, Weigh&& weigh) const {
     Rgb sum = Rgb::Zero();
@@ -79,15 +80,15 @@ public:
 
   const std::vector<PlacedAreaLight>& areas() const { return m_areas; }
   const std::vector<PlacedDirectionalLight>& directionals() const { return m_directionals; }
-  /// The constant environments' radiance together.
+  /// Sum of the constant environments' radiance.
   Rgb constantEnvironment() const;
-  /// Whether there are environments that are not constant.
+  /// True if any environment is not constant.
   bool hasMaps() const;
 
 private:
   struct SharedEnvironment {
     EnvironmentSampler sampler;
-    double share; ///< 0: never drawn
+    double share; ///< 0: never sampled
   };
 
   void place(const AreaLight& light, const Grid& volume, const Camera& camera);

@@ -24,7 +24,7 @@ Part wholeOf(const Mask& mask) {
   return {Size3::Zero(), mask.grid.size};
 }
 
-/// The mask and `reach` mm around it, but no more than a voxel beyond the volume.
+/// Part of the mask and `reach` mm around it, at most a voxel beyond the volume.
 Part around(const Mask& mask, double reach, const Grid& volume) {
   const Affine toMask = mask.grid.worldToIndex * volume.indexToWorld;
   Vec3 lower = Vec3::Constant(infinity), upper = -lower;
@@ -37,7 +37,7 @@ Part around(const Mask& mask, double reach, const Grid& volume) {
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
   const Vec3 first = (-voxels).cwiseMax((lower.array().floor() - 1.0).matrix()).cwiseMin(0.0);
   const Vec3 end = (last + voxels).cwiseMin((upper.array().ceil() + 1.0).matrix()).cwiseMax(last);
-  constexpr double fewest = 4.0; // that recursive filters take
+  constexpr double fewest = 4.0; // voxels that recursive filters need
   const Vec3 size = (end - first + Vec3::Ones()).cwiseMax(fewest);
   if (size.prod() > 0x1p31)
     throw outputError("--focus", "with its margin it spans more than 2^31 voxels; choose less");
@@ -50,7 +50,7 @@ Grid gridOf(const Mask& mask, const Part& part) {
   return {part.size, indexToWorld};
 }
 
-/// Of a voxel of the mask's index space; beyond the mask its outermost voxels go on.
+/// Value of a voxel of the mask's index space; outside the mask that of the nearest voxel in it.
 std::uint8_t voxelAt(const Mask& mask, const Size3& at) {
   const Size3& size = mask.grid.size;
   const Size3 inside = at.cwiseMax(0).cwiseMin((size.array() - 1).matrix());
@@ -58,7 +58,7 @@ std::uint8_t voxelAt(const Mask& mask, const Size3& at) {
                                               size.x() * (inside.y() + size.y() * inside.z()))];
 }
 
-/// visit(voxel in `part`, its number there).
+/// Calls visit(voxel in `part`, its number there) for each voxel.
 template <typename Visitor>
 void forVoxels(const Part& part, const Visitor& visit) {
   std::size_t number = 0;
@@ -68,7 +68,7 @@ void forVoxels(const Part& part, const Visitor& visit) {
         visit(Size3(x, y, z), number++);
 }
 
-/// The indicator over a part of the mask's index space, in mm.
+/// Indicator over a part of the mask's index space, with spacing in mm.
 Pixels::Pointer pixelsOf(const Mask& mask, const Part& part) {
   const auto image = Pixels::New();
   Pixels::SizeType size;
@@ -87,7 +87,7 @@ Pixels::Pointer pixelsOf(const Mask& mask, const Part& part) {
   return image;
 }
 
-/// A mask of the same segments on a part of the grid, a voxel of which is value(number).
+/// Mask of the same segments on a part of the grid; voxel i is value(i).
 template <typename Value>
 Mask maskOf(const Mask& from, const Part& part, std::uint8_t full, const Value& value) {
   Mask mask{gridOf(from, part), {}, 0, from.names, full};
@@ -105,8 +105,8 @@ Mask grown(const Mask& mask, double margin, const Grid& volume) {
   if (margin == 0.0)
     return mask;
   const Part part = margin > 0.0 ? around(mask, margin, volume) : wholeOf(mask);
-  // Distances from the outermost voxels of the mask, or of what is not it: 0 there, positive
-  // outside.
+  // Distances, mm, from the outermost voxels of the mask (margin < 0: of its complement): 0 there,
+  // positive outside.
   const Pixels::Pointer pixels = pixelsOf(mask, part);
   if (margin < 0.0)
     std::transform(pixels->GetBufferPointer(),
@@ -128,7 +128,7 @@ Mask united(const std::vector<Mask>& masks) {
   if (masks.size() == 1)
     return masks.front();
   const Mask& first = masks.front();
-  // All of them on the first one's voxels.
+  // Place of a mask in the first mask's voxels.
   const auto placeOf = [&](const Mask& mask) {
     const Vec3 place = first.grid.worldToIndex * mask.grid.indexToWorld.translation();
     return Part{place.array().round().cast<std::int64_t>(), mask.grid.size};

@@ -1,5 +1,5 @@
 #pragma once
-// What is done to the labels of a focus before it is shown: margins, and no stairs.
+// Margins and smoothing of a focus's labels.
 
 #include "model/volume/Mask.h"
 
@@ -8,26 +8,26 @@
 namespace fenestra {
 
 struct MaskShaping {
-  /// mm by which each chosen segment grows (or shrinks, negative), in their order; or one for all
-  /// of them as a whole; or none.
+  /// Margin of each chosen segment in their order, or one of their union, mm; > 0 grows, < 0
+  /// shrinks; empty: none.
   std::vector<double> margins = {};
-  /// mm, standard deviation of a Gaussian, before which thick slices are interpolated
-  /// (betweenSlices); 0 leaves the labels' own steps.
+  /// Standard deviation of a Gaussian, mm, applied after thick slices are interpolated
+  /// (betweenSlices); 0: neither is done.
   double smoothing = 0.0;
 
   bool operator==(const MaskShaping&) const = default;
 };
 
-/// The mask of all voxels whose centre is at most `margin` mm away from a voxel of `mask`; or for a
-/// negative margin, more than that away from all others. It reaches one voxel beyond the volume at
-/// most. Throws Error (resources) for more than 2^31 voxels.
+/// Mask of the voxels whose centres are at most `margin` mm from a voxel of `mask`; margin < 0:
+/// more than -margin from every voxel that is not in `mask`. Reaches at most one voxel beyond the
+/// volume. Throws Error (output) for more than 2^31 voxels.
 Mask grown(const Mask& mask, double margin, const Grid& volume);
 
-/// The union of masks on voxels of one labelmap; at least one.
+/// Union of at least one mask, all on voxels of one labelmap.
 Mask united(const std::vector<Mask>& masks);
 
-/// The indicator convolved with a Gaussian: `full` is 255, and what is thinner than about the
-/// deviation goes.
+/// Indicator convolved with a Gaussian, `deviation` in mm; `full` is 255. Parts thinner than about
+/// the deviation vanish.
 Mask smoothed(const Mask& mask, double deviation, const Grid& volume);
 
 } // namespace fenestra

@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-/// A mask as slices across the axis along which its voxels are longest; lengths in mm.
+/// Slices of a mask, across the axis along which its voxels are longest; lengths in mm.
 class Slices {
 public:
   explicit Slices(const Mask& mask) : m_mask(mask) {
@@ -26,10 +26,10 @@ public:
   int axis() const { return m_axis; }
   std::int64_t count() const { return m_count[2]; }
 
-  /// How many slices come in one's place: an odd number, so that nothing lies half-way between two
-  /// straight outlines, where it would be neither in nor out.
+  /// Number of slices in place of one: odd, so that no voxel lies half-way between two straight
+  /// outlines, neither inside nor outside.
   std::int64_t parts() const {
-    constexpr double most = 9.0; // voxels are 8 bits, and memory is not for guesses
+    constexpr double most = 9.0; // bounds memory: more would be guesses
     const double ratio = m_thickness / std::max(m_edge[0], m_edge[1]) * (1.0 + 1e-6); // rounding
     return 2 * static_cast<std::int64_t>(std::min(ratio, most) / 2.0) + 1;
   }
@@ -39,8 +39,8 @@ public:
                                                   slice * m_step[2])] >= m_mask.half();
   }
 
-  /// From each pixel of a slice to the outline in it, negative inside, and no more than a few
-  /// slices' thickness: half a pixel less than to the next pixel of the other kind.
+  /// Signed distance of each pixel to the slice's outline, negative inside, bounded by farthest():
+  /// half a pixel less than to the nearest pixel of the other kind.
   std::vector<float> distances(std::int64_t slice) const {
     const double half = 0.5 * std::min(m_edge[0], m_edge[1]);
     const std::vector<double> toInside = squaresTo(true, slice),
@@ -56,7 +56,7 @@ public:
 private:
   double farthest() const { return 2.0 * m_thickness; }
 
-  /// Along each row, from each pixel to the next one that is inside, or that is not.
+  /// Distances along rows to the nearest pixel that is inside (false: outside).
   std::vector<double> alongRows(bool inside, std::int64_t slice) const {
     const auto [columns, rows, slices] = m_count;
     std::vector<double> result(static_cast<std::size_t>(columns * rows));
@@ -75,7 +75,7 @@ private:
     return result;
   }
 
-  /// The squared distance from each pixel to the next one that is inside, or that is not.
+  /// Squared distances of each pixel to the nearest pixel that is inside (false: outside).
   std::vector<double> squaresTo(bool inside, std::int64_t slice) const {
     const auto [columns, rows, slices] = m_count;
     const std::vector<double> along = alongRows(inside, slice);
@@ -97,13 +97,13 @@ private:
 
   const Mask& m_mask;
   int m_axis = 0;
-  double m_thickness = 0.0;            ///< from slice to slice
+  double m_thickness = 0.0;            ///< distance of slices
   std::array<std::int64_t, 3> m_count; ///< columns, rows, slices
-  std::array<std::int64_t, 3> m_step;  ///< in the mask's voxels, from one to the next
-  std::array<double, 2> m_edge;        ///< from column to column, and from row to row
+  std::array<std::int64_t, 3> m_step;  ///< to the next column, row, slice, in the mask's voxels
+  std::array<double, 2> m_edge;        ///< distances of columns, of rows
 };
 
-/// The grid whose voxels are `parts` times as many along an axis, between the outermost centres.
+/// Grid with `parts` times as many steps along an axis, between the same outermost centres.
 Grid divided(const Grid& grid, int axis, std::int64_t parts) {
   Size3 size = grid.size;
   size[axis] = (size[axis] - 1) * parts + 1;

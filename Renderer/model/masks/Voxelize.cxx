@@ -16,15 +16,15 @@ bool isBefore(const Vec3& a, const Vec3& b) {
   return std::tie(a.y(), a.z()) < std::tie(b.y(), b.z());
 }
 
-/// Twice the area that an edge and the row's place span in the plane of y and z; the same, with the
-/// other sign, from the edge's other end, bit for bit.
+/// Twice the signed area of the triangle (a, b, row) in the plane of y and z. edgeArea(b, a) is
+/// -edgeArea(a, b), bit for bit.
 double edgeArea(const Vec3& a, const Vec3& b, double y, double z) {
   if (isBefore(b, a))
     return -edgeArea(b, a, y, z);
   return (b.y() - a.y()) * (z - a.z()) - (b.z() - a.z()) * (y - a.y());
 }
 
-/// On which side of the edge the moved place lies: 1 or -1, or 0 of an edge that is a point.
+/// Side of the edge on which the moved row lies: 1 or -1; 0: the edge is a point.
 int edgeSide(const Vec3& a, const Vec3& b, double area) {
   const auto sign = [](double x) { return (x > 0.0) - (x < 0.0); };
   if (area != 0.0)
@@ -32,7 +32,7 @@ int edgeSide(const Vec3& a, const Vec3& b, double area) {
   return b.z() != a.z() ? sign(a.z() - b.z()) : sign(b.y() - a.y());
 }
 
-/// Integers in [least, greatest], clamped to a grid's.
+/// First and last integer in [least, greatest], clamped to a grid's.
 std::pair<std::int64_t, std::int64_t> integers(double least, double greatest, std::int64_t size) {
   const auto last = static_cast<double>(size - 1);
   return {static_cast<std::int64_t>(std::clamp(std::ceil(least), 0.0, last + 1.0)),
@@ -43,7 +43,7 @@ class Crossings {
 public:
   explicit Crossings(const Size3& size) : m_size(size) {}
 
-  /// False where the work becomes too much.
+  /// Adds a triangle's crossings. False: mostWork is exceeded.
   bool add(const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto [y0, y1] =
         integers(std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}), m_size.y());

@@ -1,6 +1,6 @@
 #pragma once
-// Focus and context told apart by how they look: what is not focus is thinner or paler. (Viola,
-// Kanitsar, Groeller 2005, "Importance-Driven Feature Enhancement in Volume Visualization".)
+// Style of the context, to set off the focus: thinner or paler. (Viola, Kanitsar, Groeller 2005,
+// "Importance-Driven Feature Enhancement in Volume Visualization".)
 
 #include "model/volume/Mask.h"
 #include "model/volume/Volume.h"
@@ -9,26 +9,25 @@
 
 namespace fenestra {
 
-/// Of linear Rec. 709.
+/// Luminance of linear Rec. 709.
 inline double luminance(const Rgb& color) {
   return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
 }
 
-/// What lies outside the focus, whose indicator is below 0.5 there, looks like. The focus is
-/// untouched.
+/// Look of the context, where the focus's indicator is below 1/2. The focus is unchanged.
 struct ContextStyle {
   std::shared_ptr<const Mask> focus; ///< at least four voxels
   double extinction = 1.0;           ///< multiplies the extinction, 0 to 1
-  double saturation = 1.0;           ///< of the albedo: 0 is grey, 1 as it is
+  double saturation = 1.0;           ///< of the albedo; 0: grey, 1: unchanged
 
-  /// With less colour, and the same luminance.
+  /// Albedo of reduced saturation and unchanged luminance.
   Rgb paled(const Rgb& albedo) const {
     const double grey = luminance(albedo);
     return grey + saturation * (albedo - grey);
   }
 };
 
-/// Where a volume's points lie in a style's focus. A view: the style outlives it.
+/// Tests a volume's points for a style's focus. A view: the style must outlive the object.
 class StyledContext {
 public:
   StyledContext(const ContextStyle& style, const Grid& volume)
@@ -38,7 +37,8 @@ public:
         m_level(0.5 * style.focus->full) {}
 
   const ContextStyle& style() const { return m_style; }
-  /// A point of the volume's index space. Beyond the mask its outermost voxels go on.
+  /// True if a point (the volume's index space) lies in the focus: indicator >= 1/2. Beyond the
+  /// mask the outermost voxels repeat.
   bool isFocus(const Vec3& index) const { return m_field.value(m_toMask * index) >= m_level; }
 
 private:

@@ -1,5 +1,5 @@
 #pragma once
-// The classified volume at a point: what tracking and the estimator ask of it.
+// The classified volume at a point: extinction for tracking, matter for the estimator.
 
 #include "model/medium/ContextStyle.h"
 #include "model/medium/TransferFunction.h"
@@ -9,14 +9,14 @@
 
 namespace fenestra {
 
-/// What the estimator needs to know of a real collision.
+/// Matter at a real collision, for the estimator.
 struct Matter {
   Rgb albedo;
-  Vec3 gradient;             ///< of the scalar, per mm, world axes; zero where nobody asked for it
-  double surfaceProbability; ///< chance that the path scatters at a surface here
+  Vec3 gradient;             ///< of the scalar, per mm, world axes; zero unless needsGradient()
+  double surfaceProbability; ///< probability that the path scatters at a surface here
 };
 
-/// A view: volume, transfer function and style outlive it. Points are in index space.
+/// A view: voxels, transfer function and style must outlive the medium. Points are in index space.
 template <typename Voxel>
 class Medium {
 public:
@@ -38,7 +38,7 @@ public:
   }
 
   bool needsGradient(bool wantGradient) const { return wantGradient || m_transfer.shading; }
-  /// `wantGradient` asks for it even where shading does not.
+  /// `wantGradient`: fills the gradient even without shading.
   Matter matter(const Vec3& index, bool wantGradient) const {
     const bool oneAlbedo = m_transfer.albedo.knots().size() == 1;
     const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);

@@ -10,16 +10,16 @@ PiecewiseLinear<Channels>::PiecewiseLinear(std::vector<Knot> knots) : m_knots(st
   std::stable_sort(m_knots.begin(), m_knots.end(),
                    [](const Knot& a, const Knot& b) { return a.position < b.position; });
   if (!(span() > 0.0))
-    return; // one place: the ends answer for everything
+    return; // one position: every value is an end's value
 
   const std::size_t bins = 4 * m_knots.size();
   m_binsPerUnit = static_cast<double>(bins) / span();
   if (!std::isfinite(m_binsPerUnit))
-    m_binsPerUnit = 0.0; // a subnormal span: one bin for everything
+    m_binsPerUnit = 0.0; // subnormal span: a single bin
   m_firstSegment.resize(bins);
   std::size_t i = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
-    // A bin early, so that rounding of s into a bin can never start past the segment it belongs to.
+    // One bin early: rounding of s to a bin must never start past the segment of s.
     const double start =
         m_knots.front().position + (static_cast<double>(bin) - 1.0) / m_binsPerUnit;
     while (i + 2 < m_knots.size() && m_knots[i + 1].position <= start)

@@ -1,6 +1,6 @@
 #pragma once
-// A function given by knots: linear between them, constant beyond the ends. Two knots at one place
-// make a step, which belongs to its right side.
+// A function given by knots: linear between knots, constant beyond the ends. Two knots at one
+// position make a step, whose value at that position is the right one.
 
 #include "base/Vector.h"
 
@@ -38,11 +38,11 @@ public:
   std::array<double, 2> range(double low, double high) const;
 
   const std::vector<Knot>& knots() const { return m_knots; }
-  /// From the first to the last knot, in units of s.
+  /// Distance from the first to the last knot, in units of s.
   double span() const { return m_knots.back().position - m_knots.front().position; }
 
 private:
-  /// The i with position[i] <= s < position[i + 1]; s lies strictly inside the knots. A table of
+  /// Segment i with position[i] <= s < position[i + 1], for s strictly inside the knots. A table of
   /// equal bins over the span gives the first candidate.
   std::size_t segment(double s) const {
     const auto bin = static_cast<std::size_t>((s - m_knots.front().position) * m_binsPerUnit);
@@ -53,7 +53,7 @@ private:
   }
 
   std::vector<Knot> m_knots;
-  std::vector<std::uint32_t> m_firstSegment; ///< for each bin, the segment at or before its start
+  std::vector<std::uint32_t> m_firstSegment; ///< per bin: segment at or before the bin's start
   double m_binsPerUnit = 0.0;
 };
 

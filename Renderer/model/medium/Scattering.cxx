@@ -4,7 +4,7 @@ namespace fenestra {
 namespace {
 
 constexpr double reflectanceAtNormal = 0.04; ///< F0 of Schlick 1994
-/// Of a narrower lobe directions in double say nothing, and its density overflows.
+/// Roughness limit: a narrower lobe is finer than directions in double, and its density overflows.
 constexpr double leastRoughness = 1e-6;
 
 Vec3 cosineHemisphere(const Vec2& u) {

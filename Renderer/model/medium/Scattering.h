@@ -1,9 +1,8 @@
 #pragma once
-// What happens to light at a real collision: it scatters by the phase function or at a surface.
-// Conventions: `incoming` is the direction in which the path travels (away from the eye),
-// `outgoing` the direction in which it goes on (toward a light). evaluate() is the factor on
-// radiance per steradian, with albedo and, at surfaces, the cosine included; pdf() is per
-// steradian.
+// Scattering of light at a real collision, by the phase function or at a surface. Conventions:
+// `incoming` is the direction in which the path travels (away from the eye), `outgoing` the
+// direction in which the path continues (toward a light). evaluate() is the factor on radiance per
+// steradian, with albedo and, at surfaces, the cosine included; pdf() is per steradian.
 
 #include "base/Random.h"
 #include "model/medium/TransferFunction.h"
@@ -30,8 +29,8 @@ public:
   ScatterSample sample(Random& random) const { return sample(random.uniform2()); }
 
 private:
-  Vec3 m_peak; ///< a lobe of -g around a direction is one of g around its opposite
-  double m_g;  ///< not negative
+  Vec3 m_peak; ///< incoming; -incoming for g < 0, as the lobe (g, d) equals (-g, -d)
+  double m_g;  ///< |g|
   Rgb m_albedo;
 };
 
@@ -39,13 +38,14 @@ private:
 /// with Schlick's Fresnel term at F0 = 0.04, weighted so that they never reflect more than arrives.
 class SurfaceScattering {
 public:
-  /// `gradient` is not zero; the normal is -gradient turned to the side that the path came from.
+  /// `gradient` must not be zero; the normal is -gradient, flipped to the side of the path's
+  /// origin.
   SurfaceScattering(const Vec3& incoming, const Vec3& gradient, const SurfaceShading& shading,
                     const Rgb& albedo);
 
   double pdf(const Vec3& outgoing) const;
   Rgb evaluate(const Vec3& outgoing) const;
-  /// `choice` decides on the lobe.
+  /// `choice`, in [0, 1), selects the lobe.
   ScatterSample sample(double choice, const Vec2& u) const;
   ScatterSample sample(Random& random) const {
     const double choice = random.uniform();
@@ -64,7 +64,7 @@ private:
   Rgb m_diffuse; ///< weight * albedo
   double m_specular;
   double m_roughness;
-  double m_lambertShare; ///< chance that sample() takes the Lambert lobe
+  double m_lambertShare; ///< probability that sample() takes the Lambert lobe
 };
 
 using Scattering = std::variant<PhaseScattering, SurfaceScattering>;

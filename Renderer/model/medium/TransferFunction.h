@@ -1,6 +1,6 @@
 #pragma once
-// What a scalar value means optically. This table *is* the medium (design, section 1): the product
-// and any oracle read extinction and albedo from it.
+// Optical properties as functions of the scalar. These functions *are* the medium (design, section
+// 1): the product and every oracle read extinction and albedo from here.
 
 #include "model/medium/PiecewiseLinear.h"
 
@@ -25,7 +25,8 @@ struct TransferFunction {
   double g = 0.0;                             ///< Henyey-Greenstein mean cosine, in (-1, 1)
   std::optional<SurfaceShading> shading = {}; ///< set: hybrid; else the phase function alone
 
-  /// The same function of (s - offset): every knot moved by `offset` scalar units.
+  /// This function of (s - offset): every knot of extinction and albedo moved by `offset` scalar
+  /// units.
   TransferFunction shifted(double offset) const;
   /// Extinction multiplied by `factor` >= 0.
   TransferFunction scaled(double factor) const;

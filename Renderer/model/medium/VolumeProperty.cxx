@@ -9,21 +9,21 @@ namespace {
 
 constexpr double opacityCap = 0.9999;
 constexpr double tolerance = 1e-4;
-/// Below this share of the function's greatest value the error counts as absolute: a curve like
-/// x^11 would need endless knots on its way to zero.
+/// Share of the function's greatest value below which the error counts as absolute: a curve like
+/// x^11 would need endless knots near zero.
 constexpr double floorShare = 1e-9;
 constexpr std::size_t maxNodes = 2000; ///< in one curve
-constexpr std::size_t maxKnots = 6000; ///< in one table, the nodes' own not counted
+constexpr std::size_t maxKnots = 6000; ///< in one table, besides the nodes
 
 /// VTK keeps the midpoint off the ends.
 double usedMidpoint(double midpoint) {
   return std::clamp(midpoint, 1e-5, 1.0 - 1e-5);
 }
 
-/// How far the curve has gone from one node's value (0) to the next one's (1) at the share u of the
-/// way; monotonic. vtkPiecewiseFunction::GetTable and vtkColorTransferFunction::GetTable (RGB) have
-/// the same: the midpoint bends u, sharpness compresses it, and a Hermite curve of both end slopes
-/// (1 - sharpness) follows.
+/// Progress of the curve from one node's value (0) to the next node's (1) at the share u of the
+/// way; monotonic. Like vtkPiecewiseFunction::GetTable and vtkColorTransferFunction::GetTable
+/// (RGB): the midpoint bends u, sharpness compresses the result, and a Hermite curve with end
+/// slopes (1 - sharpness) follows.
 double progress(double u, double midpoint, double sharpness) {
   const double m = usedMidpoint(midpoint);
   double s = u < m ? 0.5 * u / m : 0.5 + 0.5 * (u - m) / (1.0 - m);
@@ -61,9 +61,9 @@ auto valueAt(const std::vector<Node>& nodes, double x) {
   return between(*(next - 1), *next, x);
 }
 
-/// Knots for map(curve), where `map` takes the nodes' values to the table's. Pieces without kinks
-/// are halved, the worst of all first, until a chord misses none by more than half the tolerance at
-/// its probes, or the knots are used up (which no usual property does).
+/// Knots for map(curve), where `map` converts nodes' values to the table's. Pieces without kinks
+/// are halved, the worst first, until every chord's error at its probes is at most tolerance / 2,
+/// or maxKnots are used (which no usual property needs).
 template <int Channels, typename Node, typename Map>
 class Tabulator {
 public:
@@ -85,7 +85,7 @@ public:
     refine();
     for (; !m_chords.empty(); m_chords.pop())
       emit(m_chords.top());
-    // Chords come in any order; the two knots of a step keep theirs.
+    // Chords come in any order; a stable sort keeps the order of a step's two knots.
     std::stable_sort(m_knots.begin(), m_knots.end(), [](const Ordered& a, const Ordered& b) {
       return std::pair(a.segment, a.knot.position) < std::pair(b.segment, b.knot.position);
     });
@@ -98,7 +98,7 @@ public:
   }
 
 private:
-  /// A stretch of one segment; its ends are not knots yet but for the first one.
+  /// Part of one segment; emit() makes `begin` a knot.
   struct Chord {
     std::size_t segment;
     double begin, end;
@@ -145,8 +145,8 @@ private:
     emit(i, m_nodes[i + 1].x, m_map(valueOf(m_nodes[i + 1])));
   }
 
-  /// Where opacity reaches its cap within a segment (bisection: it is monotonic there); the
-  /// segment's begin where it does not, or where there is no cap.
+  /// Position at which opacity crosses its cap within a segment (bisection: opacity is monotonic
+  /// there); the segment's begin without a crossing, and for colours.
   double capCrossing(std::size_t i) const {
     double low = m_nodes[i].x, high = m_nodes[i + 1].x;
     if constexpr (std::is_same_v<Node, OpacityNode>) {

@@ -1,5 +1,5 @@
 #pragma once
-// A Slicer volume property as its files hold it, and its tabulation into the medium.
+// A Slicer volume property as stored in files, and its tabulation into the medium.
 
 #include "model/medium/TransferFunction.h"
 
@@ -45,8 +45,8 @@ Rgb decodeSrgb(const Rgb& encoded);
 
 /// Extinction -ln(1 - opacity) / unitDistance with opacity capped at 0.9999, decoded colour as
 /// albedo; both piecewise linear with knots kept and a relative error of at most 1e-4 (design,
-/// section 1). Throws Error (input; `source` names the file) where a node list is empty or a number
-/// is not usable.
+/// section 1). Throws Error (input; `source` names the file) if a node list is empty or a number is
+/// unusable.
 TransferFunction tabulate(const VolumeProperty& property, const std::string& source);
 
 } // namespace fenestra

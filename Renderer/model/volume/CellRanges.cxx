@@ -19,7 +19,7 @@ Span footprint(std::int64_t c, std::int64_t edge, std::int64_t voxels, int apron
   return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
 }
 
-/// The range of each column of some rows.
+/// Range of scalars of each column, over the rows added.
 template <typename Voxel>
 class Columns {
 public:
@@ -64,12 +64,12 @@ Size3 CellRanges::edgeFor(const Grid& grid) {
   constexpr double wantedCells = 1 << 18;
   const Vec3 spacing = grid.spacing();
   const Vec3 size = grid.size.cast<double>();
-  Vec3 voxels = Vec3::Zero(); // 0 where not settled yet
-  // An axis whose voxels are longer than a cube's edge has cells of one voxel, one that is shorter
-  // than it is one cell; the others share what that leaves, or a thin slice would have a cell for
-  // every voxel.
+  Vec3 voxels = Vec3::Zero(); // 0: not settled yet
+  // An axis with spacing > the cube's edge gets cells of one voxel, an axis shorter than the cube's
+  // edge gets one cell; the other axes share the remaining cells. (Otherwise a thin slice would
+  // have a cell for every voxel.)
   for (int settled = 0; settled < 3; ++settled) {
-    double volume = 1.0; // of the open axes alone
+    double volume = 1.0; // product of the unsettled axes' lengths
     double cells = wantedCells;
     for (int axis = 0; axis < 3; ++axis)
       if (voxels[axis] == 0.0)
@@ -78,7 +78,7 @@ Size3 CellRanges::edgeFor(const Grid& grid) {
         cells /= size[axis] / voxels[axis];
     const double edge = std::pow(volume / cells, 1.0 / (3 - settled)); // mm
     int farthest = -1;
-    double factor = 0.0; // by which an axis' cells have to miss the cube
+    double factor = 0.0; // by which cells of `farthest` miss the cube's edge
     for (int axis = 0; axis < 3; ++axis)
       if (voxels[axis] == 0.0) {
         const double cube = edge / spacing[axis];
@@ -96,8 +96,8 @@ Size3 CellRanges::edgeFor(const Grid& grid) {
 
 template <typename Voxel>
 void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels) {
-  // A row of cells is reduced to one row of voxels first, element by element: memory is read in its
-  // order, by vector instructions.
+  // A row of cells is first reduced to one row of voxels, elementwise: memory is read in order,
+  // with vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {
     const Span z = footprint(cz, m_edge.z(), grid.size.z(), m_apron);
     Columns<Voxel> columns(grid.size.x());

@@ -5,15 +5,15 @@
 
 namespace fenestra {
 
-/// Cell c spans [c, c + 1] * edge voxels in each axis, counted from the volume's corner: index
-/// space from c * edge - 0.5 on. Its range covers every voxel that trilinear interpolation inside
-/// it can touch, plus `apron` voxels more to every side (1 for central differences).
+/// Cell c spans [c, c + 1] * edge - 0.5 in index space, in each axis. The cell's range covers every
+/// voxel that trilinear interpolation inside the cell can touch, plus `apron` voxels on every side
+/// (1 for central differences).
 class CellRanges {
 public:
   CellRanges(const Volume& volume, int apron);
 
-  /// Voxels that a cell spans: cells are as near to cubes in mm as whole voxels allow, and about
-  /// a quarter of a million of them, so that thick slices do not make long cells with loose bounds.
+  /// Edges of a cell, voxels per axis. About 2^18 cells, as near to cubes in mm as whole voxels
+  /// allow: thick slices must not make long cells with loose bounds.
   static Size3 edgeFor(const Grid& grid);
 
   int apron() const { return m_apron; }

@@ -1,12 +1,12 @@
 #pragma once
-// A grid that is composed: a file's under transforms of a scene.
+// Composed grids: a file's grid under transforms of a scene.
 
 #include "base/Checked.h"
 #include "model/volume/Grid.h"
 
 namespace fenestra {
 
-/// The grid, where its map passes checkedMap; throws otherwise.
+/// Grid of `size` voxels; throws if checkedMap() refuses `indexToWorld`.
 inline Grid checkedGrid(const Size3& size, const Affine& indexToWorld, const Complaint& complaint) {
   return {size, checkedMap(indexToWorld, complaint)};
 }

@@ -3,8 +3,9 @@
 namespace fenestra {
 namespace {
 
-/// Adds where the edges of `box` enter and leave `other`, whose space `toOther` maps to. The other
-/// box counts as a little larger: a corner that both have is then not lost to both by rounding.
+/// Adds the points (index space) where edges of `box` enter and leave `other`. `toOther` maps from
+/// the space of `box` to that of `other`. `other` is enlarged by 1e-9: otherwise rounding could
+/// lose a corner common to both boxes.
 void addEdgeEnds(const Box& box, const Box& other, const Affine& toOther, const Affine& toIndex,
                  std::vector<Vec3>& points) {
   const Vec3 slack = 1e-9 * (other.upper - other.lower);
@@ -12,7 +13,7 @@ void addEdgeEnds(const Box& box, const Box& other, const Affine& toOther, const 
   for (int corner = 0; corner < 8; ++corner)
     for (int axis = 0; axis < 3; ++axis) {
       if (corner >> axis & 1)
-        continue; // each edge from its lower end
+        continue; // each edge once, from its lower end
       const Vec3 from = box.corner(corner);
       const Ray edge{from, box.corner(corner | 1 << axis) - from};
       const Interval inside = grown.clip(transformed(toOther, edge), {0.0, 1.0});

@@ -1,5 +1,5 @@
 #pragma once
-// Where the medium is: the box that a volume's voxels fill, or what a cropping box leaves of it.
+// The region of the medium: the volume's box, or its intersection with a cropping box.
 
 #include "model/volume/Grid.h"
 
@@ -8,12 +8,12 @@
 
 namespace fenestra {
 
-/// A parallelepiped anywhere in the world; what is outside it is empty.
+/// A parallelepiped anywhere in the world; the medium is empty outside.
 struct CropBox {
-  Affine boxToWorld; ///< maps [-1, 1]^3 onto it, RAS mm
+  Affine boxToWorld; ///< maps [-1, 1]^3 onto the parallelepiped, RAS mm
   Affine worldToBox;
 
-  /// The map has to be invertible; a mirrored one is ordinary.
+  /// `boxToWorldIn` must be invertible; mirroring is allowed.
   explicit CropBox(const Affine& boxToWorldIn)
       : boxToWorld(boxToWorldIn), worldToBox(boxToWorldIn.inverse()) {}
 };
@@ -24,20 +24,19 @@ public:
   Domain(const Grid& grid, const std::optional<CropBox>& crop = {});
 
   const Grid& grid() const { return m_grid; }
-  /// Of the grid, in index space.
+  /// Box of the grid, in index space.
   const Box& box() const { return m_box; }
-  /// From index space to the one where the cropping box is [-1, 1]^3; none where nothing is
-  /// cropped.
+  /// Map from index space to crop space, where the cropping box is [-1, 1]^3; null without a crop.
   const Affine* toCrop() const { return m_crop ? &m_crop->fromIndex : nullptr; }
 
-  /// The part of `range` in which a ray, in index space, is inside. One interval, as both boxes
-  /// are convex; a ray that lies exactly in a face counts as inside.
+  /// Part of `range` in which a ray (index space) is inside the domain: one interval, as both boxes
+  /// are convex. A ray that lies exactly in a face counts as inside.
   Interval clip(const Ray& indexRay, const Interval& range = {}) const {
     const Interval inside = m_box.clip(indexRay, range);
     return m_crop ? m_crop->box.clip(transformed(m_crop->fromIndex, indexRay), inside) : inside;
   }
 
-  /// Whether a point in index space lies inside, not in a face.
+  /// True if a point (index space) lies strictly inside the domain, not in a face.
   bool contains(const Vec3& indexPoint) const {
     const auto isIn = [](const Box& box, const Vec3& p) {
       return (p.array() > box.lower.array()).all() && (p.array() < box.upper.array()).all();
@@ -46,13 +45,13 @@ public:
            (!m_crop || isIn(m_crop->box, m_crop->fromIndex * indexPoint));
   }
 
-  /// Points in index space whose convex hull is the domain (to rounding), some of them more than
-  /// once. None where the boxes do not meet.
+  /// Points in index space whose convex hull is the domain (to rounding), with duplicates; empty if
+  /// the boxes do not meet.
   std::vector<Vec3> indexCorners() const;
 
 private:
   struct Crop {
-    Affine fromIndex, toIndex; ///< between index space and the one where it is `box`
+    Affine fromIndex, toIndex; ///< between index space and crop space
     Box box{-Vec3::Ones(), Vec3::Ones()};
   };
 

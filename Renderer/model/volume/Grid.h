@@ -1,5 +1,5 @@
 #pragma once
-// Where a regular grid of voxels lies in the world.
+// A regular grid of voxels and its place in the world.
 
 #include "base/Vector.h"
 
@@ -9,7 +9,7 @@ namespace fenestra {
 
 /// Index space has voxel centres at integers; the grid fills [-0.5, size - 0.5] in each axis.
 struct Grid {
-  Size3 size = Size3::Zero();               ///< voxels in each axis, the fastest first
+  Size3 size = Size3::Zero();               ///< voxels per axis, fastest axis first
   Affine indexToWorld = Affine::Identity(); ///< index to RAS mm; any invertible map
   Affine worldToIndex = Affine::Identity();
 
@@ -19,11 +19,11 @@ struct Grid {
 
   std::int64_t voxelCount() const { return size.prod(); }
   Box indexBox() const { return {Vec3::Constant(-0.5), size.cast<double>().array() - 0.5}; }
-  /// mm between neighbours along each axis.
+  /// Distance of neighbouring voxel centres along each axis, mm.
   Vec3 spacing() const { return indexToWorld.linear().columnNorms(); }
   Vec3 worldCenter() const { return indexToWorld * indexBox().center(); }
   Vec3 worldCorner(int i) const { return indexToWorld * indexBox().corner(i); }
-  /// Radius, in mm, of the sphere around worldCenter() that holds the box.
+  /// Radius of the box's bounding sphere around worldCenter(), mm.
   double boundingRadius() const {
     double radius = 0.0;
     for (int i = 0; i < 4; ++i) // opposite corners are equally far

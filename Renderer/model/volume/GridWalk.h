@@ -8,8 +8,8 @@
 
 namespace fenestra {
 
-/// An iterator over the cells along a ray. The ray is in cell space, where cell c fills [c, c + 1]
-/// in each axis; its t is the caller's (world mm, as a rule).
+/// Iterates over the cells along a ray. The ray is in cell space, where cell c fills [c, c + 1] in
+/// each axis; the unit of t is the caller's (usually world mm).
 ///
 ///     for (GridWalk walk(ray, range, cellCount); !walk.done(); walk.next())
 ///       visit(walk.cell(), walk.interval());
@@ -18,7 +18,7 @@ namespace fenestra {
 /// part of `range` that lies inside the grid: the first begins where that part begins, each begins
 /// exactly where the one before ended, the last ends where the part ends. An interval may have no
 /// length (rays through edges and corners). A ray that runs along a face between two cells visits
-/// one of the two. Nothing but done() is valid once the walk is done.
+/// one of the two. After the last cell only done() is valid.
 class GridWalk {
 public:
   GridWalk(const Ray& ray, const Interval& range, const Size3& cellCount)
@@ -55,18 +55,18 @@ public:
   const Interval& interval() const { return m_interval; }
 
 private:
-  /// The cell of one axis that the ray is in just after t, and its next face.
+  /// Sets one axis' state just after t: coordinate of the cell, next face.
   void enter(int axis, double direction, double t) {
     const bool up = direction > 0.0;
     const double position = direction == 0.0 ? m_origin[axis] : m_origin[axis] + t * direction;
     const double cell = direction < 0.0 ? std::ceil(position) - 1.0 : std::floor(position);
     const std::int64_t last = m_cells[axis] - 1;
-    // In this order a NaN (infinity times zero) becomes a cell, too.
+    // This order of min and max maps NaN (infinity times zero) to a cell.
     const double inGrid = std::max(0.0, std::min(static_cast<double>(last), cell));
     m_coordinates[axis] = static_cast<std::int64_t>(inGrid);
 
     const double inverse = 1.0 / direction;
-    const bool moves = std::isfinite(inverse); // not so for zero and the least subnormals
+    const bool moves = std::isfinite(inverse); // false for zero and the least subnormals
     m_inverse[axis] = inverse;
     m_step[axis] = up ? 1 : -1;
     m_ahead[axis] = moves ? (up ? last - m_coordinates[axis] : m_coordinates[axis]) : 0;
@@ -76,7 +76,7 @@ private:
     m_stride[axis] = m_step[axis] * stride;
   }
 
-  /// The axis is a template's argument because a known axis costs half the time.
+  /// A template argument, because an axis known at compile time halves the time.
   template <int axis>
   void step() {
     m_coordinates[axis] += m_step[axis];
@@ -86,9 +86,9 @@ private:
     m_next[axis] = faceAt(axis);
   }
 
-  /// t at the next face of an axis. The outer faces count as infinitely far: the walk ends with its
-  /// interval, so that rounding cannot lead it out of the grid. From the face's own coordinate, not
-  /// by adding up steps: errors do not grow along the ray.
+  /// t at the next face of an axis; infinity for the grid's outer faces: the walk ends at m_end, so
+  /// rounding cannot lead out of the grid. Computed from the face's coordinate, not by adding up
+  /// steps: errors do not grow along the ray.
   double faceAt(int axis) const {
     return m_ahead[axis] > 0 ? (m_face[axis] - m_origin[axis]) * m_inverse[axis] : infinity;
   }
@@ -101,13 +101,13 @@ private:
   Vec3 m_origin;
   Vec3 m_inverse = Vec3::Zero(); ///< 1 / direction
   Vec3 m_face = Vec3::Zero();    ///< coordinate of the next face in each axis
-  Vec3 m_next = Vec3::Zero();    ///< t there
+  Vec3 m_next = Vec3::Zero();    ///< t at m_face
   Size3 m_coordinates = Size3::Zero();
   Size3 m_ahead = Size3::Zero(); ///< cells still to come in each axis
   Size3 m_step = Size3::Zero(), m_stride = Size3::Zero();
   std::int64_t m_cell = 0;
   Interval m_interval;
-  double m_end; ///< of the walk
+  double m_end; ///< t at which the walk ends
 };
 
 } // namespace fenestra

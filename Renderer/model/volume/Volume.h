@@ -20,7 +20,7 @@ using Voxels = std::variant<std::vector<std::uint8_t>, std::vector<std::int16_t>
 struct Volume {
   Grid grid;
   Voxels voxels;
-  double minimum = 0.0; ///< over all voxels
+  double minimum = 0.0; ///< least voxel
   double maximum = 0.0;
   std::string name; ///< for messages: the file
   std::vector<std::string> warnings;
@@ -30,7 +30,7 @@ struct Volume {
 void computeRange(Volume& volume);
 
 /// The continuous field of `Volume::voxels`: trilinear between voxel centres, clamped in the outer
-/// half voxel. Points are in index space, inside Grid::indexBox(). A view: the volume outlives it.
+/// half voxel. Points are in index space, inside Grid::indexBox(). Keeps a pointer to the voxels.
 template <typename Voxel>
 class Field {
 public:
@@ -54,7 +54,7 @@ public:
     return low + (high - low) * fz;
   }
 
-  /// Central differences over one voxel to each side, in scalar units per mm, in world axes.
+  /// Gradient in scalar units per mm, world axes: central differences over one voxel to each side.
   Vec3 gradient(const Vec3& index) const {
     Vec3 difference;
     for (int axis = 0; axis < 3; ++axis) {
@@ -87,7 +87,7 @@ private:
   const Voxel* m_voxels;
   Vec3 m_last;
   Size3 m_lastCell;
-  Size3 m_stride; ///< to the next voxel in each axis, 0 where there is none
+  Size3 m_stride; ///< offset of the next voxel in each axis, 0 if the axis has one voxel
   std::int64_t m_row, m_slice;
   Mat3 m_indexGradientToWorld;
 };

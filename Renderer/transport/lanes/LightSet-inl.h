@@ -65,8 +65,8 @@ public:
     return drawn;
   }
 
-  /// What scattered rays from local points meet before `distance`, or at infinity, weighed against
-  /// drawing it (Veach 1997, eq. 9.8).
+  /// Radiance that scattered rays from local points meet before `distance`, or at infinity, weighed
+  /// against drawing it (Veach 1997, eq. 9.8).
   F3 arriving(M which, const F3& origin, const F3& direction, F distance, F scatterPdf) const {
     const F zero = hn::Zero(floats);
     F3 sum{zero, zero, zero};

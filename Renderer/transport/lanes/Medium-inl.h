@@ -1,5 +1,5 @@
-// What a lane asks of the volume at a point in index space: the extinction, and what clipping keeps
-// of it. Compiled once for each instruction set (see WideTracker.cxx).
+// Lookups of a lane at a point in index space: the extinction, and the share that clipping keeps.
+// Compiled once for each instruction set (see WideTracker.cxx).
 
 #if defined(FENESTRA_WIDE_LOOKUP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_WIDE_LOOKUP_INL_H
@@ -77,7 +77,8 @@ HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, I firs
   return c;
 }
 
-/// Of 16 bits: 32 take both voxels; `lower` and `upper` make floats of them.
+/// Corners from voxels of 16 bits: one load of 32 bits takes two; `lower` and `upper` make floats
+/// of them.
 template <typename Voxel, typename Lower, typename Upper>
 HWY_INLINE Corners cornersInPairs(const WideField& field, const Voxel* voxels, I first,
                                   Lower&& lower, Upper&& upper) {
@@ -293,7 +294,7 @@ HWY_INLINE F sewn(const WideScene& scene, M which, I sample, F x, F y, F depth, 
   return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
 }
 
-/// What clipping keeps (clip/keep/Clip.h's keep, for all its kinds) for the lanes of `which`.
+/// keep of clip/keep/Clip.h, for all kinds of clip, in the lanes of `which`.
 inline F keep(const WideScene& scene, const Point& p, M which) {
   const F depth = apply(scene.toView[2], p); // from the target
   F scale = all(1.0F);

@@ -22,7 +22,7 @@ WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
     channels.push_back(std::move(channel));
   }
 
-  // More bins than segments, so that few have to be tried.
+  // More bins than segments, so that few segments have to be tried.
   const std::size_t bins = 2 * knots.size();
   binStart = narrow(knots.front().position);
   const double span = function.span();

@@ -1,5 +1,5 @@
 #pragma once
-// A piecewise linear function as lanes read it: in float, each segment by itself.
+// A piecewise linear function for lanes: in float, by segments instead of knots.
 
 #include "model/medium/PiecewiseLinear.h"
 
@@ -8,16 +8,16 @@
 
 namespace fenestra {
 
-/// In segment i a channel is value + slope (s - position[i]), from position[i] to position[i + 1];
-/// the first segment begins at -infinity, the last has no end. What is wanted together lies
-/// together: lanes take two floats at a time.
+/// Segment i spans position[i] to position[i + 1], where a channel is value + slope (s -
+/// position[i]); the first segment begins at -infinity, the last ends at infinity. Value and slope
+/// are neighbours in memory: lanes load two floats at a time.
 struct WideTable {
   struct Line {
     float value, slope;
   };
   using Channel = std::vector<Line>;
   std::vector<float> position;
-  std::vector<std::int32_t> binSegment; ///< for equal bins from binStart on: the first candidate
+  std::vector<std::int32_t> binSegment; ///< first candidate of each equal bin, from binStart on
   float binStart = 0.0F, binsPerUnit = 0.0F;
   std::vector<Channel> channels;
 

@@ -33,7 +33,7 @@ HWY_INLINE void storeTo(Columns3& columns, std::size_t i, const F3& v) {
   hn::StoreU(v.z, floats, &columns[2][i]);
 }
 
-/// As many paths as there are lanes, at their collisions.
+/// One path a lane, at their collisions.
 struct Collisions {
   M going;  ///< those that scatter
   M first;  ///< for the first time
@@ -82,7 +82,7 @@ private:
     listEnded(i, hn::AndNot(alive, there));
   }
 
-  /// What scattered rays met before their collisions, or at infinity.
+  /// Adds the radiance that scattered rays met before their collisions, or at infinity.
   HWY_INLINE void gather(std::size_t i, M scattered, const F3& origin, F distance) {
     if (hn::AllFalse(floats, scattered))
       return;
@@ -165,7 +165,7 @@ private:
             valueIn(channels[2], segment)};
   }
 
-  /// As ContextStyle::paled, outside the focus.
+  /// ContextStyle::paled, outside the focus.
   HWY_INLINE F3 paled(const WideScene::Context& context, const F3& index, const F3& albedo) const {
     const F grey = dot(albedo, {all(0.2126F), all(0.7152F), all(0.0722F)});
     const auto channel = [&](F x) { return lerp(grey, x, all(context.saturation)); };

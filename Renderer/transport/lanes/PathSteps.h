@@ -1,5 +1,5 @@
 #pragma once
-// What happens to many paths at once, in SIMD lanes: PathSteps' events, in float. The instruction
+// PathSteps' events for many paths at once, in SIMD lanes and float. The instruction
 // set is chosen when the program runs (Highway).
 
 #include "transport/lanes/PathTables.h"
@@ -17,7 +17,7 @@ struct PathBatch {
   Column<std::int32_t> bounces;
   Column<std::uint32_t> key, counter; ///< of their random numbers
 
-  /// Of the first collision.
+  /// Values at the first collision.
   Column<float> firstDistance;
   Columns3 firstAlbedo, firstNormal;
 

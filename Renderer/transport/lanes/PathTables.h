@@ -1,5 +1,5 @@
 #pragma once
-// What the lanes' events read beside WideScene: scatterers and lights, in float.
+// Tables that the lanes' events read beside WideScene: scatterers and lights, in float.
 
 #include "base/Narrow.h"
 #include "model/lights/LightSet.h"

@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-/// What scattering does to radiance toward a direction, and the density with which it is drawn.
+/// Factor of scattering on radiance toward a direction, and the density of drawing the direction.
 struct Scattered {
   F3 factor;
   F pdf;
@@ -60,7 +60,7 @@ public:
   }
 
 private:
-  /// Of a direction whose distance from the lobe's peak on the unit sphere is known, squared.
+  /// Density of a direction; chord2: its squared distance from the lobe's peak on the unit sphere.
   HWY_INLINE F density(F chord2) const {
     if (m_g == 0.0F)
       return all(perSphere);

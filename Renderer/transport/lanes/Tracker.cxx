@@ -88,7 +88,7 @@ struct Queue {
   bool empty() const { return next == rays.size; }
 };
 
-/// As many rays as there are lanes, followed together.
+/// One ray a lane, followed together.
 template <typename Voxel, bool wantRatio>
 class Lanes {
 public:
@@ -303,7 +303,7 @@ private:
     m_busy = hn::AndNot(which, m_busy);
   }
 
-  /// What lanes have found becomes the results of their rays.
+  /// Hands the lanes' findings in as the results of their rays.
   HWY_INLINE void handIn() {
     OfLanes results, scalars;
     hn::Store(wantRatio ? m_ratio : m_t, floats, results.data());

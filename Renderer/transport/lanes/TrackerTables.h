@@ -1,5 +1,5 @@
 #pragma once
-// What lanes read of a volume and its clip.
+// Tables of a volume and its clip that lanes read.
 
 #include "base/Narrow.h"
 #include "transport/lanes/MajorantGrid.h"
@@ -25,9 +25,9 @@ struct WideField {
   std::array<Axis, 3> axes = {};
 };
 
-/// What the lanes read: plain numbers and pointers, in float and index space. Built by WideTracker.
+/// Plain numbers and pointers, in float and index space. Built by WideTracker.
 struct WideScene {
-  /// In the order of Voxels' alternatives.
+  /// Order: that of Voxels' alternatives.
   enum class VoxelType { uint8, int16, uint16, float32 };
   /// Cells along one axis.
   struct Axis {
@@ -53,8 +53,8 @@ struct WideScene {
   VoxelType type;
   WideField field;
   std::array<Axis, 3> axes;
-  /// What rays cannot leave: index space within the box, and where there is a crop within [-1, 1]^3
-  /// of its own space, too.
+  /// Bounds that rays cannot leave: the box in index space and, where there is a crop, [-1, 1]^3 of
+  /// the crop's own space.
   std::array<float, 3> lower, upper;
   bool cropped = false;
   AffineRows toCrop = {};

@@ -1,5 +1,5 @@
 #pragma once
-// What tracking did: plain sums, one set a tile, added up at its end.
+// Counters of tracking: plain sums, one set a tile, added up at the tile's end.
 
 #include <cstdint>
 

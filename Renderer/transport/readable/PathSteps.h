@@ -1,6 +1,6 @@
 #pragma once
-// What a path means, event by event: where it begins, what it gathers where it arrives, how it
-// scatters. This is the readable truth; WideEvents does the same for many paths at once.
+// Events of a path: where it begins, what it gathers where it arrives, how it scatters. This is the
+// readable truth; WideEvents does the same for many paths at once.
 //
 // Radiative transfer, one extinction for the three channels:
 //   L(x, w) = T(x, exit) L_light(w) + ∫ T(x, y) sigma_t(y) ∫ f(y, w, w') L(y, w') dw' dy

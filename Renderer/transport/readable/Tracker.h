@@ -12,8 +12,8 @@
 
 namespace fenestra {
 
-/// What tentative collisions mean, whoever finds them: `walk(visit)` calls visit(t, share of it
-/// that is real) at each, until it returns false. The first real one's t, or infinity.
+/// Returns t of the first real collision, or infinity. `walk(visit)` calls visit(t, share) at each
+/// tentative collision until visit returns false; share: probability that the collision is real.
 template <typename Walk>
 double firstRealCollision(Walk&& walk, Random& random) {
   double distance = infinity;

@@ -46,9 +46,9 @@ std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
   return std::min(wanted, settings.samples - done);
 }
 
-/// The same toward a noise target. The pilot ends with the same sample whatever the passes are.
-/// Passes grow anew after it, for some pixels may get far more than the mean, and the last is as
-/// small as the noise so far says, variance falling as one over the samples.
+/// Samples of the next pass toward a noise target. The pilot ends with the same sample whatever the
+/// passes are. Passes grow anew after the pilot, for some pixels may get far more than the mean,
+/// and the last is as small as the noise so far says, variance falling as one over the samples.
 std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan& plan,
                               const RenderSettings& settings) {
   if (done < leastForNoise)
@@ -60,8 +60,8 @@ std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan
   return std::min({passSize(done - leastForNoise, settings), settings.samples - done, most});
 }
 
-/// What one stage of the plan has beyond the one before. Returns false when it was stopped before
-/// all was done; tiles are done whole or not at all.
+/// Renders the samples that stage `to` of the plan has beyond `from`. Returns false when stopped
+/// before all was done; tiles are done whole or not at all.
 template <typename Tracer>
 bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
                 const EmptyPixels& empty, std::uint64_t seed, Film& film, Counters& total,
@@ -89,7 +89,7 @@ bool isConstantInPixels(const Background& background, const LightSet& lights) {
   return background.kind != Background::Kind::environment || !lights.hasMaps();
 }
 
-/// What passes take.
+/// Time that passes take.
 class Pace {
 public:
   explicit Pace(double secondsInAll) : m_secondsInAll(secondsInAll) {}

@@ -47,7 +47,7 @@ struct RenderSettings {
 
 struct RenderResult;
 
-/// What a running render tells others, and how they stop it.
+/// Progress of a running render, and the way to stop it.
 struct RenderMonitor {
   std::atomic<bool> stop = false;
   std::atomic<std::uint64_t> paths = 0; ///< finished so far, or found to be needless
@@ -65,7 +65,7 @@ struct RenderResult {
   /// A pixel, on average over those that are not certain from one (PixelSums::isCertain); after a
   /// request some may have more.
   std::uint64_t finishedSamples = 0;
-  /// What pictures are bit-identical within: "scalar", or the lanes' instruction set.
+  /// Pictures are bit-identical within one target: "scalar", or the lanes' instruction set.
   std::string target = "scalar";
 };
 

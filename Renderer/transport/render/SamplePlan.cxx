@@ -22,7 +22,7 @@ double relativeVariance(const PixelSums& pixel) {
   return (variance / (pixel.mean.square() + 0.01)).mean();
 }
 
-/// Of a path: what it costs to begin one, and its scatterings.
+/// Mean cost of a pixel's path: beginning it, and its scatterings (1 each).
 double cost(const PixelSums& pixel) {
   constexpr double beginning = 0.15;
   return beginning + pixel.scatterings / static_cast<double>(pixel.samples);

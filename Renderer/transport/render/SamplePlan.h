@@ -16,13 +16,13 @@ namespace fenestra {
 /// nothing get the same number everywhere.
 class SamplePlan {
 public:
-  /// The same number for all.
+  /// Plan with one number for all pixels.
   SamplePlan() = default;
-  /// The same number for all below this many pixels.
+  /// Pictures with fewer pixels get one number for all.
   static constexpr std::size_t leastPixels = 2048;
 
-  /// The pilot has the same number of samples, at least two, in every pixel that is not certain.
-  /// Those that are count as if they were not there.
+  /// The pilot has one number of samples, at least two, in every pixel that is not certain. Certain
+  /// pixels are left out of all sums.
   explicit SamplePlan(const Film& pilot);
 
   /// A stage of the plan: `mean` samples a pixel, on average.
@@ -30,7 +30,7 @@ public:
   public:
     /// Samples of a pixel; never fewer than in a stage with a smaller mean.
     std::uint64_t count(std::size_t pixel) const;
-    /// Of any pixel, over the mean: 1 or more.
+    /// Greatest number of samples of a pixel, over the mean: >= 1.
     double greatestShare() const;
 
   private:

@@ -13,8 +13,8 @@
 
 namespace fenestra {
 
-/// What all threads of a pass share: the samples that one stage of the plan has and the one before
-/// has not, cut into tiles.
+/// Shared by all threads of a pass: the samples that a stage of the plan has beyond the stage
+/// before, cut into tiles.
 class Pass {
 public:
   /// A view of plan, empty pixels and film. Tiles that are done add to `paths` as many samples as

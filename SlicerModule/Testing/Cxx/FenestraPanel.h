@@ -1,5 +1,5 @@
 #pragma once
-// The panel as a user has it: widgets to choose and click, and what they say.
+// The panel as a user meets it: widgets to choose and click, and their texts.
 
 #include "FenestraTesting.h"
 
@@ -16,7 +16,7 @@
 
 namespace FenestraTesting {
 
-/// The panel, by the names of its widgets.
+/// Access to the panel's widgets by name.
 struct Panel {
   using Node = vtkMRMLFenestraRenderNode;
 
@@ -40,7 +40,7 @@ struct Panel {
   qMRMLNodeComboBox* nodes(const char* name) const { return find<qMRMLNodeComboBox>(name); }
 };
 
-/// Whether a render ended after what is done.
+/// True if exactly one render ends after `action`.
 template <typename Action>
 bool ends(const Panel& panel, Action&& action) {
   int ended = 0;

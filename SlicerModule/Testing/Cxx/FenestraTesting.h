@@ -1,5 +1,5 @@
 #pragma once
-// What the tests inside Slicer share.
+// Helpers shared by the tests inside Slicer.
 
 #include <vtkMRMLCoreTestingMacros.h>
 
@@ -21,7 +21,7 @@
 
 namespace FenestraTesting {
 
-/// Goes on with Qt's events, for half a minute at most.
+/// Processes Qt's events until the condition holds, at most 30 s; returns whether it does.
 template <typename Condition>
 bool waitFor(Condition&& condition) {
   QElapsedTimer watch;
@@ -31,7 +31,7 @@ bool waitFor(Condition&& condition) {
   return condition();
 }
 
-/// A ball of 100 in air, radius 10 of 32 voxels a side, 1 mm.
+/// Fills a ball of `value` in air: radius 10, in 32 voxels a side, 1 mm.
 inline void fillBall(vtkImageData* image, int type, double value) {
   image->SetDimensions(32, 32, 32);
   image->AllocateScalars(type, 1);
@@ -54,7 +54,7 @@ inline vtkMRMLScalarVolumeNode* addVolume(vtkMRMLScene* scene) {
   return volume;
 }
 
-/// The ball as a segment "Ball", and an empty one, "Nothing".
+/// Adds the ball as a segment "Ball", and an empty segment "Nothing".
 inline vtkMRMLSegmentationNode* addSegmentation(vtkMRMLScene* scene) {
   vtkNew<vtkOrientedImageData> labels;
   fillBall(labels, VTK_UNSIGNED_CHAR, 1.0);
@@ -71,7 +71,7 @@ inline vtkMRMLSegmentationNode* addSegmentation(vtkMRMLScene* scene) {
   return node;
 }
 
-/// Whether a flag is these numbers, but for rounding.
+/// True if a flag has these numbers, within 1e-9.
 inline bool isNear(const std::string& flag, const std::vector<double>& numbers) {
   std::istringstream text(flag);
   char comma = 0;

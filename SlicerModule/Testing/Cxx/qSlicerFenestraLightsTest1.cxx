@@ -1,4 +1,4 @@
-// Rigs of lights, dimmed and raised.
+// Light rigs with scaled lights.
 
 #include "FenestraTesting.h"
 

@@ -26,7 +26,7 @@ int qSlicerFenestraMeasuresTest1(int, char*[]) {
   CHECK_STD_STRING(words[3].value.toStdString(), "mean 0.000, 95 % below 0.001, at most 54");
   for (const Measure& one : words)
     CHECK_BOOL(one.help.isEmpty(), false);
-  // What is no measure says nothing: a scene's attribute may hold anything.
+  // Invalid measures are skipped: a scene's attribute may hold any text.
   CHECK_INT(static_cast<int>(inWords({{"focusCoverage", "x"}, {"boundaryGapMm", 1}}).size()), 1);
   for (const auto& [seconds, text] :
        {std::pair{0.04, "0.0 s"}, {9.96, "10 s"}, {59.7, "1 min 0 s"}, {187.2, "3 min 7 s"}})

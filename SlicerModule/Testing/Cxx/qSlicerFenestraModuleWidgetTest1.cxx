@@ -1,5 +1,5 @@
-// The panel as a user meets it: its widgets are used, and what they say is compared with the node
-// of settings, both ways. Arguments: the renderer, a folder for files, the module's library.
+// The panel as a user meets it: changes of widgets are compared with the settings node, both ways.
+// Arguments: the renderer, a folder for files, the module's library.
 
 #include "FenestraPanel.h"
 #include "FenestraTesting.h"
@@ -58,7 +58,7 @@ int checkDefaults(const Panel& panel, vtkMRMLNode* volume, vtkMRMLNode* segmenta
   return EXIT_SUCCESS;
 }
 
-/// In slice views, which loading a scene leaves as they are.
+/// Slice views show the newest volume on request; loading a scene does not change them.
 int checkShowingVolume(const Panel& panel, vtkMRMLScene* scene, vtkMRMLNode* volume) {
   auto* view = vtkMRMLSliceCompositeNode::SafeDownCast(
       scene->AddNewNodeByClass("vtkMRMLSliceCompositeNode"));
@@ -68,7 +68,7 @@ int checkShowingVolume(const Panel& panel, vtkMRMLScene* scene, vtkMRMLNode* vol
   return EXIT_SUCCESS;
 }
 
-/// What the user chooses is in the node.
+/// The user's choices are stored in the node.
 int checkTaking(const Panel& panel, const std::string& segment) {
   panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Checked);
   CHECK_INT(static_cast<int>(panel.settings()->GetFocus().size()), 1);
@@ -97,7 +97,7 @@ int checkTaking(const Panel& panel, const std::string& segment) {
   return EXIT_SUCCESS;
 }
 
-/// What the node says is shown, and no more than that is changed by showing it.
+/// The panel shows the node's flags, and showing changes no other flag.
 int checkShowing(const Panel& panel) {
   Node* settings = panel.settings();
   const std::map<std::string, std::string> before = settings->GetFlags();
@@ -120,38 +120,38 @@ int checkShowing(const Panel& panel) {
   return EXIT_SUCCESS;
 }
 
-/// Each way of clipping shows what it has, and gives no other flag.
+/// Each clipping mode shows its own widgets, and sets no other flag.
 int checkClipping(const Panel& panel) {
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
-  CHECK_STD_STRING(panel.flag("labelsmoothing"), "1"); // a voxel, of 1 mm, with the first focus
+  CHECK_STD_STRING(panel.flag("labelsmoothing"), "1"); // one voxel, 1 mm, set with the first focus
   CHECK_STD_STRING(panel.flag("soft"), "2");
   panel.choose("ClipBox", "");
   CHECK_BOOL(panel.shows("BoundaryBox"), true);
   for (const char* other : {"ghostBox", "HoleBox", "holemarginBox", "PlaneBox", "PlaneNodeBox"})
     CHECK_BOOL(panel.shows(other), false);
-  CHECK_STD_STRING(panel.flag("boundary"), "exact"); // until the user wants another
-  panel.settings()->SetFlag("boundary", "");         // as a scene from elsewhere
+  CHECK_STD_STRING(panel.flag("boundary"), "exact"); // the default of a first focus
+  panel.settings()->SetFlag("boundary", "");         // like a scene from elsewhere
   CHECK_STD_STRING(panel.chosen("BoundaryBox").toStdString(), "spline");
   panel.settings()->SetFlag("controlpoints", "30");
   panel.set("softBox", 1.0);
-  CHECK_STD_STRING(panel.flag("boundary"), "spline"); // another choice does not change the picture
+  CHECK_STD_STRING(panel.flag("boundary"), "spline"); // other choices keep the boundary
   CHECK_STD_STRING(panel.flag("controlpoints"), "30");
   panel.choose("BoundaryBox", "exact");
-  CHECK_STD_STRING(panel.flag("controlpoints"), ""); // the spline's alone
+  CHECK_STD_STRING(panel.flag("controlpoints"), ""); // a flag of the spline only
   panel.choose("ClipBox", "ghost");
-  CHECK_STD_STRING(panel.flag("boundary"), "exact"); // it has the same surface
+  CHECK_STD_STRING(panel.flag("boundary"), "exact"); // ghost has the same surface
   panel.set("ghostBox", 25.0);
   CHECK_STD_STRING(panel.flag("ghost"), "0.25");
   panel.choose("ClipBox", "hole");
   CHECK_BOOL(panel.shows("ghostBox"), false);
   CHECK_BOOL(panel.shows("BoundaryBox"), false);
-  for (const char* other : {"ghost", "boundary", "hole", "holemargin"}) // as the renderer has it
+  for (const char* other : {"ghost", "boundary", "hole", "holemargin"}) // the renderer's defaults
     CHECK_STD_STRING(panel.flag(other), "");
   panel.choose("HoleBox", "sphere");
   panel.set("holemarginBox", 7.5);
   CHECK_STD_STRING(panel.flag("hole"), "sphere");
   CHECK_STD_STRING(panel.flag("holemargin"), "7.5");
-  panel.choose("ClipBox", "ghost"); // what was set is still there
+  panel.choose("ClipBox", "ghost"); // values set earlier remain
   CHECK_STD_STRING(panel.flag("ghost"), "0.25");
   CHECK_STD_STRING(panel.flag("holemargin"), "");
 
@@ -166,13 +166,13 @@ int checkClipping(const Panel& panel) {
       {"contextdensity", "0.4"}, {"margin", "1"}, {"contextsaturation", "0"}};
   for (const auto& [name, value] : expected)
     CHECK_STD_STRING(panel.flag(name.c_str()), value);
-  panel.choose("ClipBox", "none"); // a style is none of clipping
+  panel.choose("ClipBox", "none"); // context styles do not depend on clipping
   CHECK_STD_STRING(panel.flag("offset"), "");
   CHECK_STD_STRING(panel.flag("contextdensity"), "0.4");
   panel.choose("ClipBox", "cutaway");
   CHECK_STD_STRING(panel.flag("offset"), "-2.5");
 
-  // Without a focus there is nothing to clip for.
+  // Without a focus no flag of clipping is set.
   QListWidgetItem* segment = panel.find<QListWidget>("FocusList")->item(0);
   panel.set("labelsmoothingBox", 0.0);
   segment->setCheckState(Qt::Unchecked);
@@ -181,9 +181,9 @@ int checkClipping(const Panel& panel) {
   segment->setCheckState(Qt::Checked);
   CHECK_STD_STRING(panel.flag("clip"), "cutaway");
   CHECK_STD_STRING(panel.flag("margin"), "1");
-  CHECK_STD_STRING(panel.flag("labelsmoothing"), ""); // as it was chosen
+  CHECK_STD_STRING(panel.flag("labelsmoothing"), ""); // as chosen
 
-  // More digits than a box has stay as long as it is not touched.
+  // Digits beyond the box's stay until the box is changed.
   panel.settings()->SetFlag("soft", "1.23456");
   CHECK_DOUBLE(panel.find<QDoubleSpinBox>("softBox")->value(), 1.23);
   panel.choose("TransferBox", "ct-bone");
@@ -218,7 +218,7 @@ int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
   panel.choose("ClipBox", "plane");
   CHECK_STD_STRING(panel.flag("clip"), "plane");
-  CHECK_STD_STRING(panel.flag("plane"), ""); // where the focus puts it
+  CHECK_STD_STRING(panel.flag("plane"), ""); // placed by the focus
   CHECK_BOOL(panel.shows("PlaneNodeBox"), false);
   auto* combo = panel.find<QComboBox>("PlaneBox");
   combo->setCurrentIndex(1);
@@ -230,9 +230,9 @@ int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
   plane->SetNormal(0.0, 1.0, 0.0);
   panel.nodes("PlaneNodeBox")->setCurrentNode(plane);
   CHECK_BOOL(FenestraTesting::isNear(panel.flag("plane"), {0, 2, 0, 0, 1, 0}), true);
-  plane->SetOrigin(0.0, 4.0, 0.0); // it is followed
+  plane->SetOrigin(0.0, 4.0, 0.0); // the node is followed
   CHECK_BOOL(FenestraTesting::isNear(panel.flag("plane"), {0, 4, 0, 0, 1, 0}), true);
-  panel.settings()->SetNodeReferenceID(Node::PlaneRole, nullptr); // as after Repeat
+  panel.settings()->SetNodeReferenceID(Node::PlaneRole, nullptr); // like Repeat
   CHECK_INT(combo->currentIndex(), 2);
   plane->SetOrigin(0.0, 6.0, 0.0);
   CHECK_BOOL(FenestraTesting::isNear(panel.flag("plane"), {0, 4, 0, 0, 1, 0}), true);
@@ -244,7 +244,7 @@ int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
   return EXIT_SUCCESS;
 }
 
-/// Only what the renderer knows is offered.
+/// The panel offers only what the renderer supports.
 int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
   const bool automatic = abilities.flags["view"].words.contains("auto");
   CHECK_BOOL(panel.find<QComboBox>("ViewBox")->findData("auto") >= 0, automatic);
@@ -255,7 +255,7 @@ int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
     panel.choose("ViewBox", "auto");
     CHECK_STD_STRING(panel.flag("view"), "auto");
     panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Unchecked);
-    CHECK_STD_STRING(panel.flag("view"), ""); // of what?
+    CHECK_STD_STRING(panel.flag("view"), ""); // no focus
     panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Checked);
   }
   if (presets) {
@@ -279,7 +279,7 @@ int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
   return EXIT_SUCCESS;
 }
 
-/// What a scene says and is not followed is shown; files are followed once they are allowed.
+/// The panel shows withheld flags; files become flags once allowed.
 int checkWithheld(const Panel& panel) {
   const std::map<std::string, std::string> flags = panel.settings()->GetFlags();
   CHECK_BOOL(panel.shows("WithheldLabel"), false);
@@ -293,13 +293,13 @@ int checkWithheld(const Panel& panel) {
   CHECK_STD_STRING(panel.flag("transfer"), "/nowhere/colours.json");
   CHECK_STD_STRING(panel.chosen("TransferBox").toStdString(), "/nowhere/colours.json");
   CHECK_BOOL(panel.shows("AllowButton"), false);
-  panel.settings()->SetFlag("noise", "0.05"); // and so the last of it is gone
+  panel.settings()->SetFlag("noise", "0.05"); // removes the last withheld flag
   CHECK_BOOL(panel.shows("WithheldLabel"), false);
   panel.settings()->SetFlags(flags);
   return EXIT_SUCCESS;
 }
 
-/// Rendered, played, stopped in between and gone on with.
+/// A turntable is rendered, played, stopped in between and resumed.
 int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   CHECK_BOOL(panel.shows("Turntable"), abilities.turns());
   CHECK_BOOL(panel.shows("Player"), false);
@@ -323,7 +323,7 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   CHECK_INT(slider->maximum(), 2);
   panel.find<QToolButton>("PlayButton")->setChecked(true);
   CHECK_BOOL(waitFor([&] { return slider->value() == 2; }), true);
-  CHECK_BOOL(waitFor([&] { return slider->value() == 0; }), true); // around
+  CHECK_BOOL(waitFor([&] { return slider->value() == 0; }), true); // starts again
   panel.find<QToolButton>("PlayButton")->setChecked(false);
 
   frames->setValue(60);
@@ -339,7 +339,7 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   std::cout << some << " frames when it was stopped\n";
   CHECK_BOOL(some > 0 && some < 60, true);
   CHECK_BOOL(panel.shows("ResumeButton"), true);
-  turntable->SetFlag("frames", "x"); // garbage is no turntable that can go on
+  turntable->SetFlag("frames", "x"); // an invalid frame count: cannot be resumed
   CHECK_BOOL(panel.widget->session()->canResume(turntable), false);
   turntable->SetFlag("frames", "60");
   CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("ResumeButton")->click(); }), true);
@@ -363,7 +363,7 @@ int checkRenders(const Panel& panel) {
     CHECK_BOOL(panel.find<QPushButton>(enabled)->isEnabled(), true);
   CHECK_BOOL(panel.find<QPushButton>("StopButton")->isEnabled(), false);
 
-  // Other settings, and back to the first ones by Repeat.
+  // Repeat restores the settings of the first picture.
   panel.choose("ViewBox", "anterior");
   panel.choose("RigBox", "studio");
   CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("RepeatButton")->click(); }), true);
@@ -373,7 +373,7 @@ int checkRenders(const Panel& panel) {
   CHECK_BOOL(radianceOf(first).isEmpty(), false);
   CHECK_BOOL(radianceOf(panel.picture()) == radianceOf(first), true);
 
-  // A segment without a voxel: a sentence, and the picture from before stays chosen.
+  // A segment without a voxel: a message, and the earlier picture stays chosen.
   QListWidget& focus = *panel.find<QListWidget>("FocusList");
   focus.item(0)->setCheckState(Qt::Unchecked);
   focus.item(1)->setCheckState(Qt::Checked);
@@ -381,7 +381,7 @@ int checkRenders(const Panel& panel) {
   CHECK_BOOL(ends(panel, [&] { button->click(); }), true);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().contains("choose segments"), true);
   CHECK_POINTER(panel.picture(), before);
-  panel.find<QPushButton>("ShowButton")->click(); // the user has gone on
+  panel.find<QPushButton>("ShowButton")->click(); // the user moves on
   CHECK_STD_STRING(panel.find<QLabel>("StateLabel")->text().toStdString(), "");
   return EXIT_SUCCESS;
 }
@@ -427,7 +427,7 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkTurntable(panel, abilities));
   CHECK_EXIT_SUCCESS(checkRenders(panel));
 
-  // A segment added, renamed and removed elsewhere; then another segmentation.
+  // A segment is added and removed elsewhere; then the segmentation is deselected.
   QListWidget& focus = *panel.find<QListWidget>("FocusList");
   segmentation->GetSegmentation()->AddEmptySegment("Third", "Third");
   CHECK_INT(focus.count(), 3);

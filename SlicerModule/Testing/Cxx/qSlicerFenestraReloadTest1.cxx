@@ -1,5 +1,5 @@
-// The scene is closed and loaded under the open panel, in both of Slicer's ways: beside what there
-// is, and in its place. Arguments: the renderer, a folder for files, the module's library.
+// The scene is closed and loaded under the open panel, both in place of the present scene and added
+// to it. Arguments: the renderer, a folder for files, the module's library.
 
 #include "FenestraPanel.h"
 #include "FenestraTesting.h"
@@ -34,7 +34,7 @@ std::string textOf(const Panel& panel, const char* label) {
   return panel.find<QLabel>(label)->text().toStdString();
 }
 
-/// What Slicer's layout makes for ShowResult.
+/// Adds the view that Slicer's layout makes for ShowResult.
 void addPictureView(vtkMRMLApplicationLogic* application, vtkMRMLScene* scene) {
   scene->AddNewNodeByClass("vtkMRMLLayoutNode");
   vtkNew<vtkMRMLSliceLogic> view;
@@ -53,7 +53,7 @@ int render(const Panel& panel, const char* from) {
   return EXIT_SUCCESS;
 }
 
-/// Nothing is left of the scene, neither in words nor in pictures.
+/// No text and no picture of the scene is left.
 int checkClosed(const Panel& panel) {
   for (const char* label : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
     CHECK_STD_STRING(textOf(panel, label), "");
@@ -64,7 +64,7 @@ int checkClosed(const Panel& panel) {
   return EXIT_SUCCESS;
 }
 
-/// As it was saved, with the picture chosen that is seen.
+/// The scene is as saved, and the visible picture is the chosen one.
 int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   vtkMRMLNode* volume = scene->GetFirstNodeByName("Ball");
   vtkMRMLNode* segmentation = scene->GetFirstNodeByName("Segmentation");
@@ -94,7 +94,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   qSlicerApplication application(argc, argv);
   if (argc < 4)
     return EXIT_FAILURE;
-  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // as its module does
+  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // like the converters' module
   converters->RegisterConverterRule(
       vtkSmartPointer<vtkBinaryLabelmapToClosedSurfaceConversionRule>::New());
   converters->RegisterConverterRule(
@@ -120,7 +120,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   panel.find<QSpinBox>("WidthBox")->setValue(48);
   panel.find<QSpinBox>("HeightBox")->setValue(40);
 
-  // Two pictures; the one that is chosen is the one that is seen, and saved so.
+  // Two pictures; the chosen one is visible, and saved so.
   CHECK_EXIT_SUCCESS(render(panel, "left"));
   Node* const first = panel.picture();
   CHECK_EXIT_SUCCESS(render(panel, "right"));
@@ -135,18 +135,18 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
 
   scene->Clear(false);
   CHECK_EXIT_SUCCESS(checkClosed(panel));
-  scene->RemoveNode(scene->GetFirstNodeByClass("vtkMRMLLayoutNode")); // as if Slicer were new
+  scene->RemoveNode(scene->GetFirstNodeByClass("vtkMRMLLayoutNode")); // like a new Slicer
   scene->AddNewNodeByClass("vtkMRMLLayoutNode");
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), false), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
-  CHECK_EXIT_SUCCESS(render(panel, "right")); // whose words go, too
+  CHECK_EXIT_SUCCESS(render(panel, "right")); // its messages disappear as well
   panel.nodes("RendersBox")->setCurrentNode(nullptr);
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
   scene->Clear(false);
   CHECK_EXIT_SUCCESS(checkClosed(panel));
 
-  // Renders end with their scene, those that wait, too.
+  // Renders end with their scene, also waiting ones.
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
   panel.find<QSpinBox>("SamplesBox")->setValue(1000000);
   panel.find<QPushButton>("RenderButton")->click();

@@ -1,5 +1,5 @@
-// The whole path but the panel: a scene, a preview, renders, and their results in the scene, the
-// same bit for bit as those of the command line on the scene as Slicer saves it.
+// The whole path except the panel: a scene, a preview, renders, and their results in the scene, bit
+// for bit equal to the command line's on the scene as Slicer saves it.
 // Arguments: the renderer, a folder for files.
 
 #include "FenestraTesting.h"
@@ -30,7 +30,7 @@ using FenestraTesting::waitFor;
 using Node = vtkMRMLFenestraRenderNode;
 using Kind = qFenestraOutcome::Kind;
 
-/// What a session said.
+/// Records the signals of a session.
 struct Heard {
   explicit Heard(qSlicerFenestraSession& session) {
     QObject::connect(&session, &qSlicerFenestraSession::ended, &session,
@@ -57,7 +57,7 @@ struct Heard {
   QImage preview;
 };
 
-/// A node's data and the node that says where they are, as Slicer saves them.
+/// Saves a node's data, and adds the storage node, as Slicer does.
 void store(vtkMRMLScene* scene, vtkMRMLStorableNode* node, const QString& file) {
   const auto storage = vtkSmartPointer<vtkMRMLStorageNode>::Take(node->CreateDefaultStorageNode());
   storage->SetFileName(file.toUtf8().constData());
@@ -112,7 +112,7 @@ int checkResult(vtkMRMLScene* scene, Node* render) {
   return EXIT_SUCCESS;
 }
 
-/// Another scene gives a node the ID that this render has: nothing of the render is its.
+/// Another scene has a node with this render's ID: results of the render are not shown for it.
 int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* render) {
   const std::string id = render->GetID();
   const QString file = session.results().fileOf(render, "png");
@@ -126,7 +126,7 @@ int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node
   CHECK_BOOL(session.results().fileOf(stranger, "png").isEmpty(), true);
   CHECK_BOOL(session.results().framesOf(stranger).isEmpty(), true);
   CHECK_BOOL(session.canResume(stranger), false);
-  session.closeScene(); // as the panel does then
+  session.closeScene(); // like the panel
   CHECK_BOOL(waitFor([&] { return !QFileInfo::exists(file); }), true);
   return EXIT_SUCCESS;
 }
@@ -141,7 +141,7 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   const QString folder = QString(argv[2]) + "/session";
   QDir(folder).removeRecursively();
   QDir().mkpath(folder);
-  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // as its module does
+  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // like the converters' module
   converters->RegisterConverterRule(
       vtkSmartPointer<vtkBinaryLabelmapToClosedSurfaceConversionRule>::New());
   converters->RegisterConverterRule(
@@ -165,7 +165,7 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   Heard heard(session);
   session.preview(settings);
   CHECK_BOOL(waitFor([&] { return heard.previews > 0; }), true);
-  CHECK_INT(heard.preview.width(), 256); // of the picture's shape
+  CHECK_INT(heard.preview.width(), 256); // the picture's aspect
   CHECK_INT(heard.preview.height(), 213);
   const int before = heard.previews;
   settings->SetFocus({ids[0]});
@@ -186,7 +186,7 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   CHECK_STD_STRING(second->GetFlag("seed"), "5");
   CHECK_EXIT_SUCCESS(compareWithCommandLine(scene, second, program, folder));
 
-  // Stopped: what there is is kept, soon.
+  // Stopped: finished samples are kept, soon.
   settings->SetFlag("samples", "100000000");
   Node* long_ = session.render(settings);
   heard.progress = 0;

@@ -1,4 +1,4 @@
-// The node that keeps what a picture was made of: written, read, copied.
+// The node of settings and results: written, read, copied.
 
 #include "FenestraFlags.h"
 #include "FenestraTesting.h"
@@ -11,7 +11,7 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-/// A value as a flag of this kind has one.
+/// Valid value of a flag of this kind.
 std::string example(FenestraScene::FlagKind kind) {
   using Kind = FenestraScene::FlagKind;
   switch (kind) {
@@ -32,7 +32,7 @@ std::string example(FenestraScene::FlagKind kind) {
   }
 }
 
-/// The one node of a scene that says this, as a stored scene is read.
+/// Reads a scene's text, and returns its only render node.
 Node* readIn(vtkMRMLScene* scene, const std::string& text) {
   scene->RegisterNodeClass(vtkSmartPointer<Node>::New());
   scene->SetLoadFromXMLString(1);
@@ -47,7 +47,7 @@ std::string written(vtkMRMLScene* scene) {
   return scene->GetSceneXMLString();
 }
 
-/// A scene of anybody's: its files and its garbage are kept, and not followed.
+/// Scene from an unknown source: files and invalid values are kept, but are no flags.
 int testWithheld() {
   const std::string text =
       R"(<MRML version="Slicer 5.2"><FenestraRender id="r" name="r" )"
@@ -67,13 +67,13 @@ int testWithheld() {
   vtkNew<Node> copy;
   copy->Copy(node);
   CHECK_BOOL(copy->GetWithheld() == node->GetWithheld(), true);
-  node->SetFlag("lights", "studio"); // the user chooses another one
+  node->SetFlag("lights", "studio"); // the user chooses another value
   CHECK_INT(static_cast<int>(node->GetWithheld().count("lights")), 0);
   node->AllowFiles();
   CHECK_STD_STRING(node->GetFlag("transfer"), "/etc/passwd");
   CHECK_STD_STRING(node->GetFlag("frames"), "");
   CHECK_BOOL(node->WithholdsFiles(), false);
-  CHECK_INT(static_cast<int>(node->GetWithheld().size()), 2); // garbage
+  CHECK_INT(static_cast<int>(node->GetWithheld().size()), 2); // invalid values
   return EXIT_SUCCESS;
 }
 
@@ -109,7 +109,7 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   CHECK_BOOL(read->GetFocus() == first->GetFocus(), true);
   CHECK_NOT_NULL(read->GetNodeReference(Node::VolumeRole));
 
-  // Every flag, and what was measured.
+  // Every flag, and the measures.
   std::map<std::string, std::string> all;
   for (const FenestraScene::Flag& flag : FenestraScene::flags())
     all[flag.name] = example(flag.kind);
@@ -132,7 +132,7 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   vtkNew<Node> copy;
   copy->Copy(first);
   CHECK_BOOL(copy->GetFlags() == first->GetFlags(), true);
-  // Nothing changed: nobody is told.
+  // No change, no event.
   const vtkMTimeType before = first->GetMTime();
   first->SetFlag("clip", "surface");
   CHECK_BOOL(first->GetMTime() == before, true);

@@ -1,4 +1,4 @@
-// What the renderer is handed, and what a user is told.
+// Data for the renderer, and messages for the user.
 
 #include "FenestraTesting.h"
 
@@ -21,9 +21,9 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-const auto folder = std::filesystem::temp_directory_path(); // nothing passes through it here
+const auto folder = std::filesystem::temp_directory_path(); // no data pass through it here
 
-/// What is said where something is missing; empty where nothing is.
+/// Message about missing data; empty: nothing is missing.
 std::string complaint(vtkSlicerFenestraLogic* logic, Node* node) {
   try {
     logic->Snapshot(node, folder);
@@ -51,7 +51,7 @@ int testCamera(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* setting
   CHECK_POINTER(logic->GetFollowedCamera(settings), camera);
   auto flags = logic->GetFlags(settings);
   CHECK_STD_STRING(flags["projection"], "orthographic");
-  CHECK_DOUBLE(std::stod(flags["scale"]), 1.0 / 3.0); // every digit
+  CHECK_DOUBLE(std::stod(flags["scale"]), 1.0 / 3.0); // all digits
   CHECK_BOOL(flags.count("angle") == 0, true);
   camera->SetParallelProjection(0);
   flags = logic->GetFlags(settings);
@@ -123,7 +123,7 @@ int testPlane(vtkMRMLScene* scene) {
   return EXIT_SUCCESS;
 }
 
-/// A picture knows nothing of a turntable's own flags.
+/// Flags of turntables do not reach a picture's node.
 int testTurntable(vtkSlicerFenestraLogic* logic, Node* settings) {
   settings->SetFlag("frames", "12");
   settings->SetFlag("degrees", "90");

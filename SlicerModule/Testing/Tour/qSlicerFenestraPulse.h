@@ -3,7 +3,7 @@
 #include <QElapsedTimer>
 #include <QTimer>
 
-/// The longest time that the event loop did not run.
+/// Measures the longest pause of the event loop.
 class qSlicerFenestraPulse {
 public:
   qSlicerFenestraPulse();

@@ -94,7 +94,7 @@ bool qSlicerFenestraTour::loadPhantom() {
   if (!qSlicerApplication::application()->coreIOManager()->loadScene(m_report + "/knee/knee.mrml"))
     return false;
   auto* fenestra = qSlicerApplication::application()->moduleLogic("Fenestra");
-  vtkSlicerFenestraLogic::SafeDownCast(fenestra)->ShowNewestVolume(); // as the sample's button does
+  vtkSlicerFenestraLogic::SafeDownCast(fenestra)->ShowNewestVolume(); // like the sample's button
   settle(2000);
   photograph("2-loaded");
   return true;
@@ -108,7 +108,7 @@ bool qSlicerFenestraTour::seeModule() {
   return true;
 }
 
-/// With the mouse, on the check box of its row.
+/// Chooses segments with the mouse, on the check boxes of their rows.
 bool qSlicerFenestraTour::chooseCartilage() {
   auto* list = m_panel->findChild<QListWidget*>("FocusList");
   const QList<QListWidgetItem*> items = list->findItems("cartilage", Qt::MatchContains);
@@ -134,7 +134,7 @@ bool qSlicerFenestraTour::chooseCartilage() {
   return true;
 }
 
-/// Without and with Slicer's own volume rendering, which takes long where no graphics card draws.
+/// Measures without and with Slicer's own volume rendering, which is slow without a graphics card.
 bool qSlicerFenestraTour::turnCamera() {
   showVolumeRendering(false);
   const int alone = slowestTurn();
@@ -186,12 +186,12 @@ bool qSlicerFenestraTour::render() {
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
   m_figures["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
-  settle(8000); // volume rendering in a new view takes long where no graphics card draws
+  settle(8000); // volume rendering of a new view is slow without a graphics card
   photograph("7-result");
   return lastRender() && !radianceOf(lastRender()).isEmpty();
 }
 
-/// Without Slicer's own volume rendering: the pauses are the module's.
+/// Hides Slicer's own volume rendering, so that pauses are the module's.
 bool qSlicerFenestraTour::stopRender() {
   showVolumeRendering(false);
   Node* const settings = this->settings();
@@ -224,7 +224,7 @@ bool qSlicerFenestraTour::stopRender() {
   return lastRender() != nullptr;
 }
 
-/// Beside the first picture, which is the best so far.
+/// Shows the best picture so far, the first, beside the previews.
 bool qSlicerFenestraTour::changeClipping() {
   showVolumeRendering(false);
   m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(firstRender());
@@ -250,7 +250,7 @@ bool qSlicerFenestraTour::changeClipping() {
          settings()->GetFlag("hole").empty();
 }
 
-/// Where the renderer knows how.
+/// Tests the automatic view, if the renderer supports it.
 bool qSlicerFenestraTour::changeView() {
   bool good = true;
   if (m_panel->findChild<QComboBox*>("ViewBox")->findData("auto") >= 0)
@@ -283,7 +283,7 @@ bool qSlicerFenestraTour::renderMeasured() {
   return measures->isVisible() && measures->text().contains("Focus seen");
 }
 
-/// Where the renderer has turntables: a few small frames, played.
+/// Renders and plays a few small frames, if the renderer has turntables.
 bool qSlicerFenestraTour::renderTurntable() {
   if (m_panel->findChild<QWidget*>("Turntable")->isHidden())
     return true;
@@ -365,7 +365,7 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   return m_figures["repeatedBitForBit"].toBool() && m_figures["readBack"].toBool();
 }
 
-/// The renderer as a command line module, in the panel that Slicer makes of its description.
+/// Runs the renderer as a command line module, in the panel that Slicer makes of its description.
 bool qSlicerFenestraTour::runCommand() {
   auto* application = qSlicerApplication::application();
   auto* module = dynamic_cast<qSlicerCLIModule*>(application->moduleManager()->module("fenestra"));
@@ -412,8 +412,8 @@ bool qSlicerFenestraTour::runCommand() {
          node->GetErrorText().empty() && image && image->GetDimensions()[0] == 512;
 }
 
-/// As with the slice view's menu: coronal and turned to the picture's plane, without the segments'
-/// outlines.
+/// Turns the slice view as with its menu: coronal, then to the picture's plane, without outlines of
+/// segments.
 void qSlicerFenestraTour::faceOutput(vtkMRMLVolumeNode* output) {
   auto* application = qSlicerApplication::application();
   std::vector<vtkMRMLNode*> outlines;

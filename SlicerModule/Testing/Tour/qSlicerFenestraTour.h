@@ -1,5 +1,5 @@
 #pragma once
-// What the tutorial tells a user to do, done with the mouse, and what comes of it.
+// Steps of the tutorial, done with the mouse, and checks of their results.
 
 #include "qSlicerFenestraPulse.h"
 #include "qSlicerFenestraUser.h"
@@ -10,9 +10,9 @@ class vtkMRMLVolumeNode;
 
 class qSlicerFenestraTour : private qSlicerFenestraUser {
 public:
-  /// `report`: a folder with the phantom's scene in knee/; pictures and tour.json are left there.
+  /// `report`: folder with the phantom's scene in knee/; receives pictures and tour.json.
   explicit qSlicerFenestraTour(const QString& report);
-  /// Whether every step did what the tutorial says.
+  /// True if every step did what the tutorial says.
   bool run();
 
 private:

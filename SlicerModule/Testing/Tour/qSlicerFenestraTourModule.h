@@ -5,8 +5,7 @@
 
 #include "qSlicerFenestraTourModuleExport.h"
 
-/// Starts the tour as soon as the application runs, where FENESTRA_TOUR names a folder for its
-/// report.
+/// Starts the tour once the application runs, if FENESTRA_TOUR names a folder for its report.
 class Q_SLICER_QTMODULES_FENESTRATOUR_EXPORT qSlicerFenestraTourModule
     : public qSlicerLoadableModule {
   Q_OBJECT

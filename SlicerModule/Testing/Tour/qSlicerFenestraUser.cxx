@@ -33,7 +33,7 @@ std::vector<vtkMRMLNode*> renderNodes() {
   return nodes;
 }
 
-/// How many times as long as usual everything may take.
+/// Factor on all waiting times.
 int patience() {
   return std::max(1, qEnvironmentVariableIntValue("FENESTRA_TOUR_PATIENCE"));
 }
@@ -46,7 +46,7 @@ void processEvents() {
 
 qSlicerFenestraUser::qSlicerFenestraUser(const QString& report)
     : m_report(report), m_window(qSlicerApplication::application()->mainWindow()) {
-  m_window->setGeometry(m_window->screen()->geometry()); // there may be nobody to maximize it
+  m_window->setGeometry(m_window->screen()->geometry()); // there may be no window manager
 }
 
 bool qSlicerFenestraUser::openModule() {
@@ -70,7 +70,7 @@ bool qSlicerFenestraUser::click(const char* button) {
   if (!found || !found->isEnabled())
     return false;
   QTest::mousePress(found, Qt::LeftButton);
-  settle(50); // as a finger does
+  settle(50); // like a finger
   QTest::mouseRelease(found, Qt::LeftButton);
   return true;
 }
@@ -96,10 +96,10 @@ void qSlicerFenestraUser::scrollTo(const char* widget) {
 
 void qSlicerFenestraUser::fold(const char* section, bool folded) {
   m_panel->findChild<ctkCollapsibleButton*>(section)->setCollapsed(folded);
-  settle(300); // it is laid out anew
+  settle(300); // time for the new layout
 }
 
-/// What the preview makes of a change.
+/// Photographs the preview after a change.
 bool qSlicerFenestraUser::photographPreview(const char* name, const std::function<bool()>& action) {
   const int before = m_previews;
   if (!action() || !waitFor([&] { return m_previews > before; }))

@@ -1,6 +1,5 @@
 #pragma once
-// A user of the panel: hands on the mouse, eyes on the window, and what there is to see in the
-// scene.
+// A user of the panel: mouse actions, photographs of the window, and the nodes of the scene.
 
 #include <QString>
 
@@ -12,11 +11,11 @@ class vtkMRMLFenestraRenderNode;
 
 class qSlicerFenestraUser {
 public:
-  /// `report`: the folder that photographs go to.
+  /// `report`: folder for photographs.
   explicit qSlicerFenestraUser(const QString& report);
 
 protected:
-  /// From here on there is the panel, and what it does is counted.
+  /// Opens the module, and starts counting previews and renders.
   bool openModule();
 
   bool click(const char* button);
@@ -31,11 +30,11 @@ protected:
 
   vtkMRMLFenestraRenderNode* settings() const;
   vtkMRMLFenestraRenderNode* firstRender() const;
-  vtkMRMLFenestraRenderNode* lastRender() const; ///< that has a picture
+  vtkMRMLFenestraRenderNode* lastRender() const; ///< last one with a picture
 
   QString m_report;
   QMainWindow* m_window;
   qSlicerFenestraModuleWidget* m_panel = nullptr;
   int m_previews = 0;
-  int m_ended = 0; ///< renders
+  int m_ended = 0; ///< renders ended
 };

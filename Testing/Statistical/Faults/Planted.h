@@ -1,5 +1,5 @@
 #pragma once
-// The switch of the planted errors (README.md here).
+// Switch of the planted errors (README.md here).
 
 #include <cstdint>
 #include <string_view>
@@ -7,7 +7,7 @@
 
 namespace fenestra::testing {
 
-/// Tells names apart faster than their text (FNV-1a).
+/// Key of a name (FNV-1a), compared faster than its text.
 constexpr std::uint32_t faultKey(std::string_view name) {
   std::uint32_t key = 2166136261U;
   for (const char c : name)
@@ -15,7 +15,7 @@ constexpr std::uint32_t faultKey(std::string_view name) {
   return key;
 }
 
-/// Key of the error that is on; 0 for none.
+/// Key of the active error; 0: none.
 inline std::uint32_t plantedFault = 0;
 
 } // namespace fenestra::testing
