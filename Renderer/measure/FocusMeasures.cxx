@@ -14,7 +14,7 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// The greatest depth that the focus has at a pixel and its neighbours.
+/// Greatest depth of the focus at a pixel and its neighbours.
 double deepestAround(const std::vector<double>& depth, std::size_t width, std::size_t column,
                      std::size_t row) {
   double deepest = -infinity;
@@ -77,7 +77,7 @@ double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::ui
 std::optional<double> focusLight(const RenderScene& scene, const RenderScene& alone,
                                  const FocusPoints& focus, std::uint64_t seed,
                                  const StopFlag& stop) {
-  constexpr std::size_t most = 4096; // points, of those that are kept
+  constexpr std::size_t most = 4096; // kept points
   constexpr std::uint64_t lightsEach = 4;
   std::vector<const FocusPoints::Point*> points;
   for (const FocusPoints::Point& point : focus.points())

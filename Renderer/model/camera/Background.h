@@ -1,5 +1,5 @@
 #pragma once
-// Background: radiance of an eye ray that passes through the volume.
+// The background, shown by eye rays that pass through the volume.
 
 #include "model/medium/VolumeProperty.h"
 
@@ -9,18 +9,18 @@ struct Background {
   enum class Kind { color, gradient, transparent, environment };
   Kind kind = Kind::color;
   Rgb color = Rgb::Zero();                     ///< linear
-  Rgb bottom = Rgb::Zero(), top = Rgb::Zero(); ///< of a gradient: display-encoded (sRGB)
+  Rgb bottom = Rgb::Zero(), top = Rgb::Zero(); ///< of a gradient; display-encoded (sRGB)
 
-  /// From one display-encoded colour at the picture's lower edge to another at its upper edge, as
-  /// Slicer's views have it; a plain colour where both are the same.
+  /// Gradient between display-encoded colours at the picture's lower and upper edge, like Slicer's
+  /// views; a plain colour if both are equal.
   static Background gradient(const Rgb& bottom, const Rgb& top) {
     if ((bottom == top).all())
       return {Kind::color, decodeSrgb(bottom)};
     return {Kind::gradient, Rgb::Zero(), bottom, top};
   }
 
-  /// A gradient's linear colour at a height from 0 (the lower edge) to 1: VTK interpolates the
-  /// encoded colours.
+  /// Linear colour of a gradient at a height from 0 (the lower edge) to 1: the encoded colours are
+  /// interpolated, as in VTK.
   Rgb at(double height) const { return decodeSrgb(bottom + height * (top - bottom)); }
 };
 

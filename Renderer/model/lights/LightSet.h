@@ -61,8 +61,8 @@ public:
   /// `choice`, in [0, 1), selects the light.
   std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
 
-  /// Sample of an environment map; empty without maps. `choice`: [0, 1) less the shares of all area
-  /// and directional lights.
+  /// Sample of an environment map; empty without maps. `choice`: a uniform number less the shares
+  /// of all area and directional lights.
   std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
   /// Radiance and density of all environments together.

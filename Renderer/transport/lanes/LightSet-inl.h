@@ -1,5 +1,5 @@
-// The lights as many paths meet them: model/lights/LightSet.h in lanes. Compiled once for each
-// instruction set (see WideEvents.cxx).
+// Lights for many paths: lights/LightSet.h in lanes. Compiled once for each instruction set (see
+// WideEvents.cxx).
 
 #if defined(FENESTRA_WIDE_LIGHTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_WIDE_LIGHTS_INL_H
@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-/// LightSample in lanes; radiance 0 where there is none.
+/// LightSample in lanes; radiance 0: no sample.
 struct LightDraw {
   F3 direction, radiance;
   F distance;
@@ -22,7 +22,7 @@ struct LightDraw {
   M delta;
 };
 
-/// One number a lane, to be handled one by one.
+/// One number a lane, in memory, for work lane by lane.
 struct alignas(64) LaneNumbers : std::array<float, HWY_MAX_BYTES / sizeof(float)> {
   LaneNumbers() = default;
   explicit LaneNumbers(F v) { hn::Store(v, floats, data()); }
@@ -37,7 +37,7 @@ public:
     return !m_scene.areas.empty() || !m_scene.directionals.empty() || m_scene.maps != nullptr;
   }
 
-  /// One light a lane, as seen from a local point. `choice` decides on the light.
+  /// Draws one light for each lane of `which`, seen from a local point. `choice` selects the light.
   LightDraw draw(M which, const F3& point, F choice, F u, F v) const {
     const F zero = hn::Zero(floats);
     const F far = all(std::numeric_limits<float>::infinity());
@@ -65,8 +65,8 @@ public:
     return drawn;
   }
 
-  /// Radiance that scattered rays from local points meet before `distance`, or at infinity, weighed
-  /// against drawing it (Veach 1997, eq. 9.8).
+  /// Light that scattered rays from local points meet before `distance`, or at infinity, weighted
+  /// against drawing that light (Veach 1997, eq. 9.8).
   F3 arriving(M which, const F3& origin, const F3& direction, F distance, F scatterPdf) const {
     const F zero = hn::Zero(floats);
     F3 sum{zero, zero, zero};
@@ -96,7 +96,7 @@ private:
     const F distance = hn::Sqrt(distance2);
     const F3 direction = hn::Div(all(1.0F), distance) * d;
     const F cosine = hn::Neg(dot(all3(light.normal), direction));
-    // Not behind the light, in its plane or on it (where nothing is a number).
+    // False behind the light, in its plane, and on the light (NaN).
     const M lit = both(mine, hn::Gt(cosine, hn::Zero(floats)));
     const F pdf = hn::Div(hn::Mul(all(light.share), distance2), hn::Mul(all(light.area), cosine));
     drawn.direction = select(lit, direction, drawn.direction);

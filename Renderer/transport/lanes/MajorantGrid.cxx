@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-/// An array of cells with a border of one.
+/// Array of cells with a border one cell wide.
 struct Bordered {
   Size3 size;
 
@@ -16,20 +16,20 @@ struct Bordered {
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
     return static_cast<std::size_t>(x + size.x() * (y + size.y() * z));
   }
-  /// Calls visit(x, y, z) for all of a layer that are not border.
+  /// Calls visit(x, y, z) for all cells of a layer inside the border.
   template <typename Visit>
   void forEachInLayer(std::int64_t z, Visit&& visit) const {
     for (std::int64_t y = 1; y < size.y() - 1; ++y)
       for (std::int64_t x = 1; x < size.x() - 1; ++x)
         visit(x, y, z);
   }
-  /// In the order of their indices.
+  /// Visits inner cells in the order of their indices.
   template <typename Visit>
   void forEachInner(Visit&& visit) const {
     for (std::int64_t z = 1; z < size.z() - 1; ++z)
       forEachInLayer(z, visit);
   }
-  /// In any order.
+  /// Visits inner cells in any order.
   template <typename Visit>
   void forEachInParallel(Visit&& visit) const {
     tbb::parallel_for(std::int64_t{1}, size.z() - 1,
@@ -37,21 +37,21 @@ struct Bordered {
   }
 };
 
-/// The number of empty cells around each empty one inside the border: two sweeps (Rosenfeld and
-/// Pfaltz 1966), exact for distances that count diagonals as 1. Nothing is known beyond the border.
-/// `filled` cells have -1.
+/// Number of empty cells around each empty cell inside the border, -1 for filled cells: two sweeps
+/// (Rosenfeld and Pfaltz 1966), exact for distances that count diagonals as 1. Nothing beyond the
+/// border counts as empty.
 std::vector<std::int32_t> emptyAround(const Bordered& at, const std::vector<float>& majorants) {
   constexpr std::int32_t unknown = 1000000;
   std::vector<std::int32_t> cells(at.count(), 0);
   at.forEachInner([&](auto x, auto y, auto z) {
     cells[at.index(x, y, z)] = majorants[at.index(x, y, z)] > 0.0F ? -1 : unknown;
   });
-  // `side` is -1 for the neighbours that the first sweep has seen, 1 for the second's.
+  // `side`: -1 for neighbours visited earlier in the first sweep, 1 in the second.
   const auto relax = [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t side) {
     std::int32_t& cell = cells[at.index(x, y, z)];
     if (cell < 0)
       return;
-    // A filled neighbour allows none, an empty one itself and as many as are around it.
+    // A filled neighbour (-1) allows 0; an empty neighbour with n around allows n + 1.
     const auto neighbour = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
       cell = std::min(cell, cells[at.index(x + dx, y + dy, z + dz)] + 1);
     };
@@ -69,7 +69,7 @@ std::vector<std::int32_t> emptyAround(const Bordered& at, const std::vector<floa
   return cells;
 }
 
-/// Each cell inside the border becomes the greatest of the 27 around it.
+/// Replaces each cell inside the border by the maximum of the 27 cells centred there.
 void dilate(const Bordered& at, std::vector<float>& cells, std::vector<float>& room) {
   for (const std::size_t stride : {at.index(1, 0, 0), at.index(0, 1, 0), at.index(0, 0, 1)}) {
     at.forEachInParallel([&](auto x, auto y, auto z) {
@@ -80,7 +80,7 @@ void dilate(const Bordered& at, std::vector<float>& cells, std::vector<float>& r
   }
 }
 
-/// How far a cell's bound reaches, and the bound there.
+/// Reach of each cell, and the bound that holds within the reach.
 struct Reach {
   std::vector<float> bound;
   std::vector<std::uint8_t> cells;
@@ -99,7 +99,7 @@ public:
       });
   }
 
-  /// The mean of those from (x, y, z) that are at most `reach` away, none beyond the border.
+  /// Mean over the inner cells at most `reach` away from (x, y, z).
   float mean(std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t reach) const {
     const Size3 low = (Size3(x, y, z).array() - reach).max(1);
     const Size3 high = (Size3(x, y, z).array() + reach).min(m_at.size.array() - 2);
@@ -119,9 +119,9 @@ private:
   std::vector<double> m_sums;
 };
 
-/// The reach that costs least, a mm: of steps into cells, and of the null collisions by which a
-/// bound is looser than the cells' own. A lane passes some 0.7 edges of a single cell, and those of
-/// its reach. A step costs `stepCost` of a look-up (measured; it changes no expectation).
+/// Chooses per cell the reach r of least cost per mm, in look-ups: stepCost / (edge (0.7 + r)) for
+/// steps, plus bound_r - mean majorant for null collisions. 0.7 edges: mean chord of a cell.
+/// stepCost: cost of a step relative to a look-up (measured; changes no expectation).
 Reach findReach(const Bordered& at, const std::vector<float>& majorants,
                 const std::vector<bool>& cut, double edge) {
   constexpr double stepCost = 0.15;
@@ -131,9 +131,9 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
   std::vector<float> bounds(majorants);
   std::vector<float> room(at.count(), 0.0F);
   for (std::size_t i = 0; i < at.count(); ++i)
-    if (cut[i]) // is walked alone
+    if (cut[i]) // cut cells are walked alone
       bounds[i] = std::numeric_limits<float>::infinity();
-  // A cell that gains neither by one more nor by two is taken not to gain by three.
+  // A cell that gains by neither r + 1 nor r + 2 is assumed not to gain by r + 3.
   std::atomic<bool> some = true;
   for (std::uint32_t reach = 1; some && reach <= WideCells::mostReach; ++reach) {
     some = false;
@@ -156,12 +156,12 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
 }
 
 std::uint32_t biasFor(float greatest) {
-  constexpr std::uint32_t exponents = 31; // one is kept for rounding up
+  constexpr std::uint32_t exponents = 31; // 32 fit; one is left for rounding up
   const std::uint32_t exponent = std::bit_cast<std::uint32_t>(greatest) >> 23;
   return (exponent - std::min(exponent, exponents - 1)) << 23;
 }
 
-/// Not below the majorant.
+/// Code of a bound >= majorant.
 std::uint32_t majorantCode(float majorant, std::uint32_t bias) {
   const auto bits = std::bit_cast<std::uint32_t>(majorant);
   constexpr std::uint32_t below = (1U << WideCells::majorantShift) - 1;

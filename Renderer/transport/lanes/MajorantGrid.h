@@ -1,9 +1,8 @@
 #pragma once
-// The majorants as lanes walk them: 16 bits a cell, as lanes enter more cells than they fetch
-// voxels and these should stay in the cache. A cell knows how far around it there is nothing, or
-// its majorant holds, so that a lane leaves many cells in one step: all where it is empty, and
-// elsewhere as many as a looser majorant is worth. Dense matter is walked cell by cell, thin matter
-// in blocks.
+// Majorants for lanes: 16 bits a cell, so that cells stay in the cache, as lanes enter more cells
+// than they fetch voxels. A cell stores its reach: to how many cells on every side the majorant
+// holds. A lane leaves all of the reach in one step. Empty cells have the greatest reach, others as
+// much as a looser majorant is worth: dense matter is walked cell by cell, thin matter in blocks.
 
 #include "transport/readable/MajorantGrid.h"
 
@@ -13,29 +12,27 @@
 namespace fenestra {
 
 struct WideCells {
-  /// Bits of a code of 0 and above, from the lowest: whether keep is to be asked, `reach` (3), and
-  /// the majorant (11: a float's bits from the 17th on, counted from `bias`). 0 is an empty cell.
+  /// Bits of a code > 0, from the lowest: cut (1), reach (3), majorant (11: a float's bits from bit
+  /// 17 on, less `bias`). Code 0: an empty cell of reach 0.
   static constexpr int reachBits = 3, majorantShift = 17;
   static constexpr std::uint32_t mostReach = (1U << reachBits) - 1;
 
   struct Cell {
-    float majorant; ///< mm^-1, rounded up; 0 where the cell is empty
-    std::uint32_t
-        reach; ///< so many cells to every side, diagonals included, are bounded by it, too
-    bool cut;  ///< clipping may remove part of it: ask keep
+    float majorant;      ///< mm^-1, rounded up; 0: empty cell
+    std::uint32_t reach; ///< cells to every side, diagonals included, with the same bound
+    bool cut;            ///< clipping may remove part of the cell: query keep
   };
 
   WideCells() = default;
   explicit WideCells(const MajorantGrid& majorants);
 
-  /// Which the code says: what lanes do by themselves (WideTracker.cxx).
+  /// Decodes codes[place]; lanes have a decoder of their own (WideTracker.cxx).
   Cell cell(std::size_t place) const;
 
-  /// With a border of empty cells around them, and one more at the end, for lanes read two at a
-  /// time. A negative code is the upper half of a float: the number of empty cells around an empty
-  /// one, negated.
+  /// Codes of all cells, with a border of empty cells, and one code more at the end, as lanes read
+  /// two at a time. A negative code is the upper half of a float: -reach of an empty cell.
   std::vector<std::int16_t> codes;
-  std::uint32_t bias = 0; ///< bits of a float
+  std::uint32_t bias = 0; ///< float bits, subtracted from a majorant's
 };
 
 } // namespace fenestra

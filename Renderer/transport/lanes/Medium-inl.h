@@ -1,5 +1,5 @@
-// Lookups of a lane at a point in index space: the extinction, and the share that clipping keeps.
-// Compiled once for each instruction set (see WideTracker.cxx).
+// Look-ups of lanes at points in index space: extinction, and keep. Compiled once for each
+// instruction set (see Tracker.cxx).
 
 #if defined(FENESTRA_WIDE_LOOKUP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_WIDE_LOOKUP_INL_H
@@ -16,13 +16,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-/// Indices as numbers in memory.
+/// Indices of lanes, stored in memory.
 struct alignas(64) Indices : std::array<std::int32_t, HWY_MAX_BYTES / sizeof(std::int32_t)> {
   explicit HWY_INLINE Indices(I index) { hn::Store(index, ints, data()); }
 };
 
-/// A number from each of `count` places, which need not be aligned to it. Loads one by one are less
-/// work for the processor than gathers, once the indices are in memory.
+/// Loads a Number from each of `count` places, aligned or not. Loads one by one are less work for
+/// the processor than gathers, once the indices are in memory.
 template <typename Number, std::size_t count, typename Element>
 HWY_INLINE auto loadEach(const Element* memory, const std::int32_t* index) {
   constexpr hn::CappedTag<Number, count> d;
@@ -35,18 +35,18 @@ HWY_INLINE auto loadEach(const Element* memory, const std::int32_t* index) {
 #endif
 }
 
-/// 32 bits from memory[i] on for each i.
+/// Loads 32 bits from memory[i] on for each i.
 template <typename Element>
 HWY_INLINE I loadInts(const Element* memory, const Indices& index) {
   return loadEach<std::int32_t, hn::MaxLanes(ints)>(memory, index.data());
 }
 
-/// Two floats that lie together, of each lane.
+/// Two floats a lane, neighbours in memory.
 struct Pairs {
   F first, second;
 };
 
-/// memory[i] and memory[i + 1] for each i.
+/// Loads memory[i] and memory[i + 1] for each i.
 HWY_INLINE Pairs loadPairs(const float* memory, const Indices& index) {
 #if HWY_TARGET == HWY_SCALAR
   return {hn::Set(floats, memory[index[0]]), hn::Set(floats, memory[index[0] + 1])};
@@ -58,10 +58,10 @@ HWY_INLINE Pairs loadPairs(const float* memory, const Indices& index) {
 #endif
 }
 
-/// The voxels around a point: four rows along x, where `first` begins and `second` goes on.
+/// The eight voxels around a point: four rows of two along x.
 using Corners = std::array<Pairs, 4>;
 
-/// How far each row's beginning is from the first one's, in voxels.
+/// Offset of each row from the first row, in voxels.
 HWY_INLINE std::array<std::int32_t, 4> rowsOf(const WideField& field) {
   const std::int32_t up = field.axes[1].stride;
   const std::int32_t deep = field.axes[2].stride;
@@ -77,8 +77,7 @@ HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, I firs
   return c;
 }
 
-/// Corners from voxels of 16 bits: one load of 32 bits takes two; `lower` and `upper` make floats
-/// of them.
+/// Corners of 16-bit voxels: 32 bits hold a row's two voxels, extracted by `lower` and `upper`.
 template <typename Voxel, typename Lower, typename Upper>
 HWY_INLINE Corners cornersInPairs(const WideField& field, const Voxel* voxels, I first,
                                   Lower&& lower, Upper&& upper) {
@@ -108,7 +107,7 @@ HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels,
   const I low = hn::Set(ints, 0xff);
   const I lastFour = hn::Set(ints, static_cast<std::int32_t>(field.count - 4));
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    // Four bytes are read: not beyond the last voxel.
+    // Reads four bytes, never beyond the last voxel.
     const I row = hn::Add(first, hn::Set(ints, rows[i]));
     const I from = hn::Min(row, lastFour);
     const I shift = hn::ShiftLeft<3>(hn::Sub(row, from));
@@ -123,13 +122,13 @@ HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels,
 /// A point among voxel centres, clamped in the outer half voxel.
 struct Place {
   I first;      ///< index of the lowest of the eight voxels around it
-  F3 fractions; ///< from there
+  F3 fractions; ///< position from there, 0 to 1
 };
 
 HWY_INLINE Place placeOf(const WideField& field, const Point& p) {
   const auto cell = [&](std::size_t axis, F x, F& fraction) {
     const WideField::Axis& a = field.axes[axis];
-    // In this order a NaN becomes 0.
+    // This order of min and max maps NaN to 0.
     const F inside = hn::Max(hn::Min(x, all(a.last)), hn::Zero(floats));
     const I index = hn::Min(hn::ConvertTo(ints, inside), hn::Set(ints, a.lastCell));
     fraction = hn::Sub(inside, hn::ConvertTo(floats, index));
@@ -144,7 +143,7 @@ HWY_INLINE Place placeOf(const WideField& field, const Point& p) {
   return place;
 }
 
-/// Asks for the voxels around the places of all lanes to be brought near.
+/// Prefetches the voxels around the places of all lanes.
 template <typename Voxel>
 HWY_INLINE void prefetch(const WideField& field, const Place& place) {
   const auto* voxels = static_cast<const Voxel*>(field.voxels);
@@ -170,10 +169,10 @@ HWY_INLINE F scalarAt(const WideField& field, const Point& p) {
   return scalarAt<Voxel>(field, placeOf(field, p));
 }
 
-/// A scalar's place in a table.
+/// Segment of a table that holds a scalar.
 struct Segment {
   I index;
-  F beyondStart; ///< scalar units from the segment's start; not finite in the first one
+  F beyondStart; ///< scalar units from the segment's start; not finite in the first segment
 };
 
 HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
@@ -192,7 +191,7 @@ HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
   }
 }
 
-/// A channel's value there; not negative.
+/// Value of a channel in a segment, clamped to >= 0.
 HWY_INLINE F valueIn(const WideTable::Channel& channel, const Segment& at) {
   const auto [value, slope] = loadPairs(&channel[0].value, Indices(hn::ShiftLeft<1>(at.index)));
   // Constant segments may begin at -infinity.
@@ -206,7 +205,7 @@ HWY_INLINE F extinctionOf(const WideScene& scene, F s) {
   return valueIn(scene.extinction.channels[0], segmentOf(scene.extinction, s));
 }
 
-/// How far a ray inside [lower, upper]^3 goes until it leaves; 0 where rounding put it outside.
+/// Length of a ray from inside [lower, upper] to the faces; 0 if rounding put the origin outside.
 HWY_INLINE F toFaces(const F3& lower, const F3& upper, const F3& origin, const F3& direction) {
   const auto along = [](F low, F high, F o, F d) {
     const F zero = hn::Zero(floats);
@@ -220,7 +219,7 @@ HWY_INLINE F toFaces(const F3& lower, const F3& upper, const F3& origin, const F
   return notBelow0(hn::Min(hn::Min(x, y), z));
 }
 
-/// mm to where a ray from inside leaves the domain; index space, t in mm.
+/// Length (mm) of a ray from inside the domain to its end; ray in index space, t in mm.
 HWY_INLINE F lengthInside(const WideScene& scene, const F3& origin, const F3& direction) {
   const F toBox = toFaces(all3(scene.lower), all3(scene.upper), origin, direction);
   if (!scene.cropped)
@@ -241,13 +240,13 @@ HWY_INLINE F depthIndex(const WideScene::DepthAxis& axis, F coordinate) {
   return hn::Max(hn::Min(index, all(axis.last)), hn::Zero(floats));
 }
 
-/// Where a style leaves everything as it is.
+/// Lanes whose point (index space) lies in the focus, where a style changes nothing.
 HWY_INLINE M isFocus(const WideScene::Context& context, const Point& p) {
   return hn::Ge(scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)),
                 all(context.level));
 }
 
-/// The surface in seams, at (x, y), for the lanes that ask for it; `surface` for the others.
+/// Exact surface depth at (x, y) in seams for the lanes of `isAsked`; `surface` for the others.
 inline F askSeams(const Seams& seams, M isAsked, I seam, F x, F y, F depth, double softness,
                   F surface) {
   constexpr std::size_t lanes = HWY_MAX_BYTES / sizeof(float);
@@ -274,8 +273,8 @@ inline F askSeams(const Seams& seams, M isAsked, I seam, F x, F y, F depth, doub
   return hn::Load(floats, surfaces.data());
 }
 
-/// `surface`, or in seams, for the lanes of `which`, what that is for a point at (x, y) and `depth`
-/// (ClipDepth::surfaceFor).
+/// Surface depth for points at (x, y) and `depth` (ClipDepth::surfaceFor): exact in seams for the
+/// lanes of `which`, else `surface`.
 HWY_INLINE F sewn(const WideScene& scene, M which, I sample, F x, F y, F depth, F surface) {
   const I seam = hn::GatherIndex(ints, scene.seams->numbers().data(), sample);
   const auto isSeam = hn::Gt(seam, hn::Set(ints, -1));
@@ -294,11 +293,11 @@ HWY_INLINE F sewn(const WideScene& scene, M which, I sample, F x, F y, F depth, 
   return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
 }
 
-/// keep of clip/keep/Clip.h, for all kinds of clip, in the lanes of `which`.
+/// keep (clip/keep/Clip.h) for every kind of clip, for the lanes of `which`.
 inline F keep(const WideScene& scene, const Point& p, M which) {
   const F depth = apply(scene.toView[2], p); // from the target
   F scale = all(1.0F);
-  M before = hn::Lt(depth, depth); // the eye: none
+  M before = hn::Lt(depth, depth); // at or behind the eye: no lane
   if (scene.perspective) {
     const F fromEye = hn::Add(depth, all(scene.targetDepth));
     before = hn::Le(fromEye, hn::Zero(floats));

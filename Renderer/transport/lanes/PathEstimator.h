@@ -1,7 +1,7 @@
 #pragma once
 // Many paths at once, for speed: all of a batch fly, then all scatter, then all look at their
-// lights, and paths that have ended make room for new ones. A path depends on its own random
-// numbers alone, so its sample is the same whichever others it travels with.
+// lights, and new paths replace those that have ended. A path depends on its own random numbers
+// alone, so its sample is the same whichever paths share the batch.
 
 #include "model/volume/Domain.h"
 #include "transport/lanes/PathSteps.h"
@@ -11,8 +11,8 @@
 
 namespace fenestra {
 
-/// Where a path begins: raster position, its random numbers from there on, and a name under which
-/// its sample is handed in.
+/// Start of a path: raster position, random numbers from there on, and the ticket under which the
+/// sample is delivered.
 struct PathStart {
   double column, row;
   Random random;
@@ -21,15 +21,14 @@ struct PathStart {
 
 class PathWave {
 public:
-  /// A view of all that it is given. The tracker looks at the same `stop`: what it leaves then is
-  /// dropped here.
+  /// A view: all arguments must outlive the wave. The tracker must have the same `stop`: paths left
+  /// unfinished are dropped here.
   PathWave(const Domain& domain, const WideTracker& tracker, const WideEvents& events,
            const EyeRays& eye, const StopFlag& stop)
       : m_domain(domain), m_tracker(tracker), m_events(events), m_eye(eye), m_stop(stop) {}
 
-  /// Traces all paths that source.next() gives, at most `atOnce` together, and hands in
-  /// source.deliver(ticket, sample) of each, in any order. Returns false where `stop` became true
-  /// before all had ended.
+  /// Traces all paths of source.next(), at most `atOnce` together, and calls source.deliver(ticket,
+  /// sample) for each, in any order. Returns false if `stop` became true before all had ended.
   template <typename Source>
   bool trace(Source& source, std::size_t atOnce, Counters& counters) const {
     const auto batch = std::make_unique<Batch>();
@@ -51,7 +50,7 @@ public:
       look(*batch, counters);
       if (stopped())
         return false;
-      // The last first: what moves into a gap has not ended.
+      // The last first: a path that moves into a gap has not ended.
       for (std::size_t i = batch->paths.endedCount; i-- > 0;) {
         const std::size_t place = batch->paths.ended[i];
         source.deliver(batch->origins[place].ticket, sample(*batch, place));
@@ -72,7 +71,7 @@ private:
     std::uint64_t ticket = 0;
     double row = 0.0;
     Ray ray;
-    double begin = 0.0; ///< mm along it to where the batch's ray begins
+    double begin = 0.0; ///< mm along `ray` to the beginning of the batch's ray
   };
   struct Batch {
     PathBatch paths;
@@ -99,7 +98,7 @@ private:
   PathSample sample(const Batch& batch, std::size_t place) const {
     const Origin& origin = batch.origins[place];
     const PathBatch& paths = batch.paths;
-    if (paths.bounces[place] == 0) // escaped, unless it must not scatter at all
+    if (paths.bounces[place] == 0) // escaped, or collided with a limit of 0 scatterings
       return std::isinf(paths.rays.result[place]) ? m_eye.escaped(origin.row, origin.ray)
                                                   : PathSample{};
     const auto triple = [&](const Columns3& columns) {

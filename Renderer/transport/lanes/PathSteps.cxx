@@ -33,14 +33,14 @@ HWY_INLINE void storeTo(Columns3& columns, std::size_t i, const F3& v) {
   hn::StoreU(v.z, floats, &columns[2][i]);
 }
 
-/// One path a lane, at their collisions.
+/// One path a lane, at its collision.
 struct Collisions {
-  M going;  ///< those that scatter
-  M first;  ///< for the first time
+  M going;  ///< lanes that scatter
+  M first;  ///< lanes that scatter for the first time
   F3 index; ///< points, index space
   F scalar;
   F3 incoming, weight;
-  F3 albedo, gradient; ///< gradient where somebody asks for it
+  F3 albedo, gradient; ///< gradient: 0 unless needed
   M surface;
 };
 
@@ -82,7 +82,7 @@ private:
     listEnded(i, hn::AndNot(alive, there));
   }
 
-  /// Adds the radiance that scattered rays met before their collisions, or at infinity.
+  /// Adds the light that scattered rays met before their collisions, or at infinity.
   HWY_INLINE void gather(std::size_t i, M scattered, const F3& origin, F distance) {
     if (hn::AllFalse(floats, scattered))
       return;
@@ -93,7 +93,7 @@ private:
     storeTo(m_paths.radiance, i, select(scattered, sum + loadFrom(m_paths.weight, i) * light, sum));
   }
 
-  /// Returns those that go on afterwards.
+  /// Scatters the lanes of `going`; returns the lanes that go on afterwards.
   M collide(std::size_t i, M going, M first, const F3& origin, F distance) {
     Draws draws{hn::LoadU(bits, &m_paths.key[i]), hn::LoadU(bits, &m_paths.counter[i])};
     const F3 index = origin + distance * loadFrom(m_paths.rays.direction, i);
@@ -114,7 +114,7 @@ private:
                          hn::IfThenElse(at.surface, o.pdf, s.pdf)};
       });
 
-    const F choice = m_scene.hybrid ? draws.uniform() : all(0.0F); // whatever its neighbours do
+    const F choice = m_scene.hybrid ? draws.uniform() : all(0.0F); // independent of neighbours
     const F u = draws.uniform();
     const F v = draws.uniform();
     ScatterDraw drawn = phase.draw(u, v);
@@ -203,7 +203,7 @@ private:
   }
 
   /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
-  /// into it.
+  /// toward that light.
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
     const F choice = draws.uniform();
@@ -243,7 +243,7 @@ private:
     m_out.rays.size += count;
   }
 
-  /// The paths' weights and new rays. Returns those that are left by Russian roulette.
+  /// Sets the paths' weights and new rays. Returns the lanes that survive Russian roulette.
   HWY_INLINE M goOn(std::size_t i, const Collisions& at, const ScatterDraw& drawn, Draws& draws) {
     const F zero = hn::Zero(floats);
     constexpr auto below = static_cast<float>(rouletteBelow);

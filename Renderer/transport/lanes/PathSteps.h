@@ -1,6 +1,6 @@
 #pragma once
-// PathSteps' events for many paths at once, in SIMD lanes and float. The instruction
-// set is chosen when the program runs (Highway).
+// Events of many paths at once: PathSteps in SIMD lanes, in float. The instruction set is chosen at
+// run time (Highway).
 
 #include "transport/lanes/PathTables.h"
 #include "transport/lanes/Tracker.h"
@@ -8,43 +8,44 @@
 
 namespace fenestra {
 
-/// Paths under way: what `Path` holds for one, as a structure of arrays.
+/// Paths under way: `Path` as a structure of arrays.
 struct PathBatch {
-  RayBatch rays;      ///< that they travel next, and where they collide
-  Columns3 direction; ///< of their rays, world axes, unit
+  RayBatch rays;      ///< next rays, and their collisions
+  Columns3 direction; ///< of the rays, world axes, unit
   Columns3 weight, radiance;
   Column<float> scatterPdf;
   Column<std::int32_t> bounces;
-  Column<std::uint32_t> key, counter; ///< of their random numbers
+  Column<std::uint32_t> key, counter; ///< of the paths' random numbers
 
-  /// Values at the first collision.
+  /// First collision.
   Column<float> firstDistance;
   Columns3 firstAlbedo, firstNormal;
 
   std::size_t endedCount = 0;
-  Column<std::uint32_t> ended; ///< which of them
+  Column<std::uint32_t> ended; ///< indices of the ended paths
 
-  /// Path i begins; its ray is set by the caller.
+  /// Begins path i; the caller sets its ray.
   void begin(std::size_t i, const Vec3& worldDirection, std::uint64_t randomBits);
-  /// Path `to` becomes what path `from` is.
+  /// Copies path `from` to path `to`.
   void move(std::size_t from, std::size_t to);
 };
 
-/// Light on its way to paths: `radiance` arrives, times the transmittance of the ray.
+/// Light sampled for paths: `radiance` times the transmittance of the ray arrives at `path`.
 struct LightBatch {
   RayBatch rays;
   Columns3 radiance;
   Column<std::uint32_t> path;
 };
 
-/// A view: what it is made of outlives it.
+/// A view: `volume`, and the maps of `scene`, must outlive the object.
 class WideEvents {
 public:
   WideEvents(const WideScene& volume, EventScene scene)
       : m_volume(volume), m_scene(std::move(scene)) {}
 
-  /// All paths have flown to their next collision, or out. Gathers what their rays met, samples a
-  /// light for each that goes on (all of `lights`), and sets their new rays; says which have ended.
+  /// Handles the paths' collisions and escapes (rays.result): gathers the light met by the rays,
+  /// replaces `lights` by one light for each path that scatters, sets new rays, and lists the paths
+  /// that have ended.
   void scatter(PathBatch& paths, LightBatch& lights, Counters& counters) const;
 
 private:

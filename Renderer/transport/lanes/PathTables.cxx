@@ -3,7 +3,7 @@
 namespace fenestra {
 namespace {
 
-/// Half edges of an area light and what else the lanes ask of it.
+/// An area light in local space, in float.
 EventScene::Area narrowArea(const PlacedAreaLight& light, const Vec3& from) {
   const Vec3 right = light.half.x() * light.right;
   const Vec3 up = light.half.y() * light.up;
@@ -29,7 +29,7 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
                         const LightSet& lights) {
   constexpr double leastRoughness = 1e-2;
   constexpr double greatestG = 0.9999;
-  constexpr double farthest = 1e15; // mm; squares of it and areas are far from a float's end
+  constexpr double farthest = 1e15; // mm; squares and areas stay far below the greatest float
   constexpr double brightest = 1e20;
   const auto fits = [&](const PlacedAreaLight& light) {
     return (light.center - grid.worldCenter()).norm() < farthest &&

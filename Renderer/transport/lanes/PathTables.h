@@ -1,5 +1,5 @@
 #pragma once
-// Tables that the lanes' events read beside WideScene: scatterers and lights, in float.
+// Scatterers and lights in the form that lanes' events read, in float; beside WideScene.
 
 #include "base/Narrow.h"
 #include "model/lights/LightSet.h"
@@ -11,14 +11,15 @@
 
 namespace fenestra {
 
-/// "Local" is world axes around the volume's centre: mm that keep their digits wherever it lies.
+/// "Local" space: world axes, mm, origin at the volume's centre: floats keep their digits wherever
+/// the volume lies.
 struct EventScene {
   using Triple = std::array<float, 3>;
   struct Area {
     bool disk;
     Triple center, normal; ///< local
-    Triple right, up;      ///< half edges (mm), or the radius
-    float perRight, perUp; ///< 1 / their squared lengths
+    Triple right, up;      ///< half edges (disk: radii) as vectors, mm
+    float perRight, perUp; ///< 1 / squared length of right, up
     float area;            ///< mm^2
     Triple radiance;
     float share;
@@ -28,8 +29,8 @@ struct EventScene {
     float share;
   };
 
-  /// Whether floats suffice: no lobe narrower than directions in float resolve, and no light so far
-  /// or bright that its square has no float.
+  /// True if floats suffice: no lobe narrower than directions in float resolve, and no light so far
+  /// away or bright that squares overflow.
   static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights);
 
   EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
@@ -37,20 +38,20 @@ struct EventScene {
 
   WideTable albedo;
   float g;
-  bool hybrid; ///< shading
+  bool hybrid; ///< surface shading
   float diffuse, specular, roughness;
-  float surfaceRate; ///< of Medium's surface probability: 25 gamma^3
+  float surfaceRate; ///< 25 gamma^3 of Medium's surface probability
   bool wantNormals;
-  std::int32_t bounces; ///< scatterings, at most
+  std::int32_t bounces; ///< greatest number of scatterings
 
   std::vector<Area> areas;
   std::vector<Directional> directionals;
   Triple constantEnvironment;
-  const LightSet* maps; ///< asked for environments that are not constant; null where none is
+  const LightSet* maps; ///< queried for environments; null if all are constant
 
   AffineRows toLocal;      ///< points, from index space
   AffineRows localToIndex; ///< directions
-  /// Differences over two voxels, to parts of the transfer function's span per mm.
+  /// Map from differences over two voxels to gradients, in spans of the transfer function per mm.
   AffineRows indexDifferenceToGradient;
 };
 

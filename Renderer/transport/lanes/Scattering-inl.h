@@ -1,5 +1,5 @@
-// How light scatters at the collisions of many paths: model/medium/Scattering.h in lanes. Compiled
-// once for each instruction set (see WideEvents.cxx).
+// Scattering of many paths: medium/Scattering.h in lanes. Compiled once for each instruction set
+// (see PathSteps.cxx).
 
 #if defined(FENESTRA_WIDE_SCATTERING_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_WIDE_SCATTERING_INL_H
@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-/// Factor of scattering on radiance toward a direction, and the density of drawing the direction.
+/// Factor of scattering on radiance toward a direction, and the density of drawing that direction.
 struct Scattered {
   F3 factor;
   F pdf;
@@ -60,7 +60,7 @@ public:
   }
 
 private:
-  /// Density of a direction; chord2: its squared distance from the lobe's peak on the unit sphere.
+  /// Density of a direction; chord2: squared distance of that unit vector from the lobe's peak.
   HWY_INLINE F density(F chord2) const {
     if (m_g == 0.0F)
       return all(perSphere);
@@ -68,7 +68,7 @@ private:
     return hn::Div(all(perSphere * (1.0F - m_g) * (1.0F + m_g)), hn::Mul(d, hn::Sqrt(d)));
   }
 
-  float m_g; ///< not negative
+  float m_g; ///< |g|
   F3 m_peak;
   F3 m_albedo;
 };
@@ -148,7 +148,7 @@ private:
     return hn::Div(a2, hn::Mul(all(static_cast<float>(pi)), square(d)));
   }
 
-  /// Heitz 2018, listing 1; `r` and `phi` are a point of the unit disc.
+  /// Heitz 2018, listing 1; `r`, `phi`: polar coordinates of a point in the unit disc.
   HWY_INLINE F3 visibleNormal(F r, const CosineSine& phi) const {
     const F a = all(m_roughness);
     const F one = all(1.0F);

@@ -12,23 +12,24 @@ HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
 
-/// Lanes take new rays when this part of them has none.
+/// Idle lanes take new rays once 1 / refillShare of all lanes are idle.
 constexpr std::size_t refillShare = 4;
-/// Look-ups wait until all busy lanes but this part of them are at a tentative collision.
+/// Look-ups wait until at most 1 / crossingShare of the busy lanes are not at a tentative
+/// collision.
 constexpr std::size_t crossingShare = 3;
 
-/// One axis of the walk through cells, in units of their edge, and mirrored where the ray goes
-/// down, so that all rays go up.
+/// One axis of the walk through cells, in units of a cell's edge, mirrored for rays that go down,
+/// so that all rays go up.
 struct AxisWalk {
-  F origin, direction; ///< direction a mm, not negative
-  F inverse;           ///< of direction; infinity for rays that do not move along this axis
-  F cell;              ///< where the ray is; a whole number
+  F origin, direction; ///< direction: per mm, >= 0
+  F inverse;           ///< 1 / direction; infinity: no motion along this axis
+  F cell;              ///< cell of the ray, a whole number
   M mirrored;
 
-  /// A ray enters the cell that holds its origin, the one ahead where it lies in a face.
+  /// Walk from the cell of the origin, or from the cell ahead if the origin lies in a face.
   static HWY_INLINE AxisWalk entered(const WideScene::Axis& axis, F origin, F direction) {
     const F perEdge = all(axis.cellsPerVoxel);
-    // Not in the last face: rays along it have cells ahead, as all have.
+    // Clamp below the last face, so that a ray lying in that face starts inside the last cell.
     const F at = hn::Max(
         hn::Min(hn::MulAdd(origin, perEdge, all(0.5F * axis.cellsPerVoxel)), all(axis.insideCells)),
         hn::Zero(floats));
@@ -52,14 +53,14 @@ struct AxisWalk {
     mirrored = hn::Or(both(which, other.mirrored), hn::AndNot(which, mirrored));
   }
 
-  /// mm to the face where the ray leaves its cell and `beyond` - 1 more.
+  /// t (mm) of the face where the ray leaves its cell and `beyond` - 1 further cells.
   HWY_INLINE F toFace(F beyond) const {
     return hn::Mul(hn::Sub(hn::Add(cell, beyond), origin), inverse);
   }
 
-  /// Goes to the cell that the ray enters at `t`: `beyond` further where it goes `through` a face
-  /// of this axis. Elsewhere less far, and never back, so that rounding cannot keep it from going
-  /// on.
+  /// Moves the lanes of `which` to the cell entered at `t`: `beyond` cells further for lanes that
+  /// pass `through` a face of this axis, else 0 to `reach` cells (never back, so that rounding
+  /// cannot trap a ray).
   HWY_INLINE void advance(M which, M through, F t, F reach, F beyond) {
     const F there = hn::Floor(hn::MulAdd(t, direction, origin));
     const F within = hn::Min(hn::Max(there, cell), hn::Add(cell, reach));
@@ -80,7 +81,7 @@ struct AxisWalk {
   }
 };
 
-/// The rays of a batch that nobody has followed yet.
+/// Rays of a batch that no lane has taken yet.
 struct Queue {
   RayBatch& rays;
   std::size_t next = 0;
@@ -88,15 +89,15 @@ struct Queue {
   bool empty() const { return next == rays.size; }
 };
 
-/// One ray a lane, followed together.
+/// One ray a lane, all followed together.
 template <typename Voxel, bool wantRatio>
 class Lanes {
 public:
   Lanes(const WideScene& scene, Queue& queue)
       : m_scene(scene), m_queue(queue), m_rays(queue.rays) {}
 
-  /// A step ahead for all: collisions that were found in the step before, then cells. Returns
-  /// whether there was a ray to follow.
+  /// Advances all lanes: collisions found in the step before, then cells. Returns false if no ray
+  /// is left.
   bool step() {
     if (m_due)
       collide();
@@ -146,7 +147,7 @@ private:
     m_busy = hn::Or(m_busy, started);
   }
 
-  /// Lanes of `which` take rays `first + rank`: neighbours, so that whole vectors are loaded.
+  /// Gives lanes of `which` rays `first + rank`: neighbours, so that whole vectors are loaded.
   HWY_INLINE void start(M which, std::size_t first, I rank) {
     const auto take = [&](auto& old, const auto& now) {
       old = hn::IfThenElse(hn::RebindMask(hn::DFromV<std::decay_t<decltype(now)>>(), which), now,
@@ -171,8 +172,8 @@ private:
     take(m_depth, depth);
   }
 
-  /// Lanes that have no collision in their cell, or in as many around it as its majorant reaches,
-  /// leave them all. Returns whether any did.
+  /// Lanes without a collision in their cell and its reach leave these cells. Returns false if no
+  /// lane did.
   HWY_INLINE bool cross() {
     const F zero = hn::Zero(floats);
     const F beyond = hn::Add(m_reach, all(1.0F));
@@ -205,7 +206,7 @@ private:
     return true;
   }
 
-  /// Lanes with a collision in their cell go there.
+  /// Moves lanes of m_hit to their collisions, and prefetches voxels.
   HWY_INLINE void stop() {
     m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_majorant)), m_t);
     m_place = placeOf(m_scene.field, point());
@@ -238,7 +239,7 @@ private:
             m_walk[2].at(m_t, m_scene.axes[2])};
   }
 
-  /// Tentative collisions: real ones end a flight, all of them thin a transmittance.
+  /// Handles tentative collisions: a real one ends a flight, every one reduces a transmittance.
   HWY_INLINE void collide() {
     const M hit = m_hit;
     const F majorant = hn::IfThenElse(hit, m_majorant, all(1.0F));
@@ -248,7 +249,7 @@ private:
     if (m_scene.context)
       extinction = hn::IfThenElse(isFocus(*m_scene.context, point()), extinction,
                                   hn::Mul(extinction, all(m_scene.context->extinction)));
-    const I last = hn::Set(ints, 0x10000); // of the code
+    const I last = hn::Set(ints, 0x10000); // of m_code: cut
     U counter = m_counter;
     const F u = uniform(counter);
     const M cut = both(hit, hn::RebindMask(floats, hn::TestBit(m_code, last)));
@@ -273,12 +274,12 @@ private:
     m_counter = hn::IfThenElse(hn::RebindMask(bits, hit), counter, m_counter);
   }
 
-  /// The extinction of lanes of `cut` that clipping may take from; of others as it is. What is kept
-  /// is asked only where it matters: for a flight where its collision would be real, for `u`,
-  /// without clipping; for a transmittance where there is something. In seams asking costs more
-  /// than everything else: there chance decides first whether a transmittance's collision would be
-  /// real, and only if so it is asked (delta instead of ratio tracking; Novák et al. 2018,
-  /// section 4.2). Estimates vary a little more then, and cost half.
+  /// Extinction times keep for lanes of `cut`; unchanged for others. keep is queried only where
+  /// needed: for a flight if the collision would be real without clipping (u < extinction /
+  /// majorant); for a transmittance if extinction > 0. Seams make a query cost more than everything
+  /// else: chance then decides first whether a transmittance's collision would be real without
+  /// clipping, and only for real collisions keep is queried (delta instead of ratio tracking; Novák
+  /// et al. 2018, section 4.2). Such estimates vary a little more, and cost half.
   HWY_INLINE F clipped(M cut, F extinction, F majorant, F u, U& counter) {
     if constexpr (wantRatio) {
       cut = both(cut, hn::Gt(extinction, hn::Zero(floats)));
@@ -297,13 +298,13 @@ private:
     return hn::IfThenElse(cut, hn::Mul(extinction, keep(m_scene, point(), cut)), extinction);
   }
 
-  /// Makes lanes idle; they keep their results.
+  /// Makes lanes idle; results stay until handIn().
   HWY_INLINE void finish(M which) {
     m_ended = hn::Or(m_ended, which);
     m_busy = hn::AndNot(which, m_busy);
   }
 
-  /// Hands the lanes' findings in as the results of their rays.
+  /// Stores the results of lanes of m_ended to their rays.
   HWY_INLINE void handIn() {
     OfLanes results, scalars;
     hn::Store(wantRatio ? m_ratio : m_t, floats, results.data());
@@ -320,9 +321,9 @@ private:
   Queue& m_queue;
   RayBatch& m_rays;
   M m_busy = noLane();
-  M m_ended = noLane(); ///< these have results to hand in
-  M m_hit = noLane();   ///< at a tentative collision
-  bool m_due = false;   ///< these are to be looked at before anything else
+  M m_ended = noLane(); ///< lanes with results to hand in
+  M m_hit = noLane();   ///< lanes at a tentative collision
+  bool m_due = false;   ///< the next step begins with collide()
   std::array<std::uint32_t, maxLanes> m_ray = {};
   std::uint64_t m_cells = 0, m_skipped = 0, m_lookups = 0;
 
@@ -407,7 +408,7 @@ void WideTracker::estimateTransmittances(RayBatch& rays, Counters& counters) con
 
 namespace {
 
-/// Bits of the sets that program and machine have, pinned or not.
+/// Bits of the instruction sets of both program and machine, pinned or not.
 std::int64_t knownSets() {
   static const std::int64_t known = hwy::SupportedTargets() & HWY_TARGETS;
   return known;

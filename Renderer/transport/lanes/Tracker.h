@@ -1,12 +1,12 @@
 #pragma once
-// Free paths and transmittance of many rays at once: what Tracker does for one, in SIMD lanes. Each
-// lane follows a ray of a batch and takes the next one when its own has ended, so that lanes stay
-// busy however different their lengths are. What comes out for a ray depends on that ray alone.
+// Free paths and transmittance of many rays at once: Tracker in SIMD lanes. Each lane follows a ray
+// of a batch and takes the next ray when its own has ended, so that lanes stay busy however
+// different the rays' lengths are. The result for a ray depends on that ray alone.
 //
 // In float, in index space: positions are good to 1e-7 of the volume's edge, and lengths count from
-// a ray's own origin, so that a short free path keeps its digits. That is too little for
-// extinctions beyond what a picture resolves; serves() says for which volumes it is enough, and
-// Tracker is there for the others. The instruction set is chosen when the program runs (Highway).
+// a ray's own origin, so that a short free path keeps its digits. Float is not enough for
+// extinctions beyond what a picture resolves; volumes for which serves() is false need Tracker. The
+// instruction set is chosen at run time (Highway).
 
 #include "clip/keep/Clip.h"
 #include "model/medium/TransferFunction.h"
@@ -23,20 +23,20 @@
 
 namespace fenestra {
 
-/// One number for each of the rays that are followed together, and room for as many lanes as there
-/// may be, so that whole vectors can be read and written.
+/// One number for each ray of a batch, padded by the greatest number of lanes, so that whole
+/// vectors can be read and written.
 template <typename T>
 struct alignas(64) Column : std::array<T, 512 + 16> {};
 using Columns3 = std::array<Column<float>, 3>;
 
-/// Rays that are followed together; a structure of arrays.
+/// Rays followed together; a structure of arrays.
 struct RayBatch {
   static constexpr std::size_t capacity = 512;
 
   std::size_t size = 0;
   Columns3 origin;            ///< index space, inside the domain
   Columns3 direction;         ///< index space per mm: t is in mm
-  Column<float> length;       ///< mm to where the ray ends or leaves the domain
+  Column<float> length;       ///< mm until the ray ends or leaves the domain
   Column<std::uint32_t> seed; ///< of the ray's own random numbers
   Column<float> result;       ///< mm to the collision, or infinity; or the transmittance
   Column<float> scalar;       ///< at the collision
@@ -53,21 +53,20 @@ struct RayBatch {
   }
 };
 
-/// Makes ray i the part of a world-space ray that lies in the domain and in `range`; where there is
-/// none, a ray of no length. Returns where it begins, in mm along the ray: lengths count from
-/// there, so that free paths keep their digits however far away the ray began.
+/// Sets ray i to the part of a world-space ray inside the domain and `range`; to a ray of length 0
+/// if that part is empty. Returns the beginning of the part, mm along the ray: lengths count from
+/// there, so that free paths keep their digits, however far away the ray's origin is.
 double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
                  const Interval& range, std::uint32_t seed);
 
 class WideTracker {
 public:
-  /// Whether floats suffice and every part of the medium is known to the lanes: no gradient
-  /// opacity, at least two voxels along x, at most 2^31 of them, and an optical depth
-  /// across the volume of at most 1e5.
+  /// True if floats suffice and lanes support every part of the medium: no gradient opacity, at
+  /// least two voxels along x, 4 to 2^31 voxels in all, optical depth across the volume <= 1e5.
   static bool serves(const Volume& volume, const TransferFunction& transfer);
 
-  /// A view: volume, clip, style and stop outlive it. Once `stop` is true rays are left where they
-  /// are, and what results hold means nothing.
+  /// A view: volume, clip, style and stop must outlive the tracker. Once `stop` is true rays are
+  /// abandoned and results are meaningless.
   WideTracker(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
               const MajorantGrid& majorants, const Clip& clip, const ContextStyle* style = nullptr,
               const StopFlag& stop = neverStopped);
@@ -81,14 +80,14 @@ public:
   /// Russian roulette; by delta tracking where an exact clipping surface cuts.
   void estimateTransmittances(RayBatch& rays, Counters& counters) const;
 
-  /// The instruction sets that this program has and this machine knows, the best first, as Highway
-  /// calls them: AVX3 (AVX-512), AVX2, SSE4, SCALAR (none needed).
+  /// Instruction sets of both program and machine, the best first, by Highway's names: AVX3
+  /// (AVX-512), AVX2, SSE4, SCALAR (none needed).
   static std::vector<std::string> instructionSets();
-  /// The one in use: the best, unless another was pinned.
+  /// Instruction set in use: the best, unless another was pinned.
   static std::string instructionSet();
   /// Pins one of instructionSets(), for the whole process (the command line does it on behalf of
-  /// the environment variable FENESTRA_INSTRUCTIONS); throws Error (usage) for any other. Not while
-  /// rays are followed.
+  /// the environment variable FENESTRA_INSTRUCTIONS); throws Error (usage) for any other name. Must
+  /// not be called while rays are followed.
   static void useInstructionSet(const std::string& name);
 
 private:

@@ -1,4 +1,4 @@
-// Building what the lanes of WideTracker read.
+// Construction of WideTracker's scene.
 
 #include "transport/lanes/Tracker.h"
 
@@ -14,7 +14,8 @@ WideScene::DepthAxis wide(const DepthAxis& axis) {
           static_cast<float>(axis.size() - 1)};
 }
 
-/// Affine map of index space: `normal` in world space, times a world point, plus `offset`.
+/// Affine map of index space: normal . (world point - from) + offset, `normal` and `from` in world
+/// space.
 std::array<float, 4> row(const Grid& grid, const Vec3& normal, const Vec3& from, double offset) {
   const Vec3 n = grid.indexToWorld.linear().transpose() * normal;
   const double o = normal.dot(grid.indexToWorld.translation() - from) + offset;

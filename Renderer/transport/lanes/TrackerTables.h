@@ -1,5 +1,5 @@
 #pragma once
-// Tables of a volume and its clip that lanes read.
+// A volume and its clip in the form that lanes read.
 
 #include "base/Narrow.h"
 #include "transport/lanes/MajorantGrid.h"
@@ -13,12 +13,12 @@ namespace fenestra {
 
 class Seams;
 
-/// Voxels that lanes interpolate between.
+/// Voxels for interpolation in lanes.
 struct WideField {
   struct Axis {
     float last;            ///< index of the last voxel
-    std::int32_t lastCell; ///< of the last pair of voxels that interpolation may begin with
-    std::int32_t stride;   ///< voxels to the next in this axis, 0 where there is none
+    std::int32_t lastCell; ///< greatest index of a lower voxel in interpolation
+    std::int32_t stride;   ///< offset of the next voxel in this axis, 0 if the axis has one voxel
   };
   const void* voxels = nullptr;
   std::int64_t count = 0;
@@ -33,28 +33,27 @@ struct WideScene {
   struct Axis {
     float cellEdge;      ///< voxels
     float cellsPerVoxel; ///< 1 / cellEdge
-    float cells;         ///< how many, without the border
-    float insideCells;   ///< the greatest number below that
-    float cellStride;    ///< of the cells, in their bordered array
+    float cells;         ///< number of cells, without the border
+    float insideCells;   ///< greatest float below `cells`
+    float cellStride;    ///< offset of the next cell in WideCells::codes
   };
-  /// The clipping depth's samples along one axis (clip/focus/DepthBuffer.h).
+  /// Samples of the clip's depth buffer along one axis (clip/focus/DepthBuffer.h).
   struct DepthAxis {
     float perPitch, start, lastInside, before, perFactor, last;
   };
   enum class ClipKind { none, plane, depthLinear, depthNearest };
-  /// model/medium/ContextStyle.h.
+  /// ContextStyle (model/medium/ContextStyle.h) in float.
   struct Context {
     WideField focus;
-    AffineRows toFocus = {}; ///< index space to the focus's
-    float level = 0.0F;      ///< of its voxels, at its surface
+    AffineRows toFocus = {}; ///< index space to the focus's index space
+    float level = 0.0F;      ///< voxel value at the focus's surface
     float extinction = 1.0F, saturation = 1.0F;
   };
 
   VoxelType type;
   WideField field;
   std::array<Axis, 3> axes;
-  /// Bounds that rays cannot leave: the box in index space and, where there is a crop, [-1, 1]^3 of
-  /// the crop's own space.
+  /// Domain: the box [lower, upper] in index space and, if `cropped`, [-1, 1]^3 in crop space.
   std::array<float, 3> lower, upper;
   bool cropped = false;
   AffineRows toCrop = {};
@@ -62,23 +61,23 @@ struct WideScene {
   WideTable extinction; ///< mm^-1 over the scalar
 
   WideCells cells;        ///< fewer than 2^24
-  float firstCell = 0.0F; ///< its place there, beyond the border
+  float firstCell = 0.0F; ///< index in WideCells::codes of the first cell inside the border
 
   std::optional<Context> context = {};
 
   ClipKind clipKind = ClipKind::none;
   float ghost = 0.0F;       ///< ClipEdge
   float softness = 0.0F;    ///< mm
-  float perSoftness = 0.0F; ///< 1 / mm; 0 where the edge is sharp
+  float perSoftness = 0.0F; ///< 1 / mm; 0: sharp edge
   bool perspective = false;
   /// Rows of the map from index space to view space, depth counted from the target.
   AffineRows toView = {};
-  std::array<float, 4> toPlane = {}; ///< distance from a plane, positive where it removes
+  std::array<float, 4> toPlane = {}; ///< distance from the plane, mm; > 0: removed
   float targetDepth = 0.0F;
   DepthAxis depthX = {}, depthY = {};
-  const float* depths = nullptr; ///< counted from the target
+  const float* depths = nullptr; ///< mm, counted from the target
   std::int32_t depthColumns = 0;
-  const Seams* seams = nullptr; ///< of an exact boundary; null elsewhere
+  const Seams* seams = nullptr; ///< for an exact boundary; else null
 };
 
 } // namespace fenestra

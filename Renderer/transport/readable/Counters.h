@@ -1,5 +1,5 @@
 #pragma once
-// Counters of tracking: plain sums, one set a tile, added up at the tile's end.
+// Counts of tracking's work: plain sums, one set a thread, added up after each pass.
 
 #include <cstdint>
 
@@ -10,9 +10,9 @@ struct Counters {
   std::uint64_t collisions = 0;   ///< real ones, of eye and scatter rays
   std::uint64_t lookups = 0;      ///< of the extinction
   std::uint64_t cells = 0;        ///< majorant cells walked through
-  std::uint64_t skippedCells = 0; ///< of them, those with majorant 0
+  std::uint64_t skippedCells = 0; ///< part of `cells`: those with majorant 0
   std::uint64_t shadowRays = 0;
-  std::uint64_t gradients = 0; ///< that were needed, at collisions
+  std::uint64_t gradients = 0; ///< computed at collisions
 
   Counters& operator+=(const Counters& o) {
     paths += o.paths;

@@ -1,5 +1,5 @@
 #pragma once
-// Where paths begin, and what they show where they meet nothing.
+// Eye rays, where paths begin, and the background behind the volume.
 
 #include "clip/keep/Clip.h"
 #include "image/Film.h"
@@ -8,24 +8,24 @@
 
 namespace fenestra {
 
-/// A view: what it is made of outlives it.
+/// A view: camera, clip, lights and background must outlive the object.
 class EyeRays {
 public:
   EyeRays(const Camera& camera, const Clip& clip, const LightSet& lights,
           const Background& background)
       : m_camera(camera), m_clip(clip), m_lights(lights), m_background(background) {}
 
-  /// Through raster position (column, row).
+  /// Eye ray through raster position (column, row).
   Ray ray(double column, double row) const { return m_camera.ray(column, row); }
-  /// Its part that clipping leaves.
+  /// Part of an eye ray that clipping leaves.
   Interval range(const Ray& ray) const { return visible(m_clip, ray); }
-  /// In view space, `distance` along it; mm.
+  /// View-space depth at `distance` along an eye ray; mm.
   double depth(const Ray& ray, double distance) const {
     return distance * m_camera.depthPerLength(ray);
   }
 
-  /// An eye ray that met nothing shows the background: one colour over a whole row of pixels, so
-  /// that where a sample falls inside its pixel adds no noise.
+  /// Sample of an eye ray without collision: the background. A gradient has one colour for a whole
+  /// row of pixels, so that a sample's position inside the pixel adds no noise.
   PathSample escaped(double row, const Ray& ray) const {
     PathSample sample;
     switch (m_background.kind) {

@@ -5,16 +5,16 @@
 namespace fenestra {
 namespace {
 
-/// The transfer function's maximum over [low, high], widened by what interpolating between two
-/// values of that size can round to.
+/// The transfer function's maximum over [low, high], widened by the rounding of interpolation
+/// between two such values.
 double greatest(const ScalarFunction& f, double low, double high) {
   const double rounding =
       4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
   return f.range(low - rounding, high + rounding)[1];
 }
 
-/// Greatest |gradient| (scalar units per mm) where all interpolated values differ by at most
-/// `spread`: every central difference is at most half of it a voxel.
+/// Greatest |gradient| (scalar units per mm) if all interpolated values differ by at most `spread`:
+/// every central difference is at most spread / 2 per voxel.
 double gradientBound(const Grid& grid, double spread) {
   return 0.5 * spread * grid.worldToIndex.linear().transpose().columnNorms().sum();
 }
@@ -32,7 +32,7 @@ Corners cornersOf(const Affine& cellToWorld, const Vec3& cell) {
   return corners;
 }
 
-/// The most that a style leaves of the extinction in a cell.
+/// Greatest factor of a style on the extinction in a cell.
 double greatestFactor(const ContextStyle& style, const Affine& cellToWorld, const Vec3& cell) {
   Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
   for (const Vec3& corner : cornersOf(cellToWorld, cell)) {

@@ -1,7 +1,6 @@
 #pragma once
-// An upper bound of the extinction in each cell of a coarse grid: what null-collision tracking
-// steps by. Cells that hold nothing, or nothing that clipping keeps, have majorant 0 and are
-// skipped.
+// An upper bound of the extinction in each cell of a coarse grid, for null-collision tracking.
+// Cells that are empty, or that clipping removes whole, have majorant 0 and are skipped.
 
 #include "clip/keep/Clip.h"
 #include "model/medium/ContextStyle.h"
@@ -14,24 +13,24 @@ class MajorantGrid {
 public:
   struct Cell {
     float majorant; ///< mm^-1
-    bool cut;       ///< clipping may remove part of it: ask keep
+    bool cut;       ///< clipping may remove part of the cell: query keep
   };
 
   /// The majorant is the transfer function's greatest value over the cell's whole range of scalars
   /// (not at its maximum: opacity need not grow with the scalar), times the greatest gradient
-  /// opacity that the range allows, times the most that the clip and a style leave in the cell.
-  /// `ranges` needs the apron that apronFor() says.
+  /// opacity that the range allows, times the greatest keep and the style's greatest factor in the
+  /// cell. `ranges` needs the apron of apronFor().
   MajorantGrid(const Grid& grid, const CellRanges& ranges, const TransferFunction& transfer,
                const Clip& clip, const ContextStyle* style = nullptr);
 
-  /// Central differences read one voxel further.
+  /// Apron of CellRanges, voxels: central differences read one voxel further.
   static int apronFor(const TransferFunction& transfer) { return transfer.gradientOpacity ? 1 : 0; }
 
   const Size3& cellCount() const { return m_cellCount; }
   std::size_t size() const { return m_cells.size(); }
-  /// How many have majorant 0.
+  /// Number of cells with majorant 0.
   std::size_t emptyCount() const;
-  /// Voxels that a cell spans.
+  /// Edges of a cell, voxels per axis.
   const Size3& edge() const { return m_edge; }
   const Cell& cell(std::int64_t index) const { return m_cells[static_cast<std::size_t>(index)]; }
   /// World space to cell space, in which cell c covers [c, c + 1].

@@ -7,18 +7,18 @@
 
 namespace fenestra {
 
-/// `Distances` finds collisions and transmittances as Tracker does.
+/// `Distances` samples collisions and transmittances like Tracker.
 template <typename Voxel, typename Distances = Tracker<Voxel>>
 class PathEstimator {
 public:
-  /// A view of all that it is given.
+  /// A view: all arguments must outlive the estimator.
   PathEstimator(const Grid& grid, const Medium<Voxel>& medium, const Distances& tracker,
                 const LightSet& lights, const Camera& camera, const Clip& clip,
                 const PathSettings& settings, const StopFlag& stop)
       : m_steps(grid, medium, lights, camera, clip, settings), m_tracker(tracker), m_stop(stop) {}
 
-  /// One path through raster position (column, row). Nothing where `stop` became true before it had
-  /// ended: with albedo 1 in a dense medium a path can take minutes.
+  /// Traces one path through raster position (column, row). Empty if `stop` became true before the
+  /// path ended: with albedo 1 in a dense medium a path can take minutes.
   std::optional<PathSample> trace(double column, double row, Random& random,
                                   Counters& counters) const {
     ++counters.paths;

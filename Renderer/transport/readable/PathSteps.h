@@ -1,12 +1,12 @@
 #pragma once
-// Events of a path: where it begins, what it gathers where it arrives, how it scatters. This is the
-// readable truth; WideEvents does the same for many paths at once.
+// A path, event by event: begins, arrives at a collision (gathering light), scatters. The readable
+// truth; WideEvents does the same for many paths at once.
 //
 // Radiative transfer, one extinction for the three channels:
 //   L(x, w) = T(x, exit) L_light(w) + ∫ T(x, y) sigma_t(y) ∫ f(y, w, w') L(y, w') dw' dy
 // with f = albedo * phase function, or surface lobes (design, section 1). Collisions are drawn from
 // T sigma_t, so a path's weight changes by f / pdf alone; at each collision one light is sampled
-// (next-event estimation) and combined with what the scattered ray itself meets by the balance
+// (next-event estimation) and combined with light met by the scattered ray itself by the balance
 // heuristic (Veach 1997, eq. 9.8).
 
 #include "image/Film.h"
@@ -22,26 +22,26 @@ namespace fenestra {
 
 struct PathSettings {
   Background background;
-  std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max(); ///< scatterings, at most
-  bool wantNormals = false; ///< fill PathSample::normal even where shading needs no gradient
+  std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max(); ///< most scatterings
+  bool wantNormals = false; ///< fill PathSample::normal even without shading
 };
 
-/// Russian roulette decides on paths whose greatest weight is below this.
+/// Weight (greatest component) below which paths are subject to Russian roulette.
 inline constexpr double rouletteBelow = 0.5;
 
-/// A path under way: the ray that it travels next, and what it has gathered.
+/// A path under way: its next ray, and the sample gathered so far.
 struct Path {
   Random random;
-  double row;     ///< raster position of its eye ray
+  double row;     ///< raster row of the eye ray
   Ray ray;        ///< world space
-  Interval range; ///< of the ray, mm, that is left by clipping
+  Interval range; ///< part of the ray left by clipping, mm
   Rgb weight = Rgb::Ones();
   double scatterPdf = 0.0;   ///< of the ray's direction, per steradian
   std::uint64_t bounces = 0; ///< scatterings so far
   PathSample sample = {};
 };
 
-/// Light that was sampled at a collision: `radiance` arrives, times the transmittance of the ray.
+/// Light sampled at a collision: `radiance` times the transmittance of the ray arrives.
 struct ShadowRay {
   Ray ray;         ///< world space
   double distance; ///< mm to the light; infinity for lights at infinity
@@ -60,14 +60,14 @@ public:
         m_eye(camera, clip, lights, settings.background),
         m_settings(settings) {}
 
-  /// A path through raster position (column, row).
+  /// Begins a path through raster position (column, row).
   Path begin(double column, double row, const Random& random) const {
     const Ray ray = m_eye.ray(column, row);
     return {random, row, ray, m_eye.range(ray)};
   }
 
-  /// The path's ray has its next collision after `distance` mm, or none (infinity). Gathers what
-  /// the ray met before it; returns whether the path goes on from there.
+  /// Ends the path's ray at its next collision, after `distance` mm, or at infinity (no collision).
+  /// Gathers the light met before; returns true if the path scatters there.
   bool arrive(Path& path, double distance) const {
     if (path.bounces > 0)
       path.sample.radiance += path.weight * arriving(path.ray, distance, path.scatterPdf);
@@ -76,8 +76,8 @@ public:
     return distance < infinity && path.bounces < m_settings.bounces;
   }
 
-  /// The path collides after `distance` mm: samples a light, and where the path goes on; sets its
-  /// new ray. A weight of zero ends it.
+  /// Scatters the path at its collision after `distance` mm: samples a light and a direction, and
+  /// sets the path's new ray. A weight of zero ends the path.
   std::optional<ShadowRay> scatter(Path& path, double distance, Counters& counters) const {
     const Vec3 point = path.ray.at(distance);
     const bool first = path.bounces == 0;
@@ -120,7 +120,7 @@ private:
   }
 
   /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
-  /// into it.
+  /// toward that light.
   std::optional<ShadowRay> sampledLight(const Vec3& point, const Scattering& scattering,
                                         Path& path) const {
     const std::optional<LightSample> light = m_lights.sample(point, path.random);
@@ -145,7 +145,7 @@ private:
     return sum;
   }
 
-  /// Russian roulette on what the path can still contribute.
+  /// Russian roulette on the path's weight.
   static void roulette(Path& path) {
     const double most = path.weight.maxCoeff();
     if (most >= rouletteBelow)

@@ -1,19 +1,19 @@
 #pragma once
-// How work under way learns that nobody wants it any more.
+// A flag that cancels work under way.
 
 #include <atomic>
 #include <cstdint>
 
 namespace fenestra {
 
-/// Once true it stays so until the work has ended: what it left unfinished is dropped whole.
+/// Stays true, once set, until the work has ended; unfinished parts are dropped whole.
 using StopFlag = std::atomic<bool>;
 
-/// For work that has bounds of its own.
+/// Flag for work that is bounded anyway.
 inline const StopFlag neverStopped = false;
 
-/// Steps of one walk between two looks at the flag: a fraction of a millisecond, where asking each
-/// time would cost as much as a step.
+/// Steps of a walk between two reads of the flag: a fraction of a millisecond. A read at each step
+/// would cost as much as the step.
 inline constexpr std::uint32_t stepsBetweenLooks = 1024;
 
 } // namespace fenestra

@@ -12,8 +12,8 @@
 
 namespace fenestra {
 
-/// Returns t of the first real collision, or infinity. `walk(visit)` calls visit(t, share) at each
-/// tentative collision until visit returns false; share: probability that the collision is real.
+/// Delta tracking: t of the first real collision, or infinity. `walk(visit)` calls visit(t,
+/// probability of a real collision) at each tentative collision until visit returns false.
 template <typename Walk>
 double firstRealCollision(Walk&& walk, Random& random) {
   double distance = infinity;
@@ -26,7 +26,7 @@ double firstRealCollision(Walk&& walk, Random& random) {
   return distance;
 }
 
-/// Ratio tracking (Novak et al. 2014), with Russian roulette where little is left.
+/// Transmittance by ratio tracking (Novak et al. 2014), with Russian roulette below 0.1.
 template <typename Walk>
 double ratioTracked(Walk&& walk, Random& random) {
   constexpr double rouletteBelow = 0.1;
@@ -40,8 +40,8 @@ double ratioTracked(Walk&& walk, Random& random) {
   return ratio;
 }
 
-/// A view: medium, majorants, clip and stop outlive it. Rays are in world space, unit direction.
-/// Once `stop` is true walks end where they are, and what is returned means nothing.
+/// A view: medium, majorants, clip and stop must outlive the tracker. Rays are in world space, unit
+/// direction. Once `stop` is true walks are abandoned and results are meaningless.
 template <typename Voxel>
 class Tracker {
 public:
@@ -65,7 +65,7 @@ public:
 
 private:
   /// Calls visit(t, keep * extinction / majorant) at each tentative collision until it returns
-  /// false. One exponential optical depth is spent across cell borders and drawn anew after each
+  /// false. One exponential optical depth is spent across cell borders and redrawn after each
   /// collision.
   template <typename Visit>
   void walkTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
@@ -75,8 +75,8 @@ private:
     const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
     if (inside.empty())
       return;
-    // Lengths count from where the ray enters: free paths keep their digits, however far away it
-    // began.
+    // Lengths count from the entry into the domain: free paths keep their digits, however far away
+    // the ray's origin is.
     const Ray entering{ray.at(inside.begin), ray.direction};
     const Ray indexRay = transformed(worldToIndex, entering);
     GridWalk walk(transformed(m_majorants.worldToCell(), entering),

@@ -8,11 +8,11 @@
 namespace fenestra {
 namespace {
 
-/// Pixels; more than rounding moves a projection.
+/// Tolerance, pixels; greater than the rounding of a projection.
 constexpr double slack = 0.01;
 
-/// The tiles, first and last, that raster coordinates between `low` and `high` fall into; the first
-/// lies behind the last where there is none. Every tile where they are NaN.
+/// First and last tile of the raster coordinates from `low` to `high`; first > last if there is
+/// none. All tiles if `low` and `high` are NaN.
 std::pair<int, int> tilesBetween(double low, double high, int pixels, int tileSize) {
   if (low - slack >= pixels || high + slack < 0.0)
     return {0, -1};

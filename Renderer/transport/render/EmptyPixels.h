@@ -8,12 +8,11 @@
 
 namespace fenestra {
 
-/// Pixels through whose whole area, the footprint of the box filter, no eye ray meets a majorant
-/// cell that holds anything. Before a background that is constant over each pixel all their samples
-/// are equal.
+/// Pixels in whose whole area (the footprint of the box filter) no eye ray meets a cell of majorant
+/// > 0. If the background is constant over each pixel, all samples of such a pixel are equal.
 class EmptyPixels {
 public:
-  /// None is known to be empty.
+  /// Contains no pixel.
   EmptyPixels() = default;
   EmptyPixels(const Camera& camera, const MajorantGrid& majorants);
 

@@ -16,10 +16,10 @@
 namespace fenestra {
 namespace {
 
-/// A noise estimate from fewer samples a pixel is too uncertain to stop by.
+/// Samples per pixel below which a noise estimate is too uncertain to stop by.
 constexpr std::uint64_t leastForNoise = 16;
 
-/// One path after the other.
+/// Traces one path after the other.
 template <typename Voxel>
 struct OneByOne {
   PathEstimator<Voxel> estimator;
@@ -37,8 +37,9 @@ struct OneByOne {
   }
 };
 
-/// Passes grow, so that a picture is there early and overhead stays small later; their sizes are
-/// fixed, so that a stop by noise falls on the same sample count on every machine.
+/// Samples per pixel of the next pass. Passes grow, so that a picture is there early and overhead
+/// stays small later; sizes are fixed, so that a stop by noise falls on the same sample count on
+/// every machine.
 std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
   constexpr std::uint64_t largest = 16;
   const std::uint64_t grown = std::clamp<std::uint64_t>(done, 1, largest);
@@ -46,9 +47,10 @@ std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
   return std::min(wanted, settings.samples - done);
 }
 
-/// Samples of the next pass toward a noise target. The pilot ends with the same sample whatever the
-/// passes are. Passes grow anew after the pilot, for some pixels may get far more than the mean,
-/// and the last is as small as the noise so far says, variance falling as one over the samples.
+/// Samples per pixel of the next pass toward a noise target. The pilot ends at leastForNoise
+/// whatever the passes are. After the pilot passes grow from 1 again, for some pixels may get far
+/// more than the mean; the last pass is as small as the noise so far predicts (variance ~ 1 /
+/// samples).
 std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan& plan,
                               const RenderSettings& settings) {
   if (done < leastForNoise)
@@ -60,15 +62,15 @@ std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan
   return std::min({passSize(done - leastForNoise, settings), settings.samples - done, most});
 }
 
-/// Renders the samples that stage `to` of the plan has beyond `from`. Returns false when stopped
-/// before all was done; tiles are done whole or not at all.
+/// Renders the samples of stage `to` beyond stage `from`. Returns false if stopped before all were
+/// done; tiles are done whole or not at all.
 template <typename Tracer>
 bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
                 const EmptyPixels& empty, std::uint64_t seed, Film& film, Counters& total,
                 RenderMonitor& monitor) {
   Pass pass(from, to, empty, seed, film, monitor.paths);
   const int threads = tbb::this_task_arena::max_concurrency();
-  // So many that all threads come to have some, and their tails are short.
+  // Paths at once in a thread: limited, so that all threads get some and tails are short.
   const std::size_t atOnce =
       std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)));
   tbb::combinable<Counters> counters;
@@ -84,7 +86,7 @@ bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const Sampl
   return pass.whole();
 }
 
-/// Whether all eye rays through a pixel that meet nothing show the same.
+/// True if all eye rays through one pixel that meet nothing show the same.
 bool isConstantInPixels(const Background& background, const LightSet& lights) {
   return background.kind != Background::Kind::environment || !lights.hasMaps();
 }
@@ -99,7 +101,7 @@ public:
     m_perSample = (now - m_last) / static_cast<double>(samples);
     m_last = now;
   }
-  /// How many samples the time that is left allows, if they take what the last ones took.
+  /// Number of samples that the remaining time allows, at the last pass's time per sample.
   std::uint64_t affordable() const {
     if (!(m_secondsInAll < infinity) || m_perSample == 0.0)
       return std::numeric_limits<std::uint64_t>::max();

@@ -1,6 +1,6 @@
 #pragma once
-// From a prepared scene to a film: passes over the picture until enough samples, time or quality.
-// The voxel type is resolved once, here; below it everything is a template.
+// From a prepared scene to a film: passes over the picture up to a limit of samples, time or noise.
+// The voxel type is resolved once, here; everything below is a template.
 
 #include "image/Film.h"
 #include "model/lights/LightSet.h"
@@ -16,7 +16,7 @@
 
 namespace fenestra {
 
-/// Everything that transport reads; all of it outlives the render.
+/// Data that transport reads; all must outlive the render.
 struct RenderScene {
   const Volume& volume;
   const TransferFunction& transfer;
@@ -25,34 +25,34 @@ struct RenderScene {
   const Camera& camera;
   const Clip& clip;
   std::optional<CropBox> crop = {};
-  const ContextStyle* style = nullptr; ///< of what is not focus; null where it looks as it is
+  const ContextStyle* style = nullptr; ///< of the context; null: unchanged
 };
 
-/// How paths find their way. Both are unbiased; `fast` is `readable` where its lanes do not serve
-/// (WideTracker::serves, EventScene::serves).
+/// Implementation of transport. Both are unbiased; `fast` falls back to `readable` if lanes do not
+/// serve (WideTracker::serves, EventScene::serves).
 enum class Transport { fast, readable };
 
-/// Stops at the first of samples, seconds and noise. Toward a noise target, pixels that are noisier
-/// get more samples than others, after a pilot of 16 (SamplePlan); else all get the same number.
+/// Limits of a render, which stops at the first of samples, seconds and noise. With a noise target,
+/// noisier pixels get more samples, after a pilot of 16 (SamplePlan); else all get the same number.
 struct RenderSettings {
   PathSettings path;
-  std::uint64_t samples = 64; ///< a pixel, at most; on average
-  double seconds = infinity;  ///< of transport
-  double noise = -1.0; ///< Film::noise() at the end of a pass, from 16 samples on; negative: never
+  std::uint64_t samples = 64; ///< limit of the mean number per pixel
+  double seconds = infinity;  ///< limit of the time of transport
+  double noise = -1.0; ///< limit of Film::noise() after a pass, from 16 samples on; negative: none
   std::uint64_t seed = 0;
   Transport transport = Transport::fast;
   int threads = 0;               ///< 0: all
-  std::uint64_t passSamples = 0; ///< samples a pass; 0: growing passes. Never changes the picture.
+  std::uint64_t passSamples = 0; ///< in a pass; 0: growing passes. Never changes the picture.
 };
 
 struct RenderResult;
 
-/// Progress of a running render, and the way to stop it.
+/// Progress of a running render, and its stop flag.
 struct RenderMonitor {
   std::atomic<bool> stop = false;
-  std::atomic<std::uint64_t> paths = 0; ///< finished so far, or found to be needless
+  std::atomic<std::uint64_t> paths = 0; ///< finished so far, needless ones included
   std::atomic<double> noise = infinity; ///< at the end of the last pass
-  /// Called between two passes with what there is by then; the render waits.
+  /// Called between two passes with the result so far; the render waits.
   std::function<void(const RenderResult&)> between = {};
 };
 
@@ -62,10 +62,10 @@ struct RenderResult {
   Film film;
   Counters counters;
   StopReason reason = StopReason::samples;
-  /// A pixel, on average over those that are not certain from one (PixelSums::isCertain); after a
-  /// request some may have more.
+  /// Mean samples per pixel, over pixels with isCertain = false. After a stop by request single
+  /// tiles may be one pass ahead.
   std::uint64_t finishedSamples = 0;
-  /// Pictures are bit-identical within one target: "scalar", or the lanes' instruction set.
+  /// Arithmetic within which pictures are bit-identical: "scalar", or the lanes' instruction set.
   std::string target = "scalar";
 };
 

@@ -10,11 +10,11 @@
 namespace fenestra {
 namespace {
 
-/// No pixel counts as less noisy than this part of the mean: what is rare hides from few samples.
+/// Least s of a pixel, relative to the mean s: few samples miss rare bright paths.
 constexpr double leastNoise = 0.25;
-constexpr int reach = 2; ///< pixels to each side that are asked
+constexpr int reach = 2; ///< pixels to each side in around()
 
-/// Variance of one sample over (x^2 + 0.01), the mean of the channels.
+/// Variance of one sample / (x^2 + 0.01), mean over the channels.
 double relativeVariance(const PixelSums& pixel) {
   if (pixel.isCertain)
     return 0.0;
@@ -22,13 +22,13 @@ double relativeVariance(const PixelSums& pixel) {
   return (variance / (pixel.mean.square() + 0.01)).mean();
 }
 
-/// Mean cost of a pixel's path: beginning it, and its scatterings (1 each).
+/// Cost of a path, in scatterings: `beginning`, plus the mean number of scatterings.
 double cost(const PixelSums& pixel) {
   constexpr double beginning = 0.15;
   return beginning + pixel.scatterings / static_cast<double>(pixel.samples);
 }
 
-/// The mean over the pixels around one, without itself.
+/// Mean over the pixels around (column, row), that pixel excluded.
 double around(const std::vector<double>& values, int width, int height, int column, int row) {
   double sum = 0.0;
   int count = -1;
@@ -91,9 +91,8 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().greates
     m_sumFrom[i] = m_sumFrom[i + 1] + static_cast<double>(m_sorted[i]);
 }
 
-/// Pixels have max(pilot, perNoise s) samples. Where the first k of the sorted ones stay at the
-/// pilot, the mean says what perNoise is; k is the least for which the next one's share is at least
-/// the pilot.
+/// Pixels get max(pilot, perNoise s) samples. If the first k pixels of m_sorted stay at the pilot,
+/// perNoise(k) follows from the mean; k is the least with perNoise(k) m_sorted[k] >= pilot.
 SamplePlan::Stage SamplePlan::at(std::uint64_t mean) const {
   Stage stage;
   stage.m_plan = this;

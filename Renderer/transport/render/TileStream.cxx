@@ -3,7 +3,7 @@
 namespace fenestra {
 namespace {
 
-/// A sample's ticket: its tile's place, and its number there.
+/// Ticket of a sample: the tile's place, and the sample's index in the tile.
 std::uint64_t ticketOf(std::uint32_t tile, std::size_t sample) {
   return std::uint64_t{tile} << 32 | sample;
 }
@@ -48,7 +48,7 @@ std::size_t TileStream::pixel(const Sample& sample) const {
          static_cast<std::size_t>(sample.column);
 }
 
-/// Makes the next tile that has samples the current one; false where none is left.
+/// Makes the next tile that has samples the current one; false if none is left.
 bool TileStream::openTile() {
   if (m_free.empty()) {
     m_free.push_back(static_cast<std::uint32_t>(m_tiles.size()));
@@ -72,7 +72,7 @@ bool TileStream::openTile() {
   return true;
 }
 
-/// Pixel by pixel.
+/// Lists the samples of tile `index`, pixel by pixel.
 void TileStream::list(Tile& tile, int index) const {
   tile.planned = 0;
   tile.samples.clear();

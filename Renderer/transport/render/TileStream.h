@@ -1,6 +1,6 @@
 #pragma once
-// The samples of one pass as threads take them: path after path, from one tile into the next, so
-// that a thread that follows many paths at once never runs short of them before the pass ends.
+// The samples of one pass, taken by threads path after path, from one tile into the next, so that a
+// thread that follows many paths at once never runs short of paths before the pass ends.
 
 #include "image/Film.h"
 #include "transport/lanes/PathEstimator.h"
@@ -13,21 +13,21 @@
 
 namespace fenestra {
 
-/// Shared by all threads of a pass: the samples that a stage of the plan has beyond the stage
-/// before, cut into tiles.
+/// State shared by all threads of a pass: the samples of stage `to` beyond stage `from`, cut into
+/// tiles.
 class Pass {
 public:
-  /// A view of plan, empty pixels and film. Tiles that are done add to `paths` as many samples as
-  /// were planned for them.
+  /// A view of plan, empty pixels and film. Each finished tile adds its planned number of samples
+  /// to `paths`.
   Pass(const SamplePlan::Stage& from, const SamplePlan::Stage& to, const EmptyPixels& empty,
        std::uint64_t seed, Film& film, std::atomic<std::uint64_t>& paths);
 
-  /// Whether all tiles have been added to the film.
+  /// True once all tiles have been added to the film.
   bool whole() const { return m_tilesDone == m_tileCount; }
 
 private:
   friend class TileStream;
-  static constexpr int tileSize = 8; ///< pixels: all samples of a tile are kept until it is done
+  static constexpr int tileSize = 8; ///< pixels; a tile's samples are kept until all are done
 
   const SamplePlan::Stage m_from, m_to;
   const EmptyPixels& m_empty;
@@ -38,24 +38,24 @@ private:
   std::atomic<int> m_nextTile = 0, m_tilesDone = 0;
 };
 
-/// One thread's part of a pass: what PathWave and others trace.
+/// One thread's part of a pass: a source of paths for PathWave::trace.
 class TileStream {
 public:
   explicit TileStream(Pass& pass) : m_pass(pass) {}
 
-  /// Where the next path begins; nothing where there is none left.
+  /// Start of the next path; empty if none is left.
   std::optional<PathStart> next();
-  /// In any order. A tile whose last sample comes in is added to the film: whole, and the samples
-  /// of each pixel in their own order.
+  /// Takes samples in any order. A tile is added to the film as a whole, with its last sample; each
+  /// pixel's samples in the order of their numbers.
   void deliver(std::uint64_t ticket, const PathSample& sample);
 
 private:
   struct Sample {
     int column, row;
-    std::uint64_t number; ///< of its pixel's
+    std::uint64_t number; ///< among the pixel's samples
   };
   struct Tile {
-    std::uint64_t planned = 0; ///< as many samples as there would be if no pixel were empty
+    std::uint64_t planned = 0; ///< number of samples if no pixel were empty
     std::vector<Sample> samples;
     std::vector<PathSample> results;
     std::size_t awaited = 0;
@@ -67,10 +67,10 @@ private:
   void close(Tile& tile);
 
   Pass& m_pass;
-  std::vector<Tile> m_tiles;         ///< those that are open, and room for others
-  std::vector<std::uint32_t> m_free; ///< places in m_tiles
-  std::uint32_t m_current = 0;       ///< of which the next samples are,
-  std::size_t m_left = 0;            ///< and how many of them
+  std::vector<Tile> m_tiles;         ///< open tiles, and free places
+  std::vector<std::uint32_t> m_free; ///< free places in m_tiles
+  std::uint32_t m_current = 0;       ///< place of the tile of the next samples
+  std::size_t m_left = 0;            ///< samples left in that tile
 };
 
 } // namespace fenestra

@@ -5,7 +5,7 @@
 
 namespace fenestra {
 
-/// work(medium, tracker) of the volume's storage type.
+/// Calls work(medium, tracker) for the volume's storage type.
 template <typename Work>
 auto withMedium(const RenderScene& scene, Work&& work, const StopFlag& stop = neverStopped) {
   return std::visit(
