@@ -12,8 +12,9 @@
 
 namespace fenestra {
 
-/// Surface of five cameras, from `degrees` before to `degrees` after (camera/Turn.h), with binomial
-/// weights. For 0 degrees, and in modes other than `surface`: the result of buildClippingSurface.
+/// Surface of five cameras, from `degrees` before to `degrees` after (model/camera/Turn.h), with
+/// binomial weights. For 0 degrees, and in modes other than `surface`: the result of
+/// buildClippingSurface.
 ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                    const SurfaceOptions& options, double degrees);
 

@@ -1,5 +1,5 @@
-// Lights for many paths: lights/LightSet.h in lanes. Compiled once for each instruction set (see
-// WideEvents.cxx).
+// Lights for many paths: model/lights/LightSet.h in lanes. Compiled once for each instruction set
+// (see PathSteps.cxx).
 
 #if defined(FENESTRA_WIDE_LIGHTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_WIDE_LIGHTS_INL_H

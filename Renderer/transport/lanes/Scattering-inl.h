@@ -1,5 +1,5 @@
-// Scattering of many paths: medium/Scattering.h in lanes. Compiled once for each instruction set
-// (see PathSteps.cxx).
+// Scattering of many paths: model/medium/Scattering.h in lanes. Compiled once for each instruction
+// set (see PathSteps.cxx).
 
 #if defined(FENESTRA_WIDE_SCATTERING_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_WIDE_SCATTERING_INL_H
