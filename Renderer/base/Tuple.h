@@ -149,6 +149,12 @@ public:
   }
 
 protected:
+  template <typename... Parts>
+  constexpr void assign(Parts... parts) {
+    int i = 0;
+    ((m_parts[i++] = parts), ...);
+  }
+
   template <typename F>
   constexpr auto with(const Self& o, F&& f) const {
     Kind<decltype(f(m_parts[0], o[0])), N> result;
@@ -178,9 +184,9 @@ public:
   Array() = default;
   Array(const Array&) = default;
   Array& operator=(const Array&) & = default; // temporaries refuse assignment
-  constexpr explicit Array(T x) requires(N == 1) { assign(x); }
-  constexpr Array(T x, T y) requires(N == 2) { assign(x, y); }
-  constexpr Array(T x, T y, T z) requires(N == 3) { assign(x, y, z); }
+  constexpr explicit Array(T x) requires(N == 1) { this->assign(x); }
+  constexpr Array(T x, T y) requires(N == 2) { this->assign(x, y); }
+  constexpr Array(T x, T y, T z) requires(N == 3) { this->assign(x, y, z); }
 
   constexpr Vector<T, N> matrix() const;
   constexpr T value() const {
@@ -205,9 +211,6 @@ public:
   constexpr Array square() const { return *this * *this; }
   Array sqrt() const {
     return this->unaryExpr([](T part) { return std::sqrt(part); });
-  }
-  Array exp() const {
-    return this->unaryExpr([](T part) { return std::exp(part); });
   }
   Array log() const {
     return this->unaryExpr([](T part) { return std::log(part); });
@@ -264,13 +267,6 @@ public:
   friend constexpr Truths operator&&(const Array& a, const Array& b) {
     return a.with(b, [](T p, T q) { return p && q; });
   }
-
-private:
-  template <typename... Parts>
-  constexpr void assign(Parts... parts) {
-    int i = 0;
-    ((this->m_parts[i++] = parts), ...);
-  }
 };
 
 template <typename T, int N>
@@ -279,9 +275,9 @@ public:
   Vector() = default;
   Vector(const Vector&) = default;
   Vector& operator=(const Vector&) & = default; // temporaries refuse assignment
-  constexpr Vector(T x, T y) requires(N == 2) { assign(x, y); }
-  constexpr Vector(T x, T y, T z) requires(N == 3) { assign(x, y, z); }
-  constexpr Vector(T x, T y, T z, T w) requires(N == 4) { assign(x, y, z, w); }
+  constexpr Vector(T x, T y) requires(N == 2) { this->assign(x, y); }
+  constexpr Vector(T x, T y, T z) requires(N == 3) { this->assign(x, y, z); }
+  constexpr Vector(T x, T y, T z, T w) requires(N == 4) { this->assign(x, y, z, w); }
   /// Conversion, not explicit: assigning an array to a vector is common.
   constexpr Vector(const Array<T, N>& parts) {
     for (int i = 0; i < N; ++i)
@@ -337,13 +333,6 @@ public:
 
   friend constexpr bool operator==(const Vector& a, const Vector& b) {
     return std::equal(a.begin(), a.end(), b.begin());
-  }
-
-private:
-  template <typename... Parts>
-  constexpr void assign(Parts... parts) {
-    int i = 0;
-    ((this->m_parts[i++] = parts), ...);
   }
 };
 
