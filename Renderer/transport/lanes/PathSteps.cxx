@@ -281,16 +281,9 @@ private:
 
 void scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& paths,
                 LightBatch& lights, Counters& counters) {
-  switch (volume.type) {
-  case WideScene::VoxelType::uint8:
-    return Events<std::uint8_t>(volume, scene, paths, lights).run(counters);
-  case WideScene::VoxelType::int16:
-    return Events<std::int16_t>(volume, scene, paths, lights).run(counters);
-  case WideScene::VoxelType::uint16:
-    return Events<std::uint16_t>(volume, scene, paths, lights).run(counters);
-  case WideScene::VoxelType::float32:
-    return Events<float>(volume, scene, paths, lights).run(counters);
-  }
+  std::visit([&]<typename Voxel>(
+                 const Voxel*) { Events<Voxel>(volume, scene, paths, lights).run(counters); },
+             volume.voxels);
 }
 
 } // namespace

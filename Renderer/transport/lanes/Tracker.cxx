@@ -365,16 +365,9 @@ void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, C
 
 template <bool wantRatio>
 void followAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
-  switch (scene.type) {
-  case WideScene::VoxelType::uint8:
-    return followBatch<std::uint8_t, wantRatio>(scene, rays, stop, counters);
-  case WideScene::VoxelType::int16:
-    return followBatch<std::int16_t, wantRatio>(scene, rays, stop, counters);
-  case WideScene::VoxelType::uint16:
-    return followBatch<std::uint16_t, wantRatio>(scene, rays, stop, counters);
-  case WideScene::VoxelType::float32:
-    return followBatch<float, wantRatio>(scene, rays, stop, counters);
-  }
+  std::visit([&]<typename Voxel>(
+                 const Voxel*) { followBatch<Voxel, wantRatio>(scene, rays, stop, counters); },
+             scene.voxels);
 }
 
 void flyAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {

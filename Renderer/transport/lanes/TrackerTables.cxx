@@ -36,10 +36,6 @@ WideField fieldOf(const void* voxels, const Grid& grid) {
   return field;
 }
 
-WideScene::VoxelType typeOf(const Voxels& voxels) {
-  return static_cast<WideScene::VoxelType>(voxels.index());
-}
-
 } // namespace
 
 double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
@@ -72,10 +68,10 @@ WideTracker::WideTracker(const Volume& volume, const Domain& domain,
                          const TransferFunction& transfer, const MajorantGrid& majorants,
                          const Clip& clip, const ContextStyle* style, const StopFlag& stop)
     : m_stop(stop) {
-  m_scene.type = typeOf(volume.voxels);
+  m_scene.voxels =
+      std::visit([](const auto& v) { return WideScene::FirstVoxel(v.data()); }, volume.voxels);
   m_scene.field = fieldOf(
-      std::visit([](const auto& v) { return static_cast<const void*>(v.data()); }, volume.voxels),
-      volume.grid);
+      std::visit([](const auto* v) -> const void* { return v; }, m_scene.voxels), volume.grid);
   setCells(majorants);
   m_scene.extinction = WideTable(transfer.extinction);
   setDomain(domain);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <variant>
 #include <vector>
 
 namespace fenestra {
@@ -27,8 +28,9 @@ struct WideField {
 
 /// Plain numbers and pointers, in float and index space. Built by WideTracker.
 struct WideScene {
-  /// Order: that of Voxels' alternatives.
-  enum class VoxelType { uint8, int16, uint16, float32 };
+  /// First voxel, of Voxels' types.
+  using FirstVoxel =
+      std::variant<const std::uint8_t*, const std::int16_t*, const std::uint16_t*, const float*>;
   /// Cells along one axis.
   struct Axis {
     float cellEdge;      ///< voxels
@@ -50,8 +52,8 @@ struct WideScene {
     float extinction = 1.0F, saturation = 1.0F;
   };
 
-  VoxelType type;
-  WideField field;
+  FirstVoxel voxels;
+  WideField field; ///< of `voxels`
   std::array<Axis, 3> axes;
   /// Domain: the box [lower, upper] in index space and, if `cropped`, [-1, 1]^3 in crop space.
   std::array<float, 3> lower, upper;

@@ -159,6 +159,36 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& target, const
   return result;
 }
 
+bool lanesServe(const RenderScene& scene) {
+  return WideTracker::serves(scene.volume, scene.transfer) &&
+         EventScene::serves(scene.volume.grid, scene.transfer, scene.lights);
+}
+
+RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& settings,
+                           RenderMonitor& monitor) {
+  const Domain domain(scene.volume.grid, scene.crop);
+  const WideTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
+                            scene.style, monitor.stop);
+  const WideEvents events(tracker.scene(),
+                          EventScene(scene.volume.grid, scene.transfer, scene.lights,
+                                     settings.path.bounces, settings.path.wantNormals));
+  const EyeRays eye(scene.camera, scene.clip, scene.lights, settings.path.background);
+  const PathWave wave(domain, tracker, events, eye, monitor.stop);
+  return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor);
+}
+
+RenderResult renderOneByOne(const RenderScene& scene, const RenderSettings& settings,
+                            RenderMonitor& monitor) {
+  const auto work = [&]<typename Voxel>(const Medium<Voxel>& medium,
+                                        const Tracker<Voxel>& tracker) {
+    const OneByOne<Voxel> readable{PathEstimator<Voxel>(scene.volume.grid, medium, tracker,
+                                                        scene.lights, scene.camera, scene.clip,
+                                                        settings.path, monitor.stop)};
+    return renderPasses(readable, "scalar", scene, settings, monitor);
+  };
+  return withMedium(scene, work, monitor.stop);
+}
+
 } // namespace
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
@@ -166,27 +196,9 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
   const int cores = tbb::info::default_concurrency(); // TBB complains about more
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   return arena.execute([&] {
-    const auto work = [&]<typename Voxel>(const Medium<Voxel>& medium,
-                                          const Tracker<Voxel>& tracker) {
-      if (settings.transport == Transport::fast &&
-          WideTracker::serves(scene.volume, scene.transfer) &&
-          EventScene::serves(scene.volume.grid, scene.transfer, scene.lights)) {
-        const Domain domain(scene.volume.grid, scene.crop);
-        const WideTracker wide(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
-                               scene.style, monitor.stop);
-        const WideEvents events(wide.scene(),
-                                EventScene(scene.volume.grid, scene.transfer, scene.lights,
-                                           settings.path.bounces, settings.path.wantNormals));
-        const EyeRays eye(scene.camera, scene.clip, scene.lights, settings.path.background);
-        const PathWave wave(domain, wide, events, eye, monitor.stop);
-        return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor);
-      }
-      const OneByOne<Voxel> readable{PathEstimator<Voxel>(scene.volume.grid, medium, tracker,
-                                                          scene.lights, scene.camera, scene.clip,
-                                                          settings.path, monitor.stop)};
-      return renderPasses(readable, "scalar", scene, settings, monitor);
-    };
-    return withMedium(scene, work, monitor.stop);
+    return settings.transport == Transport::fast && lanesServe(scene)
+               ? renderInLanes(scene, settings, monitor)
+               : renderOneByOne(scene, settings, monitor);
   });
 }
 
