@@ -1,4 +1,4 @@
-// Meaning of nodes: geometry, transforms, cropping boxes, cameras, looks, visibility.
+// Meaning of nodes: geometry, transforms, cropping boxes, cameras, visibility.
 
 #include "SceneTesting.h"
 
@@ -332,85 +332,6 @@ TEST(MrmlScene, readsTheViewsBackground) {
   EXPECT_TRUE(viewBackground(document.nodes()[0]).bottom.isApprox(Rgb(0.1, 0.2, 0.3)));
   EXPECT_TRUE(viewBackground(document.nodes()[1]).top.isApprox(Rgb(0.1, 0.2, 0.3)));
   EXPECT_TRUE((viewBackground(document.nodes()[2]).bottom == 0.0).all());
-}
-
-// ---- looks
-// ---------------------------------------------------------------------------------------
-
-const std::string inlineProperty = R"(shade="1" diffuse="0.9" ambient="0.1" specular="0.2"
-  specularPower="10" scalarOpacity="4 0 0 100 0.5" gradientOpacity="4 0 1 255 1"
-  colorTransfer="8 0 0 0 0 100 1 1 1" effectiveRange="0 -1")";
-
-double extinctionAt100(const std::string& nodes,
-                       const std::map<std::string, std::string>& files = {}) {
-  const SceneFolder folder;
-  for (const auto& [name, content] : files)
-    folder.write(name, content);
-  MrmlScene scene = folder.scene(nodes);
-  return readSceneProperty(scene, node(scene, "p")).extinction(100)[0];
-}
-
-TEST(MrmlScene, readsAPropertyFromItsFileElseFromTheScene) {
-  const std::string text =
-      "1\n1\n0.9\n0.1\n0.2\n10\n4 0 0 100 0.75\n4 0 1 255 1\n8 0 0 0 0 100 1 1 1\n";
-  const std::string json = R"({"volumeProperties": [{"components": [{
-      "rgbTransferFunction": {"points": [{"x": 0, "color": [1, 1, 1]}]},
-      "scalarOpacity": {"points": [{"x": 100, "y": 0.875}]}}]}]})";
-  const std::string stored = R"(<VolumePropertyStorage id="s" fileName="p.vp"/>)";
-  const std::string storedJson = R"(<VolumePropertyJsonStorage id="s" fileName="p.vp.json"/>)";
-  const auto property = [](const std::string& attributes) {
-    return "<VolumeProperty id=\"p\" " + attributes + "/>";
-  };
-  EXPECT_NEAR(extinctionAt100(property(inlineProperty)), std::log(2.0), 1e-4);
-  EXPECT_NEAR(extinctionAt100(property("storageNodeRef=\"s\" " + inlineProperty) + stored,
-                              {{"p.vp", text}}),
-              std::log(4.0), 2e-4);
-  EXPECT_NEAR(extinctionAt100(property("storageNodeRef=\"s\"") + storedJson, {{"p.vp.json", json}}),
-              std::log(8.0), 3e-4);
-}
-
-TEST(MrmlScene, refusesAPropertyWithoutPoints) {
-  const SceneFolder folder;
-  const auto path = folder.writeScene(R"(<VolumeProperty id="p" name="mine"/>
-      <VolumeProperty id="q" scalarOpacity="3 0 0 1" colorTransfer="4 0 1 1 1"/>)");
-  MrmlScene scene(path);
-  expectRefused(path, "VolumeProperty mine (p): has neither",
-                [&] { readSceneProperty(scene, node(scene, "p")); });
-  expectRefused(path, "VolumeProperty (q): scalarOpacity: must be a count",
-                [&] { readSceneProperty(scene, node(scene, "q")); });
-}
-
-TEST(MrmlScene, followsTheVolumesDisplay) {
-  const MrmlDocument document(R"(<MRML><GPURayCastVolumeRendering/>
-    <GPURayCastVolumeRendering ignoreVolumeDisplayNodeThreshold="1"/>
-    <VolumeDisplay window="100" level="150" lowerThreshold="-32768" upperThreshold="32767"/>
-    <VolumeDisplay window="100" level="150" colorNodeID="vtkMRMLColorTableNodeRainbow"/>
-    <VolumeDisplay window="100" level="150" invertDisplayScalarRange="true"
-      lowerThreshold="50" upperThreshold="250" colorNodeID="vtkMRMLColorTableNodeGrey"/></MRML>)",
-                              "test");
-  const auto& nodes = document.nodes();
-  const auto opacity = [](const TransferFunction& f, double s) {
-    return 1.0 - std::exp(-f.extinction(s)[0]);
-  };
-  const auto whole = followedDisplay(nodes[0], nodes[2], {0, 400});
-  ASSERT_TRUE(whole); // a ramp over the whole range
-  EXPECT_NEAR(opacity(*whole, 100), 0.25, 1e-3);
-  EXPECT_NEAR(opacity(*whole, 300), 0.75, 1e-3);
-  EXPECT_NEAR(whole->albedo(100)[0], 0.0, 1e-6); // black to white over the window
-  EXPECT_NEAR(whole->albedo(200)[0], 1.0, 1e-6);
-  EXPECT_TRUE(whole->shading);
-
-  const auto window = followedDisplay(nodes[1], nodes[2], {0, 400});
-  EXPECT_NEAR(opacity(*window, 150), 0.5, 1e-3); // a ramp over the window, opaque beyond
-  EXPECT_NEAR(opacity(*window, 99), 0.0, 1e-9);
-  EXPECT_GT(opacity(*window, 300), 0.99);
-
-  const auto threshold = followedDisplay(nodes[0], nodes[4], {0, 400});
-  EXPECT_NEAR(opacity(*threshold, 150), 0.5, 1e-3); // a ramp over the threshold, empty beyond
-  EXPECT_NEAR(opacity(*threshold, 300), 0.0, 1e-9);
-  EXPECT_NEAR(threshold->albedo(100)[0], 1.0, 1e-6);
-
-  EXPECT_FALSE(followedDisplay(nodes[0], nodes[3], {0, 400})); // another colour table
 }
 
 // ---- real files

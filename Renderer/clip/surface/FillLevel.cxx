@@ -1,0 +1,182 @@
+#include "clip/surface/FillLevel.h"
+
+#include "clip/surface/SmoothFill.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace fenestra {
+namespace {
+
+/// Calls back with each row, in parallel; short rows share a thread.
+template <typename Function>
+void forRows(const FillLevel& level, const Function& function) {
+  const std::size_t grain = 1 + 32768 / level.columns();
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.rows(), grain),
+                    [&](const auto& range) {
+                      for (std::size_t row = range.begin(); row != range.end(); ++row)
+                        function(row);
+                    });
+}
+
+} // namespace
+
+void FillLevel::trimFocus() {
+  const std::vector<float> whole = m_covered;
+  for (std::size_t at = m_stride + 1; at + m_stride + 1 < whole.size(); ++at)
+    if (whole[at] > 0.0f) {
+      float corners = 0.0f;
+      for (const std::size_t row : {at - m_stride, at + m_stride})
+        for (const std::size_t column : {at - 1, at + 1})
+          corners += whole[row] * whole[column] * whole[row + column - at];
+      m_covered[at] = std::max(0.25f * corners, 0.1f);
+    }
+}
+
+FillLevel FillLevel::halved() const {
+  FillLevel coarse(m_x.halved(), m_y.halved());
+  for (std::size_t row = 0; row < coarse.rows(); ++row)
+    for (std::size_t column = 0; column < coarse.columns(); ++column) {
+      const std::size_t i[] = {2 * column, std::min(2 * column + 1, columns() - 1)};
+      const std::size_t j[] = {2 * row, std::min(2 * row + 1, rows() - 1)};
+      float depths = 0.0f, covered = 0.0f;
+      for (const std::size_t r : j)
+        for (const std::size_t c : i) {
+          depths += 0.25f * depth(c, r);
+          covered += 0.25f * m_covered[index(c, r)];
+        }
+      coarse.set(column, row, depths, covered);
+    }
+  return coarse;
+}
+
+void FillLevel::continueBoundary(double length) {
+  const std::vector<float> own = m_depth;
+  std::vector<std::uint8_t> known(m_depth.size(), 0);
+  findBoundary();
+  std::vector<std::size_t> front, next;
+  for (const float free : {0.0f, 1.0f}) { // inward first: the outward pass reads those slopes
+    front.clear();
+    for (const Edge& edge : m_edges) {
+      known[edge.at] = 1;
+      front.push_back(edge.at);
+    }
+    for (double reached = 0.0; reached < length && !front.empty(); reached += pitch()) {
+      next.clear();
+      for (const std::size_t from : front)
+        forNeighbours(from, [&](std::size_t at, std::ptrdiff_t, double) {
+          if (known[at] == 0 && m_free[at] == free) {
+            known[at] = 2; // found in this step
+            next.push_back(at);
+          }
+        });
+      for (const std::size_t at : next)
+        m_depth[at] = continued(at, own, known, length);
+      for (const std::size_t at : next)
+        known[at] = 1;
+      std::swap(front, next);
+    }
+  }
+}
+
+float FillLevel::continued(std::size_t at, const std::vector<float>& own,
+                           const std::vector<std::uint8_t>& known, double length) const {
+  float sum = 0.0f, count = 0.0f;
+  forNeighbours(at, [&](std::size_t from, std::ptrdiff_t way, double distance) {
+    if (known[from] != 1)
+      return;
+    const auto limit = static_cast<float>(steepestBoundary * distance);
+    const std::size_t before = from + static_cast<std::size_t>(way);
+    float rise = 0.0f;
+    if (m_free[at] == 0.0f)
+      rise = own[at] - own[from];
+    else if (known[before] == 1)
+      rise = (m_depth[from] - m_depth[before]) * static_cast<float>(std::exp(-distance / length));
+    sum += m_depth[from] + std::clamp(rise, -limit, limit);
+    count += 1.0f;
+  });
+  return sum / count;
+}
+
+void FillLevel::start(const FillLevel& coarse) {
+  // Weights of four neighbouring coarse samples, for a fine sample in the first half of its
+  // coarse one; mirrored for the second half.
+  constexpr float weights[] = {-5.0f / 128, 35.0f / 128, 105.0f / 128, -7.0f / 128};
+  forRows(*this, [&](std::size_t row) {
+    const std::size_t count = coarse.columns();
+    const auto beside = [](std::size_t i, std::ptrdiff_t step, std::size_t size) {
+      const auto at = static_cast<std::ptrdiff_t>(i) + step;
+      return static_cast<std::size_t>(
+          std::clamp<std::ptrdiff_t>(at, 0, static_cast<std::ptrdiff_t>(size) - 1));
+    };
+    std::vector<float> across(count + 4); // with a margin of two
+    for (std::ptrdiff_t i = 0; i < 4; ++i) {
+      const std::ptrdiff_t step = row % 2 == 0 ? i - 2 : 2 - i;
+      const float weight = weights[i];
+      const float* const from =
+          &coarse.m_depth[coarse.index(0, beside(row / 2, step, coarse.rows()))];
+      for (std::size_t k = 0; k < count; ++k)
+        across[k + 2] += weight * from[k];
+    }
+    across[0] = across[1] = across[2];
+    across[count + 2] = across[count + 3] = across[count + 1];
+    const float* const free = &m_free[index(0, row)];
+    float* const depth = &m_depth[index(0, row)];
+    for (std::size_t k = 0; k < columns() / 2; ++k) {
+      const float* const at = &across[k];
+      const float first =
+          weights[0] * at[0] + weights[1] * at[1] + weights[2] * at[2] + weights[3] * at[3];
+      const float second =
+          weights[3] * at[1] + weights[2] * at[2] + weights[1] * at[3] + weights[0] * at[4];
+      depth[2 * k] += free[2 * k] * (first - depth[2 * k]);
+      depth[2 * k + 1] += free[2 * k + 1] * (second - depth[2 * k + 1]);
+    }
+    if (columns() % 2 == 1 && free[columns() - 1] != 0.0f)
+      depth[columns() - 1] = across[count + 1];
+  });
+}
+
+void FillLevel::findBoundary() {
+  const auto stride = static_cast<std::ptrdiff_t>(m_stride);
+  for (std::size_t row = 0; row < rows(); ++row) {
+    const float* free = &m_free[index(0, row)];
+    for (std::size_t column = 0; column < columns(); ++column, ++free)
+      if (free[0] == 0.0f && free[-1] + free[1] + free[-stride] + free[stride] > 0.0f)
+        m_edges.push_back({index(column, row), 0.0f, 0.0f, 0.0f, 0.0f, 0.0f});
+  }
+}
+
+void FillLevel::stiffen(float stiffness) {
+  if (m_edges.empty())
+    findBoundary();
+  for (Edge& each : m_edges)
+    each = edge(each.at % m_stride - 1, each.at / m_stride - 1, stiffness);
+}
+
+FillLevel::Edge FillLevel::edge(std::size_t column, std::size_t row, float stiffness) const {
+  const std::size_t at = index(column, row);
+  const Stencil x = m_x.stencil(column), y = m_y.stencil(row);
+  Edge edge{at, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  // Only the part of the sample's square outside the focus is bent.
+  const float bend = 1.0f / std::max(1.0f - m_covered[at], 1.0f / stiffness);
+  const auto add = [&](float weight, std::size_t neighbour, double distance, float& free) {
+    if (m_free[neighbour] != 0.0f) {
+      free = weight;
+      edge.fixed -= weight * m_depth[at];
+    } else {
+      const auto limit = static_cast<float>(steepestBoundary * distance);
+      edge.fixed += weight * std::clamp(m_depth[neighbour] - m_depth[at], -limit, limit);
+    }
+  };
+  if (column > 0)
+    add(bend * x.before, at - 1, m_x.spacing(column - 1), edge.left);
+  if (column + 1 < columns())
+    add(bend * x.after, at + 1, m_x.spacing(column), edge.right);
+  if (row > 0)
+    add(bend * y.before, at - m_stride, m_y.spacing(row - 1), edge.up);
+  if (row + 1 < rows())
+    add(bend * y.after, at + m_stride, m_y.spacing(row), edge.down);
+  return edge;
+}
+
+} // namespace fenestra

@@ -1,0 +1,176 @@
+// FillLevel's equations: relaxed, or solved directly.
+#include "clip/surface/FillLevel.h"
+
+#include <Eigen/SparseCholesky>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+
+namespace fenestra {
+
+/// Stencil of L (the Laplacian) along a row.
+struct RowStencil {
+  const float *before, *after;
+  Stencil y;
+  std::size_t count;
+  std::ptrdiff_t stride;
+
+  float operator()(const float* in, std::size_t i) const {
+    const float* const at = in + i;
+    return before[i] * (at[-1] - at[0]) + after[i] * (at[1] - at[0]) +
+           y.before * (at[-stride] - at[0]) + y.after * (at[stride] - at[0]);
+  }
+};
+
+namespace {
+
+/// Stiffness in `relax`: more only slows convergence.
+constexpr float stiffest = 3.0f;
+
+void curveRow(const RowStencil& l, const float* in, float* __restrict out) {
+  for (std::size_t i = 0; i < l.count; ++i)
+    out[i] = l(in, i);
+}
+
+/// One step of the iteration along a row: updates the depths u from their curvature L u.
+void moveRow(const RowStencil& l, const float* curvature, const float* free, float tension,
+             float keep, float step, float* __restrict change, float* __restrict depth) {
+  for (std::size_t i = 0; i < l.count; ++i) {
+    change[i] = keep * change[i] + free[i] * step * (tension * curvature[i] - l(curvature, i));
+    depth[i] += change[i];
+  }
+}
+
+/// Calls back with each run, in parallel; runs are short and share a thread.
+template <typename Function>
+void forRuns(const std::vector<SampleRun>& runs, const Function& function) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), 256), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      function(runs[i]);
+  });
+}
+
+} // namespace
+
+double FillLevel::highest(double tension) const {
+  const double most = 2.0 * (m_x.greatest() + m_y.greatest());
+  return stiffest * most * (most + tension);
+}
+
+void FillLevel::curve(const std::vector<SampleRun>& runs, float* curvature) const {
+  forRuns(runs, [&](const SampleRun& run) {
+    const std::size_t first = index(run.begin, run.row);
+    curveRow(rowStencil(run), &m_depth[first], curvature + first);
+  });
+  for (const Edge& edge : m_edges) {
+    const float* const depth = &m_depth[edge.at];
+    curvature[edge.at] = edge.fixed + edge.left * depth[-1] + edge.right * depth[1] +
+                         edge.up * depth[-static_cast<std::ptrdiff_t>(m_stride)] +
+                         edge.down * depth[m_stride];
+  }
+}
+
+void FillLevel::move(const std::vector<SampleRun>& runs, const float* curvature, float* change,
+                     float tension, float keep, float step) {
+  forRuns(runs, [&](const SampleRun& run) {
+    const std::size_t first = index(run.begin, run.row);
+    moveRow(rowStencil(run), curvature + first, &m_free[first], tension, keep, step, change + first,
+            &m_depth[first]);
+  });
+}
+
+RowStencil FillLevel::rowStencil(const SampleRun& run) const {
+  return {m_x.before() + run.begin, m_x.after() + run.begin, m_y.stencil(run.row),
+          run.end - run.begin, static_cast<std::ptrdiff_t>(m_stride)};
+}
+
+void FillLevel::relax(double length, int steps) {
+  stiffen(stiffest);
+  SampleTiles tiles(columns(), rows());
+  for (const Edge& edge : m_edges)
+    tiles.markAround(edge.at % m_stride - 1, edge.at / m_stride - 1);
+  const std::vector<SampleRun> moved = tiles.runs(0), curved = tiles.runs(1);
+  const double tension = 1.0 / (length * length);
+  const double high = highest(tension);
+  const double low = high / (0.25 * steps * steps);
+  const double centre = 0.5 * (high + low), radius = 0.5 * (high - low);
+  // Memory away from the boundary is never touched.
+  const auto curvature = std::make_unique_for_overwrite<float[]>(m_depth.size());
+  const auto change = std::make_unique_for_overwrite<float[]>(m_depth.size());
+  for (const SampleRun& run : curved) // stencils reach a sample further
+    for (const std::size_t row : {run.row, run.row + 1, run.row + 2}) {
+      const std::size_t first = row * m_stride + run.begin;
+      std::fill_n(&curvature[first], run.end - run.begin + 2, 0.0f);
+      std::fill_n(&change[first], run.end - run.begin + 2, 0.0f);
+    }
+  double rho = radius / centre;
+  double keep = 0.0, step = 1.0 / centre;
+  for (int i = 0; i < steps; ++i) {
+    curve(curved, curvature.get());
+    move(moved, curvature.get(), change.get(), static_cast<float>(tension),
+         static_cast<float>(keep), static_cast<float>(step));
+    const double next = 1.0 / (2.0 * centre / radius - rho);
+    keep = next * rho;
+    step = 2.0 * next / radius;
+    rho = next;
+  }
+}
+
+void FillLevel::solve(double length) {
+  stiffen(1e6f);
+  std::vector<int> unknown(m_depth.size(), -1);
+  int count = 0;
+  forFree([&](std::size_t at) { unknown[at] = count++; });
+  if (count == 0)
+    return;
+  std::vector<const Edge*> edgeAt(m_depth.size(), nullptr);
+  for (const Edge& edge : m_edges)
+    edgeAt[edge.at] = &edge;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
+  std::vector<Eigen::Triplet<double>> entries;
+  // Adds `factor` times the curvature at a sample to an equation; of the symmetric matrix only
+  // the lower half.
+  const auto addCurvature = [&](int row, std::size_t at, double factor) {
+    const auto add = [&](std::size_t neighbour, double weight) {
+      if (unknown[neighbour] >= 0) {
+        if (unknown[neighbour] <= row)
+          entries.emplace_back(row, unknown[neighbour], factor * weight);
+      } else
+        right[row] -= factor * weight * m_depth[neighbour];
+    };
+    if (const Edge* const edge = edgeAt[at]) {
+      right[row] -= factor * edge->fixed;
+      const std::pair<std::size_t, float> beside[] = {{at - 1, edge->left},
+                                                      {at + 1, edge->right},
+                                                      {at - m_stride, edge->up},
+                                                      {at + m_stride, edge->down}};
+      for (const auto& [neighbour, weight] : beside)
+        if (weight != 0.0f)
+          add(neighbour, weight);
+      return;
+    }
+    double sum = 0.0;
+    forWeights(at, [&](std::size_t neighbour, double weight) {
+      add(neighbour, weight);
+      sum += weight;
+    });
+    add(at, -sum);
+  };
+  forFree([&](std::size_t at) {
+    const double area = this->area(at);
+    double sum = 1.0 / (length * length);
+    forWeights(at, [&](std::size_t neighbour, double weight) {
+      addCurvature(unknown[at], neighbour, area * weight);
+      sum += weight;
+    });
+    addCurvature(unknown[at], at, -area * sum);
+  });
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::VectorXd depths =
+      Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
+  forFree([&](std::size_t at) { m_depth[at] = static_cast<float>(depths[unknown[at]]); });
+}
+
+} // namespace fenestra
