@@ -253,17 +253,13 @@ public:
   }
   friend constexpr Truths operator>(const Array& a, const Array& b) { return b < a; }
   friend constexpr Truths operator>=(const Array& a, const Array& b) { return b <= a; }
-  friend constexpr Truths operator==(const Array& a, const Array& b) {
-    return a.with(b, [](T p, T q) { return p == q; });
-  }
-  friend constexpr Truths operator!=(const Array& a, const Array& b) {
-    return a.with(b, [](T p, T q) { return p != q; });
+  friend constexpr bool operator==(const Array& a, const Array& b) {
+    return a.with(b, [](T p, T q) { return p == q; }).all();
   }
   friend constexpr Truths operator<(const Array& a, T b) { return a < Array::Constant(b); }
   friend constexpr Truths operator<=(const Array& a, T b) { return a <= Array::Constant(b); }
   friend constexpr Truths operator>(const Array& a, T b) { return a > Array::Constant(b); }
   friend constexpr Truths operator>=(const Array& a, T b) { return a >= Array::Constant(b); }
-  friend constexpr Truths operator==(const Array& a, T b) { return a == Array::Constant(b); }
   friend constexpr Truths operator&&(const Array& a, const Array& b) {
     return a.with(b, [](T p, T q) { return p && q; });
   }

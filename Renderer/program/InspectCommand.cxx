@@ -45,7 +45,7 @@ int inspectCommand(int argc, char** argv, int first) {
   for (const char* name : {"INPUT", "volume", "segmentation"})
     if (const auto value = values->text(name))
       given.add(name, *value);
-  const SceneFlags stored = withSceneFlags(given);
+  const SceneFlags stored = withSceneFlags(given, Input(input));
   const FlagValues& flags = stored.flags;
   SceneRequest request;
   request.input = input;

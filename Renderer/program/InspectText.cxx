@@ -73,7 +73,7 @@ std::string named(const std::string& name, const std::string& id) {
 }
 
 std::string colors(const Rgb& bottom, const Rgb& top) {
-  return (bottom == top).all() ? hex(bottom) : hex(bottom) + " below to " + hex(top) + " above";
+  return bottom == top ? hex(bottom) : hex(bottom) + " below to " + hex(top) + " above";
 }
 
 std::string pose(const CameraPose& pose) {

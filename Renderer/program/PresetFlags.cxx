@@ -4,7 +4,6 @@
 #include "session/Defaults.h"
 #include "session/NamedLooks.h"
 #include "session/OrganPresets.h"
-#include "session/SceneInput.h"
 
 #include <algorithm>
 
@@ -55,14 +54,6 @@ void checkFlags(const OrganPreset& preset, const std::string& source) {
   }
 }
 
-SceneRequest filesOf(const FlagValues& given) {
-  SceneRequest request;
-  request.input = *given.text("INPUT");
-  request.volume = given.text("volume");
-  request.segmentation = given.text("segmentation");
-  return request;
-}
-
 /// Segments named by the given focus; all if it names none.
 std::vector<SegmentInfo> inFocus(const FlagValues& given,
                                  const std::vector<SegmentInfo>& segments) {
@@ -75,7 +66,8 @@ std::vector<SegmentInfo> inFocus(const FlagValues& given,
   return named.empty() ? segments : named;
 }
 
-OrganPreset presetFor(const FlagValues& given, const std::optional<SegmentNames>& names) {
+OrganPreset presetFor(const FlagValues& given, const Input& input,
+                      const std::optional<SegmentNames>& names) {
   const std::string name = *given.text("preset");
   if (name != "auto")
     return namedPreset(name);
@@ -88,9 +80,10 @@ OrganPreset presetFor(const FlagValues& given, const std::optional<SegmentNames>
   std::vector<OrganPreset> presets;
   for (const std::string& own : ownPresets("presets"))
     presets.push_back(namedPreset(own));
-  return fittingPreset(
-      presets, inFocus(given, names->segments), names->source,
-      [&given](Modality modality) { return suits(modality, loadVolume(filesOf(given)).volume); });
+  return fittingPreset(presets, inFocus(given, names->segments), names->source,
+                       [&](Modality modality) {
+                         return suits(modality, input.volume(given.text("volume")).volume);
+                       });
 }
 
 /// Escapes commas in an id, as --focus expects.
@@ -117,14 +110,16 @@ void addFocus(const OrganPreset& preset, const SegmentNames& names, FlagValues& 
 
 } // namespace
 
-PresetFlags withPreset(const FlagValues& given) {
+PresetFlags withPreset(const FlagValues& given, const Input& input) {
   PresetFlags result{given};
   if (!given.has("preset"))
     return result;
   const bool givenFocus = given.has("focus");
   const bool byNames = given.text("preset") == "auto" || !givenFocus;
-  const auto names = byNames ? loadSegmentNames(filesOf(given)) : std::nullopt;
-  const OrganPreset preset = presetFor(given, names);
+  const auto names = byNames
+                         ? input.segmentNames({given.text("volume"), given.text("segmentation")})
+                         : std::nullopt;
+  const OrganPreset preset = presetFor(given, input, names);
   checkFlags(preset, *given.text("preset"));
   FlagValues& flags = result.flags;
   if (!givenFocus && names)

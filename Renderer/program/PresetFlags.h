@@ -2,6 +2,7 @@
 // Flags of an organ preset: --preset liver stands for a focus, a look, a view and a clip in one.
 
 #include "program/RenderFlags.h"
+#include "session/Input.h"
 
 namespace fenestra {
 
@@ -16,7 +17,7 @@ struct PresetFlags {
 /// without a segmentation, nothing is clipped. Given flags win; a given --clip wins over all that
 /// the preset says of clipping modes. Throws Error: usage; input, also if the preset knows none of
 /// the segments.
-PresetFlags withPreset(const FlagValues& given);
+PresetFlags withPreset(const FlagValues& given, const Input& input);
 
 /// Render options from given flags and their preset's.
 RenderOptions renderOptions(const PresetFlags& flags);

@@ -76,10 +76,11 @@ void describe(const Scene& scene, RenderStats& stats) {
 
 /// Renders the scene, puts its pictures in place, then measures them for the statistics. Returns
 /// the exit status.
-int renderScene(const RenderOptions& options, const std::string& command, Outputs& outputs) {
+int renderScene(const RenderOptions& options, const Input& input, const std::string& command,
+                Outputs& outputs) {
   const Stopwatch total;
   RenderStats stats;
-  const Scene scene(options.scene);
+  const Scene scene(options.scene, input);
   outputs.checkInputs(); // now also files that the scene refers to
   warn(options, scene.warnings());
 
@@ -135,8 +136,9 @@ int renderCommand(int argc, char** argv, int first) {
   if (!given)
     return 0;
   useMachine(*given);
-  const SceneFlags stored = withSceneFlags(*given);
-  const PresetFlags flags = withPreset(stored.flags);
+  const Input input(*given->text("INPUT"));
+  const SceneFlags stored = withSceneFlags(*given, input);
+  const PresetFlags flags = withPreset(stored.flags, input);
   if (given->has("echo"))
     std::cout << flags.flags.echo() << std::flush;
   RenderOptions options = renderOptions(flags);
@@ -144,7 +146,7 @@ int renderCommand(int argc, char** argv, int first) {
   Outputs outputs;
   declareOutputs(options, outputs);
   checkMemory(options.scene);
-  return renderScene(options, shellCommand({argv + 1, argv + argc}, options), outputs);
+  return renderScene(options, input, shellCommand({argv + 1, argv + argc}, options), outputs);
 }
 
 } // namespace fenestra

@@ -32,7 +32,7 @@ bool isDecided(const std::string& name, const FlagValues& given) {
 }
 
 /// True if a render would open a file that the value names.
-bool isFile(const std::string& name, const std::string& value, const std::filesystem::path& input) {
+bool isFile(const std::string& name, const std::string& value, const Input& input) {
   if (name == "environment")
     return imageFormat(value) == ImageFormat::exr;
   if (name == "preset")
@@ -58,10 +58,9 @@ bool isTooMuch(const std::string& name, const std::string& value) {
 }
 
 /// Reason why a scene's stored value is not taken; empty: taken.
-std::string objection(const MrmlScene& scene, const std::string& name, const std::string& value,
-                      const std::filesystem::path& input) {
+std::string objection(const Input& input, const std::string& name, const std::string& value) {
   if (name == "volume" || name == "segmentation")
-    return scene.document.find(value) ? "" : "is no node of the scene";
+    return input.document()->find(value) ? "" : "is no node of the scene";
   if (isTooMuch(name, value))
     return "is more than a scene may ask for";
   return isFile(name, value, input) ? "names a file, which a scene may not choose" : "";
@@ -77,25 +76,22 @@ std::string leftOut(const MrmlNode& node, const std::string& name, const std::st
 
 } // namespace
 
-SceneFlags withSceneFlags(const FlagValues& given) {
+SceneFlags withSceneFlags(const FlagValues& given, const Input& input) {
   SceneFlags result{given};
   FlagValues& merged = result.flags;
-  const std::filesystem::path input = *given.text("INPUT");
-  if (!isSceneFile(input))
-    return result;
-  const MrmlScene scene(input);
-  const std::vector<const MrmlNode*> nodes = scene.document.withTag("FenestraRender");
+  const MrmlDocument* scene = input.document();
+  const auto nodes = scene ? scene->withTag("FenestraRender") : std::vector<const MrmlNode*>();
   if (nodes.empty())
     return result;
   const MrmlNode& node = *nodes.back();
-  const FlagValues deciding = withPreset(given).flags;
+  const FlagValues deciding = withPreset(given, input).flags;
   for (const Flag& flag : renderSyntax.flags) {
     const std::string name = flag.name;
     const bool isNode = name == "volume" || name == "segmentation";
     const std::string value = isNode ? node.referenced(name) : node.text(name);
     if (!shapesPicture(flag) || value.empty() || isDecided(name, deciding))
       continue;
-    if (const std::string why = objection(scene, name, value, input); !why.empty())
+    if (const std::string why = objection(input, name, value); !why.empty())
       result.leftOut.push_back(leftOut(node, name, shown(value), why));
     else
       merged.add(name, value);

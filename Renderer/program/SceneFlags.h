@@ -4,6 +4,7 @@
 // so that rendering the scene reproduces the picture.
 
 #include "program/Flags.h"
+#include "session/Input.h"
 
 namespace fenestra {
 
@@ -18,7 +19,7 @@ struct SceneFlags {
 /// stored flags that it sets. A scene comes from others, so these are left out: names of files
 /// (presets, volume properties by name, and looks as text are taken), more than 4096 x 4096 pixels,
 /// more than 65536 samples. Throws Error (input) for a damaged scene.
-SceneFlags withSceneFlags(const FlagValues& given);
+SceneFlags withSceneFlags(const FlagValues& given, const Input& input);
 
 /// Stored flags in `merged`, as arguments.
 std::vector<std::string> sceneArguments(const FlagValues& given, const FlagValues& merged);

@@ -38,18 +38,19 @@ struct Unheard {};
 
 class Server {
 public:
-  Server(const SceneFlags& start, Outputs& outputs)
-      : m_flags(start.flags),
+  Server(const SceneFlags& start, const Input& source, Outputs& outputs)
+      : m_source(source),
+        m_flags(start.flags),
         m_leftOut(start.leftOut),
         m_outputs(outputs),
-        m_input(m_flags, m_monitor, m_answers) {}
+        m_input(m_flags, source, m_monitor, m_answers) {}
 
   /// Runs until the process ends. Throws Error if there is no first scene, Unheard if standard
   /// output is closed.
   void run() {
-    m_options = renderOptions(withPreset(m_flags));
+    m_options = renderOptions(withPreset(m_flags, m_source));
     m_options->scene.leftOut = m_leftOut;
-    m_scene.emplace(m_options->scene);
+    m_scene.emplace(m_options->scene, m_source);
     m_outputs.checkInputs();
     for (;;) {
       renderPictures();
@@ -70,7 +71,7 @@ private:
       FlagValues flags = m_flags;
       for (const ServeChange& change : changes)
         flags = changedFlags(change.flags, flags);
-      const RenderOptions options = renderOptions(withPreset(flags));
+      const RenderOptions options = renderOptions(withPreset(flags, m_source));
       checkMemory(options.scene);
       Scene scene = m_scene->changed(options.scene);
       m_outputs.checkInputs();
@@ -152,7 +153,8 @@ private:
     m_published.emplace();
   }
 
-  FlagValues m_flags; ///< flags of the current scene
+  const Input m_source; ///< of all scenes
+  FlagValues m_flags;   ///< flags of the current scene
   std::vector<std::string> m_leftOut;
   nlohmann::json m_id = nullptr; ///< of the last change taken
   Stopwatch m_since;             ///< time since that change arrived
@@ -180,13 +182,14 @@ int serveCommand(int argc, char** argv, int first) {
   if (given->has("surface"))
     throw usageError("--surface: serve writes pictures alone; write it with fenestra render");
   useMachine(*given);
-  const SceneFlags start = withSceneFlags(*given);
-  const RenderOptions options = renderOptions(withPreset(start.flags));
+  const Input input(*given->text("INPUT"));
+  const SceneFlags start = withSceneFlags(*given, input);
+  const RenderOptions options = renderOptions(withPreset(start.flags, input));
   // Never destroyed: the reading thread, which lives as long as the process, uses both.
   Outputs& outputs = *new Outputs;
   declareOutputs(options, outputs);
   checkMemory(options.scene);
-  Server& server = *new Server(start, outputs);
+  Server& server = *new Server(start, input, outputs);
   try {
     server.run();
   } catch (const Unheard&) {

@@ -97,19 +97,20 @@ FlagValues changedFlags(const json& change, const FlagValues& flags) {
   return result;
 }
 
-void checkChange(const json& change, const FlagValues& flags) {
-  const SceneRequest scene = renderOptions(withPreset(flags)).scene;
+void checkChange(const json& change, const FlagValues& flags, const Input& input) {
+  const SceneRequest scene = renderOptions(withPreset(flags, input)).scene;
   const bool isPreset = change.contains("preset"); // may name lights and a transfer function
   if (isPreset || change.contains("lights"))
     namedLights(scene.lights);
   if (scene.transfer && (isPreset || change.contains("transfer")))
-    namedTransfer(*scene.transfer, scene.input);
+    namedTransfer(*scene.transfer, input);
   if (scene.environmentMap && change.contains("environment"))
     readEnvironmentMap(*scene.environmentMap);
 }
 
-ServeInput::ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers)
-    : m_monitor(monitor), m_answers(answers), m_wanted(start) {
+ServeInput::ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor,
+                       ServeAnswers& answers)
+    : m_input(input), m_monitor(monitor), m_answers(answers), m_wanted(start) {
   m_thread = std::thread([this] { read(); });
   m_thread.detach(); // ends with the process only
 }
@@ -161,7 +162,7 @@ void ServeInput::takeLine(const std::string& line) {
     ServeChange change = parseChange(line, id);
     const std::lock_guard lock(m_mutex);
     FlagValues wanted = changedFlags(change.flags, m_wanted);
-    checkChange(change.flags, wanted);
+    checkChange(change.flags, wanted, m_input);
     m_wanted = std::move(wanted);
     m_new.push_back(std::move(change));
     m_monitor.stop = true;

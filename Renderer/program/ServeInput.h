@@ -3,6 +3,7 @@
 
 #include "base/Stopwatch.h"
 #include "program/RenderFlags.h"
+#include "session/Input.h"
 
 #include <nlohmann/json.hpp>
 
@@ -43,13 +44,14 @@ FlagValues changedFlags(const nlohmann::json& change, const FlagValues& flags);
 
 /// Throws Error: usage if the flags after a change contradict each other, input if a look that the
 /// change names cannot be read.
-void checkChange(const nlohmann::json& change, const FlagValues& flags);
+void checkChange(const nlohmann::json& change, const FlagValues& flags, const Input& input);
 
 /// Reads standard input in its own thread. A change stops the render under way. The end of input
 /// ends the process as signals do (program/Stop), after any picture that is being put in place.
 class ServeInput {
 public:
-  ServeInput(const FlagValues& start, RenderMonitor& monitor, ServeAnswers& answers);
+  ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor,
+             ServeAnswers& answers);
   ServeInput(const ServeInput&) = delete;
   ServeInput& operator=(const ServeInput&) = delete;
 
@@ -62,6 +64,7 @@ private:
   void read();
   void takeLine(const std::string& line);
 
+  const Input m_input; ///< of all scenes
   RenderMonitor& m_monitor;
   ServeAnswers& m_answers;
   std::mutex m_mutex; ///< guards m_wanted, m_new and monitor.stop

@@ -30,15 +30,15 @@ namespace {
 /// Renders all frames that are not finished, one by one.
 class Turntable {
 public:
-  Turntable(const TurntableOptions& options, TurntableRecord& record, RenderMonitor& monitor,
-            Outputs& outputs, std::string command)
+  Turntable(const TurntableOptions& options, const Input& input, TurntableRecord& record,
+            RenderMonitor& monitor, Outputs& outputs, std::string command)
       : m_options(options),
         m_record(record),
         m_monitor(monitor),
         m_outputs(outputs),
         m_command(std::move(command)),
         m_before(record.finishedCount()),
-        m_scene(options.render.scene),
+        m_scene(options.render.scene, input),
         m_start(m_scene.camera().pose()) {}
 
   /// True if a view is still being built after a stop, and will not be used.
@@ -241,8 +241,9 @@ int turntableCommand(int argc, char** argv, int first) {
   if (!given)
     return 0;
   useMachine(*given);
-  const SceneFlags stored = withSceneFlags(*given);
-  const PresetFlags flags = withPreset(stored.flags);
+  const Input input(*given->text("INPUT"));
+  const SceneFlags stored = withSceneFlags(*given, input);
+  const PresetFlags flags = withPreset(stored.flags, input);
   TurntableOptions options = turntableOptions(flags);
   options.render.scene.leftOut = stored.leftOut;
   for (const std::filesystem::path& input : options.render.inputs)
@@ -254,7 +255,7 @@ int turntableCommand(int argc, char** argv, int first) {
   declareFrames(options, record, outputs);
 
   const Stopwatch total;
-  Turntable turntable(options, record, monitor, outputs,
+  Turntable turntable(options, input, record, monitor, outputs,
                       shellCommand({argv + 1, argv + argc}, options.render));
   const StopInstead stopInstead(monitor.stop); // the frame under way is discarded
   turntable.run();

@@ -7,14 +7,14 @@
 namespace fenestra {
 namespace {
 
-ViewDirection namedView(const std::string& name, const std::optional<ViewDirection>& automatic) {
+ViewDirection namedView(const std::string& name, const ViewDirection* best) {
   static const std::map<std::string, ViewDirection> views = {
       {"anterior", {Vec3::UnitY(), Vec3::UnitZ()}}, {"posterior", {-Vec3::UnitY(), Vec3::UnitZ()}},
       {"right", {Vec3::UnitX(), Vec3::UnitZ()}},    {"left", {-Vec3::UnitX(), Vec3::UnitZ()}},
       {"superior", {Vec3::UnitZ(), Vec3::UnitY()}}, {"inferior", {-Vec3::UnitZ(), Vec3::UnitY()}},
   };
-  if (name == "auto" && automatic)
-    return *automatic;
+  if (name == "auto" && best)
+    return *best;
   const auto known = views.find(name);
   if (known == views.end())
     throw usageError("--view: '" + name +
@@ -162,11 +162,11 @@ TransferFunction relativeTransfer(const Volume& volume) {
 }
 
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
-                     int height, const std::optional<ViewDirection>& automatic) {
+                     int height, const ViewDirection* best) {
   constexpr double surroundings = 1.6; // framed size / size of the focus
   constexpr double margin = 1.05;      // around the whole volume
   constexpr double defaultAngle = 30.0;
-  const ViewDirection named = namedView(view.name.value_or("anterior"), automatic);
+  const ViewDirection named = namedView(view.name.value_or("anterior"), best);
 
   const Grid& grid = domain.grid();
   const Domain volume = domain.indexCorners().empty() ? Domain(grid) : domain;

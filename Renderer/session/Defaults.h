@@ -29,9 +29,10 @@ TransferFunction relativeTransfer(const Volume& volume);
 
 /// Pose of a view request for this volume and focus: named views look along the patient's axes at
 /// the focus with its surroundings (else at the volume, or the part that a crop leaves).
-/// `automatic`: direction for the name auto. Throws Error (usage) for an unknown view name.
+/// `best`: direction for the name auto; null: anterior. Throws Error (usage) for an unknown view
+/// name.
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
-                     int height, const std::optional<ViewDirection>& automatic = {});
+                     int height, const ViewDirection* best = nullptr);
 
 /// Scene's camera, changed by the set members of the request. Throws Error (usage) if --scale or
 /// --angle belongs to the other projection.

@@ -80,7 +80,8 @@ FileVolume inspectVolume(const SceneRequest& request) {
     return result;
   }
   std::optional<Error> unreadable; // unused: the scene may have failed after the volume
-  if (const auto input = attempted([&] { return loadVolume(request); }, unreadable)) {
+  if (const auto input =
+          attempted([&] { return Input(request.input).volume(request.volume); }, unreadable)) {
     describeVolume(input->volume);
     result.warnings = input->volume.warnings;
   }

@@ -6,7 +6,6 @@
 #include "base/safe/SystemCalls.h"
 #include "files/looks/LightReader.h"
 #include "files/looks/LookText.h"
-#include "files/slicer/MrmlScene.h"
 #include "files/slicer/SlicerPresets.h"
 
 #include <algorithm>
@@ -46,9 +45,7 @@ Error unknownPreset(const std::string& flag, const std::string& name, const std:
 /// Volume properties of a scene, by name or id, and Slicer's presets.
 class SlicerTransfers {
 public:
-  explicit SlicerTransfers(const std::filesystem::path& input) {
-    if (isSceneFile(input))
-      m_scene.emplace(input);
+  explicit SlicerTransfers(const Input& input) : m_input(input) {
     if (const auto presets = findSlicerPresets()) {
       m_presets.emplace(*presets);
       m_file = presets->string();
@@ -56,21 +53,16 @@ public:
   }
 
   std::optional<NamedTransfer> find(const std::string& name) {
-    if (m_scene)
-      for (const MrmlNode* node : m_scene->document.withTag("VolumeProperty"))
-        if (node->name == name || node->id == name)
-          return NamedTransfer{{readSceneProperty(*m_scene, *node)}};
+    if (SceneLook look = m_input.property(name); look.transfer)
+      return NamedTransfer{{std::move(*look.transfer)}, name, std::move(look.files)};
     if (auto function = m_presets ? m_presets->find(name) : std::nullopt)
-      return NamedTransfer{{std::move(*function)}, m_file};
+      return NamedTransfer{{std::move(*function)}, name, {m_file}};
     return std::nullopt;
   }
 
   /// Known names, for a message.
   std::string known() const {
-    std::vector<std::string> inScene;
-    if (m_scene)
-      for (const MrmlNode* node : m_scene->document.withTag("VolumeProperty"))
-        inScene.push_back(node->name);
+    const std::vector<std::string> inScene = m_input.propertyNames();
     std::string text = inScene.empty() ? "" : "; of the scene " + listed(inScene);
     text += m_presets ? "; of Slicer " + listed(m_presets->names())
                       : "; Slicer's own presets are known where SLICER_HOME names its folder";
@@ -78,7 +70,7 @@ public:
   }
 
 private:
-  std::optional<MrmlScene> m_scene;
+  const Input& m_input;
   std::optional<SlicerPresets> m_presets;
   std::string m_file; ///< of Slicer's presets
 };
@@ -99,13 +91,13 @@ bool isFileName(const std::string& kind, const std::string& name) {
          (name.find_first_of("/.") != std::string::npos || isFoundAsFile(name));
 }
 
-NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path& input) {
+NamedTransfer namedTransfer(const std::string& name, const Input& input) {
   if (isLookText(name))
-    return {parseTransferLook(name, "--transfer")};
+    return {parseTransferLook(name, "--transfer"), "--transfer"};
   if (const std::string_view text = ownPreset("transfer", name); !text.empty())
-    return {parseTransferLook(text, name)};
+    return {parseTransferLook(text, name), name};
   if (isFoundAsFile(name))
-    return {readTransferLook(name), name};
+    return {readTransferLook(name), name, {name}};
   SlicerTransfers slicer(input);
   if (auto transfer = slicer.find(name))
     return std::move(*transfer);
@@ -113,7 +105,7 @@ NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path
                       "a file or one of " + listed(ownPresets("transfer")) + slicer.known());
 }
 
-bool isFileOfTransfer(const std::string& name, const std::filesystem::path& input) {
+bool isFileOfTransfer(const std::string& name, const Input& input) {
   if (isLookText(name) || !isFileName("transfer", name))
     return false;
   return name.find('/') != std::string::npos || isFoundAsFile(name) ||
@@ -127,7 +119,7 @@ NamedLights namedLights(const std::string& name) {
     return {parseLights(text, name)};
   if (!isFoundAsFile(name))
     throw unknownPreset("lights", name, "a file or one of " + listed(ownPresets("lights")));
-  return {readLights(name), name};
+  return {readLights(name), {name}};
 }
 
 bool isFileOfLights(const std::string& name) {

@@ -5,8 +5,8 @@
 #include "files/looks/PresetReader.h"
 #include "files/looks/TransferReader.h"
 #include "model/lights/Light.h"
+#include "session/Input.h"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,19 +20,20 @@ bool isFileName(const std::string& kind, const std::string& name);
 
 struct NamedTransfer {
   TransferLook look;
-  std::string file = {}; ///< file read; empty: JSON, own preset or scene
+  std::string source;                  ///< its name, or the flag for JSON
+  std::vector<std::string> files = {}; ///< files read; empty: JSON or own preset
 };
 /// Transfer function from the JSON itself, else the program's preset of that name, a file, a volume
-/// property of the scene `input` (by name or id), or one of Slicer's presets. Throws Error (input)
+/// property of a scene (by name or id), or one of Slicer's presets. Throws Error (input)
 /// that lists the known names.
-NamedTransfer namedTransfer(const std::string& name, const std::filesystem::path& input);
+NamedTransfer namedTransfer(const std::string& name, const Input& input);
 
 /// True if namedTransfer would open a file of that name.
-bool isFileOfTransfer(const std::string& name, const std::filesystem::path& input);
+bool isFileOfTransfer(const std::string& name, const Input& input);
 
 struct NamedLights {
   std::vector<Light> lights;
-  std::string file = {}; ///< file read; empty: JSON or own preset
+  std::vector<std::string> files = {}; ///< files read; empty: JSON or own preset
 };
 /// Lights from the JSON itself, else the program's preset of that name, or a file. Throws Error
 /// (input).

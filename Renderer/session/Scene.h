@@ -1,17 +1,11 @@
 #pragma once
-// Scene: everything that transport needs, made from a request in stages, each depending on earlier
-// stages: volume, focus, transfer function, camera, lights, clip, ranges of cells, majorants. A
-// scene is a value that never changes; the scene of another request shares all stages that do not
-// depend on the difference.
+// Scene: everything that transport needs, made from a request in stages (session/Stages.h). A scene
+// is a value that never changes; the scene of another request shares all stages with equal keys.
 
-#include "clip/surface/ClippingSurface.h"
-#include "clip/surface/FocusPlane.h"
-#include "measure/BoundaryMeasures.h"
-#include "model/lights/LightSet.h"
-#include "session/AutomaticView.h"
-#include "session/NamedLooks.h"
-#include "session/RenderRequest.h"
-#include "session/SceneInput.h"
+#include "session/Stages.h"
+#include "transport/render/Render.h"
+
+#include <tuple>
 
 namespace fenestra {
 
@@ -33,82 +27,75 @@ public:
   /// Reads files, places camera and lights, computes the clipping surface, classifies. Throws
   /// Error.
   explicit Scene(const SceneRequest& request);
+  /// `input`: of request.input, opened before.
+  Scene(const SceneRequest& request, const Input& input);
 
   /// Scene(request), of which only stages that depend on a difference from this scene's request are
   /// made. Files are assumed unchanged. Throws Error.
   Scene changed(const SceneRequest& request) const;
 
   RenderScene forRender() const {
-    return {volume(),  *m_transfer, *m_majorants,    *m_lights,
-            *m_camera, m_clip,      m_settings.crop, style()};
+    return {volume(),  transfer(), *m_majorants,     *m_lights,
+            *m_camera, clip(),     m_settings->crop, style()};
   }
   const Volume& volume() const { return m_volume->volume; }
   /// Volume's box, or its part inside a Slicer scene's cropping box.
-  Domain domain() const { return {volume().grid, m_settings.crop}; }
+  Domain domain() const { return {volume().grid, m_settings->crop}; }
   /// Mask of the focus; null: none.
-  const Mask* focus() const { return m_focus ? &m_focus->mask : nullptr; }
-  const TransferFunction& transfer() const { return *m_transfer; }
+  const Mask* focus() const { return m_focus->mask ? &*m_focus->mask : nullptr; }
+  const TransferFunction& transfer() const { return m_look->transfer; }
   /// Source of the transfer function: a file, a preset, a node, or "by the volume's range".
-  const std::string& look() const { return m_look; }
+  const std::string& look() const { return m_look->name; }
   const Camera& camera() const { return *m_camera; }
-  const Clip& clip() const { return m_clip; }
+  const Clip& clip() const { return m_clip->clip; }
   /// Style of the context; null: unchanged.
-  const ContextStyle* style() const { return m_style ? &*m_style : nullptr; }
+  const ContextStyle* style() const { return m_style.result().get(); }
   /// Depth of the focus at each pixel's centre, mm; infinity: missed. Empty without a focus, and,
   /// unless the clip is measured, in the clip modes none and plane (with a given plane).
-  const std::vector<double>& focusDepth() const { return m_focusDepth; }
+  const std::vector<double>& focusDepth() const { return m_clip->focusDepth; }
   /// mm by which the spline misses the focus's boundary, or an exact surface if measured; nothing
   /// in the other clip modes.
-  const std::optional<BoundaryMismatch>& mismatch() const { return m_mismatch; }
+  const std::optional<BoundaryMismatch>& mismatch() const { return m_clip->mismatch; }
   /// Measures of the clip along the focus's outline; nothing: not measured.
-  const std::optional<BoundaryMeasures>& boundary() const { return m_boundary; }
+  const std::optional<BoundaryMeasures>& boundary() const { return m_clip->boundary; }
   /// Control points of a spline; empty for other clips.
-  const std::vector<ControlPoint>& controlPoints() const { return m_controlPoints; }
+  const std::vector<ControlPoint>& controlPoints() const { return m_clip->controlPoints; }
   const CellRanges& ranges() const { return *m_ranges; }
-  const StageSeconds& seconds() const { return m_seconds; }
-  const StagesMade& made() const { return m_made; }
+  StageSeconds seconds() const;
+  StagesMade made() const;
   std::vector<std::string> warnings() const;
   /// Files read for the stages of this scene, shared stages included.
   std::vector<std::string> files() const;
   /// Background of a Slicer scene, where rays meet nothing; nothing for other inputs.
-  const std::optional<Background>& background() const { return m_settings.background; }
+  const std::optional<Background>& background() const { return m_settings->background; }
 
 private:
-  /// `before`: request of the stages so far; null: none.
-  void make(const SceneRequest& request, const SceneRequest* before);
-  void readFocus(const SceneRequest& request);
-  void chooseTransfer(const SceneRequest& request);
-  void placeCamera(const SceneRequest& request);
-  void buildClip(const SceneRequest& request);
-  void styleContext(const FocusRequest& request);
-  /// `depth`: of the focus, needed if the request names no plane.
-  ClipPlane placedPlane(const ClipRequest& request, const std::optional<FocusDepth>& depth) const;
-  void buildDepthClip(ClipMode mode, const SceneRequest& scene);
+  /// Makes all stages that m_request needs, in their order.
+  void make();
+  /// References to all stages.
+  template <typename Self>
+  static auto stages(Self& s) {
+    return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_focus,
+                    s.m_sceneLook, s.m_look, s.m_view, s.m_camera, s.m_lights, s.m_clip, s.m_ranges,
+                    s.m_style, s.m_majorants);
+  }
 
   SceneRequest m_request;
-  std::shared_ptr<const VolumeInput> m_volume;
-  SceneSettings m_settings;
-  std::shared_ptr<const FocusInput> m_focus;
-  std::optional<NamedTransfer> m_named; ///< named by the request
-  std::optional<TransferFunction> m_transfer;
-  std::string m_look;
-  std::optional<ViewDirection> m_automaticView; ///< set on first use
-  std::vector<std::string> m_lookWarnings;
-  std::optional<Camera> m_camera;
-  std::shared_ptr<const std::vector<Light>> m_lightList; ///< as read
-  std::string m_lightFile;                               ///< empty: not from a file
-  std::shared_ptr<const LightSet> m_lights;
-  Clip m_clip;
-  std::optional<ContextStyle> m_style;
-  std::vector<double> m_focusDepth;
-  std::optional<BoundaryMismatch> m_mismatch;
-  std::optional<BoundaryMeasures> m_boundary;
-  std::vector<ControlPoint> m_controlPoints;
-  std::vector<std::string> m_clipWarnings;
-  std::shared_ptr<const CellRanges> m_ranges;
-  std::shared_ptr<const MajorantGrid> m_majorants;
-  StageSeconds m_seconds;
-  StagesMade m_made;
+  Input m_input;
+  Stage<&requestedLights> m_namedLights;
+  Stage<&namedTransfer> m_namedTransfer; ///< unused without --transfer
+  Stage<&Input::volume> m_volume;
+  Stage<&Input::settings> m_settings;
+  Stage<&Input::focus> m_focus;
+  Stage<&Input::look> m_sceneLook; ///< unused with --transfer
+  Stage<&chosenLook> m_look;
+  Stage<&bestView> m_view; ///< used by automatic views alone
+  Stage<&placedCamera> m_camera;
+  Stage<&placedLights> m_lights;
+  Stage<&builtClip> m_clip;
+  Stage<&rangesOf> m_ranges;
+  Stage<&styleAround> m_style; ///< unused if the context is unchanged
+  Stage<&majorantsOf> m_majorants;
 };
 
 } // namespace fenestra

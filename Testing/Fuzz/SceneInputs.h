@@ -3,20 +3,19 @@
 
 #include "Harness.h"
 
-#include "session/SceneInput.h"
+#include "session/Input.h"
 
 namespace fenestra::fuzzing {
 
 inline void loadScene(const std::filesystem::path& path) {
-  SceneRequest request;
-  request.input = path;
-  const Volume volume = loadVolume(request).volume;
-  const SceneSettings settings = loadSettings(request, volume);
+  const Input input(path);
+  const Volume volume = input.volume({}).volume;
+  const SceneSettings settings = input.settings({}, true);
+  input.look({}, {volume.minimum, volume.maximum});
   if (!volume.grid.indexToWorld.allFinite() ||
       (settings.crop && !settings.crop->worldToBox.allFinite()))
     throw std::logic_error("a place that is none");
-  request.focus = {"A"};
-  loadFocus(request, volume.grid);
+  input.focus({}, {"A"}, {}, volume.grid);
 }
 
 } // namespace fenestra::fuzzing

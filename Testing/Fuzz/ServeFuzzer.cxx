@@ -9,5 +9,5 @@ FENESTRA_FUZZ(Serve, input) {
   flags.add("INPUT", "volume.nrrd");
   nlohmann::json id;
   const nlohmann::json change = parseChange(std::string(input), id).flags;
-  checkChange(change, changedFlags(change, flags));
+  checkChange(change, changedFlags(change, flags), Input("volume.nrrd"));
 }

@@ -52,9 +52,10 @@ void checkPixels(const Film& film) {
 }
 
 void renderRequest(const SceneRequest& request) {
-  if (loadVolume(request).volume.grid.voxelCount() > mostVoxels)
+  const Input input(request.input);
+  if (input.volume(request.volume).volume.grid.voxelCount() > mostVoxels)
     return;
-  const Scene scene(request);
+  const Scene scene(request, input);
   RenderSettings settings;
   settings.path.bounces = mostBounces;
   settings.samples = 1;

@@ -76,7 +76,7 @@ TEST_P(PhaseEnds, AreUnitWithTheirDensity) {
     for (const Vec2& u : corners()) {
       const ScatterSample sample = PhaseScattering(incoming, g, albedo).sample(u);
       EXPECT_NEAR(sample.outgoing.norm(), 1.0, 1e-15);
-      EXPECT_TRUE((sample.weight == albedo).all());
+      EXPECT_TRUE(sample.weight == albedo);
       const long double chord2 = 2.0L * oneMinusCosine(size, u.x());
       const long double d = (1.0L - size) * (1.0L - size) + size * chord2;
       const auto expected =

@@ -173,8 +173,8 @@ inline void expectSamePicture(const Film& a, const Film& b) {
 inline void expectEqualBits(const Film& a, const Film& b) {
   ASSERT_EQ(a.pixelCount(), b.pixelCount());
   for (std::size_t i = 0; i < a.pixelCount(); ++i) {
-    ASSERT_TRUE((a.pixels()[i].mean == b.pixels()[i].mean).all()) << "pixel " << i;
-    ASSERT_TRUE((a.pixels()[i].deviation == b.pixels()[i].deviation).all()) << "pixel " << i;
+    ASSERT_TRUE(a.pixels()[i].mean == b.pixels()[i].mean) << "pixel " << i;
+    ASSERT_TRUE(a.pixels()[i].deviation == b.pixels()[i].deviation) << "pixel " << i;
   }
 }
 

@@ -35,8 +35,8 @@ void expectIdentical(const Film& a, const Film& b) {
       const PixelSums& p = a.at(column, row);
       const PixelSums& q = b.at(column, row);
       ASSERT_EQ(p.samples, q.samples);
-      ASSERT_TRUE((p.mean == q.mean).all() && (p.deviation == q.deviation).all());
-      ASSERT_TRUE((p.albedo == q.albedo).all() && p.normal == q.normal);
+      ASSERT_TRUE(p.mean == q.mean && p.deviation == q.deviation);
+      ASSERT_TRUE(p.albedo == q.albedo && p.normal == q.normal);
       ASSERT_EQ(p.depth, q.depth);
       ASSERT_EQ(p.alpha, q.alpha);
     }
@@ -65,7 +65,7 @@ TEST(Determinism, SeedsDiffer) {
   settings.samples = 4;
   const RenderResult a = s.render(settings);
   settings.seed = 1;
-  EXPECT_FALSE((a.film.at(16, 10).mean == s.render(settings).film.at(16, 10).mean).all());
+  EXPECT_FALSE(a.film.at(16, 10).mean == s.render(settings).film.at(16, 10).mean);
 }
 
 TEST(Render, StopsOnRequestWithWhatItHas) {

@@ -21,9 +21,9 @@ TEST(LightReader, readsEveryKind) {
      "radiance": [0, 0, 0], "frame": "world"}]})",
                                   "test");
   ASSERT_EQ(lights.size(), 5u);
-  EXPECT_TRUE((std::get<EnvironmentLight>(lights[0]).radiance == Rgb(1, 2, 3)).all());
+  EXPECT_TRUE(std::get<EnvironmentLight>(lights[0]).radiance == Rgb(1, 2, 3));
   EXPECT_EQ(std::get<DirectionalLight>(lights[1]).direction, Vec3(0, 0, -1));
-  EXPECT_TRUE((std::get<DirectionalLight>(lights[1]).irradiance == Rgb(3, 2, 1)).all());
+  EXPECT_TRUE(std::get<DirectionalLight>(lights[1]).irradiance == Rgb(3, 2, 1));
   const auto& rectangle = std::get<AreaLight>(lights[2]);
   EXPECT_EQ(rectangle.shape, AreaLight::Shape::rectangle);
   EXPECT_EQ(rectangle.center, Vec3(1, 2, 3));

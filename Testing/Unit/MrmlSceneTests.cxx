@@ -331,7 +331,7 @@ TEST(MrmlScene, readsTheViewsBackground) {
   EXPECT_TRUE(viewBackground(document.nodes()[0]).top.isApprox(Rgb(0.4, 0.5, 0.6)));
   EXPECT_TRUE(viewBackground(document.nodes()[0]).bottom.isApprox(Rgb(0.1, 0.2, 0.3)));
   EXPECT_TRUE(viewBackground(document.nodes()[1]).top.isApprox(Rgb(0.1, 0.2, 0.3)));
-  EXPECT_TRUE((viewBackground(document.nodes()[2]).bottom == 0.0).all());
+  EXPECT_TRUE(viewBackground(document.nodes()[2]).bottom == Rgb::Zero());
 }
 
 // ---- real files

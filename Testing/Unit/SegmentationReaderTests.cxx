@@ -162,7 +162,7 @@ TEST(SegmentationReader, readsLayersThatOverlap) {
     const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
     ASSERT_EQ(s.segments().size(), 2u);
     EXPECT_EQ(s.segments()[1].layer, 1u);
-    EXPECT_TRUE((s.segments()[0].color == Rgb(0.5, 0.25, 1)).all());
+    EXPECT_TRUE(s.segments()[0].color == Rgb(0.5, 0.25, 1));
     EXPECT_EQ(s.mask({"liver"}, s.grid()).count, 3);
     EXPECT_EQ(s.mask({"b"}, s.grid()).count, 2);
     EXPECT_EQ(s.mask({"a", "tumour"}, s.grid()).count, 4);
@@ -314,10 +314,10 @@ TEST(SegmentationReader, takesOldAndBrokenColours) {
   }
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  EXPECT_TRUE((s.segments()[0].color == Rgb(0.1, 0.2, 0.3)).all());
+  EXPECT_TRUE(s.segments()[0].color == Rgb(0.1, 0.2, 0.3));
   for (std::size_t n = 1; n < 5; ++n)
-    EXPECT_TRUE((s.segments()[n].color == Rgb::Constant(0.5)).all()) << n;
-  EXPECT_TRUE((s.segments()[5].color == Rgb(0.5, 0.25, 1)).all());
+    EXPECT_TRUE(s.segments()[n].color == Rgb::Constant(0.5)) << n;
+  EXPECT_TRUE(s.segments()[5].color == Rgb(0.5, 0.25, 1));
 }
 
 TEST(SegmentationReader, isNotDisturbedByWhatElseSlicerWrites) {

@@ -106,7 +106,7 @@ TEST(TransferReader, readsSlicersJson) {
     const double truth = -std::log1p(-opacityAt(nodes, x)) / 2.0;
     EXPECT_NEAR(f.extinction(x)[0], truth, 1e-4 * truth) << x;
   }
-  EXPECT_TRUE((f.albedo(0) == decodeSrgb({1, 0.5, 0})).all());
+  EXPECT_TRUE(f.albedo(0) == decodeSrgb({1, 0.5, 0}));
   EXPECT_EQ(f.g, 0.3);
   ASSERT_TRUE(f.shading);
   EXPECT_EQ(f.shading->diffuse, 0.6);

@@ -64,6 +64,8 @@ Affine transformInFile(MrmlScene& scene, const std::string& file, TransformSense
   auto known = scene.transformFiles.find(key);
   if (known == scene.transformFiles.end())
     known = scene.transformFiles.emplace(key, readOrError(scene, file, sense)).first;
+  else if (scene.files.holds(file))
+    scene.files.locate(file); // counts as read again
   if (const Error* error = std::get_if<Error>(&known->second))
     throw *error;
   return std::get<Affine>(known->second);

@@ -116,7 +116,8 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
               (failed ? ", which cannot be read: " + systemMessage(failed.value()) + "; " +
                             readingMend(failed.value(), "check the permissions of its folder")
                       : ", which is not there; put it back, or save the scene again"));
-    return m_located[file] = file;
+    m_read.insert(file);
+    return file;
   }
   if (name.is_absolute() || *file.begin() == "..")
     throw inputError(m_source, "names " + oneLine(name.string()) +
@@ -134,6 +135,7 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
 }
 
 std::filesystem::path SceneFiles::unpacked(const std::filesystem::path& file) {
+  m_read.insert(file);
   if (const auto known = m_located.find(file); known != m_located.end())
     return known->second;
   if (!m_unpacked)
@@ -149,7 +151,7 @@ std::filesystem::path SceneFiles::unpacked(const std::filesystem::path& file) {
 
 std::vector<std::string> SceneFiles::filesRead() const {
   std::vector<std::string> files = {m_source};
-  for (const auto& [file, place] : m_located)
+  for (const std::filesystem::path& file : m_read)
     files.push_back(m_archive ? m_source + "/" + file.string() : file.string());
   return files;
 }

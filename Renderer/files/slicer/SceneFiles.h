@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,9 @@ public:
   /// True if locate would find the file.
   bool holds(const std::string& fileName) const;
 
-  /// Names of the scene and of the located files, as the user knows them.
+  /// Starts a new list of files read.
+  void beginRead() { m_read.clear(); }
+  /// Names of the scene and of the files located since beginRead(), as the user knows them.
   std::vector<std::string> filesRead() const;
 
   /// Result of `reader` on the located paths of these files, with errors as in knowingly. Throws
@@ -83,7 +86,8 @@ private:
   std::filesystem::path m_folder; ///< folder of the .mrml; for a .mrb, within the archive
   std::unique_ptr<SceneArchive> m_archive;
   std::optional<PrivateFolder> m_unpacked;
-  std::map<std::filesystem::path, std::filesystem::path> m_located; ///< by name, escapes undone
+  std::map<std::filesystem::path, std::filesystem::path> m_located; ///< unpacked files, by name
+  std::set<std::filesystem::path> m_read;                           ///< names, escapes undone
 };
 
 } // namespace fenestra

@@ -14,7 +14,7 @@ struct Background {
   /// Gradient between display-encoded colours at the picture's lower and upper edge, like Slicer's
   /// views; a plain colour if both are equal.
   static Background gradient(const Rgb& bottom, const Rgb& top) {
-    if ((bottom == top).all())
+    if (bottom == top)
       return {Kind::color, decodeSrgb(bottom)};
     return {Kind::gradient, Rgb::Zero(), bottom, top};
   }

@@ -92,7 +92,7 @@ public:
     std::vector<Knot> knots;
     for (const Ordered& ordered : m_knots)
       if (knots.empty() || knots.back().position != ordered.knot.position ||
-          (knots.back().value != ordered.knot.value).any())
+          knots.back().value != ordered.knot.value)
         knots.push_back(ordered.knot);
     return Function(std::move(knots));
   }

@@ -17,6 +17,8 @@ struct Grid {
   Grid(const Size3& sizeIn, const Affine& indexToWorldIn)
       : size(sizeIn), indexToWorld(indexToWorldIn), worldToIndex(indexToWorldIn.inverse()) {}
 
+  bool operator==(const Grid&) const = default;
+
   std::int64_t voxelCount() const { return size.prod(); }
   Box indexBox() const { return {Vec3::Constant(-0.5), size.cast<double>().array() - 0.5}; }
   /// Distance of neighbouring voxel centres along each axis, mm.

@@ -1,0 +1,184 @@
+#include "session/Input.h"
+
+#include "base/Error.h"
+#include "base/safe/Inputs.h"
+#include "files/medical/DicomSeries.h"
+#include "files/medical/VolumeReader.h"
+#include "files/slicer/ScenePlan.h"
+
+#include <algorithm>
+#include <mutex>
+
+namespace fenestra {
+namespace {
+
+ScenePlan planFor(const MrmlScene& scene, const InputChoice& choice, bool needsSegmentation) {
+  return planRender(scene.document, {choice.volume, choice.segmentation, needsSegmentation});
+}
+
+VolumeInput volumeInFiles(const std::filesystem::path& path,
+                          const std::optional<std::string>& choice) {
+  if (!isFolder(path))
+    return {readVolume(path), {path.string()}};
+  const std::vector<DicomSeries> all = findDicomSeries(path);
+  const DicomSeries& series = chooseSeries(all, choice, path.string());
+  VolumeInput input{readDicomVolume(series)};
+  for (const auto& file : series.files)
+    input.files.push_back(file.string());
+  return input;
+}
+
+std::optional<SegmentNames> namesInFile(const std::optional<std::string>& file) {
+  if (!file)
+    return std::nullopt;
+  return SegmentNames{*file, readSegmentInfos(*file)};
+}
+
+bool holdsSegmentation(const MrmlDocument& document) {
+  return std::ranges::any_of(document.nodes(), [](const MrmlNode& node) {
+    return node.tag == "Segmentation" || isLabelMap(node);
+  });
+}
+
+Background backgroundOf(const MrmlNode& view) {
+  const ViewBackground colors = viewBackground(view);
+  return Background::gradient(colors.bottom, colors.top);
+}
+
+} // namespace
+
+struct Input::Opened {
+  /// Result of work(scene), which no other thread uses meanwhile. Opens the scene at the first
+  /// call.
+  template <typename Work>
+  auto with(Work&& work) {
+    const std::lock_guard lock(mutex);
+    if (!scene)
+      scene.emplace(path);
+    scene->files.beginRead();
+    return work(*scene);
+  }
+
+  std::filesystem::path path;
+  bool isScene = false;
+  std::mutex mutex = {};
+  std::optional<MrmlScene> scene = {};
+};
+
+Input::Input(std::filesystem::path path) : m_opened(std::make_shared<Opened>()) {
+  m_opened->isScene = isSceneFile(path);
+  m_opened->path = std::move(path);
+}
+
+const std::filesystem::path& Input::path() const {
+  return m_opened->path;
+}
+
+const MrmlDocument* Input::document() const {
+  if (!m_opened->isScene)
+    return nullptr;
+  return m_opened->with([](const MrmlScene& scene) { return &scene.document; });
+}
+
+VolumeInput Input::volume(const std::optional<std::string>& choice) const {
+  if (!m_opened->isScene)
+    return volumeInFiles(path(), choice);
+  return m_opened->with([&](MrmlScene& scene) {
+    Volume volume = readSceneVolume(scene, *planFor(scene, {choice}, false).volume);
+    return VolumeInput{std::move(volume), scene.files.filesRead()};
+  });
+}
+
+SceneSettings Input::settings(const std::optional<std::string>& volume, bool followsCamera) const {
+  if (!m_opened->isScene)
+    return {};
+  return m_opened->with([&](MrmlScene& scene) {
+    const ScenePlan plan = planFor(scene, {volume}, false);
+    SceneSettings settings;
+    if (plan.roi)
+      settings.crop = readSceneRoi(scene, *plan.roi);
+    if (plan.camera && followsCamera)
+      settings.camera = readSceneCamera(scene, *plan.camera);
+    if (plan.view)
+      settings.background = backgroundOf(*plan.view);
+    settings.warnings = plan.warnings;
+    settings.files = scene.files.filesRead();
+    return settings;
+  });
+}
+
+SceneLook Input::look(const std::optional<std::string>& volume,
+                      const std::array<double, 2>& range) const {
+  if (!m_opened->isScene)
+    return {};
+  return m_opened->with([&](MrmlScene& scene) {
+    const ScenePlan plan = planFor(scene, {volume}, false);
+    SceneLook look;
+    if (plan.followed)
+      look = {followedDisplay(*plan.rendering, *plan.followed, range),
+              "the volume's window and level"};
+    if (!look.transfer && plan.property)
+      look = {readSceneProperty(scene, *plan.property), plan.property->name};
+    look.files = scene.files.filesRead();
+    return look;
+  });
+}
+
+std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const {
+  if (!m_opened->isScene)
+    return namesInFile(choice.segmentation);
+  return m_opened->with([&](MrmlScene& scene) {
+    const ScenePlan plan = planFor(scene, choice, holdsSegmentation(scene.document));
+    if (!plan.segmentation)
+      return namesInFile(choice.segmentation);
+    return std::optional(SegmentNames{scene.document.source() + ": " + shown(*plan.segmentation),
+                                      readSceneSegmentInfos(scene, *plan.segmentation)});
+  });
+}
+
+FocusInput Input::focus(const InputChoice& choice, const std::vector<std::string>& names,
+                        const MaskShaping& shaping, const Grid& volume) const {
+  if (names.empty())
+    return {};
+  const auto inFile = [&] {
+    return FocusInput{readSegmentation(*choice.segmentation, &volume).mask(names, volume, shaping),
+                      {*choice.segmentation}};
+  };
+  if (!m_opened->isScene)
+    return inFile();
+  return m_opened->with([&](MrmlScene& scene) {
+    const ScenePlan plan = planFor(scene, choice, true);
+    if (!plan.segmentation && isThere(*choice.segmentation))
+      return inFile();
+    if (!plan.segmentation)
+      throw inputError(scene.document.source(),
+                       "has no segmentation \"" + *choice.segmentation +
+                           "\", and there is no file of that name; fenestra inspect lists what "
+                           "there is");
+    const Segmentation segmentation = readSceneSegmentation(scene, *plan.segmentation, &volume);
+    Mask mask = scene.files.knowingly([&] { return segmentation.mask(names, volume, shaping); });
+    return FocusInput{std::move(mask), scene.files.filesRead()};
+  });
+}
+
+SceneLook Input::property(const std::string& name) const {
+  if (!m_opened->isScene)
+    return {};
+  return m_opened->with([&](MrmlScene& scene) {
+    SceneLook look;
+    for (const MrmlNode* node : scene.document.withTag("VolumeProperty"))
+      if (!look.transfer && (node->name == name || node->id == name))
+        look = {readSceneProperty(scene, *node), node->name, scene.files.filesRead()};
+    return look;
+  });
+}
+
+std::vector<std::string> Input::propertyNames() const {
+  std::vector<std::string> names;
+  if (const MrmlDocument* scene = document())
+    for (const MrmlNode* node : scene->withTag("VolumeProperty"))
+      names.push_back(node->name);
+  return names;
+}
+
+} // namespace fenestra

@@ -1,0 +1,226 @@
+#include "session/Stages.h"
+
+#include "base/Error.h"
+#include "base/TextStream.h"
+#include "clip/surface/FocusPlane.h"
+#include "clip/surface/SteadySurface.h"
+#include "files/looks/LightReader.h"
+#include "files/looks/LookText.h"
+#include "session/Defaults.h"
+
+namespace fenestra {
+namespace {
+
+TransferFunction fitted(const TransferLook& look, const Volume& volume) {
+  if (!look.relative)
+    return look.function;
+  const auto [low, high] = usualRange(volume);
+  return look.over(low, high);
+}
+
+std::string nameOf(Modality modality) {
+  switch (modality) {
+  case Modality::ct:
+    return "CT";
+  case Modality::mr:
+    return "MR";
+  case Modality::us:
+    break;
+  }
+  return "ultrasound";
+}
+
+/// Throws Error (input) above a limit of the extinction: null collisions take time in proportion to
+/// the greatest extinction, and a file could make paths endless.
+void checkExtinction(const TransferFunction& transfer, const Volume& volume,
+                     const std::string& name) {
+  constexpr double thickest = 1e7; // optical depth across the volume
+  double greatest = 0.0;
+  for (const auto& knot : transfer.extinction.knots())
+    greatest = std::max(greatest, knot.value[0]);
+  const double allowed = thickest / (2.0 * volume.grid.boundingRadius());
+  if (greatest <= allowed)
+    return;
+  TextWriter line;
+  line << "extinction: reaches " << greatest << " per mm, and " << allowed
+       << " is opaque in any picture of this volume; lower it or --density";
+  throw inputError(name, line.str());
+}
+
+/// Focus depths at the viewport's pixels, mm.
+std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera) {
+  std::vector<double> depths;
+  for (int row = 0; row < camera.height(); ++row)
+    for (int column = 0; column < camera.width(); ++column)
+      depths.push_back(focus.depth.at(focus.depth.viewportSample(column, row)));
+  return depths;
+}
+
+bool dependsOnCamera(const Light& light) {
+  const auto* area = std::get_if<AreaLight>(&light);
+  return area && area->frame == LightFrame::camera;
+}
+
+const Mask* maskOf(const Focus& focus) {
+  return focus->mask ? &*focus->mask : nullptr;
+}
+
+Domain domainOf(const Read& volume, const Settings& settings) {
+  return {volume->volume.grid, settings->crop};
+}
+
+/// Transfer function of chosenLook, neither moved nor multiplied.
+Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
+             const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor) {
+  std::vector<std::string> warnings;
+  if (named && (!madeFor || suits(*madeFor, volume)))
+    return {fitted(named->look, volume), named->source};
+  if (named)
+    warnings.push_back("the preset's transfer function is made for " + nameOf(*madeFor) +
+                       ", and the volume is none; it gets a look of its own, else name one "
+                       "with --transfer");
+  else if (scene->transfer)
+    return {*scene->transfer, scene->name};
+  const std::optional<std::string> preset = transferPresetFor(volume);
+  if (!preset)
+    return {relativeTransfer(volume), "by the volume's range", warnings};
+  return {namedTransfer(*preset, Input({})).look.function, *preset, warnings};
+}
+
+/// Plane of a request, else the focus's own.
+ClipPlane placedPlane(const ClipRequest& request, const Camera& camera, const Focus& focus,
+                      const std::optional<FocusDepth>& depth) {
+  if (!request.plane)
+    requireVisible(*depth, *maskOf(focus));
+  ClipPlane plane = request.plane ? ClipPlane{camera, request.plane->origin, request.plane->normal}
+                                  : focusPlane(camera, *depth);
+  plane.point += request.surface.offset * camera.forward();
+  plane.edge = {0.0, request.surface.edge.softness};
+  return plane;
+}
+
+ClipResult planeOrNone(const ClipRequest& request, bool measure, const Domain& domain,
+                       const Focus& focus, const Camera& camera) {
+  ClipResult result;
+  const bool isPlane = request.mode == ClipMode::plane;
+  std::optional<FocusDepth> depth;
+  if (focus->mask && ((isPlane && !request.plane) || measure)) {
+    const Stopwatch watch;
+    depth = traceFocus(camera, domain, *focus->mask);
+    result.focusDepth = viewportDepths(*depth, camera);
+    result.focusSeconds = watch.seconds();
+  }
+  if (isPlane)
+    result.clip = placedPlane(request, camera, focus, depth);
+  if (isPlane && depth && measure)
+    result.boundary = measureBoundary(result.clip, domain, *focus->mask, *depth);
+  return result;
+}
+
+ClipResult depthClip(const ClipRequest& request, ClipMode mode, const Domain& domain,
+                     const Mask& focus, const Camera& camera, bool measure, double steadyDegrees) {
+  SurfaceOptions options = request.surface;
+  options.mode = mode == ClipMode::hole      ? SurfaceMode::hole
+                 : mode == ClipMode::cutaway ? SurfaceMode::cutaway
+                                             : SurfaceMode::surface;
+  if (mode == ClipMode::ghost)
+    options.edge.ghost = double{static_cast<float>(request.ghost)};
+  ClippingSurface surface = buildSteadySurface(camera, domain, focus, options, steadyDegrees);
+  ClipResult result{.clip = std::move(surface.clip),
+                    .focusDepth = viewportDepths(surface.focus, camera),
+                    .mismatch = surface.mismatch,
+                    .controlPoints = std::move(surface.controlPoints),
+                    .warnings = std::move(surface.warnings),
+                    .focusSeconds = surface.focusSeconds,
+                    .splineSeconds = surface.splineSeconds,
+                    .fillSeconds = surface.fillSeconds};
+  if (measure)
+    result.boundary = measureBoundary(result.clip, domain, focus, surface.focus);
+  if (options.mode == SurfaceMode::surface && !result.mismatch && result.boundary)
+    result.mismatch = result.boundary->gap;
+  return result;
+}
+
+} // namespace
+
+NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& environment,
+                            const std::optional<std::filesystem::path>& environmentMap) {
+  NamedLights named = namedLights(name);
+  if (!environment && !environmentMap)
+    return named;
+  std::erase_if(named.lights,
+                [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l); });
+  EnvironmentLight replacement;
+  if (environment) {
+    replacement.radiance = *environment;
+  } else {
+    replacement.map = readEnvironmentMap(*environmentMap);
+    named.files.push_back(environmentMap->string());
+  }
+  named.lights.emplace_back(replacement);
+  return named;
+}
+
+Look chosenLook(const Read& read, const Handle<NamedTransfer>& named,
+                const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor,
+                double shift, double density) {
+  const Volume& volume = read->volume;
+  Look look = lookFor(volume, named, scene, madeFor);
+  look.transfer = look.transfer.shifted(shift).scaled(density);
+  checkExtinction(look.transfer, volume, named ? look.name : volume.name);
+  if (look.transfer.shading && volume.minimum == volume.maximum)
+    throw inputError(volume.name,
+                     "every voxel has the same value, so there is no gradient for the transfer "
+                     "function's shading; use one with shading off (\"shading\": \"volume\")");
+  return look;
+}
+
+ViewDirection bestView(const Read& volume, const Settings& settings, const Focus& focus,
+                       const Handle<Look>& look) {
+  return automaticView(
+      ViewScorer(volume->volume, domainOf(volume, settings), look->transfer, *focus->mask));
+}
+
+Camera placedCamera(const ViewRequest& view, int width, int height, const Read& volume,
+                    const Settings& settings, const Focus& focus,
+                    const Handle<ViewDirection>& best) {
+  if (settings->camera)
+    return {adjustedView(view, *settings->camera), width, height};
+  return {frameView(view, domainOf(volume, settings), maskOf(focus), width, height, best.get()),
+          width, height};
+}
+
+bool FramedLights::operator==(const FramedLights& other) const {
+  return lights == other.lights &&
+         (camera == other.camera || std::ranges::none_of(lights->lights, dependsOnCamera));
+}
+
+LightSet placedLights(const FramedLights& framed, const Read& volume) {
+  return {framed.lights->lights, volume->volume.grid, *framed.camera};
+}
+
+ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegrees,
+                     const Read& volume, const Settings& settings, const Focus& focus,
+                     const Handle<Camera>& camera) {
+  const Domain domain = domainOf(volume, settings);
+  const ClipMode mode = request.modeWith(focus->mask.has_value());
+  if (isDepthClip(mode))
+    return depthClip(request, mode, domain, *focus->mask, *camera, measure, steadyDegrees);
+  return planeOrNone(request, measure, domain, focus, *camera);
+}
+
+CellRanges rangesOf(const Read& volume, int apron) {
+  return {volume->volume, apron};
+}
+
+ContextStyle styleAround(const Focus& focus, double extinction, double saturation) {
+  return {{focus, &*focus->mask}, extinction, saturation};
+}
+
+MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
+                         const Handle<Look>& look, const Handle<ClipResult>& clip,
+                         const Handle<ContextStyle>& style) {
+  return {volume->volume.grid, *ranges, look->transfer, clip->clip, style.get()};
+}
+
+} // namespace fenestra

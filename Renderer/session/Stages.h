@@ -1,0 +1,81 @@
+#pragma once
+// Stages of a scene after its input: pure functions whose arguments are their keys (Stage.h).
+
+#include "clip/surface/ClippingSurface.h"
+#include "measure/BoundaryMeasures.h"
+#include "model/lights/LightSet.h"
+#include "session/AutomaticView.h"
+#include "session/Input.h"
+#include "session/NamedLooks.h"
+#include "session/Stage.h"
+#include "transport/readable/MajorantGrid.h"
+
+namespace fenestra {
+
+using Settings = Handle<SceneSettings>;
+using Focus = Handle<FocusInput>;
+using Read = Handle<VolumeInput>;
+
+/// Lights of that name or JSON (namedLights), with an environment or a map in place of their own.
+NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& environment,
+                            const std::optional<std::filesystem::path>& environmentMap);
+
+struct Look {
+  TransferFunction transfer;
+  std::string name; ///< source: a file, a preset, a node, or "by the volume's range"
+  std::vector<std::string> warnings = {};
+};
+/// The transfer function `named` by the request, unless made for another modality than the
+/// volume's, else the scene's, else one that suits the volume; then moved by `shift` and multiplied
+/// by `density`. Throws Error (input) for a function that the volume cannot be rendered with.
+Look chosenLook(const Read& volume, const Handle<NamedTransfer>& named,
+                const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor,
+                double shift, double density);
+
+/// Direction of the view that shows the focus best (AutomaticView.h).
+ViewDirection bestView(const Read& volume, const Settings& settings, const Focus& focus,
+                       const Handle<Look>& look);
+
+/// `best`: null unless the view is automatic.
+Camera placedCamera(const ViewRequest& view, int width, int height, const Read& volume,
+                    const Settings& settings, const Focus& focus,
+                    const Handle<ViewDirection>& best);
+
+/// Lights, and the camera for those in its frame.
+struct FramedLights {
+  Handle<NamedLights> lights;
+  Handle<Camera> camera;
+
+  /// True also for different cameras if no light is in the camera's frame.
+  bool operator==(const FramedLights& other) const;
+};
+LightSet placedLights(const FramedLights& framed, const Read& volume);
+
+struct ClipResult {
+  Clip clip = ClipNone();
+  /// Depth of the focus at each pixel's centre, mm; infinity: missed. Empty without a focus, and,
+  /// unless the clip is measured, in the clip modes none and plane (with a given plane).
+  std::vector<double> focusDepth = {};
+  /// mm by which the spline misses the focus's boundary, or an exact surface if measured; nothing
+  /// in the other clip modes.
+  std::optional<BoundaryMismatch> mismatch = {};
+  std::optional<BoundaryMeasures> boundary = {}; ///< nothing: not measured
+  std::vector<ControlPoint> controlPoints = {};  ///< of a spline; empty for other clips
+  std::vector<std::string> warnings = {};
+  double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
+};
+ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegrees,
+                     const Read& volume, const Settings& settings, const Focus& focus,
+                     const Handle<Camera>& camera);
+
+/// `apron`: MajorantGrid::apronFor.
+CellRanges rangesOf(const Read& volume, int apron);
+
+ContextStyle styleAround(const Focus& focus, double extinction, double saturation);
+
+/// `style`: null if the context is unchanged.
+MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
+                         const Handle<Look>& look, const Handle<ClipResult>& clip,
+                         const Handle<ContextStyle>& style);
+
+} // namespace fenestra

@@ -1,0 +1,81 @@
+// Input: opened once for all that is read from it, with the files of each reading.
+
+#include "session/Scene.h"
+
+#include "SceneTesting.h"
+
+namespace fenestra::InputTests {
+namespace {
+
+/// Archive with a CT, a label map of its grid, and a volume property.
+class InputOfAnArchive : public ::testing::Test {
+protected:
+  InputOfAnArchive() {
+    FileGeometry geometry;
+    geometry.origin = {10, 20, 30};
+    geometry.spacing = {1, 2, 3};
+    writeFile(folder / "labels.nrrd", std::vector<std::uint8_t>(24, 5), geometry);
+    writeArchive(archive, {{"a/a.mrml", "<MRML>" + volumeNode + R"(
+                              <LabelMapVolume id="l" name="L" storageNodeRef="m"/>
+                              <VolumeArchetypeStorage id="m" fileName="labels.nrrd"/>
+                              <VolumeProperty id="p" name="P"
+                                scalarOpacity="4 0 0 200 1" colorTransfer="8 0 1 1 1 200 1 1 1"/>
+                              </MRML>)"},
+                           {"a/ct.nrrd", bytesOf(folder / "ct.nrrd")},
+                           {"a/labels.nrrd", bytesOf(folder / "labels.nrrd")}});
+  }
+
+  const SceneFolder folder;
+  const std::filesystem::path archive = folder / "a.mrb";
+};
+
+TEST_F(InputOfAnArchive, IsOpenedOnceForAllCopies) {
+  const Input input(archive), copy = input;
+  ASSERT_TRUE(input.document());
+  std::filesystem::remove(archive); // a second opening would fail
+  const Volume volume = copy.volume({}).volume;
+  EXPECT_EQ(volume.name, "CT");
+  EXPECT_TRUE(copy.focus({{}, "L"}, {"5"}, {}, volume.grid).mask);
+  EXPECT_TRUE(input.segmentNames({{}, "L"}));
+  EXPECT_TRUE(input.property("P").transfer);
+  EXPECT_EQ(input.propertyNames(), std::vector<std::string>{"P"});
+}
+
+TEST_F(InputOfAnArchive, IsOpenedOnceForSceneAndChanges) {
+  SceneRequest request;
+  request.input = archive;
+  request.transfer = "P";
+  request.width = request.height = 8;
+  const Input input(archive);
+  ASSERT_TRUE(input.document());
+  std::filesystem::remove(archive);
+  const Scene scene(request, input);
+  request.segmentation = "L";
+  request.focus = {"5"};
+  const Scene changed = scene.changed(request);
+  EXPECT_FALSE(changed.made().volume);
+  EXPECT_TRUE(changed.focus());
+}
+
+TEST_F(InputOfAnArchive, ListsTheFilesOfEachReading) {
+  const std::string inArchive = archive.string() + "/a/";
+  const Input input(archive);
+  const VolumeInput read = input.volume({});
+  EXPECT_EQ(read.files, (FilesRead{archive.string(), inArchive + "ct.nrrd"}));
+  EXPECT_EQ(input.focus({{}, "L"}, {"5"}, {}, read.volume.grid).files,
+            (FilesRead{archive.string(), inArchive + "labels.nrrd"}));
+  EXPECT_EQ(input.settings({}, true).files, FilesRead{archive.string()});
+}
+
+TEST(Input, OfAFileHasNoSceneOrSettings) {
+  const SceneFolder folder;
+  const Input input(folder / "ct.nrrd");
+  EXPECT_FALSE(input.document());
+  EXPECT_FALSE(input.property("P").transfer);
+  EXPECT_FALSE(input.segmentNames({}));
+  EXPECT_FALSE(input.settings({}, true).camera);
+  EXPECT_EQ(input.volume({}).files, FilesRead{(folder / "ct.nrrd").string()});
+}
+
+} // namespace
+} // namespace fenestra::InputTests
