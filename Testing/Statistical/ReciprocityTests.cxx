@@ -30,7 +30,7 @@ Clip cutOf(Cut cut, const CameraPose& pose) {
   return ClipPlane{Camera(pose, 1, 1), Vec3(0.1, -0.3, 0.2), Vec3(0.5, -1.0, 0.3).normalized()};
 }
 
-TEST_P(Reciprocity, ExchangesLightAndViewer) {
+TEST_P(Reciprocity, SwappingLightAndViewerKeepsTheRadiance) {
   const auto [g, cut] = GetParam();
   TestScene scene = clumps(Rgb(0.9, 0.3, 0.6), Rgb(1.0, 0.9, 0.4), g);
   scene.volume = plate();
