@@ -75,7 +75,8 @@ vtkSmartPointer<vtkImageData> ToVtk(const FenestraScene::Image& image) {
 FenestraScene::Image ReadFloats(const std::string& file) {
   FenestraScene::Image image = FenestraScene::readNrrd(file);
   if (image.type != "float" || image.size[2] != 1)
-    throw FenestraScene::FileError(file + ": is not a picture of the renderer's");
+    throw FenestraScene::FileError(file +
+                                   ": is no picture that the renderer wrote; render it again");
   return image;
 }
 

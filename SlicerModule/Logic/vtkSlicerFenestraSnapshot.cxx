@@ -247,7 +247,8 @@ void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
   volume->GetIJKToRASMatrix(ijkToRas);
   contents.volume = Shared(image, ijkToRas);
   if (contents.volume.type.empty())
-    throw Complaint("The volume " + Quoted(volume) + " has voxels of an unknown type.");
+    throw Complaint("The volume " + Quoted(volume) +
+                    " has voxels of an unknown type. Convert it in the Cast Scalar Volume module.");
   contents.volumeKey = Key(image, volume->GetID(), contents.volume);
   contents.volumeToWorld = ToWorld(volume);
 }

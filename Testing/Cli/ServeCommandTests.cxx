@@ -134,7 +134,7 @@ TEST_F(ServeCommand, BadLineIsAnsweredAndChangesNothing) {
        "more than a million"},
       {R"({"id": 10, "samples": 1e999})", "null", "too large"},
       {"{\"id\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}", "null",
-       "nests more than 64"},
+       "is nested deeper than 64"},
       {R"({"id": {"a": 1}, "view": "left"})", "null", "id: must be a number, a text"},
       {R"({"id": [1], "view": "left"})", "null", "id: must be"},
       {R"({"id": true, "view": "left"})", "null", "id: must be"},

@@ -34,7 +34,9 @@ TEST(SurfaceStress, OnePixelGivesAFlatSurfaceAndAWarning) {
   const ClippingSurface surface = view.surface({});
   EXPECT_EQ(surface.controlPoints.size(), 1U);
   EXPECT_EQ(surface.warnings.size(), 1U);
-  EXPECT_EQ(surface.warnings[0], "the focus covers hardly a pixel: the clipping surface is flat");
+  EXPECT_EQ(surface.warnings[0],
+            "the focus covers hardly a pixel: the clipping surface is flat; choose a larger "
+            "--size, or a view that frames the focus");
   expectSound(view);
 }
 

@@ -277,7 +277,8 @@ TEST(ClippingSurface, WarnsOfAFocusOutsideThePicture) {
   pose.scale = 2.0;
   const ClippingSurface surface = model.surface({pose, 32, 32});
   ASSERT_EQ(surface.warnings.size(), 1U);
-  EXPECT_EQ(surface.warnings[0], "focus A lies outside the picture");
+  EXPECT_EQ(surface.warnings[0],
+            "focus A lies outside the picture; choose another --view, --target or --scale");
 }
 
 TEST(ClippingSurface, FocusThatNoRayMeetsIsAnInputError) {

@@ -73,7 +73,7 @@ TEST(TransferReader, ErrorNamesTheField) {
   expectRefusal("{\"extinction\": [[0,", "is not JSON");
   expectRefusal("{\"extinction\": 1e999}", "");
   expectRefusal("{\"extinction\": \"\xff\"}", "is not JSON");
-  expectRefusal(std::string(1'000'000, '['), "nests more than 64");
+  expectRefusal(std::string(1'000'000, '['), "is nested deeper than 64");
   std::string many = "{\"extinction\": [0";
   for (int i = 0; i < 200'000; ++i)
     many += ",0";

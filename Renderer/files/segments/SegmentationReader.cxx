@@ -332,7 +332,8 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
   Mask mask = smoothed(united(masks), shaping.smoothing, volume);
   if (mask.count == 0)
     throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (" +
-                                   listed(chosen) + "); choose less");
+                                   listed(chosen) +
+                                   "); choose a margin nearer to 0, or less smoothing");
   return mask;
 }
 
