@@ -369,7 +369,8 @@ FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
   return moved;
 }
 
-/// Frames have no place in the anatomy: placed far from it, with 1 mm pixels.
+/// Adds frames, which have no place in the anatomy, as a volume of 1 mm pixels far from the
+/// anatomy.
 void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
     return picture->SetAndObserveImageData(frames);

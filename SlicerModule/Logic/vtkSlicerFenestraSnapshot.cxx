@@ -136,8 +136,8 @@ struct PassingFile {
   std::filesystem::path path;
 };
 
-/// Takes the property as Slicer saves it: Slicer's storage knows the fields of this version's
-/// properties.
+/// Takes the property from a file that Slicer writes: Slicer's storage node knows all fields of
+/// this version's properties.
 void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
                   FenestraScene::Contents& contents) {
   vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own must not count as saved
