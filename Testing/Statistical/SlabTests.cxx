@@ -104,8 +104,8 @@ INSTANTIATE_TEST_SUITE_P(Albedos, HalfSpace,
                          ::testing::Values(HalfSpaceCase{0.5, 0.1152}, HalfSpaceCase{0.9, 0.4149},
                                            HalfSpaceCase{0.99, 0.7527}));
 
-/// Thickness of nearly a half-space: light returned from below 60 free paths is less than exp(-2 ·
-/// 0.17 · 60) of all, with 0.17 per free path the slowest decay at albedo 0.99.
+/// Optical thickness that stands for a half-space: light returned from below 60 free paths is less
+/// than exp(-2 · 0.17 · 60) of all, with 0.17 per free path the slowest decay at albedo 0.99.
 constexpr double deep = 60.0;
 const Rgb halfSpaceAlbedo(0.5, 0.9, 0.99);
 constexpr double knownH = 2e-4; ///< relative error of H: its reflectances above have four digits

@@ -1,4 +1,5 @@
-// Extreme transfer functions, and volumes of one value, against the function's integral by hand.
+// Extreme transfer functions, and volumes of one value, against analytic integrals of the
+// functions.
 
 #include "StressSupport.h"
 
