@@ -75,8 +75,7 @@ vtkSmartPointer<vtkImageData> ToVtk(const FenestraScene::Image& image) {
 FenestraScene::Image ReadFloats(const std::string& file) {
   FenestraScene::Image image = FenestraScene::readNrrd(file);
   if (image.type != "float" || image.size[2] != 1)
-    throw FenestraScene::FileError(file +
-                                   ": is no picture that the renderer wrote; render it again");
+    throw FenestraScene::FileError(file + ": is no picture of the renderer's; render it again");
   return image;
 }
 
@@ -369,8 +368,7 @@ FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
   return moved;
 }
 
-/// Adds frames, which have no place in the anatomy, as a volume of 1 mm pixels far from the
-/// anatomy.
+/// Adds frames as a volume of 1 mm pixels far from the anatomy, in which frames have no place.
 void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
     return picture->SetAndObserveImageData(frames);
