@@ -76,7 +76,7 @@ qSlicerFenestraClipping::qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, Q
 void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
   m_clip = choices("ClipBox", tr("What is taken away, so that the focus shows"));
   m_clip->addItem(tr("Smooth surface through the focus"), "");
-  m_clip->addItem(tr("Surface, what is in front left faint"), "ghost");
+  m_clip->addItem(tr("Surface, tissue in front left faint"), "ghost");
   m_clip->addItem(tr("All in front of the focus (cut-away)"), "cutaway");
   m_clip->addItem(tr("Hole toward the focus"), "hole");
   m_clip->addItem(tr("Flat plane"), "plane");
@@ -89,7 +89,7 @@ void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
   m_boundary->addItem(tr("Smoothed (spline)"), "spline");
   form->addRow(tr("Edge of the focus:"), m_boundary);
   addNumber(form, "ghost", tr("Left in front:"), 0.01, 10.0, {"ghost"},
-            tr("How dense what lies in front of the surface stays"));
+            tr("Share of its density that tissue in front of the surface keeps"));
   m_hole = choices("HoleBox", tr("The hole leads from the eye to the focus"));
   m_hole->addItem(tr("Cylinder"), "");
   m_hole->addItem(tr("Box"), "box");

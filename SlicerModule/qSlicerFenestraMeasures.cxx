@@ -21,25 +21,26 @@ QList<Known> known() {
   const auto tr = [](const char* text) { return QObject::tr(text); };
   return {
       {"focusCoverage", Unit::share, tr("Focus seen"),
-       tr("Of the light of its pixels, the share that nothing in front takes away")},
+       tr("Share of the light from the focus that reaches the eye through what lies in front")},
       {"focusCoverageUnclipped", Unit::share, tr("Focus seen without clipping"),
-       tr("The same, were nothing taken away")},
+       tr("Share of the light from the focus that would reach the eye without clipping")},
       {"focusKept", Unit::share, tr("Focus kept"),
-       tr("Share of its pixels where the clipping leaves the focus itself")},
+       tr("Share of the pixels of the focus where clipping leaves the focus itself")},
       {"focusLight", Unit::share, tr("Light on the focus"),
-       tr("Straight from the lights, relative to the focus alone")},
+       tr("Direct light on the focus, relative to the focus without surroundings")},
       {"contextRemoved", Unit::share, tr("Surroundings taken away"),
-       tr("Share of the matter that is not focus")},
+       tr("Share of the tissue outside the focus that clipping removes")},
       {"boundaryGapMm", Unit::millimetres, tr("Gap at the edge"),
-       tr("In depth, between the focus and the surface at the focus's edge")},
+       tr("Difference in depth between the focus and the surface at the edge of the focus")},
       {"boundaryMismatchMm", Unit::millimetres, tr("Step at the edge"),
-       tr("In depth, between the focus's outermost pixels and the surface beside them")},
+       tr("Difference in depth between the outermost pixels of the focus and the surface beside "
+          "them")},
       {"boundarySlopeJump", Unit::slope, tr("Kink at the edge"),
-       tr("How much the slope in depth changes there, mm a mm")},
-      {"boundaryDepthJumps", Unit::share, tr("Edge that is torn"),
+       tr("Change of the slope in depth at the edge of the focus, mm a mm")},
+      {"boundaryDepthJumps", Unit::share, tr("Torn edge"),
        tr("Share of the edge where the focus's own depth jumps, which is not measured")},
       {"surfaceChangeMmPerDegree", Unit::millimetresADegree, tr("Change while turning"),
-       tr("Of the surface's depth, from frame to frame")},
+       tr("Change of the surface's depth from frame to frame")},
   };
 }
 

@@ -212,7 +212,7 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
 void qSlicerFenestraModuleWidget::stop() {
   m_session->stop();
   if (m_session->rendering())
-    say(tr("Stopping: what there is is written. Press Stop again to end without it."));
+    say(tr("Stopping: finished samples are being written. Press Stop again to end without them."));
 }
 
 void qSlicerFenestraModuleWidget::repeat() {
@@ -350,7 +350,8 @@ void qSlicerFenestraModuleWidget::save() {
   const bool turns = render->IsTurntable();
   const QStringList frames = m_session->results().framesOf(render);
   if (turns ? frames.isEmpty() : m_session->results().fileOf(render, "png").isEmpty())
-    return say(tr("Its files went with the session that made it. Press Repeat, then save."));
+    return say(tr("The files of this picture were removed with the session that made it. Press "
+                  "Repeat, then save."));
   const QString png = turns ? tr("Pictures, numbered (*.png)") : tr("Picture (*.png)");
   const QString exr = tr("Linear colour and depth (*.exr)");
   // Overwriting is confirmed below, for the final names: an ending or a number may be added.

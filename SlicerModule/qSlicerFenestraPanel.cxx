@@ -190,7 +190,7 @@ void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
 void qSlicerFenestraPanel::buildRender(QVBoxLayout* layout) {
   auto* row = new QHBoxLayout;
   render = button("RenderButton", tr("Render"), tr("Adds the picture to the scene"));
-  stop = button("StopButton", tr("Stop"), tr("Ends the render, and keeps what there is"));
+  stop = button("StopButton", tr("Stop"), tr("Ends the render and keeps its finished samples"));
   stop->setEnabled(false);
   row->addWidget(render, 2);
   row->addWidget(stop, 1);
@@ -310,11 +310,12 @@ void qSlicerFenestraPanel::buildAnimation(QVBoxLayout* layout) {
   steady->setDecimals(1);
   steady->setSuffix(tr("\u00b0"));
   steady->setSpecialValueText(tr("each frame by itself"));
-  steady->setToolTip(tr("Spreads sudden changes of the clipping surface over so far a turn"));
+  steady->setToolTip(
+      tr("Spreads sudden changes of the clipping surface over this part of the turn"));
   form->addRow(tr("Steady surface:"), steady);
   turn = button("TurnButton", tr("Render turntable"),
-                tr("Goes around the focus from the view above, a picture a frame of the quality "
-                   "above"));
+                tr("Goes around the focus from the view above; each frame is a picture of the "
+                   "quality above"));
   form->addRow(turn);
 }
 
@@ -372,7 +373,7 @@ void qSlicerFenestraPanel::offerPresets(bool chosen) {
 void qSlicerFenestraPanel::showWithheld(const std::map<std::string, std::string>& what,
                                         bool files) {
   constexpr std::size_t most = 200; // shown characters of a value
-  QStringList lines = {tr("Not followed, of what this scene says:")};
+  QStringList lines = {tr("Stored in this scene, but not used:")};
   for (const auto& [name, value] : what)
     lines << QString::fromStdString(name + ": " + value.substr(0, most));
   withheld->setText(lines.join('\n'));

@@ -248,7 +248,8 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
     }
     later([this, id, outcome, result, message] {
       if (!message.isEmpty())
-        return endRender(id, failure(tr("The picture could not be read back."), message));
+        return endRender(id,
+                         failure(tr("The picture could not be read back. Press Repeat."), message));
       const auto paused = std::make_shared<Paused>(m_logic->GetMRMLApplicationLogic());
       addResult(id, outcome, [this, result, paused](Node* node, int step) {
         m_logic->AddResult(node, *result, step);

@@ -73,8 +73,8 @@ struct Pair {
     return std::abs(difference(c, i)) <= 2.0 * rounding(c, i);
   }
   /// True if the value carries no statistical information: both errors are 0, or one is 0 and the
-  /// values are equal (background, whatever error one renderer states); 0 and equal to the rounding
-  /// of a float. Excluded from z.
+  /// values are equal (background, whatever error one renderer states); "0" and "equal" mean to the
+  /// rounding of a float. Excluded from z.
   bool saysNothing(std::size_t c, std::size_t i) const {
     const bool exactA = std::abs((*errorA[c])[i]) <= rounding(c, i);
     const bool exactB = std::abs((*errorB[c])[i]) <= rounding(c, i);

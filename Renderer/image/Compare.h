@@ -51,10 +51,10 @@ Image tileMeans(const Image& image, int size);
 /// p-value of the largest difference of any R, G or B between two renders of one scene with
 /// independent seeds: Student's t of each value, with a variance per sample pooled over both
 /// renders, corrected for the number of values (Šidák 1967). A mean of few bright paths is skewed
-/// like a count, so the degrees of freedom are at most mean^2 / se^2 of the shorter render (its
-/// number of paths, were all equally bright), which makes the tails of t the heavier ones. 0 if
-/// exact values (see ZStatistics) differ or a value is not finite. Throws like tileMeans, and for a
-/// missing samples.N or different sizes.
+/// like a count: the degrees of freedom are at most mean^2 / se^2 of the render with fewer samples,
+/// which is the number of its paths if all are equally bright; fewer degrees give heavier tails. 0
+/// if exact values (see ZStatistics) differ or a value is not finite. Throws like tileMeans, and
+/// for a missing samples.N or different sizes.
 double agreementProbability(const Image& a, const Image& b);
 
 /// Copies R, G, B of `error`, a picture of standard errors, to the error channels of `image`.

@@ -25,7 +25,7 @@ struct PixelSums {
   Rgb mean = Rgb::Zero();      ///< of radiance
   Rgb deviation = Rgb::Zero(); ///< sum of squared deviations from the mean (Welford 1962)
   double alpha = 0.0;
-  double depth = 0.0; ///< over samples that collide
+  double depth = 0.0; ///< sum over samples that collide
   std::uint64_t collided = 0;
   Rgb albedo = Rgb::Zero();
   Vec3 normal = Vec3::Zero();

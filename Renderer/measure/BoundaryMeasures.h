@@ -24,7 +24,8 @@ struct BoundaryMeasures {
 /// Threshold, mm: the focus jumps at a sample if a neighbour's depth differs by more.
 constexpr double depthJump = 2.0;
 
-/// `depths`: of `focus`, from the clip's camera. Zeros for ClipNone.
+/// Measures `clip` along the outline of `focus`, whose `depths` are seen from the clip's camera.
+/// All measures are 0 for ClipNone.
 BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
                                  const FocusDepth& depths);
 

@@ -34,8 +34,8 @@ double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::ui
                      const StopFlag& stop = neverStopped);
 
 /// Direct light at the points that clipping leaves, relative to direct light in `alone`, the same
-/// scene of nothing but the focus. Some thousand points and lights, the same for both scenes. Empty
-/// if no light arrives in `alone`.
+/// scene of nothing but the focus. At most 4096 points, four light samples each, the same for
+/// both scenes. Empty if no light arrives in `alone`.
 std::optional<double> focusLight(const RenderScene& scene, const RenderScene& alone,
                                  const FocusPoints& focus, std::uint64_t seed,
                                  const StopFlag& stop = neverStopped);

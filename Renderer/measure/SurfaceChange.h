@@ -24,7 +24,7 @@ SeenSurface seenSurface(const ClipDepth& clip, const std::vector<double>& focusD
 struct SurfaceChange {
   /// Change of the surface's depth over all pixels that are context before and after.
   double mean = 0.0, p95 = 0.0, max = 0.0;
-  /// Way of the visible focus's point farthest from the axis.
+  /// Motion of the visible focus's point farthest from the axis.
   double focus = 0.0;
 
   /// Part of the surface's greatest change beyond the motion of the focus.

@@ -147,7 +147,7 @@ void ServeInput::read() {
         continue;
       }
       if (tooLong)
-        m_answers.error(nullptr, "a line of more than a million characters");
+        m_answers.error(nullptr, "a line has more than a million characters; send shorter ones");
       else if (line.find_first_not_of(" \t\r") != std::string::npos)
         takeLine(line);
       line.clear();

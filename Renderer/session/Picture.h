@@ -7,7 +7,7 @@
 
 namespace fenestra {
 
-/// Channels of a picture (design, section 3, EXR channels).
+/// Groups of channels that a picture has; their names are those of --layers.
 struct LayerSet {
   bool color = true, depth = true, clip = true, albedo = true, normal = true, error = true,
        samples = true;

@@ -75,7 +75,7 @@ vtkSmartPointer<vtkImageData> ToVtk(const FenestraScene::Image& image) {
 FenestraScene::Image ReadFloats(const std::string& file) {
   FenestraScene::Image image = FenestraScene::readNrrd(file);
   if (image.type != "float" || image.size[2] != 1)
-    throw FenestraScene::FileError(file + ": is not a picture of the renderer's");
+    throw FenestraScene::FileError(file + ": is no picture of the renderer's; render it again");
   return image;
 }
 
@@ -368,7 +368,7 @@ FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
   return moved;
 }
 
-/// Frames have no place in the anatomy: placed far from it, with 1 mm pixels.
+/// Adds frames as a volume of 1 mm pixels far from the anatomy, in which frames have no place.
 void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
     return picture->SetAndObserveImageData(frames);

@@ -136,8 +136,8 @@ struct PassingFile {
   std::filesystem::path path;
 };
 
-/// Takes the property as Slicer saves it: Slicer's storage knows the fields of this version's
-/// properties.
+/// Takes the property from a file that Slicer writes: Slicer's storage node knows all fields of
+/// this version's properties.
 void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
                   FenestraScene::Contents& contents) {
   vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own must not count as saved
@@ -247,7 +247,8 @@ void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
   volume->GetIJKToRASMatrix(ijkToRas);
   contents.volume = Shared(image, ijkToRas);
   if (contents.volume.type.empty())
-    throw Complaint("The volume " + Quoted(volume) + " has voxels of an unknown type.");
+    throw Complaint("The volume " + Quoted(volume) +
+                    " has voxels of an unknown type. Convert it in the Cast Scalar Volume module.");
   contents.volumeKey = Key(image, volume->GetID(), contents.volume);
   contents.volumeToWorld = ToWorld(volume);
 }

@@ -19,7 +19,7 @@ class vtkMRMLVolumeNode;
 /// renderer uses the last.
 ///
 /// Scenes come from others, so attributes are checked when read: invalid values, and files that the
-/// scene names, are withheld: kept and saved again, but not flags.
+/// scene names, are withheld: kept and saved again, but not used.
 ///
 /// References: `volume`, `segmentation`, `view` (its camera is followed unless a flag sets the
 /// view), `plane` (source of the flag `plane`), and results: `picture` (display colours; of a

@@ -30,7 +30,8 @@ public:
   /// child has ended, also after stop().
   void start(const QString& program, const QStringList& arguments, const QString& folder,
              const std::shared_ptr<const void>& files = {});
-  /// Returns at once: the child ends by itself, unheard, at the latest with this object.
+  /// Returns at once: the child ends by itself, at the latest with this object, and its further
+  /// output is ignored.
   void stop();
   bool running() const { return m_child && m_child->state() != QProcess::NotRunning; }
   /// Folder to which the picture's files are relative.

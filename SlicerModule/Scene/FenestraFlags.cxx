@@ -43,8 +43,8 @@ bool isSize(const std::string& text) {
          isWhole(text.substr(times + 1));
 }
 
-/// True if a look names a file. A JSON text opens a file by its member "file", which an escape
-/// could hide; another value is a name, which without these characters can only be a file in the
+/// True if a look may name a file. A JSON text opens a file by its member "file"; a backslash may
+/// hide that word. Any other value is a name: without one of / \ . : ~ it can only be a file in the
 /// session's own folder.
 bool namesFile(const std::string& look) {
   if (look.front() == '{')

@@ -62,7 +62,8 @@ void readPoint(const std::string& text, Matrix& matrix, std::size_t column) {
   for (std::size_t row = 0; row < 3; ++row) {
     double value = 0.0;
     if (!(in >> mark >> value))
-      throw std::invalid_argument("needs three numbers in each of its directions");
+      throw std::invalid_argument(
+          "needs three numbers in its origin and in each of its directions");
     matrix[4 * row + column] = row < 2 && value != 0.0 ? -value : value;
   }
 }
@@ -93,7 +94,8 @@ Image described(const std::map<std::string, std::string>& fields) {
     directions.erase(directions.begin());
   }
   if (sizes.size() != 3 || directions.size() != 3)
-    throw std::invalid_argument("must have three dimensions");
+    throw std::invalid_argument(
+        "must have three dimensions, and at most one axis of components before them");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     image.size[axis] = std::stoul(sizes[axis]);
     readPoint(directions[axis], image.ijkToRas, axis);
@@ -102,7 +104,7 @@ Image described(const std::map<std::string, std::string>& fields) {
   const bool order =
       bytesOf(image.type) == 1 || field(fields, "endian") == (littleEndian() ? "little" : "big");
   if (field(fields, "encoding") != "raw" || bytesOf(image.type) == 0 || !order)
-    throw std::invalid_argument("is not raw in this machine's order");
+    throw std::invalid_argument("must be raw samples of a known type in this machine's byte order");
   return image;
 }
 
@@ -157,10 +159,10 @@ Image readNrrd(const std::filesystem::path& file) {
     const std::uintmax_t rest =
         std::filesystem::file_size(file) - static_cast<std::uintmax_t>(begin);
     if (!in || rest != image.bytes())
-      throw std::invalid_argument("does not end where its header says");
+      throw std::invalid_argument("has another length than its header says");
     const std::shared_ptr<char[]> data(new char[image.bytes()]);
     if (!in.read(data.get(), static_cast<std::streamsize>(image.bytes())))
-      throw std::invalid_argument("ends too soon");
+      throw std::invalid_argument("cannot be read to its end");
     image.data = std::shared_ptr<const void>(data, data.get());
     return image;
   } catch (const std::logic_error& error) { // also texts that are no numbers

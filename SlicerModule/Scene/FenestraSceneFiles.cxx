@@ -159,7 +159,8 @@ void placeAs(const Layer& layer, const Image& box, const std::array<long, 3>& be
   else if (type == "int32")
     place<std::int32_t>(layer, box, begin, out);
   else
-    throw FileError("the segmentation: labels must be whole numbers, but are " + type);
+    throw FileError("the segmentation: labels must be whole numbers, but are " + type +
+                    "; create its binary labelmap again");
 }
 
 template <typename To>

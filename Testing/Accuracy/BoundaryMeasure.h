@@ -90,7 +90,7 @@ private:
   struct DepthRange {
     double least, greatest;
   };
-  std::vector<DepthRange> m_outlineDepths; ///< per ray's part of a pixel; least > greatest: none
+  std::vector<DepthRange> m_outlineDepths; ///< of the outline near each ray; least > greatest: none
 };
 
 } // namespace fenestra::accuracy

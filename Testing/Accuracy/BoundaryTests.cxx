@@ -12,7 +12,7 @@ using namespace fenestra::accuracy;
 namespace {
 
 /// Ball of 20 voxels' radius; intersections are known to the accuracy of its voxels.
-TEST(FocusField, MeetsABall) {
+TEST(FocusField, FirstMeetingWithABallEqualsClosedForm) {
   Indicator ball{Size3(50, 50, 50), Affine::Identity(), {}};
   const Vec3 centre(24.0, 25.0, 26.0);
   for (int z = 0; z < 50; ++z)
@@ -34,7 +34,7 @@ TEST(FocusField, MeetsABall) {
 }
 
 /// Along an axis the level 0.5 lies half way between two voxels.
-TEST(FocusField, MeetsABoxAtItsFace) {
+TEST(FocusField, BoxFaceLiesHalfwayBetweenVoxelCentres) {
   Indicator box{Size3(8, 8, 8), Affine::Identity(), std::vector<std::uint8_t>(512, 0)};
   for (std::size_t z = 2; z < 6; ++z)
     for (std::size_t y = 2; y < 6; ++y)
@@ -53,7 +53,7 @@ struct Seen {
   double elevation; ///< degrees
 };
 
-TEST(Boundary, MeetsTheFocusOfAKnee) {
+TEST(Boundary, ExactSurfaceGapIsBelowAThirdOfTheSplines) {
   const TemporaryFolder folder;
   Subject knee = makeKnee(folder.path(), "150x172x60");
   for (const Seen& seen :
@@ -81,7 +81,7 @@ TEST(Boundary, MeetsTheFocusOfAKnee) {
 }
 
 /// The picture shows the context just beyond the focus at the surface's depth.
-TEST(Boundary, IsInThePictureWhatTheSurfaceIs) {
+TEST(Boundary, PictureShowsContextAtTheSurfaceDepth) {
   const TemporaryFolder folder;
   Subject knee = makeKnee(folder.path(), "150x172x60");
   knee.smoothing = 0.6;

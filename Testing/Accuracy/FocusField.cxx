@@ -183,7 +183,7 @@ double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const
     if (here >= 0.5 && isFirst)
       return t;
     const double next = std::min({t + stride, nextFace(index, d, t), end});
-    if (here > 0.25 && rises(t, t + near) && rises(next, next - near)) // else it is too far off
+    if (here > 0.25 && rises(t, t + near) && rises(next, next - near)) // else 1/2 is too far
       if (const double top = summit(t, next, value); isInAt(top))
         return bisected(t, top, isInAt);
     if (isInAt(next))

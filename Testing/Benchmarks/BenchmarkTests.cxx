@@ -35,7 +35,7 @@ Image renderBy(const char* mode, const Scene& scene, const RenderOptions& option
 
 class UnbiasedMode : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(UnbiasedMode, AgreesWithTheReadableOne) {
+TEST_P(UnbiasedMode, PictureAgreesWithReadableMode) {
   const RenderOptions options = caseOf(std::string("knee product") + knee).options();
   const Scene scene(options.scene);
   const Image image = renderBy(GetParam(), scene, options, 96, 1);
@@ -56,7 +56,7 @@ std::pair<double, double> biasOf(const Image& image, const Image& truth) {
 }
 
 /// Foot in voxels of 6 mm: steps of one voxel miss its skin.
-TEST(Marching, IsBiasedAndLessSoWithShorterSteps) {
+TEST(Marching, BiasShrinksWithShorterSteps) {
   const RenderOptions options = caseOf(std::string("foot product") + foot).options();
   const Scene scene(options.scene);
   const Image truth = renderBy("readable", scene, options, 128, 1);
@@ -106,7 +106,7 @@ private:
   Medium<float> m_medium{m_volume.grid, std::get<std::vector<float>>(m_volume.voxels), m_transfer};
 };
 
-TEST(GlobalTracker, SeesThinWalls) {
+TEST(GlobalTracker, ThinWallTransmittanceIsExponential) {
   const auto [light, passing] = Wall().cross(
       [](const auto& scene, const auto& medium) { return GlobalTracker<float>(scene, medium); });
   const double expected = std::exp(-Wall::sigma_t / 4.0);
@@ -116,7 +116,7 @@ TEST(GlobalTracker, SeesThinWalls) {
 
 /// One march in four has a sample in the wall: the mean transmittance is 3/4 + exp(-sigma_t step) /
 /// 4, not exp(-sigma_t step / 4).
-TEST(Marching, ShinesThroughThinWalls) {
+TEST(Marching, ThreeMarchesInFourMissAThinWall) {
   const auto [light, passing] = Wall().cross([](const auto& scene, const auto& medium) {
     return MarchingTracker<float>(scene, medium, 1.0);
   });
@@ -133,14 +133,14 @@ std::vector<Point> idealCurve(std::initializer_list<double> seconds) {
   return curve;
 }
 
-TEST(Efficiency, IsInterpolatedWhereTheCurvePasses) {
+TEST(Efficiency, TargetWithinTheCurveIsInterpolated) {
   const auto efficiency = efficiencyNear(idealCurve({2.0, 16.0, 70.0, 300.0}), 1e-3);
   ASSERT_TRUE(efficiency);
   EXPECT_NEAR(efficiency->value, 20.0, 1e-9);
   EXPECT_EQ(efficiency->relMse, 1e-3);
 }
 
-TEST(Efficiency, IsTheNearestPointsElsewhere) {
+TEST(Efficiency, TargetBeyondTheCurveTakesTheNearestPoint) {
   std::vector<Point> curve = idealCurve({2.0, 16.0});
   curve.push_back({.samples = 16, .seeds = 1, .cpuSeconds = 40.0, .relMse = -1e-6});
   const auto efficiency = efficiencyNear(curve, 1e-3);
@@ -150,7 +150,7 @@ TEST(Efficiency, IsTheNearestPointsElsewhere) {
   EXPECT_FALSE(efficiencyNear({curve.back()}, 1e-3));
 }
 
-TEST(CurveRecords, AreReplacedBySceneAndMode) {
+TEST(CurveRecords, MergingReplacesTheSameSceneAndMode) {
   const TemporaryFolder folder;
   const std::vector<CurveRecord> old = {{"a", "readable", "oracle", 1e-3, idealCurve({1.0, 2.0})},
                                         {"a", "global", "oracle", 1e-3, idealCurve({3.0})},
@@ -185,7 +185,7 @@ protected:
   }
 };
 
-TEST_F(WholeRun, HasARowOfEverySceneAndMode) {
+TEST_F(WholeRun, ReportHasARowForEverySceneAndMode) {
   const TemporaryFolder folder;
   ASSERT_EQ(runProgram(folder), 0);
   const std::vector<CurveRecord> curves = readCurves(folder / "report");

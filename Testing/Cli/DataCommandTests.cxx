@@ -147,7 +147,7 @@ bool matches(const std::string& pattern, const std::string& file) {
                                 : file == pattern;
 }
 
-TEST(RealData, IsAllExpected) {
+TEST(RealData, EveryFileHasAStatedExpectation) {
   if (!std::filesystem::exists(data))
     GTEST_SKIP() << data << " is absent";
   for (const std::string& file : filesIn(data)) {

@@ -10,7 +10,7 @@ namespace {
 
 class FilesCommand : public SmallScene {};
 
-TEST_F(FilesCommand, RefusesWhatIsNoVolume) {
+TEST_F(FilesCommand, RefusesInputThatIsNoVolume) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.txt", "words");
   folder.write(".nrrd", NrrdText().with(ramp()));
@@ -70,7 +70,7 @@ TEST_F(FilesCommand, RefusesTruncatedVolumes) {
       folder.path());
 }
 
-TEST_F(FilesCommand, RefusesFocusThatIsNotThere) {
+TEST_F(FilesCommand, RefusesMissingOrEmptyFocus) {
   std::string far = segments();
   const std::string origin = "space origin: (0,0,0)";
   far.replace(far.find(origin), origin.size(), "space origin: (5000,0,0)");
@@ -100,7 +100,7 @@ TEST_F(FilesCommand, RefusesFocusThatIsNotThere) {
       folder.path());
 }
 
-TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
+TEST_F(FilesCommand, RefusesMissingOrDamagedLooks) {
   folder.write("cut.json", R"({"extinction": [[0,)");
   folder.write("word.json", R"({"extinction": [[0, "x"]], "albedo": [[0, 1, 1, 1]]})");
   folder.write("words.vp", "words");
@@ -151,7 +151,7 @@ TEST_F(FilesCommand, RefusesLooksThatAreNotThere) {
 }
 
 /// Unreadable path like another user's closed folder, but also for root.
-TEST_F(FilesCommand, SaysWhereFilesMayNotBeLookedAt) {
+TEST_F(FilesCommand, UnreadablePathIsNamedWithItsCause) {
   std::filesystem::create_symlink("loop", folder / "loop");
   folder.write("s.mrml", R"(<MRML><Volume id="v" references="storage:s;"/>)"
                          R"(<VolumeArchetypeStorage id="s" fileName="loop/a.nrrd"/></MRML>)");
@@ -182,7 +182,7 @@ TEST_F(FilesCommand, SaysWhereFilesMayNotBeLookedAt) {
       << inspected.out << inspected.err;
 }
 
-TEST_F(FilesCommand, NeedsNoWorkingFolderWhereAllNamesAreAbsolute) {
+TEST_F(FilesCommand, AbsoluteNamesWorkInADeletedFolder) {
   std::filesystem::create_directory(folder / "gone");
   const std::string there = folder.path().string();
   const auto inNowhere = [&](const std::string& arguments) {
@@ -200,7 +200,7 @@ TEST_F(FilesCommand, NeedsNoWorkingFolderWhereAllNamesAreAbsolute) {
       << bytesOf(folder / "said");
 }
 
-TEST_F(FilesCommand, RefusesOutputsThatCannotBeWritten) {
+TEST_F(FilesCommand, RefusesUnwritableOutputs) {
   std::filesystem::create_directory(folder / "folder.png");
   std::filesystem::create_directory(folder / "depth-Z.nrrd");
   folder.write("a-Z.nrrd", NrrdText().with(ramp()));
@@ -265,7 +265,7 @@ std::string tiffOf(std::uint16_t orientation) {
   return tiff + bytes(0, 4);
 }
 
-TEST_F(FilesCommand, RefusesToCompareTurnedPictures) {
+TEST_F(FilesCommand, CompareRefusesARotatedTiff) {
   folder.write("upright.tif", tiffOf(1));
   folder.write("turned.tif", tiffOf(3));
   EXPECT_EQ(run({"compare", "upright.tif", "upright.tif"}, folder.path()).status, 0);
@@ -274,7 +274,7 @@ TEST_F(FilesCommand, RefusesToCompareTurnedPictures) {
       folder.path());
 }
 
-TEST_F(FilesCommand, RefusesToCompareWhatDiffersInSize) {
+TEST_F(FilesCommand, CompareRefusesDifferentSizesAndUnreadablePictures) {
   ASSERT_EQ(renderWith({"--output", "a.png"}).status, 0);
   ASSERT_EQ(renderWith({"--size", "8x8", "--output", "b.png"}).status, 2) << "--size twice";
   ASSERT_EQ(
@@ -296,7 +296,7 @@ TEST_F(FilesCommand, RefusesToCompareWhatDiffersInSize) {
       folder.path());
 }
 
-TEST_F(FilesCommand, RefusesPhantomsThatCannotBeMade) {
+TEST_F(FilesCommand, PhantomRefusesBadKindSizeOrFolder) {
   const auto into = [](const std::string& where) {
     return Arguments{"phantom", "knee", "--size", "16x16x16", "--output", where};
   };

@@ -19,7 +19,7 @@ protected:
   }
 };
 
-TEST_F(FlagsCommand, RefusesWhatItDoesNotKnow) {
+TEST_F(FlagsCommand, RefusesUnknownArgumentsAndSuggestsTheNearest) {
   expectRefused(
       {
           {"nothing", {}, 2, "INPUT: is missing"},
@@ -39,7 +39,7 @@ TEST_F(FlagsCommand, RefusesWhatItDoesNotKnow) {
       folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesFlagsOfTheContractThatDoNothingYet) {
+TEST_F(FlagsCommand, RefusesFlagsNotYetImplemented) {
   std::vector<Refusal> refusals;
   for (const char* flag : {"--checkpoint", "--resume"})
     refusals.push_back(refusal({flag, "1"}, std::string(flag) + ": no such flag"));
@@ -104,7 +104,7 @@ TEST_F(FlagsCommand, RefusesAnglesAndPlanesOutOfRange) {
   expectRefused(refusals, folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesPicturesThatMemoryCannotHold) {
+TEST_F(FlagsCommand, RefusesPictureLargerThanMemory) {
   const double memory =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (memory > 60e9)
@@ -243,7 +243,7 @@ TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
   }
 }
 
-TEST_F(FlagsCommand, VersionIsOneLineOfEverySubcommand) {
+TEST_F(FlagsCommand, VersionIsOneLineForEverySubcommand) {
   for (const Arguments& arguments : {Arguments{"--version"},
                                      {"render", "--version"},
                                      {"compare", "--version"},

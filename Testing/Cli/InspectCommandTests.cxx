@@ -115,7 +115,7 @@ TEST_F(InspectCommand, DescribesSegments) {
   EXPECT_TRUE(segments[1]["bounds"].is_null());
 }
 
-TEST_F(InspectCommand, TellsLabelMapsFromScans) {
+TEST_F(InspectCommand, ReportsLabelMapAsSegmentation) {
   std::string labels(64, '\0');
   std::fill(labels.begin() + 8, labels.begin() + 24, '\3');
   std::fill(labels.begin() + 32, labels.begin() + 48, '\7');
@@ -128,7 +128,7 @@ TEST_F(InspectCommand, TellsLabelMapsFromScans) {
   EXPECT_EQ(said["render"]["volume"]["range"], Json({0.0, 7.0})) << "it renders as a volume, too";
 }
 
-TEST_F(InspectCommand, TakesSegmentationBesideVolume) {
+TEST_F(InspectCommand, ListsSegmentationGivenBesideVolume) {
   const Json said = inspect({"volume.nrrd", "--segmentation", "segments.seg.nrrd"});
   EXPECT_EQ(said["kind"], "volume");
   EXPECT_EQ(said["render"]["segmentation"], "segments.seg.nrrd");
@@ -140,7 +140,7 @@ TEST_F(InspectCommand, TakesSegmentationBesideVolume) {
             std::string::npos);
 }
 
-TEST_F(InspectCommand, ListsSceneAndWhatOfItIsRendered) {
+TEST_F(InspectCommand, ListsSceneNodesAndThoseRendered) {
   const Json said = inspectScene(volumeNode + segmentationNode + settings);
   EXPECT_EQ(said["kind"], "scene");
   EXPECT_EQ(said["version"], "Slicer 5.6.2 32448");
@@ -184,7 +184,7 @@ TEST_F(InspectCommand, ListsSceneAndWhatOfItIsRendered) {
   expectAsRendered(said, "scene.mrml");
 }
 
-TEST_F(InspectCommand, FollowsChoice) {
+TEST_F(InspectCommand, VolumeFlagChoosesAmongSeveral) {
   const std::string second = R"(<Volume id="vol2" name="MR" references="storage:store1;"/>)";
   const std::string volumes = R"(
     <VolumeArchetypeStorage id="store1" name="s" fileName="volume.nrrd"/>
@@ -207,7 +207,7 @@ TEST_F(InspectCommand, FollowsChoice) {
   EXPECT_EQ(chosen["ignored"][0], "Volume CT (vol1): another volume is rendered");
 }
 
-TEST_F(InspectCommand, SaysThatSegmentationIsOpen) {
+TEST_F(InspectCommand, ReportsAmbiguousSegmentation) {
   const std::string second =
       R"(<Segmentation id="seg2" name="Rest" references="storage:store2;"/>)";
   const Json open = inspectScene(volumeNode + segmentationNode + settings + second);
@@ -225,7 +225,7 @@ TEST_F(InspectCommand, SaysThatSegmentationIsOpen) {
             "--segmentation nowhere: is neither in the scene nor a file");
 }
 
-TEST_F(InspectCommand, ListsWhatRenderRefuses) {
+TEST_F(InspectCommand, ReportsWhyRenderWouldRefuse) {
   struct Case {
     std::string name, nodes, line;
   };
@@ -257,7 +257,7 @@ TEST_F(InspectCommand, ListsWhatRenderRefuses) {
   }
 }
 
-TEST_F(InspectCommand, SaysWhichPartIsDamaged) {
+TEST_F(InspectCommand, NamesTheDamagedPart) {
   folder.write("cut.seg.nrrd", segments().substr(0, segments().size() - 9));
   const std::string cut = R"(<SegmentationStorage id="store3" fileName="cut.seg.nrrd"/>
     <Segmentation id="seg2" name="Cut" references="storage:store3;"/>
@@ -310,7 +310,7 @@ std::string fanningTree(std::size_t children) {
          number('a', 8) + number(0, 8);
 }
 
-TEST_F(InspectCommand, EndsWhateverATransformsFileFansOutTo) {
+TEST_F(InspectCommand, RefusesHdf5TreeThatFansOut) {
   const std::string line = "t.h5: is damaged, truncated or no transform of ITK's; save it again";
   writeScene(volumeNode + R"(<LinearTransformStorage id="ts" fileName="t.h5"/>
     <LinearTransform id="t1" references="storage:ts;"/>)");
@@ -343,7 +343,7 @@ TEST_F(InspectCommand, PrintsUntrustedNamesOnOneLine) {
   EXPECT_EQ(said["others"]["Model"], 300);
 }
 
-TEST_F(InspectCommand, RefusesWhatIsNoInput) {
+TEST_F(InspectCommand, RefusesInputThatIsNoVolumeOrScene) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.mrml", "<html/>");
   folder.write("text.mrb", "words");
@@ -425,7 +425,7 @@ TEST_F(InspectCommand, ListsDicomSeries) {
   EXPECT_NE(other["refused"].dump().find("--volume"), std::string::npos) << other["refused"];
 }
 
-TEST_F(InspectCommand, DescribesWhatSlicerWrote) {
+TEST_F(InspectCommand, DescribesSceneWrittenBySlicer) {
   const auto file = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_5_2_written" /
                     "chest_transformed_cropped.mrb";
   if (!std::filesystem::exists(file))

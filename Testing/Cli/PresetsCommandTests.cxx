@@ -45,7 +45,7 @@ Image picture() {
   return readImage(kneeFolder() / "preset.exr");
 }
 
-TEST(PresetsCommand, OneNameStandsForFocusLookViewAndClip) {
+TEST(PresetsCommand, PresetSetsFocusLookViewAndClip) {
   const auto lines = echoed(withSegments({"--preset", "knee-cartilage", "--stats", "s.json"}));
   for (const char* line : {"preset: knee-cartilage", "focus: FemoralCartilage",
                            "focus: TibialCartilage", "transfer: mr-knee", "clip: surface"})
@@ -69,7 +69,7 @@ TEST(PresetsCommand, OneNameStandsForFocusLookViewAndClip) {
   EXPECT_FALSE(picture().header.contains("preset"));
 }
 
-TEST(PresetsCommand, FlagsWinOverThePreset) {
+TEST(PresetsCommand, FlagsOverrideThePreset) {
   const auto lines =
       echoed(withSegments({"--preset", "knee-cartilage", "--view", "superior", "--clip", "cutaway",
                            "--transfer", "ct-bone", "--focus", "Femur", "--scale", "70"}));
@@ -88,7 +88,7 @@ TEST(PresetsCommand, FlagsWinOverThePreset) {
 }
 
 /// Slicer's panel passes all flags, most with their default values.
-TEST(PresetsCommand, InSlicersPanelTheStandardSaysNothing) {
+TEST(PresetsCommand, DefaultValuesFromSlicerDoNotOverrideThePreset) {
   const auto lines = echoed(withSegments({"--preset", "knee-cartilage", "--clip", "auto",
                                           "--boundary", "spline", "--controlpoints", "50",
                                           "--lights", "soft", "--returnparameterfile", "r.txt"}));
@@ -97,14 +97,14 @@ TEST(PresetsCommand, InSlicersPanelTheStandardSaysNothing) {
   EXPECT_TRUE(lines.contains("lights: soft"));
 }
 
-TEST(PresetsCommand, AutoGoesByTheSegmentsNames) {
+TEST(PresetsCommand, AutoChoosesThePresetBySegmentNames) {
   EXPECT_TRUE(echoed(withSegments({"--preset", "auto"})).contains("preset: knee-cartilage"));
   EXPECT_TRUE(echoed(withSegments({"--preset", "auto", "--focus", "Femoral cartilage"}))
                   .contains("focus: Femoral cartilage"));
   EXPECT_TRUE(echoed({"--preset", "auto"}, "knee/knee.mrb").contains("preset: knee-cartilage"));
 }
 
-TEST(PresetsCommand, WithoutASegmentationItIsALookAndAView) {
+TEST(PresetsCommand, WithoutSegmentationSetsNeitherFocusNorClip) {
   const auto lines = echoed({"--preset", "knee-cartilage"});
   EXPECT_TRUE(lines.contains("transfer: mr-knee"));
   EXPECT_FALSE(has(lines, "focus"));
@@ -112,7 +112,7 @@ TEST(PresetsCommand, WithoutASegmentationItIsALookAndAView) {
 }
 
 /// Clip and look are for another modality: the requested picture is rendered all the same.
-TEST(PresetsCommand, ALookForAnotherModalityGivesWay) {
+TEST(PresetsCommand, LookForAnotherModalityIsReplacedWithAWarning) {
   const Outcome outcome = renderKnee(withSegments({"--preset", "liver", "--focus", "Femur"}));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.err.find("made for CT, and the volume is none"), std::string::npos)
@@ -124,7 +124,7 @@ TEST(PresetsCommand, ALookForAnotherModalityGivesWay) {
       "");
 }
 
-TEST(PresetsCommand, AUsersPresetIsAFile) {
+TEST(PresetsCommand, PresetMayBeAFile) {
   const TemporaryFolder& folder = kneeFolder();
   folder.write("menisci.json", R"({"title": "Menisci", "modality": "MR",
     "focus": {"names": ["menisc*"]}, "flags": {"view": "superior", "transfer":
@@ -135,7 +135,7 @@ TEST(PresetsCommand, AUsersPresetIsAFile) {
   EXPECT_TRUE(has(lines, "transfer: {"));
 }
 
-TEST(PresetsCommand, RefusalsNameWhatThereIs) {
+TEST(PresetsCommand, RefusesUnknownAndDamagedPresets) {
   const TemporaryFolder& folder = kneeFolder();
   folder.write("values.nrrd", NrrdText{.type = "uint8"}.with(std::string(64, '\1')));
   folder.write("size.json", R"({"title": "", "focus": {"names": ["a"]}, "modality": "MR",
@@ -175,7 +175,7 @@ TEST(PresetsCommand, RefusalsNameWhatThereIs) {
 }
 
 /// Preset on the command line against flags stored with a scene.
-TEST(PresetsCommand, APresetThatIsGivenWinsOverWhatASceneStores) {
+TEST(PresetsCommand, GivenPresetOverridesFlagsStoredInTheScene) {
   const TemporaryFolder& folder = kneeFolder();
   const std::string scene = bytesOf(folder / "knee/knee.mrml");
   const auto stored = [&](const std::string& flags) {
@@ -196,7 +196,7 @@ TEST(PresetsCommand, APresetThatIsGivenWinsOverWhatASceneStores) {
   EXPECT_TRUE(kept.contains("focus: FemoralCartilage"));
 }
 
-TEST(PresetsCommand, AServerTakesAPresetAndTakesItBack) {
+TEST(PresetsCommand, ServeSetsAndResetsThePreset) {
   const TemporaryFolder& folder = kneeFolder();
   Process process({"serve", "knee/knee.nrrd", "--size", "16x16", "--samples", "2", "--output",
                    "served.exr", "--view", "superior"},
@@ -244,7 +244,7 @@ public:
   SlicerHome& operator=(const SlicerHome&) = delete;
 };
 
-TEST(PresetsCommand, SlicersPresetsAreKnownByName) {
+TEST(PresetsCommand, TransferFindsSlicerPresetByName) {
   const TemporaryFolder home;
   {
     const SlicerHome slicer(home.path());
@@ -261,7 +261,7 @@ TEST(PresetsCommand, SlicersPresetsAreKnownByName) {
   EXPECT_NE(gone.err.find("SLICER_HOME"), std::string::npos) << gone.err;
 }
 
-TEST(PresetsCommand, AScenesVolumePropertiesAreKnownByName) {
+TEST(PresetsCommand, TransferFindsVolumePropertyOfTheSceneByName) {
   const Outcome usual = renderKnee({}, "knee/knee.mrb");
   ASSERT_EQ(usual.status, 0) << usual.err;
   const Image before = picture();

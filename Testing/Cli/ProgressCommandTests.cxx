@@ -23,7 +23,7 @@ std::vector<double> fractions(const std::string& text) {
   return result;
 }
 
-TEST_F(ProgressCommand, XmlIsSlicersTagsOnStandardOutput) {
+TEST_F(ProgressCommand, XmlWritesSlicerTagsToStandardOutput) {
   for (const Arguments& flags : {Arguments{}, {"--noise", "0.05"}}) {
     Arguments all = {"--progress", "xml"};
     all.insert(all.end(), flags.begin(), flags.end());
@@ -40,7 +40,7 @@ TEST_F(ProgressCommand, XmlIsSlicersTagsOnStandardOutput) {
   }
 }
 
-TEST_F(ProgressCommand, BarIsOnStandardErrorAndGoesAway) {
+TEST_F(ProgressCommand, BarIsErasedFromStandardError) {
   const Outcome outcome = withProgress({"--progress", "bar"});
   ASSERT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.err.find(" % "), std::string::npos) << outcome.err;
@@ -53,7 +53,7 @@ TEST_F(ProgressCommand, BarIsOnStandardErrorAndGoesAway) {
     EXPECT_LE(line.size(), 79 + std::string("\x1b[K").size()) << line;
 }
 
-TEST_F(ProgressCommand, NothingWithoutATerminal) {
+TEST_F(ProgressCommand, WithoutATerminalNoProgressIsWritten) {
   for (const char* kind : {"auto", "none"}) {
     const Outcome outcome = withProgress({"--progress", kind});
     ASSERT_EQ(outcome.status, 0);

@@ -24,7 +24,7 @@ protected:
   }
 };
 
-TEST_F(RendersCommand, NamesThePictureAfterItsInputInTheCurrentFolder) {
+TEST_F(RendersCommand, DefaultNameIsThatOfTheInputInTheCurrentFolder) {
   std::filesystem::create_directory(folder / "data");
   std::filesystem::rename(folder / "volume.nrrd", folder / "data/volume.nrrd");
   const Outcome outcome =
@@ -39,7 +39,7 @@ TEST_F(RendersCommand, NamesThePictureAfterItsInputInTheCurrentFolder) {
             (std::set<std::string>{"data", "data/volume.nrrd", "segments.seg.nrrd", "volume.png"}));
 }
 
-TEST_F(RendersCommand, WritesEveryFormatAndComparesThemWithThemselves) {
+TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {
   const Arguments names = {"a.png", "a.tif", "A.EXR", "a.nrrd"};
   Arguments arguments;
   for (const std::string& name : names)
@@ -59,7 +59,7 @@ TEST_F(RendersCommand, WritesEveryFormatAndComparesThemWithThemselves) {
   EXPECT_EQ(*linear.find("Z"), *readImage(folder / "a-Z.nrrd").find("Z"));
 }
 
-TEST_F(RendersCommand, CanBePinnedToAnInstructionSet) {
+TEST_F(RendersCommand, EnvironmentVariablePinsTheInstructionSet) {
   ::setenv("FENESTRA_INSTRUCTIONS", "MMX", 1);
   const Outcome refused =
       run({"volume.nrrd", "--size", "16x16", "--samples", "2", "--output", "refused.exr"},
@@ -75,7 +75,7 @@ TEST_F(RendersCommand, CanBePinnedToAnInstructionSet) {
   EXPECT_TRUE(target.ends_with("-" + last)) << target;
 }
 
-TEST_F(RendersCommand, WritesTheLayersAskedForAndTheHeader) {
+TEST_F(RendersCommand, WritesRequestedLayersAndTheHeader) {
   const Image all = rendered({});
   for (const char* name : {"R", "A", "Z", "albedo.G", "normal.Y", "error.B", "samples.N"})
     EXPECT_TRUE(all.find(name)) << name;
@@ -95,7 +95,7 @@ TEST_F(RendersCommand, WritesTheLayersAskedForAndTheHeader) {
     EXPECT_EQ(samples, 2.0f);
 }
 
-TEST_F(RendersCommand, CountsWhatTheSceneNeedsAndNoMore) {
+TEST_F(RendersCommand, StatsCountOnlyFilesAndRaysThatTheSceneNeeds) {
   folder.write("sky.json", R"({"lights": [{"type": "environment", "radiance": [1, 1, 1]}]})");
   folder.write("haze.json",
                R"({"extinction": [[0, 0], [63, 0.5]], "albedo": [[0, 0.8, 0.8, 0.8]]})");
@@ -130,7 +130,7 @@ TEST_F(RendersCommand, CountsWhatTheSceneNeedsAndNoMore) {
             (nlohmann::json{"haze.json", "segments.seg.nrrd", "volume.nrrd"}));
 }
 
-TEST_F(RendersCommand, TakesLightsAsAFileOrAsItsText) {
+TEST_F(RendersCommand, LightsAsFileOrTextGiveTheSamePicture) {
   rendered({"--background", "1,2,3"});
   std::filesystem::create_directory(folder / "maps");
   std::filesystem::rename(folder / "picture.exr", folder / "maps/sky.exr");
@@ -146,7 +146,7 @@ TEST_F(RendersCommand, TakesLightsAsAFileOrAsItsText) {
   EXPECT_EQ(file.channels, rendered({"--lights=" + longerThanPaths}).channels);
 }
 
-TEST_F(RendersCommand, SameSeedSamePictureWhateverTheThreads) {
+TEST_F(RendersCommand, SameSeedGivesTheSamePictureForAnyThreads) {
   const Image one = rendered({"--threads", "1", "--seed", "7"});
   const Image two = rendered({"--threads", "2", "--seed", "7"});
   const Image many = rendered({"--threads", "64", "--seed", "7"});
@@ -156,7 +156,7 @@ TEST_F(RendersCommand, SameSeedSamePictureWhateverTheThreads) {
   EXPECT_NE(one.channels.at("R"), other.channels.at("R"));
 }
 
-TEST_F(RendersCommand, StopsAtSecondsAndAtNoise) {
+TEST_F(RendersCommand, StopsAtTimeLimitAndAtNoiseTarget) {
   Outcome outcome = run({"volume.nrrd", "--size", "32x32", "--seconds", "0.3", "--stats", "s.json"},
                         folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -170,7 +170,7 @@ TEST_F(RendersCommand, StopsAtSecondsAndAtNoise) {
   EXPECT_GE(stats("n.json")["samplesPerPixel"]["min"], 16);
 }
 
-TEST_F(RendersCommand, StatsHaveEveryKeyOfTheContract) {
+TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
   const Outcome outcome =
       run({"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
            "--transfer", "knee/knee.vp.json", "--size", "32x32", "--samples", "4", "--output",
@@ -201,7 +201,7 @@ TEST_F(RendersCommand, StatsHaveEveryKeyOfTheContract) {
   EXPECT_TRUE(json["warnings"].is_array());
 }
 
-TEST_F(RendersCommand, TakesNegativeNumbersAsValues) {
+TEST_F(RendersCommand, NegativeNumbersAreValuesNotFlags) {
   const Image joined = rendered({"--position=-1,20,3", "--shift=-5"});
   const Image apart = rendered({"--position", "-1,20,3", "--shift", "-5"});
   const Image bare = rendered({"--position", "-1.0,20,3.", "--shift", "-.5e1"});
@@ -211,7 +211,7 @@ TEST_F(RendersCommand, TakesNegativeNumbersAsValues) {
       << joined.header.at("camera");
 }
 
-TEST_F(RendersCommand, TheHeadersCameraRendersTheSamePicture) {
+TEST_F(RendersCommand, CameraFlagsFromTheHeaderReproduceThePicture) {
   const Image named = rendered({"--view", "left"});
   Arguments pose;
   std::istringstream words(named.header.at("camera"));
@@ -220,7 +220,7 @@ TEST_F(RendersCommand, TheHeadersCameraRendersTheSamePicture) {
   EXPECT_EQ(named.channels, rendered(pose).channels);
 }
 
-TEST_F(RendersCommand, FindsTheFocusByIdNameAndValue) {
+TEST_F(RendersCommand, FindsTheFocusByIdNameAndLabelValue) {
   const auto focus = [this](Arguments arguments) {
     arguments.insert(arguments.begin(), {"--segmentation", "segments.seg.nrrd"});
     return rendered(arguments).channels;
@@ -233,7 +233,7 @@ TEST_F(RendersCommand, FindsTheFocusByIdNameAndValue) {
   EXPECT_EQ(byId, focus({"--focus", "A", "--focus=B"}));
 }
 
-TEST_F(RendersCommand, TakesFilesThatLookLikeFlagsOrSubcommands) {
+TEST_F(RendersCommand, FileNamesMayLookLikeFlagsOrSubcommands) {
   std::filesystem::copy(folder / "volume.nrrd", folder / "--volume.nrrd");
   std::filesystem::copy(folder / "volume.nrrd", folder / "rendr.nrrd");
   for (const char* input : {"./--volume.nrrd", "rendr.nrrd"}) {
@@ -244,7 +244,7 @@ TEST_F(RendersCommand, TakesFilesThatLookLikeFlagsOrSubcommands) {
   }
 }
 
-TEST_F(RendersCommand, ReplacesAPictureAndNothingElse) {
+TEST_F(RendersCommand, DefaultNameReplacesOnlyItsOwnPictures) {
   const std::string volume = bytesOf(folder / "volume.nrrd");
   folder.write("named.png", "somebody's picture");
   ASSERT_EQ(renderWith({"--output", "named.png"}).status, 0);

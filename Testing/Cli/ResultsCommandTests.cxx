@@ -21,7 +21,7 @@ protected:
   }
 };
 
-TEST_F(ResultsCommand, StatsGoToStandardOutputBehindWhatWasSaid) {
+TEST_F(ResultsCommand, StatsOnStandardOutputFollowTheReport) {
   const Outcome outcome = renderWith({"--output", "a.png", "--stats", "/dev/stdout"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::size_t json = outcome.out.find('{');
@@ -33,7 +33,7 @@ TEST_F(ResultsCommand, StatsGoToStandardOutputBehindWhatWasSaid) {
   EXPECT_TRUE(S_ISLNK(status.st_mode));
 }
 
-TEST_F(ResultsCommand, ReportsAreOneLineWhateverFilesAreCalled) {
+TEST_F(ResultsCommand, ReportStaysOneLineForNamesWithControlCharacters) {
   const std::string name = "a\x1b[31m\nb";
   const auto expectOneLine = [](const Outcome& outcome) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -49,7 +49,7 @@ TEST_F(ResultsCommand, ReportsAreOneLineWhateverFilesAreCalled) {
   EXPECT_EQ(echo.out.find('\x1b'), std::string::npos) << echo.out;
 }
 
-TEST_F(ResultsCommand, StandardOutputThatIsFullIsAnOutputError) {
+TEST_F(ResultsCommand, FullStandardOutputIsAnOutputError) {
   for (const Arguments& arguments : std::initializer_list<Arguments>{
            {"--help"},
            {"--version"},
@@ -64,7 +64,7 @@ TEST_F(ResultsCommand, StandardOutputThatIsFullIsAnOutputError) {
   EXPECT_EQ(readImage(folder / "a.png").width, 8);
 }
 
-TEST_F(ResultsCommand, PicturesSayTheirCommandAsSeenFromTheirFolder) {
+TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToThePicture) {
   std::filesystem::create_directories(folder / "Doe^John_19501231/dicom");
   std::filesystem::create_directory(folder / "Doe^John_19501231/pictures");
   std::filesystem::rename(folder / "volume.nrrd", folder / "Doe^John_19501231/dicom/volume.nrrd");
@@ -83,7 +83,7 @@ TEST_F(ResultsCommand, PicturesSayTheirCommandAsSeenFromTheirFolder) {
     EXPECT_EQ(bytesOf(pictures / file).find("Doe^John"), std::string::npos) << file;
 }
 
-TEST_F(ResultsCommand, TurntablesRenderEmptyFramesAgain) {
+TEST_F(ResultsCommand, TurntableRendersAnEmptyFrameAgain) {
   ASSERT_EQ(turn().status, 0);
   const std::string whole = bytesOf(folder / "turn_0000.png");
   std::filesystem::resize_file(folder / "turn_0000.png", 0);
@@ -94,7 +94,7 @@ TEST_F(ResultsCommand, TurntablesRenderEmptyFramesAgain) {
 }
 
 /// Frames replaced by a longer file, a cut file, and an unrelated file.
-TEST_F(ResultsCommand, TurntablesReplaceNothingThatWasPutInAFramesPlace) {
+TEST_F(ResultsCommand, TurntableRefusesToReplaceAnEditedFrame) {
   ASSERT_EQ(turn().status, 0);
   const std::string whole = bytesOf(folder / "turn_0000.png");
   for (const std::string& edited : {whole + "edited", whole.substr(0, 50), std::string("mine")}) {
@@ -108,7 +108,7 @@ TEST_F(ResultsCommand, TurntablesReplaceNothingThatWasPutInAFramesPlace) {
   }
 }
 
-TEST_F(ResultsCommand, TurntablesFollowNoLinkThatWasPutInAFramesPlace) {
+TEST_F(ResultsCommand, TurntableRefusesALinkInPlaceOfAFrame) {
   ASSERT_EQ(turn().status, 0);
   folder.write("mine.txt", "mine");
   std::filesystem::remove(folder / "turn_0001.png");
@@ -118,7 +118,7 @@ TEST_F(ResultsCommand, TurntablesFollowNoLinkThatWasPutInAFramesPlace) {
 }
 
 /// A run killed between a frame and its record leaves a frame that bears the mark.
-TEST_F(ResultsCommand, TurntablesGoingOnReplaceUnrecordedFramesOfTheirOwnAlone) {
+TEST_F(ResultsCommand, ResumedTurntableReplacesOnlyItsOwnUnrecordedFrames) {
   for (const std::string ending : {".png", ".exr", ".tif", ".nrrd"}) {
     const Arguments arguments = {"turntable", "volume.nrrd", "--size", "8x8",      "--samples",
                                  "1",         "--frames",    "2",      "--output", "go" + ending};
@@ -145,7 +145,7 @@ TEST_F(ResultsCommand, TurntablesGoingOnReplaceUnrecordedFramesOfTheirOwnAlone) 
   }
 }
 
-TEST_F(ResultsCommand, OfTwoTurntablesOfTheSameNamesOneIsRefused) {
+TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRefused) {
   {
     Process first({"turntable", "volume.nrrd", "--size", "64x64", "--samples", "20000", "--frames",
                    "2", "--output", "turn.png", "--progress", "xml"},
@@ -172,7 +172,7 @@ TEST_F(ResultsCommand, OfTwoTurntablesOfTheSameNamesOneIsRefused) {
     EXPECT_FALSE(file.starts_with(".fenestra")) << file;
 }
 
-TEST_F(ResultsCommand, PartsOfAnEarlierPictureAreTold) {
+TEST_F(ResultsCommand, WarnsOfDepthFileLeftByAnEarlierPicture) {
   ASSERT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
   const Outcome colour = renderWith({"--output", "a.nrrd", "--layers", "color", "--stats", "s"});
   EXPECT_EQ(colour.status, 0);
@@ -184,7 +184,7 @@ TEST_F(ResultsCommand, PartsOfAnEarlierPictureAreTold) {
   EXPECT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
 }
 
-TEST_F(ResultsCommand, FramesThatARestartLeavesAreTold) {
+TEST_F(ResultsCommand, RestartWarnsOfFramesLeftOver) {
   ASSERT_EQ(turn({"--frames", "5"}).status, 0);
   folder.write("turn_0003.png", "edited since");
   const Outcome fewer = turn({"--restart"});
@@ -194,7 +194,7 @@ TEST_F(ResultsCommand, FramesThatARestartLeavesAreTold) {
   EXPECT_EQ(turn({"--restart"}).err, "");
 }
 
-TEST_F(ResultsCommand, ARecordThatIsNoneIsNotReplaced) {
+TEST_F(ResultsCommand, RestartRefusesAFileThatIsNoRecord) {
   folder.write("turn.turntable.json", "somebody's notes");
   const Outcome outcome = turn({"--restart"});
   EXPECT_EQ(outcome.status, 2) << outcome.err;

@@ -170,18 +170,18 @@ protected:
   Map outer, inner, roi;
 };
 
-TEST_F(ScenesCommand, SeesTheVolumeWhereTheParallelCameraHasIt) {
+TEST_F(ScenesCommand, ParallelCameraOfTheScenePlacesTheVolume) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   expectOutline(folder, "s.mrml", {}, view, {outer * inner * cubeOfVolume()});
 }
 
-TEST_F(ScenesCommand, CropsByTheTurnedRegionInAPerspectiveView) {
+TEST_F(ScenesCommand, PerspectiveViewIsCroppedByTheRotatedRegion) {
   folder.write("s.mrml", scene(R"(parallelProjection="false" viewAngle="16")", true));
   view.parallel = false;
   expectOutline(folder, "s.mrml", {}, view, {outer * inner * cubeOfVolume(), roi});
 }
 
-TEST_F(ScenesCommand, LetsFlagsWinOverTheScenesCamera) {
+TEST_F(ScenesCommand, FlagsOverrideTheCameraOfTheScene) {
   folder.write("s.mrml", scene(R"(viewAngle="16" parallelScale="4")", true));
   const Boxes boxes = {outer * inner * cubeOfVolume(), roi};
   expectOutline(folder, "s.mrml", {"--projection", "orthographic"}, view, boxes);
@@ -192,7 +192,7 @@ TEST_F(ScenesCommand, LetsFlagsWinOverTheScenesCamera) {
                 boxes);
 }
 
-TEST_F(ScenesCommand, ShowsWhatTheSceneSaysAndWhatTheUserSaysInstead) {
+TEST_F(ScenesCommand, LookAndBackgroundComeFromTheSceneUnlessGiven) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   const auto render = [&](const Arguments& more) {
     Arguments all = {"s.mrml", "--size", "16x16", "--samples", "64", "--output", "look.exr"};
@@ -217,7 +217,7 @@ TEST_F(ScenesCommand, ShowsWhatTheSceneSaysAndWhatTheUserSaysInstead) {
   EXPECT_NEAR(changed.find("albedo.G")->at(middle), 0.8, 0.05);
 }
 
-TEST_F(ScenesCommand, FindsTheFocusInTheScenesSegmentationOrInAFile) {
+TEST_F(ScenesCommand, FocusIsFoundInTheScenesSegmentationOrInAFile) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   const Arguments common = {"s.mrml", "--size",  "64x64",    "--samples", "1",
                             "--clip", "cutaway", "--layers", "color,clip"};
@@ -241,7 +241,7 @@ TEST_F(ScenesCommand, FindsTheFocusInTheScenesSegmentationOrInAFile) {
 
 /// The flags stored with a picture reproduce it; flags on the command line win, with all flags of
 /// their kind.
-TEST_F(ScenesCommand, RepeatsThePictureThatTheSceneStores) {
+TEST_F(ScenesCommand, StoredFlagsReproduceThePicture) {
   const std::string plain = scene(R"(parallelProjection="true" parallelScale="4")", false);
   std::string stored = plain;
   stored.insert(stored.find("</MRML>"), R"(
@@ -293,7 +293,7 @@ TEST_F(ScenesCommand, RepeatsThePictureThatTheSceneStores) {
       << inspected.out;
 }
 
-TEST_F(ScenesCommand, RefusesWhatASceneDoesNotHold) {
+TEST_F(ScenesCommand, RefusesDamagedScenesAndMissingNodes) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   folder.write("perspective.mrml", scene(R"(viewAngle="16")", false));
   folder.write("none.mrml", "<MRML/>");
@@ -327,7 +327,7 @@ TEST_F(ScenesCommand, RefusesWhatASceneDoesNotHold) {
       folder.path());
 }
 
-TEST_F(ScenesCommand, NamesTheFilesOfAnArchiveAsTheyAreThere) {
+TEST_F(ScenesCommand, ErrorNamesTheFileWithinTheArchive) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   int failure = 0;
   zip_t* zip = zip_open((folder / "s.mrb").c_str(), ZIP_CREATE, &failure);
@@ -409,7 +409,7 @@ protected:
   Boxes boxes;
 };
 
-TEST_P(SlicersOwnScenes, AreSeenAsTheirNumbersSay) {
+TEST_P(SlicersOwnScenes, CameraMatchesStoredValues) {
   expectOutline(folder, archive.string(), {}, view, boxes);
   view.parallel = true;
   expectOutline(folder, archive.string(), {"--projection", "orthographic"}, view, boxes);

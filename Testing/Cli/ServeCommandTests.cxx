@@ -51,7 +51,7 @@ protected:
   }
 };
 
-TEST_F(ServeCommand, PicturesAreThoseOfTheCommandLine) {
+TEST_F(ServeCommand, PicturesEqualThoseOfRender) {
   Process process(serving(), folder.path());
   ASSERT_TRUE(waitForPicture(process, "null")) << process.output();
   expectShown({});
@@ -90,7 +90,7 @@ TEST_F(ServeCommand, PicturesAreThoseOfTheCommandLine) {
   EXPECT_EQ(outcome.err, "");
 }
 
-TEST_F(ServeCommand, TheHeaderRepeatsThePicture) {
+TEST_F(ServeCommand, HeaderHoldsTheCommandOfTheChangedPicture) {
   Process process(serving(), folder.path());
   process.write("{\"id\": 1, \"view\": \"left\", \"seed\": 5}\n");
   ASSERT_TRUE(waitForPicture(process, "1")) << process.output();
@@ -100,7 +100,7 @@ TEST_F(ServeCommand, TheHeaderRepeatsThePicture) {
   EXPECT_NE(command.find(" --view=left"), std::string::npos) << command;
 }
 
-TEST_F(ServeCommand, PicturesRefineAndGiveWay) {
+TEST_F(ServeCommand, PictureIsRefinedUntilTheNextChange) {
   Process process(serving("256x256", "1000000"), folder.path());
   ASSERT_TRUE(process.waitForOutput("\"done\":false[^\n]*\n[^\n]*\"done\":false[^\n]*\n"));
   const std::vector<json> refined = answers(process);
@@ -114,7 +114,7 @@ TEST_F(ServeCommand, PicturesRefineAndGiveWay) {
     EXPECT_EQ(answer["event"], "picture");
 }
 
-TEST_F(ServeCommand, BadLinesChangeNothing) {
+TEST_F(ServeCommand, BadLineIsAnsweredAndChangesNothing) {
   Process process(serving(), folder.path());
   ASSERT_TRUE(waitForPicture(process, "null"));
   const std::vector<std::array<std::string, 3>> lines = {
@@ -134,7 +134,7 @@ TEST_F(ServeCommand, BadLinesChangeNothing) {
        "more than a million"},
       {R"({"id": 10, "samples": 1e999})", "null", "too large"},
       {"{\"id\": " + std::string(100'000, '[') + std::string(100'000, ']') + "}", "null",
-       "nests more than 64"},
+       "is nested deeper than 64"},
       {R"({"id": {"a": 1}, "view": "left"})", "null", "id: must be a number, a text"},
       {R"({"id": [1], "view": "left"})", "null", "id: must be"},
       {R"({"id": true, "view": "left"})", "null", "id: must be"},
@@ -152,7 +152,7 @@ TEST_F(ServeCommand, BadLinesChangeNothing) {
 }
 
 /// Lines sent together, which the server reads together.
-TEST_F(ServeCommand, ABadLineTakesNoGoodOneAway) {
+TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
   Process process(serving(), folder.path());
   ASSERT_TRUE(waitForPicture(process, "null"));
   const std::vector<std::string> bad = {
@@ -178,7 +178,7 @@ TEST_F(ServeCommand, ABadLineTakesNoGoodOneAway) {
 }
 
 /// A failing write, as on a full disk: the current render and the server go on.
-TEST_F(ServeCommand, AFailureToWriteIsAnswered) {
+TEST_F(ServeCommand, WriteFailureIsAnsweredAndServingGoesOn) {
   const std::filesystem::path place = folder / "results";
   std::filesystem::create_directory(place);
   Process process({"serve", "volume.nrrd", "--size", "16x16", "--samples", "100000000", "--output",
@@ -192,7 +192,7 @@ TEST_F(ServeCommand, AFailureToWriteIsAnswered) {
   ASSERT_TRUE(waitForPicture(process, "2")) << process.output();
 }
 
-TEST_F(ServeCommand, EndsWithItsInput) {
+TEST_F(ServeCommand, EndOfInputEndsWithStatus0) {
   for (const char* samples : {"1", "1000000"}) {
     Process process(serving("16x16", samples), folder.path());
     ASSERT_TRUE(process.waitForOutput("picture"));
@@ -205,7 +205,7 @@ TEST_F(ServeCommand, EndsWithItsInput) {
   }
 }
 
-TEST_F(ServeCommand, EndsOnSignals) {
+TEST_F(ServeCommand, SignalEndsWithStatus5) {
   for (const int signal : {SIGINT, SIGTERM}) {
     Process process(serving("16x16", "1000000"), folder.path());
     ASSERT_TRUE(process.waitForOutput("picture"));
@@ -217,14 +217,14 @@ TEST_F(ServeCommand, EndsOnSignals) {
   }
 }
 
-TEST_F(ServeCommand, EndsWhenNobodyListens) {
+TEST_F(ServeCommand, ClosedOutputEndsWithStatus4) {
   Process process(serving(), folder.path(), Reader::nobody);
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 4);
   EXPECT_NE(outcome.err.find("nobody reads"), std::string::npos) << outcome.err;
 }
 
-TEST_F(ServeCommand, RefusesWhatRenderRefuses) {
+TEST_F(ServeCommand, RefusesMissingInputStatsAndSurface) {
   expectRefused(
       {{"no input", {"serve"}, 2, "INPUT: is missing"},
        {"missing", {"serve", "missing.nrrd"}, 3, "missing.nrrd"},

@@ -22,7 +22,7 @@ class SignalsCommand : public SmallScene, public ::testing::WithParamInterface<i
 INSTANTIATE_TEST_SUITE_P(All, SignalsCommand, ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT),
                          [](const auto& info) { return ::sigabbrev_np(info.param); });
 
-TEST_P(SignalsCommand, KeepsFinishedPasses) {
+TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "20000", "--progress", "xml",
                    "--output", "a.exr", "--output", "a.png", "--stats", "a.json"},
                   folder.path());
@@ -45,7 +45,7 @@ TEST_P(SignalsCommand, KeepsFinishedPasses) {
   EXPECT_EQ(filesIn(folder.path()).size(), 5u); // two inputs, three results
 }
 
-TEST_P(SignalsCommand, EndsAtOnceAtTheSecond) {
+TEST_P(SignalsCommand, SecondSignalEndsAtOnceWithoutWriting) {
   folder.write("a.exr", "old");
   const auto before = filesIn(folder.path());
   // No pass ends within the test, and a path takes long: the matter scatters and never absorbs.
@@ -65,7 +65,7 @@ TEST_P(SignalsCommand, EndsAtOnceAtTheSecond) {
   EXPECT_EQ(filesIn(folder.path()), before);
 }
 
-TEST_P(SignalsCommand, StaysIgnoredWhereItWasAtTheStart) {
+TEST_P(SignalsCommand, SignalIgnoredAtStartStaysIgnored) {
   std::signal(GetParam(), SIG_IGN); // as set by nohup and for background jobs
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "500", "--progress", "xml",
                    "--output", "a.png"},
@@ -78,7 +78,7 @@ TEST_P(SignalsCommand, StaysIgnoredWhereItWasAtTheStart) {
   EXPECT_TRUE(std::filesystem::exists(folder / "a.png"));
 }
 
-TEST_P(SignalsCommand, LeavesNothingOfAnArchive) {
+TEST_P(SignalsCommand, SignalLeavesNothingOfAnUnpackedArchive) {
   const std::filesystem::path& knee = kneeFolder().path();
   const TemporaryFolder temporary;
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
@@ -93,7 +93,7 @@ TEST_P(SignalsCommand, LeavesNothingOfAnArchive) {
   std::filesystem::remove(knee / "never.png"); // exists if a pass was finished
 }
 
-TEST_P(SignalsCommand, WritesNothingBeforeTheFirstPass) {
+TEST_P(SignalsCommand, SignalBeforeTheFirstPassWritesNothing) {
   const auto before = filesIn(kneeFolder().path());
   Process process({"knee/knee.nrrd", "--size", "1024x1024", "--samples", "1000000", "--density",
                    "1000", "--progress", "xml"},
@@ -109,7 +109,7 @@ TEST_P(SignalsCommand, WritesNothingBeforeTheFirstPass) {
   EXPECT_EQ(filesIn(kneeFolder().path()), before);
 }
 
-TEST_P(SignalsCommand, EndsWhileLoading) {
+TEST_P(SignalsCommand, SignalWhileLoadingWritesNothing) {
   folder.write("large.nrrd", NrrdText{"800 800 400", "uint8"}.with(""));
   std::filesystem::resize_file(folder / "large.nrrd",
                                std::filesystem::file_size(folder / "large.nrrd") + 256'000'000);
@@ -126,7 +126,7 @@ TEST_P(SignalsCommand, EndsWhileLoading) {
   EXPECT_EQ(filesIn(folder.path()), before);
 }
 
-TEST_P(SignalsCommand, LeavesNoHalfAPhantom) {
+TEST_P(SignalsCommand, SignalLeavesNoPartOfAPhantom) {
   const auto before = filesIn(folder.path());
   Process process({"phantom", "knee"}, folder.path());
   ASSERT_TRUE(process.waitUntilHandling(GetParam()));
@@ -139,7 +139,7 @@ TEST_P(SignalsCommand, LeavesNoHalfAPhantom) {
 
 class BrokenPipe : public SmallScene {};
 
-TEST_F(BrokenPipe, EndsARenderThatNobodyWaitsFor) {
+TEST_F(BrokenPipe, EndsTheRenderWithStatus4) {
   folder.write("a.png", "old");
   const auto before = filesIn(folder.path());
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "1000000", "--seconds", "20",

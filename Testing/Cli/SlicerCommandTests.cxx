@@ -133,7 +133,7 @@ protected:
   }
 };
 
-TEST_F(SlicerCommand, DescribesItselfByTheRules) {
+TEST_F(SlicerCommand, XmlHoldsOnlyElementsThatSlicerAllows) {
   const pugi::xml_document document = description();
   const pugi::xml_node module = document.child("executable");
   ASSERT_TRUE(module);
@@ -157,7 +157,7 @@ TEST_F(SlicerCommand, DescribesItselfByTheRules) {
   EXPECT_GT(known.size(), 30u);
 }
 
-TEST_F(SlicerCommand, DescribesEveryFlagOfTheHelp) {
+TEST_F(SlicerCommand, XmlDescribesEveryFlagOfTheHelp) {
   Names described = {
       "help", "version", "xml", "echo", "returnparameterfile", "processinformationaddress"};
   const pugi::xml_document document = description();
@@ -171,7 +171,7 @@ TEST_F(SlicerCommand, DescribesEveryFlagOfTheHelp) {
   EXPECT_EQ(described, helped);
 }
 
-TEST_F(SlicerCommand, TheReadmesTableSaysTheSame) {
+TEST_F(SlicerCommand, TableOfTheReadmeEqualsTheXml) {
   std::string table = "| flag | what it does | in Slicer's panel |\n|---|---|---|\n";
   const pugi::xml_document document = description();
   for (const pugi::xpath_node& flag : document.select_nodes("//parameters/*[longflag]")) {
@@ -190,13 +190,13 @@ TEST_F(SlicerCommand, TheReadmesTableSaysTheSame) {
                                                       << table;
 }
 
-TEST_F(SlicerCommand, TheFileBesideTheExecutableSaysTheSame) {
+TEST_F(SlicerCommand, FileBesideTheExecutableEqualsTheXml) {
   const std::filesystem::path sibling =
       std::filesystem::path(FENESTRA_EXECUTABLE).replace_extension(".xml");
   EXPECT_EQ(bytesOf(sibling), run({"--xml"}, folder.path()).out);
 }
 
-TEST_F(SlicerCommand, RendersAsSlicerRunsIt) {
+TEST_F(SlicerCommand, ArgumentsOfAnUntouchedPanelRender) {
   // Small picture with few samples; other flags as in the untouched panel, whose values must not
   // conflict.
   Arguments arguments = untouchedPanel(description());
@@ -223,7 +223,7 @@ TEST_F(SlicerCommand, RendersAsSlicerRunsIt) {
   }
 }
 
-TEST_F(SlicerCommand, WarningsAreNoErrorsToSlicer) {
+TEST_F(SlicerCommand, WarningsForSlicerGoToStandardOutput) {
   std::string samples(64 * sizeof(float), '\0');
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(samples.data(), &nan, sizeof nan);
@@ -239,7 +239,7 @@ TEST_F(SlicerCommand, WarningsAreNoErrorsToSlicer) {
   EXPECT_NE(outcome.out.find("warning: "), std::string::npos) << outcome.out;
 }
 
-TEST_F(SlicerCommand, EchoesWhatItUnderstood) {
+TEST_F(SlicerCommand, EchoPrintsTheParsedValues) {
   const Outcome outcome = renderWith({"--echo", "--seed", "7", "--output", "a.png"});
   EXPECT_EQ(outcome.status, 0);
   for (const char* line : {"INPUT: volume.nrrd\n", "seed: 7\n", "output: a.png\n", "echo: yes\n"})

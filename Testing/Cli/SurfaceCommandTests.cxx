@@ -74,7 +74,7 @@ TEST_P(SurfaceCommand, WritesTheSameMeshInEveryFormat) {
   EXPECT_EQ(std::filesystem::file_size(folder / "a.STL"), 84 + 50 * ply.faces);
 }
 
-TEST_P(SurfaceCommand, LiesWhereThePicturesClipChannelHasIt) {
+TEST_P(SurfaceCommand, MeshLiesAtTheDepthsOfTheClipChannel) {
   ASSERT_EQ(rendered({"--clip", GetParam(), "--view", "left", "--scale", "30", "--output",
                       in("a.exr"), "--surface", in("a.ply")})
                 .status,
@@ -105,7 +105,7 @@ TEST_P(SurfaceCommand, LiesWhereThePicturesClipChannelHasIt) {
 INSTANTIATE_TEST_SUITE_P(Clips, SurfaceCommand, testing::Values("surface", "cutaway"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(SurfaceCommandLine, RefusesWhatCannotBe) {
+TEST(SurfaceCommandLine, RefusesUnwritableFilesAndRendersWithoutSurface) {
   const TemporaryFolder folder;
   std::filesystem::create_directory_symlink(kneeFolder() / "knee", folder / "knee");
   std::filesystem::create_directory(folder / "folder.vtp");

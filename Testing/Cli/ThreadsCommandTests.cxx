@@ -48,7 +48,7 @@ bool refuseThreads() {
   std::_Exit(outcome.status);
 }
 
-TEST_F(ThreadsCommand, TwoThatCannotStartAreToldAndOneRenders) {
+TEST_F(ThreadsCommand, UnstartableThreadsAreRefusedAndOneThreadRenders) {
   if (std::thread::hardware_concurrency() < 2)
     GTEST_SKIP() << "one core: no thread is wanted";
   if (::prctl(PR_GET_SECCOMP) < 0)

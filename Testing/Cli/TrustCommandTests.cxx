@@ -38,7 +38,7 @@ protected:
   }
 };
 
-TEST_F(TrustCommand, AStoredRenderWritesAndRunsNothing) {
+TEST_F(TrustCommand, StoredFlagsWriteNoFilesAndRunNoPrograms) {
   folder.write("program", "#!/bin/sh\ntouch ran\n");
   std::filesystem::permissions(folder / "program", std::filesystem::perms::all);
   writeScene(R"(size="8x8" samples="1" output="a.png" stats="b.json" surface="c.vtp" focus="A"
@@ -57,7 +57,7 @@ TEST_F(TrustCommand, AStoredRenderWritesAndRunsNothing) {
 }
 
 /// Each file is no valid look: reading it would end the render.
-TEST_F(TrustCommand, AStoredRenderNamesNoFiles) {
+TEST_F(TrustCommand, StoredFlagsThatNameFilesAreIgnored) {
   const Arguments small = {"--size", "8x8", "--samples", "1", "--progress", "none"};
   const auto expected = plain(small);
   const std::string secret = folder.write("secret.exr", "another's").string();
@@ -85,7 +85,7 @@ TEST_F(TrustCommand, AStoredRenderNamesNoFiles) {
   }
 }
 
-TEST_F(TrustCommand, AStoredRenderKeepsNamesAndTexts) {
+TEST_F(TrustCommand, StoredNamesAndTextsApply) {
   writeScene(R"(transfer="ct-bone" lights="headlight" environment="1,2,3" size="8x8" samples="1")");
   const Outcome named = render("named.exr", {"--echo"});
   EXPECT_EQ(named.status, 0);
@@ -94,7 +94,7 @@ TEST_F(TrustCommand, AStoredRenderKeepsNamesAndTexts) {
     EXPECT_NE(named.out.find(flag), std::string::npos) << named.out;
 }
 
-TEST_F(TrustCommand, AStoredRenderAsksForNoMoreThanAPictureTakes) {
+TEST_F(TrustCommand, StoredSizeAndSamplesAreLimited) {
   writeScene(R"(size="9000x9000" samples="100000000")");
   const Outcome outcome =
       render("picture.exr", {"--progress", "none", "--seconds", "0.01", "--bounces", "0"});
@@ -109,7 +109,7 @@ TEST_F(TrustCommand, AStoredRenderAsksForNoMoreThanAPictureTakes) {
 }
 
 /// A header in an archive may name only files of the archive.
-TEST_F(TrustCommand, AnArchiveReadsNothingOutsideItself) {
+TEST_F(TrustCommand, ArchiveReadsNoFileOutsideItself) {
   const std::string outside = folder.write("outside.raw", std::string(64, 'x')).string();
   const auto archive = [&](const std::string& header, bool asMeta) {
     const std::string name = asMeta ? "volume.mhd" : "volume.nhdr";

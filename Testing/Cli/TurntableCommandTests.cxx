@@ -59,7 +59,7 @@ protected:
   }
 };
 
-TEST_F(TurntableCommand, MakesFramesAsRenderMakesThem) {
+TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
   const Outcome outcome =
       turn({"--output", "turn.exr", "--output", "turn.png", "--output", "turn.nrrd", "--boundary",
             "exact", "--steady", "0", "--stats", "all.json"});
@@ -85,7 +85,7 @@ TEST_F(TurntableCommand, MakesFramesAsRenderMakesThem) {
             2U + 4 * 4 + 3); // inputs, frames, one picture, two .json
 }
 
-TEST_F(TurntableCommand, GoesAroundTheTargetFromTheViewThatIsAskedFor) {
+TEST_F(TurntableCommand, TurnsAroundTheTargetFromTheRequestedView) {
   ASSERT_EQ(turn({"--output", "turn.exr", "--view", "anterior", "--degrees", "-180"}).status, 0);
   EXPECT_LT((toEye(frame(0)) - Vec3::UnitY()).norm(), 1e-12);
   EXPECT_LT((toEye(frame(2)) - Vec3::UnitX()).norm(), 1e-12) << "clockwise, to the patient's right";
@@ -93,7 +93,7 @@ TEST_F(TurntableCommand, GoesAroundTheTargetFromTheViewThatIsAskedFor) {
   EXPECT_EQ(vectorOf(frame(0), "--target="), vectorOf(frame(3), "--target="));
 }
 
-TEST_F(TurntableCommand, MakesOnlyWhatIsMissing) {
+TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
   ASSERT_EQ(turn({"--output", "turn.exr"}).status, 0);
   const Image lost = readImage(folder / frame(2));
   std::map<int, std::filesystem::file_time_type> written;
@@ -109,7 +109,7 @@ TEST_F(TurntableCommand, MakesOnlyWhatIsMissing) {
   EXPECT_EQ(record()["finished"].size(), 4U);
 }
 
-TEST_F(TurntableCommand, GoesOnAfterAnInterruptionBitForBit) {
+TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
   Arguments arguments = turntable({"--output", "turn.exr", "--samples", "60"});
   *std::find(arguments.begin(), arguments.end(), "16x16") = "64x64";
   {
@@ -150,7 +150,7 @@ TEST_F(TurntableCommand, GoesOnAfterAnInterruptionBitForBit) {
     EXPECT_EQ(atOnce["finished"][i]["surfaceChange"], resumed["finished"][i]["surfaceChange"]);
 }
 
-TEST_F(TurntableCommand, MixesNoFramesOfDifferentTurntables) {
+TEST_F(TurntableCommand, RefusesFramesOfAnotherTurntable) {
   ASSERT_EQ(turn({"--output", "turn.exr"}).status, 0);
   folder.write("frame_0001.png", "mine");
   folder.write("damaged.turntable.json", "{\"request\": 7}");
@@ -178,7 +178,7 @@ TEST_F(TurntableCommand, MixesNoFramesOfDifferentTurntables) {
       << changed.err;
 }
 
-TEST_F(TurntableCommand, NoticesWhatASceneRefersTo) {
+TEST_F(TurntableCommand, RefusesToResumeAfterAFileOfTheSceneChanged) {
   std::filesystem::copy(kneeFolder() / "knee", folder / "knee");
   const Arguments turn = {
       "turntable", "knee/knee.mrml",    "--size",   "8x8", "--samples", "1",
@@ -197,7 +197,7 @@ TEST_F(TurntableCommand, NoticesWhatASceneRefersTo) {
   EXPECT_EQ(run(turn, folder.path()).status, 0);
 }
 
-TEST_F(TurntableCommand, NoticesVoxelsInAFileThatOnlyAHeaderNames) {
+TEST_F(TurntableCommand, RefusesToResumeAfterDetachedVoxelsChanged) {
   NrrdText header;
   header.fields = "data file: voxels.raw\n";
   folder.write("volume.nhdr", header.with(""));
@@ -214,7 +214,7 @@ TEST_F(TurntableCommand, NoticesVoxelsInAFileThatOnlyAHeaderNames) {
                 folder.path());
 }
 
-TEST_F(TurntableCommand, ReadsTheLongestRecord) {
+TEST_F(TurntableCommand, ReadsARecordOfTenThousandFrames) {
   Arguments arguments = turntable({"--output", "turn.png", "--samples", "1", "--progress", "xml"});
   *std::find(arguments.begin(), arguments.end(), "4") = "10000";
   const auto renderSome = [&] {
@@ -237,7 +237,7 @@ TEST_F(TurntableCommand, ReadsTheLongestRecord) {
   EXPECT_EQ(again.status, 5) << again.err;
 }
 
-TEST_F(TurntableCommand, WaitsForNoSurfaceToStop) {
+TEST_F(TurntableCommand, StopsWithinASurface) {
   Arguments arguments = turntable({"--output", "turn.exr", "--samples", "1", "--boundary", "exact",
                                    "--degrees", "90", "--stats", "all.json", "--progress", "xml"});
   *std::find(arguments.begin(), arguments.end(), "16x16") = "1024x1024"; // five surfaces a frame
@@ -255,7 +255,7 @@ TEST_F(TurntableCommand, WaitsForNoSurfaceToStop) {
   EXPECT_EQ(filesIn(folder.path()).size(), 2U + 3) << "inputs, a frame, and two .json";
 }
 
-TEST_F(TurntableCommand, RefusesWhatIsForOnePicture) {
+TEST_F(TurntableCommand, RefusesFlagsForASinglePicture) {
   folder.write("volume_0002.nrrd", bytesOf(folder / "volume.nrrd"));
   expectRefused(
       {
@@ -282,7 +282,7 @@ TEST_F(TurntableCommand, RefusesWhatIsForOnePicture) {
       folder.path());
 }
 
-TEST_F(TurntableCommand, BeginsWithTheViewThatShowsTheFocusBest) {
+TEST_F(TurntableCommand, AutomaticViewBeginsWithTheViewOfRender) {
   ASSERT_EQ(turn({"--output", "turn.exr", "--view", "auto"}).status, 0);
   for (const char* size : {"16x16", "48x32"}) {
     const std::string file = std::string(size) + ".exr";
@@ -294,7 +294,7 @@ TEST_F(TurntableCommand, BeginsWithTheViewThatShowsTheFocusBest) {
   }
 }
 
-TEST_F(TurntableCommand, ShowsTheKneesCartilagesFromInFront) {
+TEST_F(TurntableCommand, AutomaticViewShowsKneeCartilageFromAnterior) {
   const std::string picture = (folder / "auto.exr").string();
   for (const char* projection : {"orthographic", "perspective"}) {
     ASSERT_EQ(
@@ -309,7 +309,7 @@ TEST_F(TurntableCommand, ShowsTheKneesCartilagesFromInFront) {
 }
 
 /// Each refusal names the file and the error in it.
-TEST_F(TurntableCommand, RefusesRecordsOfOtherTypes) {
+TEST_F(TurntableCommand, RefusesRecordFieldsOfTheWrongType) {
   const std::string request = R"("version": "0.1", "arguments": ["a"], "inputs": [{"file": "b"}])";
   const std::vector<std::pair<std::string, std::string>> records = {
       {R"({"request": {"arguments": [], "inputs": []}})", R"(request: has no "version")"},

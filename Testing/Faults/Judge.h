@@ -5,16 +5,16 @@
 
 namespace fenestra::faults {
 
-/// Runs the subject with the fault in the place; returns the violations, one line each. A death
-/// inside a library for want of memory is no violation: outcome.signal reports it.
+/// Runs the subject with `fault` at `place`; returns the violations, one line each. A crash inside
+/// a library for lack of memory is no violation: outcome.signal reports it.
 std::vector<std::string> judge(const Subject& subject, const Fault& fault, const Place& place,
                                Outcome& outcome);
 
 /// Lines of standard error that are not warnings.
 std::vector<std::string> errorLines(const Outcome& outcome);
 
-/// Innermost function of a crash outside the language's own libraries; isOurs: a function of the
-/// project.
+/// Innermost function on a crash's stack that is not of the C or C++ runtime; isOurs: the function
+/// belongs to the project.
 struct Culprit {
   std::string function;
   bool isOurs;

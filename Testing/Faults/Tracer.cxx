@@ -138,8 +138,7 @@ struct Start {
                               const_cast<sock_filter*>(filter.data())};
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int in = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-  for (const int stop :
-       {SIGHUP, SIGQUIT, SIGINT, SIGTERM, SIGPIPE}) // which nohup, say, has changed
+  for (const int stop : {SIGHUP, SIGQUIT, SIGINT, SIGTERM, SIGPIPE}) // nohup, for one, ignores some
     ::signal(stop, SIG_DFL);
   if (fault.kind == Fault::Kind::ignored)
     ::signal(fault.value, SIG_IGN);

@@ -16,7 +16,7 @@ public:
   Rgb albedo(const Vec3& world) const;
   /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;
-  /// Probability that a collision scatters at a surface (design, section 1).
+  /// Probability that a collision scatters at a surface (Kroes, Post, Botha 2012).
   double surfaceProbability(const Vec3& world) const;
   /// Upper bound of the extinction, mm^-1.
   double majorant() const { return m_majorant; }

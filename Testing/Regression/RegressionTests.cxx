@@ -106,7 +106,7 @@ void PrintTo(const Fault& fault, std::ostream* out) {
 
 class PlantedFault : public ::testing::TestWithParam<Fault> {};
 
-TEST_P(PlantedFault, IsFound) {
+TEST_P(PlantedFault, DiffersFromTheBaseline) {
   if (brevity() > 1)
     GTEST_SKIP() << "a brief run has too few samples to find it";
   const std::vector<RegressionCase> cases = readCases();

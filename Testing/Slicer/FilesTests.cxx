@@ -59,7 +59,7 @@ private:
   pid_t m_process = -1;
 };
 
-TEST(SlicerFolder, IsPrivateAndGoesWithItsSession) {
+TEST(SlicerFolder, IsPrivateAndRemovedWithItsSession) {
   const TemporaryFolder parent;
   QString path;
   {
@@ -74,7 +74,7 @@ TEST(SlicerFolder, IsPrivateAndGoesWithItsSession) {
 }
 
 /// A session's process number may differ in another container.
-TEST(SlicerFolder, OfALivingSessionStaysAndOfACrashedOneGoes) {
+TEST(SlicerFolder, OnlyFoldersOfCrashedSessionsAreRemoved) {
   const TemporaryFolder parent;
   Neighbour neighbour(parent);
   const std::filesystem::path renamed = parent / "session-999999999-a"; // no such process here
@@ -86,7 +86,7 @@ TEST(SlicerFolder, OfALivingSessionStaysAndOfACrashedOneGoes) {
   EXPECT_FALSE(std::filesystem::exists(renamed));
 }
 
-TEST(SlicerFolder, OthersFoldersAndLinksAreLeftAlone) {
+TEST(SlicerFolder, ForeignFoldersAndLinksAreLeftAlone) {
   const TemporaryFolder parent;
   for (const char* name : {"session-young", "other-a", "elsewhere"})
     std::filesystem::create_directory(parent / name);
@@ -111,12 +111,12 @@ protected:
   TemporaryFolder folder;
 };
 
-TEST_F(SlicerCopies, ReplaceAFileOnceTheyAreWhole) {
+TEST_F(SlicerCopies, CompleteCopyReplacesTheFile) {
   EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old.png"), ".png").write(), "");
   EXPECT_EQ(bytesOf(folder / "old.png").size(), 10000u);
 }
 
-TEST_F(SlicerCopies, ThatFailLeaveTheOldFileAndNoOther) {
+TEST_F(SlicerCopies, FailedCopyKeepsTheOldFileAndLeavesNoOther) {
   EXPECT_EQ(qFenestraCopies::picture(path("gone.png"), path("old.png"), ".png").write(),
             path("old.png"));
   EXPECT_EQ(bytesOf(folder / "old.png"), "old");
@@ -136,7 +136,7 @@ TEST_F(SlicerCopies, ThatFailLeaveTheOldFileAndNoOther) {
             (QStringList{"new.png", "old.png"}));
 }
 
-TEST_F(SlicerCopies, AskForTheNamesThatTheyWrite) {
+TEST_F(SlicerCopies, ExistingListsTheFilesThatWriteWouldReplace) {
   EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old"), ".png").existing(),
             QStringList{path("old.png")});
   EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old.PNG"), ".png").existing(),

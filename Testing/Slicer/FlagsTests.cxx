@@ -18,7 +18,7 @@ struct Case {
   std::string value;
 };
 
-TEST(SlicerFlags, WhatTheRendererTakesIsGood) {
+TEST(SlicerFlags, ValuesThatTheRendererTakesAreGood) {
   for (const auto& [name, value] :
        std::vector<Case>{{"focus", "Segment_1,a\\,b, <\xc3\xa9>"},
                          {"margin", "1,-0.5,3e-2"},
@@ -39,7 +39,7 @@ TEST(SlicerFlags, WhatTheRendererTakesIsGood) {
     EXPECT_EQ(verdictOn(name, value), Verdict::good) << name << ": " << value;
 }
 
-TEST(SlicerFlags, GarbageIsFound) {
+TEST(SlicerFlags, MalformedValuesAreRejected) {
   for (const auto& [name, value] : std::vector<Case>{{"frames", "x"},
                                                      {"frames", ""},
                                                      {"frames", "-3"},
@@ -65,7 +65,7 @@ TEST(SlicerFlags, GarbageIsFound) {
     EXPECT_EQ(verdictOn(name, value), Verdict::bad) << name << ": " << value.substr(0, 40);
 }
 
-TEST(SlicerFlags, FilesAreFoundAlsoInsideTexts) {
+TEST(SlicerFlags, NamesOfFilesAreDetectedAlsoInsideTexts) {
   for (const auto& [name, value] : std::vector<Case>{
            {"transfer", "/etc/passwd"},
            {"transfer", "colours.vp"},
@@ -80,7 +80,7 @@ TEST(SlicerFlags, FilesAreFoundAlsoInsideTexts) {
 }
 
 /// Reference: the renderer's own description of its numbers and words.
-TEST(SlicerFlags, KindsAreTheRenderers) {
+TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
   QProcess child;
   child.start(FENESTRA_EXECUTABLE, {"--xml"});
   ASSERT_TRUE(child.waitForFinished());

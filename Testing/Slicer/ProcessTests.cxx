@@ -85,7 +85,7 @@ struct Heard {
   }
 };
 
-TEST_F(SlicerProcess, RendersOneAfterTheOther) {
+TEST_F(SlicerProcess, QueueRunsJobsInOrder) {
   qFenestraQueue queue(program);
   const Heard heard(queue);
   for (int id = 1; id <= 3; ++id)
@@ -103,7 +103,7 @@ TEST_F(SlicerProcess, RendersOneAfterTheOther) {
   EXPECT_EQ(heard.parts.back(), 1.0);
 }
 
-TEST_F(SlicerProcess, StoppingKeepsWhatThereIs) {
+TEST_F(SlicerProcess, StopKeepsFinishedPassesAndSkipsWaitingJobs) {
   qFenestraQueue queue(program);
   const Heard heard(queue);
   queue.add(job(1, {"--samples", "3000000", "--output", "long.png"}));
@@ -126,7 +126,7 @@ TEST_F(SlicerProcess, StoppingKeepsWhatThereIs) {
   EXPECT_TRUE(exists("after.png"));
 }
 
-TEST_F(SlicerProcess, SaysWhatIsWrong) {
+TEST_F(SlicerProcess, FailureCarriesTheRenderersMessage) {
   qFenestraQueue queue(program);
   const Heard heard(queue);
   queue.add({1, {"missing.nrrd"}, path()});
@@ -140,7 +140,7 @@ TEST_F(SlicerProcess, SaysWhatIsWrong) {
   EXPECT_TRUE(heard.ended[1].outcome.details.startsWith("fenestra: --samples: "));
 }
 
-TEST_F(SlicerProcess, AMissingRendererIsToldOnceAndHoldsNothingUp) {
+TEST_F(SlicerProcess, MissingRendererFailsEachJobOnce) {
   qFenestraQueue queue(path() + "/nowhere/fenestra");
   const Heard heard(queue);
   queue.add(job(1));
@@ -153,7 +153,7 @@ TEST_F(SlicerProcess, AMissingRendererIsToldOnceAndHoldsNothingUp) {
   }
 }
 
-TEST_F(SlicerProcess, ACrashIsNoEndOfTheWorld) {
+TEST_F(SlicerProcess, KilledRendererIsReportedAsFailed) {
   qFenestraProgram child;
   std::vector<qFenestraOutcome> outcomes;
   QObject::connect(&child, &qFenestraProgram::ended,
@@ -191,7 +191,7 @@ struct Stopped {
 };
 
 /// Longer than any plausible timeout. The window must respond meanwhile.
-TEST_F(SlicerProcess, NoClockEndsARendererThatWrites) {
+TEST_F(SlicerProcess, StopWaitsForARendererThatWrites) {
   Stopped stopped(folder, "sleep 2; echo picture >kept.png; exit 5");
   bool answered = false;
   QTimer::singleShot(0, [&] { answered = true; });
@@ -202,7 +202,7 @@ TEST_F(SlicerProcess, NoClockEndsARendererThatWrites) {
   EXPECT_TRUE(exists("kept.png"));
 }
 
-TEST_F(SlicerProcess, StoppedAgainItIsKilledAndToldSo) {
+TEST_F(SlicerProcess, SecondStopKillsTheRenderer) {
   Stopped stopped(folder, ":");
   QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
   EXPECT_TRUE(stopped.outcomes.empty());
@@ -210,13 +210,13 @@ TEST_F(SlicerProcess, StoppedAgainItIsKilledAndToldSo) {
   EXPECT_EQ(stopped.kind(), Kind::killed);
 }
 
-TEST_F(SlicerProcess, WhatGoesWrongWhileStoppingIsTold) {
+TEST_F(SlicerProcess, FailureWhileStoppingIsReported) {
   EXPECT_EQ(Stopped(folder, "kill -SEGV $$").kind(), Kind::failed);
   EXPECT_EQ(Stopped(folder, "echo fenestra: full >&2; exit 4").kind(), Kind::failed);
   EXPECT_EQ(Stopped(folder, "exit 0").kind(), Kind::done); // it was just ready
 }
 
-TEST_F(SlicerProcess, AProgramThatCannotListenYetIsStoppedAllTheSame) {
+TEST_F(SlicerProcess, StopRightAfterTheStartEndsTheProgram) {
   qFenestraProgram child;
   std::vector<qFenestraOutcome> outcomes;
   QObject::connect(&child, &qFenestraProgram::ended,
@@ -227,7 +227,7 @@ TEST_F(SlicerProcess, AProgramThatCannotListenYetIsStoppedAllTheSame) {
   EXPECT_EQ(outcomes[0].kind, Kind::stopped);
 }
 
-TEST_F(SlicerProcess, ReadsProgressAndNothingElse) {
+TEST_F(SlicerProcess, ProgressIsReadFromValidTagsOnly) {
   EXPECT_EQ(qFenestraQueue::progressIn("<filter-progress>0.25</filter-progress>"), 0.25);
   EXPECT_EQ(qFenestraQueue::progressIn("<filter-progress>7</filter-progress>"), 1.0);
   for (const char* line :
@@ -237,7 +237,7 @@ TEST_F(SlicerProcess, ReadsProgressAndNothingElse) {
     EXPECT_EQ(qFenestraQueue::progressIn(line), -1.0) << line;
 }
 
-TEST_F(SlicerProcess, TellsWhatTheRendererKnows) {
+TEST_F(SlicerProcess, AbilitiesListFlagsAndNamesOfTheRenderer) {
   qFenestraQuestion question;
   std::vector<qFenestraAbilities> told;
   QObject::connect(&question, &qFenestraQuestion::told,
@@ -262,7 +262,7 @@ TEST_F(SlicerProcess, TellsWhatTheRendererKnows) {
   EXPECT_TRUE(qFenestraAbilities::flagsIn("no description").isEmpty());
 }
 
-TEST_F(SlicerProcess, ChildrenDoNotSeeSlicersLibraries) {
+TEST_F(SlicerProcess, EnvironmentOfAChildOmitsLibraryPaths) {
   QProcessEnvironment slicers;
   slicers.insert("LD_LIBRARY_PATH", "/opt/slicer/lib");
   slicers.insert("QT_PLUGIN_PATH", "/opt/slicer/plugins");
@@ -272,7 +272,7 @@ TEST_F(SlicerProcess, ChildrenDoNotSeeSlicersLibraries) {
 }
 
 /// A child ends with its object and, by the signal that it requested, with its parent.
-TEST_F(SlicerProcess, NoChildIsLeftBehind) {
+TEST_F(SlicerProcess, ChildEndsWithItsObjectAndWithItsParent) {
   qint64 id = 0;
   {
     qFenestraProgram child;
@@ -332,7 +332,7 @@ protected:
   std::vector<qFenestraOutcome> outcomes;
 };
 
-TEST_F(SlicerPreview, FollowsChangesWhenHandsRest) {
+TEST_F(SlicerPreview, FastChangesAreSentAsOne) {
   start("8");
   ASSERT_TRUE(waitForDone());
   EXPECT_EQ(pictures.back().samples, 8);
@@ -351,7 +351,7 @@ TEST_F(SlicerPreview, FollowsChangesWhenHandsRest) {
   EXPECT_TRUE(refusals.isEmpty());
 }
 
-TEST_F(SlicerPreview, ARefusalLeavesWhatIsShown) {
+TEST_F(SlicerPreview, RefusedChangeKeepsThePreviewRunning) {
   start("2");
   ASSERT_TRUE(waitForDone());
   preview.change({{"focus", "Femur"}});
@@ -363,7 +363,7 @@ TEST_F(SlicerPreview, ARefusalLeavesWhatIsShown) {
   EXPECT_TRUE(preview.running());
 }
 
-TEST_F(SlicerPreview, StopsAtOnce) {
+TEST_F(SlicerPreview, StopReturnsAtOnce) {
   start("100000000");
   ASSERT_TRUE(waitFor([this] { return !pictures.empty(); }));
   QElapsedTimer watch;
@@ -377,7 +377,7 @@ TEST_F(SlicerPreview, StopsAtOnce) {
   EXPECT_TRUE(outcomes.empty());
 }
 
-TEST_F(SlicerPreview, HoldsItsFilesUntilItsChildHasEnded) {
+TEST_F(SlicerPreview, FilesAreHeldUntilTheChildHasEnded) {
   auto files = std::make_shared<int>();
   const std::weak_ptr<int> held = files;
   preview.start(program, {"volume.nrrd", "--size=16x16", "--samples=100000000", "--output=p.png"},
@@ -389,7 +389,7 @@ TEST_F(SlicerPreview, HoldsItsFilesUntilItsChildHasEnded) {
   EXPECT_TRUE(preview.findChildren<qFenestraProgram*>().isEmpty());
 }
 
-TEST_F(SlicerPreview, SaysWhyItCannotBegin) {
+TEST_F(SlicerPreview, FailedStartCarriesTheRenderersMessage) {
   preview.start(program, {"missing.nrrd"}, path());
   ASSERT_TRUE(waitFor([this] { return !outcomes.empty(); }));
   EXPECT_EQ(outcomes[0].kind, Kind::failed);

@@ -36,7 +36,7 @@ FenestraScene::Layer block(std::array<long, 3> begin, std::uint8_t value) {
   return layer;
 }
 
-TEST(SlicerSceneFiles, AnImageComesBackAsItWas) {
+TEST(SlicerSceneFiles, ImageRoundTripsBitForBit) {
   const TemporaryFolder folder;
   const FenestraScene::Image image = ramp({3, 4, 5});
   FenestraScene::writeNrrd(image, folder / "image.nrrd");
@@ -48,7 +48,7 @@ TEST(SlicerSceneFiles, AnImageComesBackAsItWas) {
   EXPECT_EQ(std::memcmp(again.data.get(), image.data.get(), image.bytes()), 0);
 }
 
-TEST(SlicerSceneFiles, DamagedImagesAreRefused) {
+TEST(SlicerSceneFiles, DamagedNrrdIsRefused) {
   const TemporaryFolder folder;
   FenestraScene::writeNrrd(ramp({3, 4, 5}), folder / "image.nrrd");
   std::filesystem::resize_file(folder / "image.nrrd",
@@ -62,7 +62,7 @@ TEST(SlicerSceneFiles, DamagedImagesAreRefused) {
                FenestraScene::FileError);
 }
 
-TEST(SlicerSceneFiles, LayersLieWhereTheyAre) {
+TEST(SlicerSceneFiles, ComposedLayersKeepTheirPlaces) {
   const FenestraScene::Image both =
       FenestraScene::composed({block({0, 0, 0}, 1), block({1, -1, 0}, 2)});
   EXPECT_EQ(both.components, 2u);
@@ -80,7 +80,7 @@ TEST(SlicerSceneFiles, LayersLieWhereTheyAre) {
   EXPECT_EQ(at(1, 1, 1, 1), 2);
 }
 
-TEST(SlicerSceneFiles, WhatDidNotChangeIsLinked) {
+TEST(SlicerSceneFiles, UnchangedVolumeIsLinked) {
   const TemporaryFolder folder;
   FenestraScene::Writer writer(folder.path());
   FenestraScene::Contents contents;
@@ -96,7 +96,7 @@ TEST(SlicerSceneFiles, WhatDidNotChangeIsLinked) {
                                            third.parent_path() / "volume.nrrd"));
 }
 
-TEST(SlicerSceneFiles, SegmentsKeepWhatAnatomyTheyAre) {
+TEST(SlicerSceneFiles, TagsOfSegmentsAreWritten) {
   const TemporaryFolder folder;
   FenestraScene::Contents contents;
   contents.volume = ramp({3, 4, 5});

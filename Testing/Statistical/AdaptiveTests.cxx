@@ -64,7 +64,7 @@ std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, 
   return tiles;
 }
 
-TEST(AdaptiveSampling, HasNoBias) {
+TEST(AdaptiveSampling, MeanEqualsThatOfUniformSampling) {
   const TestScene scene = skewedScene();
   const int seeds = std::max(8, budget(24)); // fewer seeds estimate their spread badly
   RenderSettings adaptive;
@@ -85,7 +85,7 @@ TEST(AdaptiveSampling, HasNoBias) {
   EXPECT_LT(std::abs(difference), 4.0 * std::sqrt(variance));
 }
 
-TEST(AdaptiveSampling, SharesOutAndStopsAtItsTarget) {
+TEST(AdaptiveSampling, StopsAtItsTargetWithUnequalCounts) {
   RenderSettings settings;
   settings.samples = 1U << 20;
   settings.noise = allowedError(0.03);

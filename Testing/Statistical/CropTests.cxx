@@ -108,7 +108,7 @@ TestScene litScene(Volume volume, const Shape& shape) {
 
 /// Eye, scattered and light rays all end at the crop: a box cropped from a larger constant volume
 /// looks like a volume of that box, at any rotation against the voxels.
-TEST_P(CroppedPicture, LooksLikeAVolumeOfThatShape) {
+TEST_P(CroppedPicture, EqualsThePictureOfAVolumeOfThatShape) {
   const Vec3 half(5.0, 4.0, 3.0);
   const Affine box = turnedBox({1.0, 0.0, -1.0}, half, GetParam().angle);
   // Grid of 10 x 8 x 6 voxels of 1 mm that fills the box.

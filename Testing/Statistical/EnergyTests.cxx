@@ -129,7 +129,7 @@ const Vec3 lightWay = Vec3(0.4, -0.7, -0.5).normalized();
 
 class Energy : public ::testing::TestWithParam<double> {};
 
-TEST_P(Energy, IsConservedWhereNothingAbsorbs) {
+TEST_P(Energy, WithoutAbsorptionOutgoingEqualsIncoming) {
   TestScene scene = clumps(Rgb::Ones(), Rgb::Ones(), GetParam());
   const double in = stopped(scene, lightWay, lines);
   EXPECT_NEAR(stopped(scene, lightWay, 2 * lines) / in, 1.0, known);
@@ -138,7 +138,7 @@ TEST_P(Energy, IsConservedWhereNothingAbsorbs) {
   expectMean(scatteredAround(scene, lightWay, seeded(7000)), Rgb::Constant(in), 0.01, known);
 }
 
-TEST_P(Energy, ComesOutOrIsAbsorbed) {
+TEST_P(Energy, OutgoingPlusAbsorbedEqualsIncoming) {
   TestScene scene = clumps(Rgb(0.95, 0.7, 0.9), Rgb(0.8, 0.95, 0.4), GetParam());
   const double in = stopped(scene, lightWay, lines);
   const RgbEstimate out = scatteredAround(scene, lightWay, seeded(8000));

@@ -122,7 +122,7 @@ private:
   std::vector<SourceFunction> m_coarse, m_fine;
 };
 
-TEST(Emission, IsKnownAsWellAsStated) {
+TEST(Emission, QuadratureErrorIsBelowItsBound) {
   for (const double thickness : {0.5, 2.0, 8.0})
     for (const SlabLight& light :
          {SlabLight{.environment = 1.0}, SlabLight{.irradiance = pi, .mu0 = 1.0},
@@ -147,7 +147,7 @@ struct SlabCase {
 
 class FiniteSlab : public ::testing::TestWithParam<std::tuple<double, SlabCase>> {};
 
-TEST_P(FiniteSlab, ShinesAsTheIntegralEquationSays) {
+TEST_P(FiniteSlab, RadianceSolvesTheIntegralEquation) {
   const auto& [thickness, c] = GetParam();
   TestScene scene = endlessSlab(thickness, albedos);
   scene.lights.clear();

@@ -68,7 +68,7 @@ Clip clipOf(ClipKind kind, const Camera& camera, const Domain& volume) {
 
 class Furnace : public ::testing::TestWithParam<Case> {};
 
-TEST_P(Furnace, IsOne) {
+TEST_P(Furnace, RadianceIsOne) {
   const auto [mediumKind, projection, clipKind, g, isCropped] = GetParam();
   TestScene scene{volumeOf(mediumKind),
                   mediumKind == MediumKind::spikes ? spikes() : linearTransfer(0.4, Rgb::Ones()),

@@ -49,7 +49,7 @@ void record(const std::vector<Fault>& faults) {
        << fault.probability << " |\n";
 }
 
-TEST(PlantedErrors, AreAllFound) {
+TEST(PlantedErrors, EveryErrorIsFound) {
   constexpr int count = 240; // combinations in the suite; sets the bound for a single one
   MatrixSettings settings;
   std::vector<Fault> faults = readFaults();

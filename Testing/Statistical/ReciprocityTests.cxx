@@ -1,8 +1,8 @@
 // Reciprocity: the light that travels along b and leaves a volume against a, in total, equals the
 // light that travels along a and leaves against b, because extinction does not depend on direction
-// and the phase function only on the angle between directions. Hybrid surfaces are excluded: they
-// scatter a share of collisions, their reflectance times the cosine toward the light but not toward
-// the viewer (design, section 1), so exchanging the two changes the result.
+// and the phase function only on the angle between directions. Hybrid surfaces are excluded: their
+// weight is reflectance times the cosine toward the light, without the cosine toward the viewer, so
+// exchanging light and viewer changes the result.
 
 #include "Clumps.h"
 
@@ -30,7 +30,7 @@ Clip cutOf(Cut cut, const CameraPose& pose) {
   return ClipPlane{Camera(pose, 1, 1), Vec3(0.1, -0.3, 0.2), Vec3(0.5, -1.0, 0.3).normalized()};
 }
 
-TEST_P(Reciprocity, ExchangesLightAndViewer) {
+TEST_P(Reciprocity, SwappingLightAndViewerKeepsTheRadiance) {
   const auto [g, cut] = GetParam();
   TestScene scene = clumps(Rgb(0.9, 0.3, 0.6), Rgb(1.0, 0.9, 0.4), g);
   scene.volume = plate();

@@ -108,7 +108,7 @@ void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& b
 
 class Reference : public ::testing::TestWithParam<ReferenceCase> {};
 
-TEST_P(Reference, AgreesWithinStatistics) {
+TEST_P(Reference, PictureAgreesWithinStatistics) {
   if (!present())
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
   // Near the thin shells of S2 a pixel's samples are so skewed that its z needs thousands of
@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Reference,
 
 class NoiseTarget : public ::testing::TestWithParam<ReferenceCase> {};
 
-TEST_P(NoiseTarget, IsTheTrueErrorWithinAFifth) {
+TEST_P(NoiseTarget, TrueErrorIsWithinAFifthOfTheTarget) {
   if (!present())
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
   const ReferenceCase& c = GetParam();
@@ -148,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NoiseTarget,
 
 class OracleReference : public ::testing::TestWithParam<ReferenceCase> {};
 
-TEST_P(OracleReference, AgreesWithinStatistics) {
+TEST_P(OracleReference, PictureAgreesWithinStatistics) {
   if (!present())
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
   const Bounds bounds = isLongRun() ? Bounds{4, 0.07, 0.05} : Bounds{16, 0.3, 0.2};

@@ -18,7 +18,7 @@ double henyeyGreenstein(double g, double cosine) {
 
 class SingleScatter : public ::testing::TestWithParam<double> {};
 
-TEST_P(SingleScatter, IsAsInClosedForm) {
+TEST_P(SingleScatter, RadianceEqualsClosedForm) {
   const double g = GetParam();
   const double thickness = 1.5;
   const Rgb albedo(1.0, 0.6, 0.2);

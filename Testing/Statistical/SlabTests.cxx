@@ -9,7 +9,7 @@ namespace {
 
 class SlabTransmittance : public ::testing::TestWithParam<double> {};
 
-TEST_P(SlabTransmittance, IsExponential) {
+TEST_P(SlabTransmittance, EqualsExpOfMinusDepth) {
   const double depth = GetParam();
   TestScene scene = slab(100.0, depth, Rgb::Zero());
   RenderSettings settings;
@@ -89,7 +89,7 @@ struct HalfSpaceCase {
 
 class HalfSpace : public ::testing::TestWithParam<HalfSpaceCase> {};
 
-TEST_P(HalfSpace, ReflectsAsChandrasekharSays) {
+TEST_P(HalfSpace, ReflectanceEqualsChandrasekhars) {
   const auto [albedo, reflectance] = GetParam();
   EXPECT_NEAR(1.0 - std::sqrt(1.0 - albedo) * ChandrasekharH(albedo)(1.0), reflectance, 2e-4);
   TestScene scene = slab(140.0, 70.0, Rgb::Constant(albedo)); // half-width 70, thickness 70
@@ -104,8 +104,8 @@ INSTANTIATE_TEST_SUITE_P(Albedos, HalfSpace,
                          ::testing::Values(HalfSpaceCase{0.5, 0.1152}, HalfSpaceCase{0.9, 0.4149},
                                            HalfSpaceCase{0.99, 0.7527}));
 
-/// Thickness of nearly a half-space: light returned from below 60 free paths is less than exp(-2 ·
-/// 0.17 · 60) of all, with 0.17 per free path the slowest decay at albedo 0.99.
+/// Optical thickness that stands for a half-space: light returned from below 60 free paths is less
+/// than exp(-2 · 0.17 · 60) of all, with 0.17 per free path the slowest decay at albedo 0.99.
 constexpr double deep = 60.0;
 const Rgb halfSpaceAlbedo(0.5, 0.9, 0.99);
 constexpr double knownH = 2e-4; ///< relative error of H: its reflectances above have four digits
@@ -117,7 +117,7 @@ std::array<ChandrasekharH, 3> halfSpaceH() {
 
 /// Reflectance under a constant environment of 1 at an angle: 1 - sqrt(1 - w) H(mu), by reciprocity
 /// with the albedo of a half-space for parallel light.
-TEST(HalfSpace, ReflectsAnEnvironmentAtAnyAngle) {
+TEST(HalfSpace, EnvironmentReflectanceEqualsClosedFormAtAnyAngle) {
   const std::array<ChandrasekharH, 3> h = halfSpaceH();
   std::uint64_t seed = 20;
   for (const double mu : {0.7, 0.2}) {
@@ -133,7 +133,7 @@ TEST(HalfSpace, ReflectsAnEnvironmentAtAnyAngle) {
 
 /// Law of diffuse reflection (Chandrasekhar, ch. III and V): under parallel light of irradiance F
 /// on a plane that faces the light, I(mu) = w F / (4 pi) mu0 / (mu + mu0) H(mu) H(mu0).
-TEST(HalfSpace, ReflectsParallelLightByTheLawOfDiffuseReflection) {
+TEST(HalfSpace, ParallelLightFollowsTheLawOfDiffuseReflection) {
   const std::array<ChandrasekharH, 3> h = halfSpaceH();
   std::uint64_t seed = 30;
   for (const double mu0 : {1.0, 0.4})

@@ -77,7 +77,7 @@ Ray randomRay(const Volume& volume, Random& random) {
 // ---- the integral itself
 // -------------------------------------------------------------------------
 
-TEST(StraightIntegral, IsThatOfALinearRampInClosedForm) {
+TEST(StraightIntegral, LinearRampEqualsClosedForm) {
   const Subject ramp = subject(0);
   const StraightIntegral integral(ramp.volume, ramp.transfer);
   // Antiderivative of clamp(x, 0, 5): the outer half voxels clamp x.
@@ -97,7 +97,7 @@ TEST(StraightIntegral, IsThatOfALinearRampInClosedForm) {
 }
 
 /// Reference: midpoint rule on Medium's own extinction.
-TEST(StraightIntegral, IsTheLimitOfSmallSteps) {
+TEST(StraightIntegral, EqualsTheMidpointRuleWithSmallSteps) {
   for (int index = 0; index < 5; ++index) {
     const Subject s = subject(index);
     const StraightIntegral integral(s.volume, s.transfer);
@@ -288,7 +288,7 @@ protected:
   std::unique_ptr<Follower> m_follower;
 };
 
-TEST_P(Tracking, PassesWhatTheExactTransmittanceSays) {
+TEST_P(Tracking, MeanTransmittanceEqualsExpOfIntegral) {
   std::vector<Travel> travels;
   for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
     Random random(seeded(6), i, 0);
@@ -313,7 +313,7 @@ TEST_P(Tracking, PassesWhatTheExactTransmittanceSays) {
 
 /// Optical depth at the collision, as a share of the rays that collide before it: uniform. Rays
 /// that pass get a random share above that of all their collisions.
-TEST_P(Tracking, DrawsCollisionsByTheExactDistribution) {
+TEST_P(Tracking, CollisionsFollowTheExactDistribution) {
   std::vector<Travel> travels;
   for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
     Random random(seeded(7), i, 0);
@@ -331,7 +331,7 @@ TEST_P(Tracking, DrawsCollisionsByTheExactDistribution) {
 }
 
 /// A ray's result does not depend on the other rays of the batch.
-TEST_P(Tracking, FollowsARayTheSameWayInAnyCompany) {
+TEST_P(Tracking, RayResultDoesNotDependOnItsBatch) {
   std::vector<Travel> travels;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     Random random(9, i, 0);
@@ -356,7 +356,7 @@ protected:
 
 /// Short segments of eye rays where the surface between samples differs from the samples: past the
 /// edge of a ball, in fog that little light passes.
-TEST_P(SeamTracking, AsksTheFocusWhereSamplesSayTooLittle) {
+TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
   const Grid grid = centredGrid({40, 40, 40}, Vec3::Ones());
   const Subject fog{"fog", makeVolume(grid, [](const Vec3&) { return 1.0; }),
                     table({{0.0, 0.0}, {1.0, 8.0}})};

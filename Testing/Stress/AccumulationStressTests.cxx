@@ -58,7 +58,7 @@ Moments twoPasses(const std::vector<PathSample>& samples) {
   return moments;
 }
 
-TEST(AMillionSamples, AddUpAsInTwoPasses) {
+TEST(Accumulation, MillionSamplesEqualTwoPasses) {
   const TestScene scene = smallScene();
   const std::vector<PathSample> samples = samplesOf(scene, 0, 1, 0, million);
   PixelSums sums;
@@ -81,7 +81,7 @@ TEST(AMillionSamples, AddUpAsInTwoPasses) {
   EXPECT_NEAR(shifted.deviation[0] / static_cast<double>(exactFar.deviation), 1.0, 1e-9);
 }
 
-TEST(AMillionSamples, DoNotDriftAndAreWhatARenderAdds) {
+TEST(Accumulation, MillionSamplesEqualARenderAndDoNotDrift) {
   const TestScene scene = smallScene();
   RenderSettings settings;
   settings.samples = million;
@@ -129,7 +129,7 @@ TEST(SampleCounters, DoNotWrapBeyond32Bits) {
   EXPECT_NEAR(sums.standardError()[0] * n, std::sqrt(2.0), 1e-8);
 }
 
-TEST(SampleIndices, Beyond32BitsAreNewSamples) {
+TEST(SampleIndices, IndicesBeyond32BitsGiveNewSamples) {
   const TestScene scene = smallScene();
   constexpr std::uint64_t count = 20000;
   constexpr std::uint64_t far = (std::uint64_t{1} << 32) * 3;

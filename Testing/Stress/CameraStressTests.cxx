@@ -79,7 +79,7 @@ CameraPose pose(Projection projection, const Vec3& position, const Vec3& forward
   return result;
 }
 
-TEST(InsideCameras, SeeTheChordBeforeThem) {
+TEST(CameraInsideVolume, TransmittanceIsThatOfTheChordAhead) {
   // Voxel centres lie at half-integers in x and z, at integers in y.
   const Vec3 positions[] = {{0.5, 0.0, 0.5},  {0.0, 0.0, 0.0}, {0.0, 0.5, 1.0}, {0.5, 0.5, 0.5},
                             {3.0, 0.0, 0.0},  {3.0, 2.5, 2.0}, {3.0, 2.5, 0.3}, {2.9, 2.4, 1.9},
@@ -101,13 +101,13 @@ TEST(InsideCameras, SeeTheChordBeforeThem) {
       }
 }
 
-TEST(InsideCameras, AreInAFurnace) {
+TEST(CameraInsideVolume, FurnaceIsOne) {
   TestScene scene = absorber(pose(Projection::perspective, {0.5, 0.5, 0.5}, {1, 1, 1}), 12, 12);
   scene.transfer = linearTransfer(2.0, Rgb::Ones());
   expectOne(renderIn(scene, budget(100)));
 }
 
-TEST(FieldOfView, OfAMillionthDegreeIsAnOrthographicPicture) {
+TEST(FieldOfView, MillionthOfADegreeEqualsOrthographic) {
   constexpr double angle = 1e-6;
   CameraPose near = pose(Projection::orthographic, {20.0, -30.0, 15.0}, {-20.0, 30.0, -15.0});
   near.target = Vec3::Zero();
@@ -127,7 +127,7 @@ TEST(FieldOfView, OfAMillionthDegreeIsAnOrthographicPicture) {
   expectSamePicture(expected.film, renderIn(scene, budget(300), 2).film);
 }
 
-TEST(FieldOfView, ExtremesSeeTheChordBeforeThem) {
+TEST(FieldOfView, ExtremeAnglesSeeTheChordAhead) {
   for (const double angle : {1e-6, 1e-3, 150.0, 179.0})
     for (const Vec3& position : {Vec3(-3.5, 0.2, 0.1), Vec3(0.1, 0.0, 0.0), Vec3(-3.0, 0.0, 0.0)}) {
       CameraPose wide = pose(Projection::perspective, position, {1.0, 0.03, 0.02});
@@ -136,7 +136,7 @@ TEST(FieldOfView, ExtremesSeeTheChordBeforeThem) {
     }
 }
 
-TEST(PictureSizes, OfOnePixelOrOneRowSeeTheChordBeforeThem) {
+TEST(PictureSize, OnePixelOrOneRowSeesTheChordAhead) {
   const CameraPose outside = pose(Projection::orthographic, {-9.0, 0.2, 0.1}, {1.0, 0.3, 0.2});
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(1, 4096), std::pair(4096, 1), std::pair(3, 17)}) {
@@ -151,7 +151,7 @@ TEST(PictureSizes, OfOnePixelOrOneRowSeeTheChordBeforeThem) {
 
 // ---- scattering
 
-TEST(SharpScattering, IsAFurnaceInABoundedNumberOfCollisions) {
+TEST(SharpScattering, FurnaceIsOneInABoundedNumberOfCollisions) {
   for (const double g : {-0.9999, 0.9999, -0.9999999999, 0.9999999999}) {
     TestScene scene = absorber(pose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
     scene.transfer = linearTransfer(1.0, Rgb::Ones(), g);
@@ -174,7 +174,7 @@ TestScene mirrors(double power) {
   return scene;
 }
 
-TEST(SharpScattering, OfMirrorsReflectsNoMoreThanArrives) {
+TEST(SharpScattering, MirrorsReflectNoMoreThanArrives) {
   for (const double power : {0.0, 1e4, 1e8, 1e16, 1e300}) {
     const Estimate estimate = imageEstimate(renderIn(mirrors(power), budget(100)).film);
     EXPECT_LT(estimate.mean, 1.0 + 4.0 * estimate.error) << power;
@@ -182,7 +182,7 @@ TEST(SharpScattering, OfMirrorsReflectsNoMoreThanArrives) {
   }
 }
 
-TEST(SharpScattering, OfMirrorsHasALimit) {
+TEST(SharpScattering, MirrorsConvergeWithGrowingPower) {
   const Film sharp = renderIn(mirrors(1e6), budget(300), 1).film; // lobes 1/1000 wide
   expectSamePicture(sharp, renderIn(mirrors(1e16), budget(300), 2).film);
   expectSamePicture(sharp, renderIn(mirrors(1e300), budget(300), 3).film);

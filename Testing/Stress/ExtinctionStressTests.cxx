@@ -45,7 +45,7 @@ struct RampCase {
 
 class LogarithmicRamp : public ::testing::TestWithParam<RampCase> {};
 
-TEST_P(LogarithmicRamp, TransmitsAsItsIntegralSays) {
+TEST_P(LogarithmicRamp, TransmittanceEqualsExpOfIntegral) {
   const auto [begin, depth] = GetParam();
   constexpr double spacing = 0.002;
   const Volume volume = layers(9, spacing, 0.1); // two decades a voxel
@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(Stretches, LogarithmicRamp,
                                            RampCase{6.0, 1.0}, RampCase{7.0, 0.2},
                                            RampCase{7.0, 3.0}, RampCase{7.9, 1.0}));
 
-TEST(NullCollisions, TheThinEndOfEverythingIsClear) {
+TEST(NullCollisions, ThinMatterUnderALargeMajorantIsClear) {
   // Optical depth 1.6e-10 under a majorant of 1e8: the ratio may lose that depth and roundoff.
   const Volume volume = makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(0.002)),
                                    [](const Vec3& p) { return p.x(); });
@@ -133,7 +133,7 @@ TransferFunction deep(const Rgb& albedo) {
 using ReflectanceCase = std::tuple<Profile, std::pair<double, double>>;
 class HalfSpaceProfile : public ::testing::TestWithParam<ReflectanceCase> {};
 
-TEST_P(HalfSpaceProfile, ReflectsAsChandrasekharSays) {
+TEST_P(HalfSpaceProfile, ReflectanceEqualsChandrasekhars) {
   const auto& [profile, reflectance] = GetParam();
   TestScene scene{layers(depthVoxels, 0.0005, 0.4), // 0.0165 mm deep: no loss at the sides
                   profile.transfer(Rgb::Constant(reflectance.first)),
@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
              (std::get<1>(info.param).first == 0.5 ? "Dark" : "Bright");
     });
 
-TEST(HalfSpace, LanesServeTheDeepOneAndNoDeeper) {
+TEST(HalfSpace, LanesServeDepthsUpToTheirLimit) {
   const Volume volume = layers(depthVoxels, 0.0005, 0.4);
   EXPECT_TRUE(WideTracker::serves(volume, deep(Rgb::Ones())));
   EXPECT_FALSE(WideTracker::serves(volume, deep(Rgb::Ones()).scaled(1.2)));
@@ -197,7 +197,7 @@ TestScene cornerScene(Volume volume, const TransferFunction& transfer) {
   return scene;
 }
 
-TEST(ExtremeContrast, IsAFurnaceWhereNothingIsAbsorbed) {
+TEST(ExtremeContrast, FurnaceIsOneWithoutAbsorption) {
   for (const double high : {1.0, 1e3, 5e4}) { // optical depth <= 800
     const TestScene scene = cornerScene(checkerboard(0.002), contrast(high, Rgb::Ones()));
     expectOne(renderIn(scene, budget(high > 1e4 ? 32 : 128)));
@@ -221,7 +221,7 @@ TestScene homogeneousScene(double unit) {
       linearTransfer(0.3 / unit, Rgb(1.0, 0.9, 0.5)));
 }
 
-TEST(UnitOfLength, DoesNotChangeABitOfThePicture) {
+TEST(UnitOfLength, PowerOfTwoKeepsEveryBitOfThePicture) {
   struct Case {
     SceneMaker make;
     double unit;
@@ -243,7 +243,7 @@ TEST(UnitOfLength, DoesNotChangeABitOfThePicture) {
   }
 }
 
-TEST(ExtremeContrast, TakesBoundedTime) {
+TEST(ExtremeContrast, NumberOfCollisionsIsBounded) {
   // One crossing takes at most (majorant x length) tentative collisions, plus Poisson's spread.
   const double crossing = densest * 0.016 * std::sqrt(3.0);
   const auto greatest = static_cast<std::uint64_t>(crossing + 6.0 * std::sqrt(crossing));
@@ -266,7 +266,7 @@ TEST(ExtremeContrast, TakesBoundedTime) {
 }
 
 // Distances at which a free path is no longer than the spacing of doubles at the volume.
-TEST(FarCamera, SeesTheSameTransmittance) {
+TEST(FarCamera, TransmittanceDoesNotDependOnDistance) {
   const Volume volume = makeVolume(centredGrid({8, 8, 8}, Vec3::Constant(20.0)),
                                    [](const Vec3& p) { return p.x() < 4.0 ? 0.0 : 1.0; });
   // Thin where the ray passes, with a majorant 10 000 times as high.

@@ -46,14 +46,14 @@ struct Place {
 
 class Placed : public ::testing::TestWithParam<Place> {};
 
-TEST_P(Placed, ShowsTheSamePicture) {
+TEST_P(Placed, PictureIsUnchanged) {
   const TestScene scene = bumpScene();
   const TestScene elsewhere = moved(scene, GetParam().map);
   const int samples = budget(400);
   expectSamePicture(renderIn(scene, samples, 1).film, renderIn(elsewhere, samples, 2).film);
 }
 
-TEST_P(Placed, KeepsTheDigitsOfAVoxel) {
+TEST_P(Placed, IndexRoundTripKeepsVoxelPrecision) {
   // Rounding of a coordinate of size c: half an ulp of c for each of a few operations, in voxels.
   // At 1e6 mm and 1 mm voxels: 1e-9 of a voxel.
   const Grid grid = moved(bumpScene(), GetParam().map).volume.grid;
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Place{"turnedLittle", turn(1e-9)}, Place{"halfTurn", turn(pi)}),
     [](const auto& info) { return std::string(info.param.name); });
 
-TEST(MirroredAxes, ShowTheSamePicture) {
+TEST(MirroredAxes, PictureIsUnchanged) {
   const TestScene scene = bumpScene();
   const Size3 size = scene.volume.grid.size;
   for (int axis = 0; axis < 3; ++axis) {
@@ -106,7 +106,7 @@ TestScene linearScene(const Size3& size, const Mat3& axes) {
   return scene;
 }
 
-TEST(ShearedAxes, ShowTheSamePicture) {
+TEST(ShearedAxes, PictureIsUnchanged) {
   const TestScene straight = linearScene({14, 14, 14}, Mat3::Identity());
   const Mat3 sheared = Mat3::FromRows({1.0, 0.9, 0.3}, {0.0, 0.8, -0.7}, {0.0, 0.0, 1.1});
   const Mat3 flat = // two axes nearly parallel
@@ -154,18 +154,18 @@ TestScene needleScene(bool resampled, const Rgb& albedo) {
   return scene;
 }
 
-TEST(Needles, ShowTheSamePictureAsSlicesOfTheSameField) {
+TEST(NeedleVoxels, PictureEqualsThatOfSlicesOfTheSameField) {
   const int samples = budget(1000);
   const Rgb albedo = Rgb::Constant(0.5);
   expectSamePicture(renderIn(needleScene(false, albedo), samples, 1).film,
                     renderIn(needleScene(true, albedo), samples, 2).film);
 }
 
-TEST(Needles, AreAFurnace) {
+TEST(NeedleVoxels, FurnaceIsOne) {
   expectOne(renderIn(needleScene(false, Rgb::Ones()), budget(100)));
 }
 
-TEST(Needles, TransmitAlongTheirDiagonalsAsTheirIntegralSays) {
+TEST(NeedleVoxels, DiagonalTransmittanceEqualsExpOfIntegral) {
   const Volume volume = needles(false);
   constexpr double sigma = 0.01;
   const RayProbe<> probe(volume, linearTransfer(sigma, Rgb::Zero()));

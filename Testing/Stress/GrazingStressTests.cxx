@@ -57,7 +57,7 @@ protected:
 /// Off-axis components of an axis-parallel direction.
 constexpr double slopes[] = {0.0, -0.0, 5e-324, -5e-324, 1e-300, -1e-300, 1e-17, -1e-17};
 
-TEST_P(Grazing, AlongFacesAndEdgesOfTheVolumeIsAllOrNothing) {
+TEST_P(Grazing, RayAlongAFaceOrEdgeWalksAllOrNothing) {
   const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   int inside = 0, outside = 0;
@@ -86,7 +86,7 @@ TEST_P(Grazing, AlongFacesAndEdgesOfTheVolumeIsAllOrNothing) {
   EXPECT_GT(inside, 0);
 }
 
-TEST_P(Grazing, NextToAFaceIsTheChord) {
+TEST_P(Grazing, RayNextToAFaceWalksTheChord) {
   const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   for (int along = 0; along < 3; ++along)
@@ -116,7 +116,7 @@ std::vector<Vec3> latticeDirections() {
   return directions;
 }
 
-TEST_P(Grazing, ThroughCentresFacesEdgesAndCornersOfVoxelsIsTheChord) {
+TEST_P(Grazing, RayThroughCentresAndCornersOfVoxelsWalksTheChord) {
   const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
   double greatest = 0.0;
   for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0.5, 0.5),
@@ -134,7 +134,7 @@ TEST_P(Grazing, ThroughCentresFacesEdgesAndCornersOfVoxelsIsTheChord) {
   EXPECT_GT(greatest, 2.0);
 }
 
-TEST_P(Grazing, FromTheSurfaceInAndOutIsTheChordOrNothing) {
+TEST_P(Grazing, RayFromACornerWalksTheChordInwardAndNothingOutward) {
   const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   for (int corner = 0; corner < 8; ++corner) {
@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(Grids, Grazing, ::testing::Range(0, 4), [](const auto& 
 });
 
 // Faces that are exact in binary: a ray that lies in such a face counts as inside (Box::clip).
-TEST(ExactFaces, CountAsInside) {
+TEST(ExactFaces, RayInAFaceCountsAsInside) {
   const Grid grid = centredGrid({6, 4, 2}, Vec3::Ones());
   const Volume volume = ones(grid);
   const RayProbe<> probe(volume, linearTransfer(sigma, Rgb::Zero()));

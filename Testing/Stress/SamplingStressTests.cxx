@@ -15,7 +15,7 @@ std::vector<Vec2> corners() {
   return result;
 }
 
-TEST(ChosenDraws, AreWhatWasChosen) {
+TEST(ChosenDraws, ChosenDrawReturnsTheChosenBits) {
   for (const int draw : {1, 2, 3, 7, 200})
     for (const std::uint64_t bits : {std::uint64_t{0}, ~std::uint64_t{0}, std::uint64_t{12345}}) {
       Random random = randomWithDraw(draw, bits);
@@ -46,7 +46,7 @@ TEST(RandomEnds, CoordinatesBeyond32BitsDoNotWrap) {
     }
 }
 
-TEST(DirectionEnds, AreUnit) {
+TEST(DirectionEnds, DirectionIsUnit) {
   for (const Vec2& u : corners())
     EXPECT_NEAR(uniformDirection(u).norm(), 1.0, 4e-16);
 }
@@ -68,7 +68,7 @@ long double oneMinusCosine(long double g, long double u) {
   return 2.0L * u * (1.0L - g) * (1.0L - g) * (1.0L + g * (1.0L - u)) / (a * a);
 }
 
-TEST_P(PhaseEnds, AreUnitWithTheirDensity) {
+TEST_P(PhaseEnds, DirectionIsUnitAndDensityExact) {
   const auto [g, precision] = GetParam();
   const Rgb albedo(1.0, 0.5, 0.0);
   const long double size = std::abs(static_cast<long double>(g));
@@ -100,7 +100,7 @@ Vec3 incidence(double cosine) {
   return {std::sqrt((1.0 - cosine) * (1.0 + cosine)), 0.0, -cosine};
 }
 
-TEST(SurfaceEnds, GiveUnitDirectionsAndBoundedWeights) {
+TEST(SurfaceEnds, DirectionIsUnitAndWeightBounded) {
   // The mixture of lobes is drawn in proportion to albedo and the viewer's Fresnel term: a weight
   // is at most the greatest Fresnel term over the least, 1 / F0 = 25.
   constexpr double greatestWeight = 25.0 * (1.0 + 1e-9);
@@ -164,7 +164,7 @@ std::vector<EnvironmentLight> environments() {
           mapLight(checker, least)};
 }
 
-TEST(EnvironmentEnds, AreUnitAndInOrNextToALitTexel) {
+TEST(EnvironmentEnds, DirectionIsUnitInOrNextToALitTexel) {
   for (const EnvironmentLight& light : environments()) {
     const EnvironmentSampler sampler(light);
     for (const Vec2& u : corners()) {
@@ -184,7 +184,7 @@ TEST(EnvironmentEnds, AreUnitAndInOrNextToALitTexel) {
   }
 }
 
-TEST(EnvironmentEnds, ABlackMapIsNeverDrawn) {
+TEST(EnvironmentEnds, BlackMapIsNeverDrawn) {
   const EnvironmentLight black = mapLight([](int, int) { return false; });
   const EnvironmentSampler sampler(black);
   const LightSet set({black}, unitGrid, camera());
@@ -217,7 +217,7 @@ std::vector<std::vector<Light>> lightings() {
   return result;
 }
 
-TEST(LightEnds, GiveUnitDirectionsAndFiniteContributions) {
+TEST(LightEnds, DirectionIsUnitAndContributionFinite) {
   // Points above, in the plane of, behind and on the area lights at the origin; next to and far
   // from the lights.
   const Vec3 points[] = {{0, 0, 1},   {0.5, 0.5, 0},       {0, 0, -1},        {0, 0, 0},
@@ -244,7 +244,7 @@ TEST(LightEnds, GiveUnitDirectionsAndFiniteContributions) {
   EXPECT_GT(drawn, 20000);
 }
 
-TEST(LightEnds, ALightInTheVolumesCentreLeavesUsableShares) {
+TEST(LightEnds, LightInTheVolumesCentreLeavesUsableShares) {
   AreaLight light = areaLight(AreaLight::Shape::disk, 1.0);
   light.center = unitGrid.worldCenter();
   const EnvironmentLight sky{Rgb::Ones(), {2, 1, std::vector<float>(6, 1.0F)}};
@@ -262,7 +262,7 @@ Volume bumps() {
   });
 }
 
-TEST(TrackingEnds, StayInTheRange) {
+TEST(TrackingEnds, CollisionsStayInTheRange) {
   const Volume volume = bumps();
   const RayProbe<> probe(volume, linearTransfer(2.0, Rgb::Ones()));
   const Interval range{1.0, 12.0};
@@ -289,7 +289,7 @@ PathSample tracedPath(const TestScene& scene, Random random, Counters& counters)
   });
 }
 
-TEST(PathEnds, AreBoundedByTheirCollisions) {
+TEST(PathEnds, RadianceIsBoundedByTheNumberOfCollisions) {
   for (const bool hybrid : {false, true})
     for (const double g : {-0.9999, 0.0, 0.9999}) {
       TestScene scene{

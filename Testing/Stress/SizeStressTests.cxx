@@ -63,7 +63,7 @@ protected:
   Volume m_volume;
 };
 
-TEST_P(SmallSizes, TransmitAsTheIntegralOfTheirFieldSays) {
+TEST_P(SmallSizes, TransmittanceEqualsExpOfIntegral) {
   constexpr double sigma = 0.3;
   const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
   const Grid& grid = m_volume.grid;
@@ -79,7 +79,7 @@ TEST_P(SmallSizes, TransmitAsTheIntegralOfTheirFieldSays) {
   }
 }
 
-TEST_P(SmallSizes, HaveTheGradientOfTheirFieldAndNoneAlongSingleVoxels) {
+TEST_P(SmallSizes, GradientIsZeroAlongSingleVoxels) {
   const RayProbe<> probe(m_volume, linearTransfer(1.0, Rgb::Zero()));
   const Grid& grid = m_volume.grid;
   for (int i = 0; i < 20; ++i) {
@@ -97,7 +97,7 @@ TEST_P(SmallSizes, HaveTheGradientOfTheirFieldAndNoneAlongSingleVoxels) {
   }
 }
 
-TEST_P(SmallSizes, AreAFurnace) {
+TEST_P(SmallSizes, FurnaceIsOne) {
   for (const bool hybrid : {false, true}) {
     TestScene scene{m_volume, linearTransfer(0.8, Rgb::Ones()), {EnvironmentLight{}}, {}, 12, 12};
     scene.pose.position = {3.0, -20.0, 6.0};
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SmallSizes,
 
 // ---- cells
 
-TEST(CellsOfAnyShape, AreAboutAQuarterOfAMillion) {
+TEST(MajorantCells, AnyShapeHasAboutAQuarterOfAMillionCells) {
   constexpr double wanted = 1 << 18;
   struct Shape {
     Size3 size;
@@ -144,7 +144,7 @@ TEST(CellsOfAnyShape, AreAboutAQuarterOfAMillion) {
   }
 }
 
-TEST(PrimeSizes, AreBoundedCellByCellWhereEdgesDoNotDivideThem) {
+TEST(MajorantCells, PrimeSizesTransmitExpOfIntegral) {
   const Volume volume = makeVolume<std::uint8_t>(
       centredGrid({127, 131, 113}, Vec3::Constant(0.05)), [](const Vec3& p) {
         return 127.5 + 127.5 * std::sin(0.3 * p.x()) * std::cos(0.2 * p.y() + 0.25 * p.z());
@@ -203,7 +203,7 @@ Volume hugeVolume(std::int64_t side) {
           {}};
 }
 
-TEST(MoreThan31Bits, AreReadToTheirFarEnd) {
+TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
   if (isSanitized() || availableGigabytes() < 8.0)
     GTEST_SKIP() << "needs 8 GB of free memory and no sanitizer";
   constexpr std::int64_t side = 1300;

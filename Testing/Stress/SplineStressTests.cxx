@@ -42,7 +42,7 @@ void expectExact(const SplineData& data) {
 
 // ---- against the exact solution
 
-TEST(SplineStress, IsTheFiftyDigitSolutionOnRandomSites) {
+TEST(SplineStress, RandomSitesEqualTheFiftyDigitSolution) {
   Random random(1, 0, 0);
   constexpr int cases = 240;
   constexpr std::array ps{1e-3, 0.1, 0.5, 0.9, 1.0 - 1e-6, 1.0};
@@ -65,7 +65,7 @@ TEST(SplineStress, IsTheFiftyDigitSolutionOnRandomSites) {
   RecordProperty("worstError", (std::ostringstream() << worst).str());
 }
 
-TEST(SplineStress, AThousandSitesAreSolvedToo) {
+TEST(SplineStress, ThousandSitesEqualTheSaddleSystem) {
   // Disc of 1 mm, in which the saddle system is well enough conditioned for long double.
   Random random(2, 0, 0);
   const SplineData data = scattered(random, 1000, 1.0, {0.3, -0.2}, 500.0);
@@ -81,7 +81,7 @@ TEST(SplineStress, AThousandSitesAreSolvedToo) {
   EXPECT_LE(miss, splineBound(through) * 1000.0);
 }
 
-TEST(SplineStress, ACircleOfDepthJumps) {
+TEST(SplineStress, DepthJumpsOnACircleAreExact) {
   SplineData data;
   for (int i = 0; i < 40; ++i) {
     const double angle = 2.0 * pi * i / 40;
@@ -93,7 +93,7 @@ TEST(SplineStress, ACircleOfDepthJumps) {
   expectExact(data);
 }
 
-TEST(SplineStress, ClustersAtTwoScales) {
+TEST(SplineStress, ClustersAtTwoScalesAreExact) {
   for (const double width : {1e-3, 1e-6}) {
     Random random(3, 0, 0);
     SplineData data, centers;
@@ -114,7 +114,7 @@ TEST(SplineStress, ClustersAtTwoScales) {
   }
 }
 
-TEST(SplineStress, NearlyCoincidentSites) {
+TEST(SplineStress, NearlyCoincidentSitesAreExact) {
   for (const double apart : {1e-3, 1e-6, 1e-9, 1e-12})
     for (const double jump : {0.0, 1e-3, 500.0})
       for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0 - 1e-13, 1.0}) {
@@ -129,7 +129,7 @@ TEST(SplineStress, NearlyCoincidentSites) {
       }
 }
 
-TEST(SplineStress, NearlyCollinearSites) {
+TEST(SplineStress, NearlyCollinearSitesAreExact) {
   for (const double breadth : {1e-3, 1e-6}) {
     Random random(5, 0, 0);
     SplineData data;
@@ -140,7 +140,7 @@ TEST(SplineStress, NearlyCollinearSites) {
   }
 }
 
-TEST(SplineStress, SitesInNextToNoSpace) {
+TEST(SplineStress, SitesInATinyDiscAreExact) {
   for (const double radius : {1e-3, 1e-6, 1e-12}) {
     Random random(6, 0, 0);
     SCOPED_TRACE(radius);
@@ -324,7 +324,7 @@ SplineData outline(int count, double radius) {
   return data;
 }
 
-TEST(SplineStress, ConditionNumbersAreWhatTheyClaim) {
+TEST(SplineStress, ConditionNumberEqualsTheRatioOfEigenvalues) {
   Random random(14, 0, 0);
   for (const SplineData& data : {outline(50, 60.0), scattered(random, 30, 5.0, {10, 20}, 1.0)}) {
     for (const double lambda : {0.0, 1.0}) {
@@ -334,7 +334,7 @@ TEST(SplineStress, ConditionNumbersAreWhatTheyClaim) {
   }
 }
 
-TEST(SplineStress, ConditionNumbersStaySmall) {
+TEST(SplineStress, ConditionNumberStaysSmall) {
   std::printf("condition number in the unit disc\n%10s %6s %10s %10s %10s\n", "", "N", "1 mm",
               "100 mm", "p = 1");
   for (const char* layout : {"outline", "disc"})

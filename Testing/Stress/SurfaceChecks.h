@@ -93,7 +93,8 @@ inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOpt
   EXPECT_LE(mismatch.mean, mismatch.max * (1.0 + 1e-12));
   EXPECT_LE(mismatch.p95, mismatch.max);
   EXPECT_TRUE(std::isfinite(mismatch.max));
-  const std::string flat = "the focus covers hardly a pixel: the clipping surface is flat";
+  const std::string flat = "the focus covers hardly a pixel: the clipping surface is flat; choose "
+                           "a larger --size, or a view that frames the focus";
   EXPECT_EQ(std::ranges::count(surface.warnings, flat),
             surface.controlPoints.size() < std::min<std::size_t>(3, asked) ? 1 : 0);
 }

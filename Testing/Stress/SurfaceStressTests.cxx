@@ -23,22 +23,24 @@ Mask oneVoxel() {
   return boxMask(cube, Vec3::Constant(0.1), Vec3::Constant(0.9));
 }
 
-TEST(SurfaceStress, OneVoxel) {
+TEST(SurfaceStress, OneVoxelGivesASoundSurface) {
   for (const double scale : {0.9, 4.0})
     expectSoundFromFront(oneVoxel(), scale);
 }
 
-TEST(SurfaceStress, OnePixel) {
+TEST(SurfaceStress, OnePixelGivesAFlatSurfaceAndAWarning) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 20.0, 40, 40);
   const View view{camera, cube, oneVoxel()};
   const ClippingSurface surface = view.surface({});
   EXPECT_EQ(surface.controlPoints.size(), 1U);
   EXPECT_EQ(surface.warnings.size(), 1U);
-  EXPECT_EQ(surface.warnings[0], "the focus covers hardly a pixel: the clipping surface is flat");
+  EXPECT_EQ(surface.warnings[0],
+            "the focus covers hardly a pixel: the clipping surface is flat; choose a larger "
+            "--size, or a view that frames the focus");
   expectSound(view);
 }
 
-TEST(SurfaceStress, AFocusAtTheVolumesBorder) {
+TEST(SurfaceStress, FocusAtTheVolumesBorderIsSound) {
   for (const Vec3& corner : {Vec3(-16, -16, -16), Vec3(16, 16, 16), Vec3(-16, 16, 0)}) {
     const Mask focus =
         maskOf(cube, [&](const Vec3& p) { return (p - corner).cwiseAbs().maxCoeff() < 9.0; });
@@ -47,7 +49,7 @@ TEST(SurfaceStress, AFocusAtTheVolumesBorder) {
   }
 }
 
-TEST(SurfaceStress, AFocusThatFillsTheView) {
+TEST(SurfaceStress, FocusThatFillsTheViewIsSound) {
   const Mask everything = maskOf(cube, [](const Vec3&) { return true; });
   for (const double scale : {5.0, 15.9, 16.0, 40.0})
     expectSoundFromFront(everything, scale);
@@ -62,7 +64,7 @@ TEST(SurfaceStress, AFocusThatFillsTheView) {
   expectSoundFromFront(sphereMask(cube, 14.0), 3.0);
 }
 
-TEST(SurfaceStress, ManyComponents) {
+TEST(SurfaceStress, ManyComponentsAreSound) {
   const auto every = [](const Vec3& p, double n) {
     const Vec3 cell = (p.array() + 15.5) / n;
     return cell == Vec3(cell.array().floor());
@@ -71,7 +73,7 @@ TEST(SurfaceStress, ManyComponents) {
     expectSoundFromFront(maskOf(cube, [&](const Vec3& p) { return every(p, n); }), 17.0);
 }
 
-TEST(SurfaceStress, Holes) {
+TEST(SurfaceStress, HolesInTheFocusAreSound) {
   const Mask plate = maskOf(cube, [](const Vec3& p) {
     const bool isHole = std::hypot(std::remainder(p.x(), 8.0), std::remainder(p.z(), 8.0)) < 2.5;
     return std::abs(p.y()) < 3.0 && !isHole;
@@ -83,7 +85,7 @@ TEST(SurfaceStress, Holes) {
   expectSoundFromFront(ring, 17.0);
 }
 
-TEST(SurfaceStress, ASheetSeenEdgeOn) {
+TEST(SurfaceStress, SheetSeenEdgeOnIsSound) {
   // Sheet one voxel thick along the view: exactly parallel, and where the sheet is a staircase.
   for (const double tilt : {0.0, 1e-3, 0.3}) {
     const Mask sheet = maskOf(cube, [&](const Vec3& p) {
@@ -95,7 +97,7 @@ TEST(SurfaceStress, ASheetSeenEdgeOn) {
   }
 }
 
-TEST(SurfaceStress, DepthJumps) {
+TEST(SurfaceStress, DepthJumpsAreSound) {
   // Stripes and a chequerboard of plates, two voxels thick each, 500 mm apart.
   const Grid deep = centredGrid({32, 32, 32}, {1.0, 20.0, 1.0});
   const auto plate = [](const Vec3& p, bool isNear) {
@@ -129,7 +131,7 @@ Camera camera(Projection projection, const Vec3& from, const Vec3& to, double sc
   return {pose, 17, 13};
 }
 
-TEST(SurfaceStress, TheCameraInsideTheVolume) {
+TEST(SurfaceStress, CameraInsideTheVolumeIsSound) {
   const Mask ball = sphereMask(cube, 6.0);
   for (const auto projection : projections)
     for (const Vec3& from : {Vec3(10, -11, 3), Vec3(8, 0, 0), Vec3(-16, -16, -16), Vec3(2, 1, 3)})
@@ -139,7 +141,7 @@ TEST(SurfaceStress, TheCameraInsideTheVolume) {
       }
 }
 
-TEST(SurfaceStress, TheCameraInsideTheFocus) {
+TEST(SurfaceStress, CameraInsideTheFocusIsSound) {
   const Mask everything = maskOf(cube, [](const Vec3&) { return true; });
   for (const auto projection : projections) {
     const View view{camera(projection, {3, 2, 1}, {-1, 5, 2}, 5.0), cube, everything};
@@ -158,7 +160,7 @@ TEST(SurfaceStress, TheCameraInsideTheFocus) {
   }
 }
 
-TEST(SurfaceStress, LooksAlongAxesAndDiagonalsThroughFacesAndCorners) {
+TEST(SurfaceStress, ViewsAlongAxesAndDiagonalsAreSound) {
   const Mask box = boxMask(cube, {-6, -6, -6}, {6, 6, 6}); // voxel centres at half-integers
   for (const auto projection : projections)
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(1, 1, 0), Vec3(1, 1, 1)})
@@ -169,7 +171,7 @@ TEST(SurfaceStress, LooksAlongAxesAndDiagonalsThroughFacesAndCorners) {
       }
 }
 
-TEST(SurfaceStress, FieldsOfView) {
+TEST(SurfaceStress, ExtremeFieldsOfViewAreSound) {
   const Mask ball = sphereMask(cube, 9.0);
   for (const double angle : {1.0, 150.0, 179.0})
     for (const double distance : {20.0, 60.0}) {
@@ -183,7 +185,7 @@ TEST(SurfaceStress, FieldsOfView) {
   expectSound({camera(Projection::perspective, {0, -60, 0.2}, Vec3::Zero(), 1, 1e-6), cube, ball});
 }
 
-TEST(SurfaceStress, FlatVoxels) {
+TEST(SurfaceStress, FlatVoxelsAreSound) {
   const Grid flat = centredGrid({100, 100, 3}, {0.01, 0.01, 100.0});
   const Mask focus = boxMask(flat, {-0.2, -0.3, -1.0}, {0.2, 0.3, 1.0});
   for (const auto projection : projections) {
@@ -193,7 +195,7 @@ TEST(SurfaceStress, FlatVoxels) {
   }
 }
 
-TEST(SurfaceStress, FarFromTheOriginIsTheSame) {
+TEST(SurfaceStress, FarFromTheOriginDepthsAreUnchanged) {
   const Vec3 far(1e6, -1e6, 1e6);
   Mask ball = sphereMask(cube, 9.0);
   for (const auto projection : projections) {
@@ -229,7 +231,7 @@ void expectRefused(const Camera& camera, const Domain& volume, const Mask& focus
     }
 }
 
-TEST(SurfaceStress, AFocusThatNoRayMeetsIsRefused) {
+TEST(SurfaceStress, FocusThatNoRayMeetsIsRefused) {
   const Mask ball = sphereMask(cube, 4.0);
   const Camera ahead = anteriorCamera(Projection::perspective, 100.0, 20.0, 16, 16);
   expectRefused(ahead, cube, maskOf(cube, [](const Vec3&) { return false; }));

@@ -1,4 +1,5 @@
-// Extreme transfer functions, and volumes of one value, against the function's integral by hand.
+// Extreme transfer functions, and volumes of one value, against analytic integrals of the
+// functions.
 
 #include "StressSupport.h"
 
@@ -95,7 +96,7 @@ std::vector<TransferCase> transferCases() {
 
 class TransferExtremes : public ::testing::TestWithParam<TransferCase> {};
 
-TEST_P(TransferExtremes, TransmitAsTheirIntegralSays) {
+TEST_P(TransferExtremes, TransmittanceEqualsExpOfIntegral) {
   const Volume volume = scalarRamp();
   const double expected = std::exp(-opticalDepth(GetParam().knots));
   Knots unsorted = GetParam().knots; // any order of positions; coincident knots keep their order
@@ -110,7 +111,7 @@ TEST_P(TransferExtremes, TransmitAsTheirIntegralSays) {
   }
 }
 
-TEST_P(TransferExtremes, AreAFurnace) {
+TEST_P(TransferExtremes, FurnaceIsOne) {
   TestScene scene{scalarRamp(),
                   {ScalarFunction(GetParam().knots), ColorFunction({{0.0, Rgb::Ones()}})},
                   {EnvironmentLight{}},
@@ -141,7 +142,7 @@ struct PropertyCase {
 
 class PropertyExtremes : public ::testing::TestWithParam<PropertyCase> {};
 
-TEST_P(PropertyExtremes, TransmitAsTheFormulaSays) {
+TEST_P(PropertyExtremes, TransmittanceEqualsTheFormula) {
   VolumeProperty property;
   property.scalarOpacity = GetParam().opacity;
   property.color = {{0.0, Rgb::Zero()}};
@@ -200,7 +201,7 @@ void expectConstantIs(double value, double sigma_t) {
   }
 }
 
-TEST(ConstantVolumes, AreHomogeneous) {
+TEST(Classification, ConstantVolumeHasConstantExtinction) {
   expectConstantIs<std::uint8_t>(0.0, 0.3); // a step belongs to its right side
   expectConstantIs<std::int16_t>(0.0, 0.3);
   expectConstantIs<float>(0.0, 0.3);

@@ -107,7 +107,7 @@ std::vector<T> extremes() {
           static_cast<T>(Limits::lowest() + 1)};
 }
 
-TEST(OddVoxels, OfIntegersAreKeptOrRounded) {
+TEST(OddVoxels, ExtremeIntegersAreKeptOrRounded) {
   expectReplaced<std::int8_t>(extremes<std::int8_t>());
   expectReplaced<std::uint8_t>(extremes<std::uint8_t>());
   expectReplaced<std::int16_t>(extremes<std::int16_t>());
@@ -135,16 +135,16 @@ void expectFloatingReplaced() {
   expectReplaced<T>({T(1e-30), nan});
 }
 
-TEST(OddVoxels, OfFloatsAreReplaced) {
+TEST(OddVoxels, NonFiniteFloatsAreReplaced) {
   expectFloatingReplaced<float>();
 }
 
-TEST(OddVoxels, OfDoublesAreReplaced) {
+TEST(OddVoxels, NonFiniteDoublesAreReplaced) {
   expectFloatingReplaced<double>();
   expectReplaced<double>({1e-310, 1e-40, -1e-40, 1e39, -1e300});
 }
 
-TEST(OddVoxels, InAVolumeOfNothingElseAreRefusedOrConstant) {
+TEST(OddVoxels, WithoutFiniteVoxelIsRefusedWithOneIsConstant) {
   const TemporaryFolder folder;
   const double nan = std::nan("");
   writeFile(folder / "none.nrrd", std::vector<double>(64, nan), cube);
@@ -157,7 +157,7 @@ TEST(OddVoxels, InAVolumeOfNothingElseAreRefusedOrConstant) {
   expectEqualBits(pictureOf(folder / "one.nrrd", {}), pictureOf(folder / "easy.nrrd", {}));
 }
 
-TEST(ConstantFiles, ShowTheSameHazeByDefaultWhateverTheirValue) {
+TEST(ConstantFiles, DefaultLookDoesNotDependOnTheValue) {
   const TemporaryFolder folder;
   const auto shown = [&](double value) {
     writeFile(folder / "v.nrrd", std::vector<float>(64, static_cast<float>(value)), cube);
@@ -178,7 +178,7 @@ std::string denseLook(double extinction) {
   return text.str();
 }
 
-TEST(ExtinctionLimit, IsAnOpticalDepthOfTenMillion) {
+TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsRefused) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
   const double limit = 1e7 / (4.0 * std::sqrt(3.0)); // across the diagonal of 4 mm
@@ -197,7 +197,7 @@ TEST(ExtinctionLimit, IsAnOpticalDepthOfTenMillion) {
   expectRefused(look, "extinction: reaches", [&] { Scene scene(request); });
 }
 
-TEST(ExtinctionLimit, ReflectsAsChandrasekharSays) {
+TEST(ExtinctionLimit, ReflectanceEqualsChandrasekhars) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
   const auto look = folder.write("at.json", denseLook(1e6));

@@ -64,7 +64,7 @@ std::string misbehave(const std::string& how) {
 
 const ApartJob misbehaving("test-misbehave", misbehave, {1, manyBytes});
 
-TEST(Apart, answersOneQuestionAfterAnother) {
+TEST(Apart, AnswersInTurnWithinTheSizeLimits) {
   Apart child(echo);
   EXPECT_EQ(child.ask("hello", most), "hello");
   const std::string large(60000, 'x');
@@ -75,7 +75,7 @@ TEST(Apart, answersOneQuestionAfterAnother) {
   EXPECT_EQ(child.ask("hello", 5), "hello");
 }
 
-TEST(Apart, survivesWhateverHappensThere) {
+TEST(Apart, SurvivesCrashesAndTimeoutsOfTheChild) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   {
@@ -94,7 +94,7 @@ TEST(Apart, survivesWhateverHappensThere) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__clang__) // sanitizers map terabytes
-TEST(Apart, leavesLittleMemory) {
+TEST(Apart, ChildCannotTakeMuchMemory) {
   Apart child(misbehaving);
   EXPECT_EQ(child.ask("take memory", 2 * manyBytes), "");
 }
@@ -132,7 +132,7 @@ std::string allowed(const std::string& path) {
 
 const ApartJob allowing("test-allowed", allowed);
 
-TEST(Apart, inheritsNothingAndMayChangeNothing) {
+TEST(Apart, ChildInheritsNothingAndWritesNothing) {
   const TemporaryFolder folder;
   const std::string path = folder / "made";
   const int file = ::open("/dev/null", O_RDONLY); // inherited unless the child closes it
@@ -154,7 +154,7 @@ TEST(Apart, inheritsNothingAndMayChangeNothing) {
   EXPECT_EQ(found, "no more");
 }
 
-TEST(Apart, saysThatNoProcessCanBeStarted) {
+TEST(Apart, UnstartableProcessIsAnOutputError) {
   rlimit before{};
   ::getrlimit(RLIMIT_NOFILE, &before);
   const rlimit none{0, before.rlim_max};
@@ -172,7 +172,7 @@ TEST(Apart, saysThatNoProcessCanBeStarted) {
   EXPECT_EQ(child.ask("hello", most), "hello");
 }
 
-TEST(Apart, worksBesideOtherThreads) {
+TEST(Apart, EachThreadMayHaveAChild) {
   std::vector<std::thread> threads;
   std::array<int, 8> right{};
   for (int& count : right)
@@ -190,7 +190,7 @@ TEST(Apart, worksBesideOtherThreads) {
 
 /// A process queries a child, reports the child's number, and has the child sleep; then the process
 /// is killed.
-TEST(Apart, endsWithItsParent) {
+TEST(Apart, ChildEndsWithItsParent) {
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
   const pid_t parent = ::fork();
@@ -215,7 +215,7 @@ TEST(Apart, endsWithItsParent) {
   ::close(pipe[1]);
 }
 
-TEST(AnswerReader, givesWhatWasPut) {
+TEST(AnswerReader, ReturnsTheValuesThatWerePut) {
   AnswerWriter writer;
   writer.put("text");
   writer.put(std::vector<double>{1.5, -2.0});
@@ -230,7 +230,7 @@ TEST(AnswerReader, givesWhatWasPut) {
   EXPECT_TRUE(reader.atEnd());
 }
 
-TEST(AnswerReader, trustsNoByte) {
+TEST(AnswerReader, RefusesTruncatedAndOverlongAnswers) {
   AnswerWriter writer;
   writer.put(std::vector<double>{1.0, 2.0});
   const std::string& whole = writer.bytes();

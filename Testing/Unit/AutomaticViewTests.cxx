@@ -50,7 +50,7 @@ bool inLump(const Vec3& p) {
          inside({9, 4, 8}, {4, 7, 4});
 }
 
-TEST_F(ViewOfCube, ScoresABallAsItsClosedFormSays) {
+TEST_F(ViewOfCube, ScoreOfABallEqualsClosedForm) {
   constexpr double radius = 15.0, edge = 60.0, disc = pi * radius * radius;
   const Mask ball = focusWhere([](const Vec3& p) { return p.norm() <= radius; });
   const ViewScorer score = scorer(ball);
@@ -69,7 +69,7 @@ TEST_F(ViewOfCube, ScoresABallAsItsClosedFormSays) {
   EXPECT_NEAR(score(Vec3::UnitZ(), 16384).score, front * 0.9 / 1.05, 0.01 * front);
 }
 
-TEST_F(ViewOfCube, ShowsASlabFromTheFaceThatItIsNear) {
+TEST_F(ViewOfCube, SlabIsShownFromTheNearestFace) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0}) {
       const Mask slab = focusWhere([&](const Vec3& p) {
@@ -84,7 +84,7 @@ TEST_F(ViewOfCube, ShowsASlabFromTheFaceThatItIsNear) {
     }
 }
 
-TEST_F(ViewOfCube, ShowsADiscFlatOnFromTheUsualSide) {
+TEST_F(ViewOfCube, DiscIsShownFlatOnFromTheUsualSide) {
   for (const Vec3& normal : {Vec3(0, 1, 0), Vec3(1, 2, 0.5), Vec3(-2, 1, 1), Vec3(1, 1, -1)}) {
     const Vec3 unit = normal.normalized();
     const Mask disc = focusWhere([&](const Vec3& p) {
@@ -94,13 +94,13 @@ TEST_F(ViewOfCube, ShowsADiscFlatOnFromTheUsualSide) {
   }
 }
 
-TEST_F(ViewOfCube, LooksThroughAirRatherThanThroughTissue) {
+TEST_F(ViewOfCube, ViewThroughAirIsPreferredToTissue) {
   volume = makeVolume(grid, [](const Vec3& index) { return index.y() > 14.5 ? 1.0 : 0.0; });
   const Mask ball = focusWhere([](const Vec3& p) { return p.norm() <= 10.0; });
   EXPECT_LT(viewOf(ball).fromTarget.y(), -0.7) << "from posterior, against the habit";
 }
 
-TEST_F(ViewOfCube, MovesLittleForAFocusThatDiffersLittle) {
+TEST_F(ViewOfCube, ViewMovesLittleForASimilarFocus) {
   const Vec3 own = viewOf(focusWhere(inLump)).fromTarget;
   const auto angle = [&](const auto& predicate) {
     return degreesBetween(own, viewOf(focusWhere(predicate)).fromTarget);
@@ -126,14 +126,14 @@ TEST_F(ViewOfCube, MovesLittleForAFocusThatDiffersLittle) {
       << "at half the resolution, of parts 8 mm wide";
 }
 
-TEST_F(ViewOfCube, IsTheSameForAnyNumberOfThreads) {
+TEST_F(ViewOfCube, ViewIsTheSameForAnyNumberOfThreads) {
   const Mask lump = focusWhere(inLump);
   const Vec3 many = viewOf(lump).fromTarget;
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(viewOf(lump).fromTarget, many);
 }
 
-TEST_F(ViewOfCube, LooksFromAnteriorAtWhatCannotBeSeen) {
+TEST_F(ViewOfCube, EmptyFocusIsShownFromAnterior) {
   Mask nothing;
   nothing.grid = centredGrid({3, 3, 3}, {1.0, 1.0, 1.0});
   nothing.voxels.assign(27, 0);

@@ -26,7 +26,7 @@ Film behindNothing(const Background& background, double sigma_t = 0.0, int threa
   return scene.render(settings).film;
 }
 
-TEST(Background, RunsFromBottomToTopInDisplayValues) {
+TEST(Background, GradientIsLinearInDisplayValues) {
   const Rgb bottom(0.756863, 0.764706, 0.909804); // Slicer's own defaults
   const Rgb top(0.454902, 0.470588, 0.745098);
   const Film film = behindNothing(Background::gradient(bottom, top));
@@ -43,7 +43,7 @@ TEST(Background, RunsFromBottomToTopInDisplayValues) {
     }
 }
 
-TEST(Background, OfTwoEqualColoursIsPlain) {
+TEST(Background, EqualColoursGiveAPlainBackground) {
   const Background background = Background::gradient(Rgb(0.5, 0.2, 1.0), Rgb(0.5, 0.2, 1.0));
   EXPECT_EQ(background.kind, Background::Kind::color);
   EXPECT_NEAR(background.color[0], 0.21404114, 1e-8);
@@ -51,7 +51,7 @@ TEST(Background, OfTwoEqualColoursIsPlain) {
   EXPECT_EQ((behindNothing(background).at(0, 0).mean - background.color).abs().maxCoeff(), 0.0);
 }
 
-TEST(Background, ShowsThroughTheVolumeTheSameOnAnyThread) {
+TEST(Background, ShowsThroughTheVolumeForAnyNumberOfThreads) {
   const Background background = Background::gradient(Rgb(0.1, 0.2, 0.3), Rgb(0.9, 0.8, 0.7));
   const Film one = behindNothing(background, 0.3, 1);
   const Film two = behindNothing(background, 0.3, 2);

@@ -32,7 +32,7 @@ struct Ball {
   }
 };
 
-TEST(ClipEdge, RisesLinearlyFromTheGhostBehindTheSurface) {
+TEST(ClipEdge, KeepRisesLinearlyFromTheGhostToOne) {
   const ClipEdge sharp, ghost{0.25, 0.0}, soft{0.0, 4.0}, both{0.2, 4.0};
   EXPECT_EQ(sharp(-1e-9), 0.0);
   EXPECT_EQ(sharp(0.0), 1.0);
@@ -46,7 +46,7 @@ TEST(ClipEdge, RisesLinearlyFromTheGhostBehindTheSurface) {
   EXPECT_EQ(both(infinity), 1.0);
 }
 
-TEST(ClipEdge, AGhostIsSeenFromTheEyeOn) {
+TEST(ClipEdge, GhostIsVisibleFromTheEyeOn) {
   const Ball ball(Projection::perspective);
   SurfaceOptions options;
   options.edge.ghost = 0.125;
@@ -59,7 +59,7 @@ TEST(ClipEdge, AGhostIsSeenFromTheEyeOn) {
   EXPECT_NEAR(behindSurface(clip, ray).begin, 88.0, 0.3);
 }
 
-TEST(ClipEdge, BoxesBoundWhatIsKeptInThem) {
+TEST(ClipEdge, KeptInBoundsKeepOfEveryPoint) {
   Random random(3, 0, 0);
   for (const Projection projection : projections) {
     const Ball ball(projection);
@@ -100,7 +100,7 @@ TEST(ClipEdge, BoxesBoundWhatIsKeptInThem) {
   }
 }
 
-TEST(Clip, AnOffsetMovesTheWholeSurfaceAlongTheView) {
+TEST(Clip, OffsetMovesTheSurfaceAlongTheView) {
   const Ball ball(Projection::orthographic);
   SurfaceOptions options;
   const auto plain = std::get<ClipDepth>(ball.surface(options).clip);
@@ -112,7 +112,7 @@ TEST(Clip, AnOffsetMovesTheWholeSurfaceAlongTheView) {
 
 class Holes : public ::testing::TestWithParam<Projection> {};
 
-TEST_P(Holes, ABoxIsFlatAtTheFocusFarthestVisiblePointAndWiderByItsMargin) {
+TEST_P(Holes, BoxIsFlatAtTheFarthestVisiblePointAndWiderByItsMargin) {
   const Ball ball(GetParam());
   SurfaceOptions options;
   options.mode = SurfaceMode::hole;
@@ -141,7 +141,7 @@ TEST_P(Holes, ABoxIsFlatAtTheFocusFarthestVisiblePointAndWiderByItsMargin) {
   EXPECT_EQ(below(0, 0, 87.0), 0.0);
 }
 
-TEST_P(Holes, ACylinderIsRound) {
+TEST_P(Holes, CylinderIsRound) {
   const Ball ball(GetParam());
   SurfaceOptions options;
   options.mode = SurfaceMode::hole;
@@ -152,7 +152,7 @@ TEST_P(Holes, ACylinderIsRound) {
   EXPECT_EQ(ball.keepAt(clip, 19.5, 0, 80.0), 1.0);
 }
 
-TEST_P(Holes, ASphereLeavesABowl) {
+TEST_P(Holes, SphereLeavesABowl) {
   const Ball ball(GetParam());
   SurfaceOptions options;
   options.mode = SurfaceMode::hole;
@@ -179,7 +179,7 @@ TEST_P(Holes, ASphereLeavesABowl) {
 
 INSTANTIATE_TEST_SUITE_P(Projections, Holes, ::testing::ValuesIn(projections));
 
-TEST(FocusPlane, IsThePlaneOfAFlatFocus) {
+TEST(FocusPlane, FlatFocusGivesItsOwnPlane) {
   const Grid volume = centredGrid({80, 80, 80});
   const Vec3 normal = Vec3(0.3, -1.0, 0.2).normalized();
   const Mask focus = maskOf(volume, [&](const Vec3& p) {
@@ -195,7 +195,7 @@ TEST(FocusPlane, IsThePlaneOfAFlatFocus) {
   }
 }
 
-TEST(FocusPlane, FacesTheEyeWhereThereIsOneSample) {
+TEST(FocusPlane, OneSampleGivesAPlaneFacingTheEye) {
   const Camera camera = anteriorCamera(Projection::orthographic, 150, 40, 3, 3);
   const Grid volume = centredGrid({80, 80, 80});
   const Mask focus = boxMask(volume, {-3, -3, -3}, {3, 3, 3});
@@ -210,7 +210,7 @@ struct Cuboid {
   Camera camera = anteriorCamera(Projection::orthographic, 100, 40, 160, 160);
 };
 
-TEST(BoundaryMeasures, AreTheHeightOfTheCliffsOfACutaway) {
+TEST(BoundaryMeasures, CutawayGapIsTheHeightOfItsCliffs) {
   const Cuboid model;
   const ClippingSurface surface =
       buildClippingSurface(model.camera, model.volume, model.focus, {.mode = SurfaceMode::cutaway});
@@ -226,7 +226,7 @@ TEST(BoundaryMeasures, AreTheHeightOfTheCliffsOfACutaway) {
   EXPECT_GT(measures.crossings, 100U);
 }
 
-TEST(BoundaryMeasures, AreNothingWhereTheSurfaceIsThePlaneOfTheFocus) {
+TEST(BoundaryMeasures, AreZeroOnAPlanarFocus) {
   const Cuboid model;
   for (const Boundary boundary : {Boundary::spline, Boundary::exact}) {
     SurfaceOptions options;
@@ -241,7 +241,7 @@ TEST(BoundaryMeasures, AreNothingWhereTheSurfaceIsThePlaneOfTheFocus) {
   }
 }
 
-TEST(BoundaryMeasures, AreATiltedPlanesDistanceAndSlope) {
+TEST(BoundaryMeasures, TiltedPlaneGapEqualsItsDistance) {
   const Cuboid model;
   const FocusDepth focus = traceFocus(model.camera, model.volume, model.focus);
   const double front = focus.depth.at(focus.depth.viewportSample(80, 80));
@@ -259,7 +259,7 @@ TEST(BoundaryMeasures, AreATiltedPlanesDistanceAndSlope) {
   EXPECT_NEAR(measures.slopeJump.max, flat.slopeJump.max + 0.25, 1e-3);
 }
 
-TEST(BoundaryMeasures, CountTheFocusOwnJumpsApart) {
+TEST(BoundaryMeasures, JumpsWithinTheFocusAreCountedSeparately) {
   const Grid volume = centredGrid({80, 80, 80});
   // The right half lies 10 mm deeper.
   const Mask focus = maskOf(volume, [](const Vec3& p) {

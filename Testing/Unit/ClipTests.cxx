@@ -57,7 +57,7 @@ TEST(Clip, NoneKeepsEverything) {
   EXPECT_EQ(visible(Clip{}, {}).end, infinity);
 }
 
-TEST(Clip, PlaneRemovesWhatItsNormalPointsAt) {
+TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
   const Clip clip =
       ClipPlane{anteriorCamera(Projection::orthographic, 100, 50, 8, 8), {0, -5, 0}, {0, -3, 0}};
   EXPECT_EQ(keep(clip, {0, -6, 0}), 0.0);
@@ -75,7 +75,7 @@ TEST(Clip, PlaneParallelToARayRemovesAllOrNothing) {
   EXPECT_FALSE(visible(ClipPlane{camera, {1, 0, 0}, {1, 0, 0}}, ray).empty());
 }
 
-TEST(Clip, InPerspectiveWhatIsBehindTheEyeIsRemovedInEveryClippedMode) {
+TEST(Clip, PerspectiveRemovesPointsBehindTheEyeInEveryMode) {
   const Camera camera = obliqueCamera(Projection::perspective, 10.0, 32);
   const Vec3 behind = camera.pose().position - 3.0 * camera.forward();
   const auto clips = everyClip(camera);
@@ -115,7 +115,7 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
     }
 }
 
-TEST(Clip, BoxesAreKeptOrRemovedAsTheirPointsAre) {
+TEST(Clip, KeptInHoldsForPointsOfTheBox) {
   Random random(2, 0, 0);
   for (const auto projection : projections)
     for (const double distance : {12.0, 120.0}) {
@@ -155,7 +155,7 @@ TEST(Clip, BoxesAreKeptOrRemovedAsTheirPointsAre) {
     }
 }
 
-TEST(Clip, ABoxAcrossTheEyesPlaneIsSeenInEveryDirection) {
+TEST(Clip, BoxAcrossTheEyesPlaneCountsEveryDirection) {
   // Depth 20 mm, except far to the right, at the edge of the buffer.
   const Camera camera = anteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
   auto buffer = std::make_shared<DepthBuffer>(camera, centredGrid({100, 100, 100}));
@@ -177,7 +177,7 @@ TEST(Clip, ABoxAcrossTheEyesPlaneIsSeenInEveryDirection) {
   EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, 21.0}, {3.0, 1.0, 22.0})), Kept::all);
 }
 
-TEST(ClippingSurface, ShowsTheFocusAtItsOwnDepth) {
+TEST(ClippingSurface, DepthAtFocusSamplesIsThatOfTheFocus) {
   const Model model;
   for (const auto projection : projections)
     for (const auto mode : {SurfaceMode::cutaway, SurfaceMode::surface}) {
@@ -196,7 +196,7 @@ TEST(ClippingSurface, ShowsTheFocusAtItsOwnDepth) {
 }
 
 /// A cube seen along its axis has a known surface: the plane of its front face.
-TEST(ClippingSurface, AFlatFocusContinuesAsItsPlane) {
+TEST(ClippingSurface, FlatFocusContinuesAsItsPlane) {
   const Model model;
   const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 80, 80);
   for (const Boundary boundary : {Boundary::spline, Boundary::exact}) {
@@ -213,7 +213,7 @@ TEST(ClippingSurface, AFlatFocusContinuesAsItsPlane) {
   }
 }
 
-TEST(ClippingSurface, AnExactBoundaryIsNearerToTheFocusThanASpline) {
+TEST(ClippingSurface, ExactBoundaryGapIsSmallerThanTheSplines) {
   const Shell shell;
   for (const auto projection : projections) {
     const Camera camera = obliqueCamera(projection, 120.0, 160);
@@ -228,7 +228,7 @@ TEST(ClippingSurface, AnExactBoundaryIsNearerToTheFocusThanASpline) {
   }
 }
 
-TEST(ClippingSurface, LeavesTheFocusWithinItsStatedMismatch) {
+TEST(ClippingSurface, JumpAtTheFocusIsWithinTheStatedMismatch) {
   const Shell shell;
   for (const auto projection : projections) {
     const Camera camera = obliqueCamera(projection, 120.0, 160);
@@ -269,7 +269,7 @@ TEST(ClippingSurface, DoesNotDependOnFraming) {
   EXPECT_LT(different, 20); // samples coincide; the contour's start does not matter
 }
 
-TEST(ClippingSurface, SaysWhenTheFocusIsOutsideThePicture) {
+TEST(ClippingSurface, WarnsOfAFocusOutsideThePicture) {
   const Model model;
   CameraPose pose;
   pose.position = {28.0, -200.0, 28.0};
@@ -277,10 +277,11 @@ TEST(ClippingSurface, SaysWhenTheFocusIsOutsideThePicture) {
   pose.scale = 2.0;
   const ClippingSurface surface = model.surface({pose, 32, 32});
   ASSERT_EQ(surface.warnings.size(), 1U);
-  EXPECT_EQ(surface.warnings[0], "focus A lies outside the picture");
+  EXPECT_EQ(surface.warnings[0],
+            "focus A lies outside the picture; choose another --view, --target or --scale");
 }
 
-TEST(ClippingSurface, AFocusThatNoRayMeetsIsAnInputError) {
+TEST(ClippingSurface, FocusThatNoRayMeetsIsAnInputError) {
   const Model model;
   const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 40, 40);
   Affine aside = model.focus.grid.indexToWorld;
@@ -307,7 +308,7 @@ TEST(ClippingSurface, OptionsOutOfRangeAreUsageErrors) {
     EXPECT_THROW(buildClippingSurface(camera, model.volume, model.focus, options), Error);
 }
 
-TEST(ClippingSurface, AFocusOfOnePixelGivesALevelSurface) {
+TEST(ClippingSurface, OnePixelFocusGivesALevelSurface) {
   const Grid volume = centredGrid({21, 21, 21});
   const Mask dot = boxMask(volume, Vec3::Constant(-0.1), Vec3::Constant(0.1));
   CameraPose pose;

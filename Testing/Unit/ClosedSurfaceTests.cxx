@@ -174,7 +174,7 @@ Grid volumeGrid() {
   return {Size3(40, 32, 24), map};
 }
 
-TEST(ClosedSurface, takesTheVoxelsInsideInEveryEncoding) {
+TEST(ClosedSurface, EveryEncodingMarksTheVoxelsInside) {
   const TemporaryFolder folder;
   const Grid grid = volumeGrid();
   const Vec3 center = grid.worldCenter() + Vec3(0.3, -0.2, 0.1);
@@ -206,7 +206,7 @@ TEST(ClosedSurface, takesTheVoxelsInsideInEveryEncoding) {
   }
 }
 
-TEST(ClosedSurface, keepsOverlapsInLayers) {
+TEST(ClosedSurface, OverlappingSegmentsGetLayers) {
   const TemporaryFolder folder;
   const Grid grid(Size3(20, 20, 20), Affine::Identity());
   const Path path = writeSegments(folder, {box(Vec3(1.5, 1.5, 1.5), Vec3(9.5, 9.5, 9.5)),
@@ -226,7 +226,7 @@ TEST(ClosedSurface, keepsOverlapsInLayers) {
 }
 
 /// A surface is cut at the volume, and the focus continues across the volume's faces.
-TEST(ClosedSurface, endsAtTheVolume) {
+TEST(ClosedSurface, SurfaceIsCutAtTheVolume) {
   const TemporaryFolder folder;
   const Grid grid(Size3(10, 10, 10), Affine::Identity());
   const Path path = writeSegments(folder, {box(Vec3(-50, 2.5, 2.5), Vec3(50, 4.5, 4.5))});
@@ -236,7 +236,7 @@ TEST(ClosedSurface, endsAtTheVolume) {
                           [&] { readSegmentation(away, &grid).mask({"id0"}, grid); });
 }
 
-TEST(ClosedSurface, makesItsOwnGridWithoutAVolume) {
+TEST(ClosedSurface, WithoutAVolumeChoosesItsOwnGrid) {
   const TemporaryFolder folder;
   const Path path = writeSegments(folder, {box(Vec3(-10, 0, 5), Vec3(118, 64, 37))});
   const Segmentation segmentation = readSegmentation(path);
@@ -247,7 +247,7 @@ TEST(ClosedSurface, makesItsOwnGridWithoutAVolume) {
 }
 
 /// Rows through edges and corners count each crossing once.
-TEST(ClosedSurface, countsEdgesOnce) {
+TEST(ClosedSurface, CrossingsAtEdgesCountOnce) {
   const Shape onPlanes = box(Vec3(2, 2, 2), Vec3(6, 6, 6));
   const auto runs = voxelRuns(onPlanes.points, onPlanes.triangles, Size3(10, 10, 10));
   ASSERT_TRUE(runs);
@@ -266,7 +266,7 @@ void expectRefused(const Path& named, const Path& path, const std::string& text)
   fenestra::expectRefused(named, text, [&] { readSegmentation(path); });
 }
 
-TEST(ClosedSurface, refusesWhatIsNotClosed) {
+TEST(ClosedSurface, RefusesOpenSurfaces) {
   const TemporaryFolder folder;
   Shape open = box(Vec3(0, 0, 0), Vec3(5, 5, 5));
   open.triangles.pop_back();
@@ -281,7 +281,7 @@ TEST(ClosedSurface, refusesWhatIsNotClosed) {
   expectRefused(folder / "lines.vtp", writeBlocks(folder, {"lines.vtp"}), "holds planar contours");
 }
 
-TEST(ClosedSurface, staysInItsFolder) {
+TEST(ClosedSurface, RefusesFilesOutsideItsFolder) {
   const TemporaryFolder folder;
   for (const char* name : {"../other.vtp", "a/../../other.vtp", "/etc/passwd", ""}) {
     const Path path = writeBlocks(folder, {name});
@@ -291,7 +291,7 @@ TEST(ClosedSurface, staysInItsFolder) {
   expectRefused(folder / "absent.vtp", path, "there is no such file");
 }
 
-TEST(ClosedSurface, survivesDamage) {
+TEST(ClosedSurface, DamagedBytesAreReadOrRefused) {
   const TemporaryFolder folder;
   std::mt19937 random(5);
   int readable = 0;
@@ -319,7 +319,7 @@ TEST(ClosedSurface, survivesDamage) {
 }
 
 /// Zeros compress well: 200 kB would expand to 1.5 GiB.
-TEST(ClosedSurface, refusesArraysThatDoNotFit) {
+TEST(ClosedSurface, RefusesArraysThatExpandBeyondTheLimit) {
   const TemporaryFolder folder;
   constexpr std::uint64_t block = 1 << 20, blocks = 1536;
   const std::string zeros(block, '\0');
@@ -351,7 +351,7 @@ TEST(ClosedSurface, refusesArraysThatDoNotFit) {
 }
 
 /// SlicerRT's examples contain only contours.
-TEST(ClosedSurface, refusesRealContours) {
+TEST(ClosedSurface, RefusesRealContours) {
   const Path folder = Path(FENESTRA_DATA) / "slicer_scenes" / "slicerrt_scenes";
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;

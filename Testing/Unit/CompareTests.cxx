@@ -46,7 +46,7 @@ ErrorKind kindOfComparing(const Image& a, const Image& b) {
   return ErrorKind::output;
 }
 
-TEST(CompareImages, MeasuresAConstantDifference) {
+TEST(CompareImages, ConstantDifferenceHasKnownMeasures) {
   const Comparison c = compareImages(constantImage(5, 3, 0.6f), constantImage(5, 3, 0.5f));
   EXPECT_NEAR(c.relMse, 0.01 / 0.26, 1e-7);
   EXPECT_NEAR(c.rmse, 0.1, 1e-7);
@@ -58,7 +58,7 @@ TEST(CompareImages, MeasuresAConstantDifference) {
   EXPECT_FALSE(c.z.has_value());
 }
 
-TEST(CompareImages, FindsEqualPicturesEqual) {
+TEST(CompareImages, EqualPicturesHaveNoDifference) {
   const Image image = constantImage(4, 4, 0.25f);
   const Comparison c = compareImages(image, image);
   EXPECT_EQ(c.relMse, 0.0);
@@ -67,7 +67,7 @@ TEST(CompareImages, FindsEqualPicturesEqual) {
   EXPECT_EQ(c.maxDifference, 0.0);
 }
 
-TEST(CompareImages, TakesTheReferencesOwnVarianceOff) {
+TEST(CompareImages, RelMseOmitsTheReferencesOwnVariance) {
   const Image reference = noisyImage(200, 1.0f, 0.01f, 1);
   const Image exact = constantImage(200, 200, 1.0f);
   const double own = 1e-4 / 1.01;
@@ -79,7 +79,7 @@ TEST(CompareImages, TakesTheReferencesOwnVarianceOff) {
   EXPECT_NEAR(compareImages(exact, silent).relMse, own, tolerance);
 }
 
-TEST(CompareImages, GivesNormalZForHonestErrors) {
+TEST(CompareImages, TrueErrorsGiveNormalZ) {
   const Comparison c =
       compareImages(noisyImage(200, 1.0f, 0.03f, 1), noisyImage(200, 1.0f, 0.04f, 2));
   ASSERT_TRUE(c.z.has_value());
@@ -90,14 +90,14 @@ TEST(CompareImages, GivesNormalZForHonestErrors) {
   EXPECT_LT(c.z->imageMean.abs().maxCoeff(), 4.5);
 }
 
-TEST(CompareImages, SeesABiasInTheImageMeansThatNoPixelShows) {
+TEST(CompareImages, ImageMeanShowsABiasThatNoPixelShows) {
   const Comparison c =
       compareImages(noisyImage(200, 1.001f, 0.03f, 1), noisyImage(200, 1.0f, 0.04f, 2));
   EXPECT_NEAR(c.z->imageMean.mean(), 0.001 / (0.05 / 200.0), 3.0); // 4 standard errors
   EXPECT_NEAR(c.z->deviation, 1.0, 0.02);
 }
 
-TEST(CompareImages, FindsTheLargestZ) {
+TEST(CompareImages, LargestZHasItsPixelAndChannel) {
   Image a = withError(constantImage(7, 4, 1.0f), 0.3f);
   const Image b = withError(constantImage(7, 4, 1.0f), 0.4f);
   a.channels["G"][2 * 7 + 5] = -1.0f;
@@ -110,7 +110,7 @@ TEST(CompareImages, FindsTheLargestZ) {
   EXPECT_NEAR(c.z->mean, -4.0 / 84.0, 1e-6);
 }
 
-TEST(CompareImages, SkipsOnlyWhereBothErrorsAreZero) {
+TEST(CompareImages, ZSkipsOnlyPixelsWithBothErrorsZero) {
   const Image a = withError(constantImage(2, 1, 1.0f), 0.0f);
   Image b = withError(constantImage(2, 1, 0.5f), 0.0f);
   EXPECT_EQ(compareImages(a, b).z->count, 0u);
@@ -122,7 +122,7 @@ TEST(CompareImages, SkipsOnlyWhereBothErrorsAreZero) {
   EXPECT_EQ(compareImages(a, b).z->deviation, 0.0);
 }
 
-TEST(CompareImages, SkipsExactAgreementWhateverErrorOneSideStates) {
+TEST(CompareImages, ZSkipsEqualValuesWithOneErrorZero) {
   const Image a = withError(constantImage(2, 1, 0.2f), 0.0f);
   const Image b = withError(constantImage(2, 1, 0.2f), 5e-4f);
   EXPECT_EQ(compareImages(a, b).z->count, 0u);
@@ -130,7 +130,7 @@ TEST(CompareImages, SkipsExactAgreementWhateverErrorOneSideStates) {
   EXPECT_EQ(compareImages(a, c).z->count, 6u);
 }
 
-TEST(CompareImages, DoesNotHideValuesThatAreNotFinite) {
+TEST(CompareImages, NonFiniteValuesReachTheMeasures) {
   const Image b = constantImage(3, 3, 1.0f);
   Image a = b;
   a.channels["G"][4] = std::numeric_limits<float>::quiet_NaN();
@@ -151,7 +151,7 @@ TEST(CompareImages, RefusesDifferentSizesAndMissingChannels) {
   EXPECT_EQ(kindOfComparing(grey, constantImage(2, 3, 1.0f)), ErrorKind::input);
 }
 
-TEST(DifferenceImage, ShowsTheSignInRedAndBlue) {
+TEST(DifferenceImage, PositiveIsRedAndNegativeIsBlue) {
   const Image b = constantImage(3, 1, 1.0f);
   Image a = b;
   for (const char* name : {"R", "G", "B"})
@@ -162,7 +162,7 @@ TEST(DifferenceImage, ShowsTheSignInRedAndBlue) {
   EXPECT_EQ(shown.channels.at("B"), (std::vector<float>{1.0f, 0.0f, 1.0f}));
 }
 
-TEST(DifferenceImage, ShowsTheLargestZOfAPixelWhereErrorsAreKnown) {
+TEST(DifferenceImage, KnownErrorsShowTheLargestZOfAPixel) {
   const Image b = withError(constantImage(3, 1, 1.0f), 0.4f);
   Image a = withError(b, 0.3f);
   a.channels["G"] = {1.0f, 2.25f, 1.0f}; // z 2.5, half of full colour
@@ -175,7 +175,7 @@ TEST(DifferenceImage, ShowsTheLargestZOfAPixelWhereErrorsAreKnown) {
   EXPECT_EQ(shown.channels.at("B")[2], 0.0f);
 }
 
-TEST(AttachError, TakesThePictureOfErrorsAsErrorChannels) {
+TEST(AttachError, PictureOfErrorsBecomesErrorChannels) {
   Image image = constantImage(2, 2, 1.0f);
   attachError(image, constantImage(2, 2, 0.125f));
   for (const char* name : {"error.R", "error.G", "error.B"})
@@ -183,7 +183,7 @@ TEST(AttachError, TakesThePictureOfErrorsAsErrorChannels) {
   EXPECT_THROW(attachError(image, constantImage(1, 4, 0.125f)), Error);
 }
 
-TEST(AttachError, MakesTheStoredReferencesComparable) {
+TEST(AttachError, VarianceOfAReferenceIsThatOfItsReadme) {
   const std::filesystem::path folder = FENESTRA_REFERENCE;
   if (!std::filesystem::exists(folder / "S1_best.exr"))
     GTEST_SKIP() << "no reference pictures in " << folder;
@@ -222,7 +222,7 @@ TEST(StudentTail, MatchesClosedForms) {
   EXPECT_EQ(studentTail(infinity, 7.0), 0.0);
 }
 
-TEST(TileMeans, AverageAndKnowTheirErrors) {
+TEST(TileMeans, MeanAndErrorAreThoseOfTheTile) {
   Image image = withSamples(withError(constantImage(5, 4, 1.0f), 0.2f), 11.0f);
   image.channels["R"][0] = 5.0f;
   const Image tiles = tileMeans(image, 4);
@@ -237,14 +237,14 @@ TEST(TileMeans, AverageAndKnowTheirErrors) {
   EXPECT_THROW(tileMeans(constantImage(2, 2, 1.0f), 2), Error);
 }
 
-TEST(AgreementProbability, IsUniformOverIndependentRenders) {
+TEST(AgreementProbability, IndependentRendersGiveUniformProbabilities) {
   int below = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed)
     below += agreementProbability(render(2 * seed), render(2 * seed + 1)) < 0.1;
   EXPECT_NEAR(below, 20, 4 * std::sqrt(20 * 0.9));
 }
 
-TEST(AgreementProbability, VanishesWhereOneValueDiffers) {
+TEST(AgreementProbability, OneOutlierGivesNearlyZero) {
   Image image = render(1);
   image.channels["G"][77] += 0.1f; // seven combined errors
   EXPECT_LT(agreementProbability(image, render(2)), 1e-6);
@@ -252,7 +252,7 @@ TEST(AgreementProbability, VanishesWhereOneValueDiffers) {
   EXPECT_EQ(agreementProbability(image, render(2)), 0.0);
 }
 
-TEST(AgreementProbability, TakesExactValuesAtTheirWord) {
+TEST(AgreementProbability, IsOneForIdenticalValuesWithZeroError) {
   const Image black = withSamples(withError(constantImage(4, 4, 0.0f), 0.0f), 9.0f);
   EXPECT_EQ(agreementProbability(black, black), 1.0);
   Image other = black;
@@ -262,7 +262,7 @@ TEST(AgreementProbability, TakesExactValuesAtTheirWord) {
   EXPECT_GT(agreementProbability(black, other), 0.05);
 }
 
-TEST(AgreementProbability, ExpectsFewBrightPathsToScatter) {
+TEST(AgreementProbability, RareBrightPathsAreNoDisagreement) {
   // One path in two hundred is bright, with 100 and 800 samples: among 4096 pixels several have
   // four bright paths of 100, which a normal distribution would exclude.
   const auto sparse = [](std::uint64_t seed, int samples) {

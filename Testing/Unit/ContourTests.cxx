@@ -64,11 +64,11 @@ int parts(const std::vector<std::string>& rows, char kind, bool diagonal) {
   return count;
 }
 
-TEST(Contour, NoFocusHasNone) {
+TEST(Contour, EmptyFocusHasNoContour) {
   EXPECT_TRUE(traceContours(drawnFocus({"...", "..."})).empty());
 }
 
-TEST(Contour, ASampleIsADiamond) {
+TEST(Contour, SingleSampleGivesADiamond) {
   const FocusDepth focus = drawnFocus({"...", ".#.", "..."});
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 1U);
@@ -76,14 +76,14 @@ TEST(Contour, ASampleIsADiamond) {
   EXPECT_NEAR(length(focus.depth, contours[0]), 2.0 * std::sqrt(2.0), 1e-12);
 }
 
-TEST(Contour, ARectangleIsAsLongAsItsSides) {
+TEST(Contour, RectangleIsAsLongAsItsSides) {
   const FocusDepth focus = drawnFocus({"......", ".####.", ".####.", ".####.", "......"});
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 1U);
   EXPECT_NEAR(length(focus.depth, contours[0]), 2 * (3 + 2) + 4 * std::sqrt(0.5), 1e-12);
 }
 
-TEST(Contour, AFocusAtTheEdgeOfTheBufferClosesThere) {
+TEST(Contour, FocusAtTheEdgeOfTheBufferIsClosedThere) {
   const FocusDepth focus = drawnFocus({"###", "###"});
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 1U);
@@ -91,18 +91,18 @@ TEST(Contour, AFocusAtTheEdgeOfTheBufferClosesThere) {
   EXPECT_NEAR(length(focus.depth, contours[0]), 2 * (2 + 1) + 4 * std::sqrt(0.5), 1e-12);
 }
 
-TEST(Contour, HolesAndComponentsHaveLoopsOfTheirOwn) {
+TEST(Contour, HolesAndComponentsHaveTheirOwnLoops) {
   EXPECT_EQ(traceContours(drawnFocus({"###", "#.#", "###"})).size(), 2U);
   EXPECT_EQ(traceContours(drawnFocus({"#.#", "...", "#.#"})).size(), 4U);
   EXPECT_EQ(traceContours(drawnFocus({"#####", "#...#", "#.#.#", "#...#", "#####"})).size(), 3U);
 }
 
-TEST(Contour, DiagonalNeighboursAreJoinedWhicheverWayTheyLie) {
+TEST(Contour, DiagonalNeighboursAreJoined) {
   EXPECT_EQ(traceContours(drawnFocus({"#.", ".#"})).size(), 1U);
   EXPECT_EQ(traceContours(drawnFocus({".#", "#."})).size(), 1U);
 }
 
-TEST(Contour, EveryCrossingLiesOnOneLoopWhateverTheRegion) {
+TEST(Contour, EveryCrossingLiesOnExactlyOneLoop) {
   Random random(1, 0, 0);
   for (int trial = 0; trial < 300; ++trial) {
     const auto picture =
@@ -183,7 +183,7 @@ TEST(ControlPoints, AreUniformInArcLength) {
   }
 }
 
-TEST(ControlPoints, CarryTheirOwnSamplesDepthAndOccurOnce) {
+TEST(ControlPoints, DepthIsThatOfTheSampleAndSitesAreUnique) {
   const FocusDepth focus = discs();
   const auto contours = traceContours(focus);
   const auto points = placeControlPoints(focus, contours, 1000);

@@ -126,7 +126,7 @@ bool isCounted(const TemporaryFolder& folder) {
   return true;
 }
 
-TEST(Cost, growsNoFasterThanNLogN) {
+TEST(Cost, GrowsNoFasterThanNLogN) {
   const TemporaryFolder folder;
   if (!RUNNING_ON_VALGRIND) {
     if (!isCounted(folder))
@@ -146,7 +146,7 @@ TEST(Cost, growsNoFasterThanNLogN) {
 } // namespace
 } // namespace fenestra::CostTests
 #else
-TEST(Cost, growsNoFasterThanNLogN) {
+TEST(Cost, GrowsNoFasterThanNLogN) {
   GTEST_SKIP() << "valgrind is not installed";
 }
 #endif

@@ -44,23 +44,23 @@ struct Cube {
   }
 };
 
-TEST(FocusCoverage, IsTheTransmittanceToTheFocus) {
+TEST(FocusCoverage, EqualsTheTransmittanceToTheFocus) {
   // Mean of 256 estimates of exp(-0.5), each 0 or 1.
   EXPECT_NEAR(Cube().coverage(ClipNone{}), std::exp(-0.5), 4.0 * std::sqrt(0.25 / 256.0));
 }
 
-TEST(FocusCoverage, IsWholeBehindAPlaneThatEndsAtTheFocus) {
+TEST(FocusCoverage, IsOneIfAPlaneEndsAtTheFocus) {
   EXPECT_DOUBLE_EQ(Cube().coverage(Vec3(0, 5.0, 0), Vec3::UnitY()), 1.0);
 }
 
-TEST(FocusCoverage, CountsAFocusThatIsCutAwayAsNotShown) {
+TEST(FocusCoverage, IsZeroIfTheFocusIsCutAway) {
   const Cube cube;
   EXPECT_EQ(cube.coverage(Vec3(0, 3.0, 0), Vec3::UnitY()), 0.0) << "cut from in front";
   EXPECT_EQ(cube.coverage(Vec3(0, 8.0, 0), -Vec3::UnitY()), 0.0) << "cut from behind";
   EXPECT_EQ(cube.coverage(Vec3(-50, 0, 0), Vec3::UnitX()), 0.0) << "all gone, plane along the view";
 }
 
-TEST(Render, StopsInsideAPathThatWouldTakeMinutes) {
+TEST(Render, StopsWithinALongPath) {
   TestScene scene = Cube().scene;
   scene.transfer = linearTransfer(20000.0, Rgb::Ones()); // no absorption, and almost no escape
   const Camera camera(scene.pose, scene.width, scene.height);

@@ -20,7 +20,7 @@ namespace {
 
 using DamagedFiles = ImageFiles;
 
-TEST_F(DamagedFiles, CutShortAreRefusedOrLoseNothing) {
+TEST_F(DamagedFiles, TruncatedFileIsRefusedOrComplete) {
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     const Image image = readImage(written(renderedImage(), name));
     const std::string whole = contentOf(path(name));
@@ -37,7 +37,7 @@ TEST_F(DamagedFiles, CutShortAreRefusedOrLoseNothing) {
   }
 }
 
-TEST_F(DamagedFiles, WithAnyByteChangedAreReadOrRefused) {
+TEST_F(DamagedFiles, ChangedByteIsReadOrRefused) {
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     const std::string whole = contentOf(written(renderedImage(), name));
     const std::size_t step = 1 + whole.size() / 1500;
@@ -57,7 +57,7 @@ TEST_F(DamagedFiles, WithAnyByteChangedAreReadOrRefused) {
   }
 }
 
-TEST_F(DamagedFiles, CannotClaimMoreThanTheyHold) {
+TEST_F(DamagedFiles, ClaimedSizeBeyondTheFileIsRefused) {
   const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: raw\nendian: little\n"
                            "kinds: vector domain domain\n";
   store(path("a.nrrd"), head + "sizes: 4 30000 30000\n\n1234");
@@ -81,7 +81,7 @@ TEST_F(DamagedFiles, CannotClaimMoreThanTheyHold) {
   EXPECT_EQ(kindOf([&] { readImage(path("a.png")); }, "a.png"), ErrorKind::input);
 }
 
-TEST_F(DamagedFiles, CannotTakeMoreMemoryThanAPictureMakesSenseWith) {
+TEST_F(DamagedFiles, ClaimedMemoryBeyondTheLimitIsRefused) {
   const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: gzip\nendian: little\n"
                            "kinds: vector domain domain\n";
   store(path("a.nrrd"), head + "sizes: 4 16384 8192\n\n" + std::string(200'000, '\0'));
@@ -104,7 +104,7 @@ TEST_F(DamagedFiles, CannotTakeMoreMemoryThanAPictureMakesSenseWith) {
             ErrorKind::input);
 }
 
-TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {
+TEST_F(DamagedFiles, NameOfAnotherFileIsRefused) {
   const std::string head = "NRRD0004\ntype: float\ndimension: 2\nencoding: raw\nendian: little\n"
                            "sizes: 4 4\n";
   for (const std::string& line : {"data file: -"s, "datafile: /dev/zero"s, " Data  File:-"s,
@@ -119,7 +119,7 @@ TEST_F(DamagedFiles, CannotSendTheReaderElsewhere) {
 }
 
 /// Teem's messages hold 1024 bytes of a line, and its arrays hold sizes of 16 axes.
-TEST_F(DamagedFiles, CannotOverflowTheReader) {
+TEST_F(DamagedFiles, OverlongHeaderFieldIsRefused) {
   const std::string head = "NRRD0004\ntype: float\nencoding: raw\nendian: little\n";
   const std::string plain = head + "dimension: 2\nsizes: 4 4\n", ones(1000, '1');
   for (const std::string& header :
@@ -132,7 +132,7 @@ TEST_F(DamagedFiles, CannotOverflowTheReader) {
   }
 }
 
-TEST_F(DamagedFiles, AreRefusedWithoutNoise) {
+TEST_F(DamagedFiles, RefusalPrintsNothingToStandardError) {
   ::testing::internal::CaptureStderr();
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     store(path(name), "not a picture at all, whatever the extension says");

@@ -22,7 +22,7 @@ Mask smallFocus() {
   return {Grid({8, 8, 8}, map), std::vector<std::uint8_t>(512, 1), 512, {"A"}};
 }
 
-TEST(FrameView, LooksAlongThePatientsAxesAtTheWholeVolume) {
+TEST(FrameView, NamedViewShowsTheWholeVolumeAlongAnAxis) {
   const Grid grid = ramp(0, 1).grid;
   ViewRequest view;
   view.name = "left";
@@ -37,7 +37,7 @@ TEST(FrameView, LooksAlongThePatientsAxesAtTheWholeVolume) {
   }
 }
 
-TEST(FrameView, TakesUpOfAnyLength) {
+TEST(FrameView, UpMayHaveAnyLength) {
   const Grid grid = ramp(0, 1).grid;
   const auto framed = [&grid](const Vec3& up) {
     ViewRequest view;
@@ -53,7 +53,7 @@ TEST(FrameView, TakesUpOfAnyLength) {
   }
 }
 
-TEST(FrameView, FramesTheFocusTheSameInBothProjections) {
+TEST(FrameView, FocusFramingIsEqualInBothProjections) {
   const Grid grid = ramp(0, 1).grid;
   const Mask focus = smallFocus();
   ViewRequest view;
@@ -69,7 +69,7 @@ TEST(FrameView, FramesTheFocusTheSameInBothProjections) {
   EXPECT_GT((fromCenter.cwiseAbs() - half).maxCoeff(), 0.0) << "the eye is outside the volume";
 }
 
-TEST(FrameView, FramesWhatACropLeaves) {
+TEST(FrameView, CroppedVolumeIsFramed) {
   const Grid grid = ramp(0, 1).grid; // 80 x 60 x 40 mm
   // Rotated box that reaches beyond the volume's right face.
   const CropBox crop(translationBy(grid.worldCenter() + Vec3(30, 0, 0)) *
@@ -93,14 +93,14 @@ TEST(FrameView, RefusesAnUnknownName) {
   EXPECT_THROW(frameView(view, ramp(0, 1).grid, nullptr, 8, 8), Error);
 }
 
-TEST(DefaultTransfer, TellsHounsfieldUnitsFromOthers) {
+TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
   EXPECT_TRUE(transferPresetFor(ramp(-1000, 1500)));
   EXPECT_TRUE(transferPresetFor(ramp(-8192, 3071))) << "padded";
   EXPECT_FALSE(transferPresetFor(ramp(0, 255)));
   EXPECT_FALSE(transferPresetFor(ramp(0, 4000)));
 }
 
-TEST(DefaultTransfer, RunsFromTransparentToOpaqueAndSurvivesAConstantVolume) {
+TEST(DefaultTransfer, RangeRunsFromTransparentToOpaqueAndAConstantIsVisible) {
   const TransferFunction transfer = relativeTransfer(ramp(0, 1000));
   EXPECT_EQ(transfer.extinction(0.0).value(), 0.0);
   EXPECT_GT(transfer.extinction(1000.0).value(), 1.0);
@@ -110,7 +110,7 @@ TEST(DefaultTransfer, RunsFromTransparentToOpaqueAndSurvivesAConstantVolume) {
   EXPECT_FALSE(flat.shading);
 }
 
-TEST(Picture, PlaneLiesThroughTheTargetAndItsCornersAreThePictures) {
+TEST(Picture, PlaneLiesThroughTheTargetWithThePicturesCorners) {
   CameraPose pose;
   pose.position = {0, -100, 0};
   pose.target = {0, 0, 0};
@@ -121,7 +121,7 @@ TEST(Picture, PlaneLiesThroughTheTargetAndItsCornersAreThePictures) {
   EXPECT_TRUE(plane.rowStep.isApprox(Vec3(0, 0, -1)));
 }
 
-TEST(Picture, CarriesTheContractsChannels) {
+TEST(Picture, HasEveryDocumentedChannel) {
   CameraPose pose;
   const Camera camera(pose, 2, 1);
   Film film(2, 1);

@@ -42,7 +42,7 @@ TEST(DepthBuffer, SpansTheVolumesProjection) {
   EXPECT_LE(buffer.xAxis().coordinate(0), -100.0);
 }
 
-TEST(DepthBuffer, IsCoarserBeyondTheViewportWhereItWouldBeTooLarge) {
+TEST(DepthBuffer, LargeVolumeIsCoarserBeyondTheViewport) {
   const Grid grid = centredGrid({500, 500, 500});
   for (const double scale : {10.0, 5.0, 0.01, 1e-6}) {
     const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
@@ -55,7 +55,7 @@ TEST(DepthBuffer, IsCoarserBeyondTheViewportWhereItWouldBeTooLarge) {
   }
 }
 
-TEST(DepthBuffer, IsNoCoarserThanItHasToBe) {
+TEST(DepthBuffer, CoarseningFactorIsTheLeastPossible) {
   const Grid grid = centredGrid({500, 500, 500});
   const auto factor = [&](double scale) {
     const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
@@ -103,7 +103,7 @@ TEST(DepthBuffer, InterpolatesLinearFunctionsExactlyAcrossBothDensities) {
   EXPECT_NEAR(buffer.depth({1e6, 0.0}), plane({250.0, 0.0}), 0.1); // clamped to the edge
 }
 
-TEST(DepthBuffer, NearestIsTheSampleWhosePixelIsMet) {
+TEST(DepthBuffer, NearestReturnsTheSampleOfThePixel) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 4.0, 8, 8);
   DepthBuffer buffer(camera, centredGrid({2, 2, 2}));
   for (std::int64_t i = 0; i < buffer.size(); ++i)
@@ -114,7 +114,7 @@ TEST(DepthBuffer, NearestIsTheSampleWhosePixelIsMet) {
   EXPECT_EQ(buffer.nearest({99.0, -99.0}), 63.0);
 }
 
-TEST(DepthBuffer, APictureWithoutExtentOrOutOfProportionIsRefused) {
+TEST(DepthBuffer, RefusesAPictureWithoutExtent) {
   const Grid grid = centredGrid({2, 2, 2});
   for (const double scale : {0.0, -1.0, 1e-30, infinity, std::nan("")}) {
     EXPECT_THROW(DepthBuffer(anteriorCamera(Projection::orthographic, 100.0, scale, 8, 8), grid),
@@ -122,7 +122,7 @@ TEST(DepthBuffer, APictureWithoutExtentOrOutOfProportionIsRefused) {
   }
 }
 
-TEST(DepthBuffer, AViewportBeyondTheLimitKeepsItsPixels) {
+TEST(DepthBuffer, ViewportBeyondTheLimitKeepsItsPixels) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 0.5, 1, 5000000);
   const DepthBuffer buffer(camera, centredGrid({2, 2, 2}));
   EXPECT_EQ(buffer.xAxis().inside, 1);
@@ -130,7 +130,7 @@ TEST(DepthBuffer, AViewportBeyondTheLimitKeepsItsPixels) {
   EXPECT_LE(buffer.size(), 3 * 5000002);
 }
 
-TEST(DepthPyramid, BoundsWhatTheBufferReturnsInARectangle) {
+TEST(DepthPyramid, BoundsHoldForEveryDepthInARectangle) {
   Random random(2, 0, 0);
   for (const auto& [width, height] : {std::pair{1, 1}, {5, 1}, {33, 17}, {64, 64}}) {
     const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 8.0, width, height);
@@ -161,7 +161,7 @@ TEST(DepthPyramid, BoundsWhatTheBufferReturnsInARectangle) {
   }
 }
 
-TEST(DepthPyramid, IsTightOnASmallRectangle) {
+TEST(DepthPyramid, BoundsAreTightOnASmallRectangle) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 32.0, 64, 64);
   DepthBuffer buffer(camera, centredGrid({20, 20, 20}));
   for (std::int64_t i = 0; i < buffer.size(); ++i)

@@ -59,7 +59,7 @@ TEST(Determinism, ThreadsAndPassesChangeNoBit) {
   }
 }
 
-TEST(Determinism, SeedsDiffer) {
+TEST(Determinism, DifferentSeedsGiveDifferentPictures) {
   const TestScene s = scene();
   RenderSettings settings;
   settings.samples = 4;
@@ -68,7 +68,7 @@ TEST(Determinism, SeedsDiffer) {
   EXPECT_FALSE(a.film.at(16, 10).mean == s.render(settings).film.at(16, 10).mean);
 }
 
-TEST(Render, StopsOnRequestWithWhatItHas) {
+TEST(Render, StopOnRequestReturnsFinishedSamples) {
   const TestScene s = scene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
@@ -83,7 +83,7 @@ TEST(Render, StopsOnRequestWithWhatItHas) {
   EXPECT_EQ(result.finishedSamples, 0U);
 }
 
-TEST(Render, StopsByTimeAndByNoise) {
+TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
   const TestScene s = scene();
   RenderSettings settings;
   settings.samples = 1u << 30;

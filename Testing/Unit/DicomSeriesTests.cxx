@@ -112,7 +112,7 @@ Mat3 oblique() {
   return (rotationBy(0.4, Vec3(1, 2, 3).normalized()) * rotationBy(0.3, Vec3::UnitX())).linear();
 }
 
-TEST(DicomSeries, sortsSlicesAlongTheirNormal) {
+TEST(DicomSeries, SortsSlicesAlongTheirNormal) {
   const TemporaryFolder folder;
   SliceFile slice{.position = {10, -20, 30}, .axes = oblique()};
   writeStack(folder, slice, 5, 2.5);
@@ -131,7 +131,7 @@ TEST(DicomSeries, sortsSlicesAlongTheirNormal) {
       }
 }
 
-TEST(DicomSeries, appliesRescaleAndKeepsATiltedGantry) {
+TEST(DicomSeries, AppliesRescaleAndKeepsGantryTilt) {
   const TemporaryFolder folder;
   for (int i = 0; i < 3; ++i)
     write(folder / (std::to_string(i) + ".dcm"),
@@ -142,7 +142,7 @@ TEST(DicomSeries, appliesRescaleAndKeepsATiltedGantry) {
   EXPECT_TRUE(volume.grid.indexToWorld.linear().col(2).isApprox(Vec3(0, -0.7, 3.0)));
 }
 
-TEST(DicomSeries, mixesSlopes) {
+TEST(DicomSeries, SlicesMayDifferInSlope) {
   const TemporaryFolder folder;
   int i = 0;
   for (const char* slope : {"1", "0.5", "0.25"}) {
@@ -155,7 +155,7 @@ TEST(DicomSeries, mixesSlopes) {
   EXPECT_EQ(valueAt(volume, 4, 3, 2), 4.75);
 }
 
-TEST(DicomSeries, decompresses) {
+TEST(DicomSeries, DecodesJpeg2000AndRefusesDamagedStreams) {
   const TemporaryFolder folder;
   SliceFile slice{.width = 60, .height = 50, .intercept = "-1024", .first = -3, .compress = true};
   const Path file = write(folder / "one.dcm", slice);
@@ -174,7 +174,7 @@ TEST(DicomSeries, decompresses) {
                           [&] { readDicomVolume({folder / "wider.dcm"}, "x"); });
 }
 
-TEST(DicomSeries, readsVoxelsHoweverTheyAreStored) {
+TEST(DicomSeries, EveryTransferSyntaxGivesTheSameVoxels) {
   const TemporaryFolder folder;
   const Path file = write(folder / "one.dcm", {.width = 60, .height = 50, .first = -3});
   using Syntax = gdcm::TransferSyntax;
@@ -199,7 +199,7 @@ TEST(DicomSeries, readsVoxelsHoweverTheyAreStored) {
   }
 }
 
-TEST(DicomSeries, readsOneSlice) {
+TEST(DicomSeries, ReadsASingleSlice) {
   const TemporaryFolder folder;
   const Path file = write(folder / "one.dcm", {.position = {1, 2, 3}});
   const Volume volume = readDicomVolume({file}, "scene");
@@ -214,7 +214,7 @@ void expectRefusedFolder(const Path& folder, const std::vector<std::string>& tex
     fenestra::expectRefused(folder, text, call);
 }
 
-TEST(DicomSeries, choosesAmongSeries) {
+TEST(DicomSeries, SelectorChoosesAmongSeries) {
   const TemporaryFolder folder;
   writeStack(folder, {}, 2, 1);
   writeStack(folder, {.uid = "1.2.4", .number = "12", .description = "neck"}, 3, 1);
@@ -241,7 +241,7 @@ TEST(DicomSeries, choosesAmongSeries) {
                       [&] { choose("foot"); });
 }
 
-TEST(DicomSeries, looksBelowWhereThereIsNoFile) {
+TEST(DicomSeries, SearchesSubfoldersOfAFolderWithoutFiles) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "a");
   std::filesystem::create_directories(folder / "b");
@@ -263,7 +263,7 @@ void writeDepths(const TemporaryFolder& folder, const std::vector<double>& depth
     write(folder / (std::to_string(i) + ".dcm"), {.position = {0, 0, depths[i]}});
 }
 
-TEST(DicomSeries, refusesMissingAndRepeatedSlices) {
+TEST(DicomSeries, RefusesMissingAndRepeatedSlices) {
   const TemporaryFolder gap, twice, drift, sideways;
   writeDepths(gap, {0, 2, 4, 8, 10});
   expectRefused(gap / "2.dcm", gap.path(), "is 4 mm from 3.dcm, others 2 mm; add the slices");
@@ -276,7 +276,7 @@ TEST(DicomSeries, refusesMissingAndRepeatedSlices) {
   expectRefused(sideways / "1.dcm", sideways.path(), "off even steps");
 }
 
-TEST(DicomSeries, warnsOfUnevenSlices) {
+TEST(DicomSeries, WarnsOfUnevenSlices) {
   const TemporaryFolder folder, even;
   writeDepths(folder, {0, 2.1, 4, 6});
   const Volume volume = readOnly(folder.path());
@@ -288,7 +288,7 @@ TEST(DicomSeries, warnsOfUnevenSlices) {
   EXPECT_TRUE(readOnly(even.path()).warnings.empty());
 }
 
-TEST(DicomSeries, refusesSlicesThatDiffer) {
+TEST(DicomSeries, RefusesSlicesOfDifferentGeometry) {
   const TemporaryFolder turned, spaced;
   writeDepths(turned, {0, 1});
   write(turned / "2.dcm", {.position = {0, 0, 2}, .axes = oblique()});
@@ -305,7 +305,7 @@ void replace(std::string& bytes, const std::string& tag, const std::string& valu
   bytes.replace(at + tag.size() + 4, value.size(), value);
 }
 
-TEST(DicomSeries, refusesWhatIsNoStackOfGreySlices) {
+TEST(DicomSeries, RefusesFilesThatAreNoGreySlices) {
   const TemporaryFolder folder;
   const Path colored = write(folder / "rgb.dcm", {.components = 3});
   const auto read = [](const Path& file) { return [file] { readDicomVolume({file}, "x"); }; };
@@ -336,7 +336,7 @@ TEST(DicomSeries, refusesWhatIsNoStackOfGreySlices) {
 }
 
 /// Damaged bytes must be read, or refused on one line.
-TEST(DicomSeries, survivesDamage) {
+TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
   const TemporaryFolder folder;
   const std::string whole = bytesOf(write(folder / "a.dcm", {}));
   std::mt19937 random(11);
@@ -362,7 +362,7 @@ TEST(DicomSeries, survivesDamage) {
 
 /// One head, as a series (with rescale intercept 0, although its air is 0) and as the volume in HU
 /// that another program made of it.
-TEST(DicomSeries, readsARealSeries) {
+TEST(DicomSeries, RealSeriesEqualsItsNiftiFile) {
   const Path folder = Path(FENESTRA_DATA) / "head_ct_slicer_dicom";
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
@@ -384,7 +384,7 @@ TEST(DicomSeries, readsARealSeries) {
 
 /// Stream that once crashed GDCM's decoder; whether it is read or refused depends on the memory
 /// layout.
-TEST(DicomSeries, survivesAStreamThatItsDecoderDoesNot) {
+TEST(DicomSeries, StreamThatCrashesTheDecoderIsReadOrRefused) {
   const auto damaged = Path(__FILE__).parent_path() / "../Fuzz/Apart/Dicom/jpeg2000-stream.dcm";
   ASSERT_TRUE(std::filesystem::exists(damaged));
   try {

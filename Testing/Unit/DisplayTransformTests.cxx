@@ -70,7 +70,7 @@ TEST(PhotographicView, RisesStrictlyUpTo4AndNeverFalls) {
   }
 }
 
-TEST(PhotographicView, KeepsDarkTissueAsItIsAndTheOrderOfChannelsAlways) {
+TEST(PhotographicView, KeepsDarkTissueAndTheOrderOfChannels) {
   const DisplayTransform view;
   float dark[3] = {0.17f, 0.06f, 0.05f};
   view.apply(dark, 1);
@@ -124,7 +124,7 @@ TEST(DisplayTransform, RefusesAnUnknownViewAndListsTheKnown) {
   }
 }
 
-TEST(DisplayTransform, HasNoEarForTheEnvironmentAndNoVoiceOnStandardError) {
+TEST(DisplayTransform, IgnoresTheEnvironmentAndPrintsNothing) {
   ::setenv("OCIO", "/nowhere/config.ocio", 1);
   ::setenv("OCIO_ACTIVE_VIEWS", "Standard", 1);
   ::setenv("OCIO_ACTIVE_DISPLAYS", "Cinema", 1);
@@ -147,7 +147,7 @@ TEST(ToDisplay, DividesByAlphaBeforeTheView) {
   EXPECT_EQ(full[3], 1.0f);
 }
 
-TEST(ToDisplay, IsBlackWhereTransparentAndOpaqueWithoutAlpha) {
+TEST(ToDisplay, TransparentIsBlackAndMissingAlphaIsOpaque) {
   const DisplayTransform view;
   EXPECT_EQ(toDisplay(onePixel(0.4f, 0.2f, 0.1f, 0.0f), view),
             (std::vector<float>{0.0f, 0.0f, 0.0f, 0.0f}));

@@ -47,7 +47,7 @@ double outside(const Grid& grid, const CropBox& crop, const Vec3& world) {
   return std::max(beyondGrid, (crop.worldToBox * world).cwiseAbs().maxCoeff() - 1.0);
 }
 
-TEST(Domain, IsWhatBothBoxesHold) {
+TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
   Random random(21, 0, 0);
   int hits = 0;
   for (int trial = 0; trial < 2000; ++trial) {
@@ -83,7 +83,7 @@ TEST(Domain, IsWhatBothBoxesHold) {
   EXPECT_LT(hits, 1500);
 }
 
-TEST(Domain, WithoutACropIsTheGrid) {
+TEST(Domain, WithoutACropEqualsTheGrid) {
   Random random(22, 0, 0);
   for (int trial = 0; trial < 200; ++trial) {
     const Grid grid = randomGrid(random);
@@ -97,7 +97,7 @@ TEST(Domain, WithoutACropIsTheGrid) {
   EXPECT_EQ(Domain(Grid({2, 2, 2}, Affine::Identity())).indexCorners().size(), 8U);
 }
 
-TEST(Domain, ARayInAFaceIsInside) {
+TEST(Domain, RayInAFaceIsInside) {
   const Grid grid({8, 8, 8}, Affine::Identity());
   Affine half = Affine::Identity(); // [1, 3] in each axis
   half.translation() = Vec3::Constant(2.0);
@@ -112,7 +112,7 @@ TEST(Domain, ARayInAFaceIsInside) {
   EXPECT_EQ(domain.clip({Vec3(2, 2, 2), Vec3::UnitZ()}).begin, 0.0) << "from inside";
 }
 
-TEST(Domain, CornersSpanIt) {
+TEST(Domain, CornersSpanTheDomain) {
   Random random(23, 0, 0);
   int cut = 0;
   for (int trial = 0; trial < 200; ++trial) {
@@ -146,7 +146,7 @@ TEST(Domain, CornersSpanIt) {
   EXPECT_GT(cut, 100);
 }
 
-TEST(Domain, ACropBesideTheGridLeavesNothing) {
+TEST(Domain, CropBesideTheGridLeavesNothing) {
   Affine map = Affine::Identity();
   map.translation() = Vec3(20, 0, 0);
   const Domain domain(Grid({8, 8, 8}, Affine::Identity()), CropBox(map));

@@ -35,7 +35,7 @@ struct View {
 
 class EmptyPixelsOf : public ::testing::TestWithParam<View> {};
 
-TEST_P(EmptyPixelsOf, AreThoseThatNoSampleOfAnyMeets) {
+TEST_P(EmptyPixelsOf, CertainPixelsAreMissedByEverySample) {
   const TestScene scene = ballScene(GetParam().projection, GetParam().distance);
   RenderSettings settings;
   settings.samples = 64;
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Views, EmptyPixelsOf,
                                            View{"FromInside", Projection::perspective, 3.0}),
                          [](const auto& info) { return info.param.name; });
 
-TEST(EmptyPixels, AreNoneOfAPictureOfOneColumnThatTheVolumeFills) {
+TEST(EmptyPixels, FilledPictureOfOneColumnHasNone) {
   TestScene scene = ballScene(Projection::orthographic, 100.0);
   scene.transfer = linearTransfer(0.0, Rgb::Constant(0.7));
   scene.transfer.extinction = ScalarFunction({knot(0.0, 1.0)});
@@ -79,11 +79,11 @@ TEST(EmptyPixels, AreNoneOfAPictureOfOneColumnThatTheVolumeFills) {
   }
 }
 
-TEST(EmptyPixels, AreNoneUnlessSaid) {
+TEST(EmptyPixels, DefaultHasNone) {
   EXPECT_FALSE(EmptyPixels().contains(0, 0));
 }
 
-TEST(EmptyPixels, AreAllOfAPictureThatMeetsNothing) {
+TEST(EmptyPixels, PictureThatMeetsNothingHasOnlyEmptyPixels) {
   TestScene scene = ballScene(Projection::orthographic, 100.0);
   scene.transfer = linearTransfer(0.0, Rgb::Constant(0.7));
   RenderSettings settings;

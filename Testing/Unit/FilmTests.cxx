@@ -7,7 +7,7 @@
 namespace fenestra::testing::FilmTests {
 namespace {
 
-TEST(PixelSums, MeanAndStandardErrorAreTheTextbook) {
+TEST(PixelSums, MeanAndStandardErrorEqualTwoPasses) {
   PixelSums sums;
   std::vector<double> values;
   for (int i = 0; i < 1000; ++i) {

@@ -66,7 +66,7 @@ struct SomeRays {
   }
 };
 
-TEST(FocusCells, AreMetWhereTheirTrilinearFunctionFirstReachesAHalf) {
+TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
   Random random(5, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
   int met = 0;
@@ -110,7 +110,7 @@ double summitOf(const Mask& mask, const Ray& ray, double begin, double end) {
   return best;
 }
 
-TEST(FocusCells, KnowTheSummitsOfRaysThatMissThem) {
+TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
   Random random(6, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
   int passed = 0, hidden = 0, other = 0;
@@ -151,7 +151,7 @@ TEST(FocusCells, KnowTheSummitsOfRaysThatMissThem) {
   EXPECT_LT(other, 3);
 }
 
-TEST(CellCubic, KnowsItsSlope) {
+TEST(CellCubic, SlopeEqualsFiniteDifference) {
   Random random(1, 0, 0);
   for (int trial = 0; trial < 10000; ++trial) {
     Cubic cubic;
@@ -163,7 +163,7 @@ TEST(CellCubic, KnowsItsSlope) {
   }
 }
 
-TEST(CellCubic, FindsTheFirstRootThatBruteForceFinds) {
+TEST(CellCubic, FirstRootEqualsBruteForce) {
   Random random(2, 0, 0);
   int roots = 0;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -188,7 +188,7 @@ TEST(CellCubic, FindsTheFirstRootThatBruteForceFinds) {
   EXPECT_GT(roots, 5000);
 }
 
-TEST(CellCubic, HandlesTouchingConstantAndLinear) {
+TEST(CellCubic, TouchingConstantAndLinearRootsAreFound) {
   EXPECT_EQ(firstNonNegative({{-1, 0, 0, 0}}), infinity);
   EXPECT_EQ(firstNonNegative({{0, -1, 0, 0}}), 0.0);
   EXPECT_NEAR(firstNonNegative({{-0.25, 1, 0, 0}}), 0.25, 1e-15);
@@ -209,7 +209,7 @@ TEST(FocusDepth, BoxFacesLieAtTheVoxelsFaces) {
   }
 }
 
-TEST(FocusDepth, RegionsTellFocusContextAndOutside) {
+TEST(FocusDepth, RegionsCountFocusContextAndOutside) {
   const Grid grid = centredGrid({20, 20, 20});
   const Mask mask = boxMask(grid, Vec3::Constant(-4), Vec3::Constant(4));
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
@@ -304,7 +304,7 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
 }
 
 /// Grids, crops and views of every kind: the eye anywhere, the volume anywhere in the picture.
-TEST(FocusDepth, RegionsAreWhatEachRayMeets) {
+TEST(FocusDepth, RegionIsWhatItsRayMeets) {
   Random random(4, 0, 0);
   const Grid grid = centredGrid({20, 24, 16}, {1.0, 0.8, 1.5});
   const Mask mask = maskOf(grid, [&](const Vec3& p) {
@@ -344,21 +344,21 @@ TEST(FocusDepth, RegionsAreWhatEachRayMeets) {
   EXPECT_GT(*std::ranges::min_element(count), 500);
 }
 
-TEST(FocusDepth, ARayThatStartsInsideMeetsTheFocusThere) {
+TEST(FocusDepth, RayThatStartsInsideMeetsTheFocusAtZero) {
   const Grid grid = centredGrid({20, 20, 20});
   const Mask mask = sphereMask(grid, 6.0);
   const Camera camera = anteriorCamera(Projection::perspective, 1.0, 1.0, 8, 8);
   EXPECT_EQ(depthAt(traceFocus(camera, grid, mask), {0.0, 0.0}), 0.0);
 }
 
-TEST(FocusDepth, TheVolumesFaceCutsAFocusThatReachesBeyondIt) {
+TEST(FocusDepth, FocusBeyondTheVolumeIsCutAtItsFace) {
   const Grid volume = centredGrid({20, 20, 20});
   const Mask mask = sphereMask(centredGrid({40, 40, 40}), 15.0);
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 16, 16);
   EXPECT_NEAR(depthAt(traceFocus(camera, volume, mask), {0.0, 0.0}), 40.0, 1e-5);
 }
 
-TEST(FocusDepth, ACropCutsTheFocusAndItsContext) {
+TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
   const Grid volume = centredGrid({40, 40, 40});
   const Mask mask = sphereMask(volume, 10.0);
   // Crop that keeps matter behind a plane through the origin, whose depth grows 1 mm per mm to the
@@ -383,7 +383,7 @@ TEST(FocusDepth, ACropCutsTheFocusAndItsContext) {
   EXPECT_EQ(region({0.5, 18.5}), Region::outside) << "above the crop, inside the volume";
 }
 
-TEST(FocusDepth, AMaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
+TEST(FocusDepth, MaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
   const Grid volume = centredGrid({20, 20, 20});
   const Mask mask = maskOf(centredGrid({2, 1, 2}, {2, 2, 2}), [](const Vec3&) { return true; });
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 64, 64);
@@ -392,7 +392,7 @@ TEST(FocusDepth, AMaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
   EXPECT_EQ(depthAt(focus, {2.2, 0.1}), infinity);
 }
 
-TEST(FocusDepth, AFarEyeLosesNothing) {
+TEST(FocusDepth, FarEyeKeepsThePrecision) {
   const Grid grid = centredGrid({40, 40, 40});
   const Mask mask = boxMask(grid, Vec3::Constant(-10), Vec3::Constant(10));
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {

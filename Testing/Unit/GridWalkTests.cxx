@@ -108,7 +108,7 @@ TEST(GridWalk, MissesAndEmptyRangesAreDoneAtOnce) {
   EXPECT_TRUE(GridWalk({{1.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, {2.0, 2.0}, cells).done());
 }
 
-TEST(GridWalk, StartsOnAFaceInTheCellAhead) {
+TEST(GridWalk, StartOnAFaceIsInTheCellAhead) {
   const Size3 cells(4, 4, 4);
   EXPECT_EQ(GridWalk({{2.0, 0.5, 0.5}, {1.0, 0.0, 0.0}}, {}, cells).coordinates().x(), 2);
   EXPECT_EQ(GridWalk({{2.0, 0.5, 0.5}, {-1.0, 0.0, 0.0}}, {}, cells).coordinates().x(), 1);
@@ -121,7 +121,7 @@ TEST(GridWalk, RunsAlongOuterFacesInsideTheGrid) {
   EXPECT_EQ(checkedWalk({{0.0, 9.0, 0.0}, {0.0, -1.0, 0.0}}, {}, cells).cells, 5);
 }
 
-TEST(GridWalk, AStandingRayStaysInItsCell) {
+TEST(GridWalk, RayWithoutDirectionStaysInItsCell) {
   const Walked walked = checkedWalk({{1.5, 1.5, 1.5}, Vec3::Zero()}, {0.0, infinity}, {3, 3, 3});
   EXPECT_EQ(walked.cells, 1);
 }

@@ -61,7 +61,7 @@ TEST(EmbeddedResources, HoldTheColourConfiguration) {
   EXPECT_TRUE(embeddedResourceNames("nothing/").empty());
 }
 
-TEST_F(ExrFiles, KeepEveryChannelBitByBitAndTheHeader) {
+TEST_F(ExrFiles, RoundTripKeepsChannelsBitForBitAndTheHeader) {
   Image image = renderedImage();
   image.channels["Z"][3] = infinite;
   image.channels["R"][0] = notANumber;
@@ -82,7 +82,7 @@ TEST_F(ExrFiles, KeepEveryChannelBitByBitAndTheHeader) {
           << name << " " << i;
 }
 
-TEST_F(ExrFiles, AreReadFromTilesOfHalfFloatAndIntegerWithAnOffsetWindow) {
+TEST_F(ExrFiles, TilesOfHalfFloatAndIntegerWithAnOffsetWindowAreRead) {
   const int width = 21, height = 10;
   std::vector<Imath::half> halves(static_cast<std::size_t>(width * height));
   std::vector<unsigned> integers(halves.size());
@@ -112,7 +112,7 @@ TEST_F(ExrFiles, AreReadFromTilesOfHalfFloatAndIntegerWithAnOffsetWindow) {
   }
 }
 
-TEST_F(ImageFiles, OfEqualPicturesAreEqualByteByByte) {
+TEST_F(ImageFiles, EqualPicturesGiveEqualBytes) {
   for (const char* extension : {".exr", ".nrrd", ".png", ".tif"}) {
     const auto first = written(renderedImage(), std::string("first") + extension);
     const auto second = written(renderedImage(), std::string("second") + extension);
@@ -121,7 +121,7 @@ TEST_F(ImageFiles, OfEqualPicturesAreEqualByteByByte) {
   }
 }
 
-TEST_F(NrrdFiles, KeepColourAndDepth) {
+TEST_F(NrrdFiles, RoundTripKeepsColourAndDepth) {
   Image image = renderedImage();
   image.channels["A"][5] = 0.25f;
   image.channels["Z"][3] = infinite;
@@ -136,7 +136,7 @@ TEST_F(NrrdFiles, KeepColourAndDepth) {
   EXPECT_EQ(fileCount(), 2u);
 }
 
-TEST_F(NrrdFiles, AreOpaqueWithoutAlphaAndAloneWithoutDepth) {
+TEST_F(NrrdFiles, MissingAlphaIsOpaqueAndMissingDepthWritesOneFile) {
   Image image = renderedImage();
   image.channels.erase("A");
   image.channels.erase("Z");
@@ -145,7 +145,7 @@ TEST_F(NrrdFiles, AreOpaqueWithoutAlphaAndAloneWithoutDepth) {
   EXPECT_EQ(fileCount(), 1u);
 }
 
-TEST_F(NrrdFiles, ReplaceNoDepthPictureThatIsNotTheirs) {
+TEST_F(NrrdFiles, ForeignDepthFileIsNotReplaced) {
   const Image image = renderedImage();
   written(image, "view.nrrd"); // its depth file bears the mark
   written(image, "view.nrrd");
@@ -158,7 +158,7 @@ TEST_F(NrrdFiles, ReplaceNoDepthPictureThatIsNotTheirs) {
   EXPECT_EQ(contentOf(path("view-Z.nrrd")), "somebody else's");
 }
 
-TEST_F(DisplayFiles, ThatNobodyNamedReplaceOnlyOurs) {
+TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesOfFenestra) {
   for (const bool isOurs : {true, false}) {
     if (!isOurs)
       store(path("a.png"), "somebody else's");
@@ -176,7 +176,7 @@ TEST_F(DisplayFiles, ThatNobodyNamedReplaceOnlyOurs) {
   }
 }
 
-TEST_F(NrrdFiles, LieOnThePlaneInLps) {
+TEST_F(NrrdFiles, HeaderHoldsThePlaneInLps) {
   // View from anterior: the patient's right is on the picture's left, superior is up.
   const ImagePlane plane{{90.0, 100.0, 80.0}, {-0.5, 0.0, 0.0}, {0.0, 0.0, -0.25}};
   const std::string content = contentOf(written(renderedImage(), "view.nrrd", plane));
@@ -187,7 +187,7 @@ TEST_F(NrrdFiles, LieOnThePlaneInLps) {
     EXPECT_NE(header.find(line), std::string::npos) << line << "\nin\n" << header;
 }
 
-TEST_F(NrrdFiles, KeepThePlaneToThePrecisionOfDoubles) {
+TEST_F(NrrdFiles, PlaneKeepsThePrecisionOfDoubles) {
   const ImagePlane plane{
       {1.0 / 3.0, 0.0, 0.0}, {0.6 / 7.0, 0.8 / 7.0, 0.0}, {0.0, 0.0, -1.0 / 7.0}};
   const std::string content = contentOf(written(renderedImage(), "view.nrrd", plane));
@@ -198,7 +198,7 @@ TEST_F(NrrdFiles, KeepThePlaneToThePrecisionOfDoubles) {
   EXPECT_NEAR(numberAfter("space directions: none ("), -0.6 / 7.0, 1e-15);
 }
 
-TEST_F(DisplayFiles, ShowKnownValuesWithStraightAlpha) {
+TEST_F(DisplayFiles, KnownValuesHaveStraightAlpha) {
   // Middle grey is 0.4614 in sRGB: 117.6 of 255.
   const float grey = 0.18f;
   for (const auto& [name, tolerance] :
@@ -212,7 +212,7 @@ TEST_F(DisplayFiles, ShowKnownValuesWithStraightAlpha) {
   EXPECT_EQ(readImage(path("a.png")).channels.at("A")[0], 128.0f / 255.0f);
 }
 
-TEST_F(DisplayFiles, CarryAlphaOnlyWhereSomethingIsTransparent) {
+TEST_F(DisplayFiles, AlphaIsWrittenOnlyWithTransparency) {
   Image image = renderedImage();
   EXPECT_EQ(readImage(written(image, "opaque.png")).channels.count("A"), 0u);
   EXPECT_EQ(readImage(written(image, "opaque.tiff")).channels.count("A"), 0u);
@@ -221,7 +221,7 @@ TEST_F(DisplayFiles, CarryAlphaOnlyWhereSomethingIsTransparent) {
   EXPECT_EQ(readImage(written(image, "clear.TIF")).channels.count("A"), 1u);
 }
 
-TEST_F(DisplayFiles, KeepTheTopRowOnTop) {
+TEST_F(DisplayFiles, TopRowStaysOnTop) {
   Image image{2, 2, {}, {}};
   for (const char* name : {"R", "G", "B"})
     image.channels[name] = {1.0f, 0.5f, 0.0f, 0.0f};
@@ -233,14 +233,14 @@ TEST_F(DisplayFiles, KeepTheTopRowOnTop) {
   }
 }
 
-TEST_F(DisplayFiles, ShowNanAndInfinity) {
+TEST_F(DisplayFiles, NanIsBlackAndInfinityIsWhite) {
   const Image read = readImage(written(onePixel(notANumber, infinite, -infinite, 1.0f), "a.png"));
   EXPECT_EQ(read.channels.at("R")[0], 0.0f);
   EXPECT_EQ(read.channels.at("G")[0], 1.0f);
   EXPECT_EQ(read.channels.at("B")[0], 0.0f);
 }
 
-TEST_F(ImageFiles, OfUnknownFormatsAndPicturesWithoutColourAreRefused) {
+TEST_F(ImageFiles, UnknownFormatAndMissingColourAreRefused) {
   const auto write = [](const Image& image, const fs::path& file) {
     return [=] { writeImage(image, {}, file); };
   };
@@ -257,7 +257,7 @@ TEST_F(ImageFiles, OfUnknownFormatsAndPicturesWithoutColourAreRefused) {
   EXPECT_EQ(fileCount(), 0u);
 }
 
-TEST_F(ImageFiles, ThatFailLeaveNothingBehindAndKeepTheFormer) {
+TEST_F(ImageFiles, FailedWriteKeepsTheFormerFile) {
   const Image image = renderedImage(300, 200);
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     writeImage(image, {}, path(name));
@@ -278,7 +278,7 @@ TEST_F(ImageFiles, ThatFailLeaveNothingBehindAndKeepTheFormer) {
   }
 }
 
-TEST_F(ImageFiles, OfTheReferenceAreRead) {
+TEST_F(ImageFiles, ReferencePictureIsRead) {
   const fs::path reference = fs::path(FENESTRA_REFERENCE) / "S1_best.exr";
   if (!fs::exists(reference))
     GTEST_SKIP() << "no reference pictures in " << FENESTRA_REFERENCE;

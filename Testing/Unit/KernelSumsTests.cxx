@@ -39,7 +39,7 @@ double phi(double r2) {
   return r2 > 0.0 ? r2 * std::log(r2) : 0.0;
 }
 
-TEST(KernelSums, AreTheSumOfTheirTerms) {
+TEST(KernelSums, RowEqualsTheSumOfTerms) {
   Random random(2, 0, 0);
   std::vector<KernelTerm> terms;
   for (int i = 0; i < 9; ++i)
@@ -62,7 +62,7 @@ TEST(KernelSums, AreTheSumOfTheirTerms) {
   });
 }
 
-TEST(KernelSums, PolynomialsAreHornersScheme) {
+TEST(KernelSums, PolynomialEqualsHornersScheme) {
   const std::vector<double> coefficients = {0.5, -1.0, 2.0, 0.25, -3.0};
   forEachRow([&](const std::vector<double>& row, std::vector<double>& sums) {
     constexpr double scale = 0.7;

@@ -10,7 +10,7 @@
 namespace fenestra::LightReaderTests {
 namespace {
 
-TEST(LightReader, readsEveryKind) {
+TEST(LightReader, ReadsEveryKind) {
   const auto lights = parseLights(R"({"lights": [
     {"type": "environment", "radiance": [1, 2, 3]},
     {"type": "directional", "direction": [0, 0, -4], "irradiance": [3, 2, 1]},
@@ -38,7 +38,7 @@ TEST(LightReader, readsEveryKind) {
   EXPECT_EQ(disk.frame, LightFrame::world);
 }
 
-TEST(LightReader, namesThePlaceOfWhatIsWrong) {
+TEST(LightReader, ErrorNamesTheField) {
   const auto refuse = [](const std::string& light, const std::string& text) {
     const std::string json =
         R"({"lights": [{"type": "environment", "radiance": [1, 1, 1]}, )" + light + "]}";
@@ -79,7 +79,7 @@ Image sky(float value = 0.5f) {
   return image;
 }
 
-TEST(LightReader, readsEnvironmentMapsBesideTheirFile) {
+TEST(LightReader, ReadsEnvironmentMapBesideItsFile) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "maps");
   writeImage(sky(), {}, folder / "maps/sky.exr");
@@ -96,14 +96,14 @@ TEST(LightReader, readsEnvironmentMapsBesideTheirFile) {
   EXPECT_EQ(light.radiance[0], 2.0);
 }
 
-TEST(LightReader, tellsTextFromNames) {
+TEST(LightReader, BraceTellsTextFromNames) {
   EXPECT_TRUE(isLookText(R"({"lights": []})"));
   EXPECT_TRUE(isLookText("{"));
   for (const char* name : {"", "studio", "lights.json", "./{.json", " {}"})
     EXPECT_FALSE(isLookText(name)) << name;
 }
 
-TEST(LightReader, refusesMapsThatAreNone) {
+TEST(LightReader, RefusesBadEnvironmentMaps) {
   const TemporaryFolder folder;
   const auto path = folder / "sky.exr";
   const auto refuse = [&path](const std::string& text) {
@@ -119,14 +119,14 @@ TEST(LightReader, refusesMapsThatAreNone) {
   expectRefused(folder / "sky.png", "name a .exr", [&] { readEnvironmentMap(folder / "sky.png"); });
 }
 
-TEST(LightReader, readsThePresets) {
+TEST(LightReader, ReadsEveryPreset) {
   const auto names = embeddedResourceNames("lights/");
   EXPECT_FALSE(names.empty());
   for (const std::string& name : names)
     EXPECT_NO_THROW(parseLights(embeddedResource(name), name)) << name;
 }
 
-TEST(LightReader, readsTheReferencesLights) {
+TEST(LightReader, ReadsLightsOfTheReference) {
   const std::filesystem::path root(FENESTRA_REFERENCE);
   if (!std::filesystem::exists(root / "S2.lights.json"))
     GTEST_SKIP() << "no references at " << FENESTRA_REFERENCE;

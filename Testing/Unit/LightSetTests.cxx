@@ -25,13 +25,13 @@ EnvironmentMap roughMap() {
   return map;
 }
 
-TEST(EnvironmentSampler, DrawsAMapInProportionToItsRadiance) {
+TEST(EnvironmentSampler, SamplingMatchesPdf) {
   const EnvironmentSampler sampler({Rgb::Ones(), roughMap()});
   expectSamplingMatchesPdf([&](Random& r) { return sampler.sample(r.uniform2()); },
                            [&](const Vec3& d) { return sampler.pdf(d); }, 1.0, 120);
 }
 
-TEST(EnvironmentSampler, NeverDrawsABlackTexelAndSurvivesTheEndsOfTheRandomRange) {
+TEST(EnvironmentSampler, NeverDrawsABlackTexelAtTheEndsOfTheRandomRange) {
   const EnvironmentSampler sampler({Rgb::Ones(), roughMap()});
   const double last = std::nextafter(1.0, 0.0);
   for (const double u : {0.0, 0.5, last})
@@ -42,7 +42,7 @@ TEST(EnvironmentSampler, NeverDrawsABlackTexelAndSurvivesTheEndsOfTheRandomRange
     }
 }
 
-TEST(EnvironmentSampler, LooksWhereTheDesignSays) {
+TEST(EnvironmentSampler, ColumnsLieAroundAnteriorAndRight) {
   EnvironmentMap map{4, 2, std::vector<float>(24, 0.0F)};
   const auto light = [&](int column, int row) {
     EnvironmentMap lit = map;
@@ -80,7 +80,7 @@ void expectConsistent(const std::vector<Light>& lights, const Vec3& point, int f
   expectSamplingMatchesPdf(draw, pdf, drawn, fine);
 }
 
-TEST(LightSet, RectanglesAndDisksAreDrawnAsTheirPdfSays) {
+TEST(LightSet, SamplingOfRectangleAndDiskMatchesPdf) {
   AreaLight rectangle;
   rectangle.center = {4, -3, 9};
   rectangle.normal = Vec3(0, 0.5, -1).normalized();
@@ -94,7 +94,7 @@ TEST(LightSet, RectanglesAndDisksAreDrawnAsTheirPdfSays) {
   expectConsistent({rectangle, disk}, {4.5, 4.5, 4.5}, 300);
 }
 
-TEST(LightSet, SeveralEnvironmentsAndADirectionalLightShareTheirDraws) {
+TEST(LightSet, SamplingOfSeveralLightsMatchesPdf) {
   EnvironmentLight constant;
   constant.radiance = Rgb::Constant(0.3);
   EnvironmentLight map;

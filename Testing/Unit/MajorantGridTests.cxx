@@ -92,7 +92,7 @@ double emptyFraction(const MajorantGrid& grid) {
   return static_cast<double>(empty) / static_cast<double>(grid.cellCount().prod());
 }
 
-TEST(MajorantGrid, DropsClippedAndEmptyCellsAndMarksThoseThatAreCut) {
+TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
   const Grid grid(Size3(32, 32, 32), Affine::Identity());
   Volume volume{grid, std::vector<float>(32768, 1.0F), 1.0, 1.0, "ones", {}};
   const CellRanges ranges(volume, 0);
@@ -126,7 +126,7 @@ TEST(CellRanges, ThickSlicesMakeNoLongCells) {
   EXPECT_EQ(CellRanges::edgeFor(Grid(Size3(1, 1, 1), map)), Size3(1, 1, 1));
 }
 
-TEST(CellRanges, hasCellsOfAVoxelAtLeastWhateverTheGrid) {
+TEST(CellRanges, CellsSpanAtLeastOneVoxel) {
   for (const double scale : {1e-300, 1.0, 1e308}) {
     Affine map = Affine::Identity();
     map.linear()(0, 1) = scale;

@@ -29,7 +29,7 @@ double ballOf(double radius) {
   return 4.0 / 3.0 * pi * radius * radius * radius;
 }
 
-TEST(MaskShaping, GrowsABallByItsMargin) {
+TEST(MaskShaping, BallGrowsByItsMargin) {
   for (const double margin : {1.5, 4.0, 9.0}) {
     const Mask grownBall = grown(ball(10.0), margin, volume);
     // Voxels whose centres lie within the margin of focus centres: uncertain by half a voxel.
@@ -39,20 +39,20 @@ TEST(MaskShaping, GrowsABallByItsMargin) {
   }
 }
 
-TEST(MaskShaping, ShrinksABallByItsMargin) {
+TEST(MaskShaping, BallShrinksByItsMargin) {
   const Mask shrunk = grown(ball(10.0), -3.0, volume);
   EXPECT_GT(millimetres3(shrunk), ballOf(10.0 - 3.0 - 1.0));
   EXPECT_LT(millimetres3(shrunk), ballOf(10.0 - 3.0 + 0.7));
   EXPECT_EQ(grown(ball(10.0), -30.0, volume).count, 0);
 }
 
-TEST(MaskShaping, ReachesAVoxelBeyondTheVolumeAtMost) {
+TEST(MaskShaping, LargeMarginEndsAtMostTwoVoxelsBeyondTheVolume) {
   const Mask all = grown(ball(10.0), 1000.0, volume);
   EXPECT_TRUE((all.grid.size.array() <= volume.size.array() + 4).all());
   EXPECT_EQ(all.count, all.grid.voxelCount());
 }
 
-TEST(MaskShaping, KeepsAFocusThatTheVolumeCutsWholeThere) {
+TEST(MaskShaping, ShrinkingKeepsAFocusWholeWhereTheVolumeCutsIt) {
   // Outermost voxels along x are focus: the focus continues beyond.
   const Mask slab = maskOf(centredGrid({61, 21, 21}), [](const Vec3& p) {
     return std::abs(p.y()) < 6.5 && std::abs(p.z()) < 6.5;
@@ -61,7 +61,7 @@ TEST(MaskShaping, KeepsAFocusThatTheVolumeCutsWholeThere) {
   EXPECT_EQ(shrunk.count, 61 * 9 * 9);
 }
 
-TEST(MaskShaping, UnitesSegmentsWhereverTheirVoxelsLie) {
+TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
   const auto box = [](const Vec3& lower, const Vec3& upper) {
     const Grid whole = centredGrid({40, 40, 40});
     return boxMask(whole, lower, upper);
@@ -90,7 +90,7 @@ double stairs(const Mask& mask, double radius) {
   return greatest - least;
 }
 
-TEST(MaskShaping, SmoothingTakesTheStairsAndLeavesTheSurface) {
+TEST(MaskShaping, SmoothingRemovesStairsAndKeepsTheRadius) {
   const double radius = 12.0;
   const Mask steps = ball(radius), smooth = smoothed(steps, 1.2, volume);
   EXPECT_EQ(smooth.full, 255);
@@ -101,7 +101,7 @@ TEST(MaskShaping, SmoothingTakesTheStairsAndLeavesTheSurface) {
               std::cbrt(millimetres3(steps) / ballOf(1.0)) - 1.44 / radius, 0.12);
 }
 
-TEST(MaskShaping, AFlatFaceStaysWhereItIs) {
+TEST(MaskShaping, SmoothingKeepsAFlatFace) {
   const Mask box = boxMask(centredGrid({60, 60, 40}), {-20, -9, -15}, {20, 9, 15});
   const Camera camera = anteriorCamera(Projection::orthographic, 100, 20, 64, 64);
   const auto depth = [&](const Mask& mask) {
@@ -128,7 +128,7 @@ double stairsOfASlope(const Mask& mask, double slope) {
   return greatest - least;
 }
 
-TEST(MaskShaping, ASurfaceThatLeansAcrossThickSlicesIsASlope) {
+TEST(MaskShaping, SurfaceThatLeansAcrossThickSlicesIsASlope) {
   for (const double slope : {1.0, 2.0}) { // 2 and 4 mm from slice to slice
     const Mask steps = maskOf(centredGrid({41, 121, 21}, {0.5, 0.5, 2.0}),
                               [&](const Vec3& p) { return p.y() >= slope * p.z() + 0.1; });
@@ -137,7 +137,7 @@ TEST(MaskShaping, ASurfaceThatLeansAcrossThickSlicesIsASlope) {
   }
 }
 
-TEST(MaskShaping, ThickSlicesStayAndTheShapeBetweenThemIsItsOwn) {
+TEST(MaskShaping, InterpolationKeepsThickSlicesAndTheVolumeOfABall) {
   const double radius = 10.0;
   for (const int axis : {0, 1, 2}) {
     Vec3 spacing = Vec3::Constant(0.5);
@@ -164,12 +164,12 @@ TEST(MaskShaping, ThickSlicesStayAndTheShapeBetweenThemIsItsOwn) {
   }
 }
 
-TEST(MaskShaping, SlicesThatAreNearlyCubesStayAsTheyAre) {
+TEST(MaskShaping, NearlyCubicVoxelsAreNotInterpolated) {
   const Mask mask = ball(10.0);
   EXPECT_EQ(betweenSlices(mask).voxels, mask.voxels);
 }
 
-TEST(MaskShaping, OneMarginShrinksSegmentsThatTouchAsAWhole) {
+TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {
   const Grid grid = centredGrid({40, 40, 40});
   std::vector<std::uint8_t> labels;
   for (std::int64_t z = 0; z < 40; ++z)
@@ -186,7 +186,7 @@ TEST(MaskShaping, OneMarginShrinksSegmentsThatTouchAsAWhole) {
   EXPECT_EQ(count({{-1.0, -1.0}}), 2 * 8 * 8 * 8);
 }
 
-TEST(MaskShaping, ASegmentationTakesAMarginForEachSegment) {
+TEST(MaskShaping, EachSegmentTakesItsOwnMargin) {
   const Grid grid = centredGrid({40, 40, 40});
   std::vector<std::uint8_t> labels;
   for (std::int64_t z = 0; z < 40; ++z)

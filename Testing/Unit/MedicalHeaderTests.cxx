@@ -35,7 +35,7 @@ protected:
 const std::string space = "space: left-posterior-superior\n";
 const std::string unitDirections = "space directions: (1,0,0) (0,1,0) (0,0,1)\n";
 
-TEST_F(MedicalHeaders, ReplaceNoGeometrySilently) {
+TEST_F(MedicalHeaders, BadGeometryIsRefused) {
   for (const char* vector :
        {"(0,0,1e200)", "(0,0,2e9)", "(0,0,1e-10)", "(0,0,1e999)", "(0,0,inf)", "(0,0,x)", "(0,0,1"})
     refuse(nrrd(space + "space directions: (1,0,0) (0,1,0) " + vector + "\n"),
@@ -49,7 +49,7 @@ TEST_F(MedicalHeaders, ReplaceNoGeometrySilently) {
   refuse(nrrd(space + "spacings: 1 1 3\n"), "spacings: are not read beside a space");
 }
 
-TEST_F(MedicalHeaders, TellThatVoxelsAreTakenToBeOneMillimetre) {
+TEST_F(MedicalHeaders, MissingSpacingWarnsAndIsOneMillimetre) {
   for (const std::string& lines : {std::string(), space + "space directions: none none none\n"}) {
     const Volume volume = readVolume(nrrd(lines));
     ASSERT_EQ(volume.warnings.size(), 1u) << lines;
@@ -64,7 +64,7 @@ TEST_F(MedicalHeaders, TellThatVoxelsAreTakenToBeOneMillimetre) {
   EXPECT_TRUE(readVolume(meta(size + "ElementSpacing = 1 1 1\n")).warnings.empty());
 }
 
-TEST_F(MedicalHeaders, SayMillimetres) {
+TEST_F(MedicalHeaders, UnitsOtherThanMillimetresAreRefused) {
   const std::string placed = space + unitDirections;
   for (const char* unit : {"m", "cm", "Inch", "um"})
     refuse(nrrd(placed + "space units: \"" + unit + "\" \"mm\" \"mm\"\n"),
@@ -76,7 +76,7 @@ TEST_F(MedicalHeaders, SayMillimetres) {
   EXPECT_EQ(readVolume(meta("DimSize = 3 4 2\nDistanceUnits = mm\n")).maximum, 'x');
 }
 
-TEST_F(MedicalHeaders, RescaleNothingThatIsNotRead) {
+TEST_F(MedicalHeaders, UnsupportedRescalingIsRefused) {
   const std::string size = "DimSize = 3 4 2\n";
   refuse(meta(size + "ElementToIntensityFunctionSlope = 2\n"),
          "ElementToIntensityFunctionSlope: is not read, unless it is 1");
@@ -95,7 +95,7 @@ TEST_F(MedicalHeaders, RescaleNothingThatIsNotRead) {
   }
 }
 
-TEST_F(MedicalHeaders, SkipLittleInStreams) {
+TEST_F(MedicalHeaders, ByteSkipInAStreamIsLimited) {
   const std::string samples = "abc" + std::string(24, 'x');
   std::string stream(200, '\0');
   z_stream z{};
@@ -113,7 +113,7 @@ TEST_F(MedicalHeaders, SkipLittleInStreams) {
            "byte skip: must be from 0 to 1048576 in compressed data");
 }
 
-TEST_F(MedicalHeaders, AreRefusedInTrueWords) {
+TEST_F(MedicalHeaders, RefusalNamesTheFieldAndItsCause) {
   for (const char* encoding : {"bzip2", "bz2", "zrl"})
     refuse(nrrd("spacings: 1 1 1\n", encoding),
            "encoding: \"" + std::string(encoding) + "\" is not read; write raw or gzip");

@@ -13,7 +13,7 @@ void refuse(const std::string& text, const std::string& because) {
   expectRefused("test", because, [&] { MrmlDocument(text, "test"); });
 }
 
-TEST(MrmlDocument, readsNodesInTheirOrder) {
+TEST(MrmlDocument, ReadsNodesInTheirOrder) {
   const MrmlDocument document = parse(R"(<Volume id="v" name="a &amp; b"></Volume>
     <!-- <Volume id="commented"/> --> <View id="w"/><Volume id="x"/>)");
   ASSERT_EQ(document.nodes().size(), 3U);
@@ -25,7 +25,7 @@ TEST(MrmlDocument, readsNodesInTheirOrder) {
   EXPECT_FALSE(document.find(""));
 }
 
-TEST(MrmlDocument, leavesOutTheCopiesInSceneViews) {
+TEST(MrmlDocument, OmitsCopiesInSceneViews) {
   const MrmlDocument document = parse(R"(
     <SceneView id="sv"><Volume id="v" name="copy"/></SceneView><Volume id="v" name="own"/>
     <SubjectHierarchy id="sh"><SubjectHierarchyItem id="3"/></SubjectHierarchy>)");
@@ -34,7 +34,7 @@ TEST(MrmlDocument, leavesOutTheCopiesInSceneViews) {
   EXPECT_FALSE(document.find("3"));
 }
 
-TEST(MrmlDocument, readsReferencesOfNewScenes) {
+TEST(MrmlDocument, ReadsReferencesOfNewScenes) {
   const MrmlDocument document = parse(
       R"(<Volume id="v" references="display:d1 d2;storage:s {size=3,kind=a%20b};unit/length:u;"/>
          <D id="d1"/><S id="s"/>)");
@@ -47,7 +47,7 @@ TEST(MrmlDocument, readsReferencesOfNewScenes) {
   EXPECT_FALSE(document.follow(volume, "unit/length")); // names no node of the scene
 }
 
-TEST(MrmlDocument, readsReferencesOfOldScenes) {
+TEST(MrmlDocument, ReadsReferencesOfOldScenes) {
   const MrmlDocument document = parse(
       R"(<Volume displayNodeRef="d1 d2" storageNodeRef="s" transformNodeRef="t"/>
          <GPURayCastVolumeRendering volumePropertyNodeID="p" ROINodeID="r" viewNodeRef="w"/>
@@ -64,21 +64,21 @@ TEST(MrmlDocument, readsReferencesOfOldScenes) {
   EXPECT_EQ(document.nodes()[3].referenced("color"), "c");
 }
 
-TEST(MrmlDocument, prefersTheNewFormOfAReference) {
+TEST(MrmlDocument, PrefersTheNewFormOfAReference) {
   const MrmlDocument document =
       parse(R"(<Volume displayNodeRef="old" storageNodeRef="s" references="display:new;"/>)");
   EXPECT_EQ(document.nodes()[0].references.at("display"), std::vector<std::string>{"new"});
   EXPECT_EQ(document.nodes()[0].referenced("storage"), "s");
 }
 
-TEST(MrmlDocument, surviveReferencesThatAreNone) {
+TEST(MrmlDocument, SkipsMalformedReferences) {
   const MrmlDocument document =
       parse(R"(<Volume references=";;:x;role;a:;b: ;c:1"/><Volume references=""/>)");
   EXPECT_EQ(document.nodes()[0].references.size(), 1U);
   EXPECT_EQ(document.nodes()[0].referenced("c"), "1");
 }
 
-TEST(MrmlDocument, convertsAttributes) {
+TEST(MrmlDocument, ConvertsAttributesToFlagsAndNumbers) {
   const MrmlDocument document =
       parse(R"(<N a="true" b="false" c="1" d="0" e="yes" n=" 1  -2e3 2.2250738585072e-308 "
                   m="1 2x" i="1 inf" o=""/>)");
@@ -96,7 +96,7 @@ TEST(MrmlDocument, convertsAttributes) {
   EXPECT_FALSE(node.numbers("missing"));
 }
 
-TEST(MrmlDocument, refusesWhatIsNoScene) {
+TEST(MrmlDocument, RefusesTextThatIsNoScene) {
   refuse("", "no whole XML");
   refuse("words", "no whole XML");
   refuse("<MRML><Volume></MRML>", "no whole XML");
@@ -104,12 +104,12 @@ TEST(MrmlDocument, refusesWhatIsNoScene) {
   refuse("<VTKFile/>", "no MRML element");
 }
 
-TEST(MrmlDocument, refusesEntities) {
+TEST(MrmlDocument, RefusesEntities) {
   refuse("<!DOCTYPE MRML [<!ENTITY a \"b\"><!ENTITY c \"&a;&a;\">]><MRML>&c;</MRML>",
          "document type");
 }
 
-TEST(MrmlDocument, refusesMoreThanASceneHas) {
+TEST(MrmlDocument, RefusesTooManyNodesOrAttributes) {
   std::string nodes = "<MRML>";
   for (int i = 0; i < 100'001; ++i)
     nodes += "<N/>";
@@ -123,7 +123,7 @@ TEST(MrmlDocument, refusesMoreThanASceneHas) {
   refuse(attributes + "</MRML>", "more than a million attributes");
 }
 
-TEST(MrmlDocument, survivesDeepNesting) {
+TEST(MrmlDocument, DeepNestingIsReadOrRefused) {
   std::string deep = "<MRML>";
   for (int i = 0; i < 200'000; ++i)
     deep += "<a>";

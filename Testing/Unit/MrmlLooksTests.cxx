@@ -22,7 +22,7 @@ double extinctionAt100(const std::string& nodes,
   return readSceneProperty(scene, node(scene, "p")).extinction(100)[0];
 }
 
-TEST(MrmlLooks, readsAPropertyFromItsFileElseFromTheScene) {
+TEST(MrmlLooks, PropertyComesFromItsFileElseFromTheScene) {
   const std::string text =
       "1\n1\n0.9\n0.1\n0.2\n10\n4 0 0 100 0.75\n4 0 1 255 1\n8 0 0 0 0 100 1 1 1\n";
   const std::string json = R"({"volumeProperties": [{"components": [{
@@ -41,7 +41,7 @@ TEST(MrmlLooks, readsAPropertyFromItsFileElseFromTheScene) {
               std::log(8.0), 3e-4);
 }
 
-TEST(MrmlLooks, refusesAPropertyWithoutPoints) {
+TEST(MrmlLooks, RefusesAPropertyWithoutPoints) {
   const SceneFolder folder;
   const auto path = folder.writeScene(R"(<VolumeProperty id="p" name="mine"/>
       <VolumeProperty id="q" scalarOpacity="3 0 0 1" colorTransfer="4 0 1 1 1"/>)");
@@ -52,7 +52,7 @@ TEST(MrmlLooks, refusesAPropertyWithoutPoints) {
                 [&] { readSceneProperty(scene, node(scene, "q")); });
 }
 
-TEST(MrmlLooks, followsTheVolumesDisplay) {
+TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
   const MrmlDocument document(R"(<MRML><GPURayCastVolumeRendering/>
     <GPURayCastVolumeRendering ignoreVolumeDisplayNodeThreshold="1"/>
     <VolumeDisplay window="100" level="150" lowerThreshold="-32768" upperThreshold="32767"/>

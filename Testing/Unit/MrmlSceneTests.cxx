@@ -27,7 +27,7 @@ Affine affine(std::initializer_list<double> rows) {
 // ---- volumes
 // -------------------------------------------------------------------------------------
 
-TEST(MrmlScene, takesGeometryFromTheFileNotFromTheScene) {
+TEST(MrmlScene, GeometryComesFromTheFileNotFromTheScene) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene(volumeNode);
   const Volume volume = readSceneVolume(scene, node(scene, "vol1"));
@@ -44,7 +44,7 @@ Grid gridWith(const SceneFolder& folder, const std::string& attributes) {
   return readSceneVolume(scene, node(scene, "v")).grid;
 }
 
-TEST(MrmlScene, heedsWhatTheStorageSaysOfGeometry) {
+TEST(MrmlScene, StorageAttributesCentreOrReorientTheVolume) {
   const SceneFolder folder;
   const Affine fromFile = affine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30});
   expectSame(gridWith(folder, R"(centerImage="0" UseOrientationFromFile="1")").indexToWorld,
@@ -56,7 +56,7 @@ TEST(MrmlScene, heedsWhatTheStorageSaysOfGeometry) {
              affine({1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0}));
 }
 
-TEST(MrmlScene, namesTheNodeWhoseFileIsMissing) {
+TEST(MrmlScene, ErrorNamesTheNodeOfAMissingFile) {
   const SceneFolder folder;
   const auto path = folder.writeScene(R"(<Volume id="v" name="CT" storageNodeRef="s"/>
     <VolumeArchetypeStorage id="s" fileName="gone.nrrd"/><Volume id="w" name="MR"/>)");
@@ -67,7 +67,7 @@ TEST(MrmlScene, namesTheNodeWhoseFileIsMissing) {
                 [&] { readSceneVolume(scene, node(scene, "w")); });
 }
 
-TEST(MrmlScene, warnsOfAnArchivesVolumeByItsNameInTheArchive) {
+TEST(MrmlScene, WarningNamesAVolumeByItsPathInTheArchive) {
   const SceneFolder folder;
   std::vector<float> samples(24, 0.0F);
   samples[5] = std::nanf("");
@@ -84,7 +84,7 @@ TEST(MrmlScene, warnsOfAnArchivesVolumeByItsNameInTheArchive) {
       << volume.warnings[0];
 }
 
-TEST(MrmlScene, readsSegmentationsAndLabelMapsInTheWorld) {
+TEST(MrmlScene, SegmentationAndLabelMapLieInTheWorld) {
   const SceneFolder folder;
   std::vector<std::uint8_t> labels(24, 0);
   labels[1] = 5;
@@ -107,7 +107,7 @@ TEST(MrmlScene, readsSegmentationsAndLabelMapsInTheWorld) {
   EXPECT_EQ(labelMap.segments().at(0).labelValue, 5);
 }
 
-TEST(MrmlScene, knowsWhichSegmentsAreShown) {
+TEST(MrmlScene, ReadsVisibilityOfSegments) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene(R"(<Segmentation id="s" displayNodeRef="d"/>
     <SegmentationDisplay id="d" SegmentationDisplayProperties="A%20b OverrideColorR:-1 Visible:true Visible3D:true Opacity3D:1|c Visible:false Visible3D:true|d Visible:true Visible3D:false|"/>)");
@@ -121,7 +121,7 @@ TEST(MrmlScene, knowsWhichSegmentsAreShown) {
 const std::string turned = "0 -1 0 5  1 0 0 6  0 0 1 7  0 0 0 1";
 const Affine turnedMap = affine({0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7});
 
-TEST(MrmlScene, appliesTransformsUpTheChain) {
+TEST(MrmlScene, AppliesTransformsUpTheChain) {
   const SceneFolder folder;
   MrmlScene scene =
       folder.scene(R"(
@@ -136,7 +136,7 @@ TEST(MrmlScene, appliesTransformsUpTheChain) {
   expectSame(grid.indexToWorld, expected * affine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30}));
 }
 
-TEST(MrmlScene, readsTheOldInverseForm) {
+TEST(MrmlScene, ReadsMatrixTransformFromParent) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene(R"(<N id="n" transformNodeRef="t"/>
     <LinearTransform id="t" matrixTransformFromParent=")" +
@@ -158,7 +158,7 @@ Affine shifted(const std::string& tag, const std::string& attributes) {
   return toWorld(scene, node(scene, "n"));
 }
 
-TEST(MrmlScene, prefersTheTransformsFileForItsDigits) {
+TEST(MrmlScene, PrefersTheTransformFileToTheMatrixInTheScene) {
   const Vec3 toParent(1, 2, -3.0000000001); // LPS, from the parent
   EXPECT_EQ(shifted("Transform", "").translation(), toParent);
   EXPECT_EQ(
@@ -167,7 +167,7 @@ TEST(MrmlScene, prefersTheTransformsFileForItsDigits) {
       toParent);
 }
 
-TEST(MrmlScene, knowsHowOldScenesMeantTheirFiles) {
+TEST(MrmlScene, AttributeOfOldScenesSetsTheSenseOfTheFile) {
   const Vec3 toParent(1, 2, -3.0000000001);
   EXPECT_EQ(shifted("Transform", R"(readWriteAsTransformToParent="false")").translation(),
             toParent);
@@ -179,7 +179,7 @@ TEST(MrmlScene, knowsHowOldScenesMeantTheirFiles) {
             -toParent);
 }
 
-TEST(MrmlScene, refusesTransformsItCannotFollow) {
+TEST(MrmlScene, RefusesNonlinearAndLoopingTransforms) {
   const SceneFolder folder;
   const auto refuse = [&](const std::string& transforms, const std::string& because) {
     const auto path = folder.writeScene("<N id=\"n\" transformNodeRef=\"t\"/>" + transforms);
@@ -220,7 +220,7 @@ std::string roiJson(const std::string& system, const std::string& more = "") {
          more + "}]}";
 }
 
-TEST(MrmlScene, readsARegionOfInterestInEitherSystem) {
+TEST(MrmlScene, ReadsRegionInLpsAndRas) {
   // Object axes are the columns of the orientation; LPS negates its first two rows.
   const Affine ras = affine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30});
   const Affine lps = affine({0, 2, 0, -10, -1, 0, 0, -20, 0, 0, 3, 30});
@@ -234,7 +234,7 @@ TEST(MrmlScene, readsARegionOfInterestInEitherSystem) {
   expectSame(read(R"("coordinateSystem": 1, )"), lps);
 }
 
-TEST(MrmlScene, placesARegionOfInterestByItsTransform) {
+TEST(MrmlScene, RegionIsMovedByItsTransform) {
   const Affine box = boxOf(R"(<MarkupsROI id="r" references="storage:s;transform:t;"/>
       <MarkupsROIJsonStorage id="s" fileName="roi.mrk.json"/>
       <LinearTransform id="t" matrixTransformToParent=")" +
@@ -243,7 +243,7 @@ TEST(MrmlScene, placesARegionOfInterestByItsTransform) {
   expectSame(box, turnedMap * affine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30}));
 }
 
-TEST(MrmlScene, readsOlderRegionsOfInterest) {
+TEST(MrmlScene, ReadsAnnotationAndLegacyRegions) {
   const Affine expected = affine({4, 0, 0, 1, 0, 5, 0, 2, 0, 0, 6, 3}); // radii, RAS
   expectSame(boxOf(R"(<AnnotationROI id="r" storageNodeRef="s"/>
                       <AnnotationStorage id="s" fileName="roi.acsv"/>)",
@@ -254,7 +254,7 @@ TEST(MrmlScene, readsOlderRegionsOfInterest) {
   expectSame(boxOf(R"(<ROI id="r" XYZ="1 2 3" RadiusXYZ="4 5 6"/>)"), expected);
 }
 
-TEST(MrmlScene, refusesRegionsThatAreNone) {
+TEST(MrmlScene, RefusesMalformedRegions) {
   const SceneFolder folder;
   const auto refuseJson = [&](const std::string& json, const std::string& because) {
     const auto file = folder.write("my roi.mrk.json", json);
@@ -285,7 +285,7 @@ CameraPose poseOf(const std::string& attributes, const std::string& more = "") {
   return readSceneCamera(scene, node(scene, "c"));
 }
 
-TEST(MrmlScene, readsCameras) {
+TEST(MrmlScene, ReadsParallelAndPerspectiveCameras) {
   const CameraPose parallel =
       poseOf(R"(parallelProjection="true" parallelScale="80" viewAngle="20")");
   EXPECT_EQ(parallel.projection, Projection::orthographic);
@@ -299,7 +299,7 @@ TEST(MrmlScene, readsCameras) {
   EXPECT_EQ(poseOf("").angle, 30.0); // VTK's default
 }
 
-TEST(MrmlScene, doesNotMoveACameraTwice) {
+TEST(MrmlScene, AppliedTransformDoesNotMoveACameraAgain) {
   const std::string transform =
       "<LinearTransform id=\"t\" matrixTransformToParent=\"" + turned + "\"/>";
   const CameraPose applied =
@@ -310,7 +310,7 @@ TEST(MrmlScene, doesNotMoveACameraTwice) {
   EXPECT_TRUE(notYet.up.isApprox(Vec3(0, 0, 1)));
 }
 
-TEST(MrmlScene, refusesCamerasThatLookNowhere) {
+TEST(MrmlScene, RefusesCamerasThatLookNowhere) {
   const SceneFolder folder;
   const auto refuse = [&](const std::string& attributes, const std::string& because) {
     const auto path = folder.writeScene("<Camera id=\"c\" " + attributes + "/>");
@@ -323,7 +323,7 @@ TEST(MrmlScene, refusesCamerasThatLookNowhere) {
   refuse(R"(position="1 2 3" focalPoint="1 9 3" viewUp="0 0 1" viewAngle="0")", "viewAngle");
 }
 
-TEST(MrmlScene, readsTheViewsBackground) {
+TEST(MrmlScene, ReadsBackgroundOfTheView) {
   const MrmlDocument document(
       R"(<MRML><View backgroundColor="0.1 0.2 0.3" backgroundColor2="0.4 0.5 0.6"/>
          <View backgroundColor="0.1 0.2 0.3"/><View/></MRML>)",
@@ -339,7 +339,7 @@ TEST(MrmlScene, readsTheViewsBackground) {
 
 const std::filesystem::path slicerScenes = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes";
 
-TEST(RealScenes, readEveryPreset) {
+TEST(RealScenes, EveryPresetIsRead) {
   if (!std::filesystem::exists(slicerScenes))
     GTEST_SKIP() << slicerScenes << " is absent";
   std::size_t presets = 0;
@@ -358,7 +358,7 @@ TEST(RealScenes, readEveryPreset) {
   EXPECT_GE(presets, 40U);
 }
 
-TEST(RealScenes, readAnAnnotationsRegion) {
+TEST(RealScenes, RegionOfAnAnnotationIsRead) {
   const auto file = slicerScenes / "slicer_core/AnnotationROI.acsv";
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << file << " is absent";
@@ -368,7 +368,7 @@ TEST(RealScenes, readAnAnnotationsRegion) {
              affine({56.6131, 0, 0, -26.5869, 0, 121.875, 0, 0, 0, 0, 121.875, 0}));
 }
 
-TEST(RealScenes, haveOneTransformInTheirFileAndInTheirSixDigits) {
+TEST(RealScenes, TransformFileAgreesWithTheMatrixToSixDigits) {
   const auto file = slicerScenes / "slicer_5_2_written/chest_transformed_cropped.mrb";
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << file << " is absent";

@@ -26,7 +26,7 @@ std::string chain(const std::string& rows, int count) {
 }
 
 /// Maps under which a point loses the precision of a voxel, or paths never end.
-TEST(MrmlTransform, refusesMapsThatLeadOutOfWhatCanBeComputed) {
+TEST(MrmlTransform, RefusesMapsThatCannotBeInverted) {
   const SceneFolder folder;
   const auto refuse = [&](const std::string& transforms, const std::string& because) {
     const auto path = folder.writeScene("<N id=\"n\" transformNodeRef=\"t\"/>" + transforms);
@@ -43,14 +43,14 @@ TEST(MrmlTransform, refusesMapsThatLeadOutOfWhatCanBeComputed) {
   refuse(chain("1 0 0 5e8  0 1 0 0  0 0 1 0", 3), product);
 }
 
-TEST(MrmlTransform, acceptsAnyUsefulScale) {
+TEST(MrmlTransform, AcceptsAnyUsefulScale) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene("<N id=\"n\" transformNodeRef=\"t\"/>" +
                                  transform("1e-5 0 0 0  0 1e-5 0 0  0 0 1e-5 0"));
   EXPECT_EQ(toWorld(scene, node(scene, "n")).linear()(0, 0), 1e-5);
 }
 
-TEST(MrmlTransform, followsNoChainBeyondWhatARenderDoes) {
+TEST(MrmlTransform, ChainIsCountedUpTo1000Transforms) {
   const SceneFolder folder;
   const std::string rows = "1 0 0 0  0 1 0 0  0 0 1 0",
                     below = "<N id=\"n\" transformNodeRef=\"t\"/>";
@@ -64,7 +64,7 @@ TEST(MrmlTransform, followsNoChainBeyondWhatARenderDoes) {
 }
 
 /// A scene can name a slow file many times.
-TEST(MrmlTransform, readsAFileOnce) {
+TEST(MrmlTransform, ReadsEachFileOnce) {
   const SceneFolder folder;
   const std::string nodes = R"(<N id="n" transformNodeRef="a"/>
       <LinearTransform id="a" storageNodeRef="s" transformNodeRef="b"/>
@@ -88,7 +88,7 @@ TEST(MrmlTransform, readsAFileOnce) {
   refuse();
 }
 
-TEST(MrmlTransform, refusesPlacesThatAreComposedOfTooMuch) {
+TEST(MrmlTransform, RefusesPlacesBeyondTheInvertibleRange) {
   const SceneFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(24, 1), {.spacing = {1e5, 1e5, 1e5}});
   const auto path = folder.writeScene(transform("1e5 0 0 0  0 1e5 0 0  0 0 1e5 0") +

@@ -41,7 +41,7 @@ OrganPreset preset(const std::string& name, Modality modality, const FocusPatter
   return {.name = name, .title = name, .modality = modality, .focus = focus, .before = before};
 }
 
-TEST(OrganPresets, takesAllSegmentsThatNamesOrCodesSay) {
+TEST(OrganPresets, FocusTakesSegmentsByNameOrCode) {
   const FocusPatterns patterns{{"lung*"}, {"nodule"}, {"SCT^39607008", "SCT^4147007~SCT^39607008"}};
   const std::vector<SegmentInfo> all = {segment("heart", "SCT^80891009"),
                                         segment("left lung"),
@@ -54,7 +54,7 @@ TEST(OrganPresets, takesAllSegmentsThatNamesOrCodesSay) {
   EXPECT_EQ(namesOf(focusOf(patterns, all)), (Texts{"left lung", "Segment_6", "A"}));
 }
 
-TEST(OrganPresets, fitsWhatTheSegmentsMean) {
+TEST(OrganPresets, PresetFitsSegmentsAndModality) {
   const std::vector<OrganPreset> presets = {
       preset("liver", Modality::ct, {{"liver"}}),
       preset("brain", Modality::mr, {{"brain"}}),
@@ -77,7 +77,7 @@ TEST(OrganPresets, fitsWhatTheSegmentsMean) {
   EXPECT_EQ(fit({"brain", "tumour", "liver"}, Modality::mr), "tumour");
 }
 
-TEST(OrganPresets, listsThoseThatFitWhereSeveralDo) {
+TEST(OrganPresets, SeveralFittingPresetsAreListed) {
   const std::vector<OrganPreset> presets = {preset("liver", Modality::ct, {{"liver"}}),
                                             preset("heart", Modality::ct, {{"heart"}})};
   expectRefused("s", "several presets fit, liver (liver), heart (heart)", [&] {
@@ -97,7 +97,7 @@ Texts presetsOf(const SegmentInfo& segment) {
 }
 
 /// Names used by TotalSegmentator, by Slicer's terminology and in common label lists.
-TEST(OrganPresets, theProgramsOwnKnowUsualNames) {
+TEST(OrganPresets, BuiltInPresetsMatchUsualNames) {
   const std::vector<std::pair<std::string, Texts>> meant = {
       {"liver", {"liver", "Liver", "Liver_1"}},
       {"heart", {"heart", "heart_myocardium", "heart_atrium_left", "Left Ventricle"}},
@@ -121,7 +121,7 @@ TEST(OrganPresets, theProgramsOwnKnowUsualNames) {
 }
 
 /// A segment's code alone is sufficient.
-TEST(OrganPresets, theProgramsOwnKnowSlicersCodes) {
+TEST(OrganPresets, BuiltInPresetsMatchSlicerCodes) {
   EXPECT_EQ(presetsOf(segment("S", "SCT^10200004")), Texts{"liver"});
   EXPECT_EQ(presetsOf(segment("S", "SCT^39607008", "SCT^1")), Texts{"lungs"});
   EXPECT_EQ(presetsOf(segment("S", "SCT^122496007")), Texts{"spine"});
@@ -129,7 +129,7 @@ TEST(OrganPresets, theProgramsOwnKnowSlicersCodes) {
   EXPECT_EQ(presetsOf(segment("S", "SCT^4147007", "SCT^10200004")), Texts{});
 }
 
-TEST(OrganPresets, aVolumesRangeSaysWhetherItIsCt) {
+TEST(OrganPresets, RangeDecidesWhetherAVolumeIsCt) {
   const Grid grid = testing::centredGrid({10, 10, 10}, Vec3::Ones());
   const auto volume = [&](double low, double high) {
     return testing::makeVolume<std::int16_t>(
@@ -143,7 +143,7 @@ TEST(OrganPresets, aVolumesRangeSaysWhetherItIsCt) {
 }
 
 /// 100 000 values, 0 to 99 999, each once: percentiles are known.
-TEST(OrganPresets, whatIsUsualIsBetweenThePercentiles) {
+TEST(OrganPresets, UsualRangeLiesBetweenThePercentiles) {
   const Volume volume =
       testing::makeVolume(testing::centredGrid({100, 100, 10}, Vec3::Ones()),
                           [](const Vec3& i) { return i.x() + 100.0 * i.y() + 10000.0 * i.z(); });

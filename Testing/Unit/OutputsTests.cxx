@@ -58,7 +58,7 @@ protected:
   Outputs outputs;
 };
 
-TEST_F(OutputFiles, AppearTogetherAtTheCommit) {
+TEST_F(OutputFiles, CommitPlacesAllFilesTogether) {
   folder.write("a", "old");
   outputs.add(folder / "a");
   outputs.add(folder / "b");
@@ -72,7 +72,7 @@ TEST_F(OutputFiles, AppearTogetherAtTheCommit) {
   EXPECT_EQ(fileCount(), 2u);
 }
 
-TEST_F(OutputFiles, LeaveNothingWithoutACommit) {
+TEST_F(OutputFiles, WithoutACommitNothingIsLeft) {
   folder.write("a", "old");
   {
     Outputs given;
@@ -84,7 +84,7 @@ TEST_F(OutputFiles, LeaveNothingWithoutACommit) {
   EXPECT_EQ(fileCount(), 1u);
 }
 
-TEST_F(OutputFiles, AreAllTakenBackWhereOneCannotBePlaced) {
+TEST_F(OutputFiles, FailedCommitRestoresTheFormerFiles) {
   folder.write("a", "old");
   outputs.add(folder / "a");
   outputs.add(folder / "b");
@@ -98,7 +98,7 @@ TEST_F(OutputFiles, AreAllTakenBackWhereOneCannotBePlaced) {
   EXPECT_TRUE(fs::is_directory(folder / "c"));
 }
 
-TEST_F(OutputFiles, NeverReplaceAnInputWhateverItsName) {
+TEST_F(OutputFiles, InputIsNotReplacedUnderAnyName) {
   read("volume");
   fs::create_symlink("volume", folder / "link");
   fs::create_hard_link(folder / "volume", folder / "hard");
@@ -110,7 +110,7 @@ TEST_F(OutputFiles, NeverReplaceAnInputWhateverItsName) {
         << name;
 }
 
-TEST_F(OutputFiles, DoNotReplaceWhatBecameAnInputAfterTheyWereDeclared) {
+TEST_F(OutputFiles, FileThatBecameAnInputIsNotReplaced) {
   folder.write("a", "old");
   outputs.add(folder / "a");
   outputs.checkInputs();
@@ -121,7 +121,7 @@ TEST_F(OutputFiles, DoNotReplaceWhatBecameAnInputAfterTheyWereDeclared) {
   EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
 
-TEST_F(OutputFiles, AreNoInputsOfTheSameProcess) {
+TEST_F(OutputFiles, OwnOutputIsRefusedAsInput) {
   outputs.add(folder / "a");
   outputs.write(folder / "a", "new");
   outputs.commit();
@@ -131,7 +131,7 @@ TEST_F(OutputFiles, AreNoInputsOfTheSameProcess) {
   requireFile(folder / "a", "");
 }
 
-TEST_F(OutputFiles, OfOneNameAreRefused) {
+TEST_F(OutputFiles, SameFileTwiceIsRefused) {
   folder.write("a", "old");
   fs::create_hard_link(folder / "a", folder / "hard");
   fs::create_symlink("none", folder / "link");
@@ -142,7 +142,7 @@ TEST_F(OutputFiles, OfOneNameAreRefused) {
               std::string::npos);
 }
 
-TEST_F(OutputFiles, FollowLinksAndKeepThem) {
+TEST_F(OutputFiles, LinksAreWrittenThroughAndKept) {
   folder.write("real", "old");
   fs::create_symlink("real", folder / "link");
   fs::create_symlink("later", folder / "dangling");
@@ -157,7 +157,7 @@ TEST_F(OutputFiles, FollowLinksAndKeepThem) {
   EXPECT_EQ(bytesOf(folder / "later"), "new");
 }
 
-TEST_F(OutputFiles, RefuseFoldersAndDevicesAndWhatIsProtected) {
+TEST_F(OutputFiles, FoldersDevicesAndProtectedFilesAreRefused) {
   fs::create_directory(folder / "folder.png");
   fs::create_symlink("/dev/full", folder / "device.png");
   folder.write("protected.png", "old");
@@ -171,7 +171,7 @@ TEST_F(OutputFiles, RefuseFoldersAndDevicesAndWhatIsProtected) {
   EXPECT_EQ(fileCount(), 3u);
 }
 
-TEST_F(OutputFiles, RefuseWhatItsOwnerKeepsInAStickyFolder) {
+TEST_F(OutputFiles, ForeignFileInAStickyFolderIsRefused) {
   if (::geteuid() != 0)
     GTEST_SKIP() << "takes root, to give a file away";
   constexpr uid_t owner = 1234, other = 1235;
@@ -187,7 +187,7 @@ TEST_F(OutputFiles, RefuseWhatItsOwnerKeepsInAStickyFolder) {
   EXPECT_EQ(::seteuid(0), 0);
 }
 
-TEST_F(OutputFiles, MayHaveTheLongestNameThereIs) {
+TEST_F(OutputFiles, NameOf255BytesIsWritten) {
   const std::string name = std::string(251, 'n') + ".png"; // 255 bytes
   outputs.add(folder / name);
   outputs.write(folder / name, "new");
@@ -195,7 +195,7 @@ TEST_F(OutputFiles, MayHaveTheLongestNameThereIs) {
   EXPECT_EQ(bytesOf(folder / name), "new");
 }
 
-TEST_F(OutputFiles, KeepModeAndOwnerOfWhatTheyReplace) {
+TEST_F(OutputFiles, ModeAndOwnerOfAReplacedFileAreKept) {
   folder.write("private", "old");
   ::chmod((folder / "private").c_str(), 0600);
   const bool isRoot = ::geteuid() == 0;
@@ -218,7 +218,7 @@ TEST_F(OutputFiles, KeepModeAndOwnerOfWhatTheyReplace) {
   EXPECT_EQ(modeOf(folder / "fresh"), modeOf(usual));
 }
 
-TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
+TEST_F(OutputFiles, DefaultNameReplacesOnlySealedFiles) {
   folder.write("theirs", "somebody else made this");
   const std::string ours = sealed("x " + std::string(unsealedMark) + "12345 y");
   folder.write("ours", ours);
@@ -244,7 +244,7 @@ TEST_F(OutputFiles, ThatNobodyNamedReplaceOnlyOurs) {
   outputs.addUnnamed(folder / "new");
 }
 
-TEST_F(OutputFiles, DoNotReplaceWhatSomebodyPutThereMeanwhile) {
+TEST_F(OutputFiles, FileCreatedMeanwhileIsNotReplaced) {
   outputs.addUnnamed(folder / "a");
   outputs.write(folder / "a", "new");
   folder.write("a", "somebody else's");
@@ -252,7 +252,7 @@ TEST_F(OutputFiles, DoNotReplaceWhatSomebodyPutThereMeanwhile) {
   EXPECT_EQ(bytesOf(folder / "a"), "somebody else's");
 }
 
-TEST_F(OutputFiles, GoToDescriptorsAndPipesAfterAllFiles) {
+TEST_F(OutputFiles, DescriptorsAndPipesAreWrittenAtTheCommit) {
   const fs::path pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
@@ -275,7 +275,7 @@ TEST_F(OutputFiles, GoToDescriptorsAndPipesAfterAllFiles) {
   refusal(ErrorKind::output, [&] { outputs.add("/dev/fd/987"); });
 }
 
-TEST_F(OutputFiles, OfOtherRunsAreNotTakenFromThemInTheirCommit) {
+TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
   folder.write("a", "old");
   TemporaryFile file(folder / "a");
   file.write("new");
@@ -286,7 +286,7 @@ TEST_F(OutputFiles, OfOtherRunsAreNotTakenFromThemInTheirCommit) {
   EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
 
-TEST_F(OutputFiles, OfRunsThatWereKilledAreRemovedByTheNext) {
+TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
   const std::string left = temporaryName(temporaryFilePrefix);
   const std::string inUse = temporaryName(temporaryFilePrefix);
   folder.write(left, "left");
@@ -302,13 +302,13 @@ TEST_F(OutputFiles, OfRunsThatWereKilledAreRemovedByTheNext) {
   ::close(living);
 }
 
-TEST_F(OutputFiles, HaveNoTemporaryFilesNames) {
+TEST_F(OutputFiles, NamesOfTemporaryFilesAreRefused) {
   const fs::path path = folder / temporaryName(temporaryFilePrefix);
   EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(path); }).find("choose another"),
             std::string::npos);
 }
 
-TEST_F(OutputFiles, WaitForWhoPlacesResultsInTheFolder) {
+TEST_F(OutputFiles, CommitWaitsForTheLockOfTheFolder) {
   outputs.add(folder / "a");
   outputs.write(folder / "a", "new");
   const int other = ::open(folder.path().c_str(), O_RDONLY | O_DIRECTORY);
@@ -321,7 +321,7 @@ TEST_F(OutputFiles, WaitForWhoPlacesResultsInTheFolder) {
   EXPECT_EQ(bytesOf(folder / "a"), "new");
 }
 
-TEST_F(OutputFiles, AreKnownByWhatWasWrittenNotByWhatIsThere) {
+TEST_F(OutputFiles, WrittenReturnsTheStateAtTheCommit) {
   for (const char* name : {"a", "b"})
     outputs.add(folder / name);
   outputs.write(folder / "a", "new");
@@ -331,7 +331,7 @@ TEST_F(OutputFiles, AreKnownByWhatWasWrittenNotByWhatIsThere) {
   EXPECT_EQ(outputs.written(folder / "b"), std::nullopt);
 }
 
-TEST_F(OutputFiles, NamesAreLockedByOneAtATime) {
+TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
   const fs::path name = folder / "turn.turntable.json";
   {
     const NameLock first(name);
@@ -348,18 +348,18 @@ TEST_F(OutputFiles, NamesAreLockedByOneAtATime) {
 }
 
 /// Names as long as a path in an archive may be.
-TEST_F(OutputFiles, WithNamesThatAreTooLongAreNotLeft) {
+TEST_F(OutputFiles, OverlongNameIsNoLeftover) {
   { const Leftover file(folder / std::string(300, 'x'), Leftover::Kind::file); }
   EXPECT_EQ(remainingLeftovers(), std::vector<fs::path>());
 }
 
-TEST_F(OutputFiles, OfAnotherProcessAreNotTakenForAbandoned) {
+TEST_F(OutputFiles, LockedTemporaryFileIsNotRemoved) {
   const TemporaryFile file(folder / "a");
   removeAbandonedFiles(folder.path()); // another descriptor and lock, as in another process
   EXPECT_EQ(fileCount(), 1u);
 }
 
-TEST(Inputs, AreConfinedToTheArchivesFolder) {
+TEST(Inputs, FilesOutsideTheArchivesFolderAreRefused) {
   const TemporaryFolder inside, outside;
   const fs::path member = inside.write("member", "1"), secret = outside.write("secret", "2");
   fs::create_symlink(secret, inside / "link");
@@ -370,7 +370,7 @@ TEST(Inputs, AreConfinedToTheArchivesFolder) {
     EXPECT_THROW(requireFile(path, ""), Error) << path;
 }
 
-TEST(Inputs, HaveABudget) {
+TEST(Inputs, FileBeyondTheSizeLimitIsRefused) {
   const TemporaryFolder folder;
   const fs::path file = folder.write("a", std::string(100, 'x'));
   requireFile(file, "", 100);
@@ -379,7 +379,7 @@ TEST(Inputs, HaveABudget) {
 
 /// The system ends a name at a zero byte: a folder's name with a zero byte and more text would
 /// contain the folder's files, whose names again are the folder's.
-TEST_F(OutputFiles, WithAZeroByteInTheirNamesAreNone) {
+TEST_F(OutputFiles, ZeroByteInANameIsRefused) {
   const fs::path file = read("a");
   const std::string zero(1, '\0');
   const fs::path inFolder = folder.path().native() + zero;
@@ -390,7 +390,7 @@ TEST_F(OutputFiles, WithAZeroByteInTheirNamesAreNone) {
   EXPECT_EQ(line.find(file.string() + ": is followed by a zero byte"), 0u) << line;
 }
 
-TEST(PrivateFolders, OfRunsThatWereKilledAreRemovedByTheNext) {
+TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
   const TemporaryFolder temporary;
   const std::string before = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
@@ -416,7 +416,7 @@ TEST(PrivateFolders, OfRunsThatWereKilledAreRemovedByTheNext) {
   ::setenv("TMPDIR", before.c_str(), 1);
 }
 
-TEST(PrivateFolders, GoWithWhatIsInThem) {
+TEST(PrivateFolders, FolderIsRemovedWithItsContent) {
   fs::path path;
   {
     PrivateFolder folder;

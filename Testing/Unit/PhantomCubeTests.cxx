@@ -20,7 +20,7 @@ std::vector<int> slicesOf(const Phantom& cube) {
 
 } // namespace
 
-TEST(PhantomCube, ThePublishedOneCountsItsSlicesFromTheMiddle) {
+TEST(PhantomCube, PublishedCubeCountsSlicesFromTheMiddle) {
   const Phantom cube = makeCubePhantom();
   EXPECT_EQ(cube.volume.grid.size, Size3(512, 512, 512));
   const std::vector<int> slices = slicesOf(cube);
@@ -32,7 +32,7 @@ TEST(PhantomCube, ThePublishedOneCountsItsSlicesFromTheMiddle) {
   EXPECT_EQ(cube.volume.maximum, 255.0);
 }
 
-TEST(PhantomCube, SmallOnesSpanTheSameRangeAndKeepTheShares) {
+TEST(PhantomCube, SmallCubeKeepsRangeAndProportions) {
   const Phantom cube = makeCubePhantom({1.0, 24});
   const std::vector<int> slices = slicesOf(cube);
   EXPECT_EQ(slices.front(), -255);
@@ -47,7 +47,7 @@ TEST(PhantomCube, SmallOnesSpanTheSameRangeAndKeepTheShares) {
   EXPECT_EQ(cube.labels.layers[0], std::vector<std::uint8_t>(12 * 12 * 18, 1));
 }
 
-TEST(PhantomCube, HasItsEdgeAroundTheOrigin) {
+TEST(PhantomCube, CubeIsCentredOnTheOrigin) {
   for (const double edge : {1.0, 512.0}) {
     const Grid grid = makeCubePhantom({edge, 16}).volume.grid;
     EXPECT_TRUE(grid.worldCorner(0).isApprox(Vec3::Constant(-0.5 * edge)));
@@ -55,7 +55,7 @@ TEST(PhantomCube, HasItsEdgeAroundTheOrigin) {
   }
 }
 
-TEST(PhantomCube, IsAsOpaqueAndAsBlueAndRedAtEveryEdge) {
+TEST(PhantomCube, OpacityAndColourDoNotDependOnTheEdge) {
   for (const double edge : {1.0, 512.0}) {
     const TransferFunction transfer = tabulate(cubeProperty(edge), "cube");
     EXPECT_NEAR(transfer.extinction(17.0).value() * edge, 100.0 * std::log(100.0), 1.0);
@@ -65,7 +65,7 @@ TEST(PhantomCube, IsAsOpaqueAndAsBlueAndRedAtEveryEdge) {
   }
 }
 
-TEST(PhantomCube, RefusesWhatIsNoCube) {
+TEST(PhantomCube, RefusesSizesAndEdgesOutOfRange) {
   EXPECT_THROW(makeCubePhantom({1.0, 15}), Error);
   EXPECT_THROW(makeCubePhantom({1.0, 1025}), Error);
   EXPECT_THROW(makeCubePhantom({0.0, 16}), Error);

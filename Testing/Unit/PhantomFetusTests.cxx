@@ -31,7 +31,7 @@ TEST(PhantomFetus, ValuesAreEightBitsOfUltrasound) {
 }
 
 /// The head is roughly an ellipsoid of 35 x 43 x 36 mm, with face, jaw and neck.
-TEST(PhantomFetus, SegmentsAreAsLargeAsTheirAnatomy) {
+TEST(PhantomFetus, SegmentsHaveAnatomicalVolumes) {
   const double voxel = std::pow(112.0 / 64.0, 3.0) / 1000.0; // ml
   ASSERT_EQ(smallFetus().segments.size(), 3u);
   const double head = voxel * static_cast<double>(countOf(1));
@@ -43,7 +43,7 @@ TEST(PhantomFetus, SegmentsAreAsLargeAsTheirAnatomy) {
 }
 
 /// A ray from the front to any part of the face meets the uterine wall first.
-TEST(PhantomFetus, TheWallHidesTheFace) {
+TEST(PhantomFetus, WallHidesTheFace) {
   const Phantom& fetus = smallFetus();
   const auto& labels = fetus.labels.layers.front();
   const Size3& size = fetus.volume.grid.size;
@@ -66,7 +66,7 @@ TEST(PhantomFetus, TheWallHidesTheFace) {
   EXPECT_EQ(hidden, columns);
 }
 
-TEST(PhantomFetus, SpeckleIsNoLargerThanTissue) {
+TEST(PhantomFetus, SpeckleIsSmallerThanTheSignalOfTissue) {
   const Phantom& fetus = smallFetus();
   const auto& labels = fetus.labels.layers.front();
   const auto& voxels = voxelsOf(fetus);

@@ -93,7 +93,7 @@ TEST(PhantomFoot, HasTheTwentySixBonesAndTwoStumps) {
     EXPECT_GT(voxelsIn(smallFoot(), id).size(), 15u) << id;
 }
 
-TEST(PhantomFoot, IsARightFootWithItsBonesInTheirPlaces) {
+TEST(PhantomFoot, BonesLieAsInARightFoot) {
   const Phantom& foot = smallFoot();
   const auto at = [&](const char* id) { return centroid(foot, id); };
   for (int ray = 1; ray < 5; ++ray) {
@@ -166,7 +166,7 @@ TEST(PhantomFoot, JointsAreNarrowGaps) {
   EXPECT_GT(overlap, 0.0) << "no place is in two bones";
 }
 
-TEST(PhantomFoot, TheBonesSegmentIsWhatTwoHundredHounsfieldFind) {
+TEST(PhantomFoot, BonesSegmentHoldsVoxelsFrom200Hounsfield) {
   const Phantom& foot = smallFoot();
   const PhantomSegment& bones = segmentOf(foot, "bones");
   EXPECT_EQ(bones.layer, 1u);
@@ -214,7 +214,7 @@ TEST(PhantomFoot, SkinCoversEveryBone) {
   EXPECT_GT(thinnest, 2.0);
 }
 
-TEST(PhantomFoot, KeepsItsPlaceAtEverySizeAndIsTheSameOnOneThread) {
+TEST(PhantomFoot, PlaceDoesNotDependOnSizeNorVoxelsOnThreads) {
   const FootOptions options{{48, 24, 28}};
   const Phantom many = makeFootPhantom(options);
   const Grid& grid = many.volume.grid;
@@ -228,7 +228,7 @@ TEST(PhantomFoot, KeepsItsPlaceAtEverySizeAndIsTheSameOnOneThread) {
   EXPECT_THROW(makeFootPhantom({{48, 15, 28}}), Error);
 }
 
-TEST(PhantomFoot, BothLayersComeBackFromItsSegmentation) {
+TEST(PhantomFoot, BothLayersRoundTripThroughTheFile) {
   const TemporaryFolder folder;
   const Phantom foot = makeFootPhantom({{48, 24, 28}});
   writePhantom(foot, folder.path(), "foot");

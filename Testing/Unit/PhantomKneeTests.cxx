@@ -108,7 +108,7 @@ TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
   EXPECT_TRUE(axes.col(2).isApprox(Vec3(1, 0, 0))) << "right";
 }
 
-TEST(PhantomKnee, RefusesSizesThatAreNoVolume) {
+TEST(PhantomKnee, RefusesSizesBeyondItsLimits) {
   EXPECT_THROW(makeKneePhantom({{8, 100, 100}}), Error);
   EXPECT_THROW(makeKneePhantom({{100, 100, 4000}}), Error);
 }
@@ -134,7 +134,7 @@ TEST(PhantomKnee, HasTheProportionsOfAnAdult) {
   EXPECT_NEAR(extent(patella, {2, 20, 42}, {2, 60, 42}), 18.5, 2.5) << "patella's thickness";
 }
 
-TEST(PhantomKnee, FemoralCartilageIsAsThickAsInLife) {
+TEST(PhantomKnee, FemoralCartilageHasAnatomicalThickness) {
   const KneeBones bones;
   double sum = 0.0, thinnest = infinity, thickest = 0.0;
   int count = 0;
@@ -177,7 +177,7 @@ TEST(PhantomKnee, OneLesionReachesTheBoneAndOneGoesHalfway) {
   EXPECT_NEAR(width(partialThicknessLesion), 9.0, 1.2);
 }
 
-TEST(PhantomKnee, TheLesionsAreOnTheFrontAndUndersideOfTheCondyles) {
+TEST(PhantomKnee, LesionsFaceInferiorAndAnterior) {
   const KneeBones bones;
   for (const CartilageLesion& lesion : {fullThicknessLesion, partialThicknessLesion}) {
     const Vec3 p = bones.femoralSurface(lesion.x, lesion.angle);
@@ -190,7 +190,7 @@ TEST(PhantomKnee, TheLesionsAreOnTheFrontAndUndersideOfTheCondyles) {
 
 // Otherwise a view of the femoral cartilage from the front would be clipped down to the rear of the
 // condyles, beside the trochlea and behind the lesion.
-TEST(PhantomKnee, SeenFromInFrontTheFemoralCartilageHidesItsRear) {
+TEST(PhantomKnee, CartilageSeenFromAnteriorIsNotItsRear) {
   const Phantom& knee = smallKnee();
   const std::uint8_t label = labelOf(knee, "FemoralCartilage");
   const Grid& grid = knee.volume.grid;
@@ -208,7 +208,7 @@ TEST(PhantomKnee, SeenFromInFrontTheFemoralCartilageHidesItsRear) {
   EXPECT_GT(columns, 500);
 }
 
-TEST(PhantomKnee, SignalsFollowT1) {
+TEST(PhantomKnee, MedianSignalsAreThoseOfT1) {
   const Phantom& knee = smallKnee();
   EXPECT_NEAR(medianOf(knee, "MedialGastrocnemius"), 350.0, 45.0);
   EXPECT_NEAR(medianOf(knee, "SubcutaneousFat"), 850.0, 80.0);
@@ -221,14 +221,14 @@ TEST(PhantomKnee, SignalsFollowT1) {
   EXPECT_LT(snr, 40.0);
 }
 
-TEST(PhantomKnee, TheBiasFieldStaysWithinFifteenPercent) {
+TEST(PhantomKnee, BiasFieldStaysWithinFifteenPercent) {
   for (double x = -60; x <= 60; x += 4)
     for (double y = -62; y <= 58; y += 4)
       for (double z = -62; z <= 76; z += 4)
         EXPECT_NEAR(biasField({x, y, z}), 1.0, 0.15);
 }
 
-TEST(PhantomKnee, ItsPropertyShowsCartilageDenseAndAirNotAtAll) {
+TEST(PhantomKnee, PropertyShowsCartilageDenseAndAirClear) {
   const TransferFunction transfer = tabulate(kneeProperty(), "knee");
   const auto sigma = [&](double s) { return transfer.extinction(s).value(); };
   EXPECT_EQ(sigma(14.0), 0.0); // the mean of noise in air

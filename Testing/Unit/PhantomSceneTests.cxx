@@ -76,14 +76,14 @@ struct PhantomSceneFiles : ::testing::Test {
   }
 };
 
-TEST_F(PhantomSceneFiles, TheRootIsAsSlicerReadsIt) {
+TEST_F(PhantomSceneFiles, RootHasSlicersVersion) {
   EXPECT_TRUE(bytesOf(folder / "knee.mrml")
                   .starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<MRML "));
   EXPECT_EQ(text(scene, "version"), "Slicer 5.2.2 31383");
   EXPECT_EQ(text(scene, "userTags"), "");
 }
 
-TEST_F(PhantomSceneFiles, EveryNodeHasItsClassInItsIdAndAppearsOnce) {
+TEST_F(PhantomSceneFiles, EveryNodeHasItsClassInItsIdAndOccursOnce) {
   const std::map<std::string, std::string> classes = {
       {"View", "vtkMRMLViewNode"},
       {"Camera", "vtkMRMLCameraNode"},
@@ -145,7 +145,7 @@ TEST_F(PhantomSceneFiles, EveryReferenceLeadsToItsNode) {
   EXPECT_EQ(text(node("GPURayCastVolumeRendering"), "viewNodeRef"), text(node("View"), "id"));
 }
 
-TEST_F(PhantomSceneFiles, StorageNodesNameFilesThatAreThere) {
+TEST_F(PhantomSceneFiles, StorageNodesNameExistingFiles) {
   const std::map<std::string, std::pair<std::string, std::string>> expected = {
       {"VolumeArchetypeStorage", {"knee.nrrd", "nrrd"}},
       {"SegmentationStorage", {"knee.seg.nrrd", "seg.nrrd"}},
@@ -162,7 +162,7 @@ TEST_F(PhantomSceneFiles, StorageNodesNameFilesThatAreThere) {
   expectTexts("MarkupsROIJsonStorage", {{"coordinateSystem", "LPS"}});
 }
 
-TEST_F(PhantomSceneFiles, TheVolumeLiesInRasWhereItsGridSays) {
+TEST_F(PhantomSceneFiles, VolumeNodeHoldsItsGridInRas) {
   const pugi::xml_node volume = node("Volume");
   const Grid& grid = phantom.volume.grid;
   EXPECT_TRUE(triple(volume, "spacing").isApprox(grid.spacing(), 1e-5));
@@ -178,7 +178,7 @@ TEST_F(PhantomSceneFiles, TheVolumeLiesInRasWhereItsGridSays) {
             phantom.volume.maximum - phantom.volume.minimum);
 }
 
-TEST_F(PhantomSceneFiles, TheSegmentationIsALabelmapForOldAndNewSlicers) {
+TEST_F(PhantomSceneFiles, SegmentationIsALabelmapForOldAndNewSlicers) {
   expectTexts("Segmentation", {{"MasterRepresentationName", "Binary labelmap"},
                                {"SourceRepresentationName", "Binary labelmap"},
                                {"segmentListFilterEnabled", "false"}});
@@ -193,7 +193,7 @@ TEST_F(PhantomSceneFiles, TheSegmentationIsALabelmapForOldAndNewSlicers) {
   EXPECT_EQ(count, phantom.segments.size());
 }
 
-TEST_F(PhantomSceneFiles, TheRenderingIsNotCropped) {
+TEST_F(PhantomSceneFiles, RenderingIsNotCropped) {
   expectTexts("GPURayCastVolumeRendering", {{"croppingEnabled", "0"},
                                             {"visibility", "true"},
                                             {"followVolumeDisplayNode", "0"},
@@ -201,7 +201,7 @@ TEST_F(PhantomSceneFiles, TheRenderingIsNotCropped) {
                                             {"useSingleVolumeProperty", "0"}});
 }
 
-TEST_F(PhantomSceneFiles, ThePropertyStandsInTheSceneAndInItsFileAlike) {
+TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
   const pugi::xml_node property = node("VolumeProperty");
   std::istringstream file(bytesOf(folder / "knee.vp"));
   for (const char* attribute :
@@ -225,7 +225,7 @@ TEST_F(PhantomSceneFiles, ThePropertyStandsInTheSceneAndInItsFileAlike) {
   EXPECT_EQ(text(property, "shade"), "1");
 }
 
-TEST_F(PhantomSceneFiles, TheCameraBelongsToTheViewAndFramesTheVolume) {
+TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
   const pugi::xml_node camera = node("Camera"), view = node("View");
   EXPECT_EQ(text(camera, "singletonTag"), text(view, "layoutName"));
   EXPECT_EQ(text(view, "singletonTag"), text(view, "layoutName"));
@@ -257,7 +257,7 @@ TEST_F(PhantomSceneFiles, TheCameraBelongsToTheViewAndFramesTheVolume) {
   EXPECT_NEAR(reach / scale, 1.0 / 1.05, 1e-4) << "half the viewport's height";
 }
 
-TEST_F(PhantomSceneFiles, TheRegionOfInterestIsTheVolumesBoxInLps) {
+TEST_F(PhantomSceneFiles, RegionOfInterestIsTheVolumesBoxInLps) {
   const auto json = nlohmann::json::parse(bytesOf(folder / "knee-roi.mrk.json"));
   EXPECT_NE(json.at("@schema").get<std::string>().find("markups-schema-v1.0.3.json#"),
             std::string::npos);
@@ -310,7 +310,7 @@ struct ZipFile {
   zip_t* archive;
 };
 
-TEST_F(PhantomSceneFiles, TheArchiveHoldsTheSceneAndItsDataAsSlicerLaysThemOut) {
+TEST_F(PhantomSceneFiles, ArchiveHoldsTheSceneAndItsDataInSlicersLayout) {
   const ZipFile zip(folder / "knee.mrb");
   ASSERT_TRUE(zip.archive);
   EXPECT_EQ(zip.names(), (std::vector<std::string>{"knee/knee.mrml", "knee/Data/knee.nrrd",
@@ -333,7 +333,7 @@ TEST_F(PhantomSceneFiles, TheArchiveHoldsTheSceneAndItsDataAsSlicerLaysThemOut) 
   EXPECT_GT(same, 250u);
 }
 
-TEST_F(PhantomSceneFiles, TheArchiveBearsNoDateOfItsOwn) {
+TEST_F(PhantomSceneFiles, ArchiveHasAFixedDate) {
   const ZipFile zip(folder / "knee.mrb");
   ASSERT_TRUE(zip.archive);
   for (const std::string& name : zip.names()) {
@@ -345,7 +345,7 @@ TEST_F(PhantomSceneFiles, TheArchiveBearsNoDateOfItsOwn) {
   }
 }
 
-TEST_F(PhantomSceneFiles, TheFilesAreTheSameOnEveryRun) {
+TEST_F(PhantomSceneFiles, FilesAreTheSameOnEveryRun) {
   const TemporaryFolder again;
   writePhantom(phantom, again.path(), "knee");
   EXPECT_EQ(files.size(), 7u);
@@ -353,7 +353,7 @@ TEST_F(PhantomSceneFiles, TheFilesAreTheSameOnEveryRun) {
     EXPECT_EQ(bytesOf(folder / file), bytesOf(again / file)) << file;
 }
 
-TEST(PhantomScene, EscapesWhatXmlAndAddressesReserve) {
+TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {
   Phantom phantom = makeCubePhantom({1.0, 16});
   phantom.segments[0].id = "a b|c";
   const std::string text = phantomScene(phantom, "R&D <\"1\">", {"my file%1.nrrd", "b", "c", "d"});
@@ -369,7 +369,7 @@ TEST(PhantomScene, EscapesWhatXmlAndAddressesReserve) {
           .starts_with("a%20b%7Cc OverrideColorR"));
 }
 
-TEST(PhantomScene, AVpHoldsOpacitiesOfAMillimetre) {
+TEST(PhantomScene, PropertyHoldsOpacitiesOfAMillimetre) {
   const auto opacityOf = [](double edge) {
     const std::string text = phantomScene(makeCubePhantom({edge, 16}), "cube", {});
     pugi::xml_document document;

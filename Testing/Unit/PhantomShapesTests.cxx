@@ -14,7 +14,7 @@ TEST(PhantomShapes, BlendsEqualTheSharpOperationAwayFromTheSeam) {
   EXPECT_DOUBLE_EQ(smoothUnion(1.0, 1.0, 2.0), 0.5); // deepest at the seam: a quarter of the blend
 }
 
-TEST(PhantomShapes, ATubeIsAsFarAsItsAxisLessItsRadius) {
+TEST(PhantomShapes, TubeDistanceIsThatOfItsAxisLessItsRadius) {
   const Tube tube({{{0, 0, -10}, 2.0}, {{0, 0, 0}, 2.0}, {{0, 0, 10}, 2.0}});
   EXPECT_NEAR(tube.distance({5, 0, 1}), 3.0, 1e-12);
   EXPECT_NEAR(tube.distance({0, 0, 0.3}), -2.0, 1e-12);
@@ -22,20 +22,20 @@ TEST(PhantomShapes, ATubeIsAsFarAsItsAxisLessItsRadius) {
   EXPECT_TRUE(tube.box().upper.isApprox(Vec3(2, 2, 12)));
 }
 
-TEST(PhantomShapes, ABandIsStretchedAcrossButNotAlongItsThickness) {
+TEST(PhantomShapes, BandIsStretchedAcrossButNotAlongItsThickness) {
   const Tube band({{{0, 0, 0}, 1.5}, {{0, 0, 20}, 1.5}}, {4, 1, 1});
   EXPECT_NEAR(band.distance({0, 1.5, 10}), 0.0, 1e-12);
   EXPECT_NEAR(band.distance({6, 0, 10}), 0.0, 1e-12);
 }
 
-TEST(PhantomShapes, ALoftOfEqualCirclesIsACylinder) {
+TEST(PhantomShapes, LoftOfEqualCirclesIsACylinder) {
   const Loft loft({{-20, {1, 2}, {5, 5}}, {0, {1, 2}, {5, 5}}, {20, {1, 2}, {5, 5}}}, 0.0, 1.0);
   EXPECT_NEAR(loft.distance({9, 2, 3}), 3.0, 1e-9);
   EXPECT_NEAR(loft.distance({1, 5, -3}), -2.0, 1e-9);
   EXPECT_NEAR(loft.distance({1, 2.5, 24}), 4.0, 1e-9);
 }
 
-TEST(PhantomShapes, ALoftPassesThroughItsSections) {
+TEST(PhantomShapes, LoftPassesThroughItsSections) {
   const std::vector<LoftSection> sections = {
       {-10, {0, 0}, {4, 6}}, {0, {2, 1}, {7, 5}}, {15, {3, -1}, {5, 3}}, {30, {0, 0}, {2, 2}}};
   const Loft loft(sections, 0.6, 1.0);
@@ -46,7 +46,7 @@ TEST(PhantomShapes, ALoftPassesThroughItsSections) {
   }
 }
 
-TEST(PhantomShapes, ABlockIsABoxWithRoundEdgesInItsOwnAxes) {
+TEST(PhantomShapes, BlockIsABoxWithRoundEdgesInItsOwnAxes) {
   // Axes across, up and along: x, z and y of the world.
   const Solid solid = block(toShape({1, 2, 3}, Vec3::UnitY(), Vec3::UnitZ()), {4, 5, 6}, 2.0);
   EXPECT_NEAR(solid.distance({1, 2, 3}), -4.0, 1e-12);
@@ -58,7 +58,7 @@ TEST(PhantomShapes, ABlockIsABoxWithRoundEdgesInItsOwnAxes) {
   EXPECT_TRUE(solid.box.upper.isApprox(Vec3(5, 8, 8)));
 }
 
-TEST(PhantomShapes, APlacedLoftRunsAlongItsAxis) {
+TEST(PhantomShapes, PlacedLoftRunsAlongItsAxis) {
   const Loft loft({{0, {0, 0}, {2, 3}}, {10, {0, 0}, {2, 3}}}, 0.0, 1.0);
   const Solid solid = placed(toShape({0, 5, 0}, Vec3::UnitY(), Vec3::UnitZ()), loft);
   EXPECT_NEAR(solid.distance({2, 10, 0}), 0.0, 1e-9);
@@ -67,7 +67,7 @@ TEST(PhantomShapes, APlacedLoftRunsAlongItsAxis) {
   EXPECT_TRUE(contains(solid.box, {2, 15, 3}));
 }
 
-TEST(PhantomNoise, NormalNoiseIsNormal) {
+TEST(PhantomNoise, NormalNoiseHasNormalMoments) {
   constexpr int n = 100000;
   double mean = 0.0, square = 0.0, within = 0.0;
   for (std::uint64_t i = 0; i < n; ++i) {
@@ -81,7 +81,7 @@ TEST(PhantomNoise, NormalNoiseIsNormal) {
   EXPECT_NEAR(within, 0.6827, 0.007);
 }
 
-TEST(PhantomNoise, IsAContinuousFunctionOfPositionWithinItsRange) {
+TEST(PhantomNoise, ValueNoiseIsContinuousAndWithinItsRange) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(0.37 * i - 300.0, -0.21 * i, 0.11 * i);
     const double value = valueNoise(p, 5);
@@ -92,7 +92,7 @@ TEST(PhantomNoise, IsAContinuousFunctionOfPositionWithinItsRange) {
   EXPECT_NE(valueNoise({0.5, 0.5, 0.5}, 1), valueNoise({0.5, 0.5, 0.5}, 2));
 }
 
-TEST(PhantomNoise, RicianMomentsAreThoseOfTheLiterature) {
+TEST(PhantomNoise, RicianMomentsEqualPublishedOnes) {
   constexpr int n = 200000;
   constexpr double sigma = 11.0;
   double air = 0.0, muscle = 0.0, square = 0.0;

@@ -56,7 +56,7 @@ Vec3 worldOf(const itk::NrrdImageIO& io, const Vec3& index) {
   return {-lps.x(), -lps.y(), lps.z()};
 }
 
-TEST_F(PhantomFiles, TheVolumeComesBackVoxelForVoxelInItsPlace) {
+TEST_F(PhantomFiles, VolumeRoundTripsVoxelForVoxelInItsPlace) {
   const auto io = open("knee.nrrd");
   EXPECT_EQ(field(*io, "NRRD_space"), "left-posterior-superior");
   for (int corner = 0; corner < 8; ++corner) {
@@ -66,7 +66,7 @@ TEST_F(PhantomFiles, TheVolumeComesBackVoxelForVoxelInItsPlace) {
   EXPECT_EQ(read<std::int16_t>(*io), std::get<std::vector<std::int16_t>>(phantom.volume.voxels));
 }
 
-TEST_F(PhantomFiles, TheSegmentationNamesEverySegmentAsSlicerDoes) {
+TEST_F(PhantomFiles, SegmentationHasSlicersFieldsForEverySegment) {
   const auto io = open("knee.seg.nrrd");
   const std::vector<std::uint8_t> labels = read<std::uint8_t>(*io);
   EXPECT_EQ(labels, phantom.labels.layers.at(0));
@@ -85,7 +85,7 @@ TEST_F(PhantomFiles, TheSegmentationNamesEverySegmentAsSlicerDoes) {
 }
 
 // Slicer crops a whole layer to the extent of its first segment.
-TEST_F(PhantomFiles, ASegmentsExtentHoldsItsLayer) {
+TEST_F(PhantomFiles, ExtentOfASegmentHoldsItsLayer) {
   const std::string first = field(*open("knee.seg.nrrd"), "Segment0_Extent");
   EXPECT_EQ(field(*open("knee.seg.nrrd"), "Segment3_Extent"), first);
   std::istringstream text(first);
@@ -107,7 +107,7 @@ TEST_F(PhantomFiles, ASegmentsExtentHoldsItsLayer) {
   }
 }
 
-TEST_F(PhantomFiles, ThePropertyIsSlicersJson) {
+TEST_F(PhantomFiles, PropertyIsSlicersJson) {
   std::ifstream file(folder / "knee.vp.json");
   const nlohmann::json json = nlohmann::json::parse(file);
   EXPECT_NE(json.at("@schema").get<std::string>().find("volume-property-schema-v1.0.0.json#"),
@@ -124,7 +124,7 @@ TEST_F(PhantomFiles, ThePropertyIsSlicersJson) {
   EXPECT_EQ(component.at("rgbTransferFunction").at("points").size(), phantom.property.color.size());
 }
 
-TEST_F(PhantomFiles, NothingButTheSevenFilesIsLeft) {
+TEST_F(PhantomFiles, OnlySevenFilesAreLeft) {
   std::size_t count = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder))
     ++count;
@@ -149,7 +149,7 @@ void removeMarks(const std::filesystem::path& folder) {
   }
 }
 
-TEST_F(PhantomFiles, ReplaceTheirLikeAndThoseOfEarlierVersions) {
+TEST_F(PhantomFiles, FilesOfEarlierPhantomsAreReplaced) {
   writePhantom(phantom, folder, "knee");
   writePhantom(makeKneePhantom({{24, 28, 16}}), folder, "knee"); // recognised by the marks
   writePhantom(phantom, folder, "knee");
@@ -157,7 +157,7 @@ TEST_F(PhantomFiles, ReplaceTheirLikeAndThoseOfEarlierVersions) {
   writePhantom(phantom, folder, "knee"); // recognised by volume and scene
 }
 
-TEST_F(PhantomFiles, ReplaceNothingThatWasEdited) {
+TEST_F(PhantomFiles, EditedFilesAreNotReplaced) {
   for (const char* name : {"knee.vp.json", "knee-roi.mrk.json", "knee.mrml"}) {
     writePhantom(phantom, folder, "knee");
     const std::string edited = contentOf(folder / name) + "\n";
@@ -168,7 +168,7 @@ TEST_F(PhantomFiles, ReplaceNothingThatWasEdited) {
   }
 }
 
-TEST_F(PhantomFiles, ReplaceNothingThatIsNotTheirs) {
+TEST_F(PhantomFiles, ForeignFilesAreNotReplaced) {
   for (const char* name : {"knee.nrrd", "knee.seg.nrrd", "knee.vp.json", "knee.vp",
                            "knee-roi.mrk.json", "knee.mrml", "knee.mrb"}) {
     std::filesystem::remove_all(folder);
@@ -186,7 +186,7 @@ TEST_F(PhantomFiles, ReplaceNothingThatIsNotTheirs) {
   }
 }
 
-TEST_F(PhantomFiles, AFolderThatCannotBeMadeIsAnOutputError) {
+TEST_F(PhantomFiles, FolderThatCannotBeMadeIsAnOutputError) {
   const auto file = folder / "knee.nrrd";
   try {
     writePhantom(phantom, file / "inside", "knee");

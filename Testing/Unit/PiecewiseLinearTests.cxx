@@ -48,7 +48,7 @@ TEST(PiecewiseLinear, EqualsItsDefinitionOnRandomKnots) {
   }
 }
 
-TEST(PiecewiseLinear, RangeIsTheLeastAndGreatestOverAnInterval) {
+TEST(PiecewiseLinear, RangeBoundsEveryValueOfAnInterval) {
   for (int trial = 0; trial < 200; ++trial) {
     Random random(2, static_cast<std::uint64_t>(trial), 0);
     Knots knots;
@@ -74,14 +74,14 @@ TEST(PiecewiseLinear, StepBelongsToItsRightSide) {
   EXPECT_EQ(f.range(1.0, 1.5)[0], 0.0) << "both sides of a step at the end count";
 }
 
-TEST(PiecewiseLinear, SurvivesNotANumberAndOneKnot) {
+TEST(PiecewiseLinear, OneKnotGivesItsValueAlsoForNan) {
   const ScalarFunction f({knot(3, 7)});
   for (const double s : {-1e300, 3.0, 1e300, std::nan("")})
     EXPECT_EQ(f(s).value(), 7.0);
   EXPECT_EQ(f.span(), 0.0);
 }
 
-TEST(PiecewiseLinear, SortsStably) {
+TEST(PiecewiseLinear, SortingKeepsTheOrderOfEqualPositions) {
   const ScalarFunction f({knot(2, 1), knot(0, 0), knot(1, 3), knot(1, 4)});
   EXPECT_EQ(f.knots()[1].value.value(), 3.0);
   EXPECT_EQ(f.knots()[2].value.value(), 4.0);

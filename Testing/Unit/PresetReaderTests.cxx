@@ -11,7 +11,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-TEST(PresetReader, readsEveryField) {
+TEST(PresetReader, ReadsEveryField) {
   const OrganPreset preset = parsePreset(
       R"({"title": "A spleen", "modality": "CT", "before": ["liver"], "tested": "no",
           "focus": {"names": ["spleen"], "except": ["accessory"], "codes": ["SCT^78961009"]},
@@ -34,7 +34,7 @@ TEST(PresetReader, readsEveryField) {
   EXPECT_EQ(preset.flags, flags);
 }
 
-TEST(PresetReader, namesThePlaceOfWhatIsWrong) {
+TEST(PresetReader, ErrorNamesTheField) {
   const auto refuse = [](const std::string& json, const std::string& text) {
     expectRefused("test", text, [&] { parsePreset(json, "test"); });
   };
@@ -63,7 +63,7 @@ TEST(PresetReader, namesThePlaceOfWhatIsWrong) {
   refuse("{", "is not JSON");
 }
 
-TEST(PresetReader, matchesWordsInAnyCaseAndSpelling) {
+TEST(PresetReader, MatchesWordsInAnyCaseAndSpelling) {
   for (const char* name : {"lung", "Left Lung", "lung_upper_lobe_left", "LungRight", "LUNG-R",
                            "right.lung", "  lung  ", "LeftLungMask"})
     EXPECT_TRUE(matchesName("lung", name)) << name;
@@ -84,7 +84,7 @@ TEST(PresetReader, matchesWordsInAnyCaseAndSpelling) {
 }
 
 /// Time would grow as a power of the number of stars if every star were tried everywhere.
-TEST(PresetReader, matchesPatternsOfManyStarsInNoTime) {
+TEST(PresetReader, PatternOfManyStarsMatchesQuickly) {
   std::string stars;
   for (int i = 0; i < 60; ++i)
     stars += "a*";
@@ -92,7 +92,7 @@ TEST(PresetReader, matchesPatternsOfManyStarsInNoTime) {
   EXPECT_TRUE(matchesName(stars, std::string(1000, 'a')));
 }
 
-TEST(PresetReader, readsEveryPresetThatTravelsWithTheProgram) {
+TEST(PresetReader, ReadsEveryBuiltInPreset) {
   const auto files = embeddedResourceNames("presets/");
   EXPECT_GE(files.size(), 9u);
   for (const std::string& file : files) {

@@ -12,7 +12,7 @@ std::filesystem::path data(const std::string& name) {
   return std::filesystem::path(FENESTRA_DATA) / name;
 }
 
-TEST(RealSegmentations, areReadWithTheirSegments) {
+TEST(RealSegmentations, SegmentsAndLayersAreRead) {
   if (!std::filesystem::exists(data("slicerio_segnrrd")))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   const Grid chest = readVolume(data("slicerio_segnrrd/CTChest4.nrrd")).grid;
@@ -39,7 +39,7 @@ TEST(RealSegmentations, areReadWithTheirSegments) {
 
 /// Oldest format, against the surfaces of the same patient (EclipseProstate_Structures.seg, RAS):
 /// the bladder expanded by 5 mm, and its union with the target volume.
-TEST(RealSegmentations, ofOldFilesLieAtThePatientsSurfaces) {
+TEST(RealSegmentations, OldFormatLiesAtTheSurfacesOfThePatient) {
   const std::filesystem::path folder = data("slicer_scenes/slicerrt_scenes");
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;

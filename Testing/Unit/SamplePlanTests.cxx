@@ -37,7 +37,7 @@ double meanCount(const SamplePlan::Stage& stage, std::size_t pixels) {
   return sum / static_cast<double>(pixels);
 }
 
-TEST(SamplePlan, WithoutAPilotGivesAllPixelsTheSame) {
+TEST(SamplePlan, WithoutAPilotAllPixelsGetTheSame) {
   const SamplePlan plan;
   for (const std::uint64_t mean : {0U, 1U, 1000U})
     for (const std::size_t pixel : {std::size_t{0}, std::size_t{12345}})
@@ -55,7 +55,7 @@ TEST(SamplePlan, SharesAreProportionalToTheNoise) {
   EXPECT_NEAR(stage.greatestShare(), left / 1000.0, 0.01);
 }
 
-TEST(SamplePlan, ACostlyPathCountsLess) {
+TEST(SamplePlan, CostlyPathsGetFewerSamples) {
   Film pilot = pilotOf(64, 64, [](int, int) { return 0.3; });
   for (int row = 0; row < 64; ++row)
     for (int column = 0; column < 32; ++column)
@@ -65,7 +65,7 @@ TEST(SamplePlan, ACostlyPathCountsLess) {
   EXPECT_LT(stage.count(64 * 30 + 10), stage.count(64 * 30 + 50));
 }
 
-TEST(SamplePlan, GivesEveryPixelThePilotAndNeverTakesBack) {
+TEST(SamplePlan, EveryPixelGetsThePilotAndCountsNeverFall) {
   const Film pilot = pilotOf(64, 64, leftDeviation);
   const SamplePlan plan(pilot);
   for (const std::uint64_t mean : {1U, 7U, 16U})
@@ -82,7 +82,7 @@ TEST(SamplePlan, GivesEveryPixelThePilotAndNeverTakesBack) {
 }
 
 /// A pixel's own samples influence its count only through all pixels' noise together.
-TEST(SamplePlan, APixelsOwnSamplesDoNotDecideOnTheirNumber) {
+TEST(SamplePlan, OwnSamplesDoNotDecideOnTheirNumber) {
   const SamplePlan plain(pilotOf(64, 64, leftDeviation));
   const SamplePlan other(pilotOf(64, 64, [](int column, int row) {
     return column == 10 && row == 30 ? 4.0 : leftDeviation(column, row);
@@ -93,7 +93,7 @@ TEST(SamplePlan, APixelsOwnSamplesDoNotDecideOnTheirNumber) {
   EXPECT_GT(static_cast<double>(other.at(1000).count(pixel + 1)), 1.2 * own) << "its neighbour's";
 }
 
-TEST(SamplePlan, QuietAndTinyPicturesAreSharedOutEvenly) {
+TEST(SamplePlan, QuietAndTinyPicturesAreSampledUniformly) {
   const SamplePlan quiet(pilotOf(64, 64, [](int, int) { return 0.0; }));
   EXPECT_EQ(quiet.at(100).count(5), 100U);
   EXPECT_EQ(quiet.at(100).greatestShare(), 1.0);

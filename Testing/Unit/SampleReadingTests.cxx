@@ -66,7 +66,7 @@ void expectKeptAs(T odd) {
         << i;
 }
 
-TEST(SampleReading, widensWhatIsThereWhenALateSampleAsksForIt) {
+TEST(SampleReading, LateSampleWidensEarlierBlocks) {
   expectKeptAs<std::uint8_t, std::int32_t>(255);
   expectKeptAs<std::int16_t, std::int32_t>(-1);
   expectKeptAs<std::int16_t, std::int32_t>(32767);
@@ -78,7 +78,7 @@ TEST(SampleReading, widensWhatIsThereWhenALateSampleAsksForIt) {
   expectKeptAs<float, double>(0.1);
 }
 
-TEST(SampleReading, widensMoreThanOnce) {
+TEST(SampleReading, WidensMoreThanOnce) {
   std::vector<std::int32_t> samples = samplesWith<std::int32_t>(-7);
   samples[300'000] = 40'000; // to uint16, then to float for the negative sample
   const Store::Vectors vectors = stored(samples);
@@ -87,7 +87,7 @@ TEST(SampleReading, widensMoreThanOnce) {
                          [](float a, std::int32_t b) { return a == static_cast<float>(b); }));
 }
 
-TEST(SampleReading, mendsWhatIsNotFiniteInAnyBlock) {
+TEST(SampleReading, ReplacesNonFiniteSamplesInAnyBlock) {
   for (const float odd : {0.5f, 7.0f}) { // stays float; becomes integers
     std::vector<float> samples = samplesWith(odd);
     samples[3] = std::numeric_limits<float>::quiet_NaN();
@@ -109,7 +109,7 @@ TEST(SampleReading, mendsWhatIsNotFiniteInAnyBlock) {
   }
 }
 
-TEST(SampleReading, keepsNothingWhereNoTypeHoldsIt) {
+TEST(SampleReading, SampleThatNoTypeHoldsIsReported) {
   SampleStore<std::uint8_t, std::int16_t> store(2);
   const std::vector<float> samples = {1.0f, 0.5f};
   store.append(std::span(samples), survey(std::span(samples)));
@@ -151,7 +151,7 @@ std::string meta(const std::string& fields) {
          "ElementType = MET_SHORT\nElementDataFile = LOCAL\n";
 }
 
-TEST(SampleReading, readsBothByteOrdersInEveryStorage) {
+TEST(SampleReading, ReadsBothByteOrdersInEveryStorage) {
   const std::vector<std::int16_t> samples = samplesWith<std::int16_t>(-1000);
   std::vector<std::int16_t> swapped = samples;
   for (std::int16_t& x : swapped)
@@ -180,7 +180,7 @@ TEST(SampleReading, readsBothByteOrdersInEveryStorage) {
   }
 }
 
-TEST(SampleReading, refusesStreamsOfAnotherLength) {
+TEST(SampleReading, RefusesStreamsOfAnotherLength) {
   const TemporaryFolder folder;
   const std::string samples = rawBytes(samplesWith<std::int16_t>(-1000));
   const auto refuse = [&](const std::string& name, const std::string& content) {

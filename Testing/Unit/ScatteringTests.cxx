@@ -44,7 +44,7 @@ TEST_P(HenyeyGreenstein, WeightIsTheAlbedo) {
 INSTANTIATE_TEST_SUITE_P(MeanCosines, HenyeyGreenstein,
                          ::testing::Values(-0.95, -0.5, -1e-7, 0.0, 1e-9, 0.3, 0.85, 0.97));
 
-TEST(HenyeyGreensteinExtremes, StayUnitAndFinite) {
+TEST(HenyeyGreensteinExtremes, DirectionIsUnitAndPdfFinite) {
   for (const double g : {-0.9999, 0.9999, 0.9999999}) {
     const PhaseScattering phase(-Vec3::UnitZ(), g, Rgb::Ones());
     for (int i = 0; i < 100000; ++i) {
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Lobes, Surface,
                                            SurfaceCase{0.3, {2.0, 1.0, 1.0, 0.5}},
                                            SurfaceCase{0.8, {1.0, 0.0, 10.0, 0.5}}));
 
-TEST(SurfaceNormal, TurnsToWhereThePathCameFrom) {
+TEST(SurfaceNormal, FacesTheIncomingPath) {
   const SurfaceShading matte{1.0, 0.0, 10.0, 0.5};
   for (const Vec3& gradient : {Vec3(0, 0, 2), Vec3(0, 0, -2)}) {
     const SurfaceScattering s(Vec3(0, 0, -1), gradient, matte, Rgb::Ones());

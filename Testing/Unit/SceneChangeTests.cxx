@@ -55,7 +55,7 @@ protected:
   SceneRequest request;
 };
 
-TEST_P(SceneChange, MakesWhatDependsOnItAndNothingElse) {
+TEST_P(SceneChange, RemakesOnlyDependentStages) {
   const Scene before(request);
   GetParam().apply(request);
   if (request.lights == "lamp.json")
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
                {true, true, true, true, true, true, true, true}}),
     [](const auto& info) { return info.param.name; });
 
-TEST_F(SceneChange, AnAutomaticViewFollowsFocusAndTransferFunction) {
+TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
   request.view.name = "auto";
   const Scene before(request);
   const auto expectAsFromNothing = [&](const Scene& changed) {
@@ -138,14 +138,14 @@ TEST_F(SceneChange, AnAutomaticViewFollowsFocusAndTransferFunction) {
   expectAsFromNothing(wider.changed(request));
 }
 
-TEST_F(SceneChange, LightsThatTheCameraDoesNotCarryStayWhereTheyAre) {
+TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {
   request.lights = folder / "lamp.json";
   const Scene before(request);
   request.view.name = "left";
   EXPECT_FALSE(before.changed(request).made().lights);
 }
 
-TEST_F(SceneChange, LightsAreTheirTextAsTheyAreItsFile) {
+TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
   request.lights = folder / "lamp.json";
   const Scene file(request);
   request.lights = bytesOf(request.lights);
@@ -158,7 +158,7 @@ TEST_F(SceneChange, LightsAreTheirTextAsTheyAreItsFile) {
   EXPECT_EQ(text.files(), files);
 }
 
-TEST_F(SceneChange, ARefusedChangeLeavesTheSceneAsItWas) {
+TEST_F(SceneChange, RefusedChangeLeavesTheSceneAsItWas) {
   const Scene before(request);
   const Film expected = picture(before);
   SceneRequest refused = request;

@@ -11,7 +11,7 @@ std::string located(SceneFiles& files, const std::string& name) {
   return bytesOf(files.locate(name));
 }
 
-TEST(SceneFiles, findsFilesBesideTheScene) {
+TEST(SceneFiles, FindsFilesBesideTheScene) {
   const TemporaryFolder folder;
   folder.write("a b.txt", "escaped");
   folder.write("50%.txt", "percent");
@@ -32,7 +32,7 @@ TEST(SceneFiles, findsFilesBesideTheScene) {
   expectRefused(scene, "nowhere.nrrd, which is not there", [&] { files.locate("nowhere.nrrd"); });
 }
 
-TEST(SceneFiles, findsFilesInAnArchiveAndCleansUp) {
+TEST(SceneFiles, FindsFilesInAnArchiveAndCleansUp) {
   const TemporaryFolder folder;
   const auto archive = folder / "my.mrb";
   writeArchive(archive, {{"Study/Study.mrml", "<MRML/>"},
@@ -68,7 +68,7 @@ TEST(SceneFiles, findsFilesInAnArchiveAndCleansUp) {
   EXPECT_FALSE(std::filesystem::exists(unpacked.parent_path().parent_path().parent_path()));
 }
 
-TEST(SceneFiles, unpacksWhatAFileNamesWithIt) {
+TEST(SceneFiles, UnpacksFilesThatAHeaderNames) {
   const TemporaryFolder folder;
   const auto archive = folder / "my.mrb";
   writeArchive(archive, {{"s/s.mrml", "<MRML/>"},
@@ -84,7 +84,7 @@ TEST(SceneFiles, unpacksWhatAFileNamesWithIt) {
   files.locate("w.nhdr"); // refused later by its reader
 }
 
-TEST(SceneFiles, namesFilesOnOneLine) {
+TEST(SceneFiles, ErrorNamesAFileOnOneLine) {
   const TemporaryFolder folder;
   writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}});
   SceneFiles archive(folder / "a.mrb");
@@ -95,7 +95,7 @@ TEST(SceneFiles, namesFilesOnOneLine) {
   expectRefused(scene, "a b, which is not there", [&] { beside.locate("a\nb"); });
 }
 
-TEST(SceneFiles, unpacksNothingBeforeItIsAskedFor) {
+TEST(SceneFiles, UnpacksAFileOnRequestOnly) {
   const TemporaryFolder folder;
   const TemporaryFolder temporary;
   setenv("TMPDIR", temporary.path().c_str(), 1);
@@ -111,7 +111,7 @@ TEST(SceneFiles, unpacksNothingBeforeItIsAskedFor) {
   unsetenv("TMPDIR");
 }
 
-TEST(SceneFiles, choosesTheMainSceneAsSlicerDoes) {
+TEST(SceneFiles, ChoosesTheMainSceneAsSlicerDoes) {
   const TemporaryFolder folder;
   const auto mainOf = [&](const std::map<std::string, std::string>& files) {
     writeArchive(folder / "case.mrb", files);
@@ -127,7 +127,7 @@ TEST(SceneFiles, choosesTheMainSceneAsSlicerDoes) {
   expectRefused(folder / "case.mrb", "holds no .mrml", [&] { mainOf({{"x/a.txt", ""}}); });
 }
 
-TEST(SceneFiles, refusesArchivesThatAreNotSlicers) {
+TEST(SceneFiles, RefusesDamagedAndEscapingArchives) {
   const TemporaryFolder folder;
   const auto refuse = [&](const std::map<std::string, std::string>& files,
                           const std::string& because) {
@@ -146,7 +146,7 @@ TEST(SceneFiles, refusesArchivesThatAreNotSlicers) {
   expectRefused(half, "no whole archive", [&] { SceneFiles files(half); });
 }
 
-TEST(SceneFiles, refusesNamesThatNoFileCanHave) {
+TEST(SceneFiles, RefusesOverlongNames) {
   const TemporaryFolder folder;
   std::string deep;
   for (int i = 0; i < 60; ++i)
@@ -158,7 +158,7 @@ TEST(SceneFiles, refusesNamesThatNoFileCanHave) {
   }
 }
 
-TEST(SceneFiles, unpacksNoMoreThanASceneHolds) {
+TEST(SceneFiles, RefusesEntriesBeyondTheSizeLimit) {
   const TemporaryFolder folder;
   std::mt19937 random(1);
   std::string noise(2'000'000, '\0');
@@ -176,7 +176,7 @@ TEST(SceneFiles, unpacksNoMoreThanASceneHolds) {
   }
 }
 
-TEST(SceneFiles, refusesDamagedAndBoundlessEntries) {
+TEST(SceneFiles, RefusesDamagedAndBoundlessEntries) {
   const TemporaryFolder folder;
   std::mt19937 random(1);
   std::string noise(4000, ' '); // incompressible, hence stored

@@ -26,7 +26,7 @@ const std::string threeVolumes = R"(
   <Volume id="v2" name="two" references="display:s2 d2;"/>
   <Volume id="v3" name="three"/><VolumeDisplay id="s2"/>)";
 
-TEST(ScenePlan, takesTheVolumeThatIsRenderedInSlicer) {
+TEST(ScenePlan, ChoosesTheVolumeRenderedInSlicer) {
   EXPECT_EQ(volumeOf(threeVolumes + R"(<GPURayCastVolumeRendering id="d1" visibility="false"/>
                                        <GPURayCastVolumeRendering id="d2" visibility="true"/>)"),
             "v2");
@@ -39,7 +39,7 @@ TEST(ScenePlan, takesTheVolumeThatIsRenderedInSlicer) {
             "v");
 }
 
-TEST(ScenePlan, takesTheVolumeThatTheUserNames) {
+TEST(ScenePlan, ChoosesTheVolumeThatTheUserNames) {
   const std::string rendered = threeVolumes + R"(<GPURayCastVolumeRendering id="d1"/>)";
   EXPECT_EQ(volumeOf(rendered, "v3"), "v3");
   EXPECT_EQ(volumeOf(rendered, "three"), "v3");
@@ -51,7 +51,7 @@ TEST(ScenePlan, takesTheVolumeThatTheUserNames) {
          "--volume x can be any of x (a), x (b); name one by its id", {.volume = "x"});
 }
 
-TEST(ScenePlan, leavesOpenChoicesToTheUser) {
+TEST(ScenePlan, RefusesAmbiguousVolumes) {
   refuse(threeVolumes,
          "several volumes to render (one (v1), two (v2), three (v3)); choose one with "
          "--volume");
@@ -61,7 +61,7 @@ TEST(ScenePlan, leavesOpenChoicesToTheUser) {
   refuse("<Model/>", "holds no scalar volume");
 }
 
-TEST(ScenePlan, followsTheRenderingToItsSettings) {
+TEST(ScenePlan, FollowsTheRenderingToPropertyAndRegion) {
   const MrmlDocument document = parse(R"(
     <Volume id="v" displayNodeRef="s d"/><VolumeDisplay id="s"/>
     <GPURayCastVolumeRendering id="d" croppingEnabled="1"
@@ -75,7 +75,7 @@ TEST(ScenePlan, followsTheRenderingToItsSettings) {
   EXPECT_TRUE(plan.warnings.empty());
 }
 
-TEST(ScenePlan, cropsOnlyWhereCroppingIsOn) {
+TEST(ScenePlan, CropsOnlyIfCroppingIsOn) {
   const MrmlDocument document = parse(R"(
     <Volume id="v" displayNodeRef="d"/>
     <GPURayCastVolumeRendering id="d" croppingEnabled="0" ROINodeID="r"/><MarkupsROI id="r"/>)");
@@ -87,7 +87,7 @@ TEST(ScenePlan, cropsOnlyWhereCroppingIsOn) {
   ASSERT_EQ(planRender(lost, {}).warnings.size(), 1U);
 }
 
-TEST(ScenePlan, followsTheVolumeDisplayWhereTheRenderingDoes) {
+TEST(ScenePlan, FollowsTheVolumeDisplayIfTheRenderingDoes) {
   const std::string nodes = R"(<Volume id="v" displayNodeRef="d s"/><VolumeDisplay id="s"/>
     <GPURayCastVolumeRendering id="d" followVolumeDisplayNode=")";
   const MrmlDocument following = parse(nodes + "1\"/>");
@@ -96,7 +96,7 @@ TEST(ScenePlan, followsTheVolumeDisplayWhereTheRenderingDoes) {
   EXPECT_FALSE(planRender(own, {}).followed);
 }
 
-TEST(ScenePlan, reportsAClipNode) {
+TEST(ScenePlan, WarnsOfAnActiveClipNode) {
   const std::string nodes = R"(<Volume id="v" displayNodeRef="d"/><Model id="m" name="knife"/>
     <GPURayCastVolumeRendering id="d" references="ClipNode:m;" clipping=")";
   const MrmlDocument on = parse(nodes + "true\"/>");
@@ -107,7 +107,7 @@ TEST(ScenePlan, reportsAClipNode) {
   EXPECT_TRUE(planRender(off, {}).warnings.empty());
 }
 
-TEST(ScenePlan, refusesProjectionsThatHaveNoLight) {
+TEST(ScenePlan, RefusesIntensityProjections) {
   const std::string volume = R"(<Volume id="v" displayNodeRef="d"/>)";
   const std::string rendering = R"(<GPURayCastVolumeRendering id="d")";
   const auto inView = [&](const std::string& technique) {
@@ -126,7 +126,7 @@ std::string cameraOf(const std::string& nodes) {
   return (plan.view ? plan.view->id : "none") + " " + (plan.camera ? plan.camera->id : "none");
 }
 
-TEST(ScenePlan, pairsTheCameraWithItsView) {
+TEST(ScenePlan, PairsTheCameraWithItsView) {
   const std::string cameras =
       R"(<Camera id="c2" singletonTag="2"/><Camera id="c1" singletonTag="1"/>)";
   EXPECT_EQ(cameraOf(cameras + R"(<View id="w1" layoutName="1"/>)"), "w1 c1");
@@ -139,7 +139,7 @@ TEST(ScenePlan, pairsTheCameraWithItsView) {
   EXPECT_EQ(cameraOf(R"(<Camera id="c"/>)"), "none c");
 }
 
-TEST(ScenePlan, choosesTheViewThatTheRenderingIsIn) {
+TEST(ScenePlan, ChoosesTheViewOfTheRendering) {
   const std::string both = R"(<View id="w1" layoutName="1"/><View id="w2" layoutName="2")";
   EXPECT_EQ(cameraOf(both + "/>"), "w1 none");
   EXPECT_EQ(cameraOf(both + R"( active="true"/>)"), "w2 none");
@@ -154,7 +154,7 @@ std::string segmentationOf(const std::string& nodes, SceneChoice choice) {
   return plan.segmentation ? plan.segmentation->id : "none";
 }
 
-TEST(ScenePlan, choosesTheSegmentation) {
+TEST(ScenePlan, ChoosesTheVisibleOrNamedSegmentation) {
   const SceneChoice any{.needsSegmentation = true};
   EXPECT_EQ(segmentationOf(R"(<LabelMapVolume id="l"/><Segmentation id="s"/>)", any), "s");
   EXPECT_EQ(segmentationOf(R"(<LabelMapVolume id="l"/>)", any), "l");
@@ -172,7 +172,7 @@ TEST(ScenePlan, choosesTheSegmentation) {
   refuse("<Volume id=\"v\"/>", "no segmentation to find a focus in", any);
 }
 
-TEST(ScenePlan, listsWhatItLeavesOut) {
+TEST(ScenePlan, ListsIgnoredNodes) {
   const MrmlDocument document = parse(R"(<Volume id="v" name="CT" displayNodeRef="d"/>
     <GPURayCastVolumeRendering id="d"/><Volume id="o" name="other"/><Model id="m1"/><Model id="m2"/>
     <Model id="m3"/><Model id="m4"/><Slice id="x"/>)");

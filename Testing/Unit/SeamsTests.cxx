@@ -64,7 +64,7 @@ End endOf(const FocusTracer& tracer, const Vec2& way) {
   return {in * way, out * way};
 }
 
-TEST(Seams, AreAsDeepAsTheFocusBetweenSamples) {
+TEST(Seams, DepthBetweenSamplesIsThatOfTheFocus) {
   for (const Projection projection : projections) {
     const Ball ball(projection);
     const ClippingSurface surface = ball.surface();
@@ -82,7 +82,7 @@ TEST(Seams, AreAsDeepAsTheFocusBetweenSamples) {
   }
 }
 
-TEST(Seams, GoOnWhereTheFocusEnds) {
+TEST(Seams, DepthContinuesAtTheEdgeOfTheFocus) {
   for (const Projection projection : projections) {
     const Ball ball(projection);
     const ClippingSurface surface = ball.surface();
@@ -101,7 +101,7 @@ TEST(Seams, GoOnWhereTheFocusEnds) {
   }
 }
 
-TEST(Seams, GoOverIntoTheSamplesWithoutASteep) {
+TEST(Seams, DepthJoinsTheSamplesWithoutASteepSlope) {
   const Ball ball(Projection::orthographic);
   const ClippingSurface surface = ball.surface();
   const auto& clip = std::get<ClipDepth>(surface.clip);
@@ -119,7 +119,7 @@ TEST(Seams, GoOverIntoTheSamplesWithoutASteep) {
   EXPECT_LT(slopes[slopes.size() * 998 / 1000], 20.0) << "but for outlines that cross";
 }
 
-TEST(Seams, AreAskedOnlyWhereItMatters) {
+TEST(Seams, KeepEqualsThatOfTheFullSurface) {
   // keep queries only as much of the surface as it needs; the result equals that of the full
   // surface.
   for (const Projection projection : projections)
@@ -151,7 +151,7 @@ TEST(Seams, AreAskedOnlyWhereItMatters) {
     }
 }
 
-TEST(Seams, OfASmoothedFocusMeetItToo) {
+TEST(Seams, DepthMeetsASmoothedFocus) {
   Ball ball(Projection::orthographic);
   ball.focus = maskOf(ball.volume.grid(), [](const Vec3&) { return false; });
   ball.focus.full = 255;
@@ -175,7 +175,7 @@ TEST(Seams, OfASmoothedFocusMeetItToo) {
   }
 }
 
-TEST(Seams, AFocusThatHidesAPartOfItselfHasTheFartherDepthBetween) {
+TEST(Seams, SelfHidingFocusHasTheFartherDepthBetween) {
   // The right half lies 10 mm deeper.
   const Grid volume = centredGrid({60, 60, 60});
   const Mask focus = maskOf(volume, [](const Vec3& p) {
@@ -194,7 +194,7 @@ TEST(Seams, AFocusThatHidesAPartOfItselfHasTheFartherDepthBetween) {
   EXPECT_LT(between * 0.01, 1.0) << "mm; the voxels' own slope";
 }
 
-TEST(Seams, MovesWithTheSurface) {
+TEST(Seams, OffsetMovesTheDepth) {
   const Ball ball(Projection::orthographic);
   SurfaceOptions options;
   options.boundary = Boundary::exact;

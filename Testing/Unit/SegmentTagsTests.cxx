@@ -7,7 +7,7 @@
 namespace fenestra::SegmentTagsTests {
 namespace {
 
-TEST(SegmentTags, sayWhatSegmentsAreWithoutTheirLabels) {
+TEST(SegmentTags, AnatomyOfSegmentsIsReadWithoutTheirLabels) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   const std::vector<std::string> names = {"left lung", "mass", "untold"};

@@ -39,7 +39,7 @@ Segmentation labelmap(const std::vector<std::pair<Size3, int>>& labels, Vec3 ori
   return {"test", grid, 1, voxels, segments};
 }
 
-TEST(SegmentationReader, cropsToTheExtentPlusAMargin) {
+TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
   const Segmentation s = labelmap({{{1, 2, 3}, 1}, {{3, 3, 3}, 2}, {{5, 5, 5}, 3}});
   const Mask mask = s.mask({"1", "2"}, unitGrid({50, 50, 50}, {-20, -20, -20}));
   EXPECT_EQ(mask.grid.size, Size3(5, 4, 3));
@@ -53,14 +53,14 @@ TEST(SegmentationReader, cropsToTheExtentPlusAMargin) {
   EXPECT_TRUE((mask.grid.indexToWorld * Vec3::Zero()).isApprox(Vec3(0, 1, 2)));
 }
 
-TEST(SegmentationReader, endsWithZerosInsideTheVolume) {
+TEST(SegmentationReader, MaskEndsWithZerosInsideTheVolume) {
   const Segmentation s = labelmap({{{0, 0, 0}, 1}});
   const Mask mask = s.mask({"1"}, unitGrid({50, 50, 50}, {-20, -20, -20}));
   EXPECT_EQ(mask.grid.size, Size3(3, 3, 3));
   EXPECT_EQ(std::count(mask.voxels.begin(), mask.voxels.end(), 1), 1);
 }
 
-TEST(SegmentationReader, continuesOverTheVolumesOwnFaces) {
+TEST(SegmentationReader, MaskContinuesOverFacesOfTheVolume) {
   const Segmentation s = labelmap({{{0, 0, 5}, 1}, {{1, 0, 5}, 2}});
   // The volume shares the labelmap's lower faces of x and y; its upper z face lies two voxels
   // further in.
@@ -76,7 +76,7 @@ TEST(SegmentationReader, continuesOverTheVolumesOwnFaces) {
   EXPECT_EQ(whole.count, 2);
 }
 
-TEST(SegmentationReader, sharesFacesWithinHalfAVoxelOnly) {
+TEST(SegmentationReader, FacesWithinHalfAVoxelAreShared) {
   const Segmentation s = labelmap({{{0, 3, 3}, 1}});
   const auto continued = [&s](double offset, double spacing = 1.0) {
     return at(s.mask({"1"}, unitGrid({9, 9, 9}, {offset, -3, -3}, spacing)), {-1, 3, 3}) == 1;
@@ -91,7 +91,7 @@ TEST(SegmentationReader, sharesFacesWithinHalfAVoxelOnly) {
   EXPECT_EQ(at(s.mask({"1"}, unitGrid({6, 9, 9}, {-6, -3, -3})), {-1, 3, 3}), 0);
 }
 
-TEST(SegmentationReader, sharesFacesOfFlippedAndTurnedGrids) {
+TEST(SegmentationReader, FlippedGridSharesFacesAndObliqueDoesNot) {
   const Segmentation s = labelmap({{{0, 3, 3}, 1}});
   // Grid that fills the labelmap's box, with permuted axes.
   const Affine flipped(Mat3({0, 1, 0}, {0, 0, -1}, {-1, 0, 0}), {5, 0, 5});
@@ -100,7 +100,7 @@ TEST(SegmentationReader, sharesFacesOfFlippedAndTurnedGrids) {
   EXPECT_EQ(at(s.mask({"1"}, Grid({6, 6, 6}, oblique)), {-1, 3, 3}), 0);
 }
 
-TEST(SegmentationReader, readsPlainLabelmapsOfEveryFormat) {
+TEST(SegmentationReader, ReadsPlainLabelmapsOfEveryFormat) {
   const TemporaryFolder folder;
   std::vector<std::int16_t> labels(24, 0);
   labels[5] = 300;
@@ -133,7 +133,7 @@ void describe(FileGeometry& geometry, int n, const std::string& id, const std::s
     geometry.fields[prefix + "Layer"] = layer;
 }
 
-TEST(SegmentationReader, readsOneLayerWhoseSegmentsDoNotSayWhich) {
+TEST(SegmentationReader, ReadsOneLayerWithoutLayerField) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   describe(geometry, 0, "a", "liver", "1", "");
@@ -147,7 +147,7 @@ TEST(SegmentationReader, readsOneLayerWhoseSegmentsDoNotSayWhich) {
   EXPECT_EQ(s.mask({"tumour"}, s.grid()).count, 2);
 }
 
-TEST(SegmentationReader, readsLayersThatOverlap) {
+TEST(SegmentationReader, ReadsOverlappingLayers) {
   const TemporaryFolder folder;
   for (const bool old : {false, true}) { // older files have no Layer
     FileGeometry geometry{.components = 2, .compress = true};
@@ -170,7 +170,7 @@ TEST(SegmentationReader, readsLayersThatOverlap) {
   }
 }
 
-TEST(SegmentationReader, prefersIdsToNamesToValues) {
+TEST(SegmentationReader, PrefersIdsToNamesToValues) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   describe(geometry, 0, "2", "first", "1", "0");
@@ -191,7 +191,7 @@ TEST(SegmentationReader, prefersIdsToNamesToValues) {
                 [&] { s.mask({"spleen"}, s.grid()); });
 }
 
-TEST(SegmentationReader, refusesEmptyFocusAndListsNoMoreThanForty) {
+TEST(SegmentationReader, RefusesEmptyFocusAndListsFortySegments) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   for (int n = 0; n < 60; ++n)
@@ -205,7 +205,7 @@ TEST(SegmentationReader, refusesEmptyFocusAndListsNoMoreThanForty) {
   expectRefused(folder / "s.seg.nrrd", "", [&] { s.mask({}, s.grid()); });
 }
 
-TEST(SegmentationReader, refusesWhatIsNoSegmentation) {
+TEST(SegmentationReader, RefusesFilesThatAreNoSegmentation) {
   const TemporaryFolder folder;
   const auto refuse = [&folder](const std::string& text) {
     expectRefused(folder / "s.nrrd", text, [&] { readSegmentation(folder / "s.nrrd"); });
@@ -249,7 +249,7 @@ Vec3 centroid(const Segmentation& segmentation, const std::string& selector) {
   return sum / static_cast<double>(mask.count);
 }
 
-TEST(SegmentationReader, takesTheOffsetOfACroppedFileAsIncludedInItsOrigin) {
+TEST(SegmentationReader, OriginOfACroppedFileIncludesItsOffset) {
   const TemporaryFolder folder;
   FileGeometry geometry{.spacing = {2, 3, 4}, .origin = {10, 20, 30}};
   describe(geometry, 0, "a", "liver", "1", "0");
@@ -262,7 +262,7 @@ TEST(SegmentationReader, takesTheOffsetOfACroppedFileAsIncludedInItsOrigin) {
   EXPECT_TRUE(centroid(s, "liver").isApprox(Vec3(-12, -20, 30)));
 }
 
-TEST(SegmentationReader, looksAtLabelsAndNotAtTheExtentThatASegmentStates) {
+TEST(SegmentationReader, IgnoresStatedExtentOfSegments) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   describe(geometry, 0, "a", "liver", "1", "0");
@@ -276,7 +276,7 @@ TEST(SegmentationReader, looksAtLabelsAndNotAtTheExtentThatASegmentStates) {
   }
 }
 
-TEST(SegmentationReader, countsNoValueWithoutASegment) {
+TEST(SegmentationReader, IgnoresLabelValuesWithoutSegment) {
   const TemporaryFolder folder;
   FileGeometry geometry{.components = 2};
   describe(geometry, 0, "a", "liver", "7", "0");
@@ -299,7 +299,7 @@ TEST(SegmentationReader, countsNoValueWithoutASegment) {
   EXPECT_EQ(statistics[1].voxels, 2);
 }
 
-TEST(SegmentationReader, takesOldAndBrokenColours) {
+TEST(SegmentationReader, ReadsOldColoursAndReplacesBrokenOnes) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   for (int n = 0; n < 6; ++n)
@@ -320,7 +320,7 @@ TEST(SegmentationReader, takesOldAndBrokenColours) {
   EXPECT_TRUE(s.segments()[5].color == Rgb(0.5, 0.25, 1));
 }
 
-TEST(SegmentationReader, isNotDisturbedByWhatElseSlicerWrites) {
+TEST(SegmentationReader, IgnoresOtherFieldsWrittenBySlicer) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   describe(geometry, 0, "a", "left lung | upper: lobe; \"A\" = 1", "1", "0");
@@ -339,7 +339,7 @@ TEST(SegmentationReader, isNotDisturbedByWhatElseSlicerWrites) {
   EXPECT_EQ(s.mask({s.segments()[0].name}, s.grid()).count, 24);
 }
 
-TEST(SegmentationReader, placesTheOldestFilesByTheirExtent) {
+TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtent) {
   const TemporaryFolder folder;
   FileGeometry geometry{.size = {3, 4, 2, 2},
                         .directions = {{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}},
@@ -372,7 +372,7 @@ TEST(SegmentationReader, placesTheOldestFilesByTheirExtent) {
                 [&] { readSegmentation(folder / "s.seg.nrrd"); });
 }
 
-TEST(SegmentationReader, refusesFramesWithoutSegments) {
+TEST(SegmentationReader, RefusesFramesWithoutSegments) {
   const TemporaryFolder folder;
   writeFile(folder / "s.nrrd", std::vector<std::uint8_t>(48, 1), {.size = {3, 4, 2, 2}});
   expectRefused(folder / "s.nrrd", "names no segments",
@@ -380,7 +380,7 @@ TEST(SegmentationReader, refusesFramesWithoutSegments) {
   expectRefused(folder / "s.nrrd", "4th with 2 frames", [&] { readVolume(folder / "s.nrrd"); });
 }
 
-TEST(SegmentationReader, refusesABrokenGzipStream) {
+TEST(SegmentationReader, RefusesABrokenGzipStream) {
   const TemporaryFolder folder;
   FileGeometry geometry{.size = {32, 32, 32}, .compress = true};
   describe(geometry, 0, "a", "liver", "1", "0");
@@ -409,7 +409,7 @@ TEST(SegmentationReader, refusesABrokenGzipStream) {
   refuse(damaged, "a wrong checksum");
 }
 
-TEST(SegmentationReader, tellsWhatEachSegmentHolds) {
+TEST(SegmentationReader, StatisticsHoldVoxelsAndBoundsOfEachSegment) {
   // Permuted axes: index x runs along S, y along -R, z along A.
   const Affine map(Mat3({0, 0, 1}, {-2, 0, 0}, {0, 3, 0}), {10, 20, 30});
   const Grid grid({4, 5, 6}, map);

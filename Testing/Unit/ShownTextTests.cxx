@@ -7,7 +7,7 @@
 namespace fenestra::ShownTextTests {
 namespace {
 
-TEST(ShownText, isValidUtf8OnOneLine) {
+TEST(ShownText, IsValidUtf8OnOneLine) {
   EXPECT_EQ(oneLine("Schädel, 頭, 🦴"), "Schädel, 頭, 🦴");
   EXPECT_EQ(oneLine(std::string("a\nb\0c\x7f"
                                 "d",
@@ -32,14 +32,14 @@ TEST(ShownText, isValidUtf8OnOneLine) {
     EXPECT_EQ(oneLine(text), shownAs);
 }
 
-TEST(ShownText, isCutBetweenCharacters) {
+TEST(ShownText, IsCutBetweenCharacters) {
   const std::string text = std::string(79, 'x') + "ä";
   EXPECT_EQ(shown(text), std::string(79, 'x'));
   EXPECT_EQ(shown(std::string(78, 'x') + "ä"), std::string(78, 'x') + "ä");
   EXPECT_EQ(shown(std::string(200, '\x80')), std::string(77, '?'));
 }
 
-TEST(ShownText, replacesAll) {
+TEST(ShownText, ReplacedAllReplacesEveryOccurrence) {
   EXPECT_EQ(replacedAll("aXXbX", "X", "yy"), "ayyyybyy");
   EXPECT_EQ(replacedAll("abc", "X", "y"), "abc");
   EXPECT_EQ(replacedAll("%2525", "%25", "%"), "%25");

@@ -44,7 +44,7 @@ std::filesystem::path installed(const TemporaryFolder& folder, const std::string
   return place / "presets.xml";
 }
 
-TEST(SlicerPresets, areFoundWhereTheEnvironmentSays) {
+TEST(SlicerPresets, FoundInSlicerHome) {
   const TemporaryFolder folder;
   const auto presets = installed(folder, "home", "5.8");
   const Environment path("PATH", "/nowhere");
@@ -56,7 +56,7 @@ TEST(SlicerPresets, areFoundWhereTheEnvironmentSays) {
   EXPECT_FALSE(findSlicerPresets());
 }
 
-TEST(SlicerPresets, areFoundBesideTheLauncherInThePath) {
+TEST(SlicerPresets, FoundBesideTheLauncherInThePath) {
   const TemporaryFolder folder;
   const auto presets = installed(folder, "home", "5.8");
   std::filesystem::create_directory(folder / "bin");
@@ -67,7 +67,7 @@ TEST(SlicerPresets, areFoundBesideTheLauncherInThePath) {
   EXPECT_TRUE(std::filesystem::equivalent(*findSlicerPresets(), presets));
 }
 
-TEST(SlicerPresets, areReadByName) {
+TEST(SlicerPresets, PresetIsReadByName) {
   const TemporaryFolder folder;
   const SlicerPresets presets(folder.write("presets.xml", presetsText));
   EXPECT_EQ(presets.names(), (std::vector<std::string>{"CT-Mine", "Broken"}));
@@ -80,7 +80,7 @@ TEST(SlicerPresets, areReadByName) {
                 [&] { presets.find("Broken"); });
 }
 
-TEST(SlicerPresets, allOfARealSlicerCanBeRead) {
+TEST(SlicerPresets, EveryPresetOfARealSlicerIsRead) {
   const std::filesystem::path file =
       std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_core" / "presets.xml";
   if (!std::filesystem::exists(file))

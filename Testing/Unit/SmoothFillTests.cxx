@@ -40,7 +40,7 @@ struct Sheet {
   }
 };
 
-TEST(SmoothFill, ContinuesAConstantDepthWithIt) {
+TEST(SmoothFill, ConstantDepthContinuesAsConstant) {
   Sheet sheet(200,
               [](const Vec2& x) { return x.norm() < 20.0 ? std::optional(290.0) : std::nullopt; });
   fillSmoothly(sheet.buffer, sheet.regions, 10.0);
@@ -51,7 +51,7 @@ TEST(SmoothFill, ContinuesAConstantDepthWithIt) {
 /// Solution of u'''' = u'' / length² with u(0) = 0, u'(0) = slope, level at the buffer's end.
 class StraightEdge : public ::testing::TestWithParam<std::pair<double, double>> {};
 
-TEST_P(StraightEdge, IsThePlateUnderTension) {
+TEST_P(StraightEdge, FillEqualsThePlateUnderTension) {
   const auto [slope, length] = GetParam();
   for (const int pixels : {64, 128, 256, 512}) {
     Sheet sheet(pixels, [slope = slope](const Vec2& x) {
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Slopes, StraightEdge,
                          ::testing::Values(std::pair{0.5, 5.0}, std::pair{-0.9, 10.0},
                                            std::pair{7.0, 10.0}, std::pair{0.2, 20.0}));
 
-TEST(SmoothFill, LeavesACurvedBoundaryWithItsSlope) {
+TEST(SmoothFill, FillLeavesACurvedBoundaryWithItsSlope) {
   Sheet sheet(512, [](const Vec2& x) {
     return x.norm() < 20.0 ? std::optional(300.0 + 0.01 * x.squaredNorm()) : std::nullopt;
   });
@@ -94,7 +94,7 @@ TEST(SmoothFill, LeavesACurvedBoundaryWithItsSlope) {
   }
 }
 
-TEST(SmoothFill, DoesNotRingWhereTheDepthJumps) {
+TEST(SmoothFill, DepthJumpDoesNotRing) {
   Sheet sheet(256, [](const Vec2& x) -> std::optional<double> {
     if (x.norm() >= 20.0)
       return std::nullopt;
@@ -108,7 +108,7 @@ TEST(SmoothFill, DoesNotRingWhereTheDepthJumps) {
 }
 
 /// A jump is as steep as the samples beside the boundary, and gentler with distance.
-TEST(SmoothFill, EasesAJumpWithTheDistanceFromIt) {
+TEST(SmoothFill, JumpFlattensWithDistance) {
   Sheet sheet(256, [](const Vec2& x) -> std::optional<double> {
     if (std::abs(x.x()) >= 20.0)
       return std::nullopt;
@@ -132,7 +132,7 @@ TEST(SmoothFill, EasesAJumpWithTheDistanceFromIt) {
 }
 
 /// Samples are coarser beyond a small viewport; a single column or row is a sheet as well.
-TEST(SmoothFill, ServesAnyShapeOfBuffer) {
+TEST(SmoothFill, BufferOfAnyShapeIsFilled) {
   for (const double across : {100.0, 30.0})
     for (const int pixels : {1, 2, 33, 100}) {
       Sheet sheet(

@@ -35,7 +35,7 @@ void alongEndlessRay(Work&& work) {
   work(s, majorants, Ray{Vec3(-1.2e8, -1e9, -1.2e8), Vec3::UnitY()});
 }
 
-TEST(Stop, endsAWalkThatMeetsNothing) {
+TEST(Stop, EndsAWalkThatMeetsNothing) {
   alongEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
     const StopFlag stop = true;
     const Medium<float> medium(s.volume.grid, std::get<std::vector<float>>(s.volume.voxels),
@@ -50,7 +50,7 @@ TEST(Stop, endsAWalkThatMeetsNothing) {
   });
 }
 
-TEST(Stop, endsTheLanesOfABatch) {
+TEST(Stop, EndsTheLanesOfABatch) {
   alongEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
     const StopFlag stop = true;
     const Domain domain(s.volume.grid);
@@ -67,7 +67,7 @@ TEST(Stop, endsTheLanesOfABatch) {
 }
 
 /// Each measure would take minutes without the stop.
-TEST(Stop, endsMeasuresWhoseWalksDoNotEnd) {
+TEST(Stop, EndsMeasuresOfEndlessWalks) {
   const TestScene s = endlessScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
@@ -81,7 +81,7 @@ TEST(Stop, endsMeasuresWhoseWalksDoNotEnd) {
 }
 
 /// A stopped path is dropped, together with its tile; tiles whose paths have all ended count whole.
-TEST(Stop, endsARenderWhosePathsDoNotEnd) {
+TEST(Stop, EndsARenderOfEndlessPaths) {
   const TestScene s = endlessScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);

@@ -30,7 +30,7 @@ SeenSurface levelSurface() {
   return {camera, std::vector<Region>(16, Region::context), std::vector<double>(16, 100.0)};
 }
 
-TEST(SurfaceChange, IsPerDegreeOverPixelsThatStayContext) {
+TEST(SurfaceChange, ChangeIsPerDegreeOverPixelsThatStayContext) {
   SeenSurface before = levelSurface(), after = levelSurface();
   for (std::size_t pixel = 0; pixel < 16; ++pixel)
     after.depths[pixel] += pixel < 4 ? 3.0 : -1.0;
@@ -43,7 +43,7 @@ TEST(SurfaceChange, IsPerDegreeOverPixelsThatStayContext) {
   EXPECT_DOUBLE_EQ(change.max, 1.5);
 }
 
-TEST(SurfaceChange, IsMeasuredAgainstTheFocussOwnSpeed) {
+TEST(SurfaceChange, ExcessIsRelativeToTheSpeedOfTheFocus) {
   SeenSurface before = levelSurface(), after = levelSurface();
   after.regions[3] = Region::focus; // the top right pixel, 1.5 mm to the right and above
   after.depths[3] = 98.0;           // and 2 mm nearer to the eye: 2.5 mm from the axis
@@ -93,7 +93,7 @@ protected:
   }
 };
 
-TEST_F(TurnedBalls, AreSeenWithTheDepthsOfTheSurface) {
+TEST_F(TurnedBalls, SeenDepthsAreThoseOfTheSurface) {
   const SeenSurface seen = seenAt(0.0, 0.0);
   // Foremost point of the near ball in the picture's centre, and no focus near the left edge.
   EXPECT_EQ(seen.regions[30 * 60 + 30], Region::focus);
@@ -101,7 +101,7 @@ TEST_F(TurnedBalls, AreSeenWithTheDepthsOfTheSurface) {
   EXPECT_EQ(seen.regions[30 * 60 + 2], Region::context);
 }
 
-TEST_F(TurnedBalls, KeepTheirOwnSurfaceWithoutSteadying) {
+TEST_F(TurnedBalls, WithoutSteadyingTheSurfaceIsUnchanged) {
   const auto depths = [&](double steady, SurfaceMode mode) {
     options.mode = mode;
     return std::get<ClipDepth>(surfaceAt(20.0, steady).clip).buffer->depthsFromReference();
@@ -114,7 +114,7 @@ TEST_F(TurnedBalls, KeepTheirOwnSurfaceWithoutSteadying) {
   EXPECT_NE(depths(8.0, SurfaceMode::surface), depths(0.0, SurfaceMode::surface));
 }
 
-TEST_F(TurnedBalls, AreMetByASteadySurfaceAsByTheirOwn) {
+TEST_F(TurnedBalls, SteadySurfaceMeetsTheFocus) {
   const ClippingSurface own = surfaceAt(20.0, 0.0), steady = surfaceAt(20.0, 8.0);
   const DepthBuffer& a = *std::get<ClipDepth>(own.clip).buffer;
   const DepthBuffer& b = *std::get<ClipDepth>(steady.clip).buffer;
@@ -132,7 +132,7 @@ TEST_F(TurnedBalls, AreMetByASteadySurfaceAsByTheirOwn) {
   EXPECT_GT(beside, 20);
 }
 
-TEST_F(TurnedBalls, ComeOutFromBehindEachOtherMoreSlowly) {
+TEST_F(TurnedBalls, SteadySurfaceChangesMoreSlowly) {
   const double sudden = greatestP95(0.0), steady = greatestP95(8.0);
   EXPECT_LT(steady, 0.6 * sudden) << sudden << " mm per degree";
 }

@@ -95,7 +95,7 @@ void expectWellMade(const SurfaceMesh& mesh, const Camera& camera) {
     ASSERT_TRUE(mesh.points[i].allFinite() && std::isfinite(mesh.depths[i]));
 }
 
-TEST(SurfaceMesh, APlaneSeenAlongAnAxisLiesWhereItIs) {
+TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
   const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 8.0, 24, 16);
   const Grid volume = centredGrid({20, 30, 10}); // in R, A and S: narrower than the viewport
   const auto plane = [](const Vec2& p) { return 290.0 + 0.25 * p.x() - 0.5 * p.y(); };
@@ -168,7 +168,7 @@ TEST(SurfaceMesh, CoversTheVolumesProjection) {
   }
 }
 
-TEST(SurfaceMesh, LeavesOutWhatHasNoDepthOrIsBehindTheEye) {
+TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
   const Grid volume = centredGrid({40, 40, 40});
   const Camera parallel = anteriorCamera(Projection::orthographic, 300.0, 10.0, 40, 40);
   const auto disk = [](const Vec2& p) { return p.norm() < 6.0 ? 290.0 : -infinity; };
@@ -268,7 +268,7 @@ void expectNoCracks(const SurfaceMesh& mesh, const Camera& camera) {
   }
 }
 
-TEST(SurfaceMesh, IsNowhereFartherFromASampleThanItMayBe) {
+TEST(SurfaceMesh, ErrorAtSamplesIsWithinTheTolerance) {
   for (const Projection projection : projections)
     for (const auto& [width, height] : {std::pair{48, 36}, {33, 65}, {17, 90}}) {
       const Camera camera = slantedCamera(projection, width, height);
@@ -292,7 +292,7 @@ TEST(SurfaceMesh, IsNowhereFartherFromASampleThanItMayBe) {
     }
 }
 
-TEST(SurfaceMesh, CoversEveryCellOfWhichThreeSamplesHaveADepth) {
+TEST(SurfaceMesh, CoversEveryCellWithThreeDepths) {
   const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 10.0, 37, 50);
   const Grid volume = centredGrid({60, 60, 60}); // covers the viewport, and is coarser around it
   for (const auto& [name, shape] : shapes(camera)) {
@@ -317,7 +317,7 @@ TEST(SurfaceMesh, CoversEveryCellOfWhichThreeSamplesHaveADepth) {
   }
 }
 
-TEST(SurfaceMesh, HasAsManyTrianglesAsTheSurfaceNeeds) {
+TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
   const Grid volume = centredGrid({30, 30, 30});
   for (const Projection projection : projections) {
     const Camera camera = anteriorCamera(projection, 300.0, 15.0, 200, 200);
@@ -348,7 +348,7 @@ TEST(SurfaceMesh, HasAsManyTrianglesAsTheSurfaceNeeds) {
   }
 }
 
-TEST(SurfaceMesh, IsTheSameForASubjectOfAnySize) {
+TEST(SurfaceMesh, TriangleCountDoesNotDependOnTheSubjectsSize) {
   std::vector<std::size_t> triangles;
   for (const double size : {1.0, 512.0}) {
     const Camera camera =

@@ -83,7 +83,7 @@ bool near(const Vec3& a, const Vec3& b) {
   return (a - b).norm() <= 1e-6 * b.norm();
 }
 
-TEST(SurfaceWriter, VtpHasEveryDigitAndTheDepths) {
+TEST(SurfaceWriter, VtpKeepsEveryDigitAndTheDepths) {
   const TemporaryFolder folder;
   const SurfaceMesh mesh = roof();
   writeSurface(mesh, folder / "roof.vtp");
@@ -163,7 +163,7 @@ TEST(SurfaceWriter, EqualSurfacesGiveEqualBytesAndEmptyOnesAFile) {
   EXPECT_TRUE(readVtkSurface(folder / "none.vtp", {}, allowance).points.empty());
 }
 
-TEST(SurfaceWriter, RefusesOtherEndingsAndFoldersThatAreNotThere) {
+TEST(SurfaceWriter, RefusesUnknownExtensionsAndMissingFolders) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& name, ErrorKind kind, const std::string& text) {
     const auto expectError = [&](const auto& call) {

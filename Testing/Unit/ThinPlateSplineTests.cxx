@@ -44,7 +44,7 @@ Data scattered(Random& random, int count, double radius) {
   return data;
 }
 
-TEST(ThinPlateSpline, IsTheSaddleSystemsSolutionInMillimetres) {
+TEST(ThinPlateSpline, EqualsTheSolutionOfTheSaddleSystem) {
   Random random(1, 0, 0);
   for (const double radius : {0.5, 8.0, 100.0})
     for (const double smoothing : {0.1, 0.5, 0.9, 1.0})
@@ -58,7 +58,7 @@ TEST(ThinPlateSpline, IsTheSaddleSystemsSolutionInMillimetres) {
       }
 }
 
-TEST(ThinPlateSpline, ReproducesPlanesWhateverTheSmoothing) {
+TEST(ThinPlateSpline, ReproducesPlanesForAnySmoothing) {
   Data data = outline(50, 60.0);
   const auto plane = [](const Vec2& x) { return 700.0 + 0.3 * x.x() - 1.2 * x.y(); };
   for (std::size_t i = 0; i < data.sites.size(); ++i)
@@ -80,7 +80,7 @@ TEST(ThinPlateSpline, InterpolatesAtOneAndApproximatesBelow) {
   EXPECT_GT(missed, 1e-3);
 }
 
-TEST(ThinPlateSpline, AtZeroIsTheLeastSquaresPlane) {
+TEST(ThinPlateSpline, ZeroSmoothingGivesTheLeastSquaresPlane) {
   const Data data = outline(50, 60.0);
   const ThinPlateSpline spline = data.spline(0.0);
   const Vec2 c(100, -280);
@@ -176,7 +176,7 @@ TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
   std::printf("greatest deviation at p = 0.5: %.1e mm\n", greatest);
 }
 
-TEST(LocalExpansion, IsTheSumOfItsTermsOrNothing) {
+TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
   Random random(5, 0, 0);
   const Vec2 center(0.3, -0.2);
   const double radius = 0.4;
@@ -210,7 +210,7 @@ TEST(LocalExpansion, IsTheSumOfItsTermsOrNothing) {
   EXPECT_FALSE(LocalExpansion::of(terms, center, radius, 1e-6));
 }
 
-TEST(ThinPlateSpline, FewCoincidentOrCollinearSitesGiveWhatTheyDetermine) {
+TEST(ThinPlateSpline, FewCoincidentOrCollinearSitesGiveMeanOrLine) {
   const Data one{{{3, 4}}, {7}};
   EXPECT_NEAR(one.spline(0.5)({100, 100}), 7.0, 1e-12);
   const Data same{{{3, 4}, {3, 4}, {3, 4}}, {7, 8, 9}};

@@ -8,7 +8,7 @@
 namespace fenestra::TransferReaderTests {
 namespace {
 
-TEST(TransferReader, readsItsOwnFormat) {
+TEST(TransferReader, ReadsItsOwnFormat) {
   const TransferFunction f = parseTransferFunction(
       R"({"extinction": [[100, 4], [0, 0]], "albedo": [[0, 0.1, 0.2, 0.3], [10, 0.5, 0.6, 1]],
           "g": -0.5, "shading": "hybrid"})",
@@ -26,7 +26,7 @@ TEST(TransferReader, readsItsOwnFormat) {
   EXPECT_FALSE(least.shading);
 }
 
-TEST(TransferReader, relativeScalarsAreAShareOfTheUsualRange) {
+TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
   const std::string rest =
       R"("extinction": [[0.5, 0], [1, 4]], "albedo": [[0, 0, 0, 0], [1, 1, 1, 1]]})";
   const TransferLook look = parseTransferLook(R"({"scalars": "relative", )" + rest, "test");
@@ -51,7 +51,7 @@ void expectRefusal(const std::string& json, const std::string& text) {
   expectRefused("test", text, [&] { parseTransferFunction(json, "test"); });
 }
 
-TEST(TransferReader, namesThePlaceOfWhatIsWrong) {
+TEST(TransferReader, ErrorNamesTheField) {
   const std::string e = R"("extinction": [[0, 1], [5, 2]])", a = R"("albedo": [[0, 1, 1, 1]])";
   expectRefusal("{" + e + "}", "has no \"albedo\"");
   expectRefusal("{" + a + "}", "has no \"extinction\"");
@@ -73,7 +73,7 @@ TEST(TransferReader, namesThePlaceOfWhatIsWrong) {
   expectRefusal("{\"extinction\": [[0,", "is not JSON");
   expectRefusal("{\"extinction\": 1e999}", "");
   expectRefusal("{\"extinction\": \"\xff\"}", "is not JSON");
-  expectRefusal(std::string(1'000'000, '['), "nests more than 64");
+  expectRefusal(std::string(1'000'000, '['), "is nested deeper than 64");
   std::string many = "{\"extinction\": [0";
   for (int i = 0; i < 200'000; ++i)
     many += ",0";
@@ -94,7 +94,7 @@ std::string slicer(const std::string& property, const std::string& component) {
       {"x": 0, "color": [1, 0.5, 0], "midpoint": 0.5, "sharpness": 0}]}}]}]})";
 }
 
-TEST(TransferReader, readsSlicersJson) {
+TEST(TransferReader, ReadsSlicersJson) {
   const TransferFunction f =
       parseTransferFunction(slicer(R"("scatteringAnisotropy": 0.3, )",
                                    R"("scalarOpacityUnitDistance": 2, "shade": true,
@@ -116,21 +116,21 @@ TEST(TransferReader, readsSlicersJson) {
   EXPECT_DOUBLE_EQ((*f.gradientOpacity)(5)[0], 0.5);
 }
 
-TEST(TransferReader, leavesGradientOpacityOutWhereItDoesNothing) {
+TEST(TransferReader, OmitsGradientOpacityWithoutEffect) {
   for (const char* component :
        {"", R"("gradientOpacity": {"points": [{"x": 0, "y": 1}, {"x": 9, "y": 1}]}, )",
         R"("disableGradientOpacity": true, "gradientOpacity": {"points": [{"x": 0, "y": 0}]}, )"})
     EXPECT_FALSE(parseTransferFunction(slicer("", component), "test").gradientOpacity);
 }
 
-TEST(TransferReader, keepsAnisotropyInside) {
+TEST(TransferReader, ClampsAnisotropyBelowOne) {
   EXPECT_EQ(parseTransferFunction(slicer(R"("scatteringAnisotropy": 1, )", ""), "").g, 0.999);
   EXPECT_EQ(parseTransferFunction(slicer(R"("scatteringAnisotropy": -1, )", ""), "").g, -0.999);
   expectRefusal(slicer(R"("scatteringAnisotropy": 1.01, )", ""),
                 "volumeProperties[0].scatteringAnisotropy: is 1.01; it must be from -1 to 1");
 }
 
-TEST(TransferReader, refusesDamagedSlicerJson) {
+TEST(TransferReader, RefusesDamagedSlicerJson) {
   expectRefusal(R"({"volumeProperties": []})", "volumeProperties: is empty");
   expectRefusal(R"({"volumeProperties": [{"components": [{}]}]})",
                 "volumeProperties[0].components[0]: has no \"scalarOpacity\"");
@@ -148,7 +148,7 @@ const std::string propertyText = "1\r\n1\n0.42\n0.44\n0.46\n38.5\n"
                                  "4 -17 1 235 1\n"
                                  "8 -17 1 0 0.5 235 1 1 1\n";
 
-TEST(TransferReader, readsSlicersText) {
+TEST(TransferReader, ReadsSlicersText) {
   const TemporaryFolder folder;
   const TransferFunction f = readTransferFunction(folder.write("a.vp", propertyText));
   EXPECT_NEAR(f.extinction(-2)[0], -std::log1p(-0.1), 1e-4 * 0.1);
@@ -162,7 +162,7 @@ TEST(TransferReader, readsSlicersText) {
   EXPECT_EQ(f.shading->power, 38.5);
 }
 
-TEST(TransferReader, refusesDamagedText) {
+TEST(TransferReader, RefusesDamagedText) {
   const TemporaryFolder folder;
   const auto refuse = [&folder](const std::string& from, const std::string& to,
                                 const std::string& text) {
@@ -181,7 +181,7 @@ TEST(TransferReader, refusesDamagedText) {
   refuse("8 -17 1 0 0.5 235 1 1 1\n", "0\n", "color: has 0 points");
 }
 
-TEST(TransferReader, refusesFilesOfOtherKinds) {
+TEST(TransferReader, RefusesUnknownAndMissingFilesAndFolders) {
   const TemporaryFolder folder;
   expectRefused(folder / "x.txt", "name a .vp", [&] { readTransferFunction(folder / "x.txt"); });
   expectRefused(folder / "x.vp", "no such file", [&] { readTransferFunction(folder / "x.vp"); });
@@ -189,7 +189,7 @@ TEST(TransferReader, refusesFilesOfOtherKinds) {
   expectRefused(folder / "d.json", "is a folder", [&] { readTransferFunction(folder / "d.json"); });
 }
 
-TEST(TransferReader, readsRealVolumeProperties) {
+TEST(TransferReader, ReadsRealVolumeProperties) {
   const std::filesystem::path root = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes";
   if (!std::filesystem::exists(root))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
@@ -204,7 +204,7 @@ TEST(TransferReader, readsRealVolumeProperties) {
   EXPECT_GE(read, 4);
 }
 
-TEST(TransferReader, readsTheReferencesTransferFunctions) {
+TEST(TransferReader, ReadsTransferFunctionsOfTheReference) {
   const std::filesystem::path root(FENESTRA_REFERENCE);
   if (!std::filesystem::exists(root / "S1.transfer.json"))
     GTEST_SKIP() << "no references at " << FENESTRA_REFERENCE;

@@ -110,7 +110,7 @@ typename Transform::Pointer turned() {
   return transform;
 }
 
-TEST(TransformFile, readsEveryLinearKind) {
+TEST(TransformFile, ReadsEveryLinearKind) {
   expectSameMap(turned<itk::AffineTransform<double, 3>>().GetPointer());
   expectSameMap(turned<itk::Euler3DTransform<double>>().GetPointer());
   expectSameMap(turned<itk::CenteredEuler3DTransform<double>>().GetPointer());
@@ -141,7 +141,7 @@ typename Transform::Pointer stretched() {
   return transform;
 }
 
-TEST(TransformFile, readsScalesAndSkews) {
+TEST(TransformFile, ReadsScalesAndSkews) {
   expectSameMap(stretched<itk::ScaleVersor3DTransform<double>>().GetPointer());
   expectSameMap(stretched<itk::ScaleSkewVersor3DTransform<double>>().GetPointer());
   expectSameMap(stretched<itk::ComposeScaleSkewVersor3DTransform<double>>().GetPointer());
@@ -149,7 +149,7 @@ TEST(TransformFile, readsScalesAndSkews) {
   expectSameMap(stretched<itk::ScaleLogarithmicTransform<double, 3>>().GetPointer());
 }
 
-TEST(TransformFile, readsFloatsAndTheOrderOfEulerAngles) {
+TEST(TransformFile, ReadsFloatsAndTheOrderOfEulerAngles) {
   expectSameMap(turned<itk::AffineTransform<float, 3>>().GetPointer());
   expectSameMap(turned<itk::Similarity3DTransform<float>>().GetPointer());
   auto euler = turned<itk::Euler3DTransform<double>>();
@@ -157,7 +157,7 @@ TEST(TransformFile, readsFloatsAndTheOrderOfEulerAngles) {
   expectSameMap(euler.GetPointer());
 }
 
-TEST(TransformFile, appliesTheLastOfACompositeFirst) {
+TEST(TransformFile, AppliesTheLastOfACompositeFirst) {
   const auto composite = itk::CompositeTransform<double, 3>::New();
   auto first = itk::TranslationTransform<double, 3>::New();
   const double shift[] = {10, 0, 0};
@@ -170,7 +170,7 @@ TEST(TransformFile, appliesTheLastOfACompositeFirst) {
   expectSameMap(composite.GetPointer(), {".tfm", ".txt", ".h5", "z.h5"});
 }
 
-TEST(TransformFile, readsColumnsOfTheOtherByteOrder) {
+TEST(TransformFile, ReadsMatColumnsOfTheOtherByteOrder) {
   const TemporaryFolder folder;
   const auto affine = turned<itk::AffineTransform<double, 3>>();
   const Affine expected =
@@ -225,7 +225,7 @@ std::filesystem::path writeOldHdf5(const TemporaryFolder& folder, int count) {
   return path;
 }
 
-TEST(TransformFile, readsOldHdf5) {
+TEST(TransformFile, ReadsOldHdf5) {
   const TemporaryFolder folder;
   for (const int count : {2, 5, 100}) { // symbol tables of one leaf, and of many
     const Affine toParent =
@@ -250,7 +250,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text.replace(text.find(what), what.size(), by);
 }
 
-TEST(TransformFile, isFromTheParentInLps) {
+TEST(TransformFile, MapsFromTheParentInLps) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.tfm", affineText);
   const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
@@ -260,7 +260,7 @@ TEST(TransformFile, isFromTheParentInLps) {
                   .isApprox(Vec3(-10, -20, 30)));
 }
 
-TEST(TransformFile, refusesWhatIsNotLinear) {
+TEST(TransformFile, RefusesNonlinearTransforms) {
   const TemporaryFolder folder;
   const auto bspline = itk::BSplineTransform<double, 3, 3>::New();
   for (const char* extension : {".tfm", ".txt", ".h5", ".hdf5", ".mat"})
@@ -277,7 +277,7 @@ TEST(TransformFile, refusesWhatIsNotLinear) {
   expectRefused(folder.write("field.nrrd", "NRRD0004"), "is a displacement field");
 }
 
-TEST(TransformFile, refusesMapsThatCannotBeInverted) {
+TEST(TransformFile, RefusesMapsThatCannotBeInverted) {
   const TemporaryFolder folder;
   for (const char* matrix : {"0 0 0 0 1 0 0 0 1", "1 0 0 1 0 0 0 0 1", "1e-300 0 0 0 1 0 0 0 1",
                              "1e300 0 0 0 1e300 0 0 0 1e300"})
@@ -289,7 +289,7 @@ TEST(TransformFile, refusesMapsThatCannotBeInverted) {
                 "cannot be inverted");
 }
 
-TEST(TransformFile, refusesWhatSlicerRefuses) {
+TEST(TransformFile, RefusesSeveralPlanarAndNestedTransforms) {
   const TemporaryFolder folder;
   expectRefused(folder.write("two.tfm", affineText + affineText), "holds 2 transforms");
   expectRefused(write(folder, ".tfm", itk::Euler2DTransform<double>::New().GetPointer()),
@@ -305,7 +305,7 @@ TEST(TransformFile, refusesWhatSlicerRefuses) {
                 "is damaged");
 }
 
-TEST(TransformFile, refusesWhatIsNoTransform) {
+TEST(TransformFile, RefusesFilesThatAreNoTransform) {
   const TemporaryFolder folder;
   expectRefused(folder / "none.tfm", "there is no such file");
   expectRefused(folder.path(), "is a folder");
@@ -327,7 +327,7 @@ TEST(TransformFile, refusesWhatIsNoTransform) {
 }
 
 /// HDF5's means of opening other files through the library; in a file that is read apart.
-TEST(TransformFile, refusesHdf5ThatLeadsElsewhere) {
+TEST(TransformFile, RefusesHdf5ThatOpensOtherFiles) {
   const TemporaryFolder folder;
   const auto other = folder.write("other.raw", std::string(80, '\0'));
   using Lead = std::function<void(hid_t file)>;
@@ -358,7 +358,7 @@ TEST(TransformFile, refusesHdf5ThatLeadsElsewhere) {
 }
 
 /// Damaged bytes must be read, or refused on one line.
-TEST(TransformFile, survivesDamage) {
+TEST(TransformFile, DamagedBytesAreReadOrRefused) {
   const TemporaryFolder folder;
   const auto composite = itk::CompositeTransform<double, 3>::New();
   composite->AddTransform(turned<itk::Euler3DTransform<double>>());
@@ -388,7 +388,7 @@ TEST(TransformFile, survivesDamage) {
 }
 
 /// File written by Slicer 5.2.2, and the matrix stored beside.
-TEST(TransformFile, readsSlicersFile) {
+TEST(TransformFile, ReadsAFileWrittenBySlicer) {
   const auto scene = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_5_2_written" /
                      "chest_transformed_cropped.mrb";
   if (!std::filesystem::exists(scene))

@@ -59,7 +59,7 @@ double vtkValue(const OpacityNode& a, const OpacityNode& b, double x) {
   return std::clamp(h1 * a.y + h2 * b.y + h3 * t + h4 * t, std::min(a.y, b.y), std::max(a.y, b.y));
 }
 
-TEST(VolumeProperty, interpolatesAsVtkDoes) {
+TEST(VolumeProperty, InterpolatesAsVtkDoes) {
   for (const double midpoint : {0.0, 1e-3, 0.3, 0.5, 0.9, 1.0})
     for (const double sharpness : {0.0, 0.009, 0.01, 0.3, 0.5, 0.99, 0.995, 1.0}) {
       const std::vector<OpacityNode> nodes = {{-100, 0.8, midpoint, sharpness}, {300, 0.1}};
@@ -72,7 +72,7 @@ TEST(VolumeProperty, interpolatesAsVtkDoes) {
     }
 }
 
-TEST(VolumeProperty, coloursFollowTheSameCurve) {
+TEST(VolumeProperty, ColoursFollowTheCurveOfOpacity) {
   const std::vector<ColorNode> nodes = {{0, {0, 0.5, 1}, 0.3, 0.4}, {10, {1, 0.25, 0.5}}};
   const std::vector<OpacityNode> red = {{0, 0, 0.3, 0.4}, {10, 1}};
   for (double x = -1; x < 12; x += 0.1) {
@@ -83,14 +83,14 @@ TEST(VolumeProperty, coloursFollowTheSameCurve) {
   }
 }
 
-TEST(VolumeProperty, decodesSrgb) {
+TEST(VolumeProperty, DecodesSrgb) {
   const Rgb linear = decodeSrgb({0.04045, 0.5, 1.0});
   EXPECT_NEAR(linear[0], 0.04045 / 12.92, 1e-15);
   EXPECT_NEAR(linear[1], 0.21404114, 1e-8);
   EXPECT_NEAR(linear[2], 1.0, 1e-15);
 }
 
-TEST(VolumeProperty, extinctionKeepsToTheFormula) {
+TEST(VolumeProperty, ExtinctionIsWithin1e4OfTheFormula) {
   const std::vector<std::vector<OpacityNode>> curves = {
       {{0, 0}, {1, 1}},
       {{0, 1}, {1, 0}},
@@ -109,7 +109,7 @@ TEST(VolumeProperty, extinctionKeepsToTheFormula) {
     }
 }
 
-TEST(VolumeProperty, extinctionKeepsToTheFormulaOfSharpCurves) {
+TEST(VolumeProperty, ExtinctionOfSharpCurvesIsWithin1e4OfTheFormula) {
   for (const double midpoint : {0.0, 0.1, 0.5, 1.0})
     for (const double sharpness : {0.01, 0.1, 0.5, 0.99}) {
       const VolumeProperty p = property({{-200, 0, midpoint, sharpness}, {1000, 1}});
@@ -119,14 +119,14 @@ TEST(VolumeProperty, extinctionKeepsToTheFormulaOfSharpCurves) {
     }
 }
 
-TEST(VolumeProperty, keepsItsNodesAsKnots) {
+TEST(VolumeProperty, NodesAreKnots) {
   const VolumeProperty p = property({{-7, 0.1}, {0.1, 0.7}, {13, 0.2}});
   const TransferFunction f = tabulate(p, "test");
   for (const OpacityNode& node : p.scalarOpacity)
     EXPECT_DOUBLE_EQ(f.extinction(node.x)[0], -std::log1p(-node.y));
 }
 
-TEST(VolumeProperty, stepsAreSteps) {
+TEST(VolumeProperty, StepsStayDiscontinuous) {
   const TransferFunction sharp = tabulate(property({{0, 0.2, 0.25, 1.0}, {8, 0.6}}), "test");
   EXPECT_DOUBLE_EQ(sharp.extinction(1.999)[0], -std::log1p(-0.2));
   EXPECT_DOUBLE_EQ(sharp.extinction(2.0)[0], -std::log1p(-0.6));
@@ -135,13 +135,13 @@ TEST(VolumeProperty, stepsAreSteps) {
   EXPECT_DOUBLE_EQ(coincident.extinction(4)[0], -std::log1p(-0.6));
 }
 
-TEST(VolumeProperty, fullOpacityIsCapped) {
+TEST(VolumeProperty, FullOpacityIsCapped) {
   const TransferFunction f = tabulate(property({{0, 0}, {1, 1}}), "test");
   EXPECT_NEAR(f.extinction(1)[0], -std::log(0.0001), 1e-12);
   EXPECT_NEAR(f.extinction(0.99995)[0], -std::log(0.0001), 1e-12);
 }
 
-TEST(VolumeProperty, albedoKeepsToTheDecodedColour) {
+TEST(VolumeProperty, AlbedoIsWithin1e4OfTheDecodedColour) {
   VolumeProperty p = property({{0, 0.5}});
   p.color = {{0, {0, 0.5, 1}, 0.3, 0.6}, {10, {1, 0.001, 0.02}}, {11, {0, 0, 0}}};
   const TransferFunction f = tabulate(p, "test");
@@ -152,7 +152,7 @@ TEST(VolumeProperty, albedoKeepsToTheDecodedColour) {
   EXPECT_LE(f.albedo.knots().size(), 6010u);
 }
 
-TEST(VolumeProperty, boundsItsKnots) {
+TEST(VolumeProperty, NumberOfKnotsIsBounded) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform;
   VolumeProperty p;
@@ -165,7 +165,7 @@ TEST(VolumeProperty, boundsItsKnots) {
   EXPECT_LE(f.albedo.knots().size(), 14'000u);
 }
 
-TEST(VolumeProperty, dropsGradientOpacityThatIsOne) {
+TEST(VolumeProperty, OmitsGradientOpacityOfOne) {
   VolumeProperty p = property({{0, 0.5}});
   p.gradientOpacity = {{0, 1}, {255, 1}};
   EXPECT_FALSE(tabulate(p, "test").gradientOpacity);
@@ -175,7 +175,7 @@ TEST(VolumeProperty, dropsGradientOpacityThatIsOne) {
   EXPECT_DOUBLE_EQ((*f.gradientOpacity)(51)[0], 0.2);
 }
 
-TEST(VolumeProperty, shadeTurnsShadingOn) {
+TEST(VolumeProperty, ShadeTurnsShadingOn) {
   VolumeProperty p = property({{0, 0.5}});
   EXPECT_FALSE(tabulate(p, "test").shading);
   p.shade = true;
@@ -184,7 +184,7 @@ TEST(VolumeProperty, shadeTurnsShadingOn) {
   EXPECT_EQ(tabulate(p, "test").shading->power, 30.0);
 }
 
-TEST(VolumeProperty, refusesWhatIsNotUsable) {
+TEST(VolumeProperty, RefusesUnusableValues) {
   const auto refused = [](auto&& change) {
     VolumeProperty p = property({{0, 0}, {1, 0.5}});
     change(p);

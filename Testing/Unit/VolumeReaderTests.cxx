@@ -46,7 +46,7 @@ void expectRoundTrip(const std::vector<T>& samples) {
     }
 }
 
-TEST(VolumeReader, storesEveryTypeInTheSmallestThatHoldsIt) {
+TEST(VolumeReader, StoresSamplesInTheSmallestType) {
   expectRoundTrip<std::uint8_t>(ramp<std::int8_t>(0, 5));
   expectRoundTrip<std::int16_t>(ramp<std::int8_t>(-100, 5));
   expectRoundTrip<std::uint8_t>(ramp<std::uint8_t>(3, 10));
@@ -65,7 +65,7 @@ TEST(VolumeReader, storesEveryTypeInTheSmallestThatHoldsIt) {
   expectRoundTrip<std::uint8_t>(ramp<double>(0, 1));
 }
 
-TEST(VolumeReader, roundsWhatNoStorageHolds) {
+TEST(VolumeReader, RoundsDoublesToFloats) {
   const TemporaryFolder folder;
   auto samples = ramp<double>(0.1, 1);
   samples[3] = 1e300;
@@ -77,7 +77,7 @@ TEST(VolumeReader, roundsWhatNoStorageHolds) {
   EXPECT_EQ(volume.minimum, -double(std::numeric_limits<float>::max()));
 }
 
-TEST(VolumeReader, mendsWhatIsNotFinite) {
+TEST(VolumeReader, ReplacesNonFiniteVoxels) {
   const TemporaryFolder folder;
   for (const char* name : {"v.nrrd", "v.nii.gz", "v.mha"})
     for (const double step : {0.5, 1.0}) { // stays float; becomes integers
@@ -101,7 +101,7 @@ TEST(VolumeReader, mendsWhatIsNotFinite) {
     }
 }
 
-TEST(VolumeReader, convertsObliqueGeometryToRas) {
+TEST(VolumeReader, ConvertsObliqueGeometryToRas) {
   const TemporaryFolder folder;
   const double c = std::cos(0.3), s = std::sin(0.3);
   FileGeometry geometry{.directions = {{c, s, 0}, {-s, c, 0}, {0, 0, 1}},
@@ -130,7 +130,7 @@ std::string nrrd(const std::string& head, const std::string& data,
   return "NRRD0004\ntype: unsigned char\nencoding: " + encoding + "\n" + head + "\n\n" + data;
 }
 
-TEST(VolumeReader, readsRasAndShearedHeaders) {
+TEST(VolumeReader, ReadsRasAndShearedHeaders) {
   const TemporaryFolder folder;
   const std::string samples(24, 'x');
   const auto path = folder.write(
@@ -147,7 +147,7 @@ TEST(VolumeReader, readsRasAndShearedHeaders) {
   EXPECT_TRUE((readVolume(lps).grid.indexToWorld * Vec3(1, 1, 1)).isApprox(Vec3(1, -1, 6), 1e-12));
 }
 
-TEST(VolumeReader, readsDetachedDataAndLists) {
+TEST(VolumeReader, ReadsDetachedDataAndLists) {
   const TemporaryFolder folder;
   const std::string head = "dimension: 3\nsizes: 3 4 2\n";
   folder.write("half.raw", std::string(12, '\1'));
@@ -159,7 +159,7 @@ TEST(VolumeReader, readsDetachedDataAndLists) {
   EXPECT_EQ(readVolume(list).maximum, 1.0);
 }
 
-TEST(VolumeReader, readsEveryEncoding) {
+TEST(VolumeReader, ReadsAsciiAndHexEncoding) {
   const TemporaryFolder folder;
   const std::string head = "NRRD0004\ntype: double\ndimension: 3\nsizes: 2 2 1\nendian: little\n";
   const auto text = folder.write("a.nrrd", head + "encoding: ascii\n\n1 2 3 4\n");
@@ -170,7 +170,7 @@ TEST(VolumeReader, readsEveryEncoding) {
   EXPECT_EQ(readVolume(folder.write("h.nrrd", head + "encoding: hex\n\n" + hex)).minimum, 1.0);
 }
 
-TEST(VolumeReader, dropsTrailingAxesOfOneFrame) {
+TEST(VolumeReader, DropsTrailingAxesOfOneFrame) {
   const TemporaryFolder folder;
   const auto path = folder.write(
       "legacy.nrrd", nrrd("dimension: 4\nspace dimension: 4\nsizes: 3 4 2 1\nkinds: domain domain "
@@ -188,7 +188,7 @@ void expectRefusal(const std::filesystem::path& path, const std::string& text) {
   expectRefused(path, text, [&path] { readVolume(path); });
 }
 
-TEST(VolumeReader, refusesWhatIsNoScalarVolume) {
+TEST(VolumeReader, RefusesFramesVectorsAndPictures) {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> samples(96, 1);
   for (const std::string end : {".nrrd", ".nii.gz", ".mha"}) {
@@ -203,7 +203,7 @@ TEST(VolumeReader, refusesWhatIsNoScalarVolume) {
   }
 }
 
-TEST(VolumeReader, refusesWhatIsMissingOrUnknown) {
+TEST(VolumeReader, RefusesMissingAndUnknownFiles) {
   const TemporaryFolder folder;
   expectRefusal(folder / "missing.nrrd", "no such file");
   expectRefusal(folder / "", "is a folder");
@@ -216,7 +216,7 @@ TEST(VolumeReader, refusesWhatIsMissingOrUnknown) {
   }
 }
 
-TEST(VolumeReader, refusesTruncatedFiles) {
+TEST(VolumeReader, RefusesTruncatedFiles) {
   const TemporaryFolder folder;
   std::vector<std::uint16_t> samples(8000);
   for (std::size_t i = 0; i < samples.size(); ++i) // incompressible
@@ -238,7 +238,7 @@ TEST(VolumeReader, refusesTruncatedFiles) {
   }
 }
 
-TEST(VolumeReader, refusesDamagedStreams) {
+TEST(VolumeReader, RefusesDamagedStreams) {
   const TemporaryFolder folder;
   std::vector<std::uint16_t> samples(8000);
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -252,7 +252,7 @@ TEST(VolumeReader, refusesDamagedStreams) {
   }
 }
 
-TEST(VolumeReader, refusesSizesThatTheFileCannotHold) {
+TEST(VolumeReader, RefusesSizesThatTheFileCannotHold) {
   const TemporaryFolder folder;
   const auto sized = [&](const std::string& sizes, const std::string& encoding) {
     return folder.write("huge.nrrd", nrrd("dimension: 3\nsizes: " + sizes, "xxxx", encoding));
@@ -292,7 +292,7 @@ TEST(VolumeReader, refusesSizesThatTheFileCannotHold) {
 }
 
 /// ITK's NRRD library copies lines, names and numbers into 1024 bytes, and sizes into 16 entries.
-TEST(VolumeReader, refusesNrrdHeadersThatTeemDoesNotSurvive) {
+TEST(VolumeReader, RefusesNrrdHeadersThatCrashTeem) {
   const TemporaryFolder folder;
   const std::string sizes = "dimension: 3\nsizes: 3 4 2\n";
   const std::string samples(24, 'x');
@@ -324,7 +324,7 @@ TEST(VolumeReader, refusesNrrdHeadersThatTeemDoesNotSurvive) {
   expectRefusal(deep + "/v.nrrd", "path of more than 900 bytes");
 }
 
-TEST(VolumeReader, refusesNrrdHeadersOfTooManyLines) {
+TEST(VolumeReader, RefusesNrrdHeadersOfTooManyLines) {
   const TemporaryFolder folder;
   const auto of = [&](int lines) {
     std::string head = "dimension: 3\nsizes: 3 4 2\n";
@@ -336,7 +336,7 @@ TEST(VolumeReader, refusesNrrdHeadersOfTooManyLines) {
   expectRefusal(of(100'000), "header: has more than 10000 lines");
 }
 
-TEST(VolumeReader, refusesGeometryThatIsSingular) {
+TEST(VolumeReader, RefusesSingularGeometry) {
   const TemporaryFolder folder;
   const auto placed = [&](const std::string& directions, const std::string& origin) {
     return folder.write("v.nrrd",
@@ -365,13 +365,13 @@ TEST(VolumeReader, refusesGeometryThatIsSingular) {
         "spacing");
 }
 
-TEST(VolumeReader, refusesVolumesWithoutAFiniteVoxel) {
+TEST(VolumeReader, RefusesVolumesWithoutAFiniteVoxel) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nrrd", std::vector<double>(24, std::nan("")));
   expectRefusal(folder / "v.nrrd", "no voxel is a finite number");
 }
 
-TEST(VolumeReader, refusesDataFilesThatAreNone) {
+TEST(VolumeReader, RefusesBadDataFiles) {
   const TemporaryFolder folder;
   for (const char* name : {"-", "/dev/zero", ".", "missing.raw", "part%03d.raw 1 9 1"})
     expectRefusal(
@@ -386,7 +386,7 @@ TEST(VolumeReader, refusesDataFilesThatAreNone) {
         "");
 }
 
-TEST(VolumeReader, refusesNumbersThatItkDoesNotSurviveInNifti) {
+TEST(VolumeReader, RefusesNonFiniteNiftiForms) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nii", ramp<std::uint8_t>(0, 1));
   const std::string good = bytesOf(folder / "v.nii");
@@ -400,7 +400,7 @@ TEST(VolumeReader, refusesNumbersThatItkDoesNotSurviveInNifti) {
     }
 }
 
-TEST(VolumeReader, appliesTheRescalingOfNifti) {
+TEST(VolumeReader, AppliesTheRescalingOfNifti) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nii", ramp<std::uint8_t>(0, 1));
   std::string bytes = bytesOf(folder / "v.nii");
@@ -419,7 +419,7 @@ std::filesystem::path data(const std::string& name) {
   return std::filesystem::path(FENESTRA_DATA) / name;
 }
 
-TEST(VolumeReader, readsRealScans) {
+TEST(VolumeReader, ReadsRealScans) {
   if (!std::filesystem::exists(data("torso_ct_ccth_a01")))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   const Volume torso = readVolume(data("torso_ct_ccth_a01/ct.nii.gz"));

@@ -15,7 +15,7 @@ Grid obliqueGrid(const Size3& size) {
   return {size, map};
 }
 
-TEST(Grid, MapsBothWaysAndKnowsItsSpacing) {
+TEST(Grid, MapsBothWaysAndReturnsItsSpacing) {
   const Grid grid = obliqueGrid({5, 6, 7});
   EXPECT_TRUE((grid.worldToIndex * (grid.indexToWorld * Vec3(1, 2, 3))).isApprox(Vec3(1, 2, 3)));
   EXPECT_TRUE(grid.spacing().isApprox(Vec3(0.5, 2.0, 1.25)));

@@ -87,7 +87,7 @@ double ballInMist(const Vec3& p) {
   return inBall ? 2.0 + std::sin(p.y()) : mist;
 }
 
-TEST(WideCells, BoundWhatTheyReach) {
+TEST(WideCells, MajorantBoundsEveryCellInReach) {
   const Walk walk{cellsOf(ballInMist)};
   expectBounds(walk);
   EXPECT_GT(walk.cell(Size3::Constant(4)).reach, 3U) << "mist";
@@ -97,7 +97,7 @@ TEST(WideCells, BoundWhatTheyReach) {
   EXPECT_GT(above.reach, 0U);
 }
 
-TEST(WideCells, ReachNoCellThatClippingCuts) {
+TEST(WideCells, ReachIsZeroInCutCells) {
   const CameraPose pose{
       .position = {0.0, 0.0, -200.0}, .target = Vec3::Zero(), .up = Vec3::UnitY()};
   const ClipPlane plane{Camera(pose, 8, 8), Vec3::Constant(0.5 * edge), Vec3(1.0, 2.0, 3.0)};
@@ -111,7 +111,7 @@ TEST(WideCells, ReachNoCellThatClippingCuts) {
   EXPECT_GT(cut, 100);
 }
 
-TEST(WideCells, HoldExtinctionsOfAllSizes) {
+TEST(WideCells, ExtinctionsOfAnySizeAreBounded) {
   const Walk walk{cellsOf([](const Vec3& p) { return std::pow(10.0, 0.4 * p.x() - 33.0); })};
   expectBounds(walk);
 }

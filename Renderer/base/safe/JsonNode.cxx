@@ -36,11 +36,11 @@ nlohmann::json parseJson(std::string_view text, const std::string& source, int m
   const auto count = [&](int depth, Event event, const nlohmann::json&) {
     const bool opens = event == Event::object_start || event == Event::array_start;
     if (opens && depth >= deepest)
-      throw inputError(source, "nests more than " + std::to_string(deepest) +
-                                   " brackets; it is not a file of ours");
+      throw inputError(source, "is nested deeper than " + std::to_string(deepest) +
+                                   " levels; Fenestra writes no such file");
     if ((opens || event == Event::key || event == Event::value) && ++parts > mostParts)
       throw inputError(source, "holds more than " + std::to_string(mostParts) +
-                                   " values; it is not a file of ours");
+                                   " values; Fenestra writes no such file");
     return true;
   };
   try {

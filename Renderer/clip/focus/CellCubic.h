@@ -1,6 +1,6 @@
 #pragma once
-// Cubic that a trilinear function is along a ray through one cell, and the least s at which the
-// cubic is >= 0.
+// A trilinear function along a ray through one cell: a cubic, and the least s at which the cubic is
+// >= 0.
 
 #include "base/Vector.h"
 

@@ -23,7 +23,7 @@ std::pair<std::int64_t, std::int64_t> samplesAround(const DepthAxis& axis, doubl
           std::min(axis.size() - 1, static_cast<std::int64_t>(std::ceil(high + sampleSlack)))};
 }
 
-/// Cells that rays between two positions pass.
+/// Cells of the buffer between two positions, with slack.
 CellRange cellsBetween(const DepthBuffer& buffer, const Vec2& lower, const Vec2& upper) {
   CellRange cells{};
   std::tie(cells.left, cells.right) = samplesAround(buffer.xAxis(), lower.x(), upper.x());
@@ -45,7 +45,8 @@ void visitSeen(const Camera& camera, const DepthBuffer& buffer, const FocusCells
   });
 }
 
-/// Tiles of cells, marked if isAskedFor is set for any cell of the tile: a tile is skipped at once.
+/// Tiles of cells, marked if isAskedFor is set for any cell of the tile: an unmarked tile is
+/// skipped at once.
 class AskedTiles {
 public:
   AskedTiles(const CellRange& range, const std::vector<std::uint8_t>& isAskedFor)

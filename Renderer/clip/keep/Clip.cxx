@@ -6,7 +6,7 @@ namespace fenestra {
 
 namespace {
 
-/// mm, least distance of a box from the surface to count as removed or kept whole: far more than
+/// Least distance, mm, of a box from the surface to count as removed or kept whole: far more than
 /// rounding, far below visibility.
 constexpr double slack = 1e-6;
 

@@ -69,7 +69,7 @@ struct ClipDepth {
   enum class Lookup { nearest, linear };
 
   Camera camera;
-  std::shared_ptr<const DepthBuffer> buffer;   ///< -infinity: nothing removed (nearest only)
+  std::shared_ptr<const DepthBuffer> buffer;   ///< depth -infinity: nothing removed
   std::shared_ptr<const DepthPyramid> pyramid; ///< bounds of buffer and seams
   Lookup lookup = Lookup::linear;
   ClipEdge edge = {};

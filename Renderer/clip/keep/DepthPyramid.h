@@ -8,7 +8,8 @@
 
 namespace fenestra {
 
-/// Level 0 holds the extremes of 2 x 2 samples, each further level those of 2 x 2 below it.
+/// Level 0 holds the extremes of 2 x 2 samples, each further level those of 2 x 2
+/// entries of the level below.
 class DepthPyramid {
 public:
   explicit DepthPyramid(const DepthBuffer& buffer, const Seams* seams = nullptr);

@@ -94,7 +94,8 @@ private:
     return std::isfinite(depth) && !behindEye(m_camera, depth);
   }
 
-  /// Depth of a sample of the buffer, mm; NaN: none, or no corner of a cell in the footprint.
+  /// Depth of a sample of the buffer, mm; NaN: the sample has none, or is no corner of a cell in
+  /// the footprint.
   double depthOf(std::int64_t column, std::int64_t row) const {
     DomainFootprint::Columns around{m_buffer.columns(), 0};
     for (std::int64_t near = std::max(std::int64_t{0}, row - 1);

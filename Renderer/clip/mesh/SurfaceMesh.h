@@ -17,9 +17,9 @@ struct SurfaceMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A tenth of a pixel on the plane through the target, mm. Sideways the surface is known to a
-/// pixel: a mesh with a smaller error in depth looks the same from any side in a picture of this
-/// resolution, for a subject of 1 mm as for one of 1 m.
+/// Tolerance for surfaceMesh(), mm: a tenth of a pixel on the plane through the target. Across the
+/// view the surface is known to a pixel only, so no picture of this resolution, from any side,
+/// would show a smaller error in depth.
 inline double surfaceTolerance(const Camera& camera) {
   return 0.1 * camera.pixelPitch();
 }

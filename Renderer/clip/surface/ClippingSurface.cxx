@@ -173,7 +173,8 @@ ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& optio
   surface.mismatch = mismatchOf(spline, boundarySamples(surface.focus, contours));
   const auto asked = static_cast<std::size_t>(options.controlPoints);
   if (surface.controlPoints.size() < std::min<std::size_t>(3, asked))
-    surface.warnings.push_back("the focus covers hardly a pixel: the clipping surface is flat");
+    surface.warnings.push_back("the focus covers hardly a pixel: the clipping surface is flat; "
+                               "choose a larger --size, or a view that frames the focus");
   return spline;
 }
 
@@ -195,7 +196,8 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   ClippingSurface surface{.clip = {}, .focus = tracer->depths()};
   requireVisible(surface.focus, focus);
   if (!inPicture(surface.focus))
-    surface.warnings.push_back(nameOf(focus) + " lies outside the picture");
+    surface.warnings.push_back(nameOf(focus) + " lies outside the picture; choose another --view, "
+                                               "--target or --scale");
   surface.focusSeconds = stopwatch.lap();
 
   auto buffer = std::make_shared<DepthBuffer>(surface.focus.depth);

@@ -10,7 +10,7 @@
 
 namespace fenestra {
 
-/// Reads a lights `.json` (design, section 3). Throws Error (input). An environment's `file` is
+/// Reads a lights `.json`. Throws Error (input). An environment's `file` is
 /// relative to the folder of the JSON; its `radiance`, if present, multiplies the map.
 std::vector<Light> readLights(const std::filesystem::path& path);
 
@@ -18,7 +18,7 @@ std::vector<Light> readLights(const std::filesystem::path& path);
 /// text in messages.
 std::vector<Light> parseLights(std::string_view json, const std::string& source);
 
-/// True if such a text names a file.
+/// True if a JSON text of lights names a file.
 bool namesFiles(std::string_view json, const std::string& source);
 
 /// Reads R, G, B of a latitude-longitude EXR. Throws Error (input), also for values outside [0,

@@ -54,8 +54,8 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
   const bool known = h.bits == 8 || h.bits == 16 || h.bits == 32;
   if (!known || h.bitsStored == 0 || h.highBit >= h.bits || h.bitsStored > h.highBit + 1 ||
       h.isSigned > 1)
-    refuse("BitsAllocated, BitsStored or HighBit: is none that is read; save the volume in Slicer "
-           "as .nrrd and name that");
+    refuse("BitsAllocated, BitsStored or HighBit: has a value that is not read; save the volume in "
+           "Slicer as .nrrd and name that");
   if (!std::isfinite(slopeOf(h)) || !std::isfinite(interceptOf(h)))
     refuse("RescaleSlope or RescaleIntercept: is not one finite number; export the series again");
   // Lossless codecs pack an empty picture into next to nothing, and any other 1000 to 1 at most.

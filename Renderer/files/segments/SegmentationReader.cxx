@@ -85,8 +85,8 @@ std::optional<std::int32_t> labelValue(std::string_view text) {
 }
 
 /// Grid of the file's voxels. The oldest files keep the geometry of the whole reference image, in
-/// RAS, and state in Segmentation_Extent which part of it their voxels are. (Only with this a
-/// bladder of such a file meets the same patient's bladder surface.)
+/// RAS, and state in Segmentation_Extent which part of it their voxels are. (With this
+/// offset the bladder of such a file lies at the same patient's bladder surface.)
 Grid placed(const Grid& grid, const std::map<std::string, std::string>& fields,
             const std::string& source) {
   const auto extent = fields.find("Segmentation_Extent");
@@ -332,7 +332,8 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
   Mask mask = smoothed(united(masks), shaping.smoothing, volume);
   if (mask.count == 0)
     throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (" +
-                                   listed(chosen) + "); choose less");
+                                   listed(chosen) +
+                                   "); choose a margin nearer to 0, or less smoothing");
   return mask;
 }
 

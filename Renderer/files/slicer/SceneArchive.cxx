@@ -110,7 +110,8 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_zip(std::make_
     const std::filesystem::path file = name;
     if (leadsOut(file))
       throw inputError(source, "holds an entry that leads out of the archive (" +
-                                   shown(file.string()) + "); it is not Slicer's work");
+                                   shown(file.string()) +
+                                   "); Slicer writes no such archive, so do not trust it");
     if (!file.empty() && file.has_filename())
       m_files.try_emplace(file.lexically_normal(), entry);
   }

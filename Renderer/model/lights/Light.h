@@ -15,7 +15,7 @@ inline double brightness(const Rgb& radiance) {
   return radiance.maxCoeff();
 }
 
-/// Latitude-longitude radiance, row 0 superior, middle column anterior (design, section 1).
+/// Latitude-longitude radiance, row 0 superior, middle column anterior.
 struct EnvironmentMap {
   int width = 0, height = 0;
   std::vector<float> rgb; ///< width * height * 3, row by row from the top

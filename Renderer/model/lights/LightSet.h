@@ -33,7 +33,7 @@ struct LightArrival {
 struct PlacedAreaLight {
   AreaLight::Shape shape;
   Vec3 center, normal, right, up; ///< right, up: unit vectors along the edges
-  Vec2 half;                      ///< half edges, or the radius (twice), mm
+  Vec2 half;                      ///< half edges; disk: the radius in both, mm
   double area;                    ///< mm^2
   Rgb radiance;
   double share; ///< probability that LightSet::sample() takes this light

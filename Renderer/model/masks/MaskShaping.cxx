@@ -40,7 +40,8 @@ Part around(const Mask& mask, double reach, const Grid& volume) {
   constexpr double fewest = 4.0; // voxels that recursive filters need
   const Vec3 size = (end - first + Vec3::Ones()).cwiseMax(fewest);
   if (size.prod() > 0x1p31)
-    throw outputError("--focus", "with its margin it spans more than 2^31 voxels; choose less");
+    throw outputError("--margin and --labelsmoothing",
+                      "the focus, grown by them, spans more than 2^31 voxels; choose smaller ones");
   return {first.cast<std::int64_t>(), size.cast<std::int64_t>()};
 }
 

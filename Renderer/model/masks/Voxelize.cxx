@@ -32,7 +32,7 @@ int edgeSide(const Vec3& a, const Vec3& b, double area) {
   return b.z() != a.z() ? sign(a.z() - b.z()) : sign(b.y() - a.y());
 }
 
-/// First and last integer in [least, greatest], clamped to a grid's.
+/// First and last integer in [least, greatest] and in [0, size - 1]; first > last: none.
 std::pair<std::int64_t, std::int64_t> integers(double least, double greatest, std::int64_t size) {
   const auto last = static_cast<double>(size - 1);
   return {static_cast<std::int64_t>(std::clamp(std::ceil(least), 0.0, last + 1.0)),

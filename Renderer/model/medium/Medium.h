@@ -60,7 +60,7 @@ public:
   const TransferFunction& transfer() const { return m_transfer; }
 
 private:
-  /// Kroes, Post, Botha 2012, with opacity and gradient over 1 mm (design, section 1):
+  /// Kroes, Post, Botha 2012, with opacity and gradient over 1 mm:
   /// P = o (1 - exp(-25 gamma^3 m)).
   double surfaceProbability(double sigma_t, double gradientMagnitude) const {
     const double span = m_transfer.extinction.span();

@@ -1,6 +1,6 @@
 #pragma once
 // A function given by knots: linear between knots, constant beyond the ends. Two knots at one
-// position make a step, whose value at that position is the right one.
+// position make a step, whose value at that position is that of the second knot.
 
 #include "base/Vector.h"
 

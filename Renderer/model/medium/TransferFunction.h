@@ -1,6 +1,6 @@
 #pragma once
-// Optical properties as functions of the scalar. These functions *are* the medium (design, section
-// 1): the product and every oracle read extinction and albedo from here.
+// Optical properties as functions of the scalar. These functions *are* the medium: the product and
+// every oracle read extinction and albedo from here.
 
 #include "model/medium/PiecewiseLinear.h"
 

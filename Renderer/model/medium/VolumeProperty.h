@@ -44,9 +44,8 @@ Rgb colorAt(const std::vector<ColorNode>& nodes, double x);
 Rgb decodeSrgb(const Rgb& encoded);
 
 /// Extinction -ln(1 - opacity) / unitDistance with opacity capped at 0.9999, decoded colour as
-/// albedo; both piecewise linear with knots kept and a relative error of at most 1e-4 (design,
-/// section 1). Throws Error (input; `source` names the file) if a node list is empty or a number is
-/// unusable.
+/// albedo; both piecewise linear with knots kept and a relative error of at most 1e-4.
+/// Throws Error (input; `source` names the file) if a node list is empty or a number is unusable.
 TransferFunction tabulate(const VolumeProperty& property, const std::string& source);
 
 } // namespace fenestra

@@ -29,8 +29,8 @@ struct EventScene {
     float share;
   };
 
-  /// True if floats suffice: no lobe narrower than directions in float resolve, and no light so far
-  /// away or bright that squares overflow.
+  /// True if floats suffice: no lobe narrower than the resolution of directions in float, and no
+  /// light so far away or bright that squares overflow.
   static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights);
 
   EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,

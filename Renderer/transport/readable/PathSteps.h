@@ -4,10 +4,10 @@
 //
 // Radiative transfer, one extinction for the three channels:
 //   L(x, w) = T(x, exit) L_light(w) + ∫ T(x, y) sigma_t(y) ∫ f(y, w, w') L(y, w') dw' dy
-// with f = albedo * phase function, or surface lobes (design, section 1). Collisions are drawn from
-// T sigma_t, so a path's weight changes by f / pdf alone; at each collision one light is sampled
-// (next-event estimation) and combined with light met by the scattered ray itself by the balance
-// heuristic (Veach 1997, eq. 9.8).
+// with f = albedo * phase function, or surface lobes. Collisions are drawn from T sigma_t, so
+// a path's weight changes by f / pdf alone; at each collision one light is sampled (next-event
+// estimation) and combined with light met by the scattered ray itself by the balance heuristic
+// (Veach 1997, eq. 9.8).
 
 #include "image/Film.h"
 #include "model/lights/LightSet.h"

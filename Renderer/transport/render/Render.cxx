@@ -86,12 +86,12 @@ bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const Sampl
   return pass.whole();
 }
 
-/// True if all eye rays through one pixel that meet nothing show the same.
+/// True if all eye rays through one pixel that meet no matter return the same radiance.
 bool isConstantInPixels(const Background& background, const LightSet& lights) {
   return background.kind != Background::Kind::environment || !lights.hasMaps();
 }
 
-/// Time that passes take.
+/// Duration of passes, and the samples that the time limit still allows.
 class Pace {
 public:
   explicit Pace(double secondsInAll) : m_secondsInAll(secondsInAll) {}

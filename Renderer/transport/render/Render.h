@@ -50,7 +50,7 @@ struct RenderResult;
 /// Progress of a running render, and its stop flag.
 struct RenderMonitor {
   std::atomic<bool> stop = false;
-  std::atomic<std::uint64_t> paths = 0; ///< finished so far, needless ones included
+  std::atomic<std::uint64_t> paths = 0; ///< finished so far, as if no pixel were empty
   std::atomic<double> noise = infinity; ///< at the end of the last pass
   /// Called between two passes with the result so far; the render waits.
   std::function<void(const RenderResult&)> between = {};
