@@ -10,6 +10,7 @@
 #                 checked
 #   threads       the whole suite under ThreadSanitizer, with a oneTBB that it can see into
 #   clang         the whole suite, and the benchmarks that nothing tests, built by clang
+#   headers       each header of the renderer compiled alone
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
 # and only where it is named:
 #   fuzz          10^6 executions of every fuzz target, in an hour each at most, and 10^4 damaged
@@ -184,6 +185,13 @@ stage_clang() {
   in_record clang.md run_labels 'clang' "$top/build-clang" "${labels[@]}"
 }
 
+stage_headers() {
+  (cd "$top" && cmake --preset dev -B build-headers -DCMAKE_VERIFY_INTERFACE_HEADER_SETS=ON \
+    -DFENESTRA_BUILD_TESTS=OFF >/dev/null &&
+    cmake --build build-headers --target all_verify_interface_header_sets) >"$logs/headers.log" ||
+    say "a header does not stand alone: $logs/headers.log"
+}
+
 stage_faults() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   "$top/build/bin/Faults" "$top/build/bin/fenestra" >"$record/faults-in-turn.md" ||
@@ -209,7 +217,7 @@ stage_fuzz() {
 
 mkdir -p "$logs"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
-[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang faults
+[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang headers faults
 for name in "$@"; do
   say "$name"
   "stage_$name"

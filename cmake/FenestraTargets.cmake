@@ -67,8 +67,13 @@ function(fenestra_library folder)
   foreach(header ${headers})
     get_filename_component(file ${header} NAME)
     file(CREATE_LINK "${header}" "${root}/${folder}/${file}" SYMBOLIC)
+    if(NOT file MATCHES "-inl.h$")
+      list(APPEND alone "${root}/${folder}/${file}")
+    endif()
   endforeach()
   target_include_directories(${target} PUBLIC "${root}")
+  # With CMAKE_VERIFY_INTERFACE_HEADER_SETS, all_verify_interface_header_sets compiles each header alone.
+  target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${root}" FILES ${alone})
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} fenestra_sanitizers
     PRIVATE ${arg_PRIVATE} fenestra_warnings)
   if(folder MATCHES "^(base/safe|files|session|program)")

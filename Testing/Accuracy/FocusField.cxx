@@ -68,7 +68,7 @@ void spreadLeast(std::vector<std::uint8_t>& values, const Size3& size) {
 
 } // namespace
 
-FocusField::FocusField(const Indicator& indicator) : m_full(indicator.full) {
+FocusField::FocusField(const Indicator& indicator) {
   const Size3& size = indicator.size;
   const auto voxel = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
     return indicator.voxels[static_cast<std::size_t>((z * size.y() + y) * size.x() + x)];
@@ -78,7 +78,7 @@ FocusField::FocusField(const Indicator& indicator) : m_full(indicator.full) {
     for (std::int64_t z = 0; z < size.z(); ++z)
       for (std::int64_t y = 0; y < size.y(); ++y)
         for (std::int64_t x = 0; x < size.x(); ++x)
-          if (voxel(x, y, z) >= 0.5 * m_full)
+          if (voxel(x, y, z) >= 0.5 * indicator.full)
             visit(Size3(x, y, z));
   };
   forVoxels([&](const Size3& at) {
@@ -98,7 +98,7 @@ FocusField::FocusField(const Indicator& indicator) : m_full(indicator.full) {
   for (std::int64_t z = low.z(); z <= high.z(); ++z)
     for (std::int64_t y = low.y(); y <= high.y(); ++y)
       for (std::int64_t x = low.x(); x <= high.x(); ++x)
-        m_voxels.push_back(voxel(x, y, z));
+        m_shares.push_back(voxel(x, y, z) / indicator.full);
   m_lower = Vec3::Constant(-0.5);
   m_upper = m_size.cast<double>() - Vec3::Constant(0.5);
   m_worldToIndex = (indicator.indexToWorld * translationBy(low.cast<double>())).inverse();
@@ -115,7 +115,7 @@ void FocusField::markEmptiness() {
           const Size3 at = (Size3(x, y, z) - Size3(corner & 1, corner >> 1 & 1, corner >> 2))
                                .cwiseMax(Size3::Zero())
                                .cwiseMin(m_size - Size3::Ones());
-          if (m_voxels[static_cast<std::size_t>((at.z() * m_size.y() + at.y()) * m_size.x() +
+          if (m_shares[static_cast<std::size_t>((at.z() * m_size.y() + at.y()) * m_size.x() +
                                                 at.x())] != 0)
             m_emptiness[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
         }
@@ -141,7 +141,7 @@ double FocusField::at(const Vec3& index) const {
   const Size3 high = (low + Size3::Ones()).cwiseMin(m_size - Size3::Ones());
   const Vec3 f = in - low.cast<double>();
   const auto voxel = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-    return m_voxels[static_cast<std::size_t>((z * m_size.y() + y) * m_size.x() + x)] / m_full;
+    return m_shares[static_cast<std::size_t>((z * m_size.y() + y) * m_size.x() + x)];
   };
   const auto row = [&](std::int64_t y, std::int64_t z) {
     return (1.0 - f.x()) * voxel(low.x(), y, z) + f.x() * voxel(high.x(), y, z);

@@ -32,7 +32,7 @@ public:
   double longestEdge() const { return m_longestEdge; } ///< longest edge of a voxel, mm
 
 private:
-  /// Trilinear indicator, 0 to m_full; constant beyond the outermost voxel centres.
+  /// Trilinear indicator, 0 to 1; constant beyond the outermost voxel centres.
   double at(const Vec3& index) const;
   bool isIn(const Vec3& index) const { return at(index) >= 0.5; }
   std::size_t cell(const Vec3& index) const;
@@ -41,10 +41,9 @@ private:
   /// Cell c lies between the voxel centres c - 1 and c of the stored part: the focus and two voxels
   /// on every side, fewer at the volume's faces.
   Size3 m_size, m_cells;
-  Vec3 m_lower, m_upper; ///< box of the part, in its own index space
-  Affine m_worldToIndex; ///< index space of the part
-  std::vector<std::uint8_t> m_voxels;
-  double m_full;                         ///< indicator of a voxel entirely in the focus
+  Vec3 m_lower, m_upper;                 ///< box of the part, in its own index space
+  Affine m_worldToIndex;                 ///< index space of the part
+  std::vector<double> m_shares;          ///< of the focus in each voxel, 0 to 1
   std::vector<std::uint8_t> m_emptiness; ///< per cell: radius, in cells, of the empty neighbourhood
   Vec3 m_centre;
   double m_radius = 0.0, m_longestEdge = 0.0;

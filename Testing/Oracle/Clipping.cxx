@@ -9,24 +9,21 @@ namespace {
 
 /// Trilinear indicator of a mask at an index position; 0 outside its voxels.
 double indicator(const Mask& mask, const Vec3& index) {
-  double sum = 0.0;
+  const Size3& size = mask.grid.size;
   const Vec3 base = index.array().floor();
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1.0;
-    bool exists = true;
-    Size3 voxel;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int upper = corner >> axis & 1;
-      const double share = index[axis] - base[axis];
-      weight *= upper == 1 ? share : 1.0 - share;
-      voxel[axis] = static_cast<std::int64_t>(base[axis]) + upper;
-      exists = exists && voxel[axis] >= 0 && voxel[axis] < mask.grid.size[axis];
-    }
-    if (exists)
-      sum +=
-          weight * mask.voxels[static_cast<std::size_t>(
-                       voxel[0] + mask.grid.size[0] * (voxel[1] + mask.grid.size[1] * voxel[2]))];
-  }
+  const Vec3 upper = index - base, lower = 1.0 - upper.array();
+  const Size3 first = base.cast<std::int64_t>();
+  double sum = 0.0;
+  for (std::int64_t z = first[2]; z < first[2] + 2; ++z)
+    for (std::int64_t y = first[1]; y < first[1] + 2; ++y)
+      for (std::int64_t x = first[0]; x < first[0] + 2; ++x) {
+        if (x < 0 || x >= size[0] || y < 0 || y >= size[1] || z < 0 || z >= size[2])
+          continue;
+        const double weight = (x == first[0] ? lower : upper)[0] *
+                              (y == first[1] ? lower : upper)[1] *
+                              (z == first[2] ? lower : upper)[2];
+        sum += weight * mask.voxels[static_cast<std::size_t>(x + size[0] * (y + size[1] * z))];
+      }
   return sum;
 }
 
@@ -35,7 +32,8 @@ template <typename Function>
 double summit(const Function& f, double low, double high) {
   for (int i = 0; i < 60; ++i) {
     const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
-    (f(a) < f(b) ? low : high) = f(a) < f(b) ? a : b;
+    const bool rises = f(a) < f(b);
+    (rises ? low : high) = rises ? a : b;
   }
   return 0.5 * (low + high);
 }
