@@ -76,9 +76,10 @@ Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
   if (named && (!madeFor || suits(*madeFor, volume)))
     return {fitted(named->look, volume), named->source};
   if (named)
-    warnings.push_back("the preset's transfer function is made for " + nameOf(*madeFor) +
-                       ", and the volume is none; it gets a look of its own, else name one "
-                       "with --transfer");
+    warnings.push_back(
+        "the preset's transfer function is made for " + nameOf(*madeFor) +
+        ", which this volume does not seem to be; the volume gets a look of its own, "
+        "or name one with --transfer");
   else if (scene->transfer)
     return {*scene->transfer, scene->name};
   const std::optional<std::string> preset = transferPresetFor(volume);
