@@ -4,7 +4,7 @@
 #include "base/safe/Inputs.h"
 #include "files/slicer/SceneFiles.h"
 #include "program/CommandLine.h"
-#include "program/InspectReport.h"
+#include "program/InspectText.h"
 #include "program/Machine.h"
 #include "program/RenderFlags.h"
 #include "program/SceneFlags.h"
@@ -54,12 +54,14 @@ int inspectCommand(int argc, char** argv, int first) {
   if (request.volume && !isSceneFile(input) && !isFolder(input))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   Inspection inspection = inspectInput(request);
-  if (inspection.render)
-    inspection.render->stored = sceneArguments(given, flags);
-  inspection.warnings.insert(inspection.warnings.begin(), stored.leftOut.begin(),
-                             stored.leftOut.end());
-  std::cout << (values->has("json") ? inspectionJson(inspection, input)
-                                    : inspectionText(inspection, input))
+  if (Inspection& use = inspection["render"]; !use.is_null())
+    use["stored"] = sceneArguments(given, flags);
+  const Inspection leftOut = stored.leftOut;
+  Inspection& warnings = inspection["warnings"];
+  warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());
+  std::cout << (values->has("json")
+                    ? inspection.dump(2, ' ', false, Inspection::error_handler_t::replace) + "\n"
+                    : inspectionText(inspection))
             << std::flush;
   return 0;
 }
