@@ -2,9 +2,8 @@
 
 #include "base/Error.h"
 #include "base/safe/Inputs.h"
-#include "files/slicer/SceneFiles.h"
 #include "program/CommandLine.h"
-#include "program/InspectReport.h"
+#include "program/InspectText.h"
 #include "program/Machine.h"
 #include "program/RenderFlags.h"
 #include "program/SceneFlags.h"
@@ -40,26 +39,28 @@ int inspectCommand(int argc, char** argv, int first) {
   if (!values)
     return 0;
   useMachine(*values);
-  const std::string input = *values->text("INPUT");
+  const Input input(*values->text("INPUT"));
   FlagValues given(renderSyntax.flags);
   for (const char* name : {"INPUT", "volume", "segmentation"})
     if (const auto value = values->text(name))
       given.add(name, *value);
-  const SceneFlags stored = withSceneFlags(given, Input(input));
+  const SceneFlags stored = withSceneFlags(given, input);
   const FlagValues& flags = stored.flags;
   SceneRequest request;
-  request.input = input;
+  request.input = input.path();
   request.volume = flags.text("volume");
   request.segmentation = flags.text("segmentation");
-  if (request.volume && !isSceneFile(input) && !isFolder(input))
+  if (request.volume && !input.document() && !isFolder(input.path()))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
-  Inspection inspection = inspectInput(request);
-  if (inspection.render)
-    inspection.render->stored = sceneArguments(given, flags);
-  inspection.warnings.insert(inspection.warnings.begin(), stored.leftOut.begin(),
-                             stored.leftOut.end());
-  std::cout << (values->has("json") ? inspectionJson(inspection, input)
-                                    : inspectionText(inspection, input))
+  Inspection inspection = inspectInput(request, input);
+  if (Inspection& use = inspection["render"]; !use.is_null())
+    use["stored"] = sceneArguments(given, flags);
+  const Inspection leftOut = stored.leftOut;
+  Inspection& warnings = inspection["warnings"];
+  warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());
+  std::cout << (values->has("json")
+                    ? inspection.dump(2, ' ', false, Inspection::error_handler_t::replace) + "\n"
+                    : inspectionText(inspection))
             << std::flush;
   return 0;
 }

@@ -1,19 +1,24 @@
+#include "program/InspectText.h"
+
 #include "base/safe/ShownText.h"
 #include "program/Help.h"
-#include "program/InspectReport.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <map>
 
 namespace fenestra {
 namespace {
+
+using Json = nlohmann::ordered_json;
+using Row = std::vector<std::string>;
 
 constexpr std::size_t width = 100; ///< characters in a line
 constexpr std::size_t longestName = 36, longestId = 48, longestFile = 90;
 constexpr std::size_t mostNodes = 20, mostSegments = 100; ///< listed one by one
 
 // ---- words
-// ---------------------------------------------------------------------------------------
 
 bool startsCharacter(char c) { // in UTF-8
   return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
@@ -35,374 +40,309 @@ std::string clipped(std::string text, std::size_t most) {
   return text.substr(0, end) + "...";
 }
 
-std::string number(double x) {
+/// Texts that are not empty.
+std::string joined(const Row& texts, const char* between = ", ") {
+  std::string all;
+  for (const std::string& text : texts)
+    if (!text.empty())
+      all += (all.empty() ? "" : between) + text;
+  return all;
+}
+
+std::string number(double x, const char* format = "%.6g") {
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", x == 0.0 ? 0.0 : x); // no -0
+  std::snprintf(text, sizeof text, format, x == 0.0 ? 0.0 : x); // no -0
   return text;
 }
 
-template <typename Numbers>
-std::string joined(const Numbers& vector, const char* between) {
-  std::string text;
-  for (int i = 0; i < vector.size(); ++i)
-    text += (i == 0 ? "" : between) + number(static_cast<double>(vector[i]));
-  return text;
+// ---- members of the report
+
+/// Member that is text, clipped; empty: there is none.
+std::string text(const Json& object, const char* key, std::size_t most) {
+  const Json& member = object[key];
+  return member.is_null() ? "" : clipped(member, most);
 }
 
-std::string hex(const Rgb& color) {
-  const auto byte = [&color](int c) {
-    return static_cast<unsigned>(std::lround(255.0 * color[c]));
-  };
-  char text[16];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", byte(0), byte(1), byte(2));
-  return text;
+/// Name: a file's in full, a node's clipped.
+std::string nameOf(const Json& node) {
+  return text(node, "name", node["id"].is_null() ? longestFile : longestName);
 }
 
-std::string grid(const Size3& size, const Vec3& spacing) {
-  return joined(size, " x ") + " voxels of " + joined(spacing, " x ") + " mm";
+/// "name (id)", or what there is of it.
+std::string named(const Json& node) {
+  const std::string id = text(node, "id", longestId);
+  return joined({nameOf(node), id.empty() ? "" : "(" + id + ")"}, " ");
 }
 
-/// Shown name: a file's in full, a node's clipped.
-std::string nameOf(const std::string& name, const std::string& id) {
-  return clipped(name, id.empty() ? longestFile : longestName);
-}
-
-std::string named(const std::string& name, const std::string& id) {
-  const std::string shown = nameOf(name, id);
-  return id.empty() ? shown : shown + (shown.empty() ? "(" : " (") + clipped(id, longestId) + ")";
-}
-
-std::string colors(const Rgb& bottom, const Rgb& top) {
-  return bottom == top ? hex(bottom) : hex(bottom) + " below to " + hex(top) + " above";
-}
-
-std::string pose(const CameraPose& pose) {
-  const bool perspective = pose.projection == Projection::perspective;
-  return std::string(perspective ? "perspective, angle " : "orthographic, scale ") +
-         number(perspective ? pose.angle : pose.scale) + (perspective ? " degrees" : " mm") +
-         ", position " + joined(pose.position, ",") + ", target " + joined(pose.target, ",") +
-         ", up " + joined(pose.up, ",");
-}
-
-// ---- the page
-// ------------------------------------------------------------------------------------
-
-using Row = std::vector<std::string>;
-
-/// `text` and blanks, `columns` characters wide; `right`: blanks first.
-std::string padded(const std::string& text, std::size_t columns, bool right) {
-  const std::string blanks(columns - std::min(columns, characters(text)), ' ');
-  return right ? blanks + text : text + blanks;
-}
-
-class Page {
-public:
-  void blank() { m_text += '\n'; }
-
-  void heading(const std::string& text) { m_text += "\n" + text + "\n"; }
-
-  /// Adds wrapped text; the first line starts with `label`, the others are indented by its width.
-  void paragraph(const std::string& label, const std::string& text) {
-    const std::string lines = wrapped(oneLine(text), width - characters(label));
-    const std::string margin(characters(label), ' ');
-    m_text += label;
-    for (const char c : lines) {
-      m_text += c;
-      m_text += c == '\n' ? margin : "";
-    }
-    m_text += '\n';
+std::string hex(const Json& color) {
+  std::string text = "#";
+  for (const Json& part : color) {
+    char byte[16];
+    std::snprintf(byte, sizeof byte, "%02lx", std::lround(255.0 * part.get<double>()));
+    text += byte;
   }
+  return text;
+}
 
-  /// Adds rows; each column is as wide as its widest cell. Column i is aligned right if right[i] is
-  /// '>'.
-  void table(const std::string& indent, const std::vector<Row>& rows, const std::string& right) {
-    std::vector<std::size_t> columns;
-    for (const Row& row : rows)
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        columns.resize(std::max(columns.size(), row.size()));
-        columns[i] = std::max(columns[i], characters(row[i]));
-      }
-    for (const Row& row : rows) {
-      std::string line = indent;
-      for (std::size_t i = 0; i < row.size(); ++i)
-        line +=
-            (i == 0 ? "" : "  ") + padded(row[i], columns[i], i < right.size() && right[i] == '>');
-      m_text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-  }
+std::string colors(const Json& background) {
+  const std::string bottom = hex(background["bottom"]), top = hex(background["top"]);
+  return bottom == top ? bottom : bottom + " below to " + top + " above";
+}
 
-  std::string text() && { return std::move(m_text); }
-
-private:
-  std::string m_text;
-};
-
-/// Node in a list, the remark behind its name and id, and the rows below.
-struct Entry {
-  const NodeSummary* node;
-  std::string remark = {};
-  std::vector<Row> rows = {};
-};
-
-std::string filesOf(const NodeSummary& node) {
-  if (node.files.empty())
+std::string files(const Json& list) {
+  if (list.empty())
     return "";
-  const auto missing = std::count_if(node.files.begin(), node.files.end(),
-                                     [](const FileSummary& file) { return !file.there; });
-  std::string text = clipped(node.files.front().name, longestFile - 10);
-  if (node.files.size() > 1)
-    text += " and " + std::to_string(node.files.size() - 1) + " more";
+  const auto missing = std::count_if(list.begin(), list.end(),
+                                     [](const Json& file) { return file["there"] == false; });
+  std::string shown = text(list[0], "name", longestFile - 10);
+  if (list.size() > 1)
+    shown += " and " + std::to_string(list.size() - 1) + " more";
   if (missing > 0)
-    text += node.files.size() == 1 ? " (missing)" : " (" + std::to_string(missing) + " missing)";
-  return text;
+    shown += list.size() == 1 ? " (missing)" : " (" + std::to_string(missing) + " missing)";
+  return shown;
 }
 
-void addRemark(std::string& remark, const std::string& more) {
-  if (!more.empty())
-    remark += (remark.empty() ? "" : ", ") + more;
+/// Text, number or numbers, colours of a background, or files; empty: null, or anything else.
+std::string shown(const std::string& key, const Json& member) {
+  static const std::map<std::string, const char*> separators = {{"size", " x "},
+                                                                {"spacing", " x "},
+                                                                {"edges", " x "},
+                                                                {"range", " to "},
+                                                                {"transforms", ", "}};
+  if (member.is_string())
+    return clipped(member, longestId);
+  if (member.is_number())
+    return number(member);
+  if (member.is_object())
+    return colors(member);
+  if (key == "files")
+    return files(member);
+  Row items;
+  if (member.is_array())
+    for (const Json& item : member)
+      items.push_back(shown("", item));
+  const auto separator = separators.find(key);
+  return joined(items, separator == separators.end() ? "," : separator->second);
 }
 
-/// Adds lines "* name  id  remark"; a remark that is too long has a line of its own. An asterisk
-/// marks nodes that a render uses.
-void listNodes(Page& page, const std::string& heading, const std::vector<Entry>& entries) {
-  if (entries.empty())
-    return;
-  page.heading(heading);
-  std::size_t nameColumns = 0;
-  std::size_t idColumns = 0;
-  const std::size_t count = std::min(entries.size(), mostNodes);
-  for (std::size_t i = 0; i < count; ++i) {
-    nameColumns =
-        std::max(nameColumns, characters(nameOf(entries[i].node->name, entries[i].node->id)));
-    idColumns = std::max(idColumns, characters(clipped(entries[i].node->id, longestId)));
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const Entry& entry = entries[i];
-    const NodeSummary& node = *entry.node;
-    const std::string head = std::string(node.used ? "* " : "  ") +
-                             padded(nameOf(node.name, node.id), nameColumns, false) + "  " +
-                             padded(clipped(node.id, longestId), idColumns, false) + "  ";
-    std::string remark = entry.remark;
-    addRemark(remark, node.transform.empty() ? "" : "under " + clipped(node.transform, longestId));
-    const bool fits = characters(head) + characters(remark) <= width;
-    page.table("", {{fits ? head + remark : head}}, "");
-    if (!fits)
-      page.paragraph("      ", remark);
-    if (!node.problem.empty())
-      page.paragraph("      problem: ", node.problem);
-    page.table("      ", entry.rows, ">> >>");
-  }
-  if (entries.size() > count)
-    page.paragraph("  ", "and " + std::to_string(entries.size() - count) +
-                             " more (--json lists them all)");
-}
-
-// ---- lists
-// ---------------------------------------------------------------------------------------
-
-std::vector<Row> segmentRows(const SegmentationSummary& segmentation) {
-  std::vector<Row> rows;
-  if (segmentation.segments.empty())
-    return rows;
-  rows.push_back({"value", "layer", "color", "voxels", "ml", "id", "name"});
-  for (const SegmentSummary& segment : segmentation.segments) {
-    if (rows.size() > mostSegments)
-      break;
-    char milliliters[32];
-    std::snprintf(milliliters, sizeof milliliters, "%.2f", segment.milliliters);
-    rows.push_back({std::to_string(segment.labelValue), std::to_string(segment.layer),
-                    hex(segment.color), std::to_string(segment.voxels), milliliters,
-                    clipped(segment.id, 20),
-                    clipped(segment.name, 24) + (segment.shown ? "" : " (hidden)")});
-  }
-  if (segmentation.segments.size() >= rows.size())
-    rows.push_back({"...", "", "", "", "",
-                    std::to_string(segmentation.segments.size() - rows.size() + 1) +
-                        " more (--json lists them all)"});
-  return rows;
-}
-
-Entry segmentationEntry(const SegmentationSummary& segmentation) {
-  Entry entry{.node = &segmentation.node, .remark = segmentation.isLabelMap ? "label map" : ""};
-  addRemark(entry.remark, segmentation.shown ? "" : "hidden");
-  addRemark(entry.remark, filesOf(segmentation.node));
-  if (segmentation.node.problem.empty())
-    addRemark(entry.remark, grid(segmentation.size, segmentation.spacing));
-  entry.rows = segmentRows(segmentation);
-  return entry;
-}
-
-Entry renderingEntry(const RenderingSummary& rendering) {
-  Entry entry{.node = &rendering.node, .remark = rendering.shown ? "" : "hidden"};
-  addRemark(entry.remark, rendering.volume.empty() ? "of no volume" : "of " + rendering.volume);
-  if (!rendering.property.empty())
-    addRemark(entry.remark, "by " + rendering.property);
-  if (rendering.followsDisplay)
-    addRemark(entry.remark, "follows the slice display");
-  if (!rendering.roi.empty())
-    addRemark(entry.remark,
-              (rendering.cropping ? "cropped by " : "cropping off, ") + rendering.roi);
-  entry.remark = oneLine(entry.remark);
-  return entry;
-}
-
-Entry viewEntry(const ViewSummary& view) {
-  Entry entry{.node = &view.node};
-  addRemark(entry.remark, view.layout.empty() ? "" : "layout " + clipped(view.layout, longestName));
-  addRemark(entry.remark, clipped(view.technique, longestName));
-  addRemark(entry.remark, "background " + colors(view.bottom, view.top));
-  return entry;
-}
-
-Entry cameraEntry(const CameraSummary& camera) {
-  Entry entry{.node = &camera.node};
-  addRemark(entry.remark,
-            camera.layout.empty() ? "" : "layout " + clipped(camera.layout, longestName));
-  addRemark(entry.remark, camera.pose ? pose(*camera.pose) : "");
-  return entry;
-}
-
-Entry transformEntry(const TransformSummary& transform) {
-  Entry entry{.node = &transform.node, .remark = transform.toWorld ? "linear" : ""};
-  addRemark(entry.remark, filesOf(transform.node));
-  return entry;
-}
-
-template <typename Items, typename ToEntry>
-std::vector<Entry> entries(const Items& items, ToEntry&& toEntry) {
-  std::vector<Entry> result;
-  for (const auto& item : items)
-    result.push_back(toEntry(item));
-  return result;
-}
-
-Entry nodeEntry(const NodeSummary& node) {
-  return {.node = &node, .remark = filesOf(node)};
-}
-
-void listSeries(Page& page, const std::vector<SeriesSummary>& series) {
-  if (series.empty())
-    return;
-  page.heading("DICOM series");
-  std::vector<Row> rows = {{"number", "files", "modality", "description", "uid"}};
-  for (const SeriesSummary& one : series)
-    rows.push_back({clipped(one.number, 8), std::to_string(one.files), clipped(one.modality, 8),
-                    clipped(one.description, 24), clipped(one.uid, 64)});
-  page.table("  ", rows, ">>");
-}
-
-void listOthers(Page& page, const std::map<std::string, std::size_t>& others) {
+/// `words` with the object's members where words have their keys in braces, and with named() where
+/// there are only braces; empty: a member is null or missing.
+std::string filled(std::string_view words, const Json& object) {
   std::string text;
-  for (const auto& [tag, count] : others)
-    text += (text.empty() ? "" : ", ") + clipped(tag, longestName) +
-            (count > 1 ? " (" + std::to_string(count) + ")" : "");
-  if (others.empty())
-    return;
-  page.heading("Other nodes");
-  page.paragraph("  ", text);
-}
-
-// ---- the render
-// ----------------------------------------------------------------------------------
-
-std::string lookText(const LookUse& look) {
-  switch (look.source) {
-  case LookSource::volumeProperty:
-    return named(look.name, look.id);
-  case LookSource::volumeDisplay:
-    return "the window of " + named(look.name, look.id) + ", which the rendering follows";
-  case LookSource::preset:
-    return "preset " + look.name + ", by the volume's range";
-  case LookSource::range:
-    break;
+  for (auto open = words.find('{'); open != words.npos; open = words.find('{')) {
+    const auto close = words.find('}', open);
+    const std::string key(words.substr(open + 1, close - open - 1));
+    const std::string member = key.empty() ? named(object) : shown(key, object.value(key, Json()));
+    if (member.empty())
+      return "";
+    text.append(words.substr(0, open)).append(member);
+    words.remove_prefix(close + 1);
   }
-  return "made for the volume's range";
+  return text.append(words);
 }
 
-std::string volumeText(const VolumeUse& volume) {
-  std::string text = named(volume.name, volume.id) + ": " + grid(volume.size, volume.spacing) +
-                     ", " + volume.voxelType + " from " + number(volume.minimum) + " to " +
-                     number(volume.maximum) + ", centre " + joined(volume.center, ",");
-  for (const std::string& transform : volume.transforms)
-    text += ", moved by " + clipped(transform, longestId);
-  return text;
+/// Words for a part of the report, whatever its kind: shown where filled(), and if there is a key,
+/// where its member has the value.
+struct Phrase {
+  const char* words;
+  const char* key = nullptr;
+  Json value = {};
+};
+
+/// Everything that is told of a node, or of a part of a render, behind its name and id.
+std::string described(const Json& part) {
+  static const Phrase phrases[] = {
+      {"label map", "kind", "labelMap"},
+      {"hidden", "shown", false},
+      {"of no volume", "volume", nullptr},
+      {"of {volume}"},
+      {"by {property}"},
+      {"follows the slice display", "followsDisplay", true},
+      {"cropped by {roi}", "cropping", true},
+      {"cropping off, {roi}", "cropping", false},
+      {"layout {layout}"},
+      {"{technique}"},
+      {"background {background}"},
+      {"perspective, angle {angle} degrees"},
+      {"orthographic, scale {scale} mm"},
+      {"position {position}, target {target}, up {up}"},
+      {"linear", "linear", true},
+      {"{files}"},
+      {"{size} voxels of {spacing} mm"},
+      {"{voxelType} from {range}, centre {center}"},
+      {"moved by {transforms}"},
+      {"{}", "source", "volumeProperty"},
+      {"the window of {}, which the rendering follows", "source", "volumeDisplay"},
+      {"preset {name}, by the volume's range", "source", "preset"},
+      {"made for the volume's range", "source", "range"},
+      {"{edges} mm around {center}"},
+      {"under {transform}"},
+  };
+  Row texts;
+  for (const auto& [words, key, value] : phrases)
+    if (!key || (part.contains(key) && part[key] == value))
+      texts.push_back(filled(words, part));
+  return joined(texts);
 }
 
-void showUse(Page& page, const RenderUse& use) {
-  if (use.volume)
-    page.paragraph("  volume        ", volumeText(*use.volume));
-  if (use.look)
-    page.paragraph("  look          ", lookText(*use.look));
-  if (use.crop)
-    page.paragraph("  crop          ", named(use.crop->name, use.crop->id) + ": " +
-                                           joined(use.crop->edges, " x ") + " mm around " +
-                                           joined(use.crop->center, ","));
-  if (use.camera) {
-    const std::string name = named(use.camera->name, use.camera->id);
-    page.paragraph("  camera        ",
-                   (name.empty() ? "framed" : name) + ": " + pose(use.camera->pose));
+// ---- lines
+
+/// Lines below a title; nothing without lines.
+std::string section(const char* title, const std::string& lines) {
+  return lines.empty() ? "" : std::string("\n") + title + "\n" + lines;
+}
+
+std::string line(const std::string& text) {
+  return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+}
+
+/// Wrapped text; the first line starts with `label`, the others are indented by its width.
+std::string paragraph(const std::string& label, const std::string& text) {
+  const std::string lines = wrapped(oneLine(text), width - characters(label));
+  return label + replacedAll(lines, "\n", "\n" + std::string(characters(label), ' ')) + "\n";
+}
+
+/// Rows as lines; a column is as wide as its widest cell, and aligned right if right[i] is '>'.
+std::vector<std::string> aligned(std::vector<Row> rows, const std::string& right = "") {
+  for (std::size_t i = 0; i < (rows.empty() ? 0 : rows[0].size()); ++i) {
+    std::size_t columns = 0;
+    for (const Row& row : rows)
+      columns = std::max(columns, characters(row[i]));
+    for (Row& row : rows)
+      row[i].insert(i < right.size() && right[i] == '>' ? 0 : row[i].size(),
+                    columns - characters(row[i]), ' ');
   }
-  if (use.background)
-    page.paragraph("  background    ", colors(use.background->bottom, use.background->top) +
-                                           ", of " + clipped(use.background->view, longestId));
-  if (!use.segmentationProblem.empty())
-    page.paragraph("  segmentation  ", "open: " + use.segmentationProblem);
-  else if (!use.segmentation.empty())
-    page.paragraph("  segmentation  ", use.segmentation + ", with --focus");
-  std::string stored;
-  for (const std::string& argument : use.stored)
-    stored += (stored.empty() ? "" : " ") + argument;
-  if (!stored.empty())
-    page.paragraph("  as rendered   ", stored);
+  Row lines;
+  for (const Row& row : rows)
+    lines.push_back(joined(row, "  "));
+  return lines;
 }
 
-bool isEmpty(const RenderUse& use) {
-  return !use.volume && !use.look && !use.crop && !use.camera && !use.background &&
-         use.segmentation.empty() && use.segmentationProblem.empty() && use.stored.empty();
+std::string table(const std::string& indent, const std::vector<Row>& rows,
+                  const std::string& right) {
+  std::string lines;
+  for (const std::string& row : aligned(rows, right))
+    lines += line(indent + row);
+  return lines;
 }
 
-void showRender(Page& page, const Inspection& inspection) {
-  const bool refused = !inspection.refused.empty();
-  if (refused) {
-    page.blank();
-    page.paragraph("", "A render would be refused: " + inspection.refused);
+// ---- sections
+
+std::string segmentTable(const Json& segments) {
+  std::vector<Row> rows = {{"value", "layer", "color", "voxels", "ml", "id", "name"}};
+  const std::size_t count = std::min(segments.size(), mostSegments);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Json& segment = segments[i];
+    rows.push_back({segment["labelValue"].dump(), segment["layer"].dump(), hex(segment["color"]),
+                    segment["voxels"].dump(), number(segment["milliliters"], "%.2f"),
+                    text(segment, "id", 20),
+                    text(segment, "name", 24) + (segment["shown"] == true ? "" : " (hidden)")});
   }
-  if (!inspection.render || isEmpty(*inspection.render))
-    return;
-  page.heading(refused ? "It would use, as far as that can be read" : "A render would use");
-  showUse(page, *inspection.render);
+  if (segments.size() > count)
+    rows.push_back({"...", "", "", "", "",
+                    std::to_string(segments.size() - count) + " more (--json lists them all)", ""});
+  return table("      ", rows, ">> >>");
 }
 
-void showLines(Page& page, const std::string& heading, const std::vector<std::string>& lines) {
-  if (lines.empty())
-    return;
-  page.heading(heading);
-  for (const std::string& line : lines)
-    page.paragraph("  - ", line);
+/// Lines "* name  id  description"; a description that is too long has a line of its own. An
+/// asterisk marks nodes that a render uses.
+std::string nodeLines(const Json& nodes) {
+  const std::size_t count = std::min(nodes.size(), mostNodes);
+  std::vector<Row> names;
+  for (std::size_t i = 0; i < count; ++i)
+    names.push_back({(nodes[i]["used"] == true ? "* " : "  ") + nameOf(nodes[i]),
+                     text(nodes[i], "id", longestId)});
+  const Row heads = aligned(names);
+  std::string lines;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Json& node = nodes[i];
+    const std::string more = described(node), whole = heads[i] + "  " + more;
+    lines += characters(whole) <= width ? line(whole) : line(heads[i]) + paragraph("      ", more);
+    if (!node["problem"].is_null())
+      lines += paragraph("      problem: ", node["problem"]);
+    if (node.contains("segments") && !node["segments"].empty())
+      lines += segmentTable(node["segments"]);
+  }
+  if (nodes.size() > count)
+    lines += "  and " + std::to_string(nodes.size() - count) + " more (--json lists them all)\n";
+  return lines;
+}
+
+std::string seriesLines(const Json& series) {
+  std::vector<Row> rows = {{"number", "files", "modality", "description", "uid"}};
+  for (const Json& one : series)
+    rows.push_back({text(one, "number", 8), one["files"].dump(), text(one, "modality", 8),
+                    text(one, "description", 24), text(one, "uid", 64)});
+  return series.empty() ? "" : table("  ", rows, ">>");
+}
+
+std::string otherLines(const Json& others) {
+  Row tags;
+  for (const auto& [tag, count] : others.items())
+    tags.push_back(clipped(tag, longestName) + (count > 1 ? " (" + count.dump() + ")" : ""));
+  return tags.empty() ? "" : paragraph("  ", joined(tags));
+}
+
+std::string listLines(const Json& list) {
+  std::string lines;
+  for (const Json& line : list)
+    lines += paragraph("  - ", line);
+  return lines;
+}
+
+std::string renderLines(const Json& use) {
+  std::string lines;
+  const auto add = [&](const char* label, const char* key, auto&& words) {
+    if (const Json& part = use[key]; !part.empty()) // null is empty
+      lines += paragraph(label, words(part));
+  };
+  const auto withName = [](const Json& part) { return filled("{}: ", part) + described(part); };
+  add("  volume        ", "volume", withName);
+  add("  look          ", "look", described);
+  add("  crop          ", "crop", withName);
+  add("  camera        ", "camera", [&](const Json& camera) {
+    return (named(camera).empty() ? "framed: " : "") + withName(camera);
+  });
+  add("  background    ", "background",
+      [](const Json& part) { return colors(part) + filled(", of {view}", part); });
+  add("  segmentation  ", "segmentationProblem",
+      [](const std::string& problem) { return "open: " + problem; });
+  add("  segmentation  ", "segmentation",
+      [](const std::string& segmentation) { return segmentation + ", with --focus"; });
+  add("  as rendered   ", "stored", [](const Row& arguments) { return joined(arguments, " "); });
+  return lines;
 }
 
 } // namespace
 
-std::string inspectionText(const Inspection& inspection, const std::string& input) {
-  static constexpr const char* kinds[] = {"Slicer scene", "volume", "segmentation or label map",
-                                          "DICOM folder"};
-  Page page;
-  page.paragraph("", input + ": " + kinds[static_cast<std::size_t>(inspection.kind)] +
-                         (inspection.version.empty() ? "" : ", version " + inspection.version));
-  listNodes(page, "Volumes", entries(inspection.volumes, nodeEntry));
-  listSeries(page, inspection.series);
-  listNodes(page, "Segmentations", entries(inspection.segmentations, segmentationEntry));
-  listNodes(page, "Volume renderings", entries(inspection.renderings, renderingEntry));
-  listNodes(page, "Volume properties", entries(inspection.properties, nodeEntry));
-  listNodes(page, "Regions of interest", entries(inspection.rois, nodeEntry));
-  listNodes(page, "Views", entries(inspection.views, viewEntry));
-  listNodes(page, "Cameras", entries(inspection.cameras, cameraEntry));
-  listNodes(page, "Transforms", entries(inspection.transforms, transformEntry));
-  listOthers(page, inspection.others);
-  showRender(page, inspection);
-  showLines(page, "Warnings", inspection.warnings);
-  showLines(page, "Ignored", inspection.ignored);
-  return std::move(page).text();
+std::string inspectionText(const Inspection& inspection) {
+  const std::map<std::string, const char*> kinds = {{"scene", "Slicer scene"},
+                                                    {"volume", "volume"},
+                                                    {"segmentation", "segmentation or label map"},
+                                                    {"dicom", "DICOM folder"}};
+  const bool refused = !inspection["refused"].is_null();
+  std::string text =
+      paragraph("", inspection["input"].get<std::string>() + ": " + kinds.at(inspection["kind"]) +
+                        filled(", version {version}", inspection));
+  text += section("DICOM series", seriesLines(inspection["series"]));
+  for (const auto& [key, title] : {std::pair("volumes", "Volumes"),
+                                   {"segmentations", "Segmentations"},
+                                   {"volumeRenderings", "Volume renderings"},
+                                   {"volumeProperties", "Volume properties"},
+                                   {"rois", "Regions of interest"},
+                                   {"views", "Views"},
+                                   {"cameras", "Cameras"},
+                                   {"transforms", "Transforms"}})
+    text += section(title, nodeLines(inspection[key]));
+  text += section("Other nodes", otherLines(inspection["others"]));
+  if (refused)
+    text += "\n" +
+            paragraph("", "A render would be refused: " + inspection["refused"].get<std::string>());
+  if (const Json& use = inspection["render"]; !use.is_null())
+    text += section(refused ? "It would use, as far as that can be read" : "A render would use",
+                    renderLines(use));
+  return text + section("Warnings", listLines(inspection["warnings"])) +
+         section("Ignored", listLines(inspection["ignored"]));
 }
 
 } // namespace fenestra

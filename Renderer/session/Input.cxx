@@ -75,9 +75,14 @@ const std::filesystem::path& Input::path() const {
 }
 
 const MrmlDocument* Input::document() const {
+  const MrmlScene* opened = scene();
+  return opened ? &opened->document : nullptr;
+}
+
+MrmlScene* Input::scene() const {
   if (!m_opened->isScene)
     return nullptr;
-  return m_opened->with([](const MrmlScene& scene) { return &scene.document; });
+  return m_opened->with([](MrmlScene& scene) { return &scene; });
 }
 
 VolumeInput Input::volume(const std::optional<std::string>& choice) const {

@@ -19,6 +19,7 @@
 namespace fenestra {
 
 class MrmlDocument;
+struct MrmlScene;
 
 /// Paths of read files, as the user knows them.
 using FilesRead = std::vector<std::string>;
@@ -73,6 +74,8 @@ public:
   const std::filesystem::path& path() const;
   /// Scene as stored; null: no Slicer scene.
   const MrmlDocument* document() const;
+  /// Opened scene, shared, for a process that uses it in one thread; null: no Slicer scene.
+  MrmlScene* scene() const;
 
   /// `choice`: of a scene's volumes, or of a folder's DICOM series.
   VolumeInput volume(const std::optional<std::string>& choice) const;

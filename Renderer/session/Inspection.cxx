@@ -1,7 +1,6 @@
 #include "session/Inspection.h"
 
 #include "files/medical/DicomSeries.h"
-#include "files/slicer/SceneFiles.h"
 #include "session/Defaults.h"
 #include "session/InspectionParts.h"
 
@@ -21,148 +20,198 @@ bool looksLikeLabels(const Volume& volume) {
   constexpr double most = 0.5;
   if (volume.minimum < 0.0 || std::holds_alternative<std::vector<float>>(volume.voxels))
     return false;
-  std::size_t pairs = 0;
-  std::size_t alike = 0;
-  std::visit(
-      [&](const auto& voxels) {
-        const auto isLeast = [&](std::size_t i) {
-          return static_cast<double>(voxels[i]) == volume.minimum;
-        };
-        for (std::size_t i = 1; i < voxels.size(); ++i)
-          if (!isLeast(i) || !isLeast(i - 1)) {
-            ++pairs;
-            alike += voxels[i] == voxels[i - 1];
-          }
-      },
-      volume.voxels);
-  return static_cast<double>(alike) > most * static_cast<double>(pairs);
+  const auto mostAlike = [&](const auto& voxels) {
+    const auto isLeast = [&](auto voxel) { return static_cast<double>(voxel) == volume.minimum; };
+    std::size_t pairs = 0, alike = 0;
+    for (std::size_t i = 1; i < voxels.size(); ++i)
+      if (!isLeast(voxels[i]) || !isLeast(voxels[i - 1])) {
+        ++pairs;
+        alike += voxels[i] == voxels[i - 1];
+      }
+    return static_cast<double>(alike) > most * static_cast<double>(pairs);
+  };
+  return std::visit(mostAlike, volume.voxels);
 }
 
 bool isNamedSegmentation(const std::filesystem::path& path) {
   return path.filename().string().find(".seg.") != std::string::npos;
 }
 
-SegmentationSummary readSegments(const std::filesystem::path& path,
-                                 const std::optional<Grid>& volume, std::optional<Error>& failure) {
-  SegmentationSummary summary{.node = {.id = "", .name = path.string()}};
-  if (const auto segmentation =
-          attempted([&] { return readSegmentation(path, volume ? &*volume : nullptr); }, failure))
-    describe(*segmentation, {}, summary);
-  else
-    summary.node.problem = failure->what();
-  return summary;
-}
-
-/// Use of a volume by a render, and whether the volume could be a label map. The volume itself is
-/// released before segments are read.
+/// Properties of a volume that the rest of an inspection needs: the volume itself is released
+/// before segments are read.
 struct FileVolume {
-  std::optional<Grid> grid = {};
-  std::optional<RenderUse> render = {};
-  std::optional<Error> failure = {};
-  std::vector<std::string> warnings = {};
+  std::optional<Grid> grid = {};     ///< nothing: unreadable
+  std::optional<Error> failure = {}; ///< of a render; may have come after the volume was read
   bool looksLikeLabels = false;
 };
 
-FileVolume inspectVolume(const SceneRequest& request) {
+/// Adds what a render uses of the input, its refusal and its warnings.
+FileVolume inspectVolume(const SceneRequest& request, const Input& input, Json& report) {
   FileVolume result;
-  const auto describeVolume = [&result](const Volume& volume) {
+  const auto add = [&](const Volume& volume, const std::vector<std::string>& warnings) {
+    report["render"] = emptyUse();
+    report["render"]["volume"] = volumeUse(volume);
+    report["render"]["look"] = defaultLook(volume);
+    report["warnings"] = warnings;
     result.grid = volume.grid;
-    result.render.emplace();
-    result.render->volume = volumeUse(volume);
-    result.render->look = defaultLook(volume);
     result.looksLikeLabels = looksLikeLabels(volume);
   };
-  const auto scene = attempted([&] { return std::make_unique<Scene>(request); }, result.failure);
-  if (scene) {
-    describeVolume((*scene)->volume());
-    result.render->camera = CameraUse{"", "", (*scene)->camera().pose()};
-    result.warnings = (*scene)->warnings();
-    return result;
-  }
-  std::optional<Error> unreadable; // unused: the scene may have failed after the volume
-  if (const auto input =
-          attempted([&] { return Input(request.input).volume(request.volume); }, unreadable)) {
-    describeVolume(input->volume);
-    result.warnings = input->volume.warnings;
+  try {
+    const Scene scene(request, input);
+    add(scene.volume(), scene.warnings());
+    report["render"]["camera"] = cameraUse(scene.camera().pose());
+  } catch (const Error& error) {
+    result.failure = error;
+    report["refused"] = error.what();
+    Json unused;
+    if (const auto read = attempted([&] { return input.volume(request.volume); }, unused))
+      add(read->volume, read->volume.warnings);
   }
   return result;
 }
 
-Inspection inspectFiles(const SceneRequest& request) {
-  Inspection result;
-  if (isFolder(request.input)) {
-    result.kind = InputKind::dicom;
+Json inspectFiles(const SceneRequest& request, const Input& input) {
+  const bool isDicom = isFolder(request.input);
+  Json report = emptyInspection(request, isDicom ? "dicom" : "volume");
+  if (isDicom)
     for (const DicomSeries& series : findDicomSeries(request.input))
-      result.series.push_back(
-          {series.uid, series.number, series.description, series.modality, series.files.size()});
-  }
-  const FileVolume volume = inspectVolume(request);
-  result.render = volume.render;
-  result.warnings = volume.warnings;
-  if (volume.failure)
-    result.refused = volume.failure->what();
-
-  std::optional<Error> failure;
-  if (result.kind != InputKind::dicom &&
-      (!volume.render || volume.looksLikeLabels || isNamedSegmentation(request.input))) {
-    result.segmentations.push_back(readSegments(request.input, volume.grid, failure));
-    if (!volume.render && failure)
+      report["series"].push_back({{"uid", series.uid},
+                                  {"number", orNull(series.number)},
+                                  {"description", orNull(series.description)},
+                                  {"modality", orNull(series.modality)},
+                                  {"files", series.files.size()}});
+  const FileVolume volume = inspectVolume(request, input, report);
+  Json& segmentations = report["segmentations"];
+  const Grid* grid = volume.grid ? &*volume.grid : nullptr;
+  if (!isDicom && (!grid || volume.looksLikeLabels || isNamedSegmentation(request.input))) {
+    segmentations.push_back(segmentationFile(request.input, grid));
+    if (!grid && !segmentations.back()["problem"].is_null())
       throw *volume.failure;
-    result.kind = InputKind::segmentation;
+    report["kind"] = "segmentation";
   }
   if (request.segmentation) {
-    result.segmentations.push_back(readSegments(*request.segmentation, volume.grid, failure));
-    result.segmentations.back().node.used = true;
+    segmentations.push_back(segmentationFile(*request.segmentation, grid));
+    segmentations.back()["used"] = true;
+    if (grid)
+      report["render"]["segmentation"] = orNull(*request.segmentation);
   }
-  if (result.render && request.segmentation)
-    result.render->segmentation = *request.segmentation;
-  return result;
+  return report;
 }
 
 } // namespace
 
-VolumeUse volumeUse(const Volume& volume) {
-  return {.id = "",
-          .name = volume.name,
-          .size = volume.grid.size,
-          .spacing = volume.grid.spacing(),
-          .center = volume.grid.worldCenter(),
-          .voxelType = std::visit(TypeName(), volume.voxels),
-          .minimum = volume.minimum,
-          .maximum = volume.maximum};
+Json orNull(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
 }
 
-LookUse defaultLook(const Volume& volume) {
+Json emptyInspection(const SceneRequest& request, const char* kind) {
+  Json report = {{"input", request.input.string()}, {"kind", kind}, {"version", nullptr}};
+  for (const char* list : {"volumes", "segmentations", "volumeRenderings", "volumeProperties",
+                           "rois", "views", "cameras", "transforms", "series"})
+    report[list] = Json::array();
+  report["others"] = Json::object();
+  report["render"] = nullptr;
+  report["refused"] = nullptr;
+  report["warnings"] = Json::array();
+  report["ignored"] = Json::array();
+  return report;
+}
+
+Json emptyUse() {
+  Json use;
+  for (const char* part :
+       {"volume", "look", "crop", "camera", "background", "segmentation", "segmentationProblem"})
+    use[part] = nullptr;
+  use["stored"] = Json::array();
+  return use;
+}
+
+Json volumeUse(const Volume& volume, const std::string& id) {
+  return {{"id", orNull(id)},
+          {"name", volume.name},
+          {"size", volume.grid.size},
+          {"spacing", volume.grid.spacing()},
+          {"center", volume.grid.worldCenter()},
+          {"voxelType", std::visit(TypeName(), volume.voxels)},
+          {"range", {volume.minimum, volume.maximum}},
+          {"transforms", Json::array()}};
+}
+
+Json lookUse(const char* source, const std::string& id, const std::string& name) {
+  return {{"source", source}, {"id", orNull(id)}, {"name", orNull(name)}};
+}
+
+Json defaultLook(const Volume& volume) {
   const std::optional<std::string> preset = transferPresetFor(volume);
-  return {preset ? LookSource::preset : LookSource::range, "", preset.value_or("")};
+  return lookUse(preset ? "preset" : "range", "", preset.value_or(""));
 }
 
-void describe(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
-              SegmentationSummary& summary) {
+Json cameraUse(const CameraPose& pose, const std::string& id, const std::string& name) {
+  Json camera = {{"id", orNull(id)}, {"name", orNull(name)}};
+  addPose(pose, camera);
+  return camera;
+}
+
+void addPose(const CameraPose& pose, Json& camera) {
+  const bool perspective = pose.projection == Projection::perspective;
+  camera["projection"] = perspective ? "perspective" : "orthographic";
+  camera["position"] = pose.position;
+  camera["target"] = pose.target;
+  camera["up"] = pose.up;
+  camera[perspective ? "angle" : "scale"] = perspective ? pose.angle : pose.scale;
+}
+
+Json nodeJson(const std::string& id, const std::string& name) {
+  return {{"id", orNull(id)},     {"name", name},  {"files", Json::array()},
+          {"transform", nullptr}, {"used", false}, {"problem", nullptr}};
+}
+
+Json segmentationMembers(const char* kind, bool shown) {
+  return {{"kind", kind},
+          {"shown", shown},
+          {"size", nullptr},
+          {"spacing", nullptr},
+          {"segments", Json::array()}};
+}
+
+void addSegments(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
+                 Json& json) {
   constexpr double cubicMmInMl = 1000.0;
   const Grid& grid = segmentation.grid();
-  summary.size = grid.size;
-  summary.spacing = grid.spacing();
+  json["size"] = grid.size;
+  json["spacing"] = grid.spacing();
   const double milliliters = std::abs(grid.indexToWorld.linear().determinant()) / cubicMmInMl;
   const std::vector<SegmentStatistics> statistics = segmentation.statistics();
   for (std::size_t i = 0; i < statistics.size(); ++i) {
     const SegmentInfo& info = segmentation.segments()[i];
+    const auto& [voxels, bounds] = statistics[i];
     const auto visible = shown.find(info.id);
-    summary.segments.push_back(
-        {.id = info.id,
-         .name = info.name,
-         .labelValue = info.labelValue,
-         .layer = info.layer,
-         .color = info.color,
-         .voxels = statistics[i].voxels,
-         .milliliters = milliliters * static_cast<double>(statistics[i].voxels),
-         .bounds = statistics[i].bounds,
-         .shown = visible == shown.end() || visible->second});
+    Json segment = {{"id", info.id},
+                    {"name", info.name},
+                    {"labelValue", info.labelValue},
+                    {"layer", info.layer},
+                    {"color", info.color},
+                    {"voxels", voxels},
+                    {"milliliters", milliliters * static_cast<double>(voxels)},
+                    {"bounds", nullptr},
+                    {"shown", visible == shown.end() || visible->second}};
+    if (voxels > 0)
+      segment["bounds"] = {{"lower", bounds.lower}, {"upper", bounds.upper}};
+    json["segments"].push_back(std::move(segment));
   }
 }
 
-Inspection inspectInput(const SceneRequest& request) {
-  return isSceneFile(request.input) ? inspectScene(request) : inspectFiles(request);
+Json segmentationFile(const std::filesystem::path& path, const Grid* volume) {
+  Json json = nodeJson("", path.string());
+  json.update(segmentationMembers("file", true));
+  if (const auto segmentation =
+          attempted([&] { return readSegmentation(path, volume); }, json["problem"]))
+    addSegments(*segmentation, {}, json);
+  return json;
+}
+
+Inspection inspectInput(const SceneRequest& request, const Input& input) {
+  return input.document() ? inspectScene(request, input) : inspectFiles(request, input);
 }
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Parts shared by the inspections of scenes and of plain files. For scene's own sources.
+// Parts shared by the inspections of scenes and of plain files. For session's own sources.
 
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
@@ -7,40 +7,49 @@
 #include "session/Scene.h"
 
 #include <filesystem>
+#include <map>
 #include <memory>
 
 namespace fenestra {
 
-/// Result of `read`; nothing: `failure` holds the Error thrown.
+using Json = nlohmann::ordered_json; ///< a report, or a part of it
+
+/// Result of `read`; nothing: `line` holds the line of the Error thrown.
 template <typename Read>
-auto attempted(Read&& read, std::optional<Error>& failure) -> std::optional<decltype(read())> {
+auto attempted(Read&& read, Json& line) -> std::optional<decltype(read())> {
   try {
     return read();
   } catch (const Error& error) {
-    failure = error;
+    line = error.what();
     return std::nullopt;
   }
 }
 
-/// Result of `read`; nothing: `line` holds the line of the Error thrown.
-template <typename Read>
-auto attempted(Read&& read, std::string& line) -> std::optional<decltype(read())> {
-  std::optional<Error> failure;
-  auto result = attempted(read, failure);
-  if (failure)
-    line = failure->what();
-  return result;
-}
+/// Null for the empty text.
+Json orNull(const std::string& text);
 
-VolumeUse volumeUse(const Volume& volume);
+/// Report with nothing found, and its member `render` with nothing used.
+Inspection emptyInspection(const SceneRequest& request, const char* kind);
+Json emptyUse();
 
+Json volumeUse(const Volume& volume, const std::string& id = "");
+Json lookUse(const char* source, const std::string& id, const std::string& name);
 /// Look of a volume without settings, by modality and range.
-LookUse defaultLook(const Volume& volume);
+Json defaultLook(const Volume& volume);
+Json cameraUse(const CameraPose& pose, const std::string& id = "", const std::string& name = "");
+/// Adds a POSE.
+void addPose(const CameraPose& pose, Json& camera);
 
-/// Fills `summary` from the segmentation; segments without an entry in `shown` are shown.
-void describe(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
-              SegmentationSummary& summary);
+/// NODE without files, unused, without a problem.
+Json nodeJson(const std::string& id, const std::string& name);
+/// Members that a segmentation has beyond NODE, before it is read.
+Json segmentationMembers(const char* kind, bool shown);
+/// Adds size, spacing and segments; segments without an entry in `shown` are shown.
+void addSegments(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
+                 Json& json);
+/// Segmentation of a file. `volume`: grid that closed surfaces become labels on; null: none.
+Json segmentationFile(const std::filesystem::path& path, const Grid* volume);
 
-Inspection inspectScene(const SceneRequest& request);
+Inspection inspectScene(const SceneRequest& request, const Input& input);
 
 } // namespace fenestra

@@ -19,20 +19,27 @@ bool isSegmentation(const MrmlNode& node) {
   return node.tag == "Segmentation" || isLabelMap(node);
 }
 
-bool isTransform(const MrmlNode& node) {
-  return node.tag.ends_with("Transform");
-}
-
 std::string idOf(const MrmlNode* node) {
   return node ? node->id : std::string();
 }
 
+std::string nameOf(const MrmlNode* node) {
+  return node ? node->name : std::string();
+}
+
+Json backgroundColors(const MrmlNode& view) {
+  const ViewBackground colors = viewBackground(view);
+  return {{"bottom", colors.bottom}, {"top", colors.top}};
+}
+
 class SceneInspector {
 public:
-  explicit SceneInspector(const SceneRequest& request)
-      : m_request(request), m_scene(request.input) {
-    m_result.kind = InputKind::scene;
-    m_result.version = m_scene.document.version();
+  SceneInspector(const SceneRequest& request, const Input& input)
+      : m_request(request),
+        m_input(input),
+        m_scene(*input.scene()),
+        m_report(emptyInspection(request, "scene")) {
+    m_report["version"] = orNull(m_scene.document.version());
   }
 
   Inspection inspect() {
@@ -41,7 +48,7 @@ public:
       inspectRender();
     inspectNodes();
     inspectChosenFile();
-    return std::move(m_result);
+    return std::move(m_report);
   }
 
 private:
@@ -52,11 +59,11 @@ private:
   void plan() {
     SceneChoice choice{m_request.volume, m_request.segmentation, true};
     const auto planned = [&] { return planRender(document(), choice); };
-    std::string problem;
+    Json problem;
     m_plan = attempted(planned, problem);
     if (!m_plan) {
       choice.needsSegmentation = false;
-      m_plan = attempted(planned, m_result.refused);
+      m_plan = attempted(planned, m_report["refused"]);
       const auto& nodes = document().nodes();
       if (std::any_of(nodes.begin(), nodes.end(), isSegmentation))
         m_segmentationProblem = problem;
@@ -64,75 +71,64 @@ private:
   }
 
   // ---- what a render would use
-  // -------------------------------------------------------------------
 
+  /// Finds volume, look and camera by making a Scene; if the Scene fails, by reading each.
   void inspectRender() {
-    RenderUse& use = m_result.render.emplace();
-    use.segmentationProblem = m_segmentationProblem;
-    m_result.warnings = m_plan->warnings;
-    m_result.ignored = m_plan->ignored;
-    readRender(use);
-    if (use.volume) {
-      use.volume->id = m_plan->volume->id;
-      use.volume->transforms = transformsAbove(document(), *m_plan->volume);
+    Json use = emptyUse();
+    m_report["warnings"] = m_plan->warnings;
+    m_report["ignored"] = m_plan->ignored;
+    std::optional<CameraPose> pose;
+    if (const auto scene = attempted([&] { return std::make_unique<Scene>(m_request, m_input); },
+                                     m_report["refused"])) {
+      addVolume((*scene)->volume(), (*scene)->look(), use);
+      pose = (*scene)->camera().pose();
+      m_report["warnings"] = (*scene)->warnings();
+    } else {
+      if (const auto volume =
+              attempted([&] { return readSceneVolume(m_scene, *m_plan->volume); }, m_unused))
+        addVolume(*volume, nameOf(m_plan->property), use);
+      if (m_plan->camera)
+        pose = readCamera(*m_plan->camera, m_unused);
     }
+    if (pose)
+      use["camera"] = cameraUse(*pose, idOf(m_plan->camera), nameOf(m_plan->camera));
     if (m_plan->roi)
-      use.crop = cropUse(*m_plan->roi);
-    if (m_plan->camera && !use.camera)
-      if (const auto pose = readCamera(*m_plan->camera, m_unused))
-        use.camera = CameraUse{"", "", *pose};
-    if (m_plan->camera && use.camera) {
-      use.camera->id = m_plan->camera->id;
-      use.camera->name = m_plan->camera->name;
-    }
+      use["crop"] = cropUse(*m_plan->roi);
     if (m_plan->view) {
-      const ViewBackground colors = viewBackground(*m_plan->view);
-      use.background = BackgroundUse{m_plan->view->id, colors.bottom, colors.top};
+      use["background"] = {{"view", orNull(m_plan->view->id)}};
+      use["background"].update(backgroundColors(*m_plan->view));
     }
-    use.segmentation = idOf(m_plan->segmentation);
-    noteUsed(use);
+    use["segmentation"] = orNull(idOf(m_plan->segmentation));
+    use["segmentationProblem"] = m_segmentationProblem;
+    noteUsed(use["look"]);
+    m_report["render"] = std::move(use);
   }
 
-  /// Finds volume, look and camera by making a Scene; if the Scene fails, by reading volume and
-  /// look.
-  void readRender(RenderUse& use) {
-    const auto scene =
-        attempted([&] { return std::make_unique<Scene>(m_request); }, m_result.refused);
-    if (scene) {
-      use.volume = volumeUse((*scene)->volume());
-      m_grid = (*scene)->volume().grid;
-      use.look = lookUse((*scene)->volume(), (*scene)->look());
-      use.camera = CameraUse{"", "", (*scene)->camera().pose()};
-      m_result.warnings = (*scene)->warnings();
-      return;
-    }
-    if (const auto volume =
-            attempted([&] { return readSceneVolume(m_scene, *m_plan->volume); }, m_unused)) {
-      use.volume = volumeUse(*volume);
-      m_grid = volume->grid;
-      use.look = lookUse(*volume, m_plan->property ? m_plan->property->name : "");
-    }
-  }
-
-  /// `look`: Scene::look of the render.
-  LookUse lookUse(const Volume& volume, const std::string& look) const {
+  /// Adds volume and look. `look`: Scene::look of the render.
+  void addVolume(const Volume& volume, const std::string& look, Json& use) {
+    m_grid = volume.grid;
+    use["volume"] = volumeUse(volume, m_plan->volume->id);
+    use["volume"]["transforms"] = transformsAbove(document(), *m_plan->volume);
     const MrmlNode* property = m_plan->property;
     if (property && look == property->name)
-      return {LookSource::volumeProperty, property->id, property->name};
-    if (m_plan->followed)
-      return {LookSource::volumeDisplay, m_plan->followed->id, m_plan->followed->name};
-    return defaultLook(volume);
+      use["look"] = lookUse("volumeProperty", property->id, property->name);
+    else if (m_plan->followed)
+      use["look"] = lookUse("volumeDisplay", m_plan->followed->id, m_plan->followed->name);
+    else
+      use["look"] = defaultLook(volume);
   }
 
-  std::optional<CropUse> cropUse(const MrmlNode& roi) {
+  Json cropUse(const MrmlNode& roi) {
     const auto box = attempted([&] { return readSceneRoi(m_scene, roi); }, m_unused);
     if (!box)
-      return std::nullopt;
-    const Vec3 halfEdges = box->boxToWorld.linear().columnNorms();
-    return CropUse{roi.id, roi.name, 2.0 * halfEdges, box->boxToWorld.translation()};
+      return nullptr;
+    return {{"id", orNull(roi.id)},
+            {"name", roi.name},
+            {"edges", Vec3(2.0 * box->boxToWorld.linear().columnNorms())},
+            {"center", box->boxToWorld.translation()}};
   }
 
-  void noteUsed(const RenderUse& use) {
+  void noteUsed(const Json& look) {
     for (const MrmlNode* node : {m_plan->volume, m_plan->rendering, m_plan->roi,
                                  m_plan->segmentation, m_plan->view, m_plan->camera})
       if (node) {
@@ -141,34 +137,35 @@ private:
           for (const std::string& id : transformsAbove(document(), *node))
             m_used.insert(document().find(id));
       }
-    if (m_plan->property && use.look && use.look->source == LookSource::volumeProperty)
+    if (m_plan->property && look.is_object() && look["source"] == "volumeProperty")
       m_used.insert(m_plan->property);
   }
 
   // ---- every node
-  // ---------------------------------------------------------------------------------
 
   void inspectNodes() {
     findOwners();
+    std::map<std::string, std::size_t> others;
     for (const MrmlNode& node : document().nodes())
       if (isScalarVolume(node))
-        m_result.volumes.push_back(summary(node));
+        m_report["volumes"].push_back(nodeJson(node));
       else if (isSegmentation(node))
-        m_result.segmentations.push_back(segmentationSummary(node));
+        m_report["segmentations"].push_back(segmentationJson(node));
       else if (isVolumeRendering(node))
-        m_result.renderings.push_back(renderingSummary(node));
+        m_report["volumeRenderings"].push_back(renderingJson(node));
       else if (node.tag == "VolumeProperty")
-        m_result.properties.push_back(summary(node));
+        m_report["volumeProperties"].push_back(nodeJson(node));
       else if (isRoi(node))
-        m_result.rois.push_back(summary(node));
+        m_report["rois"].push_back(nodeJson(node));
       else if (node.tag == "View")
-        m_result.views.push_back(viewSummary(node));
+        m_report["views"].push_back(viewJson(node));
       else if (node.tag == "Camera")
-        m_result.cameras.push_back(cameraSummary(node));
-      else if (isTransform(node))
-        m_result.transforms.push_back(transformSummary(node));
+        m_report["cameras"].push_back(cameraJson(node));
+      else if (node.tag.ends_with("Transform"))
+        m_report["transforms"].push_back(transformJson(node));
       else
-        ++m_result.others[node.tag];
+        ++others[node.tag];
+    m_report["others"] = others;
   }
 
   /// Maps each display to its volume.
@@ -180,77 +177,83 @@ private:
           m_owners.emplace(id, node.id);
   }
 
-  NodeSummary summary(const MrmlNode& node) const {
-    NodeSummary result{.id = node.id, .name = node.name};
+  /// NODE and `more` members.
+  Json nodeJson(const MrmlNode& node, const Json& more = Json::object()) const {
+    Json json = fenestra::nodeJson(node.id, node.name);
     for (const std::string& file : storedFiles(m_scene, node))
-      result.files.push_back({decodedUrl(file), m_scene.files.holds(file)});
-    result.transform = idOf(document().follow(node, "transform"));
-    result.used = m_used.contains(&node);
-    return result;
+      json["files"].push_back({{"name", decodedUrl(file)}, {"there", m_scene.files.holds(file)}});
+    json["transform"] = orNull(idOf(document().follow(node, "transform")));
+    json["used"] = m_used.contains(&node);
+    json.update(more);
+    return json;
   }
 
-  /// True for nodes after the first 64 that no render uses: reading files takes time.
-  static bool isSkipped(std::size_t before, NodeSummary& node) {
+  /// True for nodes after the first 64 of a list that no render uses: reading files takes time.
+  bool isSkipped(const char* list, Json& node) const {
     constexpr std::size_t mostRead = 64;
-    if (before < mostRead || node.used)
+    if (m_report[list].size() < mostRead || node["used"] == true)
       return false;
-    node.problem = "not looked into: there are " + std::to_string(mostRead) + " before it";
+    node["problem"] = "not looked into: there are " + std::to_string(mostRead) + " before it";
     return true;
   }
 
-  SegmentationSummary segmentationSummary(const MrmlNode& node) {
-    SegmentationSummary result{.node = summary(node), .isLabelMap = isLabelMap(node)};
+  Json segmentationJson(const MrmlNode& node) {
     const MrmlNode* display = document().follow(node, "display");
-    result.shown = result.isLabelMap || !display || isShown(*display);
-    if (isSkipped(m_result.segmentations.size(), result.node))
-      return result;
-    if (const auto segmentation =
-            attempted([&] { return readSceneSegmentation(m_scene, node, volumeGrid()); },
-                      result.node.problem))
-      describe(*segmentation, segmentVisibility(m_scene, node), result);
-    return result;
+    const bool shown = isLabelMap(node) || !display || isShown(*display);
+    Json json =
+        nodeJson(node, segmentationMembers(isLabelMap(node) ? "labelMap" : "segmentation", shown));
+    if (isSkipped("segmentations", json))
+      return json;
+    if (const auto segmentation = attempted(
+            [&] { return readSceneSegmentation(m_scene, node, volumeGrid()); }, json["problem"]))
+      addSegments(*segmentation, segmentVisibility(m_scene, node), json);
+    return json;
   }
 
-  RenderingSummary renderingSummary(const MrmlNode& node) const {
+  Json renderingJson(const MrmlNode& node) const {
     const auto owner = m_owners.find(node.id);
-    return {.node = summary(node),
-            .volume = owner == m_owners.end() ? "" : owner->second,
-            .property = node.referenced("volumeProperty"),
-            .roi = node.referenced("roi"),
-            .cropping = node.flag("croppingEnabled", false),
-            .followsDisplay = node.flag("followVolumeDisplayNode", false),
-            .shown = isShown(node)};
+    return nodeJson(node, {{"volume", orNull(owner == m_owners.end() ? "" : owner->second)},
+                           {"property", orNull(node.referenced("volumeProperty"))},
+                           {"roi", orNull(node.referenced("roi"))},
+                           {"cropping", node.flag("croppingEnabled", false)},
+                           {"followsDisplay", node.flag("followVolumeDisplayNode", false)},
+                           {"shown", isShown(node)}});
   }
 
-  ViewSummary viewSummary(const MrmlNode& node) const {
-    const ViewBackground background = viewBackground(node);
-    return {.node = summary(node),
-            .layout = layoutOf(node),
-            .technique = node.text("raycastTechnique"),
-            .bottom = background.bottom,
-            .top = background.top};
+  Json viewJson(const MrmlNode& node) const {
+    return nodeJson(node, {{"layout", orNull(layoutOf(node))},
+                           {"technique", orNull(node.text("raycastTechnique"))},
+                           {"background", backgroundColors(node)}});
   }
 
-  std::optional<CameraPose> readCamera(const MrmlNode& node, std::string& problem) {
+  std::optional<CameraPose> readCamera(const MrmlNode& node, Json& problem) {
     return attempted([&] { return readSceneCamera(m_scene, node); }, problem);
   }
 
-  CameraSummary cameraSummary(const MrmlNode& node) {
-    CameraSummary result{.node = summary(node), .layout = layoutOf(node)};
-    if (!isSkipped(m_result.cameras.size(), result.node))
-      result.pose = readCamera(node, result.node.problem);
-    return result;
+  Json cameraJson(const MrmlNode& node) {
+    Json json = nodeJson(node, {{"layout", orNull(layoutOf(node))}});
+    if (!isSkipped("cameras", json))
+      if (const auto pose = readCamera(node, json["problem"]))
+        addPose(*pose, json);
+    return json;
   }
 
-  TransformSummary transformSummary(const MrmlNode& node) {
-    TransformSummary result{.node = summary(node)};
+  Json transformJson(const MrmlNode& node) {
+    Json json = nodeJson(node, {{"linear", false}, {"toWorld", nullptr}});
     const MrmlNode below{.tag = node.tag,
                          .id = node.id,
                          .name = node.name,
                          .references = {{"transform", {node.id}}}};
-    if (!isSkipped(m_result.transforms.size(), result.node))
-      result.toWorld = attempted([&] { return toWorld(m_scene, below); }, result.node.problem);
-    return result;
+    if (isSkipped("transforms", json))
+      return json;
+    if (const auto map = attempted([&] { return toWorld(m_scene, below); }, json["problem"])) {
+      json["linear"] = true;
+      for (int row = 0; row < 3; ++row) {
+        const Vec3 linear = map->linear().row(row);
+        json["toWorld"].push_back({linear.x(), linear.y(), linear.z(), map->translation()[row]});
+      }
+    }
+    return json;
   }
 
   /// Inspects a requested segmentation that is not in the scene, but may be a file.
@@ -260,33 +263,32 @@ private:
     const std::filesystem::path path = *m_request.segmentation;
     std::error_code failed;
     if (!std::filesystem::exists(path, failed) && !failed) { // else its reader reports why
-      m_result.render->segmentationProblem =
+      m_report["render"]["segmentationProblem"] =
           "--segmentation " + path.string() + ": is neither in the scene nor a file";
       return;
     }
-    SegmentationSummary result{.node = {.id = "", .name = path.string(), .used = true}};
-    if (const auto segmentation =
-            attempted([&] { return readSegmentation(path, volumeGrid()); }, result.node.problem))
-      describe(*segmentation, {}, result);
-    m_result.render->segmentation = path.string();
-    m_result.segmentations.push_back(std::move(result));
+    Json segmentation = segmentationFile(path, volumeGrid());
+    segmentation["used"] = true;
+    m_report["render"]["segmentation"] = orNull(path.string());
+    m_report["segmentations"].push_back(std::move(segmentation));
   }
 
   const SceneRequest& m_request;
-  MrmlScene m_scene;
+  const Input& m_input;
+  MrmlScene& m_scene;
   std::optional<ScenePlan> m_plan;
-  std::string m_segmentationProblem;
+  Json m_segmentationProblem;
   std::optional<Grid> m_grid; ///< of the volume
   std::set<const MrmlNode*> m_used;
   std::map<std::string, std::string> m_owners;
-  std::string m_unused; ///< problems reported elsewhere: with their nodes, or in `refused`
-  Inspection m_result;
+  Json m_unused; ///< problems reported elsewhere: with their nodes, or in `refused`
+  Inspection m_report;
 };
 
 } // namespace
 
-Inspection inspectScene(const SceneRequest& request) {
-  return SceneInspector(request).inspect();
+Inspection inspectScene(const SceneRequest& request, const Input& input) {
+  return SceneInspector(request, input).inspect();
 }
 
 } // namespace fenestra
