@@ -43,20 +43,6 @@ Comparison compareImages(const Image& a, const Image& b);
 /// pictures have errors, the z of largest modulus, in full colour at 5. Throws like compareImages.
 Image differenceImage(const Image& a, const Image& b);
 
-/// Means of R, G, B over square tiles of `size` pixels (fewer at the right and lower border; a
-/// great size makes the picture one tile), with standard errors, and the sum of samples.N if
-/// present. Throws Error (input) without R, G, B, error.R, error.G or error.B.
-Image tileMeans(const Image& image, int size);
-
-/// p-value of the largest difference of any R, G or B between two renders of one scene with
-/// independent seeds: Student's t of each value, with a variance per sample pooled over both
-/// renders, corrected for the number of values (Šidák 1967). A mean of few bright paths is skewed
-/// like a count: the degrees of freedom are at most mean^2 / se^2 of the render with fewer samples,
-/// which is the number of its paths if all are equally bright; fewer degrees give heavier tails. 0
-/// if exact values (see ZStatistics) differ or a value is not finite. Throws like tileMeans, and
-/// for a missing samples.N or different sizes.
-double agreementProbability(const Image& a, const Image& b);
-
 /// Copies R, G, B of `error`, a picture of standard errors, to the error channels of `image`.
 /// Throws Error (input) for different sizes or missing channels.
 void attachError(Image& image, const Image& error);

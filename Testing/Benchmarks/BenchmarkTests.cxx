@@ -6,7 +6,7 @@
 #include "Support.h"
 #include "TemporaryFolder.h"
 
-#include "image/Compare.h"
+#include "Agreement.h"
 
 #include <gtest/gtest.h>
 

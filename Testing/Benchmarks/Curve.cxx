@@ -1,5 +1,6 @@
 #include "Curve.h"
 
+#include "Agreement.h"
 #include "image/Compare.h"
 
 #include <sys/resource.h>

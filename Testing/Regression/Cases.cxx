@@ -1,8 +1,8 @@
 #include "Cases.h"
 
+#include "Agreement.h"
 #include "Cli/Process.h"
 #include "files/pictures/ImageReader.h"
-#include "image/Compare.h"
 
 #include <algorithm>
 #include <cmath>

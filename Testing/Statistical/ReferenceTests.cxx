@@ -6,6 +6,7 @@
 #include "RunSettings.h"
 #include "Support.h"
 
+#include "Agreement.h"
 #include "WriteResults.h"
 #include "files/looks/LightReader.h"
 #include "files/pictures/ImageReader.h"

@@ -1,6 +1,6 @@
 #include "Significance.h"
 
-#include "image/StudentT.h"
+#include "Agreement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // Comparisons of pictures with known statistics.
 
+#include "Agreement.h"
 #include "base/Error.h"
 #include "base/Random.h"
 #include "files/pictures/ImageReader.h"
 #include "image/Compare.h"
-#include "image/StudentT.h"
 
 #include <gtest/gtest.h>
 

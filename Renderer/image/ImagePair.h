@@ -1,0 +1,71 @@
+#pragma once
+// Two pictures of one size, value by value.
+
+#include "image/Image.h"
+
+#include <array>
+
+namespace fenestra {
+
+inline constexpr std::array<const char*, 3> colourNames = {"R", "G", "B"};
+inline constexpr std::array<const char*, 3> errorNames = {"error.R", "error.G", "error.B"};
+
+/// Three planes of a picture; null: missing.
+using Planes = std::array<const std::vector<float>*, 3>;
+
+Planes findPlanes(const Image& image, const std::array<const char*, 3>& names);
+
+inline bool isComplete(const Planes& planes) {
+  return planes[0] && planes[1] && planes[2];
+}
+
+/// Planes of R, G and B. Throws Error (input) where one is missing.
+Planes colours(const Image& image);
+
+/// Throws Error (input) for different sizes.
+void requireSameSize(const Image& a, const Image& b);
+
+constexpr double square(double x) {
+  return x * x;
+}
+
+/// Both pictures of a comparison, value by value.
+struct ImagePair {
+  Planes a, b, errorA, errorB;
+  std::size_t pixels;
+
+  /// Throws Error (input) for different sizes or missing colours.
+  ImagePair(const Image& imageA, const Image& imageB)
+      : a(colours(imageA)),
+        b(colours(imageB)),
+        errorA(findPlanes(imageA, errorNames)),
+        errorB(findPlanes(imageB, errorNames)),
+        pixels(a[0]->size()) {
+    requireSameSize(imageA, imageB);
+  }
+
+  bool hasErrors() const { return isComplete(errorA) && isComplete(errorB); }
+  double difference(std::size_t c, std::size_t i) const {
+    return static_cast<double>((*a[c])[i]) - static_cast<double>((*b[c])[i]);
+  }
+  double variance(std::size_t c, std::size_t i) const {
+    return square((*errorA[c])[i]) + square((*errorB[c])[i]);
+  }
+  double rounding(std::size_t c, std::size_t i) const {
+    return 0x1p-24 * std::max(std::abs((*a[c])[i]), std::abs((*b[c])[i]));
+  }
+  /// True if the values are equal to the rounding of a float.
+  bool agrees(std::size_t c, std::size_t i) const {
+    return std::abs(difference(c, i)) <= 2.0 * rounding(c, i);
+  }
+  /// True if the value carries no statistical information: both errors are 0, or one is 0 and the
+  /// values are equal (background, whatever error one renderer states); "0" and "equal" mean to the
+  /// rounding of a float. Excluded from z.
+  bool saysNothing(std::size_t c, std::size_t i) const {
+    const bool exactA = std::abs((*errorA[c])[i]) <= rounding(c, i);
+    const bool exactB = std::abs((*errorB[c])[i]) <= rounding(c, i);
+    return (exactA && exactB) || ((exactA || exactB) && agrees(c, i));
+  }
+};
+
+} // namespace fenestra
