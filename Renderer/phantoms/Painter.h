@@ -45,6 +45,7 @@ protected:
     return label;
   }
 
+  /// Adds a layer behind the others.
   void layer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance) {
     m_layers.push_back({label, tissue, expanded(box, m_margin), std::move(distance)});
   }
