@@ -16,7 +16,4 @@ struct FetusOptions {
 /// by the uterine wall and a loop of the cord. Throws Error (usage) if a size < 16 or > 1024.
 Phantom makeFetusPhantom(const FetusOptions& options = {});
 
-/// Skin tones; fluid is transparent.
-VolumeProperty fetusProperty();
-
 } // namespace fenestra

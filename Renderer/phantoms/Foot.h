@@ -17,10 +17,4 @@ struct FootOptions {
 /// Throws Error (usage) if a size < 16 or > 1024.
 Phantom makeFootPhantom(const FootOptions& options = {});
 
-/// Ivory bones in translucent skin, fat, muscle and tendon.
-VolumeProperty footProperty();
-
-inline constexpr int footBoneThreshold = 200; ///< HU
-inline constexpr double footNoise = 14.0;     ///< HU, standard deviation
-
 } // namespace fenestra

@@ -42,12 +42,6 @@ public:
   double shaft(std::size_t bone, const Vec3& point) const;
 
 private:
-  void add(FootBone bone, const std::vector<std::string>& neighbours);
-  void addHindfoot();
-  void addLegStumps();
-  void addMidfoot();
-  void addRays();
-
   std::vector<FootBone> m_bones;
 };
 

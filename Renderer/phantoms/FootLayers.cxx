@@ -1,24 +1,63 @@
 #include "phantoms/FootLayers.h"
 
+#include "phantoms/Anatomy.h"
 #include "phantoms/Noise.h"
 
 namespace fenestra {
 
 namespace {
 
-constexpr double footSkinThickness = 1.6;
-
-const Rgb tendonColor{0.718, 0.839, 0.827};
+constexpr double footSkinThickness = 1.6; ///< mm
+constexpr double footNoise = 14.0;        ///< HU, standard deviation
 
 double trabeculae(const Vec3& p) {
   return 90.0 * valueNoise(p / 1.6, 270) + 60.0 * valueNoise(p / 4.0, 271);
 }
 
+/// Height of the sole over the floor, mm: the medial arch.
+double soleHeight(const Vec3& p) {
+  const double across = (p.x() + 40.0) / 24.0, along = (p.y() - 112.0) / 42.0;
+  return 16.0 * std::exp(-across * across - along * along);
+}
+
+/// Thickness of skin and subcutaneous fat, mm; large under the sole.
+double footFasciaDepth(const Vec3& p) {
+  const double plantar = smoothStep(20.0, 6.0, p.z()) * smoothStep(205.0, 190.0, p.y());
+  const double heel = smoothStep(45.0, 20.0, p.y()) * smoothStep(30.0, 12.0, p.z());
+  const double leg = smoothStep(70.0, 110.0, p.z());
+  return 2.8 + 3.2 * plantar + 4.5 * heel + 1.6 * leg + 0.4 * valueNoise(p / 14.0, 262);
+}
+
 } // namespace
 
-FootLayers::FootLayers() {
-  m_superficial = extensorTendons();
-  m_superficial.push_back(achillesTendon());
+FootOutline::FootOutline() {
+  const Anatomy anatomy = anatomyOf("foot");
+  anatomy.at("leg").get_to(m_leg);
+  anatomy.at("toes").get_to(m_toes);
+  const Solid shape = anatomy.at("body");
+  const auto sole = [](const Vec3& p) { return soleHeight(p) - p.z(); };
+  // The web of the toes runs backward from the great toe to the little one.
+  const auto web = [](const Vec3& p) {
+    return (p.y() - 208.0 + 0.40 * (p.x() + 15.0)) / std::hypot(1.0, 0.40);
+  };
+  m_body = {[shape, sole, web](const Vec3& p) {
+              const double body = smoothIntersection(shape.distance(p), sole(p), 12.0);
+              return smoothIntersection(body, web(p), 9.0);
+            },
+            shape.box};
+}
+
+double FootOutline::distance(const Vec3& p) const {
+  double surface = smoothUnion(m_leg.distance(p), m_body.distance(p), 16.0);
+  for (const Solid& toe : m_toes) {
+    constexpr double blend = 5.0;
+    if (contains(expanded(toe.box, blend + 1.0), p))
+      surface = smoothUnion(surface, toe.distance(p), blend);
+  }
+  return surface + 0.3 * valueNoise(p / 12.0, 261);
+}
+
+FootLayers::FootLayers() : LayeredSubject(1.5) {
   addBones();
   addSoftTissue();
 }
@@ -27,8 +66,8 @@ FootLayers::FootLayers() {
 double FootLayers::surface(const Vec3& p, double nearestBone) const {
   constexpr double overBone = 4.2, overTendon = 2.6, blend = 5.0;
   double surface = smoothUnion(m_outline.distance(p), nearestBone - overBone, blend);
-  for (const Tube& tendon : m_superficial)
-    if (contains(expanded(tendon.box(), overTendon + 2.0 * blend), p))
+  for (const Solid& tendon : m_superficial)
+    if (contains(expanded(tendon.box, overTendon + 2.0 * blend), p))
       surface = smoothUnion(surface, tendon.distance(p) - overTendon, blend);
   return surface;
 }
@@ -72,21 +111,16 @@ double FootLayers::signal(FootTissue tissue, const FootSite& s) const {
   return 0.0;
 }
 
-std::uint8_t FootLayers::segment(const std::string& id, const std::string& name, const Rgb& color) {
-  const auto label = static_cast<std::uint8_t>(m_segments.size() + 1);
-  m_segments.push_back({id, name, color, label, 0});
-  return label;
+std::int16_t FootLayers::acquired(double signal, const Vec3&, std::uint64_t voxel) const {
+  const double noisy = std::clamp(signal + footNoise * normalNoise(voxel), -1024.0, 3071.0);
+  return static_cast<std::int16_t>(std::lround(noisy));
 }
 
-void FootLayers::layer(std::uint8_t label, FootTissue tissue, const Box& box, Distance distance) {
-  m_layers.push_back({label, tissue, expanded(box, boxMargin), std::move(distance)});
-}
-
-void FootLayers::tubes(std::uint8_t label, FootTissue tissue, const std::vector<Tube>& tubes,
-                       double depth) {
-  for (const Tube& tube : tubes)
-    layer(label, tissue, tube.box(), [tube, depth](const FootSite& s) {
-      return std::max(tube.distance(s.point), s.surface + depth);
+void FootLayers::shapes(std::uint8_t label, FootTissue tissue, const std::vector<Solid>& shapes,
+                        double depth) {
+  for (const Solid& shape : shapes)
+    layer(label, tissue, shape.box, [shape, depth](const FootSite& s) {
+      return std::max(shape.distance(s.point), s.surface + depth);
     });
 }
 
@@ -104,30 +138,34 @@ void FootLayers::addBones() {
 }
 
 void FootLayers::addSoftTissue() {
-  const auto cartilage = segment("joints", "Joint cartilage and capsules", {0.435, 0.722, 0.824});
+  const auto cartilage = segment("joints", "Joint cartilage and capsules", cartilageColor);
   layer(cartilage, FootTissue::cartilage, everywhere, [](const FootSite& s) {
     constexpr double halfWidth = 2.3; // mm; half of the gap that a capsule bridges
     return std::max(0.5 * (s.bones[s.nearest] + s.second) - halfWidth,
                     s.surface + footSkinThickness);
   });
-  const auto achilles = segment("achilles_tendon", "Achilles tendon", tendonColor);
-  tubes(achilles, FootTissue::tendon, {achillesTendon()}, footSkinThickness + 0.5);
+  const Anatomy anatomy = anatomyOf("foot");
+  const std::vector<Solid> achilles = anatomy.at("achilles tendon");
+  anatomy.at("extensor tendons").get_to(m_superficial);
+  m_superficial.insert(m_superficial.end(), achilles.begin(), achilles.end());
+  shapes(segment("achilles_tendon", "Achilles tendon", tendonColor), FootTissue::tendon, achilles,
+         footSkinThickness + 0.5);
   const auto tendons = segment("tendons", "Tendons", tendonColor);
-  tubes(tendons, FootTissue::tendon, extensorTendons(), footSkinThickness + 0.5);
-  tubes(tendons, FootTissue::tendon, flexorTendons(), footSkinThickness + 0.5);
-  tubes(segment("plantar_aponeurosis", "Plantar aponeurosis", tendonColor), FootTissue::tendon,
-        {plantarAponeurosis()}, footSkinThickness + 2.0);
-  tubes(segment("vessels", "Vessels", {0.847, 0.396, 0.310}), FootTissue::vessel, footVessels(),
-        footSkinThickness + 0.4);
-  const auto muscles = segment("muscles", "Muscles", {0.753, 0.408, 0.345});
-  for (const Tube& belly : footMuscles())
-    layer(muscles, FootTissue::muscle, belly.box(), [belly](const FootSite& s) {
+  for (const char* kind : {"extensor tendons", "flexor tendons"})
+    shapes(tendons, FootTissue::tendon, anatomy.at(kind), footSkinThickness + 0.5);
+  shapes(segment("plantar_aponeurosis", "Plantar aponeurosis", tendonColor), FootTissue::tendon,
+         anatomy.at("plantar aponeurosis"), footSkinThickness + 2.0);
+  shapes(segment("vessels", "Vessels", vesselColor), FootTissue::vessel, anatomy.at("vessels"),
+         footSkinThickness + 0.4);
+  const auto muscles = segment("muscles", "Muscles", muscleColor);
+  for (const Solid belly : anatomy.at("muscles"))
+    layer(muscles, FootTissue::muscle, belly.box, [belly](const FootSite& s) {
       const double shape = belly.distance(s.point) + 0.6 * valueNoise(s.point / 6.0, 277);
       return std::max(shape, s.fascia);
     });
-  layer(segment("fat", "Fat", {0.902, 0.863, 0.275}), FootTissue::fat, everywhere,
+  layer(segment("fat", "Fat", fatColor), FootTissue::fat, everywhere,
         [](const FootSite& s) { return s.surface + footSkinThickness; });
-  layer(segment("skin", "Skin", {0.694, 0.478, 0.396}), FootTissue::skin, everywhere,
+  layer(segment("skin", "Skin", skinColor), FootTissue::skin, everywhere,
         [](const FootSite& s) { return s.surface; });
 }
 

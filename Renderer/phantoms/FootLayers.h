@@ -2,7 +2,6 @@
 // Layers of the foot: order of the shapes, their tissues, and their segments.
 
 #include "phantoms/FootBones.h"
-#include "phantoms/FootSoftTissue.h"
 #include "phantoms/Painter.h"
 
 namespace fenestra {
@@ -20,28 +19,33 @@ struct FootSite {
   double shaft;               ///< FootBones::shaft of the nearest bone
 };
 
-using FootLayer = PaintLayer<FootSite, FootTissue>;
-
-class FootLayers {
+/// Surface of the skin without the bulges of bones and tendons.
+class FootOutline {
 public:
-  FootLayers();
+  FootOutline();
+  double distance(const Vec3& point) const; ///< mm
 
-  /// Layers front to back: each hides the later ones.
-  const std::vector<FootLayer>& layers() const { return m_layers; }
-  const std::vector<PhantomSegment>& segments() const { return m_segments; }
+private:
+  Solid m_leg, m_body;
+  std::vector<Solid> m_toes;
+};
+
+class FootLayers : public LayeredSubject<FootSite, FootTissue> {
+public:
+  static constexpr double background = -1000.0; ///< air
+
+  FootLayers();
 
   FootSite site(const Vec3& point) const;
   /// Hounsfield units, with the tissue's own texture.
   double signal(FootTissue tissue, const FootSite& site) const;
+  /// Adds noise, and clips to 12 bits like a scanner.
+  std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const;
 
 private:
-  using Distance = std::function<double(const FootSite&)>;
-
-  /// Adds a segment; returns its label.
-  std::uint8_t segment(const std::string& id, const std::string& name, const Rgb& color);
-  void layer(std::uint8_t label, FootTissue tissue, const Box& box, Distance distance);
-  /// Adds tubes, cut off `depth` mm under the skin's surface.
-  void tubes(std::uint8_t label, FootTissue tissue, const std::vector<Tube>& tubes, double depth);
+  /// Adds shapes, cut off `depth` mm under the skin's surface.
+  void shapes(std::uint8_t label, FootTissue tissue, const std::vector<Solid>& shapes,
+              double depth);
 
   void addBones();
   void addSoftTissue();
@@ -49,9 +53,7 @@ private:
 
   FootBones m_bones;
   FootOutline m_outline;
-  std::vector<Tube> m_superficial; ///< tendons that raise the skin
-  std::vector<FootLayer> m_layers;
-  std::vector<PhantomSegment> m_segments;
+  std::vector<Solid> m_superficial; ///< tendons that raise the skin
 };
 
 } // namespace fenestra

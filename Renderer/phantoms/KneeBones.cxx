@@ -1,5 +1,6 @@
 #include "phantoms/KneeBones.h"
 
+#include "phantoms/Anatomy.h"
 #include "phantoms/Noise.h"
 
 namespace fenestra {
@@ -101,42 +102,12 @@ double surfaceNoise(const Vec3& p, std::uint64_t seed) {
 
 } // namespace
 
-KneeBones::KneeBones()
-    : m_femoralShaft({{26, {0, 4.5}, {35, 17}},
-                      {34, {0, 5.5}, {35, 17.5}},
-                      {42, {0, 7.5}, {31.5, 17}},
-                      {52, {0, 10}, {24.5, 15.5}},
-                      {64, {0, 12}, {18, 14}},
-                      {82, {0, 13}, {14.5, 13}}},
-                     0.25, 8.0),
-      m_tibialShaft({{-66, {-3, -2}, {13, 14.5}},
-                     {-50, {-2, 0}, {15.5, 17}},
-                     {-38, {-0.5, 0}, {20.5, 21}},
-                     {-27, {0, -1}, {28, 23}},
-                     {-16, {0, -2.5}, {34, 24.5}},
-                     {-8, {0, -4}, {35.5, 23.5}},
-                     {-2, {0, -4.5}, {36, 23.5}},
-                     {16, {0, -4.5}, {36, 23.5}}},
-                    0.35, 3.0),
-      m_fibulaShaft({{-66, {34, -20}, {6.5, 6}},
-                     {-42, {35.5, -20}, {6, 6.5}},
-                     {-30, {36.5, -20}, {7, 8}},
-                     {-20, {37.5, -20}, {9, 10}},
-                     {-12, {37, -21}, {8, 9}},
-                     {-7, {37, -22}, {4, 5}}},
-                    0.2, 3.0),
-      m_patellaBody({{17, {1.5, 42}, {5, 4}},
-                     {22, {1.5, 41.5}, {10, 7}},
-                     {29, {1.5, 41}, {17, 9}},
-                     {38, {2, 40.5}, {22, 10}},
-                     {47, {2, 40.3}, {22.5, 10}},
-                     {55, {2, 40.5}, {18, 9}},
-                     {60, {2, 41}, {12, 6}}},
-                    0.2, 4.0),
-      m_femurBox(expanded({{-43, -36, 0}, {43, 36, 82}}, beyond)),
-      m_tibiaBox(expanded({{-41, -33, -66}, {41, 28, 8}}, beyond)),
-      m_patellaBox(expanded(m_patellaBody.box(), beyond)),
-      m_fibulaBox(expanded(m_fibulaShaft.box(), beyond)) {
+KneeBones::KneeBones() {
+  const Anatomy anatomy = anatomyOf("knee");
+  anatomy.at("femoral shaft").get_to(m_femoralShaft);
+  anatomy.at("tibial shaft").get_to(m_tibialShaft);
+  anatomy.at("fibula").get_to(m_fibula);
+  anatomy.at("patella").get_to(m_patellaBody);
   for (int i = 0; i <= profileSteps; ++i)
     m_profile[static_cast<std::size_t>(i)] = profileAtDegrees(-180.0 + i * 360.0 / profileSteps);
 }
@@ -177,13 +148,6 @@ double KneeBones::femurField(const Vec3& p) const {
   return smoothDifference(bone, notchField(p), 8.0);
 }
 
-double KneeBones::femur(const Vec3& point) const {
-  if (!contains(m_femurBox, point))
-    return beyond;
-  const auto field = [this](const Vec3& p) { return femurField(p); };
-  return firstOrderDistance(field, point) + surfaceNoise(point, 11);
-}
-
 double KneeBones::tibiaField(const Vec3& p) const {
   const double tuberosity = ellipsoidDistance(p, {2, 19, -37}, {9, 6.5, 12});
   const double medial = ellipsoidDistance(p, {-19.5, -4.5, -8}, {17.5, 26, 15});
@@ -195,19 +159,6 @@ double KneeBones::tibiaField(const Vec3& p) const {
   const double rearGroove = ellipsoidDistance(p, {0, -34, -6}, {11, 11, 20});
   return smoothIntersection(smoothDifference(shaft, rearGroove, 6.0), p.z() - plateauHeight(p),
                             3.5);
-}
-
-double KneeBones::tibia(const Vec3& point) const {
-  if (!contains(m_tibiaBox, point))
-    return beyond;
-  const auto field = [this](const Vec3& p) { return tibiaField(p); };
-  return firstOrderDistance(field, point) + surfaceNoise(point, 21);
-}
-
-double KneeBones::fibula(const Vec3& point) const {
-  if (!contains(m_fibulaBox, point))
-    return beyond;
-  return m_fibulaShaft.distance(point) + surfaceNoise(point, 31);
 }
 
 /// Rounded triangle in front; two facets at the rear meet in a ridge that runs in the groove.
@@ -222,11 +173,30 @@ double KneeBones::patellaField(const Vec3& p) const {
   return smoothIntersection(smoothIntersection(m_patellaBody.distance(p), facets, 4.0), dome, 5.0);
 }
 
-double KneeBones::patella(const Vec3& point) const {
-  if (!contains(m_patellaBox, point))
+double KneeBones::distance(const Box& box, double (KneeBones::*field)(const Vec3&) const,
+                           std::uint64_t seed, const Vec3& point) const {
+  if (!contains(expanded(box, beyond), point))
     return beyond;
-  const auto field = [this](const Vec3& p) { return patellaField(p); };
-  return firstOrderDistance(field, point) + surfaceNoise(point, 41);
+  return firstOrderDistance([&](const Vec3& p) { return (this->*field)(p); }, point) +
+         surfaceNoise(point, seed);
+}
+
+double KneeBones::femur(const Vec3& point) const {
+  return distance({{-43, -36, 0}, {43, 36, 82}}, &KneeBones::femurField, 11, point);
+}
+
+double KneeBones::tibia(const Vec3& point) const {
+  return distance({{-41, -33, -66}, {41, 28, 8}}, &KneeBones::tibiaField, 21, point);
+}
+
+double KneeBones::fibula(const Vec3& point) const {
+  return contains(expanded(m_fibula.box, beyond), point)
+             ? m_fibula.distance(point) + surfaceNoise(point, 31)
+             : beyond;
+}
+
+double KneeBones::patella(const Vec3& point) const {
+  return distance(m_patellaBody.box, &KneeBones::patellaField, 41, point);
 }
 
 Vec3 KneeBones::femoralSurface(double x, double angle) const {

@@ -51,12 +51,14 @@ private:
   double wheelField(const Vec3& point) const;
   double tibiaField(const Vec3& point) const;
   double patellaField(const Vec3& point) const;
+  /// Distance to the surface where a field is 0, roughened; the bone lies in `box`.
+  double distance(const Box& box, double (KneeBones::*field)(const Vec3&) const, std::uint64_t seed,
+                  const Vec3& point) const;
   double profile(double angle) const;
 
   static constexpr int profileSteps = 360;
   std::array<double, profileSteps + 1> m_profile; ///< sagittal radius of the femur by angle
-  Loft m_femoralShaft, m_tibialShaft, m_fibulaShaft, m_patellaBody;
-  Box m_femurBox, m_tibiaBox, m_patellaBox, m_fibulaBox;
+  Solid m_femoralShaft, m_tibialShaft, m_fibula, m_patellaBody;
 };
 
 } // namespace fenestra

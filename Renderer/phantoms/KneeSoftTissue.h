@@ -12,37 +12,11 @@ public:
   double distance(const Vec3& point) const;
 
 private:
-  Loft m_loft;
+  Solid m_trunk; ///< without kneecap and tubercle
 };
 
 /// Depth of the fascia under the skin's surface, mm: thickness of skin and subcutaneous fat.
 double fasciaDepth(const Vec3& point);
-
-std::vector<Loft> vastusMedialis();
-std::vector<Loft> vastusLateralis();
-std::vector<Loft> quadricepsBelly(); ///< rectus femoris and vastus intermedius
-std::vector<Loft> semimembranosus();
-std::vector<Loft> bicepsFemoris();
-std::vector<Loft> sartoriusAndGracilis();
-std::vector<Loft> medialGastrocnemius();
-std::vector<Loft> lateralGastrocnemius();
-std::vector<Loft> popliteus();
-std::vector<Loft> soleus();
-std::vector<Loft> tibialisAnterior();
-std::vector<Loft> peroneus();
-
-Tube anteriorCruciateLigament();
-Tube posteriorCruciateLigament();
-Tube medialCollateralLigament();
-Tube lateralCollateralLigament();
-Tube patellarLigament();
-Tube quadricepsTendon();
-Tube iliotibialBand();
-Tube semitendinosusTendon();
-Tube poplitealArtery();
-Tube poplitealVein();
-Tube saphenousVein();
-Tube tibialNerve();
 
 /// Meniscus before the joint's faces cut it: a wedge-shaped ring around one plateau, open toward
 /// the eminence.

@@ -19,17 +19,60 @@ struct PaintLayer {
   std::function<double(const Site&)> distance; ///< mm, negative inside
 };
 
-/// mm; reach of soft borders beyond a shape.
-inline constexpr double boxMargin = 1.5;
 inline const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
+
+/// Base of a subject: its segments, and its layers front to back, each of which hides the later
+/// ones. `S`: a place with the data that the layers need, such as `point`; `T`: tissue.
+template <typename S, typename T>
+class LayeredSubject {
+public:
+  using Site = S;
+  using Tissue = T;
+  using Layer = PaintLayer<Site, Tissue>;
+  using Distance = std::function<double(const Site&)>;
+
+  const std::vector<Layer>& layers() const { return m_layers; }
+  const std::vector<PhantomSegment>& segments() const { return m_segments; }
+
+protected:
+  /// `margin`: mm by which a layer may pass the box that it is given.
+  explicit LayeredSubject(double margin) : m_margin(margin) {}
+
+  /// Adds a segment; returns its label.
+  std::uint8_t segment(const std::string& id, const std::string& name, const Rgb& color) {
+    const auto label = static_cast<std::uint8_t>(m_segments.size() + 1);
+    m_segments.push_back({id, name, color, label, 0});
+    return label;
+  }
+
+  /// Adds a layer behind the others.
+  void layer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance) {
+    m_layers.push_back({label, tissue, expanded(box, m_margin), std::move(distance)});
+  }
+
+  static Distance distanceTo(const Solid& solid) {
+    return [distance = solid.distance](const Site& site) { return distance(site.point); };
+  }
+
+private:
+  double m_margin;
+  std::vector<Layer> m_layers;
+  std::vector<PhantomSegment> m_segments;
+};
+
 inline const Rgb boneColor{0.945, 0.839, 0.569};
+inline const Rgb cartilageColor{0.435, 0.722, 0.824};
+inline const Rgb tendonColor{0.718, 0.839, 0.827};
+inline const Rgb muscleColor{0.753, 0.408, 0.345};
+inline const Rgb vesselColor{0.847, 0.396, 0.310};
+inline const Rgb fatColor{0.902, 0.863, 0.275};
+inline const Rgb skinColor{0.694, 0.478, 0.396};
 
 /// Paints places of a grid, from the front layer back until the voxel is full.
 ///
-/// A Subject has: `Site`, a place with the data that its layers need, such as `surface`, mm to the
-/// subject's outside; `Layer`, a PaintLayer; `background`, the signal around the subject;
-/// `layers()`, front to back; `site(point)`, world; `signal(tissue, site)`; and `acquired(signal,
-/// point, voxel)`, the scanner's value, int16.
+/// A Subject is a LayeredSubject whose sites have `surface`, mm to the subject's outside. It has
+/// `background`, the signal around the subject; `site(point)`, world; `signal(tissue, site)`; and
+/// `acquired(signal, point, voxel)`, the scanner's value, int16.
 template <typename Subject>
 class Painter {
 public:
@@ -76,11 +119,6 @@ private:
   /// Largest distance from a voxel's middle, mm, at which a border shows in the voxel.
   double reach() const { return m_softness + m_sliceStep.norm() / 3.0; }
 
-  bool mayHold(const Layer& layer, const Vec3& point) const {
-    return (point.array() >= layer.box.lower.array() - m_softness).all() &&
-           (point.array() <= layer.box.upper.array() + m_softness).all();
-  }
-
   Sample paint(const std::vector<const Layer*>& row, const Vec3& point) const {
     const auto site = m_subject.site(point);
     Sample sample;
@@ -91,7 +129,7 @@ private:
     sample.signal = 0.0;
     double visible = 1.0; // share of the voxel not yet covered
     for (const Layer* layer : row) {
-      if (!mayHold(*layer, point))
+      if (!contains(expanded(layer->box, m_softness), point))
         continue;
       const double distance = layer->distance(site);
       sample.border = std::min(sample.border, std::abs(distance));
@@ -144,6 +182,7 @@ Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string
   computeRange(phantom.volume);
   phantom.labels.size = size;
   phantom.labels.layers.push_back(std::move(labels));
+  phantom.segments = subject.segments();
   return phantom;
 }
 

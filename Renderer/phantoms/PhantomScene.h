@@ -1,6 +1,7 @@
 #pragma once
 // Phantom as a Slicer scene, as Slicer 5.2 to 5.12 write a volume with volume rendering.
 
+#include "base/TextStream.h"
 #include "phantoms/Phantom.h"
 
 #include <string>
@@ -21,6 +22,15 @@ std::string phantomScene(const Phantom& phantom, const std::string& name,
 
 /// Text of the region of interest's .mrk.json: the box that the volume's voxels fill, LPS mm.
 std::string phantomRoi(const Phantom& phantom);
+
+/// Numbers as Slicer writes them: a stream's six digits, separated by blanks.
+template <typename... Numbers>
+std::string spaced(const Numbers&... numbers) {
+  TextWriter stream;
+  const char* separator = "";
+  ((stream << std::exchange(separator, " ") << numbers), ...);
+  return stream.str();
+}
 
 /// Encodes a file name or segment id as Slicer does in attributes: all but letters, digits and
 /// "-_./" become %XX.

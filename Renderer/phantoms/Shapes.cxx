@@ -40,6 +40,47 @@ double ellipseDistance(const Vec2& offset, const Vec2& radii, double squareness)
   return (level - 1.0) / std::max(slope, 1e-9);
 }
 
+Box united(const Box& a, const Box& b) {
+  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
+/// Box around a box mapped affinely.
+Box mapped(const Affine& map, const Box& box) {
+  Box result{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = map * box.corner(i);
+    result = united(result, {corner, corner});
+  }
+  return result;
+}
+
+LoftSection sectionAt(const std::vector<LoftSection>& sections, double z) {
+  const std::size_t last = sections.size() - 1;
+  std::size_t i = 0;
+  while (i + 1 < last && z > sections[i + 1].z)
+    ++i;
+  const LoftSection& a = sections[i == 0 ? 0 : i - 1];
+  const LoftSection& b = sections[i];
+  const LoftSection& c = sections[i + 1];
+  const LoftSection& d = sections[std::min(i + 2, last)];
+  const double t = std::clamp((z - b.z) / (c.z - b.z), 0.0, 1.0);
+  return {z, catmullRom(a.center, b.center, c.center, d.center, t),
+          catmullRom(a.radii, b.radii, c.radii, d.radii, t).cwiseMax(0.5)};
+}
+
+/// Distance to a tube whose nodes are as close as refined() makes them.
+double tubeDistance(const std::vector<TubeNode>& nodes, const Vec3& point) {
+  double nearest = infinity;
+  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+    const Vec3 axis = nodes[i + 1].point - nodes[i].point;
+    const Vec3 offset = point - nodes[i].point;
+    const double t = std::clamp(offset.dot(axis) / axis.squaredNorm(), 0.0, 1.0);
+    const double radius = std::lerp(nodes[i].radius, nodes[i + 1].radius, t);
+    nearest = std::min(nearest, (offset - t * axis).norm() - radius);
+  }
+  return nearest;
+}
+
 } // namespace
 
 double smoothStep(double low, double high, double x) {
@@ -75,22 +116,46 @@ bool contains(const Box& box, const Vec3& point) {
   return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
 }
 
-Box united(const Box& a, const Box& b) {
-  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+Solid ellipsoid(const Vec3& center, const Vec3& radii) {
+  return {[=](const Vec3& p) { return ellipsoidDistance(p, center, radii); },
+          {center - radii, center + radii}};
 }
 
-Box mapped(const Affine& map, const Box& box) {
-  Box result{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner = map * box.corner(i);
-    result = united(result, {corner, corner});
+Solid block(const Vec3& halfSize, double radius) {
+  return {[=](const Vec3& p) {
+            const Vec3 beyond = p.cwiseAbs().array() - halfSize.array() + radius;
+            return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0) - radius;
+          },
+          {-halfSize, halfSize}};
+}
+
+Solid loft(const std::vector<LoftSection>& sections, double squareness, double capBlend) {
+  Vec2 lower = Vec2::Constant(infinity), upper = Vec2::Constant(-infinity);
+  for (const LoftSection& section : sections) {
+    lower = lower.cwiseMin(section.center - section.radii);
+    upper = upper.cwiseMax(section.center + section.radii);
   }
-  return result;
+  const double bottom = sections.front().z, top = sections.back().z;
+  const double overshoot = 2.0; // mm; of a Catmull-Rom curve over its nodes
+  return {[=](const Vec3& p) {
+            const LoftSection section = sectionAt(sections, p.z());
+            const double side =
+                ellipseDistance(p.head<2>() - section.center, section.radii, squareness);
+            return smoothIntersection(side, std::max(bottom - p.z(), p.z() - top), capBlend);
+          },
+          expanded({{lower.x(), lower.y(), bottom}, {upper.x(), upper.y(), top}}, overshoot)};
 }
 
-double roundedBoxDistance(const Vec3& point, const Vec3& halfSize, double radius) {
-  const Vec3 beyond = point.cwiseAbs().array() - halfSize.array() + radius;
-  return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0) - radius;
+Solid tube(const std::vector<TubeNode>& nodes, const Vec3& stretch) {
+  Vec3 lower = Vec3::Constant(infinity), upper = Vec3::Constant(-infinity);
+  std::vector<TubeNode> axis = refined(nodes); // in the space divided by the stretch
+  for (TubeNode& node : axis) {
+    lower = lower.cwiseMin(node.point - node.radius * stretch);
+    upper = upper.cwiseMax(node.point + node.radius * stretch);
+    node.point = node.point.cwiseQuotient(stretch);
+  }
+  return {[=](const Vec3& p) { return tubeDistance(axis, p.cwiseQuotient(stretch)); },
+          {lower, upper}};
 }
 
 Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up) {
@@ -100,19 +165,9 @@ Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up) {
   return Affine(linear, -(linear * origin));
 }
 
-Solid ellipsoid(const Vec3& center, const Vec3& radii) {
-  return {[=](const Vec3& p) { return ellipsoidDistance(p, center, radii); },
-          {center - radii, center + radii}};
-}
-
-Solid block(const Affine& toShape, const Vec3& halfSize, double radius) {
-  return {[=](const Vec3& p) { return roundedBoxDistance(toShape * p, halfSize, radius); },
-          mapped(toShape.inverse(), {-halfSize, halfSize})};
-}
-
-Solid placed(const Affine& toShape, const Loft& loft) {
-  return {[=](const Vec3& p) { return loft.distance(toShape * p); },
-          mapped(toShape.inverse(), loft.box())};
+Solid placed(const Affine& toShape, const Solid& solid) {
+  return {[=](const Vec3& p) { return solid.distance(toShape * p); },
+          mapped(toShape.inverse(), solid.box)};
 }
 
 /// The box grows by blend / 4, the reach of a blend.
@@ -126,63 +181,16 @@ Solid intersect(const Solid& a, const Solid& b, double blend) {
           {a.box.lower.cwiseMax(b.box.lower), a.box.upper.cwiseMin(b.box.upper)}};
 }
 
-Loft::Loft(std::vector<LoftSection> sections, double squareness, double capBlend)
-    : m_sections(std::move(sections)), m_squareness(squareness), m_capBlend(capBlend) {
-  Vec2 lower = Vec2::Constant(infinity), upper = Vec2::Constant(-infinity);
-  for (const LoftSection& section : m_sections) {
-    lower = lower.cwiseMin(section.center - section.radii);
-    upper = upper.cwiseMax(section.center + section.radii);
-  }
-  const double overshoot = 2.0; // mm; of a Catmull-Rom curve over its nodes
-  m_box = expanded(
-      {{lower.x(), lower.y(), m_sections.front().z}, {upper.x(), upper.y(), m_sections.back().z}},
-      overshoot);
+Solid without(const Solid& solid, const Solid& removed, double blend) {
+  return {[=](const Vec3& p) {
+            return smoothDifference(solid.distance(p), removed.distance(p), blend);
+          },
+          solid.box};
 }
 
-LoftSection Loft::sectionAt(double z) const {
-  const std::size_t last = m_sections.size() - 1;
-  std::size_t i = 0;
-  while (i + 1 < last && z > m_sections[i + 1].z)
-    ++i;
-  const LoftSection& a = m_sections[i == 0 ? 0 : i - 1];
-  const LoftSection& b = m_sections[i];
-  const LoftSection& c = m_sections[i + 1];
-  const LoftSection& d = m_sections[std::min(i + 2, last)];
-  const double t = std::clamp((z - b.z) / (c.z - b.z), 0.0, 1.0);
-  return {z, catmullRom(a.center, b.center, c.center, d.center, t),
-          catmullRom(a.radii, b.radii, c.radii, d.radii, t).cwiseMax(0.5)};
-}
-
-double Loft::distance(const Vec3& point) const {
-  const LoftSection section = sectionAt(point.z());
-  const double side =
-      ellipseDistance(point.head<2>() - section.center, section.radii, m_squareness);
-  const double ends = std::max(m_sections.front().z - point.z(), point.z() - m_sections.back().z);
-  return smoothIntersection(side, ends, m_capBlend);
-}
-
-Tube::Tube(const std::vector<TubeNode>& nodes, const Vec3& stretch)
-    : m_nodes(refined(nodes)), m_stretch(stretch) {
-  Vec3 lower = Vec3::Constant(infinity), upper = Vec3::Constant(-infinity);
-  for (TubeNode& node : m_nodes) {
-    lower = lower.cwiseMin(node.point - node.radius * stretch);
-    upper = upper.cwiseMax(node.point + node.radius * stretch);
-    node.point = node.point.cwiseQuotient(stretch);
-  }
-  m_box = {lower, upper};
-}
-
-double Tube::distance(const Vec3& point) const {
-  const Vec3 q = point.cwiseQuotient(m_stretch);
-  double nearest = infinity;
-  for (std::size_t i = 0; i + 1 < m_nodes.size(); ++i) {
-    const Vec3 axis = m_nodes[i + 1].point - m_nodes[i].point;
-    const Vec3 offset = q - m_nodes[i].point;
-    const double t = std::clamp(offset.dot(axis) / axis.squaredNorm(), 0.0, 1.0);
-    const double radius = std::lerp(m_nodes[i].radius, m_nodes[i + 1].radius, t);
-    nearest = std::min(nearest, (offset - t * axis).norm() - radius);
-  }
-  return nearest;
+Solid paired(const Solid& right) {
+  const Affine mirror(Mat3::Diagonal({-1.0, 1.0, 1.0}), Vec3::Zero());
+  return unite(right, placed(mirror, right), 0.1);
 }
 
 } // namespace fenestra

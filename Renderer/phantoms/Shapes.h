@@ -20,19 +20,8 @@ double smoothDifference(double a, double b, double blend);
 
 double ellipsoidDistance(const Vec3& point, const Vec3& center, const Vec3& radii);
 
-/// Box around the origin with rounded edges.
-double roundedBoxDistance(const Vec3& point, const Vec3& halfSize, double radius);
-
 Box expanded(const Box& box, double margin);
 bool contains(const Box& box, const Vec3& point);
-/// Box around both boxes, and around a box mapped affinely.
-Box united(const Box& a, const Box& b);
-Box mapped(const Affine& map, const Box& box);
-
-/// Map from the world to a shape's space with origin at `origin`, z along `axis`, y toward `up`,
-/// and x along axis x up (mirrored: x is the lateral side of a right limb if axis is anterior and
-/// up superior). Units stay mm.
-Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up);
 
 /// Shape with a box around it, in the world.
 struct Solid {
@@ -40,10 +29,8 @@ struct Solid {
   Box box;
 };
 Solid ellipsoid(const Vec3& center, const Vec3& radii);
-/// Box with edges rounded by `radius`; `halfSize` along the shape's own x, y, z.
-Solid block(const Affine& toShape, const Vec3& halfSize, double radius);
-Solid unite(const Solid& a, const Solid& b, double blend);
-Solid intersect(const Solid& a, const Solid& b, double blend);
+/// Box around the origin with edges rounded by `radius`.
+Solid block(const Vec3& halfSize, double radius);
 
 /// Cross-section of a loft in the axial plane: an ellipse, or more square.
 struct LoftSection {
@@ -51,47 +38,32 @@ struct LoftSection {
   Vec2 center = Vec2::Zero();
   Vec2 radii = Vec2::Ones();
 };
-
-/// Solid through axial cross-sections; centre and radii follow Catmull-Rom curves of z.
-class Loft {
-public:
-  /// Sections by rising z, at least two. `squareness`: 0 (ellipse) to 1 (superellipse of exponent
-  /// 4). The ends are flat, rounded over `capBlend` mm.
-  Loft(std::vector<LoftSection> sections, double squareness, double capBlend);
-
-  double distance(const Vec3& point) const;
-  const Box& box() const { return m_box; }
-
-private:
-  LoftSection sectionAt(double z) const;
-
-  std::vector<LoftSection> m_sections;
-  double m_squareness, m_capBlend;
-  Box m_box;
-};
-
-/// Loft placed by the map to its own space.
-Solid placed(const Affine& toShape, const Loft& loft);
+/// Solid through axial cross-sections, by rising z, at least two; centre and radii follow
+/// Catmull-Rom curves of z. `squareness`: 0 (ellipse) to 1 (superellipse of exponent 4). The ends
+/// are flat, rounded over `capBlend` mm.
+Solid loft(const std::vector<LoftSection>& sections, double squareness, double capBlend);
 
 /// Point of a tube's axis, and the tube's radius there.
 struct TubeNode {
   Vec3 point;
   double radius;
 };
-
 /// Tube along a Catmull-Rom curve through its nodes. `stretch` (each component at least 1) makes a
 /// band: its cross-section is that many times wider along each axis.
-class Tube {
-public:
-  Tube(const std::vector<TubeNode>& nodes, const Vec3& stretch = Vec3::Ones());
+Solid tube(const std::vector<TubeNode>& nodes, const Vec3& stretch = Vec3::Ones());
 
-  double distance(const Vec3& point) const;
-  const Box& box() const { return m_box; }
+/// Map from the world to a shape's space with origin at `origin`, z along `axis`, y toward `up`,
+/// and x along axis x up (mirrored: x is the lateral side of a right limb if axis is anterior and
+/// up superior). Units stay mm.
+Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up);
+/// Solid placed by the map to its own space.
+Solid placed(const Affine& toShape, const Solid& solid);
 
-private:
-  std::vector<TubeNode> m_nodes; ///< refined axis, in the space divided by the stretch
-  Vec3 m_stretch;
-  Box m_box;
-};
+/// Solids blended as by smoothUnion and its like.
+Solid unite(const Solid& a, const Solid& b, double blend);
+Solid intersect(const Solid& a, const Solid& b, double blend);
+Solid without(const Solid& solid, const Solid& removed, double blend);
+/// `right` and its mirror image at the plane x = 0.
+Solid paired(const Solid& right);
 
 } // namespace fenestra

@@ -1,3 +1,4 @@
+#include "phantoms/Anatomy.h"
 #include "phantoms/Noise.h"
 #include "phantoms/Shapes.h"
 
@@ -15,40 +16,42 @@ TEST(PhantomShapes, BlendsEqualTheSharpOperationAwayFromTheSeam) {
 }
 
 TEST(PhantomShapes, TubeDistanceIsThatOfItsAxisLessItsRadius) {
-  const Tube tube({{{0, 0, -10}, 2.0}, {{0, 0, 0}, 2.0}, {{0, 0, 10}, 2.0}});
-  EXPECT_NEAR(tube.distance({5, 0, 1}), 3.0, 1e-12);
-  EXPECT_NEAR(tube.distance({0, 0, 0.3}), -2.0, 1e-12);
-  EXPECT_NEAR(tube.distance({0, 0, 14}), 2.0, 1e-12);
-  EXPECT_TRUE(tube.box().upper.isApprox(Vec3(2, 2, 12)));
+  const Solid solid = tube({{{0, 0, -10}, 2.0}, {{0, 0, 0}, 2.0}, {{0, 0, 10}, 2.0}});
+  EXPECT_NEAR(solid.distance({5, 0, 1}), 3.0, 1e-12);
+  EXPECT_NEAR(solid.distance({0, 0, 0.3}), -2.0, 1e-12);
+  EXPECT_NEAR(solid.distance({0, 0, 14}), 2.0, 1e-12);
+  EXPECT_TRUE(solid.box.upper.isApprox(Vec3(2, 2, 12)));
 }
 
 TEST(PhantomShapes, BandIsStretchedAcrossButNotAlongItsThickness) {
-  const Tube band({{{0, 0, 0}, 1.5}, {{0, 0, 20}, 1.5}}, {4, 1, 1});
+  const Solid band = tube({{{0, 0, 0}, 1.5}, {{0, 0, 20}, 1.5}}, {4, 1, 1});
   EXPECT_NEAR(band.distance({0, 1.5, 10}), 0.0, 1e-12);
   EXPECT_NEAR(band.distance({6, 0, 10}), 0.0, 1e-12);
 }
 
 TEST(PhantomShapes, LoftOfEqualCirclesIsACylinder) {
-  const Loft loft({{-20, {1, 2}, {5, 5}}, {0, {1, 2}, {5, 5}}, {20, {1, 2}, {5, 5}}}, 0.0, 1.0);
-  EXPECT_NEAR(loft.distance({9, 2, 3}), 3.0, 1e-9);
-  EXPECT_NEAR(loft.distance({1, 5, -3}), -2.0, 1e-9);
-  EXPECT_NEAR(loft.distance({1, 2.5, 24}), 4.0, 1e-9);
+  const Solid cylinder =
+      loft({{-20, {1, 2}, {5, 5}}, {0, {1, 2}, {5, 5}}, {20, {1, 2}, {5, 5}}}, 0.0, 1.0);
+  EXPECT_NEAR(cylinder.distance({9, 2, 3}), 3.0, 1e-9);
+  EXPECT_NEAR(cylinder.distance({1, 5, -3}), -2.0, 1e-9);
+  EXPECT_NEAR(cylinder.distance({1, 2.5, 24}), 4.0, 1e-9);
 }
 
 TEST(PhantomShapes, LoftPassesThroughItsSections) {
   const std::vector<LoftSection> sections = {
       {-10, {0, 0}, {4, 6}}, {0, {2, 1}, {7, 5}}, {15, {3, -1}, {5, 3}}, {30, {0, 0}, {2, 2}}};
-  const Loft loft(sections, 0.6, 1.0);
+  const Solid solid = loft(sections, 0.6, 1.0);
   for (std::size_t i = 1; i + 1 < sections.size(); ++i) {
     const LoftSection& s = sections[i];
-    EXPECT_NEAR(loft.distance({s.center.x() + s.radii.x(), s.center.y(), s.z}), 0.0, 1e-9);
-    EXPECT_NEAR(loft.distance({s.center.x(), s.center.y() - s.radii.y(), s.z}), 0.0, 1e-9);
+    EXPECT_NEAR(solid.distance({s.center.x() + s.radii.x(), s.center.y(), s.z}), 0.0, 1e-9);
+    EXPECT_NEAR(solid.distance({s.center.x(), s.center.y() - s.radii.y(), s.z}), 0.0, 1e-9);
   }
 }
 
 TEST(PhantomShapes, BlockIsABoxWithRoundEdgesInItsOwnAxes) {
   // Axes across, up and along: x, z and y of the world.
-  const Solid solid = block(toShape({1, 2, 3}, Vec3::UnitY(), Vec3::UnitZ()), {4, 5, 6}, 2.0);
+  const Solid solid =
+      placed(toShape({1, 2, 3}, Vec3::UnitY(), Vec3::UnitZ()), block({4, 5, 6}, 2.0));
   EXPECT_NEAR(solid.distance({1, 2, 3}), -4.0, 1e-12);
   EXPECT_NEAR(solid.distance({8, 2, 3}), 3.0, 1e-12);
   EXPECT_NEAR(solid.distance({1, 2, 9}), 1.0, 1e-12);
@@ -59,12 +62,32 @@ TEST(PhantomShapes, BlockIsABoxWithRoundEdgesInItsOwnAxes) {
 }
 
 TEST(PhantomShapes, PlacedLoftRunsAlongItsAxis) {
-  const Loft loft({{0, {0, 0}, {2, 3}}, {10, {0, 0}, {2, 3}}}, 0.0, 1.0);
-  const Solid solid = placed(toShape({0, 5, 0}, Vec3::UnitY(), Vec3::UnitZ()), loft);
+  const Solid upright = loft({{0, {0, 0}, {2, 3}}, {10, {0, 0}, {2, 3}}}, 0.0, 1.0);
+  const Solid solid = placed(toShape({0, 5, 0}, Vec3::UnitY(), Vec3::UnitZ()), upright);
   EXPECT_NEAR(solid.distance({2, 10, 0}), 0.0, 1e-9);
   EXPECT_NEAR(solid.distance({0, 10, 3}), 0.0, 1e-9);
   EXPECT_NEAR(solid.distance({0, 17, 0}), 2.0, 1e-9);
   EXPECT_TRUE(contains(solid.box, {2, 15, 3}));
+}
+
+TEST(PhantomAnatomy, PartsAreJoinedInTheirOrder) {
+  const Solid solid = Anatomy::parse(R"([
+    {"name": "Ball", "ellipsoid": [[0, 0, 0], [5, 5, 5]]},
+    {"name": "Two bars", "tube": [[4, 0, -9, 1], [4, 0, 9, 1]], "paired": true, "unite": 0.5},
+    {"name": "Hole", "tube": [[0, 0, -9, 2], [0, 0, 9, 2]], "cut": 0.5},
+    {"name": "Upper half", "above": 1, "intersect": 0.5}])");
+  EXPECT_GT(solid.distance({0, 0, 3}), 1.0) << "in the hole";
+  EXPECT_LT(solid.distance({0, 3, 3}), 0.0) << "in the ball";
+  EXPECT_LT(solid.distance({4, 0, 8}), 0.0);
+  EXPECT_LT(solid.distance({-4, 0, 8}), 0.0) << "in the mirrored bar";
+  EXPECT_GT(solid.distance({0, 3, -3}), 1.0) << "below";
+}
+
+TEST(PhantomAnatomy, PartHasAFrameOfItsOwn) {
+  const Solid solid = Anatomy::parse(R"({"loft": [[0, 0, 0, 2, 3], [10, 0, 0, 2, 3]],
+    "squareness": 0, "cap": 1, "frame": [[0, 5, 0], [0, 1, 0], [0, 0, 1]]})");
+  EXPECT_NEAR(solid.distance({2, 10, 0}), 0.0, 1e-9);
+  EXPECT_NEAR(solid.distance({0, 17, 0}), 2.0, 1e-9);
 }
 
 TEST(PhantomNoise, NormalNoiseHasNormalMoments) {
@@ -81,7 +104,7 @@ TEST(PhantomNoise, NormalNoiseHasNormalMoments) {
   EXPECT_NEAR(within, 0.6827, 0.007);
 }
 
-TEST(PhantomNoise, ValueNoiseIsContinuousAndWithinItsRange) {
+TEST(PhantomNoise, IsAContinuousFunctionOfPositionWithinItsRange) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(0.37 * i - 300.0, -0.21 * i, 0.11 * i);
     const double value = valueNoise(p, 5);
@@ -92,7 +115,7 @@ TEST(PhantomNoise, ValueNoiseIsContinuousAndWithinItsRange) {
   EXPECT_NE(valueNoise({0.5, 0.5, 0.5}, 1), valueNoise({0.5, 0.5, 0.5}, 2));
 }
 
-TEST(PhantomNoise, RicianMomentsEqualPublishedOnes) {
+TEST(PhantomNoise, RicianMomentsAreThoseOfTheLiterature) {
   constexpr int n = 200000;
   constexpr double sigma = 11.0;
   double air = 0.0, muscle = 0.0, square = 0.0;

@@ -1,0 +1,42 @@
+#pragma once
+// Anatomy as numbers: the files Resources/phantoms/*.json give names and shapes of a subject's
+// structures as points and radii, mm, in the subject's frame.
+
+#include "phantoms/Shapes.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fenestra {
+
+/// Structure that a segment shows.
+struct Structure {
+  std::string id, name;
+  Rgb color; ///< display-encoded
+  std::vector<Solid> shapes;
+};
+
+using Anatomy = nlohmann::json;
+
+/// Content of Resources/phantoms/`subject`.json.
+Anatomy anatomyOf(const std::string& subject);
+
+void from_json(const Anatomy& numbers, Vec2& vector);
+void from_json(const Anatomy& numbers, Vec3& vector);
+
+/// Reads a part, or a list of parts, each joined with those before it: {"unite": MM}, {"cut": MM}
+/// or {"intersect": MM}, MM being the width of the blend. A part is one of
+///   {"ellipsoid": [CENTER, RADII]}
+///   {"block": HALF SIZE, "rounding": MM}
+///   {"loft": [[z, x, y, radius along x, along y], ...], "squareness": 0 to 1 [0.25], "cap": MM
+///   [5]}
+///   {"tube": [[x, y, z, radius], ...], "stretch": FACTORS}
+///   {"above": z}
+///   {"parts": [...]}
+/// and may lie in a frame of its own, {"frame": [ORIGIN, AXIS, UP]}, or be {"paired": true}.
+void from_json(const Anatomy& parts, Solid& solid);
+
+/// Structures of a list, {"id", "name", "color", "shapes": [...]}; `color`: of those that have none
+/// of their own.
+std::vector<Structure> structures(const Anatomy& list, const Rgb& color);
+
+} // namespace fenestra
