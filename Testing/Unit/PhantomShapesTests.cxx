@@ -104,7 +104,7 @@ TEST(PhantomNoise, NormalNoiseHasNormalMoments) {
   EXPECT_NEAR(within, 0.6827, 0.007);
 }
 
-TEST(PhantomNoise, IsAContinuousFunctionOfPositionWithinItsRange) {
+TEST(PhantomNoise, ValueNoiseIsContinuousAndWithinItsRange) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(0.37 * i - 300.0, -0.21 * i, 0.11 * i);
     const double value = valueNoise(p, 5);
@@ -115,7 +115,7 @@ TEST(PhantomNoise, IsAContinuousFunctionOfPositionWithinItsRange) {
   EXPECT_NE(valueNoise({0.5, 0.5, 0.5}, 1), valueNoise({0.5, 0.5, 0.5}, 2));
 }
 
-TEST(PhantomNoise, RicianMomentsAreThoseOfTheLiterature) {
+TEST(PhantomNoise, RicianMomentsEqualPublishedOnes) {
   constexpr int n = 200000;
   constexpr double sigma = 11.0;
   double air = 0.0, muscle = 0.0, square = 0.0;
