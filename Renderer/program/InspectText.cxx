@@ -125,8 +125,8 @@ std::string shown(const std::string& key, const Json& member) {
   return joined(items, separator == separators.end() ? "," : separator->second);
 }
 
-/// `words` with the object's members where words have their keys in braces, and with named() where
-/// there are only braces; empty: a member is null or missing.
+/// Words with the object's members in place of "{key}", and named() in place of "{}"; empty: one of
+/// them is null or missing.
 std::string filled(std::string_view words, const Json& object) {
   std::string text;
   for (auto open = words.find('{'); open != words.npos; open = words.find('{')) {
@@ -141,15 +141,15 @@ std::string filled(std::string_view words, const Json& object) {
   return text.append(words);
 }
 
-/// Words for a part of the report, whatever its kind: shown where filled(), and if there is a key,
-/// where its member has the value.
+/// Words for a part of the report, whatever its kind. Shown if filled() is not empty, and if the
+/// member `key` has this value; no key: whatever the members are.
 struct Phrase {
   const char* words;
   const char* key = nullptr;
   Json value = {};
 };
 
-/// Everything that is told of a node, or of a part of a render, behind its name and id.
+/// Description of a node, or of a part of a render, for the place behind its name and id.
 std::string described(const Json& part) {
   static const Phrase phrases[] = {
       {"label map", "kind", "labelMap"},
