@@ -134,7 +134,7 @@ Vec3 FlagValues::triple(const std::string& name) const {
 }
 
 std::string FlagValues::word(const std::string& name) const {
-  const std::string given = *text(name);
+  std::string given = *text(name);
   const std::vector<std::string>& words = flag(name).takes.words;
   if (words.empty() || std::ranges::find(words, given) != words.end())
     return given;

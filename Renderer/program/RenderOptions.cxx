@@ -95,13 +95,14 @@ std::filesystem::path defaultOutput(const std::filesystem::path& input) {
 std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
   std::vector<std::filesystem::path> files = {*flags.text("INPUT")};
   for (const Flag& flag : renderSyntax.flags)
-    if (const bool isRead = flag.takesFile() && shapesPicture(flag); isRead && flags.has(flag.name))
-      if (const std::string file = *flags.text(flag.name); !isLookText(file))
-        files.emplace_back(file);
+    if (flag.takesFile() && shapesPicture(flag) && flags.has(flag.name))
+      files.emplace_back(*flags.text(flag.name));
+  std::erase_if(files, [](const auto& file) { return isLookText(file.string()); });
   return files;
 }
 
-void checkLayers(const FlagValues& flags, RenderOptions& options) {
+/// Checks the layers against the pictures, and asks for normals if one of these has them.
+void settleLayers(const FlagValues& flags, RenderOptions& options) {
   const auto has = [&options](ImageFormat format) {
     return std::ranges::count(options.outputs, format, imageFormat) > 0;
   };
@@ -131,7 +132,7 @@ RenderOptions renderOptions(const FlagValues& flags) {
     options.outputs.push_back(defaultOutput(scene.input));
     options.outputsNamedBy = NamedBy::standard;
   }
-  checkLayers(flags, options);
+  settleLayers(flags, options);
   scene.measure = options.stats.has_value();
   if (options.returnValues && options.progress == ProgressMode::automatic)
     options.progress = ProgressMode::xml;

@@ -97,11 +97,10 @@ SceneFlags withSceneFlags(const FlagValues& given) {
 }
 
 std::vector<std::string> sceneArguments(const FlagValues& given, const FlagValues& merged) {
-  const std::vector<std::string> before = given.arguments();
-  std::vector<std::string> stored;
-  for (const std::string& argument : merged.arguments())
-    if (std::find(before.begin(), before.end(), argument) == before.end())
-      stored.push_back(argument);
+  std::vector<std::string> stored = merged.arguments();
+  std::erase_if(stored, [before = given.arguments()](const std::string& argument) {
+    return std::ranges::find(before, argument) != before.end();
+  });
   return stored;
 }
 

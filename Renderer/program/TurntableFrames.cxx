@@ -14,8 +14,7 @@ constexpr const char* turntableGroup = "Turntable";
 const Flag ownFlags[] = {
     {"frames", "N", turntableGroup, "Pictures, 1 to 10000",
      Takes::whole(1, mostFrames).shows("36")},
-    {"degrees", "D", turntableGroup,
-     "How far the eye goes around; frame i of N stands at i D / N",
+    {"degrees", "D", turntableGroup, "How far the eye goes around; frame i of N stands at i D / N",
      Takes::number(-36000.0, 36000.0).shows("360")},
     {"steady", "DEGREES", turntableGroup,
      "Spreads what the clipping surface does suddenly, away from the focus, over so far to both "
