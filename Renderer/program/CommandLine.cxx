@@ -12,7 +12,7 @@ namespace fenestra {
 namespace {
 
 std::string seeHelp(const CommandSyntax& syntax) {
-  return std::string(" (fenestra ") + syntax.name + " --help lists what there is)";
+  return " (fenestra " + syntax.name + " --help lists what there is)";
 }
 
 Error unknownFlag(const CommandSyntax& syntax, std::string_view given) {
@@ -21,104 +21,71 @@ Error unknownFlag(const CommandSyntax& syntax, std::string_view given) {
   for (const Flag& flag : syntax.flags)
     names.push_back(flag.name);
   std::string word(given.substr(std::min(given.find_first_not_of('-'), given.size())));
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(word, word.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const std::string_view likely = nearest(word, names);
   const std::string mend = likely.empty() ? "" : "; did you mean --" + std::string(likely) + "?";
   return usageError(std::string(given) + ": no such flag" + mend + seeHelp(syntax));
 }
 
-Error extraArgument(const CommandSyntax& syntax, const std::string& given) {
+Error extraArgument(const CommandSyntax& syntax, std::string_view given) {
   std::string expected;
   for (const Positional& positional : syntax.positionals)
-    expected += (expected.empty() ? "" : " and ") + std::string(positional.name);
-  return usageError("'" + given + "': one argument too many after " + expected +
+    expected += (expected.empty() ? "" : " and ") + positional.name;
+  return usageError("'" + std::string(given) + "': one argument too many after " + expected +
                     "; quote names with blanks" + seeHelp(syntax));
 }
 
-bool isSwitch(const Flag& flag) {
-  return *flag.value == 0;
+using Words = std::span<const std::string_view>;
+
+std::string_view takeFirst(Words& words) {
+  const std::string_view word = words.front();
+  words = words.subspan(1);
+  return word;
 }
 
-/// Error for a value that is missing or is the next flag, and for a switch with a value.
-Error wrongValue(const Flag& flag) {
-  if (isSwitch(flag))
-    return usageError(std::string("--") + flag.name + ": is a switch; write it without a value");
-  return usageError(std::string("--") + flag.name + ": its value is missing; write --" + flag.name +
-                    " " + flag.value);
+/// Takes the flag `word`, and its value from the same word or the next.
+void takeFlag(const CommandSyntax& syntax, std::string_view word, Words& words,
+              FlagValues& values) {
+  const std::size_t equals = word.find('=');
+  const bool hasValue = equals != word.npos;
+  const Flag* const flag =
+      word.starts_with("--") ? findFlag(syntax.flags, word.substr(2, equals - 2)) : nullptr;
+  if (!flag)
+    throw unknownFlag(syntax, word);
+  if (flag->isSwitch() && hasValue)
+    throw usageError("--" + flag->name + ": is a switch; write it without a value");
+  if (flag->isSwitch())
+    return values.add(flag->name, "");
+  const bool isMissing =
+      hasValue ? equals + 1 == word.size() : words.empty() || words.front().starts_with("--");
+  if (isMissing || (!hasValue && words.front().empty()))
+    throw usageError("--" + flag->name + ": its value is " + (isMissing ? "missing" : "empty") +
+                     "; write --" + flag->name + " " + flag->value);
+  values.add(flag->name, std::string(hasValue ? word.substr(equals + 1) : takeFirst(words)));
 }
 
-/// Parses words into values, by a command's syntax.
-class Parser {
-public:
-  explicit Parser(const CommandSyntax& syntax) : m_syntax(syntax), m_values(syntax.flags) {}
-
-  FlagValues parse(std::span<const std::string_view> words) {
-    bool flagsEnded = false;
-    for (m_words = words; !m_words.empty();) {
-      const std::string_view word = taken();
-      if (!flagsEnded && word == "--")
-        flagsEnded = true;
-      else if (!flagsEnded && word.size() > 1 && word[0] == '-')
-        takeFlag(word);
-      else
-        takePositional(word);
-    }
-    if (m_positionals < m_syntax.positionals.size()) {
-      const Positional& missing = m_syntax.positionals[m_positionals];
-      throw usageError(std::string(missing.name) + ": is missing; name it: " + missing.text +
-                       seeHelp(m_syntax));
-    }
-    return m_values;
+FlagValues parsedWords(const CommandSyntax& syntax, Words words) {
+  FlagValues values(syntax.flags);
+  auto positional = syntax.positionals.begin();
+  for (bool flagsEnded = false; !words.empty();) {
+    const std::string_view word = takeFirst(words);
+    if (!flagsEnded && word == "--")
+      flagsEnded = true;
+    else if (!flagsEnded && word.size() > 1 && word[0] == '-')
+      takeFlag(syntax, word, words, values);
+    else if (positional == syntax.positionals.end())
+      throw extraArgument(syntax, word);
+    else if (word.empty())
+      throw usageError(positional->name + ": is empty; name a file");
+    else
+      values.add((positional++)->name, std::string(word));
   }
-
-private:
-  std::string_view taken() {
-    const std::string_view word = m_words.front();
-    m_words = m_words.subspan(1);
-    return word;
-  }
-
-  void takeFlag(std::string_view word) {
-    const std::size_t equals = word.find('=');
-    const Flag* const flag =
-        word.starts_with("--") ? findFlag(m_syntax.flags, word.substr(2, equals - 2)) : nullptr;
-    if (!flag)
-      throw unknownFlag(m_syntax, word);
-    std::string_view value;
-    if (equals != word.npos)
-      value = word.substr(equals + 1);
-    else if (!isSwitch(*flag) && !m_words.empty())
-      value = checkedValue(*flag, taken());
-    if (value.empty() != isSwitch(*flag) || (isSwitch(*flag) && equals != word.npos))
-      throw wrongValue(*flag);
-    m_values.add(flag->name, std::string(value));
-  }
-
-  /// Value that is a word of its own, after the flag.
-  static std::string_view checkedValue(const Flag& flag, std::string_view word) {
-    if (word.starts_with("--"))
-      throw wrongValue(flag);
-    if (word.empty())
-      throw usageError(std::string("--") + flag.name + ": its value is empty; write --" +
-                       flag.name + " " + flag.value);
-    return word;
-  }
-
-  void takePositional(std::string_view word) {
-    if (m_positionals == m_syntax.positionals.size())
-      throw extraArgument(m_syntax, std::string(word));
-    const char* const name = m_syntax.positionals[m_positionals++].name;
-    if (word.empty())
-      throw usageError(std::string(name) + ": is empty; name a file");
-    m_values.add(name, std::string(word));
-  }
-
-  const CommandSyntax& m_syntax;
-  FlagValues m_values;
-  std::span<const std::string_view> m_words; ///< not parsed yet
-  std::size_t m_positionals = 0;             ///< parsed so far
-};
+  if (positional != syntax.positionals.end())
+    throw usageError(positional->name + ": is missing; name it: " + positional->text +
+                     seeHelp(syntax));
+  return values;
+}
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swapped neighbours.
 std::size_t editDistance(std::string_view a, std::string_view b) {
@@ -160,14 +127,14 @@ std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc
                                            int first) {
   const std::vector<std::string_view> words(argv + first, argv + argc);
   const auto asksFor = [&words](std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
+    return std::ranges::find(words, word) != words.end();
   };
   if (asksFor("--help"))
     std::cout << helpText(syntax) << std::flush;
   else if (asksFor("--version"))
     std::cout << "fenestra " << versionText << std::endl;
   else
-    return Parser(syntax).parse(words);
+    return parsedWords(syntax, words);
   return std::nullopt;
 }
 

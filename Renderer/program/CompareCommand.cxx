@@ -13,7 +13,7 @@ namespace fenestra {
 namespace {
 
 constexpr const char* compareGroup = "Compare";
-constexpr Flag compareFlags[] = {
+const Flag compareFlags[] = {
     {"errora", "FILE", compareGroup, "Standard errors of A, where A itself has no error channels"},
     {"errorb", "FILE", compareGroup, "Standard errors of B, where B itself has no error channels"},
     {"output", "FILE", compareGroup, "Difference picture: .png .tif .exr .nrrd"},

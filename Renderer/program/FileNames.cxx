@@ -7,10 +7,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool takesFile(const Flag& flag) {
-  return std::string_view(flag.value).find("FILE") != std::string_view::npos;
-}
-
 /// Type of the file; none if `path` names no file (a look as text) or may not be examined. Throws
 /// Error (input) if the file system fails.
 fs::file_type typeOf(const fs::path& path) {
@@ -72,13 +68,13 @@ std::vector<std::string> relativeArguments(const std::vector<std::string>& words
     const Flag* flag = isFlag ? findFlag(flags, word.substr(2, equals - 2)) : pending;
     const bool hasValue = !isFlag || equals != std::string::npos;
     const std::size_t valueAt = isFlag ? equals + 1 : 0;
-    pending = flag && !hasValue && *flag->value ? flag : nullptr;
-    if (!hasValue || (flag ? !takesFile(*flag) : isFlag)) {
+    pending = flag && !hasValue && !flag->isSwitch() ? flag : nullptr;
+    if (!hasValue || (flag ? !flag->takesFile() : isFlag)) {
       result.push_back(word);
       continue;
     }
     const std::string value = word.substr(valueAt);
-    result.push_back(word.substr(0, valueAt) + (flag && isWritten(*flag)
+    result.push_back(word.substr(0, valueAt) + (flag && flag->isWritten()
                                                     ? writtenName(value, folder)
                                                     : relativeName(value, folder)));
   }

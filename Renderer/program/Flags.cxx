@@ -11,16 +11,24 @@
 namespace fenestra {
 namespace {
 
-std::optional<double> parseNumber(std::string_view text) {
+/// Number that is the whole text; nullopt: not one, or none that the type can hold.
+template <typename Number>
+std::optional<Number> parsed(std::string_view text) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    return std::nullopt;
+  return value;
+}
+
+/// Finite number, perhaps between blanks.
+std::optional<double> parsedNumber(std::string_view text) {
   while (text.starts_with(' '))
     text.remove_prefix(1);
   while (text.ends_with(' '))
     text.remove_suffix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
+  const auto value = parsed<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::vector<std::string> splitAtCommas(const std::string& text) {
@@ -40,18 +48,28 @@ Error badValue(const std::string& flag, const std::string& expected, const std::
   return usageError("--" + flag + ": expected " + expected + ", got '" + oneLine(got) + "'");
 }
 
-} // namespace
-
-const Flag* findFlag(std::span<const Flag> flags, std::string_view name) {
-  const auto it = std::find_if(flags.begin(), flags.end(),
-                               [name](const Flag& flag) { return flag.name == name; });
-  return it == flags.end() ? nullptr : &*it;
+/// Throws Error (usage) unless there is a value, and in the flag's range.
+template <typename Number>
+Number inRange(std::optional<Number> value, const Flag& flag, const std::string& given) {
+  const auto [least, greatest] = std::pair(flag.takes.least, flag.takes.greatest);
+  if (value && least <= static_cast<double>(*value) && static_cast<double>(*value) <= greatest)
+    return *value;
+  throw badValue(flag.name,
+                 (std::is_integral_v<Number> ? "a whole number from " : "a number from ") +
+                     shortNumber(least) + " to " + shortNumber(greatest),
+                 given);
 }
 
-bool isWritten(const Flag& flag) {
-  const Takes::Kind kind = flag.takes.kind;
-  return kind == Takes::Kind::picture || kind == Takes::Kind::surface ||
-         kind == Takes::Kind::report;
+} // namespace
+
+std::string Flag::help() const {
+  const bool isTold = takes.standard.empty() || text.ends_with(']');
+  return isTold ? text : text + " [" + takes.standard + "]";
+}
+
+const Flag* findFlag(std::span<const Flag> flags, std::string_view name) {
+  const auto it = std::ranges::find(flags, name, &Flag::name);
+  return it == flags.end() ? nullptr : &*it;
 }
 
 std::string shortNumber(double x) {
@@ -67,7 +85,7 @@ const Flag& FlagValues::flag(const std::string& name) const {
 }
 
 bool FlagValues::differs(const std::string& name) const {
-  return has(name) && text(name) != flag(name).standard;
+  return has(name) && text(name) != flag(name).takes.standard;
 }
 
 std::optional<std::string> FlagValues::text(const std::string& name) const {
@@ -88,61 +106,42 @@ std::optional<double> FlagValues::number(const std::string& name) const {
   const auto given = text(name);
   if (!given)
     return std::nullopt;
-  const auto [kind, least, greatest, words] = flag(name).takes;
-  const auto value = parseNumber(*given);
-  if (!value || *value < least || *value > greatest)
-    throw badValue(name, "a number from " + shortNumber(least) + " to " + shortNumber(greatest),
-                   *given);
-  return value;
+  return inRange(parsedNumber(*given), flag(name), *given);
 }
 
 std::optional<std::uint64_t> FlagValues::count(const std::string& name) const {
   const auto given = text(name);
   if (!given)
     return std::nullopt;
-  const auto [kind, least, greatest, words] = flag(name).takes;
-  std::uint64_t value = 0;
-  const char* last = given->data() + given->size();
-  const auto [end, error] = std::from_chars(given->data(), last, value);
-  const auto comparable = static_cast<double>(value);
-  if (error != std::errc() || end != last || comparable < least || comparable > greatest)
-    throw badValue(
-        name, "a whole number from " + shortNumber(least) + " to " + shortNumber(greatest), *given);
-  return value;
+  return inRange(parsed<std::uint64_t>(*given), flag(name), *given);
 }
 
-std::optional<std::vector<double>> FlagValues::numbers(const std::string& name,
-                                                       std::size_t size) const {
-  const auto given = text(name);
-  if (!given)
-    return std::nullopt;
+std::vector<double> FlagValues::numbers(const std::string& name, std::size_t size) const {
+  const std::string given = *text(name);
+  const std::vector<std::string> parts = splitAtCommas(given);
   std::vector<double> values;
-  for (const std::string& part : splitAtCommas(*given))
-    if (const auto value = parseNumber(part))
+  for (const std::string& part : parts)
+    if (const auto value = parsedNumber(part))
       values.push_back(*value);
-    else
-      throw badValue(name, std::to_string(size) + " numbers separated by commas", *given);
-  if (values.size() != size)
-    throw badValue(name, std::to_string(size) + " numbers separated by commas", *given);
+  if (parts.size() != size || values.size() != size)
+    throw badValue(name, std::to_string(size) + " numbers separated by commas", given);
   return values;
 }
 
-std::optional<Vec3> FlagValues::triple(const std::string& name) const {
-  const auto values = numbers(name, 3);
-  if (!values)
-    return std::nullopt;
-  return Vec3((*values)[0], (*values)[1], (*values)[2]);
+Vec3 FlagValues::triple(const std::string& name) const {
+  const std::vector<double> values = numbers(name, 3);
+  return Vec3(values[0], values[1], values[2]);
 }
 
-std::optional<std::string> FlagValues::word(const std::string& name) const {
-  auto given = text(name);
-  const std::vector<std::string> words = splitAt(flag(name).takes.words, '|');
-  if (!given || std::find(words.begin(), words.end(), *given) != words.end())
+std::string FlagValues::word(const std::string& name) const {
+  std::string given = *text(name);
+  const std::vector<std::string>& words = flag(name).takes.words;
+  if (words.empty() || std::ranges::find(words, given) != words.end())
     return given;
   std::string known;
   for (const std::string& w : words)
     known += (known.empty() ? "" : w == words.back() ? " or " : ", ") + w;
-  throw badValue(name, known, *given);
+  throw badValue(name, known, given);
 }
 
 std::vector<std::string> FlagValues::list(const std::string& name) const {
@@ -173,16 +172,6 @@ std::vector<std::string> FlagValues::arguments() const {
       else
         arguments.push_back("--" + name + (value.empty() ? "" : "=" + value));
   return arguments;
-}
-
-std::vector<std::string> splitAt(std::string_view text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
 }
 
 } // namespace fenestra

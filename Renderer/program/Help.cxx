@@ -23,10 +23,6 @@ std::string entry(std::string_view name, std::string_view text) {
   return lines + "\n";
 }
 
-std::string entry(const Flag& flag) {
-  return entry(std::string("--") + flag.name + (*flag.value ? " " : "") + flag.value, flag.text);
-}
-
 } // namespace
 
 std::string wrapped(std::string_view text, std::size_t width) {
@@ -45,9 +41,9 @@ std::string wrapped(std::string_view text, std::size_t width) {
 }
 
 std::string helpText(const CommandSyntax& syntax) {
-  std::string usage = std::string("Usage: fenestra ") + syntax.name, names;
+  std::string usage = "Usage: fenestra " + syntax.name, names;
   for (const Positional& positional : syntax.positionals) {
-    usage += std::string(" ") + positional.name;
+    usage += " " + positional.name;
     names += entry(positional.name, positional.text);
   }
   std::string text = wrapped(syntax.summary, page) + "\n\n" + usage + " [FLAGS]\n\n" + names;
@@ -55,9 +51,9 @@ std::string helpText(const CommandSyntax& syntax) {
   std::string_view group;
   for (const Flag& flag : syntax.flags) {
     if (flag.group != group)
-      text += std::string("\n") + flag.group + ":\n";
+      text += "\n" + flag.group + ":\n";
     group = flag.group;
-    text += entry(flag);
+    text += entry("--" + flag.name + (flag.isSwitch() ? "" : " ") + flag.value, flag.help());
   }
   return text;
 }

@@ -14,7 +14,7 @@ namespace fenestra {
 namespace {
 
 constexpr const char* inspectGroup = "Inspect";
-constexpr Flag inspectFlags[] = {
+const Flag inspectFlags[] = {
     {"volume", "NAME", inspectGroup,
      "As for render: which volume of a scene, or series of a folder"},
     {"segmentation", "FILE|NAME", inspectGroup, "As for render: a file, or a node of the scene"},

@@ -16,17 +16,21 @@
 namespace fenestra {
 namespace {
 
+std::string sizeText(const Size3& size) {
+  return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" + std::to_string(size.z());
+}
+
 constexpr const char* phantomGroup = "Phantom";
-constexpr Flag phantomFlags[] = {
+const Flag phantomFlags[] = {
     {"output", "DIR", phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
-    {"size",
-     "WxHxD",
-     phantomGroup,
-     "Voxels over the same field of view; N for the cube [knee 300x344x120, foot 300x120x150, "
-     "fetus 160x160x160, cube 512]",
-     {Takes::Kind::text, 16, 1024}}, // range of the cube's N
-    {"edge", "MM", phantomGroup, "The cube's edge [1]", Takes::number(1e-3, 1e5)},
+    {"size", "WxHxD", phantomGroup,
+     "Voxels over the same field of view; N for the cube [knee " + sizeText(KneeOptions().size) +
+         ", foot " + sizeText(FootOptions().size) + ", fetus " + sizeText(FetusOptions().size) +
+         ", cube " + std::to_string(CubeOptions().size) + "]",
+     Takes{.least = 16, .greatest = 1024}}, // range of the cube's N
+    {"edge", "MM", phantomGroup, "The cube's edge",
+     Takes::number(1e-3, 1e5).shows(shortNumber(CubeOptions().edge))},
 };
 
 const CommandSyntax phantomSyntax = {
@@ -38,34 +42,21 @@ const CommandSyntax phantomSyntax = {
 
 /// Size WxHxD in voxels.
 std::optional<Size3> sizeOf(const FlagValues& values) {
-  const auto size = values.text("size");
-  if (!size)
+  const auto text = values.text("size");
+  if (!text)
     return std::nullopt;
-  long x = 0;
-  long y = 0;
-  long z = 0;
+  Size3 size;
   char rest = 0;
-  if (std::sscanf(size->c_str(), "%ldx%ldx%ld%c", &x, &y, &z, &rest) != 3)
-    throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '" + *size + "'");
-  return Size3{x, y, z};
+  if (std::sscanf(text->c_str(), "%ldx%ldx%ld%c", &size[0], &size[1], &size[2], &rest) != 3)
+    throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '" + *text + "'");
+  return size;
 }
 
-Phantom makeKnee(const FlagValues& values) {
-  KneeOptions options;
+template <typename Options>
+Phantom madeWith(Phantom (*make)(const Options&), const FlagValues& values) {
+  Options options;
   options.size = sizeOf(values).value_or(options.size);
-  return makeKneePhantom(options);
-}
-
-Phantom makeFoot(const FlagValues& values) {
-  FootOptions options;
-  options.size = sizeOf(values).value_or(options.size);
-  return makeFootPhantom(options);
-}
-
-Phantom makeFetus(const FlagValues& values) {
-  FetusOptions options;
-  options.size = sizeOf(values).value_or(options.size);
-  return makeFetusPhantom(options);
+  return make(options);
 }
 
 Phantom makeCube(const FlagValues& values) {
@@ -80,11 +71,11 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
   if (kind != "cube" && values.has("edge"))
     throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
   if (kind == "knee")
-    return makeKnee(values);
+    return madeWith(makeKneePhantom, values);
   if (kind == "foot")
-    return makeFoot(values);
+    return madeWith(makeFootPhantom, values);
   if (kind == "fetus")
-    return makeFetus(values);
+    return madeWith(makeFetusPhantom, values);
   if (kind == "cube")
     return makeCube(values);
   throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");

@@ -10,48 +10,27 @@
 namespace fenestra {
 namespace {
 
-/// Groups of flags: a given flag replaces all that the preset says of its group.
-const std::vector<std::vector<std::string>> alternatives = {
-    {"view", "position"},
-    {"projection", "scale", "angle"},
-    {"boundary", "controlpoints", "smoothing"},
-};
-
 /// False for a default that Slicer hands over: its panel passes every flag.
 bool isGiven(const FlagValues& given, const std::string& name) {
   return given.has("returnparameterfile") ? given.differs(name) : given.has(name);
 }
 
-bool isOfClipping(const std::string& name) {
-  return findFlag(renderSyntax.flags, name)->group ==
-         std::string_view(findFlag(renderSyntax.flags, "clip")->group);
+/// True if given flags replace what the preset says of `own`.
+bool isOverruled(const Flag& own, const FlagValues& given) {
+  return std::ranges::any_of(renderSyntax.flags, [&](const Flag& flag) {
+    const bool isAlternative = flag.topic == own.topic && wholeOf(own.topic) != own.topic;
+    const bool isMode = flag.name == "clip" && wholeOf(own.topic) == Topic::clip;
+    return (flag.name == own.name || isAlternative || isMode) && isGiven(given, flag.name);
+  });
 }
 
-/// True for flags of one clipping mode; the other clipping flags belong to the focus in any mode.
-bool isOfAMode(const std::string& name) {
-  constexpr std::string_view ofTheFocus[] = {"margin", "labelsmoothing", "contextdensity",
-                                             "contextsaturation"};
-  return isOfClipping(name) && std::ranges::find(ofTheFocus, name) == std::end(ofTheFocus);
-}
-
-bool decides(const FlagValues& given, const std::string& name) {
-  const auto has = [&](const std::string& flag) { return isGiven(given, flag); };
-  if (isOfAMode(name) && has("clip"))
-    return true;
-  for (const std::vector<std::string>& flags : alternatives)
-    if (std::ranges::find(flags, name) != flags.end())
-      return std::ranges::any_of(flags, has);
-  return has(name);
-}
-
-/// Throws Error (input) for flags that a preset may not set: a preset may be a user's file.
-void checkFlags(const OrganPreset& preset, const std::string& source) {
-  for (const auto& [name, value] : preset.flags) {
-    const Flag* flag = findFlag(renderSyntax.flags, name);
-    if (!flag || !shapesLook(*flag))
-      throw inputError(source,
-                       "flags: \"" + name + "\" is no flag of clipping, view or look; remove it");
-  }
+/// Flag that a preset sets. Throws Error (input) for one that it may not set: a preset may be a
+/// user's file.
+const Flag& presetFlag(const std::string& name, const std::string& source) {
+  if (const Flag* flag = findFlag(renderSyntax.flags, name); flag && shapesLook(*flag))
+    return *flag;
+  throw inputError(source,
+                   "flags: \"" + name + "\" is no flag of clipping, view or look; remove it");
 }
 
 /// Segments named by the given focus; all if it names none.
@@ -120,12 +99,12 @@ PresetFlags withPreset(const FlagValues& given, const Input& input) {
                          ? input.segmentNames({given.text("volume"), given.text("segmentation")})
                          : std::nullopt;
   const OrganPreset preset = presetFor(given, input, names);
-  checkFlags(preset, *given.text("preset"));
   FlagValues& flags = result.flags;
   if (!givenFocus && names)
     addFocus(preset, *names, flags);
   for (const auto& [name, value] : preset.flags) {
-    if (decides(given, name) || (isOfClipping(name) && !flags.has("focus")))
+    const Flag& flag = presetFlag(name, *given.text("preset"));
+    if (isOverruled(flag, given) || (shapesClip(flag) && !flags.has("focus")))
       continue;
     flags.remove(name);
     flags.add(name, value);

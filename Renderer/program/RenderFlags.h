@@ -27,15 +27,27 @@ struct RenderOptions {
   std::optional<std::string> preset = {}; ///< the organ preset's name
 };
 
+inline constexpr double unlimited = 0x1p40; ///< limit of samples and of scatterings
+
 extern const CommandSyntax renderSyntax;
 
 /// True if the picture depends on the flag, not only its files or how the process works.
-bool shapesPicture(const Flag& flag);
+inline bool shapesPicture(const Flag& flag) {
+  return flag.topic != Topic::process;
+}
+
+/// True for a flag of clipping; also how the focus's labels are shaped, and how the context looks.
+bool shapesClip(const Flag& flag);
 
 /// True for a flag of clipping, view or look: the flags that an organ preset may set.
 bool shapesLook(const Flag& flag);
 
-/// Throws Error (usage) for values out of range and for flags that contradict each other.
+/// Values of the flags in the places that the table says. Throws Error (usage) for values out of
+/// range.
+RenderOptions givenOptions(const FlagValues& flags);
+
+/// Options from all flags. Throws Error (usage) for values out of range and for flags that
+/// contradict each other.
 RenderOptions renderOptions(const FlagValues& flags);
 
 /// options.settings with their background: the flags', else `scene` (a Slicer scene's; nullopt for

@@ -13,22 +13,13 @@
 namespace fenestra {
 namespace {
 
-/// Groups of flags: a given flag decides its whole group; a flag in no group decides itself alone.
-const std::vector<std::vector<std::string>> kinds = {
-    {"view", "position", "target", "up", "projection", "scale", "angle"},
-    {"clip", "boundary", "controlpoints", "smoothing", "plane", "hole", "holemargin", "ghost",
-     "offset", "soft"},
-    {"samples", "seconds", "noise"},
-    {"focus", "segmentation", "margin"},
-    {"lights", "environment"},
-};
-
-bool isDecided(const std::string& name, const FlagValues& given) {
-  const auto has = [&](const std::string& flag) { return given.has(flag); };
-  for (const std::vector<std::string>& kind : kinds)
-    if (std::find(kind.begin(), kind.end(), name) != kind.end())
-      return std::any_of(kind.begin(), kind.end(), has);
-  return has(name);
+/// True if given flags replace a stored one: itself, or another of its topic.
+bool isReplaced(const Flag& stored, const FlagValues& given) {
+  return std::ranges::any_of(renderSyntax.flags, [&](const Flag& flag) {
+    const bool isOfTopic = wholeOf(flag.topic) == wholeOf(stored.topic);
+    return (flag.name == stored.name || (isOfTopic && stored.topic != Topic::own)) &&
+           given.has(flag.name);
+  });
 }
 
 /// True if a render would open a file that the value names.
@@ -86,10 +77,10 @@ SceneFlags withSceneFlags(const FlagValues& given, const Input& input) {
   const MrmlNode& node = *nodes.back();
   const FlagValues deciding = withPreset(given, input).flags;
   for (const Flag& flag : renderSyntax.flags) {
-    const std::string name = flag.name;
+    const std::string& name = flag.name;
     const bool isNode = name == "volume" || name == "segmentation";
     const std::string value = isNode ? node.referenced(name) : node.text(name);
-    if (!shapesPicture(flag) || value.empty() || isDecided(name, deciding))
+    if (!shapesPicture(flag) || value.empty() || isReplaced(flag, deciding))
       continue;
     if (const std::string why = objection(input, name, value); !why.empty())
       result.leftOut.push_back(leftOut(node, name, shown(value), why));
@@ -102,11 +93,10 @@ SceneFlags withSceneFlags(const FlagValues& given, const Input& input) {
 }
 
 std::vector<std::string> sceneArguments(const FlagValues& given, const FlagValues& merged) {
-  const std::vector<std::string> before = given.arguments();
-  std::vector<std::string> stored;
-  for (const std::string& argument : merged.arguments())
-    if (std::find(before.begin(), before.end(), argument) == before.end())
-      stored.push_back(argument);
+  std::vector<std::string> stored = merged.arguments();
+  std::erase_if(stored, [before = given.arguments()](const std::string& argument) {
+    return std::ranges::find(before, argument) != before.end();
+  });
   return stored;
 }
 

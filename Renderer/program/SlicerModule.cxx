@@ -19,80 +19,50 @@ std::string labelOf(const std::string& name) {
   return label;
 }
 
-pugi::xml_node addParameters(pugi::xml_node module, const char* label, const char* description) {
+pugi::xml_node addParameters(pugi::xml_node module, const std::string& label,
+                             const std::string& description) {
   pugi::xml_node group = module.append_child("parameters");
   addText(group, "label", label);
   addText(group, "description", description);
   return group;
 }
 
-/// Slicer's type of a flag. Slicer always passes numbers and words, so such flags need a default.
-const char* typeOf(const Flag& flag) {
-  const bool optional = *flag.standard == 0;
-  switch (flag.takes.kind) {
-  case Takes::Kind::labels:
-  case Takes::Kind::picture:
-    return "image";
-  case Takes::Kind::surface:
-  case Takes::Kind::report:
-    return "file";
-  case Takes::Kind::list:
-    return "string-vector";
-  case Takes::Kind::numbers:
-    return "double-vector";
-  case Takes::Kind::number:
-    return optional ? "string" : "double";
-  case Takes::Kind::whole:
-    return optional ? "string" : "integer";
-  case Takes::Kind::word:
-    return optional ? "string" : "string-enumeration";
-  case Takes::Kind::text:
-  case Takes::Kind::slicersOwn:
-    break;
-  }
-  return "string";
+/// Slicer's type of a flag. Slicer always passes numbers and words, so that such a flag without a
+/// default is a text.
+std::string typeOf(const Takes& takes) {
+  const bool isPassed = takes.least > -infinity || !takes.words.empty();
+  return isPassed && takes.standard.empty() ? "string" : takes.type;
 }
 
 /// Adds a slider if the range is narrow enough to set by hand.
-void addConstraints(pugi::xml_node parameter, const Flag& flag, const std::string& type) {
+void addConstraints(pugi::xml_node parameter, const Takes& takes) {
   constexpr double widest = 1e6;
-  const bool whole = type == "integer";
-  const auto [kind, least, greatest, words] = flag.takes;
-  if ((!whole && type != "double") || greatest - least > widest)
+  if (takes.standard.empty() || takes.greatest - takes.least > widest)
     return;
   pugi::xml_node constraints = parameter.append_child("constraints");
-  addText(constraints, "minimum", shortNumber(least));
-  addText(constraints, "maximum", shortNumber(greatest));
-  addText(constraints, "step", whole ? "1" : "0.01");
+  addText(constraints, "minimum", shortNumber(takes.least));
+  addText(constraints, "maximum", shortNumber(takes.greatest));
+  addText(constraints, "step", takes.type == "integer" ? "1" : "0.01");
 }
 
 void addFlag(pugi::xml_node group, const Flag& flag) {
-  const std::string type = typeOf(flag);
-  pugi::xml_node parameter = group.append_child(type.c_str());
-  if (flag.takes.kind == Takes::Kind::labels)
-    parameter.append_attribute("type") = "label";
-  if (flag.takes.kind == Takes::Kind::picture) {
-    parameter.append_attribute("type") = "vector";
-    parameter.append_attribute("fileExtensions") = ".nrrd";
-  }
-  if (flag.takes.kind == Takes::Kind::surface)
-    parameter.append_attribute("fileExtensions") = ".vtp,.ply,.stl";
-  if (flag.takes.kind == Takes::Kind::report)
-    parameter.append_attribute("fileExtensions") = ".json";
+  const Takes& takes = flag.takes;
+  pugi::xml_node parameter = group.append_child(typeOf(takes).c_str());
+  if (!takes.image.empty())
+    parameter.append_attribute("type") = takes.image.c_str();
+  if (!takes.extensions.empty())
+    parameter.append_attribute("fileExtensions") = takes.extensions.c_str();
   addText(parameter, "name", flag.name);
   addText(parameter, "longflag", flag.name);
   addText(parameter, "label", labelOf(flag.name));
-  addText(parameter, "description", flag.text);
-  if (flag.takes.kind == Takes::Kind::labels)
-    addText(parameter, "channel", "input");
-  if (isWritten(flag))
-    addText(parameter, "channel", "output");
-  if (*flag.standard != 0)
-    addText(parameter, "default", flag.standard);
-  addConstraints(parameter, flag, type);
-  if (type == "string-enumeration")
-    for (const std::string& word : splitAt(flag.takes.words, '|'))
-      addText(parameter, "element", word);
+  addText(parameter, "description", flag.help());
+  if (!takes.channel.empty())
+    addText(parameter, "channel", takes.channel);
+  if (!takes.standard.empty())
+    addText(parameter, "default", takes.standard);
+  addConstraints(parameter, takes);
+  for (const std::string& word : takes.words)
+    addText(parameter, "element", word);
 }
 
 void addInput(pugi::xml_node group, const Positional& input) {
@@ -108,7 +78,7 @@ void addInput(pugi::xml_node group, const Positional& input) {
 void addReturnValues(pugi::xml_node module) {
   pugi::xml_node group = addParameters(module, "Reached", "What the render reached");
   for (const ReturnValue& value : returnValues) {
-    pugi::xml_node parameter = group.append_child(value.type);
+    pugi::xml_node parameter = group.append_child("double");
     addText(parameter, "name", value.name);
     addText(parameter, "label", labelOf(value.name));
     addText(parameter, "description", value.text);
@@ -132,7 +102,7 @@ std::string slicerDescription(const CommandSyntax& syntax) {
   std::string groupName;
   pugi::xml_node group;
   for (const Flag& flag : syntax.flags) {
-    if (flag.takes.kind == Takes::Kind::slicersOwn)
+    if (flag.takes.type.empty())
       continue;
     if (flag.group != groupName) {
       const bool first = groupName.empty();

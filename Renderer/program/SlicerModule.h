@@ -9,16 +9,15 @@
 
 namespace fenestra {
 
-/// Measured result of a render; Slicer shows it under the panel.
+/// Measured result of a render, a number; Slicer shows it under the panel.
 struct ReturnValue {
   const char* name;
-  const char* type; ///< Slicer's type name
   const char* text;
 };
 inline constexpr ReturnValue returnValues[] = {
-    {"samplesPerPixel", "double", "Samples a pixel, the mean over the picture"},
-    {"reachedNoise", "double", "Relative noise of the picture; empty below two samples a pixel"},
-    {"renderSeconds", "double", "Time of the rendering alone, by the clock"},
+    {"samplesPerPixel", "Samples a pixel, the mean over the picture"},
+    {"reachedNoise", "Relative noise of the picture; empty below two samples a pixel"},
+    {"renderSeconds", "Time of the rendering alone, by the clock"},
 };
 
 /// Module description, an XML document: the first positional argument as a volume, then every flag

@@ -11,11 +11,11 @@ namespace {
 
 constexpr const char* turntableGroup = "Turntable";
 
-constexpr Flag ownFlags[] = {
-    {"frames", "N", turntableGroup, "Pictures, 1 to 10000 [36]", Takes::whole(1, mostFrames), "36"},
-    {"degrees", "D", turntableGroup,
-     "How far the eye goes around; frame i of N stands at i D / N [360]",
-     Takes::number(-36000.0, 36000.0), "360"},
+const Flag ownFlags[] = {
+    {"frames", "N", turntableGroup, "Pictures, 1 to 10000",
+     Takes::whole(1, mostFrames).shows("36")},
+    {"degrees", "D", turntableGroup, "How far the eye goes around; frame i of N stands at i D / N",
+     Takes::number(-36000.0, 36000.0).shows("360")},
     {"steady", "DEGREES", turntableGroup,
      "Spreads what the clipping surface does suddenly, away from the focus, over so far to both "
      "sides; 0: every frame as render makes it [twice from frame to frame, 10 at most]",

@@ -23,7 +23,7 @@ json requestedArguments(const FlagValues& flags, const std::filesystem::path& fo
     request.remove(name);
   for (const char* name : {"frames", "degrees"})
     if (!request.has(name))
-      request.add(name, findFlag(turntableSyntax().flags, name)->standard);
+      request.add(name, findFlag(turntableSyntax().flags, name)->takes.standard);
   return relativeArguments(request.arguments(), turntableSyntax().flags, folder);
 }
 

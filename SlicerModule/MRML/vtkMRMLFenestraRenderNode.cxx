@@ -39,7 +39,13 @@ const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetFlagNames() {
 }
 
 const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetTurntableFlagNames() {
-  static const std::vector<std::string> names = {"frames", "degrees", "steady"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> own;
+    for (const FenestraScene::Flag& flag : FenestraScene::flags())
+      if (flag.ofTurntable)
+        own.push_back(flag.name);
+    return own;
+  }();
   return names;
 }
 

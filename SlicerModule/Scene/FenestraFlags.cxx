@@ -112,9 +112,9 @@ const std::vector<Flag>& flags() {
                                         {"noise", Kind::number},
                                         {"bounces", Kind::whole},
                                         {"seed", Kind::whole},
-                                        {"frames", Kind::whole},
-                                        {"degrees", Kind::number},
-                                        {"steady", Kind::number}};
+                                        {"frames", Kind::whole, true},
+                                        {"degrees", Kind::number, true},
+                                        {"steady", Kind::number, true}};
   return all;
 }
 

@@ -22,6 +22,7 @@ enum class FlagKind {
 struct Flag {
   std::string name;
   FlagKind kind;
+  bool ofTurntable = false; ///< of `fenestra turntable` alone
 };
 
 const std::vector<Flag>& flags();

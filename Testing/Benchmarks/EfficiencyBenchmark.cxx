@@ -16,7 +16,7 @@ namespace fenestra::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
-constexpr Flag flags[] = {
+const Flag flags[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
     {"modes", "A,B,...", group, "Ways to render, as Modes.cxx has them [all]"},
     {"budget", "SECONDS", group, "CPU time of one curve [60]", Takes::number(1e-3, 1e6)},

@@ -1,0 +1,148 @@
+// From flags to a render: values go where the table says; contradictions are refused.
+
+#include "base/Error.h"
+#include "files/looks/LookText.h"
+#include "files/pictures/ImageFormat.h"
+#include "files/slicer/SceneFiles.h"
+#include "program/RenderFlags.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+void checkInput(const FlagValues& flags, const SceneRequest& scene) {
+  const bool isScene = isSceneFile(scene.input);
+  if (scene.volume && !isScene && !isFolder(scene.input))
+    throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
+  if (!scene.focus.empty() && !scene.segmentation && !isScene)
+    throw usageError("--focus: needs --segmentation FILE to find segments in");
+  if (scene.segmentation && scene.focus.empty())
+    throw usageError(
+        "--segmentation: only --focus and --preset use it; add --focus A,B,... or --preset auto");
+  if (flags.differs("view") && flags.differs("position"))
+    throw usageError("--view and --position contradict each other; give one");
+}
+
+void checkView(const ViewRequest& view, const SceneRequest& scene) {
+  if (view.isAutomatic() && scene.focus.empty())
+    throw usageError("--view: auto looks for a focus; add --focus A,B,..., or name a direction");
+  // A scene's camera may apply, whose projection is not known yet.
+  if (isSceneFile(scene.input) && !view.projection && view.followsScene())
+    return;
+  const bool perspective = view.projection == Projection::perspective;
+  if (perspective && view.scale)
+    throw usageError("--scale: only for --projection orthographic; use --angle");
+  if (!perspective && view.angle)
+    throw usageError("--angle: only for --projection perspective; use --scale");
+}
+
+/// Reason why a flag has no effect with this clip; empty: it has one.
+std::string_view whyWithoutEffect(Needs needs, bool hasFocus, ClipMode mode, Boundary boundary) {
+  const bool isSurface = mode == ClipMode::surface || mode == ClipMode::ghost;
+  if (needs == Needs::focus && !hasFocus)
+    return "needs a focus; add --focus, or drop it";
+  if (needs == Needs::clip && mode == ClipMode::none)
+    return "without a clip there is nothing to change; drop it";
+  if (needs == Needs::plane && mode != ClipMode::plane)
+    return "only --clip plane uses it; add --clip plane, or drop it";
+  if (needs == Needs::hole && mode != ClipMode::hole)
+    return "only --clip hole uses it; add --clip hole, or drop it";
+  if (needs == Needs::ghost && mode != ClipMode::ghost)
+    return "only --clip ghost uses it; add --clip ghost, or drop it";
+  if ((needs == Needs::surface || needs == Needs::spline) && !isSurface)
+    return "only --clip surface and ghost use it; drop it";
+  if (needs == Needs::spline && boundary != Boundary::spline)
+    return "only --boundary spline uses it; drop it";
+  return "";
+}
+
+void checkClip(const FlagValues& flags, const ClipRequest& clip) {
+  const bool hasFocus = flags.has("focus");
+  const ClipMode mode = clip.modeWith(hasFocus);
+  if (!hasFocus && isDepthClip(mode))
+    throw usageError("--clip: " + *flags.text("clip") + " needs a focus; add --focus");
+  if (mode == ClipMode::plane && !clip.plane && !hasFocus)
+    throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ, or a --focus to place it by");
+  for (const Flag& flag : renderSyntax.flags)
+    if (const auto why = whyWithoutEffect(flag.needs, hasFocus, mode, clip.surface.boundary);
+        !why.empty() && flags.differs(flag.name))
+      throw usageError("--" + flag.name + ": " + std::string(why));
+  if (flags.has("surface") && !isDepthClip(mode))
+    throw usageError("--surface: --clip none and plane have none; add --focus A,B,... without "
+                     "another --clip, or drop it");
+}
+
+/// INPUT.png in the current folder, without the input's own endings. Throws Error (usage) if no
+/// name is left.
+std::filesystem::path defaultOutput(const std::filesystem::path& input) {
+  std::filesystem::path named = input.lexically_normal();
+  if (!named.has_filename()) // folder name with a slash at its end
+    named = named.parent_path();
+  if (std::error_code failed; named.filename() == "." || named.filename() == "..")
+    named = std::filesystem::canonical(named, failed);
+  std::string name = named.filename().string();
+  for (const char* ending : {".gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd", ".mrml", ".mrb"})
+    if (name.ends_with(ending))
+      name.resize(name.size() - std::string_view(ending).size());
+  if (name.empty())
+    throw usageError("--output: is missing, and " + input.string() +
+                     " gives the picture no name; add --output FILE.png");
+  return name + ".png";
+}
+
+/// Input files that flags name, or may name.
+std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
+  std::vector<std::filesystem::path> files = {*flags.text("INPUT")};
+  for (const Flag& flag : renderSyntax.flags)
+    if (flag.takesFile() && shapesPicture(flag) && flags.has(flag.name))
+      files.emplace_back(*flags.text(flag.name));
+  std::erase_if(files, [](const auto& file) { return isLookText(file.string()); });
+  return files;
+}
+
+/// Checks the layers against the pictures, and asks for normals if one of these has them.
+void settleLayers(const FlagValues& flags, RenderOptions& options) {
+  const auto has = [&options](ImageFormat format) {
+    return std::ranges::count(options.outputs, format, imageFormat) > 0;
+  };
+  const bool hasExr = has(ImageFormat::exr);
+  if (!hasExr && !has(ImageFormat::nrrd) && flags.differs("layers"))
+    throw usageError("--layers: only .exr and .nrrd have them; add --output FILE.exr");
+  for (const std::filesystem::path& path : options.outputs)
+    if (!options.layers.color && imageFormat(path) != ImageFormat::exr)
+      throw usageError("--layers: " + path.string() + " needs color; add it, or write .exr alone");
+  options.settings.path.wantNormals = hasExr && options.layers.normal;
+}
+
+} // namespace
+
+RenderOptions renderOptions(const FlagValues& flags) {
+  RenderOptions options = givenOptions(flags);
+  SceneRequest& scene = options.scene;
+  scene.input = *flags.text("INPUT");
+  checkInput(flags, scene);
+  checkView(scene.view, scene);
+  checkClip(flags, scene.clip);
+
+  if (!flags.has("samples") && (flags.has("seconds") || flags.has("noise")))
+    options.settings.samples = static_cast<std::uint64_t>(unlimited);
+  options.inputs = inputFiles(flags);
+  if (options.outputs.empty()) {
+    options.outputs.push_back(defaultOutput(scene.input));
+    options.outputsNamedBy = NamedBy::standard;
+  }
+  settleLayers(flags, options);
+  scene.measure = options.stats.has_value();
+  if (options.returnValues && options.progress == ProgressMode::automatic)
+    options.progress = ProgressMode::xml;
+  return options;
+}
+
+RenderSettings settingsFor(const RenderOptions& options, const std::optional<Background>& scene) {
+  RenderSettings settings = options.settings;
+  settings.path.background = options.background.value_or(scene.value_or(settings.path.background));
+  return settings;
+}
+
+} // namespace fenestra
