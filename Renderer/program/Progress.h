@@ -6,6 +6,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,7 +15,7 @@ namespace fenestra {
 
 /// Count of the pictures that a command renders one after the other.
 struct FrameCount {
-  int finished = 0; ///< by earlier runs
+  int finished = 0; ///< by earlier runs, and so far
   int all = 1;
 };
 
@@ -22,20 +23,16 @@ struct FrameCount {
 /// Slicer's tags on standard output. `automatic`: a bar if standard error is a terminal.
 class Progress {
 public:
-  Progress(ProgressMode mode, const RenderSettings& settings, std::uint64_t pixels,
-           const RenderMonitor& monitor, const FrameCount& frames = {});
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  Progress(const RenderOptions& options, RenderMonitor& monitor, const FrameCount& frames = {});
 
-  /// Counts a picture as finished. Call after resetting the monitor for the next picture.
+  /// Counts a picture as finished, and resets the monitor for the next one.
   void nextFrame();
 
 private:
-  void run();
+  void run(const std::stop_token& end);
   void show(bool last);
-  void showTags(double done, bool last) const;
-  void showBar(double done) const;
+  void showTags(bool last) const;
+  void showBar() const;
   /// Texts of frame, samples a pixel and noise.
   std::vector<std::string> reached() const;
   /// Finished share of all the work, in [0, 1].
@@ -47,15 +44,14 @@ private:
   ProgressMode m_mode;
   RenderSettings m_settings;
   double m_pixels;
-  const RenderMonitor& m_monitor;
+  RenderMonitor& m_monitor;
   FrameCount m_frames;
-  int m_frame = 0; ///< frames finished since construction
+  int m_before; ///< frames finished before construction
   Stopwatch m_watch, m_frameWatch;
   std::mutex m_mutex;
-  std::condition_variable m_wake;
-  bool m_done = false;
+  std::condition_variable_any m_wake;
   double m_fraction = 0.0; ///< last shown; never decreases, although noise can grow between passes
-  std::thread m_thread;
+  std::jthread m_thread;   ///< ends before the members above
 };
 
 } // namespace fenestra

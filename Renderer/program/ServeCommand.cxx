@@ -7,8 +7,6 @@
 #include "program/Commands.h"
 #include "program/Machine.h"
 #include "program/Pictures.h"
-#include "program/PresetFlags.h"
-#include "program/SceneFlags.h"
 #include "program/ServeInput.h"
 
 #include <set>
@@ -33,23 +31,17 @@ const CommandSyntax& serveSyntax() {
   return syntax;
 }
 
-/// Thrown when standard output is closed: nobody waits for pictures.
-struct Unheard {};
-
 class Server {
 public:
-  Server(const SceneFlags& start, Outputs& outputs)
-      : m_flags(start.flags),
-        m_leftOut(start.leftOut),
+  Server(const PictureRequest& start, Outputs& outputs)
+      : m_flags(start.stored),
+        m_options(start.options),
         m_outputs(outputs),
-        m_input(m_flags, m_monitor, m_answers) {}
+        m_input(m_flags, m_monitor) {}
 
-  /// Runs until the process ends. Throws Error if there is no first scene, Unheard if standard
-  /// output is closed.
-  void run() {
-    m_options = renderOptions(withPreset(m_flags));
-    m_options->scene.leftOut = m_leftOut;
-    m_scene.emplace(m_options->scene);
+  /// Runs until the process ends. Throws Error if there is no first scene.
+  [[noreturn]] void run() {
+    m_scene.emplace(m_options.scene);
     m_outputs.checkInputs();
     for (;;) {
       renderPictures();
@@ -83,8 +75,8 @@ private:
       return true;
     } catch (const Error& error) {
       m_outputs.forgetRefused();
-      if (changes.size() == 1 && !m_answers.error(changes.front().id, error.what()))
-        throw Unheard();
+      if (changes.size() == 1)
+        answerError(changes.front().id, error.what());
     }
     if (changes.size() > 1) {
       take(changes.first(changes.size() / 2));
@@ -93,74 +85,64 @@ private:
     return false;
   }
 
+  /// Publishes the first picture at once, later ones at most every `interval`.
   void renderPictures() {
+    constexpr double interval = 0.1; // seconds
     m_complete = false;
     m_monitor.noise = infinity;
     m_monitor.paths = 0;
     m_published.reset();
     m_failure.clear();
-    m_monitor.between = [this](const RenderResult& result) { publishIfDue(result); };
-    const RenderResult result =
-        render(m_scene->forRender(), settingsFor(*m_options, m_scene->background()), m_monitor);
+    m_monitor.between = [this](const RenderResult& result) {
+      if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
+        publish(result, false);
+    };
+    const RenderResult result = renderPicture(m_options, *m_scene, m_monitor);
     m_complete = result.reason != StopReason::request;
     if (m_complete)
       publish(result, true);
-  }
-
-  /// Publishes the first picture at once, later ones at most every `interval`.
-  void publishIfDue(const RenderResult& result) {
-    constexpr double interval = 0.1; // seconds
-    if (m_monitor.stop || (m_published && m_published->seconds() < interval))
-      return;
-    publish(result, false);
   }
 
   /// Returns whether the files are written. A failure (a full disk) is reported, for intermediate
   /// pictures only once each; the next picture may have room again.
   bool write(const RenderResult& result, bool last) {
     try {
-      writePictures(*m_options, *m_scene, result, shellCommand(m_flags.arguments(), *m_options),
-                    m_outputs);
+      writePictures(m_options, *m_scene, result, m_flags.arguments(), m_outputs);
       m_outputs.commit(Outputs::Durability::none); // the next picture follows soon
       return true;
     } catch (const Error& error) {
-      if ((last || m_failure != error.what()) && !m_answers.error(m_id, error.what()))
-        throw Unheard();
+      if (last || m_failure != error.what())
+        answerError(m_id, error.what());
       m_failure = error.what();
-      m_published.emplace();
       return false;
     }
   }
 
   void publish(const RenderResult& result, bool last) {
-    if (!write(result, last))
+    const bool isWritten = write(result, last);
+    m_published.emplace();
+    if (!isWritten)
       return;
-    nlohmann::ordered_json answer = {{"event", "picture"}, {"id", m_id}};
-    answer["samples"] = result.finishedSamples;
-    const double noise = result.film.noise();
-    answer["noise"] = noise < infinity ? nlohmann::ordered_json(noise) : nullptr;
-    answer["seconds"] = m_since.seconds();
-    answer["done"] = last;
-    answer["files"] = nlohmann::ordered_json::array();
-    for (const std::filesystem::path& path : m_options->outputs)
-      answer["files"].push_back(path.string());
+    nlohmann::ordered_json told = {{"event", "picture"}, {"id", m_id}};
+    told["samples"] = result.finishedSamples;
+    told["noise"] = result.film.noise(); // null: infinite
+    told["seconds"] = m_since.seconds();
+    told["done"] = last;
+    for (const std::filesystem::path& path : m_options.outputs)
+      told["files"].push_back(path.string());
     for (const std::string& warning : m_scene->warnings())
       if (m_warned.insert(warning).second)
-        answer["warnings"].push_back(warning);
-    if (!m_answers.say(answer))
-      throw Unheard();
-    m_published.emplace();
+        told["warnings"].push_back(warning);
+    answer(told);
   }
 
-  FlagValues m_flags; ///< flags of the current scene
-  std::vector<std::string> m_leftOut;
+  FlagValues m_flags; ///< flags of the current scene, without a preset's
+  RenderOptions m_options;
   nlohmann::json m_id = nullptr; ///< of the last change taken
   Stopwatch m_since;             ///< time since that change arrived
   Outputs& m_outputs;
   RenderMonitor m_monitor;
-  ServeAnswers m_answers;
   ServeInput m_input;
-  std::optional<RenderOptions> m_options;
   std::optional<Scene> m_scene;
   bool m_complete = false;              ///< true: the scene's picture is finished
   std::optional<Stopwatch> m_published; ///< time since the scene's last picture; nullopt: none yet
@@ -174,25 +156,17 @@ int serveCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(serveSyntax(), argc, argv, first);
   if (!given)
     return 0;
-  for (const char* name : {"stats", "returnparameterfile", "progress", "xml", "echo"})
-    if (given->has(name))
-      throw usageError(std::string("--") + name + ": serve tells all on standard output; drop it");
-  if (given->has("surface"))
-    throw usageError("--surface: serve writes pictures alone; write it with fenestra render");
+  refuseFlags(*given, {"stats", "returnparameterfile", "progress", "xml", "echo"},
+              "serve tells all on standard output; drop it");
+  refuseFlags(*given, {"surface"}, "serve writes pictures alone; write it with fenestra render");
   useMachine(*given);
-  const SceneFlags start = withSceneFlags(*given);
-  const RenderOptions options = renderOptions(withPreset(start.flags));
+  const PictureRequest start = pictureRequest(*given);
   // Never destroyed: the reading thread, which lives as long as the process, uses both.
   Outputs& outputs = *new Outputs;
-  declareOutputs(options, outputs);
-  checkMemory(options.scene);
+  declareOutputs(start.options, outputs);
+  checkMemory(start.options.scene);
   Server& server = *new Server(start, outputs);
-  try {
-    server.run();
-  } catch (const Unheard&) {
-    throw outputError("standard output", "nobody reads it any more");
-  }
-  return 0;
+  server.run();
 }
 
 } // namespace fenestra
