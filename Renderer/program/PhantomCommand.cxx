@@ -41,31 +41,19 @@ std::optional<Size3> sizeOf(const FlagValues& values) {
   const auto size = values.text("size");
   if (!size)
     return std::nullopt;
-  long x = 0;
-  long y = 0;
-  long z = 0;
+  long x = 0, y = 0, z = 0;
   char rest = 0;
   if (std::sscanf(size->c_str(), "%ldx%ldx%ld%c", &x, &y, &z, &rest) != 3)
     throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '" + *size + "'");
   return Size3{x, y, z};
 }
 
-Phantom makeKnee(const FlagValues& values) {
-  KneeOptions options;
+/// Options of a phantom whose size is --size.
+template <typename Options>
+Options sized(const FlagValues& values) {
+  Options options;
   options.size = sizeOf(values).value_or(options.size);
-  return makeKneePhantom(options);
-}
-
-Phantom makeFoot(const FlagValues& values) {
-  FootOptions options;
-  options.size = sizeOf(values).value_or(options.size);
-  return makeFootPhantom(options);
-}
-
-Phantom makeFetus(const FlagValues& values) {
-  FetusOptions options;
-  options.size = sizeOf(values).value_or(options.size);
-  return makeFetusPhantom(options);
+  return options;
 }
 
 Phantom makeCube(const FlagValues& values) {
@@ -80,11 +68,11 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
   if (kind != "cube" && values.has("edge"))
     throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
   if (kind == "knee")
-    return makeKnee(values);
+    return makeKneePhantom(sized<KneeOptions>(values));
   if (kind == "foot")
-    return makeFoot(values);
+    return makeFootPhantom(sized<FootOptions>(values));
   if (kind == "fetus")
-    return makeFetus(values);
+    return makeFetusPhantom(sized<FetusOptions>(values));
   if (kind == "cube")
     return makeCube(values);
   throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");
