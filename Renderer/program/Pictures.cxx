@@ -48,8 +48,7 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
   const bool perspective = pose.projection == Projection::perspective;
   TextWriter camera;
   camera.precision(17);
-  camera << (perspective ? "--projection perspective --angle "
-                         : "--projection orthographic --scale ")
+  camera << "--projection " << (perspective ? "perspective --angle " : "orthographic --scale ")
          << (perspective ? pose.angle : pose.scale) << " --position=" << text(pose.position)
          << " --target=" << text(pose.target) << " --up=" << text(pose.up);
   std::map<std::string, std::string> entries = {{"version", versionText},

@@ -40,13 +40,14 @@ std::size_t columns() {
 
 } // namespace
 
-Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, const FrameCount& frames)
+Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int before, int frames)
     : m_mode(options.progress),
       m_settings(options.settings),
       m_pixels(1.0 * options.scene.width * options.scene.height),
       m_monitor(monitor),
-      m_frames(frames),
-      m_before(frames.finished) {
+      m_before(before),
+      m_finished(before),
+      m_frames(frames) {
   if (m_mode == ProgressMode::automatic)
     m_mode = ::isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::none;
   if (m_mode == ProgressMode::xml) {
@@ -64,7 +65,7 @@ Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, const F
 
 void Progress::nextFrame() {
   const std::lock_guard lock(m_mutex);
-  ++m_frames.finished;
+  ++m_finished;
   m_frameWatch = Stopwatch();
   m_monitor.paths = 0;
   m_monitor.noise = infinity;
@@ -80,8 +81,7 @@ void Progress::run(const std::stop_token& end) {
 }
 
 double Progress::fraction() const {
-  const double toDo = m_frames.all - m_before;
-  const double done = m_frames.finished - m_before;
+  const double toDo = m_frames - m_before, done = m_finished - m_before;
   return toDo > 0.0 ? std::min(1.0, (done + frameFraction()) / toDo) : 1.0;
 }
 
@@ -124,9 +124,9 @@ std::vector<std::string> Progress::reached() const {
   const double samples = static_cast<double>(m_monitor.paths) / m_pixels;
   const double noise = m_monitor.noise;
   std::vector<std::string> fields;
-  if (m_frames.all > 1)
-    fields.push_back("frame " + std::to_string(std::min(m_frames.finished + 1, m_frames.all)) +
-                     " of " + std::to_string(m_frames.all));
+  if (m_frames > 1)
+    fields.push_back("frame " + std::to_string(std::min(m_finished + 1, m_frames)) + " of " +
+                     std::to_string(m_frames));
   fields.push_back(
       formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
   if (noise < infinity)

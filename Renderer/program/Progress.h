@@ -13,17 +13,13 @@
 
 namespace fenestra {
 
-/// Count of the pictures that a command renders one after the other.
-struct FrameCount {
-  int finished = 0; ///< by earlier runs, and so far
-  int all = 1;
-};
-
 /// Shows progress from construction to destruction: a bar on standard error, erased at the end, or
 /// Slicer's tags on standard output. `automatic`: a bar if standard error is a terminal.
 class Progress {
 public:
-  Progress(const RenderOptions& options, RenderMonitor& monitor, const FrameCount& frames = {});
+  /// For a command that renders `frames` pictures one after the other, `before` of them by earlier
+  /// runs.
+  Progress(const RenderOptions& options, RenderMonitor& monitor, int before = 0, int frames = 1);
 
   /// Counts a picture as finished, and resets the monitor for the next one.
   void nextFrame();
@@ -45,8 +41,7 @@ private:
   RenderSettings m_settings;
   double m_pixels;
   RenderMonitor& m_monitor;
-  FrameCount m_frames;
-  int m_before; ///< frames finished before construction
+  int m_before, m_finished, m_frames; ///< frames: by earlier runs, so far (these included), all
   Stopwatch m_watch, m_frameWatch;
   std::mutex m_mutex;
   std::condition_variable_any m_wake;

@@ -8,6 +8,7 @@
 #include "base/safe/Locks.h"
 #include "base/safe/ShownText.h"
 #include "base/safe/SystemCalls.h"
+#include "model/camera/Turn.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/Machine.h"
@@ -37,14 +38,14 @@ public:
         m_outputs(outputs),
         m_words(std::move(words)),
         m_before(finished()),
-        m_scene(options.render.scene),
-        m_start(m_scene.camera().pose()) {}
+        m_view{-2, Scene(options.render.scene)},
+        m_start(m_view.scene.camera().pose()) {}
 
   /// Returns the exit status.
   int run() {
     const StopInstead stopInstead(m_monitor.stop); // the frame under way is discarded
     m_outputs.checkInputs();                       // now also files that the scene refers to
-    m_record.setInputs(m_scene);
+    m_record.setInputs(m_view.scene);
     m_record.write(m_outputs);
     if (!m_record.warning().empty())
       warn(m_record.warning());
@@ -63,9 +64,10 @@ public:
 private:
   /// Scene of a frame, before rendering.
   struct View {
+    int frame; ///< -2: none, the scene is as requested
     Scene scene;
-    std::optional<SeenSurface> surface;
-    std::optional<SurfaceChange> change; ///< since the preceding frame
+    std::optional<SeenSurface> surface = {};
+    std::optional<SurfaceChange> change = {}; ///< since the preceding frame
   };
 
   int finished() const { return static_cast<int>(m_record.finished().size()); }
@@ -78,7 +80,7 @@ private:
   }
 
   void renderFrames() {
-    Progress progress(m_options.render, m_monitor, {m_before, m_options.frames});
+    Progress progress(m_options.render, m_monitor, m_before, m_options.frames);
     for (int frame = 0; frame < m_options.frames; ++frame) {
       if (m_record.finished().contains(frame))
         continue;
@@ -92,20 +94,17 @@ private:
   bool renderFrame(int frame) {
     if (!waitForView(frame))
       return false;
-    View view = m_preparing.get();
-    m_scene = std::move(view.scene);
-    m_surface = std::move(view.surface);
-    m_surfaceFrame = frame;
-    for (const std::string& warning : m_scene.warnings())
+    m_view = m_preparing.get();
+    for (const std::string& warning : m_view.scene.warnings())
       warn(warning);
     RenderOptions options = m_options.render;
     options.outputs = m_options.pictures(frame);
-    const RenderResult result = renderPicture(options, m_scene, m_monitor);
+    const RenderResult result = renderPicture(options, m_view.scene, m_monitor);
     if (result.reason == StopReason::request)
       return false;
-    writePictures(options, m_scene, result, m_words, m_outputs);
+    writePictures(options, m_view.scene, result, m_words, m_outputs);
     m_outputs.commit();
-    m_record.finish(frame, view.change, m_outputs);
+    m_record.finish(frame, m_view.change, m_outputs);
     return true;
   }
 
@@ -119,19 +118,28 @@ private:
     return true;
   }
 
+  /// Scene for the eye of m_start turned around its target.
   Scene sceneAt(double degrees) const {
-    return m_scene.changed(turnedRequest(m_options.render.scene, m_start, degrees));
+    const CameraPose pose = turnedAroundTarget(m_start, degrees);
+    SceneRequest request = m_options.render.scene;
+    request.view = {.projection = pose.projection,
+                    .position = pose.position,
+                    .target = pose.target,
+                    .up = pose.up,
+                    .scale = pose.scale,
+                    .angle = pose.angle};
+    return m_view.scene.changed(request);
   }
 
   View viewOf(int frame) const {
     const double step = m_options.angle(1), angle = m_options.angle(frame);
-    const bool follows = frame > 0 || m_options.isClosed();
-    std::optional<SeenSurface> before = m_surface;
-    if (follows && m_surfaceFrame != frame - 1)
-      before = seen(sceneAt(angle - step));
-    View view{sceneAt(angle), std::nullopt, std::nullopt};
+    View view{frame, sceneAt(angle)};
     view.surface = seen(view.scene);
-    if (follows && before && view.surface && step != 0.0)
+    const bool follows = step != 0.0 && (frame > 0 || m_options.isClosed());
+    if (!follows || !view.surface)
+      return view;
+    const bool isNext = m_view.frame == frame - 1;
+    if (const auto before = isNext ? m_view.surface : seen(sceneAt(angle - step)))
       view.change = changeBetween(*before, *view.surface, m_start.up, step);
     return view;
   }
@@ -195,10 +203,8 @@ private:
   int m_before; ///< frames finished by earlier runs
   Stopwatch m_total;
   RenderMonitor m_monitor;
-  Scene m_scene;
-  CameraPose m_start;
-  std::optional<SeenSurface> m_surface; ///< surface of frame m_surfaceFrame
-  int m_surfaceFrame = -2;              ///< -2: no frame so far
+  View m_view;        ///< built last
+  CameraPose m_start; ///< of frame 0
   std::set<std::string> m_warnings;
   std::future<View> m_preparing; ///< abandoned by a stop
 };

@@ -2,7 +2,6 @@
 
 #include "base/Error.h"
 #include "files/pictures/ImageWriter.h"
-#include "model/camera/Turn.h"
 
 #include <cstdio>
 
@@ -79,18 +78,6 @@ std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
 std::filesystem::path recordPath(const std::filesystem::path& output) {
   std::filesystem::path path = output;
   return path.replace_filename(output.stem().string() + ".turntable.json");
-}
-
-SceneRequest turnedRequest(const SceneRequest& request, const CameraPose& start, double degrees) {
-  const CameraPose pose = turnedAroundTarget(start, degrees);
-  SceneRequest turned = request;
-  turned.view = {.projection = pose.projection,
-                 .position = pose.position,
-                 .target = pose.target,
-                 .up = pose.up,
-                 .scale = pose.scale,
-                 .angle = pose.angle};
-  return turned;
 }
 
 } // namespace fenestra

@@ -34,7 +34,4 @@ TurntableOptions turntableOptions(const FlagValues& flags, const RenderOptions& 
 /// Record of the finished frames: turn.png's is turn.turntable.json.
 std::filesystem::path recordPath(const std::filesystem::path& output);
 
-/// Request for the view of `start` with the eye turned around the target by `degrees`.
-SceneRequest turnedRequest(const SceneRequest& request, const CameraPose& start, double degrees);
-
 } // namespace fenestra

@@ -27,18 +27,9 @@ json requestedArguments(const FlagValues& flags, const fs::path& folder) {
   return relativeArguments(request.arguments(), turntableSyntax().flags, folder);
 }
 
-template <typename T>
-std::uint64_t digest(const std::vector<T>& voxels) {
-  return stateOf({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)}).digest;
-}
-
-/// Digests of the voxels, which may lie in files that only a header names.
-json voxelDigests(const Scene& scene) {
-  json digests = {
-      {"volume", std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels)}};
-  if (scene.focus())
-    digests["focus"] = digest(scene.focus()->voxels);
-  return digests;
+std::uint64_t digest(const auto& voxels) {
+  return stateOf({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(voxels[0])})
+      .digest;
 }
 
 /// Name, size and time of each file, by which a replaced file is noticed.
@@ -76,14 +67,12 @@ bool isAsRecorded(const fs::path& path, const JsonNode& recorded) {
 /// Reads a record file, of untrusted size: at most a record of `mostFrames` frames. Throws Error
 /// (input) if it is no JSON.
 json readRecord(const fs::path& path, const TurntableOptions& options) {
-  constexpr int partsOfFrame = 16, partsOfFile = 7;     // values and keys that write() makes
-  constexpr int bytesOfFrame = 400, bytesOfFile = 1700; // with a name of 255 letters, all escaped
-  const int files = static_cast<int>(std::min<std::size_t>(options.files(0).size(), 100));
+  constexpr int parts = 23, bytes = 2100; // of a file, with a name of 255 letters, all escaped
+  const int files =
+      mostFrames * static_cast<int>(std::min<std::size_t>(options.files(0).size(), 100));
   const std::string text =
-      readText(path, largestText + std::uint64_t{mostFrames} *
-                                       static_cast<unsigned>(bytesOfFrame + files * bytesOfFile));
-  return parseJson(text, path.string(),
-                   mostJsonParts + mostFrames * (partsOfFrame + files * partsOfFile));
+      readText(path, largestText + std::uint64_t{bytes} * static_cast<unsigned>(files));
+  return parseJson(text, path.string(), mostJsonParts + parts * files);
 }
 
 /// True for the record of any turntable of any version of Fenestra.
@@ -214,7 +203,10 @@ void TurntableRecord::setInputs(const Scene& scene) {
   std::set<fs::path> files(referred.begin(), referred.end());
   files.insert(m_options.render.inputs.begin(), m_options.render.inputs.end());
   m_request["inputs"] = fileStates(files, m_path.parent_path());
-  m_request["voxels"] = voxelDigests(scene);
+  json& voxels = m_request["voxels"]; // which may lie in files that only a header names
+  voxels["volume"] = std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels);
+  if (scene.focus())
+    voxels["focus"] = digest(scene.focus()->voxels);
   if (!m_recorded.is_null())
     requireSame();
 }
