@@ -69,8 +69,7 @@ private:
       m_scene = std::move(scene);
       m_options = options;
       m_flags = flags;
-      m_id = changes.back().id;
-      m_since = changes.back().since;
+      m_change = changes.back();
       m_complete = false;
       return true;
     } catch (const Error& error) {
@@ -103,30 +102,26 @@ private:
       publish(result, true);
   }
 
-  /// Returns whether the files are written. A failure (a full disk) is reported, for intermediate
-  /// pictures only once each; the next picture may have room again.
-  bool write(const RenderResult& result, bool last) {
+  /// Puts the pictures in place and tells them. A failure (a full disk) is told as well, for
+  /// intermediate pictures only once each; the next picture may have room again.
+  void publish(const RenderResult& result, bool last) {
     try {
       writePictures(m_options, *m_scene, result, m_flags.arguments(), m_outputs);
       m_outputs.commit(Outputs::Durability::none); // the next picture follows soon
-      return true;
+      tell(result, last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())
-        answerError(m_id, error.what());
+        answerError(m_change.id, error.what());
       m_failure = error.what();
-      return false;
     }
+    m_published.emplace();
   }
 
-  void publish(const RenderResult& result, bool last) {
-    const bool isWritten = write(result, last);
-    m_published.emplace();
-    if (!isWritten)
-      return;
-    nlohmann::ordered_json told = {{"event", "picture"}, {"id", m_id}};
+  void tell(const RenderResult& result, bool last) {
+    nlohmann::ordered_json told = {{"event", "picture"}, {"id", m_change.id}};
     told["samples"] = result.finishedSamples;
     told["noise"] = result.film.noise(); // null: infinite
-    told["seconds"] = m_since.seconds();
+    told["seconds"] = m_change.since.seconds();
     told["done"] = last;
     for (const std::filesystem::path& path : m_options.outputs)
       told["files"].push_back(path.string());
@@ -138,8 +133,7 @@ private:
 
   FlagValues m_flags; ///< flags of the current scene, without a preset's
   RenderOptions m_options;
-  nlohmann::json m_id = nullptr; ///< of the last change taken
-  Stopwatch m_since;             ///< time since that change arrived
+  ServeChange m_change; ///< last one taken
   Outputs& m_outputs;
   RenderMonitor m_monitor;
   ServeInput m_input;

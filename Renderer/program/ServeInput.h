@@ -43,8 +43,6 @@ void checkChange(const nlohmann::json& change, const FlagValues& flags);
 class ServeInput {
 public:
   ServeInput(const FlagValues& start, RenderMonitor& monitor);
-  ServeInput(const ServeInput&) = delete;
-  ServeInput& operator=(const ServeInput&) = delete;
 
   /// Blocks until there are changes, and takes them; afterwards only newer changes stop the render.
   ServeChanges next();
