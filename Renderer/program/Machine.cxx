@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <future>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 namespace fenestra {
 namespace {
@@ -24,19 +26,11 @@ int threadCount(const FlagValues& flags) {
 /// Starts `count` threads at once, to find out whether they can run: TBB's threads start each
 /// other, and end the process where one cannot start.
 void tryThreads(int count) {
+  std::vector<std::jthread> threads; // end as soon as the promise below is gone
   std::promise<void> started;
   const std::shared_future<void> all = started.get_future().share();
-  std::vector<std::future<void>> threads;
-  threads.reserve(
-      static_cast<std::size_t>(std::max(count, 0))); // a future without a place would block
-  try {
-    for (int i = 0; i < count; ++i)
-      threads.push_back(std::async(std::launch::async, [all] { all.wait(); }));
-  } catch (...) {
-    started.set_value();
-    throw;
-  }
-  started.set_value();
+  for (int i = 0; i < count; ++i)
+    threads.emplace_back([all] { all.wait(); });
 }
 
 } // namespace

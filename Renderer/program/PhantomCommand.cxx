@@ -52,11 +52,12 @@ std::optional<Size3> sizeOf(const FlagValues& values) {
   return size;
 }
 
+/// Options of a phantom whose size is --size.
 template <typename Options>
-Phantom madeWith(Phantom (*make)(const Options&), const FlagValues& values) {
+Options sized(const FlagValues& values) {
   Options options;
   options.size = sizeOf(values).value_or(options.size);
-  return make(options);
+  return options;
 }
 
 Phantom makeCube(const FlagValues& values) {
@@ -71,11 +72,11 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
   if (kind != "cube" && values.has("edge"))
     throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
   if (kind == "knee")
-    return madeWith(makeKneePhantom, values);
+    return makeKneePhantom(sized<KneeOptions>(values));
   if (kind == "foot")
-    return madeWith(makeFootPhantom, values);
+    return makeFootPhantom(sized<FootOptions>(values));
   if (kind == "fetus")
-    return madeWith(makeFetusPhantom, values);
+    return makeFetusPhantom(sized<FetusOptions>(values));
   if (kind == "cube")
     return makeCube(values);
   throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");

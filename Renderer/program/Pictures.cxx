@@ -7,6 +7,7 @@
 #include "clip/mesh/SurfaceWriter.h"
 #include "files/pictures/ImageWriter.h"
 #include "program/FileNames.h"
+#include "program/SceneFlags.h"
 #include "program/Version.h"
 
 #include <unistd.h>
@@ -20,14 +21,16 @@ std::string quoted(const std::string& argument) {
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
   if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
     return argument;
-  std::string result(1, '\'');
-  for (const char c : argument)
-    if (c == '\'')
-      result += "'\\''";
-    else
-      result += c;
-  result += '\'';
-  return result;
+  return "'" + replacedAll(argument, "'", "'\\''") + "'";
+}
+
+/// `fenestra words…`, quoted for a shell, with files named relative to `folder`.
+std::string shellCommand(const std::vector<std::string>& words,
+                         const std::filesystem::path& folder) {
+  std::string line = "fenestra";
+  for (const std::string& word : relativeArguments(words, renderSyntax.flags, folder))
+    line += " " + quoted(word);
+  return line;
 }
 
 std::string text(const Vec3& v) {
@@ -38,14 +41,14 @@ std::string text(const Vec3& v) {
 }
 
 std::map<std::string, std::string> header(const Scene& scene, const RenderOptions& options,
-                                          const RenderResult& result, const std::string& command) {
+                                          const RenderResult& result,
+                                          const std::vector<std::string>& words) {
   const std::filesystem::path folder = options.outputs.front().parent_path();
   const CameraPose& pose = scene.camera().pose();
   const bool perspective = pose.projection == Projection::perspective;
   TextWriter camera;
   camera.precision(17);
-  camera << (perspective ? "--projection perspective --angle "
-                         : "--projection orthographic --scale ")
+  camera << "--projection " << (perspective ? "perspective --angle " : "orthographic --scale ")
          << (perspective ? pose.angle : pose.scale) << " --position=" << text(pose.position)
          << " --target=" << text(pose.target) << " --up=" << text(pose.up);
   std::map<std::string, std::string> entries = {{"version", versionText},
@@ -54,13 +57,29 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
                                                 {"samples", std::to_string(result.finishedSamples)},
                                                 {"camera", camera.str()},
                                                 {"look", relativeName(scene.look(), folder)},
-                                                {"command", command}};
+                                                {"command", shellCommand(words, folder)}};
   if (options.preset)
     entries["preset"] = relativeName(*options.preset, folder);
   return entries;
 }
 
 } // namespace
+
+void refuseFlags(const FlagValues& given, std::initializer_list<const char*> names,
+                 const std::string& why) {
+  for (const char* name : names)
+    if (given.has(name))
+      throw usageError(std::string("--") + name + ": " + why);
+}
+
+PictureRequest pictureRequest(const FlagValues& given) {
+  const Input input(*given.text("INPUT"));
+  const SceneFlags stored = withSceneFlags(given, input);
+  const PresetFlags flags = withPreset(stored.flags, input);
+  PictureRequest request{stored.flags, flags.flags, renderOptions(flags), input};
+  request.options.scene.leftOut = stored.leftOut;
+  return request;
+}
 
 void declareOutputs(const RenderOptions& options, Outputs& outputs) {
   for (const std::filesystem::path& input : options.inputs)
@@ -91,18 +110,15 @@ void checkMemory(const SceneRequest& scene) {
   throw outputError("--size", line.str());
 }
 
-std::string shellCommand(const std::vector<std::string>& arguments, const RenderOptions& options) {
-  std::string line = "fenestra";
-  for (const std::string& argument :
-       relativeArguments(arguments, renderSyntax.flags, options.outputs.front().parent_path()))
-    line.append(" ").append(quoted(argument));
-  return line;
+RenderResult renderPicture(const RenderOptions& options, const Scene& scene,
+                           RenderMonitor& monitor) {
+  return render(scene.forRender(), settingsFor(options, scene.background()), monitor);
 }
 
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
-                   const std::string& command, Outputs& outputs) {
+                   const std::vector<std::string>& words, Outputs& outputs) {
   Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
-  image.header = header(scene, options, result, command);
+  image.header = header(scene, options, result, words);
   // All files at once if threads are free: compressing one does not delay another.
   std::vector<std::future<void>> files;
   for (const std::filesystem::path& path : options.outputs)

@@ -1,12 +1,27 @@
 #pragma once
-// Files of a finished render: checked before the long work, written after it.
+// Way of a picture, the same for render, serve and turntable: request, scene, render, files. Files
+// are checked before the long work, and written after it.
 
-#include "program/RenderFlags.h"
+#include "program/PresetFlags.h"
 #include "session/Scene.h"
 
 #include <future>
 
 namespace fenestra {
+
+/// Throws Error (usage) for a given flag of these, which the command does not take; `why`: the rest
+/// of the message.
+void refuseFlags(const FlagValues& given, std::initializer_list<const char*> names,
+                 const std::string& why);
+
+struct PictureRequest {
+  FlagValues stored; ///< given, and stored in the scene
+  FlagValues flags;  ///< those, and the preset's
+  RenderOptions options;
+  Input input; ///< of options.scene, opened
+};
+/// Throws Error: usage; input for a damaged scene or preset.
+PictureRequest pictureRequest(const FlagValues& given);
 
 /// Declares all results that `options` name and enters all their inputs into the ledger: a file
 /// that cannot be written, or a result that would replace an input, fails before the long work.
@@ -16,9 +31,8 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs);
 /// Throws Error (output) if memory cannot hold the picture.
 void checkMemory(const SceneRequest& scene);
 
-/// `fenestra arguments…`, quoted for a shell, with files named relative to the folder of the first
-/// picture.
-std::string shellCommand(const std::vector<std::string>& arguments, const RenderOptions& options);
+RenderResult renderPicture(const RenderOptions& options, const Scene& scene,
+                           RenderMonitor& monitor);
 
 /// Starts writing options.surface, if set, in parallel to other work. The arguments must outlive
 /// the future; its get() throws Error (output).
@@ -28,9 +42,9 @@ std::future<void> startSurface(const RenderOptions& options, const Scene& scene,
 /// it, such as the old depth beside a `.nrrd` that has no depth now. For after the commit.
 std::vector<std::string> staleParts(const RenderOptions& options, const Outputs& outputs);
 
-/// Writes all of options.outputs, with `command` and the other data that reproduce the picture in
-/// each header; the caller commits them. Throws Error (output).
+/// Writes all of options.outputs; the caller commits them. Each header has the data that reproduce
+/// the picture, `fenestra words…` among them. Throws Error (output).
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
-                   const std::string& command, Outputs& outputs);
+                   const std::vector<std::string>& words, Outputs& outputs);
 
 } // namespace fenestra

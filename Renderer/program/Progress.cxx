@@ -40,12 +40,13 @@ std::size_t columns() {
 
 } // namespace
 
-Progress::Progress(ProgressMode mode, const RenderSettings& settings, std::uint64_t pixels,
-                   const RenderMonitor& monitor, const FrameCount& frames)
-    : m_mode(mode),
-      m_settings(settings),
-      m_pixels(static_cast<double>(pixels)),
+Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int before, int frames)
+    : m_mode(options.progress),
+      m_settings(options.settings),
+      m_pixels(1.0 * options.scene.width * options.scene.height),
       m_monitor(monitor),
+      m_before(before),
+      m_finished(before),
       m_frames(frames) {
   if (m_mode == ProgressMode::automatic)
     m_mode = ::isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::none;
@@ -57,38 +58,31 @@ Progress::Progress(ProgressMode mode, const RenderSettings& settings, std::uint6
   if (m_mode == ProgressMode::none)
     return;
   try {
-    m_thread = std::thread([this] { run(); });
+    m_thread = std::jthread([this](const std::stop_token& end) { run(end); });
   } catch (const std::system_error&) { // no thread is left; the picture matters more
   }
 }
 
-Progress::~Progress() {
-  if (!m_thread.joinable())
-    return;
-  {
-    const std::lock_guard lock(m_mutex);
-    m_done = true;
-  }
-  m_wake.notify_one();
-  m_thread.join();
-}
-
 void Progress::nextFrame() {
   const std::lock_guard lock(m_mutex);
-  ++m_frame;
+  ++m_finished;
   m_frameWatch = Stopwatch();
+  m_monitor.paths = 0;
+  m_monitor.noise = infinity;
 }
 
-void Progress::run() {
+void Progress::run(const std::stop_token& end) {
   std::unique_lock lock(m_mutex);
-  while (!m_wake.wait_for(lock, std::chrono::milliseconds(100), [this] { return m_done; }))
-    show(false);
-  show(true);
+  for (bool last = false; !last;) {
+    m_wake.wait_for(lock, end, std::chrono::milliseconds(100), [] { return false; });
+    last = end.stop_requested();
+    show(last);
+  }
 }
 
 double Progress::fraction() const {
-  const double toDo = m_frames.all - m_frames.finished;
-  return toDo > 0.0 ? std::min(1.0, (m_frame + frameFraction()) / toDo) : 1.0;
+  const double toDo = m_frames - m_before, done = m_finished - m_before;
+  return toDo > 0.0 ? std::min(1.0, (done + frameFraction()) / toDo) : 1.0;
 }
 
 double Progress::frameFraction() const {
@@ -105,20 +99,20 @@ void Progress::show(bool last) {
   const double now = last && !m_monitor.stop ? 1.0 : fraction();
   m_fraction = std::max(m_fraction, now);
   if (m_mode == ProgressMode::xml)
-    return showTags(m_fraction, last);
+    return showTags(last);
   if (last)
     std::fputs("\r\033[K", stderr); // leaves an empty line for the final report
   else
-    showBar(m_fraction);
+    showBar();
   std::fflush(stderr);
 }
 
-void Progress::showTags(double done, bool last) const {
+void Progress::showTags(bool last) const {
   std::string comment;
   for (const std::string& field : reached())
     comment += (comment.empty() ? "" : ", ") + field;
   std::printf("<filter-progress>%.4f</filter-progress>\n<filter-comment>%s</filter-comment>\n",
-              done, comment.c_str());
+              m_fraction, comment.c_str());
   if (last)
     std::printf("<filter-end>\n<filter-name>fenestra</filter-name>\n<filter-time>%.2f"
                 "</filter-time>\n</filter-end>\n",
@@ -130,10 +124,9 @@ std::vector<std::string> Progress::reached() const {
   const double samples = static_cast<double>(m_monitor.paths) / m_pixels;
   const double noise = m_monitor.noise;
   std::vector<std::string> fields;
-  if (m_frames.all > 1)
-    fields.push_back("frame " +
-                     std::to_string(std::min(m_frames.finished + m_frame + 1, m_frames.all)) +
-                     " of " + std::to_string(m_frames.all));
+  if (m_frames > 1)
+    fields.push_back("frame " + std::to_string(std::min(m_finished + 1, m_frames)) + " of " +
+                     std::to_string(m_frames));
   fields.push_back(
       formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
   if (noise < infinity)
@@ -141,9 +134,9 @@ std::vector<std::string> Progress::reached() const {
   return fields;
 }
 
-void Progress::showBar(double done) const {
-  const double seconds = m_watch.seconds();
-  const double left = done > 0.0 ? seconds * (1.0 - done) / done : infinity;
+void Progress::showBar() const {
+  const double done = m_fraction;
+  const double left = done > 0.0 ? m_watch.seconds() * (1.0 - done) / done : infinity;
   std::vector<std::string> fields = {formatted("%3.0f %%", 100.0 * done), clock(left) + " left"};
   for (const std::string& field : reached())
     fields.push_back(field);

@@ -6,36 +6,29 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
 namespace fenestra {
 
-/// Count of the pictures that a command renders one after the other.
-struct FrameCount {
-  int finished = 0; ///< by earlier runs
-  int all = 1;
-};
-
 /// Shows progress from construction to destruction: a bar on standard error, erased at the end, or
 /// Slicer's tags on standard output. `automatic`: a bar if standard error is a terminal.
 class Progress {
 public:
-  Progress(ProgressMode mode, const RenderSettings& settings, std::uint64_t pixels,
-           const RenderMonitor& monitor, const FrameCount& frames = {});
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  /// For a command that renders `frames` pictures one after the other, `before` of them by earlier
+  /// runs.
+  Progress(const RenderOptions& options, RenderMonitor& monitor, int before = 0, int frames = 1);
 
-  /// Counts a picture as finished. Call after resetting the monitor for the next picture.
+  /// Counts a picture as finished, and resets the monitor for the next one.
   void nextFrame();
 
 private:
-  void run();
+  void run(const std::stop_token& end);
   void show(bool last);
-  void showTags(double done, bool last) const;
-  void showBar(double done) const;
+  void showTags(bool last) const;
+  void showBar() const;
   /// Texts of frame, samples a pixel and noise.
   std::vector<std::string> reached() const;
   /// Finished share of all the work, in [0, 1].
@@ -47,15 +40,13 @@ private:
   ProgressMode m_mode;
   RenderSettings m_settings;
   double m_pixels;
-  const RenderMonitor& m_monitor;
-  FrameCount m_frames;
-  int m_frame = 0; ///< frames finished since construction
+  RenderMonitor& m_monitor;
+  int m_before, m_finished, m_frames; ///< frames: by earlier runs, so far (these included), all
   Stopwatch m_watch, m_frameWatch;
   std::mutex m_mutex;
-  std::condition_variable m_wake;
-  bool m_done = false;
+  std::condition_variable_any m_wake;
   double m_fraction = 0.0; ///< last shown; never decreases, although noise can grow between passes
-  std::thread m_thread;
+  std::jthread m_thread;   ///< ends before the members above
 };
 
 } // namespace fenestra

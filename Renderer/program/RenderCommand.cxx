@@ -3,17 +3,12 @@
 #include "base/TextStream.h"
 #include "base/safe/ShownText.h"
 #include "program/CommandLine.h"
-#include "program/FileNames.h"
 #include "program/Machine.h"
 #include "program/Pictures.h"
-#include "program/PresetFlags.h"
 #include "program/Progress.h"
-#include "program/RenderFlags.h"
-#include "program/SceneFlags.h"
 #include "program/SlicerModule.h"
 #include "program/Stats.h"
 #include "program/Stop.h"
-#include "session/Scene.h"
 
 #include <algorithm>
 #include <iostream>
@@ -21,14 +16,10 @@
 namespace fenestra {
 namespace {
 
-RenderResult renderWithProgress(const Scene& scene, const RenderOptions& options,
+RenderResult renderWithProgress(const RenderOptions& options, const Scene& scene,
                                 RenderMonitor& monitor) {
-  const RenderSettings settings = settingsFor(options, scene.background());
-  const Progress progress(options.progress, settings,
-                          static_cast<std::uint64_t>(options.scene.width) *
-                              static_cast<std::uint64_t>(options.scene.height),
-                          monitor);
-  return render(scene.forRender(), settings, monitor);
+  const Progress progress(options, monitor);
+  return renderPicture(options, scene, monitor);
 }
 
 void report(const RenderOptions& options, const RenderResult& result, double seconds) {
@@ -58,71 +49,49 @@ void warn(const RenderOptions& options, const std::vector<std::string>& warnings
         << "fenestra: warning: " << oneLine(warning) << '\n';
 }
 
-/// Enters the scene's own results and times.
-void describe(const Scene& scene, RenderStats& stats) {
-  stats.stages = scene.seconds();
-  stats.mismatch = scene.mismatch();
-  stats.boundary = scene.boundary();
-  for (const ControlPoint& point : scene.controlPoints())
-    stats.controlPoints.push_back(scene.camera().toRaster(point.site));
-  stats.warnings = scene.warnings();
-  stats.files = scene.files();
-  const MajorantGrid& majorants = scene.forRender().majorants;
-  stats.cells = majorants.size();
-  stats.emptyCells = majorants.emptyCount();
-  if (scene.focus())
-    stats.focusVoxels = scene.focus()->grid.voxelCount();
-}
-
 /// Renders the scene, puts its pictures in place, then measures them for the statistics. Returns
 /// the exit status.
-int renderScene(const RenderOptions& options, const Input& input, const std::string& command,
+int renderScene(const PictureRequest& request, const std::vector<std::string>& words,
                 Outputs& outputs) {
+  const RenderOptions& options = request.options;
   const Stopwatch total;
-  RenderStats stats;
-  const Scene scene(options.scene, input);
+  const Scene scene(options.scene, request.input);
   outputs.checkInputs(); // now also files that the scene refers to
   warn(options, scene.warnings());
 
   RenderMonitor monitor;
   const StopInstead stopInstead(monitor.stop);
   std::future<void> surface = startSurface(options, scene, outputs);
-  const Stopwatch transport;
-  const RenderResult result = renderWithProgress(scene, options, monitor);
-  stats.transport = transport.seconds();
+  Stopwatch watch;
+  RenderStats stats;
+  const RenderResult result = renderWithProgress(options, scene, monitor);
+  stats.transport = watch.seconds();
   surface.get();
   if (result.finishedSamples == 0) {
     std::cerr << "fenestra: stopped on request before the first pass; no picture was written\n";
     return stopStatus();
   }
-  const bool isStopped = result.reason == StopReason::request;
-  const Stopwatch write;
-  writePictures(options, scene, result, command, outputs);
+  watch.lap();
+  writePictures(options, scene, result, words, outputs);
   outputs.commit();
-  stats.write = write.seconds();
-  const std::vector<std::string> stale = staleParts(options, outputs);
-  warn(options, stale);
+  stats.write = watch.lap();
+  stats.warnings = staleParts(options, outputs);
+  warn(options, stats.warnings);
 
   if (options.stats) {
-    const Stopwatch measure;
+    watch.lap();
     if (!monitor.stop) // a stop does not wait for measures
       stats.focus = measureFocus(scene, options.settings.seed, monitor.stop);
-    stats.measure = measure.seconds();
-    describe(scene, stats);
-    stats.warnings.insert(stats.warnings.end(), stale.begin(), stale.end());
-    if (options.preset)
-      stats.preset = relativeName(*options.preset, options.stats->parent_path());
+    stats.measure = watch.seconds();
     stats.total = total.seconds();
-    for (std::string& file : stats.files)
-      file = relativeName(file, options.stats->parent_path());
-    outputs.write(*options.stats, statsJson(stats, result));
+    outputs.write(*options.stats, statsJson(stats, options, scene, result));
   }
   if (options.returnValues)
     outputs.write(*options.returnValues, returnValuesText({result.film.sampleCounts().mean,
                                                            result.film.noise(), stats.transport}));
   outputs.commit();
   report(options, result, total.seconds());
-  return isStopped ? stopStatus() : 0;
+  return result.reason == StopReason::request ? stopStatus() : 0;
 }
 
 } // namespace
@@ -136,17 +105,13 @@ int renderCommand(int argc, char** argv, int first) {
   if (!given)
     return 0;
   useMachine(*given);
-  const Input input(*given->text("INPUT"));
-  const SceneFlags stored = withSceneFlags(*given, input);
-  const PresetFlags flags = withPreset(stored.flags, input);
+  const PictureRequest request = pictureRequest(*given);
   if (given->has("echo"))
-    std::cout << flags.flags.echo() << std::flush;
-  RenderOptions options = renderOptions(flags);
-  options.scene.leftOut = stored.leftOut;
+    std::cout << request.flags.echo() << std::flush;
   Outputs outputs;
-  declareOutputs(options, outputs);
-  checkMemory(options.scene);
-  return renderScene(options, input, shellCommand({argv + 1, argv + argc}, options), outputs);
+  declareOutputs(request.options, outputs);
+  checkMemory(request.options.scene);
+  return renderScene(request, {argv + 1, argv + argc}, outputs);
 }
 
 } // namespace fenestra

@@ -9,10 +9,8 @@
 #include "program/Stop.h"
 #include "session/NamedLooks.h"
 
-#include <array>
-#include <cerrno>
 #include <cstdio>
-#include <unistd.h>
+#include <thread>
 #include <utility>
 
 namespace fenestra {
@@ -34,25 +32,25 @@ std::string valueText(const std::string& name, const json& value) {
 /// Items separated by commas; commas within an item are escaped.
 std::string listText(const std::string& name, const json& list) {
   std::string text;
-  for (const json& item : list) {
-    text += text.empty() ? "" : ",";
-    for (const char c : valueText(name, item))
-      text += c == ',' ? std::string("\\,") : std::string(1, c);
-  }
+  for (const json& item : list)
+    text += (text.empty() ? "" : ",") + replacedAll(valueText(name, item), ",", "\\,");
   return text;
 }
 
 } // namespace
 
-bool ServeAnswers::say(const nlohmann::ordered_json& answer) {
-  const std::string line = answer.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
-  const std::lock_guard lock(m_mutex);
-  return std::fwrite(line.data(), 1, line.size(), stdout) == line.size() &&
-         std::fflush(stdout) == 0;
+void answer(const nlohmann::ordered_json& content) {
+  static std::mutex mutex;
+  const std::string line = jsonText(content, -1);
+  const std::lock_guard lock(mutex);
+  if (std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0)
+    return;
+  std::fputs("fenestra: standard output: nobody reads it any more\n", stderr);
+  endProcess(static_cast<int>(ErrorKind::output));
 }
 
-bool ServeAnswers::error(const json& id, const std::string& message) {
-  return say({{"event", "error"}, {"id", id}, {"message", message}});
+void answerError(const json& id, const std::string& message) {
+  answer({{"event", "error"}, {"id", id}, {"message", message}});
 }
 
 ServeChange parseChange(const std::string& line, json& id) {
@@ -108,11 +106,9 @@ void checkChange(const json& change, const FlagValues& flags, const Input& input
     readEnvironmentMap(*scene.environmentMap);
 }
 
-ServeInput::ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor,
-                       ServeAnswers& answers)
-    : m_input(input), m_monitor(monitor), m_answers(answers), m_wanted(start) {
-  m_thread = std::thread([this] { read(); });
-  m_thread.detach(); // ends with the process only
+ServeInput::ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor)
+    : m_input(input), m_monitor(monitor), m_wanted(start) {
+  std::thread([this] { read(); }).detach(); // ends with the process only
 }
 
 ServeChanges ServeInput::next() {
@@ -131,29 +127,19 @@ void ServeInput::takeBack(const FlagValues& shown) {
 
 void ServeInput::read() {
   std::string line;
-  bool tooLong = false;
-  for (;;) {
-    std::array<char, 4096> part;
-    const ssize_t size = ::read(STDIN_FILENO, part.data(), part.size());
-    if (size < 0 && errno == EINTR)
+  for (int c = std::getchar(); c != EOF; c = std::getchar()) {
+    if (c != '\n') {
+      if (line.size() <= longestLine)
+        line += static_cast<char>(c);
       continue;
-    if (size <= 0)
-      endProcess(0);
-    for (const char c : std::string_view(part.data(), static_cast<std::size_t>(size))) {
-      if (c != '\n') {
-        tooLong = tooLong || line.size() == longestLine;
-        if (!tooLong)
-          line += c;
-        continue;
-      }
-      if (tooLong)
-        m_answers.error(nullptr, "a line has more than a million characters; send shorter ones");
-      else if (line.find_first_not_of(" \t\r") != std::string::npos)
-        takeLine(line);
-      line.clear();
-      tooLong = false;
     }
+    if (line.size() > longestLine)
+      answerError(nullptr, "a line has more than a million characters; send shorter ones");
+    else if (line.find_first_not_of(" \t\r") != std::string::npos)
+      takeLine(line);
+    line.clear();
   }
+  endProcess(0);
 }
 
 void ServeInput::takeLine(const std::string& line) {
@@ -167,7 +153,7 @@ void ServeInput::takeLine(const std::string& line) {
     m_new.push_back(std::move(change));
     m_monitor.stop = true;
   } catch (const Error& error) {
-    m_answers.error(id, error.what());
+    answerError(id, error.what());
   }
   m_changed.notify_one();
 }

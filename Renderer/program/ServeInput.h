@@ -9,21 +9,14 @@
 
 #include <condition_variable>
 #include <mutex>
-#include <thread>
 
 namespace fenestra {
 
-/// Answers on standard output: one JSON object a line; lines of several threads do not mix.
-class ServeAnswers {
-public:
-  /// Returns false if standard output is closed.
-  bool say(const nlohmann::ordered_json& answer);
-  /// `id`: the change's, or null.
-  bool error(const nlohmann::json& id, const std::string& message);
-
-private:
-  std::mutex m_mutex;
-};
+/// Writes an answer to standard output, a line of JSON; lines of several threads do not mix. Ends
+/// the process if standard output is closed: nobody waits for pictures.
+void answer(const nlohmann::ordered_json& content);
+/// `id`: the change's, or null.
+void answerError(const nlohmann::json& id, const std::string& message);
 
 /// One line of input.
 struct ServeChange {
@@ -50,10 +43,7 @@ void checkChange(const nlohmann::json& change, const FlagValues& flags, const In
 /// ends the process as signals do (program/Stop), after any picture that is being put in place.
 class ServeInput {
 public:
-  ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor,
-             ServeAnswers& answers);
-  ServeInput(const ServeInput&) = delete;
-  ServeInput& operator=(const ServeInput&) = delete;
+  ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor);
 
   /// Blocks until there are changes, and takes them; afterwards only newer changes stop the render.
   ServeChanges next();
@@ -66,12 +56,10 @@ private:
 
   const Input m_input; ///< of all scenes
   RenderMonitor& m_monitor;
-  ServeAnswers& m_answers;
   std::mutex m_mutex; ///< guards m_wanted, m_new and monitor.stop
   std::condition_variable m_changed;
   FlagValues m_wanted; ///< flags after all changes
   ServeChanges m_new;  ///< changes not yet taken by next()
-  std::thread m_thread;
 };
 
 } // namespace fenestra

@@ -1,57 +1,77 @@
 #include "program/Stats.h"
 
-#include <nlohmann/json.hpp>
+#include "base/safe/JsonNode.h"
+#include "program/FileNames.h"
 
 #include <sys/resource.h>
 
 namespace fenestra {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
 }
 
-nlohmann::ordered_json jsonOf(const Distribution& values) {
+Json jsonOf(const Distribution& values) {
   return {{"mean", values.mean}, {"p95", values.p95}, {"max", values.max}};
 }
 
 /// Adds the measures of the clip.
-void addClip(nlohmann::ordered_json& json, const RenderStats& stats) {
-  if (stats.mismatch)
-    json["boundaryMismatchMm"] = jsonOf(*stats.mismatch);
-  if (stats.boundary && stats.boundary->crossings > 0) {
-    json["boundaryGapMm"] = jsonOf(stats.boundary->gap);
-    json["boundarySlopeJump"] = jsonOf(stats.boundary->slopeJump);
-    json["boundaryDepthJumps"] = stats.boundary->depthJumps;
+void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& focus) {
+  if (scene.mismatch())
+    json["boundaryMismatchMm"] = jsonOf(*scene.mismatch());
+  if (const auto& boundary = scene.boundary(); boundary && boundary->crossings > 0) {
+    json["boundaryGapMm"] = jsonOf(boundary->gap);
+    json["boundarySlopeJump"] = jsonOf(boundary->slopeJump);
+    json["boundaryDepthJumps"] = boundary->depthJumps;
   }
-  for (const Vec2& point : stats.controlPoints)
-    json["controlPoints"].push_back({point.x(), point.y()});
-  if (!stats.focus)
+  for (const ControlPoint& point : scene.controlPoints()) {
+    const Vec2 raster = scene.camera().toRaster(point.site);
+    json["controlPoints"].push_back({raster.x(), raster.y()});
+  }
+  if (!focus)
     return;
-  json["focusCoverage"] = stats.focus->coverage;
-  json["focusKept"] = stats.focus->kept;
-  json["focusCoverageUnclipped"] = stats.focus->withoutClip;
-  if (stats.focus->light)
-    json["focusLight"] = *stats.focus->light;
-  if (stats.focus->contextRemoved)
-    json["contextRemoved"] = *stats.focus->contextRemoved;
+  json["focusCoverage"] = focus->coverage;
+  json["focusKept"] = focus->kept;
+  json["focusCoverageUnclipped"] = focus->withoutClip;
+  if (focus->light)
+    json["focusLight"] = *focus->light;
+  if (focus->contextRemoved)
+    json["contextRemoved"] = *focus->contextRemoved;
+}
+
+/// Adds the sources of the picture, and the warnings.
+void addSources(Json& json, const RenderStats& stats, const RenderOptions& options,
+                const Scene& scene) {
+  const std::filesystem::path folder = options.stats->parent_path();
+  if (options.preset)
+    json["preset"] = relativeName(*options.preset, folder);
+  json["filesRead"] = Json::array();
+  for (const std::string& file : scene.files())
+    json["filesRead"].push_back(relativeName(file, folder));
+  json["warnings"] = scene.warnings();
+  for (const std::string& warning : stats.warnings)
+    json["warnings"].push_back(warning);
 }
 
 } // namespace
 
-std::string statsJson(const RenderStats& stats, const RenderResult& result) {
+std::string statsJson(const RenderStats& stats, const RenderOptions& options, const Scene& scene,
+                      const RenderResult& result) {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
   const SampleCounts samples = result.film.sampleCounts();
   const Counters& c = result.counters;
-  const double noise = result.film.noise();
+  const StageSeconds& stages = scene.seconds();
+  const MajorantGrid& majorants = scene.forRender().majorants;
 
-  nlohmann::ordered_json json;
-  json["seconds"] = {{"load", stats.stages.load},   {"classify", stats.stages.classify},
-                     {"focus", stats.stages.focus}, {"spline", stats.stages.spline},
-                     {"fill", stats.stages.fill},   {"transport", stats.transport},
-                     {"measure", stats.measure},    {"write", stats.write},
-                     {"total", stats.total}};
+  Json json;
+  json["seconds"] = {
+      {"load", stages.load},      {"classify", stages.classify}, {"focus", stages.focus},
+      {"spline", stages.spline},  {"fill", stages.fill},         {"transport", stats.transport},
+      {"measure", stats.measure}, {"write", stats.write},        {"total", stats.total}};
   json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   json["paths"] = c.paths;
   json["collisions"] = c.collisions;
@@ -60,20 +80,17 @@ std::string statsJson(const RenderStats& stats, const RenderResult& result) {
       c.cells > 0 ? static_cast<double>(c.skippedCells) / static_cast<double>(c.cells) : 0.0;
   json["shadowRays"] = c.shadowRays;
   json["gradients"] = c.gradients;
-  json["cells"] = {{"all", stats.cells}, {"empty", stats.emptyCells}};
+  json["cells"] = {{"all", majorants.size()}, {"empty", majorants.emptyCount()}};
   json["emptyPixels"] = samples.certainPixels;
   json["samplesPerPixel"] = {
       {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
-  json["noise"] = noise < infinity ? nlohmann::ordered_json(noise) : nullptr;
+  json["noise"] = result.film.noise(); // null: infinite
   json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
-  addClip(json, stats);
-  if (stats.focusVoxels)
-    json["focusVoxels"] = *stats.focusVoxels;
-  if (stats.preset)
-    json["preset"] = *stats.preset;
-  json["filesRead"] = stats.files;
-  json["warnings"] = stats.warnings;
-  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  addClip(json, scene, stats.focus);
+  if (scene.focus())
+    json["focusVoxels"] = scene.focus()->grid.voxelCount();
+  addSources(json, stats, options, scene);
+  return jsonText(json);
 }
 
 } // namespace fenestra

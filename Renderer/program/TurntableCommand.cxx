@@ -4,24 +4,24 @@
 #include "base/Error.h"
 #include "base/TextStream.h"
 #include "base/safe/Inputs.h"
+#include "base/safe/JsonNode.h"
 #include "base/safe/Locks.h"
 #include "base/safe/ShownText.h"
 #include "base/safe/SystemCalls.h"
+#include "model/camera/Turn.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/Machine.h"
 #include "program/Pictures.h"
 #include "program/Progress.h"
-#include "program/SceneFlags.h"
 #include "program/Stop.h"
 #include "program/TurntableRecord.h"
-#include "session/Scene.h"
 
 #include <chrono>
 #include <future>
 #include <iostream>
+#include <list>
 #include <map>
-#include <memory>
 #include <set>
 
 namespace fenestra {
@@ -30,88 +30,82 @@ namespace {
 /// Renders all frames that are not finished, one by one.
 class Turntable {
 public:
+  /// `words`: arguments of the process, for the headers of the pictures.
   Turntable(const TurntableOptions& options, const Input& input, TurntableRecord& record,
-            RenderMonitor& monitor, Outputs& outputs, std::string command)
+            Outputs& outputs, std::vector<std::string> words)
       : m_options(options),
         m_record(record),
-        m_monitor(monitor),
         m_outputs(outputs),
-        m_command(std::move(command)),
-        m_before(record.finishedCount()),
-        m_scene(options.render.scene, input),
-        m_start(m_scene.camera().pose()) {}
+        m_words(std::move(words)),
+        m_before(finished()),
+        m_view{-2, Scene(options.render.scene, input)},
+        m_start(m_view.scene.camera().pose()) {}
 
-  /// True if a view is still being built after a stop, and will not be used.
-  bool isPreparing() const { return m_preparing.valid(); }
-  int rendered() const { return m_record.finishedCount() - m_before; }
-
-  void run() {
-    m_outputs.checkInputs(); // now also files that the scene refers to
-    m_record.setInputs(m_options, m_scene);
+  /// Returns the exit status.
+  int run() {
+    const StopInstead stopInstead(m_monitor.stop); // the frame under way is discarded
+    m_outputs.checkInputs();                       // now also files that the scene refers to
+    m_record.setInputs(m_view.scene);
     m_record.write(m_outputs);
-    if (const auto warning = m_record.warning())
-      warn(*warning);
-    const RenderOptions& render = m_options.render;
-    const RenderSettings settings = settingsFor(render, m_scene.background());
-    Progress progress(render.progress, settings,
-                      static_cast<std::uint64_t>(render.scene.width) *
-                          static_cast<std::uint64_t>(render.scene.height),
-                      m_monitor, {m_before, m_options.frames});
-    for (int frame = 0; frame < m_options.frames; ++frame) {
-      if (m_record.isFinished(frame))
-        continue;
-      if (!renderFrame(frame, settings))
-        return;
-      m_monitor.paths = 0;
-      m_monitor.noise = infinity;
-      progress.nextFrame();
-    }
-  }
-
-  /// JSON text: frames, seconds, changes of the surface, warnings.
-  std::string statsJson(double seconds) const {
-    nlohmann::ordered_json json = {{"frames", m_options.frames},
-                                   {"finished", m_record.finishedCount()},
-                                   {"rendered", rendered()},
-                                   {"degrees", m_options.degrees},
-                                   {"seconds", seconds}};
-    if (!m_record.changes().empty())
-      json["surfaceChangeMmPerDegree"] = changesJson();
-    json["warnings"] = m_warnings;
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    if (!m_record.warning().empty())
+      warn(m_record.warning());
+    renderFrames();
+    const bool isWhole = finished() == m_options.frames;
+    const auto& stats = m_options.render.stats;
+    if (stats && (rendered() > 0 || isWhole)) // otherwise they would describe missing pictures
+      m_outputs.write(*stats, statsJson());
+    m_outputs.commit();
+    report();
+    if (m_preparing.valid()) // a view is still being built, and will not be used
+      endProcess(stopStatus());
+    return isWhole ? 0 : stopStatus();
   }
 
 private:
   /// Scene of a frame, before rendering.
   struct View {
+    int frame; ///< -2: none, the scene is as requested
     Scene scene;
-    std::optional<SeenSurface> surface;
-    std::optional<SurfaceChange> change; ///< since the preceding frame
+    std::optional<SeenSurface> surface = {};
+    std::optional<SurfaceChange> change = {}; ///< since the preceding frame
   };
 
-  /// Returns whether the frame is finished; false: stopped.
-  bool renderFrame(int frame, const RenderSettings& settings) {
-    if (!waitForView(frame))
-      return false;
-    View view = m_preparing.get();
-    m_scene = std::move(view.scene);
-    m_surface = std::move(view.surface);
-    m_surfaceFrame = frame;
-    for (const std::string& warning : m_scene.warnings())
-      warn(warning);
-    const RenderResult result = render(m_scene.forRender(), settings, m_monitor);
-    if (result.reason == StopReason::request)
-      return false;
-    writePictures(frameOptions(m_options, frame), m_scene, result, m_command, m_outputs);
-    m_outputs.commit();
-    m_record.finish(frame, frameFiles(m_options, frame), view.change, m_outputs);
-    return true;
-  }
+  int finished() const { return static_cast<int>(m_record.finished().size()); }
+  int rendered() const { return finished() - m_before; }
 
   /// Prints each distinct warning once.
   void warn(const std::string& warning) {
     if (m_warnings.insert(warning).second)
       std::cerr << "fenestra: warning: " << oneLine(warning) << '\n';
+  }
+
+  void renderFrames() {
+    Progress progress(m_options.render, m_monitor, m_before, m_options.frames);
+    for (int frame = 0; frame < m_options.frames; ++frame) {
+      if (m_record.finished().contains(frame))
+        continue;
+      if (!renderFrame(frame))
+        return;
+      progress.nextFrame();
+    }
+  }
+
+  /// Returns whether the frame is finished; false: stopped.
+  bool renderFrame(int frame) {
+    if (!waitForView(frame))
+      return false;
+    m_view = m_preparing.get();
+    for (const std::string& warning : m_view.scene.warnings())
+      warn(warning);
+    RenderOptions options = m_options.render;
+    options.outputs = m_options.pictures(frame);
+    const RenderResult result = renderPicture(options, m_view.scene, m_monitor);
+    if (result.reason == StopReason::request)
+      return false;
+    writePictures(options, m_view.scene, result, m_words, m_outputs);
+    m_outputs.commit();
+    m_record.finish(frame, m_view.change, m_outputs);
+    return true;
   }
 
   /// Builds the view in another thread if one can start: a stop does not wait for surfaces. Returns
@@ -124,19 +118,28 @@ private:
     return true;
   }
 
+  /// Scene for the eye of m_start turned around its target.
   Scene sceneAt(double degrees) const {
-    return m_scene.changed(turnedRequest(m_options.render.scene, m_start, degrees));
+    const CameraPose pose = turnedAroundTarget(m_start, degrees);
+    SceneRequest request = m_options.render.scene;
+    request.view = {.projection = pose.projection,
+                    .position = pose.position,
+                    .target = pose.target,
+                    .up = pose.up,
+                    .scale = pose.scale,
+                    .angle = pose.angle};
+    return m_view.scene.changed(request);
   }
 
   View viewOf(int frame) const {
     const double step = m_options.angle(1), angle = m_options.angle(frame);
-    const bool follows = frame > 0 || m_options.isClosed();
-    std::optional<SeenSurface> before = m_surface;
-    if (follows && m_surfaceFrame != frame - 1)
-      before = seen(sceneAt(angle - step));
-    View view{sceneAt(angle), std::nullopt, std::nullopt};
+    View view{frame, sceneAt(angle)};
     view.surface = seen(view.scene);
-    if (follows && before && view.surface && step != 0.0)
+    const bool follows = step != 0.0 && (frame > 0 || m_options.isClosed());
+    if (!follows || !view.surface)
+      return view;
+    const bool isNext = m_view.frame == frame - 1;
+    if (const auto before = isNext ? m_view.surface : seen(sceneAt(angle - step)))
       view.change = changeBetween(*before, *view.surface, m_start.up, step);
     return view;
   }
@@ -149,11 +152,28 @@ private:
     return seenSurface(*clip, scene.focusDepth(), scene.domain());
   }
 
-  nlohmann::ordered_json changesJson() const {
+  /// JSON text: frames, seconds, changes of the surface, warnings.
+  std::string statsJson() const {
+    nlohmann::ordered_json json = {{"frames", m_options.frames},
+                                   {"finished", finished()},
+                                   {"rendered", rendered()},
+                                   {"degrees", m_options.degrees},
+                                   {"seconds", m_total.seconds()}};
+    std::vector<SurfaceChange> changes;
+    for (const auto& [number, frame] : m_record.finished())
+      if (frame.change)
+        changes.push_back(*frame.change);
+    if (!changes.empty())
+      json["surfaceChangeMmPerDegree"] = overallJson(changes);
+    json["warnings"] = m_warnings;
+    return jsonText(json);
+  }
+
+  static nlohmann::ordered_json overallJson(const std::vector<SurfaceChange>& changes) {
     SurfaceChange all;
     double excess = 0.0;
-    for (const auto& [frame, change] : m_record.changes()) {
-      all.mean += change.mean / static_cast<double>(m_record.changes().size());
+    for (const SurfaceChange& change : changes) {
+      all.mean += change.mean / static_cast<double>(changes.size());
       all.p95 = std::max(all.p95, change.p95);
       all.max = std::max(all.max, change.max);
       all.focus = std::max(all.focus, change.focus);
@@ -164,74 +184,64 @@ private:
     return json;
   }
 
+  void report() const {
+    const bool isWhole = finished() == m_options.frames;
+    TextWriter line;
+    line.precision(3);
+    line << m_options.pictures(0).front().string() << " to "
+         << m_options.pictures(m_options.frames - 1).front().filename().string() << ": "
+         << finished() << " of " << m_options.frames << " frames, " << rendered()
+         << " rendered now, " << m_total.seconds() << " s"
+         << (isWhole ? "" : " (stopped on request; the same command goes on)");
+    std::cout << oneLine(line.str()) << std::endl;
+  }
+
   const TurntableOptions& m_options;
   TurntableRecord& m_record;
-  RenderMonitor& m_monitor;
   Outputs& m_outputs;
-  std::string m_command;
+  std::vector<std::string> m_words;
   int m_before; ///< frames finished by earlier runs
-  Scene m_scene;
-  CameraPose m_start;
-  std::optional<SeenSurface> m_surface; ///< surface of frame m_surfaceFrame
-  int m_surfaceFrame = -2;              ///< -2: no frame so far
+  Stopwatch m_total;
+  RenderMonitor m_monitor;
+  View m_view;        ///< built last
+  CameraPose m_start; ///< of frame 0
   std::set<std::string> m_warnings;
   std::future<View> m_preparing; ///< abandoned by a stop
 };
 
-/// Declares all frames before the long work. When resuming, an unfinished frame may replace only
+/// Declares all results before the long work. When resuming, an unfinished frame may replace only
 /// Fenestra's own files: other files in its place were put there since.
 void declareFrames(const TurntableOptions& options, const TurntableRecord& record,
                    Outputs& outputs) {
   for (int frame = 0; frame < options.frames; ++frame) {
-    RenderOptions render = frameOptions(options, frame);
-    if (!options.restart && !record.isFinished(frame))
-      render.outputsNamedBy = NamedBy::standard;
-    if (frame == 0)
-      declareOutputs(render, outputs);
-    else
-      for (const std::filesystem::path& path : render.outputs)
-        declareImage(path, outputs, render.outputsNamedBy);
+    const bool isOurs = !options.restart && !record.finished().contains(frame);
+    for (const std::filesystem::path& path : options.pictures(frame))
+      declareImage(path, outputs, isOurs ? NamedBy::standard : options.render.outputsNamedBy);
   }
+  if (options.render.stats)
+    outputs.add(*options.render.stats);
   record.declare(outputs);
-  checkMemory(options.render.scene);
 }
 
 /// Locks, to be held while the frames are written. Throws Error: usage if another process holds
 /// one; output.
-std::vector<std::unique_ptr<NameLock>> lockFrames(const TurntableOptions& options) {
+std::list<NameLock> lockFrames(const TurntableOptions& options) {
   std::map<std::filesystem::path, std::filesystem::path> names; // as given, by canonical path
   for (const std::filesystem::path& output : options.render.outputs) {
-    const std::filesystem::path name = recordPath(output);
+    const std::filesystem::path name = recordPath(output), folder = name.parent_path();
     std::error_code failed;
-    std::filesystem::path folder = std::filesystem::absolute(output, failed).parent_path();
-    if (!failed)
-      folder = std::filesystem::canonical(folder, failed);
+    const auto known = std::filesystem::canonical(folder.empty() ? "." : folder, failed);
     if (failed)
       throw writingError(name, failed.value());
-    names.emplace(folder / name.filename(), name);
+    names.emplace(known / name.filename(), name);
   }
-  std::vector<std::unique_ptr<NameLock>> locks;
-  for (const auto& [known, name] : names) {
-    locks.push_back(std::make_unique<NameLock>(name));
-    if (!locks.back()->isHeld())
+  std::list<NameLock> locks;
+  for (const auto& [known, name] : names)
+    if (!locks.emplace_back(name).isHeld())
       throw usageError(options.render.outputs.front().string() +
                        ": another turntable is writing these frames; wait for it, or choose "
                        "another --output");
-  }
   return locks;
-}
-
-void report(const TurntableOptions& options, const TurntableRecord& record, int rendered,
-            double seconds) {
-  const bool isWhole = record.finishedCount() == options.frames;
-  TextWriter line;
-  line.precision(3);
-  line << framePath(options.render.outputs.front(), 0).string() << " to "
-       << framePath(options.render.outputs.front(), options.frames - 1).filename().string() << ": "
-       << record.finishedCount() << " of " << options.frames << " frames, " << rendered
-       << " rendered now, " << seconds << " s"
-       << (isWhole ? "" : " (stopped on request; the same command goes on)");
-  std::cout << oneLine(line.str()) << std::endl;
 }
 
 } // namespace
@@ -240,34 +250,20 @@ int turntableCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(turntableSyntax(), argc, argv, first);
   if (!given)
     return 0;
+  refuseFlags(*given, {"surface", "returnparameterfile", "xml", "echo"},
+              "is for a single picture; use it with fenestra render, or drop it");
   useMachine(*given);
-  const Input input(*given->text("INPUT"));
-  const SceneFlags stored = withSceneFlags(*given, input);
-  const PresetFlags flags = withPreset(stored.flags, input);
-  TurntableOptions options = turntableOptions(flags);
-  options.render.scene.leftOut = stored.leftOut;
+  const PictureRequest request = pictureRequest(*given);
+  const TurntableOptions options = turntableOptions(request.flags, request.options);
   for (const std::filesystem::path& input : options.render.inputs)
     expectInput(input); // --restart replaces no input
   const auto locks = lockFrames(options);
-  TurntableRecord record(options, flags.flags);
-  RenderMonitor monitor;
+  TurntableRecord record(options, request.flags);
   Outputs outputs;
   declareFrames(options, record, outputs);
-
-  const Stopwatch total;
-  Turntable turntable(options, input, record, monitor, outputs,
-                      shellCommand({argv + 1, argv + argc}, options.render));
-  const StopInstead stopInstead(monitor.stop); // the frame under way is discarded
-  turntable.run();
-  const bool hasNews = turntable.rendered() > 0 || record.finishedCount() == options.frames;
-  if (options.render.stats && hasNews) // otherwise the statistics would describe missing pictures
-    outputs.write(*options.render.stats, turntable.statsJson(total.seconds()));
-  outputs.commit();
-  report(options, record, turntable.rendered(), total.seconds());
-  std::cout.flush();
-  if (turntable.isPreparing())
-    endProcess(stopStatus());
-  return record.finishedCount() == options.frames ? 0 : stopStatus();
+  checkMemory(options.render.scene);
+  Turntable turntable(options, request.input, record, outputs, {argv + 1, argv + argc});
+  return turntable.run();
 }
 
 } // namespace fenestra

@@ -2,7 +2,6 @@
 
 #include "base/Error.h"
 #include "files/pictures/ImageWriter.h"
-#include "model/camera/Turn.h"
 
 #include <cstdio>
 
@@ -45,13 +44,8 @@ const CommandSyntax& turntableSyntax() {
   return syntax;
 }
 
-TurntableOptions turntableOptions(const PresetFlags& given) {
-  const FlagValues& flags = given.flags;
-  for (const char* name : {"surface", "returnparameterfile", "xml", "echo"})
-    if (flags.has(name))
-      throw usageError(std::string("--") + name +
-                       ": is for a single picture; use it with fenestra render, or drop it");
-  TurntableOptions options{renderOptions(given)};
+TurntableOptions turntableOptions(const FlagValues& flags, const RenderOptions& render) {
+  TurntableOptions options{render};
   options.render.scene.measure = false; // the statistics cover all frames
   options.frames = static_cast<int>(flags.count("frames").value_or(36));
   options.degrees = flags.number("degrees").value_or(options.degrees);
@@ -61,45 +55,29 @@ TurntableOptions turntableOptions(const PresetFlags& given) {
   return options;
 }
 
-std::filesystem::path framePath(const std::filesystem::path& output, int frame) {
+std::vector<std::filesystem::path> TurntableOptions::pictures(int frame) const {
   char number[16];
   std::snprintf(number, sizeof number, "_%04d", frame);
-  std::filesystem::path path = output;
-  return path.replace_filename(output.stem().string() + number + output.extension().string());
+  std::vector<std::filesystem::path> pictures = render.outputs;
+  for (std::filesystem::path& path : pictures)
+    path.replace_filename(path.stem().string() + number + path.extension().string());
+  return pictures;
+}
+
+std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& picture : pictures(frame)) {
+    std::vector<std::filesystem::path> parts = imageFiles(picture);
+    if (!render.layers.depth)
+      parts.resize(1); // without the depth beside a .nrrd
+    files.insert(files.end(), parts.begin(), parts.end());
+  }
+  return files;
 }
 
 std::filesystem::path recordPath(const std::filesystem::path& output) {
   std::filesystem::path path = output;
   return path.replace_filename(output.stem().string() + ".turntable.json");
-}
-
-RenderOptions frameOptions(const TurntableOptions& options, int frame) {
-  RenderOptions result = options.render;
-  for (std::filesystem::path& output : result.outputs)
-    output = framePath(output, frame);
-  return result;
-}
-
-std::vector<std::filesystem::path> frameFiles(const TurntableOptions& options, int frame) {
-  std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path& output : frameOptions(options, frame).outputs)
-    for (const std::filesystem::path& file : imageFiles(output))
-      files.push_back(file);
-  return files;
-}
-
-SceneRequest turnedRequest(const SceneRequest& request, const CameraPose& start, double degrees) {
-  const CameraPose pose = turnedAroundTarget(start, degrees);
-  SceneRequest turned = request;
-  turned.view = {.projection = pose.projection,
-                 .position = pose.position,
-                 .target = pose.target,
-                 .up = pose.up};
-  if (pose.projection == Projection::perspective)
-    turned.view.angle = pose.angle;
-  else
-    turned.view.scale = pose.scale;
-  return turned;
 }
 
 } // namespace fenestra

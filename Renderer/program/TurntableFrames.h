@@ -1,7 +1,7 @@
 #pragma once
 // Flags of `fenestra turntable`, and the options that follow for each frame.
 
-#include "program/PresetFlags.h"
+#include "program/RenderFlags.h"
 
 namespace fenestra {
 
@@ -18,27 +18,20 @@ struct TurntableOptions {
   double angle(int frame) const { return degrees * frame / frames; }
   /// True if the last frame leads back to frame 0.
   bool isClosed() const { return degrees != 0.0 && std::remainder(degrees, 360.0) == 0.0; }
+
+  /// Pictures of a frame, an output each: turn.png's frame 7 is turn_0007.png.
+  std::vector<std::filesystem::path> pictures(int frame) const;
+  /// All files that the image writer makes for a frame.
+  std::vector<std::filesystem::path> files(int frame) const;
 };
 
 /// Syntax of render, with the turntable's own flags.
 const CommandSyntax& turntableSyntax();
 
-/// Throws Error (usage).
-TurntableOptions turntableOptions(const PresetFlags& given);
-
-/// Picture of a frame: turn.png's frame 7 is turn_0007.png.
-std::filesystem::path framePath(const std::filesystem::path& output, int frame);
+/// `render`: options of the same flags. Throws Error (usage).
+TurntableOptions turntableOptions(const FlagValues& flags, const RenderOptions& render);
 
 /// Record of the finished frames: turn.png's is turn.turntable.json.
 std::filesystem::path recordPath(const std::filesystem::path& output);
-
-/// Render options with the frame's own file names.
-RenderOptions frameOptions(const TurntableOptions& options, int frame);
-
-/// All files that the image writer makes for a frame.
-std::vector<std::filesystem::path> frameFiles(const TurntableOptions& options, int frame);
-
-/// Request for the view of `start` with the eye turned around the target by `degrees`.
-SceneRequest turnedRequest(const SceneRequest& request, const CameraPose& start, double degrees);
 
 } // namespace fenestra

@@ -9,15 +9,15 @@
 #include <algorithm>
 #include <fstream>
 #include <set>
-#include <string_view>
 
 namespace fenestra {
 namespace {
 
 using nlohmann::json;
+namespace fs = std::filesystem;
 
 /// Arguments on which the pictures of the frames depend.
-json requestedArguments(const FlagValues& flags, const std::filesystem::path& folder) {
+json requestedArguments(const FlagValues& flags, const fs::path& folder) {
   FlagValues request = flags;
   for (const char* name : {"threads", "progress", "stats", "restart"})
     request.remove(name);
@@ -27,124 +27,115 @@ json requestedArguments(const FlagValues& flags, const std::filesystem::path& fo
   return relativeArguments(request.arguments(), turntableSyntax().flags, folder);
 }
 
-template <typename T>
-std::uint64_t digest(const std::vector<T>& voxels) {
-  return stateOf({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(T)}).digest;
+std::uint64_t digest(const auto& voxels) {
+  return stateOf({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(voxels[0])})
+      .digest;
 }
 
-/// Name, size and time of a file, so that a replaced file is noticed.
-json fileState(const std::filesystem::path& path, const std::filesystem::path& folder) {
-  std::error_code none;
-  const auto bytes = std::filesystem::file_size(path, none);
-  const auto modified = std::filesystem::last_write_time(path, none);
-  return {{"file", relativeName(path.string(), folder)},
-          {"bytes", bytes},
-          {"modified", modified.time_since_epoch().count()}};
-}
-
-json inputStates(const TurntableOptions& options, const Scene& scene,
-                 const std::filesystem::path& folder) {
-  std::set<std::filesystem::path> files(options.render.inputs.begin(), options.render.inputs.end());
-  for (const std::string& file : scene.files())
-    files.insert(file);
+/// Name, size and time of each file, by which a replaced file is noticed.
+json fileStates(const std::set<fs::path>& files, const fs::path& folder) {
   json states = json::array();
-  for (const std::filesystem::path& file : files) // a member of an archive changes with the archive
-    if (std::error_code failed; std::filesystem::is_regular_file(file, failed))
-      states.push_back(fileState(file, folder));
+  std::error_code failed;
+  for (const fs::path& file : files) // a member of an archive changes with the archive
+    if (fs::is_regular_file(file, failed))
+      states.push_back(
+          {{"file", relativeName(file.string(), folder)},
+           {"bytes", fs::file_size(file, failed)},
+           {"modified", fs::last_write_time(file, failed).time_since_epoch().count()}});
   return states;
-}
-
-ContentState contentAt(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return stateOf(std::string(std::istreambuf_iterator<char>(file), {}));
 }
 
 /// True if a frame's file is as recorded; false if missing or empty: to be rendered again. Throws
 /// Error (usage) for any other file: frames are placed whole, so a shorter one is no torn frame but
 /// somebody's work.
-bool isAsRecorded(const std::filesystem::path& path, const JsonNode& recorded) {
+bool isAsRecorded(const fs::path& path, const JsonNode& recorded) {
   std::error_code failed;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
-  const double recordedBytes = recorded.at("bytes").numberIn(0.0, 1e15);
+  const std::uintmax_t bytes = fs::file_size(path, failed);
   if (failed || bytes == 0)
     return false;
-  if (static_cast<double>(bytes) == recordedBytes &&
-      json(contentAt(path).digest).dump() == recorded.at("digest").json())
-    return true;
+  if (recorded.at("bytes").json() == std::to_string(bytes)) {
+    std::ifstream file(path, std::ios::binary);
+    const ContentState state = stateOf(std::string(std::istreambuf_iterator<char>(file), {}));
+    if (recorded.at("digest").json() == std::to_string(state.digest))
+      return true;
+  }
   throw usageError(path.string() +
                    ": is not the frame that was recorded; move it away, and the same "
                    "command renders it again");
 }
 
-/// Reads a record file. Limits its untrusted size to that of a record of `mostFrames` frames with
-/// `filesOfFrame` files each. Throws Error (input) if it is no JSON.
-json readRecord(const std::filesystem::path& path, std::size_t filesOfFrame) {
-  constexpr int partsOfFrame = 16, partsOfFile = 7;     // values and keys that write() makes
-  constexpr int bytesOfFrame = 400, bytesOfFile = 1700; // with a name of 255 letters, all escaped
-  const int files = static_cast<int>(std::min<std::size_t>(filesOfFrame, 100));
+/// Reads a record file, of untrusted size: at most a record of `mostFrames` frames. Throws Error
+/// (input) if it is no JSON.
+json readRecord(const fs::path& path, const TurntableOptions& options) {
+  constexpr int parts = 23, bytes = 2100; // of a file, with a name of 255 letters, all escaped
+  const int files =
+      mostFrames * static_cast<int>(std::min<std::size_t>(options.files(0).size(), 100));
   const std::string text =
-      readText(path, largestText + std::uint64_t{mostFrames} *
-                                       static_cast<unsigned>(bytesOfFrame + files * bytesOfFile));
-  return parseJson(text, path.string(),
-                   mostJsonParts + mostFrames * (partsOfFrame + files * partsOfFile));
+      readText(path, largestText + std::uint64_t{bytes} * static_cast<unsigned>(files));
+  return parseJson(text, path.string(), mostJsonParts + parts * files);
 }
 
 /// True for the record of any turntable of any version of Fenestra.
-bool isRecord(const std::filesystem::path& path) {
+bool isRecord(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   const json document = json::parse(file, nullptr, false);
-  return document.is_object() && document.contains("finished") && document.contains("request") &&
-         document["request"].is_object() && document["request"].contains("arguments") &&
-         document["request"].contains("version");
+  return document.contains("/finished"_json_pointer) &&
+         document.contains("/request/arguments"_json_pointer) &&
+         document.contains("/request/version"_json_pointer);
 }
 
-/// Digests of the voxels, which may lie in files that only a header names.
-json voxelDigests(const Scene& scene) {
-  json digests = {
-      {"volume", std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels)}};
-  if (scene.focus())
-    digests["focus"] = digest(scene.focus()->voxels);
-  return digests;
-}
-
-/// Existing files of the turntable in `record` that are no frames of these options. Empty if the
-/// record cannot be read: it is about to be replaced.
-std::vector<std::filesystem::path> filesBeyond(const TurntableOptions& options,
-                                               const std::filesystem::path& record) {
-  std::set<std::filesystem::path> beyond;
+/// Warning about existing files of the turntable in `record` that are no frames of these options.
+/// Empty if there are none, or the record cannot be read: it is about to be replaced.
+std::string warningBeyond(const TurntableOptions& options, const fs::path& record) {
+  std::set<fs::path> beyond;
   try {
-    const json document = readRecord(record, frameFiles(options, 0).size());
-    for (const JsonNode& finished : JsonNode(document, "").at("finished").elements())
-      for (const JsonNode& file : finished.at("files").elements()) {
-        std::filesystem::path path = record;
-        path.replace_filename(std::filesystem::path(file.at("file").text()).filename());
+    const json document = readRecord(record, options);
+    for (const JsonNode& frame : JsonNode(document, "").at("finished").elements())
+      for (const JsonNode& file : frame.at("files").elements()) {
+        const fs::path path = record.parent_path() / fs::path(file.at("file").text()).filename();
         std::error_code failed;
-        const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
-        if (!failed && static_cast<double>(bytes) == file.at("bytes").number())
+        const std::uintmax_t bytes = fs::file_size(path, failed);
+        if (!failed && file.at("bytes").json() == std::to_string(bytes))
           beyond.insert(path);
       }
   } catch (const Error&) {
     return {};
   }
   for (int frame = 0; frame < options.frames; ++frame)
-    for (const std::filesystem::path& file : frameFiles(options, frame))
+    for (const fs::path& file : options.files(frame))
       beyond.erase(file);
-  return {beyond.begin(), beyond.end()};
+  if (beyond.empty())
+    return {};
+  const bool isOne = beyond.size() == 1;
+  return beyond.begin()->string() + (isOne ? "" : " to " + beyond.rbegin()->filename().string()) +
+         (isOne ? ": is" : ": " + std::to_string(beyond.size()) + " files are") +
+         " of the turntable that was there before; remove " + (isOne ? "it" : "them");
 }
 
-/// Elements of `some` missing from `others`, separated by blanks.
+/// Elements of `some` missing from `others`, separated by blanks: arguments, or names of inputs.
 std::string elementsBeyond(const json& some, const json& others) {
-  const std::set<json> known(others.begin(), others.end());
   std::string text;
   for (const json& element : some)
-    if (!known.contains(element))
+    if (std::ranges::find(others, element) == others.end())
       text += (text.empty() ? "" : " ") +
               (element.is_string() ? element.get<std::string>() : element.value("file", ""));
   return text;
 }
 
+/// Text of the difference between two requests in the value of `key`.
+std::string difference(const std::string& key, const json& there, const json& here) {
+  if (key == "version")
+    return "made by fenestra " + there.dump();
+  const std::string now = key == "voxels" ? "" : elementsBeyond(here, there);
+  if (key != "arguments")
+    return (now.empty() ? "the volume or the focus" : now) + " has changed since";
+  const std::string before = elementsBeyond(there, here);
+  return before + (before.empty() || now.empty() ? "" : " there, ") + now +
+         (now.empty() ? " there" : " here");
+}
+
 /// Throws Error (input), naming file and field, unless a record's request has the structure that
-/// `difference` and other readers rely on.
+/// `difference` relies on.
 void checkRequest(const JsonNode& request) {
   request.allowOnly({"version", "arguments", "inputs", "voxels"});
   request.at("version").text();
@@ -152,26 +143,6 @@ void checkRequest(const JsonNode& request) {
     argument.text();
   for (const JsonNode& input : request.at("inputs").elements())
     input.at("file").text();
-}
-
-/// Text of the first difference between a record's request and the current one.
-std::string difference(const json& there, const json& here) {
-  if (there["arguments"] != here["arguments"]) {
-    const std::string before = elementsBeyond(there["arguments"], here["arguments"]);
-    const std::string now = elementsBeyond(here["arguments"], there["arguments"]);
-    return before + (before.empty() || now.empty() ? "" : " there, ") + now +
-           (now.empty() ? " there" : " here");
-  }
-  if (there["version"] != here["version"])
-    return "made by fenestra " + there["version"].dump();
-  const std::string changed = elementsBeyond(here["inputs"], there["inputs"]);
-  return (changed.empty() ? "the volume or the focus" : changed) + " has changed since";
-}
-
-void requireSame(const json& there, const json& here, const std::string& record) {
-  if (there != here)
-    throw usageError(record + ": is of another turntable (" + difference(there, here) +
-                     "); choose another --output, or add --restart to replace its frames");
 }
 
 SurfaceChange changeIn(const JsonNode& node) {
@@ -186,77 +157,66 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
 }
 
 TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
-    : m_path(recordPath(options.render.outputs.front())),
+    : m_options(options),
+      m_path(recordPath(options.render.outputs.front())),
       m_request{{"version", versionText},
-                {"arguments", requestedArguments(flags, m_path.parent_path())}},
-      m_finished(static_cast<std::size_t>(options.frames), false) {
-  std::error_code failed;
-  const bool isThere = std::filesystem::exists(m_path, failed);
-  if (options.restart && isThere)
-    m_beyond = filesBeyond(options, m_path);
-  else if (isThere)
-    read(options);
+                {"arguments", requestedArguments(flags, m_path.parent_path())}} {
+  const std::optional<FileId> there = fileId(m_path);
+  if (options.restart && there)
+    m_warning = warningBeyond(options, m_path);
+  else if (there)
+    read();
   else if (!options.restart)
-    refuseOthers(options);
-  if (const auto file = isThere ? fileId(m_path) : std::nullopt)
-    forgetInput(*file); // the record is rewritten, so it is no input
+    refuseOthers();
+  if (there)
+    forgetInput(*there); // the record is rewritten, so it is no input
 }
 
-std::optional<std::string> TurntableRecord::warning() const {
-  if (m_beyond.empty())
-    return std::nullopt;
-  const bool isOne = m_beyond.size() == 1;
-  return m_beyond.front().string() + (isOne ? "" : " to " + m_beyond.back().filename().string()) +
-         (isOne ? ": is" : ": " + std::to_string(m_beyond.size()) + " files are") +
-         " of the turntable that was there before; remove " + (isOne ? "it" : "them");
-}
-
-void TurntableRecord::refuseOthers(const TurntableOptions& options) const {
-  for (int frame = 0; frame < options.frames; ++frame)
-    for (const std::filesystem::path& file : frameFiles(options, frame))
+void TurntableRecord::refuseOthers() const {
+  for (int frame = 0; frame < m_options.frames; ++frame)
+    for (const fs::path& file : m_options.files(frame))
       if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs have their own refusal
         throw usageError(file.string() + ": is there, and no " + m_path.string() +
                          " tells what it is of; choose another --output, or add --restart to "
                          "replace it");
 }
 
-void TurntableRecord::read(const TurntableOptions& options) {
-  const std::string name = m_path.string();
-  const json document = readRecord(m_path, frameFiles(options, 0).size());
-  const JsonNode root(document, name);
+void TurntableRecord::read() {
+  const json document = readRecord(m_path, m_options);
+  const JsonNode root(document, m_path.string());
   checkRequest(root.at("request"));
-  m_recorded = document["request"];
-  json known = m_recorded;
-  for (const char* later : {"inputs", "voxels"})
-    known.erase(later);
-  requireSame(known, m_request, name);
-  std::size_t at = 0;
+  m_recorded = root.at("request").value();
+  requireSame();
   for (const JsonNode& finished : root.at("finished").elements()) {
-    const auto frame = static_cast<int>(finished.at("frame").numberIn(0, options.frames - 1));
-    const std::vector<std::filesystem::path> files = frameFiles(options, frame);
-    const auto recorded = finished.find("files"); // absent in files of older versions
-    const auto states = recorded ? recorded->elements() : std::vector<JsonNode>();
-    bool isWhole = states.size() == files.size();
-    for (std::size_t i = 0; isWhole && i < files.size(); ++i)
-      isWhole = isAsRecorded(files[i], states[i]);
-    m_finished[static_cast<std::size_t>(frame)] = isWhole;
-    if (isWhole)
-      m_files[frame] = document["finished"][at]["files"];
-    ++at;
+    const auto frame = static_cast<int>(finished.at("frame").numberIn(0, m_options.frames - 1));
+    const auto files = finished.find("files"); // absent in files of older versions
+    if (!files || !std::ranges::equal(m_options.files(frame), files->elements(), isAsRecorded))
+      continue;
+    m_finished[frame].files = files->value();
     if (const auto change = finished.find("surfaceChange"))
-      m_changes[frame] = changeIn(*change);
+      m_finished[frame].change = changeIn(*change);
   }
 }
 
-void TurntableRecord::setInputs(const TurntableOptions& options, const Scene& scene) {
-  m_request["inputs"] = inputStates(options, scene, m_path.parent_path());
-  m_request["voxels"] = voxelDigests(scene);
+void TurntableRecord::setInputs(const Scene& scene) {
+  const std::vector<std::string> referred = scene.files();
+  std::set<fs::path> files(referred.begin(), referred.end());
+  files.insert(m_options.render.inputs.begin(), m_options.render.inputs.end());
+  m_request["inputs"] = fileStates(files, m_path.parent_path());
+  json& voxels = m_request["voxels"]; // which may lie in files that only a header names
+  voxels["volume"] = std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels);
+  if (scene.focus())
+    voxels["focus"] = digest(scene.focus()->voxels);
   if (!m_recorded.is_null())
-    requireSame(m_recorded, m_request, m_path.string());
+    requireSame();
 }
 
-int TurntableRecord::finishedCount() const {
-  return static_cast<int>(std::count(m_finished.begin(), m_finished.end(), true));
+void TurntableRecord::requireSame() const {
+  for (const auto& [key, here] : m_request.items())
+    if (const json there = m_recorded.value(key, json()); there != here)
+      throw usageError(m_path.string() + ": is of another turntable (" +
+                       difference(key, there, here) +
+                       "); choose another --output, or add --restart to replace its frames");
 }
 
 void TurntableRecord::declare(Outputs& outputs) const {
@@ -265,30 +225,23 @@ void TurntableRecord::declare(Outputs& outputs) const {
 
 void TurntableRecord::write(Outputs& outputs) const {
   nlohmann::ordered_json finished = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < m_finished.size(); ++i) {
-    if (!m_finished[i])
-      continue;
-    const auto frame = static_cast<int>(i);
-    finished.push_back({{"frame", frame}, {"files", m_files.at(frame)}});
-    if (const auto change = m_changes.find(frame); change != m_changes.end())
-      finished.back()["surfaceChange"] = changeJson(change->second);
+  for (const auto& [number, frame] : m_finished) {
+    finished.push_back({{"frame", number}, {"files", frame.files}});
+    if (frame.change)
+      finished.back()["surfaceChange"] = changeJson(*frame.change);
   }
-  const nlohmann::ordered_json record = {{"request", m_request}, {"finished", finished}};
-  outputs.write(m_path, record.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  outputs.write(m_path, jsonText({{"request", m_request}, {"finished", finished}}, 1));
   outputs.commit();
 }
 
-void TurntableRecord::finish(int frame, const std::vector<std::filesystem::path>& files,
-                             const std::optional<SurfaceChange>& change, Outputs& outputs) {
-  m_finished[static_cast<std::size_t>(frame)] = true;
-  m_files[frame] = json::array();
-  for (const std::filesystem::path& file : files)
-    if (const auto state = outputs.written(file)) // a picture without depth has one file less
-      m_files[frame].push_back({{"file", file.filename().string()}, // beside the record
+void TurntableRecord::finish(int frame, const std::optional<SurfaceChange>& change,
+                             Outputs& outputs) {
+  Frame& finished = m_finished[frame] = {json::array(), change};
+  for (const fs::path& file : m_options.files(frame))
+    if (const auto state = outputs.written(file))
+      finished.files.push_back({{"file", file.filename().string()}, // beside the record
                                 {"bytes", state->bytes},
                                 {"digest", state->digest}});
-  if (change)
-    m_changes[frame] = *change;
   write(outputs);
 }
 

@@ -15,23 +15,24 @@ namespace fenestra {
 
 class TurntableRecord {
 public:
+  /// Finished frame.
+  struct Frame {
+    nlohmann::json files;                ///< name, bytes and digest of each
+    std::optional<SurfaceChange> change; ///< of the clipping surface since the preceding frame
+  };
+
   /// Reads the existing record of these flags, if any; with options.restart, none of its frames
   /// counts as finished. Throws Error: usage if the record, or a frame without a record, belongs to
-  /// other flags; input if the record is damaged.
+  /// other flags; input if the record is damaged. Keeps a reference to the options.
   TurntableRecord(const TurntableOptions& options, const FlagValues& flags);
   /// Adds the inputs beside the flags to the request: states of all files named or referred to, and
   /// digests of the voxels. Throws Error (usage) if the recorded frames have other inputs.
-  void setInputs(const TurntableOptions& options, const Scene& scene);
+  void setInputs(const Scene& scene);
 
-  int finishedCount() const;
-  /// True if the frame is recorded and all its files are unchanged.
-  bool isFinished(int frame) const { return m_finished[static_cast<std::size_t>(frame)]; }
-  /// Change of the clipping surface since the preceding frame, by frame; all recorded frames that
-  /// have one.
-  const std::map<int, SurfaceChange>& changes() const { return m_changes; }
-
-  /// Warning about files of the previous turntable that --restart does not replace.
-  std::optional<std::string> warning() const;
+  /// Frames that are recorded and whose files are all unchanged, by number.
+  const std::map<int, Frame>& finished() const { return m_finished; }
+  /// Warning about files of the previous turntable that --restart does not replace; empty: none.
+  const std::string& warning() const { return m_warning; }
 
   /// Throws the errors of Outputs.
   void declare(Outputs& outputs) const;
@@ -40,21 +41,21 @@ public:
   void write(Outputs& outputs) const;
   /// Records sizes and digests of the frame's files, by which a damaged or replaced file is
   /// noticed. Call once they are in place. Throws Error (output).
-  void finish(int frame, const std::vector<std::filesystem::path>& files,
-              const std::optional<SurfaceChange>& change, Outputs& outputs);
+  void finish(int frame, const std::optional<SurfaceChange>& change, Outputs& outputs);
 
 private:
-  void read(const TurntableOptions& options);
+  void read();
+  /// Throws Error (usage) if the record is of another request, as far as the latter is known.
+  void requireSame() const;
   /// Refuses existing frames without a record.
-  void refuseOthers(const TurntableOptions& options) const;
+  void refuseOthers() const;
 
+  const TurntableOptions& m_options;
   std::filesystem::path m_path;
   nlohmann::json m_request;
-  nlohmann::json m_recorded;                   ///< request in the record file; null: no record
-  std::vector<std::filesystem::path> m_beyond; ///< files of the previous turntable only
-  std::vector<bool> m_finished;
-  std::map<int, nlohmann::json> m_files; ///< of finished frames: name, bytes, digest
-  std::map<int, SurfaceChange> m_changes;
+  nlohmann::json m_recorded; ///< request in the record file; null: no record
+  std::string m_warning;
+  std::map<int, Frame> m_finished;
 };
 
 /// JSON form in the record and in the statistics.

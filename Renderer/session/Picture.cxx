@@ -5,17 +5,8 @@
 namespace fenestra {
 namespace {
 
+/// Values of a channel, row 0 at the top.
 using Plane = std::vector<float>;
-
-/// Channel from a function of the pixel's sums.
-template <typename Value>
-Plane plane(const Film& film, Value&& value) {
-  Plane result;
-  result.reserve(film.pixelCount());
-  for (const PixelSums& pixel : film.pixels())
-    result.push_back(static_cast<float>(value(pixel)));
-  return result;
-}
 
 double perSample(double sum, const PixelSums& pixel) {
   return pixel.samples > 0 ? sum / static_cast<double>(pixel.samples) : 0.0;
@@ -60,34 +51,28 @@ LayerSet layerSet(const std::vector<std::string>& names) {
 }
 
 Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers) {
-  Image image;
-  image.width = film.width();
-  image.height = film.height();
-  const char* const rgb[] = {"R", "G", "B"};
-  const char* const xyz[] = {"X", "Y", "Z"};
+  Image image{film.width(), film.height(), {}, {}};
+  const auto add = [&](bool isWanted, const std::string& name, auto&& valueOf) {
+    if (!isWanted)
+      return;
+    Plane& plane = image.channels[name];
+    plane.reserve(film.pixelCount());
+    for (const PixelSums& pixel : film.pixels())
+      plane.push_back(static_cast<float>(valueOf(pixel)));
+  };
+  using P = PixelSums;
   for (int c = 0; c < 3; ++c) {
-    const std::string color = rgb[c];
-    if (layers.color)
-      image.channels[color] = plane(film, [c](const PixelSums& p) { return p.mean[c]; });
-    if (layers.error)
-      image.channels["error." + color] =
-          plane(film, [c](const PixelSums& p) { return p.standardError()[c]; });
-    if (layers.albedo)
-      image.channels["albedo." + color] =
-          plane(film, [c](const PixelSums& p) { return perSample(p.albedo[c], p); });
-    if (layers.normal)
-      image.channels[std::string("normal.") + xyz[c]] =
-          plane(film, [c](const PixelSums& p) { return perSample(p.normal[c], p); });
+    const std::string color(1, "RGB"[c]), axis(1, "XYZ"[c]);
+    add(layers.color, color, [c](const P& p) { return p.mean[c]; });
+    add(layers.error, "error." + color, [c](const P& p) { return p.standardError()[c]; });
+    add(layers.albedo, "albedo." + color, [c](const P& p) { return perSample(p.albedo[c], p); });
+    add(layers.normal, "normal." + axis, [c](const P& p) { return perSample(p.normal[c], p); });
   }
-  if (layers.color)
-    image.channels["A"] = plane(film, [](const PixelSums& p) { return perSample(p.alpha, p); });
-  if (layers.depth)
-    image.channels["Z"] = plane(film, meanDepth);
+  add(layers.color, "A", [](const P& p) { return perSample(p.alpha, p); });
+  add(layers.depth, "Z", meanDepth);
+  add(layers.samples, "samples.N", [](const P& p) { return static_cast<double>(p.samples); });
   if (layers.clip && !std::holds_alternative<ClipNone>(clip))
     image.channels["clip.Z"] = clipPlane(camera, clip);
-  if (layers.samples)
-    image.channels["samples.N"] =
-        plane(film, [](const PixelSums& p) { return static_cast<double>(p.samples); });
   return image;
 }
 

@@ -109,6 +109,14 @@ TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
   EXPECT_EQ(record()["finished"].size(), 4U);
 }
 
+/// A .nrrd without depth is one file.
+TEST_F(TurntableCommand, ResumesAfterFramesWithoutDepth) {
+  const Arguments flags = {"--output", "turn.nrrd", "--layers", "color"};
+  ASSERT_EQ(turn(flags).status, 0);
+  const Outcome again = turn(flags);
+  EXPECT_NE(again.out.find("4 of 4 frames, 0 rendered now"), std::string::npos) << again.out;
+}
+
 TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
   Arguments arguments = turntable({"--output", "turn.exr", "--samples", "60"});
   *std::find(arguments.begin(), arguments.end(), "16x16") = "64x64";

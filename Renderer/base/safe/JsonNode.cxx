@@ -53,6 +53,10 @@ nlohmann::json parseJson(std::string_view text, const std::string& source, int m
   }
 }
 
+std::string jsonText(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 Error JsonNode::error(const std::string& mend) const {
   return inputError(m_source, m_place.empty() ? mend : m_place + ": " + mend);
 }

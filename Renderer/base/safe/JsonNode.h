@@ -29,6 +29,9 @@ inline constexpr int mostJsonParts = 200'000;
 nlohmann::json parseJson(std::string_view text, const std::string& source,
                          int mostParts = mostJsonParts);
 
+/// JSON as a file's content, or a line with `indent` -1; bytes that are not UTF-8 are replaced.
+std::string jsonText(const nlohmann::ordered_json& json, int indent = 2);
+
 /// View of a JSON value, with its place in the document, like "lights[2].radiance". The document
 /// must outlive the view. Accessors throw Error (input) for a value of another type or range.
 class JsonNode {
@@ -36,6 +39,7 @@ public:
   JsonNode(const nlohmann::json& document, std::string source)
       : JsonNode(document, std::move(source), "") {}
 
+  const nlohmann::json& value() const { return *m_value; }
   bool isNumber() const { return m_value->is_number(); }
   bool isArray() const { return m_value->is_array(); }
   bool isObject() const { return m_value->is_object(); }
