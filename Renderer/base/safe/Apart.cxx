@@ -29,7 +29,6 @@ constexpr int childConnection = 3;
 constexpr std::uint64_t longestQuestion = 1 << 16; // bytes; less than a socket holds
 
 // ---- frames: a length of 8 bytes, then as many bytes
-// ---------------------------------------------
 
 bool sendAll(int connection, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -90,7 +89,6 @@ std::optional<std::string> receiveFrame(int connection, std::uint64_t most,
 }
 
 // ---- the child
-// ----------------------------------------------------------------------------------
 
 struct Jobs {
   std::vector<const ApartJob*> all;
@@ -119,7 +117,6 @@ Jobs& jobs() {
 }
 
 // ---- starting a child
-// --------------------------------------------------------------------------------
 
 /// Attributes of a new child: no file but its end of the connection, default signal handlers.
 class Beginning {

@@ -8,8 +8,8 @@ namespace fenestra {
 namespace {
 
 Error cannotBeMade(const std::filesystem::path& folder, int code) {
-  return outputError(folder.string(), "cannot be made: " + systemMessage(code) + "; " +
-                                          writingMend(code, "name a folder that you may write to"));
+  return outputError(folder, "cannot be made: ", systemMessage(code), "; ",
+                     writingMend(code, "name a folder that you may write to"));
 }
 
 } // namespace

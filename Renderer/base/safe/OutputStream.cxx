@@ -36,7 +36,7 @@ std::optional<OutputStream> OutputStream::named(const std::filesystem::path& pat
   if (const auto number = descriptorNumber(path.lexically_normal().string())) {
     const int flags = ::fcntl(*number, F_GETFL);
     if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
-      throw outputError(path.string(), "is not open for writing; redirect it, as in 3>FILE");
+      throw outputError(path, "is not open for writing; redirect it, as in 3>FILE");
     return OutputStream(path, *number);
   }
   struct stat status = {};
@@ -61,7 +61,7 @@ void OutputStream::send() {
   // Opening without O_NONBLOCK would wait for ever where no process reads the pipe.
   const int file = ::open(m_path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0)
-    throw outputError(m_path.string(), "nobody reads this pipe; start its reader first");
+    throw outputError(m_path, "nobody reads this pipe; start its reader first");
   ::fcntl(file, F_SETFL, 0);
   try {
     writeAll(file, content, m_path);

@@ -51,30 +51,29 @@ bool isKeptByItsOwner(const struct stat& file, const fs::path& folder) {
 void requireReplaceable(const fs::path& path, const fs::path& target) {
   struct stat status = {};
   if (!target.has_filename())
-    throw outputError(path.string(), "is a folder; name a file");
+    throw outputError(path, "is a folder; name a file");
   if (::lstat(target.c_str(), &status) != 0) {
     if (errno != ENOENT)
       throw writingError(path, errno);
     return;
   }
   if (!S_ISREG(status.st_mode))
-    throw outputError(path.string(), "is a folder or a device; name a file");
+    throw outputError(path, "is a folder or a device; name a file");
   if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
-    throw outputError(path.string(), "is write-protected; choose another name, or chmod u+w it");
+    throw outputError(path, "is write-protected; choose another name, or chmod u+w it");
   if (isKeptByItsOwner(status, target.parent_path()))
-    throw outputError(path.string(), "belongs to somebody else, in a folder where only owners may "
-                                     "replace files; choose another name or folder");
+    throw outputError(path, "belongs to somebody else, in a folder where only owners may replace "
+                            "files; choose another name or folder");
 }
 
 void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {
   if (const auto input = file ? inputNamed(*file) : std::nullopt)
-    throw usageError(path.string() + ": would replace an input file" +
-                     (*input == path ? "" : " (" + input->string() + ")") +
-                     "; choose another name");
+    throw usageError(path, ": would replace an input file",
+                     (*input == path ? "" : " (" + input->string() + ")"), "; choose another name");
 }
 
 Error writtenTwice(const fs::path& path) {
-  return usageError(path.string() + ": would be written twice; give each result a name of its own");
+  return usageError(path, ": would be written twice; give each result a name of its own");
 }
 
 void syncFolder(const fs::path& folder) {
@@ -112,8 +111,9 @@ struct Outputs::Result {
     std::error_code failed;
     // An empty file holds nobody's data.
     if (isOurs && fs::exists(target, failed) && !fs::is_empty(target, failed) && !isOurs(target))
-      throw usageError(named.string() + ": is there, and Fenestra did not write it; move it away, "
-                                        "or choose another --output");
+      throw usageError(
+          named,
+          ": is there, and Fenestra did not write it; move it away, or choose another --output");
   }
 };
 
@@ -130,8 +130,9 @@ Outputs::Result& Outputs::declare(const fs::path& path) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
     if (isTemporaryName(result->target.filename().string(), temporaryFilePrefix))
-      throw usageError(path.string() + ": is a name for Fenestra's temporary files, which the next "
-                                       "run removes; choose another");
+      throw usageError(
+          path,
+          ": is a name for Fenestra's temporary files, which the next run removes; choose another");
   }
   requireNoInput(path, result->id());
   const std::optional<FileId> id = result->id();

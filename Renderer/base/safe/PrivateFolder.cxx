@@ -24,9 +24,8 @@ std::filesystem::path temporaryFiles() {
 
 Error cannotMake(const std::filesystem::path& path) {
   const int code = errno;
-  return outputError(path.string(), "cannot be made: " + systemMessage(code) + "; " +
-                                        writingMend(code, "set TMPDIR to a folder that you may "
-                                                          "write to"));
+  return outputError(path, "cannot be made: ", systemMessage(code), "; ",
+                     writingMend(code, "set TMPDIR to a folder that you may write to"));
 }
 
 /// Locks a folder of this user, accessible to this user alone, that no process has locked. Returns

@@ -63,16 +63,13 @@ inline std::string writingMend(int code, const std::string& other) {
 
 /// Error for a result that cannot be written.
 inline Error writingError(const std::filesystem::path& path, int code) {
-  return outputError(
-      path.string(),
-      "cannot be written: " + systemMessage(code) + "; " +
-          writingMend(code, "name a file in an existing folder that you may write to"));
+  return outputError(path, "cannot be written: ", systemMessage(code), "; ",
+                     writingMend(code, "name a file in an existing folder that you may write to"));
 }
 
 /// Error for an input that cannot be read.
 inline Error readingError(const std::filesystem::path& path, int code, const std::string& other) {
-  return inputError(path.string(),
-                    "cannot be read: " + systemMessage(code) + "; " + readingMend(code, other));
+  return inputError(path, "cannot be read: ", systemMessage(code), "; ", readingMend(code, other));
 }
 
 /// Calls `call` until no signal interrupts the call (EINTR); returns its result.

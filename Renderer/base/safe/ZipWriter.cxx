@@ -22,7 +22,7 @@ struct FreeSource {
 };
 
 Error zipError(const std::filesystem::path& path, const std::string& reason) {
-  return outputError(path.string(), "cannot be made: " + reason + "; close other programs");
+  return outputError(path, "cannot be made: ", reason, "; close other programs");
 }
 
 /// Adds one entry. The memory of its content must live until the archive is closed.

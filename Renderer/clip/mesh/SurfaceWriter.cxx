@@ -113,7 +113,7 @@ Encoder encoderFor(const std::filesystem::path& path) {
       {".vtp", encodeVtp}, {".ply", encodePly}, {".stl", encodeStl}};
   const auto it = encoders.find(lowerExtension(path));
   if (it == encoders.end())
-    throw usageError("--surface " + path.string() +
+    throw usageError("--surface ", path,
                      ": has no known extension; name a file .vtp, .ply or .stl");
   return it->second;
 }

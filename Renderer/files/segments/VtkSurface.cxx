@@ -2,7 +2,6 @@
 
 #include "base/Error.h"
 #include "base/safe/Inputs.h"
-#include "base/safe/NumberText.h"
 
 #include <pugixml.hpp>
 #include <zlib.h>
@@ -28,7 +27,6 @@ void take(SurfaceAllowance& allowance, std::uint64_t count, std::uint64_t size =
 }
 
 // ---- bytes
-// --------------------------------------------------------------------------------------
 
 int base64Digit(char c) {
   constexpr std::string_view digits =
@@ -140,7 +138,6 @@ std::string binary(const pugi::xml_node& array, const Coding& coding) {
 }
 
 // ---- arrays
-// -------------------------------------------------------------------------------------
 
 template <typename T>
 std::vector<double> converted(const std::string& bytes, const Coding& coding) {
@@ -164,20 +161,15 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
   if (format != "binary")
     throw DamagedSurface(); // "appended", which Slicer does not write
   const std::string bytes = binary(array, coding);
-  const std::string type = array.attribute("type").value();
-  if (type == "Float32")
-    return converted<float>(bytes, coding);
-  if (type == "Float64")
-    return converted<double>(bytes, coding);
-  if (type == "Int32")
-    return converted<std::int32_t>(bytes, coding);
-  if (type == "UInt32")
-    return converted<std::uint32_t>(bytes, coding);
-  if (type == "Int64")
-    return converted<std::int64_t>(bytes, coding);
-  if (type == "UInt64")
-    return converted<std::uint64_t>(bytes, coding);
-  throw DamagedSurface();
+  using Convert = std::vector<double> (*)(const std::string&, const Coding&);
+  static const std::map<std::string, Convert> known = {
+      {"Float32", converted<float>},      {"Float64", converted<double>},
+      {"Int32", converted<std::int32_t>}, {"UInt32", converted<std::uint32_t>},
+      {"Int64", converted<std::int64_t>}, {"UInt64", converted<std::uint64_t>}};
+  const auto convert = known.find(array.attribute("type").value());
+  if (convert == known.end())
+    throw DamagedSurface();
+  return convert->second(bytes, coding);
 }
 
 /// First string of an array.
@@ -193,7 +185,6 @@ std::string textOf(const pugi::xml_node& array, const Coding& coding) {
 }
 
 // ---- polygons
-// -----------------------------------------------------------------------------------
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -284,12 +275,10 @@ VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std:
       throw DamagedSurface();
     return surfaceOf(document, fieldData, allowance);
   } catch (const DamagedSurface&) {
-    throw inputError(path.string(),
-                     std::string("is damaged or no surface as Slicer writes it") + labelmapMend);
+    throw inputError(path, "is damaged or no surface as Slicer writes it", labelmapMend);
   } catch (const LargeSurface&) {
-    throw inputError(path.string(),
-                     std::string("takes, with the surfaces before it, more than 1 GiB of memory") +
-                         labelmapMend);
+    throw inputError(path, "takes, with the surfaces before it, more than 1 GiB of memory",
+                     labelmapMend);
   }
 }
 

@@ -26,11 +26,8 @@ Nodes those(const Nodes& nodes, Matches&& matches) {
 }
 
 std::string listed(const Nodes& nodes) {
-  constexpr std::size_t most = 20;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, nodes.size()); ++i)
-    text += (i == 0 ? "" : ", ") + shown(*nodes[i]);
-  return text + (nodes.size() > most ? ", ..." : "");
+  return joined(
+      nodes, ", ", [](const MrmlNode* node) { return shown(*node); }, 20, "...");
 }
 
 /// Node by id, else by name; null: none. Throws Error (input) where several have the name.
@@ -41,8 +38,8 @@ const MrmlNode* named(const MrmlDocument& document, const Nodes& nodes, const st
     return byId.front();
   const Nodes byName = those(nodes, [&](const MrmlNode& node) { return node.name == name; });
   if (byName.size() > 1)
-    throw inputError(document.source(), "--" + flag + " " + name + " can be any of " +
-                                            listed(byName) + "; name one by its id");
+    throw inputError(document.source(), "--", flag, " ", name, " can be any of ", listed(byName),
+                     "; name one by its id");
   return byName.empty() ? nullptr : byName.front();
 }
 
@@ -73,8 +70,8 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
   if (choice) {
     if (const MrmlNode* volume = named(document, volumes, *choice, "volume"))
       return volume;
-    throw inputError(document.source(),
-                     "has no scalar volume \"" + *choice + "\"; it has " + listed(volumes));
+    throw inputError(document.source(), "has no scalar volume \"", *choice, "\"; it has ",
+                     listed(volumes));
   }
   // Candidates in this order: rendered in Slicer, renderable, active in Slicer, all.
   const Nodes rendered = those(volumes, [&](const MrmlNode& volume) {
@@ -92,8 +89,8 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
     if (candidates->size() == 1)
       return candidates->front();
     else if (candidates->size() > 1)
-      throw inputError(document.source(), "has several volumes to render (" + listed(*candidates) +
-                                              "); choose one with --volume");
+      throw inputError(document.source(), "has several volumes to render (", listed(*candidates),
+                       "); choose one with --volume");
   return nullptr; // not reached: there are volumes
 }
 
@@ -114,10 +111,10 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoi
     if (candidates->size() == 1)
       return candidates->front();
     else if (candidates->size() > 1)
-      throw inputError(document.source(), "has several segmentations (" + listed(*candidates) +
-                                              "); choose one with --segmentation");
-  throw inputError(document.source(), "has no segmentation to find a focus in; give "
-                                      "--segmentation FILE");
+      throw inputError(document.source(), "has several segmentations (", listed(*candidates),
+                       "); choose one with --segmentation");
+  throw inputError(document.source(),
+                   "has no segmentation to find a focus in; give --segmentation FILE");
 }
 
 /// Rank of a view: the user most likely looked at the view of the greatest rank.

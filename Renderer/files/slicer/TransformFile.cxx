@@ -23,10 +23,8 @@ Affine composed(const Path& path, const std::vector<TransformRecord>& records) {
     throwDamagedTransform(path);
   if (records.front().type != "CompositeTransform") {
     if (records.size() > 1)
-      throw inputError(path.string(),
-                       "holds " + std::to_string(records.size()) +
-                           " transforms and does not say how they combine; save one, "
-                           "or a composite");
+      throw inputError(path, "holds ", records.size(),
+                       " transforms and does not say how they combine; save one, or a composite");
     return transformMatrix(path, records.front());
   }
   Affine map = Affine::Identity();
@@ -42,17 +40,17 @@ void checkExtension(const Path& path) {
       return;
   for (const char* image : {".nrrd", ".nhdr", ".nii", ".gz", ".mha", ".mhd"})
     if (extension == image)
-      throw inputError(path.string(), "is a displacement field, which is not linear; harden it in "
-                                      "Slicer (Data module, Harden transform) and save again");
-  throw inputError(path.string(), "has no known extension of a transform; name a .tfm, .txt, .h5, "
-                                  ".hdf5 or .mat file");
+      throw inputError(path, "is a displacement field, which is not linear; harden it in Slicer "
+                             "(Data module, Harden transform) and save again");
+  throw inputError(
+      path, "has no known extension of a transform; name a .tfm, .txt, .h5, .hdf5 or .mat file");
 }
 
 /// Refuses texts that name further files: ITK would open them.
 void checkNamesNoFile(const Path& path) {
   if (readText(path, largestFile).find("ComponentTransformFile") != std::string::npos)
-    throw inputError(path.string(), "ComponentTransformFile: further files are not read; save "
-                                    "the composite in one file");
+    throw inputError(
+        path, "ComponentTransformFile: further files are not read; save the composite in one file");
 }
 
 } // namespace
@@ -63,9 +61,9 @@ Affine readLinearTransform(const Path& path, TransformSense sense) {
   const bool isText = extension == ".tfm" || extension == ".txt";
   const std::uint64_t largest = isText ? largestTextFile : largestFile;
   if (std::filesystem::file_size(path) > largest)
-    throw inputError(path.string(), "is larger than " + std::to_string(largest >> 20) +
-                                        " MB, so it is no linear transform; harden it "
-                                        "in Slicer (Data module, Harden transform) and save again");
+    throw inputError(path, "is larger than ", largest >> 20,
+                     " MB, so it is no linear transform; harden it in Slicer (Data module, Harden "
+                     "transform) and save again");
   checkExtension(path);
   checkNamesNoFile(path);
   return answeredTransform(path, transformAnswer(path), sense);
@@ -76,7 +74,7 @@ Affine answeredTransform(const Path& path, std::string_view answer, TransformSen
     const Quiet quiet;
     Affine map = checkedMap(
         composed(path, transformRecords(path, answer)), [&path](const std::string& what) {
-          return inputError(path.string(), "Parameters: the map " + what + "; save another one");
+          return inputError(path, "Parameters: the map ", what, "; save another one");
         });
     if (sense == TransformSense::fromParent)
       map = map.inverse();

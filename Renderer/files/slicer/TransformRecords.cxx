@@ -23,7 +23,6 @@ constexpr std::size_t mostNumbers = 64; // more than any linear transform has
 constexpr std::uint64_t longestAnswer = mostRecords * 2048;
 
 // ---- in the child
-// -------------------------------------------------------------------------------
 
 /// Transform of any type, known or not, that keeps its file's numbers.
 class RecordedTransform : public itk::TransformBaseTemplate<double> {
@@ -111,25 +110,24 @@ std::string answerTransform(const std::string& question) {
 const ApartJob transformJob("transform", answerTransform, {.seconds = 3});
 
 // ---- here
-// ---------------------------------------------------------------------------------------
 
 /// "Type" of "Type_scalar_axes_axes". Throws Error (input) unless linear and of three axes.
 std::string linearType(const Path& path, const std::string& name) {
   std::string type = name.substr(0, name.find('_'));
   if (!isLinearTransform(type))
-    throw inputError(path.string(), "Transform: " + shown(name) +
-                                        " is not linear; harden it in Slicer (Data module, Harden "
-                                        "transform) and save again");
+    throw inputError(
+        path, "Transform: ", shown(name),
+        " is not linear; harden it in Slicer (Data module, Harden transform) and save again");
   if (name != type + "_double_3_3") // ITK's readers turn _float_ into _double_
-    throw inputError(path.string(), "Transform: " + shown(name) +
-                                        " is not a transform of three axes; save one that is");
+    throw inputError(path, "Transform: ", shown(name),
+                     " is not a transform of three axes; save one that is");
   return type;
 }
 
 } // namespace
 
 void throwDamagedTransform(const Path& path) {
-  throw inputError(path.string(), "is damaged, truncated or no transform of ITK's; save it again");
+  throw inputError(path, "is damaged, truncated or no transform of ITK's; save it again");
 }
 
 std::vector<TransformRecord> transformRecords(const Path& path, std::string_view answer) {
