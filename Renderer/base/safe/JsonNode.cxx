@@ -56,7 +56,7 @@ Error JsonNode::error(const std::string& mend) const {
   return inputError(m_source, m_place.empty() ? mend : m_place + ": " + mend);
 }
 
-const nlohmann::json& JsonNode::checked(bool isRight, const std::string& mend) const {
+const nlohmann::json& JsonNode::checked(bool isRight, const char* mend) const {
   if (!isRight)
     throw error(mend);
   return *m_value;

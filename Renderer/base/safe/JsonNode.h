@@ -74,7 +74,7 @@ private:
       : m_value(&value), m_source(std::move(source)), m_place(std::move(place)) {}
 
   /// Returns the value. Throws Error (input) unless `isRight`.
-  const nlohmann::json& checked(bool isRight, const std::string& mend) const;
+  const nlohmann::json& checked(bool isRight, const char* mend) const;
   const nlohmann::json& object() const;
   std::string placeOf(const std::string& key) const {
     return m_place.empty() ? key : m_place + "." + key;

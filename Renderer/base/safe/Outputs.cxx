@@ -13,8 +13,6 @@
 #include <set>
 
 #include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace fenestra {
 namespace {
@@ -77,14 +75,10 @@ Error writtenTwice(const fs::path& path) {
 }
 
 void syncFolder(const fs::path& folder) {
-  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // A folder that may be written but not read cannot be synced.
-  const bool isSynced = file >= 0 ? ::fsync(file) == 0 || errno == EINVAL : errno == EACCES;
-  const int code = errno;
-  if (file >= 0)
-    ::close(file);
-  if (!isSynced)
-    throw writingError(folder, code);
+  if (!(file.isOpen() ? ::fsync(*file) == 0 || errno == EINVAL : errno == EACCES))
+    throw writingError(folder, errno);
 }
 
 } // namespace
@@ -187,7 +181,7 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
   std::set<fs::path> folders;
   for (const Result* result : files)
     folders.insert(result->target.parent_path());
-  std::optional<FolderLocks> locks(folders);
+  std::vector<Descriptor> locks = lockFolders(folders);
   const Uninterrupted replacing;
   std::size_t placed = 0;
   std::set<FileId> taken; // placed files; two names may be one file where a disk ignores case
@@ -211,7 +205,7 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
     throw;
   }
   anyIsPlaced = anyIsPlaced || placed > 0;
-  locks.reset();
+  locks.clear();
   for (Result* result : files)
     result->file.reset();
   if (durability == Durability::synced)
