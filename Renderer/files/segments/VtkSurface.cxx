@@ -1,6 +1,7 @@
 #include "files/segments/VtkSurface.h"
 
 #include "base/Error.h"
+#include "base/safe/Base64.h"
 #include "base/safe/Inputs.h"
 
 #include <pugixml.hpp>
@@ -28,34 +29,11 @@ void take(SurfaceAllowance& allowance, std::uint64_t count, std::uint64_t size =
 
 // ---- bytes
 
-int base64Digit(char c) {
-  constexpr std::string_view digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::size_t at = digits.find(c);
-  return at == digits.npos ? -1 : static_cast<int>(at);
-}
-
-/// Decodes groups of four digits, the last of which may end in "=".
-std::string fromBase64(std::string_view text) {
-  if (text.size() % 4 != 0)
+std::string decoded(std::string_view text) {
+  auto bytes = fromBase64(text);
+  if (!bytes)
     throw DamagedSurface();
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  for (std::size_t at = 0; at < text.size(); at += 4) {
-    int group = 0, padding = 0;
-    for (const char c : text.substr(at, 4)) {
-      const int digit = base64Digit(c);
-      padding += c == '=';
-      if ((digit < 0 && c != '=') || (digit >= 0 && padding > 0))
-        throw DamagedSurface();
-      group = group << 6 | std::max(digit, 0);
-    }
-    if (padding > 2 || (padding > 0 && at + 4 != text.size()))
-      throw DamagedSurface();
-    for (int byte = 2; byte >= padding; --byte)
-      bytes += static_cast<char>(group >> (8 * byte) & 0xff);
-  }
-  return bytes;
+  return *std::move(bytes);
 }
 
 template <typename T>
@@ -81,7 +59,7 @@ struct Coding {
 };
 
 std::string plainBytes(std::string_view text, const Coding& coding) {
-  std::string bytes = fromBase64(text);
+  std::string bytes = decoded(text);
   const std::uint64_t length = coding.header(bytes, 0);
   bytes.erase(0, coding.headerSize());
   if (length > bytes.size())
@@ -95,7 +73,7 @@ std::string plainBytes(std::string_view text, const Coding& coding) {
 std::string inflatedBytes(std::string_view text, const Coding& coding) {
   const auto encodedSize = [](std::uint64_t bytes) { return (bytes + 2) / 3 * 4; };
   const std::size_t word = coding.headerSize();
-  const std::string start = fromBase64(text.substr(0, encodedSize(3 * word)));
+  const std::string start = decoded(text.substr(0, encodedSize(3 * word)));
   const std::uint64_t blocks = coding.header(start, 0);
   if (blocks > text.size())
     throw DamagedSurface();
@@ -104,8 +82,8 @@ std::string inflatedBytes(std::string_view text, const Coding& coding) {
   const std::uint64_t headerText = encodedSize((3 + blocks) * word);
   if (headerText > text.size())
     throw DamagedSurface();
-  const std::string header = fromBase64(text.substr(0, static_cast<std::size_t>(headerText)));
-  const std::string packed = fromBase64(text.substr(static_cast<std::size_t>(headerText)));
+  const std::string header = decoded(text.substr(0, static_cast<std::size_t>(headerText)));
+  const std::string packed = decoded(text.substr(static_cast<std::size_t>(headerText)));
   const std::uint64_t blockSize = coding.header(header, 1), lastSize = coding.header(header, 2);
   std::string bytes;
   std::size_t at = 0;

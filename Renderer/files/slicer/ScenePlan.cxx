@@ -9,20 +9,19 @@ namespace {
 using Nodes = std::vector<const MrmlNode*>;
 
 template <typename Matches>
-Nodes nodesThat(const MrmlDocument& document, Matches&& matches) {
+Nodes those(const Nodes& nodes, Matches&& matches) {
   Nodes found;
-  for (const MrmlNode& node : document.nodes())
-    if (matches(node))
-      found.push_back(&node);
+  std::ranges::copy_if(nodes, std::back_inserter(found),
+                       [&](const MrmlNode* node) { return matches(*node); });
   return found;
 }
 
 template <typename Matches>
-Nodes those(const Nodes& nodes, Matches&& matches) {
-  Nodes found;
-  std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(found),
-               [&](const MrmlNode* node) { return matches(*node); });
-  return found;
+Nodes nodesThat(const MrmlDocument& document, Matches&& matches) {
+  Nodes all;
+  for (const MrmlNode& node : document.nodes())
+    all.push_back(&node);
+  return those(all, matches);
 }
 
 std::string listed(const Nodes& nodes) {
@@ -41,6 +40,19 @@ const MrmlNode* named(const MrmlDocument& document, const Nodes& nodes, const st
     throw inputError(document.source(), "--", flag, " ", name, " can be any of ", listed(byName),
                      "; name one by its id");
   return byName.empty() ? nullptr : byName.front();
+}
+
+/// Node of the first list that has any; null: none has. Throws Error (input) where that list has
+/// several.
+const MrmlNode* onlyOne(const MrmlDocument& document, std::initializer_list<const Nodes*> lists,
+                        const char* what, const char* flag) {
+  for (const Nodes* candidates : lists)
+    if (candidates->size() > 1)
+      throw inputError(document.source(), "has several ", what, " (", listed(*candidates),
+                       "); choose one with --", flag);
+    else if (!candidates->empty())
+      return candidates->front();
+  return nullptr;
 }
 
 /// First display of the volume that matches; null: none.
@@ -85,13 +97,8 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
     selected.insert(selection->referenced("ActiveVolume"));
   const Nodes active =
       those(volumes, [&](const MrmlNode& volume) { return selected.contains(volume.id); });
-  for (const Nodes* candidates : {&rendered, &renderable, &active, &volumes})
-    if (candidates->size() == 1)
-      return candidates->front();
-    else if (candidates->size() > 1)
-      throw inputError(document.source(), "has several volumes to render (", listed(*candidates),
-                       "); choose one with --volume");
-  return nullptr; // not reached: there are volumes
+  return onlyOne(document, {&rendered, &renderable, &active, &volumes}, "volumes to render",
+                 "volume");
 }
 
 const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoice& choice) {
@@ -107,12 +114,9 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoi
     const MrmlNode* display = document.follow(node, "display");
     return !display || isShown(*display);
   });
-  for (const Nodes* candidates : {&shownOnes, &segmentations, &labelMaps})
-    if (candidates->size() == 1)
-      return candidates->front();
-    else if (candidates->size() > 1)
-      throw inputError(document.source(), "has several segmentations (", listed(*candidates),
-                       "); choose one with --segmentation");
+  if (const MrmlNode* one = onlyOne(document, {&shownOnes, &segmentations, &labelMaps},
+                                    "segmentations", "segmentation"))
+    return one;
   throw inputError(document.source(),
                    "has no segmentation to find a focus in; give --segmentation FILE");
 }
