@@ -2,6 +2,8 @@
 // Every failure that a user can cause is an Error: one line that names the file (or flag), the
 // field and the remedy. The kind is the process's exit status.
 
+#include "base/Text.h"
+
 #include <stdexcept>
 #include <string>
 
@@ -24,14 +26,18 @@ private:
   ErrorKind m_kind;
 };
 
-inline Error usageError(const std::string& line) {
-  return {ErrorKind::usage, line};
+// Parts of the line as in textOf: texts, paths, whole numbers.
+template <typename... Parts>
+Error usageError(const Parts&... line) {
+  return {ErrorKind::usage, textOf(line...)};
 }
-inline Error inputError(const std::string& file, const std::string& what) {
-  return {ErrorKind::input, file + ": " + what};
+template <typename File, typename... Parts>
+Error inputError(const File& file, const Parts&... what) {
+  return {ErrorKind::input, textOf(file, ": ", what...)};
 }
-inline Error outputError(const std::string& file, const std::string& what) {
-  return {ErrorKind::output, file + ": " + what};
+template <typename File, typename... Parts>
+Error outputError(const File& file, const Parts&... what) {
+  return {ErrorKind::output, textOf(file, ": ", what...)};
 }
 
 } // namespace fenestra

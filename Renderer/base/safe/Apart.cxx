@@ -29,7 +29,6 @@ constexpr int childConnection = 3;
 constexpr std::uint64_t longestQuestion = 1 << 16; // bytes; less than a socket holds
 
 // ---- frames: a length of 8 bytes, then as many bytes
-// ---------------------------------------------
 
 bool sendAll(int connection, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -90,7 +89,6 @@ std::optional<std::string> receiveFrame(int connection, std::uint64_t most,
 }
 
 // ---- the child
-// ----------------------------------------------------------------------------------
 
 struct Jobs {
   std::vector<const ApartJob*> all;
@@ -119,7 +117,6 @@ Jobs& jobs() {
 }
 
 // ---- starting a child
-// --------------------------------------------------------------------------------
 
 /// Attributes of a new child: no file but its end of the connection, default signal handlers.
 class Beginning {
@@ -174,9 +171,8 @@ void Apart::start() {
     throw std::logic_error("main does not call serveApart");
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
-    m_connection = ends[0];
-    m_child = Beginning(ends[1]).spawn(m_job.name());
-    ::close(ends[1]);
+    m_connection = Descriptor(ends[0]);
+    m_child = Beginning(*Descriptor(ends[1])).spawn(m_job.name());
   }
   if (m_child != 0)
     return;
@@ -187,13 +183,10 @@ void Apart::start() {
 void Apart::end() {
   if (m_child != 0) {
     ::kill(m_child, SIGKILL);
-    while (::waitpid(m_child, nullptr, 0) < 0 && errno == EINTR)
-      ;
+    repeated([this] { return ::waitpid(m_child, nullptr, 0); });
   }
-  if (m_connection >= 0)
-    ::close(m_connection);
   m_child = 0;
-  m_connection = -1;
+  m_connection = Descriptor();
 }
 
 std::optional<std::string> Apart::ask(const std::string& question, std::uint64_t most) {
@@ -204,8 +197,8 @@ std::optional<std::string> Apart::ask(const std::string& question, std::uint64_t
   constexpr unsigned byTheClock = 3;
   const auto deadline = Clock::now() + std::chrono::seconds(byTheClock * m_job.limits().seconds);
   std::optional<std::string> answer;
-  if (sendFrame(m_connection, question))
-    answer = receiveFrame(m_connection, most, deadline);
+  if (sendFrame(*m_connection, question))
+    answer = receiveFrame(*m_connection, most, deadline);
   if (!answer)
     end();
   return answer;

@@ -6,6 +6,8 @@
 // work apart calls serveApart first in main, as fenestra, its tests and its fuzz targets do. In any
 // other program Apart::ask throws std::logic_error instead of running that program's main again.
 
+#include "base/safe/Descriptor.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -60,8 +62,8 @@ private:
   void end();
 
   const ApartJob& m_job;
-  int m_child = 0;       ///< process id; 0: not running
-  int m_connection = -1; ///< socket to the child; -1: none
+  int m_child = 0;         ///< process id; 0: not running
+  Descriptor m_connection; ///< socket to the child
 };
 
 /// In a child: answers questions until the parent closes the connection or dies, and does not

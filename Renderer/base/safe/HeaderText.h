@@ -4,57 +4,30 @@
 #include "base/Error.h"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 namespace fenestra::header {
 
 inline constexpr std::size_t longestHeader = 16 << 20;
 
-inline std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
+using Fields = std::map<std::string, std::string>;
 
-inline std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos)
-    return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
-inline std::vector<std::string_view> words(std::string_view text) {
-  std::vector<std::string_view> found;
-  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
-    const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
-    found.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return found;
-}
-
-inline std::optional<std::int64_t> wholeNumber(std::string_view text) {
-  text = trimmed(text);
-  std::int64_t value = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc() || end != text.data() + text.size())
-    return std::nullopt;
-  return value;
+/// Value of a field; empty: missing.
+inline std::string valueOf(const Fields& fields, const std::string& key) {
+  const auto found = fields.find(key);
+  return found == fields.end() ? std::string() : found->second;
 }
 
 inline Error damaged(const std::filesystem::path& path, const std::string& format) {
-  return inputError(path.string(),
-                    "is not a " + format + " file, or its header is damaged; write it again");
+  return inputError(path, "is not a ", format, " file, or its header is damaged; write it again");
 }
 
 /// Throws Error (input) where `unit` is a length other than mm: all readers take lengths as mm.
@@ -68,8 +41,7 @@ inline void checkMillimetres(const std::filesystem::path& path, const std::strin
       "centimeter", "centimeters", "centimetre", "centimetres", "micrometer", "micrometers",
       "micrometre", "micrometres", "foot",       "feet"};
   if (others.contains(lower(unit)))
-    throw inputError(path.string(),
-                     field + ": \"" + unit + "\" is not read; scale the geometry to \"mm\"");
+    throw inputError(path, field, ": \"", unit, "\" is not read; scale the geometry to \"mm\"");
 }
 
 /// Finds control characters other than a tab. Libraries end a line at a zero byte or a lone \r, and

@@ -4,7 +4,6 @@
 #include "base/safe/SystemCalls.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -100,25 +99,25 @@ void requireFile(const std::filesystem::path& path, const std::string& mend, std
                      "is followed by a zero byte, which no name holds; write it again");
   // Checked first: a name on an automount or a server would reveal the access to others.
   if (confinement && !isWithin(path, *confinement))
-    throw inputError(path.string(),
+    throw inputError(path,
                      "is outside the archive that names it, or not in it; save the scene again");
   struct stat status = {};
   if (::stat(path.c_str(), &status) != 0) {
     if (errno == ENOENT || errno == ENOTDIR)
-      throw inputError(path.string(), "there is no such file; check the name");
+      throw inputError(path, "there is no such file; check the name");
     throw readingError(path, errno, "check its permissions and those of its folder");
   }
   if (S_ISDIR(status.st_mode))
-    throw inputError(path.string(), "is a folder; " + mend);
+    throw inputError(path, "is a folder; ", mend);
   if (!S_ISREG(status.st_mode))
-    throw inputError(path.string(), "is not a file that can be read; " + mend);
+    throw inputError(path, "is not a file that can be read; ", mend);
   if (static_cast<std::uint64_t>(status.st_size) > most)
-    throw inputError(path.string(), "has more than " + megabytes(most) + "; name a smaller file");
+    throw inputError(path, "has more than ", megabytes(most), "; name a smaller file");
   if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
     throw readingError(path, errno, "check its permissions");
   const std::optional<FileId> file = fileId(path);
   if (file && isResult(*file))
-    throw inputError(path.string(), "is a result of this command; name another file");
+    throw inputError(path, "is a result of this command; name another file");
   if (file)
     enter(*file, path);
 }
@@ -172,10 +171,7 @@ void forgetResult(const std::filesystem::path& path) {
 }
 
 std::string lowerExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return lower(path.extension().string());
 }
 
 } // namespace fenestra

@@ -2,12 +2,12 @@
 // Ledger of every file that the process reads: no result may replace such a file, under any name.
 // Every reader calls requireFile before it opens a file.
 
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
-#include <tuple>
 
 namespace fenestra {
 
@@ -19,13 +19,7 @@ struct FileId {
   std::uint64_t device = 0, inode = 0;
   std::int64_t born = 0; ///< birth, ns since 1970; 0: not reported by the disk
 
-  friend bool operator==(const FileId& a, const FileId& b) { return a.all() == b.all(); }
-  friend bool operator<(const FileId& a, const FileId& b) { return a.all() < b.all(); }
-
-private:
-  std::tuple<std::uint64_t, std::uint64_t, std::int64_t> all() const {
-    return {device, inode, born};
-  }
+  friend auto operator<=>(const FileId&, const FileId&) = default;
 };
 
 /// Identity of the file behind `path`; links are followed. nullopt: no such file.

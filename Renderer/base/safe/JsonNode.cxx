@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <span>
 
 namespace fenestra {
 namespace {
@@ -36,18 +37,18 @@ nlohmann::json parseJson(std::string_view text, const std::string& source, int m
   const auto count = [&](int depth, Event event, const nlohmann::json&) {
     const bool opens = event == Event::object_start || event == Event::array_start;
     if (opens && depth >= deepest)
-      throw inputError(source, "is nested deeper than " + std::to_string(deepest) +
-                                   " levels; Fenestra writes no such file");
+      throw inputError(source, "is nested deeper than ", deepest,
+                       " levels; Fenestra writes no such file");
     if ((opens || event == Event::key || event == Event::value) && ++parts > mostParts)
-      throw inputError(source, "holds more than " + std::to_string(mostParts) +
-                                   " values; Fenestra writes no such file");
+      throw inputError(source, "holds more than ", mostParts,
+                       " values; Fenestra writes no such file");
     return true;
   };
   try {
     return nlohmann::json::parse(text, count);
   } catch (const nlohmann::json::parse_error& error) {
-    throw inputError(source, "is not JSON at byte " + std::to_string(error.byte) +
-                                 "; check its brackets, commas and quotes");
+    throw inputError(source, "is not JSON at byte ", error.byte,
+                     "; check its brackets, commas and quotes");
   } catch (const nlohmann::json::exception&) {
     throw inputError(source, "holds a number that is too large; write a smaller one");
   }
@@ -61,22 +62,35 @@ Error JsonNode::error(const std::string& mend) const {
   return inputError(m_source, m_place.empty() ? mend : m_place + ": " + mend);
 }
 
+const nlohmann::json& JsonNode::checked(bool isRight, const char* mend) const {
+  if (!isRight)
+    throw error(mend);
+  return *m_value;
+}
+
+const nlohmann::json& JsonNode::object() const {
+  return checked(m_value->is_object(), "must be an object, {…}");
+}
+
 bool JsonNode::boolean() const {
-  if (!m_value->is_boolean())
-    throw error("must be true or false");
-  return m_value->get<bool>();
+  return checked(m_value->is_boolean(), "must be true or false").get<bool>();
 }
 
 std::string JsonNode::text() const {
-  if (!m_value->is_string())
-    throw error("must be a string");
-  return m_value->get<std::string>();
+  return checked(m_value->is_string(), "must be a string").get<std::string>();
+}
+
+std::size_t JsonNode::oneOf(const std::vector<std::string>& words) const {
+  const auto found = std::find(words.begin(), words.end(), text());
+  if (found != words.end())
+    return static_cast<std::size_t>(found - words.begin());
+  const auto quoted = [](const std::string& word) { return "\"" + word + "\""; };
+  const std::span but(words.begin(), words.end() - 1);
+  throw error("must be " + joined(but, ", ", quoted) + " or " + quoted(words.back()));
 }
 
 double JsonNode::number() const {
-  if (!m_value->is_number())
-    throw error("must be a number");
-  return m_value->get<double>();
+  return checked(m_value->is_number(), "must be a number").get<double>();
 }
 
 double JsonNode::numberIn(double low, double high) const {
@@ -89,8 +103,7 @@ double JsonNode::numberIn(double low, double high) const {
 
 std::vector<double> JsonNode::numbers(std::size_t count, double low, double high) const {
   if (m_value->is_array() && m_value->size() != count)
-    throw error("must have " + std::to_string(count) + " numbers, not " +
-                std::to_string(m_value->size()));
+    throw error(textOf("must have ", count, " numbers, not ", m_value->size()));
   std::vector<double> result;
   for (const JsonNode& node : elements())
     result.push_back(node.numberIn(low, high));
@@ -98,21 +111,17 @@ std::vector<double> JsonNode::numbers(std::size_t count, double low, double high
 }
 
 std::vector<JsonNode> JsonNode::elements() const {
-  if (!m_value->is_array())
-    throw error("must be an array");
   std::vector<JsonNode> nodes;
-  for (const nlohmann::json& value : *m_value)
-    nodes.push_back({value, m_source, m_place + "[" + std::to_string(nodes.size()) + "]"});
+  for (const nlohmann::json& value : checked(m_value->is_array(), "must be an array"))
+    nodes.push_back({value, m_source, textOf(m_place, '[', nodes.size(), ']')});
   return nodes;
 }
 
 std::optional<JsonNode> JsonNode::find(const std::string& key) const {
-  if (!m_value->is_object())
-    throw error("must be an object, {…}");
-  const auto it = m_value->find(key);
+  const auto it = object().find(key);
   if (it == m_value->end())
     return std::nullopt;
-  return JsonNode(*it, m_source, m_place.empty() ? key : m_place + "." + key);
+  return JsonNode(*it, m_source, placeOf(key));
 }
 
 JsonNode JsonNode::at(const std::string& key) const {
@@ -123,12 +132,9 @@ JsonNode JsonNode::at(const std::string& key) const {
 }
 
 std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
-  if (!m_value->is_object())
-    throw error("must be an object, {…}");
   std::vector<std::pair<std::string, JsonNode>> nodes;
-  for (const auto& [key, value] : m_value->items())
-    nodes.emplace_back(
-        key, JsonNode(value, m_source, (m_place.empty() ? "" : m_place + ".") + shown(key)));
+  for (const auto& [key, value] : object().items())
+    nodes.emplace_back(key, JsonNode(value, m_source, placeOf(shown(key))));
   return nodes;
 }
 
@@ -137,16 +143,11 @@ std::string JsonNode::json() const {
 }
 
 void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {
-  if (!m_value->is_object())
-    throw error("must be an object, {…}");
-  for (const auto& [key, value] : m_value->items())
+  for (const auto& [key, value] : object().items())
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-      std::string known;
-      for (const std::string_view k : keys)
-        known += (known.empty() ? "" : ", ") + std::string(k);
       const std::string shown =
           nlohmann::json(key).dump(-1, ' ', true); // one line, whatever the key holds
-      throw error("unknown key " + shown.substr(0, 80) + "; known ones are " + known);
+      throw error("unknown key " + shown.substr(0, 80) + "; known ones are " + joined(keys, ", "));
     }
 }
 

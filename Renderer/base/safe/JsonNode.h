@@ -2,6 +2,7 @@
 // JSON from untrusted files; every error names its place.
 
 #include "base/Error.h"
+#include "base/Vector.h"
 
 #include <nlohmann/json.hpp>
 
@@ -45,10 +46,16 @@ public:
   bool isObject() const { return m_value->is_object(); }
   bool boolean() const;
   std::string text() const;
+  /// Index of the text among `words`, at least two.
+  std::size_t oneOf(const std::vector<std::string>& words) const;
   double number() const;
   double numberIn(double low, double high) const;
   /// An array of exactly `count` numbers from low to high.
   std::vector<double> numbers(std::size_t count, double low, double high) const;
+  Vec3 triple(double low, double high) const {
+    const auto v = numbers(3, low, high);
+    return {v[0], v[1], v[2]};
+  }
 
   /// Elements of an array.
   std::vector<JsonNode> elements() const;
@@ -69,6 +76,13 @@ public:
 private:
   JsonNode(const nlohmann::json& value, std::string source, std::string place)
       : m_value(&value), m_source(std::move(source)), m_place(std::move(place)) {}
+
+  /// Returns the value. Throws Error (input) unless `isRight`.
+  const nlohmann::json& checked(bool isRight, const char* mend) const;
+  const nlohmann::json& object() const;
+  std::string placeOf(const std::string& key) const {
+    return m_place.empty() ? key : m_place + "." + key;
+  }
 
   const nlohmann::json* m_value;
   std::string m_source, m_place;

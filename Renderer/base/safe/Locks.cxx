@@ -9,16 +9,9 @@
 #include <thread>
 
 #include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 namespace fenestra {
 namespace {
-
-/// Tries to lock `file`. False: another process holds the lock.
-bool tryLock(int file) {
-  return repeated([file] { return ::flock(file, LOCK_EX | LOCK_NB); }) == 0 || errno != EWOULDBLOCK;
-}
 
 void waitABit() {
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -26,29 +19,24 @@ void waitABit() {
 
 } // namespace
 
-/// Locks folders in the order of their ids, so that two runs cannot deadlock.
-FolderLocks::FolderLocks(const std::set<std::filesystem::path>& folders) {
+std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folders) {
   constexpr double longest = 2.0; // s; a script may lock the folder while it runs Fenestra
-  std::map<FileId, std::filesystem::path> ordered;
+  std::map<FileId, std::filesystem::path> ordered; // so that two runs cannot deadlock
   for (const std::filesystem::path& folder : folders)
     if (const auto id = fileId(folder))
       ordered.emplace(*id, folder);
-  m_files.reserve(ordered.size());
+  std::vector<Descriptor> locks;
   const Stopwatch waited;
   for (const auto& [id, folder] : ordered) {
-    const int file = repeated(
-        [&path = folder] { return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
-    if (file < 0)
+    Descriptor file(repeated(
+        [&path = folder] { return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }));
+    if (!file.isOpen())
       continue;
-    m_files.push_back(file);
     while (!tryLock(file) && waited.seconds() < longest)
       waitABit();
+    locks.push_back(std::move(file));
   }
-}
-
-FolderLocks::~FolderLocks() {
-  for (const int file : m_files)
-    ::close(file);
+  return locks;
 }
 
 NameLock::NameLock(const std::filesystem::path& path) {
@@ -65,24 +53,17 @@ NameLock::NameLock(const std::filesystem::path& path) {
 void NameLock::take(const std::filesystem::path& lock, const std::filesystem::path& path) {
   const Uninterrupted making;
   m_name.emplace(lock, Leftover::Kind::file);
-  const int file = repeated(
-      [&] { return ::open(lock.c_str(), O_RDONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644); });
+  Descriptor file(repeated(
+      [&] { return ::open(lock.c_str(), O_RDONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644); }));
   const int code = errno;
-  if (file >= 0 && tryLock(file) && fileId(lock) == fileId(file)) {
-    m_file = file;
+  if (file.isOpen() && tryLock(file) && fileId(lock) == fileId(*file)) {
+    m_file = std::move(file);
     return;
   }
   m_name->keep(); // the file is another process's, or missing
   m_name.reset();
-  if (file < 0)
+  if (!file.isOpen())
     throw writingError(path, code);
-  ::close(file);
-}
-
-NameLock::~NameLock() {
-  m_name.reset(); // remove the name before the lock is released
-  if (m_file >= 0)
-    ::close(m_file);
 }
 
 } // namespace fenestra

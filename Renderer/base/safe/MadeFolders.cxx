@@ -5,20 +5,14 @@
 #include <sys/stat.h>
 
 namespace fenestra {
-namespace {
 
-Error cannotBeMade(const std::filesystem::path& folder, int code) {
-  return outputError(folder.string(), "cannot be made: " + systemMessage(code) + "; " +
-                                          writingMend(code, "name a folder that you may write to"));
-}
-
-} // namespace
+static constexpr const char* otherFolder = "name a folder that you may write to";
 
 MadeFolders::MadeFolders(const std::filesystem::path& folder) {
   std::error_code failed;
   const std::filesystem::path absolute = std::filesystem::absolute(folder, failed);
   if (failed)
-    throw cannotBeMade(folder, failed.value());
+    throw makingError(folder, failed.value(), otherFolder);
   make(absolute.lexically_normal());
 }
 
@@ -44,7 +38,7 @@ void MadeFolders::make(const std::filesystem::path& folder) {
     return;
   const int code = errno;
   m_made.back()->keep(); // the existing name is not ours
-  throw cannotBeMade(folder, code);
+  throw makingError(folder, code, otherFolder);
 }
 
 } // namespace fenestra

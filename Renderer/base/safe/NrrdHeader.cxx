@@ -1,7 +1,6 @@
 #include "base/safe/NrrdHeader.h"
 
 #include "base/safe/HeaderText.h"
-#include "base/safe/NumberText.h"
 
 #include <cmath>
 #include <tuple>
@@ -17,23 +16,17 @@ constexpr int mostLines = 10'000;
 /// Longest line and path, bytes: teem may copy them into a message of 1024.
 constexpr std::size_t longestLine = 500, longestPath = 900;
 
-using Fields = std::map<std::string, std::string>;
-
 /// Checks dimension and sizes. ITK keeps sizes in 32 bits and passes teem a buffer of those; teem
 /// has room for 16 axes, and writes one more where there are too many sizes.
 void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
-  const auto dimension = fields.find("dimension");
-  const auto axes = dimension == fields.end() ? std::nullopt : wholeNumber(dimension->second);
+  const auto axes = wholeNumber(valueOf(fields, "dimension"));
   if (!axes || *axes < 1 || *axes > 10)
-    throw inputError(path.string(), "dimension: must be a whole number from 1 to 10");
-  const auto it = fields.find("sizes");
-  if (it == fields.end())
+    throw inputError(path, "dimension: must be a whole number from 1 to 10");
+  if (!fields.contains("sizes"))
     throw damaged(path, "NRRD");
-  for (const std::string_view word : words(it->second)) {
-    const auto size = wholeNumber(word);
-    if (!size || *size < 1 || *size > INT32_MAX)
-      throw inputError(path.string(), "sizes: each must be a whole number from 1 to 2147483647");
-  }
+  for (const std::string& word : words(fields.at("sizes")))
+    if (const auto size = wholeNumber(word); !size || *size < 1 || *size > INT32_MAX)
+      throw inputError(path, "sizes: each must be a whole number from 1 to 2147483647");
 }
 
 /// Lengths of the vectors in parentheses; nullopt: malformed vector.
@@ -60,40 +53,35 @@ std::optional<std::vector<double>> vectorLengths(const std::string& text) {
 
 /// Number of axes that ITK places in space: all but lists, vectors and colours.
 std::size_t placedAxes(const Fields& fields) {
-  const auto kinds = fields.find("kinds");
-  if (kinds == fields.end())
+  if (!fields.contains("kinds"))
     return words(fields.at("sizes")).size();
   std::size_t placed = 0;
-  for (const std::string_view kind : words(kinds->second))
+  for (const std::string& kind : words(fields.at("kinds")))
     for (const char* known : {"domain", "space", "time", "???", "none"})
-      placed += lower(std::string(kind)) == known;
+      placed += lower(kind) == known;
   return placed;
 }
 
 /// Checks space directions; ITK takes missing ones as 1 mm.
-void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields,
-                      const std::string& text) {
-  const auto lengths = vectorLengths(text);
+void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields) {
+  const auto lengths = vectorLengths(valueOf(fields, "spacedirections"));
   constexpr double largest = 1e9; // mm; limit of every spacing
   const auto isUsable = [](double length) { return length >= 1.0 / largest && length <= largest; };
   if (!lengths || !std::all_of(lengths->begin(), lengths->end(), isUsable))
-    throw inputError(path.string(), "space directions: each must be a vector of 1e-9 to 1e9 mm, or "
-                                    "none; mend the header");
+    throw inputError(
+        path,
+        "space directions: each must be a vector of 1e-9 to 1e9 mm, or none; mend the header");
   if (!lengths->empty() && lengths->size() < std::min<std::size_t>(placedAxes(fields), 3))
-    throw inputError(path.string(), "space directions: has " + std::to_string(lengths->size()) +
-                                        " vectors; write one for each axis in space");
+    throw inputError(path, "space directions: has ", lengths->size(),
+                     " vectors; write one for each axis in space");
 }
 
 /// Checks each unit, a text in quotes.
 void checkNrrdUnits(const std::filesystem::path& path, const std::string& field,
                     const std::string& text) {
-  for (std::size_t open = text.find('"'); open != std::string::npos;) {
-    const std::size_t close = text.find('"', open + 1);
-    if (close == std::string::npos)
-      return;
-    checkMillimetres(path, field, text.substr(open + 1, close - open - 1));
-    open = text.find('"', close + 1);
-  }
+  const std::vector<std::string> parts = split(text, '"');
+  for (std::size_t i = 1; i < parts.size(); i += 2)
+    checkMillimetres(path, field, parts[i]);
 }
 
 bool isBesideSpace(const Fields& fields) {
@@ -109,23 +97,22 @@ void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
         {"axismaxs", "axis maxs", "write space directions and space origin"},
         {"units", "units", "write space units"}})
     if (fields.contains(key) && isBesideSpace(fields))
-      throw inputError(path.string(), std::string(name) + ": are not read beside a space; " + mend);
+      throw inputError(path, name, ": are not read beside a space; ", mend);
   for (const auto& [key, name] : {std::pair("axismins", "axis mins"), {"axismaxs", "axis maxs"}})
     if (fields.contains(key) && !fields.contains("spacings"))
-      throw inputError(path.string(), std::string(name) +
-                                          ": has no spacings with it; write them, or a space with "
-                                          "its directions and origin");
+      throw inputError(
+          path, name,
+          ": has no spacings with it; write them, or a space with its directions and origin");
 }
 
 void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
-  const auto space = fields.find("space");
-  const std::string name = space == fields.end() ? std::string() : lower(space->second);
+  const std::string name = lower(valueOf(fields, "space"));
   const bool hasTime = name.ends_with("-time") || name.ends_with("st"); // RAST and its like
   if (name.empty() || hasTime)
     return;
   if (const std::size_t placed = placedAxes(fields); placed > 3)
-    throw inputError(path.string(), "kinds: " + std::to_string(placed) +
-                                        " axes do not lie in a space of three; extract one frame");
+    throw inputError(path, "kinds: ", placed,
+                     " axes do not lie in a space of three; extract one frame");
 }
 
 /// Checks the geometry; refuses NaN, for which ITK silently takes its default.
@@ -133,16 +120,13 @@ void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) 
   for (const auto& [key, name] : {std::pair("spacedirections", "space directions"),
                                   {"spaceorigin", "space origin"},
                                   {"spacings", "spacings"}})
-    if (const auto it = fields.find(key);
-        it != fields.end() && lower(it->second).find("nan") != std::string::npos)
-      throw inputError(path.string(), std::string(name) + ": is not a number; mend the header");
-  if (const auto it = fields.find("spacedirections"); it != fields.end())
-    checkNrrdVectors(path, fields, it->second);
+    if (lower(valueOf(fields, key)).find("nan") != std::string::npos)
+      throw inputError(path, name, ": is not a number; mend the header");
+  checkNrrdVectors(path, fields);
   checkNrrdAxes(path, fields);
   checkNrrdKinds(path, fields);
-  for (const auto& [key, name] : {std::pair("spaceunits", "space units"), {"units", "units"}})
-    if (const auto it = fields.find(key); it != fields.end())
-      checkNrrdUnits(path, name, it->second);
+  checkNrrdUnits(path, "space units", valueOf(fields, "spaceunits"));
+  checkNrrdUnits(path, "units", valueOf(fields, "units"));
 }
 
 /// Lines of an NRRD header, short enough for teem's messages.
@@ -155,14 +139,13 @@ public:
     if (!line)
       return std::nullopt;
     if (++m_count > mostLines)
-      throw inputError(m_path.string(), "header: has more than " + std::to_string(mostLines) +
-                                            " lines; remove some of its key:=value lines");
+      throw inputError(m_path, "header: has more than ", mostLines,
+                       " lines; remove some of its key:=value lines");
     if (hasControls(*line))
       throw damaged(m_path, "NRRD");
     if (line->size() > longestLine && !isKeyValue(*line))
-      throw inputError(m_path.string(), "header: line " + std::to_string(m_count) +
-                                            " has more than " + std::to_string(longestLine) +
-                                            " bytes and is no key:=value; shorten it");
+      throw inputError(m_path, "header: line ", m_count, " has more than ", longestLine,
+                       " bytes and is no key:=value; shorten it");
     return line;
   }
 
@@ -190,11 +173,11 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
     const std::size_t colon = line->find(": ");
     if (colon == std::string_view::npos || line->starts_with('#') || NrrdLines::isKeyValue(*line))
       continue;
-    std::string key = lower(std::string(line->substr(0, colon)));
+    std::string key = lower(line->substr(0, colon));
     std::erase(key, ' ');
     const auto [field, isNew] = fields.emplace(key, trimmed(line->substr(colon + 2)));
     if (!isNew) // whichever value teem would take
-      throw inputError(path.string(), key.substr(0, 40) + ": is there twice; remove one");
+      throw inputError(path, key.substr(0, 40), ": is there twice; remove one");
     if (key == "datafile" && field->second.starts_with("LIST"))
       break; // the file names follow
   }
@@ -205,8 +188,8 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
 
 void checkNrrdPath(const std::filesystem::path& path) {
   if (path.string().size() > longestPath)
-    throw inputError(path.string(), "has a path of more than " + std::to_string(longestPath) +
-                                        " bytes; move it to a folder with a shorter one");
+    throw inputError(path, "has a path of more than ", longestPath,
+                     " bytes; move it to a folder with a shorter one");
 }
 
 /// Teem copies each number's text into 1024 bytes, however long it is.
@@ -220,16 +203,14 @@ void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
     for (const char c : std::string_view(block.data(), static_cast<std::size_t>(file.gcount()))) {
       length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
       if (length > longestLine)
-        throw inputError(header.string(), "has a number of more than " +
-                                              std::to_string(longestLine) +
-                                              " characters among its samples; write it again");
+        throw inputError(header, "has a number of more than ", longestLine,
+                         " characters among its samples; write it again");
     }
 }
 
 bool saysSpacing(const NrrdHeaderText& header) {
-  const auto directions = header.fields.find("spacedirections");
   return header.fields.contains("spacings") ||
-         (directions != header.fields.end() && directions->second.find('(') != std::string::npos);
+         valueOf(header.fields, "spacedirections").find('(') != std::string::npos;
 }
 
 NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
@@ -240,11 +221,10 @@ NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
   checkNrrdSizes(path, header.fields);
   checkNrrdGeometry(path, header.fields);
   header.end = lines.position();
-  if (const auto data = header.fields.find("datafile");
-      data != header.fields.end() && data->second.starts_with("LIST"))
+  if (valueOf(header.fields, "datafile").starts_with("LIST"))
     for (auto line = lines.next(); line; line = lines.next()) {
       if (trimmed(*line).empty()) // teem takes it for a file name
-        throw inputError(path.string(), "data file: its LIST has an empty line; remove that");
+        throw inputError(path, "data file: its LIST has an empty line; remove that");
       header.files.emplace_back(trimmed(*line));
     }
   return header;

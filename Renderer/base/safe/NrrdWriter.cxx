@@ -1,7 +1,6 @@
 #include "base/safe/NrrdWriter.h"
 
-#include "base/Error.h"
-#include "base/TextStream.h"
+#include "base/Text.h"
 
 #include <zlib.h>
 
@@ -17,10 +16,8 @@ static_assert(std::endian::native == std::endian::little, "samples are written a
 
 /// "(x,y,z)" in LPS, whose first two axes are RAS negated; "+ 0.0" for no "-0" in the header.
 std::string lpsText(const Vec3& ras) {
-  TextWriter text;
-  text.precision(17);
-  text << '(' << -ras.x() + 0.0 << ',' << -ras.y() + 0.0 << ',' << ras.z() + 0.0 << ')';
-  return text.str();
+  const Vec3 lps(-ras.x() + 0.0, -ras.y() + 0.0, ras.z() + 0.0);
+  return '(' + numbersText(lps, ",", 17) + ')';
 }
 
 /// Appends `samples` as one gzip stream without name and time.
@@ -50,27 +47,22 @@ void appendDeflated(std::string_view samples, std::string& file) {
 
 std::string nrrdText(const NrrdHeader& header) {
   const bool leads = !header.leadingKind.empty();
-  const auto axes = header.indexToWorld.linear();
-  TextWriter text;
-  text << "NRRD0004\n"
-       << "# Complete NRRD file format specification at:\n"
-       << "# http://teem.sourceforge.net/nrrd/format.html\n"
-       << "type: " << header.type << "\ndimension: " << (leads ? 4 : 3)
-       << "\nspace: left-posterior-superior\nsizes:";
-  if (leads)
-    text << ' ' << header.leadingCount;
-  text << ' ' << header.size.x() << ' ' << header.size.y() << ' ' << header.size.z()
-       << "\nspace directions:" << (leads ? " none" : "");
+  const Mat3& axes = header.indexToWorld.linear();
+  std::string text = textOf(
+      "NRRD0004\n# Complete NRRD file format specification at:\n"
+      "# http://teem.sourceforge.net/nrrd/format.html\ntype: ",
+      header.type, "\ndimension: ", leads ? 4 : 3,
+      "\nspace: left-posterior-superior\nsizes: ", leads ? textOf(header.leadingCount, ' ') : "",
+      numbersText(header.size, " "), "\nspace directions:", leads ? " none" : "");
   for (int axis = 0; axis < 3; ++axis)
-    text << ' ' << lpsText(axes.col(axis));
-  text << "\nkinds:" << (leads ? " " + header.leadingKind : "")
-       << " domain domain domain\nendian: little\nencoding: "
-       << (header.encoding == NrrdHeader::Encoding::gzip ? "gzip" : "raw")
-       << "\nspace origin: " << lpsText(header.indexToWorld.translation()) << '\n';
+    text += ' ' + lpsText(axes.col(axis));
+  text += textOf("\nkinds:", leads ? " " + header.leadingKind : "",
+                 " domain domain domain\nendian: little\nencoding: ",
+                 header.encoding == NrrdHeader::Encoding::gzip ? "gzip" : "raw",
+                 "\nspace origin: ", lpsText(header.indexToWorld.translation()), '\n');
   for (const auto& [key, value] : header.fields)
-    text << key << ":=" << value << '\n';
-  text << '\n';
-  return text.str();
+    text += textOf(key, ":=", value, '\n');
+  return text + '\n';
 }
 
 std::string encodeNrrd(const NrrdHeader& header, std::string_view samples) {

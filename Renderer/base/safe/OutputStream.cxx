@@ -3,12 +3,9 @@
 #include "base/Error.h"
 #include "base/safe/SystemCalls.h"
 
-#include <charconv>
 #include <cstdio>
 #include <fcntl.h>
 #include <iostream>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <utility>
 
 namespace fenestra {
@@ -21,10 +18,9 @@ std::optional<int> descriptorNumber(const std::string& path) {
   if (path == "/dev/stderr")
     return STDERR_FILENO;
   for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
-    int number = -1;
-    const char* const end = path.data() + path.size();
-    if (path.starts_with(folder) &&
-        std::from_chars(path.data() + folder.size(), end, number).ptr == end && number >= 0)
+    const auto number =
+        path.starts_with(folder) ? parsed<int>(path.substr(folder.size())) : std::nullopt;
+    if (number && *number >= 0)
       return number;
   }
   return std::nullopt;
@@ -36,7 +32,7 @@ std::optional<OutputStream> OutputStream::named(const std::filesystem::path& pat
   if (const auto number = descriptorNumber(path.lexically_normal().string())) {
     const int flags = ::fcntl(*number, F_GETFL);
     if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
-      throw outputError(path.string(), "is not open for writing; redirect it, as in 3>FILE");
+      throw outputError(path, "is not open for writing; redirect it, as in 3>FILE");
     return OutputStream(path, *number);
   }
   struct stat status = {};
@@ -59,17 +55,11 @@ void OutputStream::send() {
     return writeAll(m_descriptor, content, m_path);
   }
   // Opening without O_NONBLOCK would wait for ever where no process reads the pipe.
-  const int file = ::open(m_path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-  if (file < 0)
-    throw outputError(m_path.string(), "nobody reads this pipe; start its reader first");
-  ::fcntl(file, F_SETFL, 0);
-  try {
-    writeAll(file, content, m_path);
-  } catch (const Error&) {
-    ::close(file);
-    throw;
-  }
-  ::close(file);
+  const Descriptor file(::open(m_path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!file.isOpen())
+    throw outputError(m_path, "nobody reads this pipe; start its reader first");
+  ::fcntl(*file, F_SETFL, 0);
+  writeAll(*file, content, m_path);
 }
 
 } // namespace fenestra

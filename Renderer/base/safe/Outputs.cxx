@@ -13,8 +13,6 @@
 #include <set>
 
 #include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace fenestra {
 namespace {
@@ -51,41 +49,36 @@ bool isKeptByItsOwner(const struct stat& file, const fs::path& folder) {
 void requireReplaceable(const fs::path& path, const fs::path& target) {
   struct stat status = {};
   if (!target.has_filename())
-    throw outputError(path.string(), "is a folder; name a file");
+    throw outputError(path, "is a folder; name a file");
   if (::lstat(target.c_str(), &status) != 0) {
     if (errno != ENOENT)
       throw writingError(path, errno);
     return;
   }
   if (!S_ISREG(status.st_mode))
-    throw outputError(path.string(), "is a folder or a device; name a file");
+    throw outputError(path, "is a folder or a device; name a file");
   if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
-    throw outputError(path.string(), "is write-protected; choose another name, or chmod u+w it");
+    throw outputError(path, "is write-protected; choose another name, or chmod u+w it");
   if (isKeptByItsOwner(status, target.parent_path()))
-    throw outputError(path.string(), "belongs to somebody else, in a folder where only owners may "
-                                     "replace files; choose another name or folder");
+    throw outputError(path, "belongs to somebody else, in a folder where only owners may replace "
+                            "files; choose another name or folder");
 }
 
 void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {
   if (const auto input = file ? inputNamed(*file) : std::nullopt)
-    throw usageError(path.string() + ": would replace an input file" +
-                     (*input == path ? "" : " (" + input->string() + ")") +
-                     "; choose another name");
+    throw usageError(path, ": would replace an input file",
+                     (*input == path ? "" : " (" + input->string() + ")"), "; choose another name");
 }
 
 Error writtenTwice(const fs::path& path) {
-  return usageError(path.string() + ": would be written twice; give each result a name of its own");
+  return usageError(path, ": would be written twice; give each result a name of its own");
 }
 
 void syncFolder(const fs::path& folder) {
-  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // A folder that may be written but not read cannot be synced.
-  const bool isSynced = file >= 0 ? ::fsync(file) == 0 || errno == EINVAL : errno == EACCES;
-  const int code = errno;
-  if (file >= 0)
-    ::close(file);
-  if (!isSynced)
-    throw writingError(folder, code);
+  if (!(file.isOpen() ? ::fsync(*file) == 0 || errno == EINVAL : errno == EACCES))
+    throw writingError(folder, errno);
 }
 
 } // namespace
@@ -112,8 +105,9 @@ struct Outputs::Result {
     std::error_code failed;
     // An empty file holds nobody's data.
     if (isOurs && fs::exists(target, failed) && !fs::is_empty(target, failed) && !isOurs(target))
-      throw usageError(named.string() + ": is there, and Fenestra did not write it; move it away, "
-                                        "or choose another --output");
+      throw usageError(
+          named,
+          ": is there, and Fenestra did not write it; move it away, or choose another --output");
   }
 };
 
@@ -130,8 +124,9 @@ Outputs::Result& Outputs::declare(const fs::path& path) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
     if (isTemporaryName(result->target.filename().string(), temporaryFilePrefix))
-      throw usageError(path.string() + ": is a name for Fenestra's temporary files, which the next "
-                                       "run removes; choose another");
+      throw usageError(
+          path,
+          ": is a name for Fenestra's temporary files, which the next run removes; choose another");
   }
   requireNoInput(path, result->id());
   const std::optional<FileId> id = result->id();
@@ -186,7 +181,7 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
   std::set<fs::path> folders;
   for (const Result* result : files)
     folders.insert(result->target.parent_path());
-  std::optional<FolderLocks> locks(folders);
+  std::vector<Descriptor> locks = lockFolders(folders);
   const Uninterrupted replacing;
   std::size_t placed = 0;
   std::set<FileId> taken; // placed files; two names may be one file where a disk ignores case
@@ -210,7 +205,7 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
     throw;
   }
   anyIsPlaced = anyIsPlaced || placed > 0;
-  locks.reset();
+  locks.clear();
   for (Result* result : files)
     result->file.reset();
   if (durability == Durability::synced)

@@ -3,11 +3,7 @@
 #include "base/Error.h"
 #include "base/safe/SystemCalls.h"
 
-#include <cerrno>
 #include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace fenestra {
 namespace {
@@ -23,23 +19,18 @@ std::filesystem::path temporaryFiles() {
 }
 
 Error cannotMake(const std::filesystem::path& path) {
-  const int code = errno;
-  return outputError(path.string(), "cannot be made: " + systemMessage(code) + "; " +
-                                        writingMend(code, "set TMPDIR to a folder that you may "
-                                                          "write to"));
+  return makingError(path, errno, "set TMPDIR to a folder that you may write to");
 }
 
-/// Locks a folder of this user, accessible to this user alone, that no process has locked. Returns
-/// its descriptor; -1: failed.
-int lockAbandoned(const std::filesystem::path& folder) {
-  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+/// Lock on a folder of this user, accessible to this user alone, that no process has locked; not
+/// open: there is none.
+Descriptor lockAbandoned(const std::filesystem::path& folder) {
+  Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   struct stat status = {};
-  if (file >= 0 && ::fstat(file, &status) == 0 && status.st_uid == ::geteuid() &&
-      (status.st_mode & 0777) == S_IRWXU && ::flock(file, LOCK_EX | LOCK_NB) == 0)
-    return file;
-  if (file >= 0)
-    ::close(file);
-  return -1;
+  const bool isLocked = ::fstat(*file, &status) == 0 && status.st_uid == ::geteuid() &&
+                        (status.st_mode & 0777) == S_IRWXU &&
+                        ::flock(*file, LOCK_EX | LOCK_NB) == 0;
+  return isLocked ? std::move(file) : Descriptor();
 }
 
 } // namespace
@@ -55,30 +46,19 @@ bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
       return false;
     throw cannotMake(folder);
   }
-  m_lock = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  struct stat status = {};
-  if (m_lock >= 0 && ::flock(m_lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return false;
-  return m_lock < 0 || ::fstat(m_lock, &status) != 0 || status.st_nlink > 0;
+  m_lock = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return !m_lock.isOpen() || (tryLock(m_lock) && hasName(m_lock));
 }
 
 PrivateFolder::PrivateFolder() {
   const std::filesystem::path parent = temporaryFiles();
-  for (;;) {
-    if (makeLocked(parent / temporaryName(folderPrefix)))
-      return;
+  while (!makeLocked(parent / temporaryName(folderPrefix)))
     m_entries.clear();
-    if (m_lock >= 0)
-      ::close(m_lock);
-    m_lock = -1;
-  }
 }
 
 PrivateFolder::~PrivateFolder() {
   while (!m_entries.empty()) // contents before their folder
     m_entries.pop_back();
-  if (m_lock >= 0)
-    ::close(m_lock);
 }
 
 void PrivateFolder::addFolder(const std::filesystem::path& folder) {
@@ -97,10 +77,9 @@ std::filesystem::path PrivateFolder::add(const std::filesystem::path& relative) 
   addFolder(file.parent_path());
   const Uninterrupted making;
   m_entries.push_back(std::make_unique<Leftover>(file, Leftover::Kind::file));
-  const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  if (made < 0)
+  if (!Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR))
+           .isOpen())
     throw cannotMake(file);
-  ::close(made);
   return file;
 }
 
@@ -112,12 +91,9 @@ void removeAbandonedFolders() {
     return;
   }
   forTemporaryNames(parent, folderPrefix, [](const std::filesystem::path& folder) {
-    const int lock = lockAbandoned(folder);
-    if (lock < 0)
-      return;
     std::error_code ignored;
-    std::filesystem::remove_all(folder, ignored);
-    ::close(lock);
+    if (const Descriptor lock = lockAbandoned(folder); lock.isOpen())
+      std::filesystem::remove_all(folder, ignored);
   });
 }
 

@@ -2,6 +2,7 @@
 // Temporary folder, readable by this user alone. Removed with the object, by a signal that ends the
 // process, or after SIGKILL by a later run.
 
+#include "base/safe/Descriptor.h"
 #include "base/safe/Leftovers.h"
 
 #include <filesystem>
@@ -30,8 +31,8 @@ private:
   void addFolder(const std::filesystem::path& folder);
   bool makeLocked(const std::filesystem::path& folder);
 
+  Descriptor m_lock;
   std::vector<std::unique_ptr<Leftover>> m_entries; ///< the folder, then its content as made
-  int m_lock = -1;
 };
 
 /// Removes the private folders that killed runs of this user have left: no process has them locked.

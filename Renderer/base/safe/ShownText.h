@@ -54,14 +54,4 @@ inline std::string shown(const std::string& text) {
   return oneLine(text.substr(0, end));
 }
 
-/// Text with every `from` replaced by `to`.
-inline std::string replacedAll(std::string_view text, std::string_view from, std::string_view to) {
-  std::string result;
-  for (std::size_t at = text.find(from); at != std::string_view::npos; at = text.find(from)) {
-    result.append(text.substr(0, at)).append(to);
-    text.remove_prefix(at + from.size());
-  }
-  return result.append(text);
-}
-
 } // namespace fenestra

@@ -1,16 +1,13 @@
 #pragma once
-// System calls on files, repeated where a signal interrupts them; messages for their error codes,
-// with the mend for a user.
+// Messages for the error codes of system calls, with the mend for a user.
 
 #include "base/Error.h"
+#include "base/safe/Descriptor.h"
 
-#include <cerrno>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <system_error>
-
-#include <unistd.h>
 
 namespace fenestra {
 
@@ -63,25 +60,18 @@ inline std::string writingMend(int code, const std::string& other) {
 
 /// Error for a result that cannot be written.
 inline Error writingError(const std::filesystem::path& path, int code) {
-  return outputError(
-      path.string(),
-      "cannot be written: " + systemMessage(code) + "; " +
-          writingMend(code, "name a file in an existing folder that you may write to"));
+  return outputError(path, "cannot be written: ", systemMessage(code), "; ",
+                     writingMend(code, "name a file in an existing folder that you may write to"));
+}
+
+/// Error for a file or folder that cannot be made; `other` as in writingMend.
+inline Error makingError(const std::filesystem::path& path, int code, const std::string& other) {
+  return outputError(path, "cannot be made: ", systemMessage(code), "; ", writingMend(code, other));
 }
 
 /// Error for an input that cannot be read.
 inline Error readingError(const std::filesystem::path& path, int code, const std::string& other) {
-  return inputError(path.string(),
-                    "cannot be read: " + systemMessage(code) + "; " + readingMend(code, other));
-}
-
-/// Calls `call` until no signal interrupts the call (EINTR); returns its result.
-template <typename Call>
-auto repeated(Call&& call) {
-  auto result = call();
-  while (result < 0 && errno == EINTR)
-    result = call();
-  return result;
+  return inputError(path, "cannot be read: ", systemMessage(code), "; ", readingMend(code, other));
 }
 
 /// Writes all of `content` to the descriptor `file`. Throws Error (output), which names `path`.

@@ -5,10 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <sys/xattr.h>
-#include <unistd.h>
 
 namespace fenestra {
 namespace {
@@ -46,9 +43,9 @@ mode_t keptMode(const struct stat& before, bool isOfItsGroup) {
 
 TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(target) {
   open();
-  if (m_file < 0)
+  if (!m_file.isOpen())
     throw writingError(m_target, errno);
-  if (const auto file = fileId(m_file)) // it reuses a number; births may be unknown
+  if (const auto file = fileId(*m_file)) // it reuses a number; births may be unknown
     forgetInput(*file);
 }
 
@@ -58,33 +55,18 @@ void TemporaryFile::open() {
   for (;;) {
     const Uninterrupted making;
     m_name.emplace(shortNameBeside(m_target), Leftover::Kind::file);
-    m_file = repeated([this] {
+    m_file = Descriptor(repeated([this] {
       return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    });
-    if (m_file < 0 && errno == EEXIST) {
+    }));
+    if (!m_file.isOpen() && errno == EEXIST)
       m_name->keep(); // somebody else's
-      continue;
-    }
-    if (m_file < 0)
+    else if (!m_file.isOpen() || (tryLock(m_file) && hasName(m_file)))
       return;
-    const bool isTaken = ::flock(m_file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-    struct stat status = {};
-    if (!isTaken && (::fstat(m_file, &status) != 0 || status.st_nlink > 0))
-      return;
-    ::close(m_file);
   }
 }
 
-TemporaryFile::~TemporaryFile() {
-  m_before.reset(); // names are removed before their locks
-  m_name.reset();
-  for (const int file : {m_file, m_replaced})
-    if (file >= 0)
-      ::close(file);
-}
-
 void TemporaryFile::write(std::string_view content) {
-  writeAll(m_file, content, m_target);
+  writeAll(*m_file, content, m_target);
 }
 
 void TemporaryFile::finish(Sync sync) {
@@ -92,25 +74,25 @@ void TemporaryFile::finish(Sync sync) {
   struct stat before = {};
   const bool isThere = ::lstat(m_target.c_str(), &before) == 0;
   if (isThere) {
-    const bool isOwned = ::fchown(m_file, before.st_uid, before.st_gid) == 0;
-    const bool isOfItsGroup = isOwned || ::fchown(m_file, uid_t(-1), before.st_gid) == 0;
+    const bool isOwned = ::fchown(*m_file, before.st_uid, before.st_gid) == 0;
+    const bool isOfItsGroup = isOwned || ::fchown(*m_file, uid_t(-1), before.st_gid) == 0;
     mode = keptMode(before, isOfItsGroup);
   }
-  if (repeated([&] { return ::fchmod(m_file, mode); }) != 0)
+  if (repeated([&] { return ::fchmod(*m_file, mode); }) != 0)
     throw writingError(m_target, errno);
   const mode_t ownersAlone = mode & 0700; // without the list its mask, the group's bits, is void
-  if (isThere && !copyAccessList(m_target, m_file) && ::fchmod(m_file, ownersAlone) != 0)
+  if (isThere && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownersAlone) != 0)
     throw writingError(m_target, errno);
-  if (sync == Sync::disk && repeated([&] { return ::fsync(m_file); }) != 0 && errno != EINVAL)
+  if (sync == Sync::disk && repeated([&] { return ::fsync(*m_file); }) != 0 && errno != EINVAL)
     throw writingError(m_target, errno);
 }
 
 void TemporaryFile::place() {
   const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
-  m_replaced = ::open(target, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (m_replaced >= 0) // locked where readable: other runs must not take it for abandoned
-    ::flock(m_replaced, LOCK_SH | LOCK_NB);
+  m_replaced = Descriptor(::open(target, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (m_replaced.isOpen()) // locked where readable: other runs must not take it for abandoned
+    ::flock(*m_replaced, LOCK_SH | LOCK_NB);
   const auto rename = [&](unsigned flags) {
     return repeated([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
   };
@@ -137,7 +119,7 @@ void TemporaryFile::placeByLink() {
 
 /// False where another run has since placed a result of the same name.
 bool TemporaryFile::isPlaced() const {
-  return fileId(m_target) == fileId(m_file);
+  return fileId(m_target) == fileId(*m_file);
 }
 
 void TemporaryFile::takeBack() noexcept {
@@ -160,13 +142,11 @@ void TemporaryFile::takeBack() noexcept {
 
 void removeAbandonedFiles(const std::filesystem::path& folder) {
   forTemporaryNames(folder, temporaryFilePrefix, [](const std::filesystem::path& path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     struct stat status = {};
-    if (file >= 0 && ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) &&
-        status.st_uid == ::geteuid() && ::flock(file, LOCK_EX | LOCK_NB) == 0)
+    if (::fstat(*file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == ::geteuid() &&
+        ::flock(*file, LOCK_EX | LOCK_NB) == 0)
       ::unlink(path.c_str());
-    if (file >= 0)
-      ::close(file);
   });
 }
 

@@ -2,6 +2,7 @@
 // Result being written: complete on the disk under a short name beside its target before it is
 // renamed. For base/safe/Outputs.
 
+#include "base/safe/Descriptor.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/Leftovers.h"
 
@@ -17,9 +18,6 @@ public:
   /// Makes an empty file, accessible to its owner alone, in the folder of `target`. Throws Error
   /// (output), which names `target`.
   explicit TemporaryFile(const std::filesystem::path& target);
-  ~TemporaryFile();
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   /// Appends. Throws Error (output), a full disk included.
   void write(std::string_view content);
@@ -43,9 +41,10 @@ private:
   bool isPlaced() const;
 
   std::filesystem::path m_target;
-  std::optional<Leftover> m_name, m_before; ///< m_before: the earlier file (placeByLink)
-  int m_file = -1;
-  int m_replaced = -1; ///< the earlier file, locked while its name is temporary; -1: none
+  Descriptor m_file;
+  Descriptor m_replaced; ///< the earlier file, locked while its name is temporary
+  /// Names, removed before their locks are released; m_before: the earlier file (placeByLink).
+  std::optional<Leftover> m_name, m_before;
   Placed m_placed = Placed::no;
 };
 

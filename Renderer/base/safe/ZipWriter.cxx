@@ -13,16 +13,8 @@ namespace {
 constexpr zip_uint16_t dosTime = 0, dosDate = 0x21;   ///< 1980-01-01, the format's first day
 constexpr zip_uint32_t readableFile = 0100644U << 16; ///< a Unix mode, whatever the source's is
 
-struct DiscardZip {
-  void operator()(zip_t* archive) const { zip_discard(archive); }
-};
-
-struct FreeSource {
-  void operator()(zip_source_t* source) const { zip_source_free(source); }
-};
-
 Error zipError(const std::filesystem::path& path, const std::string& reason) {
-  return outputError(path.string(), "cannot be made: " + reason + "; close other programs");
+  return outputError(path, "cannot be made: ", reason, "; close other programs");
 }
 
 /// Adds one entry. The memory of its content must live until the archive is closed.
@@ -61,10 +53,10 @@ std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& c
                       const std::filesystem::path& path) {
   zip_error_t error;
   zip_error_init(&error);
-  const std::unique_ptr<zip_source_t, FreeSource> source(
-      zip_source_buffer_create(nullptr, 0, 0, &error));
-  std::unique_ptr<zip_t, DiscardZip> archive(
-      source ? zip_open_from_source(source.get(), ZIP_TRUNCATE, &error) : nullptr);
+  const std::unique_ptr<zip_source_t, void (*)(zip_source_t*)> source(
+      zip_source_buffer_create(nullptr, 0, 0, &error), zip_source_free);
+  std::unique_ptr<zip_t, void (*)(zip_t*)> archive(
+      source ? zip_open_from_source(source.get(), ZIP_TRUNCATE, &error) : nullptr, zip_discard);
   if (!archive)
     throw zipError(path, zip_error_strerror(&error));
   zip_source_keep(source.get()); // closing the archive frees one reference

@@ -1,7 +1,6 @@
 #include "files/looks/LightReader.h"
 
 #include "base/safe/Inputs.h"
-
 #include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
 #include "files/pictures/ImageReader.h"
@@ -12,21 +11,15 @@ namespace {
 constexpr double largest = 1e30;   ///< largest radiance and length; products of two stay finite
 constexpr float brightest = 1e12f; ///< largest value of a map, and of colours in flags
 
-Vec3 readVector(const JsonNode& node) {
-  const auto v = node.numbers(3, -largest, largest);
-  return {v[0], v[1], v[2]};
-}
-
 Vec3 readDirection(const JsonNode& node) {
-  const Vec3 v = readVector(node);
+  const Vec3 v = node.triple(-largest, largest);
   if (v.isZero(0.0))
     throw node.error("is the zero vector; give a direction");
   return v.stableNormalized();
 }
 
 Rgb readRadiance(const JsonNode& node) {
-  const auto v = node.numbers(3, 0.0, largest);
-  return {v[0], v[1], v[2]};
+  return node.triple(0.0, largest).array();
 }
 
 /// File name without zero bytes and line breaks, fit for a message of one line.
@@ -72,18 +65,14 @@ Light readArea(const JsonNode& node, AreaLight::Shape shape) {
   node.allowOnly({"type", "center", "normal", "up", "size", "radiance", "frame"});
   AreaLight light;
   light.shape = shape;
-  light.center = readVector(node.at("center"));
+  light.center = node.at("center").triple(-largest, largest);
   light.normal = readDirection(node.at("normal"));
   if (const auto up = node.find("up"))
     light.up = readDirection(*up);
   light.size = readSize(node.at("size"), shape);
   light.radiance = readRadiance(node.at("radiance"));
-  if (const auto frame = node.find("frame")) {
-    const std::string name = frame->text();
-    if (name != "world" && name != "camera")
-      throw frame->error("must be \"world\" or \"camera\"");
-    light.frame = name == "camera" ? LightFrame::camera : LightFrame::world;
-  }
+  if (const auto frame = node.find("frame"))
+    light.frame = frame->oneOf({"world", "camera"}) == 1 ? LightFrame::camera : LightFrame::world;
   return light;
 }
 
@@ -131,25 +120,22 @@ bool namesFiles(std::string_view json, const std::string& source) {
 
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
   if (lowerExtension(path) != ".exr")
-    throw inputError(path.string(), "is no environment map; name a .exr file");
+    throw inputError(path, "is no environment map; name a .exr file");
   const Image image = readImage(path);
   EnvironmentMap map{image.width, image.height, {}};
-  const std::size_t texels =
-      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  const auto width = static_cast<std::size_t>(image.width);
+  const std::size_t texels = width * static_cast<std::size_t>(image.height);
   map.rgb.resize(3 * texels);
   const std::string names[] = {"R", "G", "B"};
   for (std::size_t c = 0; c < 3; ++c) {
     const std::vector<float>* plane = image.find(names[c]);
     if (!plane)
-      throw inputError(path.string(), "has no channel " + names[c] + "; write R, G and B");
+      throw inputError(path, "has no channel ", names[c], "; write R, G and B");
     for (std::size_t i = 0; i < texels; ++i) {
       const float value = (*plane)[i];
       if (!(value >= 0.0f && value <= brightest))
-        throw inputError(path.string(),
-                         "channel " + names[c] + " at pixel " +
-                             std::to_string(i % static_cast<std::size_t>(image.width)) + ", " +
-                             std::to_string(i / static_cast<std::size_t>(image.width)) +
-                             " is not from 0 to 1e12; mend the map");
+        throw inputError(path, "channel ", names[c], " at pixel ", i % width, ", ", i / width,
+                         " is not from 0 to 1e12; mend the map");
       map.rgb[3 * i + c] = value;
     }
   }

@@ -8,6 +8,7 @@
 namespace fenestra {
 namespace {
 
+constexpr Modality modalities[] = {Modality::ct, Modality::mr, Modality::us};
 constexpr std::size_t longestPattern = 200;
 constexpr std::size_t longestName = 1000; ///< characters of a segment's name that are compared
 
@@ -16,7 +17,7 @@ std::vector<std::string> readTexts(const JsonNode& node) {
   for (const JsonNode& element : node.elements()) {
     texts.push_back(element.text());
     if (texts.back().empty() || texts.back().size() > longestPattern)
-      throw element.error("must have 1 to " + std::to_string(longestPattern) + " characters");
+      throw element.error(textOf("must have 1 to ", longestPattern, " characters"));
   }
   return texts;
 }
@@ -24,17 +25,6 @@ std::vector<std::string> readTexts(const JsonNode& node) {
 std::vector<std::string> textsAt(const JsonNode& parent, const std::string& key) {
   const auto node = parent.find(key);
   return node ? readTexts(*node) : std::vector<std::string>();
-}
-
-Modality readModality(const JsonNode& node) {
-  const std::string text = node.text();
-  if (text == "CT")
-    return Modality::ct;
-  if (text == "MR")
-    return Modality::mr;
-  if (text == "US")
-    return Modality::us;
-  throw node.error("must be \"CT\", \"MR\" or \"US\"");
 }
 
 /// "SCHEME^VALUE", or two of them with ~ between.
@@ -139,7 +129,7 @@ OrganPreset parsePreset(std::string_view json, const std::string& source) {
   root.allowOnly({"title", "modality", "focus", "before", "flags", "tested"});
   OrganPreset preset{.name = std::filesystem::path(source).stem().string(),
                      .title = root.at("title").text(),
-                     .modality = readModality(root.at("modality")),
+                     .modality = modalities[root.at("modality").oneOf({"CT", "MR", "US"})],
                      .focus = readFocus(root.at("focus")),
                      .before = textsAt(root, "before")};
   for (const auto& [flag, value] : root.at("flags").members())

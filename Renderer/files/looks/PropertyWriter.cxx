@@ -1,6 +1,6 @@
 #include "files/looks/PropertyWriter.h"
 
-#include "base/TextStream.h"
+#include "base/Text.h"
 #include "base/safe/Mark.h"
 
 #include <nlohmann/json.hpp>
@@ -31,13 +31,9 @@ Json colorTransfer(const std::vector<ColorNode>& nodes) {
   return {{"type", "colorTransferFunction"}, {"points", points}};
 }
 
-std::string numbersText(const std::vector<double>& numbers) {
-  TextWriter text;
-  text.precision(std::numeric_limits<double>::digits10);
-  text << numbers.size();
-  for (const double number : numbers)
-    text << ' ' << number;
-  return text.str();
+std::string countedNumbers(const std::vector<double>& numbers) {
+  return textOf(numbers.size(), numbers.empty() ? "" : " ",
+                numbersText(numbers, " ", std::numeric_limits<double>::digits10));
 }
 
 std::string opacityText(const std::vector<OpacityNode>& nodes, double unitsPerMm) {
@@ -46,7 +42,7 @@ std::string opacityText(const std::vector<OpacityNode>& nodes, double unitsPerMm
     const double y = unitsPerMm == 1.0 ? node.y : 1.0 - std::pow(1.0 - node.y, unitsPerMm);
     numbers.insert(numbers.end(), {node.x, y});
   }
-  return numbersText(numbers);
+  return countedNumbers(numbers);
 }
 
 } // namespace
@@ -85,22 +81,17 @@ PropertyTexts propertyTexts(const VolumeProperty& property) {
   for (const ColorNode& node : property.color)
     color.insert(color.end(), {node.x, node.color.x(), node.color.y(), node.color.z()});
   return {opacityText(property.scalarOpacity, 1.0 / property.unitDistance),
-          opacityText(property.gradientOpacity, 1.0), numbersText(color)};
+          opacityText(property.gradientOpacity, 1.0), countedNumbers(color)};
 }
 
 std::string propertyVp(const VolumeProperty& property) {
   const PropertyTexts texts = propertyTexts(property);
-  TextWriter text;
-  text << "1\n" // linear interpolation
-       << property.shade << '\n'
-       << property.diffuse << '\n'
-       << ambientLight << '\n'
-       << property.specular << '\n'
-       << property.specularPower << '\n'
-       << texts.scalarOpacity << '\n'
-       << texts.gradientOpacity << '\n'
-       << texts.color << '\n';
-  return text.str();
+  const std::initializer_list<double> numbers = {property.shade ? 1.0 : 0.0, property.diffuse,
+                                                 ambientLight, property.specular,
+                                                 property.specularPower};
+  return textOf("1\n", // linear interpolation
+                numbersText(numbers, "\n"), '\n', texts.scalarOpacity, '\n', texts.gradientOpacity,
+                '\n', texts.color, '\n');
 }
 
 } // namespace fenestra

@@ -2,7 +2,6 @@
 
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
-#include "base/safe/NumberText.h"
 #include "model/medium/VolumeProperty.h"
 
 #include <span>
@@ -18,7 +17,6 @@ double finite(const JsonNode& node) {
 }
 
 // ---- Fenestra
-// ------------------------------------------------------------------------------------
 
 /// Rows [scalar, value...], each value from 0 to `most`.
 template <int Channels>
@@ -38,20 +36,6 @@ PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double most) {
   return PiecewiseLinear<Channels>(std::move(knots));
 }
 
-bool isHybrid(const JsonNode& shading) {
-  const std::string text = shading.text();
-  if (text != "volume" && text != "hybrid")
-    throw shading.error("must be \"volume\" or \"hybrid\"");
-  return text == "hybrid";
-}
-
-bool isRelative(const JsonNode& scalars) {
-  const std::string text = scalars.text();
-  if (text != "absolute" && text != "relative")
-    throw scalars.error("must be \"absolute\" or \"relative\"");
-  return text == "relative";
-}
-
 TransferLook readOwn(const JsonNode& root) {
   root.allowOnly({"scalars", "extinction", "albedo", "g", "shading"});
   TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largestValue),
@@ -61,10 +45,11 @@ TransferLook readOwn(const JsonNode& root) {
     if (!(std::abs(transfer.g) < 1.0))
       throw g->error("must be between -1 and 1, both excluded");
   }
-  if (const auto shading = root.find("shading"); shading && isHybrid(*shading))
+  if (const auto shading = root.find("shading");
+      shading && shading->oneOf({"volume", "hybrid"}) == 1)
     transfer.shading = SurfaceShading();
   const auto scalars = root.find("scalars");
-  return {std::move(transfer), scalars && isRelative(*scalars)};
+  return {std::move(transfer), scalars && scalars->oneOf({"absolute", "relative"}) == 1};
 }
 
 template <int Channels>
@@ -82,7 +67,6 @@ TransferFunction absolute(TransferLook look, const std::string& source) {
 }
 
 // ---- Slicer's .vp.json
-// ---------------------------------------------------------------------------
 
 double orElse(const std::optional<JsonNode>& node, double fallback) {
   return node ? finite(*node) : fallback;
@@ -98,19 +82,13 @@ Node readPoint(const JsonNode& point) {
   return node;
 }
 
-template <typename Node>
-void sortByPosition(std::vector<Node>& nodes) {
-  std::stable_sort(nodes.begin(), nodes.end(),
-                   [](const Node& a, const Node& b) { return a.x < b.x; });
-}
-
 std::vector<OpacityNode> readOpacity(const JsonNode& function) {
   std::vector<OpacityNode> nodes;
   for (const JsonNode& point : function.at("points").elements()) {
     nodes.push_back(readPoint<OpacityNode>(point));
     nodes.back().y = point.at("y").numberIn(0.0, 1.0);
   }
-  sortByPosition(nodes);
+  std::ranges::stable_sort(nodes, {}, &OpacityNode::x);
   return nodes;
 }
 
@@ -118,10 +96,9 @@ std::vector<ColorNode> readColor(const JsonNode& function) {
   std::vector<ColorNode> nodes;
   for (const JsonNode& point : function.at("points").elements()) {
     nodes.push_back(readPoint<ColorNode>(point));
-    const auto rgb = point.at("color").numbers(3, 0.0, 1.0);
-    nodes.back().color = {rgb[0], rgb[1], rgb[2]};
+    nodes.back().color = point.at("color").triple(0.0, 1.0).array();
   }
-  sortByPosition(nodes);
+  std::ranges::stable_sort(nodes, {}, &ColorNode::x);
   return nodes;
 }
 
@@ -158,7 +135,6 @@ VolumeProperty readSlicer(const JsonNode& root) {
 }
 
 // ---- Slicer's .vp, and the same texts as a scene's attributes
-// ----------------------------------
 
 /// MRML's names of a property's texts, in the order of a .vp's lines.
 constexpr const char* propertyFields[] = {"interpolation", "shade",           "diffuse",
@@ -188,8 +164,7 @@ public:
     const auto all = numbers(field);
     if (all.empty() || all[0] != static_cast<double>(all.size() - 1) ||
         (all.size() - 1) % width != 0)
-      throw error(field,
-                  "must be a count and that many numbers, " + std::to_string(width) + " a point");
+      throw error(field, textOf("must be a count and that many numbers, ", width, " a point"));
     std::vector<std::vector<double>> rows;
     for (auto it = all.begin() + 1; it != all.end(); it += static_cast<long>(width)) {
       rows.emplace_back(it, it + static_cast<long>(width));
@@ -202,10 +177,10 @@ public:
 private:
   Error error(const std::string& field, const std::string& what) const {
     if (m_form == PropertyForm::attributes)
-      return inputError(m_source, field + ": " + what);
+      return inputError(m_source, field, ": ", what);
     const auto* const line = std::find(std::begin(propertyFields), std::end(propertyFields), field);
-    return inputError(m_source, "line " + std::to_string(line - std::begin(propertyFields) + 1) +
-                                    " (" + field + "): " + what);
+    return inputError(m_source, "line ", line - std::begin(propertyFields) + 1, " (", field,
+                      "): ", what);
   }
 
   std::vector<double> numbers(const std::string& field) const {

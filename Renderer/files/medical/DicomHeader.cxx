@@ -2,7 +2,6 @@
 
 #include "base/Error.h"
 #include "base/safe/ApartBytes.h"
-#include "base/safe/NumberText.h"
 
 #include <gdcmMediaStorage.h>
 #include <gdcmPixmapReader.h>
@@ -21,17 +20,9 @@ using Path = std::filesystem::path;
 using gdcm::Tag;
 
 constexpr std::uint64_t longestFields = 1 << 20;
+constexpr std::string_view padding(" \0", 2);
 
 // ---- the fields: the child sends their texts in this order
-// ----------------------------------------
-
-std::string withoutPadding(std::string text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\0'; };
-  while (!text.empty() && blank(text.back()))
-    text.pop_back();
-  text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), blank));
-  return text;
-}
 
 /// Numbers of decimal strings between backslashes; empty: one is not a number.
 std::vector<double> decimals(std::string text) {
@@ -100,7 +91,6 @@ constexpr std::array dicomFields = {
 };
 
 // ---- in the child
-// -------------------------------------------------------------------------------
 
 bool isDicom(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -174,7 +164,7 @@ DicomHeader dicomHeader(std::string_view answer) {
   for (bool* flag : {&header.image, &header.compressed, &header.whole})
     *flag = texts.text() == "1";
   for (const Field& field : dicomFields)
-    field.keep(header, withoutPadding(texts.text()));
+    field.keep(header, std::string(trimmed(texts.text(), padding)));
   return header;
 }
 
@@ -190,8 +180,9 @@ std::optional<DicomHeader> DicomFiles::header(const Path& path) {
       return dicomHeader(*answer);
   } catch (const std::runtime_error&) { // malformed answer
   }
-  throw inputError(path.string(), "DICOM header: cannot be read; export the series again, or take "
-                                  "the file out of its folder");
+  throw inputError(
+      path,
+      "DICOM header: cannot be read; export the series again, or take the file out of its folder");
 }
 
 std::string DicomFiles::voxels(const Path& path, const DicomHeader& h) {
@@ -200,10 +191,8 @@ std::string DicomFiles::voxels(const Path& path, const DicomHeader& h) {
   if (answer && answer->size() == size)
     return std::move(*answer);
   if (h.compressed)
-    throw inputError(path.string(),
-                     "PixelData: cannot be decoded; export the series without compression");
-  throw inputError(path.string(),
-                   "PixelData: is damaged, truncated or deflated; export the series again");
+    throw inputError(path, "PixelData: cannot be decoded; export the series without compression");
+  throw inputError(path, "PixelData: is damaged, truncated or deflated; export the series again");
 }
 
 } // namespace fenestra

@@ -48,7 +48,7 @@ double interceptOf(const DicomHeader& h) {
 } // namespace
 
 void checkDicomPixels(const Path& path, const DicomHeader& h) {
-  const auto refuse = [&](const char* what) { throw inputError(path.string(), what); };
+  const auto refuse = [&](const char* what) { throw inputError(path, what); };
   if (h.rows == 0 || h.columns == 0)
     refuse("Rows or Columns: is missing; export the series again");
   const bool known = h.bits == 8 || h.bits == 16 || h.bits == 32;

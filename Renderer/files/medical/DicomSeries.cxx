@@ -32,11 +32,10 @@ FolderContent contentOf(const Path& folder) {
       content.folders.push_back(it->path());
   }
   if (failed)
-    throw inputError(folder.string(),
-                     "the folder cannot be read: " + failed.message() + "; " +
-                         readingMend(failed.value(), "check its name and its permissions"));
-  std::sort(content.files.begin(), content.files.end());
-  std::sort(content.folders.begin(), content.folders.end());
+    throw inputError(folder, "the folder cannot be read: ", failed.message(), "; ",
+                     readingMend(failed.value(), "check its name and its permissions"));
+  std::ranges::sort(content.files);
+  std::ranges::sort(content.folders);
   return content;
 }
 
@@ -55,22 +54,18 @@ auto sortKey(const DicomSeries& series) {
   return std::tuple(series.number.size(), series.number, series.uid);
 }
 
-std::string described(const DicomSeries& series) {
+std::string described(const DicomSeries* one) {
+  const DicomSeries& series = *one;
   std::string text = series.number.empty() ? "" : "number " + shown(series.number) + " ";
   if (!series.description.empty())
     text += "\"" + shown(series.description) + "\" ";
   text += series.modality.empty() ? "" : shown(series.modality) + " ";
   const std::size_t count = series.files.size();
-  return text + shown(series.uid) + " (" + std::to_string(count) +
-         (count == 1 ? " file)" : " files)");
+  return textOf(text, shown(series.uid), " (", count, count == 1 ? " file)" : " files)");
 }
 
 std::string listed(const std::vector<const DicomSeries*>& series) {
-  constexpr std::size_t most = 40;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, series.size()); ++i)
-    text += (i == 0 ? "" : "; ") + described(*series[i]);
-  return text + (series.size() > most ? "; …" : "");
+  return joined(series, "; ", described, 40);
 }
 
 } // namespace
@@ -89,13 +84,12 @@ std::vector<DicomSeries> findDicomSeries(const Path& folder) {
     series.files.push_back(file);
   }
   if (byUid.empty())
-    throw inputError(folder.string(), "the folder holds no DICOM series of images; name one that "
-                                      "does, or a volume file");
+    throw inputError(
+        folder, "the folder holds no DICOM series of images; name one that does, or a volume file");
   std::vector<DicomSeries> all;
   for (auto& [uid, series] : byUid)
     all.push_back(std::move(series));
-  std::sort(all.begin(), all.end(),
-            [](const DicomSeries& a, const DicomSeries& b) { return sortKey(a) < sortKey(b); });
+  std::ranges::sort(all, {}, sortKey);
   return all;
 }
 
@@ -112,10 +106,8 @@ const DicomSeries& chooseSeries(const std::vector<DicomSeries>& series,
   const auto all = matching([](const DicomSeries&) { return true; });
   if (!selector) {
     if (all.size() != 1)
-      throw inputError(folder, "holds " + std::to_string(all.size()) +
-                                   " DICOM series: " + listed(all) +
-                                   "; pick one with --volume, by uid, number or "
-                                   "description");
+      throw inputError(folder, "holds ", all.size(), " DICOM series: ", listed(all),
+                       "; pick one with --volume, by uid, number or description");
     return *all.front();
   }
   for (const auto field : {&DicomSeries::uid, &DicomSeries::number, &DicomSeries::description}) {
@@ -123,11 +115,11 @@ const DicomSeries& chooseSeries(const std::vector<DicomSeries>& series,
     if (found.size() == 1)
       return *found.front();
     if (found.size() > 1)
-      throw inputError(folder, "--volume \"" + shown(*selector) + "\" can be any of " +
-                                   listed(found) + "; pick one by its uid");
+      throw inputError(folder, "--volume \"", shown(*selector), "\" can be any of ", listed(found),
+                       "; pick one by its uid");
   }
-  throw inputError(folder, "--volume \"" + shown(*selector) +
-                               "\" names no DICOM series; there are " + listed(all));
+  throw inputError(folder, "--volume \"", shown(*selector), "\" names no DICOM series; there are ",
+                   listed(all));
 }
 
 } // namespace fenestra

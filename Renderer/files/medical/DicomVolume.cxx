@@ -1,13 +1,10 @@
 // Volume from a series' slices.
 
 #include "base/Error.h"
-#include "base/TextStream.h"
 #include "files/medical/DicomHeader.h"
 #include "files/medical/DicomPixels.h"
 #include "files/medical/DicomSeries.h"
 #include "files/medical/StoreVoxels.h"
-
-#include <iomanip>
 
 namespace fenestra {
 namespace {
@@ -24,17 +21,14 @@ struct Slice {
 };
 
 std::string millimetres(double length) {
-  TextWriter text;
-  text << std::setprecision(4) << length << " mm";
-  return text.str();
+  return numberText(length, 4) + " mm";
 }
 
 // ---- one file
-// ----------------------------------------------------------------------------------
 
 Slice openSlice(DicomFiles& files, const Path& path) {
   const auto header = files.header(path);
-  const auto refuse = [&](const char* what) { throw inputError(path.string(), what); };
+  const auto refuse = [&](const char* what) { throw inputError(path, what); };
   if (!header)
     refuse("is not a DICOM file; name a volume file or a DICOM series");
   const DicomHeader& h = *header;
@@ -61,7 +55,6 @@ Slice openSlice(DicomFiles& files, const Path& path) {
 }
 
 // ---- all files
-// ---------------------------------------------------------------------------------
 
 /// Directions along a row and along a column, LPS; at right angles.
 struct Axes {
@@ -75,9 +68,9 @@ Axes axesOf(const Slice& slice) {
   constexpr double tolerance = 1e-2; // real files round their cosines
   if (std::abs(row.norm() - 1.0) > tolerance || std::abs(column.norm() - 1.0) > tolerance ||
       std::abs(row.dot(column)) > tolerance)
-    throw inputError(slice.path.string(),
-                     "ImageOrientationPatient: must be two directions at right "
-                     "angles; export the series again");
+    throw inputError(
+        slice.path,
+        "ImageOrientationPatient: must be two directions at right angles; export the series again");
   return {row.normalized(), column.normalized()};
 }
 
@@ -89,9 +82,8 @@ void checkAlike(const std::vector<Slice>& slices) {
   };
   for (const Slice& slice : slices) {
     const auto refuse = [&](const char* field) {
-      throw inputError(slice.path.string(), std::string(field) + ": differs from that of " +
-                                                first.path.filename().string() +
-                                                "; name a series of parallel slices of one size");
+      throw inputError(slice.path, field, ": differs from that of ", first.path.filename(),
+                       "; name a series of parallel slices of one size");
     };
     const DicomHeader& h = slice.header;
     if (h.rows != first.header.rows || h.columns != first.header.columns)
@@ -119,14 +111,12 @@ void checkGaps(const std::vector<Slice>& slices) {
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const std::string between = slices[i + 1].path.filename().string();
     if (gaps[i] < least)
-      throw inputError(
-          slices[i].path.string(),
-          "ImagePositionPatient: lies where " + between +
-              " does; name a series of one slice a place (not several times or echoes)");
+      throw inputError(slices[i].path, "ImagePositionPatient: lies where ", between,
+                       " does; name a series of one slice a place (not several times or echoes)");
     if (std::abs(gaps[i] - usual) > 0.5 * usual)
-      throw inputError(slices[i].path.string(),
-                       "ImagePositionPatient: is " + millimetres(gaps[i]) + " from " + between +
-                           ", others " + millimetres(usual) + "; add the slices that are missing");
+      throw inputError(slices[i].path, "ImagePositionPatient: is ", millimetres(gaps[i]), " from ",
+                       between, ", others ", millimetres(usual),
+                       "; add the slices that are missing");
   }
 }
 
@@ -145,10 +135,8 @@ Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes,
     const double along = std::abs(off.dot(axes.normal()));
     if (along > 0.5 * step.dot(axes.normal()) || std::abs(off.dot(axes.row)) > 0.5 * pixel[1] ||
         std::abs(off.dot(axes.column)) > 0.5 * pixel[0])
-      throw inputError(slices[i].path.string(),
-                       "ImagePositionPatient: is " + millimetres(off.norm()) +
-                           " off even steps; resample the series in Slicer "
-                           "and name the volume file");
+      throw inputError(slices[i].path, "ImagePositionPatient: is ", millimetres(off.norm()),
+                       " off even steps; resample the series in Slicer and name the volume file");
     most = std::max(most, off.norm());
   }
   if (most > 0.02 * step.norm())
@@ -161,8 +149,9 @@ Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step
   const DicomHeader& h = slices.front().header;
   for (const Slice& slice : slices)
     if (!(slice.position.array().abs() < largestLength).all())
-      throw inputError(slice.path.string(), "ImagePositionPatient: is not a place within 1e9 mm; "
-                                            "export the series again");
+      throw inputError(
+          slice.path,
+          "ImagePositionPatient: is not a place within 1e9 mm; export the series again");
   const Mat3 steps(axes.row * h.pixelSpacing[1], axes.column * h.pixelSpacing[0], step);
   return {Size3(h.columns, h.rows, static_cast<std::int64_t>(slices.size())),
           Affine(lpsToRas * steps, lpsToRas * slices.front().position)};
@@ -192,14 +181,13 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
   const Axes axes = axesOf(slices.front());
   for (Slice& slice : slices)
     slice.depth = slice.position.dot(axes.normal());
-  std::stable_sort(slices.begin(), slices.end(),
-                   [](const Slice& a, const Slice& b) { return a.depth < b.depth; });
+  std::ranges::stable_sort(slices, {}, &Slice::depth);
   std::vector<std::string> warnings;
   const Vec3 step = stepOf(slices, axes, warnings);
   const Grid grid = gridOf(slices, axes, step);
   Volume volume = makeVolume(name, grid, readAll(files, slices));
   for (const std::string& warning : warnings)
-    volume.warnings.push_back(std::string(name).append(": ").append(warning));
+    volume.warnings.push_back(textOf(name, ": ", warning));
   return volume;
 }
 

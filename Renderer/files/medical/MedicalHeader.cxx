@@ -4,7 +4,6 @@
 #include "base/safe/HeaderText.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/NrrdHeader.h"
-#include "base/safe/NumberText.h"
 #include "base/safe/ShownText.h"
 
 #include <algorithm>
@@ -25,11 +24,11 @@ constexpr std::uint64_t greatestRatio = 1100;
 void addFile(const std::filesystem::path& path, std::string_view name, StoredSamples& stored) {
   const std::filesystem::path file = path.parent_path() / std::filesystem::path(name);
   if (name == "-") // libraries read the standard input
-    throw inputError(path.string(), "data file: \"-\" is no file; name one beside the header");
+    throw inputError(path, "data file: \"-\" is no file; name one beside the header");
   try {
     requireFile(file, "name a file with samples");
   } catch (const Error& error) {
-    throw inputError(path.string(), std::string("data file: ") + error.what());
+    throw inputError(path, "data file: ", error.what());
   }
   stored.files.push_back(file);
   stored.bytes += std::filesystem::file_size(file);
@@ -37,31 +36,26 @@ void addFile(const std::filesystem::path& path, std::string_view name, StoredSam
 
 void skip(const std::filesystem::path& path, std::uint64_t offset, StoredSamples& stored) {
   if (offset > stored.bytes)
-    throw inputError(path.string(),
-                     "is truncated: it ends before its samples begin; copy it again");
+    throw inputError(path, "is truncated: it ends before its samples begin; copy it again");
   stored.offset = offset;
   stored.bytes -= offset;
 }
 
 // ---- NRRD
-// ----------------------------------------------------------------------------------------
-
-using Fields = std::map<std::string, std::string>;
 
 void locateNrrdFiles(const std::filesystem::path& path, const NrrdHeaderText& header,
                      StoredSamples& stored) {
-  const auto named = header.fields.find("datafile");
-  if (named == header.fields.end()) {
+  if (!header.fields.contains("datafile")) {
     addFile(path, path.filename().string(), stored);
     return skip(path, header.end, stored);
   }
-  const std::string& name = named->second;
+  const std::string name = valueOf(header.fields, "datafile");
   if (name.starts_with("LIST")) {
     for (const std::string& file : header.files)
       addFile(path, file, stored);
   } else if (name.find('%') != std::string::npos)
-    throw inputError(path.string(), "data file: numbered series of files are not read; write the "
-                                    "volume into one file");
+    throw inputError(
+        path, "data file: numbered series of files are not read; write the volume into one file");
   else
     addFile(path, name, stored);
 }
@@ -78,18 +72,15 @@ bool isGzip(const std::string& encoding) {
 void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
   const std::string encoding = lower(fields["encoding"]);
   if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
-    throw inputError(path.string(),
-                     "encoding: \"" + shown(encoding) + "\" is not read; write raw or gzip");
+    throw inputError(path, "encoding: \"", shown(encoding), "\" is not read; write raw or gzip");
   if (const auto axes = wholeNumber(fields["dimension"]); axes && *axes < 3)
-    throw inputError(path.string(), "is a picture of " + std::to_string(*axes) +
-                                        " axes, not a volume; name one of three");
+    throw inputError(path, "is a picture of ", *axes, " axes, not a volume; name one of three");
   constexpr std::int64_t mostSkipped = 1 << 20; // teem inflates skipped bytes one by one
   if (isGzip(encoding) && fields.contains("byteskip")) {
     const auto skipped = wholeNumber(fields["byteskip"]);
     if (!skipped || *skipped < 0 || *skipped > mostSkipped)
-      throw inputError(path.string(), "byte skip: must be from 0 to " +
-                                          std::to_string(mostSkipped) +
-                                          " in compressed data; write the samples without it");
+      throw inputError(path, "byte skip: must be from 0 to ", mostSkipped,
+                       " in compressed data; write the samples without it");
   }
 }
 
@@ -119,7 +110,6 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
 }
 
 // ---- MetaImage
-// -----------------------------------------------------------------------------------
 
 /// Checks lengths: MetaIO copies text into 255 bytes, and takes as many numbers as the dimension
 /// needs, present or not.
@@ -130,13 +120,12 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
   const bool isMatrix = isOneOf(key, {"TransformMatrix", "Rotation", "Orientation"});
   const std::size_t longest = isMatrix || isVector ? 1000 : 250;
   if (key.size() > 200 || value.size() > longest)
-    throw inputError(path.string(), key.substr(0, 40) + ": has more than " +
-                                        std::to_string(longest) + " characters; shorten it");
+    throw inputError(path, key.substr(0, 40), ": has more than ", longest,
+                     " characters; shorten it");
   const auto numbers = static_cast<std::int64_t>(words(value).size());
   const std::int64_t needed = isVector ? dimension : isMatrix ? dimension * dimension : 0;
   if (numbers < needed)
-    throw inputError(path.string(), key + ": has " + std::to_string(numbers) +
-                                        " numbers; give it " + std::to_string(needed));
+    throw inputError(path, key, ": has ", numbers, " numbers; give it ", needed);
 }
 
 /// Refuses values that MetaIO reads but nobody applies, or that it misreads.
@@ -144,9 +133,8 @@ void checkMetaMeaning(const std::filesystem::path& path, const std::string& key,
                       const std::string& value) {
   const auto refuseUnless = [&](double neutral) {
     if (parseNumbers(value) != std::vector<double>{neutral})
-      throw inputError(path.string(), key + ": is not read, unless it is " +
-                                          std::to_string(static_cast<int>(neutral)) +
-                                          "; rescale the samples and write them again");
+      throw inputError(path, key, ": is not read, unless it is ", static_cast<int>(neutral),
+                       "; rescale the samples and write them again");
   };
   if (key == "ElementToIntensityFunctionSlope")
     refuseUnless(1.0);
@@ -155,10 +143,9 @@ void checkMetaMeaning(const std::filesystem::path& path, const std::string& key,
   else if (key == "DistanceUnits")
     checkMillimetres(path, key, value);
   else if (key == "DimSize")
-    for (const std::string_view word : words(value))
+    for (const std::string& word : words(value))
       if (const auto size = wholeNumber(word); !size || *size < 1 || *size > INT32_MAX)
-        throw inputError(path.string(),
-                         "DimSize: each must be a whole number from 1 to 2147483647");
+        throw inputError(path, "DimSize: each must be a whole number from 1 to 2147483647");
 }
 
 Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
@@ -177,7 +164,7 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
     if (key == "NDims") {
       dimension = wholeNumber(fields[key]).value_or(0);
       if (dimension < 1 || dimension > 10)
-        throw inputError(path.string(), "NDims: must be a whole number from 1 to 10");
+        throw inputError(path, "NDims: must be a whole number from 1 to 10");
     }
     checkMetaField(path, key, fields[key], dimension);
     checkMetaMeaning(path, key, fields[key]);
@@ -195,12 +182,11 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
     return value.starts_with('t') || value.starts_with('1') || value.starts_with('y');
   };
   if (fields.contains("BinaryData") && !isTrue("BinaryData"))
-    throw inputError(path.string(),
-                     "BinaryData: samples as text are not read; write them as binary");
+    throw inputError(path, "BinaryData: samples as text are not read; write them as binary");
   const std::string& name = fields["ElementDataFile"];
   if (name.starts_with("LIST") || name.find('%') != std::string::npos)
-    throw inputError(path.string(), "ElementDataFile: series of files are not read; write the "
-                                    "volume into one file");
+    throw inputError(
+        path, "ElementDataFile: series of files are not read; write the volume into one file");
   const bool local = lower(name) == "local";
   StoredSamples stored;
   stored.hasSpacing = fields.contains("ElementSpacing") || fields.contains("ElementSize");
@@ -220,7 +206,6 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
 }
 
 // ---- NIfTI
-// ---------------------------------------------------------------------------------------
 
 StoredSamples locateNifti(const std::filesystem::path& path) {
   StoredSamples stored;
@@ -246,24 +231,17 @@ std::optional<MedicalFormat> medicalFormat(const std::filesystem::path& path) {
 }
 
 StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat format) {
-  switch (format) {
-  case MedicalFormat::nrrd:
+  if (format == MedicalFormat::nrrd)
     return locateNrrd(path);
-  case MedicalFormat::metaImage:
-    return locateMeta(path);
-  case MedicalFormat::nifti:
-    break;
-  }
-  return locateNifti(path);
+  return format == MedicalFormat::metaImage ? locateMeta(path) : locateNifti(path);
 }
 
 void checkCapacity(const std::filesystem::path& path, const StoredSamples& stored,
                    std::uint64_t declared) {
   if (declared / (stored.compressed ? greatestRatio : 1) > stored.bytes)
-    throw inputError(path.string(),
-                     "is truncated: its header announces " + std::to_string(declared) +
-                         " bytes of samples, the file has " + std::to_string(stored.bytes) +
-                         (stored.compressed ? " compressed" : "") + "; copy or write it again");
+    throw inputError(path, "is truncated: its header announces ", declared,
+                     " bytes of samples, the file has ", stored.bytes,
+                     (stored.compressed ? " compressed" : ""), "; copy or write it again");
 }
 
 } // namespace fenestra

@@ -20,14 +20,10 @@ namespace fenestra {
 namespace {
 
 itk::ImageIOBase::Pointer makeImageIo(MedicalFormat format) {
-  switch (format) {
-  case MedicalFormat::nrrd:
+  if (format == MedicalFormat::nrrd)
     return itk::NrrdImageIO::New().GetPointer();
-  case MedicalFormat::nifti:
+  if (format == MedicalFormat::nifti)
     return itk::NiftiImageIO::New().GetPointer();
-  case MedicalFormat::metaImage:
-    break;
-  }
   return itk::MetaImageIO::New().GetPointer();
 }
 
@@ -38,10 +34,9 @@ void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io,
   const bool scalar = io.GetNumberOfComponents() == 1 && type != Pixel::COMPLEX;
   const bool list = allowed == Components::any && type == Pixel::VECTOR;
   if (!scalar && !list)
-    throw inputError(path.string(), "has " + std::to_string(io.GetNumberOfComponents()) +
-                                        " components a voxel (" +
-                                        itk::ImageIOBase::GetPixelTypeAsString(type) +
-                                        "); convert it to one scalar a voxel");
+    throw inputError(path, "has ", io.GetNumberOfComponents(), " components a voxel (",
+                     itk::ImageIOBase::GetPixelTypeAsString(type),
+                     "); convert it to one scalar a voxel");
 }
 
 std::size_t framesOf(const itk::ImageIOBase& io) {
@@ -52,21 +47,17 @@ std::size_t framesOf(const itk::ImageIOBase& io) {
 Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
   const unsigned axes = io.GetNumberOfDimensions();
   if (axes < 3)
-    throw inputError(path.string(), "is a picture of " + std::to_string(axes) +
-                                        " axes, not a volume; name one of three");
+    throw inputError(path, "is a picture of ", axes, " axes, not a volume; name one of three");
   const bool frames = allowed == Components::any && io.GetNumberOfComponents() == 1;
   for (unsigned axis = frames ? 4 : 3; axis < axes; ++axis)
     if (io.GetDimensions(axis) != 1)
-      throw inputError(path.string(), "has " + std::to_string(axes) + " axes, the " +
-                                          std::to_string(axis + 1) + "th with " +
-                                          std::to_string(io.GetDimensions(axis)) +
-                                          " frames; extract one of them");
+      throw inputError(path, "has ", axes, " axes, the ", axis + 1, "th with ",
+                       io.GetDimensions(axis), " frames; extract one of them");
   Size3 size;
   for (unsigned axis = 0; axis < 3; ++axis) {
     size[axis] = static_cast<std::int64_t>(io.GetDimensions(axis));
     if (size[axis] < 1)
-      throw inputError(path.string(), "sizes: axis " + std::to_string(axis + 1) +
-                                          " has no voxels; write it again");
+      throw inputError(path, "sizes: axis ", axis + 1, " has no voxels; write it again");
   }
   return size;
 }
@@ -83,14 +74,13 @@ Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Compo
   }
   constexpr double largest = 1e9; // mm; beyond, points lose fractions of a voxel
   if (!((spacing.array() > 1.0 / largest).all() && (spacing.array() < largest).all()))
-    throw inputError(path.string(),
-                     "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
+    throw inputError(path, "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
   if (!(origin.array().abs() < largest).all())
-    throw inputError(path.string(), "origin: is not a place within 1e9 mm; mend the header");
+    throw inputError(path, "origin: is not a place within 1e9 mm; mend the header");
   // The volume of the cell that unit directions span: 1 for orthogonal axes, 0 for coplanar ones.
   constexpr double flattest = 1e-6;
   if (!(std::abs(directions.normalizedColumns().determinant()) > flattest))
-    throw inputError(path.string(), "directions: the axes do not span space; mend the header");
+    throw inputError(path, "directions: the axes do not span space; mend the header");
   return {size, Affine(lpsToRas * directions * Mat3::Diagonal(spacing), lpsToRas * origin)};
 }
 
@@ -105,33 +95,17 @@ std::uint64_t sampleCount(const itk::ImageIOBase& io) {
 
 SampleType typeOf(const std::filesystem::path& path, const itk::ImageIOBase& io) {
   using Type = itk::IOComponentEnum;
-  switch (io.GetComponentType()) {
-  case Type::CHAR:
-    return std::int8_t();
-  case Type::UCHAR:
-    return std::uint8_t();
-  case Type::SHORT:
-    return std::int16_t();
-  case Type::USHORT:
-    return std::uint16_t();
-  case Type::INT:
-    return std::int32_t();
-  case Type::UINT:
-    return std::uint32_t();
-  case Type::LONG:
-  case Type::LONGLONG:
-    return std::int64_t();
-  case Type::ULONG:
-  case Type::ULONGLONG:
-    return std::uint64_t();
-  case Type::FLOAT:
-    return float();
-  case Type::DOUBLE:
-    return double();
-  default:
-    throw inputError(path.string(),
-                     "has samples of an unknown type; convert them to 16-bit integers");
-  }
+  static const std::map<Type, SampleType> types = {
+      {Type::CHAR, std::int8_t()},      {Type::UCHAR, std::uint8_t()},
+      {Type::SHORT, std::int16_t()},    {Type::USHORT, std::uint16_t()},
+      {Type::INT, std::int32_t()},      {Type::UINT, std::uint32_t()},
+      {Type::LONG, std::int64_t()},     {Type::ULONG, std::uint64_t()},
+      {Type::LONGLONG, std::int64_t()}, {Type::ULONGLONG, std::uint64_t()},
+      {Type::FLOAT, float()},           {Type::DOUBLE, double()}};
+  const auto type = types.find(io.GetComponentType());
+  if (type == types.end())
+    throw inputError(path, "has samples of an unknown type; convert them to 16-bit integers");
+  return type->second;
 }
 
 /// Reads all samples at once, in any encoding that ITK knows.
@@ -152,7 +126,7 @@ std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std
 SampleSource samplesOf(const std::filesystem::path& path, const StoredSamples& stored,
                        itk::ImageIOBase& io) {
   SampleSource source{.type = typeOf(path, io), .count = sampleCount(io)};
-  const std::size_t sampleBytes = std::visit([](auto x) { return sizeof(x); }, source.type);
+  const std::size_t sampleBytes = bytesOf(source.type);
   std::uint64_t declared = 0;
   if (__builtin_mul_overflow(source.count, sampleBytes, &declared))
     declared = UINT64_MAX;
@@ -214,19 +188,18 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
   requireFile(path, "name a volume file in it");
   const auto format = medicalFormat(path);
   if (lowerExtension(path) == ".vtm")
-    throw inputError(path.string(), "is a segmentation; name its volume, and this file as "
-                                    "--segmentation");
+    throw inputError(path, "is a segmentation; name its volume, and this file as --segmentation");
   if (!format)
-    throw inputError(path.string(), "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, "
-                                    ".mha or .mhd file");
+    throw inputError(
+        path, "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
   try {
     readChecked(path, *format, allowed, take);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw inputError(path.string(), "does not fit into memory; crop or resample it");
+    throw inputError(path, "does not fit into memory; crop or resample it");
   } catch (const std::exception&) { // ITK's text has many lines and names its own sources
-    throw inputError(path.string(),
+    throw inputError(path,
                      "is damaged, truncated or not of its extension's format; write it again");
   }
 }

@@ -36,7 +36,7 @@ void addSeries(const fs::path& folder, std::string_view pattern, Paths& files) {
     return;
   const fs::path named = folder / pattern.substr(0, percent);
   const std::string start = named.filename().string();
-  const std::string_view end = words(pattern.substr(conversion)).front().substr(1);
+  const std::string end = words(pattern.substr(conversion)).front().substr(1);
   const fs::path within = named.has_parent_path() ? named.parent_path() : ".";
   std::error_code failed;
   for (fs::directory_iterator entry(within, failed), last;
@@ -69,7 +69,7 @@ Paths namedInHeader(const fs::path& path, std::string_view separator, std::strin
     const std::size_t end = line->find(separator);
     if (end == std::string_view::npos)
       continue;
-    std::string found = lower(std::string(line->substr(0, end)));
+    std::string found = lower(line->substr(0, end));
     std::erase(found, ' ');
     if (found == key) {
       addNamed(path, trimmed(line->substr(end + separator.size())), lines, files);

@@ -9,13 +9,14 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <memory>
 
 namespace fenestra {
 namespace {
 
 Error damaged(const std::filesystem::path& path) {
-  return inputError(path.string(), "is damaged or truncated; copy or write it again");
+  return inputError(path, "is damaged or truncated; copy or write it again");
 }
 
 /// Reads plain and compressed files alike.
@@ -24,7 +25,7 @@ public:
   explicit Stream(const std::filesystem::path& path)
       : m_path(path), m_file(gzopen(path.c_str(), "rb"), gzclose) {
     if (!m_file)
-      throw inputError(path.string(), "cannot be read; check its permissions");
+      throw inputError(path, "cannot be read; check its permissions");
     gzbuffer(m_file.get(), 1 << 18);
   }
 
@@ -119,12 +120,12 @@ Header readHeader(const std::filesystem::path& path, Stream& stream) {
   constexpr float farthest = 1 << 30;
   if (size != static_cast<std::int32_t>(bytes.size()) || !sized ||
       std::memcmp(&bytes[344], "n+1", 4) != 0 || !(header.offset <= farthest))
-    throw inputError(path.string(), "is not a NIfTI-1 file of one part; write it again as .nii.gz");
+    throw inputError(path, "is not a NIfTI-1 file of one part; write it again as .nii.gz");
   if (header.isScaled() && !(std::isfinite(header.slope) && std::isfinite(header.intercept)))
-    throw inputError(path.string(), "scl_slope or scl_inter: is not finite; write them again");
+    throw inputError(path, "scl_slope or scl_inter: is not finite; write them again");
   if (!isPlaced(bytes, header.swapped))
-    throw inputError(path.string(), "qform, sform or pixdim: holds a number that is not finite or "
-                                    "beyond 1e9 mm; write it again");
+    throw inputError(path, "qform, sform or pixdim: holds a number that is not finite or beyond "
+                           "1e9 mm; write it again");
   return header;
 }
 
@@ -139,31 +140,17 @@ void checkBytes(const std::filesystem::path& path, std::int64_t offset, std::uin
 }
 
 SampleType typeOf(const std::filesystem::path& path, const Header& header) {
-  switch (header.type) { // NIFTI_TYPE_… of nifti1.h
-  case 2:
-    return std::uint8_t();
-  case 4:
-    return std::int16_t();
-  case 8:
-    return std::int32_t();
-  case 16:
-    return float();
-  case 64:
-    return double();
-  case 256:
-    return std::int8_t();
-  case 512:
-    return std::uint16_t();
-  case 768:
-    return std::uint32_t();
-  case 1024:
-    return std::int64_t();
-  case 1280:
-    return std::uint64_t();
-  default:
-    throw inputError(path.string(), "datatype: " + std::to_string(header.type) +
-                                        " is no real scalar; convert it to 16-bit integers");
-  }
+  static const std::map<std::int16_t, SampleType> types = {
+      // NIFTI_TYPE_… of nifti1.h
+      {2, std::uint8_t()},    {4, std::int16_t()},    {8, std::int32_t()},
+      {16, float()},          {64, double()},         {256, std::int8_t()},
+      {512, std::uint16_t()}, {768, std::uint32_t()}, {1024, std::int64_t()},
+      {1280, std::uint64_t()}};
+  const auto type = types.find(header.type);
+  if (type == types.end())
+    throw inputError(path, "datatype: ", header.type,
+                     " is no real scalar; convert it to 16-bit integers");
+  return type->second;
 }
 
 } // namespace
@@ -187,8 +174,7 @@ SampleSource niftiSamples(const std::filesystem::path& path, std::size_t count) 
     source.rescaling = {header.slope, header.intercept};
   // Samples follow the header and four bytes that announce extensions.
   const auto offset = static_cast<std::int64_t>(std::max(header.offset, 352.0f));
-  const std::size_t sampleBytes = std::visit([](auto x) { return sizeof(x); }, source.type);
-  checkBytes(path, offset, count, sampleBytes);
+  checkBytes(path, offset, count, bytesOf(source.type));
   stream->seek(offset);
   return source;
 }

@@ -21,6 +21,10 @@ using SampleType =
     std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
                  std::uint32_t, std::int64_t, std::uint64_t, float, double>;
 
+inline std::size_t bytesOf(const SampleType& type) {
+  return std::visit([](auto sample) { return sizeof sample; }, type);
+}
+
 struct Rescaling {
   double slope, intercept;
 };

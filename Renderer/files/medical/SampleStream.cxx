@@ -26,7 +26,7 @@ SampleStream::~SampleStream() {
 void SampleStream::read(void* to, std::size_t bytes) {
   if (!m_compressed) {
     if (!m_file.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)))
-      throw inputError(m_path.string(), "cannot be read to the end of its samples; copy it again");
+      throw inputError(m_path, "cannot be read to the end of its samples; copy it again");
     return;
   }
   auto* at = static_cast<Bytef*>(to);
@@ -66,10 +66,8 @@ void SampleStream::inflateNext() {
 }
 
 Error SampleStream::damaged() const {
-  return inputError(m_path.string(),
-                    "is damaged or truncated: its compressed samples do not give the " +
-                        std::to_string(m_declared) +
-                        " bytes that its header announces; copy or write it again");
+  return inputError(m_path, "is damaged or truncated: its compressed samples do not give the ",
+                    m_declared, " bytes that its header announces; copy or write it again");
 }
 
 } // namespace fenestra

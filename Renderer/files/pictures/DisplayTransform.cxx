@@ -41,13 +41,9 @@ std::string checkedView(const std::string& view) {
   const std::vector<std::string> names = viewNames();
   if (view.empty())
     return names.front();
-  std::string known;
-  for (const std::string& name : names) {
-    if (name == view)
-      return view;
-    known += (known.empty() ? "" : ", ") + name;
-  }
-  throw usageError("display view " + view + ": is unknown; choose one of " + known);
+  if (std::find(names.begin(), names.end(), view) != names.end())
+    return view;
+  throw usageError("display view ", view, ": is unknown; choose one of ", joined(names, ", "));
 }
 
 /// Clamps to [0, brightest]; NaN becomes 0.

@@ -34,18 +34,16 @@ constexpr std::int64_t mostSamples = std::int64_t{1} << 28;
 /// files.
 void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                std::int64_t channels) {
-  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  const std::string size = textOf(width, 'x', height);
   if (width < 1 || height < 1 || width > largestSide || height > largestSide)
-    throw inputError(path.string(), "is " + size + " pixels; each side must be 1 to " +
-                                        std::to_string(largestSide));
+    throw inputError(path, "is ", size, " pixels; each side must be 1 to ", largestSide);
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
   if (channels > ((1 << 20) + 4096 * bytes) / (width * height))
-    throw inputError(path.string(), "is too short for " + std::to_string(channels) +
-                                        " channels of " + size + " pixels; write it again");
+    throw inputError(path, "is too short for ", channels, " channels of ", size,
+                     " pixels; write it again");
   if (channels > mostSamples / (width * height))
-    throw inputError(path.string(), "has " + std::to_string(width * height * channels) +
-                                        " samples; at most " + std::to_string(mostSamples) +
-                                        " are read, so use fewer pixels or channels");
+    throw inputError(path, "has ", width * height * channels, " samples; at most ", mostSamples,
+                     " are read, so use fewer pixels or channels");
 }
 
 std::string firstLine(const std::exception& error) {
@@ -58,9 +56,9 @@ void checkExr(const std::filesystem::path& path, const Imf::Header& header) {
   std::int64_t channels = 0;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it, ++channels)
     if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
-      throw inputError(path.string(), "has subsampled channels; write them at full resolution");
+      throw inputError(path, "has subsampled channels; write them at full resolution");
   if (header.hasType() && Imf::isDeepData(header.type()))
-    throw inputError(path.string(), "holds deep pixels; flatten them first");
+    throw inputError(path, "holds deep pixels; flatten them first");
   checkSize(path, std::int64_t{window.max.x} - window.min.x + 1,
             std::int64_t{window.max.y} - window.min.y + 1, channels);
 }
@@ -86,7 +84,7 @@ Image readExr(const std::filesystem::path& path) {
   Imf::InputFile file(path.c_str());
   checkExr(path, file.header());
   if (!file.isComplete())
-    throw inputError(path.string(), "lacks some of its lines or tiles; write it again");
+    throw inputError(path, "lacks some of its lines or tiles; write it again");
   const auto window = file.header().dataWindow();
   Image image;
   image.width = window.max.x - window.min.x + 1;
@@ -171,12 +169,11 @@ void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
                      tiffField(tiff, TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT;
   if (!known || samples < 1 || samples > 4 || TIFFIsTiled(tiff) ||
       tiffField(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)
-    throw inputError(path.string(),
-                     "is not grey or RGB of 8 or 16 bit in interleaved rows; convert it");
+    throw inputError(path, "is not grey or RGB of 8 or 16 bit in interleaved rows; convert it");
   if (const auto orientation = tiffField(tiff, TIFFTAG_ORIENTATION);
       orientation != ORIENTATION_TOPLEFT)
-    throw inputError(path.string(), "Orientation: is " + std::to_string(orientation) +
-                                        ", a turned or mirrored picture; save it upright");
+    throw inputError(path, "Orientation: is ", orientation,
+                     ", a turned or mirrored picture; save it upright");
 }
 
 std::vector<char> readTiffRows(TIFF* tiff, std::size_t rowBytes, std::uint32_t height) {
@@ -206,11 +203,8 @@ Image readTiff(const std::filesystem::path& path) {
   const auto bytes =
       readTiffRows(tiff.get(), std::size_t{width} * samples * (wide ? 2 : 1), height);
   Image image{static_cast<int>(width), static_cast<int>(height), {}, {}};
-  const auto names = channelNames(ImageFormat::tiff, samples);
-  if (wide)
-    unpack<std::uint16_t>(bytes, names, image);
-  else
-    unpack<std::uint8_t>(bytes, names, image);
+  const auto unpackAs = wide ? unpack<std::uint16_t> : unpack<std::uint8_t>;
+  unpackAs(bytes, channelNames(ImageFormat::tiff, samples), image);
   return image;
 }
 
@@ -224,13 +218,13 @@ bool isOnePicture(const itk::ImageIOBase& io) {
 
 Image readNrrd(const std::filesystem::path& path) {
   if (readNrrdHeader(path).fields.contains("datafile"))
-    throw inputError(path.string(), "keeps its data outside; store them in the file itself");
+    throw inputError(path, "keeps its data outside; store them in the file itself");
   const auto io = itk::NrrdImageIO::New();
   io->SetFileName(path.string());
   io->ReadImageInformation();
   const auto names = channelNames(ImageFormat::nrrd, io->GetNumberOfComponents());
   if (!isOnePicture(*io) || names.empty() || io->GetComponentType() != itk::IOComponentEnum::FLOAT)
-    throw inputError(path.string(), "is not one slice of 1, 3 or 4 floats a pixel; extract one");
+    throw inputError(path, "is not one slice of 1, 3 or 4 floats a pixel; extract one");
   checkSize(path, static_cast<std::int64_t>(io->GetDimensions(0)),
             static_cast<std::int64_t>(io->GetDimensions(1)), io->GetNumberOfComponents());
   Image image{
@@ -242,16 +236,11 @@ Image readNrrd(const std::filesystem::path& path) {
 }
 
 Image readAs(ImageFormat format, const std::filesystem::path& path) {
-  switch (format) {
-  case ImageFormat::exr:
+  if (format == ImageFormat::exr)
     return readExr(path);
-  case ImageFormat::nrrd:
+  if (format == ImageFormat::nrrd)
     return readNrrd(path);
-  case ImageFormat::png:
-    return readPng(path);
-  default:
-    return readTiff(path);
-  }
+  return format == ImageFormat::png ? readPng(path) : readTiff(path);
 }
 
 } // namespace
@@ -260,19 +249,18 @@ Image readImage(const std::filesystem::path& path) {
   requireFile(path, "name an image");
   const auto format = imageFormat(path);
   if (!format)
-    throw inputError(path.string(),
-                     std::string("has no known extension; name an image ") + imageExtensions);
+    throw inputError(path, "has no known extension; name an image ", imageExtensions);
   try {
     return readAs(*format, path);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw inputError(path.string(), "does not fit into memory; use a smaller image");
+    throw inputError(path, "does not fit into memory; use a smaller image");
   } catch (const itk::ExceptionObject&) { // its text names ITK's own source lines
-    throw inputError(path.string(), "is damaged or not of its extension's format; write it again");
+    throw inputError(path, "is damaged or not of its extension's format; write it again");
   } catch (const std::exception& error) {
-    throw inputError(path.string(), "is damaged or not of its extension's format (" +
-                                        firstLine(error) + "); write it again");
+    throw inputError(path, "is damaged or not of its extension's format (", firstLine(error),
+                     "); write it again");
   }
 }
 

@@ -115,7 +115,7 @@ std::string encodePng(const Image& image, const std::vector<float>& rgba) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string content(size, '\0');
   if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
-    throw outputError("picture as PNG", std::string(png.message) + "; write it as .exr");
+    throw outputError("picture as PNG", png.message, "; write it as .exr");
   content.resize(size);
   return withMark(std::move(content));
 }
@@ -210,15 +210,13 @@ bool isOurDepth(const std::filesystem::path& depth, const std::filesystem::path&
 ImageFormat checkedFormat(const std::filesystem::path& path) {
   if (const auto format = imageFormat(path))
     return *format;
-  throw usageError("--output " + path.string() + ": has no known extension; name a file " +
-                   imageExtensions);
+  throw usageError("--output ", path, ": has no known extension; name a file ", imageExtensions);
 }
 
 void requireColour(const Image& image, const std::filesystem::path& path) {
   for (const char* name : {"R", "G", "B"})
     if (!image.find(name))
-      throw usageError(path.string() + ": the picture has no channel " + name +
-                       "; write it as .exr");
+      throw usageError(path, ": the picture has no channel ", name, "; write it as .exr");
 }
 
 } // namespace

@@ -25,18 +25,18 @@ std::vector<Path> blocksOf(const Path& path) {
   const bool read = static_cast<bool>(document.load_buffer(text.data(), text.size()));
   const pugi::xml_node file = document.child("VTKFile");
   if (!read || std::string_view(file.attribute("type").value()) != "vtkMultiBlockDataSet")
-    throw inputError(path.string(), std::string("is damaged or no multi-block file; ") + mend);
+    throw inputError(path, "is damaged or no multi-block file; ", mend);
   constexpr std::size_t mostBlocks = 4096;
   std::vector<Path> blocks;
   for (const auto& block : file.child("vtkMultiBlockDataSet").children("DataSet")) {
     const Path name = Path(block.attribute("file").value()).lexically_normal();
     if (name.empty() || name.is_absolute() || *name.begin() == ".." || blocks.size() == mostBlocks)
-      throw inputError(path.string(), "DataSet: file=\"" + shown(name.string()) +
-                                          "\" is not in the folder of the .vtm; " + mend);
+      throw inputError(path, "DataSet: file=\"", shown(name.string()),
+                       "\" is not in the folder of the .vtm; ", mend);
     blocks.push_back(path.parent_path() / name);
   }
   if (blocks.empty())
-    throw inputError(path.string(), std::string("holds no segment; ") + mend);
+    throw inputError(path, "holds no segment; ", mend);
   return blocks;
 }
 
@@ -71,9 +71,9 @@ std::vector<Surface> surfacesOf(const Path& path) {
   for (const Path& block : blocksOf(path)) {
     VtkSurface shape = readVtkSurface(block, fieldData, allowance);
     if (shape.triangles.empty() && shape.hasLines)
-      throw inputError(block.string(), "Segmentation_MasterRepresentation: holds planar contours, "
-                                       "not a closed surface; " +
-                                           std::string(mend));
+      throw inputError(
+          block, "Segmentation_MasterRepresentation: holds planar contours, not a closed surface; ",
+          mend);
     surfaces.push_back({infoOf(shape, surfaces.size()), std::move(shape)});
   }
   return surfaces;
@@ -126,7 +126,7 @@ public:
     if (layer == m_layers.size()) {
       constexpr std::int64_t most = std::int64_t{1} << 31;
       if (m_size.prod() * static_cast<std::int64_t>(layer + 1) > most)
-        throw inputError(m_path.string(), std::string("overlaps in too many layers; ") + mend);
+        throw inputError(m_path, "overlaps in too many layers; ", mend);
       m_layers.emplace_back(static_cast<std::size_t>(m_size.prod()), Label{0});
     }
     for (const VoxelRun& run : runs)
@@ -172,7 +172,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
   std::vector<Surface> surfaces = surfacesOf(path);
   const Box bounds = boundsOf(surfaces, Affine::Identity());
   if (!(bounds.upper.array() >= bounds.lower.array()).all())
-    throw inputError(path.string(), std::string("its surfaces hold no point; ") + mend);
+    throw inputError(path, "its surfaces hold no point; ", mend);
   const Grid grid = reference ? cropped(*reference, boundsOf(surfaces, reference->worldToIndex))
                               : gridAround(bounds);
   Layers layers(grid.size, path);
@@ -182,8 +182,8 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
       point = grid.worldToIndex * point;
     const auto runs = voxelRuns(surface.shape.points, surface.shape.triangles, grid.size);
     if (!runs)
-      throw inputError(path.string(), "segment \"" + shown(surface.info.name) +
-                                          "\": its surface has holes or is too complex; " + mend);
+      throw inputError(path, "segment \"", shown(surface.info.name),
+                       "\": its surface has holes or is too complex; ", mend);
     surface.info.layer = layers.add(*runs, static_cast<Layers::Label>(surface.info.labelValue));
     segments.push_back(surface.info);
   }

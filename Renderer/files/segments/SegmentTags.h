@@ -1,7 +1,7 @@
 #pragma once
 // Slicer's tags of a segment. For sources of files alone.
 
-#include "base/TextStream.h"
+#include "base/Text.h"
 #include "files/segments/SegmentationReader.h"
 
 #include <string_view>
@@ -17,12 +17,11 @@ inline void readTerminology(std::string_view tags, SegmentInfo& info) {
   if (at == std::string_view::npos)
     return;
   tags.remove_prefix(at + key.size());
-  TextReader entry(std::string(tags.substr(0, tags.find('|'))));
-  std::string part;
-  for (int i = 0; std::getline(entry, part, '~'); ++i)
-    if (const std::size_t meaning = part.rfind('^');
-        (i == 2 || i == 5) && meaning != std::string::npos && meaning > 1)
-      (i == 2 ? info.type : info.region) = part.substr(0, meaning);
+  const std::vector<std::string> parts = split(tags.substr(0, tags.find('|')), '~');
+  for (const auto& [place, code] : {std::pair(2U, &info.type), {5U, &info.region}})
+    if (const std::size_t meaning = place < parts.size() ? parts[place].rfind('^') : 0;
+        meaning != std::string::npos && meaning > 1)
+      *code = parts[place].substr(0, meaning);
 }
 
 } // namespace fenestra

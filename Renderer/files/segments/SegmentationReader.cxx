@@ -1,7 +1,6 @@
 #include "files/segments/SegmentationReader.h"
 
 #include "base/Error.h"
-#include "base/TextStream.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/ShownText.h"
 #include "files/medical/MedicalImage.h"
@@ -11,7 +10,7 @@
 #include "files/segments/SegmentTags.h"
 #include "model/masks/SliceInterpolation.h"
 
-#include <charconv>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -23,15 +22,15 @@ namespace {
 constexpr std::size_t mostSegments = 65536;
 
 // ---- labels
-// --------------------------------------------------------------------------------------
 
 using LabelStore = SampleStore<std::uint8_t, std::int16_t, std::int32_t>;
 
 Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
   const SampleSurvey& s = samples.survey();
   if (!s.whole || !s.finite())
-    throw inputError(source, "holds values that are not whole numbers, so it is no labelmap; "
-                             "name a segmentation");
+    throw inputError(
+        source,
+        "holds values that are not whole numbers, so it is no labelmap; name a segmentation");
   if (!samples.holdsAll())
     throw inputError(source, "holds label values beyond 32 bits; number its labels again");
   return samples.take();
@@ -60,29 +59,19 @@ std::vector<SegmentInfo> segmentsOf(const Segmentation::Labels& labels, const st
         for (const std::int32_t value : voxels)
           if (value != std::exchange(last, value) && value != 0 && values.insert(value).second &&
               values.size() > mostSegments)
-            throw inputError(source,
-                             "holds more than 65536 different values, so it is no labelmap; "
-                             "name a segmentation");
+            throw inputError(source, "holds more than 65536 different values, so it is no "
+                                     "labelmap; name a segmentation");
       },
       labels);
   std::vector<SegmentInfo> segments;
   for (const std::int32_t value : values) {
-    const std::string name = "Segment_" + std::to_string(value);
+    const std::string name = textOf("Segment_", value);
     segments.push_back({.id = name, .name = name, .labelValue = value});
   }
   return segments;
 }
 
 // ---- Slicer's header fields
-// ----------------------------------------------------------------------
-
-std::optional<std::int32_t> labelValue(std::string_view text) {
-  std::int32_t value = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc() || end != text.data() + text.size())
-    return std::nullopt;
-  return value;
-}
 
 /// Grid of the file's voxels. The oldest files keep the geometry of the whole reference image, in
 /// RAS, and state in Segmentation_Extent which part of it their voxels are. (With this
@@ -92,15 +81,12 @@ Grid placed(const Grid& grid, const std::map<std::string, std::string>& fields,
   const auto extent = fields.find("Segmentation_Extent");
   if (extent == fields.end())
     return grid;
-  TextReader numbers(extent->second); // "i0 i1 j0 j1 k0 k1"
-  Vec3 first;
-  std::int32_t lower = 0;
-  std::int32_t upper = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(numbers >> lower >> upper))
-      throw inputError(source, "Segmentation_Extent: must be six whole numbers");
-    first[axis] = lower;
-  }
+  std::vector<double> numbers; // i0 i1 j0 j1 k0 k1
+  for (const std::string& word : words(extent->second))
+    numbers.push_back(parsed<std::int32_t>(word).value_or(infinity));
+  if (numbers.size() != 6 || std::ranges::count(numbers, infinity) > 0)
+    throw inputError(source, "Segmentation_Extent: must be six whole numbers");
+  const Vec3 first(numbers[0], numbers[2], numbers[4]);
   return {grid.size, Affine(lpsToRas) * grid.indexToWorld * translationBy(first)};
 }
 
@@ -114,9 +100,9 @@ public:
          {"Segmentation_MasterRepresentation", "Segmentation_SourceRepresentation"})
       if (const auto it = m_fields.find(field);
           it != m_fields.end() && it->second.starts_with("Fractional"))
-        throw inputError(m_source, std::string(field) +
-                                       ": is a fractional labelmap, which is not read; export the "
-                                       "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
+        throw inputError(m_source, field,
+                         ": is a fractional labelmap, which is not read; export the segmentation "
+                         "in Slicer as a binary labelmap (.seg.nrrd)");
     std::vector<SegmentInfo> segments;
     while (find(segments.size(), "ID") && segments.size() < mostSegments)
       segments.push_back(segment(segments.size(), layerCount));
@@ -125,7 +111,7 @@ public:
 
 private:
   static std::string key(std::size_t n, const std::string& field) {
-    return "Segment" + std::to_string(n) + "_" + field;
+    return textOf("Segment", n, '_', field);
   }
 
   const std::string* find(std::size_t n, const std::string& field) const {
@@ -137,9 +123,9 @@ private:
     const std::string* text = find(n, field);
     if (!text)
       return fallback;
-    const auto value = labelValue(*text);
+    const auto value = parsed<std::int32_t>(*text);
     if (!value)
-      throw inputError(m_source, key(n, field) + ": must be a whole number");
+      throw inputError(m_source, key(n, field), ": must be a whole number");
     return *value;
   }
 
@@ -150,14 +136,13 @@ private:
     info.name = name ? *name : info.id;
     info.labelValue = number(n, "LabelValue", 1);
     if (info.labelValue == 0)
-      throw inputError(m_source, key(n, "LabelValue") + ": 0 is the background; use another");
+      throw inputError(m_source, key(n, "LabelValue"), ": 0 is the background; use another");
     // Older files state no layer: with several layers it is the segment's own.
     const std::int32_t layer =
         number(n, "Layer", layerCount == 1 ? 0 : static_cast<std::int32_t>(n));
     if (std::cmp_less(layer, 0) || std::cmp_greater_equal(layer, layerCount))
-      throw inputError(m_source, key(n, "Layer") + ": is " + std::to_string(layer) +
-                                     ", but the file has " + std::to_string(layerCount) +
-                                     " layers; save it again");
+      throw inputError(m_source, key(n, "Layer"), ": is ", layer, ", but the file has ", layerCount,
+                       " layers; save it again");
     info.layer = static_cast<std::size_t>(layer);
     info.color = color(n, info.color);
     if (const std::string* tags = find(n, "Tags"))
@@ -168,18 +153,11 @@ private:
   /// Colour of segment n, as decoration: `fallback` if missing or malformed.
   Rgb color(std::size_t n, const Rgb& fallback) const {
     const std::string* text = find(n, "Color") ? find(n, "Color") : find(n, "DefaultColor");
-    Rgb rgb = fallback;
-    const char* at = text ? text->data() : nullptr;
-    for (int c = 0; text && c < 3; ++c) {
-      const char* const end = text->data() + text->size();
-      while (at != end && *at == ' ')
-        ++at;
-      const auto [next, failure] = std::from_chars(at, end, rgb[c]);
-      if (failure != std::errc() || !(rgb[c] >= 0.0 && rgb[c] <= 1.0))
-        return fallback;
-      at = next;
-    }
-    return rgb;
+    const auto numbers = text ? parseNumbers(*text) : std::nullopt;
+    if (!numbers || numbers->size() < 3)
+      return fallback;
+    const Rgb rgb((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    return (rgb >= 0.0).all() && (rgb <= 1.0).all() ? rgb : fallback;
   }
 
   const std::map<std::string, std::string>& m_fields;
@@ -187,7 +165,6 @@ private:
 };
 
 // ---- statistics
-// ----------------------------------------------------------------------------------
 
 struct ValueStatistics {
   std::int64_t voxels = 0;
@@ -232,17 +209,13 @@ Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
 }
 
 // ---- messages
-// ------------------------------------------------------------------------------------
 
 std::string listed(const std::vector<SegmentInfo>& segments) {
-  constexpr std::size_t most = 40;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, segments.size()); ++i) {
-    text += (i == 0 ? "" : ", ") + shown(segments[i].id);
-    if (segments[i].name != segments[i].id)
-      text += " (" + shown(segments[i].name) + ")";
-  }
-  return text + (segments.size() > most ? ", …" : "");
+  const auto named = [](const SegmentInfo& segment) {
+    const std::string id = shown(segment.id);
+    return segment.name == segment.id ? id : textOf(id, " (", shown(segment.name), ')');
+  };
+  return joined(segments, ", ", named, 40);
 }
 
 } // namespace
@@ -256,28 +229,24 @@ Segmentation::Segmentation(std::string source, Grid grid, std::size_t layerCount
       m_segments(std::move(segments)) {}
 
 const SegmentInfo& Segmentation::find(const std::string& selector) const {
-  const auto value = labelValue(selector);
-  const auto only = [&](auto&& matches) -> const SegmentInfo* {
-    std::vector<SegmentInfo> found;
-    const SegmentInfo* last = nullptr;
-    for (const SegmentInfo& segment : m_segments)
-      if (matches(segment)) {
-        found.push_back(segment);
-        last = &segment;
-      }
-    if (found.size() > 1)
-      throw inputError(m_source, "segment \"" + shown(selector) + "\" can be any of " +
-                                     listed(found) + "; name one by its id");
-    return last;
-  };
-  if (const auto* segment = only([&](const SegmentInfo& s) { return s.id == selector; }))
-    return *segment;
-  if (const auto* segment = only([&](const SegmentInfo& s) { return s.name == selector; }))
-    return *segment;
-  if (const auto* segment = only([&](const SegmentInfo& s) { return value == s.labelValue; }))
-    return *segment;
-  throw inputError(m_source, "has no segment \"" + shown(selector) + "\"; it has " +
-                                 (m_segments.empty() ? "none at all" : listed(m_segments)));
+  using Matches = std::function<bool(const SegmentInfo&)>;
+  const auto value = parsed<std::int32_t>(selector);
+  for (const Matches& matches :
+       {Matches([&](const SegmentInfo& s) { return s.id == selector; }),
+        Matches([&](const SegmentInfo& s) { return s.name == selector; }),
+        Matches([&](const SegmentInfo& s) { return value == s.labelValue; })}) {
+    const auto found = std::ranges::find_if(m_segments, matches);
+    if (found == m_segments.end())
+      continue;
+    std::vector<SegmentInfo> all;
+    std::ranges::copy_if(m_segments, std::back_inserter(all), matches);
+    if (all.size() > 1)
+      throw inputError(m_source, "segment \"", shown(selector), "\" can be any of ", listed(all),
+                       "; name one by its id");
+    return *found;
+  }
+  throw inputError(m_source, "has no segment \"", shown(selector), "\"; it has ",
+                   m_segments.empty() ? "none at all" : listed(m_segments));
 }
 
 std::vector<SegmentStatistics> Segmentation::statistics() const {
@@ -313,8 +282,8 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
       mask.names.push_back(segment.name);
     fillMask(m_grid, m_layerCount, m_labels, segments, volume, mask);
     if (mask.count == 0)
-      throw inputError(m_source, "the focus has no voxel (" + listed(segments) +
-                                     "); choose segments that are not empty");
+      throw inputError(m_source, "the focus has no voxel (", listed(segments),
+                       "); choose segments that are not empty");
     return mask;
   };
   if (shaping == MaskShaping())
@@ -331,9 +300,8 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
       masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
   Mask mask = smoothed(united(masks), shaping.smoothing, volume);
   if (mask.count == 0)
-    throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (" +
-                                   listed(chosen) +
-                                   "); choose a margin nearer to 0, or less smoothing");
+    throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (",
+                     listed(chosen), "); choose a margin nearer to 0, or less smoothing");
   return mask;
 }
 
@@ -364,8 +332,8 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
     labels = interleaved(labels, image.components);
   auto segments = SegmentFields(image.fields, source).segments(image.components);
   if (segments.empty() && image.components > 1)
-    throw inputError(source, "has " + std::to_string(image.components) +
-                                 " components a voxel but names no segments; name a segmentation");
+    throw inputError(source, "has ", image.components,
+                     " components a voxel but names no segments; name a segmentation");
   if (segments.empty())
     segments = segmentsOf(labels, source);
   return {source, placed(image.grid, image.fields, source), image.components, std::move(labels),

@@ -1,8 +1,8 @@
 #include "files/segments/VtkSurface.h"
 
 #include "base/Error.h"
+#include "base/safe/Base64.h"
 #include "base/safe/Inputs.h"
-#include "base/safe/NumberText.h"
 
 #include <pugixml.hpp>
 #include <zlib.h>
@@ -28,36 +28,12 @@ void take(SurfaceAllowance& allowance, std::uint64_t count, std::uint64_t size =
 }
 
 // ---- bytes
-// --------------------------------------------------------------------------------------
 
-int base64Digit(char c) {
-  constexpr std::string_view digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const std::size_t at = digits.find(c);
-  return at == digits.npos ? -1 : static_cast<int>(at);
-}
-
-/// Decodes groups of four digits, the last of which may end in "=".
-std::string fromBase64(std::string_view text) {
-  if (text.size() % 4 != 0)
+std::string decoded(std::string_view text) {
+  auto bytes = fromBase64(text);
+  if (!bytes)
     throw DamagedSurface();
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  for (std::size_t at = 0; at < text.size(); at += 4) {
-    int group = 0, padding = 0;
-    for (const char c : text.substr(at, 4)) {
-      const int digit = base64Digit(c);
-      padding += c == '=';
-      if ((digit < 0 && c != '=') || (digit >= 0 && padding > 0))
-        throw DamagedSurface();
-      group = group << 6 | std::max(digit, 0);
-    }
-    if (padding > 2 || (padding > 0 && at + 4 != text.size()))
-      throw DamagedSurface();
-    for (int byte = 2; byte >= padding; --byte)
-      bytes += static_cast<char>(group >> (8 * byte) & 0xff);
-  }
-  return bytes;
+  return *std::move(bytes);
 }
 
 template <typename T>
@@ -83,7 +59,7 @@ struct Coding {
 };
 
 std::string plainBytes(std::string_view text, const Coding& coding) {
-  std::string bytes = fromBase64(text);
+  std::string bytes = decoded(text);
   const std::uint64_t length = coding.header(bytes, 0);
   bytes.erase(0, coding.headerSize());
   if (length > bytes.size())
@@ -97,7 +73,7 @@ std::string plainBytes(std::string_view text, const Coding& coding) {
 std::string inflatedBytes(std::string_view text, const Coding& coding) {
   const auto encodedSize = [](std::uint64_t bytes) { return (bytes + 2) / 3 * 4; };
   const std::size_t word = coding.headerSize();
-  const std::string start = fromBase64(text.substr(0, encodedSize(3 * word)));
+  const std::string start = decoded(text.substr(0, encodedSize(3 * word)));
   const std::uint64_t blocks = coding.header(start, 0);
   if (blocks > text.size())
     throw DamagedSurface();
@@ -106,8 +82,8 @@ std::string inflatedBytes(std::string_view text, const Coding& coding) {
   const std::uint64_t headerText = encodedSize((3 + blocks) * word);
   if (headerText > text.size())
     throw DamagedSurface();
-  const std::string header = fromBase64(text.substr(0, static_cast<std::size_t>(headerText)));
-  const std::string packed = fromBase64(text.substr(static_cast<std::size_t>(headerText)));
+  const std::string header = decoded(text.substr(0, static_cast<std::size_t>(headerText)));
+  const std::string packed = decoded(text.substr(static_cast<std::size_t>(headerText)));
   const std::uint64_t blockSize = coding.header(header, 1), lastSize = coding.header(header, 2);
   std::string bytes;
   std::size_t at = 0;
@@ -140,7 +116,6 @@ std::string binary(const pugi::xml_node& array, const Coding& coding) {
 }
 
 // ---- arrays
-// -------------------------------------------------------------------------------------
 
 template <typename T>
 std::vector<double> converted(const std::string& bytes, const Coding& coding) {
@@ -164,20 +139,15 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
   if (format != "binary")
     throw DamagedSurface(); // "appended", which Slicer does not write
   const std::string bytes = binary(array, coding);
-  const std::string type = array.attribute("type").value();
-  if (type == "Float32")
-    return converted<float>(bytes, coding);
-  if (type == "Float64")
-    return converted<double>(bytes, coding);
-  if (type == "Int32")
-    return converted<std::int32_t>(bytes, coding);
-  if (type == "UInt32")
-    return converted<std::uint32_t>(bytes, coding);
-  if (type == "Int64")
-    return converted<std::int64_t>(bytes, coding);
-  if (type == "UInt64")
-    return converted<std::uint64_t>(bytes, coding);
-  throw DamagedSurface();
+  using Convert = std::vector<double> (*)(const std::string&, const Coding&);
+  static const std::map<std::string, Convert> known = {
+      {"Float32", converted<float>},      {"Float64", converted<double>},
+      {"Int32", converted<std::int32_t>}, {"UInt32", converted<std::uint32_t>},
+      {"Int64", converted<std::int64_t>}, {"UInt64", converted<std::uint64_t>}};
+  const auto convert = known.find(array.attribute("type").value());
+  if (convert == known.end())
+    throw DamagedSurface();
+  return convert->second(bytes, coding);
 }
 
 /// First string of an array.
@@ -193,7 +163,6 @@ std::string textOf(const pugi::xml_node& array, const Coding& coding) {
 }
 
 // ---- polygons
-// -----------------------------------------------------------------------------------
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
@@ -284,12 +253,10 @@ VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std:
       throw DamagedSurface();
     return surfaceOf(document, fieldData, allowance);
   } catch (const DamagedSurface&) {
-    throw inputError(path.string(),
-                     std::string("is damaged or no surface as Slicer writes it") + labelmapMend);
+    throw inputError(path, "is damaged or no surface as Slicer writes it", labelmapMend);
   } catch (const LargeSurface&) {
-    throw inputError(path.string(),
-                     std::string("takes, with the surfaces before it, more than 1 GiB of memory") +
-                         labelmapMend);
+    throw inputError(path, "takes, with the surfaces before it, more than 1 GiB of memory",
+                     labelmapMend);
   }
 }
 

@@ -1,7 +1,5 @@
 #include "files/slicer/MrmlDocument.h"
 
-#include "base/TextStream.h"
-#include "base/safe/NumberText.h"
 #include "base/safe/ShownText.h"
 
 #include <pugixml.hpp>
@@ -34,18 +32,9 @@ const std::map<std::string, std::string>& legacyRoles() {
   return roles;
 }
 
-std::vector<std::string> words(const std::string& text) {
-  TextReader in(text);
-  std::vector<std::string> all;
-  for (std::string word; in >> word;)
-    all.push_back(word);
-  return all;
-}
-
 /// "role1:id1 {key=value} id2;role2:id3;": braces hold properties of the reference before them.
 void readReferences(const std::string& text, MrmlNode& node) {
-  TextReader in(text);
-  for (std::string entry; std::getline(in, entry, ';');) {
+  for (const std::string& entry : split(text, ';')) {
     const std::size_t colon = entry.find(':');
     if (colon == std::string::npos || colon == 0)
       continue;
@@ -127,9 +116,8 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   const pugi::xml_parse_result result =
       document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_doctype);
   if (!result)
-    throw inputError(m_source, std::string("is no whole XML (") + result.description() +
-                                   " at byte " + std::to_string(result.offset) +
-                                   "); save the scene again");
+    throw inputError(m_source, "is no whole XML (", result.description(), " at byte ",
+                     result.offset, "); save the scene again");
   for (const pugi::xml_node& child : document)
     if (child.type() == pugi::node_doctype)
       throw inputError(m_source, "has a document type, which no MRML scene needs and which could "
@@ -169,7 +157,7 @@ const MrmlNode* MrmlDocument::find(const std::string& id) const {
 }
 
 Error MrmlDocument::error(const MrmlNode& node, const std::string& what) const {
-  return inputError(m_source, node.tag + " " + shown(node) + ": " + what);
+  return inputError(m_source, node.tag, " ", shown(node), ": ", what);
 }
 
 std::string shown(const MrmlNode& node) {

@@ -1,10 +1,8 @@
 // Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
 
 #include "base/Checked.h"
-#include "base/TextStream.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
-#include "base/safe/NumberText.h"
 #include "files/slicer/MrmlScene.h"
 
 namespace fenestra {
@@ -13,8 +11,7 @@ namespace {
 constexpr double largest = 1e9; ///< mm
 
 /// Map of [-1, 1]^3 to a box with `halfEdges` along the columns of `axes`. Throws for a flat box.
-template <typename Fail>
-Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges, const Fail& fail) {
+Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges, const Complaint& fail) {
   if (!(halfEdges.array() > 0.0).all())
     throw fail("its size must be above 0 in every axis; mend it in the Markups module");
   if (!(std::abs(axes.determinant()) > 1e-6))
@@ -22,20 +19,13 @@ Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges, const
   return Affine(axes * Mat3::Diagonal(halfEdges), center);
 }
 
-template <typename Fail>
-void refuseInsideOut(bool insideOut, const Fail& fail) {
+void refuseInsideOut(bool insideOut, const Complaint& fail) {
   if (insideOut)
     throw fail("is inside out, which crops everything in Slicer, too; turn that off in the Markups "
                "module");
 }
 
 // ---- .mrk.json
-// -----------------------------------------------------------------------------------
-
-Vec3 vector(const JsonNode& node) {
-  const auto numbers = node.numbers(3, -largest, largest);
-  return {numbers[0], numbers[1], numbers[2]};
-}
 
 bool isLps(const JsonNode& markup) {
   const auto system = markup.find("coordinateSystem");
@@ -43,10 +33,7 @@ bool isLps(const JsonNode& markup) {
     return true;          // Slicer's default
   if (system->isNumber()) // in the first files: vtkMRMLStorageNode's enumeration
     return system->number() != 0.0;
-  const std::string name = system->text();
-  if (name != "LPS" && name != "RAS")
-    throw system->error("must be \"LPS\" or \"RAS\"");
-  return name == "LPS";
+  return system->oneOf({"LPS", "RAS"}) == 0;
 }
 
 Affine readMarkupsJson(const std::filesystem::path& path) {
@@ -63,7 +50,7 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
   if (const auto insideOut = roi.find("insideOut"))
     refuseInsideOut(insideOut->boolean(), fail);
 
-  Vec3 center = vector(roi.at("center"));
+  Vec3 center = roi.at("center").triple(-largest, largest);
   Mat3 axes = Mat3::Identity();
   const bool lps = isLps(roi);
   if (const auto orientation = roi.find("orientation")) {
@@ -77,14 +64,12 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
   }
   if (lps)
     center = lpsToRas * center;
-  return boxMap(center, axes, 0.5 * vector(roi.at("size")), fail);
+  return boxMap(center, axes, 0.5 * roi.at("size").triple(-largest, largest), fail);
 }
 
 // ---- older forms: centre and half edges, RAS
-// -----------------------------------------------------
 
-template <typename Fail>
-Affine axisAligned(const std::vector<double>& centerAndRadius, const Fail& fail) {
+Affine axisAligned(const std::vector<double>& centerAndRadius, const Complaint& fail) {
   if (centerAndRadius.size() != 6)
     throw fail("needs a centre and a radius, three numbers each; save it again");
   const std::vector<double>& n = centerAndRadius;
@@ -93,16 +78,14 @@ Affine axisAligned(const std::vector<double>& centerAndRadius, const Fail& fail)
 
 /// Annotation files: two lines "point|x|y|z|...".
 Affine readAnnotation(const std::filesystem::path& path) {
-  const auto fail = [&path](const std::string& what) { return inputError(path.string(), what); };
+  const auto fail = [&path](const std::string& what) { return inputError(path, what); };
   std::vector<double> numbers;
-  TextReader lines(readText(path));
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("point|"))
+  for (const std::string& line : split(readText(path), '\n')) {
+    const std::vector<std::string> cells = split(line, '|');
+    if (cells.empty() || cells[0] != "point")
       continue;
-    TextReader cells(line.substr(line.find('|') + 1));
-    std::string cell;
-    for (int axis = 0; axis < 3 && std::getline(cells, cell, '|'); ++axis) {
-      const auto number = parseNumbers(cell);
+    for (std::size_t axis = 1; axis < std::min<std::size_t>(4, cells.size()); ++axis) {
+      const auto number = parseNumbers(cells[axis]);
       if (!number || number->size() != 1)
         throw fail("point: must have three numbers; save it again");
       numbers.push_back(number->front());

@@ -73,8 +73,8 @@ Affine transformInFile(MrmlScene& scene, const std::string& file, TransformSense
 
 Affine toParent(MrmlScene& scene, const MrmlNode& node) {
   if (node.tag != "LinearTransform" && node.tag != "Transform")
-    throw scene.document.error(node, "is not linear; harden it in Slicer (Transforms module), then "
-                                     "save the scene");
+    throw scene.document.error(
+        node, "is not linear; harden it in Slicer (Transforms module), then save the scene");
   const auto matrix = inlineMatrix(scene, node);
   const std::vector<std::string> names = storedFiles(scene, node);
   if (names.empty()) {
@@ -101,9 +101,8 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
   const MrmlNode* above = scene.document.follow(node, "transform");
   for (std::size_t level = 0; above; above = scene.document.follow(*above, "transform"), ++level) {
     if (level == deepest)
-      throw scene.document.error(
-          node, "the transforms above it form a loop, or too long a chain; mend them in the "
-                "Transforms module");
+      throw scene.document.error(node, "the transforms above it form a loop, or too long a chain; "
+                                       "mend them in the Transforms module");
     result = toParent(scene, *above) * result;
   }
   return checkedMap(result, [&](const std::string& what) {

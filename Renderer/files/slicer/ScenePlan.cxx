@@ -9,28 +9,24 @@ namespace {
 using Nodes = std::vector<const MrmlNode*>;
 
 template <typename Matches>
-Nodes nodesThat(const MrmlDocument& document, Matches&& matches) {
+Nodes those(const Nodes& nodes, Matches&& matches) {
   Nodes found;
-  for (const MrmlNode& node : document.nodes())
-    if (matches(node))
-      found.push_back(&node);
+  std::ranges::copy_if(nodes, std::back_inserter(found),
+                       [&](const MrmlNode* node) { return matches(*node); });
   return found;
 }
 
 template <typename Matches>
-Nodes those(const Nodes& nodes, Matches&& matches) {
-  Nodes found;
-  std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(found),
-               [&](const MrmlNode* node) { return matches(*node); });
-  return found;
+Nodes nodesThat(const MrmlDocument& document, Matches&& matches) {
+  Nodes all;
+  for (const MrmlNode& node : document.nodes())
+    all.push_back(&node);
+  return those(all, matches);
 }
 
 std::string listed(const Nodes& nodes) {
-  constexpr std::size_t most = 20;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, nodes.size()); ++i)
-    text += (i == 0 ? "" : ", ") + shown(*nodes[i]);
-  return text + (nodes.size() > most ? ", ..." : "");
+  return joined(
+      nodes, ", ", [](const MrmlNode* node) { return shown(*node); }, 20, "...");
 }
 
 /// Node by id, else by name; null: none. Throws Error (input) where several have the name.
@@ -41,9 +37,22 @@ const MrmlNode* named(const MrmlDocument& document, const Nodes& nodes, const st
     return byId.front();
   const Nodes byName = those(nodes, [&](const MrmlNode& node) { return node.name == name; });
   if (byName.size() > 1)
-    throw inputError(document.source(), "--" + flag + " " + name + " can be any of " +
-                                            listed(byName) + "; name one by its id");
+    throw inputError(document.source(), "--", flag, " ", name, " can be any of ", listed(byName),
+                     "; name one by its id");
   return byName.empty() ? nullptr : byName.front();
+}
+
+/// Node of the first list that has any; null: none has. Throws Error (input) where that list has
+/// several.
+const MrmlNode* onlyOne(const MrmlDocument& document, std::initializer_list<const Nodes*> lists,
+                        const char* what, const char* flag) {
+  for (const Nodes* candidates : lists)
+    if (candidates->size() > 1)
+      throw inputError(document.source(), "has several ", what, " (", listed(*candidates),
+                       "); choose one with --", flag);
+    else if (!candidates->empty())
+      return candidates->front();
+  return nullptr;
 }
 
 /// First display of the volume that matches; null: none.
@@ -73,8 +82,8 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
   if (choice) {
     if (const MrmlNode* volume = named(document, volumes, *choice, "volume"))
       return volume;
-    throw inputError(document.source(),
-                     "has no scalar volume \"" + *choice + "\"; it has " + listed(volumes));
+    throw inputError(document.source(), "has no scalar volume \"", *choice, "\"; it has ",
+                     listed(volumes));
   }
   // Candidates in this order: rendered in Slicer, renderable, active in Slicer, all.
   const Nodes rendered = those(volumes, [&](const MrmlNode& volume) {
@@ -88,13 +97,8 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
     selected.insert(selection->referenced("ActiveVolume"));
   const Nodes active =
       those(volumes, [&](const MrmlNode& volume) { return selected.contains(volume.id); });
-  for (const Nodes* candidates : {&rendered, &renderable, &active, &volumes})
-    if (candidates->size() == 1)
-      return candidates->front();
-    else if (candidates->size() > 1)
-      throw inputError(document.source(), "has several volumes to render (" + listed(*candidates) +
-                                              "); choose one with --volume");
-  return nullptr; // not reached: there are volumes
+  return onlyOne(document, {&rendered, &renderable, &active, &volumes}, "volumes to render",
+                 "volume");
 }
 
 const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoice& choice) {
@@ -110,14 +114,11 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoi
     const MrmlNode* display = document.follow(node, "display");
     return !display || isShown(*display);
   });
-  for (const Nodes* candidates : {&shownOnes, &segmentations, &labelMaps})
-    if (candidates->size() == 1)
-      return candidates->front();
-    else if (candidates->size() > 1)
-      throw inputError(document.source(), "has several segmentations (" + listed(*candidates) +
-                                              "); choose one with --segmentation");
-  throw inputError(document.source(), "has no segmentation to find a focus in; give "
-                                      "--segmentation FILE");
+  if (const MrmlNode* one = onlyOne(document, {&shownOnes, &segmentations, &labelMaps},
+                                    "segmentations", "segmentation"))
+    return one;
+  throw inputError(document.source(),
+                   "has no segmentation to find a focus in; give --segmentation FILE");
 }
 
 /// Rank of a view: the user most likely looked at the view of the greatest rank.

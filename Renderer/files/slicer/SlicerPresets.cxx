@@ -1,6 +1,5 @@
 #include "files/slicer/SlicerPresets.h"
 
-#include "base/TextStream.h"
 #include "base/safe/JsonNode.h"
 #include "files/looks/TransferReader.h"
 
@@ -32,8 +31,7 @@ std::optional<Path> presetsIn(const Path& home) {
 /// Folder of the first Slicer launcher in PATH, links resolved.
 std::optional<Path> homeInPath() {
   const char* const path = std::getenv("PATH");
-  TextReader folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
+  for (const std::string& folder : split(path ? path : "", ':')) {
     std::error_code failed;
     const Path launcher = std::filesystem::canonical(Path(folder) / "Slicer", failed);
     if (!failed && std::filesystem::is_regular_file(launcher, failed))

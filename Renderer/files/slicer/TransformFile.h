@@ -20,7 +20,7 @@ enum class TransformSense { fromParent, toParent };
 Affine readLinearTransform(const std::filesystem::path& path, TransformSense sense);
 
 /// Map to the parent from the answer of a child that read the file; the answer is untrusted
-/// (TransformRecords.h).
+/// (TransformAnswer.h).
 Affine answeredTransform(const std::filesystem::path& path, std::string_view answer,
                          TransformSense sense);
 

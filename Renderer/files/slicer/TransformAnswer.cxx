@@ -1,13 +1,10 @@
-#include "files/slicer/TransformRecords.h"
+#include "files/slicer/TransformAnswer.h"
 
-#include "base/Error.h"
 #include "base/safe/Apart.h"
 #include "base/safe/ApartBytes.h"
 #include "base/safe/Inputs.h"
-#include "base/safe/ShownText.h"
-#include "files/slicer/Hdf5Parts.h"
-#include "files/slicer/TransformMatrix.h"
 
+#include <hdf5.h>
 #include <itkHDF5TransformIO.h>
 #include <itkMatlabTransformIO.h>
 #include <itkTxtTransformIO.h>
@@ -16,14 +13,43 @@
 namespace fenestra {
 namespace {
 
-using Path = std::filesystem::path;
-
 constexpr std::size_t mostRecords = 256;
 constexpr std::size_t mostNumbers = 64; // more than any linear transform has
 constexpr std::uint64_t longestAnswer = mostRecords * 2048;
 
-// ---- in the child
-// -------------------------------------------------------------------------------
+// ---- in the child: whether a file is whole
+
+constexpr herr_t goOn = 0, leaveOff = -1;
+
+herr_t visitLink(hid_t, const char*, const H5L_info_t* link, void*) {
+  return link->type == H5L_TYPE_HARD || link->type == H5L_TYPE_SOFT ? goOn : leaveOff;
+}
+
+herr_t visitObject(hid_t file, const char* name, const H5O_info_t* object, void*) {
+  if (object->type != H5O_TYPE_DATASET)
+    return goOn;
+  const hid_t data = H5Dopen2(file, name, H5P_DEFAULT);
+  const hid_t properties = H5Dget_create_plist(data);
+  const bool isInside =
+      H5Pget_external_count(properties) == 0 && H5Pget_layout(properties) != H5D_VIRTUAL;
+  H5Pclose(properties);
+  H5Dclose(data);
+  return isInside ? goOn : leaveOff;
+}
+
+/// True if an HDF5 file is self-contained: no link, raw storage or virtual data set lies in another
+/// file, which the library would open unchecked. False where the file cannot be read.
+bool holdsAllItsParts(const std::string& path) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  // Each group and object is visited once, however often it is named.
+  const bool isWhole = file >= 0 &&
+                       H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visitLink, nullptr) >= 0 &&
+                       H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visitObject, nullptr) >= 0;
+  H5Fclose(file);
+  return isWhole;
+}
+
+// ---- in the child: what the file says
 
 /// Transform of any type, known or not, that keeps its file's numbers.
 class RecordedTransform : public itk::TransformBaseTemplate<double> {
@@ -110,48 +136,12 @@ std::string answerTransform(const std::string& question) {
 // HDF5's tree of symbols may fan out without end; reading a transform takes a few milliseconds.
 const ApartJob transformJob("transform", answerTransform, {.seconds = 3});
 
-// ---- here
-// ---------------------------------------------------------------------------------------
-
-/// "Type" of "Type_scalar_axes_axes". Throws Error (input) unless linear and of three axes.
-std::string linearType(const Path& path, const std::string& name) {
-  std::string type = name.substr(0, name.find('_'));
-  if (!isLinearTransform(type))
-    throw inputError(path.string(), "Transform: " + shown(name) +
-                                        " is not linear; harden it in Slicer (Data module, Harden "
-                                        "transform) and save again");
-  if (name != type + "_double_3_3") // ITK's readers turn _float_ into _double_
-    throw inputError(path.string(), "Transform: " + shown(name) +
-                                        " is not a transform of three axes; save one that is");
-  return type;
-}
-
 } // namespace
 
-void throwDamagedTransform(const Path& path) {
-  throw inputError(path.string(), "is damaged, truncated or no transform of ITK's; save it again");
-}
-
-std::vector<TransformRecord> transformRecords(const Path& path, std::string_view answer) {
-  std::vector<TransformRecord> records;
-  AnswerReader reader(answer);
-  while (!reader.atEnd()) {
-    TransformRecord record;
-    record.type = linearType(path, reader.text());
-    record.parameters = reader.numbers();
-    record.fixed = reader.numbers();
-    records.push_back(record);
-  }
-  return records;
-}
-
-std::string transformAnswer(const Path& path) {
+std::string transformAnswer(const std::filesystem::path& path) {
   // Starting a child takes longer than reading a transform: each thread keeps its child.
   thread_local Apart child(transformJob);
-  const auto answer = child.ask(path.string(), longestAnswer);
-  if (!answer || answer->empty())
-    throwDamagedTransform(path);
-  return *answer;
+  return child.ask(path.string(), longestAnswer).value_or("");
 }
 
 } // namespace fenestra

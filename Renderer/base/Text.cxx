@@ -1,0 +1,74 @@
+#include "base/Text.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+namespace fenestra {
+
+std::string numberText(double x, int digits) {
+  std::array<char, 64> text;
+  const auto [end, failure] =
+      std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, digits);
+  return {text.data(), end};
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+std::string_view trimmed(std::string_view text, std::string_view blanks) {
+  const std::size_t first = std::min(text.find_first_not_of(blanks), text.size());
+  return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+}
+
+std::vector<std::string> words(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  std::vector<std::string> found;
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    const std::size_t end = std::min(text.find_first_of(blanks), text.size());
+    found.emplace_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return found;
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(separator), text.size());
+    parts.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return parts;
+}
+
+std::string replacedAll(std::string_view text, std::string_view from, std::string_view to) {
+  std::string result;
+  for (std::size_t at = text.find(from); at != std::string_view::npos; at = text.find(from)) {
+    result.append(text.substr(0, at)).append(to);
+    text.remove_prefix(at + from.size());
+  }
+  return result.append(text);
+}
+
+std::optional<std::vector<double>> parseNumbers(std::string_view text) {
+  std::vector<double> numbers;
+  const auto isBlank = [](unsigned char c) { return std::isspace(c); };
+  for (const char *at = text.data(), *const end = at + text.size();;) {
+    at = std::find_if_not(at, end, isBlank);
+    if (at == end)
+      return numbers;
+    double& x = numbers.emplace_back();
+    const auto [next, failure] = std::from_chars(at, end, x);
+    if (failure != std::errc() || !std::isfinite(x))
+      return std::nullopt;
+    at = next;
+  }
+}
+
+} // namespace fenestra
