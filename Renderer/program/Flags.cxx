@@ -1,33 +1,17 @@
 #include "program/Flags.h"
 
 #include "base/Error.h"
-#include "base/TextStream.h"
 #include "base/safe/ShownText.h"
 
 #include <algorithm>
-#include <charconv>
 #include <stdexcept>
 
 namespace fenestra {
 namespace {
 
-/// Number that is the whole text; nullopt: not one, or none that the type can hold.
-template <typename Number>
-std::optional<Number> parsed(std::string_view text) {
-  Number value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    return std::nullopt;
-  return value;
-}
-
 /// Finite number, perhaps between blanks.
 std::optional<double> parsedNumber(std::string_view text) {
-  while (text.starts_with(' '))
-    text.remove_prefix(1);
-  while (text.ends_with(' '))
-    text.remove_suffix(1);
-  const auto value = parsed<double>(text);
+  const auto value = parsed<double>(trimmed(text, " "));
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
@@ -56,7 +40,7 @@ Number inRange(std::optional<Number> value, const Flag& flag, const std::string&
     return *value;
   throw badValue(flag.name,
                  (std::is_integral_v<Number> ? "a whole number from " : "a number from ") +
-                     shortNumber(least) + " to " + shortNumber(greatest),
+                     numberText(least) + " to " + numberText(greatest),
                  given);
 }
 
@@ -70,12 +54,6 @@ std::string Flag::help() const {
 const Flag* findFlag(std::span<const Flag> flags, std::string_view name) {
   const auto it = std::ranges::find(flags, name, &Flag::name);
   return it == flags.end() ? nullptr : &*it;
-}
-
-std::string shortNumber(double x) {
-  TextWriter out;
-  out << x;
-  return out.str();
 }
 
 const Flag& FlagValues::flag(const std::string& name) const {

@@ -2,6 +2,7 @@
 // Flags as data: one table, read by --help, by parsing, by Slicer's description, and where a
 // scene's or a preset's flags meet those of the command line.
 
+#include "base/Text.h"
 #include "base/Vector.h"
 
 #include <algorithm>
@@ -18,9 +19,6 @@
 namespace fenestra {
 
 class FlagValues;
-
-/// Decimal text with at most six digits.
-std::string shortNumber(double x);
 
 /// Values that a flag accepts, its default, and where the value goes. Parsing refuses all other
 /// values, and Slicer's panel offers no others.
@@ -77,7 +75,7 @@ struct Takes {
     Takes takes =
         into(place, [](const auto& flags, const auto& name, Place& at) { flags.read(name, at); });
     if constexpr (std::is_arithmetic_v<Place>)
-      takes.standard = shortNumber(static_cast<double>(place));
+      takes.standard = numberText(static_cast<double>(place));
     else if constexpr (std::is_same_v<Place, std::string>)
       takes.standard = place;
     return takes;

@@ -30,7 +30,7 @@ const Flag phantomFlags[] = {
          ", cube " + std::to_string(CubeOptions().size) + "]",
      Takes{.least = 16, .greatest = 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "The cube's edge",
-     Takes::number(1e-3, 1e5).shows(shortNumber(CubeOptions().edge))},
+     Takes::number(1e-3, 1e5).shows(numberText(CubeOptions().edge))},
 };
 
 const CommandSyntax phantomSyntax = {

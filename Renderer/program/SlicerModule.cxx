@@ -40,8 +40,8 @@ void addConstraints(pugi::xml_node parameter, const Takes& takes) {
   if (takes.standard.empty() || takes.greatest - takes.least > widest)
     return;
   pugi::xml_node constraints = parameter.append_child("constraints");
-  addText(constraints, "minimum", shortNumber(takes.least));
-  addText(constraints, "maximum", shortNumber(takes.greatest));
+  addText(constraints, "minimum", numberText(takes.least));
+  addText(constraints, "maximum", numberText(takes.greatest));
   addText(constraints, "step", takes.type == "integer" ? "1" : "0.01");
 }
 
