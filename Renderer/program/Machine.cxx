@@ -8,9 +8,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
-#include <future>
 #include <stdexcept>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -26,11 +27,17 @@ int threadCount(const FlagValues& flags) {
 /// Starts `count` threads at once, to find out whether they can run: TBB's threads start each
 /// other, and end the process where one cannot start.
 void tryThreads(int count) {
-  std::vector<std::jthread> threads; // end as soon as the promise below is gone
-  std::promise<void> started;
-  const std::shared_future<void> all = started.get_future().share();
+  // Threads are asked to end, and joined, when all have started or one cannot.
+  std::vector<std::jthread> threads;
   for (int i = 0; i < count; ++i)
-    threads.emplace_back([all] { all.wait(); });
+    threads.emplace_back([](const std::stop_token& end) {
+      std::atomic_flag isEnded;
+      const std::stop_callback onEnd(end, [&isEnded] {
+        isEnded.test_and_set();
+        isEnded.notify_one();
+      });
+      isEnded.wait(false);
+    });
 }
 
 } // namespace

@@ -67,7 +67,8 @@ bool isAsRecorded(const fs::path& path, const JsonNode& recorded) {
 /// Reads a record file, of untrusted size: at most a record of `mostFrames` frames. Throws Error
 /// (input) if it is no JSON.
 json readRecord(const fs::path& path, const TurntableOptions& options) {
-  constexpr int parts = 23, bytes = 2100; // of a file, with a name of 255 letters, all escaped
+  // Values and keys of a file and its frame; bytes, with a name of 255 letters, all escaped.
+  constexpr int parts = 23, bytes = 2100;
   const int files =
       mostFrames * static_cast<int>(std::min<std::size_t>(options.files(0).size(), 100));
   const std::string text =
