@@ -21,16 +21,14 @@ std::string quoted(const std::string& argument) {
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
   if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
     return argument;
-  return "'" + replacedAll(argument, "'", "'\\''") + "'";
+  return textOf("'", replacedAll(argument, "'", "'\\''"), "'");
 }
 
 /// `fenestra words…`, quoted for a shell, with files named relative to `folder`.
 std::string shellCommand(const std::vector<std::string>& words,
                          const std::filesystem::path& folder) {
-  std::string line = "fenestra";
-  for (const std::string& word : relativeArguments(words, renderSyntax.flags, folder))
-    line += " " + quoted(word);
-  return line;
+  return textOf("fenestra ",
+                joined(relativeArguments(words, renderSyntax.flags, folder), " ", quoted));
 }
 
 std::string text(const Vec3& v) {

@@ -31,10 +31,9 @@ std::string valueText(const std::string& name, const json& value) {
 
 /// Items separated by commas; commas within an item are escaped.
 std::string listText(const std::string& name, const json& list) {
-  std::string text;
-  for (const json& item : list)
-    text += (text.empty() ? "" : ",") + replacedAll(valueText(name, item), ",", "\\,");
-  return text;
+  return joined(list, ",", [&name](const json& item) {
+    return replacedAll(valueText(name, item), ",", "\\,");
+  });
 }
 
 } // namespace
