@@ -7,26 +7,6 @@
 namespace fenestra::oracle {
 namespace {
 
-/// Trilinear indicator of a mask at an index position; 0 outside its voxels.
-double indicator(const Mask& mask, const Vec3& index) {
-  const Size3& size = mask.grid.size;
-  const Vec3 base = index.array().floor();
-  const Vec3 upper = index - base, lower = 1.0 - upper.array();
-  const Size3 first = base.cast<std::int64_t>();
-  double sum = 0.0;
-  for (std::int64_t z = first[2]; z < first[2] + 2; ++z)
-    for (std::int64_t y = first[1]; y < first[1] + 2; ++y)
-      for (std::int64_t x = first[0]; x < first[0] + 2; ++x) {
-        if (x < 0 || x >= size[0] || y < 0 || y >= size[1] || z < 0 || z >= size[2])
-          continue;
-        const double weight = (x == first[0] ? lower : upper)[0] *
-                              (y == first[1] ? lower : upper)[1] *
-                              (z == first[2] ? lower : upper)[2];
-        sum += weight * mask.voxels[static_cast<std::size_t>(x + size[0] * (y + size[1] * z))];
-      }
-  return sum;
-}
-
 /// Maximum in [low, high] of a function with one maximum there.
 template <typename Function>
 double summit(const Function& f, double low, double high) {
@@ -52,13 +32,13 @@ struct Sight {
 
 /// Sight along a ray within the volume: sampled twenty-five times a voxel and at every summit
 /// between samples, where a ray may graze the surface; then bisected.
-Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray, const Interval& range) {
-  const Affine worldToIndex = mask.grid.indexToWorld.inverse();
+Sight lookAlong(const FocusField& focus, const Matter& matter, const Ray& ray,
+                const Interval& range) {
   Interval part = matter.inBox(ray.origin, ray.direction);
   part = {std::max(part.begin, range.begin), std::min(part.end, range.end)};
   const auto level = [&](double t) {
     const Vec3 world = ray.at(t);
-    const double share = indicator(mask, worldToIndex * world);
+    const double share = focus.at(world);
     return share > 0.0 && matter.inside(world) ? share : 0.0;
   };
   const auto between = [&](double outside, double inside) {
@@ -68,7 +48,7 @@ Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray, const In
     }
     return Sight{inside, 0.5};
   };
-  const double step = 0.04 * mask.grid.spacing().minCoeff();
+  const double step = 0.04 * focus.shortestEdge();
   double before = 0.0, here = part.empty() ? 0.0 : level(part.begin);
   if (here >= 0.5)
     return {part.begin, 0.5};
@@ -91,8 +71,8 @@ Sight lookAlong(const Mask& mask, const Matter& matter, const Ray& ray, const In
   return best;
 }
 
-double firstMeeting(const Mask& mask, const Matter& matter, const Ray& ray) {
-  const Sight sight = lookAlong(mask, matter, ray, {});
+double firstMeeting(const FocusField& focus, const Matter& matter, const Ray& ray) {
+  const Sight sight = lookAlong(focus, matter, ray, {});
   return sight.height >= 0.5 ? sight.t : infinity;
 }
 
@@ -157,13 +137,14 @@ private:
   double m_radius = 0.0, m_bottom = -infinity;
 };
 
-std::vector<double> depthsOf(const DepthClip& clip, const View& view, const Matter& matter) {
+std::vector<double> depthsOf(const DepthClip& clip, const FocusField& focus, const View& view,
+                             const Matter& matter) {
   std::vector<double> depths;
   std::vector<Meeting> meetings;
   for (const double y : clip.rows)
     for (const double x : clip.columns) {
       const Ray ray = view.through(x, y);
-      const double t = firstMeeting(clip.focus, matter, ray);
+      const double t = firstMeeting(focus, matter, ray);
       depths.push_back(t < infinity ? view.depth(ray.at(t)) : infinity);
       if (t < infinity)
         meetings.push_back({Vec2(x, y), ray.at(t), depths.back()});
@@ -218,14 +199,49 @@ Place placeOf(const std::vector<double>& samples, double coordinate) {
 
 } // namespace
 
-double indicatorAt(const Mask& mask, const Vec3& world) {
-  return indicator(mask, mask.grid.indexToWorld.inverse() * world);
+FocusField::FocusField(const Mask& mask)
+    : m_mask(mask),
+      m_worldToIndex(mask.grid.indexToWorld.inverse()),
+      m_lower(Vec3::Constant(infinity)),
+      m_upper(Vec3::Constant(-infinity)) {
+  const Size3& size = mask.grid.size;
+  for (std::int64_t i = 0; i < size.prod(); ++i)
+    if (mask.voxels[static_cast<std::size_t>(i)] != 0) {
+      const Size3 voxel(i % size[0], i / size[0] % size[1], i / size[0] / size[1]);
+      m_lower = m_lower.cwiseMin(voxel.cast<double>() - Vec3::Ones());
+      m_upper = m_upper.cwiseMax(voxel.cast<double>() + Vec3::Ones());
+    }
+}
+
+double FocusField::at(const Vec3& world) const {
+  const Vec3 index = m_worldToIndex * world;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(index[axis] > m_lower[axis] && index[axis] < m_upper[axis]))
+      return 0.0;
+  const Size3& size = m_mask.grid.size;
+  const Vec3 base = index.array().floor();
+  const Vec3 upper = index - base, lower = 1.0 - upper.array();
+  const Size3 first = base.cast<std::int64_t>();
+  double sum = 0.0;
+  for (std::int64_t z = first[2]; z < first[2] + 2; ++z)
+    for (std::int64_t y = first[1]; y < first[1] + 2; ++y)
+      for (std::int64_t x = first[0]; x < first[0] + 2; ++x) {
+        if (x < 0 || x >= size[0] || y < 0 || y >= size[1] || z < 0 || z >= size[2])
+          continue;
+        const double weight = (x == first[0] ? lower : upper)[0] *
+                              (y == first[1] ? lower : upper)[1] *
+                              (z == first[2] ? lower : upper)[2];
+        sum += weight * m_mask.voxels[static_cast<std::size_t>(x + size[0] * (y + size[1] * z))];
+      }
+  return sum;
 }
 
 Clipping::Clipping(const ClipDescription& description, const View& view, const Matter& matter)
     : m_description(description), m_view(view), m_matter(matter) {
-  if (const auto* clip = std::get_if<DepthClip>(&description))
-    m_depths = depthsOf(*clip, view, matter);
+  if (const auto* clip = std::get_if<DepthClip>(&description)) {
+    m_focus.emplace(clip->focus);
+    m_depths = depthsOf(*clip, *m_focus, view, matter);
+  }
 }
 
 double Clipping::surface(const Vec2& at) const {
@@ -253,7 +269,7 @@ double Clipping::surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, doub
     return (depth - clip.offset - m_view.depth(ray.at(0.0))) / depthPerLength;
   };
   const Sight sight =
-      lookAlong(clip.focus, m_matter, ray, {std::max(0.0, lengthTo(seam.least)), infinity});
+      lookAlong(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(seam.least)), infinity});
   const double share = std::clamp((sight.height - 0.25) / 0.25, 0.0, 1.0);
   if (share == 0.0)
     return between;

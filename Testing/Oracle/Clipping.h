@@ -4,10 +4,24 @@
 #include "Matter.h"
 #include "View.h"
 
+#include <optional>
+
 namespace fenestra::oracle {
 
-/// The interpolated indicator of a mask at a world point; 0 outside its voxels.
-double indicatorAt(const Mask& mask, const Vec3& world);
+/// The interpolated indicator of a mask, which must outlive the object.
+class FocusField {
+public:
+  explicit FocusField(const Mask& mask);
+
+  /// Trilinear indicator at a world point; 0 outside the mask's voxels.
+  double at(const Vec3& world) const;
+  double shortestEdge() const { return m_mask.grid.spacing().minCoeff(); } ///< of a voxel, mm
+
+private:
+  const Mask& m_mask;
+  Affine m_worldToIndex;
+  Vec3 m_lower, m_upper; ///< index positions beyond which the indicator is 0
+};
 
 class Clipping {
 public:
@@ -27,6 +41,7 @@ private:
   const ClipDescription& m_description;
   const View& m_view;
   const Matter& m_matter;
+  std::optional<FocusField> m_focus; ///< of a depth clip
   std::vector<double> m_depths;
 };
 

@@ -19,6 +19,8 @@ public:
         m_matter(scene.volume, scene.transfer, scene.crop),
         m_clipping(scene.clip, m_view, m_matter),
         m_lights(scene.lights, scene.volume.grid, m_view) {
+    if (scene.style)
+      m_styledFocus.emplace(scene.style->focus);
     if (scene.background.kind == Background::Kind::gradient)
       throw std::invalid_argument("the oracle has no gradient background");
   }
@@ -97,9 +99,7 @@ private:
     return Scatterer::byPhase(incoming, albedo(point), m_matter.g());
   }
 
-  bool isStyled(const Vec3& point) const {
-    return m_scene.style && indicatorAt(m_scene.style->focus, point) < 0.5;
-  }
+  bool isStyled(const Vec3& point) const { return m_styledFocus && m_styledFocus->at(point) < 0.5; }
   double thinning(const Vec3& point) const {
     return isStyled(point) ? m_scene.style->extinction : 1.0;
   }
@@ -154,6 +154,7 @@ private:
   View m_view;
   Matter m_matter;
   Clipping m_clipping;
+  std::optional<FocusField> m_styledFocus;
   Lights m_lights;
 };
 
