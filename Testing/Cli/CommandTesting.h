@@ -63,7 +63,7 @@ inline std::string segments() {
 }
 
 /// Folder with a volume and its segments.
-class SmallScene : public testing::Test {
+class SmallScene : public ::testing::Test {
 protected:
   SmallScene() {
     folder.write("volume.nrrd", NrrdText().with(ramp()));

@@ -163,7 +163,7 @@ TEST(RealData, EveryFileHasAStatedExpectation) {
   }
 }
 
-class RealFiles : public testing::TestWithParam<Expectation> {};
+class RealFiles : public ::testing::TestWithParam<Expectation> {};
 
 TEST_P(RealFiles, RenderOrAreRefusedForTheStatedReason) {
   if (!std::filesystem::exists(data))
@@ -186,8 +186,8 @@ TEST_P(RealFiles, RenderOrAreRefusedForTheStatedReason) {
   EXPECT_TRUE(filesIn(folder.path()).empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RealFiles, testing::ValuesIn(expectations()),
-                         [](const testing::TestParamInfo<Expectation>& info) {
+INSTANTIATE_TEST_SUITE_P(All, RealFiles, ::testing::ValuesIn(expectations()),
+                         [](const ::testing::TestParamInfo<Expectation>& info) {
                            std::string name = words(info.param.files).back();
                            std::replace_if(
                                name.begin(), name.end(),

@@ -369,7 +369,7 @@ std::vector<double> numbersOf(const std::string& text) {
   return numbers;
 }
 
-class SlicersOwnScenes : public testing::TestWithParam<const char*> {
+class SlicersOwnScenes : public ::testing::TestWithParam<const char*> {
 protected:
   void SetUp() override {
     archive =
@@ -416,7 +416,7 @@ TEST_P(SlicersOwnScenes, CameraMatchesStoredValues) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Real, SlicersOwnScenes,
-                         testing::Values("chest.mrb", "chest_transformed_cropped.mrb"));
+                         ::testing::Values("chest.mrb", "chest_transformed_cropped.mrb"));
 
 } // namespace
 } // namespace fenestra::ScenesCommandTests

@@ -43,7 +43,7 @@ PlyContent readPly(const std::filesystem::path& path) {
   return content;
 }
 
-class SurfaceCommand : public testing::TestWithParam<const char*> {
+class SurfaceCommand : public ::testing::TestWithParam<const char*> {
 protected:
   /// Renders in the knee's folder.
   Outcome rendered(const Arguments& more) const { return run(kneeWith(more), kneeFolder().path()); }
@@ -102,7 +102,7 @@ TEST_P(SurfaceCommand, MeshLiesAtTheDepthsOfTheClipChannel) {
   EXPECT_GT(inside, 50u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Clips, SurfaceCommand, testing::Values("surface", "cutaway"),
+INSTANTIATE_TEST_SUITE_P(Clips, SurfaceCommand, ::testing::Values("surface", "cutaway"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(SurfaceCommandLine, RefusesUnwritableFilesAndRendersWithoutSurface) {

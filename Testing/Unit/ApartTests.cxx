@@ -76,8 +76,8 @@ TEST(Apart, AnswersInTurnWithinTheSizeLimits) {
 }
 
 TEST(Apart, SurvivesCrashesAndTimeoutsOfTheChild) {
-  testing::internal::CaptureStderr();
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
   {
     Apart child(misbehaving);
     EXPECT_EQ(child.ask("print", most), "print");
@@ -88,8 +88,8 @@ TEST(Apart, SurvivesCrashesAndTimeoutsOfTheChild) {
       EXPECT_EQ(child.ask("fine", most), "fine") << "after " << how;
     }
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
 }
 

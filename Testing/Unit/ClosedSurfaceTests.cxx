@@ -295,7 +295,7 @@ TEST(ClosedSurface, DamagedBytesAreReadOrRefused) {
   const TemporaryFolder folder;
   std::mt19937 random(5);
   int readable = 0;
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   for (const Writing writing : {Writing::ascii, Writing::plain, Writing::deflated}) {
     const std::string whole = surfaceText(sphere(Vec3(0, 0, 0), 5, 1), "id", "name", writing);
     for (int i = 0; i < 700; ++i) {
@@ -314,7 +314,7 @@ TEST(ClosedSurface, DamagedBytesAreReadOrRefused) {
       }
     }
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   EXPECT_GT(readable, 50);
 }
 

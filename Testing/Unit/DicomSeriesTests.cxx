@@ -341,7 +341,7 @@ TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
   const std::string whole = bytesOf(write(folder / "a.dcm", {}));
   std::mt19937 random(11);
   int readable = 0;
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   for (int i = 0; i < 100; ++i) {
     std::string bytes = whole;
     if (i % 8 == 0)
@@ -356,7 +356,7 @@ TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
     }
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   EXPECT_GT(readable, 3);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-class MedicalHeaders : public testing::Test {
+class MedicalHeaders : public ::testing::Test {
 protected:
   static void refuse(const Path& path, const std::string& text) {
     expectRefused(path, text, [&path] { readVolume(path); });

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::string_literals;
 
-class OutputFiles : public testing::Test {
+class OutputFiles : public ::testing::Test {
 protected:
   /// Message of the Error thrown by `action`, which must be of `kind` and on one line.
   template <typename Action>

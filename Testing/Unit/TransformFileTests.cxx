@@ -364,7 +364,7 @@ TEST(TransformFile, DamagedBytesAreReadOrRefused) {
   composite->AddTransform(turned<itk::Euler3DTransform<double>>());
   composite->AddTransform(turned<itk::AffineTransform<double, 3>>());
   std::mt19937 random(7);
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   for (const std::string extension : {".tfm", ".h5", ".mat"}) {
     const std::string whole =
         bytesOf(extension == ".mat" ? write(folder, extension,
@@ -384,7 +384,7 @@ TEST(TransformFile, DamagedBytesAreReadOrRefused) {
       }
     }
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 /// File written by Slicer 5.2.2, and the matrix stored beside.

@@ -16,7 +16,8 @@ Overloaded(Kinds...) -> Overloaded<Kinds...>;
 
 } // namespace
 
-LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera) {
+LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera)
+    : m_count(lights.size()) {
   for (const Light& light : lights)
     std::visit(Overloaded{
                    [&](const EnvironmentLight& l) {

@@ -78,6 +78,11 @@ public:
     return sum;
   }
 
+  /// True if every light is an area, directional or environment light: the kinds that SIMD lanes
+  /// know, and that the members below list.
+  bool hasOnlyListedKinds() const {
+    return m_areas.size() + m_directionals.size() + m_environments.size() == m_count;
+  }
   const std::vector<PlacedAreaLight>& areas() const { return m_areas; }
   const std::vector<PlacedDirectionalLight>& directionals() const { return m_directionals; }
   /// Sum of the constant environments' radiance.
@@ -94,6 +99,7 @@ private:
   void place(const AreaLight& light, const Grid& volume, const Camera& camera);
   void chooseShares(const Vec3& center);
 
+  std::size_t m_count; ///< lights of all kinds
   std::vector<PlacedAreaLight> m_areas;
   std::vector<PlacedDirectionalLight> m_directionals;
   std::vector<SharedEnvironment> m_environments;

@@ -35,7 +35,7 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
     return (light.center - grid.worldCenter()).norm() < farthest &&
            light.half.maxCoeff() < farthest && light.radiance.maxCoeff() < brightest;
   };
-  return std::abs(transfer.g) <= greatestG &&
+  return lights.hasOnlyListedKinds() && std::abs(transfer.g) <= greatestG &&
          !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness) &&
          std::all_of(lights.areas().begin(), lights.areas().end(), fits);
 }
