@@ -38,27 +38,9 @@ Mat3 Mat3::cwiseAbs() const {
   return {col(0).cwiseAbs(), col(1).cwiseAbs(), col(2).cwiseAbs()};
 }
 
-bool Mat3::allFinite() const {
-  return col(0).allFinite() && col(1).allFinite() && col(2).allFinite();
-}
-
-double Mat3::norm() const {
-  return std::sqrt(col(0).squaredNorm() + col(1).squaredNorm() + col(2).squaredNorm());
-}
-
-bool Mat3::isApprox(const Mat3& o, double relative) const {
-  return (*this - o).norm() <= relative * std::min(norm(), o.norm());
-}
-
 Affine Affine::inverse() const {
   const Mat3 linear = m_linear.inverse();
   return Affine(linear, -(linear * m_translation));
-}
-
-bool Affine::isApprox(const Affine& o, double relative) const {
-  const auto norm = [](const Mat3& m, const Vec3& v) { return std::hypot(m.norm(), v.norm()); };
-  return norm(m_linear - o.m_linear, m_translation - o.m_translation) <=
-         relative * std::min(norm(m_linear, m_translation), norm(o.m_linear, o.m_translation));
 }
 
 /// Rodrigues' formula.

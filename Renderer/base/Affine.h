@@ -43,9 +43,6 @@ public:
   /// Each column divided by its norm.
   Mat3 normalizedColumns() const;
   Mat3 cwiseAbs() const;
-  bool allFinite() const;
-  bool isApprox(const Mat3& o, double relative = 1e-12) const;
-  double norm() const; ///< root of the sum of squares
 
   constexpr Mat3 operator-() const { return {-col(0), -col(1), -col(2)}; }
   constexpr Mat3& operator*=(double factor) {
@@ -97,8 +94,6 @@ public:
   Affine inverse() const;
   /// Composes with a translation, applied before this map.
   void translate(const Vec3& by) { m_translation = m_linear * by + m_translation; }
-  bool allFinite() const { return m_linear.allFinite() && m_translation.allFinite(); }
-  bool isApprox(const Affine& o, double relative = 1e-12) const;
 
   friend constexpr bool operator==(const Affine&, const Affine&) = default;
 

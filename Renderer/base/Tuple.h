@@ -93,23 +93,9 @@ public:
   constexpr T mean() const { return sum() / T(N); }
   constexpr T maxCoeff() const { return *std::max_element(begin(), end()); }
   constexpr T minCoeff() const { return *std::min_element(begin(), end()); }
-  bool allFinite() const {
-    return std::all_of(begin(), end(), [](T part) { return std::isfinite(part); });
-  }
   /// True if |part| <= most for every part.
   bool isZero(T most = T(1e-12)) const {
     return std::all_of(begin(), end(), [most](T part) { return std::abs(part) <= most; });
-  }
-
-  /// |this - o| <= relative * min(|this|, |o|), norms being Euclidean.
-  bool isApprox(const Self& o, T relative = T(1e-12)) const {
-    T difference = 0, own = 0, others = 0; // squares
-    for (int i = 0; i < N; ++i) {
-      difference += (m_parts[i] - o[i]) * (m_parts[i] - o[i]);
-      own += m_parts[i] * m_parts[i];
-      others += o[i] * o[i];
-    }
-    return difference <= relative * relative * std::min(own, others);
   }
 
   constexpr Self cwiseMax(const Self& o) const {
@@ -223,14 +209,11 @@ public:
     return std::any_of(this->begin(), this->end(), [](T part) { return bool(part); });
   }
 
-  using Tuple<fenestra::Array, T, N>::operator+=;
-  using Tuple<fenestra::Array, T, N>::operator-=;
-  constexpr Array& operator+=(T o) & { return *this = *this + o; }
-  constexpr Array& operator-=(T o) & { return *this = *this - o; }
-  constexpr Array& operator*=(const Array& o) & { return *this = *this * o; }
-  constexpr Array& operator*=(T o) & { return *this = *this * o; }
-  constexpr Array& operator/=(const Array& o) & { return *this = *this / o; }
-  constexpr Array& operator/=(T o) & { return *this = *this / o; }
+  // `o`: a number or an array.
+  constexpr Array& operator+=(const auto& o) & { return *this = *this + o; }
+  constexpr Array& operator-=(const auto& o) & { return *this = *this - o; }
+  constexpr Array& operator*=(const auto& o) & { return *this = *this * o; }
+  constexpr Array& operator/=(const auto& o) & { return *this = *this / o; }
 
   friend constexpr Array operator+(const Array& a, T b) { return a + Array::Constant(b); }
   friend constexpr Array operator-(const Array& a, T b) { return a - Array::Constant(b); }
@@ -304,7 +287,6 @@ public:
     const T square = squaredNorm();
     return square > T(0) ? *this / std::sqrt(square) : *this;
   }
-  void normalize() { *this = normalized(); }
   /// normalized() for lengths whose squares overflow or vanish.
   Vector stableNormalized() const {
     const T greatest = this->cwiseAbs().maxCoeff();

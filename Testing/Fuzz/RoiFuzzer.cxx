@@ -1,4 +1,5 @@
 // Regions of interest (.mrk.json).
+#include "Approx.h"
 #include "Harness.h"
 
 #include "files/slicer/MrmlScene.h"
@@ -14,6 +15,6 @@ FENESTRA_FUZZ(Roi, input) {
   fuzzing::asFile(input, "r.mrk.json");
   static MrmlScene scene(scenePath);
   const CropBox box = readSceneRoi(scene, *scene.document.find("roi"));
-  if (!box.worldToBox.allFinite())
+  if (!allFinite(box.worldToBox))
     throw std::logic_error("a box that is none");
 }

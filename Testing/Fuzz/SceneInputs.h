@@ -1,6 +1,7 @@
 #pragma once
 // Loads a Slicer scene as a render does, with and without a focus.
 
+#include "Approx.h"
 #include "Harness.h"
 
 #include "session/Input.h"
@@ -12,8 +13,8 @@ inline void loadScene(const std::filesystem::path& path) {
   const Volume volume = input.volume({}).volume;
   const SceneSettings settings = input.settings({}, true);
   input.look({}, {volume.minimum, volume.maximum});
-  if (!volume.grid.indexToWorld.allFinite() ||
-      (settings.crop && !settings.crop->worldToBox.allFinite()))
+  if (!allFinite(volume.grid.indexToWorld) ||
+      (settings.crop && !allFinite(settings.crop->worldToBox)))
     throw std::logic_error("a place that is none");
   input.focus({}, {"A"}, {}, volume.grid);
 }

@@ -1,5 +1,6 @@
 // Linear transform files: the input is a child's answer about a file, which may be any bytes if a
 // malicious file controls the child. ApartMutations sends files.
+#include "Approx.h"
 #include "Harness.h"
 
 #include "files/slicer/TransformFile.h"
@@ -7,6 +8,6 @@
 FENESTRA_FUZZ(Transform, input) {
   using namespace fenestra;
   const Affine toParent = answeredTransform("t.h5", input, TransformSense::fromParent);
-  if (!toParent.allFinite())
+  if (!allFinite(toParent))
     throw std::logic_error("a map that is none");
 }

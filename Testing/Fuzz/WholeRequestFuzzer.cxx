@@ -1,6 +1,7 @@
 // Whole request, from bytes to pixels: a scene's text, a line `---`, and its volume, v.nrrd; other
 // files that the scene may name lie beside. The first byte selects whether there is a focus. Only
 // this target tests combinations of scene and volume (positions, boxes, cameras, majorants, paths).
+#include "Approx.h"
 #include "Harness.h"
 #include "SceneNeighbours.h"
 
@@ -47,7 +48,7 @@ private:
 
 void checkPixels(const Film& film) {
   for (const PixelSums& pixel : film.pixels())
-    if (!pixel.mean.allFinite() || (pixel.mean < 0.0).any())
+    if (!allFinite(pixel.mean) || (pixel.mean < 0.0).any())
       throw std::logic_error("a pixel that is no light");
 }
 

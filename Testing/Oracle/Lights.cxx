@@ -32,7 +32,7 @@ PlacedArea placed(const AreaLight& light, const Grid& grid, const View& view) {
     area.up = turned(light.up);
     area.size *= radius;
   }
-  area.normal.normalize();
+  area.normal = area.normal.normalized();
   area.up = (area.up - area.up.dot(area.normal) * area.normal).normalized();
   area.right = area.up.cross(area.normal);
   return area;

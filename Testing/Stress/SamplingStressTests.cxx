@@ -1,5 +1,6 @@
 // Sampling routines at both ends of the random range: u = 0 and the largest u below 1.
 
+#include "Approx.h"
 #include "StressSupport.h"
 
 namespace fenestra::testing::SamplingStressTests {
@@ -236,9 +237,9 @@ TEST(LightEnds, DirectionIsUnitAndContributionFinite) {
           ASSERT_NEAR(sample->direction.norm(), 1.0, 1e-12) << point;
           ASSERT_GT(sample->distance, 0.0);
           ASSERT_GT(sample->pdf, 0.0);
-          ASSERT_TRUE(sample->radiance.allFinite());
+          ASSERT_TRUE(allFinite(sample->radiance));
           // An infinite pdf (grazing, or a light without area) must give a contribution of 0.
-          ASSERT_TRUE((sample->radiance / sample->pdf).allFinite()) << point;
+          ASSERT_TRUE(allFinite(sample->radiance / sample->pdf)) << point;
         }
   }
   EXPECT_GT(drawn, 20000);

@@ -2,6 +2,7 @@
 
 #include "files/segments/ClosedSurface.h"
 
+#include "Approx.h"
 #include "MedicalFiles.h"
 #include "model/masks/Voxelize.h"
 
@@ -185,7 +186,7 @@ TEST(ClosedSurface, EveryEncodingMarksTheVoxelsInside) {
     ASSERT_EQ(segmentation.segments().size(), 1u);
     EXPECT_EQ(segmentation.segments()[0].id, "id0");
     EXPECT_EQ(segmentation.segments()[0].name, "ségment 0");
-    EXPECT_TRUE(segmentation.segments()[0].color.isApprox(Rgb(0.25, 0.5, 1.0)));
+    EXPECT_TRUE(isApprox(segmentation.segments()[0].color, Rgb(0.25, 0.5, 1.0)));
     const Mask mask = segmentation.mask({"ségment 0"}, grid);
     std::int64_t inside = 0, near = 0;
     for (int z = 0; z < grid.size.z(); ++z)

@@ -3,6 +3,7 @@
 #include "session/Defaults.h"
 #include "session/Picture.h"
 
+#include "Approx.h"
 #include "Support.h"
 #include "base/Error.h"
 
@@ -27,8 +28,8 @@ TEST(FrameView, NamedViewShowsTheWholeVolumeAlongAnAxis) {
   ViewRequest view;
   view.name = "left";
   const Camera camera(frameView(view, grid, nullptr, 200, 100), 200, 100);
-  EXPECT_TRUE(camera.forward().isApprox(Vec3::UnitX())) << "a viewer at the left looks right";
-  EXPECT_TRUE(camera.up().isApprox(Vec3::UnitZ()));
+  EXPECT_TRUE(isApprox(camera.forward(), Vec3::UnitX())) << "a viewer at the left looks right";
+  EXPECT_TRUE(isApprox(camera.up(), Vec3::UnitZ()));
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner = camera.toView(grid.worldCorner(i));
     EXPECT_GT(corner.z(), 0.0) << "nothing is behind the eye";
@@ -49,7 +50,7 @@ TEST(FrameView, UpMayHaveAnyLength) {
     const CameraPose pose = framed(length * Vec3(1, 1, 1));
     EXPECT_EQ(pose.scale, usual.scale) << length;
     EXPECT_EQ(pose.position, usual.position) << length;
-    EXPECT_TRUE(Camera(pose, 200, 100).up().isApprox(Camera(usual, 200, 100).up(), 1e-15));
+    EXPECT_TRUE(isApprox(Camera(pose, 200, 100).up(), Camera(usual, 200, 100).up(), 1e-15));
   }
 }
 
@@ -60,7 +61,7 @@ TEST(FrameView, FocusFramingIsEqualInBothProjections) {
   const Camera parallel(frameView(view, grid, &focus, 64, 64), 64, 64);
   view.projection = Projection::perspective;
   const Camera perspective(frameView(view, grid, &focus, 64, 64), 64, 64);
-  EXPECT_TRUE(parallel.pose().target.isApprox(focus.grid.worldCenter()));
+  EXPECT_TRUE(isApprox(parallel.pose().target, focus.grid.worldCenter()));
   EXPECT_NEAR(perspective.pixelPitch(), parallel.pixelPitch(), 1e-9);
   EXPECT_LT(parallel.pose().scale, 10.0) << "the focus, not the volume";
   const Vec3 fromCenter =
@@ -116,9 +117,9 @@ TEST(Picture, PlaneLiesThroughTheTargetWithThePicturesCorners) {
   pose.target = {0, 0, 0};
   pose.scale = 10.0;
   const ImagePlane plane = picturePlane(Camera(pose, 40, 20));
-  EXPECT_TRUE(plane.topLeft.isApprox(Vec3(-19.5, 0.0, 9.5)));
-  EXPECT_TRUE(plane.columnStep.isApprox(Vec3(1, 0, 0)));
-  EXPECT_TRUE(plane.rowStep.isApprox(Vec3(0, 0, -1)));
+  EXPECT_TRUE(isApprox(plane.topLeft, Vec3(-19.5, 0.0, 9.5)));
+  EXPECT_TRUE(isApprox(plane.columnStep, Vec3(1, 0, 0)));
+  EXPECT_TRUE(isApprox(plane.rowStep, Vec3(0, 0, -1)));
 }
 
 TEST(Picture, HasEveryDocumentedChannel) {

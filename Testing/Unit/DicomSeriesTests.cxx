@@ -2,6 +2,7 @@
 
 #include "files/medical/DicomSeries.h"
 
+#include "Approx.h"
 #include "MedicalFiles.h"
 #include "files/medical/Quiet.h"
 #include "files/medical/VolumeReader.h"
@@ -139,7 +140,7 @@ TEST(DicomSeries, AppliesRescaleAndKeepsGantryTilt) {
   const Volume volume = readOnly(folder.path());
   EXPECT_EQ(volume.minimum, -1024);
   EXPECT_EQ(volume.maximum, -1024 + 2 * 19);
-  EXPECT_TRUE(volume.grid.indexToWorld.linear().col(2).isApprox(Vec3(0, -0.7, 3.0)));
+  EXPECT_TRUE(isApprox(volume.grid.indexToWorld.linear().col(2), Vec3(0, -0.7, 3.0)));
 }
 
 TEST(DicomSeries, SlicesMayDifferInSlope) {
@@ -204,7 +205,7 @@ TEST(DicomSeries, ReadsASingleSlice) {
   const Path file = write(folder / "one.dcm", {.position = {1, 2, 3}});
   const Volume volume = readDicomVolume({file}, "scene");
   EXPECT_EQ(volume.grid.size, Size3(5, 4, 1));
-  EXPECT_TRUE(volume.grid.indexToWorld.translation().isApprox(Vec3(-1, -2, 3)));
+  EXPECT_TRUE(isApprox(volume.grid.indexToWorld.translation(), Vec3(-1, -2, 3)));
   EXPECT_EQ(volume.name, "scene");
 }
 

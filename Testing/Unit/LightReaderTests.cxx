@@ -1,5 +1,6 @@
 // Lights from JSON, environment maps from EXR, and refusals.
 
+#include "Approx.h"
 #include "WriteResults.h"
 #include "base/safe/EmbeddedResources.h"
 #include "files/looks/LightReader.h"
@@ -33,7 +34,7 @@ TEST(LightReader, ReadsEveryKind) {
   EXPECT_EQ(rectangle.frame, LightFrame::camera);
   const auto& disk = std::get<AreaLight>(lights[3]);
   EXPECT_EQ(disk.shape, AreaLight::Shape::disk);
-  EXPECT_TRUE(disk.normal.isApprox(Vec3(0.6, 0, 0.8)));
+  EXPECT_TRUE(isApprox(disk.normal, Vec3(0.6, 0, 0.8)));
   EXPECT_EQ(disk.size, Vec2(9, 9));
   EXPECT_EQ(disk.frame, LightFrame::world);
 }

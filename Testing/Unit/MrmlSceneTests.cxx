@@ -1,5 +1,6 @@
 // Meaning of nodes: geometry, transforms, cropping boxes, cameras, visibility.
 
+#include "Approx.h"
 #include "SceneTesting.h"
 
 namespace fenestra::MrmlSceneTests {
@@ -98,10 +99,9 @@ TEST(MrmlScene, SegmentationAndLabelMapLieInTheWorld) {
     <SegmentationStorage id="ss" fileName="labels.nrrd"/>
     <LabelMapVolume id="l" storageNodeRef="ls"/>
     <VolumeArchetypeStorage id="ls" fileName="labels.nrrd" UseOrientationFromFile="0"/>)");
-  EXPECT_TRUE(readSceneSegmentation(scene, node(scene, "s"))
-                  .grid()
-                  .indexToWorld.translation()
-                  .isApprox(Vec3(90, -20, 30)));
+  EXPECT_TRUE(
+      isApprox(readSceneSegmentation(scene, node(scene, "s")).grid().indexToWorld.translation(),
+               Vec3(90, -20, 30)));
   const Segmentation labelMap = readSceneSegmentation(scene, node(scene, "l"));
   EXPECT_TRUE(labelMap.grid().indexToWorld.translation().isZero());
   EXPECT_EQ(labelMap.segments().at(0).labelValue, 5);
@@ -304,10 +304,10 @@ TEST(MrmlScene, AppliedTransformDoesNotMoveACameraAgain) {
       "<LinearTransform id=\"t\" matrixTransformToParent=\"" + turned + "\"/>";
   const CameraPose applied =
       poseOf("transformNodeRef=\"t\" appliedTransform=\"" + turned + "\"", transform);
-  EXPECT_TRUE(applied.position.isApprox(Vec3(1, 2, 3)));
+  EXPECT_TRUE(isApprox(applied.position, Vec3(1, 2, 3)));
   const CameraPose notYet = poseOf("transformNodeRef=\"t\"", transform);
-  EXPECT_TRUE(notYet.position.isApprox(turnedMap * Vec3(1, 2, 3)));
-  EXPECT_TRUE(notYet.up.isApprox(Vec3(0, 0, 1)));
+  EXPECT_TRUE(isApprox(notYet.position, turnedMap * Vec3(1, 2, 3)));
+  EXPECT_TRUE(isApprox(notYet.up, Vec3(0, 0, 1)));
 }
 
 TEST(MrmlScene, RefusesCamerasThatLookNowhere) {
@@ -328,9 +328,9 @@ TEST(MrmlScene, ReadsBackgroundOfTheView) {
       R"(<MRML><View backgroundColor="0.1 0.2 0.3" backgroundColor2="0.4 0.5 0.6"/>
          <View backgroundColor="0.1 0.2 0.3"/><View/></MRML>)",
       "test");
-  EXPECT_TRUE(viewBackground(document.nodes()[0]).top.isApprox(Rgb(0.4, 0.5, 0.6)));
-  EXPECT_TRUE(viewBackground(document.nodes()[0]).bottom.isApprox(Rgb(0.1, 0.2, 0.3)));
-  EXPECT_TRUE(viewBackground(document.nodes()[1]).top.isApprox(Rgb(0.1, 0.2, 0.3)));
+  EXPECT_TRUE(isApprox(viewBackground(document.nodes()[0]).top, Rgb(0.4, 0.5, 0.6)));
+  EXPECT_TRUE(isApprox(viewBackground(document.nodes()[0]).bottom, Rgb(0.1, 0.2, 0.3)));
+  EXPECT_TRUE(isApprox(viewBackground(document.nodes()[1]).top, Rgb(0.1, 0.2, 0.3)));
   EXPECT_TRUE(viewBackground(document.nodes()[2]).bottom == Rgb::Zero());
 }
 

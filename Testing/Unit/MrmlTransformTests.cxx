@@ -1,5 +1,6 @@
 // Numbers in a scene that are valid alone but not in composition.
 
+#include "Approx.h"
 #include "SceneTesting.h"
 
 namespace fenestra::MrmlTransformTests {
@@ -75,9 +76,9 @@ TEST(MrmlTransform, ReadsEachFileOnce) {
   folder.write("t.tfm", text + "1 2 3\nFixedParameters: \n");
   MrmlScene scene = folder.scene(nodes);
   const Affine read = toWorld(scene, node(scene, "n"));
-  EXPECT_TRUE(read.translation().isApprox(Vec3(2, 4, -6))); // applied twice; inverse, in LPS
+  EXPECT_TRUE(isApprox(read.translation(), Vec3(2, 4, -6))); // applied twice; inverse, in LPS
   folder.write("t.tfm", "damaged");
-  EXPECT_TRUE(toWorld(scene, node(scene, "n")).isApprox(read));
+  EXPECT_TRUE(isApprox(toWorld(scene, node(scene, "n")), read));
 
   MrmlScene damaged = folder.scene(nodes);
   const auto refuse = [&] {

@@ -1,6 +1,7 @@
 #include "base/Error.h"
 #include "phantoms/Cube.h"
 
+#include "Approx.h"
 #include <gtest/gtest.h>
 
 namespace fenestra::PhantomCubeTests {
@@ -50,8 +51,8 @@ TEST(PhantomCube, SmallCubeKeepsRangeAndProportions) {
 TEST(PhantomCube, CubeIsCentredOnTheOrigin) {
   for (const double edge : {1.0, 512.0}) {
     const Grid grid = makeCubePhantom({edge, 16}).volume.grid;
-    EXPECT_TRUE(grid.worldCorner(0).isApprox(Vec3::Constant(-0.5 * edge)));
-    EXPECT_TRUE(grid.worldCorner(7).isApprox(Vec3::Constant(0.5 * edge)));
+    EXPECT_TRUE(isApprox(grid.worldCorner(0), Vec3::Constant(-0.5 * edge)));
+    EXPECT_TRUE(isApprox(grid.worldCorner(7), Vec3::Constant(0.5 * edge)));
   }
 }
 

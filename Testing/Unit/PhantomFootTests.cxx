@@ -5,6 +5,7 @@
 #include "phantoms/FootLayers.h"
 #include "phantoms/PhantomWriter.h"
 
+#include "Approx.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -218,8 +219,8 @@ TEST(PhantomFoot, PlaceDoesNotDependOnSizeNorVoxelsOnThreads) {
   const FootOptions options{{48, 24, 28}};
   const Phantom many = makeFootPhantom(options);
   const Grid& grid = many.volume.grid;
-  EXPECT_TRUE(grid.spacing().cwiseProduct(grid.size.cast<double>()).isApprox(Vec3(280, 112, 140)));
-  EXPECT_TRUE(grid.worldCenter().isApprox(smallFoot().volume.grid.worldCenter()));
+  EXPECT_TRUE(isApprox(grid.spacing().cwiseProduct(grid.size.cast<double>()), Vec3(280, 112, 140)));
+  EXPECT_TRUE(isApprox(grid.worldCenter(), smallFoot().volume.grid.worldCenter()));
   EXPECT_GT(grid.indexToWorld.linear().determinant(), 0.0) << "right-handed";
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Phantom single = makeFootPhantom(options);

@@ -4,6 +4,7 @@
 #include "phantoms/KneeBones.h"
 #include "phantoms/KneeSignal.h"
 
+#include "Approx.h"
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -99,13 +100,13 @@ TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
   for (const Size3& size : {Size3(300, 344, 120), Size3(30, 43, 20)}) {
     const Grid grid = makeKneePhantom({Size3(size.cwiseMin(24))}).volume.grid;
     EXPECT_TRUE(
-        (grid.spacing().cwiseProduct(grid.size.cast<double>())).isApprox(Vec3(120, 137.6, 120)));
-    EXPECT_TRUE(grid.worldCenter().isApprox(Vec3(0, -2, 6.8)));
+        isApprox(grid.spacing().cwiseProduct(grid.size.cast<double>()), Vec3(120, 137.6, 120)));
+    EXPECT_TRUE(isApprox(grid.worldCenter(), Vec3(0, -2, 6.8)));
   }
   const Mat3 axes = smallKnee().volume.grid.indexToWorld.linear().normalizedColumns();
-  EXPECT_TRUE(axes.col(0).isApprox(Vec3(0, -1, 0))) << "posterior";
-  EXPECT_TRUE(axes.col(1).isApprox(Vec3(0, 0, -1))) << "inferior";
-  EXPECT_TRUE(axes.col(2).isApprox(Vec3(1, 0, 0))) << "right";
+  EXPECT_TRUE(isApprox(axes.col(0), Vec3(0, -1, 0))) << "posterior";
+  EXPECT_TRUE(isApprox(axes.col(1), Vec3(0, 0, -1))) << "inferior";
+  EXPECT_TRUE(isApprox(axes.col(2), Vec3(1, 0, 0))) << "right";
 }
 
 TEST(PhantomKnee, RefusesSizesBeyondItsLimits) {

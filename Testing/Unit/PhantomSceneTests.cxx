@@ -4,6 +4,7 @@
 #include "phantoms/PhantomScene.h"
 #include "phantoms/PhantomWriter.h"
 
+#include "Approx.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
@@ -165,8 +166,8 @@ TEST_F(PhantomSceneFiles, StorageNodesNameExistingFiles) {
 TEST_F(PhantomSceneFiles, VolumeNodeHoldsItsGridInRas) {
   const pugi::xml_node volume = node("Volume");
   const Grid& grid = phantom.volume.grid;
-  EXPECT_TRUE(triple(volume, "spacing").isApprox(grid.spacing(), 1e-5));
-  EXPECT_TRUE(triple(volume, "origin").isApprox(grid.indexToWorld.translation(), 1e-5));
+  EXPECT_TRUE(isApprox(triple(volume, "spacing"), grid.spacing(), 1e-5));
+  EXPECT_TRUE(isApprox(triple(volume, "origin"), grid.indexToWorld.translation(), 1e-5));
   const std::vector<double> directions = numbers(volume, "ijkToRASDirections");
   EXPECT_EQ(directions, (std::vector<double>{0, 0, 1, -1, 0, 0, 0, -1, 0})) << "P, I, R in columns";
   EXPECT_EQ(text(volume, "ijkToRASDirections").find('-'),
@@ -239,10 +240,10 @@ TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
   const Vec3 position = triple(camera, "position"), target = triple(camera, "focalPoint");
   const Vec3 up = triple(camera, "viewUp");
   const Grid& grid = phantom.volume.grid;
-  EXPECT_TRUE(target.isApprox(grid.worldCenter(), 1e-5));
+  EXPECT_TRUE(isApprox(target, grid.worldCenter(), 1e-5));
   const Vec3 backward = (position - target).normalized();
   EXPECT_GT(backward.y(), 0.7) << "from in front";
-  EXPECT_TRUE(backward.isApprox(phantom.towardViewer.normalized(), 1e-4));
+  EXPECT_TRUE(isApprox(backward, phantom.towardViewer.normalized(), 1e-4));
   EXPECT_NEAR(up.dot(backward), 0.0, 1e-5);
   EXPECT_NEAR(up.norm(), 1.0, 1e-5);
   EXPECT_GT(up.z(), 0.8);

@@ -2,6 +2,7 @@
 #include "phantoms/Noise.h"
 #include "phantoms/Shapes.h"
 
+#include "Approx.h"
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -20,7 +21,7 @@ TEST(PhantomShapes, TubeDistanceIsThatOfItsAxisLessItsRadius) {
   EXPECT_NEAR(solid.distance({5, 0, 1}), 3.0, 1e-12);
   EXPECT_NEAR(solid.distance({0, 0, 0.3}), -2.0, 1e-12);
   EXPECT_NEAR(solid.distance({0, 0, 14}), 2.0, 1e-12);
-  EXPECT_TRUE(solid.box.upper.isApprox(Vec3(2, 2, 12)));
+  EXPECT_TRUE(isApprox(solid.box.upper, Vec3(2, 2, 12)));
 }
 
 TEST(PhantomShapes, BandIsStretchedAcrossButNotAlongItsThickness) {
@@ -57,8 +58,8 @@ TEST(PhantomShapes, BlockIsABoxWithRoundEdgesInItsOwnAxes) {
   EXPECT_NEAR(solid.distance({1, 2, 9}), 1.0, 1e-12);
   EXPECT_NEAR(solid.distance({1, 10, 3}), 2.0, 1e-12);
   EXPECT_NEAR(solid.distance({5, 8, 8}), std::sqrt(12.0) - 2.0, 1e-12) << "its corner";
-  EXPECT_TRUE(solid.box.lower.isApprox(Vec3(-3, -4, -2)));
-  EXPECT_TRUE(solid.box.upper.isApprox(Vec3(5, 8, 8)));
+  EXPECT_TRUE(isApprox(solid.box.lower, Vec3(-3, -4, -2)));
+  EXPECT_TRUE(isApprox(solid.box.upper, Vec3(5, 8, 8)));
 }
 
 TEST(PhantomShapes, PlacedLoftRunsAlongItsAxis) {

@@ -2,6 +2,7 @@
 #include "phantoms/Knee.h"
 #include "phantoms/PhantomWriter.h"
 
+#include "Approx.h"
 #include <gtest/gtest.h>
 #include <itkMetaDataObject.h>
 #include <itkNrrdImageIO.h>
@@ -61,7 +62,7 @@ TEST_F(PhantomFiles, VolumeRoundTripsVoxelForVoxelInItsPlace) {
   EXPECT_EQ(field(*io, "NRRD_space"), "left-posterior-superior");
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 index = Box{Vec3::Zero(), phantom.volume.grid.size.cast<double>()}.corner(corner);
-    EXPECT_TRUE(worldOf(*io, index).isApprox(phantom.volume.grid.indexToWorld * index, 1e-9));
+    EXPECT_TRUE(isApprox(worldOf(*io, index), phantom.volume.grid.indexToWorld * index, 1e-9));
   }
   EXPECT_EQ(read<std::int16_t>(*io), std::get<std::vector<std::int16_t>>(phantom.volume.voxels));
 }
@@ -71,7 +72,7 @@ TEST_F(PhantomFiles, SegmentationHasSlicersFieldsForEverySegment) {
   const std::vector<std::uint8_t> labels = read<std::uint8_t>(*io);
   EXPECT_EQ(labels, phantom.labels.layers.at(0));
   EXPECT_TRUE(
-      worldOf(*io, {1, 2, 3}).isApprox(phantom.volume.grid.indexToWorld * Vec3(1, 2, 3), 1e-9));
+      isApprox(worldOf(*io, {1, 2, 3}), phantom.volume.grid.indexToWorld * Vec3(1, 2, 3), 1e-9));
   EXPECT_EQ(field(*io, "Segmentation_MasterRepresentation"), "Binary labelmap");
   for (std::size_t i = 0; i < phantom.segments.size(); ++i) {
     const std::string prefix = "Segment" + std::to_string(i) + "_";

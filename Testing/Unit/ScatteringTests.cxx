@@ -1,5 +1,6 @@
 #include "model/medium/Scattering.h"
 
+#include "Approx.h"
 #include "Histogram.h"
 
 namespace fenestra::testing::ScatteringTests {
@@ -37,8 +38,8 @@ TEST_P(HenyeyGreenstein, WeightIsTheAlbedo) {
   const PhaseScattering phase(incoming, GetParam(), Rgb(0.9, 0.5, 0.1));
   Random random(1, 2, 3);
   const ScatterSample sample = phase.sample(random);
-  EXPECT_TRUE(sample.weight.isApprox(Rgb(0.9, 0.5, 0.1)));
-  EXPECT_TRUE(phase.evaluate(sample.outgoing).isApprox(sample.weight * sample.pdf));
+  EXPECT_TRUE(isApprox(sample.weight, Rgb(0.9, 0.5, 0.1)));
+  EXPECT_TRUE(isApprox(phase.evaluate(sample.outgoing), sample.weight * sample.pdf));
 }
 
 INSTANTIATE_TEST_SUITE_P(MeanCosines, HenyeyGreenstein,
@@ -110,7 +111,7 @@ TEST_P(Surface, ReflectsNoMoreThanArrives) {
     return sum;
   }();
   EXPECT_LE(reflected.maxCoeff(), 1.0);
-  EXPECT_TRUE(reflected.isApprox(direct, 0.01)) << reflected << "\n" << direct;
+  EXPECT_TRUE(isApprox(reflected, direct, 0.01)) << reflected << "\n" << direct;
 }
 
 INSTANTIATE_TEST_SUITE_P(Lobes, Surface,

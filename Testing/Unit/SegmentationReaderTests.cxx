@@ -3,6 +3,7 @@
 #include "files/medical/VolumeReader.h"
 #include "files/segments/SegmentationReader.h"
 
+#include "Approx.h"
 #include "MedicalFiles.h"
 
 namespace fenestra::SegmentationReaderTests {
@@ -50,7 +51,7 @@ TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
   EXPECT_EQ(at(mask, {1, 2, 3}), 1);
   EXPECT_EQ(at(mask, {3, 3, 3}), 1);
   EXPECT_EQ(at(mask, {5, 5, 5}), 0);
-  EXPECT_TRUE((mask.grid.indexToWorld * Vec3::Zero()).isApprox(Vec3(0, 1, 2)));
+  EXPECT_TRUE(isApprox(mask.grid.indexToWorld * Vec3::Zero(), Vec3(0, 1, 2)));
 }
 
 TEST(SegmentationReader, MaskEndsWithZerosInsideTheVolume) {
@@ -259,7 +260,7 @@ TEST(SegmentationReader, OriginOfACroppedFileIncludesItsOffset) {
   labels[1] = 1; // voxel 1 0 0
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  EXPECT_TRUE(centroid(s, "liver").isApprox(Vec3(-12, -20, 30)));
+  EXPECT_TRUE(isApprox(centroid(s, "liver"), Vec3(-12, -20, 30)));
 }
 
 TEST(SegmentationReader, IgnoresStatedExtentOfSegments) {
@@ -361,9 +362,9 @@ TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtent) {
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   ASSERT_EQ(s.segments().size(), 2u);
   EXPECT_EQ(s.mask({"liver"}, s.grid()).count, 2);
-  EXPECT_TRUE(centroid(s, "liver").isApprox(Vec3(100 - 10.5 * 2, 200 - 20 * 3, -50 + 5 * 4)));
+  EXPECT_TRUE(isApprox(centroid(s, "liver"), Vec3(100 - 10.5 * 2, 200 - 20 * 3, -50 + 5 * 4)));
   EXPECT_EQ(s.mask({"tumour"}, s.grid()).count, 2);
-  EXPECT_TRUE(centroid(s, "tumour").isApprox(Vec3(100 - 11 * 2, 200 - 21.5 * 3, -50 + 5.5 * 4)));
+  EXPECT_TRUE(isApprox(centroid(s, "tumour"), Vec3(100 - 11 * 2, 200 - 21.5 * 3, -50 + 5.5 * 4)));
   EXPECT_EQ(s.mask({"a", "b"}, s.grid()).count, 3);
 
   geometry.fields["Segmentation_Extent"] = "10 12 20 23 5";
@@ -424,10 +425,10 @@ TEST(SegmentationReader, StatisticsHoldVoxelsAndBoundsOfEachSegment) {
   const std::vector<SegmentStatistics> statistics = s.statistics();
   ASSERT_EQ(statistics.size(), 3u);
   EXPECT_EQ(statistics[0].voxels, 3);
-  EXPECT_TRUE(statistics[0].bounds.lower.isApprox(Vec3(10 - 2 * 4.5, 20 + 3 * 2.5, 30.5)));
-  EXPECT_TRUE(statistics[0].bounds.upper.isApprox(Vec3(10 - 2 * 1.5, 20 + 3 * 5.5, 32.5)));
+  EXPECT_TRUE(isApprox(statistics[0].bounds.lower, Vec3(10 - 2 * 4.5, 20 + 3 * 2.5, 30.5)));
+  EXPECT_TRUE(isApprox(statistics[0].bounds.upper, Vec3(10 - 2 * 1.5, 20 + 3 * 5.5, 32.5)));
   EXPECT_EQ(statistics[1].voxels, 1);
-  EXPECT_TRUE(statistics[1].bounds.lower.isApprox(Vec3(9, 18.5, 29.5)));
+  EXPECT_TRUE(isApprox(statistics[1].bounds.lower, Vec3(9, 18.5, 29.5)));
   EXPECT_EQ(statistics[2].voxels, 0);
   EXPECT_TRUE(statistics[2].bounds.upper == Vec3::Zero());
 }

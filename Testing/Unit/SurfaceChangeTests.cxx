@@ -1,5 +1,6 @@
 // Clipping surface on a turntable: the measures of its changes, and its steadying.
 
+#include "Approx.h"
 #include "ClippingTesting.h"
 #include "clip/surface/SteadySurface.h"
 #include "measure/SurfaceChange.h"
@@ -17,8 +18,8 @@ TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
   pose.target = {1, 2, 3};
   pose.position = {1, 102, 43}; // anterior, and above
   pose.up = {0, 0, 2};
-  EXPECT_TRUE(turnedAroundTarget(pose, 90.0).position.isApprox(Vec3(-99, 2, 43)));
-  EXPECT_TRUE(turnedAroundTarget(pose, -180.0).position.isApprox(Vec3(1, -98, 43)));
+  EXPECT_TRUE(isApprox(turnedAroundTarget(pose, 90.0).position, Vec3(-99, 2, 43)));
+  EXPECT_TRUE(isApprox(turnedAroundTarget(pose, -180.0).position, Vec3(1, -98, 43)));
   EXPECT_EQ(turnedAroundTarget(pose, 0.0).position, pose.position);
   EXPECT_EQ(turnedAroundTarget(pose, 77.0).target, pose.target);
   EXPECT_EQ(turnedAroundTarget(pose, 77.0).up, pose.up);

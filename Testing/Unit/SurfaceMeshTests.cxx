@@ -2,6 +2,7 @@
 // depths; its triangles face the eye, meet at whole edges, and deviate from samples by at most the
 // tolerance.
 
+#include "Approx.h"
 #include "ClippingTesting.h"
 #include "clip/mesh/SurfaceMesh.h"
 
@@ -92,7 +93,7 @@ void expectWellMade(const SurfaceMesh& mesh, const Camera& camera) {
   }
   EXPECT_EQ(used.size(), mesh.points.size());
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
-    ASSERT_TRUE(mesh.points[i].allFinite() && std::isfinite(mesh.depths[i]));
+    ASSERT_TRUE(allFinite(mesh.points[i]) && std::isfinite(mesh.depths[i]));
 }
 
 TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {

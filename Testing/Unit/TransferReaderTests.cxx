@@ -3,6 +3,7 @@
 #include "files/looks/TransferReader.h"
 #include "model/medium/VolumeProperty.h"
 
+#include "Approx.h"
 #include "Refusals.h"
 
 namespace fenestra::TransferReaderTests {
@@ -15,7 +16,7 @@ TEST(TransferReader, ReadsItsOwnFormat) {
       "test");
   EXPECT_DOUBLE_EQ(f.extinction(25)[0], 1.0);
   EXPECT_DOUBLE_EQ(f.extinction(1000)[0], 4.0);
-  EXPECT_TRUE(f.albedo(5).isApprox(Rgb(0.3, 0.4, 0.65)));
+  EXPECT_TRUE(isApprox(f.albedo(5), Rgb(0.3, 0.4, 0.65)));
   EXPECT_EQ(f.g, -0.5);
   ASSERT_TRUE(f.shading);
   EXPECT_EQ(f.shading->gamma, 0.5);
@@ -154,7 +155,7 @@ TEST(TransferReader, ReadsSlicersText) {
   EXPECT_NEAR(f.extinction(-2)[0], -std::log1p(-0.1), 1e-4 * 0.1);
   EXPECT_DOUBLE_EQ(f.extinction(13)[0], -std::log1p(-0.6)); // equal positions make a step
   EXPECT_NEAR(f.extinction(13 - 1e-9)[0], -std::log1p(-0.2), 1e-6);
-  EXPECT_TRUE(f.albedo(235).isApprox(Rgb(1, 1, 1)));
+  EXPECT_TRUE(isApprox(f.albedo(235), Rgb(1, 1, 1)));
   EXPECT_FALSE(f.gradientOpacity);
   ASSERT_TRUE(f.shading);
   EXPECT_EQ(f.shading->diffuse, 0.42);

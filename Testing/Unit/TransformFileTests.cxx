@@ -2,6 +2,7 @@
 
 #include "files/slicer/TransformFile.h"
 
+#include "Approx.h"
 #include "MedicalFiles.h"
 #include "files/slicer/SceneArchive.h"
 
@@ -192,7 +193,7 @@ TEST(TransformFile, ReadsMatColumnsOfTheOtherByteOrder) {
   }
   ASSERT_EQ(at, bytes.size());
   const auto path = folder.write("big.mat", bytes);
-  EXPECT_TRUE(readLinearTransform(path, TransformSense::fromParent).isApprox(expected, 1e-15));
+  EXPECT_TRUE(isApprox(readLinearTransform(path, TransformSense::fromParent), expected, 1e-15));
 }
 
 /// File as written by the HDF5 library itself and by older ITK: groups are symbol tables.
@@ -231,7 +232,7 @@ TEST(TransformFile, ReadsOldHdf5) {
     const Affine toParent =
         readLinearTransform(writeOldHdf5(folder, count), TransformSense::fromParent);
     EXPECT_TRUE(
-        toParent.translation().isApprox(Vec3(count - 1, count * (count - 1), -3 * (count - 1))));
+        isApprox(toParent.translation(), Vec3(count - 1, count * (count - 1), -3 * (count - 1))));
   }
 }
 
@@ -254,10 +255,9 @@ TEST(TransformFile, MapsFromTheParentInLps) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.tfm", affineText);
   const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
-  EXPECT_TRUE(toParent.translation().isApprox(Vec3(10, 20, -30)));
-  EXPECT_TRUE(readLinearTransform(path, TransformSense::toParent)
-                  .translation()
-                  .isApprox(Vec3(-10, -20, 30)));
+  EXPECT_TRUE(isApprox(toParent.translation(), Vec3(10, 20, -30)));
+  EXPECT_TRUE(isApprox(readLinearTransform(path, TransformSense::toParent).translation(),
+                       Vec3(-10, -20, 30)));
 }
 
 TEST(TransformFile, RefusesNonlinearTransforms) {
@@ -378,7 +378,7 @@ TEST(TransformFile, DamagedBytesAreReadOrRefused) {
         bytes[random() % bytes.size()] = static_cast<char>(random());
       const auto path = folder.write(std::to_string(i) + extension, bytes);
       try {
-        EXPECT_TRUE(readLinearTransform(path, TransformSense::fromParent).allFinite());
+        EXPECT_TRUE(allFinite(readLinearTransform(path, TransformSense::fromParent)));
       } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
       }

@@ -2,6 +2,7 @@
 
 #include "files/medical/VolumeReader.h"
 
+#include "Approx.h"
 #include "MedicalFiles.h"
 
 #include <numeric>
@@ -116,10 +117,10 @@ TEST(VolumeReader, ConvertsObliqueGeometryToRas) {
       const Vec3 lps = Vec3(10, -20, 30) + index[0] * 0.5 * Vec3(c, s, 0) +
                        index[1] * 0.75 * Vec3(-s, c, 0) +
                        index[2] * 3.0 * Vec3(0, 0, leftHanded ? -1 : 1);
-      EXPECT_TRUE((grid.indexToWorld * index).isApprox(Vec3(-lps.x(), -lps.y(), lps.z()), 1e-6))
+      EXPECT_TRUE(isApprox(grid.indexToWorld * index, Vec3(-lps.x(), -lps.y(), lps.z()), 1e-6))
           << name << " " << (grid.indexToWorld * index);
-      EXPECT_TRUE((grid.worldToIndex * (grid.indexToWorld * index)).isApprox(index, 1e-6));
-      EXPECT_TRUE(grid.spacing().isApprox(Vec3(0.5, 0.75, 3), 1e-6)) << name;
+      EXPECT_TRUE(isApprox(grid.worldToIndex * (grid.indexToWorld * index), index, 1e-6));
+      EXPECT_TRUE(isApprox(grid.spacing(), Vec3(0.5, 0.75, 3), 1e-6)) << name;
     }
   }
 }
@@ -138,13 +139,13 @@ TEST(VolumeReader, ReadsRasAndShearedHeaders) {
                        "space directions: (2,0,0) (0.5,1,0) (0,0,-3)\nspace origin: (1,2,3)",
                        samples));
   const Grid grid = readVolume(path).grid;
-  EXPECT_TRUE((grid.indexToWorld * Vec3(1, 1, 1)).isApprox(Vec3(3.5, 3, 0), 1e-12));
+  EXPECT_TRUE(isApprox(grid.indexToWorld * Vec3(1, 1, 1), Vec3(3.5, 3, 0), 1e-12));
   EXPECT_LT(grid.indexToWorld.linear().determinant(), 0.0);
   const auto lps = folder.write(
       "lps.nrrd", nrrd("dimension: 3\nspace: left-posterior-superior\nsizes: 3 4 2\n"
                        "space directions: (-2,0,0) (0,-1,0) (0,0,3)\nspace origin: (1,2,3)",
                        samples));
-  EXPECT_TRUE((readVolume(lps).grid.indexToWorld * Vec3(1, 1, 1)).isApprox(Vec3(1, -1, 6), 1e-12));
+  EXPECT_TRUE(isApprox(readVolume(lps).grid.indexToWorld * Vec3(1, 1, 1), Vec3(1, -1, 6), 1e-12));
 }
 
 TEST(VolumeReader, ReadsDetachedDataAndLists) {
@@ -179,7 +180,7 @@ TEST(VolumeReader, DropsTrailingAxesOfOneFrame) {
                           std::string(24, 'x')));
   const Volume volume = readVolume(path);
   EXPECT_EQ(volume.grid.size, Size3(3, 4, 2));
-  EXPECT_TRUE((volume.grid.indexToWorld * Vec3(1, 1, 1)).isApprox(Vec3(1, -1, 6), 1e-12));
+  EXPECT_TRUE(isApprox(volume.grid.indexToWorld * Vec3(1, 1, 1), Vec3(1, -1, 6), 1e-12));
   writeFile(folder / "slice.nrrd", std::vector<std::uint8_t>(12, 1), {.size = {3, 4, 1}});
   EXPECT_EQ(readVolume(folder / "slice.nrrd").grid.size, Size3(3, 4, 1));
 }
@@ -436,7 +437,7 @@ TEST(VolumeReader, ReadsRealScans) {
   const Volume chest = readVolume(data("slicerio_segnrrd/CTChest4.nrrd"));
   EXPECT_EQ(chest.grid.size, Size3(128, 128, 34));
   EXPECT_TRUE(
-      (chest.grid.indexToWorld * Vec3::Zero()).isApprox(Vec3(-193.096, -216.396, -340.25), 1e-4));
+      isApprox(chest.grid.indexToWorld * Vec3::Zero(), Vec3(-193.096, -216.396, -340.25), 1e-4));
 }
 
 } // namespace

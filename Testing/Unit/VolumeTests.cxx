@@ -1,5 +1,6 @@
 #include "model/volume/Volume.h"
 
+#include "Approx.h"
 #include "base/Random.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +18,8 @@ Grid obliqueGrid(const Size3& size) {
 
 TEST(Grid, MapsBothWaysAndReturnsItsSpacing) {
   const Grid grid = obliqueGrid({5, 6, 7});
-  EXPECT_TRUE((grid.worldToIndex * (grid.indexToWorld * Vec3(1, 2, 3))).isApprox(Vec3(1, 2, 3)));
-  EXPECT_TRUE(grid.spacing().isApprox(Vec3(0.5, 2.0, 1.25)));
+  EXPECT_TRUE(isApprox(grid.worldToIndex * (grid.indexToWorld * Vec3(1, 2, 3)), Vec3(1, 2, 3)));
+  EXPECT_TRUE(isApprox(grid.spacing(), Vec3(0.5, 2.0, 1.25)));
   EXPECT_NEAR(grid.boundingRadius(), 0.5 * Vec3(2.5, 12, 8.75).norm(), 1e-12);
 }
 
@@ -36,7 +37,7 @@ TEST(Field, ReproducesALinearFunctionAndItsGradient) {
     const Vec3 p(1.0 + 3.0 * random.uniform(), 1.0 + 2.0 * random.uniform(),
                  1.0 + random.uniform());
     ASSERT_NEAR(field.value(p), slope.dot(grid.indexToWorld * p), 1e-4);
-    ASSERT_TRUE(field.gradient(p).isApprox(slope, 1e-4)) << field.gradient(p);
+    ASSERT_TRUE(isApprox(field.gradient(p), slope, 1e-4)) << field.gradient(p);
   }
 }
 
@@ -63,9 +64,9 @@ TEST(Frame, IsOrthonormalAndRightHanded) {
   for (int i = 0; i < 1000; ++i) {
     const Frame f(uniformDirection(random.uniform2()));
     ASSERT_NEAR(f.tangent.dot(f.normal), 0.0, 1e-12);
-    ASSERT_TRUE(f.tangent.cross(f.bitangent).isApprox(f.normal, 1e-12));
+    ASSERT_TRUE(isApprox(f.tangent.cross(f.bitangent), f.normal, 1e-12));
   }
-  EXPECT_TRUE(Frame(-Vec3::UnitZ()).tangent.allFinite());
+  EXPECT_TRUE(allFinite(Frame(-Vec3::UnitZ()).tangent));
 }
 
 } // namespace

@@ -12,6 +12,7 @@
 #include <array>
 #include <fstream>
 #include <set>
+#include <variant>
 
 namespace fenestra {
 namespace {
@@ -31,63 +32,53 @@ std::vector<double> decimals(std::string text) {
   return parseNumbers(text).value_or(std::vector<double>{});
 }
 
-/// Number of a field; 0: not one number from 0 to 2^31.
-unsigned fieldCount(const std::string& text) {
-  const std::vector<double> numbers = decimals(text);
-  const bool one = numbers.size() == 1 && numbers[0] >= 0.0 && numbers[0] <= 0x1p31;
-  return one ? static_cast<unsigned>(numbers[0]) : 0;
+void keep(const std::string& text, std::string& member) {
+  member = text;
 }
-
-using Keep = void (*)(DicomHeader&, const std::string&);
-
-template <std::string DicomHeader::*field>
-void keepText(DicomHeader& header, const std::string& text) {
-  header.*field = text;
+void keep(const std::string& text, std::vector<double>& member) {
+  member = decimals(text);
 }
-template <std::vector<double> DicomHeader::*field>
-void keepNumbers(DicomHeader& header, const std::string& text) {
-  header.*field = decimals(text);
-}
-/// Keeps slope or intercept; empty: missing; NaN: not one number.
-template <std::vector<double> DicomHeader::*field>
-void keepRescale(DicomHeader& header, const std::string& text) {
+/// Keeps any number; the default where the field is missing; NaN: not one number.
+void keep(const std::string& text, double& member) {
   const std::vector<double> numbers = decimals(text);
   if (!text.empty())
-    header.*field = {numbers.size() == 1 ? numbers[0] : std::nan("")};
+    member = numbers.size() == 1 ? numbers[0] : std::nan("");
 }
-/// Keeps a number; if the field is missing, the default.
-template <unsigned DicomHeader::*field>
-void keepCount(DicomHeader& header, const std::string& text) {
-  if (!text.empty())
-    header.*field = fieldCount(text);
+/// Keeps a number from 0 to 2^31; the default where the field is missing; 0: any other text.
+void keep(const std::string& text, unsigned& member) {
+  double number = member;
+  keep(text, number);
+  member = number >= 0.0 && number <= 0x1p31 ? static_cast<unsigned>(number) : 0;
 }
 
 struct Field {
   std::uint16_t group, element;
-  Keep keep;
+  std::variant<std::string DicomHeader::*, std::vector<double> DicomHeader::*,
+               double DicomHeader::*, unsigned DicomHeader::*>
+      member;
 
   Tag tag() const { return {group, element}; }
 };
 
 constexpr std::array dicomFields = {
-    Field{0x0008, 0x0060, keepText<&DicomHeader::modality>},
-    Field{0x0008, 0x103e, keepText<&DicomHeader::seriesDescription>},
-    Field{0x0020, 0x000e, keepText<&DicomHeader::seriesUid>},
-    Field{0x0020, 0x0011, keepText<&DicomHeader::seriesNumber>},
-    Field{0x0020, 0x0032, keepNumbers<&DicomHeader::position>},
-    Field{0x0020, 0x0037, keepNumbers<&DicomHeader::orientation>},
-    Field{0x0028, 0x0002, keepCount<&DicomHeader::samples>},
-    Field{0x0028, 0x0004, keepText<&DicomHeader::photometric>},
-    Field{0x0028, 0x0008, keepCount<&DicomHeader::frames>},
-    Field{0x0028, 0x0010, keepCount<&DicomHeader::rows>},
-    Field{0x0028, 0x0011, keepCount<&DicomHeader::columns>},
-    Field{0x0028, 0x0030, keepNumbers<&DicomHeader::pixelSpacing>},
-    Field{0x0028, 0x0100, keepCount<&DicomHeader::bits>},
-    Field{0x0028, 0x0101, keepCount<&DicomHeader::bitsStored>},
-    Field{0x0028, 0x0102, keepCount<&DicomHeader::highBit>},
-    Field{0x0028, 0x0103, keepCount<&DicomHeader::isSigned>},
-    Field{0x0028, 0x1052, keepRescale<&DicomHeader::intercept>},
-    Field{0x0028, 0x1053, keepRescale<&DicomHeader::slope>},
+    Field{0x0008, 0x0060, &DicomHeader::modality},
+    Field{0x0008, 0x103e, &DicomHeader::seriesDescription},
+    Field{0x0020, 0x000e, &DicomHeader::seriesUid},
+    Field{0x0020, 0x0011, &DicomHeader::seriesNumber},
+    Field{0x0020, 0x0032, &DicomHeader::position},
+    Field{0x0020, 0x0037, &DicomHeader::orientation},
+    Field{0x0028, 0x0002, &DicomHeader::samples},
+    Field{0x0028, 0x0004, &DicomHeader::photometric},
+    Field{0x0028, 0x0008, &DicomHeader::frames},
+    Field{0x0028, 0x0010, &DicomHeader::rows},
+    Field{0x0028, 0x0011, &DicomHeader::columns},
+    Field{0x0028, 0x0030, &DicomHeader::pixelSpacing},
+    Field{0x0028, 0x0100, &DicomHeader::bits},
+    Field{0x0028, 0x0101, &DicomHeader::bitsStored},
+    Field{0x0028, 0x0102, &DicomHeader::highBit},
+    Field{0x0028, 0x0103, &DicomHeader::isSigned},
+    Field{0x0028, 0x1052, &DicomHeader::intercept},
+    Field{0x0028, 0x1053, &DicomHeader::slope},
 };
 
 // ---- in the child
@@ -164,7 +155,9 @@ DicomHeader dicomHeader(std::string_view answer) {
   for (bool* flag : {&header.image, &header.compressed, &header.whole})
     *flag = texts.text() == "1";
   for (const Field& field : dicomFields)
-    field.keep(header, std::string(trimmed(texts.text(), padding)));
+    std::visit(
+        [&](auto member) { keep(std::string(trimmed(texts.text(), padding)), header.*member); },
+        field.member);
   return header;
 }
 

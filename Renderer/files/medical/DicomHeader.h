@@ -19,7 +19,7 @@ struct DicomHeader {
   std::vector<double> position;     ///< ImagePositionPatient: first voxel's centre, LPS mm
   std::vector<double> orientation;  ///< ImageOrientationPatient: along a row, along a column, LPS
   std::vector<double> pixelSpacing; ///< mm between rows, between columns
-  std::vector<double> slope, intercept; ///< one number; NaN: not a number; empty: missing
+  double slope = 1.0, intercept = 0.0; ///< NaN: not one number
   unsigned rows = 0, columns = 0, samples = 1, frames = 1;
   unsigned bits = 0, bitsStored = 0, highBit = 0, isSigned = 0; ///< layout of a voxel
   bool image = false;      ///< this kind of object has an image

@@ -38,13 +38,6 @@ private:
   std::int64_t m_sign;
 };
 
-double slopeOf(const DicomHeader& h) {
-  return h.slope.empty() ? 1.0 : h.slope[0];
-}
-double interceptOf(const DicomHeader& h) {
-  return h.intercept.empty() ? 0.0 : h.intercept[0];
-}
-
 } // namespace
 
 void checkDicomPixels(const Path& path, const DicomHeader& h) {
@@ -56,7 +49,7 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
       h.isSigned > 1)
     refuse("BitsAllocated, BitsStored or HighBit: has a value that is not read; save the volume in "
            "Slicer as .nrrd and name that");
-  if (!std::isfinite(slopeOf(h)) || !std::isfinite(interceptOf(h)))
+  if (!std::isfinite(h.slope) || !std::isfinite(h.intercept))
     refuse("RescaleSlope or RescaleIntercept: is not one finite number; export the series again");
   // Lossless codecs pack an empty picture into next to nothing, and any other 1000 to 1 at most.
   constexpr std::uint64_t ratio = 1000, emptyPicture = 1 << 24;
@@ -69,7 +62,7 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
 
 DicomSamples rescaledVoxels(const DicomHeader& h, const std::string& voxels) {
   const StoredValues stored(h, voxels);
-  const double slope = slopeOf(h), intercept = interceptOf(h);
+  const double slope = h.slope, intercept = h.intercept;
   const std::size_t count = std::size_t{h.rows} * h.columns;
   const auto fill = [&](auto values, auto value) -> DicomSamples {
     for (std::size_t i = 0; i < count; ++i)

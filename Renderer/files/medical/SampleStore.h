@@ -20,7 +20,7 @@ public:
   using Vectors = std::variant<std::vector<Stored>...>;
 
   /// Reserves room for `count` samples; pages are touched only as samples come.
-  explicit SampleStore(std::size_t count) : m_count(count) { begin<0>(); }
+  explicit SampleStore(std::size_t count) : m_count(count) { change(0); }
 
   /// Appends a block, whose survey is `s`. Drops all samples once no type holds them.
   template <typename T>
@@ -74,27 +74,18 @@ private:
                                     fitting.begin());
   }
 
-  template <std::size_t index>
-  void begin() {
-    m_samples.template emplace<index>().reserve(m_count);
-    m_index = index;
-  }
-
   /// Converts the samples to the type of index `wanted`; drops them if there is no such type.
-  template <std::size_t index = 0>
   void change(std::size_t wanted) {
-    if constexpr (index < sizeof...(Stored)) {
-      if (index != wanted)
-        return change<index + 1>(wanted);
-      const Vectors before = std::move(m_samples);
-      begin<index>();
-      std::visit(
-          [this](const auto& samples) { copy(std::span(samples), std::get<index>(m_samples)); },
-          before);
-    } else {
-      m_samples = Vectors();
-      m_index = index;
-    }
+    const Vectors before = std::exchange(m_samples, Vectors());
+    m_index = wanted;
+    std::size_t index = 0;
+    ((index++ == wanted ? convert<std::vector<Stored>>(before) : void()), ...);
+  }
+  template <typename Samples>
+  void convert(const Vectors& before) {
+    auto& samples = m_samples.template emplace<Samples>();
+    samples.reserve(m_count);
+    std::visit([&](const auto& from) { copy(std::span(from), samples); }, before);
   }
 
   /// Appends in parts: growing fills with zeros, which costs little while a part stays in the

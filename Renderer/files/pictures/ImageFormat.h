@@ -1,8 +1,9 @@
 #pragma once
 // Formats of picture files.
 
-#include <filesystem>
-#include <optional>
+#include "base/safe/Inputs.h"
+
+#include <map>
 
 namespace fenestra {
 
@@ -11,6 +12,14 @@ enum class ImageFormat { exr, nrrd, png, tiff };
 inline constexpr const char* imageExtensions = ".exr, .nrrd, .png or .tif";
 
 /// Format by extension, in either case; nullopt: unknown.
-std::optional<ImageFormat> imageFormat(const std::filesystem::path& path);
+inline std::optional<ImageFormat> imageFormat(const std::filesystem::path& path) {
+  static const std::map<std::string, ImageFormat> formats = {{".exr", ImageFormat::exr},
+                                                             {".nrrd", ImageFormat::nrrd},
+                                                             {".png", ImageFormat::png},
+                                                             {".tif", ImageFormat::tiff},
+                                                             {".tiff", ImageFormat::tiff}};
+  const auto it = formats.find(lowerExtension(path));
+  return it == formats.end() ? std::nullopt : std::optional(it->second);
+}
 
 } // namespace fenestra

@@ -10,6 +10,7 @@
 
 #include <pugixml.hpp>
 
+#include <span>
 #include <string_view>
 
 namespace fenestra {
@@ -111,7 +112,8 @@ Grid cropped(const Grid& reference, const Box& bounds) {
   return {(upper - lower).array().cast<std::int64_t>().max(0) + 1, indexToWorld};
 }
 
-/// Labels in layers; a segment takes the first layer in which it overlaps no other.
+/// Labels in layers, one after the other; a segment takes the first layer in which it overlaps no
+/// other.
 class Layers {
 public:
   using Label = std::int16_t;
@@ -120,49 +122,40 @@ public:
 
   /// Adds a segment; returns its layer.
   std::size_t add(const std::vector<VoxelRun>& runs, Label label) {
-    std::size_t layer = 0;
-    while (layer < m_layers.size() && !isFree(m_layers[layer], runs))
+    std::int64_t layer = 0;
+    while (layer < m_count && !isFree(layer, runs))
       ++layer;
-    if (layer == m_layers.size()) {
+    if (layer == m_count) {
       constexpr std::int64_t most = std::int64_t{1} << 31;
-      if (m_size.prod() * static_cast<std::int64_t>(layer + 1) > most)
+      if (m_size.prod() * ++m_count > most)
         throw inputError(m_path, "overlaps in too many layers; ", mend);
-      m_layers.emplace_back(static_cast<std::size_t>(m_size.prod()), Label{0});
+      m_labels.resize(static_cast<std::size_t>(m_size.prod() * m_count));
     }
     for (const VoxelRun& run : runs)
-      std::fill(m_layers[layer].begin() + begin(run), m_layers[layer].begin() + end(run), label);
-    return layer;
+      std::ranges::fill(labels(layer, run), label);
+    return static_cast<std::size_t>(layer);
   }
 
-  std::size_t count() const { return m_layers.size(); }
-
-  /// Labels with a voxel's layers together.
-  std::vector<Label> together() && {
-    if (m_layers.size() == 1)
-      return std::move(m_layers[0]);
-    std::vector<Label> labels(m_layers.size() * static_cast<std::size_t>(m_size.prod()));
-    for (std::size_t layer = 0; layer < m_layers.size(); ++layer)
-      for (std::size_t i = 0; i < m_layers[layer].size(); ++i)
-        labels[i * m_layers.size() + layer] = m_layers[layer][i];
-    return labels;
-  }
+  std::size_t count() const { return static_cast<std::size_t>(m_count); }
+  std::vector<Label> labels() && { return std::move(m_labels); }
 
 private:
-  std::ptrdiff_t begin(const VoxelRun& run) const {
-    return run.first + m_size.x() * (run.y + m_size.y() * run.z);
+  std::span<Label> labels(std::int64_t layer, const VoxelRun& run) {
+    const std::int64_t begin =
+        run.first + m_size.x() * (run.y + m_size.y() * (run.z + m_size.z() * layer));
+    return {m_labels.data() + begin, static_cast<std::size_t>(run.last - run.first)};
   }
-  std::ptrdiff_t end(const VoxelRun& run) const { return begin(run) + run.last - run.first; }
 
-  bool isFree(const std::vector<Label>& layer, const std::vector<VoxelRun>& runs) const {
-    return std::all_of(runs.begin(), runs.end(), [&](const VoxelRun& run) {
-      return std::all_of(layer.begin() + begin(run), layer.begin() + end(run),
-                         [](Label label) { return label == 0; });
+  bool isFree(std::int64_t layer, const std::vector<VoxelRun>& runs) {
+    return std::ranges::all_of(runs, [&](const VoxelRun& run) {
+      return std::ranges::all_of(labels(layer, run), [](Label label) { return label == 0; });
     });
   }
 
   Size3 m_size;
   const Path& m_path;
-  std::vector<std::vector<Label>> m_layers;
+  std::int64_t m_count = 0;
+  std::vector<Label> m_labels;
 };
 
 } // namespace
@@ -188,7 +181,8 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
     segments.push_back(surface.info);
   }
   const std::size_t count = layers.count();
-  return {path.string(), grid, count, std::move(layers).together(), std::move(segments)};
+  return {path.string(), grid, count, interleaved(std::move(layers).labels(), count),
+          std::move(segments)};
 }
 
 std::vector<SegmentInfo> readClosedSurfaceInfos(const Path& path) {

@@ -1,5 +1,5 @@
 #pragma once
-// Slicer's tags of a segment. For sources of files alone.
+// Parts of reading segments. For sources of files alone.
 
 #include "base/Text.h"
 #include "files/segments/SegmentationReader.h"
@@ -7,6 +7,9 @@
 #include <string_view>
 
 namespace fenestra {
+
+/// Labels with a voxel's layers together, from `count` layers one after the other.
+Segmentation::Labels interleaved(Segmentation::Labels layers, std::size_t count);
 
 /// Reads the codes of type and region in
 /// "...|TerminologyEntry:LIST~CATEGORY~TYPE~MODIFIER~LIST~REGION~MODIFIER|...", each

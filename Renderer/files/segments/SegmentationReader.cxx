@@ -36,20 +36,6 @@ Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
   return samples.take();
 }
 
-/// Labels with a voxel's layers together, from one frame after the other.
-Segmentation::Labels interleaved(const Segmentation::Labels& frames, std::size_t count) {
-  return std::visit(
-      [count](const auto& labels) -> Segmentation::Labels {
-        std::decay_t<decltype(labels)> together(labels.size());
-        const std::size_t voxels = labels.size() / count;
-        for (std::size_t frame = 0; frame < count; ++frame)
-          for (std::size_t voxel = 0; voxel < voxels; ++voxel)
-            together[voxel * count + frame] = labels[frame * voxels + voxel];
-        return together;
-      },
-      frames);
-}
-
 /// Segments of a labelmap, one per value, in ascending order.
 std::vector<SegmentInfo> segmentsOf(const Segmentation::Labels& labels, const std::string& source) {
   std::set<std::int32_t> values;
@@ -220,6 +206,21 @@ std::string listed(const std::vector<SegmentInfo>& segments) {
 
 } // namespace
 
+Segmentation::Labels interleaved(Segmentation::Labels layers, std::size_t count) {
+  if (count == 1)
+    return layers;
+  return std::visit(
+      [count](const auto& labels) -> Segmentation::Labels {
+        std::decay_t<decltype(labels)> together(labels.size());
+        const std::size_t voxels = labels.size() / count;
+        for (std::size_t layer = 0; layer < count; ++layer)
+          for (std::size_t voxel = 0; voxel < voxels; ++voxel)
+            together[voxel * count + layer] = labels[layer * voxels + voxel];
+        return together;
+      },
+      layers);
+}
+
 Segmentation::Segmentation(std::string source, Grid grid, std::size_t layerCount, Labels labels,
                            std::vector<SegmentInfo> segments)
     : m_source(std::move(source)),
@@ -329,7 +330,7 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
     image = read;
   });
   if (image.frames)
-    labels = interleaved(labels, image.components);
+    labels = interleaved(std::move(labels), image.components);
   auto segments = SegmentFields(image.fields, source).segments(image.components);
   if (segments.empty() && image.components > 1)
     throw inputError(source, "has ", image.components,

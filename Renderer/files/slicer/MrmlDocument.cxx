@@ -96,13 +96,17 @@ bool MrmlNode::flag(const std::string& attribute, bool otherwise) const {
     return otherwise;
   if (*value == "true" || *value == "false")
     return *value == "true";
-  const auto number = parseNumbers(*value);
-  return number && number->size() == 1 ? number->front() != 0.0 : otherwise;
+  return number(attribute).value_or(otherwise) != 0.0;
 }
 
 std::optional<std::vector<double>> MrmlNode::numbers(const std::string& attribute) const {
   const std::string* value = find(attribute);
   return value ? parseNumbers(*value) : std::nullopt;
+}
+
+std::optional<double> MrmlNode::number(const std::string& attribute) const {
+  const auto all = numbers(attribute);
+  return all && all->size() == 1 ? std::optional(all->front()) : std::nullopt;
 }
 
 std::string MrmlNode::referenced(const std::string& role) const {

@@ -27,6 +27,8 @@ struct MrmlNode {
   bool flag(const std::string& attribute, bool otherwise) const;
   /// Numbers of the attribute; nullopt: missing, or text that is not finite numbers.
   std::optional<std::vector<double>> numbers(const std::string& attribute) const;
+  /// The attribute's only number; nullopt: missing, or other text.
+  std::optional<double> number(const std::string& attribute) const;
   /// First id of a role; empty: none.
   std::string referenced(const std::string& role) const;
 };

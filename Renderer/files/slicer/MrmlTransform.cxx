@@ -119,12 +119,11 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     return Vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
   };
   const auto number = [&](const std::string& attribute, double otherwise, double most) {
-    if (!camera.find(attribute))
-      return otherwise;
-    const auto numbers = camera.numbers(attribute);
-    if (!numbers || numbers->size() != 1 || !(numbers->front() > 0.0 && numbers->front() <= most))
+    const double number =
+        camera.number(attribute).value_or(camera.find(attribute) ? 0.0 : otherwise);
+    if (!(number > 0.0 && number <= most))
       throw scene.document.error(camera, attribute + ": is not usable; give --view");
-    return numbers->front();
+    return number;
   };
   CameraPose pose;
   pose.projection =

@@ -1,0 +1,46 @@
+#pragma once
+// Comparisons of points and maps, as Eigen defines them for its own.
+
+#include "base/Vector.h"
+
+namespace fenestra {
+
+template <template <typename, int> class Kind, typename T, int N>
+bool allFinite(const Tuple<Kind, T, N>& v) {
+  return std::all_of(v.begin(), v.end(), [](T part) { return std::isfinite(part); });
+}
+inline bool allFinite(const Mat3& m) {
+  return allFinite(m.col(0)) && allFinite(m.col(1)) && allFinite(m.col(2));
+}
+inline bool allFinite(const Affine& map) {
+  return allFinite(map.linear()) && allFinite(map.translation());
+}
+
+/// Root of the sum of squares.
+inline double normOf(const Mat3& m) {
+  return std::hypot(m.col(0).norm(), m.col(1).norm(), m.col(2).norm());
+}
+inline double normOf(const Affine& map) {
+  return std::hypot(normOf(map.linear()), map.translation().norm());
+}
+
+/// True if |a - b| <= relative * min(|a|, |b|).
+template <template <typename, int> class Kind, typename T, int N>
+bool isApprox(const Tuple<Kind, T, N>& a, const Kind<T, N>& b, T relative = T(1e-12)) {
+  T difference = 0, norm = 0, other = 0; // squares
+  for (int i = 0; i < N; ++i) {
+    difference += (a[i] - b[i]) * (a[i] - b[i]);
+    norm += a[i] * a[i];
+    other += b[i] * b[i];
+  }
+  return difference <= relative * relative * std::min(norm, other);
+}
+inline bool isApprox(const Mat3& a, const Mat3& b, double relative = 1e-12) {
+  return normOf(a - b) <= relative * std::min(normOf(a), normOf(b));
+}
+inline bool isApprox(const Affine& a, const Affine& b, double relative = 1e-12) {
+  const Affine difference(a.linear() - b.linear(), a.translation() - b.translation());
+  return normOf(difference) <= relative * std::min(normOf(a), normOf(b));
+}
+
+} // namespace fenestra
