@@ -399,7 +399,7 @@ TEST(TransformFile, ReadsAFileWrittenBySlicer) {
   const Affine expected(Mat3::FromRows({0.939693, -0.34202, 0}, {0.34202, 0.939693, 0}, {0, 0, 1}),
                         {20, -10, 15});
   const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
-  EXPECT_LT((toParent.linear() - expected.linear()).norm(), 1e-6);
+  EXPECT_LT(normOf(toParent.linear() - expected.linear()), 1e-6);
   EXPECT_LT((toParent.translation() - expected.translation()).norm(), 1e-6);
 }
 
