@@ -115,7 +115,8 @@ TEST(PresetsCommand, WithoutSegmentationSetsNeitherFocusNorClip) {
 TEST(PresetsCommand, LookForAnotherModalityIsReplacedWithAWarning) {
   const Outcome outcome = renderKnee(withSegments({"--preset", "liver", "--focus", "Femur"}));
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_NE(outcome.err.find("made for CT, which this volume does not seem to be"), std::string::npos)
+  EXPECT_NE(outcome.err.find("made for CT, which this volume does not seem to be"),
+            std::string::npos)
       << outcome.err;
   EXPECT_EQ(picture().header.at("look"), "by the volume's range");
   EXPECT_EQ(
