@@ -36,7 +36,7 @@ render plane --plane=0,10,-5,0,0.91,-0.41
 render cutaway --soft 2
 say "Rendering took $((SECONDS - start)) s"
 
-montage -font DejaVu-Sans -pointsize 20 -geometry +6+6 -background '#181818' -fill white \
+montage -font DejaVu-Sans -pointsize 18 -geometry +6+6 -background '#181818' -fill white \
   -label 'a  Whole volume: the cartilage is hidden' "$out/none.png" \
   -label 'b  Clip plane: poor coverage' "$out/plane.png" \
   -label 'c  Cut-away: cliffs, dark focus' "$out/cutaway.png" \
