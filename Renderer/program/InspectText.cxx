@@ -40,8 +40,8 @@ std::string clipped(std::string text, std::size_t most) {
   return text.substr(0, end) + "...";
 }
 
-/// Texts that are not empty.
-std::string joined(const Row& texts, const char* between = ", ") {
+/// Texts that are not empty, in one.
+std::string listed(const Row& texts, const char* between = ", ") {
   std::string all;
   for (const std::string& text : texts)
     if (!text.empty())
@@ -71,7 +71,7 @@ std::string nameOf(const Json& node) {
 /// "name (id)", or what there is of it.
 std::string named(const Json& node) {
   const std::string id = text(node, "id", longestId);
-  return joined({nameOf(node), id.empty() ? "" : "(" + id + ")"}, " ");
+  return listed({nameOf(node), id.empty() ? "" : "(" + id + ")"}, " ");
 }
 
 std::string hex(const Json& color) {
@@ -122,7 +122,7 @@ std::string shown(const std::string& key, const Json& member) {
     for (const Json& item : member)
       items.push_back(shown("", item));
   const auto separator = separators.find(key);
-  return joined(items, separator == separators.end() ? "," : separator->second);
+  return listed(items, separator == separators.end() ? "," : separator->second);
 }
 
 /// Words with the object's members in place of "{key}", and named() in place of "{}"; empty: one of
@@ -150,7 +150,7 @@ struct Phrase {
 };
 
 /// Description of a node, or of a part of a render, for the place behind its name and id.
-std::string described(const Json& part) {
+std::string descriptionOf(const Json& part) {
   static const Phrase phrases[] = {
       {"label map", "kind", "labelMap"},
       {"hidden", "shown", false},
@@ -182,7 +182,7 @@ std::string described(const Json& part) {
   for (const auto& [words, key, value] : phrases)
     if (!key || (part.contains(key) && part[key] == value))
       texts.push_back(filled(words, part));
-  return joined(texts);
+  return listed(texts);
 }
 
 // ---- lines
@@ -214,7 +214,7 @@ std::vector<std::string> aligned(std::vector<Row> rows, const std::string& right
   }
   Row lines;
   for (const Row& row : rows)
-    lines.push_back(joined(row, "  "));
+    lines.push_back(listed(row, "  "));
   return lines;
 }
 
@@ -256,7 +256,7 @@ std::string nodeLines(const Json& nodes) {
   std::string lines;
   for (std::size_t i = 0; i < count; ++i) {
     const Json& node = nodes[i];
-    const std::string more = described(node), whole = heads[i] + "  " + more;
+    const std::string more = descriptionOf(node), whole = heads[i] + "  " + more;
     lines += characters(whole) <= width ? line(whole) : line(heads[i]) + paragraph("      ", more);
     if (!node["problem"].is_null())
       lines += paragraph("      problem: ", node["problem"]);
@@ -280,7 +280,7 @@ std::string otherLines(const Json& others) {
   Row tags;
   for (const auto& [tag, count] : others.items())
     tags.push_back(clipped(tag, longestName) + (count > 1 ? " (" + count.dump() + ")" : ""));
-  return tags.empty() ? "" : paragraph("  ", joined(tags));
+  return tags.empty() ? "" : paragraph("  ", listed(tags));
 }
 
 std::string listLines(const Json& list) {
@@ -296,9 +296,9 @@ std::string renderLines(const Json& use) {
     if (const Json& part = use[key]; !part.empty()) // null is empty
       lines += paragraph(label, words(part));
   };
-  const auto withName = [](const Json& part) { return filled("{}: ", part) + described(part); };
+  const auto withName = [](const Json& part) { return filled("{}: ", part) + descriptionOf(part); };
   add("  volume        ", "volume", withName);
-  add("  look          ", "look", described);
+  add("  look          ", "look", descriptionOf);
   add("  crop          ", "crop", withName);
   add("  camera        ", "camera", [&](const Json& camera) {
     return (named(camera).empty() ? "framed: " : "") + withName(camera);
@@ -309,7 +309,7 @@ std::string renderLines(const Json& use) {
       [](const std::string& problem) { return "open: " + problem; });
   add("  segmentation  ", "segmentation",
       [](const std::string& segmentation) { return segmentation + ", with --focus"; });
-  add("  as rendered   ", "stored", [](const Row& arguments) { return joined(arguments, " "); });
+  add("  as rendered   ", "stored", [](const Row& arguments) { return listed(arguments, " "); });
   return lines;
 }
 
