@@ -8,7 +8,7 @@ namespace fenestra::accuracy {
 
 namespace {
 
-constexpr std::uint8_t farthest = 12; ///< greatest radius searched for emptiness, in cells
+constexpr std::uint8_t farthest = 12; ///< greatest radius searched for low cells, in cells
 constexpr double rounding = 1e-14;    ///< rounding error of the field
 constexpr double step = 1.0 / 16.0;   ///< step, in voxels along the ray's fastest axis
 
@@ -102,12 +102,12 @@ FocusField::FocusField(const Indicator& indicator) {
   m_lower = Vec3::Constant(-0.5);
   m_upper = m_size.cast<double>() - Vec3::Constant(0.5);
   m_worldToIndex = (indicator.indexToWorld * translationBy(low.cast<double>())).inverse();
-  markEmptiness();
+  markLowness();
   m_longestEdge = indicator.indexToWorld.linear().columnNorms().maxCoeff();
 }
 
-void FocusField::markEmptiness() {
-  m_emptiness.assign(static_cast<std::size_t>(m_cells.prod()), farthest);
+void FocusField::markLowness() {
+  m_lowness.assign(static_cast<std::size_t>(m_cells.prod()), farthest);
   for (std::int64_t z = 0; z < m_cells.z(); ++z)
     for (std::int64_t y = 0; y < m_cells.y(); ++y)
       for (std::int64_t x = 0; x < m_cells.x(); ++x)
@@ -116,16 +116,16 @@ void FocusField::markEmptiness() {
                                .cwiseMax(Size3::Zero())
                                .cwiseMin(m_size - Size3::Ones());
           if (m_shares[static_cast<std::size_t>((at.z() * m_size.y() + at.y()) * m_size.x() +
-                                                at.x())] != 0)
-            m_emptiness[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
+                                                at.x())] >= 0.5)
+            m_lowness[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
         }
-  // After `farthest` rounds each cell knows its distance to the nearest cell that is not empty.
-  std::vector<std::uint8_t> reached = m_emptiness;
+  // After `farthest` rounds each cell knows its distance to the nearest cell that is not low.
+  std::vector<std::uint8_t> reached = m_lowness;
   for (std::uint8_t round = 1; round < farthest; ++round) {
     spreadLeast(reached, m_cells);
     for (std::size_t i = 0; i < reached.size(); ++i)
-      if (reached[i] == 0 && m_emptiness[i] == farthest)
-        m_emptiness[i] = round;
+      if (reached[i] == 0 && m_lowness[i] == farthest)
+        m_lowness[i] = round;
   }
 }
 
@@ -171,26 +171,26 @@ double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const
   // Steps end at the faces of cells, between which the field is smooth. A field that rises after
   // one end and falls before the other may exceed 1/2 for less than a step in between.
   const double near = 1e-6 * stride;
-  const auto rises = [&](double from, double to) { return value(to) > value(from) + rounding; };
-  for (bool isFirst = true; t <= end; isFirst = false) {
+  const auto rises = [&](double from, double to) { return value(to) > from + rounding; };
+  double here = value(t);
+  if (t <= end && here >= 0.5)
+    return t;
+  while (t < end) {
     const Vec3 index = o + t * d;
-    const std::uint8_t empty = m_emptiness[cell(index)];
-    if (empty > 1) {
-      t += (empty - 1) * voxel;
+    const double face = nextFace(index, d, t);
+    if (const std::uint8_t low = m_lowness[cell(o + 0.5 * (t + face) * d)]; low > 0) {
+      t = low > 1 ? t + (low - 1) * voxel : face;
+      here = value(t);
       continue;
     }
-    const double here = value(t);
-    if (here >= 0.5 && isFirst)
-      return t;
-    const double next = std::min({t + stride, nextFace(index, d, t), end});
-    if (here > 0.25 && rises(t, t + near) && rises(next, next - near)) // else 1/2 is too far
+    const double next = std::min({t + stride, face, end}), there = value(next);
+    if (here > 0.25 && rises(here, t + near) && rises(there, next - near)) // else 1/2 is too far
       if (const double top = summit(t, next, value); isInAt(top))
         return bisected(t, top, isInAt);
-    if (isInAt(next))
+    if (there >= 0.5)
       return bisected(t, next, isInAt);
-    if (next >= end)
-      break;
     t = next;
+    here = there;
   }
   return infinity;
 }

@@ -36,15 +36,17 @@ private:
   double at(const Vec3& index) const;
   bool isIn(const Vec3& index) const { return at(index) >= 0.5; }
   std::size_t cell(const Vec3& index) const;
-  void markEmptiness();
+  void markLowness();
 
   /// Cell c lies between the voxel centres c - 1 and c of the stored part: the focus and two voxels
   /// on every side, fewer at the volume's faces.
   Size3 m_size, m_cells;
-  Vec3 m_lower, m_upper;                 ///< box of the part, in its own index space
-  Affine m_worldToIndex;                 ///< index space of the part
-  std::vector<double> m_shares;          ///< of the focus in each voxel, 0 to 1
-  std::vector<std::uint8_t> m_emptiness; ///< per cell: radius, in cells, of the empty neighbourhood
+  Vec3 m_lower, m_upper;        ///< box of the part, in its own index space
+  Affine m_worldToIndex;        ///< index space of the part
+  std::vector<double> m_shares; ///< of the focus in each voxel, 0 to 1
+  /// Radius, in cells, of each cell's neighbourhood in which no share reaches 1/2: nor does the
+  /// field.
+  std::vector<std::uint8_t> m_lowness;
   Vec3 m_centre;
   double m_radius = 0.0, m_longestEdge = 0.0;
 };

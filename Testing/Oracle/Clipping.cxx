@@ -31,7 +31,8 @@ struct Sight {
 };
 
 /// Sight along a ray within the volume: sampled twenty-five times a voxel and at every summit
-/// between samples, where a ray may graze the surface; then bisected.
+/// between samples, where a ray may graze the surface; then bisected. Steps beyond the focus's box,
+/// where the indicator is 0, are counted and not looked at.
 Sight lookAlong(const FocusField& focus, const Matter& matter, const Ray& ray,
                 const Interval& range) {
   Interval part = matter.inBox(ray.origin, ray.direction);
@@ -53,7 +54,10 @@ Sight lookAlong(const FocusField& focus, const Matter& matter, const Ray& ray,
   if (here >= 0.5)
     return {part.begin, 0.5};
   Sight best{part.begin, 0.0};
-  for (double t = part.begin; t < part.end; t += step) {
+  const Interval near = focus.inBox(ray);
+  for (double t = part.begin; t < part.end && t < near.end + step; t += step) {
+    if (t + step < near.begin)
+      continue;
     const double next = std::min(t + step, part.end), there = level(next);
     if (there >= 0.5)
       return between(t, next);
@@ -213,6 +217,10 @@ FocusField::FocusField(const Mask& mask)
     }
 }
 
+Interval FocusField::inBox(const Ray& ray) const {
+  return partIn({m_lower, m_upper}, transformed(m_worldToIndex, ray));
+}
+
 double FocusField::at(const Vec3& world) const {
   const Vec3 index = m_worldToIndex * world;
   for (int axis = 0; axis < 3; ++axis)
@@ -244,21 +252,28 @@ Clipping::Clipping(const ClipDescription& description, const View& view, const M
   }
 }
 
-double Clipping::surface(const Vec2& at) const {
+double Clipping::keepAtDepth(double here, const Vec2& at) const {
   const auto& clip = std::get<DepthClip>(m_description);
   const Place x = placeOf(clip.columns, at.x()), y = placeOf(clip.rows, at.y());
   const auto depth = [&](std::size_t column, std::size_t row) {
     return m_depths[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
                     std::min(column, clip.columns.size() - 1)];
   };
+  const auto keptBehind = [&](double surface) { return kept(clip.edge, here - surface); };
   if (clip.hasSteps())
-    return depth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5));
+    return keptBehind(depth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5)));
   const double between = (1.0 - y.share) * ((1.0 - x.share) * depth(x.before, y.before) +
                                             x.share * depth(x.before + 1, y.before)) +
                          y.share * ((1.0 - x.share) * depth(x.before, y.before + 1) +
                                     x.share * depth(x.before + 1, y.before + 1));
   const auto seam = clip.seams.find(y.before * clip.columns.size() + x.before);
-  return seam == clip.seams.end() ? between : surfaceInSeam(seam->second, at, between);
+  if (seam == clip.seams.end())
+    return keptBehind(between);
+  // The surface lies between two depths. What is kept alike behind both is kept so behind it.
+  const double least = keptBehind(std::max(between, seam->second.greatest));
+  if (least == keptBehind(std::min(between, seam->second.least)))
+    return least;
+  return keptBehind(surfaceInSeam(seam->second, at, between));
 }
 
 double Clipping::surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, double between) const {
@@ -284,8 +299,7 @@ double Clipping::keep(const Vec3& world) const {
     return 0.0;
   if (const auto* plane = std::get_if<PlaneClip>(&m_description))
     return kept(plane->edge, (plane->point - world).dot(plane->normal));
-  return kept(std::get<DepthClip>(m_description).edge,
-              m_view.depth(world) - surface(m_view.onPlane(world)));
+  return keepAtDepth(m_view.depth(world), m_view.onPlane(world));
 }
 
 } // namespace fenestra::oracle

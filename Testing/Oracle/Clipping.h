@@ -15,6 +15,8 @@ public:
 
   /// Trilinear indicator at a world point; 0 outside the mask's voxels.
   double at(const Vec3& world) const;
+  /// Interval of a world ray, t >= 0, beyond which the indicator is 0; empty: ray misses.
+  Interval inBox(const Ray& ray) const;
   double shortestEdge() const { return m_mask.grid.spacing().minCoeff(); } ///< of a voxel, mm
 
 private:
@@ -35,7 +37,7 @@ public:
   const std::vector<double>& depths() const { return m_depths; }
 
 private:
-  double surface(const Vec2& at) const;
+  double keepAtDepth(double here, const Vec2& at) const;
   double surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, double between) const;
 
   const ClipDescription& m_description;

@@ -109,18 +109,21 @@ double Matter::surfaceProbability(const Vec3& world) const {
 }
 
 Interval Matter::inBox(const Vec3& origin, const Vec3& direction) const {
-  const Vec3 from = m_worldToIndex * origin;
-  const Vec3 along = m_worldToIndex.linear() * direction;
+  const Box box{Vec3::Constant(-0.5), m_size.cast<double>() - Vec3::Constant(0.5)};
+  return partIn(box, transformed(m_worldToIndex, {origin, direction}));
+}
+
+Interval partIn(const Box& box, const Ray& ray) {
   Interval part;
   for (int axis = 0; axis < 3; ++axis) {
-    const double lower = -0.5 - from[axis];
-    const double upper = static_cast<double>(m_size[axis]) - 0.5 - from[axis];
-    if (along[axis] == 0.0) {
+    const double lower = box.lower[axis] - ray.origin[axis];
+    const double upper = box.upper[axis] - ray.origin[axis];
+    if (ray.direction[axis] == 0.0) {
       if (lower > 0.0 || upper < 0.0)
         return {0.0, 0.0};
       continue;
     }
-    const double a = lower / along[axis], b = upper / along[axis];
+    const double a = lower / ray.direction[axis], b = upper / ray.direction[axis];
     part.begin = std::max(part.begin, std::min(a, b));
     part.end = std::min(part.end, std::max(a, b));
   }

@@ -5,6 +5,9 @@
 
 namespace fenestra::oracle {
 
+/// Interval of a ray, t >= 0, inside a box; empty: ray misses.
+Interval partIn(const Box& box, const Ray& ray);
+
 class Matter {
 public:
   Matter(const Volume& volume, const TransferFunction& transfer, const std::optional<Affine>& crop);
