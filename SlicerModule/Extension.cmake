@@ -1,12 +1,5 @@
 # The loadable module, the renderer as a command line module, and the package of both.
 set(EXTENSION_NAME Fenestra)
-set(EXTENSION_HOMEPAGE "https://github.com/fenestra-render/SlicerFenestra#readme")
-set(EXTENSION_CATEGORY "Rendering")
-set(EXTENSION_CONTRIBUTORS "The Fenestra authors")
-set(EXTENSION_DESCRIPTION "Photorealistic pictures of a volume in which nothing hides the segments of interest: a smooth clipping surface through the focus, continued into its surroundings, rendered by an unbiased Monte Carlo path tracer.")
-set(EXTENSION_ICONURL "https://raw.githubusercontent.com/fenestra-render/SlicerFenestra/main/SlicerModule/Resources/Icons/Fenestra.png")
-set(EXTENSION_SCREENSHOTURLS "https://raw.githubusercontent.com/fenestra-render/SlicerFenestra/main/Resources/pictures/slicer-result.jpg")
-set(EXTENSION_DEPENDS "NA")
 set(EXTENSION_README_FILE "${PROJECT_SOURCE_DIR}/README.md")
 set(EXTENSION_LICENSE_FILE "${PROJECT_SOURCE_DIR}/LICENSE")
 
@@ -16,6 +9,9 @@ find_package(Slicer REQUIRED)
 include(${Slicer_USE_FILE})
 
 set(MODULE_NAME Fenestra)
+# Slicer makes modules attributes of slicer.modules, in lower case: the renderer, `fenestra` in a terminal,
+# has another name as a command line module.
+set(COMMAND_MODULE_NAME FenestraCommand)
 set(MODULE_TITLE "Fenestra")
 string(TOUPPER ${MODULE_NAME} MODULE_NAME_UPPER)
 add_subdirectory(MRML)

@@ -48,9 +48,9 @@ QStringList qSlicerFenestraModule::associatedNodeTypes() const {
 QString qSlicerFenestraModule::program() const {
   const QDir folder = QFileInfo(this->path()).dir();
 #ifdef Q_OS_WIN
-  const QString name = QStringLiteral("fenestra.exe");
+  const QString name = QStringLiteral("FenestraCommand.exe");
 #else
-  const QString name = QStringLiteral("fenestra");
+  const QString name = QStringLiteral("FenestraCommand");
 #endif
   return QDir::cleanPath(folder.filePath("../cli-modules/" + name));
 }

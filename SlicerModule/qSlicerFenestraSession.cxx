@@ -155,10 +155,10 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   FenestraScene::Contents contents;
   try {
     if (!QFileInfo(m_program).isExecutable())
-      throw vtkSlicerFenestraComplaint(
+      throw FenestraScene::Complaint(
           "The renderer is missing. Install the Fenestra extension again.");
     contents = m_logic->Snapshot(settings, m_files->folder.path().toStdString());
-  } catch (const vtkSlicerFenestraComplaint& complaint) {
+  } catch (const FenestraScene::Complaint& complaint) {
     emit ended(nullptr, failure(QString::fromUtf8(complaint.what()), m_program));
     return nullptr;
   }
@@ -239,7 +239,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
   if (!isThere)
     return endRender(id, outcome);
   work([this, id, outcome, folder] {
-    const auto result = std::make_shared<vtkSlicerFenestraResult>();
+    const auto result = std::make_shared<FenestraResult>();
     QString message;
     try {
       *result = vtkSlicerFenestraLogic::ReadResult(folder.toStdString());
@@ -334,7 +334,7 @@ void qSlicerFenestraSession::follow() {
     if (!m_preview.running() || dataOf(contents) != m_shownData)
       return startPreview(contents, flags);
     tellPreview(flags);
-  } catch (const vtkSlicerFenestraComplaint& complaint) {
+  } catch (const FenestraScene::Complaint& complaint) {
     emit previewRefused(QString::fromUtf8(complaint.what()));
   }
 }
@@ -384,8 +384,8 @@ QString qSlicerFenestraSession::propertyFile(const FenestraScene::Contents& cont
   QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyEnding)));
   if (file.size() != text.size() &&
       (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size()))
-    throw vtkSlicerFenestraComplaint("The transfer function could not be written. Is the disk "
-                                     "with the temporary files full?");
+    throw FenestraScene::Complaint("The transfer function could not be written. Is the disk "
+                                   "with the temporary files full?");
   return file.fileName();
 }
 

@@ -215,7 +215,7 @@ FenestraScene::Contents vtkSlicerFenestraLogic::Snapshot(Node* render,
   vtkSlicerFenestraSnapshot::TakeVolume(volume, contents);
   vtkSlicerFenestraSnapshot::TakeRendering(volume, folder, contents);
   if (!segmentation && !render->GetFocus().empty())
-    throw vtkSlicerFenestraComplaint("The segmentation that holds the focus is gone. Choose one.");
+    throw FenestraScene::Complaint("The segmentation that holds the focus is gone. Choose one.");
   if (segmentation)
     vtkSlicerFenestraSnapshot::TakeSegmentation(segmentation, render->GetFocus(), contents);
   return contents;
@@ -300,8 +300,8 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetFrameFiles(const std::string
   return files;
 }
 
-vtkSlicerFenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
-  vtkSlicerFenestraResult result;
+FenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
+  FenestraResult result;
   const std::vector<std::string> frames = GetFrameFiles(folder);
   if (!frames.empty()) {
     result.picture = ReadPictures(frames);
@@ -382,8 +382,7 @@ void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, frames, ijkToRas);
 }
 
-void vtkSlicerFenestraLogic::AddResult(Node* render, const vtkSlicerFenestraResult& result,
-                                       int step) {
+void vtkSlicerFenestraLogic::AddResult(Node* render, const FenestraResult& result, int step) {
   if (render->IsTurntable()) {
     if (step == 0)
       this->AddFrames(render, result.picture);

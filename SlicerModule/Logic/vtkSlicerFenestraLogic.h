@@ -6,7 +6,6 @@
 #include <vtkSmartPointer.h>
 
 #include <map>
-#include <stdexcept>
 #include <string>
 
 #include "FenestraSceneFiles.h"
@@ -15,23 +14,21 @@
 class vtkImageData;
 class vtkMRMLCameraNode;
 class vtkMRMLFenestraRenderNode;
+class vtkMRMLNode;
 class vtkMRMLScalarVolumeNode;
 class vtkMRMLSegmentationNode;
 class vtkMRMLSliceLogic;
 class vtkMRMLVolumeNode;
 class vtkPolyData;
 
-/// Result of a render, read from its files. A turntable has only `picture`, with one frame a slice.
-struct vtkSlicerFenestraResult {
+/// Result of a render, read from its files. VTK's wrapper for Python takes structs whose names
+/// begin with `vtk` for classes of its own kind: no other name does here. A turntable has only
+/// `picture`, with one frame a slice.
+struct FenestraResult {
   FenestraScene::Image radiance;         ///< linear RGBA, placed in the world
   FenestraScene::Image depth;            ///< mm from the eye; infinite: nothing seen
   vtkSmartPointer<vtkImageData> picture; ///< display colours, row 0 at the top
   vtkSmartPointer<vtkPolyData> surface;  ///< clipping surface, RAS; null: none
-};
-
-/// Problem that a user can solve; one sentence that says how.
-struct vtkSlicerFenestraComplaint : std::runtime_error {
-  using std::runtime_error::runtime_error;
 };
 
 /// \brief Exchange between Slicer's scene and the renderer's files.
@@ -52,7 +49,7 @@ public:
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
 
   /// All that the renderer needs except the flags, without a copy of the voxels. `folder`: private,
-  /// for data that Slicer can only write as files. Throws vtkSlicerFenestraComplaint.
+  /// for data that Slicer can only write as files. Throws FenestraScene::Complaint.
   FenestraScene::Contents Snapshot(vtkMRMLFenestraRenderNode* render,
                                    const std::filesystem::path& folder);
   /// The node's flags, and those of its 3-D view's camera unless another flag sets the view.
@@ -65,7 +62,7 @@ public:
 
   /// Reads a result from `folder`, where files have the names of GetArguments. Throws
   /// FenestraScene::FileError. Thread-safe.
-  static vtkSlicerFenestraResult ReadResult(const std::string& folder);
+  static FenestraResult ReadResult(const std::string& folder);
   /// Command line flags for rendering the node, with outputs that ReadResult reads.
   static std::vector<std::string> GetArguments(vtkMRMLFenestraRenderNode* render, bool withSurface);
   /// Finished frames of a turntable in `folder`, from frame 0 to the first missing one.
@@ -75,8 +72,7 @@ public:
 
   /// Adds nodes of the result, referenced by the render: one a step, so that the application stays
   /// responsive between steps, 0 to ResultSteps - 1. For a resumed turntable, replaces the frames.
-  void AddResult(vtkMRMLFenestraRenderNode* render, const vtkSlicerFenestraResult& result,
-                 int step);
+  void AddResult(vtkMRMLFenestraRenderNode* render, const FenestraResult& result, int step);
   static constexpr int ResultSteps = 4;
   /// Shows the scene's newest volume in the slice views; loading a scene does not change them.
   void ShowNewestVolume();

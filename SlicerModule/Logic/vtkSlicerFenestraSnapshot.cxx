@@ -28,7 +28,7 @@
 #include <sstream>
 
 namespace {
-using Complaint = vtkSlicerFenestraComplaint;
+using Complaint = FenestraScene::Complaint;
 
 std::string Quoted(vtkMRMLNode* node) {
   return std::string("\"") + (node->GetName() ? node->GetName() : "") + "\"";

@@ -10,7 +10,7 @@ class vtkMRMLScalarVolumeNode;
 class vtkMRMLSegmentationNode;
 
 /// Data of Slicer's nodes for the renderer, without copies of voxels: arrays are shared, and freed
-/// with their last owner. Functions throw vtkSlicerFenestraComplaint.
+/// with their last owner. Functions throw FenestraScene::Complaint.
 namespace vtkSlicerFenestraSnapshot {
 void TakeVolume(vtkMRMLScalarVolumeNode* volume, FenestraScene::Contents& contents);
 /// Takes the user's volume rendering, if any: its crop box and its property, which passes through a

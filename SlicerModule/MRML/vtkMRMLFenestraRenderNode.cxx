@@ -5,8 +5,17 @@
 #include <vtkObjectFactory.h>
 
 #include <algorithm>
+#include <set>
+#include <sstream>
 
 using FenestraScene::Verdict;
+
+namespace {
+/// Attributes of vtkMRMLNode.
+const std::set<std::string> ofEveryNode = {
+    "attributes", "description", "hideFromEditors", "id",           "name",       "references",
+    "selectable", "selected",    "saveWithScene",   "singletonTag", "undoEnabled"};
+} // namespace
 
 vtkMRMLNodeNewMacro(vtkMRMLFenestraRenderNode);
 
@@ -69,15 +78,15 @@ void vtkMRMLFenestraRenderNode::SetFlags(const std::map<std::string, std::string
     kept.insert(*found);
     withheld.erase(name);
   }
-  this->Assign(kept, withheld);
+  this->Assign(kept, withheld, this->Unknown);
 }
 
-void vtkMRMLFenestraRenderNode::Assign(std::map<std::string, std::string> flags,
-                                       std::map<std::string, std::string> withheld) {
-  if (flags == this->Flags && withheld == this->Withheld)
+void vtkMRMLFenestraRenderNode::Assign(Values flags, Values withheld, Values unknown) {
+  if (flags == this->Flags && withheld == this->Withheld && unknown == this->Unknown)
     return;
   this->Flags = std::move(flags);
   this->Withheld = std::move(withheld);
+  this->Unknown = std::move(unknown);
   this->Modified();
 }
 
@@ -96,7 +105,8 @@ void vtkMRMLFenestraRenderNode::AllowFiles() {
 }
 
 void vtkMRMLFenestraRenderNode::CopyFlags(vtkMRMLFenestraRenderNode* node) {
-  this->Assign(node->Flags, node->Withheld);
+  if (node)
+    this->Assign(node->Flags, node->Withheld, node->Unknown);
 }
 
 void vtkMRMLFenestraRenderNode::SetFocus(const std::vector<std::string>& segments) {
@@ -130,27 +140,39 @@ void vtkMRMLFenestraRenderNode::ReadXMLAttributes(const char** atts) {
   const int wasModifying = this->StartModify();
   Superclass::ReadXMLAttributes(atts);
   const std::vector<std::string>& names = GetFlagNames();
-  std::map<std::string, std::string> flags, withheld;
-  for (; atts[0] && atts[1]; atts += 2)
-    if (std::find(names.begin(), names.end(), atts[0]) != names.end() && *atts[1] != '\0')
-      (FenestraScene::verdictOn(atts[0], atts[1]) == Verdict::good ? flags : withheld)[atts[0]] =
-          atts[1];
-  this->Assign(flags, withheld);
+  Values flags, withheld, unknown;
+  for (; atts[0] && atts[1]; atts += 2) {
+    const std::string name = atts[0];
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      if (ofEveryNode.count(name) == 0)
+        unknown[name] = atts[1];
+    } else if (*atts[1] != '\0') {
+      (FenestraScene::verdictOn(name, atts[1]) == Verdict::good ? flags : withheld)[name] = atts[1];
+    }
+  }
+  this->Assign(flags, withheld, unknown);
   this->EndModify(wasModifying);
 }
 
 void vtkMRMLFenestraRenderNode::WriteXML(ostream& of, int indent) {
-  Superclass::WriteXML(of, indent);
+  std::ostringstream base;
+  Superclass::WriteXML(base, indent);
+  of << base.str();
+  const auto write = [this, &of](const std::string& name, const std::string& value) {
+    of << ' ' << name << "=\"" << this->XMLAttributeEncodeString(value) << '"';
+  };
   for (const auto* all : {&this->Flags, &this->Withheld})
     for (const auto& [name, value] : *all)
-      of << ' ' << name << "=\"" << this->XMLAttributeEncodeString(value) << '"';
+      write(name, value);
+  for (const auto& [name, value] : this->Unknown) // a newer Slicer's base class may know it
+    if (base.str().find(' ' + name + "=\"") == std::string::npos)
+      write(name, value);
 }
 
-void vtkMRMLFenestraRenderNode::Copy(vtkMRMLNode* node) {
+void vtkMRMLFenestraRenderNode::CopyContent(vtkMRMLNode* node, bool deepCopy) {
   const int wasModifying = this->StartModify();
-  Superclass::Copy(node);
-  if (auto* other = vtkMRMLFenestraRenderNode::SafeDownCast(node))
-    this->CopyFlags(other);
+  Superclass::CopyContent(node, deepCopy);
+  this->CopyFlags(vtkMRMLFenestraRenderNode::SafeDownCast(node));
   this->EndModify(wasModifying);
 }
 

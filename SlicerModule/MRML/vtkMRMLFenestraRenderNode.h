@@ -19,7 +19,8 @@ class vtkMRMLVolumeNode;
 /// renderer uses the last.
 ///
 /// Scenes come from others, so attributes are checked when read: invalid values, and files that the
-/// scene names, are withheld: kept and saved again, but not used.
+/// scene names, are withheld: kept and saved again, but not used. Attributes that a newer version
+/// wrote are kept and saved again, too.
 ///
 /// References: `volume`, `segmentation`, `view` (its camera is followed unless a flag sets the
 /// view), `plane` (source of the flag `plane`), and results: `picture` (display colours; of a
@@ -35,7 +36,7 @@ public:
   const char* GetNodeTagName() override { return "FenestraRender"; }
   void ReadXMLAttributes(const char** atts) override;
   void WriteXML(ostream& of, int indent) override;
-  void Copy(vtkMRMLNode* node) override;
+  vtkMRMLCopyContentMacro(vtkMRMLFenestraRenderNode);
 
   /// Flags that a node can hold; others are neither set nor read.
   static const std::vector<std::string>& GetFlagNames();
@@ -58,12 +59,22 @@ public:
   bool WithholdsFiles() const;
   /// Turns withheld files into flags, once the user allows them.
   void AllowFiles();
-  /// Copies flags and withheld values from another node.
+  /// Copies flags, withheld values and unknown attributes from another node; null: no change.
   void CopyFlags(vtkMRMLFenestraRenderNode* node);
 
   /// Focus segments by id, name or label value: the flag `focus`, split at its commas.
   void SetFocus(const std::vector<std::string>& segments);
   std::vector<std::string> GetFocus() const;
+
+  /// Roles for SetNodeReferenceID and GetNodeReference, for scripts, which do not see constants.
+  static const char* GetVolumeNodeReferenceRole() { return VolumeRole; }
+  static const char* GetSegmentationNodeReferenceRole() { return SegmentationRole; }
+  static const char* GetViewNodeReferenceRole() { return ViewRole; }
+  static const char* GetPlaneNodeReferenceRole() { return PlaneRole; }
+  static const char* GetPictureNodeReferenceRole() { return PictureRole; }
+  static const char* GetRadianceNodeReferenceRole() { return RadianceRole; }
+  static const char* GetDepthNodeReferenceRole() { return DepthRole; }
+  static const char* GetSurfaceNodeReferenceRole() { return SurfaceRole; }
 
   static const char* const VolumeRole;
   static const char* const SegmentationRole;
@@ -83,10 +94,11 @@ protected:
   vtkMRMLFenestraRenderNode(const vtkMRMLFenestraRenderNode&) = delete;
   void operator=(const vtkMRMLFenestraRenderNode&) = delete;
 
-  void Assign(std::map<std::string, std::string> flags,
-              std::map<std::string, std::string> withheld);
+  using Values = std::map<std::string, std::string>;
+  void Assign(Values flags, Values withheld, Values unknown);
 
-  std::map<std::string, std::string> Flags, Withheld;
+  Values Flags, Withheld;
+  Values Unknown; ///< attributes of the scene that neither this class nor its base knows
 };
 
 #endif

@@ -5,10 +5,16 @@
 
 #include "FenestraImage.h"
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace FenestraScene {
+
+/// Problem that a user can solve; one sentence that says how.
+struct Complaint : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct Segment {
   std::string id, name;

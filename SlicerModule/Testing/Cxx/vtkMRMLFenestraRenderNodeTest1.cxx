@@ -47,6 +47,33 @@ std::string written(vtkMRMLScene* scene) {
   return scene->GetSceneXMLString();
 }
 
+/// Attributes of a newer version are written again, once, and copied; those of every node are not
+/// theirs.
+int testUnknown() {
+  const std::string text =
+      R"(<MRML version="Slicer 5.12"><FenestraRender id="r" name="r" description="d" )"
+      R"(clip="surface" mood="dark &amp; &quot;deep&quot;"></FenestraRender></MRML>)";
+  vtkNew<vtkMRMLScene> scene;
+  Node* node = readIn(scene, text);
+  CHECK_NOT_NULL(node);
+  CHECK_STD_STRING(node->GetFlag("mood"), "");
+  node->SetFlag("clip", "cutaway");
+  node->SetDescription(nullptr);
+  vtkNew<Node> copy;
+  copy->CopyContent(node);
+  CHECK_STD_STRING(copy->GetFlag("clip"), "cutaway");
+  CHECK_BOOL(copy->HasCopyContent(), true);
+  for (Node* one : {node, copy.GetPointer()}) {
+    std::ostringstream xml;
+    one->WriteXML(xml, 0);
+    const std::string once = " mood=\"dark &amp; &quot;deep&quot;\"";
+    CHECK_BOOL(xml.str().find(once) != std::string::npos, true);
+    CHECK_BOOL(xml.str().find(once) == xml.str().rfind(" mood="), true);
+    CHECK_BOOL(xml.str().find("description=") == std::string::npos, true);
+  }
+  return EXIT_SUCCESS;
+}
+
 /// Scene from an unknown source: files and invalid values are kept, but are no flags.
 int testWithheld() {
   const std::string text =
@@ -139,5 +166,6 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   first->SetFlag("clip", "");
   CHECK_INT(static_cast<int>(first->GetFlags().count("clip")), 0);
   CHECK_EXIT_SUCCESS(testWithheld());
+  CHECK_EXIT_SUCCESS(testUnknown());
   return EXIT_SUCCESS;
 }

@@ -28,7 +28,7 @@ std::string complaint(vtkSlicerFenestraLogic* logic, Node* node) {
   try {
     logic->Snapshot(node, folder);
     return {};
-  } catch (const vtkSlicerFenestraComplaint& said) {
+  } catch (const FenestraScene::Complaint& said) {
     return said.what();
   }
 }

@@ -368,7 +368,8 @@ bool qSlicerFenestraTour::saveAndRepeat() {
 /// Runs the renderer as a command line module, in the panel that Slicer makes of its description.
 bool qSlicerFenestraTour::runCommand() {
   auto* application = qSlicerApplication::application();
-  auto* module = dynamic_cast<qSlicerCLIModule*>(application->moduleManager()->module("fenestra"));
+  auto* module =
+      dynamic_cast<qSlicerCLIModule*>(application->moduleManager()->module("FenestraCommand"));
   if (!module)
     return false;
   vtkMRMLScene* scene = application->mrmlScene();
@@ -386,7 +387,7 @@ bool qSlicerFenestraTour::runCommand() {
   node->SetParameterAsNode("output", output);
   node->SetParameterAsInt("samples", 16);
   node->SetParameterAsString("size", "512x512");
-  m_window->findChild<qSlicerModuleSelectorToolBar*>()->selectModule("fenestra");
+  m_window->findChild<qSlicerModuleSelectorToolBar*>()->selectModule("FenestraCommand");
   settle(500);
   auto* panel = m_window->findChild<qSlicerCLIModuleWidget*>();
   if (!panel)

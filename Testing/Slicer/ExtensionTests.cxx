@@ -1,0 +1,79 @@
+// Checks of Slicer's index of extensions (ExtensionsIndex, scripts/check_description_files.py), of
+// which most read the top-level CMakeLists.txt as text; and names of modules in Slicer.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace {
+
+const std::filesystem::path project = FENESTRA_PROJECT;
+
+std::string textOf(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(project / file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// First group of a pattern's first match; empty: no match.
+std::string found(const std::string& text, const std::string& pattern) {
+  std::smatch match;
+  return std::regex_search(text, match, std::regex(pattern, std::regex::icase)) ? match[1].str()
+                                                                                : std::string();
+}
+
+/// Value of `set(NAME "value")`.
+std::string setting(const std::string& name) {
+  return found(textOf("CMakeLists.txt"), "set\\s*\\(" + name + "\\s*\"([^\"]+)\"\\s*\\)");
+}
+
+TEST(Extension, TopLevelNamesWhatTheIndexReads) {
+  const std::string list = textOf("CMakeLists.txt");
+  EXPECT_EQ(found(list, R"(project\s*\(\s*([^\s\)]+))"), "Fenestra");
+  for (const char* name : {"EXTENSION_HOMEPAGE", "EXTENSION_CONTRIBUTORS", "EXTENSION_DESCRIPTION",
+                           "EXTENSION_ICONURL", "EXTENSION_SCREENSHOTURLS", "EXTENSION_CATEGORY"})
+    EXPECT_NE(setting(name), "") << name;
+  for (const char* name : {"EXTENSION_ICONURL", "EXTENSION_SCREENSHOTURLS"}) {
+    // A file of this repository, as its host serves it: .../<owner>/<repository>/<branch>/<path>.
+    const std::string path = found(
+        setting(name), "^https://raw\\.githubusercontent\\.com/[^/]+/[^/]+/main/(.+\\.(png|jpg))$");
+    EXPECT_TRUE(!path.empty() && std::filesystem::is_regular_file(project / path)) << name;
+  }
+  EXPECT_EQ(list.find('\r'), std::string::npos);
+}
+
+TEST(Extension, DescriptionNamesRepositoryAndCategory) {
+  const std::string entry = textOf("SlicerModule/Fenestra.json");
+  const std::string url = found(entry, "\"scm_url\"\\s*:\\s*\"([^\"]+)\"");
+  EXPECT_TRUE(std::regex_match(url, std::regex("https://[^/]+/[^/]+/Slicer\\w+\\.git"))) << url;
+  EXPECT_EQ(found(entry, "\"category\"\\s*:\\s*\"([^\"]+)\""), setting("EXTENSION_CATEGORY"));
+  EXPECT_EQ(setting("EXTENSION_CATEGORY"), "Rendering"); // one of the index's list
+  EXPECT_NE(textOf("LICENSE"), "");
+  EXPECT_EQ(setting("EXTENSION_HOMEPAGE").rfind(url.substr(0, url.size() - 4), 0), 0u);
+}
+
+/// Slicer makes each module an attribute of slicer.modules, in lower case: of two equal ones the
+/// second takes the first one's place.
+TEST(Extension, NamesOfModulesDifferInLowerCase) {
+  const std::string loadable =
+      found(textOf("SlicerModule/Extension.cmake"), "set\\(MODULE_NAME (\\w+)\\)");
+  const std::string command =
+      found(textOf("SlicerModule/Extension.cmake"), "set\\(COMMAND_MODULE_NAME (\\w+)\\)");
+  const std::string tour =
+      found(textOf("SlicerModule/Testing/Tour/CMakeLists.txt"), "set\\(MODULE_NAME (\\w+)\\)");
+  std::set<std::string> names;
+  for (std::string name : {loadable, command, tour}) {
+    EXPECT_NE(name, "");
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+}
+
+} // namespace

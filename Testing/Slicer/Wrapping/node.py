@@ -1,0 +1,49 @@
+"""Round trip of the node from Python: flags, XML, content; and arguments that are None or of no sense."""
+
+import vtkmodules.vtkCommonCore
+from FenestraPython import vtkMRMLFenestraRenderNode as Node
+
+
+def attempt(call, *arguments):
+    """Whatever a script types ends in a result or in an exception, never with the process."""
+    try:
+        call(*arguments)
+    except (TypeError, ValueError):
+        pass
+
+
+node = Node()
+node.SetName("render")
+node.SetFlag("samples", "64")
+node.SetFlag("nonsense", "1")
+node.SetFocus(["liver", "a,b"])
+assert node.GetFlag("samples") == "64" and node.GetFlag("nonsense") == ""
+assert list(node.GetFocus()) == ["liver", "a,b"]
+assert "samples" in node.GetFlagNames()
+roles = [getattr(Node, f"Get{role}NodeReferenceRole")() for role in
+         "Volume Segmentation View Plane Picture Radiance Depth Surface".split()]
+assert roles == "volume segmentation view plane picture radiance depth surface".split()
+node.SetNodeReferenceID(Node.GetVolumeNodeReferenceRole(), "vtkMRMLScalarVolumeNode1")
+assert node.GetNodeReferenceID("volume") == "vtkMRMLScalarVolumeNode1"
+
+read = Node()
+read.ReadAll(["name", "other", "clip", "surface", "transfer", "/etc/passwd", "mood", "<deep>"])
+assert read.GetFlag("clip") == "surface" and read.GetFlag("transfer") == "", "a file is withheld"
+assert read.WithholdsFiles()
+written = read.Written()
+assert all(part in written for part in ('clip="surface"', 'transfer="/etc/passwd"', 'mood="&lt;deep>"'))
+
+copy = Node()
+copy.CopyContent(read)
+assert copy.Written() == written and copy.HasCopyContent()
+copy.AllowFiles()
+assert copy.GetFlag("transfer") == "/etc/passwd"
+
+of_vtk = ("IsTypeOf", "IsA", "SafeDownCast", "NewInstance", "GetNumberOfGenerationsFromBase",
+          "GetNumberOfGenerationsFromBaseType")  # VTK's own, which ends with None
+own = [name for name in vars(Node) if name[0].isupper() and name not in of_vtk]
+assert {"SetFlag", "SetFocus", "CopyContent"} <= set(own)
+for name in own:
+    for arguments in ((), (None,), (None, None), ("x",), ("x", None), (node, node), ([],), ([None],)):
+        attempt(getattr(node, name), *arguments)
+print("round trip from Python: well")

@@ -1,0 +1,21 @@
+#ifndef __vtkSlicerModuleLogic_h
+#define __vtkSlicerModuleLogic_h
+// Stand-in for Slicer's class of this name, for compiling what the wrapper makes of the module's
+// logic.
+
+#include <vtkObject.h>
+
+class vtkMRMLScene;
+
+class vtkSlicerModuleLogic : public vtkObject {
+public:
+  vtkTypeMacro(vtkSlicerModuleLogic, vtkObject);
+  vtkMRMLScene* GetMRMLScene() { return nullptr; }
+
+protected:
+  virtual void RegisterNodes() {}
+  virtual void SetMRMLSceneInternal(vtkMRMLScene*) {}
+  virtual void OnMRMLSceneStartImport() {}
+};
+
+#endif

@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# The module's classes as Slicer makes them usable from Python: VTK's wrapper reads every header of Logic
+# and MRML, what it makes is compiled, and a script uses the node. Stand-ins (in this folder) take the place
+# of Slicer's classes. Debian's packages of VTK are unpacked into FOLDER where they are not installed.
+# usage: wrap.sh FOLDER. Exit status 77: there is neither the wrapper nor a way to get it.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+module=$here/../../../SlicerModule
+mkdir -p "$1"
+cd "$1"
+
+skip() {
+  echo "SKIPPED: $*" >&2
+  exit 77
+}
+root=
+if ! [ -x /usr/bin/vtkWrapPython-9.1 ] || ! [ -e /usr/include/vtk-9.1/vtkPythonArgs.h ]; then
+  root=$PWD/debian
+  packages=(libvtk9-dev libvtk9.1 python3-vtk9 vtk9 libpython3.11-dev)
+  if ! [ -e "$root/usr/bin/vtkWrapHierarchy-9.1" ]; then
+    command -v apt-get >/dev/null || skip "no apt-get to get VTK's wrapper with"
+    apt-get download "${packages[@]}" >apt.log 2>&1 ||
+      { apt-get update && apt-get download "${packages[@]}"; } >apt.log 2>&1 ||
+      skip "packages of VTK 9.1 cannot be fetched ($PWD/apt.log)"
+    for package in *.deb; do dpkg -x "$package" "$root"; done
+    rm ./*.deb
+  fi
+fi
+wrap=$root/usr/bin/vtkWrapPython-9.1
+libraries=$root/usr/lib/x86_64-linux-gnu
+export LD_LIBRARY_PATH="$libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+folders=("$here" "$module/Logic" "$module/MRML" "$module/Scene")
+for export in vtkSlicerFenestraModuleLogicExport vtkSlicerFenestraModuleMRMLExport; do
+  name=$(grep -rhoE 'VTK_SLICER_FENESTRA_MODULE_(LOGIC|MRML)_EXPORT' "$module/Logic" "$module/MRML" | sort -u)
+  for one in $name; do printf '#ifndef %s\n#define %s\n#endif\n' "$one" "$one"; done >$export.h
+done
+includes=(-I. "${folders[@]/#/-I}" "-I$root/usr/include/vtk-9.1")
+
+headers=("$here"/vtk*.h "$module"/Logic/vtk*.h "$module"/MRML/vtk*.h)
+printf '%s;FenestraPython\n' "${headers[@]}" >headers.txt
+"$root/usr/bin/vtkWrapHierarchy-9.1" "${includes[@]}" -o ours.txt headers.txt
+cp ours.txt FenestraPython-hierarchy.txt
+types=(--types FenestraPython-hierarchy.txt)
+for room in vtkCommonCore vtkCommonDataModel; do
+  types+=(--types "$libraries/vtk/hierarchy/VTK/$room-hierarchy.txt")
+done
+
+compile=(g++ -std=c++17 -fPIC -O0 "${includes[@]}" "-I$root/usr/include/python3.11" -I/usr/include/python3.11)
+objects=()
+for header in "${headers[@]}"; do
+  name=$(basename "$header" .h)
+  "$wrap" "${includes[@]}" "${types[@]}" -o "${name}Python.cxx" "$header"
+  "${compile[@]}" -c "${name}Python.cxx" -o "$name.o"
+  case $name in vtkMRML*) objects+=("$name.o") ;; esac
+done
+echo "wrapped and compiled: ${#headers[@]} headers"
+
+# The node as a Python module.
+printf '%s\n' FenestraPython vtkMRMLNode vtkMRMLFenestraRenderNode >init.txt
+"$root/usr/bin/vtkWrapPythonInit-9.1" init.txt FenestraPythonInit.cxx FenestraPythonInitImpl.cxx
+for source in FenestraPythonInit.cxx FenestraPythonInitImpl.cxx "$module"/MRML/*.cxx "$module"/Scene/FenestraFlags.cxx; do
+  "${compile[@]}" -c "$source" -o "$(basename "$source" .cxx)Source.o"
+  objects+=("$(basename "$source" .cxx)Source.o")
+done
+g++ -shared "${objects[@]}" -o FenestraPython.so "-L$libraries" -lvtkCommonCore-9.1 \
+  -lvtkWrappingPythonCore3.11-9.1 "-Wl,-rpath-link,$libraries"
+PYTHONPATH=.:$root/usr/lib/python3/dist-packages /usr/bin/python3 "$here/node.py"
