@@ -1,14 +1,47 @@
 #include "qSlicerFenestraModule.h"
 
 #include "qSlicerFenestraModuleWidget.h"
+#include "qSlicerFenestraSession.h"
 #include "vtkSlicerFenestraLogic.h"
+
+#include <vtkMRMLScene.h>
 
 #include <QDir>
 #include <QFileInfo>
 
 qSlicerFenestraModule::qSlicerFenestraModule(QObject* parent) : Superclass(parent) {}
 
-qSlicerFenestraModule::~qSlicerFenestraModule() = default;
+qSlicerFenestraModule::~qSlicerFenestraModule() {
+  if (fenestra())
+    fenestra()->SetRenderer(nullptr);
+  delete m_session; // while the logic that it uses is there
+}
+
+vtkSlicerFenestraLogic* qSlicerFenestraModule::fenestra() {
+  return vtkSlicerFenestraLogic::SafeDownCast(this->logic());
+}
+
+void qSlicerFenestraModule::setup() {
+  Superclass::setup();
+  fenestra()->SetRenderer([this] { return session(); });
+}
+
+qSlicerFenestraSession* qSlicerFenestraModule::session() {
+  if (!m_session)
+    m_session = new qSlicerFenestraSession(fenestra(), program(), this);
+  return m_session;
+}
+
+void qSlicerFenestraModule::setMRMLScene(vtkMRMLScene* scene) {
+  this->qvtkReconnect(this->mrmlScene(), scene, vtkMRMLScene::EndCloseEvent, this,
+                      SLOT(onSceneClosed()));
+  Superclass::setMRMLScene(scene);
+}
+
+void qSlicerFenestraModule::onSceneClosed() {
+  if (m_session)
+    m_session->closeScene();
+}
 
 QString qSlicerFenestraModule::helpText() const {
   return tr("Photorealistic pictures of a volume in which nothing hides the anatomy of interest. "

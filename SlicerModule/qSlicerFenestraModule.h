@@ -3,13 +3,19 @@
 
 #include <qSlicerLoadableModule.h>
 
+#include <ctkVTKObject.h>
+
 #include "qSlicerFenestraModuleExport.h"
+
+class qSlicerFenestraSession;
+class vtkSlicerFenestraLogic;
 
 /// The module as Slicer loads it: names, texts, and its parts.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraModule : public qSlicerLoadableModule {
   Q_OBJECT
   Q_PLUGIN_METADATA(IID "org.slicer.modules.loadable.qSlicerLoadableModule/1.0");
   Q_INTERFACES(qSlicerLoadableModule);
+  QVTK_OBJECT
 
 public:
   typedef qSlicerLoadableModule Superclass;
@@ -27,13 +33,25 @@ public:
 
   /// Path of the renderer installed with this module.
   QString program() const;
+  /// Work of the panel and of scripts; begins when it is first asked for.
+  qSlicerFenestraSession* session();
+
+public slots:
+  void setMRMLScene(vtkMRMLScene* scene) override;
 
 protected:
+  void setup() override;
   qSlicerAbstractModuleRepresentation* createWidgetRepresentation() override;
   vtkMRMLAbstractLogic* createLogic() override;
 
+private slots:
+  void onSceneClosed();
+
 private:
   Q_DISABLE_COPY(qSlicerFenestraModule);
+  vtkSlicerFenestraLogic* fenestra();
+
+  qSlicerFenestraSession* m_session = nullptr;
 };
 
 #endif

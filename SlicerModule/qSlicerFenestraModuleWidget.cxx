@@ -10,8 +10,10 @@
 #include "vtkSlicerFenestraLogic.h"
 
 #include <qMRMLNodeComboBox.h>
-#include <qSlicerCoreApplication.h>
+#include <qMRMLThreeDWidget.h>
+#include <qSlicerApplication.h>
 #include <qSlicerCoreIOManager.h>
+#include <qSlicerLayoutManager.h>
 
 #include <vtkMRMLScene.h>
 
@@ -27,16 +29,34 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include <cmath>
+
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
+
+/// Shape of the first 3-D view, in about as many pixels as `side` x `side`; empty: there is no
+/// view.
+std::string shapeOfView(double side) {
+  const qSlicerApplication* application = qSlicerApplication::application();
+  qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
+  const QWidget* view = layout ? layout->threeDWidget(0) : nullptr;
+  if (!view || view->width() < 64 || view->height() < 64)
+    return {};
+  const double scale = side / std::sqrt(double(view->width()) * view->height());
+  const auto scaled = [scale](int length) { return std::to_string(std::lround(scale * length)); };
+  return scaled(view->width()) + "x" + scaled(view->height());
+}
 
 } // namespace
 
 qSlicerFenestraModuleWidget::qSlicerFenestraModuleWidget(QWidget* parent) : Superclass(parent) {}
 
 qSlicerFenestraModuleWidget::~qSlicerFenestraModuleWidget() {
-  delete m_session; // before the panel: signals would reach a half-destroyed one
+  if (m_session) { // the module's, which goes on
+    m_session->preview(nullptr);
+    m_session->disconnect(this);
+  }
 }
 
 vtkSlicerFenestraLogic* qSlicerFenestraModuleWidget::fenestra() const {
@@ -48,13 +68,11 @@ void qSlicerFenestraModuleWidget::setup() {
   auto* layout = new QVBoxLayout(this);
   m_panel = new qSlicerFenestraPanel;
   layout->addWidget(m_panel);
-  QString program;
-  if (auto* own = dynamic_cast<qSlicerFenestraModule*>(this->module()))
-    program = own->program();
   m_settings = new qSlicerFenestraSettings(m_panel, fenestra(), this);
-  m_session = new qSlicerFenestraSession(fenestra(), program, this);
+  m_session = dynamic_cast<qSlicerFenestraModule*>(this->module())->session();
   connectPanel();
   connectSession();
+  m_session->learn();
   updateButtons();
 }
 
@@ -83,6 +101,7 @@ void qSlicerFenestraModuleWidget::connectPanel() {
     forget();
     showResult(chosen());
   });
+  connect(panel.back, &QPushButton::clicked, this, [this] { fenestra()->ShowLayoutBefore(); });
   connect(panel.save, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::save);
 }
 
@@ -135,10 +154,9 @@ void qSlicerFenestraModuleWidget::exit() {
   Superclass::exit();
 }
 
-/// Drops the session's scene and the messages about it.
+/// Drops the messages about the scene, whose session the module ends.
 void qSlicerFenestraModuleWidget::onSceneClosed() {
   m_sceneIsNew = true;
-  m_session->closeScene();
   forget();
 }
 
@@ -157,7 +175,11 @@ void qSlicerFenestraModuleWidget::useScene() {
   if (!this->isEntered() || !this->mrmlScene() || this->mrmlScene()->IsBatchProcessing())
     return;
   m_sceneIsNew = false;
-  m_settings->use(fenestra()->GetSettings());
+  const bool isNew = !this->mrmlScene()->GetSingletonNode("Settings", "vtkMRMLFenestraRenderNode");
+  Node* settings = fenestra()->GetSettings();
+  if (const std::string shape = isNew ? shapeOfView(512.0) : ""; !shape.empty())
+    settings->SetFlag("size", shape);
+  m_settings->use(settings);
   if (!chosen())
     m_panel->renders->setCurrentNode(fenestra()->GetShownRender());
 }
@@ -306,6 +328,7 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   const bool hasPicture = render && render->GetNodeReference(Node::PictureRole);
   m_panel->show->setEnabled(hasPicture);
   m_panel->save->setEnabled(hasPicture);
+  m_panel->back->setEnabled(fenestra()->GetShownRender() != nullptr);
   m_panel->repeat->setEnabled(render != nullptr);
   m_panel->resume->setVisible(m_session->canResume(render));
 }

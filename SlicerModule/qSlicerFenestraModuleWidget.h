@@ -5,6 +5,8 @@
 
 #include <ctkVTKObject.h>
 
+#include <QPointer>
+
 #include "qSlicerFenestraModuleExport.h"
 #include "qSlicerFenestraSession.h"
 
@@ -72,10 +74,10 @@ private:
 
   qSlicerFenestraPanel* m_panel = nullptr;
   qSlicerFenestraSettings* m_settings = nullptr;
-  qSlicerFenestraSession* m_session = nullptr;
-  bool m_sceneIsNew = false; ///< scene closed or loaded, and not yet used
-  QString m_reached;         ///< samples and noise of the render under way, in words
-  QElapsedTimer m_told;      ///< time since progress was last shown
+  QPointer<qSlicerFenestraSession> m_session; ///< of the module, which may end before the panel
+  bool m_sceneIsNew = false;                  ///< scene closed or loaded, and not yet used
+  QString m_reached;    ///< samples and noise of the render under way, in words
+  QElapsedTimer m_told; ///< time since progress was last shown
 };
 
 #endif

@@ -14,6 +14,7 @@
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QHBoxLayout>
+#include <QHash>
 #include <QLabel>
 #include <QListWidget>
 #include <QProgressBar>
@@ -96,6 +97,24 @@ QDoubleSpinBox* limit(const QString& name, double greatest, int decimals, const 
   return box;
 }
 
+/// Names each control for screen readers: by its own text, else by its label, else by its tool tip.
+void nameControls(QWidget* panel) {
+  QHash<const QWidget*, QString> labels;
+  for (const QLabel* label : panel->findChildren<QLabel*>())
+    if (label->buddy())
+      labels[label->buddy()] = label->text();
+  for (QWidget* control : panel->findChildren<QWidget*>()) {
+    if (control->focusPolicy() == Qt::NoFocus || !control->accessibleName().isEmpty())
+      continue;
+    const auto* button = qobject_cast<QAbstractButton*>(control);
+    QString name = button ? button->text() : QString();
+    // The parts of a box of several widgets bear the box's name.
+    for (const QWidget* one = control; one != panel && name.isEmpty(); one = one->parentWidget())
+      name = labels.contains(one) ? labels.value(one) : one->toolTip();
+    control->setAccessibleName(name.remove('&'));
+  }
+}
+
 } // namespace
 
 qSlicerFenestraPanel::qSlicerFenestraPanel(QWidget* parent) : QWidget(parent) {
@@ -109,6 +128,7 @@ qSlicerFenestraPanel::qSlicerFenestraPanel(QWidget* parent) : QWidget(parent) {
   buildAnimation(layout);
   buildResults(layout);
   layout->addStretch(1);
+  nameControls(this);
 }
 
 QFormLayout* qSlicerFenestraPanel::section(QVBoxLayout* layout, const QString& title,
@@ -179,6 +199,7 @@ void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
   layout->addWidget(showPreview);
   preview = new QLabel;
   preview->setObjectName("PreviewLabel");
+  preview->setAccessibleName(tr("Preview of the picture"));
   preview->setAlignment(Qt::AlignCenter);
   preview->setMinimumSize(256, 256);
   preview->setStyleSheet("background: black; color: gray");
@@ -337,6 +358,7 @@ void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
   form->addRow(measures);
   auto* row = new QHBoxLayout;
   show = button("ShowButton", tr("Show"), tr("In a view beside the 3D view"));
+  back = button("BackButton", tr("Back"), tr("Shows the views that were there before the picture"));
   repeat = button("RepeatButton", tr("Repeat"), tr("Renders with the same settings again"));
   resume = button("ResumeButton", tr("Continue"),
                   tr("Renders the frames of the turntable that are missing"));
@@ -344,7 +366,7 @@ void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
   save = button("SaveButton", tr("Save as..."),
                 tr("A .png to look at, or an .exr with linear colour and depth; a turntable's "
                    "frames as numbered .png"));
-  for (QPushButton* one : {show, repeat, resume, save})
+  for (QPushButton* one : {show, back, repeat, resume, save})
     row->addWidget(one);
   form->addRow(row);
 }

@@ -91,6 +91,7 @@ public:
   qSlicerFenestraPlayer* player;
   QLabel* measures;
   QPushButton* show;
+  QPushButton* back; ///< to the layout before the picture's
   QPushButton* repeat;
   QPushButton* resume;
   QPushButton* save;

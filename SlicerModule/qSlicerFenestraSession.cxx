@@ -2,7 +2,9 @@
 
 #include <QCoreApplication>
 #include <QCryptographicHash>
+#include <QDebug>
 #include <QDir>
+#include <QEventLoop>
 #include <QFile>
 #include <QFileInfo>
 
@@ -107,13 +109,20 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
     emit started(m_renders[id].node);
   });
   connect(&m_queue, &qFenestraQueue::progressed, this, [this](int id, double part) {
+    if (Node* node = m_renders[id].node)
+      node->SetProgress(part);
     emit progressed(m_renders[id].node, part, static_cast<double>(m_watch.elapsed()) / 1000.0);
   });
   connect(&m_queue, &qFenestraQueue::commented, this,
           [this](int, const QString& words) { emit reached(words); });
   connect(&m_queue, &qFenestraQueue::ended, this, &qSlicerFenestraSession::finishRender);
   connect(&m_question, &qFenestraQuestion::told, this, &qSlicerFenestraSession::learned);
-  m_question.ask(m_program);
+  connect(this, &qSlicerFenestraSession::ended, this, [](Node*, const qFenestraOutcome& outcome) {
+    if (outcome.kind == Ended::failed)
+      qCritical().noquote() << "Fenestra:" << outcome.message << outcome.details;
+  });
+  connect(this, &qSlicerFenestraSession::previewRefused, this,
+          [](const QString& message) { qInfo().noquote() << "Fenestra: no preview:" << message; });
 }
 
 qSlicerFenestraSession::~qSlicerFenestraSession() {
@@ -123,6 +132,10 @@ qSlicerFenestraSession::~qSlicerFenestraSession() {
   m_preview.stop();
   m_worker.clear();
   m_worker.waitForDone();
+}
+
+void qSlicerFenestraSession::learn() {
+  m_question.ask(m_program);
 }
 
 void qSlicerFenestraSession::work(const std::function<void()>& job) {
@@ -182,6 +195,26 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   return node;
 }
 
+Node* qSlicerFenestraSession::start(Node* settings, bool turntable) {
+  return render(settings, turntable ? Kind::turntable : Kind::picture);
+}
+
+bool qSlicerFenestraSession::isUnderWay(Node* node) const {
+  return std::any_of(m_renders.begin(), m_renders.end(),
+                     [node](const Render& render) { return render.node == node; });
+}
+
+void qSlicerFenestraSession::waitFor(Node* node) {
+  QEventLoop loop;
+  connect(this, &qSlicerFenestraSession::ended, &loop, [this, node, &loop] {
+    if (!isUnderWay(node))
+      loop.quit();
+  });
+  connect(this, &QObject::destroyed, &loop, &QEventLoop::quit);
+  if (isUnderWay(node))
+    loop.exec(QEventLoop::ExcludeUserInputEvents);
+}
+
 /// Passes all flags on the command line: the renderer trusts a user more than a scene.
 QStringList qSlicerFenestraSession::arguments(Node* render, const QString& scene,
                                               bool withSurface) const {
@@ -192,9 +225,7 @@ QStringList qSlicerFenestraSession::arguments(Node* render, const QString& scene
 }
 
 bool qSlicerFenestraSession::canResume(Node* turntable) const {
-  return m_results.lacksFrames(turntable) &&
-         std::none_of(m_renders.begin(), m_renders.end(),
-                      [turntable](const Render& render) { return render.node == turntable; });
+  return m_results.lacksFrames(turntable) && !isUnderWay(turntable);
 }
 
 void qSlicerFenestraSession::resume(Node* turntable) {
@@ -283,6 +314,8 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
         QFile::remove(render.folder + "/" + file);
   if (!kept)
     removeFolder(render.folder);
+  if (node)
+    node->EndRender(kept ? std::string() : outcome.message.toStdString());
   if (node && !kept && node->GetScene())
     node->GetScene()->RemoveNode(node);
   emit ended(

@@ -23,13 +23,14 @@
 #include "vtkSlicerFenestraLogic.h"
 #include <vtkWeakPointer.h>
 
-/// \brief Work of the panel: one preview that follows the settings, and renders one after the
-/// other.
+/// \brief Work of the panel and of scripts: one preview that follows the settings, and renders one
+/// after the other. Failures are also told in Slicer's log.
 ///
 /// Files are written and read in a worker thread, below a private folder that is removed with the
 /// scene; the scene is changed in the main thread only. While a render is under way there is no
 /// preview, which would slow the render down.
-class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject {
+class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject,
+                                                                  public FenestraRenderer {
   Q_OBJECT
 
 public:
@@ -41,12 +42,15 @@ public:
   /// Adds a render of the settings to the scene and to the queue. Null if something is missing:
   /// `ended` reports the reason.
   vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings, Kind kind = Kind::picture);
+  vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) override;
+  bool isUnderWay(vtkMRMLFenestraRenderNode* render) const override;
+  void waitFor(vtkMRMLFenestraRenderNode* render) override;
   /// True if the turntable is incomplete and can be resumed here.
   bool canResume(vtkMRMLFenestraRenderNode* turntable) const;
   /// Renders the missing frames.
   void resume(vtkMRMLFenestraRenderNode* turntable);
   /// Ends the render under way, keeping finished results; a second call discards them.
-  void stop();
+  void stop() override;
   /// True once the render under way has been asked to end.
   bool stopping() const { return rendering() && m_renders.first().stopped; }
   /// Ends all renders and drops results and files of the closed scene.
@@ -54,6 +58,8 @@ public:
   bool rendering() const { return !m_renders.isEmpty(); }
   int waiting() const { return rendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 
+  /// Asks the renderer what it can do, which `learned` tells.
+  void learn();
   /// Previews the settings from now on; null: ends the preview.
   void preview(vtkMRMLFenestraRenderNode* settings);
 
@@ -69,7 +75,7 @@ public slots:
   void refresh();
 
 signals:
-  /// Abilities of the renderer; once, soon after the session began.
+  /// Abilities of the renderer, soon after learn().
   void learned(const qFenestraAbilities& abilities);
   void previewed(const QImage& picture, const qFenestraPicture& what);
   /// A sentence for the user; the last preview stays.

@@ -5,6 +5,7 @@
 
 #include <vtkSmartPointer.h>
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -31,6 +32,20 @@ struct FenestraResult {
   vtkSmartPointer<vtkPolyData> surface;  ///< clipping surface, RAS; null: none
 };
 
+/// Renders in the background. The module has one: processes are Qt's, which the logic does not
+/// know.
+class FenestraRenderer {
+public:
+  virtual ~FenestraRenderer() = default;
+  /// Adds a node for a render of the settings and queues it; null: the log says why not.
+  virtual vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) = 0;
+  virtual bool isUnderWay(vtkMRMLFenestraRenderNode* render) const = 0;
+  /// Returns when the render has ended; events are processed meanwhile, user input is not.
+  virtual void waitFor(vtkMRMLFenestraRenderNode* render) = 0;
+  /// Ends the render under way, keeping what is finished.
+  virtual void stop() = 0;
+};
+
 /// \brief Exchange between Slicer's scene and the renderer's files.
 ///
 /// All calls are quick: files are written and read in other threads (FenestraScene::Writer,
@@ -47,6 +62,24 @@ public:
   /// Adds a node for a render with the current settings; a followed camera becomes a fixed view. A
   /// turntable's node keeps the flags of turntables.
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
+
+  /// Renders the settings in the background and returns the render's node, which tells of progress
+  /// and end (RenderProgressEvent, RenderEndEvent). Null: the log says why. `wait`: returns at the
+  /// end; a render without a picture, of which the log says why, is null.
+  vtkMRMLFenestraRenderNode* Render(vtkMRMLFenestraRenderNode* settings, bool wait = false);
+  vtkMRMLFenestraRenderNode* RenderTurntable(vtkMRMLFenestraRenderNode* settings,
+                                             bool wait = false);
+  /// Ends the render under way, keeping what is finished.
+  void StopRender();
+  bool IsRendering(vtkMRMLFenestraRenderNode* render);
+  /// Called when a renderer is needed first.
+  void SetRenderer(std::function<FenestraRenderer*()> renderer);
+
+  /// Writes the scene that the renderer would be given into a folder, and returns its path; empty:
+  /// the log says why.
+  std::string WriteScene(vtkMRMLFenestraRenderNode* render, const std::string& folder);
+  /// Sets the view to that of a camera, as flags.
+  void UseCamera(vtkMRMLFenestraRenderNode* render, vtkMRMLCameraNode* camera);
 
   /// All that the renderer needs except the flags, without a copy of the voxels. `folder`: private,
   /// for data that Slicer can only write as files. Throws FenestraScene::Complaint.
@@ -78,6 +111,8 @@ public:
   void ShowNewestVolume();
   /// Shows the render's picture beside a 3-D view, in the module's own layout.
   void ShowResult(vtkMRMLFenestraRenderNode* render);
+  /// Shows the layout that the module's own took the place of.
+  void ShowLayoutBefore();
   /// Render whose picture the module's layout shows; null: none.
   vtkMRMLFenestraRenderNode* GetShownRender();
   /// Shows another frame of a turntable, in the same view.
@@ -95,16 +130,22 @@ protected:
   void SetMRMLSceneInternal(vtkMRMLScene* scene) override;
   /// Registers the module's layout, in which the scene may have been saved.
   void OnMRMLSceneStartImport() override;
+  void OnMRMLSceneNodeRemoved(vtkMRMLNode* node) override;
 
 private:
+  vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
   vtkMRMLSliceLogic* GetPictureView();
   FenestraScene::Matrix BesideAnatomy(vtkMRMLFenestraRenderNode* render,
                                       const FenestraScene::Matrix& ijkToRas);
+  void Own(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);
   void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);
   void AddFrames(vtkMRMLFenestraRenderNode* render, vtkImageData* frames);
   vtkMRMLVolumeNode* AddVolume(vtkMRMLFenestraRenderNode* render, const char* className,
                                const char* role, vtkImageData* image,
                                const FenestraScene::Matrix& ijkToRas);
+
+  std::function<FenestraRenderer*()> Renderer;
+  int LayoutBefore = 3; ///< vtkMRMLLayoutNode::SlicerLayoutFourUpView
 };
 
 #endif

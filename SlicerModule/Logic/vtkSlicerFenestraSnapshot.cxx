@@ -290,11 +290,13 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
     taken.layers.push_back(ToLayer(labels, first));
     key << '\n' << Key(labels, "", taken.layers.back().labels);
   }
-  for (const std::string& id : focus) {
+  for (const std::string& name : focus) { // a script's names, the panel's ids
+    const std::string named = segmentation->GetSegmentIdBySegmentName(name);
+    const std::string id = segmentation->GetSegment(name) ? name : named;
     const auto isIt = [&id](const Segment& segment) { return segment.id == id; };
     vtkSegment* segment = segmentation->GetSegment(id);
     if (!segment)
-      throw Complaint("The segment \"" + id + "\" is gone. Choose another focus.");
+      throw Complaint("The segment \"" + name + "\" is gone. Choose another focus.");
     if (std::none_of(taken.segments.begin(), taken.segments.end(), isIt))
       throw Complaint("The segment \"" + std::string(segment->GetName()) +
                       "\" is empty. Paint it, or choose another focus.");

@@ -109,6 +109,16 @@ void vtkMRMLFenestraRenderNode::CopyFlags(vtkMRMLFenestraRenderNode* node) {
     this->Assign(node->Flags, node->Withheld, node->Unknown);
 }
 
+void vtkMRMLFenestraRenderNode::SetProgress(double part) {
+  this->Progress = part;
+  this->InvokeEvent(RenderProgressEvent);
+}
+
+void vtkMRMLFenestraRenderNode::EndRender(const std::string& problem) {
+  this->Problem = problem;
+  this->InvokeEvent(RenderEndEvent);
+}
+
 void vtkMRMLFenestraRenderNode::SetFocus(const std::vector<std::string>& segments) {
   std::string text;
   for (const std::string& segment : segments) {

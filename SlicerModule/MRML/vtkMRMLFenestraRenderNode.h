@@ -62,6 +62,17 @@ public:
   /// Copies flags, withheld values and unknown attributes from another node; null: no change.
   void CopyFlags(vtkMRMLFenestraRenderNode* node);
 
+  /// Events of a render in the background, for observers of its node.
+  enum { RenderProgressEvent = 62170, RenderEndEvent };
+  /// Finished share of the render, 0 to 1. Not saved.
+  vtkGetMacro(Progress, double);
+  /// Sets the share and invokes RenderProgressEvent.
+  void SetProgress(double part);
+  /// Reason, a sentence, why the render ended without a picture; empty: it has one, or goes on.
+  const std::string& GetProblem() const { return this->Problem; }
+  /// Invokes RenderEndEvent; a render that ended well has an empty problem.
+  void EndRender(const std::string& problem);
+
   /// Focus segments by id, name or label value: the flag `focus`, split at its commas.
   void SetFocus(const std::vector<std::string>& segments);
   std::vector<std::string> GetFocus() const;
@@ -97,6 +108,8 @@ protected:
   using Values = std::map<std::string, std::string>;
   void Assign(Values flags, Values withheld, Values unknown);
 
+  double Progress = 0.0;
+  std::string Problem;
   Values Flags, Withheld;
   Values Unknown; ///< attributes of the scene that neither this class nor its base knows
 };

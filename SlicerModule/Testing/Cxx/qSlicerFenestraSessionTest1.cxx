@@ -13,6 +13,7 @@
 #include <QProcess>
 
 #include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
+#include <vtkCallbackCommand.h>
 #include <vtkClosedSurfaceToBinaryLabelmapConversionRule.h>
 #include <vtkSegmentationConverterFactory.h>
 
@@ -131,6 +132,45 @@ int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node
   return EXIT_SUCCESS;
 }
 
+/// Render, events and removal as a script asks for them.
+int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session,
+                Node* settings) {
+  TESTING_OUTPUT_ASSERT_ERRORS_BEGIN();
+  CHECK_NULL(logic->Render(nullptr));
+  TESTING_OUTPUT_ASSERT_ERRORS_END();
+  CHECK_NULL(logic->AddRender(nullptr));
+  logic->SetRenderer([&session] { return &session; });
+  settings->SetFlags({{"samples", "8"}, {"size", "48x40"}, {"transfer", "ct-soft"}});
+  Node* render = logic->Render(settings);
+  CHECK_NOT_NULL(render);
+  CHECK_BOOL(logic->IsRendering(render), true);
+  int told = 0, ends = 0;
+  vtkNew<vtkCallbackCommand> count;
+  count->SetCallback(
+      [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
+  count->SetClientData(&told);
+  render->AddObserver(Node::RenderProgressEvent, count);
+  vtkNew<vtkCallbackCommand> end;
+  end->SetCallback(
+      [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
+  end->SetClientData(&ends);
+  render->AddObserver(Node::RenderEndEvent, end);
+  session.waitFor(render);
+  CHECK_BOOL(told > 0, true);
+  CHECK_INT(ends, 1);
+  CHECK_STD_STRING(render->GetProblem(), "");
+  Node* waited = logic->Render(settings, true);
+  CHECK_NOT_NULL(waited);
+  CHECK_NOT_NULL(waited->GetNodeReference(Node::PictureRole));
+  // Results go with their render.
+  const std::string picture = waited->GetNodeReferenceID(Node::PictureRole);
+  const std::string depth = waited->GetNodeReferenceID(Node::DepthRole);
+  scene->RemoveNode(waited);
+  CHECK_NULL(scene->GetNodeByID(picture));
+  CHECK_NULL(scene->GetNodeByID(depth));
+  return EXIT_SUCCESS;
+}
+
 } // namespace
 
 int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
@@ -219,6 +259,7 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   CHECK_NULL(without.render(settings));
   CHECK_BOOL(other.last.message.contains("missing"), true);
   CHECK_INT(scene->GetNumberOfNodes(), nodes);
+  CHECK_EXIT_SUCCESS(checkScript(scene, logic, session, settings));
   CHECK_EXIT_SUCCESS(checkAnotherScene(scene, session, second));
   return EXIT_SUCCESS;
 }

@@ -5,6 +5,7 @@
 
 #include <vtkObject.h>
 
+class vtkMRMLNode;
 class vtkMRMLScene;
 
 class vtkSlicerModuleLogic : public vtkObject {
@@ -16,6 +17,7 @@ protected:
   virtual void RegisterNodes() {}
   virtual void SetMRMLSceneInternal(vtkMRMLScene*) {}
   virtual void OnMRMLSceneStartImport() {}
+  virtual void OnMRMLSceneNodeRemoved(vtkMRMLNode*) {}
 };
 
 #endif

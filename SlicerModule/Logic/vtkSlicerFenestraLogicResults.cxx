@@ -1,0 +1,375 @@
+#include "vtkSlicerFenestraLogic.h"
+
+#include "vtkMRMLFenestraRenderNode.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vtkImageData.h>
+#include <vtkImageExtractComponents.h>
+#include <vtkImageFlip.h>
+#include <vtkMRMLApplicationLogic.h>
+#include <vtkMRMLLayoutNode.h>
+#include <vtkMRMLModelNode.h>
+#include <vtkMRMLScalarVolumeDisplayNode.h>
+#include <vtkMRMLScalarVolumeNode.h>
+#include <vtkMRMLScene.h>
+#include <vtkMRMLSelectionNode.h>
+#include <vtkMRMLSliceCompositeNode.h>
+#include <vtkMRMLSliceLogic.h>
+#include <vtkMRMLSliceNode.h>
+#include <vtkMRMLSubjectHierarchyNode.h>
+#include <vtkMRMLVectorVolumeNode.h>
+#include <vtkMRMLViewNode.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkPNGReader.h>
+#include <vtkPolyData.h>
+#include <vtkStringArray.h>
+#include <vtkXMLPolyDataReader.h>
+
+namespace {
+using Node = vtkMRMLFenestraRenderNode;
+
+constexpr int ResultLayout = 5617; // larger than the numbers of Slicer's own layouts
+constexpr const char* ResultLayoutXml =
+    "<layout type=\"horizontal\" split=\"true\">"
+    "<item splitSize=\"600\"><view class=\"vtkMRMLSliceNode\" singletontag=\"Fenestra\">"
+    "<property name=\"orientation\" action=\"default\">Axial</property>"
+    "<property name=\"viewlabel\" action=\"default\">F</property>"
+    "<property name=\"viewcolor\" action=\"default\">#6FB1C8</property></view></item>"
+    "<item splitSize=\"400\"><view class=\"vtkMRMLViewNode\" singletontag=\"1\">"
+    "<property name=\"viewlabel\" action=\"default\">1</property></view></item></layout>";
+
+vtkSmartPointer<vtkImageData> ToVtk(const FenestraScene::Image& image) {
+  vtkNew<vtkImageData> copy;
+  copy->SetDimensions(static_cast<int>(image.size[0]), static_cast<int>(image.size[1]),
+                      static_cast<int>(image.size[2]));
+  copy->AllocateScalars(VTK_FLOAT, static_cast<int>(image.components));
+  std::memcpy(copy->GetScalarPointer(), image.data.get(), image.bytes());
+  return copy;
+}
+
+FenestraScene::Image ReadFloats(const std::string& file) {
+  FenestraScene::Image image = FenestraScene::readNrrd(file);
+  if (image.type != "float" || image.size[2] != 1)
+    throw FenestraScene::FileError(file + ": is no picture of the renderer's; render it again");
+  return image;
+}
+
+/// Reads picture files as slices: row 0 at the top, as in the renderer's volumes, no transparency.
+vtkSmartPointer<vtkImageData> ReadPictures(const std::vector<std::string>& files) {
+  vtkNew<vtkStringArray> names;
+  for (const std::string& file : files)
+    names->InsertNextValue(file);
+  vtkNew<vtkPNGReader> reader;
+  reader->SetFileNames(names);
+  vtkNew<vtkImageFlip> flip;
+  flip->SetInputConnection(reader->GetOutputPort());
+  flip->SetFilteredAxis(1);
+  vtkNew<vtkImageExtractComponents> colours;
+  colours->SetInputConnection(flip->GetOutputPort());
+  colours->SetComponents(0, 1, 2);
+  colours->Update();
+  return colours->GetOutput();
+}
+
+std::string FrameFile(const std::string& folder, int frame) {
+  std::string number = std::to_string(frame);
+  number.insert(0, 4 - std::min<size_t>(4, number.size()), '0');
+  return folder + "/frame_" + number + ".png";
+}
+
+/// Turns the slice view to the picture as the eye saw it: rows to the right, columns down.
+void FaceFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
+  double directions[3][3];
+  picture->GetIJKToRASDirections(directions);
+  vtkNew<vtkMatrix4x4> ijkToRas;
+  picture->GetIJKToRASMatrix(ijkToRas);
+  const int* size = picture->GetImageData()->GetDimensions();
+  const double middle[4] = {0.5 * (size[0] - 1), 0.5 * (size[1] - 1), double(frame), 1.0};
+  double centre[4];
+  ijkToRas->MultiplyPoint(middle, centre);
+  vtkNew<vtkMatrix4x4> toRas;
+  for (int row = 0; row < 3; ++row) {
+    toRas->SetElement(row, 0, directions[row][0]);
+    toRas->SetElement(row, 1, -directions[row][1]);
+    toRas->SetElement(row, 2, -directions[row][2]);
+    toRas->SetElement(row, 3, centre[row]);
+  }
+  slice->GetSliceToRAS()->DeepCopy(toRas);
+  slice->UpdateMatrices();
+}
+
+vtkMRMLLayoutNode* LayoutOf(vtkMRMLScene* scene) {
+  return !scene ? nullptr
+                : vtkMRMLLayoutNode::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLLayoutNode"));
+}
+
+bool Shows(vtkMRMLSliceLogic* view, const char* picture) {
+  const char* shown = view->GetSliceCompositeNode()->GetBackgroundVolumeID();
+  return picture && shown && std::strcmp(picture, shown) == 0;
+}
+
+/// Sets a grey window over the finite values.
+void ShowFinite(vtkMRMLVolumeNode* volume, const FenestraScene::Image& depth) {
+  auto* display = vtkMRMLScalarVolumeDisplayNode::SafeDownCast(volume->GetDisplayNode());
+  const auto* values = static_cast<const float*>(depth.data.get());
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (size_t i = 0; i < depth.bytes() / sizeof(float); ++i)
+    if (std::isfinite(values[i])) {
+      least = std::min<double>(least, values[i]);
+      greatest = std::max<double>(greatest, values[i]);
+    }
+  if (!display || !(least < greatest))
+    return;
+  display->AutoWindowLevelOff();
+  display->SetWindowLevelMinMax(least, greatest);
+}
+} // namespace
+
+void vtkSlicerFenestraLogic::OnMRMLSceneStartImport() {
+  if (vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene()))
+    layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
+}
+
+std::vector<std::string> vtkSlicerFenestraLogic::GetFrameFiles(const std::string& folder) {
+  std::vector<std::string> files;
+  std::string next = FrameFile(folder, 0);
+  while (std::filesystem::exists(next)) {
+    files.push_back(next);
+    next = FrameFile(folder, static_cast<int>(files.size()));
+  }
+  return files;
+}
+
+FenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
+  FenestraResult result;
+  const std::vector<std::string> frames = GetFrameFiles(folder);
+  if (!frames.empty()) {
+    result.picture = ReadPictures(frames);
+    return result;
+  }
+  result.radiance = ReadFloats(folder + "/radiance.nrrd");
+  result.depth = ReadFloats(folder + "/radiance-Z.nrrd");
+  result.picture = ReadPictures({folder + "/picture.png"});
+  const std::string surface = folder + "/surface.vtp";
+  if (std::filesystem::exists(surface)) {
+    vtkNew<vtkXMLPolyDataReader> reader;
+    reader->SetFileName(surface.c_str());
+    reader->Update();
+    result.surface = reader->GetOutput();
+  }
+  return result;
+}
+
+/// Puts a result into the subject hierarchy's folder of its render, beside the render's volume.
+void vtkSlicerFenestraLogic::Own(Node* render, vtkMRMLNode* result) {
+  auto* hierarchy = vtkMRMLSubjectHierarchyNode::GetSubjectHierarchyNode(this->GetMRMLScene());
+  if (!hierarchy)
+    return;
+  const vtkIdType none = vtkMRMLSubjectHierarchyNode::GetInvalidItemID();
+  vtkIdType parent = hierarchy->GetSceneItemID();
+  if (vtkMRMLNode* volume = render->GetNodeReference(Node::VolumeRole))
+    if (const vtkIdType item = hierarchy->GetItemByDataNode(volume); item != none)
+      parent = hierarchy->GetItemParent(item);
+  vtkIdType folder = hierarchy->GetItemChildWithName(parent, render->GetName());
+  if (folder == none)
+    folder = hierarchy->CreateFolderItem(parent, render->GetName());
+  if (const vtkIdType item = hierarchy->GetItemByDataNode(result); item != none)
+    hierarchy->SetItemParent(item, folder);
+  else
+    hierarchy->CreateItem(folder, result);
+}
+
+/// Results and their folder go with their render.
+void vtkSlicerFenestraLogic::OnMRMLSceneNodeRemoved(vtkMRMLNode* node) {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  auto* render = Node::SafeDownCast(node);
+  if (!render || !scene || scene->IsClosing())
+    return;
+  auto* hierarchy = vtkMRMLSubjectHierarchyNode::GetSubjectHierarchyNode(scene);
+  const vtkIdType none = vtkMRMLSubjectHierarchyNode::GetInvalidItemID();
+  for (const char* role :
+       {Node::PictureRole, Node::RadianceRole, Node::DepthRole, Node::SurfaceRole}) {
+    const char* id = render->GetNodeReferenceID(role);
+    vtkMRMLNode* result = id ? scene->GetNodeByID(id) : nullptr;
+    if (!result)
+      continue;
+    const vtkIdType item = hierarchy ? hierarchy->GetItemByDataNode(result) : none;
+    const vtkIdType folder = item != none ? hierarchy->GetItemParent(item) : none;
+    scene->RemoveNode(result);
+    if (folder != none && hierarchy->GetItemName(folder) == render->GetName() &&
+        hierarchy->GetNumberOfItemChildren(folder) == 0)
+      hierarchy->RemoveItem(folder);
+  }
+}
+
+vtkMRMLVolumeNode* vtkSlicerFenestraLogic::AddVolume(Node* render, const char* className,
+                                                     const char* role, vtkImageData* image,
+                                                     const FenestraScene::Matrix& ijkToRas) {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  const std::string name = std::string(render->GetName()) + " " + role;
+  auto* volume = vtkMRMLVolumeNode::SafeDownCast(
+      scene->AddNewNodeByClass(className, scene->GenerateUniqueName(name.c_str())));
+  vtkNew<vtkMatrix4x4> matrix;
+  matrix->DeepCopy(ijkToRas.data());
+  volume->SetIJKToRASMatrix(matrix);
+  volume->SetAndObserveImageData(image);
+  volume->CreateDefaultDisplayNodes();
+  render->SetNodeReferenceID(role, volume->GetID());
+  this->Own(render, volume);
+  return volume;
+}
+
+void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  const std::string name = std::string(render->GetName()) + " " + Node::SurfaceRole;
+  auto* model = vtkMRMLModelNode::SafeDownCast(
+      scene->AddNewNodeByClass("vtkMRMLModelNode", scene->GenerateUniqueName(name.c_str())));
+  model->SetAndObservePolyData(surface);
+  model->CreateDefaultDisplayNodes();
+  vtkMRMLDisplayNode* display = model->GetDisplayNode();
+  display->SetColor(0.44, 0.69, 0.78);
+  display->SetOpacity(0.5);
+  display->SetVisibility(false); // the surface lies in front of the anatomy
+  render->SetNodeReferenceID(Node::SurfaceRole, model->GetID());
+  this->Own(render, model);
+}
+
+/// Matrix of the picture, moved toward the eye beyond the volume: a slice view in its plane then
+/// shows no segments and models that lie there.
+FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
+                                                            const FenestraScene::Matrix& ijkToRas) {
+  auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
+  FenestraScene::Matrix moved = ijkToRas;
+  if (!volume)
+    return moved;
+  double bounds[6];
+  volume->GetRASBounds(bounds);
+  const double diagonal =
+      std::hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]);
+  const double length = std::hypot(ijkToRas[2], ijkToRas[6], ijkToRas[10]);
+  for (int row = 0; row < 3; ++row)
+    moved[4 * row + 3] -= 2.0 * diagonal / length * ijkToRas[4 * row + 2];
+  return moved;
+}
+
+/// Adds frames as a volume of 1 mm pixels far from the anatomy, in which frames have no place.
+void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
+  if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
+    return picture->SetAndObserveImageData(frames);
+  double bounds[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole)))
+    volume->GetRASBounds(bounds);
+  FenestraScene::Matrix ijkToRas = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+  const int* size = frames->GetDimensions();
+  for (size_t axis = 0; axis < 3; ++axis)
+    ijkToRas[4 * axis + 3] = 2.0 * bounds[2 * axis + 1] - bounds[2 * axis] + size[axis];
+  this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, frames, ijkToRas);
+}
+
+void vtkSlicerFenestraLogic::AddResult(Node* render, const FenestraResult& result, int step) {
+  if (render->IsTurntable()) {
+    if (step == 0)
+      this->AddFrames(render, result.picture);
+    return;
+  }
+  if (step == 0)
+    this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, result.picture,
+                    this->BesideAnatomy(render, result.radiance.ijkToRas));
+  if (step == 1)
+    this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::RadianceRole, ToVtk(result.radiance),
+                    result.radiance.ijkToRas);
+  if (step == 2)
+    ShowFinite(this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
+                               ToVtk(result.depth), result.depth.ijkToRas),
+               result.depth);
+  if (step == 3 && result.surface && result.surface->GetNumberOfPoints() > 0)
+    this->AddSurface(render, result.surface);
+}
+
+void vtkSlicerFenestraLogic::ShowNewestVolume() {
+  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
+  vtkMRMLSelectionNode* selection = application ? application->GetSelectionNode() : nullptr;
+  if (!this->GetMRMLScene())
+    return;
+  std::vector<vtkMRMLNode*> volumes;
+  this->GetMRMLScene()->GetNodesByClass("vtkMRMLScalarVolumeNode", volumes);
+  if (!selection || volumes.empty())
+    return;
+  selection->SetActiveVolumeID(volumes.back()->GetID());
+  application->PropagateVolumeSelection();
+}
+
+vtkMRMLSliceLogic* vtkSlicerFenestraLogic::GetPictureView() {
+  auto* slice = vtkMRMLSliceNode::SafeDownCast(
+      this->GetMRMLScene()->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
+  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
+  return slice && application ? application->GetSliceLogic(slice) : nullptr;
+}
+
+void vtkSlicerFenestraLogic::ShowLayoutBefore() {
+  if (vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene()))
+    layout->SetViewArrangement(this->LayoutBefore);
+}
+
+void vtkSlicerFenestraLogic::ShowResult(Node* render) {
+  if (!render || !this->GetMRMLScene())
+    return;
+  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
+  vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene());
+  if (!picture || !layout)
+    return;
+  layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
+  if (layout->GetViewArrangement() != ResultLayout)
+    this->LayoutBefore = layout->GetViewArrangement();
+  layout->SetViewArrangement(ResultLayout);
+
+  vtkMRMLSliceLogic* logic = this->GetPictureView();
+  if (!logic)
+    return;
+  vtkMRMLSliceNode* slice = logic->GetSliceNode();
+  vtkMRMLSliceCompositeNode* composite = logic->GetSliceCompositeNode();
+  composite->SetBackgroundVolumeID(picture->GetID());
+  composite->SetForegroundVolumeID(nullptr);
+  composite->SetLabelVolumeID(nullptr);
+  FaceFrame(picture, 0, slice);
+  const int* view = slice->GetDimensions(); // otherwise the picture's sides are cut off
+  logic->FitSliceToBackground(view[0], view[1]);
+}
+
+Node* vtkSlicerFenestraLogic::GetShownRender() {
+  if (!this->GetMRMLScene())
+    return nullptr;
+  vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene());
+  vtkMRMLSliceLogic* logic = this->GetPictureView();
+  if (!logic || !layout || layout->GetViewArrangement() != ResultLayout)
+    return nullptr;
+  std::vector<vtkMRMLNode*> renders;
+  this->GetMRMLScene()->GetNodesByClass("vtkMRMLFenestraRenderNode", renders);
+  for (vtkMRMLNode* render : renders)
+    if (Shows(logic, render->GetNodeReferenceID(Node::PictureRole)))
+      return Node::SafeDownCast(render);
+  return nullptr;
+}
+
+void vtkSlicerFenestraLogic::ShowFrame(Node* render, int frame) {
+  if (!render || !this->GetMRMLScene())
+    return;
+  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
+  if (!picture || frame < 0 || frame >= GetNumberOfFrames(render))
+    return;
+  vtkMRMLSliceLogic* logic = this->GetPictureView();
+  if (!logic || !Shows(logic, picture->GetID()))
+    this->ShowResult(render);
+  if (logic)
+    FaceFrame(picture, frame, logic->GetSliceNode());
+}
+
+int vtkSlicerFenestraLogic::GetNumberOfFrames(Node* render) {
+  if (!render)
+    return 0;
+  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
+  return picture && picture->GetImageData() ? picture->GetImageData()->GetDimensions()[2] : 0;
+}
