@@ -1,0 +1,197 @@
+#include "files/segments/LabelNames.h"
+
+#include "base/Error.h"
+#include "base/Text.h"
+#include "base/safe/EmbeddedResources.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/JsonNode.h"
+#include "base/safe/ShownText.h"
+
+#include <pugixml.hpp>
+
+#include <algorithm>
+#include <functional>
+
+namespace fenestra {
+namespace {
+
+/// Names that grow, with the place in the table that errors tell.
+class TableBuilder {
+public:
+  explicit TableBuilder(std::string source) : m_source(std::move(source)) {}
+
+  void add(const std::string& place, std::optional<std::int64_t> value, std::string name,
+           std::optional<Rgb> color = {}) {
+    if (!value || *value < std::numeric_limits<std::int32_t>::min() ||
+        *value > std::numeric_limits<std::int32_t>::max())
+      throw inputError(m_source, place, ": must begin with a whole number of 32 bits");
+    if (*value == 0)
+      return;
+    if (name.empty())
+      throw inputError(m_source, place, ": has no name; name the value, or remove it");
+    const auto key = static_cast<std::int32_t>(*value);
+    if (color && !((*color >= 0.0).all() && (*color <= 1.0).all()))
+      color.reset();
+    const auto [entry, isNew] = m_names.insert({key, {std::move(name), color}});
+    if (!isNew)
+      throw inputError(m_source, place, ": names the value ", key, " again, which is \"",
+                       shown(entry->second.name), "\" already");
+  }
+
+  LabelNames take() {
+    if (m_names.empty())
+      throw inputError(m_source, "names no value; is it a table of labels?");
+    return std::move(m_names);
+  }
+
+  const std::string& source() const { return m_source; }
+
+private:
+  std::string m_source;
+  LabelNames m_names;
+};
+
+/// Calls `use` with the place and the text of each line that holds something.
+void forLines(const std::string& text,
+              const std::function<void(const std::string& place, std::string_view line)>& use) {
+  std::size_t number = 0;
+  for (const std::string& line : split(text, '\n')) {
+    ++number;
+    const std::string_view content = trimmed(line);
+    if (!content.empty() && content.front() != '#')
+      use(textOf("line ", number), content);
+  }
+}
+
+/// Colour of three bytes in words; nullopt: other words.
+std::optional<Rgb> colorOf(const std::vector<std::string>& parts, std::size_t first) {
+  Rgb color;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto byte =
+        first + i < parts.size() ? parsed<double>(parts[first + i]) : std::optional<double>();
+    if (!byte)
+      return std::nullopt;
+    color[static_cast<int>(i)] = *byte / 255.0;
+  }
+  return color;
+}
+
+/// Slicer writes blanks in names as underscores, and says nothing of it: names stay as they are.
+void readColorTable(const std::string& text, TableBuilder& table) {
+  forLines(text, [&](const std::string& place, std::string_view line) {
+    const std::vector<std::string> parts = words(line);
+    table.add(place, wholeNumber(parts[0]), parts.size() > 1 ? parts[1] : "", colorOf(parts, 2));
+  });
+}
+
+void readSnapTable(const std::string& text, TableBuilder& table) {
+  forLines(text, [&](const std::string& place, std::string_view line) {
+    const std::size_t open = line.find('"'), close = line.rfind('"');
+    const std::vector<std::string> parts = words(line.substr(0, open));
+    const bool isQuoted = open != std::string_view::npos && close > open;
+    table.add(place, parts.empty() ? std::nullopt : wholeNumber(parts[0]),
+              isQuoted ? std::string(line.substr(open + 1, close - open - 1)) : "",
+              colorOf(parts, 1));
+  });
+}
+
+void readCsv(const std::string& text, TableBuilder& table) {
+  std::size_t value = 0, name = 1;
+  bool isFirst = true;
+  const auto unquoted = [](const std::string& field) {
+    return std::string(trimmed(field, " \t\r\""));
+  };
+  forLines(text, [&](const std::string& place, std::string_view line) {
+    std::vector<std::string> fields = split(line, line.find(',') != line.npos ? ',' : ';');
+    std::ranges::transform(fields, fields.begin(), unquoted);
+    const auto columnOf = [&](std::initializer_list<std::string_view> titles) {
+      return static_cast<std::size_t>(
+          std::ranges::find_if(fields,
+                               [&](const std::string& field) {
+                                 return std::ranges::find(titles, lower(field)) != titles.end();
+                               }) -
+          fields.begin());
+    };
+    if (std::exchange(isFirst, false) && !wholeNumber(fields[0])) {
+      value = columnOf({"label", "value", "id", "index", "labelvalue"});
+      name = columnOf({"name", "label_name", "labelname", "structure", "segment"});
+      if (value >= fields.size() || name >= fields.size())
+        throw inputError(table.source(), place,
+                         ": has no columns \"label\" and \"name\"; name them so");
+      return;
+    }
+    const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string(); };
+    table.add(place, wholeNumber(field(value)), field(name));
+  });
+}
+
+void readJsonTable(std::string_view text, TableBuilder& table) {
+  const nlohmann::json document = parseJson(text, table.source());
+  const JsonNode root(document, table.source());
+  if (root.isObject()) {
+    for (const auto& [key, name] : root.members())
+      table.add(textOf('"', shown(key), '"'), wholeNumber(key), name.text());
+    return;
+  }
+  std::size_t number = 0;
+  for (const JsonNode& entry : root.elements())
+    table.add(textOf('[', number++, ']'),
+              static_cast<std::int64_t>(entry.at("label").numberIn(-2147483648.0, 2147483647.0)),
+              entry.at("name").text());
+}
+
+} // namespace
+
+LabelNames readLabelNames(const std::filesystem::path& path) {
+  using Read = void (*)(const std::string&, TableBuilder&);
+  static const std::map<std::string, Read> readers = {
+      {".ctbl", readColorTable},
+      {".txt", readColorTable},
+      {".label", readSnapTable},
+      {".csv", readCsv},
+      {".json", [](const std::string& text, TableBuilder& table) { readJsonTable(text, table); }}};
+  const auto reader = readers.find(lowerExtension(path));
+  if (reader == readers.end())
+    throw inputError(path.string(), "is no table of labels by its extension; name a .ctbl, .txt, "
+                                    ".label, .json or .csv");
+  TableBuilder table(path.string());
+  reader->second(readText(path), table);
+  return table.take();
+}
+
+std::optional<LabelNames> compiledLabelNames(const std::string& name) {
+  const std::string_view text = embeddedResource("labels/" + name + ".json");
+  if (text.empty())
+    return std::nullopt;
+  TableBuilder table(name);
+  readJsonTable(text, table);
+  return table.take();
+}
+
+std::vector<std::string> compiledLabelTables() {
+  std::vector<std::string> tables;
+  for (const std::string& file : embeddedResourceNames("labels/"))
+    tables.push_back(std::filesystem::path(file).stem().string());
+  return tables;
+}
+
+std::optional<LabelNames> labelNamesInXml(std::string_view xml, const std::string& source) {
+  const std::size_t begin = xml.find('<');
+  if (begin == xml.npos || xml.find("<LabelTable>") == xml.npos)
+    return std::nullopt;
+  pugi::xml_document document;
+  const std::size_t end = xml.rfind('>') + 1;
+  if (!document.load_buffer(xml.data() + begin, end - begin))
+    throw inputError(source, "the label table in its header extension is damaged; write it again");
+  TableBuilder table(source);
+  for (const pugi::xpath_node& found : document.select_nodes("//LabelTable/Label")) {
+    const pugi::xml_node label = found.node();
+    const auto part = [&](const char* key) { return label.attribute(key).as_double(-1.0); };
+    table.add("label table in its header extension", wholeNumber(label.attribute("Key").value()),
+              std::string(trimmed(label.child_value())),
+              Rgb(part("Red"), part("Green"), part("Blue")));
+  }
+  return table.take();
+}
+
+} // namespace fenestra

@@ -1,0 +1,108 @@
+// Tables of names for the values of label maps.
+
+#include "TemporaryFolder.h"
+
+#include "base/Error.h"
+#include "files/segments/LabelNames.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+
+namespace {
+
+LabelNames read(const std::string& name, const std::string& text) {
+  const TemporaryFolder folder;
+  return readLabelNames(folder.write(name, text));
+}
+
+std::string refusal(const std::string& name, const std::string& text) {
+  try {
+    read(name, text);
+  } catch (const Error& error) {
+    const std::string what = error.what();
+    return what.substr(what.find(name));
+  }
+  return "none";
+}
+
+TEST(LabelNames, EveryFormatGivesTheSameNames) {
+  const std::pair<const char*, const char*> tables[] = {
+      {"a.ctbl", "# Color table file\n\n0 Background 0 0 0 0\n5 liver 221 130 101 255\r\n"
+                 "51 spleen 157 108 162 255\n"},
+      {"a.txt", "#No. Label\n 5   liver   221 130 101 0\n\n 51  spleen  157 108 162 0\n"},
+      {"a.label", "    0     0    0    0        0  0  0    \"Clear Label\"\n"
+                  "    5   221  130  101        1  1  1    \"liver\"\n"
+                  "   51   157  108  162        1  1  1    \"spleen\"\n"},
+      {"a.json", R"({"5": "liver", "51": "spleen", "0": "background"})"},
+      {"b.json",
+       R"([{"label": 5, "name": "liver", "voxels": 3}, {"label": 51, "name": "spleen"}])"},
+      {"a.csv", "5,liver\n51,spleen\n"},
+      {"b.csv", "name;voxels;label\r\n\"liver\";7;5\r\n\"spleen\";8;51\r\n"}};
+  for (const auto& [name, text] : tables) {
+    const LabelNames names = read(name, text);
+    EXPECT_EQ(names.size(), 2u) << name;
+    EXPECT_EQ(names.at(5).name, "liver") << name;
+    EXPECT_EQ(names.at(51).name, "spleen") << name;
+    if (std::string(name).find("csv") == std::string::npos &&
+        std::string(name).find("json") == std::string::npos) {
+      ASSERT_TRUE(names.at(5).color) << name;
+      EXPECT_NEAR(names.at(5).color->x(), 221.0 / 255.0, 1e-12) << name;
+    }
+  }
+}
+
+TEST(LabelNames, NamesKeepTheirBlanksWhereTheFormatHasThem) {
+  EXPECT_EQ(read("a.label", "7 0 0 0 1 1 1 \"Left \"great\" toe\"").at(7).name,
+            "Left \"great\" toe");
+  EXPECT_EQ(read("a.json", R"({"-7": "left foot"})").at(-7).name, "left foot");
+}
+
+TEST(LabelNames, RefusalsNamePlaceAndReason) {
+  EXPECT_EQ(refusal("a.ctbl", "x liver 1 2 3 4"),
+            "a.ctbl: line 1: must begin with a whole number of 32 bits");
+  EXPECT_EQ(refusal("a.ctbl", "1 a 0 0 0 0\n1 b 0 0 0 0"),
+            "a.ctbl: line 2: names the value 1 again, which is \"a\" already");
+  EXPECT_EQ(refusal("a.label", "3 0 0 0 1 1 1 liver"),
+            "a.label: line 1: has no name; name the value, or remove it");
+  EXPECT_EQ(refusal("a.csv", "organ,size\n1,2\n"),
+            "a.csv: line 1: has no columns \"label\" and \"name\"; name them so");
+  EXPECT_EQ(refusal("a.json", R"({"99999999999": "x"})"),
+            "a.json: \"99999999999\": must begin with a whole number of 32 bits");
+  EXPECT_EQ(refusal("a.json", "{}"), "a.json: names no value; is it a table of labels?");
+  EXPECT_NE(refusal("a.json", R"({"1": 2})").find("a.json: 1: "), std::string::npos);
+  EXPECT_NE(refusal("a.xlsx", "").find("no table of labels by its extension"), std::string::npos);
+}
+
+TEST(LabelNames, CompiledTablesHaveTheirClasses) {
+  EXPECT_EQ(compiledLabelNames("totalsegmentator1")->size(), 104u);
+  EXPECT_EQ(compiledLabelNames("totalsegmentator2")->size(), 117u);
+  // One value, two organs: why the version matters.
+  EXPECT_EQ(compiledLabelNames("totalsegmentator1")->at(7).name, "aorta");
+  EXPECT_EQ(compiledLabelNames("totalsegmentator2")->at(7).name, "pancreas");
+  EXPECT_EQ(compiledLabelNames("freesurfer")->at(17).name, "Left-Hippocampus");
+  EXPECT_EQ(compiledLabelNames("freesurfer")->at(2035).name, "ctx-rh-insula");
+  EXPECT_FALSE(compiledLabelNames("totalsegmentator"));
+  EXPECT_FALSE(compiledLabelNames("../presets/liver"));
+  EXPECT_EQ(compiledLabelTables().size(), 3u);
+}
+
+TEST(LabelNames, XmlOfAHeaderExtensionGivesNamesAndColors) {
+  const std::string xml =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?> <CaretExtension><VolumeInformation Index=\"0\">"
+      "<LabelTable><Label Key=\"1\" Red=\"0\" Green=\"1.0\" Blue=\"0.5\" "
+      "Alpha=\"1\"><![CDATA[spleen]]>"
+      "</Label>\n<Label Key=\"0\"><![CDATA[???]]></Label></LabelTable></VolumeInformation>"
+      "</CaretExtension>\n   ";
+  const auto names = labelNamesInXml(xml + std::string(5, '\0'), "a.nii");
+  ASSERT_TRUE(names);
+  EXPECT_EQ(names->size(), 1u);
+  EXPECT_EQ(names->at(1).name, "spleen");
+  EXPECT_EQ(*names->at(1).color, Rgb(0.0, 1.0, 0.5));
+  EXPECT_FALSE(labelNamesInXml("<Other/>", "a.nii"));
+  EXPECT_FALSE(labelNamesInXml("", "a.nii"));
+  EXPECT_THROW(labelNamesInXml("<a><LabelTable><Label", "a.nii"), Error);
+  EXPECT_THROW(labelNamesInXml("<a><LabelTable></LabelTable></a>", "a.nii"), Error);
+}
+
+} // namespace
