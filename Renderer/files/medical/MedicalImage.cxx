@@ -9,7 +9,6 @@
 
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 
 #include <bit>
@@ -22,8 +21,6 @@ namespace {
 itk::ImageIOBase::Pointer makeImageIo(MedicalFormat format) {
   if (format == MedicalFormat::nrrd)
     return itk::NrrdImageIO::New().GetPointer();
-  if (format == MedicalFormat::nifti)
-    return itk::NiftiImageIO::New().GetPointer();
   return itk::MetaImageIO::New().GetPointer();
 }
 
@@ -62,6 +59,19 @@ Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Comp
   return size;
 }
 
+void checkGeometry(const std::filesystem::path& path, const Mat3& directions, const Vec3& spacing,
+                   const Vec3& origin) {
+  constexpr double largest = 1e9; // mm; beyond, points lose fractions of a voxel
+  if (!((spacing.array() > 1.0 / largest).all() && (spacing.array() < largest).all()))
+    throw inputError(path, "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
+  if (!(origin.array().abs() < largest).all())
+    throw inputError(path, "origin: is not a place within 1e9 mm; mend the header");
+  // The volume of the cell that unit directions span: 1 for orthogonal axes, 0 for coplanar ones.
+  constexpr double flattest = 1e-6;
+  if (!(std::abs(directions.normalizedColumns().determinant()) > flattest))
+    throw inputError(path, "directions: the axes do not span space; mend the header");
+}
+
 Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
   const Size3 size = sizeOf(path, io, allowed);
   Mat3 directions;
@@ -72,15 +82,7 @@ Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Compo
     spacing[static_cast<int>(axis)] = io.GetSpacing(axis);
     origin[static_cast<int>(axis)] = io.GetOrigin(axis);
   }
-  constexpr double largest = 1e9; // mm; beyond, points lose fractions of a voxel
-  if (!((spacing.array() > 1.0 / largest).all() && (spacing.array() < largest).all()))
-    throw inputError(path, "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
-  if (!(origin.array().abs() < largest).all())
-    throw inputError(path, "origin: is not a place within 1e9 mm; mend the header");
-  // The volume of the cell that unit directions span: 1 for orthogonal axes, 0 for coplanar ones.
-  constexpr double flattest = 1e-6;
-  if (!(std::abs(directions.normalizedColumns().determinant()) > flattest))
-    throw inputError(path, "directions: the axes do not span space; mend the header");
+  checkGeometry(path, directions, spacing, origin);
   return {size, Affine(lpsToRas * directions * Mat3::Diagonal(spacing), lpsToRas * origin)};
 }
 
@@ -156,11 +158,32 @@ std::map<std::string, std::string> textFields(const itk::ImageIOBase& io) {
   return fields;
 }
 
+/// One volume alone; a list of components would be NRRD's.
+void readNifti(const std::filesystem::path& path, const TakeSamples& take) {
+  const NiftiHeader header = readNiftiHeader(path);
+  const std::size_t axes = header.size.size();
+  if (axes < 3)
+    throw inputError(path, "is a picture of ", axes, " axes, not a volume; name one of three");
+  for (std::size_t axis = 3; axis < axes; ++axis)
+    if (header.size[axis] != 1) { // the fifth axis is a vector's (nifti1.h)
+      const char* const what = axis == 4 ? " components a voxel; convert it to one scalar a voxel"
+                                         : " frames; extract one of them";
+      throw inputError(path, "has ", axes, " axes, the ", axis + 1, "th with ", header.size[axis],
+                       what);
+    }
+  const Size3 size(header.size[0], header.size[1], header.size[2]);
+  const Mat3& axesToRas = header.indexToRas.linear();
+  checkGeometry(path, axesToRas, axesToRas.columnNorms(), header.indexToRas.translation());
+  MedicalImage image{.grid = {size, header.indexToRas}, .warnings = header.warnings};
+  image.extensions = niftiExtensions(path, header);
+  take(image, niftiSamples(path, header, static_cast<std::size_t>(size.prod())));
+}
+
 void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
                  const TakeSamples& take) {
   const StoredSamples stored = locateSamples(path, format); // refuses what ITK does not survive
   if (format == MedicalFormat::nifti)
-    checkNiftiHeader(path);
+    return readNifti(path, take);
   const Quiet quiet;
   const auto io = makeImageIo(format);
   io->SetFileName(path.string());
@@ -177,8 +200,7 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
     image.warnings.push_back(path.string() + ": has no spacing; voxels are taken to be 1 mm");
   if (image.frames)
     image.components = framesOf(*io);
-  take(image, format == MedicalFormat::nifti ? niftiSamples(path, sampleCount(*io))
-                                             : samplesOf(path, stored, *io));
+  take(image, samplesOf(path, stored, *io));
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #pragma once
-// Reads NRRD, NIfTI and MetaImage files: headers through ITK; samples by our own code, in one pass,
-// where they are raw or one stream. Scenes use VolumeReader.h and SegmentationReader.h.
+// Reads NRRD, NIfTI and MetaImage files: headers through ITK, but for NIfTI's; samples by our own
+// code, in one pass, where they are raw or one stream. Scenes use VolumeReader.h and
+// SegmentationReader.h.
 
 #include "files/medical/SampleSource.h"
 #include "model/volume/Grid.h"
@@ -17,6 +18,7 @@ struct MedicalImage {
   std::size_t components = 1;
   bool frames = false; ///< components: one frame after the other; else by voxel; x fastest
   std::map<std::string, std::string> fields = {}; ///< NRRD's key:=value pairs
+  std::string extensions = {};                    ///< bytes of NIfTI's header extensions
   std::vector<std::string> warnings = {};         ///< each names the file
 };
 

@@ -1,20 +1,25 @@
 #pragma once
-// Reads the samples of a NIfTI-1 file. ITK's library silently turns samples that are not finite
-// into zeros, and holds all samples twice; a child (Apart.h) would copy them once more.
+// Reads a NIfTI-1 file, plain or compressed. ITK's library silently turns samples that are not
+// finite into zeros, and holds all samples twice; a child (Apart.h) would copy them once more.
 
-#include "files/medical/SampleSource.h"
+#include "files/medical/NiftiHeader.h"
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 
 namespace fenestra {
 
-/// Throws Error (input) unless the file has a NIfTI-1 header of one part; the library would
-/// complain on the standard error stream.
-void checkNiftiHeader(const std::filesystem::path& path);
+/// Throws Error (input) as parseNiftiHeader does, and where the file is too short.
+NiftiHeader readNiftiHeader(const std::filesystem::path& path);
 
-/// First `count` samples of a .nii or .nii.gz. Throws Error (input) for more samples than the file
-/// can hold; reading them throws where the file ends before.
-SampleSource niftiSamples(const std::filesystem::path& path, std::size_t count);
+/// Bytes of all header extensions, with their sizes and codes; at most 4 MiB. Throws Error (input)
+/// where the file ends before.
+std::string niftiExtensions(const std::filesystem::path& path, const NiftiHeader& header);
+
+/// First `count` samples of the file. Throws Error (input) for more samples than the file can hold;
+/// reading them throws where the file ends before.
+SampleSource niftiSamples(const std::filesystem::path& path, const NiftiHeader& header,
+                          std::size_t count);
 
 } // namespace fenestra

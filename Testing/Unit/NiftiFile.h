@@ -1,0 +1,103 @@
+#pragma once
+// Bytes of a NIfTI-1 file of one part with any geometry and header extension: ITK's writer makes
+// only its own.
+
+#include "base/Affine.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace fenestra {
+
+struct NiftiFile {
+  std::array<std::int16_t, 3> size = {3, 4, 2};
+  std::vector<std::int16_t> samples = std::vector<std::int16_t>(24, 0);
+  std::int16_t qformCode = 0, sformCode = 0;
+  std::array<float, 3> quaternion = {0, 0, 0}, quaternionOffset = {0, 0, 0};
+  std::array<float, 12> rows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}; ///< srow_x, _y, _z
+  std::array<float, 4> pixdim = {1, 1, 1, 1};                        ///< the first: qfac
+  char units = 2;                                                    ///< millimetres
+  std::string extension = {};
+
+  void setSform(const Affine& map) {
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t column = 0; column < 4; ++column)
+        rows[4 * row + column] = static_cast<float>(
+            column < 3 ? map.linear()(std::ptrdiff_t(row), std::ptrdiff_t(column))
+                       : map.translation()[std::ptrdiff_t(row)]);
+  }
+
+  /// Axes at right angles only.
+  void setQform(const Affine& map) {
+    Mat3 r = map.linear().normalizedColumns();
+    const Vec3 spacing = map.linear().columnNorms();
+    pixdim[0] = r.determinant() < 0.0 ? -1.0f : 1.0f;
+    if (pixdim[0] < 0.0f)
+      r.col(2) = -r.col(2);
+    // Quaternion of the largest of its four components (nifti_mat44_to_quatern).
+    const double trace = r.trace();
+    std::array<double, 4> q{};
+    const double squares[] = {1.0 + trace, 1.0 + 2.0 * r(0, 0) - trace, 1.0 + 2.0 * r(1, 1) - trace,
+                              1.0 + 2.0 * r(2, 2) - trace};
+    std::size_t largest = 0;
+    for (std::size_t i = 1; i < 4; ++i)
+      largest = squares[i] > squares[largest] ? i : largest;
+    const double twice = std::sqrt(squares[largest]), s = 0.5 / twice;
+    const double skew[] = {r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)};
+    q[largest] = 0.5 * twice;
+    for (std::size_t i = 1; i < 4; ++i) {
+      if (largest == 0) {
+        q[i] = s * skew[i - 1];
+      } else if (i != largest) {
+        q[i] = s * (r(std::ptrdiff_t(i) - 1, std::ptrdiff_t(largest) - 1) +
+                    r(std::ptrdiff_t(largest) - 1, std::ptrdiff_t(i) - 1));
+      }
+    }
+    if (largest != 0)
+      q[0] = s * skew[largest - 1];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double sign = q[0] < 0.0 ? -1.0 : 1.0;
+      quaternion[i] = static_cast<float>(sign * q[i + 1]);
+      quaternionOffset[i] = static_cast<float>(map.translation()[std::ptrdiff_t(i)]);
+      pixdim[i + 1] = static_cast<float>(spacing[std::ptrdiff_t(i)]);
+    }
+  }
+
+  std::string bytes() const {
+    std::string header(348, '\0');
+    const auto put = [&header](std::size_t at, const auto& value) {
+      std::memcpy(&header[at], &value, sizeof value);
+    };
+    put(0, std::int32_t{348});
+    put(40, std::array<std::int16_t, 8>{3, size[0], size[1], size[2], 1, 1, 1, 1});
+    put(70, std::int16_t{4});
+    put(72, std::int16_t{16});
+    put(76, pixdim);
+    // An extension: its size, a multiple of 16 with these eight bytes, its code, its content.
+    std::string block;
+    if (!extension.empty()) {
+      block = std::string(8, '\0') + extension;
+      block.resize((block.size() + 15) / 16 * 16, '\0');
+      const auto blockSize = static_cast<std::int32_t>(block.size());
+      std::memcpy(block.data(), &blockSize, sizeof blockSize);
+    }
+    put(108, static_cast<float>(352 + block.size()));
+    put(112, 1.0f);
+    header[123] = units;
+    put(252, qformCode);
+    put(254, sformCode);
+    put(256, quaternion);
+    put(268, quaternionOffset);
+    put(280, rows);
+    std::memcpy(&header[344], "n+1", 4);
+    const std::string announced(extension.empty() ? "\0\0\0\0" : "\1\0\0\0", 4);
+    return header + announced + block +
+           std::string(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
+  }
+};
+
+} // namespace fenestra

@@ -1,0 +1,157 @@
+// Geometry of NIfTI files: qform, sform, both, and those that other programs write.
+
+#include "NiftiFile.h"
+#include "Refusals.h"
+
+#include "files/medical/VolumeReader.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+using namespace fenestra;
+
+namespace {
+
+const Size3 referenceSize(3, 4, 5);
+const Vec3 referenceSpacing(1.0, 2.0, 3.0), referenceOrigin(10.0, -20.0, 30.0);
+
+std::int16_t referenceValue(const Size3& voxel) {
+  return static_cast<std::int16_t>(voxel.x() + 3 * (voxel.y() + 4 * voxel.z()) - 7);
+}
+
+/// Reference volume with its axes in another order, some of them reversed; index to RAS in `map`.
+NiftiFile reordered(const std::array<int, 3>& order, int reversed, Affine& map) {
+  NiftiFile file;
+  map = Affine(Mat3::Zero(), referenceOrigin);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int world = order[std::size_t(axis)];
+    const double side = reversed >> axis & 1 ? -1.0 : 1.0;
+    file.size[std::size_t(axis)] = static_cast<std::int16_t>(referenceSize[world]);
+    map.linear()(world, axis) = side * referenceSpacing[world];
+    if (side < 0.0)
+      map.translation()[world] += referenceSpacing[world] * double(referenceSize[world] - 1);
+    file.pixdim[std::size_t(axis) + 1] = static_cast<float>(referenceSpacing[world]);
+  }
+  file.samples.clear();
+  for (int z = 0; z < file.size[2]; ++z)
+    for (int y = 0; y < file.size[1]; ++y)
+      for (int x = 0; x < file.size[0]; ++x) {
+        const Vec3 place =
+            (map * Vec3(x, y, z) - referenceOrigin).array() / referenceSpacing.array();
+        const Vec3 voxel = place.array().round();
+        file.samples.push_back(referenceValue(voxel.cast<std::int64_t>()));
+      }
+  return file;
+}
+
+/// True if each voxel of the volume has the reference's value at its place.
+bool isReference(const Volume& volume) {
+  const Size3& size = volume.grid.size;
+  bool isIt = size.prod() == referenceSize.prod();
+  const auto valueOf = [&](std::int64_t i) {
+    return std::visit([i](const auto& all) { return static_cast<double>(all[std::size_t(i)]); },
+                      volume.voxels);
+  };
+  for (std::int64_t i = 0; i < size.prod(); ++i) {
+    const Size3 voxel(i % size[0], i / size[0] % size[1], i / size[0] / size[1]);
+    const Vec3 world = volume.grid.indexToWorld * voxel.cast<double>();
+    const Vec3 place = (world - referenceOrigin).array() / referenceSpacing.array();
+    const Vec3 nearest = place.array().round();
+    isIt &= (place - nearest).norm() < 1e-5 && (nearest.array() >= 0.0).all() &&
+            valueOf(i) == referenceValue(nearest.cast<std::int64_t>());
+  }
+  return isIt;
+}
+
+TEST(NiftiHeader, EveryOrderAndSignOfAxesGivesTheSameVolume) {
+  const TemporaryFolder folder;
+  std::array<int, 3> order = {0, 1, 2};
+  do {
+    for (int reversed = 0; reversed < 8; ++reversed) {
+      Affine map, elsewhere = translationBy({500.0, 0.0, 0.0});
+      NiftiFile file = reordered(order, reversed, map);
+      // Codes of qform and sform; the second pair of maps is of no effect.
+      struct {
+        std::int16_t qform, sform;
+        const Affine &ofQform, &ofSform;
+      } const cases[] = {{0, 2, elsewhere, map}, {1, 0, map, elsewhere}, {1, 1, map, map},
+                         {2, 2, map, map},       {1, 2, map, elsewhere}, {2, 1, elsewhere, map}};
+      for (const auto& one : cases) {
+        const std::array<float, 4> pixdim = file.pixdim;
+        file.setQform(one.ofQform);
+        if (&one.ofQform == &elsewhere)
+          file.pixdim = pixdim;
+        file.setSform(one.ofSform);
+        file.qformCode = one.qform;
+        file.sformCode = one.sform;
+        EXPECT_TRUE(isReference(readVolume(folder.write("v.nii", file.bytes()))))
+            << order[0] << order[1] << order[2] << " reversed " << reversed << " codes "
+            << one.qform << one.sform;
+      }
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+/// Header as nibabel wrote it, which ITK calls damaged.
+TEST(NiftiHeader, SformThatIsARotationButForRoundingIsTaken) {
+  NiftiFile file;
+  file.sformCode = 2;
+  file.pixdim = {1.0f, 0.9765625f, 0.97656244f, 0.99999511f};
+  file.quaternion = {-0.98220181f, -0.02935276f, 0.01163567f};
+  file.rows = {0.97461528f, 0.05210137f, -0.03372571f, 772.818f,     0.06051739f,  -0.9079209f,
+               0.36303428f, 888.232f,    -0.01170732f, -0.35586426f, -0.93115997f, 563.915f};
+  const TemporaryFolder folder;
+  const Grid grid = readVolume(folder.write("v.nii", file.bytes())).grid;
+  const Mat3 axes = grid.indexToWorld.linear().normalizedColumns();
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      EXPECT_NEAR(axes.col(a).dot(axes.col(b)), a == b, 1e-14);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      EXPECT_NEAR(grid.indexToWorld.linear()(row, column),
+                  double(file.rows[std::size_t(4 * row + column)]), 1e-3);
+    EXPECT_EQ(grid.indexToWorld.translation()[row], double(file.rows[std::size_t(4 * row + 3)]));
+  }
+}
+
+TEST(NiftiHeader, ShearedSformIsRefused) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.sformCode = 1;
+  const auto shearedBy = [&](float shear) {
+    file.rows[1] = shear;
+    return folder.write("v.nii", file.bytes());
+  };
+  EXPECT_NO_THROW(readVolume(shearedBy(1e-3f)));
+  const auto sheared = shearedBy(3e-3f);
+  expectRefused(sheared, "srow: shears", [&] { readVolume(sheared); });
+  file.rows = {};
+  const auto flat = folder.write("v.nii", file.bytes());
+  expectRefused(flat, "srow: its axes do not span space", [&] { readVolume(flat); });
+}
+
+TEST(NiftiHeader, UnitsScaleGeometry) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.sformCode = 1;
+  file.setSform(Affine(Mat3::Diagonal({2.0, 2.0, 2.0}), {5.0, 0.0, 0.0}));
+  file.pixdim = {1, 2, 2, 2};
+  for (const auto& [units, factor] : {std::pair(1, 1000.0), {2, 1.0}, {3, 0.001}, {0, 1.0}}) {
+    file.units = static_cast<char>(units | 8); // and seconds
+    const Affine map = readVolume(folder.write("v.nii", file.bytes())).grid.indexToWorld;
+    EXPECT_NEAR(map.linear()(0, 0), 2.0 * factor, 1e-9 * factor);
+    EXPECT_NEAR(map.translation()[0], 5.0 * factor, 1e-9 * factor);
+  }
+}
+
+TEST(NiftiHeader, FileWithoutFormsIsPlacedWithAWarning) {
+  const TemporaryFolder folder;
+  const Volume volume = readVolume(folder.write("v.nii", NiftiFile().bytes()));
+  EXPECT_EQ(volume.grid.indexToWorld.linear(), lpsToRas);
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  EXPECT_NE(volume.warnings[0].find("neither qform nor sform"), std::string::npos);
+}
+
+} // namespace
