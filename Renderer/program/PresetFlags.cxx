@@ -95,9 +95,9 @@ PresetFlags withPreset(const FlagValues& given, const Input& input) {
     return result;
   const bool givenFocus = given.has("focus");
   const bool byNames = given.text("preset") == "auto" || !givenFocus;
-  const auto names = byNames
-                         ? input.segmentNames({given.text("volume"), given.text("segmentation")})
-                         : std::nullopt;
+  const auto names = byNames ? input.segmentNames({given.text("volume"), given.text("segmentation"),
+                                                   given.text("labels")})
+                             : std::nullopt;
   const OrganPreset preset = presetFor(given, input, names);
   FlagValues& flags = result.flags;
   if (!givenFocus && names)

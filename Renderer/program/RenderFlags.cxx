@@ -112,6 +112,10 @@ struct RenderTable {
       {"segmentation", "FILE|NAME", sceneGroup,
        "Segments: a .seg.nrrd, any label map, or a node of the scene [the scene's]",
        Takes::labels().into(scene.segmentation), Topic::focus},
+      {"labels", "FILE|NAME", sceneGroup,
+       "Names of a label map's values: a .ctbl, .label, .json or .csv, or one of totalsegmentator, "
+       "totalsegmentator1, totalsegmentator2, freesurfer [in or beside the label map]",
+       Takes::text().into(scene.labels), Topic::focus},
       {"focus", "A,B,...", sceneGroup,
        "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,); may be "
        "repeated",

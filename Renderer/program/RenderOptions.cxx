@@ -20,6 +20,9 @@ void checkInput(const FlagValues& flags, const SceneRequest& scene) {
   if (scene.segmentation && scene.focus.empty())
     throw usageError(
         "--segmentation: only --focus and --preset use it; add --focus A,B,... or --preset auto");
+  if (scene.labels && scene.focus.empty())
+    throw usageError(
+        "--labels: only --focus and --preset use it; add --focus A,B,... or --preset auto");
   if (flags.differs("view") && flags.differs("position"))
     throw usageError("--view and --position contradict each other; give one");
 }

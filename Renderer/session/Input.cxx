@@ -28,10 +28,17 @@ VolumeInput volumeInFiles(const std::filesystem::path& path,
   return input;
 }
 
-std::optional<SegmentNames> namesInFile(const std::optional<std::string>& file) {
-  if (!file)
+std::optional<SegmentNames> namesInFile(const InputChoice& choice) {
+  if (!choice.segmentation)
     return std::nullopt;
-  return SegmentNames{*file, readSegmentInfos(*file)};
+  return SegmentNames{*choice.segmentation, readSegmentInfos(*choice.segmentation, choice.labels)};
+}
+
+/// Mask of a focus with the files and the warnings of its segmentation.
+FocusInput focusFrom(const Segmentation& segmentation, Mask mask, FilesRead files) {
+  if (isThere(segmentation.namesFrom()))
+    files.push_back(segmentation.namesFrom());
+  return {std::move(mask), std::move(files), segmentation.warnings()};
 }
 
 bool holdsSegmentation(const MrmlDocument& document) {
@@ -131,13 +138,14 @@ SceneLook Input::look(const std::optional<std::string>& volume,
 
 std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const {
   if (!m_opened->isScene)
-    return namesInFile(choice.segmentation);
+    return namesInFile(choice);
   return m_opened->with([&](MrmlScene& scene) {
     const ScenePlan plan = planFor(scene, choice, holdsSegmentation(scene.document));
     if (!plan.segmentation)
-      return namesInFile(choice.segmentation);
-    return std::optional(SegmentNames{scene.document.source() + ": " + shown(*plan.segmentation),
-                                      readSceneSegmentInfos(scene, *plan.segmentation)});
+      return namesInFile(choice);
+    return std::optional(
+        SegmentNames{scene.document.source() + ": " + shown(*plan.segmentation),
+                     readSceneSegmentInfos(scene, *plan.segmentation, choice.labels)});
   });
 }
 
@@ -146,8 +154,10 @@ FocusInput Input::focus(const InputChoice& choice, const std::vector<std::string
   if (names.empty())
     return {};
   const auto inFile = [&] {
-    return FocusInput{readSegmentation(*choice.segmentation, &volume).mask(names, volume, shaping),
-                      {*choice.segmentation}};
+    const Segmentation segmentation =
+        readSegmentation(*choice.segmentation, &volume, choice.labels);
+    return focusFrom(segmentation, segmentation.mask(names, volume, shaping),
+                     {*choice.segmentation});
   };
   if (!m_opened->isScene)
     return inFile();
@@ -160,9 +170,10 @@ FocusInput Input::focus(const InputChoice& choice, const std::vector<std::string
                        "has no segmentation \"" + *choice.segmentation +
                            "\", and there is no file of that name; fenestra inspect lists what "
                            "there is");
-    const Segmentation segmentation = readSceneSegmentation(scene, *plan.segmentation, &volume);
+    const Segmentation segmentation =
+        readSceneSegmentation(scene, *plan.segmentation, &volume, choice.labels);
     Mask mask = scene.files.knowingly([&] { return segmentation.mask(names, volume, shaping); });
-    return FocusInput{std::move(mask), scene.files.filesRead()};
+    return focusFrom(segmentation, std::move(mask), scene.files.filesRead());
   });
 }
 

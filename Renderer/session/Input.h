@@ -48,6 +48,7 @@ struct SceneLook {
 struct FocusInput {
   std::optional<Mask> mask = {}; ///< nothing: no focus is requested
   FilesRead files = {};
+  std::vector<std::string> warnings = {};
 };
 
 /// Names of all segments that would be searched for a focus, without labels.
@@ -60,6 +61,7 @@ struct SegmentNames {
 struct InputChoice {
   std::optional<std::string> volume = {};
   std::optional<std::string> segmentation = {};
+  std::optional<std::string> labels = {}; ///< names of a label map's values (LabelSearch.h)
 
   bool operator==(const InputChoice&) const = default;
 };

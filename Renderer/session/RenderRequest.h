@@ -72,6 +72,7 @@ struct SceneRequest {
   std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
   std::optional<std::string> volume = {};       ///< choice among several: a node, or a DICOM series
   std::optional<std::string> segmentation = {}; ///< a node of the scene, or a file
+  std::optional<std::string> labels = {};       ///< names of a label map's values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values
   std::optional<std::string> transfer =
       {}; ///< a file, or a preset's name; by default the scene's, else from the volume

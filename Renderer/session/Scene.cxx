@@ -34,8 +34,8 @@ void Scene::make() {
     m_namedTransfer.of(*r.transfer, m_input);
   const auto volume = m_volume.of(m_input, r.volume);
   const auto settings = m_settings.of(m_input, r.volume, r.view.followsScene());
-  const auto focus = m_focus.of(m_input, {r.volume, r.segmentation}, r.focus, r.focusLook.shaping,
-                                volume->volume.grid);
+  const auto focus = m_focus.of(m_input, {r.volume, r.segmentation, r.labels}, r.focus,
+                                r.focusLook.shaping, volume->volume.grid);
   if (!r.transfer)
     m_sceneLook.of(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
   const auto look = m_look.of(volume, m_namedTransfer.result(), m_sceneLook.result(), r.transferFor,
@@ -71,6 +71,7 @@ std::vector<std::string> Scene::warnings() const {
   std::vector<std::string> warnings = m_request.leftOut;
   append(volume().warnings, warnings);
   append(m_settings->warnings, warnings);
+  append(m_focus->warnings, warnings);
   append(m_look->warnings, warnings);
   if (domain().indexCorners().empty())
     warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");

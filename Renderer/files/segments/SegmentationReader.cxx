@@ -6,6 +6,7 @@
 #include "files/medical/MedicalImage.h"
 #include "files/medical/SampleStore.h"
 #include "files/segments/ClosedSurface.h"
+#include "files/segments/LabelSearch.h"
 #include "files/segments/SegmentMask.h"
 #include "files/segments/SegmentTags.h"
 #include "model/masks/SliceInterpolation.h"
@@ -36,8 +37,8 @@ Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
   return samples.take();
 }
 
-/// Segments of a labelmap, one per value, in ascending order.
-std::vector<SegmentInfo> segmentsOf(const Segmentation::Labels& labels, const std::string& source) {
+/// Values of a labelmap other than 0.
+std::set<std::int32_t> valuesOf(const Segmentation::Labels& labels, const std::string& source) {
   std::set<std::int32_t> values;
   std::visit(
       [&](const auto& voxels) {
@@ -49,12 +50,27 @@ std::vector<SegmentInfo> segmentsOf(const Segmentation::Labels& labels, const st
                                      "labelmap; name a segmentation");
       },
       labels);
+  return values;
+}
+
+/// Segments of a labelmap, one per value, in ascending order.
+std::vector<SegmentInfo> segmentsOf(const std::set<std::int32_t>& values, const LabelNames& names) {
   std::vector<SegmentInfo> segments;
   for (const std::int32_t value : values) {
-    const std::string name = textOf("Segment_", value);
-    segments.push_back({.id = name, .name = name, .labelValue = value});
+    const std::string id = textOf("Segment_", value);
+    SegmentInfo info{.id = id, .name = id, .labelValue = value};
+    if (const auto named = names.find(value); named != names.end()) {
+      info.name = named->second.name;
+      info.color = named->second.color.value_or(info.color);
+    }
+    segments.push_back(std::move(info));
   }
   return segments;
+}
+
+void refuseLabels(const std::string& source, const std::optional<std::string>& labels) {
+  if (labels)
+    throw inputError(source, "names its segments itself; leave out --labels");
 }
 
 // ---- Slicer's header fields
@@ -306,21 +322,30 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
   return mask;
 }
 
-std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path) {
+std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
+                                          const std::optional<std::string>& labels) {
   if (lowerExtension(path) == ".vtm")
     return readClosedSurfaceInfos(path);
   const std::string source = path.string();
   std::vector<SegmentInfo> segments;
+  bool mayBeNamed = false;
   readMedicalImage(path, Components::any, [&](const MedicalImage& image, const SampleSource&) {
     segments = SegmentFields(image.fields, source).segments(image.components);
+    mayBeNamed = segments.empty() && hasLabelNames(path, image.extensions, labels);
   });
-  return segments;
+  if (!mayBeNamed)
+    return segments;
+  const Segmentation named = readSegmentation(path, nullptr, labels);
+  return named.namesFrom().empty() ? segments : named.segments();
 }
 
-Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference) {
-  if (lowerExtension(path) == ".vtm")
-    return readClosedSurfaces(path, reference);
+Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference,
+                              const std::optional<std::string>& wanted) {
   const std::string source = path.string();
+  if (lowerExtension(path) == ".vtm") {
+    refuseLabels(source, wanted);
+    return readClosedSurfaces(path, reference);
+  }
   MedicalImage image;
   Segmentation::Labels labels;
   readMedicalImage(path, Components::any, [&](const MedicalImage& read, const SampleSource& from) {
@@ -335,10 +360,18 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   if (segments.empty() && image.components > 1)
     throw inputError(source, "has ", image.components,
                      " components a voxel but names no segments; name a segmentation");
-  if (segments.empty())
-    segments = segmentsOf(labels, source);
-  return {source, placed(image.grid, image.fields, source), image.components, std::move(labels),
-          std::move(segments)};
+  FoundNames found;
+  if (!segments.empty()) {
+    refuseLabels(source, wanted);
+  } else {
+    const std::set<std::int32_t> values = valuesOf(labels, source);
+    found = findLabelNames(path, values, image.extensions, wanted);
+    segments = segmentsOf(values, found.names);
+  }
+  Segmentation segmentation(source, placed(image.grid, image.fields, source), image.components,
+                            std::move(labels), std::move(segments));
+  segmentation.setNamesFrom(std::move(found.source), std::move(found.warnings));
+  return segmentation;
 }
 
 } // namespace fenestra

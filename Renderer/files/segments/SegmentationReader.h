@@ -7,6 +7,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -40,6 +41,14 @@ public:
                std::vector<SegmentInfo> segments);
 
   const Grid& grid() const { return m_grid; }
+  /// Source of the names of a label map's values: a file or a table; empty: they have none, or are
+  /// the segmentation's own.
+  const std::string& namesFrom() const { return m_namesFrom; }
+  const std::vector<std::string>& warnings() const { return m_warnings; }
+  void setNamesFrom(std::string source, std::vector<std::string> warnings) {
+    m_namesFrom = std::move(source);
+    m_warnings = std::move(warnings);
+  }
   /// Replaces the grid by one of the same size.
   void moveTo(const Grid& grid) { m_grid = grid; }
   const std::vector<SegmentInfo>& segments() const { return m_segments; }
@@ -57,7 +66,8 @@ public:
 private:
   const SegmentInfo& find(const std::string& selector) const;
 
-  std::string m_source;
+  std::string m_source, m_namesFrom;
+  std::vector<std::string> m_warnings;
   Grid m_grid;
   std::size_t m_layerCount;
   Labels m_labels;
@@ -65,15 +75,18 @@ private:
 };
 
 /// Reads Slicer's `.seg.nrrd`; a labelmap in any format and geometry that readVolume takes: one
-/// segment "Segment_<value>" for each value other than 0; or a `.vtm` of closed surfaces, which
+/// segment "Segment_<value>" for each value other than 0, named by `labels` or what is found
+/// (LabelSearch.h); or a `.vtm` of closed surfaces, which
 /// become labels on `reference`, the volume's grid (ClosedSurface.h; unused otherwise). Geometry is
 /// the file's, which includes Segmentation_ReferenceImageExtentOffset; only that of the oldest
 /// files, known by their Segmentation_Extent, does not, and is in RAS. SegmentN_Extent is ignored:
 /// labels show where a segment is. Throws Error (input).
-Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr);
+Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr,
+                              const std::optional<std::string>& labels = {});
 
-/// Segments of such a file, without reading its labels; empty: the file names none, as a labelmap.
-/// Throws Error (input).
-std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path);
+/// Segments of such a file, without reading its labels where the file names them itself; empty:
+/// there are no names for its values. Throws Error (input).
+std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
+                                          const std::optional<std::string>& labels = {});
 
 } // namespace fenestra

@@ -118,22 +118,25 @@ Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
   return volume;
 }
 
-Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const Grid* volume) {
+Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const Grid* volume,
+                                   const std::optional<std::string>& labels) {
   const Affine above = toWorld(scene, node);
   std::optional<Grid> inNode;
   if (volume)
     inNode.emplace(volume->size, above.inverse() * volume->indexToWorld);
   const MrmlNode* storage = isLabelMap(node) ? scene.document.follow(node, "storage") : nullptr;
   Segmentation segmentation = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
-    return readSegmentation(files.front(), inNode ? &*inNode : nullptr);
+    return readSegmentation(files.front(), inNode ? &*inNode : nullptr, labels);
   });
   segmentation.moveTo(placedGrid(scene, node, above, placed(storage, segmentation.grid())));
   return segmentation;
 }
 
-std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node) {
-  return scene.files.read(dataFiles(scene, node),
-                          [](const Paths& files) { return readSegmentInfos(files.front()); });
+std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node,
+                                               const std::optional<std::string>& labels) {
+  return scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
+    return readSegmentInfos(files.front(), labels);
+  });
 }
 
 std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node) {

@@ -63,10 +63,12 @@ Volume readSceneVolume(MrmlScene& scene, const MrmlNode& volume);
 /// Segmentation or label map, in the world. Closed surfaces become labels on the grid of `volume`,
 /// which is in the world as well.
 Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node,
-                                   const Grid* volume = nullptr);
+                                   const Grid* volume = nullptr,
+                                   const std::optional<std::string>& labels = {});
 
 /// Segments of such a node, without their labels; empty: the file names none.
-std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node);
+std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node,
+                                               const std::optional<std::string>& labels = {});
 
 /// Visibility in 3-D by segment id, from the segmentation's display; segments that the map lacks
 /// are visible.

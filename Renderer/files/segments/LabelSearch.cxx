@@ -1,0 +1,114 @@
+#include "files/segments/LabelSearch.h"
+
+#include "base/Error.h"
+#include "base/Text.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/ShownText.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+std::filesystem::path stemOf(const std::filesystem::path& path) {
+  const std::filesystem::path stem = path.stem();
+  return path.parent_path() / (lowerExtension(path) == ".gz" ? stem.stem() : stem);
+}
+
+struct Beside {
+  std::filesystem::path file;
+  bool isExact; ///< it names many label maps' values perhaps: its values must be these
+};
+
+/// Tables in the label map's folder that may be its.
+std::vector<Beside> tablesBeside(const std::filesystem::path& path) {
+  std::vector<Beside> tables;
+  const std::filesystem::path stem = stemOf(path);
+  for (const char* extension : {".ctbl", ".label", ".json", ".csv"})
+    tables.push_back({stem.string() + extension, false});
+  tables.push_back({path.parent_path() / "seg_labels.json", true});
+  std::erase_if(tables, [](const Beside& table) { return !isThere(table.file); });
+  return tables;
+}
+
+std::size_t countNamed(const LabelNames& names, const std::set<std::int32_t>& values) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(values, [&](std::int32_t value) { return names.contains(value); }));
+}
+
+/// Version of TotalSegmentator whose classes the names are; empty: of neither.
+std::string versionOf(const LabelNames& names) {
+  for (const char* version : {"totalsegmentator2", "totalsegmentator1"}) {
+    const LabelNames table = *compiledLabelNames(version);
+    if (std::ranges::all_of(names, [&](const auto& one) {
+          const auto known = table.find(one.first);
+          return known != table.end() && known->second.name == one.second.name;
+        }))
+      return version;
+  }
+  return {};
+}
+
+FoundNames wantedNames(const std::filesystem::path& path, const std::string& extensions,
+                       const std::string& wanted) {
+  if (wanted == "totalsegmentator") {
+    const auto inFile = labelNamesInXml(extensions, path.string());
+    const std::string version = inFile ? versionOf(*inFile) : "";
+    if (version.empty())
+      throw inputError(path, "does not say which version of TotalSegmentator made it, and each "
+                             "numbers other organs; give --labels totalsegmentator1 or "
+                             "totalsegmentator2");
+    return {*inFile, version};
+  }
+  if (auto table = compiledLabelNames(wanted))
+    return {*table, wanted};
+  if (!isThere(wanted))
+    throw usageError("--labels ", shown(wanted), ": is no file, and none of totalsegmentator, ",
+                     joined(compiledLabelTables(), ", "));
+  return {readLabelNames(wanted), wanted};
+}
+
+FoundNames namesBeside(const std::filesystem::path& path, const std::set<std::int32_t>& values) {
+  FoundNames found;
+  for (const Beside& table : tablesBeside(path)) {
+    const std::string file = table.file.string();
+    try {
+      LabelNames names = readLabelNames(table.file);
+      const bool fits = countNamed(names, values) == values.size() &&
+                        (!table.isExact || names.size() == values.size());
+      if (fits)
+        return {std::move(names), file, std::move(found.warnings)};
+      found.warnings.push_back(textOf(file, ": names other values than ", path.filename(),
+                                      " holds, and is not used; --labels ", file, " uses it"));
+    } catch (const Error& error) {
+      found.warnings.push_back(std::string(error.what()) + " (it is not used)");
+    }
+  }
+  return found;
+}
+
+} // namespace
+
+bool hasLabelNames(const std::filesystem::path& path, const std::string& extensions,
+                   const std::optional<std::string>& wanted) {
+  return wanted || extensions.find("<LabelTable>") != std::string::npos ||
+         !tablesBeside(path).empty();
+}
+
+FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
+                          const std::string& extensions, const std::optional<std::string>& wanted) {
+  if (!wanted) {
+    if (auto inFile = labelNamesInXml(extensions, path.string()))
+      return {*inFile, path.string()};
+    return namesBeside(path, values);
+  }
+  FoundNames found = wantedNames(path, extensions, *wanted);
+  if (!values.empty() && countNamed(found.names, values) == 0)
+    throw inputError(path, "--labels ", shown(*wanted), " names none of its values (",
+                     joined(
+                         values, ", ", [](std::int32_t value) { return textOf(value); }, 8),
+                     "); is it another label map's table?");
+  return found;
+}
+
+} // namespace fenestra

@@ -1,0 +1,119 @@
+// Which names a label map's values get: the user's, the file's own, or those of a table beside it.
+
+#include "NiftiFile.h"
+#include "Refusals.h"
+
+#include "base/Text.h"
+#include "files/segments/LabelNames.h"
+#include "files/segments/SegmentationReader.h"
+
+#include <gtest/gtest.h>
+
+using namespace fenestra;
+
+namespace {
+
+/// Label table as TotalSegmentator writes it into a header extension.
+std::string labelXml(const LabelNames& names) {
+  std::string xml =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?> <CaretExtension> <VolumeInformation "
+      "Index=\"0\">   <LabelTable>\n";
+  for (const auto& [value, label] : names)
+    xml += textOf("<Label Key=\"", value,
+                  "\" Red=\"1.0\" Green=\"0.5\" Blue=\"0.0\" Alpha=\"1\"><![CDATA[", label.name,
+                  "]]></Label>\n");
+  return xml + "</LabelTable> </VolumeInformation></CaretExtension>\n        ";
+}
+
+/// Label map of 24 voxels, of the values 0, 5 and 7.
+std::string labelMap(const std::string& extension = {}) {
+  NiftiFile file;
+  file.sformCode = 1;
+  file.samples[3] = 5;
+  file.samples[20] = 7;
+  file.extension = extension;
+  return file.bytes();
+}
+
+std::string nameOf(const Segmentation& segmentation, std::int32_t value) {
+  for (const SegmentInfo& segment : segmentation.segments())
+    if (segment.labelValue == value)
+      return segment.name;
+  return "none";
+}
+
+TEST(LabelSearch, WantedTableNamesValuesAndLeavesTheRest) {
+  const TemporaryFolder folder;
+  const auto map = folder.write("map.nii", labelMap());
+  const auto table = folder.write("names.ctbl", "5 liver 1 2 3 255\n9 spleen 1 2 3 255\n");
+  const Segmentation named = readSegmentation(map, nullptr, table.string());
+  EXPECT_EQ(nameOf(named, 5), "liver");
+  EXPECT_EQ(nameOf(named, 7), "Segment_7");
+  EXPECT_EQ(named.namesFrom(), table.string());
+  EXPECT_EQ(nameOf(readSegmentation(map, nullptr, "totalsegmentator1"), 7), "aorta");
+  EXPECT_EQ(nameOf(readSegmentation(map, nullptr, "totalsegmentator2"), 7), "pancreas");
+  EXPECT_EQ(named.mask({"liver"}, named.grid()).count, 1);
+  const auto other = folder.write("other.csv", "1,a\n2,b\n");
+  expectRefused(map, "names none of its values (5, 7)",
+                [&] { readSegmentation(map, nullptr, other.string()); });
+  EXPECT_THROW(readSegmentation(map, nullptr, "nosuch"), Error);
+}
+
+TEST(LabelSearch, TableInTheFileOfEachVersionIsTaken) {
+  const TemporaryFolder folder;
+  for (const auto& [version, organ] :
+       {std::pair("totalsegmentator1", "aorta"), {"totalsegmentator2", "pancreas"}}) {
+    const auto map = folder.write("map.nii", labelMap(labelXml(*compiledLabelNames(version))));
+    for (const std::optional<std::string>& wanted :
+         {std::optional<std::string>(), std::optional<std::string>("totalsegmentator")}) {
+      const Segmentation named = readSegmentation(map, nullptr, wanted);
+      EXPECT_EQ(nameOf(named, 7), organ);
+      EXPECT_EQ(named.namesFrom(), wanted ? version : map.string());
+      EXPECT_EQ(readSegmentInfos(map, wanted).size(), 2u);
+    }
+  }
+  const auto plain = folder.write("plain.nii", labelMap());
+  expectRefused(plain, "does not say which version",
+                [&] { readSegmentation(plain, nullptr, "totalsegmentator"); });
+  const auto own = folder.write("own.nii", labelMap(labelXml({{5, {"tumour"}}})));
+  EXPECT_EQ(nameOf(readSegmentation(own), 5), "tumour");
+  expectRefused(own, "does not say which version",
+                [&] { readSegmentation(own, nullptr, "totalsegmentator"); });
+}
+
+TEST(LabelSearch, TableBesideTheMapIsTakenIfItFits) {
+  const TemporaryFolder folder;
+  const auto map = folder.write("map.nii", labelMap());
+  EXPECT_TRUE(readSegmentInfos(map).empty());
+  const auto exact = folder.write("seg_labels.json", R"({"5": "a", "7": "b"})");
+  EXPECT_EQ(nameOf(readSegmentation(map), 7), "b");
+  EXPECT_EQ(readSegmentation(map).namesFrom(), exact.string());
+  EXPECT_EQ(readSegmentInfos(map).at(0).name, "a");
+  // One that names more is another map's; with the map's stem it may.
+  folder.write("seg_labels.json", R"({"5": "a", "7": "b", "8": "c"})");
+  const Segmentation unnamed = readSegmentation(map);
+  EXPECT_EQ(nameOf(unnamed, 7), "Segment_7");
+  ASSERT_EQ(unnamed.warnings().size(), 1u);
+  EXPECT_NE(unnamed.warnings()[0].find("seg_labels.json: names other values than map.nii holds"),
+            std::string::npos);
+  EXPECT_TRUE(readSegmentInfos(map).empty());
+  folder.write("map.csv", "5,x\n7,y\n8,z\n");
+  EXPECT_EQ(nameOf(readSegmentation(map), 7), "y");
+  folder.write("map.csv", "5,x\n");
+  EXPECT_EQ(nameOf(readSegmentation(map), 5), "Segment_5");
+  folder.write("map.csv", "damaged");
+  EXPECT_EQ(readSegmentation(map).warnings().size(), 2u);
+}
+
+TEST(LabelSearch, SegmentationThatNamesItsSegmentsRefusesATable) {
+  const TemporaryFolder folder;
+  const std::string header =
+      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n"
+      "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
+      "space origin: (0,0,0)\nSegment0_ID:=a\nSegment0_LabelValue:=1\n\n\1";
+  const auto file = folder.write("s.seg.nrrd", header);
+  expectRefused(file, "names its segments itself; leave out --labels",
+                [&] { readSegmentation(file, nullptr, "freesurfer"); });
+}
+
+} // namespace
