@@ -18,6 +18,9 @@ const Flag inspectFlags[] = {
     {"volume", "NAME", inspectGroup,
      "As for render: which volume of a scene, or series of a folder"},
     {"segmentation", "FILE|NAME", inspectGroup, "As for render: a file, or a node of the scene"},
+    {"labels", "FILE|NAME", inspectGroup, "As for render: names of a label map's values"},
+    {"progress", "KIND", inspectGroup, "Taken as render takes it; inspect shows none",
+     Takes::word({"auto", "bar", "xml", "none"})},
     {"json", "", inspectGroup,
      "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
      "views, cameras, transforms, series, others; render (what it would use), refused (why it "
@@ -41,7 +44,7 @@ int inspectCommand(int argc, char** argv, int first) {
   useMachine(*values);
   const Input input(*values->text("INPUT"));
   FlagValues given(renderSyntax.flags);
-  for (const char* name : {"INPUT", "volume", "segmentation"})
+  for (const char* name : {"INPUT", "volume", "segmentation", "labels"})
     if (const auto value = values->text(name))
       given.add(name, *value);
   const SceneFlags stored = withSceneFlags(given, input);
@@ -50,6 +53,7 @@ int inspectCommand(int argc, char** argv, int first) {
   request.input = input.path();
   request.volume = flags.text("volume");
   request.segmentation = flags.text("segmentation");
+  request.labels = flags.text("labels");
   if (request.volume && !input.document() && !isFolder(input.path()))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   Inspection inspection = inspectInput(request, input);

@@ -156,6 +156,7 @@ std::string descriptionOf(const Json& part) {
       {"hidden", "shown", false},
       {"of no volume", "volume", nullptr},
       {"of {volume}"},
+      {"names from {namesFrom}"},
       {"by {property}"},
       {"follows the slice display", "followsDisplay", true},
       {"cropped by {roi}", "cropping", true},

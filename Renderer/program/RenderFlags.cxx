@@ -38,15 +38,18 @@ void readPlane(const FlagValues& flags, const std::string& name,
   plane = {Vec3(numbers[0], numbers[1], numbers[2]), normal.stableNormalized()};
 }
 
-/// R,G,B; `otherwise`: the flag's other values, for the message.
+/// R,G,B, or one number for all three; `otherwise`: the flag's other values, for the message.
 Rgb linearColor(const FlagValues& flags, const std::string& name, const std::string& otherwise) {
   constexpr double brightest = 1e12; // keeps products within a float's range
   const std::string text = *flags.text(name);
   const bool numbers = text.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
-  Rgb value = numbers ? Rgb(flags.triple(name).array()) : Rgb::Constant(-1.0);
+  const bool isGrey = text.find(',') == std::string::npos;
+  const Rgb value = !numbers ? Rgb::Constant(-1.0)
+                    : isGrey ? Rgb::Constant(flags.numbers(name, 1)[0])
+                             : Rgb(flags.triple(name).array());
   if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
-    throw usageError("--" + name + ": expected R,G,B, each from 0 to 1e12, or " + otherwise +
-                     ", got '" + oneLine(text) + "'");
+    throw usageError("--" + name + ": expected R,G,B, or one number for grey, from 0 to 1e12, or " +
+                     otherwise + ", got '" + oneLine(text) + "'");
   return value;
 }
 
@@ -215,10 +218,10 @@ struct RenderTable {
       {"lights", "FILE|PRESET|JSON", lookGroup,
        "Lights: .json, studio, headlight, soft, or the text of a .json itself, {...}",
        Takes::text().into(scene.lights), Topic::lights},
-      {"environment", "R,G,B|FILE", lookGroup,
+      {"environment", "R,G,B|GREY|FILE", lookGroup,
        "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own",
        Takes::text().into(scene, readEnvironment), Topic::lights},
-      {"background", "R,G,B|KIND", lookGroup,
+      {"background", "R,G,B|GREY|KIND", lookGroup,
        "Linear colour (the photographic tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
        "white), transparent or environment [the scene's, else 0,0,0]",
        Takes::text().into(options.background, readBackground)},

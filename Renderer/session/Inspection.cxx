@@ -84,13 +84,13 @@ Json inspectFiles(const SceneRequest& request, const Input& input) {
   Json& segmentations = report["segmentations"];
   const Grid* grid = volume.grid ? &*volume.grid : nullptr;
   if (!isDicom && (!grid || volume.looksLikeLabels || isNamedSegmentation(request.input))) {
-    segmentations.push_back(segmentationFile(request.input, grid));
+    segmentations.push_back(segmentationFile(request.input, grid, request.labels));
     if (!grid && !segmentations.back()["problem"].is_null())
       throw *volume.failure;
     report["kind"] = "segmentation";
   }
   if (request.segmentation) {
-    segmentations.push_back(segmentationFile(*request.segmentation, grid));
+    segmentations.push_back(segmentationFile(*request.segmentation, grid, request.labels));
     segmentations.back()["used"] = true;
     if (grid)
       report["render"]["segmentation"] = orNull(*request.segmentation);
@@ -167,11 +167,8 @@ Json nodeJson(const std::string& id, const std::string& name) {
 }
 
 Json segmentationMembers(const char* kind, bool shown) {
-  return {{"kind", kind},
-          {"shown", shown},
-          {"size", nullptr},
-          {"spacing", nullptr},
-          {"segments", Json::array()}};
+  return {{"kind", kind},       {"shown", shown},       {"size", nullptr},
+          {"spacing", nullptr}, {"namesFrom", nullptr}, {"segments", Json::array()}};
 }
 
 void addSegments(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
@@ -179,6 +176,8 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
   constexpr double cubicMmInMl = 1000.0;
   const Grid& grid = segmentation.grid();
   json["size"] = grid.size;
+  if (!segmentation.namesFrom().empty())
+    json["namesFrom"] = segmentation.namesFrom();
   json["spacing"] = grid.spacing();
   const double milliliters = std::abs(grid.indexToWorld.linear().determinant()) / cubicMmInMl;
   const std::vector<SegmentStatistics> statistics = segmentation.statistics();
@@ -201,11 +200,12 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
   }
 }
 
-Json segmentationFile(const std::filesystem::path& path, const Grid* volume) {
+Json segmentationFile(const std::filesystem::path& path, const Grid* volume,
+                      const std::optional<std::string>& labels) {
   Json json = nodeJson("", path.string());
   json.update(segmentationMembers("file", true));
   if (const auto segmentation =
-          attempted([&] { return readSegmentation(path, volume); }, json["problem"]))
+          attempted([&] { return readSegmentation(path, volume, labels); }, json["problem"]))
     addSegments(*segmentation, {}, json);
   return json;
 }

@@ -48,7 +48,9 @@ Json segmentationMembers(const char* kind, bool shown);
 void addSegments(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
                  Json& json);
 /// Segmentation of a file. `volume`: grid that closed surfaces become labels on; null: none.
-Json segmentationFile(const std::filesystem::path& path, const Grid* volume);
+/// `labels`: SceneRequest's.
+Json segmentationFile(const std::filesystem::path& path, const Grid* volume,
+                      const std::optional<std::string>& labels);
 
 Inspection inspectScene(const SceneRequest& request, const Input& input);
 

@@ -205,7 +205,8 @@ private:
     if (isSkipped("segmentations", json))
       return json;
     if (const auto segmentation = attempted(
-            [&] { return readSceneSegmentation(m_scene, node, volumeGrid()); }, json["problem"]))
+            [&] { return readSceneSegmentation(m_scene, node, volumeGrid(), m_request.labels); },
+            json["problem"]))
       addSegments(*segmentation, segmentVisibility(m_scene, node), json);
     return json;
   }
@@ -267,7 +268,7 @@ private:
           "--segmentation " + path.string() + ": is neither in the scene nor a file";
       return;
     }
-    Json segmentation = segmentationFile(path, volumeGrid());
+    Json segmentation = segmentationFile(path, volumeGrid(), m_request.labels);
     segmentation["used"] = true;
     m_report["render"]["segmentation"] = orNull(path.string());
     m_report["segmentations"].push_back(std::move(segmentation));
