@@ -4,6 +4,7 @@
 
 #include "Approx.h"
 #include "MedicalFiles.h"
+#include "files/medical/AirAtZero.h"
 #include "files/medical/Quiet.h"
 #include "files/medical/VolumeReader.h"
 
@@ -361,6 +362,39 @@ TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
   EXPECT_GT(readable, 3);
 }
 
+/// Ball of soft tissue in air, as stored: values below `tissue` / 2 are air's.
+Volume ball(double tissue, double air) {
+  std::vector<std::int16_t> voxels;
+  for (int z = 0; z < 8; ++z)
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x)
+        voxels.push_back(
+            static_cast<std::int16_t>(Vec3(x - 7.5, y - 7.5, z - 3.5).norm() < 3.5 ? tissue : air));
+  Volume volume;
+  volume.grid = {Size3(16, 16, 8), Affine::Identity()};
+  volume.voxels = std::move(voxels);
+  volume.name = "ball";
+  computeRange(volume);
+  return volume;
+}
+
+TEST(AirAtZero, OnlyACertainCtIsMoved) {
+  struct {
+    double tissue, air;
+    bool moves, warns;
+  } const cases[] = {{1060.0, 0.0, true, true},      {1060.0, 24.0, true, true},
+                     {1060.0, 100.0, false, false},  {700.0, 0.0, false, true},
+                     {1500.0, 0.0, false, true},     {40.0, -1000.0, false, false},
+                     {1060.0, -300.0, false, false}, {100.0, 0.0, false, false}};
+  for (const auto& one : cases) {
+    Volume volume = ball(one.tissue, one.air);
+    correctAir(volume);
+    EXPECT_EQ(valueAt(volume, 8, 8, 4), one.tissue - (one.moves ? 1024.0 : 0.0)) << one.tissue;
+    EXPECT_EQ(volume.minimum, one.air - (one.moves ? 1024.0 : 0.0)) << one.tissue;
+    EXPECT_EQ(!volume.warnings.empty(), one.warns) << one.tissue << ' ' << one.air;
+  }
+}
+
 /// One head, as a series (with rescale intercept 0, although its air is 0) and as the volume in HU
 /// that another program made of it.
 TEST(DicomSeries, RealSeriesEqualsItsNiftiFile) {
@@ -379,7 +413,7 @@ TEST(DicomSeries, RealSeriesEqualsItsNiftiFile) {
         ASSERT_LT((place - voxel).norm(), 1e-3);
         const Size3 i = voxel.cast<std::int64_t>();
         ASSERT_TRUE((i.array() >= 0).all() && (i.array() < expected.grid.size.array()).all());
-        ASSERT_EQ(valueAt(series, x, y, z) - 1024, valueAt(expected, i.x(), i.y(), i.z()));
+        ASSERT_EQ(valueAt(series, x, y, z), valueAt(expected, i.x(), i.y(), i.z()));
       }
 }
 

@@ -51,7 +51,7 @@ void keep(const std::string& text, unsigned& member) {
   member = number >= 0.0 && number <= 0x1p31 ? static_cast<unsigned>(number) : 0;
 }
 
-struct Field {
+struct HeaderField {
   std::uint16_t group, element;
   std::variant<std::string DicomHeader::*, std::vector<double> DicomHeader::*,
                double DicomHeader::*, unsigned DicomHeader::*>
@@ -61,24 +61,24 @@ struct Field {
 };
 
 constexpr std::array dicomFields = {
-    Field{0x0008, 0x0060, &DicomHeader::modality},
-    Field{0x0008, 0x103e, &DicomHeader::seriesDescription},
-    Field{0x0020, 0x000e, &DicomHeader::seriesUid},
-    Field{0x0020, 0x0011, &DicomHeader::seriesNumber},
-    Field{0x0020, 0x0032, &DicomHeader::position},
-    Field{0x0020, 0x0037, &DicomHeader::orientation},
-    Field{0x0028, 0x0002, &DicomHeader::samples},
-    Field{0x0028, 0x0004, &DicomHeader::photometric},
-    Field{0x0028, 0x0008, &DicomHeader::frames},
-    Field{0x0028, 0x0010, &DicomHeader::rows},
-    Field{0x0028, 0x0011, &DicomHeader::columns},
-    Field{0x0028, 0x0030, &DicomHeader::pixelSpacing},
-    Field{0x0028, 0x0100, &DicomHeader::bits},
-    Field{0x0028, 0x0101, &DicomHeader::bitsStored},
-    Field{0x0028, 0x0102, &DicomHeader::highBit},
-    Field{0x0028, 0x0103, &DicomHeader::isSigned},
-    Field{0x0028, 0x1052, &DicomHeader::intercept},
-    Field{0x0028, 0x1053, &DicomHeader::slope},
+    HeaderField{0x0008, 0x0060, &DicomHeader::modality},
+    HeaderField{0x0008, 0x103e, &DicomHeader::seriesDescription},
+    HeaderField{0x0020, 0x000e, &DicomHeader::seriesUid},
+    HeaderField{0x0020, 0x0011, &DicomHeader::seriesNumber},
+    HeaderField{0x0020, 0x0032, &DicomHeader::position},
+    HeaderField{0x0020, 0x0037, &DicomHeader::orientation},
+    HeaderField{0x0028, 0x0002, &DicomHeader::samples},
+    HeaderField{0x0028, 0x0004, &DicomHeader::photometric},
+    HeaderField{0x0028, 0x0008, &DicomHeader::frames},
+    HeaderField{0x0028, 0x0010, &DicomHeader::rows},
+    HeaderField{0x0028, 0x0011, &DicomHeader::columns},
+    HeaderField{0x0028, 0x0030, &DicomHeader::pixelSpacing},
+    HeaderField{0x0028, 0x0100, &DicomHeader::bits},
+    HeaderField{0x0028, 0x0101, &DicomHeader::bitsStored},
+    HeaderField{0x0028, 0x0102, &DicomHeader::highBit},
+    HeaderField{0x0028, 0x0103, &DicomHeader::isSigned},
+    HeaderField{0x0028, 0x1052, &DicomHeader::intercept},
+    HeaderField{0x0028, 0x1053, &DicomHeader::slope},
 };
 
 // ---- in the child
@@ -93,7 +93,7 @@ std::string headerAnswer(const std::string& path) {
   if (!isDicom(path))
     return {};
   std::set<Tag> tags = {Tag(0x0008, 0x0016)}; // the kind of object
-  for (const Field& field : dicomFields)
+  for (const HeaderField& field : dicomFields)
     tags.insert(field.tag());
   gdcm::Reader reader;
   reader.SetFileName(path.c_str());
@@ -109,7 +109,7 @@ std::string headerAnswer(const std::string& path) {
   answer.put(flag(read && syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian));
   gdcm::StringFilter texts;
   texts.SetFile(file);
-  for (const Field& field : dicomFields)
+  for (const HeaderField& field : dicomFields)
     answer.put(texts.ToString(field.tag()));
   return answer.bytes();
 }
@@ -154,7 +154,7 @@ DicomHeader dicomHeader(std::string_view answer) {
   DicomHeader header;
   for (bool* flag : {&header.image, &header.compressed, &header.whole})
     *flag = texts.text() == "1";
-  for (const Field& field : dicomFields)
+  for (const HeaderField& field : dicomFields)
     std::visit(
         [&](auto member) { keep(std::string(trimmed(texts.text(), padding)), header.*member); },
         field.member);

@@ -1,6 +1,7 @@
 // Volume from a series' slices.
 
 #include "base/Error.h"
+#include "files/medical/AirAtZero.h"
 #include "files/medical/DicomHeader.h"
 #include "files/medical/DicomPixels.h"
 #include "files/medical/DicomSeries.h"
@@ -170,6 +171,14 @@ VoxelStore readAll(DicomFiles& files, const std::vector<Slice>& slices) {
   return all;
 }
 
+/// True for a CT whose values would be Hounsfield units as stored.
+bool isUnscaledCt(const std::vector<Slice>& slices) {
+  return std::ranges::all_of(slices, [](const Slice& slice) {
+    const DicomHeader& h = slice.header;
+    return h.modality == "CT" && h.slope == 1.0 && h.intercept == 0.0;
+  });
+}
+
 Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
   DicomFiles files;
   std::vector<Slice> slices;
@@ -188,6 +197,8 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
   Volume volume = makeVolume(name, grid, readAll(files, slices));
   for (const std::string& warning : warnings)
     volume.warnings.push_back(textOf(name, ": ", warning));
+  if (isUnscaledCt(slices))
+    correctAir(volume);
   return volume;
 }
 

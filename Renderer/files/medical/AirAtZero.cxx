@@ -1,0 +1,87 @@
+#include "files/medical/AirAtZero.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+namespace fenestra {
+namespace {
+
+constexpr int airOffset = 1024; ///< HU of a stored 0, negated
+
+/// Most frequent value, to 25, of the voxels on the four sides along the slices' edges.
+template <typename Voxel>
+double modeOfSides(const std::vector<Voxel>& voxels, const Size3& size) {
+  constexpr double width = 25.0;
+  std::map<long, std::size_t> counts;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y) {
+      const bool isEdge = y == 0 || y + 1 == size.y();
+      const std::int64_t step = isEdge ? 1 : std::max<std::int64_t>(1, size.x() - 1);
+      for (std::int64_t x = 0; x < size.x(); x += step) {
+        const auto i = static_cast<std::size_t>(x + size.x() * (y + size.y() * z));
+        ++counts[std::lround(static_cast<double>(voxels[i]) / width)];
+      }
+    }
+  const auto most =
+      std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; });
+  return width * static_cast<double>(most->first);
+}
+
+/// Median of the voxels above 200; 0: there are none.
+template <typename Voxel>
+double medianOfTissue(const std::vector<Voxel>& voxels) {
+  std::vector<Voxel> tissue;
+  std::ranges::copy_if(voxels, std::back_inserter(tissue), [](Voxel v) { return v > 200; });
+  if (tissue.empty())
+    return 0.0;
+  const auto middle = tissue.begin() + std::ptrdiff_t(tissue.size() / 2);
+  std::nth_element(tissue.begin(), middle, tissue.end());
+  return static_cast<double>(*middle);
+}
+
+/// Voxels less the offset, in a type that holds them.
+template <typename Voxel>
+Voxels moved(const std::vector<Voxel>& voxels, double greatest) {
+  const auto as = [&]<typename To>(To) -> Voxels {
+    std::vector<To> to(voxels.size());
+    std::ranges::transform(voxels, to.begin(),
+                           [](Voxel v) { return static_cast<To>(v - airOffset); });
+    return to;
+  };
+  return std::integral<Voxel> && greatest - airOffset <= 32767.0 ? as(std::int16_t()) : as(float());
+}
+
+/// The voxels in Hounsfield units where they are certainly not; warns.
+template <typename Voxel>
+std::optional<Voxels> inHounsfield(const std::vector<Voxel>& voxels, Volume& volume) {
+  constexpr double nearAir = 50.0, leastTissue = 800.0, mostTissue = 1300.0;
+  if (std::abs(modeOfSides(voxels, volume.grid.size)) > nearAir)
+    return std::nullopt;
+  const double tissue = medianOfTissue(voxels);
+  const bool isCertain = tissue >= leastTissue && tissue <= mostTissue;
+  volume.warnings.push_back(volume.name +
+                            (isCertain ? ": its air is at 0, so its values are read as Hounsfield "
+                                         "units + 1024; --shift -1024 undoes that"
+                                       : ": may not be in Hounsfield units, for its air is at 0; "
+                                         "--shift 1024 moves a CT's look to it"));
+  return isCertain ? std::optional(moved(voxels, volume.maximum)) : std::nullopt;
+}
+
+} // namespace
+
+void correctAir(Volume& volume) {
+  constexpr double lowest = -200.0, leastGreatest = 500.0; // less holds no tissue of either kind
+  if (volume.minimum < lowest || volume.maximum < leastGreatest)
+    return;
+  auto hounsfield =
+      std::visit([&](const auto& voxels) { return inHounsfield(voxels, volume); }, volume.voxels);
+  if (!hounsfield)
+    return;
+  volume.voxels = std::move(*hounsfield);
+  volume.minimum -= airOffset;
+  volume.maximum -= airOffset;
+}
+
+} // namespace fenestra
