@@ -58,6 +58,8 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   const Scene scene(options.scene, request.input);
   outputs.checkInputs(); // now also files that the scene refers to
   warn(options, scene.warnings());
+  if (options.progress != ProgressMode::none && options.progress != ProgressMode::xml)
+    std::cerr << oneLine(scene.choices()) << '\n';
 
   RenderMonitor monitor;
   const StopInstead stopInstead(monitor.stop);

@@ -38,7 +38,7 @@ std::optional<SegmentNames> namesInFile(const InputChoice& choice) {
 FocusInput focusFrom(const Segmentation& segmentation, Mask mask, FilesRead files) {
   if (isThere(segmentation.namesFrom()))
     files.push_back(segmentation.namesFrom());
-  return {std::move(mask), std::move(files), segmentation.warnings()};
+  return {std::move(mask), std::move(files), segmentation.warnings(), segmentation.namesFrom()};
 }
 
 bool holdsSegmentation(const MrmlDocument& document) {

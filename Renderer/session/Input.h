@@ -49,6 +49,7 @@ struct FocusInput {
   std::optional<Mask> mask = {}; ///< nothing: no focus is requested
   FilesRead files = {};
   std::vector<std::string> warnings = {};
+  std::string namesFrom = {}; ///< Segmentation's
 };
 
 /// Names of all segments that would be searched for a focus, without labels.

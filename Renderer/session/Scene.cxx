@@ -1,5 +1,7 @@
 #include "session/Scene.h"
 
+#include "base/Text.h"
+
 #include <algorithm>
 
 namespace fenestra {
@@ -65,6 +67,24 @@ StageSeconds Scene::seconds() const {
 StagesMade Scene::made() const {
   return {m_volume.isNew(), m_focus.isNew(), m_look.isNew(),   m_camera.isNew(),
           m_lights.isNew(), m_clip.isNew(),  m_ranges.isNew(), m_majorants.isNew()};
+}
+
+std::string Scene::choices() const {
+  const SceneRequest& r = m_request;
+  const char* const from = r.transferFor ? " (preset)" : "";
+  std::vector<std::string> parts = {"look: " + look() + from};
+  if (r.environment || r.environmentMap)
+    parts.push_back("light: all around");
+  else
+    parts.push_back("light: " + (r.lights.starts_with('{') ? "its own" : r.lights));
+  std::vector<std::string> labels;
+  if (!m_focus->namesFrom.empty())
+    labels.push_back("names from " + m_focus->namesFrom);
+  if (m_focus->mask && r.focusLook.shaping.smoothing > 0.0)
+    labels.push_back("smoothed " + numberText(r.focusLook.shaping.smoothing, 3) + " mm");
+  if (!labels.empty())
+    parts.push_back("labels: " + joined(labels, ", "));
+  return joined(parts, "; ");
 }
 
 std::vector<std::string> Scene::warnings() const {

@@ -73,8 +73,12 @@ Domain domainOf(const Read& volume, const Settings& settings) {
 Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
              const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor) {
   std::vector<std::string> warnings;
+  if (named && !madeFor && named->source.starts_with("ct-") && !suits(Modality::ct, volume))
+    warnings.push_back("the transfer function " + named->source +
+                       " is made for CT, which this volume does not seem to be; --shift moves it, "
+                       "or name another with --transfer");
   if (named && (!madeFor || suits(*madeFor, volume)))
-    return {fitted(named->look, volume), named->source};
+    return {fitted(named->look, volume), named->source, warnings};
   if (named)
     warnings.push_back(
         "the preset's transfer function is made for " + nameOf(*madeFor) +

@@ -418,7 +418,7 @@ TEST_F(InspectCommand, ListsDicomSeries) {
   EXPECT_EQ(said["series"][0]["files"], 93);
   EXPECT_EQ(said["series"][0]["modality"], "CT");
   EXPECT_EQ(said["render"]["volume"]["size"], Json({64, 64, 93}));
-  EXPECT_EQ(said["render"]["look"]["source"], "range") << "its values are not in HU";
+  EXPECT_EQ(said["render"]["look"]["name"], "ct-soft") << "its air is at 0";
   EXPECT_EQ(said["segmentations"], Json::array());
   const Json other = inspect({series.string(), "--volume", "none"});
   EXPECT_TRUE(other["render"].is_null());

@@ -124,6 +124,13 @@ Outcome Process::wait() {
     outcome.status = WEXITSTATUS(m_waitStatus);
   outcome.out = content(m_out);
   outcome.err = content(m_err);
+  const std::size_t begin =
+      outcome.err.starts_with("look: ") ? 0 : outcome.err.find("\nlook: ") + 1;
+  if (outcome.err.compare(begin, 6, "look: ") == 0) {
+    const std::size_t end = outcome.err.find('\n', begin);
+    outcome.choices = outcome.err.substr(begin, end - begin);
+    outcome.err.erase(begin, end - begin + 1);
+  }
   return outcome;
 }
 

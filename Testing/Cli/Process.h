@@ -13,6 +13,7 @@ using Arguments = std::vector<std::string>;
 struct Outcome {
   int status = -1; ///< exit status; -1 if a signal ended the process
   std::string out, err;
+  std::string choices;  ///< line that tells look, light and labels, taken out of `err`
   double seconds = 0.0; ///< wall time until the end
 };
 

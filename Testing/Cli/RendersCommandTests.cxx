@@ -39,6 +39,25 @@ TEST_F(RendersCommand, DefaultNameIsThatOfTheInputInTheCurrentFolder) {
             (std::set<std::string>{"data", "data/volume.nrrd", "segments.seg.nrrd", "volume.png"}));
 }
 
+TEST_F(RendersCommand, TellsWhatItChose) {
+  EXPECT_EQ(renderWith({"--output", "a.png"}).choices,
+            "look: by the volume's range; light: studio");
+  EXPECT_EQ(renderWith({"--output", "a.png", "--environment", "1"}).choices,
+            "look: by the volume's range; light: all around");
+  EXPECT_EQ(renderWith({"--output", "a.png", "--progress", "none"}).choices, "");
+  const Outcome ct = renderWith({"--output", "a.png", "--transfer", "ct-bone"});
+  EXPECT_EQ(ct.choices, "look: ct-bone; light: studio");
+  EXPECT_NE(ct.err.find("ct-bone is made for CT, which this volume does not seem to be"),
+            std::string::npos);
+}
+
+TEST_F(RendersCommand, OneNumberIsAGrey) {
+  renderWith({"--output", "a.exr", "--environment", "0.5", "--background", "0.25"});
+  renderWith(
+      {"--output", "b.exr", "--environment", "0.5,0.5,0.5", "--background", "0.25,0.25,0.25"});
+  EXPECT_EQ(readImage(folder / "a.exr").channels, readImage(folder / "b.exr").channels);
+}
+
 TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {
   const Arguments names = {"a.png", "a.tif", "A.EXR", "a.nrrd"};
   Arguments arguments;

@@ -86,11 +86,11 @@ TEST_F(TrustCommand, StoredFlagsThatNameFilesAreIgnored) {
 }
 
 TEST_F(TrustCommand, StoredNamesAndTextsApply) {
-  writeScene(R"(transfer="ct-bone" lights="headlight" environment="1,2,3" size="8x8" samples="1")");
+  writeScene(R"(transfer="mr-knee" lights="headlight" environment="1,2,3" size="8x8" samples="1")");
   const Outcome named = render("named.exr", {"--echo"});
   EXPECT_EQ(named.status, 0);
   EXPECT_EQ(named.err, "");
-  for (const char* flag : {"transfer: ct-bone", "lights: headlight", "environment: 1,2,3"})
+  for (const char* flag : {"transfer: mr-knee", "lights: headlight", "environment: 1,2,3"})
     EXPECT_NE(named.out.find(flag), std::string::npos) << named.out;
 }
 
