@@ -3,6 +3,7 @@
 #include "qSlicerFenestraMeasures.h"
 #include "vtkSlicerFenestraLogic.h"
 
+#include <QDir>
 #include <QFile>
 #include <QFileInfo>
 #include <QJsonDocument>
@@ -53,7 +54,12 @@ void describe(Node* render, const QJsonObject& stats) {
 
 void qSlicerFenestraResults::add(Node* render, const QString& folder) {
   describe(render, statistics(folder));
-  const auto isIts = [render](const Result& one) { return !one.node || one.node == render; };
+  const auto isIts = [render, &folder](const Result& one) {
+    const bool replaced = !one.node || one.node == render;
+    if (replaced && one.folder != folder)
+      QDir(one.folder).removeRecursively();
+    return replaced;
+  };
   m_all.erase(std::remove_if(m_all.begin(), m_all.end(), isIts), m_all.end());
   m_all.append({render, folder});
 }

@@ -14,7 +14,8 @@
 /// A result belongs to a node, not to the node's ID: IDs begin again with every scene.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraResults {
 public:
-  /// Stores the folder, and describes the node by the statistics in the folder.
+  /// Stores the folder, and describes the node by the statistics in the folder. Removes the folders
+  /// of nodes that are gone.
   void add(vtkMRMLFenestraRenderNode* render, const QString& folder);
   void clear() { m_all.clear(); }
 

@@ -181,7 +181,15 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   m_renders[id] = {node, m_files, {}};
   const bool withSurface = vtkSlicerFenestraLogic::HasSurface(node->GetFlags()) &&
                            !contents.segmentation.segments.empty();
-  write(contents, [this, id, withSurface](const QString& scene, const QString& message) {
+  submit(id, contents, withSurface);
+  return node;
+}
+
+/// Writes the scene and queues the render. Voxels are the scene's own: an edit while they are
+/// written would tear them, so they are written again, `tries` times at most.
+void qSlicerFenestraSession::submit(int id, const FenestraScene::Contents& contents,
+                                    bool withSurface, int tries) {
+  write(contents, [=](const QString& scene, const QString& message) {
     Render& render = m_renders[id];
     if (!message.isEmpty())
       return endRender(id, failure(tr("The volume could not be handed to the renderer. Is the "
@@ -190,9 +198,18 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
     render.folder = QFileInfo(scene).absolutePath();
     if (render.stopped || !render.node)
       return endRender(id, {Ended::stopped, {}, {}});
+    try {
+      const FenestraScene::Contents now =
+          m_logic->Snapshot(render.node, m_files->folder.path().toStdString());
+      const bool isWhole =
+          now.volumeKey == contents.volumeKey && now.segmentationKey == contents.segmentationKey;
+      if (!isWhole && tries > 0)
+        return submit(id, now, withSurface, tries - 1);
+    } catch (const FenestraScene::Complaint& complaint) {
+      return endRender(id, failure(QString::fromUtf8(complaint.what())));
+    }
     m_queue.add({id, arguments(render.node, scene, withSurface), render.folder});
   });
-  return node;
 }
 
 Node* qSlicerFenestraSession::start(Node* settings, bool turntable) {

@@ -110,6 +110,7 @@ private:
              const std::function<void(const QString& scene, const QString& failure)>& then);
   QStringList arguments(vtkMRMLFenestraRenderNode* render, const QString& scene,
                         bool withSurface) const;
+  void submit(int id, const FenestraScene::Contents& contents, bool withSurface, int tries = 3);
   void finishRender(int id, const qFenestraOutcome& outcome);
   void addResult(int id, const qFenestraOutcome& outcome,
                  const std::function<void(vtkMRMLFenestraRenderNode*, int)>& add, int step = 0);

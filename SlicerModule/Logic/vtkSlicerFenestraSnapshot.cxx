@@ -21,6 +21,8 @@
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkVolumeProperty.h>
+#include <vtkWeakPointer.h>
 #include <vtksys/SystemTools.hxx>
 
 #include <algorithm>
@@ -136,10 +138,25 @@ struct PassingFile {
   std::filesystem::path path;
 };
 
+/// Text of a property that was taken last: most snapshots are of another camera alone.
+struct TakenProperty {
+  vtkWeakPointer<vtkMRMLVolumePropertyNode> node;
+  vtkMTimeType time = 0;
+  std::string text, ending;
+};
+
 /// Takes the property from a file that Slicer writes: Slicer's storage node knows all fields of
 /// this version's properties.
 void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
                   FenestraScene::Contents& contents) {
+  static TakenProperty taken; // of the main thread
+  const vtkMTimeType time =
+      std::max(property->GetMTime(), property->GetVolumeProperty()->GetMTime());
+  if (taken.node == property && taken.time == time) {
+    contents.property = taken.text;
+    contents.propertyEnding = taken.ending;
+    return;
+  }
   vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own must not count as saved
   copy->Copy(property);
   const auto storage =
@@ -155,6 +172,7 @@ void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::pa
                     "Is the disk full?");
   contents.property = text.str();
   contents.propertyEnding = ending;
+  taken = {property, time, contents.property, ending};
 }
 
 void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, FenestraScene::Contents& contents) {
