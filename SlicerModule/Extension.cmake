@@ -20,7 +20,7 @@ add_subdirectory(Logic)
 set(module_classes qSlicerFenestraClipping qSlicerFenestraMargins qSlicerFenestraModule
   qSlicerFenestraModuleWidget qSlicerFenestraPanel qSlicerFenestraPlayer qSlicerFenestraSession
   qSlicerFenestraSettings)
-set(module_sources qSlicerFenestraLights.cxx qSlicerFenestraLights.h qSlicerFenestraMeasures.cxx
+set(module_sources qSlicerFenestraSessionPreview.cxx qSlicerFenestraLights.cxx qSlicerFenestraLights.h qSlicerFenestraMeasures.cxx
   qSlicerFenestraMeasures.h qSlicerFenestraResults.cxx qSlicerFenestraResults.h)
 set(module_moc)
 foreach(class ${module_classes})

@@ -1,7 +1,6 @@
 #include "qSlicerFenestraSession.h"
 
 #include <QCoreApplication>
-#include <QCryptographicHash>
 #include <QDebug>
 #include <QDir>
 #include <QEventLoop>
@@ -15,30 +14,14 @@
 #include <vtkSmartPointer.h>
 
 #include <algorithm>
-#include <sstream>
 
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 using Ended = qFenestraOutcome::Kind;
-using Flags = std::map<std::string, std::string>;
 
 qFenestraOutcome failure(const QString& message, const QString& details = {}) {
   return {Ended::failed, message, details};
-}
-
-/// Data whose change requires a new preview: volume, segmentation, transforms, crop.
-std::string dataOf(const FenestraScene::Contents& contents) {
-  std::ostringstream text;
-  text.precision(17);
-  text << contents.volumeKey << '\n' << contents.segmentationKey << '\n';
-  for (const double element : contents.volumeToWorld)
-    text << element << ' ';
-  for (const double element : contents.segmentation.toWorld)
-    text << element << ' ';
-  for (const FenestraScene::Roi& roi : contents.crop)
-    text << roi.markup;
-  return text.str();
 }
 
 /// The renderer's message, without names of files in this session's folder.
@@ -49,15 +32,6 @@ QString inWords(QString message, const QString& folder) {
   if (!message.isEmpty())
     message[0] = message[0].toUpper();
   return message;
-}
-
-/// Size with the picture's aspect, at most 256 x 256: quick to render.
-std::string previewSize(const std::string& size) {
-  const QStringList words = QString::fromStdString(size).split('x');
-  const QSize one = QSize(words.value(0, "512").toInt(), words.value(1, "512").toInt())
-                        .scaled(256, 256, Qt::KeepAspectRatio)
-                        .expandedTo({16, 16});
-  return QString("%1x%2").arg(one.width()).arg(one.height()).toStdString();
 }
 
 void removeFolder(const QString& folder) {
@@ -355,105 +329,4 @@ void qSlicerFenestraSession::makeSample(
             then(made ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
           });
   maker->run(m_program, {"phantom", "knee", "--output", folder}, m_sample->path());
-}
-
-// ---- preview
-
-void qSlicerFenestraSession::preview(Node* settings) {
-  m_previewed = settings;
-  if (settings)
-    refresh();
-  else
-    m_preview.stop();
-}
-
-void qSlicerFenestraSession::refresh() {
-  if (m_previewed && !m_soon.isActive())
-    m_soon.start();
-}
-
-void qSlicerFenestraSession::follow() {
-  if (!m_previewed || !m_previewed->GetScene() || rendering())
-    return;
-  if (m_starting)
-    return m_soon.start(); // changes are sent then
-  try {
-    const FenestraScene::Contents contents =
-        m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
-    const QJsonObject flags = previewFlags(m_logic->GetFlags(m_previewed), contents);
-    if (!m_preview.running() || dataOf(contents) != m_shownData)
-      return startPreview(contents, flags);
-    tellPreview(flags);
-  } catch (const FenestraScene::Complaint& complaint) {
-    emit previewRefused(QString::fromUtf8(complaint.what()));
-  }
-}
-
-void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& contents,
-                                          const QJsonObject& flags) {
-  m_starting = true;
-  m_shownData = dataOf(contents);
-  write(contents, [this, flags, files = m_files](const QString& scene, const QString& message) {
-    m_starting = false;
-    if (!message.isEmpty() || !m_previewed)
-      return message.isEmpty() ? void() : emit previewRefused(message);
-    QStringList arguments = {scene, "--output=preview.png"};
-    for (auto flag = flags.begin(); flag != flags.end(); ++flag)
-      arguments << "--" + flag.key() + "=" + flag.value().toString();
-    m_told = flags;
-    const QString folder = QFileInfo(scene).absolutePath();
-    if (rendering() || files != m_files) // the scene was closed meanwhile
-      return removeFolder(folder);
-    m_preview.start(m_program, arguments, folder, files);
-    removeFolder(m_previewFolder);
-    m_previewFolder = folder;
-  });
-}
-
-/// The node's flags, adapted to a preview.
-QJsonObject qSlicerFenestraSession::previewFlags(Flags flags,
-                                                 const FenestraScene::Contents& contents) const {
-  for (const char* name : {"seconds", "seed", "samples"})
-    flags.erase(name);
-  for (const std::string& name : Node::GetTurntableFlagNames())
-    flags.erase(name);
-  flags["noise"] = "0.03";
-  flags["size"] = previewSize(flags["size"]);
-  if (flags.count("transfer") == 0 && flags.count("preset") == 0 && !contents.property.empty())
-    flags["transfer"] = propertyFile(contents).toStdString();
-  QJsonObject all;
-  for (const auto& [name, value] : flags)
-    all[QString::fromStdString(name)] = QString::fromStdString(value);
-  return all;
-}
-
-/// File named by a hash of its content: another transfer function is another file.
-QString qSlicerFenestraSession::propertyFile(const FenestraScene::Contents& contents) const {
-  const QByteArray text = QByteArray::fromStdString(contents.property);
-  const QString name = QCryptographicHash::hash(text, QCryptographicHash::Sha1).toHex();
-  QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyEnding)));
-  if (file.size() != text.size() &&
-      (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size()))
-    throw FenestraScene::Complaint("The transfer function could not be written. Is the disk "
-                                   "with the temporary files full?");
-  return file.fileName();
-}
-
-void qSlicerFenestraSession::tellPreview(const QJsonObject& flags) {
-  QJsonObject changed;
-  for (auto flag = m_told.begin(); flag != m_told.end(); ++flag)
-    if (!flags.contains(flag.key()))
-      changed[flag.key()] = QJsonValue::Null; // no longer given
-  for (auto flag = flags.begin(); flag != flags.end(); ++flag)
-    if (m_told.value(flag.key()) != flag.value())
-      changed[flag.key()] = flag.value();
-  m_told = flags;
-  if (!changed.isEmpty())
-    m_preview.change(changed);
-}
-
-void qSlicerFenestraSession::showPreview(const qFenestraPicture& picture) {
-  const QImage image(m_preview.folder() + "/" + picture.files.value(0));
-  if (!image.isNull())
-    emit previewed(image, picture);
 }
