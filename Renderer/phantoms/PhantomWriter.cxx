@@ -1,7 +1,7 @@
 #include "phantoms/PhantomWriter.h"
 
 #include "base/Error.h"
-#include "base/safe/MadeFolders.h"
+#include "base/safe/Folders.h"
 #include "base/safe/NrrdWriter.h"
 #include "base/safe/Outputs.h"
 #include "base/safe/ZipWriter.h"

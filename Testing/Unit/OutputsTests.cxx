@@ -3,10 +3,10 @@
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
+#include "base/safe/Folders.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/Locks.h"
 #include "base/safe/Outputs.h"
-#include "base/safe/PrivateFolder.h"
 #include "base/safe/TemporaryFile.h"
 
 #include <gtest/gtest.h>
@@ -279,7 +279,7 @@ TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
   folder.write("a", "old");
   TemporaryFile file(folder / "a");
   file.write("new");
-  file.finish(TemporaryFile::Sync::none);
+  file.finish(Durability::none);
   file.place();
   removeAbandonedFiles(folder.path()); // as in another run
   file.takeBack();

@@ -3,14 +3,16 @@
 #include "base/Error.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/Locks.h"
-#include "base/safe/OutputStream.h"
 #include "base/safe/SystemCalls.h"
 #include "base/safe/TemporaryFile.h"
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
+#include <iostream>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <fcntl.h>
 
@@ -81,7 +83,76 @@ void syncFolder(const fs::path& folder) {
     throw writingError(folder, errno);
 }
 
+/// N of /dev/fd/N and similar paths; nullopt: other paths.
+std::optional<int> descriptorNumber(const std::string& path) {
+  if (path == "/dev/stdout")
+    return STDOUT_FILENO;
+  if (path == "/dev/stderr")
+    return STDERR_FILENO;
+  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    const auto number =
+        path.starts_with(folder) ? parsed<int>(path.substr(folder.size())) : std::nullopt;
+    if (number && *number >= 0)
+      return number;
+  }
+  return std::nullopt;
+}
+
 } // namespace
+
+/// Result that is no file: standard output, an open descriptor, a named pipe.
+class OutputStream {
+public:
+  /// Stream for /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N or a named pipe; nullopt:
+  /// other paths. Throws Error (output) where the descriptor is not open for writing.
+  static std::optional<OutputStream> named(const fs::path& path);
+
+  /// Identity of the file behind the descriptor, or of the pipe.
+  std::optional<FileId> id() const {
+    return m_descriptor < 0 ? fileId(m_path) : fileId(m_descriptor);
+  }
+  /// Keeps `content` until it is sent.
+  void keep(std::string_view content) { m_content = content; }
+  /// Writes the kept content, once. Throws Error (output), also where no process reads the pipe.
+  void send();
+
+private:
+  OutputStream(fs::path path, int descriptor) : m_path(std::move(path)), m_descriptor(descriptor) {}
+
+  fs::path m_path;
+  int m_descriptor; ///< -1: named pipe, opened by send
+  std::string m_content;
+};
+
+std::optional<OutputStream> OutputStream::named(const fs::path& path) {
+  if (const auto number = descriptorNumber(path.lexically_normal().string())) {
+    const int flags = ::fcntl(*number, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
+      throw outputError(path, "is not open for writing; redirect it, as in 3>FILE");
+    return OutputStream(path, *number);
+  }
+  struct stat status = {};
+  if (::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))
+    return OutputStream(path, -1);
+  return std::nullopt;
+}
+
+void OutputStream::send() {
+  if (m_content.empty())
+    return;
+  const std::string content = std::exchange(m_content, {});
+  if (m_descriptor >= 0) {
+    std::cout.flush(); // earlier output comes first
+    std::fflush(stdout);
+    return writeAll(m_descriptor, content, m_path);
+  }
+  // Opening without O_NONBLOCK would wait for ever where no process reads the pipe.
+  const Descriptor file(::open(m_path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!file.isOpen())
+    throw outputError(m_path, "nobody reads this pipe; start its reader first");
+  ::fcntl(*file, F_SETFL, 0);
+  writeAll(*file, content, m_path);
+}
 
 ContentState stateOf(std::string_view content) {
   return {content.size(), std::hash<std::string_view>()(content)};
@@ -136,7 +207,7 @@ Outputs::Result& Outputs::declare(const fs::path& path) {
     throw writtenTwice(path);
   if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
     removeAbandonedFiles(result->target.parent_path());
-    requireRoomFor(result->target);
+    const TemporaryFile room(result->target); // throws where none can be made
   }
   return *(m_results[path] = std::move(result));
 }
@@ -213,12 +284,10 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
 }
 
 void Outputs::commit(Durability durability) {
-  const auto sync =
-      durability == Durability::synced ? TemporaryFile::Sync::disk : TemporaryFile::Sync::none;
   std::vector<Result*> files;
   for (const auto& [path, result] : m_results)
     if (result->file) {
-      result->file->finish(sync);
+      result->file->finish(durability);
       files.push_back(result.get());
     }
   place(files, durability);

@@ -4,6 +4,7 @@
 
 #include "base/safe/Inputs.h"
 #include "base/safe/Mark.h"
+#include "base/safe/TemporaryFile.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -18,8 +19,6 @@
 #include <vector>
 
 namespace fenestra {
-
-class TemporaryFile;
 
 /// Size and digest of a content, which identify a result.
 struct ContentState {
@@ -64,7 +63,6 @@ public:
   /// State of the content written last; nullopt: none.
   std::optional<ContentState> written(const std::filesystem::path& path) const;
 
-  enum class Durability { synced, none };
   /// Puts all content written since the last commit in place, all or nothing: after a failure the
   /// results placed before are taken back. Two processes with the same results place theirs one
   /// after the other. No signal ends the process meanwhile. Throws Error: usage where a result

@@ -1,4 +1,4 @@
-#include "base/safe/PrivateFolder.h"
+#include "base/safe/Folders.h"
 
 #include "base/Error.h"
 #include "base/safe/SystemCalls.h"
@@ -18,8 +18,31 @@ std::filesystem::path temporaryFiles() {
   return folder;
 }
 
-Error cannotMake(const std::filesystem::path& path) {
-  return makingError(path, errno, "set TMPDIR to a folder that you may write to");
+constexpr const char* otherFolder = "name a folder that you may write to";
+constexpr const char* otherTemporary = "set TMPDIR to a folder that you may write to";
+
+/// Makes a folder and appends it to `made`; returns the error code, 0: made.
+int make(const std::filesystem::path& folder, mode_t mode, std::list<Leftover>& made) {
+  const Uninterrupted making;
+  made.emplace_back(folder, Leftover::Kind::folder);
+  if (::mkdir(folder.c_str(), mode) == 0)
+    return 0;
+  const int code = errno;
+  made.back().keep(); // the existing name is not ours
+  return code;
+}
+
+/// Makes `folder` and the missing folders above it. Throws Error (output) with the mend `other`.
+void makeMissing(const std::filesystem::path& folder, mode_t mode, const char* other,
+                 std::list<Leftover>& made) {
+  std::error_code failed;
+  if (std::filesystem::is_directory(folder, failed))
+    return;
+  makeMissing(folder.parent_path(), mode, other, made);
+  if (!folder.has_filename()) // `folder` ends in a slash
+    return;
+  if (const int code = make(folder, mode, made); code != 0)
+    throw makingError(folder, code, other);
 }
 
 /// Lock on a folder of this user, accessible to this user alone, that no process has locked; not
@@ -35,17 +58,32 @@ Descriptor lockAbandoned(const std::filesystem::path& folder) {
 
 } // namespace
 
+MadeFolders::MadeFolders(const std::filesystem::path& folder) {
+  std::error_code failed;
+  const std::filesystem::path absolute = std::filesystem::absolute(folder, failed);
+  if (failed)
+    throw makingError(folder, failed.value(), otherFolder);
+  makeMissing(absolute.lexically_normal(), 0777, otherFolder, m_made);
+}
+
+MadeFolders::~MadeFolders() {
+  while (!m_made.empty()) { // the innermost first
+    std::error_code failed;
+    if (!std::filesystem::is_empty(m_made.back().path(), failed) && !failed)
+      m_made.back().keep();
+    m_made.pop_back();
+  }
+}
+
 /// False: another name is needed. A folder is locked after it is made; in between another run may
 /// take it for abandoned and remove it.
 bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
   const Uninterrupted making;
-  m_entries.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
-  if (::mkdir(folder.c_str(), S_IRWXU) != 0) {
-    m_entries.back()->keep(); // the existing name is not ours
-    if (errno == EEXIST)
-      return false;
-    throw cannotMake(folder);
-  }
+  const int code = make(folder, S_IRWXU, m_entries);
+  if (code == EEXIST)
+    return false;
+  if (code != 0)
+    throw makingError(folder, code, otherTemporary);
   m_lock = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   return !m_lock.isOpen() || (tryLock(m_lock) && hasName(m_lock));
 }
@@ -61,25 +99,14 @@ PrivateFolder::~PrivateFolder() {
     m_entries.pop_back();
 }
 
-void PrivateFolder::addFolder(const std::filesystem::path& folder) {
-  std::error_code failed;
-  if (folder == path() || std::filesystem::is_directory(folder, failed))
-    return;
-  addFolder(folder.parent_path());
-  const Uninterrupted making;
-  m_entries.push_back(std::make_unique<Leftover>(folder, Leftover::Kind::folder));
-  if (::mkdir(folder.c_str(), S_IRWXU) != 0)
-    throw cannotMake(folder);
-}
-
 std::filesystem::path PrivateFolder::add(const std::filesystem::path& relative) {
   std::filesystem::path file = path() / relative;
-  addFolder(file.parent_path());
+  makeMissing(file.parent_path(), S_IRWXU, otherTemporary, m_entries);
   const Uninterrupted making;
-  m_entries.push_back(std::make_unique<Leftover>(file, Leftover::Kind::file));
+  m_entries.emplace_back(file, Leftover::Kind::file);
   if (!Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR))
            .isOpen())
-    throw cannotMake(file);
+    throw makingError(file, errno, otherTemporary);
   return file;
 }
 
