@@ -31,6 +31,23 @@ std::string withCheck(const std::string& name) {
   return name + '-' + hashDigits("made by Fenestra: " + name, checkCount) + ".tmp";
 }
 
+/// True for error codes that mean that no such file exists. No file has a name that is too long.
+bool saysNothingIsThere(int code) {
+  return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
+}
+
+static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+std::atomic<int> uninterrupted = 0;             ///< number of threads that are Uninterrupted
+std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
+thread_local int depth = 0;                     ///< number of nested Uninterrupted in this thread
+
+void leave() {
+  if (--uninterrupted == 0)
+    if (void (*end)() = endRequested)
+      end();
+}
+
 } // namespace
 
 std::string temporaryName(std::string_view prefix) {
@@ -63,15 +80,6 @@ void forTemporaryNames(const std::filesystem::path& folder, std::string_view pre
     }
 }
 
-namespace {
-
-/// True for error codes that mean that no such file exists. No file has a name that is too long.
-bool saysNothingIsThere(int code) {
-  return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
-}
-
-} // namespace
-
 /// Entry of the list. Entries are reused, never freed: a signal handler may walk the list at any
 /// time.
 struct Leftover::Entry {
@@ -103,22 +111,6 @@ struct Leftover::Entry {
 };
 
 std::atomic<Leftover::Entry*> Leftover::Entry::first = nullptr;
-
-namespace {
-
-static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
-
-std::atomic<int> uninterrupted = 0;             ///< number of threads that are Uninterrupted
-std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
-thread_local int depth = 0;                     ///< number of nested Uninterrupted in this thread
-
-void leave() {
-  if (--uninterrupted == 0)
-    if (void (*end)() = endRequested)
-      end();
-}
-
-} // namespace
 
 Leftover::Leftover(const std::filesystem::path& path, Kind kind) {
   std::filesystem::path copy = path; // may throw, before an entry is taken
