@@ -234,18 +234,18 @@ TEST_F(OutputFiles, DefaultNameReplacesOnlySealedFiles) {
     many += unsealedMark;
   folder.write("many", many);
   for (const char* name : {"theirs", "edited", "edited.end", "claimed", "many"})
-    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.addUnnamed(folder / name); })
+    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name, bearsMark); })
                   .find("Fenestra did not write it"),
               std::string::npos);
-  outputs.addUnnamed(folder / "ours");
-  outputs.addUnnamed(folder / "ours.end");
+  outputs.add(folder / "ours", bearsMark);
+  outputs.add(folder / "ours.end", bearsMark);
   for (const char* name : {"ours.9", "ours.19", "ours.25"})
-    outputs.addUnnamed(folder / name);
-  outputs.addUnnamed(folder / "new");
+    outputs.add(folder / name, bearsMark);
+  outputs.add(folder / "new", bearsMark);
 }
 
 TEST_F(OutputFiles, FileCreatedMeanwhileIsNotReplaced) {
-  outputs.addUnnamed(folder / "a");
+  outputs.add(folder / "a", bearsMark);
   outputs.write(folder / "a", "new");
   folder.write("a", "somebody else's");
   refusal(ErrorKind::usage, [&] { outputs.commit(); });

@@ -182,46 +182,35 @@ Jobs& jobs() {
 
 // ---- starting a child
 
-/// Attributes of a new child: no file but its end of the connection, default signal handlers.
-class Beginning {
-public:
-  explicit Beginning(int connection) {
-    ::posix_spawn_file_actions_init(&m_files);
-    ::posix_spawn_file_actions_adddup2(&m_files, connection, childConnection);
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-      ::posix_spawn_file_actions_addopen(&m_files, stream, "/dev/null", O_RDWR, 0);
-    ::posix_spawn_file_actions_addclosefrom_np(&m_files, childConnection + 1);
-    ::posix_spawnattr_init(&m_attributes);
-    sigset_t signals;
-    ::sigemptyset(&signals);
-    ::posix_spawnattr_setsigmask(&m_attributes, &signals);
-    ::sigfillset(&signals);
-    ::posix_spawnattr_setsigdefault(&m_attributes, &signals);
-    ::posix_spawnattr_setflags(&m_attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
-                                                  POSIX_SPAWN_SETPGROUP);
-  }
-  ~Beginning() {
-    ::posix_spawnattr_destroy(&m_attributes);
-    ::posix_spawn_file_actions_destroy(&m_files);
-  }
-  Beginning(const Beginning&) = delete;
-  Beginning& operator=(const Beginning&) = delete;
+/// Starts the child for `job`, which has no file but its end of the connection, and default signal
+/// handlers. Returns the process id, or 0: failed.
+pid_t spawn(std::string job, int connection) {
+  std::string program = "fenestra", word = subcommand, parent = std::to_string(::getpid());
+  const std::array<char*, 5> arguments = {program.data(), word.data(), job.data(), parent.data(),
+                                          nullptr};
+  posix_spawn_file_actions_t files;
+  ::posix_spawn_file_actions_init(&files);
+  ::posix_spawn_file_actions_adddup2(&files, connection, childConnection);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    ::posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_RDWR, 0);
+  ::posix_spawn_file_actions_addclosefrom_np(&files, childConnection + 1);
 
-  /// Starts the child for `job`; returns the process id, or 0: failed.
-  pid_t spawn(std::string job) const {
-    std::string program = "fenestra", word = subcommand, parent = std::to_string(::getpid());
-    const std::array<char*, 5> arguments = {program.data(), word.data(), job.data(), parent.data(),
-                                            nullptr};
-    pid_t child = 0;
-    const int failed =
-        ::posix_spawn(&child, "/proc/self/exe", &m_files, &m_attributes, arguments.data(), environ);
-    return failed ? 0 : child;
-  }
-
-private:
-  posix_spawn_file_actions_t m_files;
-  posix_spawnattr_t m_attributes;
-};
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  ::posix_spawnattr_setsigmask(&attributes, &signals);
+  ::sigfillset(&signals);
+  ::posix_spawnattr_setsigdefault(&attributes, &signals);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
+                                              POSIX_SPAWN_SETPGROUP);
+  pid_t child = 0;
+  const int failed =
+      ::posix_spawn(&child, "/proc/self/exe", &files, &attributes, arguments.data(), environ);
+  ::posix_spawnattr_destroy(&attributes);
+  ::posix_spawn_file_actions_destroy(&files);
+  return failed ? 0 : child;
+}
 
 } // namespace
 
@@ -236,7 +225,7 @@ void Apart::start() {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
     m_connection = Descriptor(ends[0]);
-    m_child = Beginning(*Descriptor(ends[1])).spawn(m_job.name);
+    m_child = spawn(m_job.name, *Descriptor(ends[1]));
   }
   if (m_child != 0)
     return;

@@ -6,6 +6,7 @@
 // work apart calls serveApart first in main, as fenestra, its tests and its fuzz targets do. In any
 // other program Apart::ask throws std::logic_error instead of running that program's main again.
 
+#include "base/Text.h"
 #include "base/safe/Descriptor.h"
 
 #include <cstdint>
@@ -70,10 +71,7 @@ public:
     const std::uint64_t size = text.size();
     m_bytes.append(reinterpret_cast<const char*>(&size), sizeof size).append(text);
   }
-  void put(const std::vector<double>& numbers) {
-    put(std::string_view(reinterpret_cast<const char*>(numbers.data()),
-                         numbers.size() * sizeof(double)));
-  }
+  void put(const std::vector<double>& numbers) { put(memoryOf(numbers)); }
   const std::string& bytes() const { return m_bytes; }
 
 private:

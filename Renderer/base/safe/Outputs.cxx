@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int namedPipe = -1; ///< stream that is opened when its content is sent
+
 std::atomic<bool> anyIsPlaced = false;
 
 /// File that writing to `path` would change: links are followed, dangling ones as well. The folder
@@ -98,61 +100,37 @@ std::optional<int> descriptorNumber(const std::string& path) {
   return std::nullopt;
 }
 
-} // namespace
-
-/// Result that is no file: standard output, an open descriptor, a named pipe.
-class OutputStream {
-public:
-  /// Stream for /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N or a named pipe; nullopt:
-  /// other paths. Throws Error (output) where the descriptor is not open for writing.
-  static std::optional<OutputStream> named(const fs::path& path);
-
-  /// Identity of the file behind the descriptor, or of the pipe.
-  std::optional<FileId> id() const {
-    return m_descriptor < 0 ? fileId(m_path) : fileId(m_descriptor);
-  }
-  /// Keeps `content` until it is sent.
-  void keep(std::string_view content) { m_content = content; }
-  /// Writes the kept content, once. Throws Error (output), also where no process reads the pipe.
-  void send();
-
-private:
-  OutputStream(fs::path path, int descriptor) : m_path(std::move(path)), m_descriptor(descriptor) {}
-
-  fs::path m_path;
-  int m_descriptor; ///< -1: named pipe, opened by send
-  std::string m_content;
-};
-
-std::optional<OutputStream> OutputStream::named(const fs::path& path) {
+/// Descriptor of a result that is no file: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N, or
+/// `namedPipe`; nullopt: other paths. Throws Error (output) where the descriptor is not open for
+/// writing.
+std::optional<int> streamNamed(const fs::path& path) {
   if (const auto number = descriptorNumber(path.lexically_normal().string())) {
     const int flags = ::fcntl(*number, F_GETFL);
     if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
       throw outputError(path, "is not open for writing; redirect it, as in 3>FILE");
-    return OutputStream(path, *number);
+    return number;
   }
   struct stat status = {};
-  if (::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))
-    return OutputStream(path, -1);
-  return std::nullopt;
+  const bool isPipe = ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
+  return isPipe ? std::optional(namedPipe) : std::nullopt;
 }
 
-void OutputStream::send() {
-  if (m_content.empty())
-    return;
-  const std::string content = std::exchange(m_content, {});
-  if (m_descriptor >= 0) {
+/// Throws Error (output), also where no process reads the pipe.
+void sendTo(int stream, const std::string& content, const fs::path& path) {
+  if (stream != namedPipe) {
     std::cout.flush(); // earlier output comes first
     std::fflush(stdout);
-    return writeAll(m_descriptor, content, m_path);
+    return writeAll(stream, content, path);
   }
   // Opening without O_NONBLOCK would wait for ever where no process reads the pipe.
-  const Descriptor file(::open(m_path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
   if (!file.isOpen())
-    throw outputError(m_path, "nobody reads this pipe; start its reader first");
+    throw outputError(path, "nobody reads this pipe; start its reader first");
   ::fcntl(*file, F_SETFL, 0);
-  writeAll(*file, content, m_path);
+  writeAll(*file, content, path);
 }
+
+} // namespace
 
 ContentState stateOf(std::string_view content) {
   return {content.size(), std::hash<std::string_view>()(content)};
@@ -164,14 +142,19 @@ bool resultsWerePlaced() {
 
 struct Outputs::Result {
   fs::path named;
-  std::optional<OutputStream> stream;  ///< set: the result is a stream, not a file
+  std::optional<int> stream;           ///< as of streamNamed
+  std::string unsent;                  ///< content of the stream
   fs::path target;                     ///< path of the file, links followed
   std::unique_ptr<TemporaryFile> file; ///< content written, not yet in place
 
   IsOurs isOurs; ///< empty: the user named the result
   std::optional<ContentState> written;
 
-  std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
+  std::optional<FileId> id() const {
+    if (stream && *stream != namedPipe)
+      return fileId(*stream);
+    return fileId(stream ? named : target);
+  }
   void requireOurs() const {
     std::error_code failed;
     // An empty file holds nobody's data.
@@ -189,8 +172,10 @@ Outputs::~Outputs() {
     forgetResult(result->target);
 }
 
-Outputs::Result& Outputs::declare(const fs::path& path) {
-  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}, {}, {}});
+void Outputs::add(const fs::path& path, const IsOurs& isOurs) {
+  auto result = std::make_unique<Result>();
+  result->named = path;
+  result->stream = streamNamed(path);
   if (!result->stream) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
@@ -209,17 +194,9 @@ Outputs::Result& Outputs::declare(const fs::path& path) {
     removeAbandonedFiles(result->target.parent_path());
     const TemporaryFile room(result->target); // throws where none can be made
   }
-  return *(m_results[path] = std::move(result));
-}
-
-void Outputs::add(const fs::path& path) {
-  declare(path);
-}
-
-void Outputs::addUnnamed(const fs::path& path, const IsOurs& isOurs) {
-  Result& result = declare(path);
-  result.isOurs = isOurs;
-  result.requireOurs();
+  result->isOurs = isOurs;
+  m_results[path] = std::move(result);
+  m_results[path]->requireOurs();
 }
 
 void Outputs::checkInputs() const {
@@ -237,7 +214,7 @@ void Outputs::write(const fs::path& path, std::string_view content) {
   Result& result = *m_results.at(path);
   result.written = stateOf(content);
   if (result.stream) {
-    result.stream->keep(content);
+    result.unsent = content;
     return;
   }
   result.file = std::make_unique<TemporaryFile>(result.target);
@@ -292,8 +269,8 @@ void Outputs::commit(Durability durability) {
     }
   place(files, durability);
   for (const auto& [path, result] : m_results)
-    if (result->stream)
-      result->stream->send();
+    if (!result->unsent.empty())
+      sendTo(*result->stream, std::exchange(result->unsent, {}), result->named);
 }
 
 } // namespace fenestra
