@@ -281,7 +281,7 @@ TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
   file.write("new");
   file.finish(Durability::none);
   file.place();
-  removeAbandonedFiles(folder.path()); // as in another run
+  removeAbandoned(folder.path(), temporaryFilePrefix, Leftover::Kind::file); // as in another run
   file.takeBack();
   EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
@@ -338,7 +338,7 @@ TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
     EXPECT_TRUE(first.isHeld());
     EXPECT_FALSE(NameLock(name).isHeld());
     EXPECT_TRUE(NameLock(folder / "others.turntable.json").isHeld());
-    removeAbandonedFiles(folder.path());
+    removeAbandoned(folder.path(), temporaryFilePrefix, Leftover::Kind::file);
     EXPECT_FALSE(NameLock(name).isHeld()) << "after another run has looked for abandoned files";
     EXPECT_EQ(fileCount(), 1u);
   }
@@ -355,7 +355,8 @@ TEST_F(OutputFiles, OverlongNameIsNoLeftover) {
 
 TEST_F(OutputFiles, LockedTemporaryFileIsNotRemoved) {
   const TemporaryFile file(folder / "a");
-  removeAbandonedFiles(folder.path()); // another descriptor and lock, as in another process
+  removeAbandoned(folder.path(), temporaryFilePrefix,
+                  Leftover::Kind::file); // another descriptor and lock, as in another process
   EXPECT_EQ(fileCount(), 1u);
 }
 

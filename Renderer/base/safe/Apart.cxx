@@ -36,10 +36,11 @@ constexpr std::uint64_t longestQuestion = 1 << 16; // bytes; less than a socket 
 
 bool sendAll(int connection, std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t sent = ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent < 0 && errno != EINTR)
+    const auto sent =
+        repeated([&] { return ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL); });
+    if (sent < 0)
       return false;
-    bytes.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(sent, 0)));
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
   return true;
 }
@@ -70,10 +71,10 @@ bool receiveAll(int connection, char* place, std::uint64_t size,
   while (size > 0) {
     if (!waits(connection, deadline))
       return false;
-    const ssize_t received = ::recv(connection, place, static_cast<std::size_t>(size), 0);
-    if (received == 0 || (received < 0 && errno != EINTR))
+    const auto count =
+        repeated([&] { return ::recv(connection, place, static_cast<std::size_t>(size), 0); });
+    if (count <= 0)
       return false;
-    const auto count = std::max<ssize_t>(received, 0);
     place += count;
     size -= static_cast<std::uint64_t>(count);
   }
@@ -154,14 +155,11 @@ void allowSeconds(unsigned seconds) {
 
 // ---- the child
 
-struct Jobs {
-  std::vector<const ApartJob*> all;
-  bool served = false; ///< this program's main calls serveApart
-};
+bool served = false; ///< this program's main calls serveApart
 
 /// Jobs of this program.
-Jobs& jobs() {
-  static Jobs known;
+std::vector<const ApartJob*>& jobs() {
+  static std::vector<const ApartJob*> known;
   return known;
 }
 
@@ -216,11 +214,11 @@ pid_t spawn(std::string job, int connection) {
 
 ApartJob::ApartJob(std::string named, Answer answers, ApartLimits limited)
     : name(std::move(named)), answer(answers), limits(limited) {
-  jobs().all.push_back(this);
+  jobs().push_back(this);
 }
 
 void Apart::start() {
-  if (!jobs().served)
+  if (!served)
     throw std::logic_error("main does not call serveApart");
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
@@ -282,10 +280,10 @@ std::vector<double> AnswerReader::numbers() {
 }
 
 void serveApart(int argc, char** argv) {
-  jobs().served = true;
+  served = true;
   if (argc != 4 || std::string_view(argv[1]) != subcommand)
     return;
-  for (const ApartJob* job : jobs().all)
+  for (const ApartJob* job : jobs())
     if (job->name == argv[2] && confined(job->limits.bytes, argv[3]))
       answerAll(*job);
   ::_exit(1);

@@ -45,17 +45,6 @@ void makeMissing(const std::filesystem::path& folder, mode_t mode, const char* o
     throw makingError(folder, code, other);
 }
 
-/// Lock on a folder of this user, accessible to this user alone, that no process has locked; not
-/// open: there is none.
-Descriptor lockAbandoned(const std::filesystem::path& folder) {
-  Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
-  struct stat status = {};
-  const bool isLocked = ::fstat(*file, &status) == 0 && status.st_uid == ::geteuid() &&
-                        (status.st_mode & 0777) == S_IRWXU &&
-                        ::flock(*file, LOCK_EX | LOCK_NB) == 0;
-  return isLocked ? std::move(file) : Descriptor();
-}
-
 } // namespace
 
 MadeFolders::MadeFolders(const std::filesystem::path& folder) {
@@ -117,11 +106,7 @@ void removeAbandonedFolders() {
   } catch (const std::exception&) { // no folder or memory: reported where the folder is needed
     return;
   }
-  forTemporaryNames(parent, folderPrefix, [](const std::filesystem::path& folder) {
-    std::error_code ignored;
-    if (const Descriptor lock = lockAbandoned(folder); lock.isOpen())
-      std::filesystem::remove_all(folder, ignored);
-  });
+  removeAbandoned(parent, folderPrefix, Leftover::Kind::folder);
 }
 
 } // namespace fenestra

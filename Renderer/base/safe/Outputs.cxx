@@ -191,7 +191,7 @@ void Outputs::add(const fs::path& path, const IsOurs& isOurs) {
       (id && !m_files.insert(*id).second))
     throw writtenTwice(path);
   if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
-    removeAbandonedFiles(result->target.parent_path());
+    removeAbandoned(result->target.parent_path(), temporaryFilePrefix, Leftover::Kind::file);
     const TemporaryFile room(result->target); // throws where none can be made
   }
   result->isOurs = isOurs;

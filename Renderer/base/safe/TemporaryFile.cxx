@@ -136,14 +136,4 @@ void TemporaryFile::takeBack() noexcept {
   m_placed = Placed::no;
 }
 
-void removeAbandonedFiles(const std::filesystem::path& folder) {
-  forTemporaryNames(folder, temporaryFilePrefix, [](const std::filesystem::path& path) {
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-    struct stat status = {};
-    if (::fstat(*file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == ::geteuid() &&
-        ::flock(*file, LOCK_EX | LOCK_NB) == 0)
-      ::unlink(path.c_str());
-  });
-}
-
 } // namespace fenestra

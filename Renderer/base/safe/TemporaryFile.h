@@ -48,7 +48,4 @@ private:
   Placed m_placed = Placed::no;
 };
 
-/// Removes this user's temporary files in `folder` that no process has locked.
-void removeAbandonedFiles(const std::filesystem::path& folder);
-
 } // namespace fenestra
