@@ -1,6 +1,5 @@
 #pragma once
-// Linear and affine maps of space. Long functions that are not called for every ray are out of
-// line.
+// Linear and affine maps of space.
 
 #include "base/Tuple.h"
 

@@ -3,6 +3,7 @@
 #include "base/safe/HeaderText.h"
 
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace fenestra {
@@ -50,10 +51,8 @@ std::optional<std::vector<double>> vectorLengths(const std::string& text) {
     const auto numbers = parseNumbers(inside);
     if (!numbers)
       return std::nullopt;
-    double squares = 0.0;
-    for (const double number : *numbers)
-      squares += number * number;
-    lengths.push_back(std::sqrt(squares));
+    lengths.push_back(
+        std::sqrt(std::inner_product(numbers->begin(), numbers->end(), numbers->begin(), 0.0)));
   }
   return lengths;
 }
