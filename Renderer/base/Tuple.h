@@ -162,7 +162,7 @@ public:
   Array() = default;
   Array(const Array&) = default;
   Array& operator=(const Array&) & = default; // temporaries refuse assignment
-  /// The same number in each part. Conversion: `array < 1.0` compares each part with 1.
+  /// One number in each part. Conversion: `array < 1.0` compares each part with 1.
   constexpr Array(T each) { *this = Array::Constant(each); }
   constexpr Array(T x, T y) requires(N == 2) { this->assign(x, y); }
   constexpr Array(T x, T y, T z) requires(N == 3) { this->assign(x, y, z); }
