@@ -22,22 +22,6 @@ Mat3 Mat3::inverse() const {
   return FromRows(row(0) * perDeterminant, row(1) * perDeterminant, row(2) * perDeterminant);
 }
 
-Vec3 Mat3::columnNorms() const {
-  return {col(0).norm(), col(1).norm(), col(2).norm()};
-}
-
-Vec3 Mat3::rowSums() const {
-  return col(0) + col(1) + col(2);
-}
-
-Mat3 Mat3::normalizedColumns() const {
-  return {col(0).normalized(), col(1).normalized(), col(2).normalized()};
-}
-
-Mat3 Mat3::cwiseAbs() const {
-  return {col(0).cwiseAbs(), col(1).cwiseAbs(), col(2).cwiseAbs()};
-}
-
 Affine Affine::inverse() const {
   const Mat3 linear = m_linear.inverse();
   return Affine(linear, -(linear * m_translation));

@@ -1,5 +1,5 @@
 #pragma once
-// Linear and affine maps of space. Functions that are not called for every ray are out of line.
+// Linear and affine maps of space.
 
 #include "base/Tuple.h"
 
@@ -38,11 +38,13 @@ public:
   double determinant() const;
   /// Inverse by cofactors; infinite or NaN for a singular matrix.
   Mat3 inverse() const;
-  Vec3 columnNorms() const;
-  Vec3 rowSums() const;
+  Vec3 columnNorms() const { return {col(0).norm(), col(1).norm(), col(2).norm()}; }
+  Vec3 rowSums() const { return col(0) + col(1) + col(2); }
   /// Each column divided by its norm.
-  Mat3 normalizedColumns() const;
-  Mat3 cwiseAbs() const;
+  Mat3 normalizedColumns() const {
+    return {col(0).normalized(), col(1).normalized(), col(2).normalized()};
+  }
+  Mat3 cwiseAbs() const { return {col(0).cwiseAbs(), col(1).cwiseAbs(), col(2).cwiseAbs()}; }
 
   constexpr Mat3 operator-() const { return {-col(0), -col(1), -col(2)}; }
   constexpr Mat3& operator*=(double factor) {

@@ -1,14 +1,23 @@
 #pragma once
 
+#include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace fenestra {
 
-/// Mean, 95th percentile and maximum of some values, in the values' unit.
+/// Mean, 95th percentile and maximum of some values, in the values' unit; 0 for no values.
 struct Distribution {
   double mean = 0.0, p95 = 0.0, max = 0.0;
 
-  static Distribution of(std::vector<double> values); ///< 0 for no values
+  static Distribution of(std::vector<double> values) {
+    if (values.empty())
+      return {};
+    std::ranges::sort(values);
+    const auto count = static_cast<double>(values.size());
+    return {std::accumulate(values.begin(), values.end(), 0.0) / count,
+            values[static_cast<std::size_t>(0.95 * (count - 1.0))], values.back()};
+  }
 };
 
 } // namespace fenestra

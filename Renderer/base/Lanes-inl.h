@@ -13,6 +13,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <initializer_list>
 
 #include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
@@ -165,6 +166,14 @@ HWY_INLINE F uniform(U& counter) {
   return uniformOf(nextBits(counter));
 }
 
+/// Polynomial in x by Horner's rule: coefficient of the highest power, then the lower ones.
+HWY_INLINE F polynomial(F x, float highest, std::initializer_list<float> lower) {
+  F sum = all(highest);
+  for (const float coefficient : lower)
+    sum = hn::MulAdd(sum, x, all(coefficient));
+  return sum;
+}
+
 /// The logarithm of a positive number that is not subnormal, to a float's last place (the
 /// polynomial of Cephes' logf).
 HWY_INLINE F logOf(F x) {
@@ -174,10 +183,10 @@ HWY_INLINE F logOf(F x) {
   const F mantissa = hn::BitCast(floats, hn::Sub(raw, hn::ShiftLeft<23>(power)));
   const F e = hn::ConvertTo(floats, power);
   const F f = hn::Sub(mantissa, all(1.0F));
-  F p = all(7.0376836292E-2F);
-  for (const float c : {-1.1514610310E-1F, 1.1676998740E-1F, -1.2420140846E-1F, 1.4249322787E-1F,
-                        -1.6668057665E-1F, 2.0000714765E-1F, -2.4999993993E-1F, 3.3333331174E-1F})
-    p = hn::MulAdd(p, f, all(c));
+  const F p =
+      polynomial(f, 7.0376836292E-2F,
+                 {-1.1514610310E-1F, 1.1676998740E-1F, -1.2420140846E-1F, 1.4249322787E-1F,
+                  -1.6668057665E-1F, 2.0000714765E-1F, -2.4999993993E-1F, 3.3333331174E-1F});
   const F f2 = hn::Mul(f, f);
   F low = hn::Mul(hn::Mul(p, f), f2);
   low = hn::MulAdd(e, all(-2.12194440E-4F), low);
@@ -209,15 +218,11 @@ HWY_INLINE CosineSine ofTurns(F turns) {
   const F nearest = hn::Floor(hn::Add(quarters, all(0.5F)));
   const F x = hn::Mul(hn::Sub(quarters, nearest), all(1.57079632679F));
   const F x2 = hn::Mul(x, x);
-  F sine = hn::MulAdd(x2, all(2.75573192e-6F), all(-1.98412698e-4F));
-  sine = hn::MulAdd(x2, sine, all(8.33333333e-3F));
-  sine = hn::MulAdd(x2, sine, all(-1.66666667e-1F));
-  sine = hn::MulAdd(hn::Mul(x, x2), sine, x);
-  F cosine = hn::MulAdd(x2, all(-2.75573192e-7F), all(2.48015873e-5F));
-  cosine = hn::MulAdd(x2, cosine, all(-1.38888889e-3F));
-  cosine = hn::MulAdd(x2, cosine, all(4.16666667e-2F));
-  cosine = hn::MulAdd(x2, cosine, all(-0.5F));
-  cosine = hn::MulAdd(x2, cosine, all(1.0F));
+  const F cubic =
+      polynomial(x2, 2.75573192e-6F, {-1.98412698e-4F, 8.33333333e-3F, -1.66666667e-1F});
+  const F sine = hn::MulAdd(hn::Mul(x, x2), cubic, x);
+  const F cosine = polynomial(x2, -2.75573192e-7F,
+                              {2.48015873e-5F, -1.38888889e-3F, 4.16666667e-2F, -0.5F, 1.0F});
   const U quadrant = hn::BitCast(bits, hn::ConvertTo(ints, nearest));
   const U odd = hn::And(quadrant, hn::Set(bits, 1));
   const M swapped = hn::RebindMask(floats, hn::Eq(odd, hn::Set(bits, 1)));

@@ -2,28 +2,24 @@
 // Wall-clock time.
 
 #include <chrono>
+#include <utility>
 
 namespace fenestra {
 
 class Stopwatch {
 public:
   /// Time since construction or the last lap().
-  double seconds() const { return since(Clock::now()); }
+  double seconds() const { return Seconds(Clock::now() - m_start).count(); }
 
   /// Returns seconds() and restarts.
   double lap() {
-    const Clock::time_point now = Clock::now();
-    const double seconds = since(now);
-    m_start = now;
-    return seconds;
+    const Clock::time_point before = std::exchange(m_start, Clock::now());
+    return Seconds(m_start - before).count();
   }
 
 private:
   using Clock = std::chrono::steady_clock;
-
-  double since(Clock::time_point now) const {
-    return std::chrono::duration<double>(now - m_start).count();
-  }
+  using Seconds = std::chrono::duration<double>;
 
   Clock::time_point m_start = Clock::now();
 };

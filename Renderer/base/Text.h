@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -60,6 +61,13 @@ std::string numbersText(const Numbers& numbers, std::string_view separator, int 
     else
       return textOf(x);
   });
+}
+
+/// Numbers as they lie in memory.
+template <typename Numbers>
+std::string_view memoryOf(const Numbers& numbers) {
+  return {reinterpret_cast<const char*>(std::data(numbers)),
+          std::size(numbers) * sizeof(*std::data(numbers))};
 }
 
 std::string lower(std::string_view text);

@@ -41,21 +41,14 @@ public:
   constexpr T& x() { return m_parts[0]; }
   constexpr const T& y() const { return m_parts[1]; }
   constexpr T& y() { return m_parts[1]; }
-  constexpr const T& z() const {
-    static_assert(N > 2);
-    return m_parts[2];
-  }
-  constexpr T& z() {
-    static_assert(N > 2);
-    return m_parts[2];
-  }
+  constexpr const T& z() const requires(N > 2) { return m_parts[2]; }
+  constexpr T& z() requires(N > 2) { return m_parts[2]; }
   constexpr const T* data() const { return m_parts; }
   constexpr T* data() { return m_parts; }
   constexpr const T* begin() const { return m_parts; }
   constexpr const T* end() const { return m_parts + N; }
 
   constexpr void setZero() { self() = Zero(); }
-  constexpr void setConstant(T value) { self() = Constant(value); }
 
   /// Applies f to each part.
   template <typename F>
@@ -153,7 +146,6 @@ protected:
 
 private:
   constexpr Self& self() { return static_cast<Self&>(*this); }
-  constexpr const Self& self() const { return static_cast<const Self&>(*this); }
 };
 
 /// Prints "x y z".
@@ -170,19 +162,15 @@ public:
   Array() = default;
   Array(const Array&) = default;
   Array& operator=(const Array&) & = default; // temporaries refuse assignment
-  constexpr explicit Array(T x) requires(N == 1) { this->assign(x); }
+  /// One number in each part. Conversion: `array < 1.0` compares each part with 1.
+  constexpr Array(T each) { *this = Array::Constant(each); }
   constexpr Array(T x, T y) requires(N == 2) { this->assign(x, y); }
   constexpr Array(T x, T y, T z) requires(N == 3) { this->assign(x, y, z); }
 
-  constexpr Vector<T, N> matrix() const;
-  constexpr T value() const {
-    static_assert(N == 1);
-    return (*this)[0];
-  }
+  constexpr Vector<T, N> matrix() const { return *this; }
+  constexpr T value() const requires(N == 1) { return (*this)[0]; }
 
-  constexpr Array max(T o) const { return this->cwiseMax(o); }
   constexpr Array max(const Array& o) const { return this->cwiseMax(o); }
-  constexpr Array min(T o) const { return this->cwiseMin(o); }
   constexpr Array min(const Array& o) const { return this->cwiseMin(o); }
   constexpr Array abs() const { return this->cwiseAbs(); }
   Array floor() const {
@@ -209,17 +197,9 @@ public:
     return std::any_of(this->begin(), this->end(), [](T part) { return bool(part); });
   }
 
-  // `o`: a number or an array.
-  constexpr Array& operator+=(const auto& o) & { return *this = *this + o; }
-  constexpr Array& operator-=(const auto& o) & { return *this = *this - o; }
-  constexpr Array& operator*=(const auto& o) & { return *this = *this * o; }
-  constexpr Array& operator/=(const auto& o) & { return *this = *this / o; }
+  constexpr Array& operator*=(const Array& o) & { return *this = *this * o; }
+  constexpr Array& operator/=(const Array& o) & { return *this = *this / o; }
 
-  friend constexpr Array operator+(const Array& a, T b) { return a + Array::Constant(b); }
-  friend constexpr Array operator-(const Array& a, T b) { return a - Array::Constant(b); }
-  friend constexpr Array operator-(T a, const Array& b) { return Array::Constant(a) - b; }
-  friend constexpr Array operator+(T a, const Array& b) { return Array::Constant(a) + b; }
-  friend constexpr Array operator/(T a, const Array& b) { return Array::Constant(a) / b; }
   friend constexpr Array operator*(const Array& a, const Array& b) {
     return a.with(b, [](T p, T q) { return T(p * q); });
   }
@@ -239,10 +219,6 @@ public:
   friend constexpr bool operator==(const Array& a, const Array& b) {
     return a.with(b, [](T p, T q) { return p == q; }).all();
   }
-  friend constexpr Truths operator<(const Array& a, T b) { return a < Array::Constant(b); }
-  friend constexpr Truths operator<=(const Array& a, T b) { return a <= Array::Constant(b); }
-  friend constexpr Truths operator>(const Array& a, T b) { return a > Array::Constant(b); }
-  friend constexpr Truths operator>=(const Array& a, T b) { return a >= Array::Constant(b); }
   friend constexpr Truths operator&&(const Array& a, const Array& b) {
     return a.with(b, [](T p, T q) { return p && q; });
   }
@@ -293,8 +269,7 @@ public:
     const T square = (*this / greatest).squaredNorm();
     return square > T(0) ? *this / (std::sqrt(square) * greatest) : *this;
   }
-  constexpr Vector cross(const Vector& o) const {
-    static_assert(N == 3);
+  constexpr Vector cross(const Vector& o) const requires(N == 3) {
     const Vector& a = *this;
     return {a[1] * o[2] - a[2] * o[1], a[2] * o[0] - a[0] * o[2], a[0] * o[1] - a[1] * o[0]};
   }
@@ -313,10 +288,5 @@ public:
     return std::equal(a.begin(), a.end(), b.begin());
   }
 };
-
-template <typename T, int N>
-constexpr Vector<T, N> Array<T, N>::matrix() const {
-  return *this;
-}
 
 } // namespace fenestra

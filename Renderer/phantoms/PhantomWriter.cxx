@@ -1,7 +1,7 @@
 #include "phantoms/PhantomWriter.h"
 
 #include "base/Error.h"
-#include "base/safe/MadeFolders.h"
+#include "base/safe/Folders.h"
 #include "base/safe/NrrdWriter.h"
 #include "base/safe/Outputs.h"
 #include "base/safe/ZipWriter.h"
@@ -69,11 +69,6 @@ NrrdFields marked(NrrdFields fields = {}) {
   return fields;
 }
 
-template <typename Value>
-std::string_view bytesOf(const std::vector<Value>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
-}
-
 NrrdHeader volumeHeader(const Phantom& phantom) {
   const Grid& grid = phantom.volume.grid;
   return {
@@ -92,12 +87,12 @@ std::string encodeSegmentation(const Phantom& phantom) {
                           .indexToWorld = indexToWorld,
                           .fields = marked(segmentationFields(phantom))};
   if (count == 1)
-    return sealed(encodeNrrd(header, bytesOf(labels.layers.front())));
+    return sealed(encodeNrrd(header, memoryOf(labels.layers.front())));
   std::vector<std::uint8_t> interleaved(count * labels.layers.front().size());
   for (std::size_t layer = 0; layer < count; ++layer)
     for (std::size_t i = 0; i < labels.layers[layer].size(); ++i)
       interleaved[i * count + layer] = labels.layers[layer][i];
-  return sealed(encodeNrrd(header, bytesOf(interleaved)));
+  return sealed(encodeNrrd(header, memoryOf(interleaved)));
 }
 
 struct PhantomFile {
@@ -152,7 +147,7 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   const NrrdHeader header = volumeHeader(phantom);
   const std::string scene = phantomScene(phantom, name, names);
   std::vector<PhantomFile> files = {
-      {names.volume, sealed(encodeNrrd(header, bytesOf(voxels))), true},
+      {names.volume, sealed(encodeNrrd(header, memoryOf(voxels))), true},
       {names.segmentation, encodeSegmentation(phantom), true},
       {name + ".vp.json", propertyJson(phantom.property, volume.minimum, volume.maximum)},
       {names.property, propertyVp(phantom.property), true},
@@ -166,7 +161,7 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   const bool isPhantoms = beginsWith(directory / names.volume, withoutMark(nrrdText(header))) &&
                           holds(directory / (name + ".mrml"), withoutMark(scene));
   for (const PhantomFile& file : files)
-    outputs.addUnnamed(directory / file.name, [&](const std::filesystem::path& path) {
+    outputs.add(directory / file.name, [&](const std::filesystem::path& path) {
       return isPhantoms || bearsMark(path) || holds(path, file.content);
     });
   std::vector<std::string> written;

@@ -108,7 +108,7 @@ private:
   void publish(const RenderResult& result, bool last) {
     try {
       writePictures(m_options, *m_scene, result, m_flags.arguments(), m_outputs);
-      m_outputs.commit(Outputs::Durability::none); // the next picture follows soon
+      m_outputs.commit(Durability::none); // the next picture follows soon
       tell(result, last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())

@@ -28,8 +28,7 @@ json requestedArguments(const FlagValues& flags, const fs::path& folder) {
 }
 
 std::uint64_t digest(const auto& voxels) {
-  return stateOf({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(voxels[0])})
-      .digest;
+  return stateOf(memoryOf(voxels)).digest;
 }
 
 /// Name, size and time of each file, by which a replaced file is noticed.
@@ -221,7 +220,7 @@ void TurntableRecord::requireSame() const {
 }
 
 void TurntableRecord::declare(Outputs& outputs) const {
-  outputs.addUnnamed(m_path, isRecord);
+  outputs.add(m_path, isRecord);
 }
 
 void TurntableRecord::write(Outputs& outputs) const {

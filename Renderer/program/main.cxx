@@ -1,7 +1,7 @@
 #include "base/Error.h"
 #include "base/safe/Apart.h"
+#include "base/safe/Folders.h"
 #include "base/safe/Leftovers.h"
-#include "base/safe/PrivateFolder.h"
 #include "base/safe/ShownText.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"

@@ -4,7 +4,7 @@
 #include "SceneNeighbours.h"
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
-#include "base/safe/ApartBytes.h"
+#include "base/safe/Apart.h"
 #include "base/safe/ZipWriter.h"
 
 #include <itkAffineTransform.h>

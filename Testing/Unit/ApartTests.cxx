@@ -5,7 +5,6 @@
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
-#include "base/safe/ApartBytes.h"
 
 #include <gtest/gtest.h>
 

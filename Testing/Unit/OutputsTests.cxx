@@ -3,10 +3,10 @@
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
+#include "base/safe/Folders.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/Locks.h"
 #include "base/safe/Outputs.h"
-#include "base/safe/PrivateFolder.h"
 #include "base/safe/TemporaryFile.h"
 
 #include <gtest/gtest.h>
@@ -234,18 +234,18 @@ TEST_F(OutputFiles, DefaultNameReplacesOnlySealedFiles) {
     many += unsealedMark;
   folder.write("many", many);
   for (const char* name : {"theirs", "edited", "edited.end", "claimed", "many"})
-    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.addUnnamed(folder / name); })
+    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name, bearsMark); })
                   .find("Fenestra did not write it"),
               std::string::npos);
-  outputs.addUnnamed(folder / "ours");
-  outputs.addUnnamed(folder / "ours.end");
+  outputs.add(folder / "ours", bearsMark);
+  outputs.add(folder / "ours.end", bearsMark);
   for (const char* name : {"ours.9", "ours.19", "ours.25"})
-    outputs.addUnnamed(folder / name);
-  outputs.addUnnamed(folder / "new");
+    outputs.add(folder / name, bearsMark);
+  outputs.add(folder / "new", bearsMark);
 }
 
 TEST_F(OutputFiles, FileCreatedMeanwhileIsNotReplaced) {
-  outputs.addUnnamed(folder / "a");
+  outputs.add(folder / "a", bearsMark);
   outputs.write(folder / "a", "new");
   folder.write("a", "somebody else's");
   refusal(ErrorKind::usage, [&] { outputs.commit(); });
@@ -279,9 +279,9 @@ TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
   folder.write("a", "old");
   TemporaryFile file(folder / "a");
   file.write("new");
-  file.finish(TemporaryFile::Sync::none);
+  file.finish(Durability::none);
   file.place();
-  removeAbandonedFiles(folder.path()); // as in another run
+  removeAbandoned(folder.path(), temporaryFilePrefix, Leftover::Kind::file); // as in another run
   file.takeBack();
   EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
@@ -338,7 +338,7 @@ TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
     EXPECT_TRUE(first.isHeld());
     EXPECT_FALSE(NameLock(name).isHeld());
     EXPECT_TRUE(NameLock(folder / "others.turntable.json").isHeld());
-    removeAbandonedFiles(folder.path());
+    removeAbandoned(folder.path(), temporaryFilePrefix, Leftover::Kind::file);
     EXPECT_FALSE(NameLock(name).isHeld()) << "after another run has looked for abandoned files";
     EXPECT_EQ(fileCount(), 1u);
   }
@@ -355,7 +355,8 @@ TEST_F(OutputFiles, OverlongNameIsNoLeftover) {
 
 TEST_F(OutputFiles, LockedTemporaryFileIsNotRemoved) {
   const TemporaryFile file(folder / "a");
-  removeAbandonedFiles(folder.path()); // another descriptor and lock, as in another process
+  removeAbandoned(folder.path(), temporaryFilePrefix,
+                  Leftover::Kind::file); // another descriptor and lock, as in another process
   EXPECT_EQ(fileCount(), 1u);
 }
 

@@ -1,23 +1,27 @@
 #include "base/safe/Apart.h"
 
 #include "base/Error.h"
-#include "base/safe/Confinement.h"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
+#include <cstring>
+#include <ctime>
 #include <fcntl.h>
+#include <linux/landlock.h>
 #include <poll.h>
 #include <spawn.h>
 #include <stdexcept>
-#include <string_view>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <utility>
-#include <vector>
 
 namespace fenestra {
 namespace {
@@ -32,10 +36,11 @@ constexpr std::uint64_t longestQuestion = 1 << 16; // bytes; less than a socket 
 
 bool sendAll(int connection, std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t sent = ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent < 0 && errno != EINTR)
+    const auto sent =
+        repeated([&] { return ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL); });
+    if (sent < 0)
       return false;
-    bytes.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(sent, 0)));
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
   return true;
 }
@@ -66,10 +71,10 @@ bool receiveAll(int connection, char* place, std::uint64_t size,
   while (size > 0) {
     if (!waits(connection, deadline))
       return false;
-    const ssize_t received = ::recv(connection, place, static_cast<std::size_t>(size), 0);
-    if (received == 0 || (received < 0 && errno != EINTR))
+    const auto count =
+        repeated([&] { return ::recv(connection, place, static_cast<std::size_t>(size), 0); });
+    if (count <= 0)
       return false;
-    const auto count = std::max<ssize_t>(received, 0);
     place += count;
     size -= static_cast<std::uint64_t>(count);
   }
@@ -88,22 +93,79 @@ std::optional<std::string> receiveFrame(int connection, std::uint64_t most,
   return bytes;
 }
 
+// ---- confinement of the child
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool hasShadows = true;
+#elif defined(__has_feature)
+constexpr bool hasShadows = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+constexpr bool hasShadows = false;
+#endif
+
+/// Lowers a limit for good.
+bool limit(__rlimit_resource resource, rlim_t most) {
+  rlimit both{};
+  if (::getrlimit(resource, &both) != 0)
+    return false;
+  both.rlim_max = std::min(both.rlim_max, most);
+  both.rlim_cur = both.rlim_max;
+  return ::setrlimit(resource, &both) == 0;
+}
+
+/// Gives up every right to write, make, remove and execute files; no effect on kernels without
+/// Landlock.
+void changeNoFolder() {
+  landlock_ruleset_attr rights{};
+  rights.handled_access_fs =
+      LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_REMOVE_DIR |
+      LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_DIR |
+      LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_SOCK | LANDLOCK_ACCESS_FS_MAKE_FIFO |
+      LANDLOCK_ACCESS_FS_MAKE_BLOCK | LANDLOCK_ACCESS_FS_MAKE_SYM;
+  const long rules = ::syscall(SYS_landlock_create_ruleset, &rights, sizeof rights, 0);
+  if (rules < 0)
+    return;
+  ::syscall(SYS_landlock_restrict_self, rules, 0);
+  ::close(static_cast<int>(rules));
+}
+
+/// Limits this process for good: `bytes` of address space (not under sanitizers, which map
+/// terabytes), 32 open files, no growing file, no core; no right to change files. Lets the kernel
+/// kill this process when its parent dies. False where process number `parent` is gone already, or
+/// a limit cannot be set.
+bool confined(std::uint64_t bytes, const char* parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (std::to_string(::getppid()) != parent)
+    return false; // the parent died before PR_SET_PDEATHSIG
+  ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  changeNoFolder();
+  constexpr rlim_t mostFiles = 32;
+  return limit(RLIMIT_CORE, 0) && limit(RLIMIT_FSIZE, 0) && limit(RLIMIT_NOFILE, mostFiles) &&
+         (hasShadows || limit(RLIMIT_AS, bytes));
+}
+
+/// Lets the kernel kill this process once it has used `seconds` more of processor time.
+void allowSeconds(unsigned seconds) {
+  const auto used = static_cast<rlim_t>(std::clock() / CLOCKS_PER_SEC);
+  rlimit both{};
+  ::getrlimit(RLIMIT_CPU, &both);
+  both.rlim_cur = std::min(both.rlim_max, used + seconds);
+  ::setrlimit(RLIMIT_CPU, &both);
+}
+
 // ---- the child
 
-struct Jobs {
-  std::vector<const ApartJob*> all;
-  bool served = false; ///< this program's main calls serveApart
-};
+bool served = false; ///< this program's main calls serveApart
 
 /// Jobs of this program.
-Jobs& jobs() {
-  static Jobs known;
+std::vector<const ApartJob*>& jobs() {
+  static std::vector<const ApartJob*> known;
   return known;
 }
 
 [[noreturn]] void answerAll(const ApartJob& job) {
   while (const auto question = receiveFrame(childConnection, longestQuestion, std::nullopt)) {
-    allowSeconds(job.limits().seconds);
+    allowSeconds(job.limits.seconds);
     std::string answer;
     try {
       answer = job.answer(*question);
@@ -118,61 +180,50 @@ Jobs& jobs() {
 
 // ---- starting a child
 
-/// Attributes of a new child: no file but its end of the connection, default signal handlers.
-class Beginning {
-public:
-  explicit Beginning(int connection) {
-    ::posix_spawn_file_actions_init(&m_files);
-    ::posix_spawn_file_actions_adddup2(&m_files, connection, childConnection);
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-      ::posix_spawn_file_actions_addopen(&m_files, stream, "/dev/null", O_RDWR, 0);
-    ::posix_spawn_file_actions_addclosefrom_np(&m_files, childConnection + 1);
-    ::posix_spawnattr_init(&m_attributes);
-    sigset_t signals;
-    ::sigemptyset(&signals);
-    ::posix_spawnattr_setsigmask(&m_attributes, &signals);
-    ::sigfillset(&signals);
-    ::posix_spawnattr_setsigdefault(&m_attributes, &signals);
-    ::posix_spawnattr_setflags(&m_attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
-                                                  POSIX_SPAWN_SETPGROUP);
-  }
-  ~Beginning() {
-    ::posix_spawnattr_destroy(&m_attributes);
-    ::posix_spawn_file_actions_destroy(&m_files);
-  }
-  Beginning(const Beginning&) = delete;
-  Beginning& operator=(const Beginning&) = delete;
+/// Starts the child for `job`, which has no file but its end of the connection, and default signal
+/// handlers. Returns the process id, or 0: failed.
+pid_t spawn(std::string job, int connection) {
+  std::string program = "fenestra", word = subcommand, parent = std::to_string(::getpid());
+  const std::array<char*, 5> arguments = {program.data(), word.data(), job.data(), parent.data(),
+                                          nullptr};
+  posix_spawn_file_actions_t files;
+  ::posix_spawn_file_actions_init(&files);
+  ::posix_spawn_file_actions_adddup2(&files, connection, childConnection);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    ::posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_RDWR, 0);
+  ::posix_spawn_file_actions_addclosefrom_np(&files, childConnection + 1);
 
-  /// Starts the child for `job`; returns the process id, or 0: failed.
-  pid_t spawn(std::string job) const {
-    std::string program = "fenestra", word = subcommand, parent = std::to_string(::getpid());
-    const std::array<char*, 5> arguments = {program.data(), word.data(), job.data(), parent.data(),
-                                            nullptr};
-    pid_t child = 0;
-    const int failed =
-        ::posix_spawn(&child, "/proc/self/exe", &m_files, &m_attributes, arguments.data(), environ);
-    return failed ? 0 : child;
-  }
-
-private:
-  posix_spawn_file_actions_t m_files;
-  posix_spawnattr_t m_attributes;
-};
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  ::posix_spawnattr_setsigmask(&attributes, &signals);
+  ::sigfillset(&signals);
+  ::posix_spawnattr_setsigdefault(&attributes, &signals);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
+                                              POSIX_SPAWN_SETPGROUP);
+  pid_t child = 0;
+  const int failed =
+      ::posix_spawn(&child, "/proc/self/exe", &files, &attributes, arguments.data(), environ);
+  ::posix_spawnattr_destroy(&attributes);
+  ::posix_spawn_file_actions_destroy(&files);
+  return failed ? 0 : child;
+}
 
 } // namespace
 
-ApartJob::ApartJob(std::string name, Answer answer, ApartLimits limits)
-    : m_name(std::move(name)), m_answer(answer), m_limits(limits) {
-  jobs().all.push_back(this);
+ApartJob::ApartJob(std::string named, Answer answers, ApartLimits limited)
+    : name(std::move(named)), answer(answers), limits(limited) {
+  jobs().push_back(this);
 }
 
 void Apart::start() {
-  if (!jobs().served)
+  if (!served)
     throw std::logic_error("main does not call serveApart");
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
     m_connection = Descriptor(ends[0]);
-    m_child = Beginning(*Descriptor(ends[1])).spawn(m_job.name());
+    m_child = spawn(m_job.name, *Descriptor(ends[1]));
   }
   if (m_child != 0)
     return;
@@ -195,7 +246,7 @@ std::optional<std::string> Apart::ask(const std::string& question, std::uint64_t
   if (m_child == 0)
     start();
   constexpr unsigned byTheClock = 3;
-  const auto deadline = Clock::now() + std::chrono::seconds(byTheClock * m_job.limits().seconds);
+  const auto deadline = Clock::now() + std::chrono::seconds(byTheClock * m_job.limits.seconds);
   std::optional<std::string> answer;
   if (sendFrame(*m_connection, question))
     answer = receiveFrame(*m_connection, most, deadline);
@@ -204,12 +255,36 @@ std::optional<std::string> Apart::ask(const std::string& question, std::uint64_t
   return answer;
 }
 
+std::string AnswerReader::text() {
+  const auto take = [this](std::uint64_t size) {
+    if (size > m_bytes.size())
+      throw std::runtime_error("an answer goes beyond its end");
+    std::string taken(m_bytes.substr(0, static_cast<std::size_t>(size)));
+    m_bytes.remove_prefix(taken.size());
+    return taken;
+  };
+  std::uint64_t size = 0;
+  std::memcpy(&size, take(sizeof size).data(), sizeof size);
+  return take(size);
+}
+
+std::vector<double> AnswerReader::numbers() {
+  const std::string bytes = text();
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  if (bytes.size() != numbers.size() * sizeof(double))
+    throw std::runtime_error("an answer ends within a number");
+  std::ranges::copy(bytes, reinterpret_cast<char*>(numbers.data()));
+  if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
+    throw std::runtime_error("a number in an answer is not finite");
+  return numbers;
+}
+
 void serveApart(int argc, char** argv) {
-  jobs().served = true;
+  served = true;
   if (argc != 4 || std::string_view(argv[1]) != subcommand)
     return;
-  for (const ApartJob* job : jobs().all)
-    if (job->name() == argv[2] && confined(job->limits().bytes, argv[3]))
+  for (const ApartJob* job : jobs())
+    if (job->name == argv[2] && confined(job->limits.bytes, argv[3]))
       answerAll(*job);
   ::_exit(1);
 }

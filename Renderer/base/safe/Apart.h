@@ -6,11 +6,14 @@
 // work apart calls serveApart first in main, as fenestra, its tests and its fuzz targets do. In any
 // other program Apart::ask throws std::logic_error instead of running that program's main again.
 
+#include "base/Text.h"
 #include "base/safe/Descriptor.h"
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace fenestra {
 
@@ -22,22 +25,16 @@ struct ApartLimits {
 
 /// Work for a child: bytes in, bytes out. Declared as a constant at namespace scope, next to the
 /// caller of Apart::ask.
-class ApartJob {
-public:
+struct ApartJob {
   /// Answers a question in the child. Empty string or exception: no answer, since the file is not
   /// of the expected format.
   using Answer = std::string (*)(const std::string& question);
 
   ApartJob(std::string name, Answer answer, ApartLimits limits = {});
 
-  const std::string& name() const { return m_name; }
-  std::string answer(const std::string& question) const { return m_answer(question); }
-  const ApartLimits& limits() const { return m_limits; }
-
-private:
-  std::string m_name;
-  Answer m_answer;
-  ApartLimits m_limits;
+  const std::string name;
+  const Answer answer;
+  const ApartLimits limits;
 };
 
 /// One child process, started by the first question and restarted after a failure. The child has no
@@ -64,6 +61,36 @@ private:
   const ApartJob& m_job;
   int m_child = 0;         ///< process id; 0: not running
   Descriptor m_connection; ///< socket to the child
+};
+
+/// Encodes texts and lists of numbers in an answer, in the child: a size (8 bytes), then as many
+/// bytes of characters or doubles.
+class AnswerWriter {
+public:
+  void put(std::string_view text) {
+    const std::uint64_t size = text.size();
+    m_bytes.append(reinterpret_cast<const char*>(&size), sizeof size).append(text);
+  }
+  void put(const std::vector<double>& numbers) { put(memoryOf(numbers)); }
+  const std::string& bytes() const { return m_bytes; }
+
+private:
+  std::string m_bytes;
+};
+
+/// Decodes an answer, in the parent. Throws std::runtime_error for a truncated answer, or a number
+/// that is not finite.
+class AnswerReader {
+public:
+  explicit AnswerReader(std::string_view bytes) : m_bytes(bytes) {}
+
+  bool atEnd() const { return m_bytes.empty(); }
+  std::string text();
+  /// Finite numbers, in the order written.
+  std::vector<double> numbers();
+
+private:
+  std::string_view m_bytes;
 };
 
 /// In a child: answers questions until the parent closes the connection or dies, and does not

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -57,51 +58,30 @@ public:
   explicit HeaderLines(const std::filesystem::path& path) : m_file(path, std::ios::binary) {
     std::error_code unknown; // file_size of a pipe fails and returns the largest number
     m_limit = std::min<std::uint64_t>(std::filesystem::file_size(path, unknown), longestHeader);
-    m_text.reserve(m_limit); // views of lines stay valid while more lines are read
+    m_text = std::make_unique_for_overwrite<char[]>(m_limit + 1);
   }
 
-  /// Next line, without its line end. nullopt: end of the file, or a line that goes beyond
-  /// longestHeader.
+  /// Next line, without its line end; valid as long as this object. nullopt: end of the file, or a
+  /// line that goes beyond longestHeader.
   std::optional<std::string_view> next() {
-    const std::size_t end = endOfLine();
-    if (m_position >= m_text.size() || (end == std::string::npos && m_text.size() == longestHeader))
+    char* const begin = m_text.get() + m_position;
+    if (!m_file.getline(begin, static_cast<std::streamsize>(m_limit + 1 - m_position)))
       return std::nullopt;
-    std::string_view line(m_text);
-    line = line.substr(m_position, end == std::string::npos ? end : end - m_position);
-    m_position += line.size() + 1;
+    const auto count = static_cast<std::size_t>(m_file.gcount());
+    m_position += count;
+    std::string_view line(begin, m_file.eof() ? count : count - 1);
     if (line.ends_with('\r'))
       line.remove_suffix(1);
     return line;
   }
 
   /// Offset in the file of the byte after the lines read so far.
-  std::uint64_t position() const { return std::min(m_position, m_text.size()); }
+  std::uint64_t position() const { return m_position; }
 
 private:
-  /// Reads until the current line ends; returns the position of its '\n', or npos.
-  std::size_t endOfLine() {
-    for (std::size_t from = m_position;;) {
-      if (const std::size_t end = m_text.find('\n', from); end != std::string::npos)
-        return end;
-      from = m_text.size();
-      if (!readMore())
-        return std::string::npos;
-    }
-  }
-
-  /// Reads the next block. False: end of the file or limit reached.
-  bool readMore() {
-    constexpr std::size_t block = 16 << 10;
-    const std::size_t before = m_text.size();
-    m_text.resize(std::min(before + block, m_limit));
-    m_file.read(m_text.data() + before, static_cast<std::streamsize>(m_text.size() - before));
-    m_text.resize(before + static_cast<std::size_t>(m_file.gcount()));
-    return m_text.size() > before;
-  }
-
   std::ifstream m_file;
-  std::string m_text;
-  std::size_t m_limit = 0;
+  std::unique_ptr<char[]> m_text; ///< all lines read so far
+  std::size_t m_limit = 0;        ///< bytes
   std::size_t m_position = 0;
 };
 

@@ -71,10 +71,6 @@ bool hasZeroByte(const std::filesystem::path& path) {
   return path.native().find('\0') != std::string::npos;
 }
 
-std::string megabytes(std::uint64_t bytes) {
-  return std::to_string(bytes >> 20) + " MB";
-}
-
 } // namespace
 
 std::optional<FileId> fileId(const std::filesystem::path& path) {
@@ -112,7 +108,7 @@ void requireFile(const std::filesystem::path& path, const std::string& mend, std
   if (!S_ISREG(status.st_mode))
     throw inputError(path, "is not a file that can be read; ", mend);
   if (static_cast<std::uint64_t>(status.st_size) > most)
-    throw inputError(path, "has more than ", megabytes(most), "; name a smaller file");
+    throw inputError(path, "has more than ", most >> 20, " MB; name a smaller file");
   if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
     throw readingError(path, errno, "check its permissions");
   const std::optional<FileId> file = fileId(path);

@@ -5,13 +5,10 @@
 #include <compare>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 
 namespace fenestra {
-
-inline constexpr std::uint64_t anySize = std::numeric_limits<std::uint64_t>::max();
 
 /// Identity of a file, equal for all its names and links. `born` distinguishes a later file that
 /// reuses the inode number.
@@ -36,7 +33,7 @@ bool isFolder(const std::filesystem::path& path);
 /// `most` bytes, inside the folder of InputsWithin if one is set, and no result of this process.
 /// `mend`: advice in the message for a folder.
 void requireFile(const std::filesystem::path& path, const std::string& mend,
-                 std::uint64_t most = anySize);
+                 std::uint64_t most = UINT64_MAX);
 
 /// Enters the file at `path`, or the files directly in the folder at `path`, into the ledger. No
 /// effect where neither exists. For files that are read later, or that belong to a file that is

@@ -1,5 +1,8 @@
 #include "base/safe/Leftovers.h"
 
+#include "base/Text.h"
+#include "base/safe/Descriptor.h"
+
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
@@ -8,6 +11,7 @@
 #include <random>
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 namespace fenestra {
@@ -31,14 +35,40 @@ std::string withCheck(const std::string& name) {
   return name + '-' + hashDigits("made by Fenestra: " + name, checkCount) + ".tmp";
 }
 
+/// True for error codes that mean that no such file exists. No file has a name that is too long.
+bool saysNothingIsThere(int code) {
+  return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
+}
+
+/// Lock on a file of this user, or on a folder accessible to this user alone, that no process has
+/// locked; not open: there is none.
+Descriptor lockAbandoned(const std::filesystem::path& path, Leftover::Kind kind) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status = {};
+  if (::fstat(*file, &status) != 0 || status.st_uid != ::geteuid())
+    return Descriptor();
+  const bool isPrivate = S_ISDIR(status.st_mode) && (status.st_mode & 0777) == S_IRWXU;
+  const bool isRight = kind == Leftover::Kind::file ? S_ISREG(status.st_mode) : isPrivate;
+  return isRight && ::flock(*file, LOCK_EX | LOCK_NB) == 0 ? std::move(file) : Descriptor();
+}
+
+static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+std::atomic<int> uninterrupted = 0;             ///< number of threads that are Uninterrupted
+std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
+thread_local int depth = 0;                     ///< number of nested Uninterrupted in this thread
+
+void leave() {
+  if (--uninterrupted == 0)
+    if (void (*end)() = endRequested)
+      end();
+}
+
 } // namespace
 
 std::string temporaryName(std::string_view prefix) {
   std::random_device random;
-  std::string name(prefix);
-  for (std::size_t i = 0; i < digitCount; ++i)
-    name += digits[random() % digits.size()];
-  return withCheck(name);
+  return temporaryNameOf(prefix, textOf(random(), ' ', random()));
 }
 
 std::string temporaryNameOf(std::string_view prefix, std::string_view what) {
@@ -49,28 +79,6 @@ bool isTemporaryName(std::string_view name, std::string_view prefix) {
   return name.starts_with(prefix) &&
          name == withCheck(std::string(name.substr(0, prefix.size() + digitCount)));
 }
-
-void forTemporaryNames(const std::filesystem::path& folder, std::string_view prefix,
-                       const std::function<void(const std::filesystem::path&)>& use) {
-  // std::filesystem's iterator ends the process where memory fails.
-  const std::unique_ptr<DIR, int (*)(DIR*)> names(::opendir(folder.c_str()), ::closedir);
-  while (const dirent* const entry = names ? ::readdir(names.get()) : nullptr)
-    try {
-      if (isTemporaryName(entry->d_name, prefix))
-        use(folder / entry->d_name);
-    } catch (const std::bad_alloc&) {
-      return;
-    }
-}
-
-namespace {
-
-/// True for error codes that mean that no such file exists. No file has a name that is too long.
-bool saysNothingIsThere(int code) {
-  return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
-}
-
-} // namespace
 
 /// Entry of the list. Entries are reused, never freed: a signal handler may walk the list at any
 /// time.
@@ -104,22 +112,6 @@ struct Leftover::Entry {
 
 std::atomic<Leftover::Entry*> Leftover::Entry::first = nullptr;
 
-namespace {
-
-static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
-
-std::atomic<int> uninterrupted = 0;             ///< number of threads that are Uninterrupted
-std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
-thread_local int depth = 0;                     ///< number of nested Uninterrupted in this thread
-
-void leave() {
-  if (--uninterrupted == 0)
-    if (void (*end)() = endRequested)
-      end();
-}
-
-} // namespace
-
 Leftover::Leftover(const std::filesystem::path& path, Kind kind) {
   std::filesystem::path copy = path; // may throw, before an entry is taken
   m_entry = Entry::take();
@@ -141,6 +133,26 @@ const std::filesystem::path& Leftover::path() const {
 
 void Leftover::keep() {
   m_entry->isListed = false;
+}
+
+void removeAbandoned(const std::filesystem::path& folder, std::string_view prefix,
+                     Leftover::Kind kind) {
+  // std::filesystem's iterator ends the process where memory fails.
+  const std::unique_ptr<DIR, int (*)(DIR*)> names(::opendir(folder.c_str()), ::closedir);
+  while (const dirent* const entry = names ? ::readdir(names.get()) : nullptr)
+    try {
+      if (!isTemporaryName(entry->d_name, prefix))
+        continue;
+      const std::filesystem::path path = folder / entry->d_name;
+      const Descriptor lock = lockAbandoned(path, kind);
+      std::error_code ignored;
+      if (lock.isOpen() && kind == Leftover::Kind::file)
+        ::unlink(path.c_str());
+      else if (lock.isOpen())
+        std::filesystem::remove_all(path, ignored);
+    } catch (const std::bad_alloc&) {
+      return;
+    }
 }
 
 void removeLeftovers() {

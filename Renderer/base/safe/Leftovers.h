@@ -3,7 +3,6 @@
 // signal may end the process in.
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,11 +18,6 @@ std::string temporaryName(std::string_view prefix);
 /// Temporary name whose digits are a hash of `what`, and so the same in every process.
 std::string temporaryNameOf(std::string_view prefix, std::string_view what);
 bool isTemporaryName(std::string_view name, std::string_view prefix);
-
-/// Calls `use` with the path of each temporary name in `folder`. Stops silently where the folder
-/// cannot be read or memory fails: a later run handles the rest.
-void forTemporaryNames(const std::filesystem::path& folder, std::string_view prefix,
-                       const std::function<void(const std::filesystem::path&)>& use);
 
 /// A temporary file or folder: removed with this object, or by the signal that ends the process.
 class Leftover {
@@ -49,6 +43,12 @@ private:
 
   Entry* m_entry;
 };
+
+/// Removes what killed runs of this user have left in `folder`: files, or folders accessible to
+/// this user alone, that have temporary names and that no process has locked. Stops silently where
+/// the folder cannot be read or memory fails: a later run handles the rest.
+void removeAbandoned(const std::filesystem::path& folder, std::string_view prefix,
+                     Leftover::Kind kind);
 
 /// Removes every listed name: files, then folders from the inside out. Async-signal-safe: system
 /// calls only.

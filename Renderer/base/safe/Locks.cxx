@@ -40,7 +40,7 @@ std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folde
 }
 
 NameLock::NameLock(const std::filesystem::path& path) {
-  constexpr double longest = 0.2; // s; removeAbandonedFiles locks files for much less
+  constexpr double longest = 0.2; // s; removeAbandoned locks files for much less
   const std::filesystem::path lock =
       path.parent_path() / temporaryNameOf(temporaryFilePrefix, path.filename().string());
   const Stopwatch waited;

@@ -31,54 +31,49 @@ std::string checksum(std::string_view content, std::size_t at) {
   return digitsOf(checksumOf(checksumOf(0, content.substr(0, at)), content.substr(rest)));
 }
 
-using TakeBlock = std::function<void(std::string_view block, std::uint64_t begin)>;
-
-/// Passes the file, which may have any size, to `take` block by block.
-void readBlocks(const std::filesystem::path& path, const TakeBlock& take) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> block(1 << 20);
-  for (std::uint64_t begin = 0;
-       file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0;) {
-    const std::string_view bytes(block.data(), static_cast<std::size_t>(file.gcount()));
-    take(bytes, begin);
-    begin += bytes.size();
+/// Passes the bytes from `begin` to `end`, or to the file's own end, to `take` block by block.
+void readBlocks(std::istream& file, std::uint64_t begin, std::uint64_t end,
+                const std::function<void(std::string_view block)>& take) {
+  file.clear();
+  file.seekg(static_cast<std::streamoff>(begin));
+  std::vector<char> block(std::min<std::uint64_t>(1 << 20, end - begin));
+  while (begin < end && file) {
+    const auto most = std::min<std::uint64_t>(block.size(), end - begin);
+    file.read(block.data(), static_cast<std::streamsize>(most));
+    take({block.data(), static_cast<std::size_t>(file.gcount())});
+    begin += most;
   }
 }
 
 /// Offsets of the digits of the last marks. A file of ours has its own mark last, after the marks
 /// of files that it contains.
-std::vector<std::uint64_t> marksIn(const std::filesystem::path& path) {
+std::vector<std::uint64_t> marksIn(std::istream& file) {
   constexpr std::ptrdiff_t mostMarks = 4; // each costs a pass through the file
   std::vector<std::uint64_t> marks;
   std::string text; // tail of the previous block, too short to hold a mark, then the current block
-  readBlocks(path, [&](std::string_view block, std::uint64_t begin) {
-    const std::uint64_t textBegin = begin - text.size();
+  std::uint64_t textBegin = 0;
+  readBlocks(file, 0, UINT64_MAX, [&](std::string_view block) {
     text += block;
     for (std::size_t at = text.find(markText); at != std::string::npos;
          at = text.find(markText, at + 1))
       marks.push_back(textBegin + at + markText.size());
     marks.erase(marks.begin(),
                 marks.end() - std::min<std::ptrdiff_t>(mostMarks, std::ssize(marks)));
-    text.erase(0, text.size() - std::min(text.size(), markText.size() - 1));
+    const std::size_t done = text.size() - std::min(text.size(), markText.size() - 1);
+    text.erase(0, done);
+    textBegin += done;
   });
   return marks;
 }
 
 /// True if the digits at `at` equal the checksum.
-bool isSealed(const std::filesystem::path& path, std::uint64_t at) {
+bool isSealed(std::istream& file, std::uint64_t at) {
   uLong sum = 0;
   std::string digits;
-  readBlocks(path, [&](std::string_view block, std::uint64_t begin) {
-    const auto part = [&](std::uint64_t from, std::uint64_t to) { // intersection with the block
-      const std::uint64_t end = begin + block.size();
-      const std::uint64_t first = std::clamp(from, begin, end), last = std::clamp(to, begin, end);
-      return block.substr(static_cast<std::size_t>(first - begin),
-                          static_cast<std::size_t>(last - first));
-    };
-    sum = checksumOf(sum, part(0, at));
-    digits += part(at, at + checksumDigits);
-    sum = checksumOf(sum, part(at + checksumDigits + behind, UINT64_MAX));
-  });
+  const auto add = [&sum](std::string_view block) { sum = checksumOf(sum, block); };
+  readBlocks(file, 0, at, add);
+  readBlocks(file, at, at + checksumDigits, [&](std::string_view block) { digits += block; });
+  readBlocks(file, at + checksumDigits + behind, UINT64_MAX, add);
   return digits == digitsOf(sum);
 }
 
@@ -90,9 +85,8 @@ std::string sealed(std::string content) {
 }
 
 bool bearsMark(const std::filesystem::path& path) {
-  const std::vector<std::uint64_t> marks = marksIn(path);
-  return std::any_of(marks.begin(), marks.end(),
-                     [&path](std::uint64_t at) { return isSealed(path, at); });
+  std::ifstream file(path, std::ios::binary);
+  return std::ranges::any_of(marksIn(file), [&](std::uint64_t at) { return isSealed(file, at); });
 }
 
 } // namespace fenestra

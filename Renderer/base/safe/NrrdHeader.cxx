@@ -3,7 +3,8 @@
 #include "base/safe/HeaderText.h"
 
 #include <cmath>
-#include <tuple>
+#include <numeric>
+#include <utility>
 
 namespace fenestra {
 
@@ -15,6 +16,13 @@ namespace {
 constexpr int mostLines = 10'000;
 /// Longest line and path, bytes: teem may copy them into a message of 1024.
 constexpr std::size_t longestLine = 500, longestPath = 900;
+
+/// Key of the field `name`, as in NrrdHeaderText.
+std::string keyOf(std::string_view name) {
+  std::string key = lower(name);
+  std::erase(key, ' ');
+  return key;
+}
 
 /// Checks dimension and sizes. ITK keeps sizes in 32 bits and passes teem a buffer of those; teem
 /// has room for 16 axes, and writes one more where there are too many sizes.
@@ -43,10 +51,8 @@ std::optional<std::vector<double>> vectorLengths(const std::string& text) {
     const auto numbers = parseNumbers(inside);
     if (!numbers)
       return std::nullopt;
-    double squares = 0.0;
-    for (const double number : *numbers)
-      squares += number * number;
-    lengths.push_back(std::sqrt(squares));
+    lengths.push_back(
+        std::sqrt(std::inner_product(numbers->begin(), numbers->end(), numbers->begin(), 0.0)));
   }
   return lengths;
 }
@@ -76,30 +82,25 @@ void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields) {
                      " vectors; write one for each axis in space");
 }
 
-/// Checks each unit, a text in quotes.
-void checkNrrdUnits(const std::filesystem::path& path, const std::string& field,
-                    const std::string& text) {
-  const std::vector<std::string> parts = split(text, '"');
+/// Checks each unit of the field `name`, a text in quotes.
+void checkNrrdUnits(const std::filesystem::path& path, const Fields& fields, const char* name) {
+  const std::vector<std::string> parts = split(valueOf(fields, keyOf(name)), '"');
   for (std::size_t i = 1; i < parts.size(); i += 2)
-    checkMillimetres(path, field, parts[i]);
-}
-
-bool isBesideSpace(const Fields& fields) {
-  return fields.contains("space") || fields.contains("spacedimension");
+    checkMillimetres(path, name, parts[i]);
 }
 
 /// Checks spacings, axis mins and axis maxs: beside a space teem wants space directions instead;
 /// without spacings ITK takes the mins, and 1 mm.
 void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
-  for (const auto& [key, name, mend] :
-       {std::tuple("spacings", "spacings", "write space directions"),
-        {"axismins", "axis mins", "write space directions and space origin"},
-        {"axismaxs", "axis maxs", "write space directions and space origin"},
-        {"units", "units", "write space units"}})
-    if (fields.contains(key) && isBesideSpace(fields))
+  const bool hasSpace = fields.contains("space") || fields.contains("spacedimension");
+  for (const auto& [name, mend] : {std::pair("spacings", "write space directions"),
+                                   {"axis mins", "write space directions and space origin"},
+                                   {"axis maxs", "write space directions and space origin"},
+                                   {"units", "write space units"}})
+    if (hasSpace && fields.contains(keyOf(name)))
       throw inputError(path, name, ": are not read beside a space; ", mend);
-  for (const auto& [key, name] : {std::pair("axismins", "axis mins"), {"axismaxs", "axis maxs"}})
-    if (fields.contains(key) && !fields.contains("spacings"))
+  for (const char* name : {"axis mins", "axis maxs"})
+    if (fields.contains(keyOf(name)) && !fields.contains("spacings"))
       throw inputError(
           path, name,
           ": has no spacings with it; write them, or a space with its directions and origin");
@@ -117,16 +118,14 @@ void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
 
 /// Checks the geometry; refuses NaN, for which ITK silently takes its default.
 void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
-  for (const auto& [key, name] : {std::pair("spacedirections", "space directions"),
-                                  {"spaceorigin", "space origin"},
-                                  {"spacings", "spacings"}})
-    if (lower(valueOf(fields, key)).find("nan") != std::string::npos)
+  for (const char* name : {"space directions", "space origin", "spacings"})
+    if (lower(valueOf(fields, keyOf(name))).find("nan") != std::string::npos)
       throw inputError(path, name, ": is not a number; mend the header");
   checkNrrdVectors(path, fields);
   checkNrrdAxes(path, fields);
   checkNrrdKinds(path, fields);
-  checkNrrdUnits(path, "space units", valueOf(fields, "spaceunits"));
-  checkNrrdUnits(path, "units", valueOf(fields, "units"));
+  checkNrrdUnits(path, fields, "space units");
+  checkNrrdUnits(path, fields, "units");
 }
 
 /// Lines of an NRRD header, short enough for teem's messages.
@@ -173,8 +172,7 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
     const std::size_t colon = line->find(": ");
     if (colon == std::string_view::npos || line->starts_with('#') || NrrdLines::isKeyValue(*line))
       continue;
-    std::string key = lower(line->substr(0, colon));
-    std::erase(key, ' ');
+    const std::string key = keyOf(line->substr(0, colon));
     const auto [field, isNew] = fields.emplace(key, trimmed(line->substr(colon + 2)));
     if (!isNew) // whichever value teem would take
       throw inputError(path, key.substr(0, 40), ": is there twice; remove one");
@@ -197,15 +195,13 @@ void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
                       const std::filesystem::path& header) {
   std::ifstream file(path, std::ios::binary);
   file.seekg(static_cast<std::streamoff>(offset));
-  std::vector<char> block(1 << 20);
   std::size_t length = 0; // characters of the current number
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-    for (const char c : std::string_view(block.data(), static_cast<std::size_t>(file.gcount()))) {
-      length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
-      if (length > longestLine)
-        throw inputError(header, "has a number of more than ", longestLine,
-                         " characters among its samples; write it again");
-    }
+  for (char c = 0; file.get(c);) {
+    length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
+    if (length > longestLine)
+      throw inputError(header, "has a number of more than ", longestLine,
+                       " characters among its samples; write it again");
+  }
 }
 
 bool saysSpacing(const NrrdHeaderText& header) {

@@ -3,14 +3,16 @@
 #include "base/Error.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/Locks.h"
-#include "base/safe/OutputStream.h"
 #include "base/safe/SystemCalls.h"
 #include "base/safe/TemporaryFile.h"
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
+#include <iostream>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <fcntl.h>
 
@@ -18,6 +20,8 @@ namespace fenestra {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int namedPipe = -1; ///< stream that is opened when its content is sent
 
 std::atomic<bool> anyIsPlaced = false;
 
@@ -81,6 +85,51 @@ void syncFolder(const fs::path& folder) {
     throw writingError(folder, errno);
 }
 
+/// N of /dev/fd/N and similar paths; nullopt: other paths.
+std::optional<int> descriptorNumber(const std::string& path) {
+  if (path == "/dev/stdout")
+    return STDOUT_FILENO;
+  if (path == "/dev/stderr")
+    return STDERR_FILENO;
+  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    const auto number =
+        path.starts_with(folder) ? parsed<int>(path.substr(folder.size())) : std::nullopt;
+    if (number && *number >= 0)
+      return number;
+  }
+  return std::nullopt;
+}
+
+/// Descriptor of a result that is no file: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N, or
+/// `namedPipe`; nullopt: other paths. Throws Error (output) where the descriptor is not open for
+/// writing.
+std::optional<int> streamNamed(const fs::path& path) {
+  if (const auto number = descriptorNumber(path.lexically_normal().string())) {
+    const int flags = ::fcntl(*number, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
+      throw outputError(path, "is not open for writing; redirect it, as in 3>FILE");
+    return number;
+  }
+  struct stat status = {};
+  const bool isPipe = ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
+  return isPipe ? std::optional(namedPipe) : std::nullopt;
+}
+
+/// Throws Error (output), also where no process reads the pipe.
+void sendTo(int stream, const std::string& content, const fs::path& path) {
+  if (stream != namedPipe) {
+    std::cout.flush(); // earlier output comes first
+    std::fflush(stdout);
+    return writeAll(stream, content, path);
+  }
+  // Opening without O_NONBLOCK would wait for ever where no process reads the pipe.
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
+  if (!file.isOpen())
+    throw outputError(path, "nobody reads this pipe; start its reader first");
+  ::fcntl(*file, F_SETFL, 0);
+  writeAll(*file, content, path);
+}
+
 } // namespace
 
 ContentState stateOf(std::string_view content) {
@@ -93,14 +142,19 @@ bool resultsWerePlaced() {
 
 struct Outputs::Result {
   fs::path named;
-  std::optional<OutputStream> stream;  ///< set: the result is a stream, not a file
+  std::optional<int> stream;           ///< as of streamNamed
+  std::string unsent;                  ///< content of the stream
   fs::path target;                     ///< path of the file, links followed
   std::unique_ptr<TemporaryFile> file; ///< content written, not yet in place
 
   IsOurs isOurs; ///< empty: the user named the result
   std::optional<ContentState> written;
 
-  std::optional<FileId> id() const { return stream ? stream->id() : fileId(target); }
+  std::optional<FileId> id() const {
+    if (stream && *stream != namedPipe)
+      return fileId(*stream);
+    return fileId(stream ? named : target);
+  }
   void requireOurs() const {
     std::error_code failed;
     // An empty file holds nobody's data.
@@ -118,8 +172,10 @@ Outputs::~Outputs() {
     forgetResult(result->target);
 }
 
-Outputs::Result& Outputs::declare(const fs::path& path) {
-  auto result = std::make_unique<Result>(Result{path, OutputStream::named(path), {}, {}, {}, {}});
+void Outputs::add(const fs::path& path, const IsOurs& isOurs) {
+  auto result = std::make_unique<Result>();
+  result->named = path;
+  result->stream = streamNamed(path);
   if (!result->stream) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
@@ -135,20 +191,12 @@ Outputs::Result& Outputs::declare(const fs::path& path) {
       (id && !m_files.insert(*id).second))
     throw writtenTwice(path);
   if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
-    removeAbandonedFiles(result->target.parent_path());
-    requireRoomFor(result->target);
+    removeAbandoned(result->target.parent_path(), temporaryFilePrefix, Leftover::Kind::file);
+    const TemporaryFile room(result->target); // throws where none can be made
   }
-  return *(m_results[path] = std::move(result));
-}
-
-void Outputs::add(const fs::path& path) {
-  declare(path);
-}
-
-void Outputs::addUnnamed(const fs::path& path, const IsOurs& isOurs) {
-  Result& result = declare(path);
-  result.isOurs = isOurs;
-  result.requireOurs();
+  result->isOurs = isOurs;
+  m_results[path] = std::move(result);
+  m_results[path]->requireOurs();
 }
 
 void Outputs::checkInputs() const {
@@ -166,7 +214,7 @@ void Outputs::write(const fs::path& path, std::string_view content) {
   Result& result = *m_results.at(path);
   result.written = stateOf(content);
   if (result.stream) {
-    result.stream->keep(content);
+    result.unsent = content;
     return;
   }
   result.file = std::make_unique<TemporaryFile>(result.target);
@@ -213,18 +261,16 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
 }
 
 void Outputs::commit(Durability durability) {
-  const auto sync =
-      durability == Durability::synced ? TemporaryFile::Sync::disk : TemporaryFile::Sync::none;
   std::vector<Result*> files;
   for (const auto& [path, result] : m_results)
     if (result->file) {
-      result->file->finish(sync);
+      result->file->finish(durability);
       files.push_back(result.get());
     }
   place(files, durability);
   for (const auto& [path, result] : m_results)
-    if (result->stream)
-      result->stream->send();
+    if (!result->unsent.empty())
+      sendTo(*result->stream, std::exchange(result->unsent, {}), result->named);
 }
 
 } // namespace fenestra

@@ -4,6 +4,7 @@
 
 #include "base/safe/Inputs.h"
 #include "base/safe/Mark.h"
+#include "base/safe/TemporaryFile.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -18,8 +19,6 @@
 #include <vector>
 
 namespace fenestra {
-
-class TemporaryFile;
 
 /// Size and digest of a content, which identify a result.
 struct ContentState {
@@ -39,17 +38,15 @@ public:
   Outputs(const Outputs&) = delete;
   Outputs& operator=(const Outputs&) = delete;
 
-  /// Declares a result that the user has named. Links are followed; /dev/stdout, /dev/fd/N and
-  /// pipes are streams, written after all files. Throws Error: usage where `path` is a file that
-  /// was read (base/safe/Inputs), another result or a temporary file's name; output where `path` is
-  /// a folder, a device or write-protected, or no file can be made in its folder.
-  void add(const std::filesystem::path& path);
-
   /// True if Fenestra wrote the existing file, which may then be replaced unasked.
   using IsOurs = std::function<bool(const std::filesystem::path&)>;
-  /// Declares a result whose name the user has not given. Throws as add, and Error (usage) where
-  /// `path` is a file that is neither ours nor empty.
-  void addUnnamed(const std::filesystem::path& path, const IsOurs& isOurs = bearsMark);
+
+  /// Declares a result that the user has named, or, with `isOurs`, one that Fenestra names. Links
+  /// are followed; /dev/stdout, /dev/fd/N and pipes are streams, written after all files. Throws
+  /// Error: usage where `path` is a file that was read (base/safe/Inputs), another result or a
+  /// temporary file's name; output where `path` is a folder, a device or write-protected, or no
+  /// file can be made in its folder; usage where `path` is a file that is neither ours nor empty.
+  void add(const std::filesystem::path& path, const IsOurs& isOurs = {});
 
   /// Repeats add's check against the ledger of inputs, after more files were read. Throws Error
   /// (usage).
@@ -64,7 +61,6 @@ public:
   /// State of the content written last; nullopt: none.
   std::optional<ContentState> written(const std::filesystem::path& path) const;
 
-  enum class Durability { synced, none };
   /// Puts all content written since the last commit in place, all or nothing: after a failure the
   /// results placed before are taken back. Two processes with the same results place theirs one
   /// after the other. No signal ends the process meanwhile. Throws Error: usage where a result
@@ -74,7 +70,6 @@ public:
 private:
   struct Result;
 
-  Result& declare(const std::filesystem::path& path);
   void place(const std::vector<Result*>& files, Durability durability);
 
   std::map<std::filesystem::path, std::unique_ptr<Result>> m_results; ///< by the name given to add

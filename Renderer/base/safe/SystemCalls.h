@@ -15,35 +15,7 @@ inline std::string systemMessage(int code) {
   return std::generic_category().message(code);
 }
 
-/// Mend for failures that another name would not cure; empty: name or folder is at fault.
-inline std::string resourceMend(int code) {
-  switch (code) {
-  case EIO:
-    return "its disk fails: check it";
-  case EMFILE:
-  case ENFILE:
-    return "close other programs, or raise the limit on open files (ulimit -n)";
-  case ENOMEM:
-    return "close other programs";
-  default:
-    return {};
-  }
-}
-
-/// Mend for a failed read; `other`: for codes that are neither of the name nor of a resource.
-inline std::string readingMend(int code, const std::string& other) {
-  switch (code) {
-  case ELOOP:
-    return "its links lead to each other: name the file itself";
-  case ENAMETOOLONG:
-    return "choose a shorter name";
-  default:
-    const std::string mend = resourceMend(code);
-    return mend.empty() ? other : mend;
-  }
-}
-
-/// Mend for a failed write; `other`: for codes that are not of a resource.
+/// Mend for a failed write; `other`: mend where the name or its folder is at fault.
 inline std::string writingMend(int code, const std::string& other) {
   switch (code) {
   case ENOSPC:
@@ -52,10 +24,22 @@ inline std::string writingMend(int code, const std::string& other) {
     return "free some space, or choose another disk";
   case ENAMETOOLONG:
     return "choose a shorter name";
+  case EIO:
+    return "its disk fails: check it";
+  case EMFILE:
+  case ENFILE:
+    return "close other programs, or raise the limit on open files (ulimit -n)";
+  case ENOMEM:
+    return "close other programs";
   default:
-    const std::string mend = resourceMend(code);
-    return mend.empty() ? other : mend;
+    return other;
   }
+}
+
+/// Mend for a failed read; `other` as in writingMend.
+inline std::string readingMend(int code, const std::string& other) {
+  return code == ELOOP ? "its links lead to each other: name the file itself"
+                       : writingMend(code, other);
 }
 
 /// Error for a result that cannot be written.

@@ -69,7 +69,7 @@ void TemporaryFile::write(std::string_view content) {
   writeAll(*m_file, content, m_target);
 }
 
-void TemporaryFile::finish(Sync sync) {
+void TemporaryFile::finish(Durability durability) {
   mode_t mode = usualMode;
   struct stat before = {};
   const bool isThere = ::lstat(m_target.c_str(), &before) == 0;
@@ -83,7 +83,8 @@ void TemporaryFile::finish(Sync sync) {
   const mode_t ownersAlone = mode & 0700; // without the list its mask, the group's bits, is void
   if (isThere && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownersAlone) != 0)
     throw writingError(m_target, errno);
-  if (sync == Sync::disk && repeated([&] { return ::fsync(*m_file); }) != 0 && errno != EINVAL)
+  if (durability == Durability::synced && repeated([&] { return ::fsync(*m_file); }) != 0 &&
+      errno != EINVAL)
     throw writingError(m_target, errno);
 }
 
@@ -117,13 +118,8 @@ void TemporaryFile::placeByLink() {
   m_placed = isFresh ? Placed::fresh : isKept ? Placed::linked : Placed::no;
 }
 
-/// False where another run has since placed a result of the same name.
-bool TemporaryFile::isPlaced() const {
-  return fileId(m_target) == fileId(*m_file);
-}
-
 void TemporaryFile::takeBack() noexcept {
-  if (!isPlaced())
+  if (fileId(m_target) != fileId(*m_file)) // another run has since placed a result of this name
     m_placed = Placed::no;
   const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
@@ -138,20 +134,6 @@ void TemporaryFile::takeBack() noexcept {
   else if (m_placed == Placed::linked)
     again([&] { return ::rename(m_before->path().c_str(), target); });
   m_placed = Placed::no;
-}
-
-void removeAbandonedFiles(const std::filesystem::path& folder) {
-  forTemporaryNames(folder, temporaryFilePrefix, [](const std::filesystem::path& path) {
-    const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-    struct stat status = {};
-    if (::fstat(*file, &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == ::geteuid() &&
-        ::flock(*file, LOCK_EX | LOCK_NB) == 0)
-      ::unlink(path.c_str());
-  });
-}
-
-void requireRoomFor(const std::filesystem::path& target) {
-  const TemporaryFile probe(target);
 }
 
 } // namespace fenestra

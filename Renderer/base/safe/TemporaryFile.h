@@ -11,6 +11,8 @@
 
 namespace fenestra {
 
+enum class Durability { synced, none }; ///< synced: on the disk before a function returns
+
 /// File with a temporary name (base/safe/Leftovers), listed there and locked (flock): a later run
 /// in the folder removes files that SIGKILL has left.
 class TemporaryFile {
@@ -22,10 +24,9 @@ public:
   /// Appends. Throws Error (output), a full disk included.
   void write(std::string_view content);
 
-  enum class Sync { disk, none };
   /// Sets mode, owner and access list as the file at `target` has them, or as a new file has; where
-  /// owner or group cannot be set, nobody gains rights. Then syncs. Throws Error (output).
-  void finish(Sync sync);
+  /// owner or group cannot be set, nobody gains rights. Throws Error (output).
+  void finish(Durability durability);
 
   /// Renames this file to `target`; an existing target takes the temporary name, and is removed
   /// with this object. Throws Error (output), and then has changed nothing.
@@ -38,7 +39,6 @@ private:
 
   void open();
   void placeByLink();
-  bool isPlaced() const;
 
   std::filesystem::path m_target;
   Descriptor m_file;
@@ -47,11 +47,5 @@ private:
   std::optional<Leftover> m_name, m_before;
   Placed m_placed = Placed::no;
 };
-
-/// Removes this user's temporary files in `folder` that no process has locked.
-void removeAbandonedFiles(const std::filesystem::path& folder);
-
-/// Throws Error (output) where no file can be made in the folder of `target` now.
-void requireRoomFor(const std::filesystem::path& target);
 
 } // namespace fenestra

@@ -17,24 +17,6 @@ Error zipError(const std::filesystem::path& path, const std::string& reason) {
   return outputError(path, "cannot be made: ", reason, "; close other programs");
 }
 
-/// Adds one entry. The memory of its content must live until the archive is closed.
-void addEntry(zip_t* archive, const ZipEntry& entry, const std::filesystem::path& path) {
-  const auto fail = [&] { return zipError(path, zip_strerror(archive)); };
-  zip_source_t* source = zip_source_buffer(archive, entry.content.data(), entry.content.size(), 0);
-  if (!source)
-    throw fail();
-  const zip_int64_t index = zip_file_add(archive, entry.name.c_str(), source, ZIP_FL_ENC_UTF_8);
-  if (index < 0) {
-    zip_source_free(source);
-    throw fail();
-  }
-  const auto at = static_cast<zip_uint64_t>(index);
-  if (zip_set_file_compression(archive, at, ZIP_CM_STORE, 0) != 0 ||
-      zip_file_set_dostime(archive, at, dosTime, dosDate, 0) != 0 ||
-      zip_file_set_external_attributes(archive, at, 0, ZIP_OPSYS_UNIX, readableFile) != 0)
-    throw fail();
-}
-
 std::string contentOf(zip_source_t* source, const std::filesystem::path& path) {
   zip_stat_t stat;
   if (zip_source_stat(source, &stat) != 0 || zip_source_open(source) != 0)
@@ -60,12 +42,26 @@ std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& c
   if (!archive)
     throw zipError(path, zip_error_strerror(&error));
   zip_source_keep(source.get()); // closing the archive frees one reference
-  for (const ZipEntry& entry : entries)
-    addEntry(archive.get(), entry, path);
-  if (zip_set_archive_comment(archive.get(), comment.data(),
-                              static_cast<zip_uint16_t>(comment.size())) != 0 ||
-      zip_close(archive.get()) != 0)
-    throw zipError(path, zip_strerror(archive.get()));
+  const auto require = [&](bool isDone) {
+    if (!isDone)
+      throw zipError(path, zip_strerror(archive.get()));
+  };
+  for (const auto& [name, content] : entries) {
+    zip_source_t* const bytes = zip_source_buffer(archive.get(), content.data(), content.size(), 0);
+    require(bytes != nullptr);
+    const zip_int64_t added = zip_file_add(archive.get(), name.c_str(), bytes, ZIP_FL_ENC_UTF_8);
+    if (added < 0)
+      zip_source_free(bytes);
+    require(added >= 0);
+    const auto at = static_cast<zip_uint64_t>(added);
+    require(zip_set_file_compression(archive.get(), at, ZIP_CM_STORE, 0) == 0);
+    require(zip_file_set_dostime(archive.get(), at, dosTime, dosDate, 0) == 0);
+    require(zip_file_set_external_attributes(archive.get(), at, 0, ZIP_OPSYS_UNIX, readableFile) ==
+            0);
+  }
+  require(zip_set_archive_comment(archive.get(), comment.data(),
+                                  static_cast<zip_uint16_t>(comment.size())) == 0);
+  require(zip_close(archive.get()) == 0);
   static_cast<void>(archive.release()); // closed: freed
   return contentOf(source.get(), path);
 }

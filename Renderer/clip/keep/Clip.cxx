@@ -84,8 +84,8 @@ Kept keptBox(const ClipDepth& clip, const Corners& corners) {
   if (side == Side::outside)
     return Kept::none;
   if (side == Side::across) { // the box's projection is unbounded
-    lower.setConstant(-infinity);
-    upper.setConstant(infinity);
+    lower = Vec2::Constant(-infinity);
+    upper = Vec2::Constant(infinity);
   }
   const DepthPyramid::Bounds surface = clip.pyramid->bounds(*clip.buffer, lower, upper);
   return keptBehind(clip.edge, nearest - surface.greatest, farthest - surface.least, side);

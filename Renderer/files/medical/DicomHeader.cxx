@@ -1,7 +1,6 @@
 #include "files/medical/DicomHeader.h"
 
 #include "base/Error.h"
-#include "base/safe/ApartBytes.h"
 
 #include <gdcmMediaStorage.h>
 #include <gdcmPixmapReader.h>

@@ -170,8 +170,7 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
                           .indexToWorld = sliceToWorld(plane),
                           .encoding = NrrdHeader::Encoding::raw,
                           .fields = {{"Software", std::string(unsealedMark)}}};
-  return sealed(encodeNrrd(
-      header, {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)}));
+  return sealed(encodeNrrd(header, memoryOf(values)));
 }
 
 std::vector<float> interleavedRgba(const Image& image) {
@@ -249,10 +248,9 @@ void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy n
   if (namedBy == NamedBy::user)
     outputs.add(path);
   else
-    outputs.addUnnamed(path);
+    outputs.add(path, bearsMark);
   if (format == ImageFormat::nrrd)
-    outputs.addUnnamed(depthPath(path),
-                       [path](const auto& depth) { return isOurDepth(depth, path); });
+    outputs.add(depthPath(path), [path](const auto& depth) { return isOurDepth(depth, path); });
 }
 
 } // namespace fenestra

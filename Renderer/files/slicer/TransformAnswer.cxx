@@ -1,7 +1,6 @@
 #include "files/slicer/TransformAnswer.h"
 
 #include "base/safe/Apart.h"
-#include "base/safe/ApartBytes.h"
 #include "base/safe/Inputs.h"
 
 #include <hdf5.h>

@@ -8,7 +8,7 @@
 namespace fenestra {
 
 /// Answer of the child about a .tfm, .txt, .mat, .h5 or .hdf5 file: for each transform its type's
-/// name, parameters and fixed parameters (ApartBytes.h). Empty: the file is damaged or exceeds the
+/// name, parameters and fixed parameters (AnswerReader). Empty: the file is damaged or exceeds the
 /// child's limits. Throws Error (output) where no process can be started.
 std::string transformAnswer(const std::filesystem::path& path);
 

@@ -1,7 +1,7 @@
 #include "files/slicer/TransformFile.h"
 
 #include "base/Checked.h"
-#include "base/safe/ApartBytes.h"
+#include "base/safe/Apart.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
