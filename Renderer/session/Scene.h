@@ -64,7 +64,8 @@ public:
   StageSeconds seconds() const;
   StagesMade made() const;
   std::vector<std::string> warnings() const;
-  /// Look, light and labels in a line: what was chosen where the request left it open, and where from.
+  /// Look, light and labels in a line: what was chosen where the request left it open, and where
+  /// from.
   std::string choices() const;
   /// Files read for the stages of this scene, shared stages included.
   std::vector<std::string> files() const;
