@@ -2,7 +2,7 @@
 // Bytes of a NIfTI-1 file of one part with any geometry and header extension: ITK's writer makes
 // only its own.
 
-#include "base/Affine.h"
+#include "base/Vector.h"
 
 #include <array>
 #include <cmath>
@@ -99,5 +99,32 @@ struct NiftiFile {
            std::string(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
   }
 };
+
+/// Volume along RAS axes with its voxels stored in another order of axes, those of the bits of
+/// `reversed` from their other end. `map` becomes index to RAS; the file has neither form yet.
+template <typename Value>
+NiftiFile reordered(const Size3& size, const Vec3& spacing, const Vec3& origin, Value&& valueOf,
+                    const std::array<int, 3>& order, int reversed, Affine& map) {
+  NiftiFile file;
+  map = Affine(Mat3::Zero(), origin);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int world = order[std::size_t(axis)];
+    const double side = reversed >> axis & 1 ? -1.0 : 1.0;
+    file.size[std::size_t(axis)] = static_cast<std::int16_t>(size[world]);
+    map.linear()(world, axis) = side * spacing[world];
+    if (side < 0.0)
+      map.translation()[world] += spacing[world] * double(size[world] - 1);
+    file.pixdim[std::size_t(axis) + 1] = static_cast<float>(spacing[world]);
+  }
+  file.samples.clear();
+  for (int z = 0; z < file.size[2]; ++z)
+    for (int y = 0; y < file.size[1]; ++y)
+      for (int x = 0; x < file.size[0]; ++x) {
+        const Vec3 place = (map * Vec3(x, y, z) - origin).array() / spacing.array();
+        const Vec3 voxel = place.array().round();
+        file.samples.push_back(valueOf(voxel.cast<std::int64_t>()));
+      }
+  return file;
+}
 
 } // namespace fenestra

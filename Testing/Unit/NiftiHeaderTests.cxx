@@ -21,31 +21,6 @@ std::int16_t referenceValue(const Size3& voxel) {
   return static_cast<std::int16_t>(voxel.x() + 3 * (voxel.y() + 4 * voxel.z()) - 7);
 }
 
-/// Reference volume with its axes in another order, some of them reversed; index to RAS in `map`.
-NiftiFile reordered(const std::array<int, 3>& order, int reversed, Affine& map) {
-  NiftiFile file;
-  map = Affine(Mat3::Zero(), referenceOrigin);
-  for (int axis = 0; axis < 3; ++axis) {
-    const int world = order[std::size_t(axis)];
-    const double side = reversed >> axis & 1 ? -1.0 : 1.0;
-    file.size[std::size_t(axis)] = static_cast<std::int16_t>(referenceSize[world]);
-    map.linear()(world, axis) = side * referenceSpacing[world];
-    if (side < 0.0)
-      map.translation()[world] += referenceSpacing[world] * double(referenceSize[world] - 1);
-    file.pixdim[std::size_t(axis) + 1] = static_cast<float>(referenceSpacing[world]);
-  }
-  file.samples.clear();
-  for (int z = 0; z < file.size[2]; ++z)
-    for (int y = 0; y < file.size[1]; ++y)
-      for (int x = 0; x < file.size[0]; ++x) {
-        const Vec3 place =
-            (map * Vec3(x, y, z) - referenceOrigin).array() / referenceSpacing.array();
-        const Vec3 voxel = place.array().round();
-        file.samples.push_back(referenceValue(voxel.cast<std::int64_t>()));
-      }
-  return file;
-}
-
 /// True if each voxel of the volume has the reference's value at its place.
 bool isReference(const Volume& volume) {
   const Size3& size = volume.grid.size;
@@ -71,7 +46,8 @@ TEST(NiftiHeader, EveryOrderAndSignOfAxesGivesTheSameVolume) {
   do {
     for (int reversed = 0; reversed < 8; ++reversed) {
       Affine map, elsewhere = translationBy({500.0, 0.0, 0.0});
-      NiftiFile file = reordered(order, reversed, map);
+      NiftiFile file = reordered(referenceSize, referenceSpacing, referenceOrigin, referenceValue,
+                                 order, reversed, map);
       // Codes of qform and sform; the second pair of maps is of no effect.
       struct {
         std::int16_t qform, sform;

@@ -1,0 +1,76 @@
+// One phantom in every order and sign of a NIfTI file's axes: one picture, within its errors.
+
+#include "Unit/NiftiFile.h"
+
+#include "Agreement.h"
+#include "RunSettings.h"
+#include "TemporaryFolder.h"
+#include "session/Picture.h"
+#include "session/Scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace fenestra::testing::NiftiOrderTests {
+namespace {
+
+const Size3 size(10, 12, 14);
+const Vec3 spacing(1.2, 1.0, 0.8), origin(-20.0, 30.0, 5.0);
+
+/// Ellipsoid that is denser toward one corner: equal in no other order of axes.
+std::int16_t valueOf(const Size3& voxel) {
+  const Vec3 at = (voxel.cast<double>().array() + 0.5) / size.cast<double>().array() - 0.5;
+  const bool isIn = at.norm() < 0.45;
+  return static_cast<std::int16_t>(isIn ? 400.0 + 600.0 * at.x() + 400.0 * at.y() - 300.0 * at.z()
+                                        : -1000.0);
+}
+
+Image pictureOf(const std::filesystem::path& file, std::uint64_t seed) {
+  SceneRequest request;
+  request.input = file;
+  request.transfer = "ct-soft";
+  request.view.name = "left";
+  request.width = request.height = 24;
+  const Scene scene(request);
+  RenderSettings settings;
+  settings.samples = budget(std::uint64_t{64});
+  settings.seed = seeded(seed);
+  RenderMonitor monitor;
+  const Film film = render(scene.forRender(), settings, monitor).film;
+  return picture(film, scene.camera(), scene.clip(), LayerSet());
+}
+
+TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
+  const TemporaryFolder folder;
+  Affine map;
+  NiftiFile whole = reordered(size, spacing, origin, valueOf, {0, 1, 2}, 0, map);
+  whole.setSform(map);
+  whole.sformCode = 1;
+  const Image expected = pictureOf(folder.write("whole.nii", whole.bytes()), 1000);
+  const std::pair<int, int> codes[] = {{0, 2}, {1, 0}, {1, 1}, {1, 2}}; // of qform and sform
+  int number = 0, compared = 0;
+  std::array<int, 3> order = {0, 1, 2};
+  do {
+    for (int reversed = 0; reversed < 8; ++reversed)
+      for (const auto& [qform, sform] : codes) {
+        // The short run takes each order and each sign once, and each pair of codes twelve times.
+        if (!isLongRun() && number++ % 4 != reversed % 4)
+          continue;
+        NiftiFile file = reordered(size, spacing, origin, valueOf, order, reversed, map);
+        file.setQform(map);
+        file.setSform(sform == 2 && qform == 1 ? translationBy({99.0, 0.0, 0.0}) : map);
+        file.qformCode = static_cast<std::int16_t>(qform);
+        file.sformCode = static_cast<std::int16_t>(sform);
+        const Image image =
+            pictureOf(folder.write("v.nii", file.bytes()), std::uint64_t(++compared));
+        EXPECT_GT(agreementProbability(image, expected), 1e-3 / 192.0)
+            << order[0] << order[1] << order[2] << " reversed " << reversed << " codes " << qform
+            << sform;
+      }
+  } while (std::next_permutation(order.begin(), order.end()));
+  EXPECT_EQ(compared, isLongRun() ? 192 : 48);
+}
+
+} // namespace
+} // namespace fenestra::testing::NiftiOrderTests
