@@ -18,19 +18,17 @@ namespace {
 const Size3 size(10, 12, 14);
 const Vec3 spacing(1.2, 1.0, 0.8), origin(-20.0, 30.0, 5.0);
 
-/// Ellipsoid that is denser toward one corner: equal in no other order of axes.
+/// Ellipsoid without the piece beyond an oblique plane: equal to itself in no other order of axes.
 std::int16_t valueOf(const Size3& voxel) {
   const Vec3 at = (voxel.cast<double>().array() + 0.5) / size.cast<double>().array() - 0.5;
-  const bool isIn = at.norm() < 0.45;
-  return static_cast<std::int16_t>(isIn ? 400.0 + 600.0 * at.x() + 400.0 * at.y() - 300.0 * at.z()
-                                        : -1000.0);
+  return at.norm() < 0.48 && at.dot(Vec3(1.0, 0.6, 0.3)) < 0.12 ? 300 : -1000;
 }
 
 Image pictureOf(const std::filesystem::path& file, std::uint64_t seed) {
   SceneRequest request;
   request.input = file;
   request.transfer = "ct-soft";
-  request.view.name = "left";
+  request.view.position = Vec3(60.0, 110.0, 70.0); // sees all three axes, and the cut
   request.width = request.height = 24;
   const Scene scene(request);
   RenderSettings settings;
