@@ -34,11 +34,6 @@ QString inWords(QString message, const QString& folder) {
   return message;
 }
 
-void removeFolder(const QString& folder) {
-  if (!folder.isEmpty())
-    QDir(folder).removeRecursively();
-}
-
 /// Pauses drawing of the views, which then are drawn once, after all additions.
 struct Paused {
   explicit Paused(vtkMRMLApplicationLogic* logic) : application(logic) {
@@ -106,6 +101,11 @@ qSlicerFenestraSession::~qSlicerFenestraSession() {
   m_preview.stop();
   m_worker.clear();
   m_worker.waitForDone();
+}
+
+void qSlicerFenestraSession::removeFolder(const QString& folder) {
+  if (!folder.isEmpty())
+    QDir(folder).removeRecursively();
 }
 
 void qSlicerFenestraSession::learn() {

@@ -104,6 +104,7 @@ private:
     bool stopped = false;
   };
 
+  static void removeFolder(const QString& folder); ///< empty: none
   void work(const std::function<void()>& job);
   void later(const std::function<void()>& job);
   void write(const FenestraScene::Contents& contents,

@@ -39,11 +39,6 @@ std::string previewSize(const std::string& size) {
   return QString("%1x%2").arg(one.width()).arg(one.height()).toStdString();
 }
 
-void removeFolder(const QString& folder) {
-  if (!folder.isEmpty())
-    QDir(folder).removeRecursively();
-}
-
 } // namespace
 
 void qSlicerFenestraSession::preview(Node* settings) {

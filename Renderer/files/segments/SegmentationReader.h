@@ -76,11 +76,11 @@ private:
 
 /// Reads Slicer's `.seg.nrrd`; a labelmap in any format and geometry that readVolume takes: one
 /// segment "Segment_<value>" for each value other than 0, named by `labels` or what is found
-/// (LabelSearch.h); or a `.vtm` of closed surfaces, which
-/// become labels on `reference`, the volume's grid (ClosedSurface.h; unused otherwise). Geometry is
-/// the file's, which includes Segmentation_ReferenceImageExtentOffset; only that of the oldest
-/// files, known by their Segmentation_Extent, does not, and is in RAS. SegmentN_Extent is ignored:
-/// labels show where a segment is. Throws Error (input).
+/// (LabelSearch.h); or a `.vtm` of closed surfaces, which become labels on `reference`, the
+/// volume's grid (ClosedSurface.h; unused otherwise). Geometry is the file's, which includes
+/// Segmentation_ReferenceImageExtentOffset; only that of the oldest files, known by their
+/// Segmentation_Extent, does not, and is in RAS. SegmentN_Extent is ignored: labels show where a
+/// segment is. Throws Error (input).
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr,
                               const std::optional<std::string>& labels = {});
 

@@ -66,7 +66,7 @@ Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node,
                                    const Grid* volume = nullptr,
                                    const std::optional<std::string>& labels = {});
 
-/// Segments of such a node, without their labels; empty: the file names none.
+/// Segments of such a node, as readSegmentInfos has them. `labels`: names of a label map's values.
 std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node,
                                                const std::optional<std::string>& labels = {});
 
