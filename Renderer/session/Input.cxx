@@ -34,12 +34,6 @@ std::optional<SegmentNames> namesInFile(const std::optional<std::string>& file) 
   return SegmentNames{*file, readSegmentInfos(*file)};
 }
 
-bool holdsSegmentation(const MrmlDocument& document) {
-  return std::ranges::any_of(document.nodes(), [](const MrmlNode& node) {
-    return node.tag == "Segmentation" || isLabelMap(node);
-  });
-}
-
 Background backgroundOf(const MrmlNode& view) {
   const ViewBackground colors = viewBackground(view);
   return Background::gradient(colors.bottom, colors.top);
@@ -133,7 +127,8 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
   if (!m_opened->isScene)
     return namesInFile(choice.segmentation);
   return m_opened->with([&](MrmlScene& scene) {
-    const ScenePlan plan = planFor(scene, choice, holdsSegmentation(scene.document));
+    const bool hasSegmentation = std::ranges::any_of(scene.document.nodes(), isSegmentation);
+    const ScenePlan plan = planFor(scene, choice, hasSegmentation);
     if (!plan.segmentation)
       return namesInFile(choice.segmentation);
     return std::optional(SegmentNames{scene.document.source() + ": " + shown(*plan.segmentation),
@@ -179,11 +174,8 @@ SceneLook Input::property(const std::string& name) const {
 }
 
 std::vector<std::string> Input::propertyNames() const {
-  std::vector<std::string> names;
-  if (const MrmlDocument* scene = document())
-    for (const MrmlNode* node : scene->withTag("VolumeProperty"))
-      names.push_back(node->name);
-  return names;
+  const MrmlDocument* scene = document();
+  return scene ? fenestra::propertyNames(*scene) : std::vector<std::string>();
 }
 
 } // namespace fenestra
