@@ -21,7 +21,10 @@ std::string_view ownPreset(const std::string& kind, const std::string& name) {
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  return joined(names, ", ", [](const std::string& name) { return shown(name); });
+  std::string text;
+  for (const std::string& name : names)
+    text += (text.empty() ? "" : ", ") + shown(name);
+  return text;
 }
 
 bool isFoundAsFile(const std::string& name) {
