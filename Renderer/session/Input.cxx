@@ -41,12 +41,6 @@ FocusInput focusFrom(const Segmentation& segmentation, Mask mask, FilesRead file
   return {std::move(mask), std::move(files), segmentation.warnings(), segmentation.namesFrom()};
 }
 
-bool holdsSegmentation(const MrmlDocument& document) {
-  return std::ranges::any_of(document.nodes(), [](const MrmlNode& node) {
-    return node.tag == "Segmentation" || isLabelMap(node);
-  });
-}
-
 Background backgroundOf(const MrmlNode& view) {
   const ViewBackground colors = viewBackground(view);
   return Background::gradient(colors.bottom, colors.top);
@@ -140,7 +134,8 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
   if (!m_opened->isScene)
     return namesInFile(choice);
   return m_opened->with([&](MrmlScene& scene) {
-    const ScenePlan plan = planFor(scene, choice, holdsSegmentation(scene.document));
+    const bool hasSegmentation = std::ranges::any_of(scene.document.nodes(), isSegmentation);
+    const ScenePlan plan = planFor(scene, choice, hasSegmentation);
     if (!plan.segmentation)
       return namesInFile(choice);
     return std::optional(
@@ -190,11 +185,8 @@ SceneLook Input::property(const std::string& name) const {
 }
 
 std::vector<std::string> Input::propertyNames() const {
-  std::vector<std::string> names;
-  if (const MrmlDocument* scene = document())
-    for (const MrmlNode* node : scene->withTag("VolumeProperty"))
-      names.push_back(node->name);
-  return names;
+  const MrmlDocument* scene = document();
+  return scene ? fenestra::propertyNames(*scene) : std::vector<std::string>();
 }
 
 } // namespace fenestra

@@ -15,10 +15,6 @@ bool isRoi(const MrmlNode& node) {
          node.tag == "MRMLROINode";
 }
 
-bool isSegmentation(const MrmlNode& node) {
-  return node.tag == "Segmentation" || isLabelMap(node);
-}
-
 std::string idOf(const MrmlNode* node) {
   return node ? node->id : std::string();
 }

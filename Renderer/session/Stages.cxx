@@ -5,7 +5,6 @@
 #include "clip/surface/FocusPlane.h"
 #include "clip/surface/SteadySurface.h"
 #include "files/looks/LightReader.h"
-#include "files/looks/LookText.h"
 #include "session/Defaults.h"
 
 namespace fenestra {
