@@ -1,11 +1,10 @@
-#include "phantoms/Knee.h"
-
 #include "phantoms/Anatomy.h"
 #include "phantoms/KneeBones.h"
 #include "phantoms/KneeSignal.h"
 #include "phantoms/KneeSoftTissue.h"
 #include "phantoms/Noise.h"
 #include "phantoms/Painter.h"
+#include "phantoms/Phantoms.h"
 
 namespace fenestra {
 
@@ -17,11 +16,10 @@ const Vec3 kneeFieldCenter{0.0, -2.0, 6.8};      ///< world
 constexpr double kneeSkinThickness = 1.5;
 constexpr double fasciaThickness = 0.6;
 constexpr double film = 0.7; ///< mm; fluid on the joint's faces
+constexpr double fasciaSignal = 210.0;
 
 /// A place with the distances that most layers need.
-struct KneeSite {
-  Vec3 point;
-  double surface;                       ///< mm to the skin's surface
+struct KneeSite : Place {
   double fascia;                        ///< mm to the sheath around muscles and joint
   double femur, tibia, fibula, patella; ///< mm to the bones' surfaces
   double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
@@ -39,16 +37,17 @@ double cover(double bone, double cartilage, double extra) {
   return cartilage > 0.05 ? bone - cartilage - extra : KneeBones::beyond;
 }
 
-class KneeSubject : public LayeredSubject<KneeSite, KneeTissue> {
+double deepFatSignal(const Vec3& p) {
+  return fatSignal(p, 150.0);
+}
+
+class KneeSubject : public LayeredSubject<KneeSite> {
 public:
   static constexpr double background = 0.0;
 
   KneeSubject();
 
   KneeSite site(const Vec3& point) const;
-  double signal(KneeTissue tissue, const KneeSite& site) const {
-    return tissueSignal(tissue, site.point);
-  }
   std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const {
     const double noisy = ricianNoise(signal * biasField(point), noiseSigma, voxel);
     return static_cast<std::int16_t>(std::lround(noisy));
@@ -56,20 +55,23 @@ public:
 
 private:
   /// Adds a layer, cut off at the fascia.
-  void deepLayer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance);
+  void deepLayer(std::uint8_t label, Field signal, const Box& box, Field distance) {
+    layer(label, std::move(signal), box, both(std::move(distance), underFascia));
+  }
+  static double underFascia(const KneeSite& s) { return s.fascia + fasciaThickness; }
 
   void addBones();
   void addCartilage();
   void addLigaments();
   void addMenisci();
   void addJointSpace();
-  void addVessels(const char* kind, KneeTissue tissue);
+  void addVessels(const char* kind, const Field& signal);
   void addMuscles();
   void addCovers();
 
   Anatomy m_anatomy = anatomyOf("knee");
   KneeBones m_bones;
-  LegOutline m_leg;
+  Solid m_trunk = m_anatomy.at("leg");
   std::uint8_t m_deepFat = 0; ///< label of the deep fat
 };
 
@@ -79,8 +81,8 @@ KneeSubject::KneeSubject() : LayeredSubject(1.5) {
   addLigaments();
   addMenisci();
   addJointSpace();
-  addVessels("vessels", KneeTissue::vessel);
-  addVessels("nerves", KneeTissue::nerve);
+  addVessels("vessels", constant(45.0));
+  addVessels("nerves", nerveSignal);
   addMuscles();
   addCovers();
 }
@@ -88,7 +90,7 @@ KneeSubject::KneeSubject() : LayeredSubject(1.5) {
 KneeSite KneeSubject::site(const Vec3& p) const {
   KneeSite s{};
   s.point = p;
-  s.surface = m_leg.distance(p);
+  s.surface = legOutline(m_trunk, p);
   s.fascia = s.surface + fasciaDepth(p);
   s.femur = m_bones.femur(p);
   s.tibia = m_bones.tibia(p);
@@ -106,21 +108,13 @@ KneeSite KneeSubject::site(const Vec3& p) const {
   return s;
 }
 
-void KneeSubject::deepLayer(std::uint8_t label, KneeTissue tissue, const Box& box,
-                            Distance distance) {
-  layer(label, tissue, box, [distance = std::move(distance)](const KneeSite& s) {
-    return std::max(distance(s), s.fascia + fasciaThickness);
-  });
-}
-
 void KneeSubject::addBones() {
   const auto bone = [this](const char* id, const char* name, double KneeSite::*surface) {
     const auto label = segment(id, name, boneColor);
-    layer(label, KneeTissue::marrow, everywhere, [surface](const KneeSite& s) {
+    layer(label, marrowSignal, everywhere, [surface](const KneeSite& s) {
       return s.*surface < 1.0 ? s.*surface + cortexThickness(s.point) : KneeBones::beyond;
     });
-    layer(label, KneeTissue::cortex, everywhere,
-          [surface](const KneeSite& s) { return s.*surface; });
+    layer(label, constant(66.0), everywhere, [surface](const KneeSite& s) { return s.*surface; });
   };
   bone("Femur", "Femur", &KneeSite::femur);
   bone("Tibia", "Tibia", &KneeSite::tibia);
@@ -131,7 +125,7 @@ void KneeSubject::addBones() {
 void KneeSubject::addCartilage() {
   const auto cartilage = [this](const char* id, const char* name, double KneeSite::*bone,
                                 double KneeSite::*thickness) {
-    layer(segment(id, name, cartilageColor), KneeTissue::cartilage, everywhere,
+    layer(segment(id, name, cartilageColor), cartilageSignal, everywhere,
           [bone, thickness](const KneeSite& s) { return cover(s.*bone, s.*thickness, 0.0); });
   };
   cartilage("FemoralCartilage", "Femoral cartilage", &KneeSite::femur, &KneeSite::femoralCartilage);
@@ -144,7 +138,7 @@ void KneeSubject::addLigaments() {
   for (const Structure& ligament : structures(m_anatomy.at("ligaments"), tendonColor)) {
     const auto label = segment(ligament.id, ligament.name, ligament.color);
     for (const Solid& shape : ligament.shapes)
-      deepLayer(label, KneeTissue::ligament, shape.box, distanceTo(shape));
+      deepLayer(label, ligamentSignal, shape.box, shape.distance);
   }
 }
 
@@ -152,44 +146,41 @@ void KneeSubject::addMenisci() {
   const auto meniscus = [this](const char* id, const char* name, const MeniscusRing& ring) {
     const Vec3 center{ring.center.x(), ring.center.y(), 2.0};
     const Vec3 reach{ring.outerRadii.x(), ring.outerRadii.y(), 6.0};
-    layer(segment(id, name, {0.663, 0.784, 0.702}), KneeTissue::meniscus,
+    layer(segment(id, name, {0.663, 0.784, 0.702}), meniscusSignal,
           {center - reach, center + reach}, [ring](const KneeSite& s) {
             const double above = s.femoralCartilage + 0.25 - s.femur;
             const double below = s.tibialCartilage + 0.15 - s.tibia;
             return std::max({ring.distance(s.point), above, below});
           });
   };
-  meniscus("MedialMeniscus", "Medial meniscus", medialMeniscus());
-  meniscus("LateralMeniscus", "Lateral meniscus", lateralMeniscus());
+  meniscus("MedialMeniscus", "Medial meniscus", medialMeniscus);
+  meniscus("LateralMeniscus", "Lateral meniscus", lateralMeniscus);
 }
 
 void KneeSubject::addJointSpace() {
   const auto fluid = segment("JointFluid", "Joint fluid", {0.667, 0.980, 0.980});
-  layer(fluid, KneeTissue::fluid, everywhere, [](const KneeSite& s) {
+  layer(fluid, constant(215.0), everywhere, [](const KneeSite& s) {
     return std::min({cover(s.femur, s.intactFemoralCartilage, film),
                      cover(s.tibia, s.tibialCartilage, film),
                      cover(s.patella, s.patellarCartilage, film)});
   });
-  layer(fluid, KneeTissue::fluid, {{-17, 25, 45}, {19, 38, 75}},
-        [](const KneeSite& s) { return suprapatellarRecess(s.point); });
-
-  const auto retinaculum = segment("Retinaculum", "Patellar retinaculum", tendonColor);
-  deepLayer(retinaculum, KneeTissue::fascia, {{-46, 0, -14}, {49, 46, 62}},
-            [](const KneeSite& s) { return patellarRetinaculum(s.point); });
-  const auto fatPad =
-      segment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588});
-  deepLayer(fatPad, KneeTissue::fatPad, {{-35, 6, -25}, {39, 48, 30}},
-            [](const KneeSite& s) { return infrapatellarFatPad(s.point); });
+  layer(fluid, constant(215.0), {{-17, 25, 45}, {19, 38, 75}}, suprapatellarRecess);
+  deepLayer(segment("Retinaculum", "Patellar retinaculum", tendonColor), constant(fasciaSignal),
+            {{-46, 0, -14}, {49, 46, 62}}, patellarRetinaculum);
+  deepLayer(
+      segment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588}),
+      [](const Vec3& p) { return fatSignal(p, 300.0) - 15.0; }, {{-35, 6, -25}, {39, 48, 30}},
+      infrapatellarFatPad);
 }
 
 /// Adds vessels or nerves, cut off under the skin.
-void KneeSubject::addVessels(const char* kind, KneeTissue tissue) {
+void KneeSubject::addVessels(const char* kind, const Field& signal) {
   for (const Structure& vessel : structures(m_anatomy.at(kind), vesselColor)) {
     const auto label = segment(vessel.id, vessel.name, vessel.color);
     for (const Solid& shape : vessel.shapes)
-      layer(label, tissue, shape.box, [shape](const KneeSite& s) {
-        return std::max(shape.distance(s.point), s.surface + kneeSkinThickness + 0.5);
-      });
+      layer(label, signal, shape.box, both(shape.distance, [](const KneeSite& s) {
+              return s.surface + kneeSkinThickness + 0.5;
+            }));
   }
 }
 
@@ -199,38 +190,27 @@ void KneeSubject::addMuscles() {
   for (const Structure& muscle : structures(m_anatomy.at("muscles"), muscleColor)) {
     const auto label = segment(muscle.id, muscle.name, muscle.color);
     for (const Solid& belly : muscle.shapes) {
-      const Distance shape = [belly](const KneeSite& s) {
-        return belly.distance(s.point) + 0.9 * valueNoise(s.point / 8.0, 92);
+      const auto shape = [belly](const Vec3& p) {
+        return belly.distance(p) + 0.9 * valueNoise(p / 8.0, 92);
       };
-      deepLayer(label, KneeTissue::muscle, belly.box, shape);
-      deepLayer(m_deepFat, KneeTissue::deepFat, belly.box,
-                [shape](const KneeSite& s) { return shape(s) - 0.8; });
+      deepLayer(label, muscleSignal, belly.box, shape);
+      deepLayer(m_deepFat, deepFatSignal, belly.box,
+                [shape](const Vec3& p) { return shape(p) - 0.8; });
     }
   }
 }
 
 void KneeSubject::addCovers() {
-  layer(m_deepFat, KneeTissue::deepFat, everywhere,
-        [](const KneeSite& s) { return s.fascia + fasciaThickness; });
-  layer(segment("Fascia", "Fascia", tendonColor), KneeTissue::fascia, everywhere,
+  layer(m_deepFat, deepFatSignal, everywhere, underFascia);
+  layer(segment("Fascia", "Fascia", tendonColor), constant(fasciaSignal), everywhere,
         [](const KneeSite& s) { return s.fascia; });
-  layer(segment("SubcutaneousFat", "Subcutaneous fat", fatColor), KneeTissue::subcutaneousFat,
-        everywhere, [](const KneeSite& s) { return s.surface + kneeSkinThickness; });
-  layer(segment("Skin", "Skin", skinColor), KneeTissue::skin, everywhere,
-        [](const KneeSite& s) { return s.surface; });
+  layer(
+      segment("SubcutaneousFat", "Subcutaneous fat", fatColor),
+      [](const Vec3& p) { return fatSignal(p, 190.0); }, everywhere, under(kneeSkinThickness));
+  layer(segment("Skin", "Skin", skinColor), constant(410.0), everywhere, under(0.0));
 }
 
-} // namespace
-
-Phantom makeKneePhantom(const KneeOptions& options) {
-  requirePhantomSize(options.size);
-  constexpr Mat3 axes({0, -1, 0}, {0, 0, -1}, {1, 0, 0}); // columns: posterior, inferior, right
-  Phantom phantom = paintPhantom(
-      KneeSubject(), phantomGrid(options.size, kneeFieldOfView, axes, kneeFieldCenter), "knee");
-  phantom.property = kneeProperty();
-  return phantom;
-}
-
+/// Natural colours: pearly cartilage, yellow fat and marrow, red muscle.
 VolumeProperty kneeProperty() {
   VolumeProperty property;
   // Air and flow voids are transparent. Cartilage is far denser than the values between its own and
@@ -249,6 +229,16 @@ VolumeProperty kneeProperty() {
   property.specular = 0.25;
   property.specularPower = 20.0;
   return property;
+}
+
+} // namespace
+
+Phantom makeKneePhantom(const Size3& size) {
+  constexpr Mat3 axes({0, -1, 0}, {0, 0, -1}, {1, 0, 0}); // columns: posterior, inferior, right
+  Phantom phantom = paintPhantom(KneeSubject(),
+                                 phantomGrid(size, kneeFieldOfView, axes, kneeFieldCenter), "knee");
+  phantom.property = kneeProperty();
+  return phantom;
 }
 
 } // namespace fenestra

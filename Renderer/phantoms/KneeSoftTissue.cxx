@@ -1,16 +1,13 @@
 #include "phantoms/KneeSoftTissue.h"
 
-#include "phantoms/Anatomy.h"
 #include "phantoms/Noise.h"
 
 namespace fenestra {
 
-LegOutline::LegOutline() : m_trunk(anatomyOf("knee").at("leg").get<Solid>()) {}
-
-double LegOutline::distance(const Vec3& p) const {
+double legOutline(const Solid& trunk, const Vec3& p) {
   const double kneecap = ellipsoidDistance(p, {2, 34, 38}, {25, 21, 28});
   const double tubercle = ellipsoidDistance(p, {2, 18, -30}, {14, 16, 26});
-  const double leg = smoothUnion(smoothUnion(m_trunk.distance(p), kneecap, 14.0), tubercle, 10.0);
+  const double leg = smoothUnion(smoothUnion(trunk.distance(p), kneecap, 14.0), tubercle, 10.0);
   return leg + 0.5 * valueNoise(p / 14.0, 61);
 }
 
@@ -37,13 +34,6 @@ double MeniscusRing::distance(const Vec3& p) const {
   const double height = 0.6 + 5.4 * std::clamp((share - inner) / (1.0 - inner), 0.0, 1.0);
   const double faces = std::max(p.z() - height, -3.6 - p.z());
   return smoothIntersection(smoothIntersection(ring, ends, 3.0), faces, 2.0);
-}
-
-MeniscusRing medialMeniscus() {
-  return {{-20.0, -4.5}, {18.0, 23.5}, 0.56, 0.62, 0.0};
-}
-MeniscusRing lateralMeniscus() {
-  return {{20.0, -5.5}, {17.0, 19.0}, 0.50, 0.42, pi};
 }
 
 double patellarRetinaculum(const Vec3& p) {

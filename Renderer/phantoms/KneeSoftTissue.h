@@ -5,15 +5,8 @@
 
 namespace fenestra {
 
-/// Outer surface of the leg; the kneecap protrudes in front.
-class LegOutline {
-public:
-  LegOutline();
-  double distance(const Vec3& point) const;
-
-private:
-  Solid m_trunk; ///< without kneecap and tubercle
-};
+/// Outer surface of the leg; the kneecap protrudes in front. `trunk`: without kneecap and tubercle.
+double legOutline(const Solid& trunk, const Vec3& point);
 
 /// Depth of the fascia under the skin's surface, mm: thickness of skin and subcutaneous fat.
 double fasciaDepth(const Vec3& point);
@@ -29,8 +22,8 @@ struct MeniscusRing {
 
   double distance(const Vec3& point) const;
 };
-MeniscusRing medialMeniscus();
-MeniscusRing lateralMeniscus();
+inline constexpr MeniscusRing medialMeniscus{{-20.0, -4.5}, {18.0, 23.5}, 0.56, 0.62, 0.0};
+inline constexpr MeniscusRing lateralMeniscus{{20.0, -5.5}, {17.0, 19.0}, 0.50, 0.42, pi};
 
 /// Thin sheets from the kneecap's sides to the condyles.
 double patellarRetinaculum(const Vec3& point);

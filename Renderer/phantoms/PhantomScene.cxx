@@ -86,15 +86,15 @@ void addLooks(SceneTexts& texts, const Phantom& phantom) {
 
 } // namespace
 
-std::string phantomScene(const Phantom& phantom, const std::string& name,
-                         const PhantomFileNames& files) {
+std::string phantomScene(const Phantom& phantom, const std::string& name, const std::string& data) {
+  const std::string files = urlEncoded(data + name);
   SceneTexts texts = {{"@volume@", name},
                       {"@segmentation@", name + " segments"},
                       {"@property@", name + " property"},
-                      {"@volume file@", urlEncoded(files.volume)},
-                      {"@segmentation file@", urlEncoded(files.segmentation)},
-                      {"@property file@", urlEncoded(files.property)},
-                      {"@roi file@", urlEncoded(files.roi)}};
+                      {"@volume file@", files + ".nrrd"},
+                      {"@segmentation file@", files + ".seg.nrrd"},
+                      {"@property file@", files + ".vp"},
+                      {"@roi file@", files + "-roi.mrk.json"}};
   addCamera(texts, phantom);
   addGeometry(texts, phantom.volume.grid);
   addLooks(texts, phantom);
