@@ -1,7 +1,6 @@
 #include "phantoms/Anatomy.h"
 #include "phantoms/KneeBones.h"
 #include "phantoms/KneeSignal.h"
-#include "phantoms/KneeSoftTissue.h"
 #include "phantoms/Noise.h"
 #include "phantoms/Painter.h"
 #include "phantoms/Phantoms.h"
@@ -29,6 +28,76 @@ struct KneeSite : Place {
 double cortexThickness(const Vec3& p) {
   const double shaft = std::max({0.0, p.z() - 50.0, -25.0 - p.z()});
   return 1.15 + 0.045 * shaft + 0.15 * valueNoise(p / 6.0, 91);
+}
+
+// Soft tissue, as shapes in the frame of KneeBones.h.
+
+/// Outer surface of the leg; the kneecap protrudes in front. `trunk`: without kneecap and tubercle.
+double legOutline(const Solid& trunk, const Vec3& p) {
+  const double kneecap = ellipsoidDistance(p, {2, 34, 38}, {25, 21, 28});
+  const double tubercle = ellipsoidDistance(p, {2, 18, -30}, {14, 16, 26});
+  const double leg = smoothUnion(smoothUnion(trunk.distance(p), kneecap, 14.0), tubercle, 10.0);
+  return leg + 0.5 * valueNoise(p / 14.0, 61);
+}
+
+/// Depth of the fascia under the skin's surface, mm: thickness of skin and subcutaneous fat.
+double fasciaDepth(const Vec3& p) {
+  // Thick at the rear and medially, thin over the kneecap, the tubercle and the shin.
+  const double behind = smoothStep(20.0, -45.0, p.y());
+  const double medial = smoothStep(10.0, -45.0, p.x()) * smoothStep(40.0, 10.0, p.y());
+  return 3.4 + 3.0 * behind + 1.8 * medial + 0.7 * valueNoise(p / 16.0, 62);
+}
+
+/// Meniscus before the joint's faces cut it: a wedge-shaped ring around one plateau, open toward
+/// the eminence.
+struct MeniscusRing {
+  Vec2 center;
+  Vec2 outerRadii;     ///< mm
+  double innerShare;   ///< inner / outer radius, in the middle of the C
+  double openingAngle; ///< half of the C's gap, radians, around `opening`
+  double opening;      ///< direction to the eminence: 0 lateral, pi medial
+
+  double distance(const Vec3& p) const {
+    const Vec2 offset = p.head<2>() - center;
+    const Vec2 scaled = offset.cwiseQuotient(outerRadii);
+    const double share = scaled.norm();
+    const double scale = outerRadii.mean();
+    double turn = std::atan2(scaled.y(), scaled.x()) - opening;
+    turn = std::abs(std::remainder(turn, 2.0 * pi));
+    // The horns are slimmer than the body, with round ends.
+    const double horns = smoothStep(openingAngle + 0.9, openingAngle, turn);
+    const double inner = std::lerp(innerShare, 0.5 * (1.0 + innerShare), horns);
+    const double ring = std::max(share - 1.0, inner - share) * scale;
+    const double ends = (openingAngle - turn) * share * scale;
+    // The wedge grows from the thin inner edge to 6 mm at the rim.
+    const double height = 0.6 + 5.4 * std::clamp((share - inner) / (1.0 - inner), 0.0, 1.0);
+    const double faces = std::max(p.z() - height, -3.6 - p.z());
+    return smoothIntersection(smoothIntersection(ring, ends, 3.0), faces, 2.0);
+  }
+};
+constexpr MeniscusRing medialMeniscus{{-20.0, -4.5}, {18.0, 23.5}, 0.56, 0.62, 0.0};
+constexpr MeniscusRing lateralMeniscus{{20.0, -5.5}, {17.0, 19.0}, 0.50, 0.42, pi};
+
+/// Thin sheets from the kneecap's sides to the condyles.
+double patellarRetinaculum(const Vec3& p) {
+  const double hull = ellipsoidDistance({p.x(), p.y(), 0}, {1.5, 4, 0}, {44.5, 39.5, 1});
+  const double sheet = std::abs(hull + 0.6 * valueNoise(p / 12.0, 64)) - 0.35;
+  const double front = 4.0 - p.y();
+  const double ends = std::abs(p.z() - 24.0) - 37.0 + 0.4 * std::abs(p.x() - 2.0);
+  return std::max({sheet, front, ends});
+}
+
+double infrapatellarFatPad(const Vec3& p) {
+  const double behindLigament = ellipsoidDistance(p, {2, 31, 8}, {24, 15, 20});
+  const double low = ellipsoidDistance(p, {2, 26, -8}, {19, 11, 15});
+  const double wings = ellipsoidDistance(p, {2, 22, 8}, {34, 15, 13});
+  return smoothUnion(smoothUnion(behindLigament, low, 6.0), wings, 6.0);
+}
+
+/// Joint cavity above the kneecap, between the quadriceps tendon and the femur.
+double suprapatellarRecess(const Vec3& p) {
+  const double sheet = ellipsoidDistance(p, {1, 31.5, 60}, {17, 2.4, 14});
+  return sheet + 0.5 * valueNoise(p / 6.0, 63);
 }
 
 /// Distance to the surface of a bone with its cartilage, `extra` mm thicker; `beyond` where there
@@ -59,6 +128,19 @@ private:
     layer(label, std::move(signal), box, both(std::move(distance), underFascia));
   }
   static double underFascia(const KneeSite& s) { return s.fascia + fasciaThickness; }
+
+  /// Adds a segment for each structure of a list of the anatomy, {"id", "name", "color",
+  /// "shapes": [...]}, and calls back with the segment's label for each of the shapes. `color`: of
+  /// structures that have none of their own.
+  template <typename AddShape>
+  void addStructures(const char* kind, const Rgb& color, const AddShape& addShape) {
+    for (const Anatomy& entry : m_anatomy.at(kind)) {
+      const Vec3 own = entry.value("color", Vec3(color.x(), color.y(), color.z()));
+      const auto label = segment(entry.at("id"), entry.at("name"), own.array());
+      for (const Solid shape : entry.at("shapes"))
+        addShape(label, shape);
+    }
+  }
 
   void addBones();
   void addCartilage();
@@ -135,11 +217,9 @@ void KneeSubject::addCartilage() {
 }
 
 void KneeSubject::addLigaments() {
-  for (const Structure& ligament : structures(m_anatomy.at("ligaments"), tendonColor)) {
-    const auto label = segment(ligament.id, ligament.name, ligament.color);
-    for (const Solid& shape : ligament.shapes)
-      deepLayer(label, ligamentSignal, shape.box, shape.distance);
-  }
+  addStructures("ligaments", tendonColor, [this](std::uint8_t label, const Solid& shape) {
+    deepLayer(label, ligamentSignal, shape.box, shape.distance);
+  });
 }
 
 void KneeSubject::addMenisci() {
@@ -175,29 +255,23 @@ void KneeSubject::addJointSpace() {
 
 /// Adds vessels or nerves, cut off under the skin.
 void KneeSubject::addVessels(const char* kind, const Field& signal) {
-  for (const Structure& vessel : structures(m_anatomy.at(kind), vesselColor)) {
-    const auto label = segment(vessel.id, vessel.name, vessel.color);
-    for (const Solid& shape : vessel.shapes)
-      layer(label, signal, shape.box, both(shape.distance, [](const KneeSite& s) {
-              return s.surface + kneeSkinThickness + 0.5;
-            }));
-  }
+  const auto underSkin = [](const KneeSite& s) { return s.surface + kneeSkinThickness + 0.5; };
+  addStructures(kind, vesselColor, [&](std::uint8_t label, const Solid& shape) {
+    layer(label, signal, shape.box, both(shape.distance, underSkin));
+  });
 }
 
 /// Adds each muscle with a layer of fat, which separates neighbouring muscles.
 void KneeSubject::addMuscles() {
   m_deepFat = segment("IntermuscularFat", "Intermuscular fat", fatColor);
-  for (const Structure& muscle : structures(m_anatomy.at("muscles"), muscleColor)) {
-    const auto label = segment(muscle.id, muscle.name, muscle.color);
-    for (const Solid& belly : muscle.shapes) {
-      const auto shape = [belly](const Vec3& p) {
-        return belly.distance(p) + 0.9 * valueNoise(p / 8.0, 92);
-      };
-      deepLayer(label, muscleSignal, belly.box, shape);
-      deepLayer(m_deepFat, deepFatSignal, belly.box,
-                [shape](const Vec3& p) { return shape(p) - 0.8; });
-    }
-  }
+  addStructures("muscles", muscleColor, [this](std::uint8_t label, const Solid& belly) {
+    const auto shape = [belly](const Vec3& p) {
+      return belly.distance(p) + 0.9 * valueNoise(p / 8.0, 92);
+    };
+    deepLayer(label, muscleSignal, belly.box, shape);
+    deepLayer(m_deepFat, deepFatSignal, belly.box,
+              [shape](const Vec3& p) { return shape(p) - 0.8; });
+  });
 }
 
 void KneeSubject::addCovers() {

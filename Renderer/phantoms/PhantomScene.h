@@ -28,8 +28,4 @@ std::string spaced(const Numbers&... numbers) {
   return stream.str();
 }
 
-/// Encodes a file name or segment id as Slicer does in attributes: all but letters, digits and
-/// "-_./" become %XX.
-std::string urlEncoded(const std::string& text);
-
 } // namespace fenestra
