@@ -1,7 +1,5 @@
 #include "measure/FocusMeasures.h"
 
-#include "transport/render/WithMedium.h"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

@@ -2,11 +2,8 @@
 
 #include "base/Error.h"
 #include "base/safe/ShownText.h"
-#include "phantoms/Cube.h"
-#include "phantoms/Fetus.h"
-#include "phantoms/Foot.h"
-#include "phantoms/Knee.h"
 #include "phantoms/PhantomWriter.h"
+#include "phantoms/Phantoms.h"
 #include "program/CommandLine.h"
 #include "program/Machine.h"
 
@@ -25,9 +22,9 @@ const Flag phantomFlags[] = {
     {"output", "DIR", phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size", "WxHxD", phantomGroup,
-     "Voxels over the same field of view; N for the cube [knee " + sizeText(KneeOptions().size) +
-         ", foot " + sizeText(FootOptions().size) + ", fetus " + sizeText(FetusOptions().size) +
-         ", cube " + std::to_string(CubeOptions().size) + "]",
+     "Voxels over the same field of view; N for the cube [knee " + sizeText(kneeSize) + ", foot " +
+         sizeText(footSize) + ", fetus " + sizeText(fetusSize) + ", cube " +
+         std::to_string(CubeOptions().size) + "]",
      Takes{.least = 16, .greatest = 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "The cube's edge",
      Takes::number(1e-3, 1e5).shows(numberText(CubeOptions().edge))},
@@ -40,24 +37,16 @@ const CommandSyntax phantomSyntax = {
     phantomFlags,
 };
 
-/// Size WxHxD in voxels.
-std::optional<Size3> sizeOf(const FlagValues& values) {
+/// Size WxHxD in voxels; without --size: `standard`.
+Size3 sizeOf(const FlagValues& values, const Size3& standard) {
   const auto text = values.text("size");
   if (!text)
-    return std::nullopt;
+    return standard;
   Size3 size;
   char rest = 0;
   if (std::sscanf(text->c_str(), "%ldx%ldx%ld%c", &size[0], &size[1], &size[2], &rest) != 3)
     throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '" + *text + "'");
   return size;
-}
-
-/// Options of a phantom whose size is --size.
-template <typename Options>
-Options sized(const FlagValues& values) {
-  Options options;
-  options.size = sizeOf(values).value_or(options.size);
-  return options;
 }
 
 Phantom makeCube(const FlagValues& values) {
@@ -72,11 +61,11 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
   if (kind != "cube" && values.has("edge"))
     throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
   if (kind == "knee")
-    return makeKneePhantom(sized<KneeOptions>(values));
+    return makeKneePhantom(sizeOf(values, kneeSize));
   if (kind == "foot")
-    return makeFootPhantom(sized<FootOptions>(values));
+    return makeFootPhantom(sizeOf(values, footSize));
   if (kind == "fetus")
-    return makeFetusPhantom(sized<FetusOptions>(values));
+    return makeFetusPhantom(sizeOf(values, fetusSize));
   if (kind == "cube")
     return makeCube(values);
   throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");

@@ -55,7 +55,7 @@ public:
   const std::vector<double>& focusDepth() const { return m_clip->focusDepth; }
   /// mm by which the spline misses the focus's boundary, or an exact surface if measured; nothing
   /// in the other clip modes.
-  const std::optional<BoundaryMismatch>& mismatch() const { return m_clip->mismatch; }
+  const std::optional<Distribution>& mismatch() const { return m_clip->mismatch; }
   /// Measures of the clip along the focus's outline; nothing: not measured.
   const std::optional<BoundaryMeasures>& boundary() const { return m_clip->boundary; }
   /// Control points of a spline; empty for other clips.

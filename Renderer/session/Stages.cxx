@@ -2,7 +2,6 @@
 
 #include "base/Error.h"
 #include "base/TextStream.h"
-#include "clip/surface/FocusPlane.h"
 #include "clip/surface/SteadySurface.h"
 #include "files/looks/LightReader.h"
 #include "session/Defaults.h"
@@ -110,7 +109,7 @@ ClipResult planeOrNone(const ClipRequest& request, bool measure, const Domain& d
   std::optional<FocusDepth> depth;
   if (focus->mask && ((isPlane && !request.plane) || measure)) {
     const Stopwatch watch;
-    depth = traceFocus(camera, domain, *focus->mask);
+    depth = FocusTracer(camera, domain, *focus->mask).depths();
     result.focusDepth = viewportDepths(*depth, camera);
     result.focusSeconds = watch.seconds();
   }

@@ -98,15 +98,8 @@ private:
     const Interval inDomain = m_domain.clip(transformed(m_domain.grid().worldToIndex, world));
     const Ray ray = transformed(m_cells.worldToCell(), world);
     const Interval range = m_cells.box().clip(ray, inDomain);
-    if (range.empty())
-      return;
-    const std::size_t i = batch.size++;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      batch.origin[axis][i] = ray.origin[static_cast<int>(axis)];
-      batch.direction[axis][i] = ray.direction[static_cast<int>(axis)];
-    }
-    batch.begin[i] = range.begin;
-    batch.end[i] = range.end;
+    if (!range.empty())
+      batch.add(ray, range);
   }
 
   void found(const Vec2& across, double depth) {

@@ -149,7 +149,7 @@ TEST(DepthPyramid, BoundsHoldForEveryDepthInARectangle) {
     for (int trial = 0; trial < 2000; ++trial) {
       const Vec2 a = randomPoint(random, -15, 15).head<2>();
       const Vec2 b = a + std::pow(random.uniform(), 3) * randomPoint(random, -15, 15).head<2>();
-      const DepthPyramid::Bounds bounds = pyramid.bounds(buffer, a, b);
+      const Interval bounds = pyramid.bounds(buffer, a, b);
       for (int i = 0; i < 50; ++i) {
         const Vec2 p(uniform(random, a.x(), b.x()), uniform(random, a.y(), b.y()));
         ASSERT_LE(bounds.least, buffer.depth(p) + 1e-9);

@@ -34,11 +34,9 @@ Corners cornersOf(const Affine& cellToWorld, const Vec3& cell) {
 
 /// Greatest factor of a style on the extinction in a cell.
 double greatestFactor(const ContextStyle& style, const Affine& cellToWorld, const Vec3& cell) {
-  Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  for (const Vec3& corner : cornersOf(cellToWorld, cell)) {
-    const Vec3 index = style.focus->grid.worldToIndex * corner;
-    box = {box.lower.cwiseMin(index), box.upper.cwiseMax(index)};
-  }
+  Box box = Box::nothing();
+  for (const Vec3& corner : cornersOf(cellToWorld, cell))
+    box.extend(style.focus->grid.worldToIndex * corner);
   return meetsMask(*style.focus, box) ? 1.0 : style.extinction;
 }
 
