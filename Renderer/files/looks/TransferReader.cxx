@@ -52,14 +52,6 @@ TransferLook readOwn(const JsonNode& root) {
   return {std::move(transfer), scalars && scalars->oneOf({"absolute", "relative"}) == 1};
 }
 
-template <int Channels>
-PiecewiseLinear<Channels> stretched(const PiecewiseLinear<Channels>& f, double low, double high) {
-  auto knots = f.knots();
-  for (auto& knot : knots)
-    knot.position = low + knot.position * (high - low);
-  return PiecewiseLinear<Channels>(std::move(knots));
-}
-
 TransferFunction absolute(TransferLook look, const std::string& source) {
   if (look.relative)
     throw inputError(source, "scalars: are relative to a volume; name one of absolute scalars");
@@ -86,7 +78,7 @@ std::vector<OpacityNode> readOpacity(const JsonNode& function) {
   std::vector<OpacityNode> nodes;
   for (const JsonNode& point : function.at("points").elements()) {
     nodes.push_back(readPoint<OpacityNode>(point));
-    nodes.back().y = point.at("y").numberIn(0.0, 1.0);
+    nodes.back().value = point.at("y").numberIn(0.0, 1.0);
   }
   std::ranges::stable_sort(nodes, {}, &OpacityNode::x);
   return nodes;
@@ -96,7 +88,7 @@ std::vector<ColorNode> readColor(const JsonNode& function) {
   std::vector<ColorNode> nodes;
   for (const JsonNode& point : function.at("points").elements()) {
     nodes.push_back(readPoint<ColorNode>(point));
-    nodes.back().color = point.at("color").triple(0.0, 1.0).array();
+    nodes.back().value = point.at("color").triple(0.0, 1.0).array();
   }
   std::ranges::stable_sort(nodes, {}, &ColorNode::x);
   return nodes;
@@ -238,8 +230,9 @@ VolumeProperty readPropertyLines(std::string_view content, const std::string& so
 TransferFunction TransferLook::over(double low, double high) const {
   TransferFunction result = function;
   if (relative) {
-    result.extinction = stretched(function.extinction, low, high);
-    result.albedo = stretched(function.albedo, low, high);
+    const auto stretch = [&](auto& knot) { knot.position = low + knot.position * (high - low); };
+    result.extinction = function.extinction.withKnots(stretch);
+    result.albedo = function.albedo.withKnots(stretch);
   }
   return result;
 }
