@@ -8,7 +8,6 @@
 #include "base/safe/Locks.h"
 #include "base/safe/ShownText.h"
 #include "base/safe/SystemCalls.h"
-#include "model/camera/Turn.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/Machine.h"

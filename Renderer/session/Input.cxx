@@ -34,17 +34,6 @@ std::optional<SegmentNames> namesInFile(const std::optional<std::string>& file) 
   return SegmentNames{*file, readSegmentInfos(*file)};
 }
 
-bool holdsSegmentation(const MrmlDocument& document) {
-  return std::ranges::any_of(document.nodes(), [](const MrmlNode& node) {
-    return node.tag == "Segmentation" || isLabelMap(node);
-  });
-}
-
-Background backgroundOf(const MrmlNode& view) {
-  const ViewBackground colors = viewBackground(view);
-  return Background::gradient(colors.bottom, colors.top);
-}
-
 } // namespace
 
 struct Input::Opened {
@@ -104,8 +93,10 @@ SceneSettings Input::settings(const std::optional<std::string>& volume, bool fol
       settings.crop = readSceneRoi(scene, *plan.roi);
     if (plan.camera && followsCamera)
       settings.camera = readSceneCamera(scene, *plan.camera);
-    if (plan.view)
-      settings.background = backgroundOf(*plan.view);
+    if (plan.view) {
+      const auto [bottom, top] = viewBackground(*plan.view);
+      settings.background = Background::gradient(bottom, top);
+    }
     settings.warnings = plan.warnings;
     settings.files = scene.files.filesRead();
     return settings;
@@ -133,7 +124,8 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
   if (!m_opened->isScene)
     return namesInFile(choice.segmentation);
   return m_opened->with([&](MrmlScene& scene) {
-    const ScenePlan plan = planFor(scene, choice, holdsSegmentation(scene.document));
+    const ScenePlan plan =
+        planFor(scene, choice, std::ranges::any_of(scene.document.nodes(), isSegmentation));
     if (!plan.segmentation)
       return namesInFile(choice.segmentation);
     return std::optional(SegmentNames{scene.document.source() + ": " + shown(*plan.segmentation),

@@ -8,7 +8,6 @@
 #include "files/segments/ClosedSurface.h"
 #include "files/segments/SegmentMask.h"
 #include "files/segments/SegmentTags.h"
-#include "model/masks/SliceInterpolation.h"
 
 #include <functional>
 #include <map>

@@ -1,12 +1,12 @@
 #include "files/slicer/MrmlScene.h"
 
+#include "base/Checked.h"
 #include "base/TextStream.h"
 #include "files/looks/TransferReader.h"
 #include "files/medical/DicomSeries.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/VolumeReader.h"
 #include "model/medium/VolumeProperty.h"
-#include "model/volume/CheckedGrid.h"
 
 #include <set>
 
@@ -33,10 +33,10 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
 /// Grid of a node in the world.
 Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& above,
                 const Grid& grid) {
-  return checkedGrid(grid.size, above * grid.indexToWorld, [&](const std::string& what) {
-    return scene.document.error(node, "its place in the world " + what +
-                                          "; mend the transforms above it");
-  });
+  return {grid.size, checkedMap(above * grid.indexToWorld, [&](const std::string& what) {
+            return scene.document.error(node, "its place in the world " + what +
+                                                  "; mend the transforms above it");
+          })};
 }
 
 /// Names of the files that hold a node's data. Throws Error (input) where there are none.
@@ -68,6 +68,10 @@ MrmlScene::MrmlScene(const std::filesystem::path& path)
 
 bool isLabelMap(const MrmlNode& node) {
   return node.tag == "LabelMapVolume" || (node.tag == "Volume" && node.flag("labelMap", false));
+}
+
+bool isSegmentation(const MrmlNode& node) {
+  return node.tag == "Segmentation" || isLabelMap(node);
 }
 
 bool isScalarVolume(const MrmlNode& node) {

@@ -35,6 +35,8 @@ struct MrmlScene {
 
 /// True for a label map: by its own tag, in older scenes by an attribute.
 bool isLabelMap(const MrmlNode& node);
+/// True for a segmentation or a label map.
+bool isSegmentation(const MrmlNode& node);
 bool isScalarVolume(const MrmlNode& node);
 /// True for a display node of any volume rendering method.
 bool isVolumeRendering(const MrmlNode& node);

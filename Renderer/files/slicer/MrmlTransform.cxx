@@ -1,7 +1,7 @@
 // Transforms above nodes, and cameras, which transforms place.
 
 #include "files/slicer/MrmlScene.h"
-#include "model/camera/CheckedPose.h"
+#include "model/camera/Camera.h"
 
 #include <algorithm>
 
