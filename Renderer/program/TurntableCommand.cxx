@@ -148,7 +148,7 @@ private:
     const auto* clip = std::get_if<ClipDepth>(&scene.clip());
     if (!clip || clip->lookup != ClipDepth::Lookup::linear)
       return std::nullopt;
-    return seenSurface(*clip, scene.focusDepth(), scene.domain());
+    return seenSurface(*clip, scene.clipResult().focusDepth, scene.domain());
   }
 
   /// JSON text: frames, seconds, changes of the surface, warnings.
