@@ -82,8 +82,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
 
   if (options.stats) {
     watch.lap();
-    if (!monitor.stop) // a stop does not wait for measures
-      stats.focus = measureFocus(scene, options.settings.seed, monitor.stop);
+    const std::vector<double>& depth = scene.clipResult().focusDepth;
+    if (!depth.empty() && !monitor.stop) // a stop does not wait for measures
+      stats.focus = measureFocus(scene.forRender(), scene.ranges(), *scene.focus(), depth,
+                                 options.settings.seed, monitor.stop);
     stats.measure = watch.seconds();
     stats.total = total.seconds();
     outputs.write(*options.stats, statsJson(stats, options, scene, result));

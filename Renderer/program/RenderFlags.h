@@ -17,7 +17,7 @@ struct RenderOptions {
   std::vector<std::filesystem::path> inputs;  ///< input files given as such, without presets
   std::vector<std::filesystem::path> outputs; ///< at least one
   NamedBy outputsNamedBy = NamedBy::user;
-  LayerSet layers;
+  LayerSet layers = allLayers;
   std::optional<std::filesystem::path> surface = {}; ///< only with a clip by depth
   std::optional<std::filesystem::path> stats = {};
   /// File for Slicer's return parameters (--returnparameterfile). If set, warnings go to standard

@@ -113,9 +113,9 @@ void settleLayers(const FlagValues& flags, RenderOptions& options) {
   if (!hasExr && !has(ImageFormat::nrrd) && flags.differs("layers"))
     throw usageError("--layers: only .exr and .nrrd have them; add --output FILE.exr");
   for (const std::filesystem::path& path : options.outputs)
-    if (!options.layers.color && imageFormat(path) != ImageFormat::exr)
+    if (!options.layers.contains("color") && imageFormat(path) != ImageFormat::exr)
       throw usageError("--layers: " + path.string() + " needs color; add it, or write .exr alone");
-  options.settings.path.wantNormals = hasExr && options.layers.normal;
+  options.settings.path.wantNormals = hasExr && options.layers.contains("normal");
 }
 
 } // namespace

@@ -20,14 +20,15 @@ Json jsonOf(const Distribution& values) {
 
 /// Adds the measures of the clip.
 void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& focus) {
-  if (scene.mismatch())
-    json["boundaryMismatchMm"] = jsonOf(*scene.mismatch());
-  if (const auto& boundary = scene.boundary(); boundary && boundary->crossings > 0) {
+  const ClipResult& clip = scene.clipResult();
+  if (clip.mismatch)
+    json["boundaryMismatchMm"] = jsonOf(*clip.mismatch);
+  if (const auto& boundary = clip.boundary; boundary && boundary->crossings > 0) {
     json["boundaryGapMm"] = jsonOf(boundary->gap);
     json["boundarySlopeJump"] = jsonOf(boundary->slopeJump);
     json["boundaryDepthJumps"] = boundary->depthJumps;
   }
-  for (const ControlPoint& point : scene.controlPoints()) {
+  for (const ControlPoint& point : clip.controlPoints) {
     const Vec2 raster = scene.camera().toRaster(point.site);
     json["controlPoints"].push_back({raster.x(), raster.y()});
   }

@@ -1,8 +1,9 @@
 #pragma once
 // Statistics of a render: counts, measures, and the time of each stage.
 
+#include "measure/FocusMeasures.h"
 #include "program/RenderFlags.h"
-#include "session/Measures.h"
+#include "session/Scene.h"
 
 namespace fenestra {
 

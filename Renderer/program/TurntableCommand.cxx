@@ -8,7 +8,6 @@
 #include "base/safe/Locks.h"
 #include "base/safe/ShownText.h"
 #include "base/safe/SystemCalls.h"
-#include "model/camera/Turn.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/Machine.h"
@@ -149,7 +148,7 @@ private:
     const auto* clip = std::get_if<ClipDepth>(&scene.clip());
     if (!clip || clip->lookup != ClipDepth::Lookup::linear)
       return std::nullopt;
-    return seenSurface(*clip, scene.focusDepth(), scene.domain());
+    return seenSurface(*clip, scene.clipResult().focusDepth, scene.domain());
   }
 
   /// JSON text: frames, seconds, changes of the surface, warnings.

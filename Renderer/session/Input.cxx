@@ -41,11 +41,6 @@ FocusInput focusFrom(const Segmentation& segmentation, Mask mask, FilesRead file
   return {std::move(mask), std::move(files), segmentation.warnings(), segmentation.namesFrom()};
 }
 
-Background backgroundOf(const MrmlNode& view) {
-  const ViewBackground colors = viewBackground(view);
-  return Background::gradient(colors.bottom, colors.top);
-}
-
 } // namespace
 
 struct Input::Opened {
@@ -105,8 +100,10 @@ SceneSettings Input::settings(const std::optional<std::string>& volume, bool fol
       settings.crop = readSceneRoi(scene, *plan.roi);
     if (plan.camera && followsCamera)
       settings.camera = readSceneCamera(scene, *plan.camera);
-    if (plan.view)
-      settings.background = backgroundOf(*plan.view);
+    if (plan.view) {
+      const auto [bottom, top] = viewBackground(*plan.view);
+      settings.background = Background::gradient(bottom, top);
+    }
     settings.warnings = plan.warnings;
     settings.files = scene.files.filesRead();
     return settings;

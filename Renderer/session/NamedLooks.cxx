@@ -9,7 +9,6 @@
 #include "files/slicer/MrmlScene.h"
 #include "files/slicer/SlicerPresets.h"
 
-#include <algorithm>
 #include <optional>
 
 namespace fenestra {
@@ -21,10 +20,7 @@ std::string_view ownPreset(const std::string& kind, const std::string& name) {
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "" : ", ") + shown(name);
-  return text;
+  return joined(names, ", ", [](const std::string& name) { return shown(name); });
 }
 
 bool isFoundAsFile(const std::string& name) {
@@ -77,11 +73,10 @@ private:
 } // namespace
 
 std::vector<std::string> ownPresets(const std::string& kind) {
-  constexpr std::string_view ending = ".json";
   std::vector<std::string> names;
   for (const std::string& path : embeddedResourceNames(kind + "/"))
-    if (path.ends_with(ending))
-      names.push_back(path.substr(kind.size() + 1, path.size() - kind.size() - 1 - ending.size()));
+    if (path.ends_with(".json"))
+      names.push_back(std::filesystem::path(path).stem());
   return names;
 }
 

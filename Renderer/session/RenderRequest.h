@@ -4,7 +4,7 @@
 #include "clip/surface/ClippingSurface.h"
 #include "model/camera/Camera.h"
 #include "model/masks/MaskShaping.h"
-#include "model/volume/Modality.h"
+#include "model/volume/Volume.h"
 #include "transport/render/Render.h"
 
 #include <filesystem>

@@ -5,6 +5,7 @@
 #include "session/InspectionParts.h"
 
 #include <algorithm>
+#include <memory>
 #include <set>
 
 namespace fenestra {
@@ -60,8 +61,7 @@ private:
     if (!m_plan) {
       choice.needsSegmentation = false;
       m_plan = attempted(planned, m_report["refused"]);
-      const auto& nodes = document().nodes();
-      if (std::any_of(nodes.begin(), nodes.end(), isSegmentation))
+      if (std::ranges::any_of(document().nodes(), isSegmentation))
         m_segmentationProblem = problem;
     }
   }

@@ -4,7 +4,6 @@
 #include "base/Error.h"
 #include "clip/focus/FocusDepth.h"
 #include "files/segments/SegmentationReader.h"
-#include "model/masks/SliceInterpolation.h"
 
 #include <gtest/gtest.h>
 

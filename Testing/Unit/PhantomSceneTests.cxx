@@ -216,7 +216,7 @@ TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
   EXPECT_EQ(opacity[0], static_cast<double>(opacity.size() - 1));
   for (std::size_t i = 0; i < phantom.property.scalarOpacity.size(); ++i) {
     EXPECT_EQ(opacity[2 * i + 1], phantom.property.scalarOpacity[i].x);
-    EXPECT_EQ(opacity[2 * i + 2], phantom.property.scalarOpacity[i].y);
+    EXPECT_EQ(opacity[2 * i + 2], phantom.property.scalarOpacity[i].value);
   }
   EXPECT_EQ(numbers(property, "colorTransfer").size(), 4 * phantom.property.color.size() + 1);
   EXPECT_EQ(numbers(property, "effectiveRange"),

@@ -120,7 +120,7 @@ TEST_F(PhantomFiles, PropertyIsSlicersJson) {
   ASSERT_EQ(opacity.size(), phantom.property.scalarOpacity.size());
   for (std::size_t i = 0; i < opacity.size(); ++i) {
     EXPECT_EQ(opacity[i].at("x"), phantom.property.scalarOpacity[i].x);
-    EXPECT_EQ(opacity[i].at("y"), phantom.property.scalarOpacity[i].y);
+    EXPECT_EQ(opacity[i].at("y"), phantom.property.scalarOpacity[i].value);
   }
   EXPECT_EQ(component.at("rgbTransferFunction").at("points").size(), phantom.property.color.size());
 }

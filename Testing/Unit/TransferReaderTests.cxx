@@ -1,9 +1,9 @@
 // Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and invalid files.
 
 #include "files/looks/TransferReader.h"
-#include "model/medium/VolumeProperty.h"
 
 #include "Approx.h"
+#include "Curves.h"
 #include "Refusals.h"
 
 namespace fenestra::TransferReaderTests {
@@ -105,7 +105,7 @@ TEST(TransferReader, ReadsSlicersJson) {
                 "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 10, "y": 1}]}, )"));
   const std::vector<OpacityNode> nodes = {{0, 0, 0.25, 0.5}, {200, 0.5}};
   for (const double x : {-10.0, 20.0, 50.0, 111.0, 199.0, 300.0}) {
-    const double truth = -std::log1p(-opacityAt(nodes, x)) / 2.0;
+    const double truth = -std::log1p(-curveAt(nodes, x)) / 2.0;
     EXPECT_NEAR(f.extinction(x)[0], truth, 1e-4 * truth) << x;
   }
   EXPECT_TRUE(f.albedo(0) == decodeSrgb({1, 0.5, 0}));

@@ -1,7 +1,5 @@
 #include "clip/surface/SteadySurface.h"
 
-#include "model/camera/Turn.h"
-
 #include <algorithm>
 
 namespace fenestra {

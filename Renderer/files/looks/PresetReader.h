@@ -1,7 +1,7 @@
 #pragma once
 // Reads organ presets: flags and focus for an anatomy (Resources/presets/README.md).
 
-#include "model/volume/Modality.h"
+#include "model/volume/Volume.h"
 
 #include <string>
 #include <string_view>

@@ -52,14 +52,6 @@ TransferLook readOwn(const JsonNode& root) {
   return {std::move(transfer), scalars && scalars->oneOf({"absolute", "relative"}) == 1};
 }
 
-template <int Channels>
-PiecewiseLinear<Channels> stretched(const PiecewiseLinear<Channels>& f, double low, double high) {
-  auto knots = f.knots();
-  for (auto& knot : knots)
-    knot.position = low + knot.position * (high - low);
-  return PiecewiseLinear<Channels>(std::move(knots));
-}
-
 // ---- Slicer's .vp.json
 
 /// Sets `value` to the number of a key, where there is one.
@@ -78,9 +70,9 @@ std::vector<Node> readPoints(const JsonNode& function) {
     readIfThere(point, "midpoint", node.midpoint);
     readIfThere(point, "sharpness", node.sharpness);
     if constexpr (std::is_same_v<Node, OpacityNode>)
-      node.y = point.at("y").numberIn(0.0, 1.0);
+      node.value = point.at("y").numberIn(0.0, 1.0);
     else
-      node.color = point.at("color").triple(0.0, 1.0).array();
+      node.value = point.at("color").triple(0.0, 1.0).array();
   }
   std::ranges::stable_sort(nodes, {}, &Node::x);
   return nodes;
@@ -220,8 +212,9 @@ VolumeProperty readPropertyLines(std::string_view content, const std::string& so
 TransferFunction TransferLook::over(double low, double high) const {
   TransferFunction result = function;
   if (relative) {
-    result.extinction = stretched(function.extinction, low, high);
-    result.albedo = stretched(function.albedo, low, high);
+    const auto stretch = [&](auto& knot) { knot.position = low + knot.position * (high - low); };
+    result.extinction = function.extinction.withKnots(stretch);
+    result.albedo = function.albedo.withKnots(stretch);
   }
   return result;
 }

@@ -9,7 +9,6 @@
 #include "files/segments/LabelSearch.h"
 #include "files/segments/SegmentMask.h"
 #include "files/segments/SegmentTags.h"
-#include "model/masks/SliceInterpolation.h"
 
 #include <functional>
 #include <map>

@@ -1,11 +1,11 @@
 #include "files/slicer/MrmlScene.h"
 
+#include "base/Checked.h"
 #include "files/looks/TransferReader.h"
 #include "files/medical/DicomSeries.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/VolumeReader.h"
 #include "model/medium/VolumeProperty.h"
-#include "model/volume/CheckedGrid.h"
 
 #include <set>
 
@@ -32,9 +32,10 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
 /// Grid of a node in the world.
 Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& above,
                 const Grid& grid) {
-  return checkedGrid(
-      grid.size, above * grid.indexToWorld,
-      scene.document.complaint(node, "its place in the world ", "; mend the transforms above it"));
+  return {grid.size,
+          checkedMap(above * grid.indexToWorld,
+                     scene.document.complaint(node, "its place in the world ",
+                                              "; mend the transforms above it"))};
 }
 
 /// Names of the files that hold a node's data. Throws Error (input) where there are none.

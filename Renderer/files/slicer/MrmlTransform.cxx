@@ -2,7 +2,7 @@
 
 #include "files/slicer/MrmlScene.h"
 #include "files/slicer/TransformFile.h"
-#include "model/camera/CheckedPose.h"
+#include "model/camera/Camera.h"
 
 #include <algorithm>
 
