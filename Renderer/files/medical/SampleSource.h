@@ -2,7 +2,7 @@
 // Samples in their file, and their transfer to a store block by block, so that only the store is as
 // large as the volume.
 
-#include "files/medical/SampleSurvey.h"
+#include "files/medical/SampleStore.h"
 
 #include <tbb/parallel_pipeline.h>
 
