@@ -76,8 +76,7 @@ Axes axesOf(const Slice& slice) {
 void checkAlike(const std::vector<Slice>& slices) {
   const Slice& first = slices.front();
   const auto near = [](const std::vector<double>& a, const std::vector<double>& b, double error) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [error](double x, double y) { return std::abs(x - y) <= error; });
+    return std::ranges::equal(a, b, [=](double x, double y) { return std::abs(x - y) <= error; });
   };
   for (const Slice& slice : slices) {
     const auto refuse = [&](const char* field) {

@@ -23,9 +23,9 @@ constexpr std::uint64_t largestMultiBlock = 64ULL << 20; ///< bytes of a .vtm
 bool isNumbered(std::string_view name, std::string_view start, std::string_view end) {
   if (name.size() < start.size() + end.size() || !name.starts_with(start) || !name.ends_with(end))
     return false;
-  const std::string_view number =
-      name.substr(start.size(), name.size() - start.size() - end.size());
-  return number.find_first_not_of("0123456789+- ") == std::string_view::npos;
+  name.remove_prefix(start.size());
+  name.remove_suffix(end.size());
+  return name.find_first_not_of("0123456789+- ") == std::string_view::npos;
 }
 
 /// Adds the existing files of a pattern like "s%03d.raw 1 99 1", whatever their numbers.

@@ -34,7 +34,7 @@ struct SampleSource {
   std::size_t count = 0;
   bool swapped = false; ///< byte order is not the machine's
   std::optional<Rescaling> rescaling = {};
-  /// Fills memory with the next bytes of the file. Throws where the file ends before.
+  /// Fills memory with the next bytes of the file, fewer than 2^30. Throws where it ends before.
   std::function<void(void*, std::size_t)> read = {};
   /// Called after the last sample; throws where the file proves to be damaged. May be empty.
   std::function<void()> finish = {};
