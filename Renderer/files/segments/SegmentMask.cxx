@@ -93,7 +93,7 @@ public:
   }
 
   /// Sets grid, voxels and their count, cropped to the focus; leaves `mask` unchanged without
-  /// chosen voxels. Those of `continued` beyond the labelmap repeat its outermost ones, uncounted.
+  /// chosen voxels. Voxels of `continued` beyond the labelmap repeat its outermost ones, uncounted.
   void fill(Mask& mask, const VoxelExtent& continued) const {
     const VoxelExtent extent = this->extent();
     if (extent.empty())
