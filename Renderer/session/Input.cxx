@@ -20,8 +20,7 @@ VolumeInput volumeInFiles(const std::filesystem::path& path,
                           const std::optional<std::string>& choice) {
   if (!isFolder(path))
     return {readVolume(path), {path.string()}};
-  const std::vector<DicomSeries> all = findDicomSeries(path);
-  const DicomSeries& series = chooseSeries(all, choice, path.string());
+  const DicomSeries series = chooseSeries(findDicomSeries(path), choice, path.string());
   VolumeInput input{readDicomVolume(series)};
   for (const auto& file : series.files)
     input.files.push_back(file.string());
