@@ -29,7 +29,7 @@ std::vector<std::string> splitAtCommas(const std::string& text) {
 }
 
 Error badValue(const std::string& flag, const std::string& expected, const std::string& got) {
-  return usageError("--" + flag + ": expected " + expected + ", got '" + oneLine(got) + "'");
+  return usageError("--", flag, ": expected ", expected, ", got '", oneLine(got), "'");
 }
 
 /// Throws Error (usage) unless there is a value, and in the flag's range.
@@ -38,10 +38,8 @@ Number inRange(std::optional<Number> value, const Flag& flag, const std::string&
   const auto [least, greatest] = std::pair(flag.takes.least, flag.takes.greatest);
   if (value && least <= static_cast<double>(*value) && static_cast<double>(*value) <= greatest)
     return *value;
-  throw badValue(flag.name,
-                 (std::is_integral_v<Number> ? "a whole number from " : "a number from ") +
-                     numberText(least) + " to " + numberText(greatest),
-                 given);
+  const char* const kind = std::is_integral_v<Number> ? "a whole number from " : "a number from ";
+  throw badValue(flag.name, textOf(kind, numberText(least), " to ", numberText(greatest)), given);
 }
 
 } // namespace

@@ -5,9 +5,9 @@
 #include "program/CommandLine.h"
 #include "program/InspectText.h"
 #include "program/Machine.h"
-#include "program/RenderFlags.h"
-#include "program/SceneFlags.h"
+#include "program/MergedFlags.h"
 
+#include <algorithm>
 #include <iostream>
 
 namespace fenestra {
@@ -32,6 +32,15 @@ const CommandSyntax inspectSyntax = {
     inspectFlags,
 };
 
+/// Arguments of `merged` that are not given.
+std::vector<std::string> argumentsBeyond(const FlagValues& given, const FlagValues& merged) {
+  std::vector<std::string> arguments = merged.arguments();
+  std::erase_if(arguments, [before = given.arguments()](const std::string& argument) {
+    return std::ranges::find(before, argument) != before.end();
+  });
+  return arguments;
+}
+
 } // namespace
 
 int inspectCommand(int argc, char** argv, int first) {
@@ -54,7 +63,7 @@ int inspectCommand(int argc, char** argv, int first) {
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())
-    use["stored"] = sceneArguments(given, flags);
+    use["stored"] = argumentsBeyond(given, flags);
   const Inspection leftOut = stored.leftOut;
   Inspection& warnings = inspection["warnings"];
   warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());

@@ -1,7 +1,7 @@
 #include "program/InspectText.h"
 
 #include "base/safe/ShownText.h"
-#include "program/Help.h"
+#include "program/CommandLine.h"
 
 #include <algorithm>
 #include <cmath>

@@ -16,18 +16,14 @@
 namespace fenestra {
 namespace {
 
-std::string sizeText(const Size3& size) {
-  return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" + std::to_string(size.z());
-}
-
 constexpr const char* phantomGroup = "Phantom";
 const Flag phantomFlags[] = {
     {"output", "DIR", phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size", "WxHxD", phantomGroup,
-     "Voxels over the same field of view; N for the cube [knee " + sizeText(KneeOptions().size) +
-         ", foot " + sizeText(FootOptions().size) + ", fetus " + sizeText(FetusOptions().size) +
-         ", cube " + std::to_string(CubeOptions().size) + "]",
+     textOf("Voxels over the same field of view; N for the cube [knee ",
+            numbersText(KneeOptions().size, "x"), ", foot ", numbersText(FootOptions().size, "x"),
+            ", fetus ", numbersText(FetusOptions().size, "x"), ", cube ", CubeOptions().size, "]"),
      Takes{.least = 16, .greatest = 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "The cube's edge",
      Takes::number(1e-3, 1e5).shows(numberText(CubeOptions().edge))},
@@ -48,7 +44,7 @@ std::optional<Size3> sizeOf(const FlagValues& values) {
   Size3 size;
   char rest = 0;
   if (std::sscanf(text->c_str(), "%ldx%ldx%ld%c", &size[0], &size[1], &size[2], &rest) != 3)
-    throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '" + *text + "'");
+    throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '", *text, "'");
   return size;
 }
 
@@ -93,10 +89,8 @@ int phantomCommand(int argc, char** argv, int first) {
   useMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
-  std::cout << oneLine(folder) << ":";
-  for (const std::string& file : files)
-    std::cout << ' ' << oneLine(file);
-  std::cout << ", " << phantom.segments.size() << " segments" << std::endl;
+  std::cout << oneLine(textOf(folder, ": ", joined(files, " "))) << ", " << phantom.segments.size()
+            << " segments" << std::endl;
   return 0;
 }
 

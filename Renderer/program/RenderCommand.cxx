@@ -2,6 +2,8 @@
 
 #include "base/TextStream.h"
 #include "base/safe/ShownText.h"
+#include "clip/mesh/SurfaceWriter.h"
+#include "files/pictures/ImageWriter.h"
 #include "program/CommandLine.h"
 #include "program/Machine.h"
 #include "program/Pictures.h"
@@ -11,25 +13,43 @@
 #include "program/Stop.h"
 
 #include <algorithm>
+#include <future>
 #include <iostream>
 
 namespace fenestra {
 namespace {
 
-RenderResult renderWithProgress(const RenderOptions& options, const Scene& scene,
-                                RenderMonitor& monitor) {
-  const Progress progress(options, monitor);
-  return renderPicture(options, scene, monitor);
+/// Starts writing options.surface, if set, in parallel to other work. The arguments must outlive
+/// the future; its get() throws Error (output).
+std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs) {
+  if (!options.surface)
+    return std::async(std::launch::deferred, [] {});
+  return std::async([&options, &scene, &outputs] {
+    const auto& clip = std::get<ClipDepth>(scene.clip());
+    writeSurface(surfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)), *options.surface,
+                 outputs);
+  });
+}
+
+/// A warning for each existing file that belongs to one of options.outputs and was not written with
+/// it, such as the old depth beside a `.nrrd` that has no depth now. For after the commit.
+std::vector<std::string> staleParts(const RenderOptions& options, const Outputs& outputs) {
+  std::vector<std::string> warnings;
+  std::error_code failed;
+  for (const std::filesystem::path& path : options.outputs)
+    for (const std::filesystem::path& file : imageFiles(path))
+      if (!outputs.written(file) && std::filesystem::exists(file, failed))
+        warnings.push_back(oneLine(file.string()) + ": is of an earlier picture than " +
+                           oneLine(path.filename().string()) + "; remove it");
+  return warnings;
 }
 
 void report(const RenderOptions& options, const RenderResult& result, double seconds) {
-  std::string files;
-  for (const std::filesystem::path& path : options.outputs)
-    files += (files.empty() ? "" : ", ") + path.string();
   const double noise = result.film.noise();
   TextWriter line;
   line.precision(3);
-  line << files << ": " << options.scene.width << "x" << options.scene.height << " pixels, "
+  line << joined(options.outputs, ", ", [](const auto& path) { return path.string(); }) << ": "
+       << options.scene.width << "x" << options.scene.height << " pixels, "
        << result.finishedSamples << (result.finishedSamples == 1 ? " sample" : " samples");
   const SampleCounts counts = result.film.sampleCounts();
   if (counts.least == counts.greatest)
@@ -64,7 +84,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   std::future<void> surface = startSurface(options, scene, outputs);
   Stopwatch watch;
   RenderStats stats;
-  const RenderResult result = renderWithProgress(options, scene, monitor);
+  const RenderResult result = [&] {
+    const Progress progress(options, monitor);
+    return render(scene.forRender(), settingsFor(options, scene.background()), monitor);
+  }();
   stats.transport = watch.seconds();
   surface.get();
   if (result.finishedSamples == 0) {

@@ -45,8 +45,8 @@ Rgb linearColor(const FlagValues& flags, const std::string& name, const std::str
   const bool numbers = text.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
   Rgb value = numbers ? Rgb(flags.triple(name).array()) : Rgb::Constant(-1.0);
   if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
-    throw usageError("--" + name + ": expected R,G,B, each from 0 to 1e12, or " + otherwise +
-                     ", got '" + oneLine(text) + "'");
+    throw usageError("--", name, ": expected R,G,B, each from 0 to 1e12, or ", otherwise, ", got '",
+                     oneLine(text), "'");
   return value;
 }
 
@@ -77,19 +77,12 @@ void readSize(const FlagValues& flags, const std::string& name, SceneRequest& sc
   const int parts = std::sscanf(text.c_str(), "%dx%d%c", &scene.width, &scene.height, &rest);
   if (parts != 2 || std::min(scene.width, scene.height) < 1 ||
       std::max(scene.width, scene.height) > largest)
-    throw usageError("--" + name + ": expected WIDTHxHEIGHT in pixels, each from 1 to " +
-                     std::to_string(largest) + ", got '" + oneLine(text) + "'");
+    throw usageError("--", name, ": expected WIDTHxHEIGHT in pixels, each from 1 to ", largest,
+                     ", got '", oneLine(text), "'");
 }
 
 void readLayers(const FlagValues& flags, const std::string& name, LayerSet& layers) {
   layers = layerSet(flags.list(name));
-}
-
-std::string presetNames() {
-  std::string names;
-  for (const std::string& name : ownPresets("presets"))
-    names += name + ", ";
-  return names;
 }
 
 // ---- the table
@@ -117,8 +110,9 @@ struct RenderTable {
        "repeated",
        Takes::list().into(scene.focus), Topic::focus},
       {"preset", "NAME|FILE|auto", sceneGroup,
-       "Focus, look, view and clip of an anatomy in one: " + presetNames() +
-           "a .json, or auto (by the segments' names); other flags win over it",
+       textOf(
+           "Focus, look, view and clip of an anatomy in one: ", joined(ownPresets("presets"), ", "),
+           ", a .json, or auto (by the segments' names); other flags win over it"),
        Takes::text().into(options.preset)},
       {"output", "FILE", sceneGroup,
        "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "

@@ -97,7 +97,8 @@ private:
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
         publish(result, false);
     };
-    const RenderResult result = renderPicture(m_options, *m_scene, m_monitor);
+    const RenderResult result =
+        render(m_scene->forRender(), settingsFor(m_options, m_scene->background()), m_monitor);
     m_complete = result.reason != StopReason::request;
     if (m_complete)
       publish(result, true);

@@ -12,23 +12,22 @@
 
 namespace fenestra {
 
-/// Writes an answer to standard output, a line of JSON; lines of several threads do not mix. Ends
-/// the process if standard output is closed: nobody waits for pictures.
+/// Writes a line of JSON to standard output; lines of several threads do not mix. Ends the process
+/// if standard output is closed: nobody waits for pictures.
 void answer(const nlohmann::ordered_json& content);
 /// `id`: the change's, or null.
 void answerError(const nlohmann::json& id, const std::string& message);
 
 /// One line of input.
 struct ServeChange {
-  nlohmann::json flags;        ///< {"flag": value, …}
+  nlohmann::json flags = {};   ///< {"flag": value, …}
   nlohmann::json id = nullptr; ///< null, a number, or a text of at most 256 bytes
   Stopwatch since = {};        ///< time since arrival
 };
 using ServeChanges = std::vector<ServeChange>;
 
-/// Parses a line. Sets `id` as soon as the line's id is known, for the answer to an error. Throws
-/// Error for a line that is not JSON or whose id has another type.
-ServeChange parseChange(const std::string& line, nlohmann::json& id);
+/// The id of a change; null: none. Throws Error (usage) for an id of another type.
+nlohmann::json idOf(const nlohmann::json& change);
 
 /// Flags after a line's changes {"flag": value, …}. A value is a text, a number, or a list of them,
 /// as on the command line; null removes the flag. Throws Error (usage) for a flag that is unknown

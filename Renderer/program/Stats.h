@@ -13,13 +13,10 @@ struct RenderStats {
   std::vector<std::string> warnings = {}; ///< beside the scene's
 };
 
-/// Content of options.stats, which must be set: JSON text with the contract's keys, and counters of
-/// work done and left out: shadowRays, gradients, emptyPixels (certain from one sample; not in
-/// samplesPerPixel), cells (of the majorant grid), focusVoxels (of the cropped labelmap),
-/// filesRead, preset. Measures of the clip, beside boundaryMismatchMm and focusCoverage:
-/// boundaryGapMm, boundarySlopeJump, boundaryDepthJumps, focusKept, focusCoverageUnclipped,
-/// focusLight, contextRemoved (BoundaryMeasures, FocusReport), controlPoints (of a spline; column
-/// and row in the picture). Names of files are relative to the statistics' folder.
+/// Content of options.stats, which must be set, as JSON text. emptyPixels: certain from one sample,
+/// and not in samplesPerPixel; cells: of the majorant grid; focusVoxels: of the cropped labelmap;
+/// controlPoints: column and row in the picture. Measures of the clip: see BoundaryMeasures and
+/// FocusReport. Names of files are relative to the statistics' folder.
 std::string statsJson(const RenderStats& stats, const RenderOptions& options, const Scene& scene,
                       const RenderResult& result);
 

@@ -99,7 +99,8 @@ private:
       warn(warning);
     RenderOptions options = m_options.render;
     options.outputs = m_options.pictures(frame);
-    const RenderResult result = renderPicture(options, m_view.scene, m_monitor);
+    const RenderResult result = render(m_view.scene.forRender(),
+                                       settingsFor(options, m_view.scene.background()), m_monitor);
     if (result.reason == StopReason::request)
       return false;
     writePictures(options, m_view.scene, result, m_words, m_outputs);
