@@ -80,16 +80,13 @@ std::vector<std::string> FlagValues::texts(const std::string& name) const {
 
 std::optional<double> FlagValues::number(const std::string& name) const {
   const auto given = text(name);
-  if (!given)
-    return std::nullopt;
-  return inRange(parsedNumber(*given), flag(name), *given);
+  return given ? std::optional(inRange(parsedNumber(*given), flag(name), *given)) : std::nullopt;
 }
 
 std::optional<std::uint64_t> FlagValues::count(const std::string& name) const {
   const auto given = text(name);
-  if (!given)
-    return std::nullopt;
-  return inRange(parsed<std::uint64_t>(*given), flag(name), *given);
+  return given ? std::optional(inRange(parsed<std::uint64_t>(*given), flag(name), *given))
+               : std::nullopt;
 }
 
 std::vector<double> FlagValues::numbers(const std::string& name, std::size_t size) const {

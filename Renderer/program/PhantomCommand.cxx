@@ -8,7 +8,6 @@
 #include "phantoms/Knee.h"
 #include "phantoms/PhantomWriter.h"
 #include "program/CommandLine.h"
-#include "program/Machine.h"
 
 #include <cstdio>
 #include <iostream>
@@ -36,31 +35,26 @@ const CommandSyntax phantomSyntax = {
     phantomFlags,
 };
 
-/// Size WxHxD in voxels.
-std::optional<Size3> sizeOf(const FlagValues& values) {
-  const auto text = values.text("size");
-  if (!text)
-    return std::nullopt;
-  Size3 size;
-  char rest = 0;
-  if (std::sscanf(text->c_str(), "%ldx%ldx%ld%c", &size[0], &size[1], &size[2], &rest) != 3)
-    throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '", *text, "'");
-  return size;
-}
-
-/// Options of a phantom whose size is --size.
+/// Options of a phantom whose size is --size, WxHxD in voxels.
 template <typename Options>
 Options sized(const FlagValues& values) {
   Options options;
-  options.size = sizeOf(values).value_or(options.size);
+  const auto text = values.text("size");
+  if (!text)
+    return options;
+  Size3& size = options.size;
+  char rest = 0;
+  if (std::sscanf(text->c_str(), "%ldx%ldx%ld%c", &size[0], &size[1], &size[2], &rest) != 3)
+    throw usageError("--size: expected WIDTHxHEIGHTxDEPTH in voxels, got '", *text, "'");
   return options;
 }
 
 Phantom makeCube(const FlagValues& values) {
   CubeOptions options;
-  options.edge = values.number("edge").value_or(options.edge);
-  if (const auto size = values.count("size"))
-    options.size = static_cast<std::int64_t>(*size);
+  if (values.has("edge"))
+    values.read("edge", options.edge);
+  if (values.has("size"))
+    values.read("size", options.size);
   return makeCubePhantom(options);
 }
 

@@ -29,9 +29,8 @@ using ServeChanges = std::vector<ServeChange>;
 /// The id of a change; null: none. Throws Error (usage) for an id of another type.
 nlohmann::json idOf(const nlohmann::json& change);
 
-/// Flags after a line's changes {"flag": value, …}. A value is a text, a number, or a list of them,
-/// as on the command line; null removes the flag. Throws Error (usage) for a flag that is unknown
-/// or cannot change.
+/// Flags after a change. A value is a text, a number, or a list of them, as on the command line;
+/// null removes the flag. Throws Error (usage) for a flag that is unknown or cannot change.
 FlagValues changedFlags(const nlohmann::json& change, const FlagValues& flags);
 
 /// Throws Error: usage if the flags after a change contradict each other, input if a look that the
@@ -39,7 +38,7 @@ FlagValues changedFlags(const nlohmann::json& change, const FlagValues& flags);
 void checkChange(const nlohmann::json& change, const FlagValues& flags, const Input& input);
 
 /// Reads standard input in its own thread. A change stops the render under way. The end of input
-/// ends the process as signals do (program/Stop), after any picture that is being put in place.
+/// ends the process (endProcess).
 class ServeInput {
 public:
   ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor);
