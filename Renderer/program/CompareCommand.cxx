@@ -48,7 +48,8 @@ Comparison compared(const FlagValues& values, const Image& a, const Image& b) {
   try {
     return compareImages(a, b);
   } catch (const Error& error) {
-    throw Error(error.kind(), *values.text("A") + ", " + *values.text("B") + ": " + error.what());
+    throw Error(error.kind(),
+                textOf(*values.text("A"), ", ", *values.text("B"), ": ", error.what()));
   }
 }
 

@@ -5,7 +5,6 @@
 #include "phantoms/PhantomWriter.h"
 #include "phantoms/Phantoms.h"
 #include "program/CommandLine.h"
-#include "program/Machine.h"
 
 #include <cstdio>
 #include <iostream>
@@ -13,18 +12,14 @@
 namespace fenestra {
 namespace {
 
-std::string sizeText(const Size3& size) {
-  return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" + std::to_string(size.z());
-}
-
 constexpr const char* phantomGroup = "Phantom";
 const Flag phantomFlags[] = {
     {"output", "DIR", phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size", "WxHxD", phantomGroup,
-     "Voxels over the same field of view; N for the cube [knee " + sizeText(kneeSize) + ", foot " +
-         sizeText(footSize) + ", fetus " + sizeText(fetusSize) + ", cube " +
-         std::to_string(CubeOptions().size) + "]",
+     textOf("Voxels over the same field of view; N for the cube [knee ", numbersText(kneeSize, "x"),
+            ", foot ", numbersText(footSize, "x"), ", fetus ", numbersText(fetusSize, "x"),
+            ", cube ", CubeOptions().size, "]"),
      Takes{.least = 16, .greatest = 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "The cube's edge",
      Takes::number(1e-3, 1e5).shows(numberText(CubeOptions().edge))},
@@ -51,9 +46,10 @@ Size3 sizeOf(const FlagValues& values, const Size3& standard) {
 
 Phantom makeCube(const FlagValues& values) {
   CubeOptions options;
-  options.edge = values.number("edge").value_or(options.edge);
-  if (const auto size = values.count("size"))
-    options.size = static_cast<std::int64_t>(*size);
+  if (values.has("edge"))
+    values.read("edge", options.edge);
+  if (values.has("size"))
+    values.read("size", options.size);
   return makeCubePhantom(options);
 }
 
@@ -82,10 +78,8 @@ int phantomCommand(int argc, char** argv, int first) {
   useMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
-  std::cout << oneLine(folder) << ":";
-  for (const std::string& file : files)
-    std::cout << ' ' << oneLine(file);
-  std::cout << ", " << phantom.segments.size() << " segments" << std::endl;
+  std::cout << oneLine(textOf(folder, ": ", joined(files, " "))) << ", " << phantom.segments.size()
+            << " segments" << std::endl;
   return 0;
 }
 
