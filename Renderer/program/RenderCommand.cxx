@@ -4,13 +4,13 @@
 #include "base/safe/ShownText.h"
 #include "clip/mesh/SurfaceWriter.h"
 #include "files/pictures/ImageWriter.h"
+#include "measure/FocusMeasures.h"
 #include "program/CommandLine.h"
 #include "program/FileNames.h"
 #include "program/Pictures.h"
 #include "program/Progress.h"
 #include "program/SlicerModule.h"
 #include "program/Stop.h"
-#include "measure/FocusMeasures.h"
 
 #include <algorithm>
 #include <future>

@@ -48,8 +48,8 @@ Rgb linearColor(const FlagValues& flags, const std::string& name, const std::str
                     : isGrey ? Rgb::Constant(flags.numbers(name, 1)[0])
                              : Rgb(flags.triple(name).array());
   if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
-    throw usageError("--", name, ": expected R,G,B, or one number for grey, from 0 to 1e12, or ", otherwise, ", got '",
-                     oneLine(text), "'");
+    throw usageError("--", name, ": expected R,G,B, or one number for grey, from 0 to 1e12, or ",
+                     otherwise, ", got '", oneLine(text), "'");
   return value;
 }
 
