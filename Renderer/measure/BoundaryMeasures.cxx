@@ -58,7 +58,7 @@ std::optional<Edge> edgeAt(const Crossing& crossing, const Clip& clip, const Dom
   const DepthBuffer& buffer = focus.depth;
   const std::int64_t column = crossing.column, row = crossing.row;
   const auto [x, y] = outward(crossing);
-  const std::int64_t farColumn = column + 2 * x, farRow = row + 2 * y;
+  const std::int64_t farColumn = column + std::int64_t{2} * x, farRow = row + std::int64_t{2} * y;
   const bool isSample =
       farColumn >= 0 && farRow >= 0 && farColumn < buffer.columns() && farRow < buffer.rows();
   if (!isSample || focus.isFocus(farColumn, farRow))

@@ -25,7 +25,7 @@ double uterineWall(const Vec3& p) {
 }
 
 /// The fetus in its fluid.
-class FetusSubject : public LayeredSubject<Place> {
+class FetusSubject : public LayeredSubject<PaintedPlace> {
 public:
   static constexpr double background = 6.0; ///< fluid
 
@@ -43,7 +43,7 @@ public:
     layer(segment("wall", "Uterine wall", {0.72, 0.36, 0.32}), wallEcho, everywhere, uterineWall);
   }
 
-  Place site(const Vec3& point) const { return {point, -infinity}; } // no outside in view
+  PaintedPlace site(const Vec3& point) const { return {point, -infinity}; } // no outside in view
 
   /// Applies speckle of pulse size, attenuation with depth, and noise.
   std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const {

@@ -8,7 +8,7 @@
 namespace fenestra {
 
 /// A place with the distances that most layers need.
-struct FootSite : Place {
+struct FootSite : PaintedPlace {
   double fascia;              ///< mm to the bottom of the subcutaneous fat
   FootBones::Distances bones; ///< mm
   std::size_t nearest;        ///< index of the nearest bone

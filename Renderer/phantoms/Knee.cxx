@@ -18,7 +18,7 @@ constexpr double film = 0.7; ///< mm; fluid on the joint's faces
 constexpr double fasciaSignal = 210.0;
 
 /// A place with the distances that most layers need.
-struct KneeSite : Place {
+struct KneeSite : PaintedPlace {
   double fascia;                        ///< mm to the sheath around muscles and joint
   double femur, tibia, fibula, patella; ///< mm to the bones' surfaces
   double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm

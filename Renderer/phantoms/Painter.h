@@ -11,7 +11,7 @@
 namespace fenestra {
 
 /// Place in a subject.
-struct Place {
+struct PaintedPlace {
   Vec3 point;     ///< world
   double surface; ///< mm to the subject's outside
 
@@ -22,7 +22,7 @@ struct Place {
 inline const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
 
 /// Base of a subject: its segments, and its layers front to back, each of which hides the later
-/// ones. `S`: a Place with the data that the layers need.
+/// ones. `S`: a PaintedPlace with the data that the layers need.
 template <typename S>
 class LayeredSubject {
 public:

@@ -54,7 +54,7 @@ void answerError(const json& id, const std::string& message) {
 
 json idOf(const json& change) {
   constexpr std::size_t longest = 256;
-  const json id = change.is_object() ? change.value("id", json()) : json();
+  json id = change.is_object() ? change.value("id", json()) : json();
   const bool isShort = id.is_string() && id.get_ref<const std::string&>().size() <= longest;
   if (!id.is_null() && !id.is_number() && !isShort)
     throw usageError("id: must be a number, a text of at most 256 bytes, or null");

@@ -112,7 +112,8 @@ std::array<double, 2> usualRange(const Volume& volume) {
 TransferFunction relativeTransfer(const Volume& volume) {
   const double unit =
       100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm
-  const auto [low, high] = usualRange(volume);
+  const std::array<double, 2> range = usualRange(volume);
+  const double low = range[0], high = range[1];
   if (!(high > low))
     return {ScalarFunction({{low, ScalarFunction::Value(0.02 * unit)}}),
             ColorFunction({{low, Rgb(0.9, 0.85, 0.8)}})};
