@@ -22,7 +22,8 @@ inline void writeFile(const std::filesystem::path& path, std::string_view conten
 }
 
 inline void writeImage(const Image& image, const ImagePlane& plane,
-                       const std::filesystem::path& path, const std::string& view = "") {
+                       const std::filesystem::path& path,
+                       DisplayView view = DisplayView::photographic) {
   for (const std::filesystem::path& file : imageFiles(path))
     forgetIfRead(file);
   Outputs outputs;

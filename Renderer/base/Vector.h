@@ -29,6 +29,17 @@ struct Interval {
   bool empty() const { return !(begin < end); }
 };
 
+/// Shortest stretch that holds both. {infinity, -infinity} joins nothing.
+inline Interval joined(const Interval& a, const Interval& b) {
+  return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
+}
+
+/// Smooth step from 0 at `low` to 1 at `high`; falling if low > high.
+inline double smoothStep(double low, double high, double x) {
+  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
 /// origin + t * direction. In world space the direction is a unit vector, so t is in mm; mapped
 /// into index space the direction is scaled so that t stays in world mm.
 struct Ray {
@@ -46,6 +57,13 @@ inline Ray transformed(const Affine& map, const Ray& ray) {
 struct Box {
   Vec3 lower = Vec3::Zero();
   Vec3 upper = Vec3::Zero();
+
+  /// Holds no point; grows by extend.
+  static Box nothing() { return {Vec3::Constant(infinity), Vec3::Constant(-infinity)}; }
+  void extend(const Vec3& point) {
+    lower = lower.cwiseMin(point);
+    upper = upper.cwiseMax(point);
+  }
 
   Vec3 center() const { return 0.5 * (lower + upper); }
   Vec3 corner(int i) const {

@@ -38,8 +38,8 @@ double Film::noise() const {
 
 SampleCounts Film::sampleCounts() const {
   SampleCounts counts{std::numeric_limits<std::uint64_t>::max(), 0, 0.0, 0};
-  for (const PixelSums& pixel : m_pixels)
-    counts.certainPixels += pixel.isCertain ? 1 : 0;
+  counts.certainPixels =
+      static_cast<std::size_t>(std::ranges::count(m_pixels, true, &PixelSums::isCertain));
   const bool allCertain = counts.certainPixels == m_pixels.size();
   for (const PixelSums& pixel : m_pixels) {
     if (pixel.isCertain && !allCertain)

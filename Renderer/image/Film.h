@@ -54,6 +54,11 @@ public:
 
   int width() const { return m_width; }
   int height() const { return m_height; }
+  /// Index of a pixel in pixels().
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_width) +
+           static_cast<std::size_t>(column);
+  }
   std::size_t pixelCount() const { return m_pixels.size(); }
   PixelSums& at(int column, int row) { return m_pixels[index(column, row)]; }
   const PixelSums& at(int column, int row) const { return m_pixels[index(column, row)]; }
@@ -65,11 +70,6 @@ public:
   SampleCounts sampleCounts() const;
 
 private:
-  std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_width) +
-           static_cast<std::size_t>(column);
-  }
-
   int m_width, m_height;
   std::vector<PixelSums> m_pixels;
 };

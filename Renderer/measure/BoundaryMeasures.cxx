@@ -2,11 +2,9 @@
 
 #include "clip/focus/Contour.h"
 
-#include <algorithm>
-#include <numeric>
+#include <optional>
 
 namespace fenestra {
-
 namespace {
 
 /// Camera of the clip; null for ClipNone.
@@ -31,67 +29,62 @@ struct Edge {
   bool jumps;           ///< true: the focus's depth jumps at `inside`
 };
 
-/// Crossings of the outline that have context beyond.
-class Outline {
-public:
-  Outline(const Clip& clip, const Domain& volume, const FocusDepth& focus)
-      : m_clip(clip), m_volume(volume), m_focus(focus), m_camera(*cameraOf(clip)) {
-    for (const Contour& contour : traceContours(focus))
-      for (const Crossing& crossing : contour)
-        add(crossing);
-  }
+/// Depth, mm, at which the remaining volume begins on the ray through `position`; infinity: none.
+double contextAt(const Clip& clip, const Domain& volume, const Vec2& position) {
+  const Camera& camera = *cameraOf(clip);
+  const Ray ray = camera.rayThrough(position);
+  const Interval part =
+      volume.clip(transformed(volume.grid().worldToIndex, ray), behindSurface(clip, ray));
+  return part.empty() ? infinity : part.begin * camera.depthPerLength(ray);
+}
 
-  const std::vector<Edge>& edges() const { return m_edges; }
+double focusAt(const FocusDepth& focus, std::int64_t column, std::int64_t row) {
+  return focus.isFocus(column, row) ? focus.depth.at(focus.depth.sample(column, row)) : infinity;
+}
 
-  /// Depth, mm, at which the remaining volume begins on the ray through (x, y); infinity: none.
-  double contextAt(const Vec2& position) const {
-    const Ray ray = m_camera.rayThrough(position);
-    const Interval part =
-        m_volume.clip(transformed(m_volume.grid().worldToIndex, ray), behindSurface(m_clip, ray));
-    return part.empty() ? infinity : part.begin * m_camera.depthPerLength(ray);
-  }
+bool jumps(const FocusDepth& focus, std::int64_t column, std::int64_t row) {
+  const double own = focusAt(focus, column, row);
+  for (std::int64_t y = row - 1; y <= row + 1; ++y)
+    for (std::int64_t x = column - 1; x <= column + 1; ++x)
+      if (const double other = focusAt(focus, x, y);
+          other < infinity && std::abs(other - own) > depthJump)
+        return true;
+  return false;
+}
 
-private:
-  void add(const Crossing& crossing) {
-    const SampleStep step = outward(crossing);
-    const std::int64_t x = step.column, y = step.row;
-    const std::int64_t column = crossing.column, row = crossing.row;
-    const DepthBuffer& buffer = m_focus.depth;
-    const auto isSample = [&](std::int64_t c, std::int64_t r) {
-      return c >= 0 && r >= 0 && c < buffer.columns() && r < buffer.rows();
-    };
-    if (!isSample(column + 2 * x, row + 2 * y) || m_focus.isFocus(column + 2 * x, row + 2 * y))
-      return;
-    const Vec2 inside = buffer.position(column, row);
-    const Vec2 outside = buffer.position(column + x, row + y);
-    const double near = contextAt(outside);
-    const double far = contextAt(buffer.position(column + 2 * x, row + 2 * y));
-    if (near < infinity && far < infinity)
-      m_edges.push_back({inside, outside, focusAt(column, row), focusAt(column - x, row - y), near,
-                         far, jumps(column, row)});
-  }
+/// Edge at a crossing; nothing: no context beyond.
+std::optional<Edge> edgeAt(const Crossing& crossing, const Clip& clip, const Domain& volume,
+                           const FocusDepth& focus) {
+  const DepthBuffer& buffer = focus.depth;
+  const std::int64_t column = crossing.column, row = crossing.row;
+  const auto [x, y] = outward(crossing);
+  const std::int64_t farColumn = column + std::int64_t{2} * x, farRow = row + std::int64_t{2} * y;
+  const bool isSample =
+      farColumn >= 0 && farRow >= 0 && farColumn < buffer.columns() && farRow < buffer.rows();
+  if (!isSample || focus.isFocus(farColumn, farRow))
+    return std::nullopt;
+  const Vec2 outside = buffer.position(column + x, row + y);
+  const double near = contextAt(clip, volume, outside);
+  const double far = contextAt(clip, volume, buffer.position(farColumn, farRow));
+  if (!(near < infinity && far < infinity))
+    return std::nullopt;
+  return Edge{buffer.position(column, row),
+              outside,
+              focusAt(focus, column, row),
+              focusAt(focus, column - x, row - y),
+              near,
+              far,
+              jumps(focus, column, row)};
+}
 
-  double focusAt(std::int64_t column, std::int64_t row) const {
-    return m_focus.isFocus(column, row) ? m_focus.depth.at(m_focus.depth.sample(column, row))
-                                        : infinity;
-  }
-
-  bool jumps(std::int64_t column, std::int64_t row) const {
-    const double own = focusAt(column, row);
-    for (std::int64_t y = row - 1; y <= row + 1; ++y)
-      for (std::int64_t x = column - 1; x <= column + 1; ++x)
-        if (const double other = focusAt(x, y);
-            other < infinity && std::abs(other - own) > depthJump)
-          return true;
-    return false;
-  }
-
-  const Clip& m_clip;
-  const Domain& m_volume;
-  const FocusDepth& m_focus;
-  const Camera& m_camera;
-  std::vector<Edge> m_edges;
-};
+std::vector<Edge> outlineEdges(const Clip& clip, const Domain& volume, const FocusDepth& focus) {
+  std::vector<Edge> edges;
+  for (const Contour& contour : traceContours(focus))
+    for (const Crossing& crossing : contour)
+      if (const auto edge = edgeAt(crossing, clip, volume, focus))
+        edges.push_back(*edge);
+  return edges;
+}
 
 /// Point at which the focus ends.
 struct OutlinePoint {
@@ -129,17 +122,17 @@ BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const M
   BoundaryMeasures measures;
   if (!cameraOf(clip))
     return measures;
-  const Outline outline(clip, volume, depths);
+  const std::vector<Edge> edges = outlineEdges(clip, volume, depths);
   const std::vector<OutlinePoint> points =
-      outlinePoints(FocusTracer(*cameraOf(clip), volume, focus), outline.edges());
+      outlinePoints(FocusTracer(*cameraOf(clip), volume, focus), edges);
   std::vector<double> gaps, slopeJumps;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Edge& edge = outline.edges()[i];
+    const Edge& edge = edges[i];
     ++measures.crossings;
     // A steep fall of the focus before its end is a jump as well.
     if (edge.jumps || std::abs(points[i].depth - edge.own) > depthJump)
       continue;
-    const double context = outline.contextAt(points[i].beyond);
+    const double context = contextAt(clip, volume, points[i].beyond);
     if (hasSteps(clip))
       gaps.push_back(std::abs(2.0 * edge.near - edge.far - edge.own));
     else if (context < infinity)

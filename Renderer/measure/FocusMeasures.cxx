@@ -1,7 +1,5 @@
 #include "measure/FocusMeasures.h"
 
-#include "transport/render/WithMedium.h"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -12,6 +10,11 @@ namespace {
 
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+/// Handle that does not own the mask.
+std::shared_ptr<const Mask> shared(const Mask& mask) {
+  return {std::shared_ptr<void>(), &mask};
 }
 
 /// Greatest depth of the focus at a pixel and its neighbours.
@@ -25,9 +28,18 @@ double deepestAround(const std::vector<double>& depth, std::size_t width, std::s
   return deepest;
 }
 
+/// Share of the points that clipping leaves; 0 without points.
+double keptShare(const FocusPoints& points) {
+  if (points.empty())
+    return 0.0;
+  const auto count = std::ranges::count_if(points, &FocusPoint::isKept);
+  return static_cast<double>(count) / static_cast<double>(points.size());
+}
+
 } // namespace
 
-FocusPoints::FocusPoints(const RenderScene& scene, const std::vector<double>& depth) {
+FocusPoints focusPoints(const RenderScene& scene, const std::vector<double>& depth) {
+  FocusPoints points;
   const auto width = static_cast<std::size_t>(scene.camera.width());
   const double rounding = 0.5 * scene.camera.pixelPitch();
   for (std::size_t pixel = 0; pixel < depth.size(); ++pixel) {
@@ -42,26 +54,19 @@ FocusPoints::FocusPoints(const RenderScene& scene, const std::vector<double>& de
         deepestAround(depth, width, column, row) / scene.camera.depthPerLength(ray);
     const bool isKept =
         !behind.empty() && behind.begin <= deepest + rounding && behind.end >= distance - rounding;
-    m_points.push_back({ray, distance, isKept, pixel});
+    points.push_back({ray, distance, isKept, pixel});
   }
+  return points;
 }
 
-double FocusPoints::kept() const {
-  if (m_points.empty())
-    return 0.0;
-  const auto count = std::ranges::count_if(m_points, &Point::isKept);
-  return static_cast<double>(count) / static_cast<double>(m_points.size());
-}
-
-double focusCoverage(const RenderScene& scene, const FocusPoints& focus, std::uint64_t seed,
+double focusCoverage(const RenderScene& scene, const FocusPoints& points, std::uint64_t seed,
                      const StopFlag& stop) {
-  const std::vector<FocusPoints::Point>& points = focus.points();
   if (points.empty())
     return 0.0;
   const auto share = [&](const auto&, const auto& tracker) {
     std::vector<double> shown(points.size(), 0.0);
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-      const FocusPoints::Point& point = points[i];
+      const FocusPoint& point = points[i];
       if (!point.isKept)
         return;
       const Interval range = visible(scene.clip, point.ray);
@@ -79,8 +84,8 @@ std::optional<double> focusLight(const RenderScene& scene, const RenderScene& al
                                  const StopFlag& stop) {
   constexpr std::size_t most = 4096; // kept points
   constexpr std::uint64_t lightsEach = 4;
-  std::vector<const FocusPoints::Point*> points;
-  for (const FocusPoints::Point& point : focus.points())
+  std::vector<const FocusPoint*> points;
+  for (const FocusPoint& point : focus)
     if (point.isKept)
       points.push_back(&point);
   const std::size_t stride = points.size() / most + 1;
@@ -88,9 +93,10 @@ std::optional<double> focusLight(const RenderScene& scene, const RenderScene& al
     const auto sumOfLight = [&](const auto&, const auto& tracker) {
       std::vector<double> light(points.size() / stride + 1, 0.0);
       tbb::parallel_for(std::size_t{0}, points.size() / stride, [&](std::size_t i) {
-        const Vec3 position = points[i * stride]->position();
+        const FocusPoint& point = *points[i * stride];
+        const Vec3 position = point.ray.at(point.distance);
         for (std::uint64_t k = 0; k < lightsEach; ++k) {
-          Random random(seed, points[i * stride]->pixel, k);
+          Random random(seed, point.pixel, k);
           const std::optional<LightSample> sample = scene.lights.sample(position, random);
           if (!sample)
             continue;
@@ -113,7 +119,7 @@ std::optional<double> focusLight(const RenderScene& scene, const RenderScene& al
 std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus,
                                      std::uint64_t seed) {
   constexpr std::int64_t strata = 64; // along each axis
-  const ContextStyle style{std::shared_ptr<const Mask>(std::shared_ptr<void>(), &focus)};
+  const ContextStyle style{shared(focus)};
   const StyledContext where(style, scene.volume.grid);
   const Domain domain(scene.volume.grid, scene.crop);
   const Box box = scene.volume.grid.indexBox();
@@ -136,6 +142,33 @@ std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus
     const double all = sum(matter);
     return all > 0.0 ? std::optional(sum(removed) / all) : std::nullopt;
   });
+}
+
+std::optional<FocusReport> measureFocus(const RenderScene& scene, const CellRanges& ranges,
+                                        const Mask& focus, const std::vector<double>& depth,
+                                        std::uint64_t seed, const StopFlag& stop) {
+  const Clip noClip = ClipNone();
+  const auto majorantsFor = [&](const ContextStyle* style) {
+    return MajorantGrid(scene.volume.grid, ranges, scene.transfer, noClip, style);
+  };
+  const auto unclipped = [&](const MajorantGrid& majorants, const ContextStyle* style) {
+    return RenderScene{scene.volume, scene.transfer, majorants,  scene.lights,
+                       scene.camera, noClip,         scene.crop, style};
+  };
+  const ContextStyle nothingElse{shared(focus), 0.0, 1.0};
+  const MajorantGrid whole = majorantsFor(scene.style), alone = majorantsFor(&nothingElse);
+  const RenderScene wholeScene = unclipped(whole, scene.style);
+
+  const FocusPoints points = focusPoints(scene, depth);
+  FocusReport report;
+  report.kept = keptShare(points);
+  report.coverage = focusCoverage(scene, points, seed, stop);
+  report.withoutClip = focusCoverage(wholeScene, focusPoints(wholeScene, depth), seed, stop);
+  report.light = focusLight(scene, unclipped(alone, &nothingElse), points, seed, stop);
+  if (stop)
+    return std::nullopt;
+  report.contextRemoved = contextRemoved(scene, focus, seed);
+  return report;
 }
 
 } // namespace fenestra

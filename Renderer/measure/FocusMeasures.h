@@ -5,27 +5,17 @@
 
 namespace fenestra {
 
-/// Points in which eye rays through the pixels' centres meet the focus.
-class FocusPoints {
-public:
-  /// `depth`: mm in view space, row by row from the top; infinity: the ray misses the focus.
-  FocusPoints(const RenderScene& scene, const std::vector<double>& depth);
-
-  struct Point {
-    Ray ray;         ///< eye ray
-    double distance; ///< mm along `ray`
-    bool isKept; ///< clipping leaves the point, to the precision of the focus's depth in a pixel
-    std::size_t pixel;
-
-    Vec3 position() const { return ray.at(distance); }
-  };
-  const std::vector<Point>& points() const { return m_points; }
-  /// Share of the points that clipping leaves.
-  double kept() const;
-
-private:
-  std::vector<Point> m_points;
+/// Point in which the eye ray through a pixel's centre meets the focus.
+struct FocusPoint {
+  Ray ray;         ///< eye ray
+  double distance; ///< mm along `ray`
+  bool isKept;     ///< clipping leaves the point, to the precision of the focus's depth in a pixel
+  std::size_t pixel;
 };
+using FocusPoints = std::vector<FocusPoint>;
+
+/// `depth`: mm in view space, row by row from the top; infinity: the ray misses the focus.
+FocusPoints focusPoints(const RenderScene& scene, const std::vector<double>& depth);
 
 /// Share of the focus's pixels shown unoccluded: mean transmittance from the start of the eye ray
 /// to the focus's points, 0 for points that clipping removes. Once `stop` is true walks are
@@ -44,5 +34,20 @@ std::optional<double> focusLight(const RenderScene& scene, const RenderScene& al
 /// 0.001. Empty if no point meets such matter.
 std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus,
                                      std::uint64_t seed);
+
+/// Quality of a picture's clip, for the stats.
+struct FocusReport {
+  double kept = 0.0;        ///< share of the focus's pixels whose focus point clipping leaves
+  double coverage = 0.0;    ///< share of the focus's pixels shown unoccluded
+  double withoutClip = 0.0; ///< coverage without a clip
+  std::optional<double> light = {};          ///< relative to the focus alone
+  std::optional<double> contextRemoved = {}; ///< removed share of the context's matter
+};
+
+/// All measures above of a scene. `ranges`: those of its majorants. `depth`: as for focusPoints.
+/// Nothing: stopped.
+std::optional<FocusReport> measureFocus(const RenderScene& scene, const CellRanges& ranges,
+                                        const Mask& focus, const std::vector<double>& depth,
+                                        std::uint64_t seed, const StopFlag& stop);
 
 } // namespace fenestra

@@ -4,7 +4,6 @@
 #include <numeric>
 
 namespace fenestra {
-
 namespace {
 
 /// Greatest distance of a visible point of the focus from the axis, mm.

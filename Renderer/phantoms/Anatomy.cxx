@@ -71,13 +71,4 @@ void from_json(const Anatomy& parts, Solid& solid) {
     solid = joined(solid, parts[i]);
 }
 
-std::vector<Structure> structures(const Anatomy& list, const Rgb& color) {
-  std::vector<Structure> result;
-  for (const Anatomy& entry : list) {
-    const Vec3 own = entry.value("color", Vec3(color.x(), color.y(), color.z()));
-    result.push_back({entry.at("id"), entry.at("name"), own.array(), entry.at("shapes")});
-  }
-  return result;
-}
-
 } // namespace fenestra

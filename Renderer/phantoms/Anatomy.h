@@ -8,13 +8,6 @@
 
 namespace fenestra {
 
-/// Structure that a segment shows.
-struct Structure {
-  std::string id, name;
-  Rgb color; ///< display-encoded
-  std::vector<Solid> shapes;
-};
-
 using Anatomy = nlohmann::json;
 
 /// Content of Resources/phantoms/`subject`.json.
@@ -34,9 +27,5 @@ void from_json(const Anatomy& numbers, Vec3& vector);
 ///   {"parts": [...]}
 /// and may lie in a frame of its own, {"frame": [ORIGIN, AXIS, UP]}, or be {"paired": true}.
 void from_json(const Anatomy& parts, Solid& solid);
-
-/// Structures of a list, {"id", "name", "color", "shapes": [...]}; `color`: of those that have none
-/// of their own.
-std::vector<Structure> structures(const Anatomy& list, const Rgb& color);
 
 } // namespace fenestra

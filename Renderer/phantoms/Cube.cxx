@@ -1,6 +1,5 @@
-#include "phantoms/Cube.h"
-
 #include "base/Error.h"
+#include "phantoms/Phantoms.h"
 
 namespace fenestra {
 
@@ -16,11 +15,25 @@ std::int16_t sliceScalar(std::int64_t slice, std::int64_t count) {
       std::lround(greatest * (2.0 * static_cast<double>(slice) - last) / last));
 }
 
+/// Opaque within edge / 100, blue at -255 through purple to red at 255; no shading, since the only
+/// gradients are between the cube's slices. A .vp has no unit distance and cannot express this for
+/// an edge far below 100 mm: there Fenestra's cap on opacity leaves 9.2 per mm.
+VolumeProperty cubeProperty(double edge) {
+  VolumeProperty property;
+  property.scalarOpacity = {{-greatest, 0.99}, {greatest, 0.99}};
+  property.gradientOpacity = {{0, 1}, {255, 1}};
+  // Not pure: a component of 0 would lose all light scattered more than once.
+  property.color = {
+      {-greatest, {0.15, 0.25, 1.0}}, {0, {0.80, 0.50, 0.85}}, {greatest, {1.0, 0.20, 0.15}}};
+  property.unitDistance = edge / 100.0;
+  property.shade = false;
+  return property;
+}
+
 } // namespace
 
 Phantom makeCubePhantom(const CubeOptions& options) {
   const Size3 size = Size3::Constant(options.size);
-  requirePhantomSize(size);
   if (!(options.edge > 0.0) || !std::isfinite(options.edge))
     throw usageError("--edge: the cube's edge is to be a positive number of mm");
 
@@ -46,18 +59,6 @@ Phantom makeCubePhantom(const CubeOptions& options) {
   phantom.property = cubeProperty(options.edge);
   phantom.towardViewer = {-0.45, 1.0, 0.4};
   return phantom;
-}
-
-VolumeProperty cubeProperty(double edge) {
-  VolumeProperty property;
-  property.scalarOpacity = {{-greatest, 0.99}, {greatest, 0.99}};
-  property.gradientOpacity = {{0, 1}, {255, 1}};
-  // Not pure: a component of 0 would lose all light scattered more than once.
-  property.color = {
-      {-greatest, {0.15, 0.25, 1.0}}, {0, {0.80, 0.50, 0.85}}, {greatest, {1.0, 0.20, 0.15}}};
-  property.unitDistance = edge / 100.0;
-  property.shade = false;
-  return property;
 }
 
 } // namespace fenestra

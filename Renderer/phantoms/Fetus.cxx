@@ -1,8 +1,7 @@
-#include "phantoms/Fetus.h"
-
 #include "phantoms/Anatomy.h"
 #include "phantoms/Noise.h"
 #include "phantoms/Painter.h"
+#include "phantoms/Phantoms.h"
 
 namespace fenestra {
 
@@ -11,32 +10,22 @@ namespace {
 const Vec3 fetusFieldOfView{112.0, 112.0, 112.0}; ///< mm along the voxel axes
 const Vec3 fetusFieldCenter{0.0, 14.0, -8.0};     ///< world
 
-enum class FetusTissue { skin, inside, cord, wall, fluid };
+// Echo strengths, 0 to 255; larger for tissue that scatters more.
+double insideEcho(const Vec3& p) {
+  return 92.0 + 16.0 * valueNoise(p / 5.0, 11);
+}
+double wallEcho(const Vec3& p) {
+  return 118.0 + 22.0 * valueNoise(p / 6.0, 12);
+}
 
-struct FetusSite {
-  Vec3 point;
-  double surface; ///< mm to the subject's outside, which is not in view
-};
-
-/// Echo strength, 0 to 255; larger for tissue that scatters more.
-double echo(FetusTissue tissue, const Vec3& p) {
-  switch (tissue) {
-  case FetusTissue::skin:
-    return 165.0;
-  case FetusTissue::inside:
-    return 92.0 + 16.0 * valueNoise(p / 5.0, 11);
-  case FetusTissue::cord:
-    return 130.0;
-  case FetusTissue::wall:
-    return 118.0 + 22.0 * valueNoise(p / 6.0, 12);
-  case FetusTissue::fluid:
-    break;
-  }
-  return 6.0;
+/// Uterine wall with the placenta, around a cavity wider than the head.
+double uterineWall(const Vec3& p) {
+  const double wave = 2.0 * valueNoise(p / 17.0, 31) + 1.0 * valueNoise(p / 7.0, 32);
+  return -ellipsoidDistance(p, {0, -4, -8}, {62, 58, 62}) + wave - 0.5;
 }
 
 /// The fetus in its fluid.
-class FetusSubject : public LayeredSubject<FetusSite, FetusTissue> {
+class FetusSubject : public LayeredSubject<PaintedPlace> {
 public:
   static constexpr double background = 6.0; ///< fluid
 
@@ -45,20 +34,16 @@ public:
     constexpr double skin = 2.2; // mm
     const auto face = segment("face", "Fetal face and hand", {0.93, 0.72, 0.58});
     for (const Solid part : {anatomy.at("head"), anatomy.at("hand")}) {
-      layer(face, FetusTissue::inside, part.box,
-            [part](const FetusSite& site) { return part.distance(site.point) + skin; });
-      layer(face, FetusTissue::skin, part.box, distanceTo(part));
+      layer(face, insideEcho, part.box, [part](const Vec3& p) { return part.distance(p) + skin; });
+      layer(face, constant(165.0), part.box, part.distance);
     }
     const Solid cord = anatomy.at("cord");
-    layer(segment("cord", "Umbilical cord", {0.75, 0.55, 0.62}), FetusTissue::cord, cord.box,
-          distanceTo(cord));
-    layer(segment("wall", "Uterine wall", {0.72, 0.36, 0.32}), FetusTissue::wall, everywhere, wall);
+    layer(segment("cord", "Umbilical cord", {0.75, 0.55, 0.62}), constant(130.0), cord.box,
+          cord.distance);
+    layer(segment("wall", "Uterine wall", {0.72, 0.36, 0.32}), wallEcho, everywhere, uterineWall);
   }
 
-  FetusSite site(const Vec3& point) const { return {point, -infinity}; }
-  double signal(FetusTissue tissue, const FetusSite& site) const {
-    return echo(tissue, site.point);
-  }
+  PaintedPlace site(const Vec3& point) const { return {point, -infinity}; } // no outside in view
 
   /// Applies speckle of pulse size, attenuation with depth, and noise.
   std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const {
@@ -68,14 +53,6 @@ public:
         1.0 - 0.0022 * (fetusFieldCenter.y() + 0.5 * fetusFieldOfView.y() - point.y());
     const double value = signal * speckle * depth + 3.0 * normalNoise(voxel);
     return static_cast<std::int16_t>(std::lround(std::clamp(value, 0.0, 255.0)));
-  }
-
-private:
-  /// Uterine wall with the placenta, around a cavity wider than the head.
-  static double wall(const FetusSite& site) {
-    const Vec3& p = site.point;
-    const double wave = 2.0 * valueNoise(p / 17.0, 31) + 1.0 * valueNoise(p / 7.0, 32);
-    return -ellipsoidDistance(p, {0, -4, -8}, {62, 58, 62}) + wave - 0.5;
   }
 };
 
@@ -95,11 +72,10 @@ VolumeProperty fetusProperty() {
 
 } // namespace
 
-Phantom makeFetusPhantom(const FetusOptions& options) {
-  requirePhantomSize(options.size);
+Phantom makeFetusPhantom(const Size3& size) {
   constexpr Mat3 axes({-1, 0, 0}, {0, -1, 0}, {0, 0, 1}); // columns: left, posterior, superior
   Phantom phantom = paintPhantom(
-      FetusSubject(), phantomGrid(options.size, fetusFieldOfView, axes, fetusFieldCenter), "fetus");
+      FetusSubject(), phantomGrid(size, fetusFieldOfView, axes, fetusFieldCenter), "fetus");
   phantom.property = fetusProperty();
   phantom.towardViewer = {0.35, 1.0, 0.15};
   return phantom;

@@ -1,6 +1,7 @@
 #include "phantoms/Foot.h"
 
-#include "phantoms/FootLayers.h"
+#include "phantoms/Noise.h"
+#include "phantoms/Phantoms.h"
 
 namespace fenestra {
 
@@ -9,6 +10,36 @@ namespace {
 const Vec3 footFieldOfView{280.0, 112.0, 140.0}; ///< mm along the voxel axes
 const Vec3 footFieldCenter{-2.0, 131.0, 64.0};   ///< world
 constexpr int footBoneThreshold = 200;           ///< HU
+constexpr double footSkinThickness = 1.6;        ///< mm
+constexpr double footNoise = 14.0;               ///< HU, standard deviation
+
+double trabeculae(const Vec3& p) {
+  return 90.0 * valueNoise(p / 1.6, 270) + 60.0 * valueNoise(p / 4.0, 271);
+}
+
+/// Height of the sole over the floor, mm: the medial arch.
+double soleHeight(const Vec3& p) {
+  const double across = (p.x() + 40.0) / 24.0, along = (p.y() - 112.0) / 42.0;
+  return 16.0 * std::exp(-across * across - along * along);
+}
+
+/// Thickness of skin and subcutaneous fat, mm; large under the sole.
+double footFasciaDepth(const Vec3& p) {
+  const double plantar = smoothStep(20.0, 6.0, p.z()) * smoothStep(205.0, 190.0, p.y());
+  const double heel = smoothStep(45.0, 20.0, p.y()) * smoothStep(30.0, 12.0, p.z());
+  const double leg = smoothStep(70.0, 110.0, p.z());
+  return 2.8 + 3.2 * plantar + 4.5 * heel + 1.6 * leg + 0.4 * valueNoise(p / 14.0, 262);
+}
+
+double footTendon(const Vec3& p) {
+  return 105.0 + 10.0 * valueNoise(p / 2.0, 273);
+}
+double footMuscle(const Vec3& p) {
+  return 55.0 + 12.0 * valueNoise(p.cwiseQuotient(Vec3{3.0, 9.0, 3.0}), 274);
+}
+double footFat(const Vec3& p) {
+  return -105.0 + 12.0 * valueNoise(p / 5.0, 275);
+}
 
 /// Adds layer 1: all voxels of at least footBoneThreshold.
 void addThresholdedBones(Phantom& phantom) {
@@ -39,11 +70,124 @@ VolumeProperty footProperty() {
 
 } // namespace
 
-Phantom makeFootPhantom(const FootOptions& options) {
-  requirePhantomSize(options.size);
+double footCortex(const FootSite& s) {
+  return std::lerp(820.0, 1450.0, s.shaft) + 90.0 * valueNoise(s.point / 3.0, 272);
+}
+
+double footMarrow(const FootSite& s) {
+  return std::lerp(s.spongiosa + trabeculae(s.point), -40.0, s.shaft);
+}
+
+FootSubject::FootSubject() : LayeredSubject(1.5) {
+  const Solid shape = m_anatomy.at("body");
+  const auto sole = [](const Vec3& p) { return soleHeight(p) - p.z(); };
+  // The web of the toes runs backward from the great toe to the little one.
+  const auto web = [](const Vec3& p) {
+    return (p.y() - 208.0 + 0.40 * (p.x() + 15.0)) / std::hypot(1.0, 0.40);
+  };
+  m_body = {[shape, sole, web](const Vec3& p) {
+              const double body = smoothIntersection(shape.distance(p), sole(p), 12.0);
+              return smoothIntersection(body, web(p), 9.0);
+            },
+            shape.box};
+  addBones();
+  addSoftTissue();
+}
+
+double FootSubject::outline(const Vec3& p) const {
+  double surface = smoothUnion(m_leg.distance(p), m_body.distance(p), 16.0);
+  for (const Solid& toe : m_toes) {
+    constexpr double blend = 5.0;
+    if (contains(expanded(toe.box, blend + 1.0), p))
+      surface = smoothUnion(surface, toe.distance(p), blend);
+  }
+  return surface + 0.3 * valueNoise(p / 12.0, 261);
+}
+
+double FootSubject::surface(const Vec3& p, double nearestBone) const {
+  constexpr double overBone = 4.2, overTendon = 2.6, blend = 5.0;
+  double surface = smoothUnion(outline(p), nearestBone - overBone, blend);
+  for (const Solid& tendon : m_superficial)
+    if (contains(expanded(tendon.box, overTendon + 2.0 * blend), p))
+      surface = smoothUnion(surface, tendon.distance(p) - overTendon, blend);
+  return surface;
+}
+
+FootSite FootSubject::site(const Vec3& p) const {
+  FootSite s{};
+  s.point = p;
+  s.bones = m_bones.distances(p);
+  const auto nearest = std::min_element(s.bones.begin(), s.bones.end());
+  s.nearest = static_cast<std::size_t>(nearest - s.bones.begin());
+  s.second = FootBones::beyond;
+  for (std::size_t i = 0; i < s.bones.size(); ++i)
+    if (i != s.nearest)
+      s.second = std::min(s.second, s.bones[i]);
+  s.shaft = m_bones.shaft(s.nearest, p);
+  s.spongiosa = m_bones.bones()[s.nearest].spongiosa;
+  s.surface = surface(p, *nearest);
+  s.fascia = s.surface + footFasciaDepth(p);
+  return s;
+}
+
+std::int16_t FootSubject::acquired(double signal, const Vec3&, std::uint64_t voxel) const {
+  const double noisy = std::clamp(signal + footNoise * normalNoise(voxel), -1024.0, 3071.0);
+  return static_cast<std::int16_t>(std::lround(noisy));
+}
+
+void FootSubject::shapes(std::uint8_t label, const Field& signal, const std::vector<Solid>& shapes,
+                         double depth) {
+  for (const Solid& shape : shapes)
+    layer(label, signal, shape.box, both(shape.distance, under(depth)));
+}
+
+void FootSubject::addBones() {
+  for (std::size_t i = 0; i < FootBones::count; ++i) {
+    const FootBone& bone = m_bones.bones()[i];
+    const auto label = segment(bone.id, bone.name, boneColor);
+    const double ends = bone.cortex, middle = bone.shaftCortex;
+    layer(label, footMarrow, bone.shape.box, [=](const FootSite& s) {
+      const double thickness = i == s.nearest ? std::lerp(ends, middle, s.shaft) : ends;
+      return s.bones[i] + thickness + 0.15 * valueNoise(s.point / 4.0, 276);
+    });
+    layer(label, footCortex, bone.shape.box, [i](const FootSite& s) { return s.bones[i]; });
+  }
+}
+
+void FootSubject::addSoftTissue() {
+  const Field underSkin = under(footSkinThickness);
+  const Field capsules = [](const FootSite& s) {
+    constexpr double halfWidth = 2.3; // mm; half of the gap that a capsule bridges
+    return 0.5 * (s.bones[s.nearest] + s.second) - halfWidth;
+  };
+  layer(segment("joints", "Joint cartilage and capsules", cartilageColor), constant(85.0),
+        everywhere, both(capsules, underSkin));
+  const std::vector<Solid> achilles = m_anatomy.at("achilles tendon");
+  m_anatomy.at("extensor tendons").get_to(m_superficial);
+  m_superficial.insert(m_superficial.end(), achilles.begin(), achilles.end());
+  shapes(segment("achilles_tendon", "Achilles tendon", tendonColor), footTendon, achilles,
+         footSkinThickness + 0.5);
+  const auto tendons = segment("tendons", "Tendons", tendonColor);
+  for (const char* kind : {"extensor tendons", "flexor tendons"})
+    shapes(tendons, footTendon, m_anatomy.at(kind), footSkinThickness + 0.5);
+  shapes(segment("plantar_aponeurosis", "Plantar aponeurosis", tendonColor), footTendon,
+         m_anatomy.at("plantar aponeurosis"), footSkinThickness + 2.0);
+  shapes(segment("vessels", "Vessels", vesselColor), constant(45.0), m_anatomy.at("vessels"),
+         footSkinThickness + 0.4);
+  const auto muscles = segment("muscles", "Muscles", muscleColor);
+  for (const Solid belly : m_anatomy.at("muscles"))
+    layer(muscles, footMuscle, belly.box, [belly](const FootSite& s) {
+      const double shape = belly.distance(s.point) + 0.6 * valueNoise(s.point / 6.0, 277);
+      return std::max(shape, s.fascia);
+    });
+  layer(segment("fat", "Fat", fatColor), footFat, everywhere, underSkin);
+  layer(segment("skin", "Skin", skinColor), constant(35.0), everywhere, under(0.0));
+}
+
+Phantom makeFootPhantom(const Size3& size) {
   constexpr Mat3 axes({0, 1, 0}, {-1, 0, 0}, {0, 0, 1}); // columns: anterior, left, superior
-  Phantom phantom = paintPhantom(
-      FootLayers(), phantomGrid(options.size, footFieldOfView, axes, footFieldCenter), "foot");
+  Phantom phantom = paintPhantom(FootSubject(),
+                                 phantomGrid(size, footFieldOfView, axes, footFieldCenter), "foot");
   addThresholdedBones(phantom);
   phantom.property = footProperty();
   phantom.towardViewer = {-0.9, 0.75, 0.75};

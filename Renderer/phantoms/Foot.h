@@ -1,20 +1,53 @@
 #pragma once
-// Right foot as CT shows it, in Hounsfield units.
+// Foot as layers: order of the shapes, their tissues, and their segments.
 
-#include "phantoms/Phantom.h"
+#include "phantoms/Anatomy.h"
+#include "phantoms/FootBones.h"
+#include "phantoms/Painter.h"
 
 namespace fenestra {
 
-struct FootOptions {
-  /// Voxels posterior to anterior, right to left, inferior to superior.
-  /// Field of view: 280 x 112 x 140 mm for every size.
-  Size3 size{300, 120, 150};
+/// A place with the distances that most layers need.
+struct FootSite : PaintedPlace {
+  double fascia;              ///< mm to the bottom of the subcutaneous fat
+  FootBones::Distances bones; ///< mm
+  std::size_t nearest;        ///< index of the nearest bone
+  double second;              ///< mm to the second nearest bone
+  double shaft;               ///< FootBones::shaft of the nearest bone
+  double spongiosa;           ///< HU, of the nearest bone
 };
 
-/// Right foot. Voxels do not depend on run or number of threads. Voxel axes point anterior, left
-/// and superior. Layer 0 has a segment for each of the foot's 26 bones, the stumps of tibia and
-/// fibula, and the soft tissues; layer 1 has the segment "bones": every voxel of at least 200 HU.
-/// Throws Error (usage) if a size < 16 or > 1024.
-Phantom makeFootPhantom(const FootOptions& options = {});
+// Hounsfield units with the tissue's own texture.
+double footCortex(const FootSite& site);
+double footMarrow(const FootSite& site);
+
+class FootSubject : public LayeredSubject<FootSite> {
+public:
+  static constexpr double background = -1000.0; ///< air
+
+  FootSubject();
+
+  FootSite site(const Vec3& point) const;
+  /// Adds noise, and clips to 12 bits like a scanner.
+  std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const;
+
+private:
+  /// Adds shapes, cut off `depth` mm under the skin's surface.
+  void shapes(std::uint8_t label, const Field& signal, const std::vector<Solid>& shapes,
+              double depth);
+
+  void addBones();
+  void addSoftTissue();
+  /// Distance to the skin, mm, without and with the bulges over bones and raised tendons.
+  double outline(const Vec3& point) const;
+  double surface(const Vec3& point, double nearestBone) const;
+
+  Anatomy m_anatomy = anatomyOf("foot");
+  FootBones m_bones;
+  Solid m_leg = m_anatomy.at("leg");
+  Solid m_body;
+  std::vector<Solid> m_toes = m_anatomy.at("toes");
+  std::vector<Solid> m_superficial; ///< tendons that raise the skin
+};
 
 } // namespace fenestra

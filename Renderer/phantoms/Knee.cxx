@@ -1,11 +1,9 @@
-#include "phantoms/Knee.h"
-
 #include "phantoms/Anatomy.h"
 #include "phantoms/KneeBones.h"
 #include "phantoms/KneeSignal.h"
-#include "phantoms/KneeSoftTissue.h"
 #include "phantoms/Noise.h"
 #include "phantoms/Painter.h"
+#include "phantoms/Phantoms.h"
 
 namespace fenestra {
 
@@ -17,11 +15,10 @@ const Vec3 kneeFieldCenter{0.0, -2.0, 6.8};      ///< world
 constexpr double kneeSkinThickness = 1.5;
 constexpr double fasciaThickness = 0.6;
 constexpr double film = 0.7; ///< mm; fluid on the joint's faces
+constexpr double fasciaSignal = 210.0;
 
 /// A place with the distances that most layers need.
-struct KneeSite {
-  Vec3 point;
-  double surface;                       ///< mm to the skin's surface
+struct KneeSite : PaintedPlace {
   double fascia;                        ///< mm to the sheath around muscles and joint
   double femur, tibia, fibula, patella; ///< mm to the bones' surfaces
   double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
@@ -33,22 +30,93 @@ double cortexThickness(const Vec3& p) {
   return 1.15 + 0.045 * shaft + 0.15 * valueNoise(p / 6.0, 91);
 }
 
+// Soft tissue, as shapes in the frame of KneeBones.h.
+
+/// Outer surface of the leg; the kneecap protrudes in front. `trunk`: without kneecap and tubercle.
+double legOutline(const Solid& trunk, const Vec3& p) {
+  const double kneecap = ellipsoidDistance(p, {2, 34, 38}, {25, 21, 28});
+  const double tubercle = ellipsoidDistance(p, {2, 18, -30}, {14, 16, 26});
+  const double leg = smoothUnion(smoothUnion(trunk.distance(p), kneecap, 14.0), tubercle, 10.0);
+  return leg + 0.5 * valueNoise(p / 14.0, 61);
+}
+
+/// Depth of the fascia under the skin's surface, mm: thickness of skin and subcutaneous fat.
+double fasciaDepth(const Vec3& p) {
+  // Thick at the rear and medially, thin over the kneecap, the tubercle and the shin.
+  const double behind = smoothStep(20.0, -45.0, p.y());
+  const double medial = smoothStep(10.0, -45.0, p.x()) * smoothStep(40.0, 10.0, p.y());
+  return 3.4 + 3.0 * behind + 1.8 * medial + 0.7 * valueNoise(p / 16.0, 62);
+}
+
+/// Meniscus before the joint's faces cut it: a wedge-shaped ring around one plateau, open toward
+/// the eminence.
+struct MeniscusRing {
+  Vec2 center;
+  Vec2 outerRadii;     ///< mm
+  double innerShare;   ///< inner / outer radius, in the middle of the C
+  double openingAngle; ///< half of the C's gap, radians, around `opening`
+  double opening;      ///< direction to the eminence: 0 lateral, pi medial
+
+  double distance(const Vec3& p) const {
+    const Vec2 offset = p.head<2>() - center;
+    const Vec2 scaled = offset.cwiseQuotient(outerRadii);
+    const double share = scaled.norm();
+    const double scale = outerRadii.mean();
+    double turn = std::atan2(scaled.y(), scaled.x()) - opening;
+    turn = std::abs(std::remainder(turn, 2.0 * pi));
+    // The horns are slimmer than the body, with round ends.
+    const double horns = smoothStep(openingAngle + 0.9, openingAngle, turn);
+    const double inner = std::lerp(innerShare, 0.5 * (1.0 + innerShare), horns);
+    const double ring = std::max(share - 1.0, inner - share) * scale;
+    const double ends = (openingAngle - turn) * share * scale;
+    // The wedge grows from the thin inner edge to 6 mm at the rim.
+    const double height = 0.6 + 5.4 * std::clamp((share - inner) / (1.0 - inner), 0.0, 1.0);
+    const double faces = std::max(p.z() - height, -3.6 - p.z());
+    return smoothIntersection(smoothIntersection(ring, ends, 3.0), faces, 2.0);
+  }
+};
+constexpr MeniscusRing medialMeniscus{{-20.0, -4.5}, {18.0, 23.5}, 0.56, 0.62, 0.0};
+constexpr MeniscusRing lateralMeniscus{{20.0, -5.5}, {17.0, 19.0}, 0.50, 0.42, pi};
+
+/// Thin sheets from the kneecap's sides to the condyles.
+double patellarRetinaculum(const Vec3& p) {
+  const double hull = ellipsoidDistance({p.x(), p.y(), 0}, {1.5, 4, 0}, {44.5, 39.5, 1});
+  const double sheet = std::abs(hull + 0.6 * valueNoise(p / 12.0, 64)) - 0.35;
+  const double front = 4.0 - p.y();
+  const double ends = std::abs(p.z() - 24.0) - 37.0 + 0.4 * std::abs(p.x() - 2.0);
+  return std::max({sheet, front, ends});
+}
+
+double infrapatellarFatPad(const Vec3& p) {
+  const double behindLigament = ellipsoidDistance(p, {2, 31, 8}, {24, 15, 20});
+  const double low = ellipsoidDistance(p, {2, 26, -8}, {19, 11, 15});
+  const double wings = ellipsoidDistance(p, {2, 22, 8}, {34, 15, 13});
+  return smoothUnion(smoothUnion(behindLigament, low, 6.0), wings, 6.0);
+}
+
+/// Joint cavity above the kneecap, between the quadriceps tendon and the femur.
+double suprapatellarRecess(const Vec3& p) {
+  const double sheet = ellipsoidDistance(p, {1, 31.5, 60}, {17, 2.4, 14});
+  return sheet + 0.5 * valueNoise(p / 6.0, 63);
+}
+
 /// Distance to the surface of a bone with its cartilage, `extra` mm thicker; `beyond` where there
 /// is no cartilage.
 double cover(double bone, double cartilage, double extra) {
   return cartilage > 0.05 ? bone - cartilage - extra : KneeBones::beyond;
 }
 
-class KneeSubject : public LayeredSubject<KneeSite, KneeTissue> {
+double deepFatSignal(const Vec3& p) {
+  return fatSignal(p, 150.0);
+}
+
+class KneeSubject : public LayeredSubject<KneeSite> {
 public:
   static constexpr double background = 0.0;
 
   KneeSubject();
 
   KneeSite site(const Vec3& point) const;
-  double signal(KneeTissue tissue, const KneeSite& site) const {
-    return tissueSignal(tissue, site.point);
-  }
   std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const {
     const double noisy = ricianNoise(signal * biasField(point), noiseSigma, voxel);
     return static_cast<std::int16_t>(std::lround(noisy));
@@ -56,20 +124,36 @@ public:
 
 private:
   /// Adds a layer, cut off at the fascia.
-  void deepLayer(std::uint8_t label, KneeTissue tissue, const Box& box, Distance distance);
+  void deepLayer(std::uint8_t label, Field signal, const Box& box, Field distance) {
+    layer(label, std::move(signal), box, both(std::move(distance), underFascia));
+  }
+  static double underFascia(const KneeSite& s) { return s.fascia + fasciaThickness; }
+
+  /// Adds a segment for each structure of a list of the anatomy, {"id", "name", "color",
+  /// "shapes": [...]}, and calls back with the segment's label for each of the shapes. `color`: of
+  /// structures that have none of their own.
+  template <typename AddShape>
+  void addStructures(const char* kind, const Rgb& color, const AddShape& addShape) {
+    for (const Anatomy& entry : m_anatomy.at(kind)) {
+      const Vec3 own = entry.value("color", Vec3(color.x(), color.y(), color.z()));
+      const auto label = segment(entry.at("id"), entry.at("name"), own.array());
+      for (const Solid shape : entry.at("shapes"))
+        addShape(label, shape);
+    }
+  }
 
   void addBones();
   void addCartilage();
   void addLigaments();
   void addMenisci();
   void addJointSpace();
-  void addVessels(const char* kind, KneeTissue tissue);
+  void addVessels(const char* kind, const Field& signal);
   void addMuscles();
   void addCovers();
 
   Anatomy m_anatomy = anatomyOf("knee");
   KneeBones m_bones;
-  LegOutline m_leg;
+  Solid m_trunk = m_anatomy.at("leg");
   std::uint8_t m_deepFat = 0; ///< label of the deep fat
 };
 
@@ -79,8 +163,8 @@ KneeSubject::KneeSubject() : LayeredSubject(1.5) {
   addLigaments();
   addMenisci();
   addJointSpace();
-  addVessels("vessels", KneeTissue::vessel);
-  addVessels("nerves", KneeTissue::nerve);
+  addVessels("vessels", constant(45.0));
+  addVessels("nerves", nerveSignal);
   addMuscles();
   addCovers();
 }
@@ -88,7 +172,7 @@ KneeSubject::KneeSubject() : LayeredSubject(1.5) {
 KneeSite KneeSubject::site(const Vec3& p) const {
   KneeSite s{};
   s.point = p;
-  s.surface = m_leg.distance(p);
+  s.surface = legOutline(m_trunk, p);
   s.fascia = s.surface + fasciaDepth(p);
   s.femur = m_bones.femur(p);
   s.tibia = m_bones.tibia(p);
@@ -106,21 +190,13 @@ KneeSite KneeSubject::site(const Vec3& p) const {
   return s;
 }
 
-void KneeSubject::deepLayer(std::uint8_t label, KneeTissue tissue, const Box& box,
-                            Distance distance) {
-  layer(label, tissue, box, [distance = std::move(distance)](const KneeSite& s) {
-    return std::max(distance(s), s.fascia + fasciaThickness);
-  });
-}
-
 void KneeSubject::addBones() {
   const auto bone = [this](const char* id, const char* name, double KneeSite::*surface) {
     const auto label = segment(id, name, boneColor);
-    layer(label, KneeTissue::marrow, everywhere, [surface](const KneeSite& s) {
+    layer(label, marrowSignal, everywhere, [surface](const KneeSite& s) {
       return s.*surface < 1.0 ? s.*surface + cortexThickness(s.point) : KneeBones::beyond;
     });
-    layer(label, KneeTissue::cortex, everywhere,
-          [surface](const KneeSite& s) { return s.*surface; });
+    layer(label, constant(66.0), everywhere, [surface](const KneeSite& s) { return s.*surface; });
   };
   bone("Femur", "Femur", &KneeSite::femur);
   bone("Tibia", "Tibia", &KneeSite::tibia);
@@ -131,7 +207,7 @@ void KneeSubject::addBones() {
 void KneeSubject::addCartilage() {
   const auto cartilage = [this](const char* id, const char* name, double KneeSite::*bone,
                                 double KneeSite::*thickness) {
-    layer(segment(id, name, cartilageColor), KneeTissue::cartilage, everywhere,
+    layer(segment(id, name, cartilageColor), cartilageSignal, everywhere,
           [bone, thickness](const KneeSite& s) { return cover(s.*bone, s.*thickness, 0.0); });
   };
   cartilage("FemoralCartilage", "Femoral cartilage", &KneeSite::femur, &KneeSite::femoralCartilage);
@@ -141,96 +217,74 @@ void KneeSubject::addCartilage() {
 }
 
 void KneeSubject::addLigaments() {
-  for (const Structure& ligament : structures(m_anatomy.at("ligaments"), tendonColor)) {
-    const auto label = segment(ligament.id, ligament.name, ligament.color);
-    for (const Solid& shape : ligament.shapes)
-      deepLayer(label, KneeTissue::ligament, shape.box, distanceTo(shape));
-  }
+  addStructures("ligaments", tendonColor, [this](std::uint8_t label, const Solid& shape) {
+    deepLayer(label, ligamentSignal, shape.box, shape.distance);
+  });
 }
 
 void KneeSubject::addMenisci() {
   const auto meniscus = [this](const char* id, const char* name, const MeniscusRing& ring) {
     const Vec3 center{ring.center.x(), ring.center.y(), 2.0};
     const Vec3 reach{ring.outerRadii.x(), ring.outerRadii.y(), 6.0};
-    layer(segment(id, name, {0.663, 0.784, 0.702}), KneeTissue::meniscus,
+    layer(segment(id, name, {0.663, 0.784, 0.702}), meniscusSignal,
           {center - reach, center + reach}, [ring](const KneeSite& s) {
             const double above = s.femoralCartilage + 0.25 - s.femur;
             const double below = s.tibialCartilage + 0.15 - s.tibia;
             return std::max({ring.distance(s.point), above, below});
           });
   };
-  meniscus("MedialMeniscus", "Medial meniscus", medialMeniscus());
-  meniscus("LateralMeniscus", "Lateral meniscus", lateralMeniscus());
+  meniscus("MedialMeniscus", "Medial meniscus", medialMeniscus);
+  meniscus("LateralMeniscus", "Lateral meniscus", lateralMeniscus);
 }
 
 void KneeSubject::addJointSpace() {
   const auto fluid = segment("JointFluid", "Joint fluid", {0.667, 0.980, 0.980});
-  layer(fluid, KneeTissue::fluid, everywhere, [](const KneeSite& s) {
+  layer(fluid, constant(215.0), everywhere, [](const KneeSite& s) {
     return std::min({cover(s.femur, s.intactFemoralCartilage, film),
                      cover(s.tibia, s.tibialCartilage, film),
                      cover(s.patella, s.patellarCartilage, film)});
   });
-  layer(fluid, KneeTissue::fluid, {{-17, 25, 45}, {19, 38, 75}},
-        [](const KneeSite& s) { return suprapatellarRecess(s.point); });
-
-  const auto retinaculum = segment("Retinaculum", "Patellar retinaculum", tendonColor);
-  deepLayer(retinaculum, KneeTissue::fascia, {{-46, 0, -14}, {49, 46, 62}},
-            [](const KneeSite& s) { return patellarRetinaculum(s.point); });
-  const auto fatPad =
-      segment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588});
-  deepLayer(fatPad, KneeTissue::fatPad, {{-35, 6, -25}, {39, 48, 30}},
-            [](const KneeSite& s) { return infrapatellarFatPad(s.point); });
+  layer(fluid, constant(215.0), {{-17, 25, 45}, {19, 38, 75}}, suprapatellarRecess);
+  deepLayer(segment("Retinaculum", "Patellar retinaculum", tendonColor), constant(fasciaSignal),
+            {{-46, 0, -14}, {49, 46, 62}}, patellarRetinaculum);
+  deepLayer(
+      segment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588}),
+      [](const Vec3& p) { return fatSignal(p, 300.0) - 15.0; }, {{-35, 6, -25}, {39, 48, 30}},
+      infrapatellarFatPad);
 }
 
 /// Adds vessels or nerves, cut off under the skin.
-void KneeSubject::addVessels(const char* kind, KneeTissue tissue) {
-  for (const Structure& vessel : structures(m_anatomy.at(kind), vesselColor)) {
-    const auto label = segment(vessel.id, vessel.name, vessel.color);
-    for (const Solid& shape : vessel.shapes)
-      layer(label, tissue, shape.box, [shape](const KneeSite& s) {
-        return std::max(shape.distance(s.point), s.surface + kneeSkinThickness + 0.5);
-      });
-  }
+void KneeSubject::addVessels(const char* kind, const Field& signal) {
+  const auto underSkin = [](const KneeSite& s) { return s.surface + kneeSkinThickness + 0.5; };
+  addStructures(kind, vesselColor, [&](std::uint8_t label, const Solid& shape) {
+    layer(label, signal, shape.box, both(shape.distance, underSkin));
+  });
 }
 
 /// Adds each muscle with a layer of fat, which separates neighbouring muscles.
 void KneeSubject::addMuscles() {
   m_deepFat = segment("IntermuscularFat", "Intermuscular fat", fatColor);
-  for (const Structure& muscle : structures(m_anatomy.at("muscles"), muscleColor)) {
-    const auto label = segment(muscle.id, muscle.name, muscle.color);
-    for (const Solid& belly : muscle.shapes) {
-      const Distance shape = [belly](const KneeSite& s) {
-        return belly.distance(s.point) + 0.9 * valueNoise(s.point / 8.0, 92);
-      };
-      deepLayer(label, KneeTissue::muscle, belly.box, shape);
-      deepLayer(m_deepFat, KneeTissue::deepFat, belly.box,
-                [shape](const KneeSite& s) { return shape(s) - 0.8; });
-    }
-  }
+  addStructures("muscles", muscleColor, [this](std::uint8_t label, const Solid& belly) {
+    const auto shape = [belly](const Vec3& p) {
+      return belly.distance(p) + 0.9 * valueNoise(p / 8.0, 92);
+    };
+    deepLayer(label, muscleSignal, belly.box, shape);
+    deepLayer(m_deepFat, deepFatSignal, belly.box,
+              [shape](const Vec3& p) { return shape(p) - 0.8; });
+  });
 }
 
 void KneeSubject::addCovers() {
-  layer(m_deepFat, KneeTissue::deepFat, everywhere,
-        [](const KneeSite& s) { return s.fascia + fasciaThickness; });
-  layer(segment("Fascia", "Fascia", tendonColor), KneeTissue::fascia, everywhere,
+  layer(m_deepFat, deepFatSignal, everywhere, underFascia);
+  layer(segment("Fascia", "Fascia", tendonColor), constant(fasciaSignal), everywhere,
         [](const KneeSite& s) { return s.fascia; });
-  layer(segment("SubcutaneousFat", "Subcutaneous fat", fatColor), KneeTissue::subcutaneousFat,
-        everywhere, [](const KneeSite& s) { return s.surface + kneeSkinThickness; });
-  layer(segment("Skin", "Skin", skinColor), KneeTissue::skin, everywhere,
-        [](const KneeSite& s) { return s.surface; });
+  layer(
+      segment("SubcutaneousFat", "Subcutaneous fat", fatColor),
+      [](const Vec3& p) { return fatSignal(p, 190.0); }, everywhere, under(kneeSkinThickness));
+  layer(segment("Skin", "Skin", skinColor), constant(410.0), everywhere, under(0.0));
 }
 
-} // namespace
-
-Phantom makeKneePhantom(const KneeOptions& options) {
-  requirePhantomSize(options.size);
-  constexpr Mat3 axes({0, -1, 0}, {0, 0, -1}, {1, 0, 0}); // columns: posterior, inferior, right
-  Phantom phantom = paintPhantom(
-      KneeSubject(), phantomGrid(options.size, kneeFieldOfView, axes, kneeFieldCenter), "knee");
-  phantom.property = kneeProperty();
-  return phantom;
-}
-
+/// Natural colours: pearly cartilage, yellow fat and marrow, red muscle.
 VolumeProperty kneeProperty() {
   VolumeProperty property;
   // Air and flow voids are transparent. Cartilage is far denser than the values between its own and
@@ -249,6 +303,16 @@ VolumeProperty kneeProperty() {
   property.specular = 0.25;
   property.specularPower = 20.0;
   return property;
+}
+
+} // namespace
+
+Phantom makeKneePhantom(const Size3& size) {
+  constexpr Mat3 axes({0, -1, 0}, {0, 0, -1}, {1, 0, 0}); // columns: posterior, inferior, right
+  Phantom phantom = paintPhantom(KneeSubject(),
+                                 phantomGrid(size, kneeFieldOfView, axes, kneeFieldCenter), "knee");
+  phantom.property = kneeProperty();
+  return phantom;
 }
 
 } // namespace fenestra

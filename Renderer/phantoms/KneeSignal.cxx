@@ -16,6 +16,17 @@ double septa(const Vec3& p, const Vec3& size, double thickness, std::uint64_t se
          smoothStep(-0.5, 0.5, valueNoise(p / 9.0, seed + 103));
 }
 
+/// Scars of the growth plates: dark, slightly wavy sheets.
+double physis(const Vec3& p) {
+  const double wave = 1.6 * valueNoise(p / 9.0, 77) + 0.004 * (p.x() * p.x() - 500.0);
+  const double femoral = std::abs(p.z() - 35.0 + wave + 0.12 * p.y());
+  const double tibial = std::abs(p.z() + 17.0 + wave - 0.05 * p.y());
+  const double kneecap = smoothStep(28.0, 31.0, p.y()); // the kneecap has no growth plate
+  return (1.0 - kneecap) * (1.0 - smoothStep(0.3, 1.1, std::min(femoral, tibial)));
+}
+
+} // namespace
+
 double muscleSignal(const Vec3& p) {
   const double fibres = 20.0 * valueNoise(p.cwiseQuotient(Vec3{1.2, 1.2, 10.0}), 71);
   const double bundles = 16.0 * valueNoise(p.cwiseQuotient(Vec3{4.0, 4.0, 20.0}), 72);
@@ -28,15 +39,6 @@ double fatSignal(const Vec3& p, double strands) {
   return 860.0 + lobules - strands * septa(p, {6.0, 6.0, 8.0}, 0.16, 76);
 }
 
-/// Scars of the growth plates: dark, slightly wavy sheets.
-double physis(const Vec3& p) {
-  const double wave = 1.6 * valueNoise(p / 9.0, 77) + 0.004 * (p.x() * p.x() - 500.0);
-  const double femoral = std::abs(p.z() - 35.0 + wave + 0.12 * p.y());
-  const double tibial = std::abs(p.z() + 17.0 + wave - 0.05 * p.y());
-  const double kneecap = smoothStep(28.0, 31.0, p.y()); // the kneecap has no growth plate
-  return (1.0 - kneecap) * (1.0 - smoothStep(0.3, 1.1, std::min(femoral, tibial)));
-}
-
 double marrowSignal(const Vec3& p) {
   // Trabeculae run mainly along the limb's axis.
   const double trabeculae =
@@ -45,40 +47,20 @@ double marrowSignal(const Vec3& p) {
   return 815.0 + trabeculae + patches - 150.0 * physis(p);
 }
 
-} // namespace
+double nerveSignal(const Vec3& p) {
+  return 420.0 + 60.0 * valueNoise(p.cwiseQuotient(Vec3{0.9, 0.9, 8.0}), 81);
+}
 
-double tissueSignal(KneeTissue tissue, const Vec3& p) {
-  switch (tissue) {
-  case KneeTissue::skin:
-    return 410.0;
-  case KneeTissue::subcutaneousFat:
-    return fatSignal(p, 190.0);
-  case KneeTissue::fascia:
-    return 210.0;
-  case KneeTissue::deepFat:
-    return fatSignal(p, 150.0);
-  case KneeTissue::fatPad:
-    return fatSignal(p, 300.0) - 15.0;
-  case KneeTissue::muscle:
-    return muscleSignal(p);
-  case KneeTissue::vessel:
-    return 45.0;
-  case KneeTissue::nerve:
-    return 420.0 + 60.0 * valueNoise(p.cwiseQuotient(Vec3{0.9, 0.9, 8.0}), 81);
-  case KneeTissue::fluid:
-    return 215.0;
-  case KneeTissue::meniscus:
-    return 105.0 + 18.0 * valueNoise(p / 2.0, 82);
-  case KneeTissue::ligament:
-    return 112.0 + 28.0 * valueNoise(p / 1.5, 83);
-  case KneeTissue::cartilage:
-    return 520.0 + 16.0 * valueNoise(p / 2.5, 84);
-  case KneeTissue::cortex:
-    return 66.0;
-  case KneeTissue::marrow:
-    return marrowSignal(p);
-  }
-  return 0.0;
+double meniscusSignal(const Vec3& p) {
+  return 105.0 + 18.0 * valueNoise(p / 2.0, 82);
+}
+
+double ligamentSignal(const Vec3& p) {
+  return 112.0 + 28.0 * valueNoise(p / 1.5, 83);
+}
+
+double cartilageSignal(const Vec3& p) {
+  return 520.0 + 16.0 * valueNoise(p / 2.5, 84);
 }
 
 double biasField(const Vec3& p) {

@@ -5,25 +5,14 @@
 
 namespace fenestra {
 
-enum class KneeTissue {
-  skin,
-  subcutaneousFat,
-  fascia,
-  deepFat,
-  fatPad,
-  muscle,
-  vessel,
-  nerve,
-  fluid,
-  meniscus,
-  ligament,
-  cartilage,
-  cortex,
-  marrow,
-};
-
-/// Signal with the tissue's own texture, before bias field and noise; `point` in the knee's frame.
-double tissueSignal(KneeTissue tissue, const Vec3& point);
+// Signals with the tissue's own texture, before bias field and noise; `point` in the knee's frame.
+double muscleSignal(const Vec3& point);
+double fatSignal(const Vec3& point, double strands); ///< `strands`: loss in connective tissue
+double marrowSignal(const Vec3& point);
+double nerveSignal(const Vec3& point);
+double meniscusSignal(const Vec3& point);
+double ligamentSignal(const Vec3& point);
+double cartilageSignal(const Vec3& point);
 
 /// Sensitivity of the receive coils: smooth, from 0.85 to 1.15.
 double biasField(const Vec3& point);

@@ -10,26 +10,31 @@
 
 namespace fenestra {
 
-/// Shape that hides later ones.
-template <typename Site, typename Tissue>
-struct PaintLayer {
-  std::uint8_t label;
-  Tissue tissue;
-  Box box;                                     ///< world; the shape lies inside it
-  std::function<double(const Site&)> distance; ///< mm, negative inside
+/// Place in a subject.
+struct PaintedPlace {
+  Vec3 point;     ///< world
+  double surface; ///< mm to the subject's outside
+
+  /// Functions of a point are functions of a place.
+  operator const Vec3&() const { return point; }
 };
 
 inline const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
 
 /// Base of a subject: its segments, and its layers front to back, each of which hides the later
-/// ones. `S`: a place with the data that the layers need, such as `point`; `T`: tissue.
-template <typename S, typename T>
+/// ones. `S`: a PaintedPlace with the data that the layers need.
+template <typename S>
 class LayeredSubject {
 public:
   using Site = S;
-  using Tissue = T;
-  using Layer = PaintLayer<Site, Tissue>;
-  using Distance = std::function<double(const Site&)>;
+  using Field = std::function<double(const Site&)>;
+
+  struct Layer {
+    std::uint8_t label;
+    Field signal;
+    Box box;        ///< world; the shape lies inside it
+    Field distance; ///< of the shape, mm, negative inside
+  };
 
   const std::vector<Layer>& layers() const { return m_layers; }
   const std::vector<PhantomSegment>& segments() const { return m_segments; }
@@ -46,12 +51,20 @@ protected:
   }
 
   /// Adds a layer behind the others.
-  void layer(std::uint8_t label, Tissue tissue, const Box& box, Distance distance) {
-    m_layers.push_back({label, tissue, expanded(box, m_margin), std::move(distance)});
+  void layer(std::uint8_t label, Field signal, const Box& box, Field distance) {
+    m_layers.push_back({label, std::move(signal), expanded(box, m_margin), std::move(distance)});
   }
 
-  static Distance distanceTo(const Solid& solid) {
-    return [distance = solid.distance](const Site& site) { return distance(site.point); };
+  static Field constant(double signal) {
+    return [signal](const Site&) { return signal; };
+  }
+  /// Distance to the surface `depth` mm under the subject's outside.
+  static Field under(double depth) {
+    return [depth](const Site& site) { return site.surface + depth; };
+  }
+  /// Distance to the intersection of two shapes.
+  static Field both(Field a, Field b) {
+    return [a = std::move(a), b = std::move(b)](const Site& s) { return std::max(a(s), b(s)); };
   }
 
 private:
@@ -70,9 +83,8 @@ inline const Rgb skinColor{0.694, 0.478, 0.396};
 
 /// Paints places of a grid, from the front layer back until the voxel is full.
 ///
-/// A Subject is a LayeredSubject whose sites have `surface`, mm to the subject's outside. It has
-/// `background`, the signal around the subject; `site(point)`, world; `signal(tissue, site)`; and
-/// `acquired(signal, point, voxel)`, the scanner's value, int16.
+/// A Subject is a LayeredSubject with `background`, the signal around the subject; `site(point)`,
+/// world; and `acquired(signal, point, voxel)`, the scanner's value, int16.
 template <typename Subject>
 class Painter {
 public:
@@ -139,7 +151,7 @@ private:
         continue;
       if (sample.label == 0 && distance <= 0.0)
         sample.label = layer->label;
-      sample.signal += visible * share * m_subject.signal(layer->tissue, site);
+      sample.signal += visible * share * layer->signal(site);
       visible *= 1.0 - share;
       if (visible < 1e-3)
         break;

@@ -4,12 +4,9 @@
 
 namespace fenestra {
 
-void requirePhantomSize(const Size3& size) {
+Grid phantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes, const Vec3& center) {
   if ((size.array() < 16).any() || (size.array() > 1024).any())
     throw usageError("--size: each number of voxels is to lie between 16 and 1024");
-}
-
-Grid phantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes, const Vec3& center) {
   const Vec3 spacing = fieldOfView.cwiseQuotient(size.cast<double>());
   Affine indexToWorld = Affine::Identity();
   indexToWorld.linear() = axes * Mat3::Diagonal(spacing);

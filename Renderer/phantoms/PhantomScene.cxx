@@ -25,6 +25,22 @@ void throwWithoutMemory() {
   pugi::set_memory_management_functions(allocate, std::free);
 }
 
+/// Encodes a file name or segment id as Slicer does in attributes: all but letters, digits and
+/// "-_./" become %XX.
+std::string urlEncoded(const std::string& text) {
+  TextWriter encoded;
+  encoded << std::hex << std::uppercase;
+  for (const char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (plain || std::string("-_./").find(c) != std::string::npos)
+      encoded << c;
+    else
+      encoded << '%' << (static_cast<unsigned char>(c) >> 4)
+              << (static_cast<unsigned char>(c) & 15);
+  }
+  return encoded.str();
+}
+
 /// Texts for the places of Resources/phantoms/scene.mrml.
 using SceneTexts = std::map<std::string, std::string>;
 
@@ -86,15 +102,15 @@ void addLooks(SceneTexts& texts, const Phantom& phantom) {
 
 } // namespace
 
-std::string phantomScene(const Phantom& phantom, const std::string& name,
-                         const PhantomFileNames& files) {
+std::string phantomScene(const Phantom& phantom, const std::string& name, const std::string& data) {
+  const std::string files = urlEncoded(data + name);
   SceneTexts texts = {{"@volume@", name},
                       {"@segmentation@", name + " segments"},
                       {"@property@", name + " property"},
-                      {"@volume file@", urlEncoded(files.volume)},
-                      {"@segmentation file@", urlEncoded(files.segmentation)},
-                      {"@property file@", urlEncoded(files.property)},
-                      {"@roi file@", urlEncoded(files.roi)}};
+                      {"@volume file@", files + ".nrrd"},
+                      {"@segmentation file@", files + ".seg.nrrd"},
+                      {"@property file@", files + ".vp"},
+                      {"@roi file@", files + "-roi.mrk.json"}};
   addCamera(texts, phantom);
   addGeometry(texts, phantom.volume.grid);
   addLooks(texts, phantom);
@@ -131,20 +147,6 @@ std::string phantomRoi(const Phantom& phantom) {
       roi["orientation"].push_back(axes(row, column));
   point["orientation"] = roi["orientation"];
   return sealed(file.dump(4) + "\n");
-}
-
-std::string urlEncoded(const std::string& text) {
-  TextWriter encoded;
-  encoded << std::hex << std::uppercase;
-  for (const char c : text) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (plain || std::string("-_./").find(c) != std::string::npos)
-      encoded << c;
-    else
-      encoded << '%' << (static_cast<unsigned char>(c) >> 4)
-              << (static_cast<unsigned char>(c) & 15);
-  }
-  return encoded.str();
 }
 
 } // namespace fenestra

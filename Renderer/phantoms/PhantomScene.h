@@ -8,17 +8,13 @@
 
 namespace fenestra {
 
-/// Names of a scene's files, relative to its folder or absolute; not encoded.
-struct PhantomFileNames {
-  std::string volume, segmentation, property, roi;
-};
-
 /// Text of a .mrml, its nodes named after `name`: Volume, Segmentation, VolumeProperty and
 /// MarkupsROI, each with its storage and display; GPU volume rendering of the volume, not cropped;
 /// view 1 with its parallel camera, which frames the volume seen from Phantom::towardViewer. World
-/// is RAS; numbers have six digits, as Slicer's.
+/// is RAS; numbers have six digits, as Slicer's. `data`: path of the scene's files from the scene,
+/// empty or with a / at its end.
 std::string phantomScene(const Phantom& phantom, const std::string& name,
-                         const PhantomFileNames& files);
+                         const std::string& data = "");
 
 /// Text of the region of interest's .mrk.json: the box that the volume's voxels fill, LPS mm.
 std::string phantomRoi(const Phantom& phantom);
@@ -31,9 +27,5 @@ std::string spaced(const Numbers&... numbers) {
   ((stream << std::exchange(separator, " ") << numbers), ...);
   return stream.str();
 }
-
-/// Encodes a file name or segment id as Slicer does in attributes: all but letters, digits and
-/// "-_./" become %XX.
-std::string urlEncoded(const std::string& text);
 
 } // namespace fenestra

@@ -69,12 +69,6 @@ NrrdFields marked(NrrdFields fields = {}) {
   return fields;
 }
 
-NrrdHeader volumeHeader(const Phantom& phantom) {
-  const Grid& grid = phantom.volume.grid;
-  return {
-      .type = "short", .size = grid.size, .indexToWorld = grid.indexToWorld, .fields = marked()};
-}
-
 std::string encodeSegmentation(const Phantom& phantom) {
   const PhantomLabels& labels = phantom.labels;
   const std::size_t count = labels.layers.size();
@@ -102,16 +96,12 @@ struct PhantomFile {
 
 /// Archive of a scene and of the files that it names, which have a folder of their own.
 std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& path,
-                          const std::string& name, const PhantomFileNames& names,
-                          const std::vector<PhantomFile>& files) {
-  const auto data = [](const std::string& file) { return "Data/" + file; };
-  const std::string scene = phantomScene(
-      phantom, name,
-      {data(names.volume), data(names.segmentation), data(names.property), data(names.roi)});
-  std::vector<ZipEntry> entries = {{name + "/" + name + ".mrml", scene}};
+                          const std::string& name, const std::vector<PhantomFile>& files) {
+  std::vector<ZipEntry> entries = {
+      {name + "/" + name + ".mrml", phantomScene(phantom, name, "Data/")}};
   for (const PhantomFile& file : files)
     if (file.isOfScene)
-      entries.push_back({name + "/" + data(file.name), file.content});
+      entries.push_back({name + "/Data/" + file.name, file.content});
   return sealed(encodeZip(entries, std::string(unsealedMark), path));
 }
 
@@ -140,25 +130,26 @@ std::string withoutMark(std::string text) {
 std::vector<std::string> writePhantom(const Phantom& phantom,
                                       const std::filesystem::path& directory,
                                       const std::string& name) {
-  const PhantomFileNames names{name + ".nrrd", name + ".seg.nrrd", name + ".vp",
-                               name + "-roi.mrk.json"};
   const Volume& volume = phantom.volume;
   const auto& voxels = std::get<std::vector<std::int16_t>>(volume.voxels);
-  const NrrdHeader header = volumeHeader(phantom);
-  const std::string scene = phantomScene(phantom, name, names);
+  const NrrdHeader header{.type = "short",
+                          .size = volume.grid.size,
+                          .indexToWorld = volume.grid.indexToWorld,
+                          .fields = marked()};
+  const std::string scene = phantomScene(phantom, name);
   std::vector<PhantomFile> files = {
-      {names.volume, sealed(encodeNrrd(header, memoryOf(voxels))), true},
-      {names.segmentation, encodeSegmentation(phantom), true},
+      {name + ".nrrd", sealed(encodeNrrd(header, memoryOf(voxels))), true},
+      {name + ".seg.nrrd", encodeSegmentation(phantom), true},
       {name + ".vp.json", propertyJson(phantom.property, volume.minimum, volume.maximum)},
-      {names.property, propertyVp(phantom.property), true},
-      {names.roi, phantomRoi(phantom), true},
+      {name + ".vp", propertyVp(phantom.property), true},
+      {name + "-roi.mrk.json", phantomRoi(phantom), true},
       {name + ".mrml", scene}};
   const std::filesystem::path archive = directory / (name + ".mrb");
-  files.push_back({name + ".mrb", encodeArchive(phantom, archive, name, names, files)});
+  files.push_back({name + ".mrb", encodeArchive(phantom, archive, name, files)});
 
   const MadeFolders folders(directory);
   Outputs outputs;
-  const bool isPhantoms = beginsWith(directory / names.volume, withoutMark(nrrdText(header))) &&
+  const bool isPhantoms = beginsWith(directory / (name + ".nrrd"), withoutMark(nrrdText(header))) &&
                           holds(directory / (name + ".mrml"), withoutMark(scene));
   for (const PhantomFile& file : files)
     outputs.add(directory / file.name, [&](const std::filesystem::path& path) {

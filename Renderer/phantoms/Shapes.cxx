@@ -46,11 +46,9 @@ Box united(const Box& a, const Box& b) {
 
 /// Box around a box mapped affinely.
 Box mapped(const Affine& map, const Box& box) {
-  Box result{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner = map * box.corner(i);
-    result = united(result, {corner, corner});
-  }
+  Box result = Box::nothing();
+  for (int i = 0; i < 8; ++i)
+    result.extend(map * box.corner(i));
   return result;
 }
 
@@ -82,11 +80,6 @@ double tubeDistance(const std::vector<TubeNode>& nodes, const Vec3& point) {
 }
 
 } // namespace
-
-double smoothStep(double low, double high, double x) {
-  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 double smoothUnion(double a, double b, double blend) {
   const double h = std::max(blend - std::abs(a - b), 0.0);
@@ -130,11 +123,12 @@ Solid block(const Vec3& halfSize, double radius) {
 }
 
 Solid loft(const std::vector<LoftSection>& sections, double squareness, double capBlend) {
-  Vec2 lower = Vec2::Constant(infinity), upper = Vec2::Constant(-infinity);
-  for (const LoftSection& section : sections) {
-    lower = lower.cwiseMin(section.center - section.radii);
-    upper = upper.cwiseMax(section.center + section.radii);
-  }
+  Box box = Box::nothing();
+  for (const LoftSection& section : sections)
+    for (const double way : {-1.0, 1.0}) {
+      const Vec2 corner = section.center + way * section.radii;
+      box.extend({corner.x(), corner.y(), section.z});
+    }
   const double bottom = sections.front().z, top = sections.back().z;
   const double overshoot = 2.0; // mm; of a Catmull-Rom curve over its nodes
   return {[=](const Vec3& p) {
@@ -143,19 +137,18 @@ Solid loft(const std::vector<LoftSection>& sections, double squareness, double c
                 ellipseDistance(p.head<2>() - section.center, section.radii, squareness);
             return smoothIntersection(side, std::max(bottom - p.z(), p.z() - top), capBlend);
           },
-          expanded({{lower.x(), lower.y(), bottom}, {upper.x(), upper.y(), top}}, overshoot)};
+          expanded(box, overshoot)};
 }
 
 Solid tube(const std::vector<TubeNode>& nodes, const Vec3& stretch) {
-  Vec3 lower = Vec3::Constant(infinity), upper = Vec3::Constant(-infinity);
+  Box box = Box::nothing();
   std::vector<TubeNode> axis = refined(nodes); // in the space divided by the stretch
   for (TubeNode& node : axis) {
-    lower = lower.cwiseMin(node.point - node.radius * stretch);
-    upper = upper.cwiseMax(node.point + node.radius * stretch);
+    box.extend(node.point - node.radius * stretch);
+    box.extend(node.point + node.radius * stretch);
     node.point = node.point.cwiseQuotient(stretch);
   }
-  return {[=](const Vec3& p) { return tubeDistance(axis, p.cwiseQuotient(stretch)); },
-          {lower, upper}};
+  return {[=](const Vec3& p) { return tubeDistance(axis, p.cwiseQuotient(stretch)); }, box};
 }
 
 Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up) {

@@ -9,9 +9,6 @@
 
 namespace fenestra {
 
-/// Smooth step from 0 at `low` to 1 at `high`; falling if low > high.
-double smoothStep(double low, double high, double x);
-
 /// Union, intersection and difference of two shapes, blended where their distances differ by less
 /// than `blend`, mm.
 double smoothUnion(double a, double b, double blend);

@@ -1,7 +1,6 @@
 #include "program/CommandLine.h"
 
 #include "base/Error.h"
-#include "program/Help.h"
 #include "program/Version.h"
 
 #include <algorithm>
@@ -11,29 +10,57 @@
 namespace fenestra {
 namespace {
 
+constexpr std::size_t page = 80, column = 30; ///< characters of a help line, and before its text
+
+/// Line of a name and its explanation, in two columns.
+std::string entry(std::string_view name, std::string_view text) {
+  const std::string margin(column, ' ');
+  std::string head = textOf("  ", name);
+  if (head.size() < column)
+    head.resize(column, ' ');
+  else
+    head.append("\n").append(margin);
+  return textOf(head, replacedAll(wrapped(text, page - column), "\n", "\n" + margin), "\n");
+}
+
+/// Summary, positional arguments and flags by group.
+std::string helpText(const CommandSyntax& syntax) {
+  std::string usage = "Usage: fenestra " + syntax.name, names;
+  for (const Positional& positional : syntax.positionals) {
+    usage += " " + positional.name;
+    names += entry(positional.name, positional.text);
+  }
+  std::string text = textOf(wrapped(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
+  text += entry("--help", "Print this and exit") + entry("--version", "Print the version and exit");
+  std::string_view group;
+  for (const Flag& flag : syntax.flags) {
+    if (flag.group != group)
+      text += "\n" + flag.group + ":\n";
+    group = flag.group;
+    text += entry(textOf("--", flag.name, flag.isSwitch() ? "" : " ", flag.value), flag.help());
+  }
+  return text;
+}
+
 std::string seeHelp(const CommandSyntax& syntax) {
-  return " (fenestra " + syntax.name + " --help lists what there is)";
+  return textOf(" (fenestra ", syntax.name, " --help lists what there is)");
 }
 
 Error unknownFlag(const CommandSyntax& syntax, std::string_view given) {
   given = given.substr(0, given.find('='));
-  std::vector<std::string_view> names = {"help", "version"};
-  for (const Flag& flag : syntax.flags)
-    names.push_back(flag.name);
-  std::string word(given.substr(std::min(given.find_first_not_of('-'), given.size())));
-  std::ranges::transform(word, word.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const std::string_view likely = nearest(word, names);
-  const std::string mend = likely.empty() ? "" : "; did you mean --" + std::string(likely) + "?";
-  return usageError(std::string(given) + ": no such flag" + mend + seeHelp(syntax));
+  std::vector<std::string> names = namesOf(syntax.flags);
+  names.insert(names.begin(), {"help", "version"});
+  const std::string_view word = given.substr(std::min(given.find_first_not_of('-'), given.size()));
+  const std::string likely = nearest(lower(word), names);
+  return usageError(given, ": no such flag",
+                    likely.empty() ? "" : textOf("; did you mean --", likely, "?"),
+                    seeHelp(syntax));
 }
 
 Error extraArgument(const CommandSyntax& syntax, std::string_view given) {
-  std::string expected;
-  for (const Positional& positional : syntax.positionals)
-    expected += (expected.empty() ? "" : " and ") + positional.name;
-  return usageError("'" + std::string(given) + "': one argument too many after " + expected +
-                    "; quote names with blanks" + seeHelp(syntax));
+  return usageError("'", given, "': one argument too many after ",
+                    joined(syntax.positionals, " and ", std::mem_fn(&Positional::name)),
+                    "; quote names with blanks", seeHelp(syntax));
 }
 
 using Words = std::span<const std::string_view>;
@@ -54,14 +81,14 @@ void takeFlag(const CommandSyntax& syntax, std::string_view word, Words& words,
   if (!flag)
     throw unknownFlag(syntax, word);
   if (flag->isSwitch() && hasValue)
-    throw usageError("--" + flag->name + ": is a switch; write it without a value");
+    throw usageError("--", flag->name, ": is a switch; write it without a value");
   if (flag->isSwitch())
     return values.add(flag->name, "");
   const bool isMissing =
       hasValue ? equals + 1 == word.size() : words.empty() || words.front().starts_with("--");
   if (isMissing || (!hasValue && words.front().empty()))
-    throw usageError("--" + flag->name + ": its value is " + (isMissing ? "missing" : "empty") +
-                     "; write --" + flag->name + " " + flag->value);
+    throw usageError("--", flag->name, ": its value is ", isMissing ? "missing" : "empty",
+                     "; write --", flag->name, " ", flag->value);
   values.add(flag->name, std::string(hasValue ? word.substr(equals + 1) : takeFirst(words)));
 }
 
@@ -77,12 +104,12 @@ FlagValues parsedWords(const CommandSyntax& syntax, Words words) {
     else if (positional == syntax.positionals.end())
       throw extraArgument(syntax, word);
     else if (word.empty())
-      throw usageError(positional->name + ": is empty; name a file");
+      throw usageError(positional->name, ": is empty; name a file");
     else
       values.add((positional++)->name, std::string(word));
   }
   if (positional != syntax.positionals.end())
-    throw usageError(positional->name + ": is missing; name it: " + positional->text +
+    throw usageError(positional->name, ": is missing; name it: ", positional->text,
                      seeHelp(syntax));
   return values;
 }
@@ -106,13 +133,32 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 } // namespace
 
-std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string lines;
+  std::size_t used = 0;
+  for (const std::string& word : split(text, ' ')) {
+    const bool fits = used + 1 + word.size() <= width;
+    if (!lines.empty())
+      lines += fits ? ' ' : '\n';
+    lines += word;
+    used = (fits ? used + 1 : 0) + word.size();
+  }
+  return lines;
+}
+
+std::vector<std::string> namesOf(std::span<const Flag> flags) {
+  std::vector<std::string> names;
+  std::ranges::transform(flags, std::back_inserter(names), &Flag::name);
+  return names;
+}
+
+std::string nearest(std::string_view word, std::span<const std::string> candidates) {
   constexpr std::size_t longest = 32; // no name is longer, but a path may be
-  std::string_view best;
+  std::string best;
   std::size_t least = std::min<std::size_t>(3, word.size() / 3 + 1); // more is no misspelling
   if (word.empty() || word.size() > longest)
     return best;
-  for (const std::string_view candidate : candidates) {
+  for (const std::string& candidate : candidates) {
     const bool cut = word.size() >= 2 && candidate.starts_with(word);
     const std::size_t distance = cut ? 1 : editDistance(word, candidate);
     if (distance < least) {
@@ -136,6 +182,13 @@ std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc
   else
     return parsedWords(syntax, words);
   return std::nullopt;
+}
+
+void refuseFlags(const FlagValues& given, std::initializer_list<const char*> names,
+                 std::string_view why) {
+  for (const char* name : names)
+    if (given.has(name))
+      throw usageError("--", name, ": ", why);
 }
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of arguments to flag values, by a command's syntax.
+// Conversion of arguments to flag values, by a command's syntax, and its help.
 
 #include "program/Flags.h"
 
@@ -14,7 +14,16 @@ namespace fenestra {
 std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
                                            int first);
 
+/// Words of `text` in lines of at most `width` bytes; a longer word has its own line.
+std::string wrapped(std::string_view text, std::size_t width);
+
 /// Candidate that `word` probably misspells or abbreviates; empty: none.
-std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
+std::string nearest(std::string_view word, std::span<const std::string> candidates);
+std::vector<std::string> namesOf(std::span<const Flag> flags);
+
+/// Throws Error (usage) for a given flag of these, which the command does not take; `why`: the rest
+/// of the message.
+void refuseFlags(const FlagValues& given, std::initializer_list<const char*> names,
+                 std::string_view why);
 
 } // namespace fenestra

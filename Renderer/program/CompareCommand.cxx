@@ -48,7 +48,8 @@ Comparison compared(const FlagValues& values, const Image& a, const Image& b) {
   try {
     return compareImages(a, b);
   } catch (const Error& error) {
-    throw Error(error.kind(), *values.text("A") + ", " + *values.text("B") + ": " + error.what());
+    throw Error(error.kind(),
+                textOf(*values.text("A"), ", ", *values.text("B"), ": ", error.what()));
   }
 }
 
@@ -84,7 +85,7 @@ int compareCommand(int argc, char** argv, int first) {
   const Image b = readWithError(*values, "B", "errorb");
   print(compared(*values, a, b));
   if (const auto output = values->text("output")) {
-    writeImage(differenceImage(a, b), {}, *output, outputs, "Standard");
+    writeImage(differenceImage(a, b), {}, *output, outputs, DisplayView::standard);
     outputs.commit();
   }
   return 0;

@@ -2,6 +2,8 @@
 
 #include "base/safe/SystemCalls.h"
 
+#include <utility>
+
 namespace fenestra {
 namespace {
 
@@ -60,23 +62,26 @@ std::string relativeName(const std::string& name, const fs::path& folder) {
 
 std::vector<std::string> relativeArguments(const std::vector<std::string>& words,
                                            std::span<const Flag> flags, const fs::path& folder) {
+  const auto named = [&](const Flag* flag, const std::string& value) { // null: a positional's
+    if (flag && !flag->takesFile())
+      return value;
+    return flag && flag->isWritten() ? writtenName(value, folder) : relativeName(value, folder);
+  };
   std::vector<std::string> result;
   const Flag* pending = nullptr; // flag whose value is the next word
   for (const std::string& word : words) {
-    const bool isFlag = !pending && word.starts_with("--");
-    const std::size_t equals = isFlag ? word.find('=') : std::string::npos;
-    const Flag* flag = isFlag ? findFlag(flags, word.substr(2, equals - 2)) : pending;
-    const bool hasValue = !isFlag || equals != std::string::npos;
-    const std::size_t valueAt = isFlag ? equals + 1 : 0;
-    pending = flag && !hasValue && !flag->isSwitch() ? flag : nullptr;
-    if (!hasValue || (flag ? !flag->takesFile() : isFlag)) {
-      result.push_back(word);
+    if (pending || !word.starts_with("--")) {
+      result.push_back(named(std::exchange(pending, nullptr), word));
       continue;
     }
-    const std::string value = word.substr(valueAt);
-    result.push_back(word.substr(0, valueAt) + (flag && flag->isWritten()
-                                                    ? writtenName(value, folder)
-                                                    : relativeName(value, folder)));
+    const std::size_t equals = word.find('=');
+    const Flag* const flag = findFlag(flags, word.substr(2, equals - 2));
+    if (flag && equals != word.npos)
+      result.push_back(word.substr(0, equals + 1) + named(flag, word.substr(equals + 1)));
+    else
+      result.push_back(word);
+    if (flag && equals == word.npos && !flag->isSwitch())
+      pending = flag;
   }
   return result;
 }

@@ -29,7 +29,7 @@ std::vector<std::string> splitAtCommas(const std::string& text) {
 }
 
 Error badValue(const std::string& flag, const std::string& expected, const std::string& got) {
-  return usageError("--" + flag + ": expected " + expected + ", got '" + oneLine(got) + "'");
+  return usageError("--", flag, ": expected ", expected, ", got '", oneLine(got), "'");
 }
 
 /// Throws Error (usage) unless there is a value, and in the flag's range.
@@ -38,10 +38,8 @@ Number inRange(std::optional<Number> value, const Flag& flag, const std::string&
   const auto [least, greatest] = std::pair(flag.takes.least, flag.takes.greatest);
   if (value && least <= static_cast<double>(*value) && static_cast<double>(*value) <= greatest)
     return *value;
-  throw badValue(flag.name,
-                 (std::is_integral_v<Number> ? "a whole number from " : "a number from ") +
-                     numberText(least) + " to " + numberText(greatest),
-                 given);
+  const char* const kind = std::is_integral_v<Number> ? "a whole number from " : "a number from ";
+  throw badValue(flag.name, textOf(kind, numberText(least), " to ", numberText(greatest)), given);
 }
 
 } // namespace
@@ -82,16 +80,13 @@ std::vector<std::string> FlagValues::texts(const std::string& name) const {
 
 std::optional<double> FlagValues::number(const std::string& name) const {
   const auto given = text(name);
-  if (!given)
-    return std::nullopt;
-  return inRange(parsedNumber(*given), flag(name), *given);
+  return given ? std::optional(inRange(parsedNumber(*given), flag(name), *given)) : std::nullopt;
 }
 
 std::optional<std::uint64_t> FlagValues::count(const std::string& name) const {
   const auto given = text(name);
-  if (!given)
-    return std::nullopt;
-  return inRange(parsed<std::uint64_t>(*given), flag(name), *given);
+  return given ? std::optional(inRange(parsed<std::uint64_t>(*given), flag(name), *given))
+               : std::nullopt;
 }
 
 std::vector<double> FlagValues::numbers(const std::string& name, std::size_t size) const {

@@ -20,12 +20,9 @@ namespace fenestra {
 
 class FlagValues;
 
-/// Values that a flag accepts, its default, and where the value goes. Parsing refuses all other
-/// values, and Slicer's panel offers no others.
+/// Values that a flag accepts, its default, and where the value goes.
 struct Takes {
-  /// Slicer's name of the type; empty: the flag is one of all of Slicer's programs, which describe
-  /// none of these.
-  std::string type = "string";
+  std::string type = "string";                   ///< Slicer's name; empty: not in Slicer's panel
   std::string channel = {};                      ///< of a file: "input", or "output" if written
   std::string image = {};                        ///< of an image: "label" or "vector"
   std::string extensions = {};                   ///< of a file that is written
@@ -97,9 +94,8 @@ struct Takes {
   }
 };
 
-/// Topic of a flag. A flag given on the command line replaces all flags of its topic that a scene
-/// stores; `own`: itself alone. A part of a topic holds alternatives: a given one replaces all that
-/// a preset sets.
+/// Topic of a flag. A given flag replaces all flags of its topic that a scene stores; `own`: itself
+/// alone. A part of a topic holds alternatives: a given one replaces all that a preset sets.
 enum class Topic {
   own,
   focus,
@@ -147,7 +143,6 @@ struct Positional {
   std::string text; ///< one sentence of help
 };
 
-/// Syntax of a command: positional arguments first, by name, then flags.
 struct CommandSyntax {
   std::string name;
   std::string summary;
@@ -155,8 +150,8 @@ struct CommandSyntax {
   std::span<const Flag> flags;
 };
 
-/// Flag values as the user gave them. Accessors convert by the flag's `takes`, and throw Error
-/// (usage) that names the flag; those without "optional" are for flags that are given.
+/// Flag values as the user gave them. Accessors throw Error (usage) for values that the flag does
+/// not take; those without "optional" are for flags that are given.
 class FlagValues {
 public:
   explicit FlagValues(std::span<const Flag> flags) : m_flags(flags) {}
@@ -177,8 +172,7 @@ public:
   std::vector<std::string> texts(const std::string& name) const;
   /// All values of a repeatable flag, split at commas; "\," is a comma.
   std::vector<std::string> list(const std::string& name) const;
-  /// Reads a given flag as the place's type asks: a number, a triple, a list, files,
-  /// a word or text.
+  /// Reads a given flag as the place's type asks.
   template <typename Place>
   void read(const std::string& name, Place& place) const {
     if constexpr (std::is_same_v<Place, std::vector<std::string>>)

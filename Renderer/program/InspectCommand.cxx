@@ -2,16 +2,348 @@
 
 #include "base/Error.h"
 #include "base/safe/Inputs.h"
+#include "base/safe/JsonNode.h"
+#include "base/safe/ShownText.h"
 #include "program/CommandLine.h"
-#include "program/InspectText.h"
-#include "program/Machine.h"
-#include "program/RenderFlags.h"
-#include "program/SceneFlags.h"
+#include "program/MergedFlags.h"
+#include "session/Inspection.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <iostream>
+#include <map>
 
 namespace fenestra {
 namespace {
+
+using Json = nlohmann::ordered_json;
+using Row = std::vector<std::string>;
+
+constexpr std::size_t width = 100; ///< characters in a line
+constexpr std::size_t longestName = 36, longestId = 48, longestFile = 90;
+constexpr std::size_t mostNodes = 20, mostSegments = 100; ///< listed one by one
+
+// ---- words
+
+bool startsCharacter(char c) { // in UTF-8
+  return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
+}
+
+std::size_t characters(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), startsCharacter));
+}
+
+/// `text`, or its first characters and "...": at most `most` characters.
+std::string clipped(std::string text, std::size_t most) {
+  text = oneLine(std::move(text));
+  if (characters(text) <= most)
+    return text;
+  std::size_t end = 0;
+  for (std::size_t count = 0; end < text.size(); ++end)
+    if (startsCharacter(text[end]) && ++count > most - 3)
+      break;
+  return text.substr(0, end) + "...";
+}
+
+/// Texts that are not empty, in one.
+std::string listed(Row texts, const char* between = ", ") {
+  std::erase(texts, "");
+  return joined(texts, between);
+}
+
+std::string number(double x, const char* format = "%.6g") {
+  char text[32];
+  std::snprintf(text, sizeof text, format, x == 0.0 ? 0.0 : x); // no -0
+  return text;
+}
+
+// ---- members of the report
+
+/// Member that is text, clipped; empty: there is none.
+std::string text(const Json& object, const char* key, std::size_t most) {
+  const Json& member = object[key];
+  return member.is_null() ? "" : clipped(member, most);
+}
+
+/// Name: a file's in full, a node's clipped.
+std::string nameOf(const Json& node) {
+  return text(node, "name", node["id"].is_null() ? longestFile : longestName);
+}
+
+/// "name (id)", or what there is of it.
+std::string named(const Json& node) {
+  const std::string id = text(node, "id", longestId);
+  return listed({nameOf(node), id.empty() ? "" : "(" + id + ")"}, " ");
+}
+
+std::string hex(const Json& color) {
+  std::string text = "#";
+  for (const Json& part : color) {
+    char byte[16];
+    std::snprintf(byte, sizeof byte, "%02lx", std::lround(255.0 * part.get<double>()));
+    text += byte;
+  }
+  return text;
+}
+
+std::string colors(const Json& background) {
+  const std::string bottom = hex(background["bottom"]), top = hex(background["top"]);
+  return bottom == top ? bottom : bottom + " below to " + top + " above";
+}
+
+std::string files(const Json& list) {
+  if (list.empty())
+    return "";
+  const auto missing = std::count_if(list.begin(), list.end(),
+                                     [](const Json& file) { return file["there"] == false; });
+  std::string shown = text(list[0], "name", longestFile - 10);
+  if (list.size() > 1)
+    shown += textOf(" and ", list.size() - 1, " more");
+  if (missing > 0)
+    shown += list.size() == 1 ? " (missing)" : textOf(" (", missing, " missing)");
+  return shown;
+}
+
+/// Text, number or numbers, colours of a background, or files; empty: null, or anything else.
+std::string shown(const std::string& key, const Json& member) {
+  static const std::map<std::string, const char*> separators = {{"size", " x "},
+                                                                {"spacing", " x "},
+                                                                {"edges", " x "},
+                                                                {"range", " to "},
+                                                                {"transforms", ", "}};
+  if (member.is_string())
+    return clipped(member, longestId);
+  if (member.is_number())
+    return number(member);
+  if (member.is_object())
+    return colors(member);
+  if (key == "files")
+    return files(member);
+  Row items;
+  if (member.is_array())
+    for (const Json& item : member)
+      items.push_back(shown("", item));
+  const auto separator = separators.find(key);
+  return listed(items, separator == separators.end() ? "," : separator->second);
+}
+
+/// Words with the object's members in place of "{key}", and named() in place of "{}"; empty: one of
+/// them is null or missing.
+std::string filled(std::string_view words, const Json& object) {
+  std::string text;
+  for (auto open = words.find('{'); open != words.npos; open = words.find('{')) {
+    const auto close = words.find('}', open);
+    const std::string key(words.substr(open + 1, close - open - 1));
+    const std::string member = key.empty() ? named(object) : shown(key, object.value(key, Json()));
+    if (member.empty())
+      return "";
+    text.append(words.substr(0, open)).append(member);
+    words.remove_prefix(close + 1);
+  }
+  return text.append(words);
+}
+
+/// Words for a part of the report, whatever its kind. Shown if filled() is not empty, and if the
+/// member `key` has this value; no key: whatever the members are.
+struct Phrase {
+  const char* words;
+  const char* key = nullptr;
+  Json value = {};
+};
+
+/// Description of a node, or of a part of a render, for the place behind its name and id.
+std::string descriptionOf(const Json& part) {
+  static const Phrase phrases[] = {
+      {"label map", "kind", "labelMap"},
+      {"hidden", "shown", false},
+      {"of no volume", "volume", nullptr},
+      {"of {volume}"},
+      {"names from {namesFrom}"},
+      {"by {property}"},
+      {"follows the slice display", "followsDisplay", true},
+      {"cropped by {roi}", "cropping", true},
+      {"cropping off, {roi}", "cropping", false},
+      {"layout {layout}"},
+      {"{technique}"},
+      {"background {background}"},
+      {"perspective, angle {angle} degrees"},
+      {"orthographic, scale {scale} mm"},
+      {"position {position}, target {target}, up {up}"},
+      {"linear", "linear", true},
+      {"{files}"},
+      {"{size} voxels of {spacing} mm"},
+      {"{voxelType} from {range}, centre {center}"},
+      {"moved by {transforms}"},
+      {"{}", "source", "volumeProperty"},
+      {"the window of {}, which the rendering follows", "source", "volumeDisplay"},
+      {"preset {name}, by the volume's range", "source", "preset"},
+      {"made for the volume's range", "source", "range"},
+      {"{edges} mm around {center}"},
+      {"under {transform}"},
+  };
+  Row texts;
+  for (const auto& [words, key, value] : phrases)
+    if (!key || (part.contains(key) && part[key] == value))
+      texts.push_back(filled(words, part));
+  return listed(texts);
+}
+
+// ---- lines
+
+/// Lines below a title; nothing without lines.
+std::string section(const char* title, const std::string& lines) {
+  return lines.empty() ? "" : std::string("\n") + title + "\n" + lines;
+}
+
+std::string line(const std::string& text) {
+  return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+}
+
+/// Wrapped text; the first line starts with `label`, the others are indented by its width.
+std::string paragraph(const std::string& label, const std::string& text) {
+  const std::string lines = wrapped(oneLine(text), width - characters(label));
+  return label + replacedAll(lines, "\n", "\n" + std::string(characters(label), ' ')) + "\n";
+}
+
+/// Rows as lines; a column is as wide as its widest cell, and aligned right if right[i] is '>'.
+std::vector<std::string> aligned(std::vector<Row> rows, const std::string& right = "") {
+  for (std::size_t i = 0; i < (rows.empty() ? 0 : rows[0].size()); ++i) {
+    std::size_t columns = 0;
+    for (const Row& row : rows)
+      columns = std::max(columns, characters(row[i]));
+    for (Row& row : rows)
+      row[i].insert(i < right.size() && right[i] == '>' ? 0 : row[i].size(),
+                    columns - characters(row[i]), ' ');
+  }
+  Row lines;
+  for (const Row& row : rows)
+    lines.push_back(listed(row, "  "));
+  return lines;
+}
+
+std::string table(const std::string& indent, const std::vector<Row>& rows,
+                  const std::string& right) {
+  return joined(aligned(rows, right), "",
+                [&indent](const std::string& row) { return line(indent + row); });
+}
+
+// ---- sections
+
+std::string segmentTable(const Json& segments) {
+  std::vector<Row> rows = {{"value", "layer", "color", "voxels", "ml", "id", "name"}};
+  const std::size_t count = std::min(segments.size(), mostSegments);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Json& segment = segments[i];
+    rows.push_back({segment["labelValue"].dump(), segment["layer"].dump(), hex(segment["color"]),
+                    segment["voxels"].dump(), number(segment["milliliters"], "%.2f"),
+                    text(segment, "id", 20),
+                    text(segment, "name", 24) + (segment["shown"] == true ? "" : " (hidden)")});
+  }
+  if (segments.size() > count)
+    rows.push_back({"...", "", "", "", "",
+                    textOf(segments.size() - count, " more (--json lists them all)"), ""});
+  return table("      ", rows, ">> >>");
+}
+
+/// Lines "* name  id  description"; a description that is too long has a line of its own. An
+/// asterisk marks nodes that a render uses.
+std::string nodeLines(const Json& nodes) {
+  const std::size_t count = std::min(nodes.size(), mostNodes);
+  std::vector<Row> names;
+  for (std::size_t i = 0; i < count; ++i)
+    names.push_back({(nodes[i]["used"] == true ? "* " : "  ") + nameOf(nodes[i]),
+                     text(nodes[i], "id", longestId)});
+  const Row heads = aligned(names);
+  std::string lines;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Json& node = nodes[i];
+    const std::string more = descriptionOf(node), whole = heads[i] + "  " + more;
+    lines += characters(whole) <= width ? line(whole) : line(heads[i]) + paragraph("      ", more);
+    if (!node["problem"].is_null())
+      lines += paragraph("      problem: ", node["problem"]);
+    if (node.contains("segments") && !node["segments"].empty())
+      lines += segmentTable(node["segments"]);
+  }
+  if (nodes.size() > count)
+    lines += "  and " + std::to_string(nodes.size() - count) + " more (--json lists them all)\n";
+  return lines;
+}
+
+std::string seriesLines(const Json& series) {
+  std::vector<Row> rows = {{"number", "files", "modality", "description", "uid"}};
+  for (const Json& one : series)
+    rows.push_back({text(one, "number", 8), one["files"].dump(), text(one, "modality", 8),
+                    text(one, "description", 24), text(one, "uid", 64)});
+  return series.empty() ? "" : table("  ", rows, ">>");
+}
+
+std::string otherLines(const Json& others) {
+  Row tags;
+  for (const auto& [tag, count] : others.items())
+    tags.push_back(clipped(tag, longestName) + (count > 1 ? " (" + count.dump() + ")" : ""));
+  return tags.empty() ? "" : paragraph("  ", listed(tags));
+}
+
+std::string listLines(const Json& list) {
+  return joined(list, "", [](const Json& line) { return paragraph("  - ", line); });
+}
+
+std::string renderLines(const Json& use) {
+  std::string lines;
+  const auto add = [&](const char* label, const char* key, auto&& words) {
+    if (const Json& part = use[key]; !part.empty()) // null is empty
+      lines += paragraph(label, words(part));
+  };
+  const auto withName = [](const Json& part) { return filled("{}: ", part) + descriptionOf(part); };
+  add("  volume        ", "volume", withName);
+  add("  look          ", "look", descriptionOf);
+  add("  crop          ", "crop", withName);
+  add("  camera        ", "camera", [&](const Json& camera) {
+    return (named(camera).empty() ? "framed: " : "") + withName(camera);
+  });
+  add("  background    ", "background",
+      [](const Json& part) { return colors(part) + filled(", of {view}", part); });
+  add("  segmentation  ", "segmentationProblem",
+      [](const std::string& problem) { return "open: " + problem; });
+  add("  segmentation  ", "segmentation",
+      [](const std::string& segmentation) { return segmentation + ", with --focus"; });
+  add("  as rendered   ", "stored", [](const Row& arguments) { return listed(arguments, " "); });
+  return lines;
+}
+
+/// Lines of at most 100 characters; a list that is cut says how much is missing.
+std::string inspectionText(const Inspection& inspection) {
+  const std::map<std::string, const char*> kinds = {{"scene", "Slicer scene"},
+                                                    {"volume", "volume"},
+                                                    {"segmentation", "segmentation or label map"},
+                                                    {"dicom", "DICOM folder"}};
+  const bool refused = !inspection["refused"].is_null();
+  std::string text =
+      paragraph("", inspection["input"].get<std::string>() + ": " + kinds.at(inspection["kind"]) +
+                        filled(", version {version}", inspection));
+  text += section("DICOM series", seriesLines(inspection["series"]));
+  for (const auto& [key, title] : {std::pair("volumes", "Volumes"),
+                                   {"segmentations", "Segmentations"},
+                                   {"volumeRenderings", "Volume renderings"},
+                                   {"volumeProperties", "Volume properties"},
+                                   {"rois", "Regions of interest"},
+                                   {"views", "Views"},
+                                   {"cameras", "Cameras"},
+                                   {"transforms", "Transforms"}})
+    text += section(title, nodeLines(inspection[key]));
+  text += section("Other nodes", otherLines(inspection["others"]));
+  if (refused)
+    text += "\n" +
+            paragraph("", "A render would be refused: " + inspection["refused"].get<std::string>());
+  if (const Json& use = inspection["render"]; !use.is_null())
+    text += section(refused ? "It would use, as far as that can be read" : "A render would use",
+                    renderLines(use));
+  return text + section("Warnings", listLines(inspection["warnings"])) +
+         section("Ignored", listLines(inspection["ignored"]));
+}
+
+// ---- the command
 
 constexpr const char* inspectGroup = "Inspect";
 const Flag inspectFlags[] = {
@@ -34,6 +366,15 @@ const CommandSyntax inspectSyntax = {
                "segmentation (.seg.nrrd) or DICOM folder"}},
     inspectFlags,
 };
+
+/// Arguments of `merged` that are not given.
+std::vector<std::string> argumentsBeyond(const FlagValues& given, const FlagValues& merged) {
+  std::vector<std::string> arguments = merged.arguments();
+  std::erase_if(arguments, [before = given.arguments()](const std::string& argument) {
+    return std::ranges::find(before, argument) != before.end();
+  });
+  return arguments;
+}
 
 } // namespace
 
@@ -58,13 +399,11 @@ int inspectCommand(int argc, char** argv, int first) {
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())
-    use["stored"] = sceneArguments(given, flags);
+    use["stored"] = argumentsBeyond(given, flags);
   const Inspection leftOut = stored.leftOut;
   Inspection& warnings = inspection["warnings"];
   warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());
-  std::cout << (values->has("json")
-                    ? inspection.dump(2, ' ', false, Inspection::error_handler_t::replace) + "\n"
-                    : inspectionText(inspection))
+  std::cout << (values->has("json") ? jsonText(inspection) : inspectionText(inspection))
             << std::flush;
   return 0;
 }

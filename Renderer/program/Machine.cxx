@@ -1,6 +1,8 @@
-#include "program/Machine.h"
+// Use of this machine's cores and instruction sets.
 
 #include "base/Error.h"
+#include "program/Commands.h"
+#include "program/Flags.h"
 #include "transport/lanes/Tracker.h"
 
 #include <tbb/global_control.h>
@@ -52,9 +54,9 @@ void useMachine(const FlagValues& flags) {
     tbb::parallel_for(
         0, count, [](int) {}, tbb::simple_partitioner());
   } catch (const std::runtime_error&) { // std::system_error, and TBB's own errors
-    throw outputError("threads", std::to_string(count) +
-                                     " cannot be started; allow more processes (ulimit -u), or "
-                                     "render with --threads 1");
+    throw outputError("threads", count,
+                      " cannot be started; allow more processes (ulimit -u), or "
+                      "render with --threads 1");
   }
   if (const char* pinned = std::getenv("FENESTRA_INSTRUCTIONS"))
     WideTracker::useInstructionSet(pinned);

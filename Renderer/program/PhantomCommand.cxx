@@ -2,13 +2,9 @@
 
 #include "base/Error.h"
 #include "base/safe/ShownText.h"
-#include "phantoms/Cube.h"
-#include "phantoms/Fetus.h"
-#include "phantoms/Foot.h"
-#include "phantoms/Knee.h"
 #include "phantoms/PhantomWriter.h"
+#include "phantoms/Phantoms.h"
 #include "program/CommandLine.h"
-#include "program/Machine.h"
 
 #include <cstdio>
 #include <iostream>
@@ -16,18 +12,14 @@
 namespace fenestra {
 namespace {
 
-std::string sizeText(const Size3& size) {
-  return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" + std::to_string(size.z());
-}
-
 constexpr const char* phantomGroup = "Phantom";
 const Flag phantomFlags[] = {
     {"output", "DIR", phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size", "WxHxD", phantomGroup,
-     "Voxels over the same field of view; N for the cube [knee " + sizeText(KneeOptions().size) +
-         ", foot " + sizeText(FootOptions().size) + ", fetus " + sizeText(FetusOptions().size) +
-         ", cube " + std::to_string(CubeOptions().size) + "]",
+     textOf("Voxels over the same field of view; N for the cube [knee ", numbersText(kneeSize, "x"),
+            ", foot ", numbersText(footSize, "x"), ", fetus ", numbersText(fetusSize, "x"),
+            ", cube ", CubeOptions().size, "]"),
      Takes{.least = 16, .greatest = 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "The cube's edge",
      Takes::number(1e-3, 1e5).shows(numberText(CubeOptions().edge))},
@@ -40,11 +32,11 @@ const CommandSyntax phantomSyntax = {
     phantomFlags,
 };
 
-/// Size WxHxD in voxels.
-std::optional<Size3> sizeOf(const FlagValues& values) {
+/// Size WxHxD in voxels; without --size: `standard`.
+Size3 sizeOf(const FlagValues& values, const Size3& standard) {
   const auto text = values.text("size");
   if (!text)
-    return std::nullopt;
+    return standard;
   Size3 size;
   char rest = 0;
   if (std::sscanf(text->c_str(), "%ldx%ldx%ld%c", &size[0], &size[1], &size[2], &rest) != 3)
@@ -52,19 +44,12 @@ std::optional<Size3> sizeOf(const FlagValues& values) {
   return size;
 }
 
-/// Options of a phantom whose size is --size.
-template <typename Options>
-Options sized(const FlagValues& values) {
-  Options options;
-  options.size = sizeOf(values).value_or(options.size);
-  return options;
-}
-
 Phantom makeCube(const FlagValues& values) {
   CubeOptions options;
-  options.edge = values.number("edge").value_or(options.edge);
-  if (const auto size = values.count("size"))
-    options.size = static_cast<std::int64_t>(*size);
+  if (values.has("edge"))
+    values.read("edge", options.edge);
+  if (values.has("size"))
+    values.read("size", options.size);
   return makeCubePhantom(options);
 }
 
@@ -72,11 +57,11 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
   if (kind != "cube" && values.has("edge"))
     throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
   if (kind == "knee")
-    return makeKneePhantom(sized<KneeOptions>(values));
+    return makeKneePhantom(sizeOf(values, kneeSize));
   if (kind == "foot")
-    return makeFootPhantom(sized<FootOptions>(values));
+    return makeFootPhantom(sizeOf(values, footSize));
   if (kind == "fetus")
-    return makeFetusPhantom(sized<FetusOptions>(values));
+    return makeFetusPhantom(sizeOf(values, fetusSize));
   if (kind == "cube")
     return makeCube(values);
   throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");
@@ -93,10 +78,8 @@ int phantomCommand(int argc, char** argv, int first) {
   useMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
-  std::cout << oneLine(folder) << ":";
-  for (const std::string& file : files)
-    std::cout << ' ' << oneLine(file);
-  std::cout << ", " << phantom.segments.size() << " segments" << std::endl;
+  std::cout << oneLine(textOf(folder, ": ", joined(files, " "))) << ", " << phantom.segments.size()
+            << " segments" << std::endl;
   return 0;
 }
 

@@ -1,14 +1,15 @@
 #include "program/Pictures.h"
 
 #include "base/Error.h"
-#include "base/TextStream.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/ShownText.h"
 #include "clip/mesh/SurfaceWriter.h"
 #include "files/pictures/ImageWriter.h"
 #include "program/FileNames.h"
-#include "program/SceneFlags.h"
+#include "program/MergedFlags.h"
 #include "program/Version.h"
+
+#include <future>
 
 #include <unistd.h>
 
@@ -24,51 +25,36 @@ std::string quoted(const std::string& argument) {
   return textOf("'", replacedAll(argument, "'", "'\\''"), "'");
 }
 
-/// `fenestra words…`, quoted for a shell, with files named relative to `folder`.
-std::string shellCommand(const std::vector<std::string>& words,
-                         const std::filesystem::path& folder) {
-  return textOf("fenestra ",
-                joined(relativeArguments(words, renderSyntax.flags, folder), " ", quoted));
-}
-
-std::string text(const Vec3& v) {
-  TextWriter out;
-  out.precision(17);
-  out << v.x() << ',' << v.y() << ',' << v.z();
-  return out.str();
+/// Flags that reproduce the camera.
+std::string cameraFlags(const CameraPose& pose) {
+  constexpr int exact = 17; // significant digits
+  const bool perspective = pose.projection == Projection::perspective;
+  return textOf("--projection ", perspective ? "perspective --angle " : "orthographic --scale ",
+                numberText(perspective ? pose.angle : pose.scale, exact),
+                " --position=", numbersText(pose.position, ",", exact),
+                " --target=", numbersText(pose.target, ",", exact),
+                " --up=", numbersText(pose.up, ",", exact));
 }
 
 std::map<std::string, std::string> header(const Scene& scene, const RenderOptions& options,
                                           const RenderResult& result,
                                           const std::vector<std::string>& words) {
   const std::filesystem::path folder = options.outputs.front().parent_path();
-  const CameraPose& pose = scene.camera().pose();
-  const bool perspective = pose.projection == Projection::perspective;
-  TextWriter camera;
-  camera.precision(17);
-  camera << "--projection " << (perspective ? "perspective --angle " : "orthographic --scale ")
-         << (perspective ? pose.angle : pose.scale) << " --position=" << text(pose.position)
-         << " --target=" << text(pose.target) << " --up=" << text(pose.up);
-  std::map<std::string, std::string> entries = {{"version", versionText},
-                                                {"target", processorText + ("-" + result.target)},
-                                                {"seed", std::to_string(options.settings.seed)},
-                                                {"samples", std::to_string(result.finishedSamples)},
-                                                {"camera", camera.str()},
-                                                {"look", relativeName(scene.look(), folder)},
-                                                {"command", shellCommand(words, folder)}};
+  const std::vector<std::string> arguments = relativeArguments(words, renderSyntax.flags, folder);
+  std::map<std::string, std::string> entries = {
+      {"version", versionText},
+      {"target", textOf(processorText, "-", result.target)},
+      {"seed", textOf(options.settings.seed)},
+      {"samples", textOf(result.finishedSamples)},
+      {"camera", cameraFlags(scene.camera().pose())},
+      {"look", relativeName(scene.look(), folder)},
+      {"command", textOf("fenestra ", joined(arguments, " ", quoted))}};
   if (options.preset)
     entries["preset"] = relativeName(*options.preset, folder);
   return entries;
 }
 
 } // namespace
-
-void refuseFlags(const FlagValues& given, std::initializer_list<const char*> names,
-                 const std::string& why) {
-  for (const char* name : names)
-    if (given.has(name))
-      throw usageError(std::string("--") + name + ": " + why);
-}
 
 PictureRequest pictureRequest(const FlagValues& given) {
   const Input input(*given.text("INPUT"));
@@ -100,17 +86,9 @@ void checkMemory(const SceneRequest& scene) {
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (needed <= there)
     return;
-  TextWriter line;
-  line.precision(3);
-  line << "a picture of " << scene.width << "x" << scene.height << " pixels takes "
-       << needed / gigabyte << " GB of memory, this machine has " << there / gigabyte
-       << "; choose a smaller one";
-  throw outputError("--size", line.str());
-}
-
-RenderResult renderPicture(const RenderOptions& options, const Scene& scene,
-                           RenderMonitor& monitor) {
-  return render(scene.forRender(), settingsFor(options, scene.background()), monitor);
+  throw outputError("--size", "a picture of ", scene.width, "x", scene.height, " pixels takes ",
+                    numberText(needed / gigabyte, 3), " GB of memory, this machine has ",
+                    numberText(there / gigabyte, 3), "; choose a smaller one");
 }
 
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
@@ -125,27 +103,6 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
     }));
   for (std::future<void>& file : files)
     file.get();
-}
-
-std::vector<std::string> staleParts(const RenderOptions& options, const Outputs& outputs) {
-  std::vector<std::string> warnings;
-  std::error_code failed;
-  for (const std::filesystem::path& path : options.outputs)
-    for (const std::filesystem::path& file : imageFiles(path))
-      if (!outputs.written(file) && std::filesystem::exists(file, failed))
-        warnings.push_back(oneLine(file.string()) + ": is of an earlier picture than " +
-                           oneLine(path.filename().string()) + "; remove it");
-  return warnings;
-}
-
-std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs) {
-  if (!options.surface)
-    return std::async(std::launch::deferred, [] {});
-  return std::async([&options, &scene, &outputs] {
-    const auto& clip = std::get<ClipDepth>(scene.clip());
-    writeSurface(surfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)), *options.surface,
-                 outputs);
-  });
 }
 
 } // namespace fenestra

@@ -87,8 +87,8 @@ double Progress::fraction() const {
 
 double Progress::frameFraction() const {
   const double paths = static_cast<double>(m_monitor.paths);
-  double most = paths / (static_cast<double>(m_settings.samples) * m_pixels);
-  most = std::max(most, m_frameWatch.seconds() / m_settings.seconds);
+  double most = std::max(paths / (static_cast<double>(m_settings.samples) * m_pixels),
+                         m_frameWatch.seconds() / m_settings.seconds);
   const double noise = m_monitor.noise;
   if (m_settings.noise > 0.0 && noise > 0.0) // variance is proportional to 1 / samples
     most = std::max(most, std::pow(m_settings.noise / noise, 2.0));
@@ -108,9 +108,7 @@ void Progress::show(bool last) {
 }
 
 void Progress::showTags(bool last) const {
-  std::string comment;
-  for (const std::string& field : reached())
-    comment += (comment.empty() ? "" : ", ") + field;
+  const std::string comment = joined(reached(), ", ");
   std::printf("<filter-progress>%.4f</filter-progress>\n<filter-comment>%s</filter-comment>\n",
               m_fraction, comment.c_str());
   if (last)
@@ -125,8 +123,7 @@ std::vector<std::string> Progress::reached() const {
   const double noise = m_monitor.noise;
   std::vector<std::string> fields;
   if (m_frames > 1)
-    fields.push_back("frame " + std::to_string(std::min(m_finished + 1, m_frames)) + " of " +
-                     std::to_string(m_frames));
+    fields.push_back(textOf("frame ", std::min(m_finished + 1, m_frames), " of ", m_frames));
   fields.push_back(
       formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
   if (noise < infinity)
@@ -137,9 +134,8 @@ std::vector<std::string> Progress::reached() const {
 void Progress::showBar() const {
   const double done = m_fraction;
   const double left = done > 0.0 ? m_watch.seconds() * (1.0 - done) / done : infinity;
-  std::vector<std::string> fields = {formatted("%3.0f %%", 100.0 * done), clock(left) + " left"};
-  for (const std::string& field : reached())
-    fields.push_back(field);
+  std::vector<std::string> fields = reached();
+  fields.insert(fields.begin(), {formatted("%3.0f %%", 100.0 * done), clock(left) + " left"});
 
   // A wrapped line cannot be erased: fields that do not fit are left out, the bar first.
   constexpr std::size_t longest = 24;

@@ -33,8 +33,7 @@ private:
   std::vector<std::string> reached() const;
   /// Finished share of all the work, in [0, 1].
   double fraction() const;
-  /// Finished share of the current picture, in [0, 1]: the largest of those by samples, seconds and
-  /// noise.
+  /// Finished share of the current picture, in [0, 1], by samples, seconds or noise.
   double frameFraction() const;
 
   ProgressMode m_mode;

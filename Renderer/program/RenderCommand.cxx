@@ -1,46 +1,166 @@
 #include "program/Commands.h"
 
-#include "base/TextStream.h"
+#include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
+#include "clip/mesh/SurfaceWriter.h"
+#include "files/pictures/ImageWriter.h"
+#include "measure/FocusMeasures.h"
 #include "program/CommandLine.h"
-#include "program/Machine.h"
+#include "program/FileNames.h"
 #include "program/Pictures.h"
 #include "program/Progress.h"
 #include "program/SlicerModule.h"
-#include "program/Stats.h"
 #include "program/Stop.h"
 
 #include <algorithm>
+#include <future>
 #include <iostream>
+
+#include <sys/resource.h>
 
 namespace fenestra {
 namespace {
 
-RenderResult renderWithProgress(const RenderOptions& options, const Scene& scene,
-                                RenderMonitor& monitor) {
-  const Progress progress(options, monitor);
-  return renderPicture(options, scene, monitor);
+using Json = nlohmann::ordered_json;
+
+// ---- statistics
+
+/// Facts of a render beside its scene and its result.
+struct RenderStats {
+  double transport = 0.0, measure = 0.0, write = 0.0, total = 0.0; ///< wall-clock seconds
+  std::optional<FocusReport> focus = {};
+  std::vector<std::string> warnings = {}; ///< beside the scene's
+};
+
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
+Json jsonOf(const Distribution& values) {
+  return {{"mean", values.mean}, {"p95", values.p95}, {"max", values.max}};
+}
+
+/// Adds the measures of the clip.
+void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& focus) {
+  const ClipResult& clip = scene.clipResult();
+  if (clip.mismatch)
+    json["boundaryMismatchMm"] = jsonOf(*clip.mismatch);
+  if (const auto& boundary = clip.boundary; boundary && boundary->crossings > 0) {
+    json["boundaryGapMm"] = jsonOf(boundary->gap);
+    json["boundarySlopeJump"] = jsonOf(boundary->slopeJump);
+    json["boundaryDepthJumps"] = boundary->depthJumps;
+  }
+  for (const ControlPoint& point : clip.controlPoints) {
+    const Vec2 raster = scene.camera().toRaster(point.site);
+    json["controlPoints"].push_back({raster.x(), raster.y()});
+  }
+  if (!focus)
+    return;
+  json["focusCoverage"] = focus->coverage;
+  json["focusKept"] = focus->kept;
+  json["focusCoverageUnclipped"] = focus->withoutClip;
+  if (focus->light)
+    json["focusLight"] = *focus->light;
+  if (focus->contextRemoved)
+    json["contextRemoved"] = *focus->contextRemoved;
+}
+
+/// Adds the sources of the picture, and the warnings.
+void addSources(Json& json, const RenderStats& stats, const RenderOptions& options,
+                const Scene& scene) {
+  const std::filesystem::path folder = options.stats->parent_path();
+  if (options.preset)
+    json["preset"] = relativeName(*options.preset, folder);
+  json["filesRead"] = Json::array();
+  for (const std::string& file : scene.files())
+    json["filesRead"].push_back(relativeName(file, folder));
+  json["warnings"] = scene.warnings();
+  for (const std::string& warning : stats.warnings)
+    json["warnings"].push_back(warning);
+}
+
+/// Content of options.stats, which must be set, as JSON text. emptyPixels: certain from one sample,
+/// and not in samplesPerPixel; cells: of the majorant grid; focusVoxels: of the cropped labelmap;
+/// controlPoints: column and row in the picture. Measures of the clip: see BoundaryMeasures and
+/// FocusReport. Names of files are relative to the statistics' folder.
+std::string statsJson(const RenderStats& stats, const RenderOptions& options, const Scene& scene,
+                      const RenderResult& result) {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  const SampleCounts samples = result.film.sampleCounts();
+  const Counters& c = result.counters;
+  const StageSeconds& stages = scene.seconds();
+  const MajorantGrid& majorants = scene.forRender().majorants;
+
+  Json json;
+  json["seconds"] = {
+      {"load", stages.load},      {"classify", stages.classify}, {"focus", stages.focus},
+      {"spline", stages.spline},  {"fill", stages.fill},         {"transport", stats.transport},
+      {"measure", stats.measure}, {"write", stats.write},        {"total", stats.total}};
+  json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  json["paths"] = c.paths;
+  json["collisions"] = c.collisions;
+  json["lookups"] = c.lookups;
+  json["skippedFraction"] =
+      c.cells > 0 ? static_cast<double>(c.skippedCells) / static_cast<double>(c.cells) : 0.0;
+  json["shadowRays"] = c.shadowRays;
+  json["gradients"] = c.gradients;
+  json["cells"] = {{"all", majorants.size()}, {"empty", majorants.emptyCount()}};
+  json["emptyPixels"] = samples.certainPixels;
+  json["samplesPerPixel"] = {
+      {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
+  json["noise"] = result.film.noise(); // null: infinite
+  json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+  addClip(json, scene, stats.focus);
+  if (scene.focus())
+    json["focusVoxels"] = scene.focus()->grid.voxelCount();
+  addSources(json, stats, options, scene);
+  return jsonText(json);
+}
+
+// ---- the command
+
+/// Starts writing options.surface, if set, in parallel to other work. The arguments must outlive
+/// the future; its get() throws Error (output).
+std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs) {
+  if (!options.surface)
+    return std::async(std::launch::deferred, [] {});
+  return std::async([&options, &scene, &outputs] {
+    const auto& clip = std::get<ClipDepth>(scene.clip());
+    writeSurface(surfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)), *options.surface,
+                 outputs);
+  });
+}
+
+/// A warning for each existing file that belongs to one of options.outputs and was not written with
+/// it, such as the old depth beside a `.nrrd` that has no depth now. For after the commit.
+std::vector<std::string> staleParts(const RenderOptions& options, const Outputs& outputs) {
+  std::vector<std::string> warnings;
+  std::error_code failed;
+  for (const std::filesystem::path& path : options.outputs)
+    for (const std::filesystem::path& file : imageFiles(path))
+      if (!outputs.written(file) && std::filesystem::exists(file, failed))
+        warnings.push_back(oneLine(file.string()) + ": is of an earlier picture than " +
+                           oneLine(path.filename().string()) + "; remove it");
+  return warnings;
 }
 
 void report(const RenderOptions& options, const RenderResult& result, double seconds) {
-  std::string files;
-  for (const std::filesystem::path& path : options.outputs)
-    files += (files.empty() ? "" : ", ") + path.string();
-  const double noise = result.film.noise();
-  TextWriter line;
-  line.precision(3);
-  line << files << ": " << options.scene.width << "x" << options.scene.height << " pixels, "
-       << result.finishedSamples << (result.finishedSamples == 1 ? " sample" : " samples");
+  const auto files = joined(options.outputs, ", ", [](const auto& path) { return path.string(); });
   const SampleCounts counts = result.film.sampleCounts();
-  if (counts.least == counts.greatest)
-    line << " each";
-  else
-    line << " a pixel (" << counts.least << " to " << counts.greatest << ")";
+  const double noise = result.film.noise();
+  std::string line =
+      textOf(files, ": ", options.scene.width, "x", options.scene.height, " pixels, ",
+             result.finishedSamples, result.finishedSamples == 1 ? " sample" : " samples");
+  line += counts.least == counts.greatest
+              ? " each"
+              : textOf(" a pixel (", counts.least, " to ", counts.greatest, ")");
   if (noise < infinity)
-    line << ", noise " << noise;
-  line << ", " << seconds << " s"
-       << (result.reason == StopReason::request ? " (stopped on request)" : "");
-  std::cout << oneLine(line.str()) << std::endl;
+    line += ", noise " + numberText(noise, 3);
+  line += ", " + numberText(seconds, 3) + " s";
+  if (result.reason == StopReason::request)
+    line += " (stopped on request)";
+  std::cout << oneLine(line) << std::endl;
 }
 
 void warn(const RenderOptions& options, const std::vector<std::string>& warnings) {
@@ -66,7 +186,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   std::future<void> surface = startSurface(options, scene, outputs);
   Stopwatch watch;
   RenderStats stats;
-  const RenderResult result = renderWithProgress(options, scene, monitor);
+  const RenderResult result = [&] {
+    const Progress progress(options, monitor);
+    return render(scene.forRender(), settingsFor(options, scene.background()), monitor);
+  }();
   stats.transport = watch.seconds();
   surface.get();
   if (result.finishedSamples == 0) {
@@ -82,8 +205,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
 
   if (options.stats) {
     watch.lap();
-    if (!monitor.stop) // a stop does not wait for measures
-      stats.focus = measureFocus(scene, options.settings.seed, monitor.stop);
+    const std::vector<double>& depth = scene.clipResult().focusDepth;
+    if (!depth.empty() && !monitor.stop) // a stop does not wait for measures
+      stats.focus = measureFocus(scene.forRender(), scene.ranges(), *scene.focus(), depth,
+                                 options.settings.seed, monitor.stop);
     stats.measure = watch.seconds();
     stats.total = total.seconds();
     outputs.write(*options.stats, statsJson(stats, options, scene, result));

@@ -48,8 +48,8 @@ Rgb linearColor(const FlagValues& flags, const std::string& name, const std::str
                     : isGrey ? Rgb::Constant(flags.numbers(name, 1)[0])
                              : Rgb(flags.triple(name).array());
   if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
-    throw usageError("--" + name + ": expected R,G,B, or one number for grey, from 0 to 1e12, or " +
-                     otherwise + ", got '" + oneLine(text) + "'");
+    throw usageError("--", name, ": expected R,G,B, or one number for grey, from 0 to 1e12, or ",
+                     otherwise, ", got '", oneLine(text), "'");
   return value;
 }
 
@@ -80,19 +80,12 @@ void readSize(const FlagValues& flags, const std::string& name, SceneRequest& sc
   const int parts = std::sscanf(text.c_str(), "%dx%d%c", &scene.width, &scene.height, &rest);
   if (parts != 2 || std::min(scene.width, scene.height) < 1 ||
       std::max(scene.width, scene.height) > largest)
-    throw usageError("--" + name + ": expected WIDTHxHEIGHT in pixels, each from 1 to " +
-                     std::to_string(largest) + ", got '" + oneLine(text) + "'");
+    throw usageError("--", name, ": expected WIDTHxHEIGHT in pixels, each from 1 to ", largest,
+                     ", got '", oneLine(text), "'");
 }
 
 void readLayers(const FlagValues& flags, const std::string& name, LayerSet& layers) {
   layers = layerSet(flags.list(name));
-}
-
-std::string presetNames() {
-  std::string names;
-  for (const std::string& name : ownPresets("presets"))
-    names += name + ", ";
-  return names;
 }
 
 // ---- the table
@@ -124,8 +117,9 @@ struct RenderTable {
        "repeated",
        Takes::list().into(scene.focus), Topic::focus},
       {"preset", "NAME|FILE|auto", sceneGroup,
-       "Focus, look, view and clip of an anatomy in one: " + presetNames() +
-           "a .json, or auto (by the segments' names); other flags win over it",
+       textOf(
+           "Focus, look, view and clip of an anatomy in one: ", joined(ownPresets("presets"), ", "),
+           ", a .json, or auto (by the segments' names); other flags win over it"),
        Takes::text().into(options.preset)},
       {"output", "FILE", sceneGroup,
        "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "

@@ -17,11 +17,11 @@ struct RenderOptions {
   std::vector<std::filesystem::path> inputs;  ///< input files given as such, without presets
   std::vector<std::filesystem::path> outputs; ///< at least one
   NamedBy outputsNamedBy = NamedBy::user;
-  LayerSet layers;
+  LayerSet layers = allLayers;
   std::optional<std::filesystem::path> surface = {}; ///< only with a clip by depth
   std::optional<std::filesystem::path> stats = {};
-  /// File for Slicer's return parameters (--returnparameterfile). If set, warnings go to standard
-  /// output: Slicer reports everything on standard error as an error.
+  /// Slicer's return parameters. If set, warnings go to standard output: Slicer reports everything
+  /// on standard error as an error.
   std::optional<std::filesystem::path> returnValues = {};
   ProgressMode progress = ProgressMode::automatic;
   std::optional<std::string> preset = {}; ///< the organ preset's name
@@ -38,7 +38,6 @@ inline bool shapesPicture(const Flag& flag) {
 
 /// True for a flag of clipping; also how the focus's labels are shaped, and how the context looks.
 bool shapesClip(const Flag& flag);
-
 /// True for a flag of clipping, view or look: the flags that an organ preset may set.
 bool shapesLook(const Flag& flag);
 

@@ -1,10 +1,10 @@
 // From flags to a render: values go where the table says; contradictions are refused.
 
 #include "base/Error.h"
-#include "files/looks/LookText.h"
 #include "files/pictures/ImageFormat.h"
 #include "files/slicer/SceneFiles.h"
 #include "program/RenderFlags.h"
+#include "session/NamedLooks.h"
 
 #include <algorithm>
 
@@ -64,13 +64,13 @@ void checkClip(const FlagValues& flags, const ClipRequest& clip) {
   const bool hasFocus = flags.has("focus");
   const ClipMode mode = clip.modeWith(hasFocus);
   if (!hasFocus && isDepthClip(mode))
-    throw usageError("--clip: " + *flags.text("clip") + " needs a focus; add --focus");
+    throw usageError("--clip: ", *flags.text("clip"), " needs a focus; add --focus");
   if (mode == ClipMode::plane && !clip.plane && !hasFocus)
     throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ, or a --focus to place it by");
   for (const Flag& flag : renderSyntax.flags)
     if (const auto why = whyWithoutEffect(flag.needs, hasFocus, mode, clip.surface.boundary);
         !why.empty() && flags.differs(flag.name))
-      throw usageError("--" + flag.name + ": " + std::string(why));
+      throw usageError("--", flag.name, ": ", why);
   if (flags.has("surface") && !isDepthClip(mode))
     throw usageError("--surface: --clip none and plane have none; add --focus A,B,... without "
                      "another --clip, or drop it");
@@ -89,7 +89,7 @@ std::filesystem::path defaultOutput(const std::filesystem::path& input) {
     if (name.ends_with(ending))
       name.resize(name.size() - std::string_view(ending).size());
   if (name.empty())
-    throw usageError("--output: is missing, and " + input.string() +
+    throw usageError("--output: is missing, and ", input,
                      " gives the picture no name; add --output FILE.png");
   return name + ".png";
 }
@@ -113,9 +113,9 @@ void settleLayers(const FlagValues& flags, RenderOptions& options) {
   if (!hasExr && !has(ImageFormat::nrrd) && flags.differs("layers"))
     throw usageError("--layers: only .exr and .nrrd have them; add --output FILE.exr");
   for (const std::filesystem::path& path : options.outputs)
-    if (!options.layers.color && imageFormat(path) != ImageFormat::exr)
-      throw usageError("--layers: " + path.string() + " needs color; add it, or write .exr alone");
-  options.settings.path.wantNormals = hasExr && options.layers.normal;
+    if (!options.layers.contains("color") && imageFormat(path) != ImageFormat::exr)
+      throw usageError("--layers: ", path, " needs color; add it, or write .exr alone");
+  options.settings.path.wantNormals = hasExr && options.layers.contains("normal");
 }
 
 } // namespace

@@ -5,7 +5,6 @@
 #include "base/Stopwatch.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
-#include "program/Machine.h"
 #include "program/Pictures.h"
 #include "program/ServeInput.h"
 
@@ -22,9 +21,8 @@ const CommandSyntax& serveSyntax() {
       "Keeps a scene loaded and renders it anew after every change, for previews. Changes are JSON "
       "objects of flags on standard input, a line each, as {\"id\": 7, \"view\": \"left\", "
       "\"focus\": [\"Femur\", \"Tibia\"]}; null takes a flag back. Every refreshed picture "
-      "replaces "
-      "the output files at once and is told on standard output, as are errors: {\"event\": "
-      "\"picture\" or \"error\", \"id\": 7, ...}. Ends with its input.",
+      "replaces the output files at once and is told on standard output, as are errors: "
+      "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input.",
       renderSyntax.positionals,
       renderSyntax.flags,
   };
@@ -97,7 +95,8 @@ private:
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
         publish(result, false);
     };
-    const RenderResult result = renderPicture(m_options, *m_scene, m_monitor);
+    const RenderResult result =
+        render(m_scene->forRender(), settingsFor(m_options, m_scene->background()), m_monitor);
     m_complete = result.reason != StopReason::request;
     if (m_complete)
       publish(result, true);

@@ -5,7 +5,7 @@
 #include "base/safe/ShownText.h"
 #include "files/looks/LightReader.h"
 #include "program/CommandLine.h"
-#include "program/PresetFlags.h"
+#include "program/MergedFlags.h"
 #include "program/Stop.h"
 #include "session/NamedLooks.h"
 
@@ -52,38 +52,30 @@ void answerError(const json& id, const std::string& message) {
   answer({{"event", "error"}, {"id", id}, {"message", message}});
 }
 
-ServeChange parseChange(const std::string& line, json& id) {
-  ServeChange change{parseJson(line, "a line")};
-  if (change.flags.is_object() && change.flags.contains("id")) {
-    constexpr std::size_t longestId = 256;
-    const json& given = change.flags["id"];
-    const bool isShort =
-        given.is_string() && given.get_ref<const std::string&>().size() <= longestId;
-    if (!given.is_null() && !given.is_number() && !isShort)
-      throw usageError("id: must be a number, a text of at most 256 bytes, or null");
-    change.id = id = given;
-  }
-  return change;
+json idOf(const json& change) {
+  constexpr std::size_t longest = 256;
+  json id = change.is_object() ? change.value("id", json()) : json();
+  const bool isShort = id.is_string() && id.get_ref<const std::string&>().size() <= longest;
+  if (!id.is_null() && !id.is_number() && !isShort)
+    throw usageError("id: must be a number, a text of at most 256 bytes, or null");
+  return id;
 }
 
 FlagValues changedFlags(const json& change, const FlagValues& flags) {
   if (!change.is_object())
     throw usageError("expected a JSON object of flags, as {\"view\": \"left\"}");
-  std::vector<std::string_view> names;
-  for (const Flag& flag : renderSyntax.flags)
-    names.push_back(flag.name);
   FlagValues result = flags;
   for (const auto& [name, value] : change.items()) {
     if (name == "id")
       continue;
     const Flag* flag = findFlag(renderSyntax.flags, name);
     if (!flag) {
-      const std::string_view likely = nearest(name, names);
-      throw usageError(oneLine(name) + ": no such flag" +
-                       (likely.empty() ? "" : "; did you mean " + std::string(likely) + "?"));
+      const std::string likely = nearest(name, namesOf(renderSyntax.flags));
+      throw usageError(oneLine(name), ": no such flag",
+                       likely.empty() ? "" : textOf("; did you mean ", likely, "?"));
     }
     if (!shapesPicture(*flag))
-      throw usageError(name + ": cannot change while serving; start another server");
+      throw usageError(name, ": cannot change while serving; start another server");
     result.remove(name);
     const std::string text = value.is_null()    ? ""
                              : value.is_array() ? listText(name, value)
@@ -142,17 +134,18 @@ void ServeInput::read() {
 }
 
 void ServeInput::takeLine(const std::string& line) {
-  json id = nullptr;
+  ServeChange change;
   try {
-    ServeChange change = parseChange(line, id);
+    change.flags = parseJson(line, "a line");
+    change.id = idOf(change.flags);
     const std::lock_guard lock(m_mutex);
     FlagValues wanted = changedFlags(change.flags, m_wanted);
     checkChange(change.flags, wanted, m_input);
     m_wanted = std::move(wanted);
-    m_new.push_back(std::move(change));
+    m_new.push_back(change);
     m_monitor.stop = true;
   } catch (const Error& error) {
-    answerError(id, error.what());
+    answerError(change.id, error.what());
   }
   m_changed.notify_one();
 }

@@ -12,27 +12,25 @@
 
 namespace fenestra {
 
-/// Writes an answer to standard output, a line of JSON; lines of several threads do not mix. Ends
-/// the process if standard output is closed: nobody waits for pictures.
+/// Writes a line of JSON to standard output; lines of several threads do not mix. Ends the process
+/// if standard output is closed: nobody waits for pictures.
 void answer(const nlohmann::ordered_json& content);
 /// `id`: the change's, or null.
 void answerError(const nlohmann::json& id, const std::string& message);
 
 /// One line of input.
 struct ServeChange {
-  nlohmann::json flags;        ///< {"flag": value, …}
+  nlohmann::json flags = {};   ///< {"flag": value, …}
   nlohmann::json id = nullptr; ///< null, a number, or a text of at most 256 bytes
   Stopwatch since = {};        ///< time since arrival
 };
 using ServeChanges = std::vector<ServeChange>;
 
-/// Parses a line. Sets `id` as soon as the line's id is known, for the answer to an error. Throws
-/// Error for a line that is not JSON or whose id has another type.
-ServeChange parseChange(const std::string& line, nlohmann::json& id);
+/// The id of a change; null: none. Throws Error (usage) for an id of another type.
+nlohmann::json idOf(const nlohmann::json& change);
 
-/// Flags after a line's changes {"flag": value, …}. A value is a text, a number, or a list of them,
-/// as on the command line; null removes the flag. Throws Error (usage) for a flag that is unknown
-/// or cannot change.
+/// Flags after a change. A value is a text, a number, or a list of them, as on the command line;
+/// null removes the flag. Throws Error (usage) for a flag that is unknown or cannot change.
 FlagValues changedFlags(const nlohmann::json& change, const FlagValues& flags);
 
 /// Throws Error: usage if the flags after a change contradict each other, input if a look that the
@@ -40,7 +38,7 @@ FlagValues changedFlags(const nlohmann::json& change, const FlagValues& flags);
 void checkChange(const nlohmann::json& change, const FlagValues& flags, const Input& input);
 
 /// Reads standard input in its own thread. A change stops the render under way. The end of input
-/// ends the process as signals do (program/Stop), after any picture that is being put in place.
+/// ends the process (endProcess).
 class ServeInput {
 public:
   ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor);

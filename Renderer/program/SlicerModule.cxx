@@ -120,11 +120,11 @@ std::string slicerDescription(const CommandSyntax& syntax) {
 }
 
 std::string returnValuesText(const std::vector<double>& values) {
-  TextWriter lines;
+  std::string lines;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isfinite(values[i]))
-      lines << returnValues[i].name << " = " << values[i] << '\n';
-  return lines.str();
+      lines += textOf(returnValues[i].name, " = ", numberText(values[i]), "\n");
+  return lines;
 }
 
 } // namespace fenestra

@@ -1,8 +1,7 @@
 #pragma once
 // Signals that ask the process to end: INT, TERM, HUP (terminal closed), QUIT, XCPU, and PIPE
-// (standard output closed). By default the first signal ends the process at once; where that would
-// cost finished work, the first sets a flag (StopInstead) and the second ends the process. Signals
-// ignored when the process began (nohup) stay ignored.
+// (standard output closed). The first ends the process at once; where that would cost finished
+// work (StopInstead), the second. Signals ignored when the process began (nohup) stay ignored.
 
 #include <atomic>
 

@@ -2,16 +2,13 @@
 // the stages that depend on the camera are rebuilt (Scene::changed).
 
 #include "base/Error.h"
-#include "base/TextStream.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
 #include "base/safe/Locks.h"
 #include "base/safe/ShownText.h"
 #include "base/safe/SystemCalls.h"
-#include "model/camera/Turn.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
-#include "program/Machine.h"
 #include "program/Pictures.h"
 #include "program/Progress.h"
 #include "program/Stop.h"
@@ -99,7 +96,8 @@ private:
       warn(warning);
     RenderOptions options = m_options.render;
     options.outputs = m_options.pictures(frame);
-    const RenderResult result = renderPicture(options, m_view.scene, m_monitor);
+    const RenderResult result = render(m_view.scene.forRender(),
+                                       settingsFor(options, m_view.scene.background()), m_monitor);
     if (result.reason == StopReason::request)
       return false;
     writePictures(options, m_view.scene, result, m_words, m_outputs);
@@ -149,10 +147,9 @@ private:
     const auto* clip = std::get_if<ClipDepth>(&scene.clip());
     if (!clip || clip->lookup != ClipDepth::Lookup::linear)
       return std::nullopt;
-    return seenSurface(*clip, scene.focusDepth(), scene.domain());
+    return seenSurface(*clip, scene.clipResult().focusDepth, scene.domain());
   }
 
-  /// JSON text: frames, seconds, changes of the surface, warnings.
   std::string statsJson() const {
     nlohmann::ordered_json json = {{"frames", m_options.frames},
                                    {"finished", finished()},
@@ -163,13 +160,6 @@ private:
     for (const auto& [number, frame] : m_record.finished())
       if (frame.change)
         changes.push_back(*frame.change);
-    if (!changes.empty())
-      json["surfaceChangeMmPerDegree"] = overallJson(changes);
-    json["warnings"] = m_warnings;
-    return jsonText(json);
-  }
-
-  static nlohmann::ordered_json overallJson(const std::vector<SurfaceChange>& changes) {
     SurfaceChange all;
     double excess = 0.0;
     for (const SurfaceChange& change : changes) {
@@ -179,21 +169,22 @@ private:
       all.focus = std::max(all.focus, change.focus);
       excess = std::max(excess, change.excess());
     }
-    nlohmann::ordered_json json = changeJson(all);
-    json["excess"] = excess;
-    return json;
+    if (!changes.empty()) {
+      json["surfaceChangeMmPerDegree"] = changeJson(all);
+      json["surfaceChangeMmPerDegree"]["excess"] = excess;
+    }
+    json["warnings"] = m_warnings;
+    return jsonText(json);
   }
 
   void report() const {
     const bool isWhole = finished() == m_options.frames;
-    TextWriter line;
-    line.precision(3);
-    line << m_options.pictures(0).front().string() << " to "
-         << m_options.pictures(m_options.frames - 1).front().filename().string() << ": "
-         << finished() << " of " << m_options.frames << " frames, " << rendered()
-         << " rendered now, " << m_total.seconds() << " s"
-         << (isWhole ? "" : " (stopped on request; the same command goes on)");
-    std::cout << oneLine(line.str()) << std::endl;
+    std::cout << oneLine(textOf(m_options.pictures(0).front(), " to ",
+                                m_options.pictures(m_options.frames - 1).front().filename(), ": ",
+                                finished(), " of ", m_options.frames, " frames, ", rendered(),
+                                " rendered now, ", numberText(m_total.seconds(), 3), " s",
+                                isWhole ? "" : " (stopped on request; the same command goes on)"))
+              << std::endl;
   }
 
   const TurntableOptions& m_options;
@@ -238,7 +229,7 @@ std::list<NameLock> lockFrames(const TurntableOptions& options) {
   std::list<NameLock> locks;
   for (const auto& [known, name] : names)
     if (!locks.emplace_back(name).isHeld())
-      throw usageError(options.render.outputs.front().string() +
+      throw usageError(options.render.outputs.front(),
                        ": another turntable is writing these frames; wait for it, or choose "
                        "another --output");
   return locks;

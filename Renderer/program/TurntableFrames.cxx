@@ -68,7 +68,7 @@ std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& picture : pictures(frame)) {
     std::vector<std::filesystem::path> parts = imageFiles(picture);
-    if (!render.layers.depth)
+    if (!render.layers.contains("depth"))
       parts.resize(1); // without the depth beside a .nrrd
     files.insert(files.end(), parts.begin(), parts.end());
   }

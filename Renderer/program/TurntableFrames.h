@@ -13,8 +13,7 @@ struct TurntableOptions {
   double degrees = 360.0;
   bool restart = false;
 
-  /// Degrees from frame 0 to `frame`. Divides by `frames`, not frames - 1: a full turn loops
-  /// without a repeated frame.
+  /// Degrees from frame 0 to `frame`; a full turn loops without a repeated frame.
   double angle(int frame) const { return degrees * frame / frames; }
   /// True if the last frame leads back to frame 0.
   bool isClosed() const { return degrees != 0.0 && std::remainder(degrees, 360.0) == 0.0; }

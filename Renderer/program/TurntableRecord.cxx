@@ -54,13 +54,12 @@ bool isAsRecorded(const fs::path& path, const JsonNode& recorded) {
     return false;
   if (recorded.at("bytes").json() == std::to_string(bytes)) {
     std::ifstream file(path, std::ios::binary);
-    const ContentState state = stateOf(std::string(std::istreambuf_iterator<char>(file), {}));
-    if (recorded.at("digest").json() == std::to_string(state.digest))
+    const std::string content(std::istreambuf_iterator<char>(file), {});
+    if (recorded.at("digest").json() == std::to_string(stateOf(content).digest))
       return true;
   }
-  throw usageError(path.string() +
-                   ": is not the frame that was recorded; move it away, and the same "
-                   "command renders it again");
+  throw usageError(path, ": is not the frame that was recorded; move it away, and the same "
+                         "command renders it again");
 }
 
 /// Reads a record file, of untrusted size: at most a record of `mostFrames` frames. Throws Error
@@ -106,10 +105,11 @@ std::string warningBeyond(const TurntableOptions& options, const fs::path& recor
       beyond.erase(file);
   if (beyond.empty())
     return {};
-  const bool isOne = beyond.size() == 1;
-  return beyond.begin()->string() + (isOne ? "" : " to " + beyond.rbegin()->filename().string()) +
-         (isOne ? ": is" : ": " + std::to_string(beyond.size()) + " files are") +
-         " of the turntable that was there before; remove " + (isOne ? "it" : "them");
+  constexpr const char* whose = " of the turntable that was there before; remove ";
+  if (beyond.size() == 1)
+    return textOf(*beyond.begin(), ": is", whose, "it");
+  return textOf(*beyond.begin(), " to ", beyond.rbegin()->filename(), ": ", beyond.size(),
+                " files are", whose, "them");
 }
 
 /// Elements of `some` missing from `others`, separated by blanks: arguments, or names of inputs.
@@ -167,16 +167,16 @@ TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValu
   else if (there)
     read();
   else if (!options.restart)
-    refuseOthers();
+    refuseFramesWithoutRecord();
   if (there)
     forgetInput(*there); // the record is rewritten, so it is no input
 }
 
-void TurntableRecord::refuseOthers() const {
+void TurntableRecord::refuseFramesWithoutRecord() const {
   for (int frame = 0; frame < m_options.frames; ++frame)
     for (const fs::path& file : m_options.files(frame))
       if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs have their own refusal
-        throw usageError(file.string() + ": is there, and no " + m_path.string() +
+        throw usageError(file, ": is there, and no ", m_path,
                          " tells what it is of; choose another --output, or add --restart to "
                          "replace it");
 }
@@ -214,8 +214,7 @@ void TurntableRecord::setInputs(const Scene& scene) {
 void TurntableRecord::requireSame() const {
   for (const auto& [key, here] : m_request.items())
     if (const json there = m_recorded.value(key, json()); there != here)
-      throw usageError(m_path.string() + ": is of another turntable (" +
-                       difference(key, there, here) +
+      throw usageError(m_path, ": is of another turntable (", difference(key, there, here),
                        "); choose another --output, or add --restart to replace its frames");
 }
 

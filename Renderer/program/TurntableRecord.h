@@ -36,7 +36,7 @@ public:
 
   /// Throws the errors of Outputs.
   void declare(Outputs& outputs) const;
-  /// Puts the record in place. Call before the first frame: a frame without a record cannot be
+  /// Puts the record in place: before the first frame, for a frame without a record cannot be
   /// distinguished from another turntable's. Throws Error (output).
   void write(Outputs& outputs) const;
   /// Records sizes and digests of the frame's files, by which a damaged or replaced file is
@@ -47,8 +47,7 @@ private:
   void read();
   /// Throws Error (usage) if the record is of another request, as far as the latter is known.
   void requireSame() const;
-  /// Refuses existing frames without a record.
-  void refuseOthers() const;
+  void refuseFramesWithoutRecord() const;
 
   const TurntableOptions& m_options;
   std::filesystem::path m_path;

@@ -21,11 +21,9 @@
 
 namespace {
 
-using Command = int (*)(int argc, char** argv, int first);
-
 struct NamedCommand {
-  std::string_view name;
-  Command run;
+  const char* name;
+  int (*run)(int argc, char** argv, int first);
 };
 
 constexpr NamedCommand commands[] = {
@@ -36,24 +34,21 @@ constexpr NamedCommand commands[] = {
 
 /// Throws Error (usage) for a word that names no file and nearly a subcommand.
 void refuseMisspelt(std::string_view word) {
-  std::vector<std::string_view> names;
+  std::vector<std::string> names;
   for (const NamedCommand& command : commands)
     names.push_back(command.name);
-  const std::string_view likely = fenestra::nearest(word, names);
+  const std::string likely = fenestra::nearest(word, names);
   std::error_code failed;
   if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
-    throw fenestra::usageError("'" + std::string(word) +
-                               "': neither a file nor a subcommand; did you mean fenestra " +
-                               std::string(likely) + "?");
+    throw fenestra::usageError(
+        "'", word, "': neither a file nor a subcommand; did you mean fenestra ", likely, "?");
 }
 
 int dispatch(int argc, char** argv) {
   const std::string_view word = argc > 1 ? argv[1] : "";
-  const auto* named =
-      std::find_if(std::begin(commands), std::end(commands),
-                   [word](const NamedCommand& command) { return command.name == word; });
-  if (named != std::end(commands))
-    return named->run(argc, argv, 2);
+  for (const auto& [name, run] : commands)
+    if (word == name)
+      return run(argc, argv, 2);
   refuseMisspelt(word);
   return fenestra::renderCommand(argc, argv, 1);
 }

@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 namespace fenestra {
-
 namespace {
 
 constexpr double degree = pi / 180.0;

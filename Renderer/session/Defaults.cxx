@@ -23,50 +23,37 @@ ViewDirection namedView(const std::string& name, const ViewDirection* best) {
   return known->second;
 }
 
-/// Quantiles of the voxels' values, from at most about a million voxels.
-std::vector<double> quantiles(const Volume& volume, const std::vector<double>& fractions) {
-  return std::visit(
-      [&](const auto& voxels) {
-        const std::size_t stride = voxels.size() / 1'000'000 + 1;
-        std::vector<double> values;
-        for (std::size_t i = 0; i < voxels.size(); i += stride)
-          values.push_back(static_cast<double>(voxels[i]));
-        std::sort(values.begin(), values.end());
-        std::vector<double> result;
-        for (const double f : fractions)
-          result.push_back(
-              values[static_cast<std::size_t>(f * static_cast<double>(values.size() - 1))]);
-        return result;
-      },
-      volume.voxels);
+/// Values of at most about a million voxels, spread over the volume.
+std::vector<double> sampledValues(const Volume& volume) {
+  const auto sample = [](const auto& voxels) {
+    const std::size_t stride = voxels.size() / 1'000'000 + 1;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < voxels.size(); i += stride)
+      values.push_back(static_cast<double>(voxels[i]));
+    return values;
+  };
+  return std::visit(sample, volume.voxels);
 }
 
 /// Otsu's threshold (1979) of a sample of the values, from a 256-bin histogram of [low, high].
 double backgroundLevel(const Volume& volume, double low, double high) {
   constexpr int bins = 256;
-  std::vector<double> histogram(bins, 0.0);
-  std::visit(
-      [&](const auto& voxels) {
-        const std::size_t stride = voxels.size() / 1'000'000 + 1;
-        for (std::size_t i = 0; i < voxels.size(); i += stride) {
-          const double x = (static_cast<double>(voxels[i]) - low) / (high - low);
-          histogram[static_cast<std::size_t>(std::clamp(x, 0.0, 1.0) * (bins - 1))] += 1.0;
-        }
-      },
-      volume.voxels);
-  double total = 0.0;
-  double moment = 0.0;
-  for (int i = 0; i < bins; ++i) {
-    total += histogram[static_cast<std::size_t>(i)];
-    moment += i * histogram[static_cast<std::size_t>(i)];
+  std::array<double, bins> histogram{};
+  double total = 0.0, moment = 0.0;
+  for (const double value : sampledValues(volume)) {
+    const double x = std::clamp((value - low) / (high - low), 0.0, 1.0);
+    const auto bin = static_cast<std::size_t>(x * (bins - 1));
+    histogram[bin] += 1.0;
+    total += 1.0;
+    moment += static_cast<double>(bin);
   }
-  double below = 0.0;
-  double belowMoment = 0.0;
+  double below = 0.0, belowMoment = 0.0;
   double best = -1.0;
   int threshold = 0;
   for (int i = 0; i < bins; ++i) {
-    below += histogram[static_cast<std::size_t>(i)];
-    belowMoment += i * histogram[static_cast<std::size_t>(i)];
+    const double count = histogram[static_cast<std::size_t>(i)];
+    below += count;
+    belowMoment += i * count;
     if (below == 0.0 || below == total)
       continue;
     const double gap = belowMoment / below - (moment - belowMoment) / (total - below);
@@ -100,22 +87,6 @@ Vec3 centerOf(const Domain& domain) {
   return domain.grid().indexToWorld * Box{lower, upper}.center();
 }
 
-struct Extent {
-  double across = 0.0, up = 0.0; ///< half extents along the view's right and up, mm
-};
-
-/// Extent of a domain around its centre, seen along a view.
-Extent seen(const Domain& domain, const Vec3& right, const Vec3& up) {
-  const Vec3 center = centerOf(domain);
-  Extent extent;
-  for (const Vec3& corner : domain.indexCorners()) {
-    const Vec3 d = domain.grid().indexToWorld * corner - center;
-    extent.across = std::max(extent.across, std::abs(d.dot(right)));
-    extent.up = std::max(extent.up, std::abs(d.dot(up)));
-  }
-  return extent;
-}
-
 } // namespace
 
 std::optional<std::string> transferPresetFor(const Volume& volume) {
@@ -129,16 +100,20 @@ bool suits(Modality modality, const Volume& volume) {
 }
 
 std::array<double, 2> usualRange(const Volume& volume) {
-  const std::vector<double> levels = quantiles(volume, {0.005, 0.995});
-  return {levels[0], levels[1] > levels[0] ? levels[1] : volume.maximum};
+  std::vector<double> values = sampledValues(volume);
+  std::ranges::sort(values);
+  const auto quantile = [&values](double f) {
+    return values[static_cast<std::size_t>(f * static_cast<double>(values.size() - 1))];
+  };
+  const double low = quantile(0.005), high = quantile(0.995);
+  return {low, high > low ? high : volume.maximum};
 }
 
 TransferFunction relativeTransfer(const Volume& volume) {
   const double unit =
       100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm
   const std::array<double, 2> range = usualRange(volume);
-  const double low = range[0];
-  const double high = range[1];
+  const double low = range[0], high = range[1];
   if (!(high > low))
     return {ScalarFunction({{low, ScalarFunction::Value(0.02 * unit)}}),
             ColorFunction({{low, Rgb(0.9, 0.85, 0.8)}})};
@@ -184,8 +159,13 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   // Frames the whole volume, or the focus with its surroundings if smaller.
   const double aspect = static_cast<double>(width) / height;
   const auto halfHeight = [&](const Domain& domain) {
-    const Extent extent = seen(domain, right, up);
-    return std::max(extent.up, extent.across / aspect);
+    const Vec3 center = centerOf(domain);
+    double half = 0.0;
+    for (const Vec3& corner : domain.indexCorners()) {
+      const Vec3 d = domain.grid().indexToWorld * corner - center;
+      half = std::max({half, std::abs(d.dot(up)), std::abs(d.dot(right)) / aspect});
+    }
+    return half;
   };
   double half = margin * halfHeight(volume);
   if (focus)

@@ -20,8 +20,7 @@ VolumeInput volumeInFiles(const std::filesystem::path& path,
                           const std::optional<std::string>& choice) {
   if (!isFolder(path))
     return {readVolume(path), {path.string()}};
-  const std::vector<DicomSeries> all = findDicomSeries(path);
-  const DicomSeries& series = chooseSeries(all, choice, path.string());
+  const DicomSeries series = chooseSeries(findDicomSeries(path), choice, path.string());
   VolumeInput input{readDicomVolume(series)};
   for (const auto& file : series.files)
     input.files.push_back(file.string());
@@ -39,17 +38,6 @@ FocusInput focusFrom(const Segmentation& segmentation, Mask mask, FilesRead file
   if (isThere(segmentation.namesFrom()))
     files.push_back(segmentation.namesFrom());
   return {std::move(mask), std::move(files), segmentation.warnings(), segmentation.namesFrom()};
-}
-
-bool holdsSegmentation(const MrmlDocument& document) {
-  return std::ranges::any_of(document.nodes(), [](const MrmlNode& node) {
-    return node.tag == "Segmentation" || isLabelMap(node);
-  });
-}
-
-Background backgroundOf(const MrmlNode& view) {
-  const ViewBackground colors = viewBackground(view);
-  return Background::gradient(colors.bottom, colors.top);
 }
 
 } // namespace
@@ -111,8 +99,10 @@ SceneSettings Input::settings(const std::optional<std::string>& volume, bool fol
       settings.crop = readSceneRoi(scene, *plan.roi);
     if (plan.camera && followsCamera)
       settings.camera = readSceneCamera(scene, *plan.camera);
-    if (plan.view)
-      settings.background = backgroundOf(*plan.view);
+    if (plan.view) {
+      const auto [bottom, top] = viewBackground(*plan.view);
+      settings.background = Background::gradient(bottom, top);
+    }
     settings.warnings = plan.warnings;
     settings.files = scene.files.filesRead();
     return settings;
@@ -140,7 +130,8 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
   if (!m_opened->isScene)
     return namesInFile(choice);
   return m_opened->with([&](MrmlScene& scene) {
-    const ScenePlan plan = planFor(scene, choice, holdsSegmentation(scene.document));
+    const bool hasSegmentation = std::ranges::any_of(scene.document.nodes(), isSegmentation);
+    const ScenePlan plan = planFor(scene, choice, hasSegmentation);
     if (!plan.segmentation)
       return namesInFile(choice);
     return std::optional(
@@ -190,11 +181,8 @@ SceneLook Input::property(const std::string& name) const {
 }
 
 std::vector<std::string> Input::propertyNames() const {
-  std::vector<std::string> names;
-  if (const MrmlDocument* scene = document())
-    for (const MrmlNode* node : scene->withTag("VolumeProperty"))
-      names.push_back(node->name);
-  return names;
+  const MrmlDocument* scene = document();
+  return scene ? fenestra::propertyNames(*scene) : std::vector<std::string>();
 }
 
 } // namespace fenestra

@@ -7,12 +7,7 @@
 namespace fenestra {
 namespace {
 
-struct TypeName {
-  const char* operator()(const std::vector<std::uint8_t>&) const { return "uint8"; }
-  const char* operator()(const std::vector<std::int16_t>&) const { return "int16"; }
-  const char* operator()(const std::vector<std::uint16_t>&) const { return "uint16"; }
-  const char* operator()(const std::vector<float>&) const { return "float"; }
-};
+constexpr std::array voxelTypes = {"uint8", "int16", "uint16", "float"}; ///< as in Voxels
 
 /// True if most pairs of neighbouring voxels above the least value are equal, as in label maps (at
 /// least 59 % in those at hand) and in no scan (at most 8 %).
@@ -132,7 +127,7 @@ Json volumeUse(const Volume& volume, const std::string& id) {
           {"size", volume.grid.size},
           {"spacing", volume.grid.spacing()},
           {"center", volume.grid.worldCenter()},
-          {"voxelType", std::visit(TypeName(), volume.voxels)},
+          {"voxelType", voxelTypes[volume.voxels.index()]},
           {"range", {volume.minimum, volume.maximum}},
           {"transforms", Json::array()}};
 }

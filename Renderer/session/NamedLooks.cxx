@@ -2,15 +2,14 @@
 
 #include "base/Error.h"
 #include "base/safe/EmbeddedResources.h"
+#include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
 #include "base/safe/SystemCalls.h"
 #include "files/looks/LightReader.h"
-#include "files/looks/LookText.h"
+#include "files/slicer/MrmlScene.h"
 #include "files/slicer/SlicerPresets.h"
 
-#include <algorithm>
 #include <optional>
-#include <string_view>
 
 namespace fenestra {
 namespace {
@@ -21,10 +20,7 @@ std::string_view ownPreset(const std::string& kind, const std::string& name) {
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "" : ", ") + shown(name);
-  return text;
+  return joined(names, ", ", [](const std::string& name) { return shown(name); });
 }
 
 bool isFoundAsFile(const std::string& name) {
@@ -46,17 +42,17 @@ Error unknownPreset(const std::string& flag, const std::string& name, const std:
 class SlicerTransfers {
 public:
   explicit SlicerTransfers(const Input& input) : m_input(input) {
-    if (const auto presets = findSlicerPresets()) {
-      m_presets.emplace(*presets);
-      m_file = presets->string();
-    }
+    if (const auto file = findSlicerPresets())
+      m_presets.emplace(readText(*file), file->string());
   }
 
   std::optional<NamedTransfer> find(const std::string& name) {
     if (SceneLook look = m_input.property(name); look.transfer)
       return NamedTransfer{{std::move(*look.transfer)}, name, std::move(look.files)};
-    if (auto function = m_presets ? m_presets->find(name) : std::nullopt)
-      return NamedTransfer{{std::move(*function)}, name, {m_file}};
+    if (m_presets)
+      for (const MrmlNode* node : m_presets->withTag("VolumeProperty"))
+        if (node->name == name)
+          return NamedTransfer{{propertyIn(*m_presets, *node)}, name, {m_presets->source()}};
     return std::nullopt;
   }
 
@@ -64,25 +60,23 @@ public:
   std::string known() const {
     const std::vector<std::string> inScene = m_input.propertyNames();
     std::string text = inScene.empty() ? "" : "; of the scene " + listed(inScene);
-    text += m_presets ? "; of Slicer " + listed(m_presets->names())
+    text += m_presets ? "; of Slicer " + listed(propertyNames(*m_presets))
                       : "; Slicer's own presets are known where SLICER_HOME names its folder";
     return text;
   }
 
 private:
   const Input& m_input;
-  std::optional<SlicerPresets> m_presets;
-  std::string m_file; ///< of Slicer's presets
+  std::optional<MrmlDocument> m_presets; ///< Slicer's own
 };
 
 } // namespace
 
 std::vector<std::string> ownPresets(const std::string& kind) {
-  constexpr std::string_view ending = ".json";
   std::vector<std::string> names;
   for (const std::string& path : embeddedResourceNames(kind + "/"))
-    if (path.ends_with(ending))
-      names.push_back(path.substr(kind.size() + 1, path.size() - kind.size() - 1 - ending.size()));
+    if (path.ends_with(".json"))
+      names.push_back(std::filesystem::path(path).stem());
   return names;
 }
 
@@ -131,7 +125,7 @@ OrganPreset namedPreset(const std::string& name) {
     return parsePreset(text, name);
   if (!isFoundAsFile(name))
     throw unknownPreset("preset", name, "auto, a file, or one of " + listed(ownPresets("presets")));
-  return readPreset(name);
+  return parsePreset(readText(name), name);
 }
 
 } // namespace fenestra

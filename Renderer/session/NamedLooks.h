@@ -8,9 +8,15 @@
 #include "session/Input.h"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fenestra {
+
+/// True if `look` (lights or a transfer function) is JSON itself, not a name.
+inline bool isLookText(std::string_view look) {
+  return look.starts_with('{');
+}
 
 /// Names of the program's own presets. `kind`: a folder of Resources, e.g. "transfer".
 std::vector<std::string> ownPresets(const std::string& kind);

@@ -4,6 +4,7 @@
 #include "base/safe/ShownText.h"
 
 #include <algorithm>
+#include <span>
 
 namespace fenestra {
 namespace {
@@ -27,11 +28,9 @@ bool modalitiesDiffer(const Fits& fits) {
 }
 
 std::string listedFits(const Fits& fits, const std::vector<SegmentInfo>& segments) {
-  std::string text;
-  for (const OrganPreset* preset : fits)
-    text += (text.empty() ? "" : ", ") + preset->name + " (" +
-            listedNames(focusOf(preset->focus, segments)) + ")";
-  return text;
+  return joined(fits, ", ", [&](const OrganPreset* preset) {
+    return textOf(preset->name, " (", listedNames(focusOf(preset->focus, segments)), ")");
+  });
 }
 
 } // namespace
@@ -48,12 +47,10 @@ std::vector<SegmentInfo> focusOf(const FocusPatterns& patterns,
 
 std::string listedNames(const std::vector<SegmentInfo>& segments) {
   constexpr std::size_t most = 12;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, segments.size()); ++i)
-    text += (i == 0 ? "" : ", ") + shown(segments[i].name);
-  if (segments.size() > most)
-    text += " and " + std::to_string(segments.size() - most) + " more";
-  return text;
+  const auto first = std::span(segments).first(std::min(most, segments.size()));
+  const std::string text =
+      joined(first, ", ", [](const SegmentInfo& segment) { return shown(segment.name); });
+  return segments.size() > most ? textOf(text, " and ", segments.size() - most, " more") : text;
 }
 
 const OrganPreset& fittingPreset(const std::vector<OrganPreset>& presets,

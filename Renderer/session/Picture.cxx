@@ -33,27 +33,17 @@ Plane clipPlane(const Camera& camera, const Clip& clip) {
 } // namespace
 
 LayerSet layerSet(const std::vector<std::string>& names) {
-  if (names.empty())
-    return {};
-  LayerSet layers{false, false, false, false, false, false, false};
-  const std::map<std::string, bool LayerSet::*> known = {
-      {"color", &LayerSet::color},    {"depth", &LayerSet::depth},   {"clip", &LayerSet::clip},
-      {"albedo", &LayerSet::albedo},  {"normal", &LayerSet::normal}, {"error", &LayerSet::error},
-      {"samples", &LayerSet::samples}};
-  for (const std::string& name : names) {
-    const auto it = known.find(name);
-    if (it == known.end())
+  for (const std::string& name : names)
+    if (!allLayers.contains(name))
       throw usageError("--layers: '" + name +
                        "' is unknown; use color, depth, clip, albedo, normal, error, samples");
-    layers.*(it->second) = true;
-  }
-  return layers;
+  return names.empty() ? allLayers : LayerSet(names.begin(), names.end());
 }
 
 Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers) {
   Image image{film.width(), film.height(), {}, {}};
-  const auto add = [&](bool isWanted, const std::string& name, auto&& valueOf) {
-    if (!isWanted)
+  const auto add = [&](const char* layer, const std::string& name, auto&& valueOf) {
+    if (!layers.contains(layer))
       return;
     Plane& plane = image.channels[name];
     plane.reserve(film.pixelCount());
@@ -63,15 +53,15 @@ Image picture(const Film& film, const Camera& camera, const Clip& clip, const La
   using P = PixelSums;
   for (int c = 0; c < 3; ++c) {
     const std::string color(1, "RGB"[c]), axis(1, "XYZ"[c]);
-    add(layers.color, color, [c](const P& p) { return p.mean[c]; });
-    add(layers.error, "error." + color, [c](const P& p) { return p.standardError()[c]; });
-    add(layers.albedo, "albedo." + color, [c](const P& p) { return perSample(p.albedo[c], p); });
-    add(layers.normal, "normal." + axis, [c](const P& p) { return perSample(p.normal[c], p); });
+    add("color", color, [c](const P& p) { return p.mean[c]; });
+    add("error", "error." + color, [c](const P& p) { return p.standardError()[c]; });
+    add("albedo", "albedo." + color, [c](const P& p) { return perSample(p.albedo[c], p); });
+    add("normal", "normal." + axis, [c](const P& p) { return perSample(p.normal[c], p); });
   }
-  add(layers.color, "A", [](const P& p) { return perSample(p.alpha, p); });
-  add(layers.depth, "Z", meanDepth);
-  add(layers.samples, "samples.N", [](const P& p) { return static_cast<double>(p.samples); });
-  if (layers.clip && !std::holds_alternative<ClipNone>(clip))
+  add("color", "A", [](const P& p) { return perSample(p.alpha, p); });
+  add("depth", "Z", meanDepth);
+  add("samples", "samples.N", [](const P& p) { return static_cast<double>(p.samples); });
+  if (layers.contains("clip") && !std::holds_alternative<ClipNone>(clip))
     image.channels["clip.Z"] = clipPlane(camera, clip);
   return image;
 }

@@ -5,15 +5,17 @@
 #include "image/Film.h"
 #include "image/Image.h"
 
+#include <set>
+
 namespace fenestra {
 
-/// Groups of channels that a picture has; their names are those of --layers.
-struct LayerSet {
-  bool color = true, depth = true, clip = true, albedo = true, normal = true, error = true,
-       samples = true;
-};
+/// Groups of channels that a picture has, by their names in --layers.
+using LayerSet = std::set<std::string>;
 
-/// Channels of layer names; empty list: all. Throws Error (usage) for an unknown name.
+inline const LayerSet allLayers = {"color",  "depth", "clip",   "albedo",
+                                   "normal", "error", "samples"};
+
+/// Layers of these names; empty list: all. Throws Error (usage) for an unknown name.
 LayerSet layerSet(const std::vector<std::string>& names);
 
 Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers);

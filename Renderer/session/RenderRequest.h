@@ -4,7 +4,7 @@
 #include "clip/surface/ClippingSurface.h"
 #include "model/camera/Camera.h"
 #include "model/masks/MaskShaping.h"
-#include "model/volume/Modality.h"
+#include "model/volume/Volume.h"
 #include "transport/render/Render.h"
 
 #include <filesystem>
@@ -29,7 +29,7 @@ struct PlaneRequest {
 
 struct ClipRequest {
   std::optional<ClipMode> mode = {}; ///< by default `surface` when there is a focus, else `none`
-  std::optional<PlaneRequest> plane = {}; ///< by default the focus's own (FocusPlane.h)
+  std::optional<PlaneRequest> plane = {}; ///< by default the focus's own (focusPlane)
   double ghost = 0.1; ///< share of the extinction left in front of the surface, in mode `ghost`
   /// A plane takes its offset and softness; `mode` decides its mode and its edge's ghost.
   SurfaceOptions surface = {};

@@ -24,8 +24,7 @@ struct StagesMade {
 
 class Scene {
 public:
-  /// Reads files, places camera and lights, computes the clipping surface, classifies. Throws
-  /// Error.
+  /// Makes all stages. Throws Error.
   explicit Scene(const SceneRequest& request);
   /// `input`: of request.input, opened before.
   Scene(const SceneRequest& request, const Input& input);
@@ -44,22 +43,14 @@ public:
   /// Mask of the focus; null: none.
   const Mask* focus() const { return m_focus->mask ? &*m_focus->mask : nullptr; }
   const TransferFunction& transfer() const { return m_look->transfer; }
-  /// Source of the transfer function: a file, a preset, a node, or "by the volume's range".
+  /// Source of the transfer function (Look::name).
   const std::string& look() const { return m_look->name; }
   const Camera& camera() const { return *m_camera; }
   const Clip& clip() const { return m_clip->clip; }
   /// Style of the context; null: unchanged.
   const ContextStyle* style() const { return m_style.result().get(); }
-  /// Depth of the focus at each pixel's centre, mm; infinity: missed. Empty without a focus, and,
-  /// unless the clip is measured, in the clip modes none and plane (with a given plane).
-  const std::vector<double>& focusDepth() const { return m_clip->focusDepth; }
-  /// mm by which the spline misses the focus's boundary, or an exact surface if measured; nothing
-  /// in the other clip modes.
-  const std::optional<BoundaryMismatch>& mismatch() const { return m_clip->mismatch; }
-  /// Measures of the clip along the focus's outline; nothing: not measured.
-  const std::optional<BoundaryMeasures>& boundary() const { return m_clip->boundary; }
-  /// Control points of a spline; empty for other clips.
-  const std::vector<ControlPoint>& controlPoints() const { return m_clip->controlPoints; }
+  /// Clip with its measures, and the depth of the focus.
+  const ClipResult& clipResult() const { return *m_clip; }
   const CellRanges& ranges() const { return *m_ranges; }
   StageSeconds seconds() const;
   StagesMade made() const;
@@ -75,7 +66,6 @@ public:
 private:
   /// Makes all stages that m_request needs, in their order.
   void make();
-  /// References to all stages.
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_focus,

@@ -5,6 +5,7 @@
 #include "session/InspectionParts.h"
 
 #include <algorithm>
+#include <memory>
 #include <set>
 
 namespace fenestra {
@@ -13,10 +14,6 @@ namespace {
 bool isRoi(const MrmlNode& node) {
   return node.tag == "MarkupsROI" || node.tag == "AnnotationROI" || node.tag == "ROI" ||
          node.tag == "MRMLROINode";
-}
-
-bool isSegmentation(const MrmlNode& node) {
-  return node.tag == "Segmentation" || isLabelMap(node);
 }
 
 std::string idOf(const MrmlNode* node) {
@@ -64,8 +61,7 @@ private:
     if (!m_plan) {
       choice.needsSegmentation = false;
       m_plan = attempted(planned, m_report["refused"]);
-      const auto& nodes = document().nodes();
-      if (std::any_of(nodes.begin(), nodes.end(), isSegmentation))
+      if (std::ranges::any_of(document().nodes(), isSegmentation))
         m_segmentationProblem = problem;
     }
   }

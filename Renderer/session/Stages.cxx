@@ -2,10 +2,8 @@
 
 #include "base/Error.h"
 #include "base/TextStream.h"
-#include "clip/surface/FocusPlane.h"
 #include "clip/surface/SteadySurface.h"
 #include "files/looks/LightReader.h"
-#include "files/looks/LookText.h"
 #include "session/Defaults.h"
 
 namespace fenestra {
@@ -18,17 +16,7 @@ TransferFunction fitted(const TransferLook& look, const Volume& volume) {
   return look.over(low, high);
 }
 
-std::string nameOf(Modality modality) {
-  switch (modality) {
-  case Modality::ct:
-    return "CT";
-  case Modality::mr:
-    return "MR";
-  case Modality::us:
-    break;
-  }
-  return "ultrasound";
-}
+constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< as in Modality
 
 /// Throws Error (input) above a limit of the extinction: null collisions take time in proportion to
 /// the greatest extinction, and a file could make paths endless.
@@ -81,9 +69,10 @@ Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
     return {fitted(named->look, volume), named->source, warnings};
   if (named)
     warnings.push_back(
-        "the preset's transfer function is made for " + nameOf(*madeFor) +
-        ", which this volume does not seem to be; the volume gets a look of its own, "
-        "or name one with --transfer");
+        textOf("the preset's transfer function is made for ",
+               modalities[static_cast<std::size_t>(*madeFor)],
+               ", which this volume does not seem to be; the volume gets a look of its own, "
+               "or name one with --transfer"));
   else if (scene->transfer)
     return {*scene->transfer, scene->name};
   const std::optional<std::string> preset = transferPresetFor(volume);
@@ -111,7 +100,7 @@ ClipResult planeOrNone(const ClipRequest& request, bool measure, const Domain& d
   std::optional<FocusDepth> depth;
   if (focus->mask && ((isPlane && !request.plane) || measure)) {
     const Stopwatch watch;
-    depth = traceFocus(camera, domain, *focus->mask);
+    depth = FocusTracer(camera, domain, *focus->mask).depths();
     result.focusDepth = viewportDepths(*depth, camera);
     result.focusSeconds = watch.seconds();
   }

@@ -58,7 +58,7 @@ struct ClipResult {
   std::vector<double> focusDepth = {};
   /// mm by which the spline misses the focus's boundary, or an exact surface if measured; nothing
   /// in the other clip modes.
-  std::optional<BoundaryMismatch> mismatch = {};
+  std::optional<Distribution> mismatch = {};
   std::optional<BoundaryMeasures> boundary = {}; ///< nothing: not measured
   std::vector<ControlPoint> controlPoints = {};  ///< of a spline; empty for other clips
   std::vector<std::string> warnings = {};

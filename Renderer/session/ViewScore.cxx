@@ -1,11 +1,10 @@
-#include "session/ViewScore.h"
+#include "session/AutomaticView.h"
 
 #include "model/medium/Medium.h"
 
 #include <tbb/parallel_for.h>
 
 namespace fenestra {
-
 namespace {
 
 /// Point n of a sequence that fills the unit square evenly, not aligned with its axes (Roberts
@@ -21,9 +20,7 @@ bool isFocus(const Mask& focus, const Vec3& world) {
   const Size3& size = focus.grid.size;
   if ((nearest.array() < 0.0).any() || (nearest.array() >= size.cast<double>().array()).any())
     return false;
-  const Size3 i = nearest.cast<std::int64_t>();
-  return focus.voxels[static_cast<std::size_t>(i.x() + size.x() * (i.y() + size.y() * i.z()))] >=
-         focus.half();
+  return focus.voxels[numberOf(nearest.cast<std::int64_t>(), size)] >= focus.half();
 }
 
 } // namespace
@@ -98,15 +95,8 @@ private:
     const Interval inDomain = m_domain.clip(transformed(m_domain.grid().worldToIndex, world));
     const Ray ray = transformed(m_cells.worldToCell(), world);
     const Interval range = m_cells.box().clip(ray, inDomain);
-    if (range.empty())
-      return;
-    const std::size_t i = batch.size++;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      batch.origin[axis][i] = ray.origin[static_cast<int>(axis)];
-      batch.direction[axis][i] = ray.direction[static_cast<int>(axis)];
-    }
-    batch.begin[i] = range.begin;
-    batch.end[i] = range.end;
+    if (!range.empty())
+      batch.add(ray, range);
   }
 
   void found(const Vec2& across, double depth) {
@@ -130,11 +120,6 @@ private:
 ViewScorer::ViewScorer(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
                        const Mask& focus)
     : m_domain(domain), m_focus(focus) {
-  gatherContext(volume, transfer, focus);
-}
-
-void ViewScorer::gatherContext(const Volume& volume, const TransferFunction& transfer,
-                               const Mask& focus) {
   constexpr double cellsAlong = 32.0;
   const Grid& grid = volume.grid;
   const Vec3 edges = grid.spacing().cwiseProduct(grid.size.cast<double>());

@@ -159,8 +159,7 @@ Reference findReference(const SceneCase& sceneCase, const Scene& scene,
 }
 
 Image imageOf(const Film& film, const Scene& scene) {
-  return picture(film, scene.camera(), scene.clip(),
-                 {.depth = false, .clip = false, .albedo = false, .normal = false});
+  return picture(film, scene.camera(), scene.clip(), {"color", "error", "samples"});
 }
 
 } // namespace fenestra::benchmarks

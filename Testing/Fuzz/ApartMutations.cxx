@@ -102,7 +102,7 @@ int mutate(int many, Random random) {
       if (isSlice)
         readDicomVolume({path}, path.string());
       else
-        readLinearTransform(path, TransformSense::fromParent);
+        readLinearTransform(path).inverse();
     });
   }
   std::printf("%d files: %d read, %d refused, %d neither\n", many, counts.read, counts.refused,

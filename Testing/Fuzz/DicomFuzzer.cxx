@@ -2,7 +2,7 @@
 // controls the child. ApartMutations sends files.
 #include "Harness.h"
 
-#include "files/medical/DicomPixels.h"
+#include "files/medical/DicomFiles.h"
 
 FENESTRA_FUZZ(Dicom, input) {
   using namespace fenestra;

@@ -104,7 +104,8 @@ void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& b
   record(label, *comparison.z);
   if (::testing::Test::HasFailure())
     writeImage(differenceImage(tiles, reference), {},
-               std::filesystem::temp_directory_path() / (name + "-difference.png"), "Standard");
+               std::filesystem::temp_directory_path() / (name + "-difference.png"),
+               DisplayView::standard);
 }
 
 class Reference : public ::testing::TestWithParam<ReferenceCase> {};

@@ -88,7 +88,7 @@ inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOpt
     EXPECT_TRUE(sites.insert({point.site.x(), point.site.y()}).second);
     EXPECT_EQ(surface.focus.depth.nearest(point.site), point.depth);
   }
-  const BoundaryMismatch& mismatch = surface.mismatch.value();
+  const Distribution& mismatch = surface.mismatch.value();
   EXPECT_GE(mismatch.mean, 0.0);
   EXPECT_LE(mismatch.mean, mismatch.max * (1.0 + 1e-12));
   EXPECT_LE(mismatch.p95, mismatch.max);

@@ -3,7 +3,7 @@
 
 #include "StressSupport.h"
 
-#include "model/medium/VolumeProperty.h"
+#include "Curves.h"
 
 namespace fenestra::testing::TransferStressTests {
 namespace {
@@ -154,7 +154,7 @@ TEST_P(PropertyExtremes, TransmittanceEqualsTheFormula) {
   constexpr int steps = 20000;
   for (int k = 0; k < steps; ++k) {
     const double s = 50.0 + 50.0 * ((k + 0.5) / steps - 0.5) * 0.5;
-    const double opacity = std::min(opacityAt(property.scalarOpacity, s), 0.9999);
+    const double opacity = std::min(curveAt(property.scalarOpacity, s), 0.9999);
     depth -= std::log1p(-opacity) / property.unitDistance * 0.5 / steps;
   }
   // The table's relative error is <= 1e-4.

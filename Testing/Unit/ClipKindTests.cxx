@@ -3,7 +3,6 @@
 
 #include "ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
-#include "clip/surface/FocusPlane.h"
 #include "measure/BoundaryMeasures.h"
 
 #include <gtest/gtest.h>
@@ -187,7 +186,7 @@ TEST(FocusPlane, FlatFocusGivesItsOwnPlane) {
   });
   for (const Projection projection : projections) {
     const Camera camera = anteriorCamera(projection, 150, 40, 128, 128);
-    const ClipPlane plane = focusPlane(camera, traceFocus(camera, volume, focus));
+    const ClipPlane plane = focusPlane(camera, FocusTracer(camera, volume, focus).depths());
     EXPECT_GT(plane.normal.dot(normal), std::cos(4.0 * pi / 180.0));
     // The plane is the slab's side toward the eye, to half a voxel.
     EXPECT_NEAR(plane.point.dot(normal), 4.0, 0.6);
@@ -199,7 +198,7 @@ TEST(FocusPlane, OneSampleGivesAPlaneFacingTheEye) {
   const Camera camera = anteriorCamera(Projection::orthographic, 150, 40, 3, 3);
   const Grid volume = centredGrid({80, 80, 80});
   const Mask focus = boxMask(volume, {-3, -3, -3}, {3, 3, 3});
-  const ClipPlane plane = focusPlane(camera, traceFocus(camera, volume, focus));
+  const ClipPlane plane = focusPlane(camera, FocusTracer(camera, volume, focus).depths());
   EXPECT_LT((plane.normal + camera.forward()).norm(), 1e-9);
 }
 
@@ -243,7 +242,7 @@ TEST(BoundaryMeasures, AreZeroOnAPlanarFocus) {
 
 TEST(BoundaryMeasures, TiltedPlaneGapEqualsItsDistance) {
   const Cuboid model;
-  const FocusDepth focus = traceFocus(model.camera, model.volume, model.focus);
+  const FocusDepth focus = FocusTracer(model.camera, model.volume, model.focus).depths();
   const double front = focus.depth.at(focus.depth.viewportSample(80, 80));
   // Depth front + 0.25 x over the view: gaps of 0 to 4 mm along the face's outline.
   const Vec3 through = fromBuffer(model.camera, Vec3(0, 0, front));

@@ -40,7 +40,7 @@ struct Cube {
     const CellRanges ranges(scene.volume, 0);
     const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, clip);
     const RenderScene clipped{scene.volume, scene.transfer, majorants, lights, camera, clip};
-    return focusCoverage(clipped, FocusPoints(clipped, std::vector<double>(256, focusDepth)), 1);
+    return focusCoverage(clipped, focusPoints(clipped, std::vector<double>(256, focusDepth)), 1);
   }
 };
 

@@ -133,7 +133,8 @@ TEST(Picture, HasEveryDocumentedChannel) {
   PathSample miss;
   miss.alpha = 0.0;
   film.at(1, 0).add(miss);
-  const Image image = picture(film, camera, ClipPlane{camera, Vec3(0, 3, 0), -Vec3::UnitY()}, {});
+  const Image image =
+      picture(film, camera, ClipPlane{camera, Vec3(0, 3, 0), -Vec3::UnitY()}, layerSet({}));
   for (const char* name :
        {"R", "G", "B", "A", "Z", "clip.Z", "albedo.R", "albedo.G", "albedo.B", "normal.X",
         "normal.Y", "normal.Z", "error.R", "error.G", "error.B", "samples.N"})

@@ -144,18 +144,18 @@ TEST(DepthPyramid, BoundsHoldForEveryDepthInARectangle) {
       greatest = std::max(greatest, buffer.at(i));
     }
     const auto found = pyramid.bounds(buffer, Vec2::Constant(-infinity), Vec2::Constant(infinity));
-    EXPECT_EQ(found.least, least);
-    EXPECT_EQ(found.greatest, greatest);
+    EXPECT_EQ(found.begin, least);
+    EXPECT_EQ(found.end, greatest);
     for (int trial = 0; trial < 2000; ++trial) {
       const Vec2 a = randomPoint(random, -15, 15).head<2>();
       const Vec2 b = a + std::pow(random.uniform(), 3) * randomPoint(random, -15, 15).head<2>();
-      const DepthPyramid::Bounds bounds = pyramid.bounds(buffer, a, b);
+      const Interval bounds = pyramid.bounds(buffer, a, b);
       for (int i = 0; i < 50; ++i) {
         const Vec2 p(uniform(random, a.x(), b.x()), uniform(random, a.y(), b.y()));
-        ASSERT_LE(bounds.least, buffer.depth(p) + 1e-9);
-        ASSERT_LE(bounds.least, buffer.nearest(p));
-        ASSERT_GE(bounds.greatest, buffer.depth(p) - 1e-9);
-        ASSERT_GE(bounds.greatest, buffer.nearest(p));
+        ASSERT_LE(bounds.begin, buffer.depth(p) + 1e-9);
+        ASSERT_LE(bounds.begin, buffer.nearest(p));
+        ASSERT_GE(bounds.end, buffer.depth(p) - 1e-9);
+        ASSERT_GE(bounds.end, buffer.nearest(p));
       }
     }
   }

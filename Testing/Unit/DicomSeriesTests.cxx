@@ -227,7 +227,7 @@ TEST(DicomSeries, SelectorChoosesAmongSeries) {
   EXPECT_EQ(series[1].number, "8");
   EXPECT_EQ(series[2].number, "12");
   EXPECT_EQ(series[2].modality, "CT");
-  const auto choose = [&](const std::optional<std::string>& selector) -> const DicomSeries& {
+  const auto choose = [&](const std::optional<std::string>& selector) {
     return chooseSeries(series, selector, folder.path().string());
   };
   EXPECT_EQ(choose("1.2.4").files.size(), 3u);

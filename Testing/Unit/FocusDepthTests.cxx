@@ -201,7 +201,7 @@ TEST(FocusDepth, BoxFacesLieAtTheVoxelsFaces) {
   const Mask mask = boxMask(grid, {-10.1, -7.1, -13.1}, {10.1, 7.1, 13.1});
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
     const Camera camera = anteriorCamera(projection, 200.0, 30.0, 64, 48);
-    const FocusDepth focus = traceFocus(camera, grid, mask);
+    const FocusDepth focus = FocusTracer(camera, grid, mask).depths();
     const double face = 200.0 - 0.7 * 10.0; // ten voxels to each side of the origin
     EXPECT_NEAR(depthAt(focus, {0.3, 0.3}), face, 1e-5);
     EXPECT_NEAR(depthAt(focus, {-8.0, 11.0}), face, 1e-5);
@@ -213,7 +213,7 @@ TEST(FocusDepth, RegionsCountFocusContextAndOutside) {
   const Grid grid = centredGrid({20, 20, 20});
   const Mask mask = boxMask(grid, Vec3::Constant(-4), Vec3::Constant(4));
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
-  const FocusDepth focus = traceFocus(camera, grid, mask);
+  const FocusDepth focus = FocusTracer(camera, grid, mask).depths();
   std::array<int, 3> count{};
   for (const Region region : focus.regions)
     ++count[static_cast<std::size_t>(region)];
@@ -224,7 +224,7 @@ TEST(FocusDepth, RegionsCountFocusContextAndOutside) {
 
 /// Expects every hit on the level 0.5, with no focus in front.
 void compareWithMarching(const Camera& camera, const Domain& volume, const Mask& mask) {
-  const FocusDepth focus = traceFocus(camera, volume, mask);
+  const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
   const double step = 0.02;
   int hits = 0;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
@@ -265,7 +265,7 @@ TEST(FocusDepth, IsTheSameInEveryInstructionSet) {
     for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1) {
       SCOPED_TRACE(hwy::TargetName(left & -left));
       hwy::SetSupportedTargetsForTest(left & -left);
-      const FocusDepth focus = traceFocus(camera, grid, mask);
+      const FocusDepth focus = FocusTracer(camera, grid, mask).depths();
       if (!first)
         first = focus;
       EXPECT_EQ(focus.regions, first->regions);
@@ -323,7 +323,7 @@ TEST(FocusDepth, RegionIsWhatItsRayMeets) {
                               rotationBy(trial, randomPoint(random, -1, 1).normalized())) *
                        scalingBy(randomPoint(random, 1, 15)));
     const Domain volume = trial % 5 < 2 ? Domain(grid, crop) : Domain(grid);
-    const FocusDepth focus = traceFocus(camera, volume, mask);
+    const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
     const std::int64_t stride = 1 + focus.depth.rows() / 40;
     for (std::int64_t row = 0; row < focus.depth.rows(); row += stride)
       for (std::int64_t column = 0; column < focus.depth.columns(); column += stride) {
@@ -348,14 +348,14 @@ TEST(FocusDepth, RayThatStartsInsideMeetsTheFocusAtZero) {
   const Grid grid = centredGrid({20, 20, 20});
   const Mask mask = sphereMask(grid, 6.0);
   const Camera camera = anteriorCamera(Projection::perspective, 1.0, 1.0, 8, 8);
-  EXPECT_EQ(depthAt(traceFocus(camera, grid, mask), {0.0, 0.0}), 0.0);
+  EXPECT_EQ(depthAt(FocusTracer(camera, grid, mask).depths(), {0.0, 0.0}), 0.0);
 }
 
 TEST(FocusDepth, FocusBeyondTheVolumeIsCutAtItsFace) {
   const Grid volume = centredGrid({20, 20, 20});
   const Mask mask = sphereMask(centredGrid({40, 40, 40}), 15.0);
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 16, 16);
-  EXPECT_NEAR(depthAt(traceFocus(camera, volume, mask), {0.0, 0.0}), 40.0, 1e-5);
+  EXPECT_NEAR(depthAt(FocusTracer(camera, volume, mask).depths(), {0.0, 0.0}), 40.0, 1e-5);
 }
 
 TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
@@ -366,7 +366,7 @@ TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
   const CropBox crop(rotationBy(-pi / 4, Vec3::UnitZ()) * translationBy({0.0, 30.0, 0.0}) *
                      scalingBy(Vec3(60.0, 30.0, 18.0)));
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
-  const FocusDepth focus = traceFocus(camera, {volume, crop}, mask);
+  const FocusDepth focus = FocusTracer(camera, {volume, crop}, mask).depths();
   const auto region = [&](const Vec2& at) {
     for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
       for (std::int64_t column = 0; column < focus.depth.columns(); ++column)
@@ -387,7 +387,7 @@ TEST(FocusDepth, MaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
   const Grid volume = centredGrid({20, 20, 20});
   const Mask mask = maskOf(centredGrid({2, 1, 2}, {2, 2, 2}), [](const Vec3&) { return true; });
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 64, 64);
-  const FocusDepth focus = traceFocus(camera, volume, mask);
+  const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
   EXPECT_NEAR(depthAt(focus, {0.1, 0.1}), 49.0, 1e-5);
   EXPECT_EQ(depthAt(focus, {2.2, 0.1}), infinity);
 }
@@ -397,7 +397,7 @@ TEST(FocusDepth, FarEyeKeepsThePrecision) {
   const Mask mask = boxMask(grid, Vec3::Constant(-10), Vec3::Constant(10));
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
     const Camera camera = anteriorCamera(projection, 1e6, 30.0, 32, 32);
-    EXPECT_NEAR(depthAt(traceFocus(camera, grid, mask), {1.0, 1.0}) - 1e6, -10.0, 1e-5);
+    EXPECT_NEAR(depthAt(FocusTracer(camera, grid, mask).depths(), {1.0, 1.0}) - 1e6, -10.0, 1e-5);
   }
 }
 

@@ -74,7 +74,7 @@ protected:
         std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()));
   }
   fs::path written(const Image& image, const std::string& name, const ImagePlane& plane = {},
-                   const std::string& view = "") const {
+                   DisplayView view = DisplayView::photographic) const {
     writeImage(image, plane, path(name), view);
     return path(name);
   }

@@ -1,5 +1,6 @@
 // Input: opened once for all that is read from it, with the files of each reading.
 
+#include "session/NamedLooks.h"
 #include "session/Scene.h"
 
 #include "SceneTesting.h"
@@ -75,6 +76,13 @@ TEST(Input, OfAFileHasNoSceneOrSettings) {
   EXPECT_FALSE(input.segmentNames({}));
   EXPECT_FALSE(input.settings({}, true).camera);
   EXPECT_EQ(input.volume({}).files, FilesRead{(folder / "ct.nrrd").string()});
+}
+
+TEST(LookText, BraceTellsTextFromNames) {
+  EXPECT_TRUE(isLookText(R"({"lights": []})"));
+  EXPECT_TRUE(isLookText("{"));
+  for (const char* name : {"", "studio", "lights.json", "./{.json", " {}"})
+    EXPECT_FALSE(isLookText(name)) << name;
 }
 
 } // namespace

@@ -4,7 +4,6 @@
 #include "WriteResults.h"
 #include "base/safe/EmbeddedResources.h"
 #include "files/looks/LightReader.h"
-#include "files/looks/LookText.h"
 
 #include "Refusals.h"
 
@@ -95,13 +94,6 @@ TEST(LightReader, ReadsEnvironmentMapBesideItsFile) {
   EXPECT_EQ(light.map.rgb[3 * 6 + 0], 0.25f);
   EXPECT_EQ(light.map.rgb[3 * 6 + 1], 0.5f);
   EXPECT_EQ(light.radiance[0], 2.0);
-}
-
-TEST(LightReader, BraceTellsTextFromNames) {
-  EXPECT_TRUE(isLookText(R"({"lights": []})"));
-  EXPECT_TRUE(isLookText("{"));
-  for (const char* name : {"", "studio", "lights.json", "./{.json", " {}"})
-    EXPECT_FALSE(isLookText(name)) << name;
 }
 
 TEST(LightReader, RefusesBadEnvironmentMaps) {

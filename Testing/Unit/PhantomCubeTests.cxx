@@ -1,5 +1,5 @@
 #include "base/Error.h"
-#include "phantoms/Cube.h"
+#include "phantoms/Phantoms.h"
 
 #include "Approx.h"
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(PhantomCube, CubeIsCentredOnTheOrigin) {
 
 TEST(PhantomCube, OpacityAndColourDoNotDependOnTheEdge) {
   for (const double edge : {1.0, 512.0}) {
-    const TransferFunction transfer = tabulate(cubeProperty(edge), "cube");
+    const TransferFunction transfer = tabulate(makeCubePhantom({edge, 16}).property, "cube");
     EXPECT_NEAR(transfer.extinction(17.0).value() * edge, 100.0 * std::log(100.0), 1.0);
     const Rgb low = transfer.albedo(-255.0), high = transfer.albedo(255.0);
     EXPECT_GT(low.z(), 10.0 * low.x());

@@ -1,7 +1,7 @@
 // Synthetic fetus: contents of its segments, occlusion of the face, and reproducibility.
 
 #include "base/Error.h"
-#include "phantoms/Fetus.h"
+#include "phantoms/Phantoms.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -10,7 +10,7 @@ namespace fenestra::PhantomFetusTests {
 namespace {
 
 const Phantom& smallFetus() {
-  static const Phantom fetus = makeFetusPhantom({{64, 64, 64}});
+  static const Phantom fetus = makeFetusPhantom({64, 64, 64});
   return fetus;
 }
 
@@ -90,13 +90,13 @@ TEST(PhantomFetus, SpeckleIsSmallerThanTheSignalOfTissue) {
 
 TEST(PhantomFetus, IsTheSameOnEveryRunAndAnyNumberOfThreads) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Phantom again = makeFetusPhantom({{64, 64, 64}});
+  const Phantom again = makeFetusPhantom({64, 64, 64});
   EXPECT_EQ(voxelsOf(again), voxelsOf(smallFetus()));
   EXPECT_EQ(again.labels.layers, smallFetus().labels.layers);
 }
 
 TEST(PhantomFetus, RefusesSizesBeyondItsLimits) {
-  EXPECT_THROW(makeFetusPhantom({{8, 64, 64}}), Error);
+  EXPECT_THROW(makeFetusPhantom({8, 64, 64}), Error);
 }
 
 } // namespace

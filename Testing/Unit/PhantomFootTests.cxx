@@ -1,9 +1,8 @@
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
 #include "phantoms/Foot.h"
-#include "phantoms/FootBones.h"
-#include "phantoms/FootLayers.h"
 #include "phantoms/PhantomWriter.h"
+#include "phantoms/Phantoms.h"
 
 #include "Approx.h"
 #include "TemporaryFolder.h"
@@ -18,7 +17,7 @@ namespace fenestra::PhantomFootTests {
 namespace {
 
 const Phantom& smallFoot() {
-  static const Phantom foot = makeFootPhantom({{140, 56, 70}});
+  static const Phantom foot = makeFootPhantom({140, 56, 70});
   return foot;
 }
 
@@ -195,15 +194,15 @@ TEST(PhantomFoot, TissuesHaveTheirHounsfieldUnits) {
   EXPECT_NEAR(medianOf(foot, "muscles"), 52.0, 15.0);
   EXPECT_NEAR(medianOf(foot, "achilles_tendon"), 100.0, 20.0);
   EXPECT_GT(medianOf(foot, "talus"), 300.0);
-  const FootLayers layers;
-  FootSite shaft = layers.site({-14.0, 168.0, 39.0});
-  EXPECT_LT(layers.signal(FootTissue::marrow, shaft), 0.0) << "a metatarsal's canal holds fat";
-  EXPECT_GT(layers.signal(FootTissue::cortex, shaft), 1200.0);
+  const FootSubject layers;
+  const FootSite shaft = layers.site({-14.0, 168.0, 39.0});
+  EXPECT_LT(footMarrow(shaft), 0.0) << "a metatarsal's canal holds fat";
+  EXPECT_GT(footCortex(shaft), 1200.0);
   EXPECT_NEAR(voxelsOf(foot).front(), -1000.0, 60.0) << "air";
 }
 
 TEST(PhantomFoot, SkinCoversEveryBone) {
-  const FootLayers layers;
+  const FootSubject layers;
   double thinnest = infinity;
   for (double x = -54; x <= 52; x += 2.0)
     for (double y = 0; y <= 268; y += 2.0)
@@ -216,22 +215,22 @@ TEST(PhantomFoot, SkinCoversEveryBone) {
 }
 
 TEST(PhantomFoot, PlaceDoesNotDependOnSizeNorVoxelsOnThreads) {
-  const FootOptions options{{48, 24, 28}};
-  const Phantom many = makeFootPhantom(options);
+  const Size3 size(48, 24, 28);
+  const Phantom many = makeFootPhantom(size);
   const Grid& grid = many.volume.grid;
   EXPECT_TRUE(isApprox(grid.spacing().cwiseProduct(grid.size.cast<double>()), Vec3(280, 112, 140)));
   EXPECT_TRUE(isApprox(grid.worldCenter(), smallFoot().volume.grid.worldCenter()));
   EXPECT_GT(grid.indexToWorld.linear().determinant(), 0.0) << "right-handed";
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Phantom single = makeFootPhantom(options);
+  const Phantom single = makeFootPhantom(size);
   EXPECT_EQ(voxelsOf(many), voxelsOf(single));
   EXPECT_EQ(many.labels.layers, single.labels.layers);
-  EXPECT_THROW(makeFootPhantom({{48, 15, 28}}), Error);
+  EXPECT_THROW(makeFootPhantom({48, 15, 28}), Error);
 }
 
 TEST(PhantomFoot, BothLayersRoundTripThroughTheFile) {
   const TemporaryFolder folder;
-  const Phantom foot = makeFootPhantom({{48, 24, 28}});
+  const Phantom foot = makeFootPhantom({48, 24, 28});
   writePhantom(foot, folder.path(), "foot");
   const Segmentation segmentation = readSegmentation(folder / "foot.seg.nrrd");
   ASSERT_EQ(segmentation.segments().size(), foot.segments.size());

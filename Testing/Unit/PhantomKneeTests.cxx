@@ -1,8 +1,8 @@
 #include "base/Error.h"
 #include "model/medium/TransferFunction.h"
-#include "phantoms/Knee.h"
 #include "phantoms/KneeBones.h"
 #include "phantoms/KneeSignal.h"
+#include "phantoms/Phantoms.h"
 
 #include "Approx.h"
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace fenestra::PhantomKneeTests {
 namespace {
 
 const Phantom& smallKnee() {
-  static const Phantom knee = makeKneePhantom({{100, 115, 64}});
+  static const Phantom knee = makeKneePhantom({100, 115, 64});
   return knee;
 }
 
@@ -88,17 +88,17 @@ TEST(PhantomKnee, EverySegmentHasVoxelsAndANameOfItsOwn) {
 }
 
 TEST(PhantomKnee, IsTheSameOnOneThreadAndOnMany) {
-  const KneeOptions options{{24, 28, 24}};
-  const Phantom many = makeKneePhantom(options);
+  const Size3 size(24, 28, 24);
+  const Phantom many = makeKneePhantom(size);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Phantom single = makeKneePhantom(options);
+  const Phantom single = makeKneePhantom(size);
   EXPECT_EQ(voxelsOf(many), voxelsOf(single));
   EXPECT_EQ(labelsOf(many), labelsOf(single));
 }
 
 TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
   for (const Size3& size : {Size3(300, 344, 120), Size3(30, 43, 20)}) {
-    const Grid grid = makeKneePhantom({Size3(size.cwiseMin(24))}).volume.grid;
+    const Grid grid = makeKneePhantom(size.cwiseMin(24)).volume.grid;
     EXPECT_TRUE(
         isApprox(grid.spacing().cwiseProduct(grid.size.cast<double>()), Vec3(120, 137.6, 120)));
     EXPECT_TRUE(isApprox(grid.worldCenter(), Vec3(0, -2, 6.8)));
@@ -110,8 +110,8 @@ TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
 }
 
 TEST(PhantomKnee, RefusesSizesBeyondItsLimits) {
-  EXPECT_THROW(makeKneePhantom({{8, 100, 100}}), Error);
-  EXPECT_THROW(makeKneePhantom({{100, 100, 4000}}), Error);
+  EXPECT_THROW(makeKneePhantom({8, 100, 100}), Error);
+  EXPECT_THROW(makeKneePhantom({100, 100, 4000}), Error);
 }
 
 TEST(PhantomKnee, HasTheProportionsOfAnAdult) {
@@ -217,7 +217,7 @@ TEST(PhantomKnee, MedianSignalsAreThoseOfT1) {
   EXPECT_NEAR(medianOf(knee, "FemoralCartilage"), 510.0, 60.0);
   EXPECT_LT(medianOf(knee, "MedialMeniscus"), 200.0);
   EXPECT_LT(medianOf(knee, "PCL"), 200.0);
-  const double snr = tissueSignal(KneeTissue::muscle, {-20, -45, -30}) / noiseSigma;
+  const double snr = muscleSignal({-20, -45, -30}) / noiseSigma;
   EXPECT_GT(snr, 25.0);
   EXPECT_LT(snr, 40.0);
 }
@@ -230,7 +230,7 @@ TEST(PhantomKnee, BiasFieldStaysWithinFifteenPercent) {
 }
 
 TEST(PhantomKnee, PropertyShowsCartilageDenseAndAirClear) {
-  const TransferFunction transfer = tabulate(kneeProperty(), "knee");
+  const TransferFunction transfer = tabulate(smallKnee().property, "knee");
   const auto sigma = [&](double s) { return transfer.extinction(s).value(); };
   EXPECT_EQ(sigma(14.0), 0.0); // the mean of noise in air
   EXPECT_EQ(sigma(44.0), 0.0); // four standard deviations

@@ -1,8 +1,6 @@
-#include "phantoms/Cube.h"
-#include "phantoms/Foot.h"
-#include "phantoms/Knee.h"
 #include "phantoms/PhantomScene.h"
 #include "phantoms/PhantomWriter.h"
+#include "phantoms/Phantoms.h"
 
 #include "Approx.h"
 #include "TemporaryFolder.h"
@@ -37,7 +35,7 @@ Vec3 triple(const pugi::xml_node& node, const char* attribute) {
 /// Knee whose voxel axes are not the world's, so that confused axes are detected.
 struct PhantomSceneFiles : ::testing::Test {
   TemporaryFolder folder;
-  Phantom phantom = makeKneePhantom({{32, 36, 16}});
+  Phantom phantom = makeKneePhantom({32, 36, 16});
   std::vector<std::string> files = writePhantom(phantom, folder.path(), "knee");
   pugi::xml_document document;
   pugi::xml_node scene;
@@ -218,7 +216,7 @@ TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
   EXPECT_EQ(opacity[0], static_cast<double>(opacity.size() - 1));
   for (std::size_t i = 0; i < phantom.property.scalarOpacity.size(); ++i) {
     EXPECT_EQ(opacity[2 * i + 1], phantom.property.scalarOpacity[i].x);
-    EXPECT_EQ(opacity[2 * i + 2], phantom.property.scalarOpacity[i].y);
+    EXPECT_EQ(opacity[2 * i + 2], phantom.property.scalarOpacity[i].value);
   }
   EXPECT_EQ(numbers(property, "colorTransfer").size(), 4 * phantom.property.color.size() + 1);
   EXPECT_EQ(numbers(property, "effectiveRange"),
@@ -357,13 +355,13 @@ TEST_F(PhantomSceneFiles, FilesAreTheSameOnEveryRun) {
 TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {
   Phantom phantom = makeCubePhantom({1.0, 16});
   phantom.segments[0].id = "a b|c";
-  const std::string text = phantomScene(phantom, "R&D <\"1\">", {"my file%1.nrrd", "b", "c", "d"});
+  const std::string text = phantomScene(phantom, "R&D <\"1\">", "my file%1/");
   pugi::xml_document document;
   ASSERT_TRUE(document.load_string(text.c_str()));
   const pugi::xml_node scene = document.child("MRML");
   EXPECT_STREQ(scene.child("Volume").attribute("name").value(), "R&D <\"1\">");
   EXPECT_STREQ(scene.child("VolumeArchetypeStorage").attribute("fileName").value(),
-               "my%20file%251.nrrd");
+               "my%20file%251/R%26D%20%3C%221%22%3E.nrrd");
   EXPECT_TRUE(
       std::string(
           scene.child("SegmentationDisplay").attribute("SegmentationDisplayProperties").value())
@@ -372,7 +370,7 @@ TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {
 
 TEST(PhantomScene, PropertyHoldsOpacitiesOfAMillimetre) {
   const auto opacityOf = [](double edge) {
-    const std::string text = phantomScene(makeCubePhantom({edge, 16}), "cube", {});
+    const std::string text = phantomScene(makeCubePhantom({edge, 16}), "cube");
     pugi::xml_document document;
     EXPECT_TRUE(document.load_string(text.c_str()));
     return numbers(document.child("MRML").child("VolumeProperty"), "scalarOpacity").at(2);

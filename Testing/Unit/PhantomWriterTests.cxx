@@ -1,6 +1,6 @@
 #include "base/Error.h"
-#include "phantoms/Knee.h"
 #include "phantoms/PhantomWriter.h"
+#include "phantoms/Phantoms.h"
 
 #include "Approx.h"
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct PhantomFiles : ::testing::Test {
   std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) /
                                  ::testing::UnitTest::GetInstance()->current_test_info()->name() /
                                  "deeper";
-  Phantom phantom = makeKneePhantom({{32, 36, 24}});
+  Phantom phantom = makeKneePhantom({32, 36, 24});
 
   void SetUp() override {
     std::filesystem::remove_all(folder.parent_path());
@@ -120,7 +120,7 @@ TEST_F(PhantomFiles, PropertyIsSlicersJson) {
   ASSERT_EQ(opacity.size(), phantom.property.scalarOpacity.size());
   for (std::size_t i = 0; i < opacity.size(); ++i) {
     EXPECT_EQ(opacity[i].at("x"), phantom.property.scalarOpacity[i].x);
-    EXPECT_EQ(opacity[i].at("y"), phantom.property.scalarOpacity[i].y);
+    EXPECT_EQ(opacity[i].at("y"), phantom.property.scalarOpacity[i].value);
   }
   EXPECT_EQ(component.at("rgbTransferFunction").at("points").size(), phantom.property.color.size());
 }
@@ -152,7 +152,7 @@ void removeMarks(const std::filesystem::path& folder) {
 
 TEST_F(PhantomFiles, FilesOfEarlierPhantomsAreReplaced) {
   writePhantom(phantom, folder, "knee");
-  writePhantom(makeKneePhantom({{24, 28, 16}}), folder, "knee"); // recognised by the marks
+  writePhantom(makeKneePhantom({24, 28, 16}), folder, "knee"); // recognised by the marks
   writePhantom(phantom, folder, "knee");
   removeMarks(folder);
   writePhantom(phantom, folder, "knee"); // recognised by volume and scene

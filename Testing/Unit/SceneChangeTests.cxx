@@ -68,7 +68,7 @@ TEST_P(SceneChange, RemakesOnlyDependentStages) {
   EXPECT_EQ(changed.files(), fromNothing.files());
   EXPECT_EQ(changed.warnings(), fromNothing.warnings());
   EXPECT_EQ(changed.look(), fromNothing.look());
-  EXPECT_EQ(changed.focusDepth(), fromNothing.focusDepth());
+  EXPECT_EQ(changed.clipResult().focusDepth, fromNothing.clipResult().focusDepth);
   const Film expected = picture(fromNothing);
   const Film film = picture(changed);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)

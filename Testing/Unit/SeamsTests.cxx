@@ -144,8 +144,8 @@ TEST(Seams, KeepEqualsThatOfTheFullSurface) {
         between += expected > 0.25 && expected < 1.0;
         ASSERT_NEAR(keep(clip, world), expected, 1e-6) << across << ' ' << depth;
         const auto bounds = clip.pyramid->bounds(*clip.buffer, across, across);
-        ASSERT_GE(clip.surface(across), bounds.least - 1e-4);
-        ASSERT_LE(clip.surface(across), bounds.greatest + 1e-4);
+        ASSERT_GE(clip.surface(across), bounds.begin - 1e-4);
+        ASSERT_LE(clip.surface(across), bounds.end + 1e-4);
       }
       EXPECT_EQ(between > 250, softness > 0.0);
     }

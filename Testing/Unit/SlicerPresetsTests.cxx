@@ -2,6 +2,9 @@
 
 #include "files/slicer/SlicerPresets.h"
 
+#include "base/safe/JsonNode.h"
+#include "files/slicer/MrmlScene.h"
+
 #include "Refusals.h"
 
 #include <cstdlib>
@@ -67,17 +70,15 @@ TEST(SlicerPresets, FoundBesideTheLauncherInThePath) {
   EXPECT_TRUE(std::filesystem::equivalent(*findSlicerPresets(), presets));
 }
 
-TEST(SlicerPresets, PresetIsReadByName) {
-  const TemporaryFolder folder;
-  const SlicerPresets presets(folder.write("presets.xml", presetsText));
-  EXPECT_EQ(presets.names(), (std::vector<std::string>{"CT-Mine", "Broken"}));
-  EXPECT_FALSE(presets.find("CT-Other"));
-  const auto function = presets.find("CT-Mine");
-  ASSERT_TRUE(function);
-  EXPECT_NEAR(function->extinction(50)[0], -std::log(0.75), 1e-3); // opacity 0.25 over 1 mm
-  EXPECT_TRUE(function->shading);
-  expectRefused(folder / "presets.xml", "VolumeProperty Broken: scalarOpacity",
-                [&] { presets.find("Broken"); });
+TEST(SlicerPresets, PresetsAreVolumePropertiesWithNames) {
+  const MrmlDocument presets(presetsText, "presets.xml");
+  EXPECT_EQ(propertyNames(presets), (std::vector<std::string>{"CT-Mine", "Broken"}));
+  const auto properties = presets.withTag("VolumeProperty");
+  const TransferFunction function = propertyIn(presets, *properties.at(0));
+  EXPECT_NEAR(function.extinction(50)[0], -std::log(0.75), 1e-3); // opacity 0.25 over 1 mm
+  EXPECT_TRUE(function.shading);
+  expectRefused("presets.xml", "VolumeProperty Broken: scalarOpacity",
+                [&] { propertyIn(presets, *properties.at(1)); });
 }
 
 TEST(SlicerPresets, EveryPresetOfARealSlicerIsRead) {
@@ -85,13 +86,10 @@ TEST(SlicerPresets, EveryPresetOfARealSlicerIsRead) {
       std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_core" / "presets.xml";
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
-  const SlicerPresets presets(file);
-  EXPECT_EQ(presets.names().size(), 31u);
-  for (const std::string& name : presets.names()) {
-    const auto function = presets.find(name);
-    ASSERT_TRUE(function) << name;
-    EXPECT_GT(function->extinction.range(-4000, 70000)[1], 0.0) << name;
-  }
+  const MrmlDocument presets(readText(file), file.string());
+  EXPECT_EQ(propertyNames(presets).size(), 31u);
+  for (const MrmlNode* node : presets.withTag("VolumeProperty"))
+    EXPECT_GT(propertyIn(presets, *node).extinction.range(-4000, 70000)[1], 0.0) << node->name;
 }
 
 } // namespace

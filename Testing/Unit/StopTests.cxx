@@ -74,7 +74,7 @@ TEST(Stop, EndsMeasuresOfEndlessWalks) {
   const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
   const RenderScene scene{s.volume, s.transfer, majorants, lights, camera, s.clip};
   const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
-  const FocusPoints behind(scene, std::vector<double>(pixels, 2e9));
+  const FocusPoints behind = focusPoints(scene, std::vector<double>(pixels, 2e9));
   const StopFlag stop = true;
   EXPECT_GE(focusCoverage(scene, behind, 1, stop), 0.0);
   focusLight(scene, scene, behind, 1, stop);

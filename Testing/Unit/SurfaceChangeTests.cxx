@@ -4,7 +4,6 @@
 #include "ClippingTesting.h"
 #include "clip/surface/SteadySurface.h"
 #include "measure/SurfaceChange.h"
-#include "model/camera/Turn.h"
 
 #include <gtest/gtest.h>
 

@@ -1,19 +1,22 @@
 // Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and invalid files.
 
 #include "files/looks/TransferReader.h"
-#include "model/medium/VolumeProperty.h"
 
 #include "Approx.h"
+#include "Curves.h"
 #include "Refusals.h"
 
 namespace fenestra::TransferReaderTests {
 namespace {
 
+TransferFunction parsed(const std::string& json) {
+  return parseTransferLook(json, "test").function;
+}
+
 TEST(TransferReader, ReadsItsOwnFormat) {
-  const TransferFunction f = parseTransferFunction(
+  const TransferFunction f = parsed(
       R"({"extinction": [[100, 4], [0, 0]], "albedo": [[0, 0.1, 0.2, 0.3], [10, 0.5, 0.6, 1]],
-          "g": -0.5, "shading": "hybrid"})",
-      "test");
+          "g": -0.5, "shading": "hybrid"})");
   EXPECT_DOUBLE_EQ(f.extinction(25)[0], 1.0);
   EXPECT_DOUBLE_EQ(f.extinction(1000)[0], 4.0);
   EXPECT_TRUE(isApprox(f.albedo(5), Rgb(0.3, 0.4, 0.65)));
@@ -21,8 +24,7 @@ TEST(TransferReader, ReadsItsOwnFormat) {
   ASSERT_TRUE(f.shading);
   EXPECT_EQ(f.shading->gamma, 0.5);
   EXPECT_FALSE(f.gradientOpacity);
-  const TransferFunction least =
-      parseTransferFunction(R"({"extinction": [[0, 1]], "albedo": [[0, 1, 1, 1]]})", "test");
+  const TransferFunction least = parsed(R"({"extinction": [[0, 1]], "albedo": [[0, 1, 1, 1]]})");
   EXPECT_EQ(least.g, 0.0);
   EXPECT_FALSE(least.shading);
 }
@@ -42,14 +44,15 @@ TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
     EXPECT_FALSE(own.relative);
     EXPECT_DOUBLE_EQ(own.over(-100, 300).extinction(0.75)[0], 2.0);
   }
-  expectRefused("test", "scalars: are relative",
-                [&] { parseTransferFunction(R"({"scalars": "relative", )" + rest, "test"); });
+  const TemporaryFolder folder;
+  const auto file = folder.write("relative.json", R"({"scalars": "relative", )" + rest);
+  expectRefused(file, "scalars: are relative", [&] { readTransferFunction(file); });
   expectRefused("test", "scalars: must be \"absolute\"",
                 [&] { parseTransferLook(R"({"scalars": "percent", )" + rest, "test"); });
 }
 
 void expectRefusal(const std::string& json, const std::string& text) {
-  expectRefused("test", text, [&] { parseTransferFunction(json, "test"); });
+  expectRefused("test", text, [&] { parseTransferLook(json, "test"); });
 }
 
 TEST(TransferReader, ErrorNamesTheField) {
@@ -96,15 +99,13 @@ std::string slicer(const std::string& property, const std::string& component) {
 }
 
 TEST(TransferReader, ReadsSlicersJson) {
-  const TransferFunction f =
-      parseTransferFunction(slicer(R"("scatteringAnisotropy": 0.3, )",
-                                   R"("scalarOpacityUnitDistance": 2, "shade": true,
+  const TransferFunction f = parsed(slicer(R"("scatteringAnisotropy": 0.3, )",
+                                           R"("scalarOpacityUnitDistance": 2, "shade": true,
                 "lighting": {"ambient": 0.1, "diffuse": 0.6, "specular": 0.3, "specularPower": 20},
-                "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 10, "y": 1}]}, )"),
-                            "test");
+                "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 10, "y": 1}]}, )"));
   const std::vector<OpacityNode> nodes = {{0, 0, 0.25, 0.5}, {200, 0.5}};
   for (const double x : {-10.0, 20.0, 50.0, 111.0, 199.0, 300.0}) {
-    const double truth = -std::log1p(-opacityAt(nodes, x)) / 2.0;
+    const double truth = -std::log1p(-curveAt(nodes, x)) / 2.0;
     EXPECT_NEAR(f.extinction(x)[0], truth, 1e-4 * truth) << x;
   }
   EXPECT_TRUE(f.albedo(0) == decodeSrgb({1, 0.5, 0}));
@@ -121,12 +122,12 @@ TEST(TransferReader, OmitsGradientOpacityWithoutEffect) {
   for (const char* component :
        {"", R"("gradientOpacity": {"points": [{"x": 0, "y": 1}, {"x": 9, "y": 1}]}, )",
         R"("disableGradientOpacity": true, "gradientOpacity": {"points": [{"x": 0, "y": 0}]}, )"})
-    EXPECT_FALSE(parseTransferFunction(slicer("", component), "test").gradientOpacity);
+    EXPECT_FALSE(parsed(slicer("", component)).gradientOpacity);
 }
 
 TEST(TransferReader, ClampsAnisotropyBelowOne) {
-  EXPECT_EQ(parseTransferFunction(slicer(R"("scatteringAnisotropy": 1, )", ""), "").g, 0.999);
-  EXPECT_EQ(parseTransferFunction(slicer(R"("scatteringAnisotropy": -1, )", ""), "").g, -0.999);
+  EXPECT_EQ(parsed(slicer(R"("scatteringAnisotropy": 1, )", "")).g, 0.999);
+  EXPECT_EQ(parsed(slicer(R"("scatteringAnisotropy": -1, )", "")).g, -0.999);
   expectRefusal(slicer(R"("scatteringAnisotropy": 1.01, )", ""),
                 "volumeProperties[0].scatteringAnisotropy: is 1.01; it must be from -1 to 1");
 }

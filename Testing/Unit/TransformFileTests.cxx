@@ -4,7 +4,7 @@
 
 #include "Approx.h"
 #include "MedicalFiles.h"
-#include "files/slicer/SceneArchive.h"
+#include "files/slicer/SceneFiles.h"
 
 #include <itkAffineTransform.h>
 #include <itkBSplineTransform.h>
@@ -68,8 +68,8 @@ void expectSameMap(const itk::Transform<Real, 3, 3>* transform,
   for (std::string extension : extensions) {
     const bool compress = extension.starts_with("z");
     const auto path = write(folder, extension.substr(compress ? 1 : 0), transform, compress);
-    const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
-    const Affine old = readLinearTransform(path, TransformSense::toParent);
+    const Affine toParent = readLinearTransform(path).inverse();
+    const Affine old = readLinearTransform(path);
     for (const Vec3& ras : {Vec3(0, 0, 0), Vec3(100, -20, 7), Vec3(-3, 50, -80)}) {
       itk::Point<Real, 3> lps;
       for (unsigned i = 0; i < 3; ++i)
@@ -174,8 +174,7 @@ TEST(TransformFile, AppliesTheLastOfACompositeFirst) {
 TEST(TransformFile, ReadsMatColumnsOfTheOtherByteOrder) {
   const TemporaryFolder folder;
   const auto affine = turned<itk::AffineTransform<double, 3>>();
-  const Affine expected =
-      readLinearTransform(write(folder, ".mat", affine.GetPointer()), TransformSense::fromParent);
+  const Affine expected = readLinearTransform(write(folder, ".mat", affine.GetPointer())).inverse();
   std::string bytes = bytesOf(folder / "t.mat");
   const auto reverse = [&](std::size_t at, std::size_t size) {
     std::reverse(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(at + size));
@@ -193,7 +192,7 @@ TEST(TransformFile, ReadsMatColumnsOfTheOtherByteOrder) {
   }
   ASSERT_EQ(at, bytes.size());
   const auto path = folder.write("big.mat", bytes);
-  EXPECT_TRUE(isApprox(readLinearTransform(path, TransformSense::fromParent), expected, 1e-15));
+  EXPECT_TRUE(isApprox(readLinearTransform(path).inverse(), expected, 1e-15));
 }
 
 /// File as written by the HDF5 library itself and by older ITK: groups are symbol tables.
@@ -229,8 +228,7 @@ std::filesystem::path writeOldHdf5(const TemporaryFolder& folder, int count) {
 TEST(TransformFile, ReadsOldHdf5) {
   const TemporaryFolder folder;
   for (const int count : {2, 5, 100}) { // symbol tables of one leaf, and of many
-    const Affine toParent =
-        readLinearTransform(writeOldHdf5(folder, count), TransformSense::fromParent);
+    const Affine toParent = readLinearTransform(writeOldHdf5(folder, count)).inverse();
     EXPECT_TRUE(
         isApprox(toParent.translation(), Vec3(count - 1, count * (count - 1), -3 * (count - 1))));
   }
@@ -243,8 +241,7 @@ const std::string affineText = "#Insight Transform File V1.0\n"
                                "FixedParameters: 0 0 0\n";
 
 void expectRefused(const std::filesystem::path& path, const std::string& text) {
-  fenestra::expectRefused(path, text,
-                          [&] { readLinearTransform(path, TransformSense::fromParent); });
+  fenestra::expectRefused(path, text, [&] { readLinearTransform(path).inverse(); });
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -254,10 +251,9 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 TEST(TransformFile, MapsFromTheParentInLps) {
   const TemporaryFolder folder;
   const auto path = folder.write("a.tfm", affineText);
-  const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
+  const Affine toParent = readLinearTransform(path).inverse();
   EXPECT_TRUE(isApprox(toParent.translation(), Vec3(10, 20, -30)));
-  EXPECT_TRUE(isApprox(readLinearTransform(path, TransformSense::toParent).translation(),
-                       Vec3(-10, -20, 30)));
+  EXPECT_TRUE(isApprox(readLinearTransform(path).translation(), Vec3(-10, -20, 30)));
 }
 
 TEST(TransformFile, RefusesNonlinearTransforms) {
@@ -346,8 +342,7 @@ TEST(TransformFile, RefusesHdf5ThatOpensOtherFiles) {
     ASSERT_GE(H5Lcreate_external("other.h5", "/", file, "more", H5P_DEFAULT, H5P_DEFAULT), 0);
   };
   const auto affine = turned<itk::AffineTransform<double, 3>>();
-  EXPECT_NO_THROW(
-      readLinearTransform(write(folder, ".h5", affine.GetPointer()), TransformSense::fromParent));
+  EXPECT_NO_THROW(readLinearTransform(write(folder, ".h5", affine.GetPointer())).inverse());
   for (const Lead& lead : {values, link}) {
     const auto path = write(folder, ".h5", affine.GetPointer());
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
@@ -378,7 +373,7 @@ TEST(TransformFile, DamagedBytesAreReadOrRefused) {
         bytes[random() % bytes.size()] = static_cast<char>(random());
       const auto path = folder.write(std::to_string(i) + extension, bytes);
       try {
-        EXPECT_TRUE(allFinite(readLinearTransform(path, TransformSense::fromParent)));
+        EXPECT_TRUE(allFinite(readLinearTransform(path).inverse()));
       } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
       }
@@ -393,12 +388,11 @@ TEST(TransformFile, ReadsAFileWrittenBySlicer) {
                      "chest_transformed_cropped.mrb";
   if (!std::filesystem::exists(scene))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
-  const TemporaryFolder folder;
-  const auto path = folder.write("tilt.h5", "");
-  SceneArchive(scene).extract("chest_transformed_cropped/Data/tilt.h5", path);
+  SceneFiles files(scene);
+  const std::filesystem::path path = files.locate("Data/tilt.h5");
   const Affine expected(Mat3::FromRows({0.939693, -0.34202, 0}, {0.34202, 0.939693, 0}, {0, 0, 1}),
                         {20, -10, 15});
-  const Affine toParent = readLinearTransform(path, TransformSense::fromParent);
+  const Affine toParent = readLinearTransform(path).inverse();
   EXPECT_LT(normOf(toParent.linear() - expected.linear()), 1e-6);
   EXPECT_LT((toParent.translation() - expected.translation()).norm(), 1e-6);
 }

@@ -1,7 +1,7 @@
 // Table of the medium against the formulas that it approximates.
 
+#include "Curves.h"
 #include "base/Error.h"
-#include "model/medium/VolumeProperty.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ VolumeProperty property(std::vector<OpacityNode> opacity) {
 }
 
 double extinctionFormula(const VolumeProperty& p, double x) {
-  return -std::log1p(-std::min(opacityAt(p.scalarOpacity, x), 0.9999)) / p.unitDistance;
+  return -std::log1p(-std::min(curveAt(p.scalarOpacity, x), 0.9999)) / p.unitDistance;
 }
 
 /// Greatest relative error of the table's extinction, beyond the documented floor.
@@ -45,9 +45,9 @@ double vtkValue(const OpacityNode& a, const OpacityNode& b, double x) {
   double s = (x - a.x) / (b.x - a.x);
   s = s < m ? 0.5 * s / m : 0.5 + 0.5 * (s - m) / (1.0 - m);
   if (a.sharpness > 0.99)
-    return s < 0.5 ? a.y : b.y;
+    return s < 0.5 ? a.value : b.value;
   if (a.sharpness < 0.01)
-    return (1 - s) * a.y + s * b.y;
+    return (1 - s) * a.value + s * b.value;
   if (s < .5)
     s = 0.5 * std::pow(s * 2, 1.0 + 10 * a.sharpness);
   else if (s > .5)
@@ -55,8 +55,9 @@ double vtkValue(const OpacityNode& a, const OpacityNode& b, double x) {
   const double ss = s * s, sss = ss * s;
   const double h1 = 2 * sss - 3 * ss + 1, h2 = -2 * sss + 3 * ss;
   const double h3 = sss - 2 * ss + s, h4 = sss - ss;
-  const double t = (1.0 - a.sharpness) * (b.y - a.y);
-  return std::clamp(h1 * a.y + h2 * b.y + h3 * t + h4 * t, std::min(a.y, b.y), std::max(a.y, b.y));
+  const double t = (1.0 - a.sharpness) * (b.value - a.value);
+  return std::clamp(h1 * a.value + h2 * b.value + h3 * t + h4 * t, std::min(a.value, b.value),
+                    std::max(a.value, b.value));
 }
 
 TEST(VolumeProperty, InterpolatesAsVtkDoes) {
@@ -64,11 +65,11 @@ TEST(VolumeProperty, InterpolatesAsVtkDoes) {
     for (const double sharpness : {0.0, 0.009, 0.01, 0.3, 0.5, 0.99, 0.995, 1.0}) {
       const std::vector<OpacityNode> nodes = {{-100, 0.8, midpoint, sharpness}, {300, 0.1}};
       for (double x = -99.7; x < 300; x += 1.1)
-        ASSERT_NEAR(opacityAt(nodes, x), vtkValue(nodes[0], nodes[1], x), 1e-14)
+        ASSERT_NEAR(curveAt(nodes, x), vtkValue(nodes[0], nodes[1], x), 1e-14)
             << midpoint << " " << sharpness << " at " << x;
-      EXPECT_EQ(opacityAt(nodes, -200), 0.8);
-      EXPECT_EQ(opacityAt(nodes, 300), 0.1);
-      EXPECT_EQ(opacityAt(nodes, 400), 0.1);
+      EXPECT_EQ(curveAt(nodes, -200), 0.8);
+      EXPECT_EQ(curveAt(nodes, 300), 0.1);
+      EXPECT_EQ(curveAt(nodes, 400), 0.1);
     }
 }
 
@@ -76,10 +77,10 @@ TEST(VolumeProperty, ColoursFollowTheCurveOfOpacity) {
   const std::vector<ColorNode> nodes = {{0, {0, 0.5, 1}, 0.3, 0.4}, {10, {1, 0.25, 0.5}}};
   const std::vector<OpacityNode> red = {{0, 0, 0.3, 0.4}, {10, 1}};
   for (double x = -1; x < 12; x += 0.1) {
-    const double share = opacityAt(red, x);
-    EXPECT_NEAR(colorAt(nodes, x)[0], share, 1e-14);
-    EXPECT_NEAR(colorAt(nodes, x)[1], 0.5 - 0.25 * share, 1e-14);
-    EXPECT_NEAR(colorAt(nodes, x)[2], 1.0 - 0.5 * share, 1e-14);
+    const double share = curveAt(red, x);
+    EXPECT_NEAR(curveAt(nodes, x)[0], share, 1e-14);
+    EXPECT_NEAR(curveAt(nodes, x)[1], 0.5 - 0.25 * share, 1e-14);
+    EXPECT_NEAR(curveAt(nodes, x)[2], 1.0 - 0.5 * share, 1e-14);
   }
 }
 
@@ -123,7 +124,7 @@ TEST(VolumeProperty, NodesAreKnots) {
   const VolumeProperty p = property({{-7, 0.1}, {0.1, 0.7}, {13, 0.2}});
   const TransferFunction f = tabulate(p, "test");
   for (const OpacityNode& node : p.scalarOpacity)
-    EXPECT_DOUBLE_EQ(f.extinction(node.x)[0], -std::log1p(-node.y));
+    EXPECT_DOUBLE_EQ(f.extinction(node.x)[0], -std::log1p(-node.value));
 }
 
 TEST(VolumeProperty, StepsStayDiscontinuous) {
@@ -146,7 +147,7 @@ TEST(VolumeProperty, AlbedoIsWithin1e4OfTheDecodedColour) {
   p.color = {{0, {0, 0.5, 1}, 0.3, 0.6}, {10, {1, 0.001, 0.02}}, {11, {0, 0, 0}}};
   const TransferFunction f = tabulate(p, "test");
   for (double x = -1; x < 12; x += 1e-4) {
-    const Rgb truth = decodeSrgb(colorAt(p.color, x));
+    const Rgb truth = decodeSrgb(curveAt(p.color, x));
     ASSERT_TRUE(((f.albedo(x) - truth).abs() <= 1e-4 * truth + 1e-9).all()) << x;
   }
   EXPECT_LE(f.albedo.knots().size(), 6010u);
@@ -192,11 +193,11 @@ TEST(VolumeProperty, RefusesUnusableValues) {
   };
   refused([](VolumeProperty& p) { p.scalarOpacity.clear(); });
   refused([](VolumeProperty& p) { p.color.clear(); });
-  refused([](VolumeProperty& p) { p.scalarOpacity[1].y = 1.5; });
+  refused([](VolumeProperty& p) { p.scalarOpacity[1].value = 1.5; });
   refused([](VolumeProperty& p) { p.scalarOpacity[1].x = std::nan(""); });
   refused([](VolumeProperty& p) { p.scalarOpacity[1].x = -1.0; });
   refused([](VolumeProperty& p) { p.scalarOpacity[0].sharpness = 2.0; });
-  refused([](VolumeProperty& p) { p.color[0].color[1] = -0.1; });
+  refused([](VolumeProperty& p) { p.color[0].value[1] = -0.1; });
   refused([](VolumeProperty& p) { p.unitDistance = 0.0; });
   refused([](VolumeProperty& p) { p.anisotropy = 1.0; });
   refused([](VolumeProperty& p) { p.specularPower = -1.0; });

@@ -32,10 +32,6 @@ std::int64_t sampleOf(const DepthBuffer& buffer, const Crossing& crossing) {
   return buffer.sample(crossing.column, crossing.row);
 }
 
-ControlPoint controlPoint(const DepthBuffer& buffer, const Crossing& crossing) {
-  return {buffer.position(crossing.column, crossing.row), buffer.at(sampleOf(buffer, crossing))};
-}
-
 /// Control points of the crossings' samples, each sample once, in the order of the buffer.
 std::vector<ControlPoint> distinctSamples(const DepthBuffer& buffer, Contour crossings) {
   const auto sample = [&](const Crossing& crossing) { return sampleOf(buffer, crossing); };
@@ -45,7 +41,7 @@ std::vector<ControlPoint> distinctSamples(const DepthBuffer& buffer, Contour cro
   std::vector<ControlPoint> points;
   points.reserve(crossings.size());
   for (const Crossing& crossing : crossings)
-    points.push_back(controlPoint(buffer, crossing));
+    points.push_back({buffer.position(crossing.column, crossing.row), buffer.at(sample(crossing))});
   return points;
 }
 

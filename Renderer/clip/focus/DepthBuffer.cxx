@@ -21,12 +21,11 @@ Rectangle projection(const Camera& camera, const Grid& volume) {
   const Vec2 limit = Vec2::Constant(camera.targetDepth() * std::tan(75.0 * pi / 180.0));
   Rectangle rectangle;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 corner = camera.toView(volume.worldCorner(i));
+    const Vec3 corner = toBuffer(camera, volume.worldCorner(i));
     if (camera.pose().projection == Projection::orthographic) {
       rectangle.extend(corner.head<2>());
     } else if (corner.z() > 0.0) {
-      const Vec2 seen = corner.head<2>() * (camera.targetDepth() / corner.z());
-      rectangle.extend(seen.cwiseMax(-limit).cwiseMin(limit));
+      rectangle.extend(corner.head<2>().cwiseMax(-limit).cwiseMin(limit));
     } else { // behind the eye: the box's edges may leave the picture anywhere
       rectangle.extend(-limit);
       rectangle.extend(limit);

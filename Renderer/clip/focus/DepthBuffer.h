@@ -9,6 +9,27 @@
 
 namespace fenestra {
 
+/// (x, y) in mm where the eye ray through a world point meets the plane through the target, and the
+/// point's depth. In perspective (x, y) is defined at positive depths only.
+inline Vec3 toBuffer(const Camera& camera, const Vec3& world) {
+  const Vec3 view = camera.toView(world);
+  if (camera.pose().projection == Projection::orthographic)
+    return view;
+  const double scale = camera.targetDepth() / view.z();
+  return {view.x() * scale, view.y() * scale, view.z()};
+}
+
+/// Inverse of toBuffer: the world point at depth at.z(), mm, on the eye ray through (x, y).
+inline Vec3 fromBuffer(const Camera& camera, const Vec3& at) {
+  const Ray ray = camera.rayThrough(at.head<2>());
+  return ray.at(at.z() / camera.depthPerLength(ray));
+}
+
+/// True for depth <= 0 in perspective.
+inline bool behindEye(const Camera& camera, double depth) {
+  return camera.pose().projection == Projection::perspective && !(depth > 0.0);
+}
+
 /// Sample positions along one axis of a depth buffer. Inside the viewport they are the centres of
 /// its pixels; beyond it they lie `factor` pixels apart.
 struct DepthAxis {
@@ -28,12 +49,30 @@ struct DepthAxis {
     return pitch * (start + fine + factor * (pixel - fine));
   }
 
+  std::vector<double> coordinates() const {
+    std::vector<double> all;
+    for (std::int64_t sample = 0; sample < size(); ++sample)
+      all.push_back(coordinate(sample));
+    return all;
+  }
+
   /// Continuous index of a coordinate (mm), clamped to [0, size - 1].
   double index(double coordinate) const {
     const double pixel = coordinate / pitch - start;
     const double fine = inViewport(pixel);
     const double index = static_cast<double>(before) + fine + (pixel - fine) / factor;
     return std::max(0.0, std::min(static_cast<double>(size() - 1), index)); // NaN: size - 1
+  }
+
+  /// Samples that interpolation between two coordinates (mm) reads, and those that `slack` samples
+  /// more on both sides add.
+  struct Samples {
+    std::int64_t first, last;
+  };
+  Samples samplesBetween(double a, double b, double slack) const {
+    const auto [low, high] = std::minmax({index(a), index(b)});
+    return {static_cast<std::int64_t>(std::max(0.0, low - slack)),
+            std::min(size() - 1, static_cast<std::int64_t>(std::ceil(high + slack)))};
   }
 
 private:

@@ -25,6 +25,15 @@ struct FocusRays {
   alignas(64) Column summit, height;
 
   bool full() const { return size == capacity; }
+
+  void add(const Ray& ray, const Interval& range) {
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[static_cast<std::size_t>(axis)][size] = ray.origin[axis];
+      direction[static_cast<std::size_t>(axis)][size] = ray.direction[axis];
+    }
+    begin[size] = range.begin;
+    end[size++] = range.end;
+  }
 };
 
 /// Dual cells: cell c lies between the voxel centres c - 1 and c of each axis and fills [c, c + 1]

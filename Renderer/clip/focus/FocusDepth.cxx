@@ -42,54 +42,6 @@ private:
 
 namespace {
 
-/// Rays that are traced together. Calls meet(number of the ray, sight) for each ray that meets the
-/// focus, with summits also for each ray that has one.
-template <bool withSummits, typename Meet>
-class FocusBatch {
-public:
-  FocusBatch(const FocusCells& cells, const Meet& meet)
-      : m_cells(cells), m_box(cells.box()), m_meet(meet) {}
-
-  /// Adds a ray in cell space.
-  void add(std::int64_t number, const Ray& ray, const Interval& range, double depthPerLength) {
-    const Interval inside = m_box.clip(ray, range);
-    if (inside.empty())
-      return;
-    const std::size_t i = m_rays.size++;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      m_rays.origin[axis][i] = ray.origin[static_cast<int>(axis)];
-      m_rays.direction[axis][i] = ray.direction[static_cast<int>(axis)];
-    }
-    m_rays.begin[i] = inside.begin;
-    m_rays.end[i] = inside.end;
-    m_numbers[i] = number;
-    m_depthPerLength[i] = depthPerLength;
-    if (m_rays.full())
-      trace();
-  }
-
-  void trace() {
-    if constexpr (withSummits)
-      m_cells.findSummits(m_rays);
-    else
-      m_cells.findMeetings(m_rays);
-    for (std::size_t i = 0; i < m_rays.size; ++i)
-      if (m_rays.meeting[i] < infinity)
-        m_meet(m_numbers[i], Sight{m_rays.meeting[i] * m_depthPerLength[i], 0.5});
-      else if (withSummits && m_rays.height[i] > FocusCells::foothill)
-        m_meet(m_numbers[i], Sight{m_rays.summit[i] * m_depthPerLength[i], m_rays.height[i]});
-    m_rays.size = 0;
-  }
-
-private:
-  const FocusCells& m_cells;
-  Box m_box;
-  const Meet& m_meet;
-  FocusRays m_rays;
-  std::array<std::int64_t, FocusRays::capacity> m_numbers;
-  FocusRays::Column m_depthPerLength;
-};
-
 /// True if the domain contains the whole grid of the focus.
 bool isInside(const FocusCells& cells, const Domain& volume) {
   const Affine toIndex = volume.grid().worldToIndex * cells.cellToWorld();
@@ -131,52 +83,45 @@ FocusDepth FocusTracer::depths() const {
   const auto meetsVolume = [&](std::int64_t column, std::int64_t row) {
     return !inVolume(m_volume, m_camera.rayThrough(depth.position(column, row))).empty();
   };
-  const auto traceRow = [&](std::int64_t row, auto& batch) {
+  tbb::parallel_for(std::int64_t{0}, depth.rows(), [&](std::int64_t row) {
     // The domain is convex: all samples between two that meet the domain meet it.
     auto [first, end] = domainFootprint.columns(depth, row);
     while (first < end && !meetsVolume(first, row))
       ++first;
     while (first < end && !meetsVolume(end - 1, row))
       --end;
+    std::vector<std::int64_t> samples;
+    std::vector<Glance> glances;
     for (std::int64_t column = first; column < end; ++column) {
       const std::int64_t sample = depth.sample(column, row);
       result.regions[static_cast<std::size_t>(sample)] = Region::context;
       const Interval depths = focusFootprint.depths(column, row);
       if (depths.empty())
         continue;
-      const Vec2 position = depth.position(column, row);
-      const auto [ray, depthPerLength] = m_rays->through(position);
-      Interval range = inDomain(position);
-      range.begin = std::max(range.begin, depths.begin / depthPerLength);
-      range.end = std::min(range.end, depths.end / depthPerLength);
-      batch.add(sample, ray, range, depthPerLength);
+      samples.push_back(sample);
+      glances.push_back({depth.position(column, row), depths});
     }
-  };
-  const auto meet = [&result](std::int64_t sample, const Sight& met) {
-    result.depth.set(sample, met.depth);
-    result.regions[static_cast<std::size_t>(sample)] = Region::focus;
-  };
-  tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, depth.rows()), [&](const auto& rows) {
-    FocusBatch<false, decltype(meet)> batch(*m_cells, meet);
-    for (std::int64_t row = rows.begin(); row < rows.end(); ++row)
-      traceRow(row, batch);
-    batch.trace();
+    std::vector<Sight> sights(glances.size());
+    meet(glances, sights);
+    for (std::size_t i = 0; i < sights.size(); ++i)
+      if (sights[i].depth < infinity) {
+        depth.set(samples[i], sights[i].depth);
+        result.regions[static_cast<std::size_t>(samples[i])] = Region::focus;
+      }
   });
   return result;
 }
 
 std::vector<double> FocusTracer::depthsAt(const std::vector<Vec2>& positions) const {
-  std::vector<double> depths(positions.size(), infinity);
-  const auto meet = [&depths](std::int64_t i, const Sight& met) {
-    depths[static_cast<std::size_t>(i)] = met.depth;
-  };
+  std::vector<double> depths(positions.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size()), [&](const auto& range) {
-    FocusBatch<false, decltype(meet)> batch(*m_cells, meet);
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const auto [ray, depthPerLength] = m_rays->through(positions[i]);
-      batch.add(static_cast<std::int64_t>(i), ray, inDomain(positions[i]), depthPerLength);
-    }
-    batch.trace();
+    std::vector<Glance> glances;
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      glances.push_back({positions[i]});
+    std::vector<Sight> sights(glances.size());
+    meet(glances, sights);
+    for (std::size_t i = 0; i < sights.size(); ++i)
+      depths[range.begin() + i] = sights[i].depth;
   });
   return depths;
 }
@@ -195,18 +140,36 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
   if (glances.empty())
     return;
   std::ranges::fill(sights, Sight{});
-  const auto meet = [&sights](std::int64_t i, const Sight& met) {
-    sights[static_cast<std::size_t>(i)] = met;
+  FocusRays rays; // traced together
+  std::array<Sight*, FocusRays::capacity> sightOf;
+  FocusRays::Column depthPerLength;
+  const auto trace = [&] {
+    if constexpr (withSummits)
+      m_cells->findSummits(rays);
+    else
+      m_cells->findMeetings(rays);
+    for (std::size_t i = 0; i < rays.size; ++i)
+      if (rays.meeting[i] < infinity)
+        *sightOf[i] = {rays.meeting[i] * depthPerLength[i], 0.5};
+      else if (withSummits && rays.height[i] > FocusCells::foothill)
+        *sightOf[i] = {rays.summit[i] * depthPerLength[i], rays.height[i]};
+    rays.size = 0;
   };
-  FocusBatch<withSummits, decltype(meet)> batch(*m_cells, meet);
   for (std::size_t i = 0; i < glances.size(); ++i) {
-    const auto [ray, depthPerLength] = m_rays->through(glances[i].position);
+    const auto [ray, perLength] = m_rays->through(glances[i].position);
     Interval range = inDomain(glances[i].position);
-    range.begin = std::max(range.begin, glances[i].depths.begin / depthPerLength);
-    range.end = std::min(range.end, glances[i].depths.end / depthPerLength);
-    batch.add(static_cast<std::int64_t>(i), ray, range, depthPerLength);
+    range.begin = std::max(range.begin, glances[i].depths.begin / perLength);
+    range.end = std::min(range.end, glances[i].depths.end / perLength);
+    const Interval inside = m_cells->box().clip(ray, range);
+    if (inside.empty())
+      continue;
+    sightOf[rays.size] = &sights[i];
+    depthPerLength[rays.size] = perLength;
+    rays.add(ray, inside);
+    if (rays.full())
+      trace();
   }
-  batch.trace();
+  trace();
 }
 
 void FocusTracer::meet(std::span<const Glance> glances, std::span<Sight> sights) const {
@@ -215,10 +178,6 @@ void FocusTracer::meet(std::span<const Glance> glances, std::span<Sight> sights)
 
 void FocusTracer::look(std::span<const Glance> glances, std::span<Sight> sights) const {
   follow<true>(glances, sights);
-}
-
-FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus) {
-  return FocusTracer(camera, volume, focus).depths();
 }
 
 } // namespace fenestra

@@ -23,6 +23,17 @@ struct FocusDepth {
     return column >= 0 && row >= 0 && column < depth.columns() && row < depth.rows() &&
            regions[static_cast<std::size_t>(depth.sample(column, row))] == Region::focus;
   }
+
+  /// Calls back with each sample of the focus: its position (x, y) and depth, mm.
+  template <typename Visitor>
+  void visitFocus(const Visitor& visit) const {
+    for (std::int64_t row = 0; row < depth.rows(); ++row)
+      for (std::int64_t column = 0; column < depth.columns(); ++column)
+        if (isFocus(column, row)) {
+          const Vec2 at = depth.position(column, row);
+          visit(Vec3(at.x(), at.y(), depth.at(depth.sample(column, row))));
+        }
+  }
 };
 
 class CellRays;
@@ -30,8 +41,8 @@ class FocusCells;
 
 /// Stretch of an eye ray to search.
 struct Glance {
-  Vec2 position;   ///< (x, y) of the ray, mm
-  Interval depths; ///< mm
+  Vec2 position;        ///< (x, y) of the ray, mm
+  Interval depths = {}; ///< mm
 };
 
 /// Result for a glance.
@@ -48,7 +59,10 @@ public:
   FocusTracer(const Camera& camera, const Domain& volume, const Mask& focus);
   ~FocusTracer();
 
-  /// Result of traceFocus.
+  /// Depth at which the ray of each sample first meets the 0.5 level of the focus inside the
+  /// volume's domain and in front of the eye: exact, to rounding. A ray that starts, or enters the
+  /// domain, inside the focus meets the focus there. The buffer spans the whole volume, cropped or
+  /// not.
   FocusDepth depths() const;
 
   /// Depths of the focus on the rays through these (x, y), mm; infinity: missed.
@@ -76,10 +90,5 @@ private:
   std::unique_ptr<const CellRays> m_rays;
   bool m_isWhole; ///< true: the domain contains the focus's whole grid
 };
-
-/// Depth at which the ray of each sample first meets the 0.5 level of the focus inside the volume's
-/// domain and in front of the eye: exact, to rounding. A ray that starts, or enters the domain,
-/// inside the focus meets the focus there. The buffer spans the whole volume, cropped or not.
-FocusDepth traceFocus(const Camera& camera, const Domain& volume, const Mask& focus);
 
 } // namespace fenestra

@@ -2,8 +2,6 @@
 
 #include "model/camera/BoxProjection.h"
 
-#include <tuple>
-
 namespace fenestra {
 
 namespace {
@@ -11,24 +9,11 @@ namespace {
 /// Slack, in samples: more than rounding moves a projection.
 constexpr double sampleSlack = 0.01;
 
-/// Scale from view space to the plane through the target.
-double perDepth(const Camera& camera, double depth) {
-  return camera.pose().projection == Projection::perspective ? camera.targetDepth() / depth : 1.0;
-}
-
-/// Last sample before the lesser and first behind the greater of coordinates a and b.
-std::pair<std::int64_t, std::int64_t> samplesAround(const DepthAxis& axis, double a, double b) {
-  const auto [low, high] = std::minmax({axis.index(a), axis.index(b)});
-  return {static_cast<std::int64_t>(std::max(0.0, low - sampleSlack)),
-          std::min(axis.size() - 1, static_cast<std::int64_t>(std::ceil(high + sampleSlack)))};
-}
-
 /// Cells of the buffer between two positions, with slack.
 CellRange cellsBetween(const DepthBuffer& buffer, const Vec2& lower, const Vec2& upper) {
-  CellRange cells{};
-  std::tie(cells.left, cells.right) = samplesAround(buffer.xAxis(), lower.x(), upper.x());
-  std::tie(cells.top, cells.bottom) = samplesAround(buffer.yAxis(), lower.y(), upper.y());
-  return cells;
+  const auto [left, right] = buffer.xAxis().samplesBetween(lower.x(), upper.x(), sampleSlack);
+  const auto [top, bottom] = buffer.yAxis().samplesBetween(lower.y(), upper.y(), sampleSlack);
+  return {left, right, top, bottom};
 }
 
 /// Calls function(block, depths, seen) for each block of the focus's cells that is not behind the
@@ -84,9 +69,9 @@ private:
 
 DomainFootprint::DomainFootprint(const Camera& camera, const Domain& domain) {
   for (const Vec3& corner : domain.indexCorners()) {
-    const Vec3 view = camera.toView(domain.grid().indexToWorld * corner);
-    m_isInFront = m_isInFront && view.z() > 1e-3 * camera.targetDepth();
-    m_corners.emplace_back(view.head<2>() * perDepth(camera, view.z()));
+    const Vec3 at = toBuffer(camera, domain.grid().indexToWorld * corner);
+    m_isInFront = m_isInFront && at.z() > 1e-3 * camera.targetDepth();
+    m_corners.emplace_back(at.head<2>());
   }
 }
 
@@ -111,7 +96,7 @@ DomainFootprint::Columns DomainFootprint::columns(const DepthBuffer& buffer,
     }
   if (!(first <= last))
     return {0, 0};
-  const auto [begin, end] = samplesAround(buffer.xAxis(), first, last);
+  const auto [begin, end] = buffer.xAxis().samplesBetween(first, last, sampleSlack);
   return {begin, end + 1};
 }
 
@@ -126,8 +111,7 @@ FocusFootprint::FocusFootprint(const Camera& camera, const DepthBuffer& buffer,
                 for (std::int64_t column = seen.left / tileSize; column <= seen.right / tileSize;
                      ++column) {
                   Interval& tile = m_tiles[static_cast<std::size_t>(column + row * m_across)];
-                  tile.begin = std::min(tile.begin, depths.begin);
-                  tile.end = std::max(tile.end, depths.end);
+                  tile = joined(tile, depths);
                 }
             });
 }
@@ -156,8 +140,7 @@ std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buff
       for (std::int64_t column = seen.left; column < seen.right; ++column) {
         const std::size_t at = range.at(column, row);
         if (isAskedFor[at])
-          reaches[at] = {std::min(reaches[at].begin, depths.begin),
-                         std::max(reaches[at].end, depths.end)};
+          reaches[at] = joined(reaches[at], depths);
       }
   };
   visitSeen(camera, buffer, cells, [&](const Size3& block, const Interval&, const CellRange& seen) {

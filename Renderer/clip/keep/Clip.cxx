@@ -35,22 +35,22 @@ Interval behindPart(const ClipDepth& clip, const Ray& eyeRay) {
 /// Position of a box relative to a part of space.
 enum class Side { inside, across, outside };
 
-/// Bound for a box at a distance of `least` to `greatest` behind the surface, mm.
-Kept keptBehind(const ClipEdge& edge, double least, double greatest, Side inFrontOfEye) {
+/// Bound for a box over a range of distances behind the surface, mm.
+Kept keptBehind(const ClipEdge& edge, const Interval& behind, Side inFrontOfEye) {
   if (inFrontOfEye == Side::outside)
     return Kept::none;
-  if (inFrontOfEye == Side::inside && least > edge.softness + slack)
+  if (inFrontOfEye == Side::inside && behind.begin > edge.softness + slack)
     return Kept::all;
-  if (greatest < -slack)
+  if (behind.end < -slack)
     return {edge.ghost, inFrontOfEye == Side::inside || edge.isHard()};
   return Kept::some;
 }
 
 /// Position of a stretch of depths, mm, relative to the space in front of the eye.
-Side inFrontOfEye(const Camera& camera, double nearest, double farthest) {
-  if (behindEye(camera, farthest + slack))
+Side inFrontOfEye(const Camera& camera, const Interval& depths) {
+  if (behindEye(camera, depths.end + slack))
     return Side::outside;
-  return behindEye(camera, nearest - slack) ? Side::across : Side::inside;
+  return behindEye(camera, depths.begin - slack) ? Side::across : Side::inside;
 }
 
 Kept keptBox(const ClipNone&, const Corners&) {
@@ -58,37 +58,29 @@ Kept keptBox(const ClipNone&, const Corners&) {
 }
 
 Kept keptBox(const ClipPlane& clip, const Corners& corners) {
-  double least = infinity, greatest = -infinity, nearest = infinity, farthest = -infinity;
+  Interval behind{infinity, -infinity}, depths = behind;
   for (const Vec3& corner : corners) {
-    const double behind = clip.behind(corner);
-    const double depth = clip.camera.toView(corner).z();
-    least = std::min(least, behind);
-    greatest = std::max(greatest, behind);
-    nearest = std::min(nearest, depth);
-    farthest = std::max(farthest, depth);
+    const double ofCorner = clip.behind(corner), depth = clip.camera.toView(corner).z();
+    behind = joined(behind, {ofCorner, ofCorner});
+    depths = joined(depths, {depth, depth});
   }
-  return keptBehind(clip.edge, least, greatest, inFrontOfEye(clip.camera, nearest, farthest));
+  return keptBehind(clip.edge, behind, inFrontOfEye(clip.camera, depths));
 }
 
 Kept keptBox(const ClipDepth& clip, const Corners& corners) {
-  Vec2 lower = Vec2::Constant(infinity), upper = Vec2::Constant(-infinity);
-  double nearest = infinity, farthest = -infinity;
-  for (const Vec3& corner : corners) {
-    const Vec3 at = toBuffer(clip.camera, corner);
-    lower = lower.cwiseMin(at.head<2>());
-    upper = upper.cwiseMax(at.head<2>());
-    nearest = std::min(nearest, at.z());
-    farthest = std::max(farthest, at.z());
-  }
-  const Side side = inFrontOfEye(clip.camera, nearest, farthest);
+  Box box = Box::nothing(); // (x, y) and depths
+  for (const Vec3& corner : corners)
+    box.extend(toBuffer(clip.camera, corner));
+  const Side side = inFrontOfEye(clip.camera, {box.lower.z(), box.upper.z()});
   if (side == Side::outside)
     return Kept::none;
+  Vec2 lower = box.lower.head<2>(), upper = box.upper.head<2>();
   if (side == Side::across) { // the box's projection is unbounded
     lower = Vec2::Constant(-infinity);
     upper = Vec2::Constant(infinity);
   }
-  const DepthPyramid::Bounds surface = clip.pyramid->bounds(*clip.buffer, lower, upper);
-  return keptBehind(clip.edge, nearest - surface.greatest, farthest - surface.least, side);
+  const Interval surface = clip.pyramid->bounds(*clip.buffer, lower, upper);
+  return keptBehind(clip.edge, {box.lower.z() - surface.end, box.upper.z() - surface.begin}, side);
 }
 
 } // namespace
@@ -114,14 +106,7 @@ Interval behindSurface(const Clip& clip, const Ray& eyeRay) {
 }
 
 Interval visible(const Clip& clip, const Ray& eyeRay) {
-  const bool isHard = std::visit(
-      [](const auto& kind) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, ClipNone>)
-          return true;
-        else
-          return kind.edge.isHard();
-      },
-      clip);
+  const bool isHard = std::visit([](const auto& kind) { return kind.edge.isHard(); }, clip);
   return isHard ? behindSurface(clip, eyeRay) : Interval{};
 }
 

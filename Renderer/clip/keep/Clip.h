@@ -13,27 +13,6 @@
 
 namespace fenestra {
 
-/// (x, y) in mm where the eye ray through a world point meets the plane through the target, and the
-/// point's depth. In perspective (x, y) is defined at positive depths only.
-inline Vec3 toBuffer(const Camera& camera, const Vec3& world) {
-  const Vec3 view = camera.toView(world);
-  if (camera.pose().projection == Projection::orthographic)
-    return view;
-  const double scale = camera.targetDepth() / view.z();
-  return {view.x() * scale, view.y() * scale, view.z()};
-}
-
-/// Inverse of toBuffer: the world point at depth at.z(), mm, on the eye ray through (x, y).
-inline Vec3 fromBuffer(const Camera& camera, const Vec3& at) {
-  const Ray ray = camera.rayThrough(at.head<2>());
-  return ray.at(at.z() / camera.depthPerLength(ray));
-}
-
-/// True for depth <= 0 in perspective, where keep = 0 for every clip but ClipNone.
-inline bool behindEye(const Camera& camera, double depth) {
-  return camera.pose().projection == Projection::perspective && !(depth > 0.0);
-}
-
 /// Profile of keep across the surface.
 struct ClipEdge {
   double ghost = 0.0;    ///< keep in front of the surface: 0, or a small share, a float's value
@@ -51,7 +30,9 @@ struct ClipEdge {
   bool operator==(const ClipEdge&) const = default;
 };
 
-struct ClipNone {};
+struct ClipNone {
+  static constexpr ClipEdge edge = {};
+};
 
 /// Removes the half-space that the normal points at.
 struct ClipPlane {
@@ -95,7 +76,8 @@ private:
 
 using Clip = std::variant<ClipNone, ClipPlane, ClipDepth>;
 
-/// Share of the extinction that remains at a world point, 0 to 1.
+/// Share of the extinction that remains at a world point, 0 to 1; behind the eye 0 for every clip
+/// but ClipNone.
 inline double keep(const ClipNone&, const Vec3&) {
   return 1.0;
 }

@@ -14,22 +14,14 @@ class DepthPyramid {
 public:
   explicit DepthPyramid(const DepthBuffer& buffer, const Seams* seams = nullptr);
 
-  struct Bounds {
-    double least, greatest; ///< mm
-  };
-
   /// Bounds of the surface depth (nearest, linear, or in seams) over the rectangle between two
   /// positions, mm. Samples near the rectangle count as well, so bounds may be wider.
-  Bounds bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const;
+  Interval bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const;
 
 private:
-  /// Depths less the buffer's reference, mm.
-  struct Extremes {
-    float least, greatest;
-  };
   struct Level {
     std::int64_t columns, rows;
-    std::vector<Extremes> extremes;
+    std::vector<Seams::Reach> extremes;
   };
 
   template <typename Below>

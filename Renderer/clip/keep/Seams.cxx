@@ -38,9 +38,6 @@ std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRang
   std::vector<float> row(columns + across - 1);
   // Ranges of four neighbours in a row, then of four such rows.
   std::vector<Seams::Reach> sights(columns * static_cast<std::size_t>(range.rows() + across - 1));
-  const auto both = [](const Seams::Reach& a, const Seams::Reach& b) {
-    return Seams::Reach{std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
-  };
   auto sight = sights.begin();
   for (std::int64_t r = range.top - 1; r < range.bottom + across - 2; ++r) {
     for (std::size_t i = 0; i < row.size(); ++i)
@@ -52,11 +49,12 @@ std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRang
       return Seams::Reach{row[i], row[i] < nothing ? row[i] : -nothing};
     };
     for (std::size_t i = 0; i < columns; ++i)
-      *sight++ = both(both(at(i), at(i + 1)), both(at(i + 2), at(i + 3)));
+      *sight++ = joined(joined(at(i), at(i + 1)), joined(at(i + 2), at(i + 3)));
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
-    const auto& [least, greatest] = both(both(sights[i], sights[i + columns]),
-                                         both(sights[i + 2 * columns], sights[i + 3 * columns]));
+    const auto& [least, greatest] =
+        joined(joined(sights[i], sights[i + columns]),
+               joined(sights[i + 2 * columns], sights[i + 3 * columns]));
     sights[i] = {least, 2.0F * greatest - least};
   }
   return sights;
@@ -110,11 +108,8 @@ Interval Seams::reachAround(const DepthBuffer& buffer, std::int64_t column,
   Interval depths{infinity, -infinity};
   for (const std::int64_t r : {std::max<std::int64_t>(row, 1) - 1, row})
     for (const std::int64_t c : {std::max<std::int64_t>(column, 1) - 1, column})
-      if (const auto seam = m_numbers[static_cast<std::size_t>(buffer.sample(c, r))]; seam >= 0) {
-        const auto& [least, greatest] = m_reaches[static_cast<std::size_t>(seam)];
-        depths = {std::min(depths.begin, m_reference + least),
-                  std::max(depths.end, m_reference + greatest)};
-      }
+      if (const Reach* const reach = reachOfCell(buffer.sample(c, r)))
+        depths = joined(depths, {m_reference + reach->least, m_reference + reach->greatest});
   return depths;
 }
 

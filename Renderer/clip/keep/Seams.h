@@ -43,9 +43,19 @@ public:
   /// Range of depths, mm, relative to the target.
   struct Reach {
     float least, greatest;
+
+    /// Shortest range that holds both.
+    friend Reach joined(const Reach& a, const Reach& b) {
+      return {std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
+    }
   };
   /// reaches()[seam]: bounds of the depths of focus and summits on the seam's rays.
   const std::vector<Reach>& reaches() const { return m_reaches; }
+  /// Reach of the cell whose top-left sample is `sample`; null: the cell is no seam.
+  const Reach* reachOfCell(std::int64_t sample) const {
+    const std::int32_t seam = m_numbers[static_cast<std::size_t>(sample)];
+    return seam < 0 ? nullptr : &m_reaches[static_cast<std::size_t>(seam)];
+  }
 
   /// True: all four samples around the seam are focus.
   bool isInner(std::int32_t seam) const { return m_isInner[static_cast<std::size_t>(seam)]; }

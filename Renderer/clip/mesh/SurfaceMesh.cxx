@@ -24,7 +24,9 @@ class MeshSamples {
 public:
   MeshSamples(const ClipDepth& clip, const Domain& volume)
       : m_camera(clip.camera), m_buffer(*clip.buffer) {
-    findFootprint(volume);
+    const DomainFootprint footprint(m_camera, volume);
+    for (std::int64_t row = 0; row < m_buffer.rows(); ++row)
+      m_footprint.push_back(footprint.columns(m_buffer, row));
     findRectangle();
     if (m_rows == 0)
       return;
@@ -64,12 +66,6 @@ public:
   bool isPerspective() const { return m_camera.pose().projection == Projection::perspective; }
 
 private:
-  void findFootprint(const Domain& volume) {
-    const DomainFootprint footprint(m_camera, volume);
-    for (std::int64_t row = 0; row < m_buffer.rows(); ++row)
-      m_footprint.push_back(footprint.columns(m_buffer, row));
-  }
-
   /// Bounds all samples of the footprint that have a depth.
   void findRectangle() {
     std::int64_t endColumn = 0, endRow = 0;
@@ -206,7 +202,7 @@ public:
       for (std::int64_t column = 0; column < m_squaresAcross; ++column) {
         const auto [a, b, apexes] = squarePair(column, row, m_side);
         for (const Corner& apex : apexes)
-          addHalves(isCounterClockwise({a, b, apex}) ? Triangle{a, b, apex} : Triangle{b, a, apex});
+          addHalves(area({a, b, apex}) > 0 ? Triangle{a, b, apex} : Triangle{b, a, apex});
       }
     return std::move(m_mesh);
   }
@@ -253,26 +249,25 @@ private:
   Corner onSamples(const Corner& corner) const {
     return {std::min(corner.column, m_lastColumn), std::min(corner.row, m_lastRow)};
   }
+  Triangle onSamples(const Triangle& t) const {
+    return {onSamples(t.a), onSamples(t.b), onSamples(t.apex)};
+  }
   double depth(const Corner& corner) const {
     const Corner sample = onSamples(corner);
     return m_samples.depth(sample.column, sample.row);
   }
   /// Twice the area, in samples; > 0: counter-clockwise as seen from the eye.
-  std::int64_t area(const Triangle& triangle) const {
-    const Corner a = onSamples(triangle.a), b = onSamples(triangle.b);
-    const Corner apex = onSamples(triangle.apex);
+  static std::int64_t area(const Triangle& triangle) {
+    const auto& [a, b, apex] = triangle;
     return (b.row - a.row) * (apex.column - a.column) - (b.column - a.column) * (apex.row - a.row);
-  }
-  static bool isCounterClockwise(const Triangle& t) {
-    return (t.b.row - t.a.row) * (t.apex.column - t.a.column) >
-           (t.b.column - t.a.column) * (t.apex.row - t.a.row);
   }
 
   /// True if the triangle may stay whole: all samples are within tolerance, or none has a depth.
   bool isGood(const Triangle& triangle) const {
-    if (area(triangle) == 0)
+    const auto [a, b, apex] = onSamples(triangle);
+    if (area({a, b, apex}) == 0)
       return true;
-    std::array corners{onSamples(triangle.a), onSamples(triangle.b), onSamples(triangle.apex)};
+    std::array corners{a, b, apex};
     const auto missing =
         std::ranges::count_if(corners, [&](const Corner& c) { return std::isnan(depth(c)); });
     if (missing == 1 || missing == 2)
@@ -343,7 +338,7 @@ private:
   }
 
   void add(const Triangle& triangle) {
-    if (area(triangle) != 0)
+    if (area(onSamples(triangle)) != 0)
       m_mesh.triangles.push_back({number(triangle.a), number(triangle.b), number(triangle.apex)});
   }
 

@@ -47,8 +47,7 @@ ThinPlateSpline splineThrough(const std::vector<ControlPoint>& points, double sm
   return {sites, depths, smoothing};
 }
 
-BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
-                            const std::vector<ControlPoint>& samples) {
+Distribution mismatchOf(const ThinPlateSpline& spline, const std::vector<ControlPoint>& samples) {
   std::vector<double> misses;
   misses.reserve(samples.size());
   for (const ControlPoint& sample : samples)
@@ -61,12 +60,11 @@ BoundaryMismatch mismatchOf(const ThinPlateSpline& spline,
 class SplineFill {
 public:
   SplineFill(DepthBuffer& buffer, const std::vector<Region>& regions, const ThinPlateSpline& spline)
-      : m_buffer(buffer), m_regions(regions), m_spline(spline) {
-    for (std::int64_t column = 0; column < buffer.columns(); ++column)
-      m_x.push_back(buffer.xAxis().coordinate(column));
-    for (std::int64_t row = 0; row < buffer.rows(); ++row)
-      m_y.push_back(buffer.yAxis().coordinate(row));
-  }
+      : m_buffer(buffer),
+        m_regions(regions),
+        m_spline(spline),
+        m_x(buffer.xAxis().coordinates()),
+        m_y(buffer.yAxis().coordinates()) {}
 
   void fill() const {
     const std::int64_t across = (m_buffer.columns() + widest - 1) / widest;

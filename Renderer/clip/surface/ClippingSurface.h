@@ -37,20 +37,23 @@ struct SurfaceOptions {
   bool operator==(const SurfaceOptions&) const = default;
 };
 
-/// |f(x) - z|, mm, of a spline f over the focus samples (x, depth z) on the contours.
-using BoundaryMismatch = Distribution;
-
 struct ClippingSurface {
-  Clip clip;                                  ///< a ClipDepth
-  FocusDepth focus;                           ///< over the samples of the clip's buffer
-  std::vector<ControlPoint> controlPoints{};  ///< spline only, else empty
-  std::optional<BoundaryMismatch> mismatch{}; ///< spline only, else empty
+  Clip clip;                                 ///< a ClipDepth
+  FocusDepth focus;                          ///< over the samples of the clip's buffer
+  std::vector<ControlPoint> controlPoints{}; ///< spline only, else empty
+  /// |f(x) - z|, mm, of a spline f over the focus samples (x, depth z) on the contours.
+  std::optional<Distribution> mismatch{};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
   std::vector<std::string> warnings{};
 };
 
 /// Throws Error (input) where no sample meets the focus.
 void requireVisible(const FocusDepth& focus, const Mask& mask);
+
+/// Least-squares plane, in depth, through the visible points of the focus, never seen edge-on. The
+/// normal points towards the eye. Needs at least one focus sample; with too few samples to
+/// determine a tilt the plane faces the eye.
+ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus);
 
 /// Throws Error (usage) for options out of range and Error (input) where no ray meets the focus.
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,

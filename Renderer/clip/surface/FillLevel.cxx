@@ -64,7 +64,8 @@ void FillLevel::continueBoundary(double length) {
     for (double reached = 0.0; reached < length && !front.empty(); reached += pitch()) {
       next.clear();
       for (const std::size_t from : front)
-        forNeighbours(from, [&](std::size_t at, std::ptrdiff_t, double) {
+        forNeighbours(from, [&](const Neighbour& neighbour) {
+          const std::size_t at = neighbour.at;
           if (known[at] == 0 && m_free[at] == free) {
             known[at] = 2; // found in this step
             next.push_back(at);
@@ -82,11 +83,12 @@ void FillLevel::continueBoundary(double length) {
 float FillLevel::continued(std::size_t at, const std::vector<float>& own,
                            const std::vector<std::uint8_t>& known, double length) const {
   float sum = 0.0f, count = 0.0f;
-  forNeighbours(at, [&](std::size_t from, std::ptrdiff_t way, double distance) {
+  forNeighbours(at, [&](const Neighbour& neighbour) {
+    const auto [side, from, distance, weight] = neighbour;
     if (known[from] != 1)
       return;
     const auto limit = static_cast<float>(steepestBoundary * distance);
-    const std::size_t before = from + static_cast<std::size_t>(way);
+    const std::size_t before = from + static_cast<std::size_t>(offsets()[side]);
     float rise = 0.0f;
     if (m_free[at] == 0.0f)
       rise = own[at] - own[from];
@@ -142,7 +144,7 @@ void FillLevel::findBoundary() {
     const float* free = &m_free[index(0, row)];
     for (std::size_t column = 0; column < columns(); ++column, ++free)
       if (free[0] == 0.0f && free[-1] + free[1] + free[-stride] + free[stride] > 0.0f)
-        m_edges.push_back({index(column, row), 0.0f, 0.0f, 0.0f, 0.0f, 0.0f});
+        m_edges.push_back({index(column, row)});
   }
 }
 
@@ -150,32 +152,23 @@ void FillLevel::stiffen(float stiffness) {
   if (m_edges.empty())
     findBoundary();
   for (Edge& each : m_edges)
-    each = edge(each.at % m_stride - 1, each.at / m_stride - 1, stiffness);
+    each = edge(each.at, stiffness);
 }
 
-FillLevel::Edge FillLevel::edge(std::size_t column, std::size_t row, float stiffness) const {
-  const std::size_t at = index(column, row);
-  const Stencil x = m_x.stencil(column), y = m_y.stencil(row);
-  Edge edge{at, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+FillLevel::Edge FillLevel::edge(std::size_t at, float stiffness) const {
+  Edge edge{at};
   // Only the part of the sample's square outside the focus is bent.
   const float bend = 1.0f / std::max(1.0f - m_covered[at], 1.0f / stiffness);
-  const auto add = [&](float weight, std::size_t neighbour, double distance, float& free) {
-    if (m_free[neighbour] != 0.0f) {
-      free = weight;
+  forNeighbours(at, [&](const Neighbour& neighbour) {
+    const float weight = bend * neighbour.weight;
+    if (m_free[neighbour.at] != 0.0f) {
+      edge.weights[neighbour.side] = weight;
       edge.fixed -= weight * m_depth[at];
     } else {
-      const auto limit = static_cast<float>(steepestBoundary * distance);
-      edge.fixed += weight * std::clamp(m_depth[neighbour] - m_depth[at], -limit, limit);
+      const auto limit = static_cast<float>(steepestBoundary * neighbour.distance);
+      edge.fixed += weight * std::clamp(m_depth[neighbour.at] - m_depth[at], -limit, limit);
     }
-  };
-  if (column > 0)
-    add(bend * x.before, at - 1, m_x.spacing(column - 1), edge.left);
-  if (column + 1 < columns())
-    add(bend * x.after, at + 1, m_x.spacing(column), edge.right);
-  if (row > 0)
-    add(bend * y.before, at - m_stride, m_y.spacing(row - 1), edge.up);
-  if (row + 1 < rows())
-    add(bend * y.after, at + m_stride, m_y.spacing(row), edge.down);
+  });
   return edge;
 }
 

@@ -1,17 +1,62 @@
 #pragma once
 // One resolution of SmoothFill's multigrid. For SmoothFill.cxx.
 
-#include "clip/surface/FillAxis.h"
-#include "clip/surface/SampleTiles.h"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace fenestra {
 
 struct RowStencil;
+struct SampleRun;
+
+/// Weights of the two neighbours in a second derivative along an axis, mm^-2.
+struct Stencil {
+  float before, after;
+};
+
+/// Sample coordinates, mm, and stencils of one axis. Boundary condition: slope 0 at both ends.
+class FillAxis {
+public:
+  explicit FillAxis(std::vector<double> coordinates) : m_at(std::move(coordinates)) {
+    const std::size_t last = m_at.size() - 1;
+    for (std::size_t i = 0; i <= last; ++i) {
+      const double before = i == 0 ? 0.0 : spacing(i - 1);
+      const double after = i == last ? 0.0 : spacing(i);
+      const double width = i == 0 ? after : i == last ? before : 0.5 * (before + after);
+      m_before.push_back(weight(width * before));
+      m_after.push_back(weight(width * after));
+      m_width.push_back(width > 0.0 ? width : 1.0);
+      m_greatest = std::max(m_greatest, double{m_before[i]} + m_after[i]);
+    }
+  }
+
+  std::size_t size() const { return m_at.size(); }
+  /// Distance from sample i to the next, mm.
+  double spacing(std::size_t i) const { return std::abs(m_at[i + 1] - m_at[i]); }
+  FillAxis halved() const {
+    std::vector<double> coarse;
+    for (std::size_t i = 0; i < m_at.size(); i += 2)
+      coarse.push_back(0.5 * (m_at[i] + m_at[std::min(i + 1, m_at.size() - 1)]));
+    return FillAxis(std::move(coarse));
+  }
+
+  Stencil stencil(std::size_t i) const { return {m_before[i], m_after[i]}; }
+  const float* before() const { return m_before.data(); }
+  const float* after() const { return m_after.data(); }
+  double greatest() const { return m_greatest; }           ///< before + after of a stencil
+  double width(std::size_t i) const { return m_width[i]; } ///< of sample i, mm
+
+private:
+  static float weight(double area) { return area > 0.0 ? static_cast<float>(1.0 / area) : 0.0f; }
+
+  std::vector<double> m_at, m_width;
+  std::vector<float> m_before, m_after; ///< of the stencils
+  double m_greatest = 0.0;
+};
 
 /// Depths over a grid of samples, some of them free. A margin of one sample surrounds the stored
 /// rows; stencils give it weight 0.
@@ -69,12 +114,9 @@ private:
   /// neighbours (limited in slope), plus weights times the depths of its free neighbours.
   struct Edge {
     std::size_t at;
-    float fixed;
-    float left, right, up, down;
+    float fixed = 0.0f;
+    std::array<float, 4> weights{}; ///< per side of the sample
   };
-
-  /// Upper bound of the operator's eigenvalues.
-  double highest(double tension) const;
 
   template <typename Function>
   void forFree(const Function& function) const {
@@ -83,35 +125,30 @@ private:
         function(at);
   }
 
-  /// Area of a sample, mm²; area * L is symmetric.
-  double area(std::size_t at) const {
-    return m_x.width(at % m_stride - 1) * m_y.width(at / m_stride - 1);
-  }
-
-  /// Calls back with each neighbour of a sample and the neighbour's weight in L.
-  template <typename Function>
-  void forWeights(std::size_t at, const Function& function) const {
-    const Stencil x = m_x.stencil(at % m_stride - 1), y = m_y.stencil(at / m_stride - 1);
-    const std::pair<std::size_t, float> all[] = {
-        {at - 1, x.before}, {at + 1, x.after}, {at - m_stride, y.before}, {at + m_stride, y.after}};
-    for (const auto& [neighbour, weight] : all)
-      if (weight != 0.0f)
-        function(neighbour, double{weight});
-  }
-
-  /// Calls back with each neighbour of a sample, its offset in memory, and its distance, mm.
+  struct Neighbour {
+    std::size_t side, at;
+    double distance; ///< mm
+    float weight;    ///< in L
+  };
+  /// Calls back with each neighbour of a sample.
   template <typename Function>
   void forNeighbours(std::size_t at, const Function& function) const {
-    const auto stride = static_cast<std::ptrdiff_t>(m_stride);
     const std::size_t column = at % m_stride - 1, row = at / m_stride - 1;
+    const Stencil x = m_x.stencil(column), y = m_y.stencil(row);
     if (column > 0)
-      function(at - 1, -1, m_x.spacing(column - 1));
+      function(Neighbour{0, at - 1, m_x.spacing(column - 1), x.before});
     if (column + 1 < columns())
-      function(at + 1, 1, m_x.spacing(column));
+      function(Neighbour{1, at + 1, m_x.spacing(column), x.after});
     if (row > 0)
-      function(at - m_stride, -stride, m_y.spacing(row - 1));
+      function(Neighbour{2, at - m_stride, m_y.spacing(row - 1), y.before});
     if (row + 1 < rows())
-      function(at + m_stride, stride, m_y.spacing(row));
+      function(Neighbour{3, at + m_stride, m_y.spacing(row), y.after});
+  }
+
+  /// Offsets in memory to the neighbours on the four sides.
+  std::array<std::ptrdiff_t, 4> offsets() const {
+    const auto stride = static_cast<std::ptrdiff_t>(m_stride);
+    return {-1, 1, -stride, stride};
   }
 
   /// Depth continued from the known neighbours (mean).
@@ -128,7 +165,7 @@ private:
   /// Computes m_edges. `stiffness`: upper limit of the ratio (boundary weight / plate weight).
   void stiffen(float stiffness);
 
-  Edge edge(std::size_t column, std::size_t row, float stiffness) const;
+  Edge edge(std::size_t at, float stiffness) const;
 
   /// Computes the curvature L u along `runs` and at the boundary.
   void curve(const std::vector<SampleRun>& runs, float* curvature) const;

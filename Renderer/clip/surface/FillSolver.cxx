@@ -9,6 +9,11 @@
 
 namespace fenestra {
 
+/// Samples [begin, end) of a row.
+struct SampleRun {
+  std::size_t row, begin, end;
+};
+
 /// Stencil of L (the Laplacian) along a row.
 struct RowStencil {
   const float *before, *after;
@@ -24,6 +29,53 @@ struct RowStencil {
 };
 
 namespace {
+
+/// Square tiles of a raster of samples, some of them marked.
+class SampleTiles {
+public:
+  SampleTiles(std::size_t columns, std::size_t rows)
+      : m_columns(columns),
+        m_rows(rows),
+        m_across((columns + edge - 1) / edge),
+        m_marks(m_across * ((rows + edge - 1) / edge), 0) {}
+
+  /// Marks the sample's tile and the tiles around it.
+  void markAround(std::size_t column, std::size_t row) {
+    const std::size_t x = column / edge, y = row / edge;
+    for (std::size_t j = y > 0 ? y - 1 : 0; j < std::min(y + 2, m_marks.size() / m_across); ++j)
+      for (std::size_t i = x > 0 ? x - 1 : 0; i < std::min(x + 2, m_across); ++i)
+        m_marks[j * m_across + i] = 1;
+  }
+
+  /// Samples of marked tiles, and up to `margin`, 0 or 1, samples beside the tiles.
+  std::vector<SampleRun> runs(std::size_t margin) const {
+    std::vector<SampleRun> runs;
+    for (std::size_t row = 0; row < m_rows; ++row) {
+      const std::size_t above = (row - std::min(row, margin)) / edge;
+      const std::size_t below = std::min(row + margin, m_rows - 1) / edge;
+      const auto isMarked = [&](std::size_t tile) {
+        return (m_marks[above * m_across + tile] | m_marks[row / edge * m_across + tile] |
+                m_marks[below * m_across + tile]) != 0;
+      };
+      for (std::size_t tile = 0; tile < m_across; ++tile)
+        if (isMarked(tile)) {
+          const std::size_t begin = tile * edge - std::min(tile * edge, margin);
+          const std::size_t end = std::min((tile + 1) * edge + margin, m_columns);
+          if (!runs.empty() && runs.back().row == row && runs.back().end >= begin)
+            runs.back().end = end;
+          else
+            runs.push_back({row, begin, end});
+        }
+    }
+    return runs;
+  }
+
+private:
+  static constexpr std::size_t edge = 16; ///< samples: as far as the finest levels still change
+
+  std::size_t m_columns, m_rows, m_across;
+  std::vector<std::uint8_t> m_marks;
+};
 
 /// Stiffness in `relax`: more only slows convergence.
 constexpr float stiffest = 3.0f;
@@ -53,21 +105,17 @@ void forRuns(const std::vector<SampleRun>& runs, const Function& function) {
 
 } // namespace
 
-double FillLevel::highest(double tension) const {
-  const double most = 2.0 * (m_x.greatest() + m_y.greatest());
-  return stiffest * most * (most + tension);
-}
-
 void FillLevel::curve(const std::vector<SampleRun>& runs, float* curvature) const {
+  const std::array<std::ptrdiff_t, 4> offsets = this->offsets();
   forRuns(runs, [&](const SampleRun& run) {
     const std::size_t first = index(run.begin, run.row);
     curveRow(rowStencil(run), &m_depth[first], curvature + first);
   });
   for (const Edge& edge : m_edges) {
     const float* const depth = &m_depth[edge.at];
-    curvature[edge.at] = edge.fixed + edge.left * depth[-1] + edge.right * depth[1] +
-                         edge.up * depth[-static_cast<std::ptrdiff_t>(m_stride)] +
-                         edge.down * depth[m_stride];
+    curvature[edge.at] = edge.fixed;
+    for (std::size_t side = 0; side < 4; ++side)
+      curvature[edge.at] += edge.weights[side] * depth[offsets[side]];
   }
 }
 
@@ -92,7 +140,8 @@ void FillLevel::relax(double length, int steps) {
     tiles.markAround(edge.at % m_stride - 1, edge.at / m_stride - 1);
   const std::vector<SampleRun> moved = tiles.runs(0), curved = tiles.runs(1);
   const double tension = 1.0 / (length * length);
-  const double high = highest(tension);
+  const double most = 2.0 * (m_x.greatest() + m_y.greatest());
+  const double high = stiffest * most * (most + tension); // bounds the operator's eigenvalues
   const double low = high / (0.25 * steps * steps);
   const double centre = 0.5 * (high + low), radius = 0.5 * (high - low);
   // Memory away from the boundary is never touched.
@@ -141,28 +190,25 @@ void FillLevel::solve(double length) {
     };
     if (const Edge* const edge = edgeAt[at]) {
       right[row] -= factor * edge->fixed;
-      const std::pair<std::size_t, float> beside[] = {{at - 1, edge->left},
-                                                      {at + 1, edge->right},
-                                                      {at - m_stride, edge->up},
-                                                      {at + m_stride, edge->down}};
-      for (const auto& [neighbour, weight] : beside)
-        if (weight != 0.0f)
-          add(neighbour, weight);
+      for (std::size_t side = 0; side < 4; ++side)
+        if (edge->weights[side] != 0.0f)
+          add(at + static_cast<std::size_t>(offsets()[side]), edge->weights[side]);
       return;
     }
     double sum = 0.0;
-    forWeights(at, [&](std::size_t neighbour, double weight) {
-      add(neighbour, weight);
-      sum += weight;
+    forNeighbours(at, [&](const Neighbour& neighbour) {
+      add(neighbour.at, double{neighbour.weight});
+      sum += double{neighbour.weight};
     });
     add(at, -sum);
   };
   forFree([&](std::size_t at) {
-    const double area = this->area(at);
+    // Area of the sample, mm²; area * L is symmetric.
+    const double area = m_x.width(at % m_stride - 1) * m_y.width(at / m_stride - 1);
     double sum = 1.0 / (length * length);
-    forWeights(at, [&](std::size_t neighbour, double weight) {
-      addCurvature(unknown[at], neighbour, area * weight);
-      sum += weight;
+    forNeighbours(at, [&](const Neighbour& neighbour) {
+      addCurvature(unknown[at], neighbour.at, area * double{neighbour.weight});
+      sum += double{neighbour.weight};
     });
     addCurvature(unknown[at], at, -area * sum);
   });

@@ -1,4 +1,4 @@
-#include "clip/surface/FocusPlane.h"
+#include "clip/surface/ClippingSurface.h"
 
 namespace fenestra {
 
@@ -19,16 +19,10 @@ Vec2 shortestSolution(double xx, double xy, double yy, const Vec2& r) {
 ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus) {
   std::vector<Vec3> points; // visible points of the focus, in view space
   Vec3 center = Vec3::Zero();
-  const DepthBuffer& depth = focus.depth;
-  for (std::int64_t row = 0; row < depth.rows(); ++row)
-    for (std::int64_t column = 0; column < depth.columns(); ++column)
-      if (focus.isFocus(column, row)) {
-        const Vec2 at = depth.position(column, row);
-        const Vec3 world =
-            fromBuffer(camera, {at.x(), at.y(), depth.at(depth.sample(column, row))});
-        points.push_back(camera.toView(world));
-        center += points.back();
-      }
+  focus.visitFocus([&](const Vec3& at) {
+    points.push_back(camera.toView(fromBuffer(camera, at)));
+    center += points.back();
+  });
   center /= static_cast<double>(points.size());
   double xx = 0.0, xy = 0.0, yy = 0.0;
   Vec2 rise = Vec2::Zero();

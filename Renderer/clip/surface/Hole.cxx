@@ -6,24 +6,6 @@ namespace fenestra {
 
 namespace {
 
-/// Calls back with each sample of the focus: its position (x, y) and depth, mm.
-template <typename Visitor>
-void forFocus(const FocusDepth& focus, const Visitor& visit) {
-  const DepthBuffer& depth = focus.depth;
-  for (std::int64_t row = 0; row < depth.rows(); ++row)
-    for (std::int64_t column = 0; column < depth.columns(); ++column)
-      if (focus.isFocus(column, row)) {
-        const Vec2 at = depth.position(column, row);
-        visit(Vec3(at.x(), at.y(), depth.at(depth.sample(column, row))));
-      }
-}
-
-Box extentOf(const FocusDepth& focus) {
-  Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  forFocus(focus, [&](const Vec3& at) { box = {box.lower.cwiseMin(at), box.upper.cwiseMax(at)}; });
-  return box;
-}
-
 /// Fills all samples that are not focus by bottom((x, y)).
 template <typename Bottom>
 void fillContext(DepthBuffer& buffer, const FocusDepth& focus, const Bottom& bottom) {
@@ -44,16 +26,12 @@ double farSide(const Camera& camera, const Vec2& at, const Vec3& center, double 
 }
 
 void fillBowl(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera, double margin) {
-  Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  forFocus(focus, [&](const Vec3& at) {
-    const Vec3 world = fromBuffer(camera, at);
-    box = {box.lower.cwiseMin(world), box.upper.cwiseMax(world)};
-  });
+  Box box = Box::nothing();
+  focus.visitFocus([&](const Vec3& at) { box.extend(fromBuffer(camera, at)); });
   const Vec3 center = box.center();
   double radius = 0.0;
-  forFocus(focus, [&](const Vec3& at) {
-    radius = std::max(radius, (fromBuffer(camera, at) - center).norm());
-  });
+  focus.visitFocus(
+      [&](const Vec3& at) { radius = std::max(radius, (fromBuffer(camera, at) - center).norm()); });
   fillContext(buffer, focus,
               [&](const Vec2& at) { return farSide(camera, at, center, radius + margin); });
 }
@@ -64,12 +42,13 @@ void fillHole(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera
               const HoleOptions& options) {
   if (options.shape == HoleShape::sphere)
     return fillBowl(buffer, focus, camera, options.margin);
-  const Box extent = extentOf(focus);
+  Box extent = Box::nothing();
+  focus.visitFocus([&](const Vec3& at) { extent.extend(at); });
   const Vec2 center = extent.center().head<2>();
   const Vec2 half = (0.5 * (extent.upper - extent.lower)).head<2>();
   double radius = 0.0;
-  forFocus(focus,
-           [&](const Vec3& at) { radius = std::max(radius, (at.head<2>() - center).norm()); });
+  focus.visitFocus(
+      [&](const Vec3& at) { radius = std::max(radius, (at.head<2>() - center).norm()); });
   const auto isInside = [&](const Vec2& at) {
     const Vec2 from = (at - center).cwiseAbs();
     return options.shape == HoleShape::box ? (from.array() <= half.array() + options.margin).all()

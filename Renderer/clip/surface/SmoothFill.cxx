@@ -6,15 +6,8 @@ namespace fenestra {
 
 namespace {
 
-FillAxis axisOf(const DepthAxis& axis) {
-  std::vector<double> coordinates;
-  for (std::int64_t i = 0; i < axis.size(); ++i)
-    coordinates.push_back(axis.coordinate(i));
-  return FillAxis(std::move(coordinates));
-}
-
 FillLevel finest(const DepthBuffer& buffer, const std::vector<Region>& regions) {
-  FillLevel level(axisOf(buffer.xAxis()), axisOf(buffer.yAxis()));
+  FillLevel level(FillAxis(buffer.xAxis().coordinates()), FillAxis(buffer.yAxis().coordinates()));
   std::size_t sample = 0;
   for (std::size_t row = 0; row < level.rows(); ++row)
     for (std::size_t column = 0; column < level.columns(); ++column, ++sample)

@@ -1,7 +1,5 @@
 #include "clip/surface/SteadySurface.h"
 
-#include "model/camera/Turn.h"
-
 #include <algorithm>
 
 namespace fenestra {
@@ -38,12 +36,6 @@ std::vector<double> distancesFromFocus(const FocusDepth& focus) {
   return distances;
 }
 
-/// Share of the mean: 0 at the focus, 1 at distances >= `width`, slope 0 at both.
-double shareOfMean(double distance, double width) {
-  const double x = std::min(1.0, distance / width);
-  return x * x * (3.0 - 2.0 * x);
-}
-
 } // namespace
 
 ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, const Mask& focus,
@@ -59,8 +51,8 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
   const auto& own = std::get<ClipDepth>(surface.clip);
   const double width = focus.grid.boundingRadius() * std::abs(degrees) * pi / 180.0;
   std::vector<double> shares = distancesFromFocus(surface.focus);
-  for (double& share : shares)
-    share = shareOfMean(share, width);
+  for (double& share : shares) // of the mean: 0 at the focus, 1 at distances >= `width`
+    share = smoothStep(0.0, width, share);
 
   auto buffer = std::make_shared<DepthBuffer>(*own.buffer);
   for (const auto& [turn, weight] : neighbours) {

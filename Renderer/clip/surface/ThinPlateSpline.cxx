@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <iterator>
 
 namespace fenestra {
 
@@ -253,11 +254,9 @@ void ThinPlateSpline::evaluateRow(std::span<const double> x, double y,
 void ThinPlateSpline::evaluateTile(std::span<const double> x, std::span<const double> y,
                                    double tolerance, std::span<double> values) const {
   const Disc disc = discAround(x, y);
-  std::vector<KernelTerm> near = m_terms, far;
-  const auto isNear = [&](const KernelTerm& term) { return !disc.isFar(term); };
-  const auto firstFar = std::stable_partition(near.begin(), near.end(), isNear);
-  far.assign(firstFar, near.end());
-  near.erase(firstFar, near.end());
+  std::vector<KernelTerm> near, far;
+  std::ranges::partition_copy(m_terms, std::back_inserter(far), std::back_inserter(near),
+                              [&](const KernelTerm& term) { return disc.isFar(term); });
   const double reach = disc.center.norm() + disc.radius;
   const bool isSummable = near.empty() || reach * reach <= farSquared;
   std::optional<LocalExpansion> expansion;

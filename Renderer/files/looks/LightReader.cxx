@@ -90,8 +90,14 @@ Light readLight(const JsonNode& node, const std::filesystem::path& folder) {
   throw type.error("must be environment, directional, rectangle or disk");
 }
 
-std::vector<Light> parse(std::string_view json, const std::string& source,
-                         const std::filesystem::path& folder) {
+} // namespace
+
+std::vector<Light> readLights(const std::filesystem::path& path) {
+  return parseLights(readText(path), path.string(), path.parent_path());
+}
+
+std::vector<Light> parseLights(std::string_view json, const std::string& source,
+                               const std::filesystem::path& folder) {
   const nlohmann::json document = parseJson(json, source);
   const JsonNode root(document, source);
   root.allowOnly({"lights"});
@@ -99,16 +105,6 @@ std::vector<Light> parse(std::string_view json, const std::string& source,
   for (const JsonNode& node : root.at("lights").elements())
     lights.push_back(readLight(node, folder));
   return lights;
-}
-
-} // namespace
-
-std::vector<Light> readLights(const std::filesystem::path& path) {
-  return parse(readText(path), path.string(), path.parent_path());
-}
-
-std::vector<Light> parseLights(std::string_view json, const std::string& source) {
-  return parse(json, source, {});
 }
 
 bool namesFiles(std::string_view json, const std::string& source) {

@@ -10,13 +10,14 @@
 
 namespace fenestra {
 
-/// Reads a lights `.json`. Throws Error (input). An environment's `file` is
-/// relative to the folder of the JSON; its `radiance`, if present, multiplies the map.
+/// Reads a lights `.json`. Throws Error (input). An environment's `file` is relative to the folder
+/// of the JSON; its `radiance`, if present, multiplies the map.
 std::vector<Light> readLights(const std::filesystem::path& path);
 
-/// Reads lights from JSON text; files are relative to the working directory. `source` names the
-/// text in messages.
-std::vector<Light> parseLights(std::string_view json, const std::string& source);
+/// Reads lights from JSON text. `source` names the text in messages; an environment's `file` is
+/// relative to `folder`, by default the working directory.
+std::vector<Light> parseLights(std::string_view json, const std::string& source,
+                               const std::filesystem::path& folder = {});
 
 /// True if a JSON text of lights names a file.
 bool namesFiles(std::string_view json, const std::string& source);

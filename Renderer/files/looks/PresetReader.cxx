@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <regex>
 
 namespace fenestra {
 namespace {
@@ -12,9 +13,10 @@ constexpr Modality modalities[] = {Modality::ct, Modality::mr, Modality::us};
 constexpr std::size_t longestPattern = 200;
 constexpr std::size_t longestName = 1000; ///< characters of a segment's name that are compared
 
-std::vector<std::string> readTexts(const JsonNode& node) {
+std::vector<std::string> textsAt(const JsonNode& parent, const std::string& key) {
   std::vector<std::string> texts;
-  for (const JsonNode& element : node.elements()) {
+  const auto node = parent.find(key);
+  for (const JsonNode& element : node ? node->elements() : std::vector<JsonNode>()) {
     texts.push_back(element.text());
     if (texts.back().empty() || texts.back().size() > longestPattern)
       throw element.error(textOf("must have 1 to ", longestPattern, " characters"));
@@ -22,22 +24,10 @@ std::vector<std::string> readTexts(const JsonNode& node) {
   return texts;
 }
 
-std::vector<std::string> textsAt(const JsonNode& parent, const std::string& key) {
-  const auto node = parent.find(key);
-  return node ? readTexts(*node) : std::vector<std::string>();
-}
-
 /// "SCHEME^VALUE", or two of them with ~ between.
 bool isCode(const std::string& text) {
-  const std::size_t tilde = text.find('~');
-  const auto one = [](std::string_view code) {
-    const std::size_t roof = code.find('^');
-    return roof != 0 && roof != std::string_view::npos && roof + 1 < code.size() &&
-           code.find_first_of("^~", roof + 1) == std::string_view::npos;
-  };
-  const std::string_view code(text);
-  return tilde == std::string::npos ? one(code)
-                                    : one(code.substr(0, tilde)) && one(code.substr(tilde + 1));
+  static const std::regex pattern(R"([^^~]+\^[^^~]+(~[^^]+\^[^^~]+)?)");
+  return std::regex_match(text, pattern);
 }
 
 FocusPatterns readFocus(const JsonNode& node) {
@@ -96,10 +86,7 @@ std::vector<std::string> wordsOf(std::string_view text, std::string_view globs) 
 
 /// Backtracks to the last * only: time at most the product of both lengths.
 bool matchesGlob(std::string_view glob, std::string_view word) {
-  std::size_t g = 0;
-  std::size_t w = 0;
-  std::size_t star = std::string_view::npos;
-  std::size_t from = 0;
+  std::size_t g = 0, w = 0, star = std::string_view::npos, from = 0;
   while (w < word.size()) {
     if (g < glob.size() && glob[g] == '*') {
       star = g++;
@@ -118,10 +105,6 @@ bool matchesGlob(std::string_view glob, std::string_view word) {
 }
 
 } // namespace
-
-OrganPreset readPreset(const std::filesystem::path& path) {
-  return parsePreset(readText(path), path.string());
-}
 
 OrganPreset parsePreset(std::string_view json, const std::string& source) {
   const nlohmann::json document = parseJson(json, source);

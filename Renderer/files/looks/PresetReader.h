@@ -1,9 +1,8 @@
 #pragma once
 // Reads organ presets: flags and focus for an anatomy (Resources/presets/README.md).
 
-#include "model/volume/Modality.h"
+#include "model/volume/Volume.h"
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,11 +33,8 @@ struct OrganPreset {
   std::string tested = {}; ///< data on which the preset was tried
 };
 
-/// Reads a preset file. Throws Error (input) that names file and field.
-OrganPreset readPreset(const std::filesystem::path& path);
-
 /// Reads a preset from JSON text. `source`, a path, names the text in messages, and its stem the
-/// preset.
+/// preset. Throws Error (input) that names source and field.
 OrganPreset parsePreset(std::string_view json, const std::string& source);
 
 /// True if a segment's name matches one of FocusPatterns::names.

@@ -16,8 +16,10 @@ using Json = nlohmann::ordered_json;
 Json piecewiseLinear(const std::vector<OpacityNode>& nodes) {
   Json points = Json::array();
   for (const OpacityNode& node : nodes)
-    points.push_back(
-        {{"x", node.x}, {"y", node.y}, {"midpoint", node.midpoint}, {"sharpness", node.sharpness}});
+    points.push_back({{"x", node.x},
+                      {"y", node.value},
+                      {"midpoint", node.midpoint},
+                      {"sharpness", node.sharpness}});
   return {{"type", "piecewiseLinearFunction"}, {"points", points}};
 }
 
@@ -25,7 +27,7 @@ Json colorTransfer(const std::vector<ColorNode>& nodes) {
   Json points = Json::array();
   for (const ColorNode& node : nodes)
     points.push_back({{"x", node.x},
-                      {"color", {node.color.x(), node.color.y(), node.color.z()}},
+                      {"color", {node.value.x(), node.value.y(), node.value.z()}},
                       {"midpoint", node.midpoint},
                       {"sharpness", node.sharpness}});
   return {{"type", "colorTransferFunction"}, {"points", points}};
@@ -39,7 +41,7 @@ std::string countedNumbers(const std::vector<double>& numbers) {
 std::string opacityText(const std::vector<OpacityNode>& nodes, double unitsPerMm) {
   std::vector<double> numbers;
   for (const OpacityNode& node : nodes) {
-    const double y = unitsPerMm == 1.0 ? node.y : 1.0 - std::pow(1.0 - node.y, unitsPerMm);
+    const double y = unitsPerMm == 1.0 ? node.value : 1.0 - std::pow(1.0 - node.value, unitsPerMm);
     numbers.insert(numbers.end(), {node.x, y});
   }
   return countedNumbers(numbers);
@@ -79,7 +81,7 @@ std::string propertyJson(const VolumeProperty& property, double minimum, double 
 PropertyTexts propertyTexts(const VolumeProperty& property) {
   std::vector<double> color;
   for (const ColorNode& node : property.color)
-    color.insert(color.end(), {node.x, node.color.x(), node.color.y(), node.color.z()});
+    color.insert(color.end(), {node.x, node.value.x(), node.value.y(), node.value.z()});
   return {opacityText(property.scalarOpacity, 1.0 / property.unitDistance),
           opacityText(property.gradientOpacity, 1.0), countedNumbers(color)};
 }

@@ -52,53 +52,29 @@ TransferLook readOwn(const JsonNode& root) {
   return {std::move(transfer), scalars && scalars->oneOf({"absolute", "relative"}) == 1};
 }
 
-template <int Channels>
-PiecewiseLinear<Channels> stretched(const PiecewiseLinear<Channels>& f, double low, double high) {
-  auto knots = f.knots();
-  for (auto& knot : knots)
-    knot.position = low + knot.position * (high - low);
-  return PiecewiseLinear<Channels>(std::move(knots));
-}
-
-TransferFunction absolute(TransferLook look, const std::string& source) {
-  if (look.relative)
-    throw inputError(source, "scalars: are relative to a volume; name one of absolute scalars");
-  return std::move(look.function);
-}
-
 // ---- Slicer's .vp.json
 
-double orElse(const std::optional<JsonNode>& node, double fallback) {
-  return node ? finite(*node) : fallback;
+/// Sets `value` to the number of a key, where there is one.
+void readIfThere(const JsonNode& parent, const std::string& key, double& value) {
+  if (const auto node = parent.find(key))
+    value = finite(*node);
 }
 
-/// Fields that both kinds of point share; x is required.
+/// Points of a function, sorted by x.
 template <typename Node>
-Node readPoint(const JsonNode& point) {
-  Node node;
-  node.x = finite(point.at("x"));
-  node.midpoint = orElse(point.find("midpoint"), node.midpoint);
-  node.sharpness = orElse(point.find("sharpness"), node.sharpness);
-  return node;
-}
-
-std::vector<OpacityNode> readOpacity(const JsonNode& function) {
-  std::vector<OpacityNode> nodes;
+std::vector<Node> readPoints(const JsonNode& function) {
+  std::vector<Node> nodes;
   for (const JsonNode& point : function.at("points").elements()) {
-    nodes.push_back(readPoint<OpacityNode>(point));
-    nodes.back().y = point.at("y").numberIn(0.0, 1.0);
+    Node& node = nodes.emplace_back();
+    node.x = finite(point.at("x"));
+    readIfThere(point, "midpoint", node.midpoint);
+    readIfThere(point, "sharpness", node.sharpness);
+    if constexpr (std::is_same_v<Node, OpacityNode>)
+      node.value = point.at("y").numberIn(0.0, 1.0);
+    else
+      node.value = point.at("color").triple(0.0, 1.0).array();
   }
-  std::ranges::stable_sort(nodes, {}, &OpacityNode::x);
-  return nodes;
-}
-
-std::vector<ColorNode> readColor(const JsonNode& function) {
-  std::vector<ColorNode> nodes;
-  for (const JsonNode& point : function.at("points").elements()) {
-    nodes.push_back(readPoint<ColorNode>(point));
-    nodes.back().color = point.at("color").triple(0.0, 1.0).array();
-  }
-  std::ranges::stable_sort(nodes, {}, &ColorNode::x);
+  std::ranges::stable_sort(nodes, {}, &Node::x);
   return nodes;
 }
 
@@ -114,20 +90,19 @@ VolumeProperty readSlicer(const JsonNode& root) {
   const JsonNode slicer = first(root, "volumeProperties");
   const JsonNode component = first(slicer, "components");
   VolumeProperty property;
-  property.scalarOpacity = readOpacity(component.at("scalarOpacity"));
-  property.color = readColor(component.at("rgbTransferFunction"));
+  property.scalarOpacity = readPoints<OpacityNode>(component.at("scalarOpacity"));
+  property.color = readPoints<ColorNode>(component.at("rgbTransferFunction"));
   const auto disabled = component.find("disableGradientOpacity");
   const auto gradient = component.find("gradientOpacity");
   if (gradient && !(disabled && disabled->boolean()))
-    property.gradientOpacity = readOpacity(*gradient);
-  property.unitDistance =
-      orElse(component.find("scalarOpacityUnitDistance"), property.unitDistance);
+    property.gradientOpacity = readPoints<OpacityNode>(*gradient);
+  readIfThere(component, "scalarOpacityUnitDistance", property.unitDistance);
   if (const auto shade = component.find("shade"))
     property.shade = shade->boolean();
   if (const auto lighting = component.find("lighting")) {
-    property.diffuse = orElse(lighting->find("diffuse"), property.diffuse);
-    property.specular = orElse(lighting->find("specular"), property.specular);
-    property.specularPower = orElse(lighting->find("specularPower"), property.specularPower);
+    readIfThere(*lighting, "diffuse", property.diffuse);
+    readIfThere(*lighting, "specular", property.specular);
+    readIfThere(*lighting, "specularPower", property.specularPower);
   }
   if (const auto g = slicer.find("scatteringAnisotropy"))
     property.anisotropy = std::clamp(g->numberIn(-1.0, 1.0), -mostForward, mostForward);
@@ -221,12 +196,11 @@ VolumeProperty readProperty(const PropertyFields& texts) {
 }
 
 VolumeProperty readPropertyLines(std::string_view content, const std::string& source) {
+  std::vector<std::string> lines = split(content, '\n');
+  lines.resize(std::size(propertyFields));
   std::map<std::string, std::string> texts;
-  for (const char* field : propertyFields) {
-    const std::size_t end = std::min(content.find('\n'), content.size());
-    texts[field] = content.substr(0, end);
-    content.remove_prefix(std::min(end + 1, content.size()));
-  }
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    texts[propertyFields[i]] = lines[i];
   const PropertyFields property(texts, PropertyForm::lines, source);
   for (const char* field : {"interpolation", "ambient"}) // unused, but required by the format
     property.number(field);
@@ -238,8 +212,9 @@ VolumeProperty readPropertyLines(std::string_view content, const std::string& so
 TransferFunction TransferLook::over(double low, double high) const {
   TransferFunction result = function;
   if (relative) {
-    result.extinction = stretched(function.extinction, low, high);
-    result.albedo = stretched(function.albedo, low, high);
+    const auto stretch = [&](auto& knot) { knot.position = low + knot.position * (high - low); };
+    result.extinction = function.extinction.withKnots(stretch);
+    result.albedo = function.albedo.withKnots(stretch);
   }
   return result;
 }
@@ -250,10 +225,6 @@ TransferLook parseTransferLook(std::string_view json, const std::string& source)
   if (root.find("volumeProperties"))
     return {tabulate(readSlicer(root), source)};
   return readOwn(root);
-}
-
-TransferFunction parseTransferFunction(std::string_view json, const std::string& source) {
-  return absolute(parseTransferLook(json, source), source);
 }
 
 TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
@@ -273,7 +244,10 @@ TransferLook readTransferLook(const std::filesystem::path& path) {
 }
 
 TransferFunction readTransferFunction(const std::filesystem::path& path) {
-  return absolute(readTransferLook(path), path.string());
+  TransferLook look = readTransferLook(path);
+  if (look.relative)
+    throw inputError(path, "scalars: are relative to a volume; name one of absolute scalars");
+  return std::move(look.function);
 }
 
 } // namespace fenestra

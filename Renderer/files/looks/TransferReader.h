@@ -29,7 +29,6 @@ TransferFunction readTransferFunction(const std::filesystem::path& path);
 
 /// Parses a `.json` of either kind. `source` names the text in messages.
 TransferLook parseTransferLook(std::string_view json, const std::string& source);
-TransferFunction parseTransferFunction(std::string_view json, const std::string& source);
 
 /// Parses a volume property from the attributes of a scene's node, whose values have the form of a
 /// .vp's lines.

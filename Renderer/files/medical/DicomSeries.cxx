@@ -4,7 +4,7 @@
 #include "base/safe/Inputs.h"
 #include "base/safe/ShownText.h"
 #include "base/safe/SystemCalls.h"
-#include "files/medical/DicomHeader.h"
+#include "files/medical/DicomFiles.h"
 
 #include <algorithm>
 #include <map>
@@ -13,49 +13,39 @@
 namespace fenestra {
 namespace {
 
-using Path = std::filesystem::path;
 namespace fs = std::filesystem;
+using Path = fs::path;
+using Paths = std::vector<Path>;
 
-struct FolderContent {
-  std::vector<Path> files, folders;
-};
-
-FolderContent contentOf(const Path& folder) {
-  FolderContent content;
+/// Files and folders in a folder, sorted. Enters the files into the ledger.
+std::pair<Paths, Paths> contentOf(const Path& folder) {
+  Paths files, folders;
   std::error_code failed;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
     std::error_code unknown;
     if (it->is_regular_file(unknown)) {
       requireFile(it->path(), "name the folder alone");
-      content.files.push_back(it->path());
+      files.push_back(it->path());
     } else if (it->is_directory(unknown))
-      content.folders.push_back(it->path());
+      folders.push_back(it->path());
   }
   if (failed)
     throw inputError(folder, "the folder cannot be read: ", failed.message(), "; ",
                      readingMend(failed.value(), "check its name and its permissions"));
-  std::ranges::sort(content.files);
-  std::ranges::sort(content.folders);
-  return content;
+  std::ranges::sort(files);
+  std::ranges::sort(folders);
+  return {files, folders};
 }
 
-std::vector<Path> candidates(const Path& folder) {
-  FolderContent content = contentOf(folder);
-  if (content.files.empty())
-    for (const Path& below : content.folders) {
-      const FolderContent inner = contentOf(below);
-      content.files.insert(content.files.end(), inner.files.begin(), inner.files.end());
-    }
-  return content.files;
+Paths candidates(const Path& folder) {
+  auto [files, folders] = contentOf(folder);
+  if (files.empty())
+    for (const Path& below : folders)
+      std::ranges::move(contentOf(below).first, std::back_inserter(files));
+  return files;
 }
 
-/// Key that sorts numbers as numbers: shorter ones first.
-auto sortKey(const DicomSeries& series) {
-  return std::tuple(series.number.size(), series.number, series.uid);
-}
-
-std::string described(const DicomSeries* one) {
-  const DicomSeries& series = *one;
+std::string described(const DicomSeries& series) {
   std::string text = series.number.empty() ? "" : "number " + shown(series.number) + " ";
   if (!series.description.empty())
     text += "\"" + shown(series.description) + "\" ";
@@ -64,7 +54,7 @@ std::string described(const DicomSeries* one) {
   return textOf(text, shown(series.uid), " (", count, count == 1 ? " file)" : " files)");
 }
 
-std::string listed(const std::vector<const DicomSeries*>& series) {
+std::string listed(const std::vector<DicomSeries>& series) {
   return joined(series, "; ", described, 40);
 }
 
@@ -89,37 +79,31 @@ std::vector<DicomSeries> findDicomSeries(const Path& folder) {
   std::vector<DicomSeries> all;
   for (auto& [uid, series] : byUid)
     all.push_back(std::move(series));
-  std::ranges::sort(all, {}, sortKey);
+  std::ranges::sort(all, {}, [](const DicomSeries& series) { // numbers as numbers: shorter first
+    return std::tuple(series.number.size(), series.number, series.uid);
+  });
   return all;
 }
 
-const DicomSeries& chooseSeries(const std::vector<DicomSeries>& series,
-                                const std::optional<std::string>& selector,
-                                const std::string& folder) {
-  const auto matching = [&](auto&& matches) {
-    std::vector<const DicomSeries*> found;
-    for (const DicomSeries& one : series)
-      if (matches(one))
-        found.push_back(&one);
-    return found;
-  };
-  const auto all = matching([](const DicomSeries&) { return true; });
-  if (!selector) {
-    if (all.size() != 1)
-      throw inputError(folder, "holds ", all.size(), " DICOM series: ", listed(all),
-                       "; pick one with --volume, by uid, number or description");
-    return *all.front();
-  }
+DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
+                         const std::optional<std::string>& selector, const std::string& folder) {
+  if (!selector && series.size() == 1)
+    return series.front();
+  if (!selector)
+    throw inputError(folder, "holds ", series.size(), " DICOM series: ", listed(series),
+                     "; pick one with --volume, by uid, number or description");
   for (const auto field : {&DicomSeries::uid, &DicomSeries::number, &DicomSeries::description}) {
-    const auto found = matching([&](const DicomSeries& one) { return one.*field == *selector; });
+    std::vector<DicomSeries> found;
+    std::ranges::copy_if(series, std::back_inserter(found),
+                         [&](const DicomSeries& one) { return one.*field == *selector; });
     if (found.size() == 1)
-      return *found.front();
+      return found.front();
     if (found.size() > 1)
       throw inputError(folder, "--volume \"", shown(*selector), "\" can be any of ", listed(found),
                        "; pick one by its uid");
   }
   throw inputError(folder, "--volume \"", shown(*selector), "\" names no DICOM series; there are ",
-                   listed(all));
+                   listed(series));
 }
 
 } // namespace fenestra

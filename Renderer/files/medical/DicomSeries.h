@@ -24,9 +24,8 @@ std::vector<DicomSeries> findDicomSeries(const std::filesystem::path& folder);
 /// Series that `selector` names by uid, else number, else description; without a selector the only
 /// series. Throws Error (input), listing the series and naming --volume, where none or several
 /// match. `folder` is for messages.
-const DicomSeries& chooseSeries(const std::vector<DicomSeries>& series,
-                                const std::optional<std::string>& selector,
-                                const std::string& folder);
+DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
+                         const std::optional<std::string>& selector, const std::string& folder);
 
 /// Volume of the slices, sorted along their normal, with rescale slope and intercept applied. The
 /// step between slices is that of their positions, so that a tilted gantry is right as well. Warns

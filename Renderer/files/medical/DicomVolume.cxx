@@ -2,10 +2,9 @@
 
 #include "base/Error.h"
 #include "files/medical/AirAtZero.h"
-#include "files/medical/DicomHeader.h"
-#include "files/medical/DicomPixels.h"
+#include "files/medical/DicomFiles.h"
 #include "files/medical/DicomSeries.h"
-#include "files/medical/StoreVoxels.h"
+#include "files/medical/VolumeReader.h"
 
 namespace fenestra {
 namespace {
@@ -78,8 +77,7 @@ Axes axesOf(const Slice& slice) {
 void checkAlike(const std::vector<Slice>& slices) {
   const Slice& first = slices.front();
   const auto near = [](const std::vector<double>& a, const std::vector<double>& b, double error) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [error](double x, double y) { return std::abs(x - y) <= error; });
+    return std::ranges::equal(a, b, [=](double x, double y) { return std::abs(x - y) <= error; });
   };
   for (const Slice& slice : slices) {
     const auto refuse = [&](const char* field) {
@@ -121,8 +119,8 @@ void checkGaps(const std::vector<Slice>& slices) {
   }
 }
 
-/// Step from a slice to the next, LPS mm; warns of uneven slices.
-Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes,
+/// Step from a slice to the next, LPS mm. Warns of uneven slices of the volume `name`.
+Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes, const std::string& name,
             std::vector<std::string>& warnings) {
   if (slices.size() == 1)
     return axes.normal();
@@ -141,8 +139,8 @@ Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes,
     most = std::max(most, off.norm());
   }
   if (most > 0.02 * step.norm())
-    warnings.push_back("slices lie up to " + millimetres(most) + " off even steps of " +
-                       millimetres(step.norm()) + ", which are taken for theirs");
+    warnings.push_back(textOf(name, ": slices lie up to ", millimetres(most), " off even steps of ",
+                              millimetres(step.norm()), ", which are taken for theirs"));
   return step;
 }
 
@@ -161,13 +159,11 @@ Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step
 VoxelStore readAll(DicomFiles& files, const std::vector<Slice>& slices) {
   const DicomHeader& first = slices.front().header;
   VoxelStore all(std::size_t{first.rows} * first.columns * slices.size());
-  for (const Slice& slice : slices)
-    std::visit(
-        [&all](const auto& samples) {
-          const std::span block(samples);
-          all.append(block, survey(block));
-        },
-        rescaledVoxels(slice.header, files.voxels(slice.path, slice.header)));
+  for (const Slice& slice : slices) {
+    const auto scalars = rescaledVoxels(slice.header, files.voxels(slice.path, slice.header));
+    const std::span block(scalars);
+    all.append(block, survey(block));
+  }
   return all;
 }
 
@@ -192,11 +188,9 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
     slice.depth = slice.position.dot(axes.normal());
   std::ranges::stable_sort(slices, {}, &Slice::depth);
   std::vector<std::string> warnings;
-  const Vec3 step = stepOf(slices, axes, warnings);
-  const Grid grid = gridOf(slices, axes, step);
+  const Grid grid = gridOf(slices, axes, stepOf(slices, axes, name, warnings));
   Volume volume = makeVolume(name, grid, readAll(files, slices));
-  for (const std::string& warning : warnings)
-    volume.warnings.push_back(textOf(name, ": ", warning));
+  std::ranges::move(warnings, std::back_inserter(volume.warnings));
   if (isUnscaledCt(slices))
     correctAir(volume);
   return volume;
@@ -213,9 +207,7 @@ Volume readDicomVolume(const std::vector<Path>& files, const std::string& name) 
 }
 
 Volume readDicomVolume(const DicomSeries& series) {
-  return readDicomVolume(series.files, series.files.empty()
-                                           ? series.uid
-                                           : series.files.front().parent_path().string());
+  return readDicomVolume(series.files, series.files.front().parent_path().string());
 }
 
 } // namespace fenestra

@@ -17,9 +17,6 @@ using namespace header;
 
 namespace {
 
-/// Bound of deflate's greatest ratio, 1032.
-constexpr std::uint64_t greatestRatio = 1100;
-
 /// Adds a data file, named relative to the header's folder.
 void addFile(const std::filesystem::path& path, std::string_view name, StoredSamples& stored) {
   const std::filesystem::path file = path.parent_path() / std::filesystem::path(name);
@@ -209,11 +206,10 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
 
 StoredSamples locateNifti(const std::filesystem::path& path) {
   StoredSamples stored;
-  stored.compressed = lower(path.extension().string()) == ".gz";
+  stored.compressed = lowerExtension(path) == ".gz";
   addFile(path, path.filename().string(), stored);
-  constexpr std::uint64_t headerBytes = 348;
   if (!stored.compressed)
-    skip(path, headerBytes, stored);
+    skip(path, niftiHeaderBytes, stored);
   return stored;
 }
 
@@ -236,12 +232,18 @@ StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat for
   return format == MedicalFormat::metaImage ? locateMeta(path) : locateNifti(path);
 }
 
-void checkCapacity(const std::filesystem::path& path, const StoredSamples& stored,
-                   std::uint64_t declared) {
+std::uint64_t checkedBytes(const std::filesystem::path& path, const StoredSamples& stored,
+                           std::uint64_t count, std::uint64_t sampleBytes, std::uint64_t skipped) {
+  std::uint64_t declared = 0;
+  if (__builtin_mul_overflow(count, sampleBytes, &declared) ||
+      __builtin_add_overflow(declared, skipped, &declared))
+    declared = UINT64_MAX;
+  constexpr std::uint64_t greatestRatio = 1100; // bound of deflate's, 1032
   if (declared / (stored.compressed ? greatestRatio : 1) > stored.bytes)
     throw inputError(path, "is truncated: its header announces ", declared,
                      " bytes of samples, the file has ", stored.bytes,
                      (stored.compressed ? " compressed" : ""), "; copy or write it again");
+  return declared;
 }
 
 } // namespace fenestra

@@ -14,6 +14,8 @@ namespace fenestra {
 
 enum class MedicalFormat { nrrd, nifti, metaImage };
 
+inline constexpr std::uint64_t niftiHeaderBytes = 348;
+
 /// Format by extension, in either case: .nrrd .nhdr, .nii .nii.gz, .mha .mhd; nullopt: unknown.
 std::optional<MedicalFormat> medicalFormat(const std::filesystem::path& path);
 
@@ -36,9 +38,11 @@ struct StoredSamples {
 /// values known to crash ITK's readers.
 StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat format);
 
-/// Throws Error (input) if `declared` bytes are more than the stored samples can be: the stored
-/// bytes, times deflate's greatest ratio if compressed.
-void checkCapacity(const std::filesystem::path& path, const StoredSamples& stored,
-                   std::uint64_t declared);
+/// Bytes of `count` samples of `sampleBytes` each, and of the `skipped` ones before them. Throws
+/// Error (input) if that is more than the stored samples can be: the stored bytes, times deflate's
+/// greatest ratio if compressed.
+std::uint64_t checkedBytes(const std::filesystem::path& path, const StoredSamples& stored,
+                           std::uint64_t count, std::uint64_t sampleBytes,
+                           std::uint64_t skipped = 0);
 
 } // namespace fenestra

@@ -129,10 +129,7 @@ SampleSource samplesOf(const std::filesystem::path& path, const StoredSamples& s
                        itk::ImageIOBase& io) {
   SampleSource source{.type = typeOf(path, io), .count = sampleCount(io)};
   const std::size_t sampleBytes = bytesOf(source.type);
-  std::uint64_t declared = 0;
-  if (__builtin_mul_overflow(source.count, sampleBytes, &declared))
-    declared = UINT64_MAX;
-  checkCapacity(path, stored, declared);
+  const std::uint64_t declared = checkedBytes(path, stored, source.count, sampleBytes);
   // ITK brings a voxel's components together where they lie apart.
   const bool ordered = io.GetNumberOfComponents() == 1 || stored.isListFirst;
   const bool known = sampleBytes == 1 || stored.order;
@@ -140,10 +137,8 @@ SampleSource samplesOf(const std::filesystem::path& path, const StoredSamples& s
     source.read = readThroughItk(io, declared);
     return source;
   }
-  const auto stream = std::make_shared<SampleStream>(path, stored, declared);
   source.swapped = sampleBytes > 1 && *stored.order != std::endian::native;
-  source.read = [stream](void* to, std::size_t bytes) { stream->read(to, bytes); };
-  source.finish = [stream] { stream->finish(); };
+  openStream(path, stored, declared, source);
   return source;
 }
 

@@ -23,9 +23,9 @@ constexpr std::uint64_t largestMultiBlock = 64ULL << 20; ///< bytes of a .vtm
 bool isNumbered(std::string_view name, std::string_view start, std::string_view end) {
   if (name.size() < start.size() + end.size() || !name.starts_with(start) || !name.ends_with(end))
     return false;
-  const std::string_view number =
-      name.substr(start.size(), name.size() - start.size() - end.size());
-  return number.find_first_not_of("0123456789+- ") == std::string_view::npos;
+  name.remove_prefix(start.size());
+  name.remove_suffix(end.size());
+  return name.find_first_not_of("0123456789+- ") == std::string_view::npos;
 }
 
 /// Adds the existing files of a pattern like "s%03d.raw 1 99 1", whatever their numbers.
@@ -79,26 +79,15 @@ Paths namedInHeader(const fs::path& path, std::string_view separator, std::strin
   return files;
 }
 
-struct BlockNames final : pugi::xml_tree_walker {
-  explicit BlockNames(fs::path within) : folder(std::move(within)) {}
-
-  bool for_each(pugi::xml_node& element) override {
-    if (const char* name = element.attribute("file").value(); *name)
-      files.push_back(folder / name);
-    return files.size() < mostFiles;
-  }
-
-  fs::path folder;
-  Paths files;
-};
-
 Paths namedInMultiBlock(const fs::path& path) {
   std::error_code failed;
-  BlockNames names(path.parent_path());
+  Paths files;
   pugi::xml_document document;
   if (fs::file_size(path, failed) <= largestMultiBlock && document.load_file(path.c_str()))
-    document.traverse(names);
-  return names.files;
+    for (const pugi::xpath_node& found : document.select_nodes("//@file[. != '']"))
+      if (files.size() < mostFiles)
+        files.push_back(path.parent_path() / found.attribute().value());
+  return files;
 }
 
 } // namespace

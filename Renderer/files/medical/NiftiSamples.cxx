@@ -54,16 +54,6 @@ private:
   std::unique_ptr<std::remove_pointer_t<gzFile>, int (*)(gzFile)> m_file;
 };
 
-/// Refuses more bytes of samples than the file can hold.
-void checkBytes(const std::filesystem::path& path, std::int64_t offset, std::uint64_t count,
-                std::uint64_t sampleBytes) {
-  std::uint64_t end = 0;
-  if (__builtin_mul_overflow(count, sampleBytes, &end) ||
-      __builtin_add_overflow(end, static_cast<std::uint64_t>(offset) - 348, &end))
-    end = UINT64_MAX;
-  checkCapacity(path, locateSamples(path, MedicalFormat::nifti), end);
-}
-
 } // namespace
 
 NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
@@ -86,7 +76,8 @@ std::string niftiExtensions(const std::filesystem::path& path, const NiftiHeader
 SampleSource niftiSamples(const std::filesystem::path& path, const NiftiHeader& header,
                           std::size_t count) {
   const auto stream = std::make_shared<Stream>(path);
-  checkBytes(path, header.offset, count, bytesOf(header.type));
+  checkedBytes(path, locateSamples(path, MedicalFormat::nifti), count, bytesOf(header.type),
+               static_cast<std::uint64_t>(header.offset) - sizeof(NiftiBytes));
   stream->seek(header.offset);
   return {
       .type = header.type,

@@ -2,7 +2,7 @@
 // Samples in their file, and their transfer to a store block by block, so that only the store is as
 // large as the volume.
 
-#include "files/medical/SampleSurvey.h"
+#include "files/medical/SampleStore.h"
 
 #include <tbb/parallel_pipeline.h>
 
@@ -34,7 +34,7 @@ struct SampleSource {
   std::size_t count = 0;
   bool swapped = false; ///< byte order is not the machine's
   std::optional<Rescaling> rescaling = {};
-  /// Fills memory with the next bytes of the file. Throws where the file ends before.
+  /// Fills memory with the next bytes of the file, fewer than 2^30. Throws where it ends before.
   std::function<void(void*, std::size_t)> read = {};
   /// Called after the last sample; throws where the file proves to be damaged. May be empty.
   std::function<void()> finish = {};

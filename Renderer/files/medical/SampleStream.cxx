@@ -1,73 +1,85 @@
 #include "files/medical/SampleStream.h"
 
-#include <algorithm>
+#include "base/Error.h"
+
+#include <zlib.h>
+
+#include <fstream>
+#include <memory>
 
 namespace fenestra {
+namespace {
 
-SampleStream::SampleStream(const std::filesystem::path& path, const StoredSamples& stored,
-                           std::uint64_t declared)
-    : m_path(path),
-      m_file(stored.files.front(), std::ios::binary),
-      m_declared(declared),
-      m_compressed(stored.isStream) {
-  m_file.seekg(static_cast<std::streamoff>(stored.offset));
-  if (!m_compressed)
-    return;
-  m_input.resize(1 << 18);
-  constexpr int anyHeader = 15 + 32; // zlib's or gzip's
-  m_status = inflateInit2(&m_stream, anyHeader);
-}
-
-SampleStream::~SampleStream() {
-  if (m_compressed)
-    inflateEnd(&m_stream);
-}
-
-void SampleStream::read(void* to, std::size_t bytes) {
-  if (!m_compressed) {
-    if (!m_file.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)))
-      throw inputError(m_path, "cannot be read to the end of its samples; copy it again");
-    return;
+/// One zlib or gzip stream, from the file's current byte on.
+class InflatedSamples {
+public:
+  InflatedSamples(const std::filesystem::path& path, std::ifstream file, std::uint64_t declared)
+      : m_path(path), m_file(std::move(file)), m_declared(declared) {
+    constexpr int anyHeader = 15 + 32; // zlib's or gzip's
+    m_status = inflateInit2(&m_stream, anyHeader);
   }
-  auto* at = static_cast<Bytef*>(to);
-  while (bytes > 0) {
-    const auto part = static_cast<uInt>(std::min<std::size_t>(bytes, 1 << 30));
-    m_stream.next_out = at;
-    m_stream.avail_out = part;
-    while (m_status == Z_OK && m_stream.avail_out > 0)
-      inflateNext();
-    if (m_stream.avail_out > 0)
+  ~InflatedSamples() { inflateEnd(&m_stream); }
+  InflatedSamples(const InflatedSamples&) = delete;
+  InflatedSamples& operator=(const InflatedSamples&) = delete;
+
+  void read(void* to, std::size_t bytes) {
+    if (inflateTo(to, bytes) < bytes)
       throw damaged();
-    at += part;
-    bytes -= part;
   }
-}
 
-void SampleStream::finish() {
-  if (!m_compressed)
+  void finish() {
+    char beyond = 0;
+    inflateTo(&beyond, 1);
+    if (m_status != Z_STREAM_END || m_stream.total_out != m_declared)
+      throw damaged();
+  }
+
+private:
+  /// Returns the number of bytes, fewer than `bytes` where the stream ends or is damaged.
+  std::size_t inflateTo(void* to, std::size_t bytes) {
+    m_stream.next_out = static_cast<Bytef*>(to);
+    m_stream.avail_out = static_cast<uInt>(bytes);
+    while (m_status == Z_OK && m_stream.avail_out > 0) {
+      if (m_stream.avail_in == 0) {
+        m_file.read(m_input.data(), static_cast<std::streamsize>(m_input.size()));
+        m_stream.next_in = reinterpret_cast<Bytef*>(m_input.data());
+        m_stream.avail_in = static_cast<uInt>(m_file.gcount());
+      }
+      m_status = inflate(&m_stream, Z_NO_FLUSH); // without input left: Z_BUF_ERROR
+    }
+    return bytes - m_stream.avail_out;
+  }
+
+  Error damaged() const {
+    return inputError(m_path, "is damaged or truncated: its compressed samples do not give the ",
+                      m_declared, " bytes that its header announces; copy or write it again");
+  }
+
+  std::filesystem::path m_path;
+  std::ifstream m_file;
+  std::uint64_t m_declared;
+  std::vector<char> m_input = std::vector<char>(1 << 18);
+  z_stream m_stream{};
+  int m_status = Z_OK;
+};
+
+} // namespace
+
+void openStream(const std::filesystem::path& path, const StoredSamples& stored,
+                std::uint64_t declared, SampleSource& source) {
+  std::ifstream file(stored.files.front(), std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(stored.offset));
+  if (stored.isStream) {
+    const auto samples = std::make_shared<InflatedSamples>(path, std::move(file), declared);
+    source.read = [samples](void* to, std::size_t bytes) { samples->read(to, bytes); };
+    source.finish = [samples] { samples->finish(); };
     return;
-  Bytef beyond = 0;
-  m_stream.next_out = &beyond;
-  m_stream.avail_out = 1;
-  while (m_status == Z_OK && m_stream.avail_out > 0)
-    inflateNext();
-  if (m_status != Z_STREAM_END || m_stream.total_out != m_declared)
-    throw damaged();
-}
-
-/// Inflates some of the requested bytes, or sets a status other than Z_OK.
-void SampleStream::inflateNext() {
-  if (m_stream.avail_in == 0) {
-    m_file.read(m_input.data(), static_cast<std::streamsize>(m_input.size()));
-    m_stream.next_in = reinterpret_cast<Bytef*>(m_input.data());
-    m_stream.avail_in = static_cast<uInt>(m_file.gcount());
   }
-  m_status = inflate(&m_stream, Z_NO_FLUSH); // without input left: Z_BUF_ERROR
-}
-
-Error SampleStream::damaged() const {
-  return inputError(m_path, "is damaged or truncated: its compressed samples do not give the ",
-                    m_declared, " bytes that its header announces; copy or write it again");
+  const auto samples = std::make_shared<std::ifstream>(std::move(file));
+  source.read = [path, samples](void* to, std::size_t bytes) {
+    if (!samples->read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)))
+      throw inputError(path, "cannot be read to the end of its samples; copy it again");
+  };
 }
 
 } // namespace fenestra

@@ -1,9 +1,29 @@
 #include "files/medical/VolumeReader.h"
 
+#include "base/Error.h"
 #include "files/medical/MedicalImage.h"
-#include "files/medical/StoreVoxels.h"
 
 namespace fenestra {
+
+Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& samples) {
+  const SampleSurvey& s = samples.survey();
+  if (s.least > s.greatest)
+    throw inputError(name, "no voxel is a finite number; write it again");
+  Volume volume;
+  const auto warn = [&](std::size_t count, const char* what, const char* replacement) {
+    if (count > 0)
+      volume.warnings.push_back(
+          textOf(name, ": ", count, " voxels are ", what, " and count as ", replacement));
+  };
+  warn(s.notANumber, "not a number", "the least finite value");
+  warn(s.infinite, "infinite", "the least or greatest finite value");
+  volume.grid = grid;
+  volume.name = name;
+  volume.minimum = samples.range()[0];
+  volume.maximum = samples.range()[1];
+  volume.voxels = samples.take();
+  return volume;
+}
 
 Volume readVolume(const std::filesystem::path& path) {
   Volume volume;

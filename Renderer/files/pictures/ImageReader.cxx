@@ -1,9 +1,9 @@
 #include "files/pictures/ImageReader.h"
 
 #include "base/Error.h"
+#include "base/TextStream.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/NrrdHeader.h"
-#include "files/pictures/ExrHeader.h"
 #include "files/pictures/ImageFormat.h"
 
 #include <ImfChannelList.h>
@@ -46,9 +46,85 @@ void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64
                      " are read, so use fewer pixels or channels");
 }
 
-std::string firstLine(const std::exception& error) {
-  const std::string text = error.what();
-  return text.substr(0, text.find('\n'));
+// ---- EXR
+
+/// Bytes of attribute types of fixed size ("OpenEXR File Layout", openexr.com).
+const std::map<std::string, std::uint32_t> fixedSizes = {
+    {"box2f", 16},   {"box2i", 16},         {"compression", 1}, {"chromaticities", 32},
+    {"double", 8},   {"deepImageState", 1}, {"envmap", 1},      {"float", 4},
+    {"int", 4},      {"keycode", 28},       {"lineOrder", 1},   {"m33d", 72},
+    {"m33f", 36},    {"m44d", 128},         {"m44f", 64},       {"rational", 8},
+    {"tiledesc", 9}, {"timecode", 8},       {"v2d", 16},        {"v2f", 8},
+    {"v2i", 8},      {"v3d", 24},           {"v3f", 12},        {"v3i", 12}};
+
+std::uint32_t littleEndian(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4 && at + i < bytes.size(); ++i)
+    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
+  return value;
+}
+
+/// True for channels (each a name and 16 bytes), then an empty name.
+bool isChannelList(const std::string& value) {
+  std::size_t at = 0;
+  while (at < value.size() && value[at] != '\0') {
+    at = value.find('\0', at);
+    at = at == std::string::npos ? value.size() : at + 17;
+  }
+  return at + 1 == value.size();
+}
+
+bool isStringVector(const std::string& value) {
+  std::uint64_t at = 0;
+  while (at + 4 <= value.size())
+    at += std::uint64_t{4} + littleEndian(value, at);
+  return at == value.size();
+}
+
+/// True for width, height, and that many pixels of four bytes.
+bool isPreview(const std::string& value) {
+  const std::uint64_t width = littleEndian(value, 0), height = littleEndian(value, 4);
+  return value.size() >= 8 && width <= value.size() && height <= value.size() &&
+         8 + 4 * width * height == value.size();
+}
+
+/// True if `value` is one whole value of `type`. Unknown types pass: OpenEXR reads them by their
+/// size.
+bool fillsItsSize(const std::string& type, const std::string& value) {
+  if (const auto fixed = fixedSizes.find(type); fixed != fixedSizes.end())
+    return value.size() == fixed->second;
+  if (type == "chlist")
+    return isChannelList(value);
+  if (type == "stringvector")
+    return isStringVector(value);
+  if (type == "preview")
+    return isPreview(value);
+  if (type == "floatvector")
+    return value.size() % 4 == 0;
+  return type != "idmanifest"; // needed by deep pixels alone
+}
+
+/// Throws std::runtime_error unless every attribute lies within the file and fills its size
+/// exactly. OpenEXR takes memory for an attribute of any size before it reads the bytes, and reads
+/// most types without regard to their size, misreading all that follows.
+void checkExrAttributes(const std::filesystem::path& path) {
+  Throwing<std::ifstream> file(path, std::ios::binary);
+  const auto length = static_cast<std::int64_t>(std::filesystem::file_size(path));
+  file.seekg(5); // flags of the version field
+  const bool severalParts = (file.get() & 0x10) != 0;
+  file.seekg(8);
+  std::string name, type, size(4, '\0'), value;
+  do { // one header per part, and an empty one after the last
+    while (std::getline(file, name, '\0') && !name.empty() && std::getline(file, type, '\0')) {
+      file.read(size.data(), 4);
+      if (!file || littleEndian(size, 0) > length - file.tellg())
+        throw std::runtime_error("an attribute reaches past the end");
+      value.resize(littleEndian(size, 0));
+      file.read(value.data(), static_cast<std::streamsize>(value.size()));
+      if (!fillsItsSize(type, value))
+        throw std::runtime_error("an attribute does not fill its size");
+    }
+  } while (severalParts && file.peek() > 0);
 }
 
 void checkExr(const std::filesystem::path& path, const Imf::Header& header) {
@@ -104,6 +180,8 @@ Image readExr(const std::filesystem::path& path) {
   return image;
 }
 
+// ---- PNG, TIFF, NRRD
+
 /// Channel names by the number of components; no names: not supported; empty name: grey.
 std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
   if (components == 3)
@@ -115,23 +193,24 @@ std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
   return components == 1 ? std::vector<std::string>{""} : std::vector<std::string>{"", "A"};
 }
 
-/// Splits interleaved samples into planes; integers become [0, 1].
+/// Picture of interleaved samples; integers become [0, 1].
 template <typename T>
-void unpack(const std::vector<char>& bytes, const std::vector<std::string>& names, Image& image) {
+Image unpacked(const std::vector<char>& bytes, const std::vector<std::string>& names,
+               std::size_t width, std::size_t height) {
   const T* const samples = reinterpret_cast<const T*>(bytes.data());
-  const std::size_t count =
-      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   const auto scale =
       std::is_integral_v<T> ? static_cast<float>(std::numeric_limits<T>::max()) : 1.0f;
+  Image image{static_cast<int>(width), static_cast<int>(height), {}, {}};
   for (std::size_t c = 0; c < names.size(); ++c) {
-    std::vector<float> plane(count);
-    for (std::size_t i = 0; i < count; ++i)
+    std::vector<float> plane(width * height);
+    for (std::size_t i = 0; i < plane.size(); ++i)
       plane[i] = static_cast<float>(samples[i * names.size() + c]) / scale;
     if (names[c].empty())
       image.channels["R"] = image.channels["G"] = image.channels["B"] = std::move(plane);
     else
       image.channels[names[c]] = std::move(plane);
   }
+  return image;
 }
 
 /// Reads by libpng's simplified interface, which converts every kind of PNG to 8 bit.
@@ -148,9 +227,8 @@ Image readPng(const std::filesystem::path& path) {
   std::vector<char> bytes(PNG_IMAGE_SIZE(png));
   if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr))
     throw std::runtime_error(png.message);
-  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}, {}};
-  unpack<std::uint8_t>(bytes, channelNames(ImageFormat::png, hasAlpha ? 4 : 3), image);
-  return image;
+  return unpacked<std::uint8_t>(bytes, channelNames(ImageFormat::png, hasAlpha ? 4 : 3), png.width,
+                                png.height);
 }
 
 std::uint32_t tiffField(TIFF* tiff, std::uint32_t tag) {
@@ -202,10 +280,8 @@ Image readTiff(const std::filesystem::path& path) {
   checkSize(path, width, height, samples < 3 ? samples + 2 : samples); // grey becomes R, G, B
   const auto bytes =
       readTiffRows(tiff.get(), std::size_t{width} * samples * (wide ? 2 : 1), height);
-  Image image{static_cast<int>(width), static_cast<int>(height), {}, {}};
-  const auto unpackAs = wide ? unpack<std::uint16_t> : unpack<std::uint8_t>;
-  unpackAs(bytes, channelNames(ImageFormat::tiff, samples), image);
-  return image;
+  const auto unpack = wide ? unpacked<std::uint16_t> : unpacked<std::uint8_t>;
+  return unpack(bytes, channelNames(ImageFormat::tiff, samples), width, height);
 }
 
 /// True if every axis beyond the second has size 1.
@@ -225,22 +301,12 @@ Image readNrrd(const std::filesystem::path& path) {
   const auto names = channelNames(ImageFormat::nrrd, io->GetNumberOfComponents());
   if (!isOnePicture(*io) || names.empty() || io->GetComponentType() != itk::IOComponentEnum::FLOAT)
     throw inputError(path, "is not one slice of 1, 3 or 4 floats a pixel; extract one");
-  checkSize(path, static_cast<std::int64_t>(io->GetDimensions(0)),
-            static_cast<std::int64_t>(io->GetDimensions(1)), io->GetNumberOfComponents());
-  Image image{
-      static_cast<int>(io->GetDimensions(0)), static_cast<int>(io->GetDimensions(1)), {}, {}};
+  const std::size_t width = io->GetDimensions(0), height = io->GetDimensions(1);
+  checkSize(path, static_cast<std::int64_t>(width), static_cast<std::int64_t>(height),
+            io->GetNumberOfComponents());
   std::vector<char> bytes(static_cast<std::size_t>(io->GetImageSizeInBytes()));
   io->Read(bytes.data());
-  unpack<float>(bytes, names, image);
-  return image;
-}
-
-Image readAs(ImageFormat format, const std::filesystem::path& path) {
-  if (format == ImageFormat::exr)
-    return readExr(path);
-  if (format == ImageFormat::nrrd)
-    return readNrrd(path);
-  return format == ImageFormat::png ? readPng(path) : readTiff(path);
+  return unpacked<float>(bytes, names, width, height);
 }
 
 } // namespace
@@ -251,7 +317,17 @@ Image readImage(const std::filesystem::path& path) {
   if (!format)
     throw inputError(path, "has no known extension; name an image ", imageExtensions);
   try {
-    return readAs(*format, path);
+    switch (*format) {
+    case ImageFormat::exr:
+      return readExr(path);
+    case ImageFormat::nrrd:
+      return readNrrd(path);
+    case ImageFormat::png:
+      return readPng(path);
+    case ImageFormat::tiff:
+      break;
+    }
+    return readTiff(path);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -259,8 +335,9 @@ Image readImage(const std::filesystem::path& path) {
   } catch (const itk::ExceptionObject&) { // its text names ITK's own source lines
     throw inputError(path, "is damaged or not of its extension's format; write it again");
   } catch (const std::exception& error) {
-    throw inputError(path, "is damaged or not of its extension's format (", firstLine(error),
-                     "); write it again");
+    const std::string_view text = error.what();
+    throw inputError(path, "is damaged or not of its extension's format (",
+                     text.substr(0, text.find('\n')), "); write it again");
   }
 }
 

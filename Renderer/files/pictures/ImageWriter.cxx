@@ -3,7 +3,6 @@
 #include "base/Error.h"
 #include "base/TextStream.h"
 #include "base/safe/NrrdWriter.h"
-#include "files/pictures/DisplayTransform.h"
 #include "files/pictures/ImageFormat.h"
 
 #include <ImfChannelList.h>
@@ -221,7 +220,7 @@ void requireColour(const Image& image, const std::filesystem::path& path) {
 } // namespace
 
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
-                Outputs& outputs, const std::string& view) {
+                Outputs& outputs, DisplayView view) {
   const ImageFormat format = checkedFormat(path);
   if (format == ImageFormat::exr)
     return outputs.write(path, encodeExr(image));
@@ -232,7 +231,7 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
       outputs.write(depthPath(path), encodeSlice(image, plane, *depth));
     return;
   }
-  const std::vector<float> display = toDisplay(image, DisplayTransform(view));
+  const std::vector<float> display = toDisplay(interleavedRgba(image), view);
   outputs.write(path, format == ImageFormat::png ? encodePng(image, display)
                                                  : encodeTiff(image, display));
 }

@@ -2,6 +2,7 @@
 // Writes finished pictures.
 
 #include "base/safe/Outputs.h"
+#include "files/pictures/DisplayTransform.h"
 #include "image/Image.h"
 
 #include <filesystem>
@@ -15,12 +16,12 @@ namespace fenestra {
 /// - `.exr`: every channel as 32-bit float, and the header as string attributes "fenestra.<key>".
 /// - `.nrrd`: R, G, B, A (1 without A) as a float vector volume of one slice that lies on `plane`
 ///   in the world, and Z, if present, as a scalar volume beside it, "<stem>-Z.nrrd".
-/// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through the display transform's `view` (by
-///   default its first), sRGB, with straight alpha if any pixel is not opaque.
+/// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through `view`, with straight alpha if any
+///   pixel is not opaque.
 /// Equal pictures give equal bytes, and all bear Fenestra's mark. Throws Error: usage for another
-/// extension, an unknown view or missing R, G, B; output where the file cannot be written.
+/// extension or missing R, G, B; output where the file cannot be written.
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
-                Outputs& outputs, const std::string& view = "");
+                Outputs& outputs, DisplayView view = DisplayView::photographic);
 
 /// Files that writeImage makes for this path. Throws Error (usage) for another extension.
 std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path);

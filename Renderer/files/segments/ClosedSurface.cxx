@@ -4,7 +4,6 @@
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
-#include "files/segments/SegmentTags.h"
 #include "files/segments/VtkSurface.h"
 #include "model/masks/Voxelize.h"
 
@@ -55,7 +54,7 @@ SegmentInfo infoOf(const VtkSurface& surface, std::size_t index) {
   info.name = text("Segment_Name", "Segment " + std::to_string(index));
   info.id = text("Segment_ID", info.name);
   info.labelValue = static_cast<std::int32_t>(index + 1);
-  readTerminology(text("Segment_Tags", ""), info);
+  info.readTerminology(text("Segment_Tags", ""));
   for (const char* key : {"Segment_DefaultColor", "Segment_Color"}) {
     const auto found = surface.numbers.find(key);
     if (found != surface.numbers.end() && found->second.size() == 3)
@@ -112,50 +111,49 @@ Grid cropped(const Grid& reference, const Box& bounds) {
   return {(upper - lower).array().cast<std::int64_t>().max(0) + 1, indexToWorld};
 }
 
-/// Labels in layers, one after the other; a segment takes the first layer in which it overlaps no
-/// other.
+/// Labels in layers, one after the other.
 class Layers {
 public:
   using Label = std::int16_t;
 
   Layers(const Size3& size, const Path& path) : m_size(size), m_path(path) {}
 
-  /// Adds a segment; returns its layer.
+  /// Adds a segment in the first layer where it overlaps no other; returns that layer.
   std::size_t add(const std::vector<VoxelRun>& runs, Label label) {
-    std::int64_t layer = 0;
-    while (layer < m_count && !isFree(layer, runs))
+    std::size_t layer = 0;
+    while (layer < count && !isFree(layer, runs))
       ++layer;
-    if (layer == m_count) {
+    if (layer == count) {
       constexpr std::int64_t most = std::int64_t{1} << 31;
-      if (m_size.prod() * ++m_count > most)
+      const std::int64_t size = m_size.prod() * static_cast<std::int64_t>(++count);
+      if (size > most)
         throw inputError(m_path, "overlaps in too many layers; ", mend);
-      m_labels.resize(static_cast<std::size_t>(m_size.prod() * m_count));
+      labels.resize(static_cast<std::size_t>(size));
     }
     for (const VoxelRun& run : runs)
-      std::ranges::fill(labels(layer, run), label);
-    return static_cast<std::size_t>(layer);
+      std::ranges::fill(voxels(layer, run), label);
+    return layer;
   }
 
-  std::size_t count() const { return static_cast<std::size_t>(m_count); }
-  std::vector<Label> labels() && { return std::move(m_labels); }
+  std::size_t count = 0;
+  std::vector<Label> labels;
 
 private:
-  std::span<Label> labels(std::int64_t layer, const VoxelRun& run) {
-    const std::int64_t begin =
-        run.first + m_size.x() * (run.y + m_size.y() * (run.z + m_size.z() * layer));
-    return {m_labels.data() + begin, static_cast<std::size_t>(run.last - run.first)};
+  std::span<Label> voxels(std::size_t layer, const VoxelRun& run) {
+    const std::int64_t z = run.z + m_size.z() * static_cast<std::int64_t>(layer);
+    const std::int64_t begin = run.first + m_size.x() * (run.y + m_size.y() * z);
+    return std::span(labels).subspan(static_cast<std::size_t>(begin),
+                                     static_cast<std::size_t>(run.last - run.first));
   }
 
-  bool isFree(std::int64_t layer, const std::vector<VoxelRun>& runs) {
+  bool isFree(std::size_t layer, const std::vector<VoxelRun>& runs) {
     return std::ranges::all_of(runs, [&](const VoxelRun& run) {
-      return std::ranges::all_of(labels(layer, run), [](Label label) { return label == 0; });
+      return std::ranges::all_of(voxels(layer, run), [](Label label) { return label == 0; });
     });
   }
 
   Size3 m_size;
   const Path& m_path;
-  std::int64_t m_count = 0;
-  std::vector<Label> m_labels;
 };
 
 } // namespace
@@ -180,8 +178,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
     surface.info.layer = layers.add(*runs, static_cast<Layers::Label>(surface.info.labelValue));
     segments.push_back(surface.info);
   }
-  const std::size_t count = layers.count();
-  return {path.string(), grid, count, interleaved(std::move(layers).labels(), count),
+  return {path.string(), grid, layers.count, interleaved(std::move(layers.labels), layers.count),
           std::move(segments)};
 }
 

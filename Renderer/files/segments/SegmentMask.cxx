@@ -1,48 +1,63 @@
-#include "files/segments/SegmentMask.h"
+// Focus and statistics of segments.
+
+#include "base/Error.h"
+#include "base/safe/ShownText.h"
+#include "files/segments/SegmentationReader.h"
+#include "model/masks/MaskShaping.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <atomic>
+#include <functional>
+#include <map>
 #include <set>
-#include <type_traits>
 #include <utility>
 
 namespace fenestra {
 namespace {
 
-/// Flags of a labelmap's faces (axis; lower, upper) that lie on a face of the volume.
-using SharedFaces = std::array<std::array<bool, 2>, 3>;
+/// Inclusive range of voxels; empty until one is added.
+struct VoxelExtent {
+  Size3 lower = Size3::Constant(std::numeric_limits<std::int64_t>::max());
+  Size3 upper = Size3::Constant(-1);
+
+  bool empty() const { return upper.x() < 0; }
+  void add(const VoxelExtent& more) {
+    lower = lower.cwiseMin(more.lower);
+    upper = upper.cwiseMax(more.upper);
+  }
+};
+
+// ---- focus
 
 /// True if all corners of the face are within half a voxel of a face of the volume, with the
 /// labelmap on the inner side.
 bool isShared(const Grid& labelmap, const Grid& volume, int axis, int side) {
   const Affine toVolume = volume.worldToIndex * labelmap.indexToWorld;
-  const Vec3 center = toVolume * labelmap.indexBox().center();
-  const Box box = volume.indexBox();
+  const Box labels = labelmap.indexBox(), box = volume.indexBox();
+  const Vec3 center = toVolume * labels.center();
   for (int other = 0; other < 3; ++other)
     for (const double face : {box.lower[other], box.upper[other]}) {
-      const bool inside = face == box.lower[other] ? center[other] > face : center[other] < face;
-      bool near = inside;
-      for (int i = 0; i < 8; ++i) {
-        const bool onFace = ((i >> axis) & 1) == side;
-        const double x = (toVolume * labelmap.indexBox().corner(i))[other];
-        near = near && (!onFace || std::abs(x - face) <= 0.5);
-      }
+      bool near = face == box.lower[other] ? center[other] > face : center[other] < face;
+      for (int i = 0; i < 8; ++i)
+        if (((i >> axis) & 1) == side)
+          near = near && std::abs((toVolume * labels.corner(i))[other] - face) <= 0.5;
       if (near)
         return true;
     }
   return false;
 }
 
-SharedFaces sharedFaces(const Grid& labelmap, const Grid& volume) {
-  SharedFaces shared{};
-  for (int axis = 0; axis < 3; ++axis)
-    for (int side = 0; side < 2; ++side)
-      shared[static_cast<std::size_t>(axis)][static_cast<std::size_t>(side)] =
-          isShared(labelmap, volume, axis, side);
-  return shared;
+/// Voxels of the labelmap, and one more beyond each face that lies on a face of the volume.
+VoxelExtent continued(const Grid& labelmap, const Grid& volume) {
+  VoxelExtent extent{Size3::Zero(), labelmap.size.array() - 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    extent.lower[axis] -= isShared(labelmap, volume, axis, 0);
+    extent.upper[axis] += isShared(labelmap, volume, axis, 1);
+  }
+  return extent;
 }
 
 /// Set of label values, queried at least once for every voxel.
@@ -52,25 +67,18 @@ public:
   void insert(std::int32_t value) {
     if (!std::in_range<Label>(value))
       return;
-    const auto label = static_cast<Label>(value);
-    if constexpr (sizeof(Label) <= 2)
-      m_values[static_cast<std::make_unsigned_t<Label>>(label)] = 1;
-    else
-      m_values.insert(label);
+    m_values.insert(static_cast<Label>(value));
+    m_lowBits[static_cast<std::uint16_t>(value)] = true;
   }
 
   bool contains(Label label) const {
-    if constexpr (sizeof(Label) <= 2)
-      return m_values[static_cast<std::make_unsigned_t<Label>>(label)] != 0;
-    else
-      return label != 0 && m_values.contains(label); // most voxels are background
+    return m_lowBits[static_cast<std::uint16_t>(label)] &&
+           (sizeof(Label) <= 2 || m_values.contains(label));
   }
 
 private:
-  struct Table : std::vector<std::uint8_t> {
-    Table() : std::vector<std::uint8_t>(std::size_t{1} << (8 * sizeof(Label))) {}
-  };
-  std::conditional_t<(sizeof(Label) <= 2), Table, std::set<Label>> m_values;
+  std::vector<std::uint8_t> m_lowBits = std::vector<std::uint8_t>(1 << 16); ///< 1: of a value
+  std::set<Label> m_values;
 };
 
 /// Focus in one labelmap: its chosen voxels, and their mask.
@@ -84,7 +92,9 @@ public:
       m_values[segment.layer].insert(segment.labelValue);
   }
 
-  void fill(Mask& mask, const SharedFaces& shared) const {
+  /// Sets grid, voxels and their count, cropped to the focus; leaves `mask` unchanged without
+  /// chosen voxels. Voxels of `continued` beyond the labelmap repeat its outermost ones, uncounted.
+  void fill(Mask& mask, const VoxelExtent& continued) const {
     const VoxelExtent extent = this->extent();
     if (extent.empty())
       return;
@@ -94,13 +104,19 @@ public:
     indexToWorld.translate(origin.cast<double>());
     mask.grid = Grid(size, indexToWorld);
     mask.voxels.resize(static_cast<std::size_t>(mask.grid.voxelCount()));
+    const Size3 last = m_grid.size.array() - 1;
     std::atomic<std::int64_t> total = 0;
     tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
       std::uint8_t* to = mask.voxels.data() + size.x() * size.y() * z;
       std::int64_t count = 0;
       for (std::int64_t y = 0; y < size.y(); ++y)
-        for (std::int64_t x = 0; x < size.x(); ++x)
-          *to++ = value(origin + Size3(x, y, z), shared, count);
+        for (std::int64_t x = 0; x < size.x(); ++x, ++to) {
+          const Size3 voxel = origin + Size3(x, y, z);
+          const Size3 nearest = voxel.cwiseMax(0).cwiseMin(last);
+          *to = voxel == voxel.cwiseMax(continued.lower).cwiseMin(continued.upper) &&
+                isChosen(nearest);
+          count += *to && voxel == nearest;
+        }
       total += count;
     });
     mask.count = total;
@@ -145,38 +161,145 @@ private:
     return {{first, y, z}, {last, y, z}};
   }
 
-  /// Mask value of a voxel, which may lie one beyond the labelmap; counts chosen voxels of the
-  /// labelmap.
-  std::uint8_t value(Size3 voxel, const SharedFaces& shared, std::int64_t& count) const {
-    bool beyond = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t last = m_grid.size[axis] - 1;
-      if (voxel[axis] >= 0 && voxel[axis] <= last)
-        continue;
-      if (!shared[static_cast<std::size_t>(axis)][voxel[axis] < 0 ? 0 : 1])
-        return 0;
-      voxel[axis] = std::clamp<std::int64_t>(voxel[axis], 0, last);
-      beyond = true;
-    }
-    const bool chosen = isChosen(voxel);
-    count += chosen && !beyond;
-    return chosen;
-  }
-
   const Grid& m_grid;
   std::size_t m_layerCount;
   const std::vector<Label>& m_labels;
   std::vector<ChosenValues<Label>> m_values; ///< chosen values of each layer
 };
 
+// ---- statistics
+
+struct ValueStatistics {
+  std::int64_t voxels = 0;
+  VoxelExtent extent = {};
+};
+
+using StatisticsOfValues = std::map<std::int32_t, ValueStatistics>;
+
+/// Adds one layer's voxels to the statistics of the values in `values`.
+template <typename Label>
+void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_t layer,
+                 std::size_t layerCount, StatisticsOfValues& values) {
+  std::size_t at = layer;
+  std::int32_t last = 0; // labels come in runs
+  ValueStatistics* counted = nullptr;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x, at += layerCount) {
+        const std::int32_t label = labels[at];
+        if (label != std::exchange(last, label)) {
+          const auto found = values.find(label);
+          counted = found == values.end() ? nullptr : &found->second;
+        }
+        if (counted) {
+          ++counted->voxels;
+          counted->extent.add({{x, y, z}, {x, y, z}});
+        }
+      }
+}
+
+/// Bounds of whole voxels, along the world's axes.
+Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
+  const Box voxels{extent.lower.cast<double>().array() - 0.5,
+                   extent.upper.cast<double>().array() + 0.5};
+  Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = grid.indexToWorld * voxels.corner(i);
+    bounds.lower = bounds.lower.cwiseMin(corner);
+    bounds.upper = bounds.upper.cwiseMax(corner);
+  }
+  return bounds;
+}
+
+// ---- messages
+
+std::string listed(const std::vector<SegmentInfo>& segments) {
+  const auto named = [](const SegmentInfo& segment) {
+    const std::string id = shown(segment.id);
+    return segment.name == segment.id ? id : textOf(id, " (", shown(segment.name), ')');
+  };
+  return joined(segments, ", ", named, 40);
+}
+
 } // namespace
 
-void fillMask(const Grid& labelmap, std::size_t layerCount, const Segmentation::Labels& labels,
-              const std::vector<SegmentInfo>& chosen, const Grid& volume, Mask& mask) {
-  const SharedFaces shared = sharedFaces(labelmap, volume);
+SegmentInfo Segmentation::find(const std::string& selector) const {
+  const auto value = parsed<std::int32_t>(selector);
+  const std::array<std::function<bool(const SegmentInfo&)>, 3> ways = {
+      [&](const SegmentInfo& segment) { return segment.id == selector; },
+      [&](const SegmentInfo& segment) { return segment.name == selector; },
+      [&](const SegmentInfo& segment) { return segment.labelValue == value; }};
+  for (const auto& matches : ways) {
+    std::vector<SegmentInfo> found;
+    std::ranges::copy_if(m_segments, std::back_inserter(found), matches);
+    if (found.size() > 1)
+      throw inputError(m_source, "segment \"", shown(selector), "\" can be any of ", listed(found),
+                       "; name one by its id");
+    if (!found.empty())
+      return found.front();
+  }
+  throw inputError(m_source, "has no segment \"", shown(selector), "\"; it has ",
+                   m_segments.empty() ? "none at all" : listed(m_segments));
+}
+
+std::vector<SegmentStatistics> Segmentation::statistics() const {
+  std::vector<StatisticsOfValues> layers(m_layerCount);
+  for (const SegmentInfo& segment : m_segments)
+    layers[segment.layer][segment.labelValue] = {};
   std::visit(
-      [&](const auto& values) { Focus(labelmap, layerCount, values, chosen).fill(mask, shared); },
-      labels);
+      [&](const auto& labels) {
+        for (std::size_t layer = 0; layer < m_layerCount; ++layer)
+          countVoxels(labels, m_grid.size, layer, m_layerCount, layers[layer]);
+      },
+      m_labels);
+  std::vector<SegmentStatistics> statistics;
+  for (const SegmentInfo& segment : m_segments) {
+    const ValueStatistics& value = layers[segment.layer].at(segment.labelValue);
+    statistics.push_back({value.voxels, {}});
+    if (value.voxels > 0)
+      statistics.back().bounds = worldBounds(m_grid, value.extent);
+  }
+  return statistics;
+}
+
+Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& volume,
+                        const MaskShaping& shaping) const {
+  if (shaping.margins.size() > 1 && shaping.margins.size() != selectors.size())
+    throw usageError("--margin: give one for all segments of --focus, or one each");
+  std::vector<SegmentInfo> chosen;
+  for (const std::string& selector : selectors)
+    chosen.push_back(find(selector));
+  const auto maskOf = [&](const std::vector<SegmentInfo>& segments) {
+    Mask mask;
+    for (const SegmentInfo& segment : segments)
+      mask.names.push_back(segment.name);
+    std::visit(
+        [&](const auto& labels) {
+          Focus(m_grid, m_layerCount, labels, segments).fill(mask, continued(m_grid, volume));
+        },
+        m_labels);
+    if (mask.count == 0)
+      throw inputError(m_source, "the focus has no voxel (", listed(segments),
+                       "); choose segments that are not empty");
+    return mask;
+  };
+  if (shaping == MaskShaping())
+    return maskOf(chosen);
+  const auto shaped = [&](const std::vector<SegmentInfo>& segments, double margin) {
+    const Mask mask = maskOf(segments);
+    return grown(shaping.smoothing > 0.0 ? betweenSlices(mask) : mask, margin, volume);
+  };
+  std::vector<Mask> masks;
+  if (shaping.margins.size() <= 1) // the union first: no gaps where segments touch
+    masks.push_back(shaped(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
+  else
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
+  Mask mask = smoothed(united(masks), shaping.smoothing, volume);
+  if (mask.count == 0)
+    throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (",
+                     listed(chosen), "); choose a margin nearer to 0, or less smoothing");
+  return mask;
 }
 
 } // namespace fenestra

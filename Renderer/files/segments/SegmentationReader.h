@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct SegmentInfo {
   Rgb color = Rgb::Constant(0.5); ///< display-encoded
   /// Terminology codes of type and body region, like "SCT^39607008"; empty: not stated.
   std::string type = {}, region = {};
+
+  /// Sets type and region from Slicer's tags of a segment; ignores malformed ones.
+  void readTerminology(std::string_view tags);
 };
 
 struct SegmentStatistics {
@@ -37,8 +41,13 @@ public:
       std::variant<std::vector<std::uint8_t>, std::vector<std::int16_t>, std::vector<std::int32_t>>;
 
   /// `source` names the file in messages.
-  Segmentation(std::string source, Grid grid, std::size_t layerCount, Labels labels,
-               std::vector<SegmentInfo> segments);
+  Segmentation(std::string source, const Grid& grid, std::size_t layerCount, Labels labels,
+               std::vector<SegmentInfo> segments)
+      : m_source(std::move(source)),
+        m_grid(grid),
+        m_layerCount(layerCount),
+        m_labels(std::move(labels)),
+        m_segments(std::move(segments)) {}
 
   const Grid& grid() const { return m_grid; }
   /// Source of the names of a label map's values: a file or a table; empty: they have none, or are
@@ -64,7 +73,7 @@ public:
             const MaskShaping& shaping = {}) const;
 
 private:
-  const SegmentInfo& find(const std::string& selector) const;
+  SegmentInfo find(const std::string& selector) const;
 
   std::string m_source, m_namesFrom;
   std::vector<std::string> m_warnings;
@@ -73,6 +82,9 @@ private:
   Labels m_labels;
   std::vector<SegmentInfo> m_segments;
 };
+
+/// Labels in a Segmentation's order, from `count` layers one after the other.
+Segmentation::Labels interleaved(Segmentation::Labels layers, std::size_t count);
 
 /// Reads Slicer's `.seg.nrrd`; a labelmap in any format and geometry that readVolume takes: one
 /// segment "Segment_<value>" for each value other than 0, named by `labels` or what is found

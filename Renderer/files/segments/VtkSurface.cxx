@@ -13,17 +13,17 @@
 namespace fenestra {
 namespace {
 
-constexpr const char* labelmapMend =
-    "; export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
-
-/// Thrown for malformed content; readVtkSurface adds the file's name.
-struct DamagedSurface {};
-/// Thrown where the allowance is exceeded.
-struct LargeSurface {};
+/// Thrown by the functions below; readVtkSurface adds the file's name and the mend.
+struct RefusedSurface {
+  const char* why;
+};
+constexpr RefusedSurface damagedSurface{"is damaged or no surface as Slicer writes it"};
+constexpr RefusedSurface largeSurface{
+    "takes, with the surfaces before it, more than 1 GiB of memory"};
 
 void take(SurfaceAllowance& allowance, std::uint64_t count, std::uint64_t size = 1) {
   if (count > allowance.bytes / size)
-    throw LargeSurface();
+    throw largeSurface;
   allowance.bytes -= count * size;
 }
 
@@ -32,7 +32,7 @@ void take(SurfaceAllowance& allowance, std::uint64_t count, std::uint64_t size =
 std::string decoded(std::string_view text) {
   auto bytes = fromBase64(text);
   if (!bytes)
-    throw DamagedSurface();
+    throw damagedSurface;
   return *std::move(bytes);
 }
 
@@ -40,7 +40,7 @@ template <typename T>
 T numberAt(std::string_view bytes, std::uint64_t index) {
   T value{};
   if (bytes.size() / sizeof(T) <= index)
-    throw DamagedSurface();
+    throw damagedSurface;
   std::memcpy(&value, bytes.data() + index * sizeof(T), sizeof(T));
   return value;
 }
@@ -63,7 +63,7 @@ std::string plainBytes(std::string_view text, const Coding& coding) {
   const std::uint64_t length = coding.header(bytes, 0);
   bytes.erase(0, coding.headerSize());
   if (length > bytes.size())
-    throw DamagedSurface();
+    throw damagedSurface;
   bytes.resize(static_cast<std::size_t>(length));
   return bytes;
 }
@@ -76,26 +76,26 @@ std::string inflatedBytes(std::string_view text, const Coding& coding) {
   const std::string start = decoded(text.substr(0, encodedSize(3 * word)));
   const std::uint64_t blocks = coding.header(start, 0);
   if (blocks > text.size())
-    throw DamagedSurface();
+    throw damagedSurface;
   if (blocks == 0)
     return {};
   const std::uint64_t headerText = encodedSize((3 + blocks) * word);
   if (headerText > text.size())
-    throw DamagedSurface();
+    throw damagedSurface;
   const std::string header = decoded(text.substr(0, static_cast<std::size_t>(headerText)));
   const std::string packed = decoded(text.substr(static_cast<std::size_t>(headerText)));
   const std::uint64_t blockSize = coding.header(header, 1), lastSize = coding.header(header, 2);
   std::string bytes;
   std::size_t at = 0;
   if (std::max(blockSize, lastSize) > coding.allowance.bytes / blocks)
-    throw LargeSurface();
+    throw largeSurface;
   for (std::uint64_t block = 0; block < blocks; ++block) {
     const std::uint64_t length = coding.header(header, 3 + block);
     const bool partial = block + 1 == blocks && lastSize != 0;
     const std::uint64_t size = partial ? lastSize : blockSize;
     constexpr std::uint64_t ratio = 1032, slack = 64; // deflate's greatest
     if (length > packed.size() - at || size > length * ratio + slack)
-      throw DamagedSurface();
+      throw damagedSurface;
     const std::size_t before = bytes.size();
     bytes.resize(before + static_cast<std::size_t>(size));
     auto written = static_cast<uLongf>(size);
@@ -103,7 +103,7 @@ std::string inflatedBytes(std::string_view text, const Coding& coding) {
                    reinterpret_cast<const Bytef*>(packed.data() + at),
                    static_cast<uLong>(length)) != Z_OK ||
         written != size)
-      throw DamagedSurface();
+      throw damagedSurface;
     at += static_cast<std::size_t>(length);
   }
   return bytes;
@@ -133,11 +133,11 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
     take(coding.allowance, text.size() / 2, sizeof(double)); // at least a digit and a blank each
     auto numbers = parseNumbers(text);
     if (!numbers)
-      throw DamagedSurface();
+      throw damagedSurface;
     return *std::move(numbers);
   }
   if (format != "binary")
-    throw DamagedSurface(); // "appended", which Slicer does not write
+    throw damagedSurface; // "appended", which Slicer does not write
   const std::string bytes = binary(array, coding);
   using Convert = std::vector<double> (*)(const std::string&, const Coding&);
   static const std::map<std::string, Convert> known = {
@@ -146,7 +146,7 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
       {"Int64", converted<std::int64_t>}, {"UInt64", converted<std::uint64_t>}};
   const auto convert = known.find(array.attribute("type").value());
   if (convert == known.end())
-    throw DamagedSurface();
+    throw damagedSurface;
   return convert->second(bytes, coding);
 }
 
@@ -164,33 +164,31 @@ std::string textOf(const pugi::xml_node& array, const Coding& coding) {
 
 // ---- polygons
 
-using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-
 pugi::xml_node arrayNamed(const pugi::xml_node& parent, const char* name) {
   return parent.find_child_by_attribute("DataArray", "Name", name);
 }
 
-/// Adds the triangles of polygons (fans) or strips.
-void addTriangles(const pugi::xml_node& cells, const Coding& coding, bool strips,
-                  std::size_t firstPoint, std::size_t pointCount, Triangles& triangles) {
+/// Adds the triangles of polygons (fans) or strips, whose points are those from `first` on.
+void addTriangles(const pugi::xml_node& cells, const Coding& coding, bool strips, std::size_t first,
+                  VtkSurface& surface) {
   if (!arrayNamed(cells, "offsets"))
     return;
-  const std::vector<double> corners = numbersOf(arrayNamed(cells, "connectivity"), coding);
+  const auto pointCount = static_cast<double>(surface.points.size() - first);
   std::vector<std::uint32_t> points;
-  for (const double corner : corners) {
-    if (!(corner >= 0.0 && corner < static_cast<double>(pointCount)))
-      throw DamagedSurface();
-    points.push_back(static_cast<std::uint32_t>(firstPoint + static_cast<std::size_t>(corner)));
+  for (const double corner : numbersOf(arrayNamed(cells, "connectivity"), coding)) {
+    if (!(corner >= 0.0 && corner < pointCount))
+      throw damagedSurface;
+    points.push_back(static_cast<std::uint32_t>(first + static_cast<std::size_t>(corner)));
   }
   std::size_t begin = 0;
   for (const double offset : numbersOf(arrayNamed(cells, "offsets"), coding)) {
     if (!(offset >= static_cast<double>(begin) && offset <= static_cast<double>(points.size())))
-      throw DamagedSurface();
+      throw damagedSurface;
     const auto end = static_cast<std::size_t>(offset);
     if (end > begin + 2)
-      take(coding.allowance, end - begin - 2, sizeof(Triangles::value_type));
+      take(coding.allowance, end - begin - 2, sizeof(surface.triangles.front()));
     for (std::size_t i = begin + 2; i < end; ++i)
-      triangles.push_back({points[strips ? i - 2 : begin], points[i - 1], points[i]});
+      surface.triangles.push_back({points[strips ? i - 2 : begin], points[i - 1], points[i]});
     begin = end;
   }
 }
@@ -200,17 +198,16 @@ void addPiece(const pugi::xml_node& piece, const Coding& coding, VtkSurface& sur
   if (const auto array = piece.child("Points").child("DataArray")) {
     const std::vector<double> coordinates = numbersOf(array, coding);
     if (coordinates.size() % 3 != 0 || coordinates.size() > UINT32_MAX)
-      throw DamagedSurface();
+      throw damagedSurface;
     for (std::size_t i = 0; i < coordinates.size(); i += 3) {
       surface.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
       constexpr double largest = 1e9; // mm
       if (!(surface.points.back().array().abs() < largest).all())
-        throw DamagedSurface();
+        throw damagedSurface;
     }
   }
-  const std::size_t count = surface.points.size() - first;
-  addTriangles(piece.child("Polys"), coding, false, first, count, surface.triangles);
-  addTriangles(piece.child("Strips"), coding, true, first, count, surface.triangles);
+  addTriangles(piece.child("Polys"), coding, false, first, surface);
+  addTriangles(piece.child("Strips"), coding, true, first, surface);
   surface.hasLines = surface.hasLines || piece.attribute("NumberOfLines").as_int() > 0;
 }
 
@@ -221,7 +218,7 @@ VtkSurface surfaceOf(const pugi::xml_document& document, const std::set<std::str
   if (std::string_view(file.attribute("type").value()) != "PolyData" ||
       std::string_view(file.attribute("byte_order").value()) != "LittleEndian" ||
       (!compressor.empty() && compressor != "vtkZLibDataCompressor"))
-    throw DamagedSurface();
+    throw damagedSurface;
   const Coding coding{allowance,
                       std::string_view(file.attribute("header_type").value()) == "UInt64",
                       !compressor.empty()};
@@ -250,13 +247,11 @@ VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std:
   try {
     take(allowance, std::filesystem::file_size(path));
     if (!document.load_file(path.c_str()))
-      throw DamagedSurface();
+      throw damagedSurface;
     return surfaceOf(document, fieldData, allowance);
-  } catch (const DamagedSurface&) {
-    throw inputError(path, "is damaged or no surface as Slicer writes it", labelmapMend);
-  } catch (const LargeSurface&) {
-    throw inputError(path, "takes, with the surfaces before it, more than 1 GiB of memory",
-                     labelmapMend);
+  } catch (const RefusedSurface& refused) {
+    throw inputError(path, refused.why,
+                     "; export the segmentation in Slicer as a binary labelmap (.seg.nrrd)");
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 // One surface of a VTK XML file (.vtp), as Slicer writes it: data inline, as text or base64, plain
-// or deflated. VTK is not used, since it trusts the sizes that a file
-// declares.
+// or deflated. VTK is not used, since it trusts the sizes that a file declares.
 
 #include "base/Vector.h"
 

@@ -11,26 +11,23 @@ namespace {
 
 constexpr std::size_t mostNodes = 100'000, mostAttributes = 1'000'000; ///< limits of a scene
 
-/// Attributes that hold references in older files, by the role that they have now.
-const std::map<std::string, std::string>& legacyRoles() {
-  static const std::map<std::string, std::string> roles = {
-      {"displayNodeRef", "display"},
-      {"displayNodeID", "display"},
-      {"storageNodeRef", "storage"},
-      {"storageNodeID", "storage"},
-      {"transformNodeRef", "transform"},
-      {"transformNodeID", "transform"},
-      {"volumePropertyNodeID", "volumeProperty"},
-      {"ROINodeID", "roi"},
-      {"shaderPropertyNodeId", "shaderProperty"},
-      {"colorNodeID", "color"},
-      {"colorNodeRef", "color"},
-      {"viewNodeRef", "view"},
-      {"viewNodeIDs", "view"},
-      {"activeVolumeID", "ActiveVolume"},
-  };
-  return roles;
-}
+/// Attributes that hold references in older files, with the role that they have now; of two with
+/// one role the first wins.
+constexpr std::pair<const char*, const char*> legacyRoles[] = {
+    {"displayNodeID", "display"},
+    {"displayNodeRef", "display"},
+    {"storageNodeID", "storage"},
+    {"storageNodeRef", "storage"},
+    {"transformNodeID", "transform"},
+    {"transformNodeRef", "transform"},
+    {"colorNodeID", "color"},
+    {"colorNodeRef", "color"},
+    {"viewNodeIDs", "view"},
+    {"viewNodeRef", "view"},
+    {"activeVolumeID", "ActiveVolume"},
+    {"volumePropertyNodeID", "volumeProperty"},
+    {"ROINodeID", "roi"},
+    {"shaderPropertyNodeId", "shaderProperty"}};
 
 /// "role1:id1 {key=value} id2;role2:id3;": braces hold properties of the reference before them.
 void readReferences(const std::string& text, MrmlNode& node) {
@@ -38,15 +35,11 @@ void readReferences(const std::string& text, MrmlNode& node) {
     const std::size_t colon = entry.find(':');
     if (colon == std::string::npos || colon == 0)
       continue;
-    const std::string role = entry.substr(0, colon);
-    if (node.references.contains(role))
-      continue;
-    std::vector<std::string> ids;
-    for (const std::string& word : words(entry.substr(colon + 1)))
-      if (word.find_first_of("{}") == std::string::npos)
-        ids.push_back(word);
+    std::vector<std::string> ids = words(entry.substr(colon + 1));
+    std::erase_if(
+        ids, [](const std::string& word) { return word.find_first_of("{}") != std::string::npos; });
     if (!ids.empty())
-      node.references[role] = std::move(ids);
+      node.references.try_emplace(entry.substr(0, colon), std::move(ids));
   }
 }
 
@@ -57,10 +50,9 @@ MrmlNode readNode(const pugi::xml_node& element) {
   node.id = node.text("id");
   node.name = node.text("name");
   readReferences(node.text("references"), node);
-  for (const auto& [attribute, role] : legacyRoles())
-    if (const std::string* value = node.find(attribute); value && !node.references.contains(role))
-      if (std::vector<std::string> ids = words(*value); !ids.empty())
-        node.references[role] = std::move(ids);
+  for (const auto& [attribute, role] : legacyRoles)
+    if (std::vector<std::string> ids = words(node.text(attribute)); !ids.empty())
+      node.references.try_emplace(role, std::move(ids));
   return node;
 }
 
@@ -107,6 +99,13 @@ std::optional<std::vector<double>> MrmlNode::numbers(const std::string& attribut
 std::optional<double> MrmlNode::number(const std::string& attribute) const {
   const auto all = numbers(attribute);
   return all && all->size() == 1 ? std::optional(all->front()) : std::nullopt;
+}
+
+std::optional<Vec3> MrmlNode::triple(const std::string& attribute) const {
+  const auto all = numbers(attribute);
+  if (!all || all->size() != 3)
+    return std::nullopt;
+  return Vec3((*all)[0], (*all)[1], (*all)[2]);
 }
 
 std::string MrmlNode::referenced(const std::string& role) const {
@@ -162,6 +161,11 @@ const MrmlNode* MrmlDocument::find(const std::string& id) const {
 
 Error MrmlDocument::error(const MrmlNode& node, const std::string& what) const {
   return inputError(m_source, node.tag, " ", shown(node), ": ", what);
+}
+
+Complaint MrmlDocument::complaint(const MrmlNode& node, const std::string& subject,
+                                  const std::string& mend) const {
+  return [=, this, &node](const std::string& what) { return error(node, subject + what + mend); };
 }
 
 std::string shown(const MrmlNode& node) {

@@ -2,7 +2,7 @@
 // MRML scene as stored: nodes with attributes, and references between nodes. MrmlScene interprets
 // them.
 
-#include "base/Error.h"
+#include "base/Checked.h"
 
 #include <map>
 #include <optional>
@@ -29,6 +29,8 @@ struct MrmlNode {
   std::optional<std::vector<double>> numbers(const std::string& attribute) const;
   /// The attribute's only number; nullopt: missing, or other text.
   std::optional<double> number(const std::string& attribute) const;
+  /// The attribute's three numbers; nullopt: missing, or other text.
+  std::optional<Vec3> triple(const std::string& attribute) const;
   /// First id of a role; empty: none.
   std::string referenced(const std::string& role) const;
 };
@@ -56,6 +58,9 @@ public:
 
   /// Error (input) that names the file and the node.
   Error error(const MrmlNode& node, const std::string& what) const;
+  /// Maker of such errors for a check: `subject` before the fault, `mend` behind it.
+  Complaint complaint(const MrmlNode& node, const std::string& subject = "",
+                      const std::string& mend = "") const;
 
 private:
   std::string m_source, m_version;

@@ -1,6 +1,5 @@
 // Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
 
-#include "base/Checked.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
 #include "files/slicer/MrmlScene.h"
@@ -50,7 +49,7 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
   if (const auto insideOut = roi.find("insideOut"))
     refuseInsideOut(insideOut->boolean(), fail);
 
-  Vec3 center = roi.at("center").triple(-largest, largest);
+  const Vec3 center = roi.at("center").triple(-largest, largest);
   Mat3 axes = Mat3::Identity();
   const bool lps = isLps(roi);
   if (const auto orientation = roi.find("orientation")) {
@@ -59,12 +58,9 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
       return Vec3(numbers[i], numbers[i + 1], numbers[i + 2]);
     };
     axes = Mat3::FromRows(row(0), row(3), row(6));
-    if (lps)
-      axes = lpsToRas * axes;
   }
-  if (lps)
-    center = lpsToRas * center;
-  return boxMap(center, axes, 0.5 * roi.at("size").triple(-largest, largest), fail);
+  const Affine box = boxMap(center, axes, 0.5 * roi.at("size").triple(-largest, largest), fail);
+  return lps ? Affine(lpsToRas) * box : box;
 }
 
 // ---- older forms: centre and half edges, RAS
@@ -95,17 +91,16 @@ Affine readAnnotation(const std::filesystem::path& path) {
 }
 
 Affine inlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
-  const auto fail = [&](const std::string& what) { return scene.document.error(roi, what); };
   std::string text = roi.text("ctrlPtsCoord"); // "x y z|x y z"
   if (text.empty())
     text = roi.text("xyz") + roi.text("XYZ") + " " + roi.text("radiusXYZ") + roi.text("RadiusXYZ");
   std::replace(text.begin(), text.end(), '|', ' ');
-  return axisAligned(parseNumbers(text).value_or(std::vector<double>()), fail);
+  return axisAligned(parseNumbers(text).value_or(std::vector<double>()),
+                     scene.document.complaint(roi));
 }
 
 Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
-  refuseInsideOut(roi.flag("insideOut", false),
-                  [&](const std::string& what) { return scene.document.error(roi, what); });
+  refuseInsideOut(roi.flag("insideOut", false), scene.document.complaint(roi));
   const std::vector<std::string> names = storedFiles(scene, roi);
   if (names.empty())
     return inlineRoi(scene, roi);
@@ -118,11 +113,9 @@ Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
 } // namespace
 
 CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
-  return CropBox(
-      checkedMap(toWorld(scene, roi) * boxInNode(scene, roi), [&](const std::string& what) {
-        return scene.document.error(roi, "its box in the world " + what +
-                                             "; mend it in the Markups module");
-      }));
+  return CropBox(checkedMap(
+      toWorld(scene, roi) * boxInNode(scene, roi),
+      scene.document.complaint(roi, "its box in the world ", "; mend it in the Markups module")));
 }
 
 } // namespace fenestra

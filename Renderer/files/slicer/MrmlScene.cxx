@@ -1,12 +1,11 @@
 #include "files/slicer/MrmlScene.h"
 
-#include "base/TextStream.h"
+#include "base/Checked.h"
 #include "files/looks/TransferReader.h"
 #include "files/medical/DicomSeries.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/VolumeReader.h"
 #include "model/medium/VolumeProperty.h"
-#include "model/volume/CheckedGrid.h"
 
 #include <set>
 
@@ -33,10 +32,9 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
 /// Grid of a node in the world.
 Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& above,
                 const Grid& grid) {
-  return checkedGrid(grid.size, above * grid.indexToWorld, [&](const std::string& what) {
-    return scene.document.error(node, "its place in the world " + what +
-                                          "; mend the transforms above it");
-  });
+  return {grid.size, checkedMap(above * grid.indexToWorld,
+                                scene.document.complaint(node, "its place in the world ",
+                                                         "; mend the transforms above it"))};
 }
 
 /// Names of the files that hold a node's data. Throws Error (input) where there are none.
@@ -47,15 +45,8 @@ std::vector<std::string> dataFiles(const MrmlScene& scene, const MrmlNode& node)
   return names;
 }
 
-bool isOf(std::string_view word, std::initializer_list<std::string_view> words) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 Rgb colorOf(const MrmlNode& node, const std::string& attribute, const Rgb& otherwise) {
-  const auto numbers = node.numbers(attribute);
-  if (!numbers || numbers->size() != 3)
-    return otherwise;
-  return Rgb((*numbers)[0], (*numbers)[1], (*numbers)[2]).max(0.0).min(1.0);
+  return node.triple(attribute).value_or(otherwise).array().max(0.0).min(1.0);
 }
 
 } // namespace
@@ -70,13 +61,19 @@ bool isLabelMap(const MrmlNode& node) {
   return node.tag == "LabelMapVolume" || (node.tag == "Volume" && node.flag("labelMap", false));
 }
 
+bool isSegmentation(const MrmlNode& node) {
+  return node.tag == "Segmentation" || isLabelMap(node);
+}
+
 bool isScalarVolume(const MrmlNode& node) {
   return node.tag == "Volume" && !isLabelMap(node);
 }
 
 bool isVolumeRendering(const MrmlNode& node) {
-  return isOf(node.tag, {"GPURayCastVolumeRendering", "CPURayCastVolumeRendering",
-                         "MultiVolumeRendering", "NCIRayCastVolumeRendering", "VolumeRendering"});
+  static const std::set<std::string> tags = {"GPURayCastVolumeRendering",
+                                             "CPURayCastVolumeRendering", "MultiVolumeRendering",
+                                             "NCIRayCastVolumeRendering", "VolumeRendering"};
+  return tags.contains(node.tag);
 }
 
 bool isShown(const MrmlNode& display) {
@@ -144,38 +141,43 @@ std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const Mrml
   const MrmlNode* display = scene.document.follow(node, "display");
   if (!display)
     return visible;
-  TextReader segments(display->text("SegmentationDisplayProperties"));
-  for (std::string segment; std::getline(segments, segment, '|');) {
-    TextReader words(segment);
-    std::string id;
-    words >> id;
-    bool shown = true;
-    for (std::string word; words >> word;)
-      shown = shown && word != "Visible:false" && word != "Visible3D:false";
-    if (!id.empty())
-      visible[decodedUrl(id)] = shown;
-  }
+  for (const std::string& segment : split(display->text("SegmentationDisplayProperties"), '|'))
+    if (const std::vector<std::string> parts = words(segment); !parts.empty()) // id, then settings
+      visible[decodedUrl(parts.front())] =
+          std::none_of(parts.begin() + 1, parts.end(), [](const std::string& setting) {
+            return setting == "Visible:false" || setting == "Visible3D:false";
+          });
   return visible;
 }
 
+TransferFunction propertyIn(const MrmlDocument& document, const MrmlNode& property) {
+  return parseTransferFunction(property.attributes,
+                               textOf(document.source(), ": ", property.tag, ' ', shown(property)));
+}
+
+std::vector<std::string> propertyNames(const MrmlDocument& document) {
+  std::vector<std::string> names;
+  for (const MrmlNode* node : document.withTag("VolumeProperty"))
+    names.push_back(node->name);
+  return names;
+}
+
 TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property) {
-  const std::string inScene = scene.document.source() + ": " + property.tag + " " + shown(property);
   const std::vector<std::string> names = storedFiles(scene, property);
   const bool isInline = property.find("scalarOpacity") && property.find("colorTransfer");
   if (names.empty() && !isInline)
     throw scene.document.error(property, "has neither a file nor points of its own; save the "
                                          "volume property, or give --transfer");
   if (names.empty())
-    return parseTransferFunction(property.attributes, inScene);
+    return propertyIn(scene.document, property);
   return scene.files.read(names,
                           [](const Paths& files) { return readTransferFunction(files.front()); });
 }
 
 std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const MrmlNode& display,
                                                 const std::array<double, 2>& range) {
-  const auto number = [&display](const std::string& attribute, double otherwise) {
-    const auto numbers = display.numbers(attribute);
-    return numbers && numbers->size() == 1 ? numbers->front() : otherwise;
+  const auto number = [&display](const char* attribute, double otherwise) {
+    return display.number(attribute).value_or(otherwise);
   };
   const std::string colors = display.referenced("color");
   if (!display.find("window") || !display.find("level") ||

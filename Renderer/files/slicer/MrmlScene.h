@@ -6,7 +6,6 @@
 #include "files/segments/SegmentationReader.h"
 #include "files/slicer/MrmlDocument.h"
 #include "files/slicer/SceneFiles.h"
-#include "files/slicer/TransformFile.h"
 #include "model/camera/Camera.h"
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Domain.h"
@@ -16,7 +15,6 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -30,11 +28,13 @@ struct MrmlScene {
   MrmlDocument document;
   /// Result of reading each transform file, errors included: many nodes may name one file, and
   /// reading takes a child process.
-  std::map<std::pair<std::string, TransformSense>, std::variant<Affine, Error>> transformFiles;
+  std::map<std::string, std::variant<Affine, Error>> transformFiles;
 };
 
 /// True for a label map: by its own tag, in older scenes by an attribute.
 bool isLabelMap(const MrmlNode& node);
+/// True for a segmentation or a label map.
+bool isSegmentation(const MrmlNode& node);
 bool isScalarVolume(const MrmlNode& node);
 /// True for a display node of any volume rendering method.
 bool isVolumeRendering(const MrmlNode& node);
@@ -73,6 +73,11 @@ std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode&
 /// Visibility in 3-D by segment id, from the segmentation's display; segments that the map lacks
 /// are visible.
 std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node);
+
+/// Transfer function from a volume property node's attributes.
+TransferFunction propertyIn(const MrmlDocument& document, const MrmlNode& property);
+/// Names of the volume properties, in file order.
+std::vector<std::string> propertyNames(const MrmlDocument& document);
 
 /// Transfer function of a volume property node: from its storage file, else from its attributes.
 TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property);

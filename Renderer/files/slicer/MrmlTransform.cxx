@@ -1,7 +1,8 @@
 // Transforms above nodes, and cameras, which transforms place.
 
 #include "files/slicer/MrmlScene.h"
-#include "model/camera/CheckedPose.h"
+#include "files/slicer/TransformFile.h"
+#include "model/camera/Camera.h"
 
 #include <algorithm>
 
@@ -17,10 +18,8 @@ std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
   if (!node.find(attribute))
     return std::nullopt;
   const auto numbers = node.numbers(attribute);
-  const auto refuse = [&](const std::string& what) {
-    return scene.document.error(node,
-                                attribute + ": " + what + "; mend it in the Transforms module");
-  };
+  const Complaint refuse =
+      scene.document.complaint(node, attribute + ": ", "; mend it in the Transforms module");
   if (!numbers || numbers->size() != 16)
     throw refuse("must be 16 numbers");
   const auto row = [&numbers](std::size_t i) { // first three of the row's four
@@ -32,38 +31,34 @@ std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
   return checkedMap(Affine(Mat3::FromRows(row(0), row(1), row(2)), translation), refuse);
 }
 
-/// Sense of a node's file: from the parent, unless an old scene says otherwise; linear transforms
-/// said so the wrong way round (vtkMRMLLinearTransformNode::ReadXMLAttributes).
-TransformSense senseOf(const MrmlNode& node) {
+/// True if a node's file maps to the parent, as some old scenes say; linear transforms said so the
+/// wrong way round (vtkMRMLLinearTransformNode::ReadXMLAttributes).
+bool isFileToParent(const MrmlNode& node) {
   const std::string* said = node.find("readWriteAsTransformToParent");
-  if (!said)
-    return TransformSense::fromParent;
-  const bool toParent = node.tag == "LinearTransform" ? *said != "true" : *said == "true";
-  return toParent ? TransformSense::toParent : TransformSense::fromParent;
+  return said && (*said == "true") != (node.tag == "LinearTransform");
 }
 
 std::optional<Affine> inlineMatrix(const MrmlScene& scene, const MrmlNode& node) {
   if (auto toParent = matrixOf(scene, node, "matrixTransformToParent"))
     return toParent;
-  const auto fromParent = matrixOf(scene, node, "matrixTransformFromParent");
-  return fromParent ? std::optional<Affine>(fromParent->inverse()) : std::nullopt;
+  if (const auto fromParent = matrixOf(scene, node, "matrixTransformFromParent"))
+    return fromParent->inverse();
+  return std::nullopt;
 }
 
-std::variant<Affine, Error> readOrError(MrmlScene& scene, const std::string& file,
-                                        TransformSense sense) {
+std::variant<Affine, Error> readOrError(MrmlScene& scene, const std::string& file) {
   try {
-    return scene.files.read(
-        {file}, [&](const auto& files) { return readLinearTransform(files.front(), sense); });
+    return scene.files.read({file},
+                            [](const auto& files) { return readLinearTransform(files.front()); });
   } catch (const Error& error) {
     return error;
   }
 }
 
-Affine transformInFile(MrmlScene& scene, const std::string& file, TransformSense sense) {
-  const std::pair key(file, sense);
-  auto known = scene.transformFiles.find(key);
+Affine transformInFile(MrmlScene& scene, const std::string& file) {
+  auto known = scene.transformFiles.find(file);
   if (known == scene.transformFiles.end())
-    known = scene.transformFiles.emplace(key, readOrError(scene, file, sense)).first;
+    known = scene.transformFiles.emplace(file, readOrError(scene, file)).first;
   else if (scene.files.holds(file))
     scene.files.locate(file); // counts as read again
   if (const Error* error = std::get_if<Error>(&known->second))
@@ -82,7 +77,8 @@ Affine toParent(MrmlScene& scene, const MrmlNode& node) {
       throw scene.document.error(node, "has neither a matrix nor a file; save the transform again");
     return *matrix;
   }
-  return transformInFile(scene, names.front(), senseOf(node));
+  const Affine stored = transformInFile(scene, names.front());
+  return isFileToParent(node) ? stored : stored.inverse();
 }
 
 } // namespace
@@ -105,18 +101,16 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
                                        "mend them in the Transforms module");
     result = toParent(scene, *above) * result;
   }
-  return checkedMap(result, [&](const std::string& what) {
-    return scene.document.error(node, "the product of the transforms above it " + what +
-                                          "; mend them in the Transforms module");
-  });
+  return checkedMap(result,
+                    scene.document.complaint(node, "the product of the transforms above it ",
+                                             "; mend them in the Transforms module"));
 }
 
 CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
   const auto triple = [&](const std::string& attribute) {
-    const auto numbers = camera.numbers(attribute);
-    if (!numbers || numbers->size() != 3)
-      throw scene.document.error(camera, attribute + ": must be three numbers; give --view");
-    return Vec3((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    if (const auto numbers = camera.triple(attribute))
+      return *numbers;
+    throw scene.document.error(camera, attribute + ": must be three numbers; give --view");
   };
   const auto number = [&](const std::string& attribute, double otherwise, double most) {
     const double number =
@@ -143,9 +137,7 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     pose.target = since * pose.target;
     pose.up = since.linear() * pose.up;
   }
-  return checkedPose(pose, [&](const std::string& what) {
-    return scene.document.error(camera, "looks nowhere: " + what + "; give --view");
-  });
+  return checkedPose(pose, scene.document.complaint(camera, "looks nowhere: ", "; give --view"));
 }
 
 } // namespace fenestra

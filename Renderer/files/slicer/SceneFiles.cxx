@@ -5,16 +5,177 @@
 #include "base/safe/ShownText.h"
 #include "base/safe/SystemCalls.h"
 #include "files/medical/NamedFiles.h"
-#include "files/slicer/SceneArchive.h"
+
+#include <zip.h>
 
 #include <algorithm>
+#include <array>
 #include <climits>
+#include <fstream>
+#include <functional>
 #include <string_view>
 
 namespace fenestra {
 namespace {
 
 constexpr std::uint64_t largestScene = std::uint64_t{64} << 20; ///< bytes of a .mrml
+constexpr std::int64_t mostEntries = 1'000'000;
+
+/// Deflate's greatest ratio, unpacked to packed bytes. No archive of Slicer's claims more.
+constexpr std::uint64_t greatestRatio = 1032;
+
+/// Most bytes that all files of an archive may unpack to: a volume of zeros packs better than 100
+/// to 1, a whole scene does not.
+std::uint64_t mostUnpacked(std::uint64_t archiveBytes) {
+  return (std::uint64_t{1} << 30) + 100 * archiveBytes;
+}
+
+bool leadsOut(const std::filesystem::path& name) {
+  return name.is_absolute() ||
+         std::any_of(name.begin(), name.end(), [](const auto& part) { return part == ".."; });
+}
+
+} // namespace
+
+/// A zip archive with a scene and its files.
+class SceneArchive {
+public:
+  /// Throws Error (input) where `path` is no archive, or an entry's name leads out of the archive.
+  explicit SceneArchive(const std::filesystem::path& path);
+
+  /// Number of each file in the archive, by normal relative path; of several files with one path
+  /// the first.
+  const std::map<std::filesystem::path, std::uint64_t>& files() const { return m_files; }
+
+  /// Writes one of files() into an existing, empty file. Throws Error: input where the entry is
+  /// damaged, encrypted or larger than its packed bytes allow; output where there is no room.
+  void extract(const std::filesystem::path& file, const std::filesystem::path& destination);
+  /// Content of one of files(). Throws Error (input) as extract does, and for more than `most`
+  /// bytes.
+  std::string text(const std::filesystem::path& file, std::uint64_t most) const;
+
+private:
+  struct Close {
+    void operator()(zip_t* archive) const { zip_discard(archive); }
+    void operator()(zip_file_t* file) const { zip_fclose(file); }
+  };
+  using Chunk = std::function<void(std::string_view)>;
+
+  Error error(const std::filesystem::path& file, const std::string& what) const {
+    return inputError(m_source, oneLine(file.string()), " in it ", what);
+  }
+  Error damaged(const std::filesystem::path& file) const {
+    return error(file, "is damaged; save the scene again");
+  }
+
+  zip_stat_t stat(std::uint64_t entry, const std::filesystem::path& file) const {
+    zip_stat_t stat;
+    zip_stat_init(&stat);
+    constexpr zip_uint64_t needed = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_ENCRYPTION_METHOD;
+    if (zip_stat_index(m_archive.get(), entry, 0, &stat) != 0 || (stat.valid & needed) != needed)
+      throw damaged(file);
+    if (stat.encryption_method != ZIP_EM_NONE)
+      throw error(file, "is encrypted; save the scene without a password");
+    if (stat.size / greatestRatio > stat.comp_size)
+      throw error(file, "claims more bytes than it can hold; save the scene again");
+    return stat;
+  }
+
+  /// Passes the entry's bytes to `take`. Throws Error (input) unless they are `size` bytes with the
+  /// right checksum.
+  void read(std::uint64_t entry, const std::filesystem::path& file, std::uint64_t size,
+            const Chunk& take) const {
+    const std::unique_ptr<zip_file_t, Close> stream(zip_fopen_index(m_archive.get(), entry, 0));
+    if (!stream)
+      throw damaged(file);
+    std::array<char, 1 << 16> buffer;
+    std::uint64_t rest = size;
+    for (;;) { // to the end of the stream, where the checksum is
+      const zip_int64_t count = zip_fread(stream.get(), buffer.data(), buffer.size());
+      if (count < 0 || static_cast<std::uint64_t>(count) > rest)
+        throw damaged(file);
+      if (count == 0)
+        break;
+      rest -= static_cast<std::uint64_t>(count);
+      take({buffer.data(), static_cast<std::size_t>(count)});
+    }
+    if (rest > 0)
+      throw damaged(file);
+  }
+
+  std::string m_source;
+  std::unique_ptr<zip_t, Close> m_archive;
+  std::uint64_t m_unpackable = 0; ///< bytes that may still be extracted
+  std::map<std::filesystem::path, std::uint64_t> m_files;
+};
+
+SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.string()) {
+  int failure = 0;
+  errno = 0;
+  zip_t* zip = zip_open(path.c_str(), ZIP_RDONLY, &failure);
+  if (!zip && (failure == ZIP_ER_OPEN || failure == ZIP_ER_READ) && errno != 0)
+    throw readingError(path, errno, "check its permissions");
+  if (!zip)
+    throw inputError(m_source, "is no whole archive; save the scene again, or name its .mrml");
+  m_unpackable = mostUnpacked(std::filesystem::file_size(path));
+  m_archive.reset(zip);
+  const zip_int64_t count = zip_get_num_entries(zip, 0);
+  if (count > mostEntries)
+    throw inputError(m_source, "holds more than a million files; save a smaller scene");
+
+  for (std::uint64_t entry = 0; entry < static_cast<std::uint64_t>(count); ++entry) {
+    const char* name = zip_get_name(zip, entry, 0);
+    if (!name)
+      throw inputError(m_source, "has an entry without a name; save the scene again");
+    const std::filesystem::path file = name;
+    if (leadsOut(file))
+      throw inputError(m_source, "holds an entry that leads out of the archive (",
+                       shown(file.string()),
+                       "); Slicer writes no such archive, so do not trust it");
+    if (!file.empty() && file.has_filename())
+      m_files.try_emplace(file.lexically_normal(), entry);
+  }
+}
+
+void SceneArchive::extract(const std::filesystem::path& file,
+                           const std::filesystem::path& destination) {
+  const std::uint64_t entry = m_files.at(file);
+  const std::uint64_t size = stat(entry, file).size;
+  if (size > m_unpackable)
+    throw error(file, "and what was unpacked before have more bytes than a scene packs into "
+                      "an archive of this size; save the scene again, or unpack it yourself");
+  m_unpackable -= size;
+  const auto cannotUnpack = [&](int code) {
+    return outputError(oneLine(destination.string()), oneLine(file.string()),
+                       " cannot be unpacked: ", systemMessage(code), "; ",
+                       writingMend(code, "set TMPDIR to another folder"));
+  };
+  std::error_code unknown;
+  if (size > std::filesystem::space(destination.parent_path(), unknown).available && !unknown)
+    throw cannotUnpack(ENOSPC);
+  errno = 0;
+  // Mode `in`: does not make the file again if the end of the process has removed it.
+  std::ofstream out(destination, std::ios::binary | std::ios::in);
+  read(entry, file, size, [&](std::string_view chunk) {
+    if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size())))
+      throw cannotUnpack(errno);
+  });
+  out.close();
+  if (!out)
+    throw cannotUnpack(errno);
+}
+
+std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t most) const {
+  const std::uint64_t entry = m_files.at(file);
+  const std::uint64_t size = stat(entry, file).size;
+  if (size > most)
+    throw error(file, textOf("is larger than ", most >> 20, " MB; save a smaller scene"));
+  std::string text;
+  read(entry, file, size, [&](std::string_view chunk) { text += chunk; });
+  return text;
+}
+
+namespace {
 
 std::ptrdiff_t depth(const std::filesystem::path& file) {
   return std::distance(file.begin(), file.end());
@@ -30,29 +191,25 @@ bool isTooLong(const std::filesystem::path& path) {
 /// Scene closest to the root, as in Slicer: deeper ones belong to sequences.
 std::filesystem::path mainScene(const SceneArchive& archive, const std::filesystem::path& path) {
   std::vector<std::filesystem::path> closest;
-  for (const auto& [file, entry] : archive.files()) {
-    if (lowerExtension(file) != ".mrml")
-      continue;
-    if (!closest.empty() && depth(file) < depth(closest.front()))
-      closest.clear();
-    if (closest.empty() || depth(file) == depth(closest.front()))
+  for (const auto& [file, entry] : archive.files())
+    if (lowerExtension(file) == ".mrml")
       closest.push_back(file);
-  }
   if (closest.empty())
-    throw inputError(path.string(), "holds no .mrml, so it is no scene; save it again from Slicer");
+    throw inputError(path, "holds no .mrml, so it is no scene; save it again from Slicer");
+  const auto least = depth(*std::ranges::min_element(closest, {}, depth));
+  std::erase_if(closest, [least](const auto& file) { return depth(file) > least; });
   if (closest.size() == 1)
     return closest.front();
   std::vector<std::filesystem::path> named;
-  std::string listed;
-  for (const std::filesystem::path& file : closest) {
-    if (file.stem() == path.stem() || file.stem() == file.parent_path().filename())
-      named.push_back(file);
-    listed += (listed.empty() ? "" : ", ") + oneLine(file.string());
-  }
+  std::ranges::copy_if(closest, std::back_inserter(named), [&path](const auto& file) {
+    return file.stem() == path.stem() || file.stem() == file.parent_path().filename();
+  });
   if (named.size() == 1)
     return named.front();
-  throw inputError(path.string(), "holds several scenes (" + listed.substr(0, 300) +
-                                      "); unpack it and name one of them");
+  const std::string listed =
+      joined(closest, ", ", [](const auto& file) { return oneLine(file.string()); });
+  throw inputError(path, "holds several scenes (", listed.substr(0, 300),
+                   "); unpack it and name one of them");
 }
 
 } // namespace
@@ -108,23 +265,25 @@ bool SceneFiles::holds(const std::string& fileName) const {
 std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   const std::filesystem::path name = decodedUrl(fileName);
   std::filesystem::path file = resolved(fileName);
+  const auto refused = [this](const std::filesystem::path& named, const std::string& why) {
+    return inputError(m_source, "names ", oneLine(named.string()), ", which ", why);
+  };
   if (!m_archive) {
-    if (std::error_code failed; !std::filesystem::exists(file, failed))
-      throw inputError(
-          m_source,
-          "names " + oneLine(file.string()) +
-              (failed ? ", which cannot be read: " + systemMessage(failed.value()) + "; " +
-                            readingMend(failed.value(), "check the permissions of its folder")
-                      : ", which is not there; put it back, or save the scene again"));
+    std::error_code failed;
+    const bool isThere = std::filesystem::exists(file, failed);
+    if (failed)
+      throw refused(file,
+                    textOf("cannot be read: ", systemMessage(failed.value()), "; ",
+                           readingMend(failed.value(), "check the permissions of its folder")));
+    if (!isThere)
+      throw refused(file, "is not there; put it back, or save the scene again");
     m_read.insert(file);
     return file;
   }
   if (name.is_absolute() || *file.begin() == "..")
-    throw inputError(m_source, "names " + oneLine(name.string()) +
-                                   ", which is outside the archive; save the scene again");
+    throw refused(name, "is outside the archive; save the scene again");
   if (!m_archive->files().contains(file))
-    throw inputError(m_source, "names " + oneLine(file.string()) +
-                                   ", which it does not hold; save the scene again");
+    throw refused(file, "it does not hold; save the scene again");
   std::filesystem::path place = unpacked(file);
   const std::filesystem::path root = m_unpacked->path().lexically_normal();
   for (const std::filesystem::path& part : filesNamedBy(place))
@@ -141,9 +300,9 @@ std::filesystem::path SceneFiles::unpacked(const std::filesystem::path& file) {
   if (!m_unpacked)
     m_unpacked.emplace();
   if (isTooLong(m_unpacked->path() / file))
-    throw inputError(m_source, "names " + shown(file.string()) +
-                                   ", which is too long for a file's name; save the scene again "
-                                   "under shorter ones");
+    throw inputError(m_source, "names ", shown(file.string()),
+                     ", which is too long for a file's name; save the scene again under shorter "
+                     "ones");
   const std::filesystem::path destination = m_unpacked->add(file);
   m_archive->extract(file, destination);
   return m_located[file] = destination;

@@ -159,8 +159,7 @@ const MrmlNode* cameraOf(const MrmlDocument& document, const MrmlNode* view) {
 }
 
 /// Refuses maximum and minimum intensity projections, which have no light to trace.
-void refuseTechnique(const MrmlDocument& document, const MrmlNode* node,
-                     const std::string& attribute) {
+void refuseTechnique(const MrmlDocument& document, const MrmlNode* node) {
   if (!node)
     return;
   static const std::map<std::string, std::string> refused = {
@@ -168,8 +167,9 @@ void refuseTechnique(const MrmlDocument& document, const MrmlNode* node,
       {"MinimumIntensityProjection", "a minimum intensity projection"},
       {"2", "a maximum intensity projection"}, // number in older scenes
       {"3", "a minimum intensity projection"}};
-  if (const auto technique = refused.find(node->text(attribute)); technique != refused.end())
-    throw document.error(*node, attribute + " is " + technique->second +
+  if (const auto technique = refused.find(node->text("raycastTechnique"));
+      technique != refused.end())
+    throw document.error(*node, "raycastTechnique is " + technique->second +
                                     ", which has no light to trace; set it to Composite (Volume "
                                     "Rendering module), or render the volume's own file");
 }
@@ -236,15 +236,14 @@ ScenePlan planRender(const MrmlDocument& document, const SceneChoice& choice) {
     plan.property = document.follow(*plan.rendering, "volumeProperty");
     if (plan.rendering->flag("croppingEnabled", false))
       plan.roi = document.follow(*plan.rendering, "roi");
-    refuseTechnique(document, plan.view, "raycastTechnique");
-    refuseTechnique(document, plan.rendering, "raycastTechnique");
+    refuseTechnique(document, plan.view);
+    refuseTechnique(document, plan.rendering);
     if (plan.rendering->flag("followVolumeDisplayNode", false))
       plan.followed = displayOf(document, *plan.volume, [](const MrmlNode& display) {
         return display.tag == "VolumeDisplay";
       });
-  }
-  if (plan.rendering)
     listRendering(document, plan);
+  }
   listOthers(document, plan);
   return plan;
 }

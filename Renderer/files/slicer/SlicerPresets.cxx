@@ -1,10 +1,9 @@
 #include "files/slicer/SlicerPresets.h"
 
-#include "base/safe/JsonNode.h"
-#include "files/looks/TransferReader.h"
+#include "base/Text.h"
 
-#include <algorithm>
 #include <cstdlib>
+#include <string>
 
 namespace fenestra {
 namespace {
@@ -14,18 +13,17 @@ using Path = std::filesystem::path;
 /// presets.xml in share/Slicer-VERSION/qt-loadable-modules (qSlicerLoadableModule's share
 /// directory); of several versions the last by name.
 std::optional<Path> presetsIn(const Path& home) {
-  std::vector<Path> found;
+  std::optional<Path> last;
   std::error_code failed;
   for (std::filesystem::directory_iterator entry(home / "share", failed), end;
        !failed && entry != end; entry.increment(failed)) {
     const Path file = entry->path() / "qt-loadable-modules" / "VolumeRendering" / "presets.xml";
     std::error_code missing;
     if (entry->path().filename().string().starts_with("Slicer-") &&
-        std::filesystem::is_regular_file(file, missing))
-      found.push_back(file);
+        std::filesystem::is_regular_file(file, missing) && (!last || *last < file))
+      last = file;
   }
-  const auto last = std::max_element(found.begin(), found.end());
-  return last == found.end() ? std::nullopt : std::optional<Path>(*last);
+  return last;
 }
 
 /// Folder of the first Slicer launcher in PATH, links resolved.
@@ -48,23 +46,6 @@ std::optional<Path> findSlicerPresets() {
       return presets;
   const auto home = homeInPath();
   return home ? presetsIn(*home) : std::nullopt;
-}
-
-SlicerPresets::SlicerPresets(const Path& path) : m_document(readText(path), path.string()) {}
-
-std::optional<TransferFunction> SlicerPresets::find(const std::string& name) const {
-  for (const MrmlNode* node : m_document.withTag("VolumeProperty"))
-    if (node->name == name)
-      return parseTransferFunction(node->attributes,
-                                   m_document.source() + ": " + node->tag + " " + shown(*node));
-  return std::nullopt;
-}
-
-std::vector<std::string> SlicerPresets::names() const {
-  std::vector<std::string> names;
-  for (const MrmlNode* node : m_document.withTag("VolumeProperty"))
-    names.push_back(node->name);
-  return names;
 }
 
 } // namespace fenestra

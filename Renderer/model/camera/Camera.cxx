@@ -1,7 +1,5 @@
 #include "model/camera/Camera.h"
 
-#include "model/camera/CheckedPose.h"
-
 namespace fenestra {
 namespace {
 
@@ -20,6 +18,14 @@ CameraPose checkedPose(const CameraPose& pose, const Complaint& complaint) {
   if (!(sideOf(view / view.norm(), pose.up).norm() > 1e-12))
     throw complaint("up must not be zero or along the viewing direction");
   return pose;
+}
+
+CameraPose turnedAroundTarget(const CameraPose& pose, double degrees) {
+  CameraPose turned = pose;
+  const Mat3 turn = rotationBy(degrees * pi / 180.0, pose.up.stableNormalized()).linear();
+  if (degrees != 0.0)
+    turned.position = pose.target + turn * (pose.position - pose.target);
+  return turned;
 }
 
 Camera::Camera(const CameraPose& pose, int width, int height)

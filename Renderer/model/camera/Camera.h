@@ -2,7 +2,7 @@
 // The camera, and view space: origin at the eye (perspective) or on the camera plane
 // (orthographic), x right, y up, depth z along the viewing direction, mm.
 
-#include "base/Vector.h"
+#include "base/Checked.h"
 
 namespace fenestra {
 
@@ -17,6 +17,15 @@ struct CameraPose {
   double scale = 100.0; ///< orthographic: half the viewport's height, mm
   double angle = 30.0;  ///< perspective: full vertical angle, degrees
 };
+
+/// Returns `pose` if valid: position and target differ and lie within 1e12 mm, and up is neither
+/// zero nor along the view. Throws otherwise.
+CameraPose checkedPose(const CameraPose& pose, const Complaint& complaint);
+
+/// Pose of a turntable: turns the eye about the axis through the target along `up`,
+/// counter-clockwise seen from the tip of `up`. Distance and height of the eye stay. 0 degrees
+/// returns `pose`, bit for bit.
+CameraPose turnedAroundTarget(const CameraPose& pose, double degrees);
 
 class Camera {
 public:

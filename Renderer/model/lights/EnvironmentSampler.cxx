@@ -10,28 +10,27 @@ struct Pick {
   double remainder; ///< position inside the picked bin, [0, 1)
 };
 
-/// Picks the bin that contains u from a cumulative table of `bins + 1` entries (0 first, 1 last);
-/// bins of probability 0 are never picked.
-Pick pick(const double* cdf, int bins, double u) {
-  const double* end = cdf + bins + 1;
-  const double* above = std::upper_bound(cdf, end, u);
-  if (above == end) // only by rounding: the last bin of probability > 0
-    above = std::lower_bound(cdf, end, cdf[bins]);
-  const int index = std::max(0, static_cast<int>(above - cdf) - 1);
+/// Picks the bin that contains u from a cumulative table (0 first, 1 last); bins of probability 0
+/// are never picked.
+Pick pick(const std::vector<double>& cdf, double u) {
+  auto above = std::ranges::upper_bound(cdf, u);
+  if (above == cdf.end()) // only by rounding: the last bin of probability > 0
+    above = std::ranges::lower_bound(cdf, cdf.back());
+  const auto index = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, above - cdf.begin() - 1));
   const double width = cdf[index + 1] - cdf[index];
   const double remainder = width > 0.0 ? (u - cdf[index]) / width : 0.5;
-  return {index, std::clamp(remainder, 0.0, std::nextafter(1.0, 0.0))};
+  return {static_cast<int>(index), std::clamp(remainder, 0.0, std::nextafter(1.0, 0.0))};
 }
 
-/// Turns weights into a cumulative table in place, cdf[0] = 0 … cdf[bins] = 1; returns their sum.
-double accumulate(double* cdf, int bins, const auto& weight) {
-  cdf[0] = 0.0;
+/// Makes a cumulative table of weight(bin), 0 first and 1 last; returns the sum of the weights.
+double accumulate(std::vector<double>& cdf, int bins, const auto& weight) {
+  cdf = {0.0};
   for (int i = 0; i < bins; ++i)
-    cdf[i + 1] = cdf[i] + weight(i);
-  const double sum = cdf[bins];
+    cdf.push_back(cdf.back() + weight(i));
+  const double sum = cdf.back();
   if (sum > 0.0)
-    for (int i = 1; i <= bins; ++i)
-      cdf[i] /= sum;
+    for (double& value : cdf)
+      value /= sum;
   return sum;
 }
 
@@ -44,24 +43,17 @@ EnvironmentSampler::EnvironmentSampler(EnvironmentLight light) : m_light(std::mo
   }
   const int width = m_light.map.width;
   const int height = m_light.map.height;
-  m_rowSolidAngle.resize(static_cast<std::size_t>(height));
-  m_rowCdf.resize(static_cast<std::size_t>(height) + 1);
-  m_columnCdf.resize((static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(height));
-
   const auto rowWeight = [&](int row) {
-    const double solidAngle =
+    const double solidAngle = // of one texel
         2.0 * pi / width * (std::cos(pi * row / height) - std::cos(pi * (row + 1) / height));
-    m_rowSolidAngle[static_cast<std::size_t>(row)] = solidAngle;
-    double* cdf =
-        &m_columnCdf[(static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(row)];
     const auto texelWeight = [&](int column) {
       const Rgb value = texel(texelIndex(column, row));
       m_mean += value * (solidAngle / (4.0 * pi));
       return brightness(value);
     };
-    return accumulate(cdf, width, texelWeight) * solidAngle;
+    return accumulate(m_columnCdf.emplace_back(), width, texelWeight) * solidAngle;
   };
-  m_total = accumulate(m_rowCdf.data(), height, rowWeight);
+  m_total = accumulate(m_rowCdf, height, rowWeight);
 }
 
 Rgb EnvironmentSampler::texel(std::size_t index) const {
@@ -96,10 +88,8 @@ Vec3 EnvironmentSampler::sample(const Vec2& u) const {
     return uniformDirection(u);
   const int width = m_light.map.width;
   const int height = m_light.map.height;
-  const Pick row = pick(m_rowCdf.data(), height, u.x());
-  const Pick column = pick(
-      &m_columnCdf[(static_cast<std::size_t>(width) + 1) * static_cast<std::size_t>(row.index)],
-      width, u.y());
+  const Pick row = pick(m_rowCdf, u.x());
+  const Pick column = pick(m_columnCdf[static_cast<std::size_t>(row.index)], u.y());
 
   // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
   const double top = std::cos(pi * row.index / height);

@@ -4,8 +4,6 @@
 
 #include "model/lights/Light.h"
 
-#include <optional>
-
 namespace fenestra {
 
 class EnvironmentSampler {
@@ -32,10 +30,9 @@ private:
 
   EnvironmentLight m_light;
   Rgb m_mean = Rgb::Zero();
-  std::vector<double> m_rowSolidAngle; ///< solid angle of one texel of each row, sr
-  std::vector<double> m_rowCdf;        ///< height + 1 entries, last 1
-  std::vector<double> m_columnCdf;     ///< (width + 1) entries for each row
-  double m_total = 0.0;                ///< integral of brightness over the sphere
+  std::vector<double> m_rowCdf;                 ///< height + 1 entries, last 1
+  std::vector<std::vector<double>> m_columnCdf; ///< width + 1 entries for each row
+  double m_total = 0.0;                         ///< integral of brightness over the sphere
 };
 
 } // namespace fenestra

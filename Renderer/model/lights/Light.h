@@ -4,7 +4,6 @@
 
 #include "base/Vector.h"
 
-#include <string>
 #include <variant>
 #include <vector>
 

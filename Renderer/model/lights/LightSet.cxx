@@ -7,28 +7,18 @@ namespace {
 /// may matter elsewhere.
 constexpr double leastShare = 0.05;
 
-template <typename... Kinds>
-struct Overloaded : Kinds... {
-  using Kinds::operator()...;
-};
-template <typename... Kinds>
-Overloaded(Kinds...) -> Overloaded<Kinds...>;
-
 } // namespace
 
 LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera)
     : m_count(lights.size()) {
   for (const Light& light : lights)
-    std::visit(Overloaded{
-                   [&](const EnvironmentLight& l) {
-                     m_environments.push_back({EnvironmentSampler(l), 0.0});
-                   },
-                   [&](const DirectionalLight& l) {
-                     m_directionals.push_back({-l.direction.normalized(), l.irradiance, 0.0});
-                   },
-                   [&](const AreaLight& l) { place(l, volume, camera); },
-               },
-               light);
+    if (const auto* environment = std::get_if<EnvironmentLight>(&light))
+      m_environments.push_back({EnvironmentSampler(*environment), 0.0});
+    else if (const auto* directional = std::get_if<DirectionalLight>(&light))
+      m_directionals.push_back(
+          {-directional->direction.normalized(), directional->irradiance, 0.0});
+    else
+      place(std::get<AreaLight>(light), volume, camera);
   chooseShares(volume.worldCenter());
 }
 
@@ -141,8 +131,7 @@ Rgb LightSet::constantEnvironment() const {
 }
 
 bool LightSet::hasMaps() const {
-  return std::any_of(m_environments.begin(), m_environments.end(),
-                     [](const SharedEnvironment& e) { return !e.sampler.constant(); });
+  return std::ranges::any_of(m_environments, [](const auto& e) { return !e.sampler.constant(); });
 }
 
 std::optional<LightSample> PlacedAreaLight::sample(const Vec3& point, const Vec2& u) const {

@@ -20,10 +20,6 @@ struct Part {
   Size3 end() const { return first + size; }
 };
 
-Part wholeOf(const Mask& mask) {
-  return {Size3::Zero(), mask.grid.size};
-}
-
 /// Part of the mask and `reach` mm around it, at most a voxel beyond the volume.
 Part around(const Mask& mask, double reach, const Grid& volume) {
   const Affine toMask = mask.grid.worldToIndex * volume.indexToWorld;
@@ -45,20 +41,6 @@ Part around(const Mask& mask, double reach, const Grid& volume) {
   return {first.cast<std::int64_t>(), size.cast<std::int64_t>()};
 }
 
-Grid gridOf(const Mask& mask, const Part& part) {
-  Affine indexToWorld = mask.grid.indexToWorld;
-  indexToWorld.translate(part.first.cast<double>());
-  return {part.size, indexToWorld};
-}
-
-/// Value of a voxel of the mask's index space; outside the mask that of the nearest voxel in it.
-std::uint8_t voxelAt(const Mask& mask, const Size3& at) {
-  const Size3& size = mask.grid.size;
-  const Size3 inside = at.cwiseMax(0).cwiseMin((size.array() - 1).matrix());
-  return mask.voxels[static_cast<std::size_t>(inside.x() +
-                                              size.x() * (inside.y() + size.y() * inside.z()))];
-}
-
 /// Calls visit(voxel in `part`, its number there) for each voxel.
 template <typename Visitor>
 void forVoxels(const Part& part, const Visitor& visit) {
@@ -69,7 +51,8 @@ void forVoxels(const Part& part, const Visitor& visit) {
         visit(Size3(x, y, z), number++);
 }
 
-/// Indicator over a part of the mask's index space, with spacing in mm.
+/// Indicator over a part of the mask's index space, with spacing in mm; outside the mask that of
+/// the nearest voxel in it.
 Pixels::Pointer pixelsOf(const Mask& mask, const Part& part) {
   const auto image = Pixels::New();
   Pixels::SizeType size;
@@ -83,7 +66,9 @@ Pixels::Pointer pixelsOf(const Mask& mask, const Part& part) {
   image->Allocate();
   float* const to = image->GetBufferPointer();
   forVoxels(part, [&](const Size3& voxel, std::size_t number) {
-    to[number] = static_cast<float>(voxelAt(mask, voxel)) / static_cast<float>(mask.full);
+    const Size3 inside = voxel.cwiseMax(0).cwiseMin((mask.grid.size.array() - 1).matrix());
+    const std::uint8_t value = mask.voxels[numberOf(inside, mask.grid.size)];
+    to[number] = static_cast<float>(value) / static_cast<float>(mask.full);
   });
   return image;
 }
@@ -91,7 +76,9 @@ Pixels::Pointer pixelsOf(const Mask& mask, const Part& part) {
 /// Mask of the same segments on a part of the grid; voxel i is value(i).
 template <typename Value>
 Mask maskOf(const Mask& from, const Part& part, std::uint8_t full, const Value& value) {
-  Mask mask{gridOf(from, part), {}, 0, from.names, full};
+  Affine indexToWorld = from.grid.indexToWorld;
+  indexToWorld.translate(part.first.cast<double>());
+  Mask mask{{part.size, indexToWorld}, {}, 0, from.names, full};
   mask.voxels.resize(static_cast<std::size_t>(part.size.prod()));
   for (std::size_t i = 0; i < mask.voxels.size(); ++i) {
     mask.voxels[i] = value(i);
@@ -105,7 +92,8 @@ Mask maskOf(const Mask& from, const Part& part, std::uint8_t full, const Value& 
 Mask grown(const Mask& mask, double margin, const Grid& volume) {
   if (margin == 0.0)
     return mask;
-  const Part part = margin > 0.0 ? around(mask, margin, volume) : wholeOf(mask);
+  const Part part =
+      margin > 0.0 ? around(mask, margin, volume) : Part{Size3::Zero(), mask.grid.size};
   // Distances, mm, from the outermost voxels of the mask (margin < 0: of its complement): 0 there,
   // positive outside.
   const Pixels::Pointer pixels = pixelsOf(mask, part);
@@ -144,9 +132,7 @@ Mask united(const std::vector<Mask>& masks) {
   for (const Mask& mask : masks) {
     const Part part = placeOf(mask);
     forVoxels(part, [&](const Size3& voxel, std::size_t number) {
-      const Size3 at = voxel - all.first;
-      std::uint8_t& to = result.voxels[static_cast<std::size_t>(
-          at.x() + all.size.x() * (at.y() + all.size.y() * at.z()))];
+      std::uint8_t& to = result.voxels[numberOf(voxel - all.first, all.size)];
       result.count += to < mask.voxels[number];
       to = std::max(to, mask.voxels[number]);
     });

@@ -1,5 +1,5 @@
 #pragma once
-// Margins and smoothing of a focus's labels.
+// Margins, interpolation between slices, and smoothing of a focus's labels.
 
 #include "model/volume/Mask.h"
 
@@ -25,6 +25,13 @@ Mask grown(const Mask& mask, double margin, const Grid& volume);
 
 /// Union of at least one mask, all on voxels of one labelmap.
 Mask united(const std::vector<Mask>& masks);
+
+/// Mask on voxels that are nearly cubes: divides slices that are at least twice as thick as their
+/// pixels are wide. The mask's own slices stay; between two of them a voxel is inside if the signed
+/// distance to their outlines, interpolated linearly, is < 0 (Raya and Udupa 1990: shape based
+/// interpolation). Labels of a surface that is oblique to the slices form a stair: each tread is as
+/// wide as the outline's shift from slice to slice, and only a Gaussian of that width smooths it.
+Mask betweenSlices(const Mask& mask);
 
 /// Indicator convolved with a Gaussian, `deviation` in mm; `full` is 255. Parts thinner than about
 /// the deviation vanish.

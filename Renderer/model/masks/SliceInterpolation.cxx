@@ -1,4 +1,4 @@
-#include "model/masks/SliceInterpolation.h"
+#include "model/masks/MaskShaping.h"
 
 #include <tbb/parallel_for.h>
 
@@ -138,8 +138,7 @@ Mask betweenSlices(const Mask& mask) {
         const std::size_t after = std::min(before + 1, distances.size() - 1);
         const float share = static_cast<float>(voxel[axis] % parts) / static_cast<float>(parts);
         const float distance = std::lerp(distances[before][pixel], distances[after][pixel], share);
-        result.voxels[static_cast<std::size_t>(x + size.x() * (y + size.y() * z))] =
-            distance < 0.0F;
+        result.voxels[numberOf(voxel, size)] = distance < 0.0F;
       }
   });
   result.count = std::ranges::count(result.voxels, std::uint8_t{1});

@@ -38,6 +38,13 @@ public:
   std::array<double, 2> range(double low, double high) const;
 
   const std::vector<Knot>& knots() const { return m_knots; }
+  /// Function of the same knots after change(knot).
+  template <typename Change>
+  PiecewiseLinear withKnots(const Change& change) const {
+    std::vector<Knot> knots = m_knots;
+    std::ranges::for_each(knots, change);
+    return PiecewiseLinear(std::move(knots));
+  }
   /// Distance from the first to the last knot, in units of s.
   double span() const { return m_knots.back().position - m_knots.front().position; }
 

@@ -5,7 +5,6 @@
 #include "model/medium/PiecewiseLinear.h"
 
 #include <optional>
-#include <string>
 
 namespace fenestra {
 
@@ -27,9 +26,19 @@ struct TransferFunction {
 
   /// This function of (s - offset): every knot of extinction and albedo moved by `offset` scalar
   /// units.
-  TransferFunction shifted(double offset) const;
+  TransferFunction shifted(double offset) const {
+    const auto move = [offset](auto& knot) { knot.position += offset; };
+    TransferFunction result = *this;
+    result.extinction = extinction.withKnots(move);
+    result.albedo = albedo.withKnots(move);
+    return result;
+  }
   /// Extinction multiplied by `factor` >= 0.
-  TransferFunction scaled(double factor) const;
+  TransferFunction scaled(double factor) const {
+    TransferFunction result = *this;
+    result.extinction = extinction.withKnots([factor](auto& knot) { knot.value *= factor; });
+    return result;
+  }
 };
 
 } // namespace fenestra

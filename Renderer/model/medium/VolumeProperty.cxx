@@ -20,45 +20,10 @@ double usedMidpoint(double midpoint) {
   return std::clamp(midpoint, 1e-5, 1.0 - 1e-5);
 }
 
-/// Progress of the curve from one node's value (0) to the next node's (1) at the share u of the
-/// way; monotonic. Like vtkPiecewiseFunction::GetTable and vtkColorTransferFunction::GetTable
-/// (RGB): the midpoint bends u, sharpness compresses the result, and a Hermite curve with end
-/// slopes (1 - sharpness) follows.
-double progress(double u, double midpoint, double sharpness) {
-  const double m = usedMidpoint(midpoint);
-  double s = u < m ? 0.5 * u / m : 0.5 + 0.5 * (u - m) / (1.0 - m);
-  if (sharpness > 0.99)
-    return s < 0.5 ? 0.0 : 1.0;
-  if (sharpness < 0.01)
-    return s;
-  const double power = 1.0 + 10.0 * sharpness;
-  s = s < 0.5 ? 0.5 * std::pow(2.0 * s, power) : 1.0 - 0.5 * std::pow(2.0 * (1.0 - s), power);
-  const double ends = s * (s * (2.0 * s - 3.0) + 1.0); // both slopes' Hermite terms
-  return std::clamp(s * s * (3.0 - 2.0 * s) + (1.0 - sharpness) * ends, 0.0, 1.0);
-}
-
-double valueOf(const OpacityNode& node) {
-  return node.y;
-}
-const Rgb& valueOf(const ColorNode& node) {
-  return node.color;
-}
-
-template <typename Node>
-auto between(const Node& a, const Node& b, double x) {
-  using Value = std::decay_t<decltype(valueOf(a))>;
+template <typename Value>
+Value between(const CurveNode<Value>& a, const CurveNode<Value>& b, double x) {
   const double u = std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0);
-  return Value(valueOf(a) + (valueOf(b) - valueOf(a)) * progress(u, a.midpoint, a.sharpness));
-}
-
-template <typename Node>
-auto valueAt(const std::vector<Node>& nodes, double x) {
-  const auto next = std::upper_bound(nodes.begin(), nodes.end(), x,
-                                     [](double position, const Node& n) { return position < n.x; });
-  using Value = std::decay_t<decltype(valueOf(*next))>;
-  if (next == nodes.begin() || next == nodes.end())
-    return Value(valueOf(next == nodes.begin() ? nodes.front() : nodes.back()));
-  return between(*(next - 1), *next, x);
+  return a.value + (b.value - a.value) * curveProgress(u, a.midpoint, a.sharpness);
 }
 
 /// Knots for map(curve), where `map` converts nodes' values to the table's. Pieces without kinks
@@ -74,14 +39,14 @@ public:
   Tabulator(const std::vector<Node>& nodes, Map map) : m_nodes(nodes), m_map(std::move(map)) {
     double greatest = 0.0;
     for (const Node& node : nodes)
-      greatest = std::max(greatest, Value(m_map(valueOf(node))).maxCoeff());
+      greatest = std::max(greatest, Value(m_map(node.value)).maxCoeff());
     m_floor = floorShare * greatest;
   }
 
   Function table() {
     for (std::size_t i = 0; i + 1 < m_nodes.size(); ++i)
       addSegment(i);
-    emit(m_nodes.size() - 1, m_nodes.back().x, m_map(valueOf(m_nodes.back())));
+    emit(m_nodes.size() - 1, m_nodes.back().x, m_map(m_nodes.back().value));
     refine();
     for (; !m_chords.empty(); m_chords.pop())
       emit(m_chords.top());
@@ -124,14 +89,14 @@ private:
   void addSegment(std::size_t i) {
     const Node& a = m_nodes[i];
     const Node& b = m_nodes[i + 1];
-    emit(i, a.x, m_map(valueOf(a)));
+    emit(i, a.x, m_map(a.value));
     const double middle = a.x + usedMidpoint(a.midpoint) * (b.x - a.x);
     if (!(b.x > a.x)) // a step
-      emit(i, b.x, m_map(valueOf(b)));
+      emit(i, b.x, m_map(b.value));
     else if (a.sharpness > 0.99) {
-      emit(i, middle, m_map(valueOf(a)));
-      emit(i, middle, m_map(valueOf(b)));
-      emit(i, b.x, m_map(valueOf(b)));
+      emit(i, middle, m_map(a.value));
+      emit(i, middle, m_map(b.value));
+      emit(i, b.x, m_map(b.value));
     } else
       addPieces(i, middle);
   }
@@ -142,7 +107,7 @@ private:
     for (std::size_t k = 0; k + 1 < ends.size(); ++k)
       if (ends[k] < ends[k + 1])
         push(i, ends[k], ends[k + 1], at(i, ends[k]), at(i, ends[k + 1]));
-    emit(i, m_nodes[i + 1].x, m_map(valueOf(m_nodes[i + 1])));
+    emit(i, m_nodes[i + 1].x, m_map(m_nodes[i + 1].value));
   }
 
   /// Position at which opacity crosses its cap within a segment (bisection: opacity is monotonic
@@ -150,8 +115,8 @@ private:
   double capCrossing(std::size_t i) const {
     double low = m_nodes[i].x, high = m_nodes[i + 1].x;
     if constexpr (std::is_same_v<Node, OpacityNode>) {
-      const bool cappedLow = m_nodes[i].y > opacityCap;
-      if (cappedLow == (m_nodes[i + 1].y > opacityCap))
+      const bool cappedLow = m_nodes[i].value > opacityCap;
+      if (cappedLow == (m_nodes[i + 1].value > opacityCap))
         return low;
       for (int step = 0; step < 100; ++step) {
         const double middle = 0.5 * (low + high);
@@ -220,43 +185,45 @@ void checkNodes(const std::vector<Node>& nodes, const std::string& name,
     if (!(std::abs(node.x) <= 1e38) || (i > 0 && node.x < nodes[i - 1].x))
       throw inputError(source,
                        place + "x must be a number of at most 1e38 and not below the point before");
-    if (!inUnitRange(valueOf(node)))
+    if (!inUnitRange(node.value))
       throw inputError(source, place + "value is outside 0 to 1; move it inside");
     if (!inUnitRange(node.midpoint) || !inUnitRange(node.sharpness))
       throw inputError(source, place + "midpoint and sharpness must be from 0 to 1");
   }
 }
 
-void checkNumber(bool usable, const std::string& field, const std::string& mend,
-                 const std::string& source) {
-  if (!usable)
-    throw inputError(source, field + ": " + mend);
-}
-
 void check(const VolumeProperty& p, const std::string& source) {
-  const auto notNegative = [](double x) { return x >= 0.0 && std::isfinite(x); };
   checkNodes(p.scalarOpacity, "scalar opacity", source);
   checkNodes(p.color, "color", source);
   if (!p.gradientOpacity.empty())
     checkNodes(p.gradientOpacity, "gradient opacity", source);
-  checkNumber(p.unitDistance > 0.0 && std::isfinite(p.unitDistance), "scalarOpacityUnitDistance",
-              "must be a length above 0 mm", source);
-  checkNumber(std::abs(p.anisotropy) < 1.0, "scatteringAnisotropy",
-              "must be between -1 and 1, both excluded", source);
-  checkNumber(notNegative(p.diffuse), "diffuse", "must be finite and not negative", source);
-  checkNumber(notNegative(p.specular), "specular", "must be finite and not negative", source);
-  checkNumber(notNegative(p.specularPower), "specularPower", "must be finite and not negative",
-              source);
+  const auto require = [&](bool isUsable, const char* field, const char* mend) {
+    if (!isUsable)
+      throw inputError(source, field, ": ", mend);
+  };
+  require(p.unitDistance > 0.0 && std::isfinite(p.unitDistance), "scalarOpacityUnitDistance",
+          "must be a length above 0 mm");
+  require(std::abs(p.anisotropy) < 1.0, "scatteringAnisotropy",
+          "must be between -1 and 1, both excluded");
+  for (const auto& [field, x] : {std::pair("diffuse", p.diffuse),
+                                 {"specular", p.specular},
+                                 {"specularPower", p.specularPower}})
+    require(x >= 0.0 && std::isfinite(x), field, "must be finite and not negative");
 }
 
 } // namespace
 
-double opacityAt(const std::vector<OpacityNode>& nodes, double x) {
-  return valueAt(nodes, x);
-}
-
-Rgb colorAt(const std::vector<ColorNode>& nodes, double x) {
-  return valueAt(nodes, x);
+double curveProgress(double u, double midpoint, double sharpness) {
+  const double m = usedMidpoint(midpoint);
+  double s = u < m ? 0.5 * u / m : 0.5 + 0.5 * (u - m) / (1.0 - m);
+  if (sharpness > 0.99)
+    return s < 0.5 ? 0.0 : 1.0;
+  if (sharpness < 0.01)
+    return s;
+  const double power = 1.0 + 10.0 * sharpness;
+  s = s < 0.5 ? 0.5 * std::pow(2.0 * s, power) : 1.0 - 0.5 * std::pow(2.0 * (1.0 - s), power);
+  const double ends = s * (s * (2.0 * s - 3.0) + 1.0); // both slopes' Hermite terms
+  return std::clamp(s * s * (3.0 - 2.0 * s) + (1.0 - sharpness) * ends, 0.0, 1.0);
 }
 
 Rgb decodeSrgb(const Rgb& encoded) {
@@ -270,7 +237,7 @@ TransferFunction tabulate(const VolumeProperty& property, const std::string& sou
     return ScalarFunction::Value(-std::log1p(-std::min(opacity, opacityCap)) / unit);
   };
   const auto unchanged = [](double opacity) { return ScalarFunction::Value(opacity); };
-  const auto isOne = [](const OpacityNode& node) { return node.y == 1.0; };
+  const auto isOne = [](const OpacityNode& node) { return node.value == 1.0; };
 
   TransferFunction result{.extinction = tabulated<1>(property.scalarOpacity, extinction),
                           .albedo = tabulated<3>(property.color, decodeSrgb),

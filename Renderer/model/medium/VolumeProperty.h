@@ -3,31 +3,26 @@
 
 #include "model/medium/TransferFunction.h"
 
-#include <optional>
 #include <vector>
 
 namespace fenestra {
 
-/// A node of vtkPiecewiseFunction: midpoint and sharpness shape the curve toward the next node.
-struct OpacityNode {
+/// A node of vtkPiecewiseFunction, or of vtkColorTransferFunction in its RGB colour space: midpoint
+/// and sharpness shape the curve toward the next node.
+template <typename Value>
+struct CurveNode {
   double x = 0.0;
-  double y = 0.0;
+  Value value = {};
   double midpoint = 0.5;
   double sharpness = 0.0;
 };
-
-/// A node of vtkColorTransferFunction in its RGB colour space; display-encoded (sRGB) components.
-struct ColorNode {
-  double x = 0.0;
-  Rgb color = Rgb::Zero();
-  double midpoint = 0.5;
-  double sharpness = 0.0;
-};
+using OpacityNode = CurveNode<double>;
+using ColorNode = CurveNode<Rgb>; ///< display-encoded (sRGB) components
 
 struct VolumeProperty {
   std::vector<OpacityNode> scalarOpacity; ///< opacity per unit distance
-  std::vector<OpacityNode>
-      gradientOpacity; ///< over |gradient| in scalar units per mm; may be empty
+  /// Over |gradient| in scalar units per mm; may be empty.
+  std::vector<OpacityNode> gradientOpacity;
   std::vector<ColorNode> color;
   double unitDistance = 1.0; ///< mm
   bool shade = false;
@@ -35,11 +30,11 @@ struct VolumeProperty {
   double anisotropy = 0.0; ///< Henyey-Greenstein g
 };
 
-/// vtkPiecewiseFunction's value at x (its GetTable: midpoint, sharpness, Hermite curve; clamped to
-/// the end nodes outside).
-double opacityAt(const std::vector<OpacityNode>& nodes, double x);
-/// vtkColorTransferFunction's display-encoded value at x.
-Rgb colorAt(const std::vector<ColorNode>& nodes, double x);
+/// Progress of the curve from one node's value (0) to the next node's (1) at the share u of the
+/// way; monotonic. Like vtkPiecewiseFunction::GetTable and vtkColorTransferFunction::GetTable
+/// (RGB): the midpoint bends u, sharpness compresses the result, and a Hermite curve with end
+/// slopes (1 - sharpness) follows.
+double curveProgress(double u, double midpoint, double sharpness);
 /// The sRGB electro-optical transfer function (IEC 61966-2-1), per component.
 Rgb decodeSrgb(const Rgb& encoded);
 

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace fenestra {
 namespace {
@@ -19,35 +18,16 @@ Span footprint(std::int64_t c, std::int64_t edge, std::int64_t voxels, int apron
   return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
 }
 
-/// Range of scalars of each column, over the rows added.
+/// Lowers `lows` and raises `highs` to a row of voxels, elementwise.
 template <typename Voxel>
-class Columns {
-public:
-  explicit Columns(std::int64_t size)
-      : m_low(static_cast<std::size_t>(size)), m_high(m_low.size()) {}
-
-  void clear() {
-    std::fill(m_low.begin(), m_low.end(), std::numeric_limits<Voxel>::max());
-    std::fill(m_high.begin(), m_high.end(), std::numeric_limits<Voxel>::lowest());
+void addRow(const Voxel* row, std::vector<Voxel>& lows, std::vector<Voxel>& highs) {
+  Voxel* const low = lows.data();
+  Voxel* const high = highs.data();
+  for (std::size_t i = 0; i < lows.size(); ++i) {
+    low[i] = std::min(low[i], row[i]);
+    high[i] = std::max(high[i], row[i]);
   }
-
-  void add(const Voxel* row) {
-    Voxel* const low = m_low.data();
-    Voxel* const high = m_high.data();
-    for (std::size_t i = 0; i < m_low.size(); ++i) {
-      low[i] = std::min(low[i], row[i]);
-      high[i] = std::max(high[i], row[i]);
-    }
-  }
-
-  std::pair<Voxel, Voxel> range(const Span& span) const {
-    return {*std::min_element(m_low.begin() + span.first, m_low.begin() + span.last + 1),
-            *std::max_element(m_high.begin() + span.first, m_high.begin() + span.last + 1)};
-  }
-
-private:
-  std::vector<Voxel> m_low, m_high;
-};
+}
 
 } // namespace
 
@@ -100,19 +80,21 @@ void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels) {
   // with vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {
     const Span z = footprint(cz, m_edge.z(), grid.size.z(), m_apron);
-    Columns<Voxel> columns(grid.size.x());
+    std::vector<Voxel> low(static_cast<std::size_t>(grid.size.x())), high(low.size());
     for (std::int64_t cy = 0; cy < m_cellCount.y(); ++cy) {
       const Span y = footprint(cy, m_edge.y(), grid.size.y(), m_apron);
-      columns.clear();
+      std::ranges::fill(low, std::numeric_limits<Voxel>::max());
+      std::ranges::fill(high, std::numeric_limits<Voxel>::lowest());
       for (std::int64_t k = z.first; k <= z.last; ++k)
         for (std::int64_t j = y.first; j <= y.last; ++j)
-          columns.add(voxels.data() + grid.size.x() * (j + grid.size.y() * k));
+          addRow(voxels.data() + grid.size.x() * (j + grid.size.y() * k), low, high);
       for (std::int64_t cx = 0; cx < m_cellCount.x(); ++cx) {
-        const auto [low, high] = columns.range(footprint(cx, m_edge.x(), grid.size.x(), m_apron));
-        const auto cell =
-            static_cast<std::size_t>(cx + m_cellCount.x() * (cy + m_cellCount.y() * cz));
-        m_low[cell] = static_cast<float>(low);
-        m_high[cell] = static_cast<float>(high);
+        const auto [first, last] = footprint(cx, m_edge.x(), grid.size.x(), m_apron);
+        const std::size_t cell = numberOf({cx, cy, cz}, m_cellCount);
+        m_low[cell] =
+            static_cast<float>(*std::min_element(low.begin() + first, low.begin() + last + 1));
+        m_high[cell] =
+            static_cast<float>(*std::max_element(high.begin() + first, high.begin() + last + 1));
       }
     }
   };

@@ -7,6 +7,11 @@
 
 namespace fenestra {
 
+/// Number of a voxel (or cell) in a grid of `size`: x fastest.
+inline std::size_t numberOf(const Size3& voxel, const Size3& size) {
+  return static_cast<std::size_t>(voxel.x() + size.x() * (voxel.y() + size.y() * voxel.z()));
+}
+
 /// Index space has voxel centres at integers; the grid fills [-0.5, size - 0.5] in each axis.
 struct Grid {
   Size3 size = Size3::Zero();               ///< voxels per axis, fastest axis first

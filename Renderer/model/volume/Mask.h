@@ -26,8 +26,4 @@ struct Mask {
   std::uint8_t half() const { return static_cast<std::uint8_t>(full - full / 2); }
 };
 
-/// True if the indicator may reach 1/2 in `box` (the mask's index space): a voxel around the box is
-/// at least half(). Beyond the mask the outermost voxels repeat.
-bool meetsMask(const Mask& mask, const Box& box);
-
 } // namespace fenestra

@@ -10,6 +10,9 @@
 
 namespace fenestra {
 
+/// Kind of scan. CT's scalars are Hounsfield units; MR and ultrasound have no unit of their own.
+enum class Modality { ct, mr, us };
+
 /// Storage types, x fastest. Readers narrow or widen every file type to the smallest of these that
 /// holds all its values (64-bit and double values that do not fit are rounded to float).
 using Voxels = std::variant<std::vector<std::uint8_t>, std::vector<std::int16_t>,
@@ -27,7 +30,16 @@ struct Volume {
 };
 
 /// Fills minimum and maximum from the voxels.
-void computeRange(Volume& volume);
+inline void computeRange(Volume& volume) {
+  const auto compute = [&volume](const auto& voxels) {
+    if (voxels.empty())
+      return;
+    const auto [low, high] = std::ranges::minmax(voxels);
+    volume.minimum = static_cast<double>(low);
+    volume.maximum = static_cast<double>(high);
+  };
+  std::visit(compute, volume.voxels);
+}
 
 /// The continuous field of `Volume::voxels`: trilinear between voxel centres, clamped in the outer
 /// half voxel. Points are in index space, inside Grid::indexBox(). Keeps a pointer to the voxels.

@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 namespace fenestra {
 namespace {
 
@@ -32,13 +34,29 @@ Corners cornersOf(const Affine& cellToWorld, const Vec3& cell) {
   return corners;
 }
 
+/// True if the indicator may reach 1/2 in `box` (the mask's index space): a voxel around the box is
+/// at least half(). Beyond the mask the outermost voxels repeat.
+bool meetsMask(const Mask& mask, const Box& box) {
+  const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
+  const auto within = [&](const Vec3& index) { return index.cwiseMax(0.0).cwiseMin(last); };
+  const Size3 first = within(box.lower.array().floor()).cast<std::int64_t>();
+  const Size3 end = within(box.upper.array().ceil()).cast<std::int64_t>().array() + 1;
+  const Size3& size = mask.grid.size;
+  for (std::int64_t z = first.z(); z < end.z(); ++z)
+    for (std::int64_t y = first.y(); y < end.y(); ++y) {
+      const auto row = mask.voxels.begin() + size.x() * (y + size.y() * z);
+      if (std::any_of(row + first.x(), row + end.x(),
+                      [&](std::uint8_t voxel) { return voxel >= mask.half(); }))
+        return true;
+    }
+  return false;
+}
+
 /// Greatest factor of a style on the extinction in a cell.
 double greatestFactor(const ContextStyle& style, const Affine& cellToWorld, const Vec3& cell) {
-  Box box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  for (const Vec3& corner : cornersOf(cellToWorld, cell)) {
-    const Vec3 index = style.focus->grid.worldToIndex * corner;
-    box = {box.lower.cwiseMin(index), box.upper.cwiseMax(index)};
-  }
+  Box box = Box::nothing();
+  for (const Vec3& corner : cornersOf(cellToWorld, cell))
+    box.extend(style.focus->grid.worldToIndex * corner);
   return meetsMask(*style.focus, box) ? 1.0 : style.extinction;
 }
 

@@ -5,7 +5,6 @@
 #include "transport/render/EmptyPixels.h"
 #include "transport/render/SamplePlan.h"
 #include "transport/render/TileStream.h"
-#include "transport/render/WithMedium.h"
 
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>

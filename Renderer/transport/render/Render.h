@@ -1,6 +1,6 @@
 #pragma once
 // From a prepared scene to a film: passes over the picture up to a limit of samples, time or noise.
-// The voxel type is resolved once, here; everything below is a template.
+// The voxel type is resolved once, in withMedium; everything below is a template.
 
 #include "image/Film.h"
 #include "model/lights/LightSet.h"
@@ -27,6 +27,20 @@ struct RenderScene {
   std::optional<CropBox> crop = {};
   const ContextStyle* style = nullptr; ///< of the context; null: unchanged
 };
+
+/// Calls work(medium, tracker) for the volume's storage type.
+template <typename Work>
+auto withMedium(const RenderScene& scene, Work&& work, const StopFlag& stop = neverStopped) {
+  return std::visit(
+      [&](const auto& voxels) {
+        using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
+        const Medium<Voxel> medium(scene.volume.grid, voxels, scene.transfer, scene.style);
+        const Tracker<Voxel> tracker(Domain(scene.volume.grid, scene.crop), medium, scene.majorants,
+                                     scene.clip, stop);
+        return work(medium, tracker);
+      },
+      scene.volume.voxels);
+}
 
 /// Implementation of transport. Both are unbiased; `fast` falls back to `readable` if lanes do not
 /// serve (WideTracker::serves, EventScene::serves).

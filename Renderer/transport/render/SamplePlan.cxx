@@ -28,16 +28,16 @@ double cost(const PixelSums& pixel) {
   return beginning + pixel.scatterings / static_cast<double>(pixel.samples);
 }
 
-/// Mean over the pixels around (column, row), that pixel excluded.
-double around(const std::vector<double>& values, int width, int height, int column, int row) {
+/// Mean of the values of a film's pixels around (column, row), that pixel excluded.
+double around(const Film& film, const std::vector<double>& values, int column, int row) {
   double sum = 0.0;
   int count = -1;
-  for (int y = std::max(row - reach, 0); y <= std::min(row + reach, height - 1); ++y)
-    for (int x = std::max(column - reach, 0); x <= std::min(column + reach, width - 1); ++x) {
+  for (int y = std::max(row - reach, 0); y <= std::min(row + reach, film.height() - 1); ++y)
+    for (int x = std::max(column - reach, 0); x <= std::min(column + reach, film.width() - 1);
+         ++x) {
       ++count;
       if (x != column || y != row)
-        sum += values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                      static_cast<std::size_t>(x)];
+        sum += values[film.index(x, y)];
     }
   return sum / count;
 }
@@ -61,13 +61,12 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().greates
   m_noise.resize(variances.size());
   tbb::parallel_for(0, pilot.height(), [&](int row) {
     for (int column = 0; column < pilot.width(); ++column) {
-      const auto here = [&](const std::vector<double>& values) {
-        return around(values, pilot.width(), pilot.height(), column, row);
-      };
       if (pilot.at(column, row).isCertain)
         continue;
-      m_noise[static_cast<std::size_t>(row) * static_cast<std::size_t>(pilot.width()) +
-              static_cast<std::size_t>(column)] =
+      const auto here = [&](const std::vector<double>& values) {
+        return around(pilot, values, column, row);
+      };
+      m_noise[pilot.index(column, row)] =
           static_cast<float>(std::sqrt(here(variances) / here(costs)));
     }
   });

@@ -27,7 +27,7 @@ std::optional<PathStart> TileStream::next() {
   const std::vector<Sample>& samples = m_tiles[m_current].samples;
   const std::size_t index = samples.size() - m_left--;
   const Sample& sample = samples[index];
-  Random random(m_pass.m_seed, pixel(sample), sample.number);
+  Random random(m_pass.m_seed, m_pass.m_film.index(sample.column, sample.row), sample.number);
   const Vec2 jitter = random.uniform2();
   return PathStart{sample.column + jitter.x(), sample.row + jitter.y(), random,
                    ticketOf(m_current, index)};
@@ -41,11 +41,6 @@ void TileStream::deliver(std::uint64_t ticket, const PathSample& sample) {
     return;
   close(tile);
   m_free.push_back(place);
-}
-
-std::size_t TileStream::pixel(const Sample& sample) const {
-  return static_cast<std::size_t>(sample.row) * static_cast<std::size_t>(m_pass.m_film.width()) +
-         static_cast<std::size_t>(sample.column);
 }
 
 /// Makes the next tile that has samples the current one; false if none is left.
@@ -81,7 +76,7 @@ void TileStream::list(Tile& tile, int index) const {
   const int top = index / m_pass.m_tilesAcross * Pass::tileSize;
   for (int row = top; row < std::min(top + Pass::tileSize, film.height()); ++row)
     for (int column = left; column < std::min(left + Pass::tileSize, film.width()); ++column) {
-      const std::size_t here = pixel({column, row, 0});
+      const std::size_t here = film.index(column, row);
       const std::uint64_t begin = m_pass.m_from.count(here);
       const std::uint64_t end = m_pass.m_to.count(here);
       tile.planned += end - begin;

@@ -61,7 +61,6 @@ private:
     std::size_t awaited = 0;
   };
 
-  std::size_t pixel(const Sample& sample) const;
   bool openTile();
   void list(Tile& tile, int index) const;
   void close(Tile& tile);

@@ -59,4 +59,10 @@ private:
 /// answer.
 DicomHeader dicomHeader(std::string_view answer);
 
+/// Throws Error (input) unless the header describes an image that its file can hold.
+void checkDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
+
+/// Scalars of DicomFiles::voxels, after slope and intercept. `header` has passed checkDicomPixels.
+std::vector<double> rescaledVoxels(const DicomHeader& header, const std::string& voxels);
+
 } // namespace fenestra

@@ -1,4 +1,4 @@
-#include "files/medical/DicomHeader.h"
+#include "files/medical/DicomFiles.h"
 
 #include "base/Error.h"
 
@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <variant>
@@ -144,6 +145,20 @@ std::string answerDicom(const std::string& question) {
 
 const ApartJob dicomJob("dicom", answerDicom);
 
+// ---- voxels
+
+/// Value of a voxel's stored bits.
+std::int64_t storedValue(const DicomHeader& h, const std::string& voxels, std::size_t voxel) {
+  const std::size_t size = h.bits / 8;
+  std::uint64_t bits = 0;
+  for (std::size_t byte = size; byte-- > 0;)
+    bits = bits << 8 | static_cast<unsigned char>(voxels[voxel * size + byte]);
+  const std::uint64_t mask = (std::uint64_t{1} << h.bitsStored) - 1;
+  const std::int64_t sign = h.isSigned ? std::int64_t{1} << (h.bitsStored - 1) : 0;
+  const auto value = static_cast<std::int64_t>(bits >> (h.highBit + 1 - h.bitsStored) & mask);
+  return (value ^ sign) - sign;
+}
+
 } // namespace
 
 DicomFiles::DicomFiles() : m_child(dicomJob) {}
@@ -185,6 +200,33 @@ std::string DicomFiles::voxels(const Path& path, const DicomHeader& h) {
   if (h.compressed)
     throw inputError(path, "PixelData: cannot be decoded; export the series without compression");
   throw inputError(path, "PixelData: is damaged, truncated or deflated; export the series again");
+}
+
+void checkDicomPixels(const Path& path, const DicomHeader& h) {
+  const auto refuse = [&](const char* what) { throw inputError(path, what); };
+  if (h.rows == 0 || h.columns == 0)
+    refuse("Rows or Columns: is missing; export the series again");
+  const bool known = h.bits == 8 || h.bits == 16 || h.bits == 32;
+  if (!known || h.bitsStored == 0 || h.highBit >= h.bits || h.bitsStored > h.highBit + 1 ||
+      h.isSigned > 1)
+    refuse("BitsAllocated, BitsStored or HighBit: has a value that is not read; save the volume in "
+           "Slicer as .nrrd and name that");
+  if (!std::isfinite(h.slope) || !std::isfinite(h.intercept))
+    refuse("RescaleSlope or RescaleIntercept: is not one finite number; export the series again");
+  // Lossless codecs pack an empty picture into next to nothing, and any other 1000 to 1 at most.
+  constexpr std::uint64_t ratio = 1000, emptyPicture = 1 << 24;
+  const std::uint64_t stored = std::filesystem::file_size(path);
+  const std::uint64_t most = h.compressed ? std::max(emptyPicture, stored * ratio) : stored;
+  if (imageBytes(h) > most)
+    refuse(
+        "PixelData: is shorter than Rows, Columns and BitsAllocated say; export the series again");
+}
+
+std::vector<double> rescaledVoxels(const DicomHeader& h, const std::string& voxels) {
+  std::vector<double> scalars(std::size_t{h.rows} * h.columns);
+  for (std::size_t i = 0; i < scalars.size(); ++i)
+    scalars[i] = h.slope * static_cast<double>(storedValue(h, voxels, i)) + h.intercept;
+  return scalars;
 }
 
 } // namespace fenestra

@@ -1,14 +1,20 @@
-#include "program/PresetFlags.h"
+#include "program/MergedFlags.h"
 
 #include "base/Error.h"
+#include "base/safe/ShownText.h"
+#include "files/pictures/ImageFormat.h"
+#include "files/slicer/MrmlScene.h"
 #include "session/Defaults.h"
 #include "session/NamedLooks.h"
 #include "session/OrganPresets.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace fenestra {
 namespace {
+
+// ---- an organ preset's flags
 
 /// False for a default that Slicer hands over: its panel passes every flag.
 bool isGiven(const FlagValues& given, const std::string& name) {
@@ -29,8 +35,7 @@ bool isOverruled(const Flag& own, const FlagValues& given) {
 const Flag& presetFlag(const std::string& name, const std::string& source) {
   if (const Flag* flag = findFlag(renderSyntax.flags, name); flag && shapesLook(*flag))
     return *flag;
-  throw inputError(source,
-                   "flags: \"" + name + "\" is no flag of clipping, view or look; remove it");
+  throw inputError(source, "flags: \"", name, "\" is no flag of clipping, view or look; remove it");
 }
 
 /// Segments named by the given focus; all if it names none.
@@ -65,26 +70,63 @@ OrganPreset presetFor(const FlagValues& given, const Input& input,
                        });
 }
 
-/// Escapes commas in an id, as --focus expects.
-std::string escaped(const std::string& id) {
-  std::string text;
-  for (const char c : id)
-    text += c == ',' ? std::string("\\,") : std::string(1, c);
-  return text;
-}
-
 void addFocus(const OrganPreset& preset, const SegmentNames& names, FlagValues& flags) {
   if (names.segments.empty())
-    throw inputError(names.source, "--preset " + preset.name +
-                                       ": its segments have no names, only values; say which are "
-                                       "meant with --focus A,B,...");
+    throw inputError(names.source, "--preset ", preset.name,
+                     ": its segments have no names, only values; say which are meant with --focus "
+                     "A,B,...");
   const std::vector<SegmentInfo> focus = focusOf(preset.focus, names.segments);
   if (focus.empty())
-    throw inputError(names.source, "--preset " + preset.name + ": none of its segments is one (" +
-                                       listedNames(names.segments) +
-                                       "); give --focus A,B,..., or another preset");
+    throw inputError(names.source, "--preset ", preset.name, ": none of its segments is one (",
+                     listedNames(names.segments), "); give --focus A,B,..., or another preset");
   for (const SegmentInfo& segment : focus)
-    flags.add("focus", escaped(segment.id));
+    flags.add("focus", replacedAll(segment.id, ",", "\\,"));
+}
+
+// ---- a scene's flags
+
+/// True if given flags replace a stored one: itself, or another of its topic.
+bool isReplaced(const Flag& stored, const FlagValues& given) {
+  return std::ranges::any_of(renderSyntax.flags, [&](const Flag& flag) {
+    const bool isOfTopic = wholeOf(flag.topic) == wholeOf(stored.topic);
+    return (flag.name == stored.name || (isOfTopic && stored.topic != Topic::own)) &&
+           given.has(flag.name);
+  });
+}
+
+/// True if a render would open a file that the value names.
+bool isFile(const std::string& name, const std::string& value, const Input& input) {
+  if (name == "environment")
+    return imageFormat(value) == ImageFormat::exr;
+  if (name == "preset")
+    return isFileName("presets", value);
+  if (name == "lights")
+    return isFileOfLights(value);
+  return name == "transfer" && isFileOfTransfer(value, input);
+}
+
+/// True beyond the limits of a scene's flags. A text that is no number is refused later, like one
+/// that a user gave.
+bool isTooMuch(const std::string& name, const std::string& value) {
+  constexpr int mostPixels = 4096; // limit of width and of height
+  constexpr std::uint64_t mostSamples = 65536;
+  int width = 0, height = 0;
+  if (name == "size" && std::sscanf(value.c_str(), "%dx%d", &width, &height) == 2)
+    return std::max(width, height) > mostPixels;
+  if (name != "samples")
+    return false;
+  FlagValues samples(renderSyntax.flags);
+  samples.add(name, value);
+  return samples.count(name) > mostSamples;
+}
+
+/// Reason why a scene's stored value is not taken; empty: taken.
+std::string objection(const Input& input, const std::string& name, const std::string& value) {
+  if (name == "volume" || name == "segmentation")
+    return input.document()->find(value) ? "" : "is no node of the scene";
+  if (isTooMuch(name, value))
+    return "is more than a scene may ask for";
+  return isFile(name, value, input) ? "names a file, which a scene may not choose" : "";
 }
 
 } // namespace
@@ -120,6 +162,32 @@ RenderOptions renderOptions(const PresetFlags& flags) {
   RenderOptions options = renderOptions(flags.flags);
   options.scene.transferFor = flags.transferFor;
   return options;
+}
+
+SceneFlags withSceneFlags(const FlagValues& given, const Input& input) {
+  SceneFlags result{given};
+  FlagValues& merged = result.flags;
+  const MrmlDocument* scene = input.document();
+  const auto nodes = scene ? scene->withTag("FenestraRender") : std::vector<const MrmlNode*>();
+  if (nodes.empty())
+    return result;
+  const MrmlNode& node = *nodes.back();
+  const FlagValues deciding = withPreset(given, input).flags;
+  for (const Flag& flag : renderSyntax.flags) {
+    const std::string& name = flag.name;
+    const bool isNode = name == "volume" || name == "segmentation";
+    const std::string value = isNode ? node.referenced(name) : node.text(name);
+    if (!shapesPicture(flag) || value.empty() || isReplaced(flag, deciding))
+      continue;
+    if (const std::string why = objection(input, name, value); why.empty())
+      merged.add(name, value);
+    else
+      result.leftOut.push_back(textOf(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
+                                      "\" ", why, "; give --", name, ' ', shown(value)));
+  }
+  if (!merged.has("focus") && !given.has("segmentation")) // the stored choice does not matter
+    merged.remove("segmentation");
+  return result;
 }
 
 } // namespace fenestra

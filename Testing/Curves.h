@@ -1,0 +1,20 @@
+#pragma once
+// Curves of a volume property at a point, as vtkPiecewiseFunction and vtkColorTransferFunction have
+// them: clamped to the end nodes outside.
+
+#include "model/medium/VolumeProperty.h"
+
+namespace fenestra {
+
+template <typename Value>
+Value curveAt(const std::vector<CurveNode<Value>>& nodes, double x) {
+  const auto next = std::ranges::upper_bound(nodes, x, {}, &CurveNode<Value>::x);
+  if (next == nodes.begin() || next == nodes.end())
+    return next == nodes.begin() ? nodes.front().value : nodes.back().value;
+  const CurveNode<Value>& before = *(next - 1);
+  const double u = std::clamp((x - before.x) / (next->x - before.x), 0.0, 1.0);
+  return before.value +
+         (next->value - before.value) * curveProgress(u, before.midpoint, before.sharpness);
+}
+
+} // namespace fenestra
