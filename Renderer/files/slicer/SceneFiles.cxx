@@ -117,8 +117,8 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
     throw readingError(path, errno, "check its permissions");
   if (!zip)
     throw inputError(m_source, "is no whole archive; save the scene again, or name its .mrml");
-  m_unpackable = mostUnpacked(std::filesystem::file_size(path));
   m_archive.reset(zip);
+  m_unpackable = mostUnpacked(std::filesystem::file_size(path));
   const zip_int64_t count = zip_get_num_entries(zip, 0);
   if (count > mostEntries)
     throw inputError(m_source, "holds more than a million files; save a smaller scene");

@@ -12,14 +12,16 @@ constexpr double leastShare = 0.05;
 LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera)
     : m_count(lights.size()) {
   for (const Light& light : lights)
-    if (const auto* environment = std::get_if<EnvironmentLight>(&light))
-      m_environments.push_back({EnvironmentSampler(*environment), 0.0});
-    else if (const auto* directional = std::get_if<DirectionalLight>(&light))
-      m_directionals.push_back(
-          {-directional->direction.normalized(), directional->irradiance, 0.0});
-    else
-      place(std::get<AreaLight>(light), volume, camera);
+    std::visit([&](const auto& kind) { place(kind, volume, camera); }, light);
   chooseShares(volume.worldCenter());
+}
+
+void LightSet::place(const EnvironmentLight& light, const Grid&, const Camera&) {
+  m_environments.push_back({EnvironmentSampler(light), 0.0});
+}
+
+void LightSet::place(const DirectionalLight& light, const Grid&, const Camera&) {
+  m_directionals.push_back({-light.direction.normalized(), light.irradiance, 0.0});
 }
 
 void LightSet::place(const AreaLight& light, const Grid& volume, const Camera& camera) {

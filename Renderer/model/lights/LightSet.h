@@ -96,6 +96,8 @@ private:
     double share; ///< 0: never sampled
   };
 
+  void place(const EnvironmentLight& light, const Grid& volume, const Camera& camera);
+  void place(const DirectionalLight& light, const Grid& volume, const Camera& camera);
   void place(const AreaLight& light, const Grid& volume, const Camera& camera);
   void chooseShares(const Vec3& center);
 
