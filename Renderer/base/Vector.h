@@ -58,6 +58,8 @@ struct Box {
   Vec3 lower = Vec3::Zero();
   Vec3 upper = Vec3::Zero();
 
+  bool operator==(const Box&) const = default;
+
   /// Holds no point; grows by extend.
   static Box nothing() { return {Vec3::Constant(infinity), Vec3::Constant(-infinity)}; }
   void extend(const Vec3& point) {

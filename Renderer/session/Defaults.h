@@ -28,10 +28,10 @@ std::array<double, 2> usualRange(const Volume& volume);
 TransferFunction relativeTransfer(const Volume& volume);
 
 /// Pose of a view request for this volume and focus: named views look along the patient's axes at
-/// the focus with its surroundings (else at the volume, or the part that a crop leaves).
+/// the focus with its surroundings, or at the part of the volume to frame where that is smaller.
 /// `best`: direction for the name auto; null: anterior. Throws Error (usage) for an unknown view
 /// name.
-CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
+CameraPose frameView(const ViewRequest& view, const Domain& framed, const Mask* focus, int width,
                      int height, const ViewDirection* best = nullptr);
 
 /// Scene's camera, changed by the set members of the request. Throws Error (usage) if --scale or

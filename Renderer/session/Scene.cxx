@@ -44,11 +44,12 @@ void Scene::make() {
                               r.shift, r.density);
   if (r.view.isAutomatic() && focus->mask)
     m_view.of(volume, settings, focus, look);
+  const auto ranges = m_ranges.of(volume, MajorantGrid::apronFor(look->transfer));
+  const Box matter = settings->camera ? Box() : *m_matter.of(volume, ranges, look);
   const auto camera =
-      m_camera.of(r.view, r.width, r.height, volume, settings, focus, m_view.result());
+      m_camera.of(r.view, r.width, r.height, volume, settings, matter, focus, m_view.result());
   m_lights.of({lights, camera}, volume);
   const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
-  const auto ranges = m_ranges.of(volume, MajorantGrid::apronFor(look->transfer));
   if (focus->mask && r.focusLook.isStyled())
     m_style.of(focus, r.focusLook.contextExtinction, r.focusLook.contextSaturation);
   m_majorants.of(volume, ranges, look, clip, m_style.result());
@@ -58,7 +59,8 @@ StageSeconds Scene::seconds() const {
   const ClipResult none, &clip = m_clip.isNew() ? *m_clip : none;
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_focus.seconds() + m_sceneLook.seconds() + m_look.seconds(),
-          .classify = m_ranges.seconds() + m_style.seconds() + m_majorants.seconds(),
+          .classify =
+              m_ranges.seconds() + m_matter.seconds() + m_style.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,
           .spline = clip.splineSeconds,
           .fill = clip.fillSeconds};

@@ -69,8 +69,8 @@ private:
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_focus,
-                    s.m_sceneLook, s.m_look, s.m_view, s.m_camera, s.m_lights, s.m_clip, s.m_ranges,
-                    s.m_style, s.m_majorants);
+                    s.m_sceneLook, s.m_look, s.m_view, s.m_ranges, s.m_matter, s.m_camera,
+                    s.m_lights, s.m_clip, s.m_style, s.m_majorants);
   }
 
   SceneRequest m_request;
@@ -83,10 +83,11 @@ private:
   Stage<&Input::look> m_sceneLook; ///< unused with --transfer
   Stage<&chosenLook> m_look;
   Stage<&bestView> m_view; ///< used by automatic views alone
+  Stage<&rangesOf> m_ranges;
+  Stage<&matterBox> m_matter; ///< unused where the scene's camera applies
   Stage<&placedCamera> m_camera;
   Stage<&placedLights> m_lights;
   Stage<&builtClip> m_clip;
-  Stage<&rangesOf> m_ranges;
   Stage<&styleAround> m_style; ///< unused if the context is unchanged
   Stage<&majorantsOf> m_majorants;
 };

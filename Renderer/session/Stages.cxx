@@ -175,13 +175,20 @@ ViewDirection bestView(const Read& volume, const Settings& settings, const Focus
       ViewScorer(volume->volume, domainOf(volume, settings), look->transfer, *focus->mask));
 }
 
+Box matterBox(const Read& volume, const Handle<CellRanges>& ranges, const Handle<Look>& look) {
+  return MajorantGrid(volume->volume.grid, *ranges, look->transfer, ClipNone()).matterBox();
+}
+
 Camera placedCamera(const ViewRequest& view, int width, int height, const Read& volume,
-                    const Settings& settings, const Focus& focus,
+                    const Settings& settings, const Box& matter, const Focus& focus,
                     const Handle<ViewDirection>& best) {
   if (settings->camera)
     return {adjustedView(view, *settings->camera), width, height};
-  return {frameView(view, domainOf(volume, settings), maskOf(focus), width, height, best.get()),
-          width, height};
+  const Domain whole = domainOf(volume, settings);
+  const Domain part = whole.within(matter);
+  const bool isEmpty = part.indexCorners().empty();
+  return {frameView(view, isEmpty ? whole : part, maskOf(focus), width, height, best.get()), width,
+          height};
 }
 
 bool FramedLights::operator==(const FramedLights& other) const {

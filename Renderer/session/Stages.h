@@ -36,9 +36,13 @@ Look chosenLook(const Read& volume, const Handle<NamedTransfer>& named,
 ViewDirection bestView(const Read& volume, const Settings& settings, const Focus& focus,
                        const Handle<Look>& look);
 
-/// `best`: null unless the view is automatic.
+/// Box, in index space, of the cells that hold matter under the transfer function, before any clip.
+Box matterBox(const Read& volume, const Handle<CellRanges>& ranges, const Handle<Look>& look);
+
+/// `matter`: framed without a scene's camera; by value, so that a look that fills the same cells
+/// keeps the camera. `best`: null unless the view is automatic.
 Camera placedCamera(const ViewRequest& view, int width, int height, const Read& volume,
-                    const Settings& settings, const Focus& focus,
+                    const Settings& settings, const Box& matter, const Focus& focus,
                     const Handle<ViewDirection>& best);
 
 /// Lights, and the camera for those in its frame.

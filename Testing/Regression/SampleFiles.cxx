@@ -248,7 +248,7 @@ void writeSegments(const std::filesystem::path& folder, double s) {
   // Part of the volume's grid; the origin is already the part's own.
   Axes part = axesAlong(straight, Vec3::Constant(s));
   const Size3 offset = part.size / 2;
-  part.first = part.place(offset.x(), offset.y(), 0);
+  part.first = part.place(static_cast<int>(offset.x()), static_cast<int>(offset.y()), 0);
   part.size -= Size3(offset.x(), offset.y(), 0);
   std::ostringstream where;
   where << "Segmentation_ReferenceImageExtentOffset:=" << offset.x() << ' ' << offset.y() << " 0\n";

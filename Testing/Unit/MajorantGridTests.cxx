@@ -1,6 +1,7 @@
 #include "transport/readable/MajorantGrid.h"
 
 #include "RunSettings.h"
+#include "Support.h"
 #include "base/Random.h"
 #include "model/medium/Medium.h"
 
@@ -69,6 +70,32 @@ TEST(MajorantGrid, BoundsANonMonotoneFunction) {
       ScalarFunction({knot(0, 0), knot(40, 0), knot(50, 8), knot(60, 0), knot(200, 1)}), grey};
   expectConservative<std::uint8_t>(transfer, 0, 255);
   expectConservative<float>(transfer, -20, 220);
+}
+
+TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
+  const Grid grid({160, 129, 96}, Affine::Identity());
+  const Vec3 first(11, 6, 67), last(130, 8, 95); // voxels of a block, both included
+  Volume volume = makeVolume<std::uint8_t>(grid, [&](const Vec3& p) {
+    const bool inside = (p.array() >= first.array()).all() && (p.array() <= last.array()).all();
+    return inside ? 200.0 : 10.0;
+  });
+  const auto boxFrom = [&](double threshold) {
+    const TransferFunction transfer{ScalarFunction({knot(threshold, 0), knot(threshold + 1, 1)}),
+                                    grey};
+    return MajorantGrid(grid, CellRanges(volume, 0), transfer, ClipNone{}).matterBox();
+  };
+  const Vec3 edge = CellRanges::edgeFor(grid).cast<double>();
+  const Box box = boxFrom(100.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LE(box.lower[axis], first[axis] - 0.5);
+    EXPECT_GE(box.lower[axis], first[axis] - 2.0 - edge[axis]);
+    EXPECT_GE(box.upper[axis], std::min(last[axis] + 0.5, grid.indexBox().upper[axis]));
+    EXPECT_LE(box.upper[axis], last[axis] + 2.0 + edge[axis]);
+  }
+  EXPECT_EQ(boxFrom(5.0).lower, grid.indexBox().lower);
+  EXPECT_TRUE((boxFrom(5.0).upper.array() >= grid.indexBox().upper.array()).all());
+  EXPECT_EQ(boxFrom(250.0), Box::nothing());
+  EXPECT_GT(edge.minCoeff(), 1.0) << "cells of several voxels";
 }
 
 TEST(MajorantGrid, BoundsStepsAndSpikes) {

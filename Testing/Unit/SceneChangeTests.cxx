@@ -138,6 +138,24 @@ TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
   expectAsFromNothing(wider.changed(request));
 }
 
+TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
+  request.focus.clear();
+  const Scene ball(request); // of radius 6 among 16 voxels
+  const auto seen = [](double from) {
+    return R"({"extinction": [[)" + std::to_string(from) +
+           R"(, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
+  };
+  request.transfer = seen(149.0);
+  const Scene part = ball.changed(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
+  EXPECT_TRUE(part.made().camera);
+  const auto [position, scale] = std::pair(part.camera().pose().target, part.camera().pose().scale);
+  EXPECT_LT(scale, 0.95 * ball.camera().pose().scale);
+  EXPECT_GT((part.volume().grid.worldToIndex * position).x(), 10.0);
+  request.transfer = seen(299.0);
+  const Scene nothing = ball.changed(request);
+  EXPECT_EQ(nothing.camera().pose().scale, 1.05 * 8.0) << "the whole volume";
+}
+
 TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {
   request.lights = folder / "lamp.json";
   const Scene before(request);

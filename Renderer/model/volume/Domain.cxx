@@ -32,8 +32,16 @@ Domain::Domain(const Grid& grid, const std::optional<CropBox>& crop)
     m_crop = Crop{crop->worldToBox * grid.indexToWorld, grid.worldToIndex * crop->boxToWorld};
 }
 
+Domain Domain::within(const Box& box) const {
+  Domain part = *this;
+  part.m_box = {m_box.lower.cwiseMax(box.lower), m_box.upper.cwiseMin(box.upper)};
+  return part;
+}
+
 std::vector<Vec3> Domain::indexCorners() const {
   std::vector<Vec3> points;
+  if ((m_box.lower.array() > m_box.upper.array()).any())
+    return points;
   if (!m_crop) {
     for (int i = 0; i < 8; ++i)
       points.push_back(m_box.corner(i));

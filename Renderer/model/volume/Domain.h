@@ -45,8 +45,11 @@ public:
            (!m_crop || isIn(m_crop->box, m_crop->fromIndex * indexPoint));
   }
 
+  /// Part of the domain inside `box` (index space); may be empty.
+  Domain within(const Box& box) const;
+
   /// Points in index space whose convex hull is the domain (to rounding), with duplicates; empty if
-  /// the boxes do not meet.
+  /// the boxes do not meet, or for an empty part.
   std::vector<Vec3> indexCorners() const;
 
 private:

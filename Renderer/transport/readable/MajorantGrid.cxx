@@ -104,4 +104,19 @@ std::size_t MajorantGrid::emptyCount() const {
       std::ranges::count_if(m_cells, [](const Cell& cell) { return cell.majorant == 0.0F; }));
 }
 
+Box MajorantGrid::matterBox() const {
+  Box box = Box::nothing(); // in cells
+  std::size_t next = 0;
+  for (std::int64_t z = 0; z < m_cellCount.z(); ++z)
+    for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
+      for (std::int64_t x = 0; x < m_cellCount.x(); ++x)
+        if (m_cells[next++].majorant > 0.0F) {
+          const Vec3 lower = Size3(x, y, z).cast<double>();
+          box.extend(lower);
+          box.extend(lower.array() + 1.0);
+        }
+  const Vec3 edge = m_edge.cast<double>();
+  return {box.lower.cwiseProduct(edge).array() - 0.5, box.upper.cwiseProduct(edge).array() - 0.5};
+}
+
 } // namespace fenestra
