@@ -107,6 +107,24 @@ TEST(MrmlScene, SegmentationAndLabelMapLieInTheWorld) {
   EXPECT_EQ(labelMap.segments().at(0).labelValue, 5);
 }
 
+TEST(MrmlScene, LabelMapOfAnArchiveTakesNamesFromTheUsersFile) {
+  const SceneFolder folder;
+  std::vector<std::uint8_t> labels(24, 0);
+  labels[1] = 5;
+  writeFile(folder / "labels.nrrd", labels);
+  const auto table = folder.write("names.json", R"({"5": "liver"})");
+  const auto archive = folder / "a.mrb";
+  const auto readWith = [&](const std::string& tableInside) {
+    writeArchive(archive, {{"a/a.mrml", R"(<MRML><LabelMapVolume id="l" storageNodeRef="s"/>
+      <VolumeArchetypeStorage id="s" fileName="labels.nrrd"/></MRML>)"},
+                           {"a/labels.nrrd", bytesOf(folder / "labels.nrrd")},
+                           {"a/labels.ctbl", tableInside}});
+    MrmlScene scene(archive);
+    return readSceneSegmentation(scene, node(scene, "l"), nullptr, table);
+  };
+  EXPECT_EQ(readWith("5 kidney 0 0 0 255").segments().at(0).name, "liver");
+}
+
 TEST(MrmlScene, ReadsVisibilityOfSegments) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene(R"(<Segmentation id="s" displayNodeRef="d"/>

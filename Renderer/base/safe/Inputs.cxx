@@ -136,9 +136,11 @@ void expectInput(const std::filesystem::path& path) {
         enterFile(entry->path());
 }
 
-InputsWithin::InputsWithin(const std::filesystem::path& folder)
-    : m_folder(std::filesystem::canonical(folder)),
-      m_before(std::exchange(confinement, &m_folder)) {}
+InputsWithin::InputsWithin(const std::optional<std::filesystem::path>& folder) {
+  if (folder)
+    m_folder = std::filesystem::canonical(*folder);
+  m_before = std::exchange(confinement, m_folder ? &*m_folder : nullptr);
+}
 
 InputsWithin::~InputsWithin() {
   confinement = m_before;

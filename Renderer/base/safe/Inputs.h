@@ -41,16 +41,17 @@ void requireFile(const std::filesystem::path& path, const std::string& mend,
 void expectInput(const std::filesystem::path& path);
 
 /// Confines this thread's reads to `folder` during the object's life, whatever the files in
-/// `folder` name. For unpacked archives.
+/// `folder` name. For unpacked archives. nullopt: reads anywhere, for a file that the user names
+/// while an archive is read.
 class InputsWithin {
 public:
-  explicit InputsWithin(const std::filesystem::path& folder);
+  explicit InputsWithin(const std::optional<std::filesystem::path>& folder);
   ~InputsWithin();
   InputsWithin(const InputsWithin&) = delete;
   InputsWithin& operator=(const InputsWithin&) = delete;
 
 private:
-  std::filesystem::path m_folder;
+  std::optional<std::filesystem::path> m_folder;
   const std::filesystem::path* m_before;
 };
 

@@ -65,6 +65,7 @@ FoundNames wantedNames(const std::filesystem::path& path, const std::string& ext
   if (!isThere(wanted))
     throw usageError("--labels ", shown(wanted), ": is no file, and none of totalsegmentator, ",
                      joined(compiledLabelTables(), ", "));
+  const InputsWithin anywhere(std::nullopt);
   return {readLabelNames(wanted), wanted};
 }
 
