@@ -1,5 +1,6 @@
 #include "vtkSlicerFenestraLogic.h"
 
+#include "vtkMRMLFenestraPictureDisplayNode.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraSnapshot.h"
 
@@ -44,8 +45,11 @@ void vtkSlicerFenestraLogic::PrintSelf(ostream& os, vtkIndent indent) {
 }
 
 void vtkSlicerFenestraLogic::RegisterNodes() {
-  if (this->GetMRMLScene())
-    this->GetMRMLScene()->RegisterNodeClass(vtkSmartPointer<Node>::New());
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  if (!scene)
+    return;
+  scene->RegisterNodeClass(vtkSmartPointer<Node>::New());
+  scene->RegisterNodeClass(vtkSmartPointer<vtkMRMLFenestraPictureDisplayNode>::New());
 }
 
 void vtkSlicerFenestraLogic::SetMRMLSceneInternal(vtkMRMLScene* scene) {

@@ -31,6 +31,7 @@
 namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
+constexpr const char* PictureViewId = "vtkMRMLSliceNodeFenestra"; // by class and singleton tag
 constexpr int ResultLayout = 5617; // larger than the numbers of Slicer's own layouts
 constexpr const char* ResultLayoutXml =
     "<layout type=\"horizontal\" split=\"true\">"
@@ -57,7 +58,16 @@ FenestraScene::Image ReadFloats(const std::string& file) {
   return image;
 }
 
-/// Reads picture files as slices: row 0 at the top, as in the renderer's volumes, no transparency.
+bool IsOpaque(vtkImageData* picture) {
+  const auto* pixels = static_cast<const unsigned char*>(picture->GetScalarPointer());
+  for (vtkIdType i = 0; i < picture->GetNumberOfPoints(); ++i)
+    if (pixels[4 * i + 3] != 255)
+      return false;
+  return true;
+}
+
+/// Reads picture files as slices: row 0 at the top, as in the renderer's volumes. Of four
+/// components only where a pixel is transparent.
 vtkSmartPointer<vtkImageData> ReadPictures(const std::vector<std::string>& files) {
   vtkNew<vtkStringArray> names;
   for (const std::string& file : files)
@@ -70,6 +80,11 @@ vtkSmartPointer<vtkImageData> ReadPictures(const std::vector<std::string>& files
   vtkNew<vtkImageExtractComponents> colours;
   colours->SetInputConnection(flip->GetOutputPort());
   colours->SetComponents(0, 1, 2);
+  flip->Update();
+  vtkSmartPointer<vtkImageData> picture = flip->GetOutput();
+  if (picture->GetNumberOfScalarComponents() == 4 &&
+      picture->GetScalarType() == VTK_UNSIGNED_CHAR && !IsOpaque(picture))
+    return picture;
   colours->Update();
   return colours->GetOutput();
 }
@@ -216,7 +231,12 @@ vtkMRMLVolumeNode* vtkSlicerFenestraLogic::AddVolume(Node* render, const char* c
   matrix->DeepCopy(ijkToRas.data());
   volume->SetIJKToRASMatrix(matrix);
   volume->SetAndObserveImageData(image);
+  if (image->GetNumberOfScalarComponents() == 4 && image->GetScalarType() == VTK_UNSIGNED_CHAR)
+    volume->SetAndObserveDisplayNodeID(
+        scene->AddNewNodeByClass("vtkMRMLFenestraPictureDisplayNode")->GetID());
   volume->CreateDefaultDisplayNodes();
+  if (vtkMRMLDisplayNode* display = volume->GetDisplayNode())
+    display->SetDisplayableOnlyInView(PictureViewId); // no part of the 3D views' bounds
   render->SetNodeReferenceID(role, volume->GetID());
   this->Own(render, volume);
   return volume;

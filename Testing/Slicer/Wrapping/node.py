@@ -1,7 +1,10 @@
 """Round trip of the node from Python: flags, XML, content; and arguments that are None or of no sense."""
 
 import vtkmodules.vtkCommonCore
+from FenestraPython import vtkMRMLFenestraPictureDisplayNode as PictureDisplay
 from FenestraPython import vtkMRMLFenestraRenderNode as Node
+from FenestraPython import vtkMRMLVectorVolumeDisplayNode as VectorDisplay
+from vtkmodules.vtkCommonDataModel import vtkImageData
 
 
 def attempt(call, *arguments):
@@ -47,3 +50,22 @@ for name in own:
     for arguments in ((), (None,), (None, None), ("x",), ("x", None), (node, node), ([],), ([None],)):
         attempt(getattr(node, name), *arguments)
 print("round trip from Python: well")
+
+pixels = [(200, 100, 50, 255), (200, 100, 50, 128), (0, 0, 0, 0)]
+picture = vtkImageData()
+picture.SetDimensions(3, 1, 1)
+picture.AllocateScalars(vtkmodules.vtkCommonCore.VTK_UNSIGNED_CHAR, 4)
+for x, pixel in enumerate(pixels):
+    for component, value in enumerate(pixel):
+        picture.SetScalarComponentFromDouble(x, 0, 0, component, value)
+
+
+def displayed(node):
+    image = node.Displayed(picture)
+    return [tuple(int(image.GetScalarComponentAsDouble(x, 0, 0, component))
+                  for component in range(image.GetNumberOfScalarComponents())) for x in range(3)]
+
+
+assert displayed(PictureDisplay()) == pixels, "colours and opacity as in the picture"
+assert len(displayed(VectorDisplay())[0]) == 5, "what the stand-in, as Slicer, makes of it"
+print("opacity of pictures: kept")

@@ -13,6 +13,7 @@ skip() {
   echo "SKIPPED: $*" >&2
   exit 77
 }
+[ "$(uname -m)" = x86_64 ] && [ -e /usr/bin/python3.11 ] || skip "needs Debian 12 on x86-64"
 root=
 if ! [ -x /usr/bin/vtkWrapPython-9.1 ] || ! [ -e /usr/include/vtk-9.1/vtkPythonArgs.h ]; then
   root=$PWD/debian
@@ -41,7 +42,7 @@ printf '%s;FenestraPython\n' "${headers[@]}" >headers.txt
 "$root/usr/bin/vtkWrapHierarchy-9.1" "${includes[@]}" -o ours.txt headers.txt
 cp ours.txt FenestraPython-hierarchy.txt
 types=(--types FenestraPython-hierarchy.txt)
-for room in vtkCommonCore vtkCommonDataModel; do
+for room in vtkCommonCore vtkCommonDataModel vtkCommonExecutionModel; do
   types+=(--types "$libraries/vtk/hierarchy/VTK/$room-hierarchy.txt")
 done
 
@@ -55,13 +56,15 @@ for header in "${headers[@]}"; do
 done
 echo "wrapped and compiled: ${#headers[@]} headers"
 
-# The node as a Python module.
-printf '%s\n' FenestraPython vtkMRMLNode vtkMRMLFenestraRenderNode >init.txt
+# The nodes as a Python module.
+printf '%s\n' FenestraPython vtkMRMLNode vtkMRMLFenestraRenderNode vtkMRMLVectorVolumeDisplayNode \
+  vtkMRMLFenestraPictureDisplayNode >init.txt
 "$root/usr/bin/vtkWrapPythonInit-9.1" init.txt FenestraPythonInit.cxx FenestraPythonInitImpl.cxx
 for source in FenestraPythonInit.cxx FenestraPythonInitImpl.cxx "$module"/MRML/*.cxx "$module"/Scene/FenestraFlags.cxx; do
   "${compile[@]}" -c "$source" -o "$(basename "$source" .cxx)Source.o"
   objects+=("$(basename "$source" .cxx)Source.o")
 done
 g++ -shared "${objects[@]}" -o FenestraPython.so "-L$libraries" -lvtkCommonCore-9.1 \
+  -lvtkCommonDataModel-9.1 -lvtkCommonExecutionModel-9.1 -lvtkImagingCore-9.1 -lvtkImagingColor-9.1 \
   -lvtkWrappingPythonCore3.11-9.1 "-Wl,-rpath-link,$libraries"
-PYTHONPATH=.:$root/usr/lib/python3/dist-packages /usr/bin/python3 "$here/node.py"
+PYTHONPATH=.:$root/usr/lib/python3/dist-packages /usr/bin/python3.11 "$here/node.py"

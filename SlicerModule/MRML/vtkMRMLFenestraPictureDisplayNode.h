@@ -1,0 +1,37 @@
+#ifndef __vtkMRMLFenestraPictureDisplayNode_h
+#define __vtkMRMLFenestraPictureDisplayNode_h
+
+#include <vtkMRMLVectorVolumeDisplayNode.h>
+#include <vtkNew.h>
+
+#include "vtkSlicerFenestraModuleMRMLExport.h"
+
+class vtkImageExtractComponents;
+
+/// \brief Display of a picture of four components: red, green, blue, opacity.
+///
+/// Slicer's display of vectors appends an opacity of its own to all components; its views take no
+/// picture of five.
+class VTK_SLICER_FENESTRA_MODULE_MRML_EXPORT vtkMRMLFenestraPictureDisplayNode
+    : public vtkMRMLVectorVolumeDisplayNode {
+public:
+  static vtkMRMLFenestraPictureDisplayNode* New();
+  vtkTypeMacro(vtkMRMLFenestraPictureDisplayNode, vtkMRMLVectorVolumeDisplayNode);
+
+  vtkMRMLNode* CreateNodeInstance() override;
+  const char* GetNodeTagName() override { return "FenestraPictureDisplay"; }
+  vtkAlgorithmOutput* GetInputImageDataConnection() override;
+
+protected:
+  vtkMRMLFenestraPictureDisplayNode();
+  ~vtkMRMLFenestraPictureDisplayNode() override;
+  vtkMRMLFenestraPictureDisplayNode(const vtkMRMLFenestraPictureDisplayNode&) = delete;
+  void operator=(const vtkMRMLFenestraPictureDisplayNode&) = delete;
+
+  void SetInputToImageDataPipeline(vtkAlgorithmOutput* picture) override;
+
+private:
+  vtkNew<vtkImageExtractComponents> Colours, Opacity;
+};
+
+#endif
