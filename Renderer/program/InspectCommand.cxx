@@ -237,8 +237,8 @@ std::string segmentTable(const Json& segments) {
     const Json& segment = segments[i];
     rows.push_back({segment["labelValue"].dump(), segment["layer"].dump(), hex(segment["color"]),
                     segment["voxels"].dump(), number(segment["milliliters"], "%.2f"),
-                    text(segment, "id", 20),
-                    text(segment, "name", 24) + (segment["shown"] == true ? "" : " (hidden)")});
+                    text(segment, "id", 40),
+                    text(segment, "name", 64) + (segment["shown"] == true ? "" : " (hidden)")});
   }
   if (segments.size() > count)
     rows.push_back({"...", "", "", "", "",

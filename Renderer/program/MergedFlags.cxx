@@ -60,7 +60,8 @@ OrganPreset presetFor(const FlagValues& given, const Input& input,
                      "name a preset");
   if (names->segments.empty())
     throw inputError(names->source, "--preset auto: its segments have no names, only values; name "
-                                    "a preset and give --focus A,B,...");
+                                    "them with --labels, or name a preset and give --focus "
+                                    "A,B,...");
   std::vector<OrganPreset> presets;
   for (const std::string& own : ownPresets("presets"))
     presets.push_back(namedPreset(own));
@@ -73,8 +74,8 @@ OrganPreset presetFor(const FlagValues& given, const Input& input,
 void addFocus(const OrganPreset& preset, const SegmentNames& names, FlagValues& flags) {
   if (names.segments.empty())
     throw inputError(names.source, "--preset ", preset.name,
-                     ": its segments have no names, only values; say which are meant with --focus "
-                     "A,B,...");
+                     ": its segments have no names, only values; name them with --labels, or say "
+                     "which are meant with --focus A,B,...");
   const std::vector<SegmentInfo> focus = focusOf(preset.focus, names.segments);
   if (focus.empty())
     throw inputError(names.source, "--preset ", preset.name, ": none of its segments is one (",

@@ -109,6 +109,29 @@ std::array<double, 2> usualRange(const Volume& volume) {
   return {low, high > low ? high : volume.maximum};
 }
 
+double transparentShare(const Mask& focus, const Volume& volume, const TransferFunction& transfer) {
+  const Affine toVolume = volume.grid.worldToIndex * focus.grid.indexToWorld;
+  const Box box = volume.grid.indexBox();
+  const Size3& size = focus.grid.size;
+  const auto count = [&](const auto& voxels) {
+    const Field field(volume.grid, voxels);
+    const std::size_t stride = focus.voxels.size() / 1'000'000 + 1;
+    double all = 0.0, transparent = 0.0;
+    for (std::size_t i = 0; i < focus.voxels.size(); i += stride) {
+      if (focus.voxels[i] < focus.half())
+        continue;
+      const auto at = static_cast<std::int64_t>(i);
+      const Size3 voxel(at % size.x(), at / size.x() % size.y(), at / size.x() / size.y());
+      const Vec3 index = toVolume * voxel.cast<double>();
+      all += 1.0;
+      const double value = field.value(index.cwiseMax(box.lower).cwiseMin(box.upper));
+      transparent += transfer.extinction(value)[0] == 0.0;
+    }
+    return all > 0.0 ? transparent / all : 0.0;
+  };
+  return std::visit(count, volume.voxels);
+}
+
 TransferFunction relativeTransfer(const Volume& volume) {
   const double unit =
       100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm

@@ -21,6 +21,10 @@ bool suits(Modality modality, const Volume& volume);
 /// Usual range of the voxels: percentiles 0.5 and 99.5, low < high. Constant volume: low = high.
 std::array<double, 2> usualRange(const Volume& volume);
 
+/// Share of the focus's voxels, 0 to 1, whose extinction is 0: a look that is made for something
+/// else shows a hole where the focus is. From at most about a million voxels of the mask.
+double transparentShare(const Mask& focus, const Volume& volume, const TransferFunction& transfer);
+
 /// Look for volumes without an absolute scale (MR, ultrasound, stored values): from transparent
 /// at the background's level to opaque at the 99.5th percentile, dark red-brown through tissue to
 /// ivory. Extinction is relative to the volume's size. A constant volume gets a uniform haze

@@ -42,6 +42,7 @@ void Scene::make() {
     m_sceneLook.of(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
   const auto look = m_look.of(volume, m_namedTransfer.result(), m_sceneLook.result(), r.transferFor,
                               r.shift, r.density);
+  m_focusWarnings.of(volume, focus, look);
   if (r.view.isAutomatic() && focus->mask)
     m_view.of(volume, settings, focus, look);
   const auto ranges = m_ranges.of(volume, MajorantGrid::apronFor(look->transfer));
@@ -95,6 +96,7 @@ std::vector<std::string> Scene::warnings() const {
   append(m_settings->warnings, warnings);
   append(m_focus->warnings, warnings);
   append(m_look->warnings, warnings);
+  append(*m_focusWarnings, warnings);
   if (domain().indexCorners().empty())
     warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");
   append(m_clip->warnings, warnings);

@@ -69,7 +69,7 @@ private:
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_focus,
-                    s.m_sceneLook, s.m_look, s.m_view, s.m_ranges, s.m_matter, s.m_camera,
+                    s.m_sceneLook, s.m_look, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter, s.m_camera,
                     s.m_lights, s.m_clip, s.m_style, s.m_majorants);
   }
 
@@ -82,6 +82,7 @@ private:
   Stage<&Input::focus> m_focus;
   Stage<&Input::look> m_sceneLook; ///< unused with --transfer
   Stage<&chosenLook> m_look;
+  Stage<&focusWarnings> m_focusWarnings;
   Stage<&bestView> m_view; ///< used by automatic views alone
   Stage<&rangesOf> m_ranges;
   Stage<&matterBox> m_matter; ///< unused where the scene's camera applies

@@ -169,6 +169,18 @@ Look chosenLook(const Read& read, const Handle<NamedTransfer>& named,
   return look;
 }
 
+std::vector<std::string> focusWarnings(const Read& volume, const Focus& focus,
+                                       const Handle<Look>& look) {
+  constexpr double most = 0.5;
+  if (!focus->mask)
+    return {};
+  const double share = transparentShare(*focus->mask, volume->volume, look->transfer);
+  if (share <= most)
+    return {};
+  return {textOf("the look ", look->name, " leaves ", std::lround(100.0 * share),
+                 " % of the focus transparent; name one made for it with --transfer or --preset")};
+}
+
 ViewDirection bestView(const Read& volume, const Settings& settings, const Focus& focus,
                        const Handle<Look>& look) {
   return automaticView(

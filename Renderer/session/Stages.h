@@ -32,6 +32,10 @@ Look chosenLook(const Read& volume, const Handle<NamedTransfer>& named,
                 const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor,
                 double shift, double density);
 
+/// Warning of a focus that the look leaves mostly transparent.
+std::vector<std::string> focusWarnings(const Read& volume, const Focus& focus,
+                                       const Handle<Look>& look);
+
 /// Direction of the view that shows the focus best (AutomaticView.h).
 ViewDirection bestView(const Read& volume, const Settings& settings, const Focus& focus,
                        const Handle<Look>& look);

@@ -94,6 +94,20 @@ TEST(FrameView, RefusesAnUnknownName) {
   EXPECT_THROW(frameView(view, ramp(0, 1).grid, nullptr, 8, 8), Error);
 }
 
+TEST(TransparentShare, CountsVoxelsOfTheFocusWithoutExtinction) {
+  const Volume volume = ramp(0, 39); // the value is the voxel's number along x
+  const Affine whole = volume.grid.indexToWorld;
+  const Mask focus{Grid({20, 30, 20}, whole), std::vector<std::uint8_t>(12000, 1), 12000, {"A"}};
+  const auto from = [](double value) {
+    return TransferFunction{
+        ScalarFunction({{value, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(1.0)}}),
+        ColorFunction({{0.0, Rgb(1, 1, 1)}})};
+  };
+  EXPECT_EQ(transparentShare(focus, volume, from(-1.0)), 0.0);
+  EXPECT_NEAR(transparentShare(focus, volume, from(4.5)), 0.25, 1e-12) << "0 to 4 of 0 to 19";
+  EXPECT_EQ(transparentShare(focus, volume, from(50.0)), 1.0);
+}
+
 TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
   EXPECT_TRUE(transferPresetFor(ramp(-1000, 1500)));
   EXPECT_TRUE(transferPresetFor(ramp(-8192, 3071))) << "padded";

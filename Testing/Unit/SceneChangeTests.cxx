@@ -156,6 +156,15 @@ TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
   EXPECT_EQ(nothing.camera().pose().scale, 1.05 * 8.0) << "the whole volume";
 }
 
+TEST_F(SceneChange, LookThatLeavesTheFocusTransparentIsWarnedOf) {
+  EXPECT_EQ(Scene(request).warnings(), std::vector<std::string>());
+  request.transfer = R"({"extinction": [[149, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
+  const std::vector<std::string> warnings = Scene(request).warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("leaves 100 % of the focus transparent"), std::string::npos)
+      << warnings[0];
+}
+
 TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {
   request.lights = folder / "lamp.json";
   const Scene before(request);

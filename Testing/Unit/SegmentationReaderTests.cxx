@@ -192,7 +192,7 @@ TEST(SegmentationReader, PrefersIdsToNamesToValues) {
                 [&] { s.mask({"spleen"}, s.grid()); });
 }
 
-TEST(SegmentationReader, RefusesEmptyFocusAndListsFortySegments) {
+TEST(SegmentationReader, RefusesEmptyFocusAndListsTwelveSegments) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   for (int n = 0; n < 60; ++n)
@@ -201,9 +201,27 @@ TEST(SegmentationReader, RefusesEmptyFocusAndListsFortySegments) {
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   expectRefused(folder / "s.seg.nrrd", "the focus has no voxel",
                 [&] { s.mask({"id3"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", "id39", [&] { s.mask({"x"}, s.grid()); });
+  expectRefused(folder / "s.seg.nrrd", "id11", [&] { s.mask({"x"}, s.grid()); });
   expectRefused(folder / "s.seg.nrrd", ", …", [&] { s.mask({"x"}, s.grid()); });
   expectRefused(folder / "s.seg.nrrd", "", [&] { s.mask({}, s.grid()); });
+}
+
+TEST(SegmentationReader, UnknownSegmentIsAnsweredByThoseThatMayBeMeant) {
+  const TemporaryFolder folder;
+  FileGeometry geometry;
+  describe(geometry, 0, "a", "kidney_left", "1", "0");
+  describe(geometry, 1, "b", "kidney_right", "2", "0");
+  describe(geometry, 2, "c", "Right Lung", "3", "0");
+  writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
+  const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
+  const auto answer = [&](const std::string& selector, const std::string& text) {
+    expectRefused(folder / "s.seg.nrrd", text, [&] { s.mask({selector}, s.grid()); });
+  };
+  answer("Kidneys", "\"Kidneys\"; did you mean kidney_left, kidney_right?");
+  answer("left kidney", "did you mean kidney_left?");
+  answer("lung", "did you mean Right Lung?");
+  answer("spleen", "it has a (kidney_left), b (kidney_right), c (Right Lung)");
+  EXPECT_EQ(s.mask({" kidney_left "}, s.grid()).names, std::vector<std::string>{"kidney_left"});
 }
 
 TEST(SegmentationReader, RefusesFilesThatAreNoSegmentation) {

@@ -62,8 +62,8 @@ std::optional<Voxels> inHounsfield(const std::vector<Voxel>& voxels, Volume& vol
   const double tissue = medianOfTissue(voxels);
   const bool isCertain = tissue >= leastTissue && tissue <= mostTissue;
   volume.warnings.push_back(volume.name +
-                            (isCertain ? ": its air is at 0, so its values are read as Hounsfield "
-                                         "units + 1024; --shift -1024 undoes that"
+                            (isCertain ? ": its air is stored at 0, so 1024 is subtracted and its "
+                                         "values are Hounsfield units; --shift -1024 undoes that"
                                        : ": may not be in Hounsfield units, for its air is at 0; "
                                          "--shift 1024 moves a CT's look to it"));
   return isCertain ? std::optional(moved(voxels, volume.maximum)) : std::nullopt;

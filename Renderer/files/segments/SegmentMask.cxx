@@ -218,7 +218,42 @@ std::string listed(const std::vector<SegmentInfo>& segments) {
     const std::string id = shown(segment.id);
     return segment.name == segment.id ? id : textOf(id, " (", shown(segment.name), ')');
   };
-  return joined(segments, ", ", named, 40);
+  return joined(segments, ", ", named, 12);
+}
+
+std::vector<std::string> wordsOf(const std::string& name) {
+  std::string text = lower(name);
+  std::ranges::replace(text, '_', ' ');
+  return words(text);
+}
+
+/// True if each word of the selector, without a final s, begins a word of the name: "Kidneys" means
+/// kidney_left, and "left kidney" as well.
+bool isMeant(const std::string& selector, const std::string& name) {
+  const std::vector<std::string> in = wordsOf(name), wanted = wordsOf(selector);
+  return std::ranges::all_of(wanted, [&](std::string word) {
+    if (word.size() > 3 && word.back() == 's')
+      word.pop_back();
+    return std::ranges::any_of(in, [&](const std::string& one) { return one.starts_with(word); });
+  });
+}
+
+/// Mend of an unknown selector: the segments that it may mean, else those that there are.
+std::string meantInstead(const std::string& selector, const std::vector<SegmentInfo>& segments) {
+  if (segments.empty())
+    return "it has none at all";
+  std::vector<SegmentInfo> meant;
+  std::ranges::copy_if(segments, std::back_inserter(meant),
+                       [&](const SegmentInfo& one) { return isMeant(selector, one.name); });
+  if (!meant.empty())
+    return textOf("did you mean ",
+                  joined(
+                      meant, ", ", [](const auto& s) { return shown(s.name); }, 12),
+                  "?");
+  const bool unnamed = std::ranges::all_of(segments, [](const SegmentInfo& segment) {
+    return segment.name == textOf("Segment_", segment.labelValue);
+  });
+  return textOf("it has ", listed(segments), unnamed ? "; --labels gives the values names" : "");
 }
 
 } // namespace
@@ -238,8 +273,10 @@ SegmentInfo Segmentation::find(const std::string& selector) const {
     if (!found.empty())
       return found.front();
   }
-  throw inputError(m_source, "has no segment \"", shown(selector), "\"; it has ",
-                   m_segments.empty() ? "none at all" : listed(m_segments));
+  if (const std::string_view bare = trimmed(selector); bare.size() < selector.size())
+    return find(std::string(bare));
+  throw inputError(m_source, "has no segment \"", shown(selector), "\"; ",
+                   meantInstead(selector, m_segments));
 }
 
 std::vector<SegmentStatistics> Segmentation::statistics() const {
