@@ -69,8 +69,8 @@ private:
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_focus,
-                    s.m_sceneLook, s.m_look, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter, s.m_camera,
-                    s.m_lights, s.m_clip, s.m_style, s.m_majorants);
+                    s.m_sceneLook, s.m_look, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter,
+                    s.m_camera, s.m_lights, s.m_clip, s.m_style, s.m_majorants);
   }
 
   SceneRequest m_request;
