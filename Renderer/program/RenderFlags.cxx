@@ -195,7 +195,8 @@ struct RenderTable {
                                      {"perspective", Projection::perspective}})
            .shows("orthographic"),
        Topic::extent},
-      {"scale", "MM", viewGroup, "Orthographic: half the picture's height [frames the focus, else all that is visible]",
+      {"scale", "MM", viewGroup,
+       "Orthographic: half the picture's height [frames the focus, else all that is visible]",
        Takes::number(1e-9, 1e9).into(view.scale), Topic::extent},
       {"angle", "DEGREES", viewGroup,
        "Perspective: full vertical angle [30, or less to frame the focus]",
