@@ -157,7 +157,8 @@ TEST(PresetsCommand, RefusesUnknownAndDamagedPresets) {
           refused("no such segment", withSegments({"--preset", "liver"}), 3,
                   "knee.seg.nrrd: --preset liver: none of its segments is one (Femur, Tibia"),
           refused("values alone", {"--segmentation", "values.nrrd", "--preset", "liver"}, 3,
-                  "have no names, only values; name them with --labels, or say which are meant with --focus"),
+                  "have no names, only values; name them with --labels, or say which are meant "
+                  "with --focus"),
           refused("auto by values", {"--segmentation", "values.nrrd", "--preset", "auto"}, 3,
                   "have no names, only values; name them with --labels, or name a preset"),
           refused("auto by nothing", {"--preset", "auto"}, 2, "add --segmentation FILE"),
