@@ -37,6 +37,24 @@ std::vector<std::string> words(std::string_view text) {
   return found;
 }
 
+std::vector<std::string> nameWords(std::string_view name, std::string_view kept) {
+  constexpr std::size_t longest = 1000;
+  const auto isUpper = [](char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; };
+  std::vector<std::string> found;
+  char before = ' ';
+  for (const char c : name.substr(0, longest)) {
+    const bool inWord = std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & 0x80) != 0 ||
+                        kept.find(c) != std::string_view::npos;
+    const bool begins = before == ' ' || (isUpper(c) && !isUpper(before));
+    if (inWord && begins)
+      found.emplace_back();
+    if (inWord)
+      found.back() += lower({&c, 1});
+    before = inWord ? c : ' ';
+  }
+  return found;
+}
+
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
   while (!text.empty()) {

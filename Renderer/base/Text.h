@@ -74,6 +74,10 @@ std::string lower(std::string_view text);
 std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r\n");
 /// Parts between blanks.
 std::vector<std::string> words(std::string_view text);
+/// Words of a name in lower case, of its first 1000 characters: letters and digits, and what `kept`
+/// lists; a capital after a small letter begins another. "Left lung", "lung_left" and "LungLeft"
+/// have the same words.
+std::vector<std::string> nameWords(std::string_view name, std::string_view kept = "");
 /// Parts between separators, as std::getline reads them: none is empty at the end.
 std::vector<std::string> split(std::string_view text, char separator);
 /// Text with every `from` replaced by `to`.

@@ -78,13 +78,10 @@ Vec3 ofUsualLength(const Vec3& v) {
 
 /// Centre of a domain's bounding box along its grid, world mm.
 Vec3 centerOf(const Domain& domain) {
-  Vec3 lower = Vec3::Constant(infinity);
-  Vec3 upper = -lower;
-  for (const Vec3& corner : domain.indexCorners()) {
-    lower = lower.cwiseMin(corner);
-    upper = upper.cwiseMax(corner);
-  }
-  return domain.grid().indexToWorld * Box{lower, upper}.center();
+  Box box = Box::nothing();
+  for (const Vec3& corner : domain.indexCorners())
+    box.extend(corner);
+  return domain.grid().indexToWorld * box.center();
 }
 
 } // namespace

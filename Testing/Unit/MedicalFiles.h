@@ -27,6 +27,18 @@ struct FileGeometry {
   std::map<std::string, std::string> fields = {};
 };
 
+/// Adds Slicer's fields for segment n.
+inline void describe(FileGeometry& geometry, int n, const std::string& id, const std::string& name,
+                     const std::string& value, const std::string& layer) {
+  const std::string prefix = "Segment" + std::to_string(n) + "_";
+  geometry.fields[prefix + "ID"] = id;
+  geometry.fields[prefix + "Name"] = name;
+  geometry.fields[prefix + "Color"] = "0.5 0.25 1";
+  geometry.fields[prefix + "LabelValue"] = value;
+  if (!layer.empty())
+    geometry.fields[prefix + "Layer"] = layer;
+}
+
 /// Writes the samples through ITK, in the format of the file name's ending.
 template <typename T>
 void writeFile(const std::filesystem::path& path, const std::vector<T>& samples,

@@ -122,18 +122,6 @@ TEST(SegmentationReader, ReadsPlainLabelmapsOfEveryFormat) {
     }
 }
 
-/// Adds Slicer's fields for segment n.
-void describe(FileGeometry& geometry, int n, const std::string& id, const std::string& name,
-              const std::string& value, const std::string& layer) {
-  const std::string prefix = "Segment" + std::to_string(n) + "_";
-  geometry.fields[prefix + "ID"] = id;
-  geometry.fields[prefix + "Name"] = name;
-  geometry.fields[prefix + "Color"] = "0.5 0.25 1";
-  geometry.fields[prefix + "LabelValue"] = value;
-  if (!layer.empty())
-    geometry.fields[prefix + "Layer"] = layer;
-}
-
 TEST(SegmentationReader, ReadsOneLayerWithoutLayerField) {
   const TemporaryFolder folder;
   FileGeometry geometry;
@@ -169,59 +157,6 @@ TEST(SegmentationReader, ReadsOverlappingLayers) {
     EXPECT_EQ(s.mask({"a", "tumour"}, s.grid()).count, 4);
     expectRefused(folder / "s.seg.nrrd", "a (liver), b (tumour)", [&] { s.mask({"1"}, s.grid()); });
   }
-}
-
-TEST(SegmentationReader, PrefersIdsToNamesToValues) {
-  const TemporaryFolder folder;
-  FileGeometry geometry;
-  describe(geometry, 0, "2", "first", "1", "0");
-  describe(geometry, 1, "first", "3", "2", "0");
-  describe(geometry, 2, "c", "twin", "3", "0");
-  describe(geometry, 3, "d", "twin", "4", "0");
-  std::vector<std::uint8_t> labels(24, 0);
-  for (std::size_t i = 0; i < 10; ++i) // 1 once, 2 twice, 3 three times, 4 four times
-    labels[i] = static_cast<std::uint8_t>(i < 1 ? 1 : i < 3 ? 2 : i < 6 ? 3 : 4);
-  writeFile(folder / "s.seg.nrrd", labels, geometry);
-  const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  EXPECT_EQ(s.mask({"2"}, s.grid()).count, 1);
-  EXPECT_EQ(s.mask({"first"}, s.grid()).count, 2);
-  EXPECT_EQ(s.mask({"3"}, s.grid()).count, 2);
-  EXPECT_EQ(s.mask({"4"}, s.grid()).count, 4);
-  expectRefused(folder / "s.seg.nrrd", "c (twin), d (twin)", [&] { s.mask({"twin"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", "has no segment \"spleen\"; it has 2 (first)",
-                [&] { s.mask({"spleen"}, s.grid()); });
-}
-
-TEST(SegmentationReader, RefusesEmptyFocusAndListsTwelveSegments) {
-  const TemporaryFolder folder;
-  FileGeometry geometry;
-  for (int n = 0; n < 60; ++n)
-    describe(geometry, n, "id" + std::to_string(n), "name\nof two lines", "7", "0");
-  writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
-  const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  expectRefused(folder / "s.seg.nrrd", "the focus has no voxel",
-                [&] { s.mask({"id3"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", "id11", [&] { s.mask({"x"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", ", …", [&] { s.mask({"x"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", "", [&] { s.mask({}, s.grid()); });
-}
-
-TEST(SegmentationReader, UnknownSegmentIsAnsweredByThoseThatMayBeMeant) {
-  const TemporaryFolder folder;
-  FileGeometry geometry;
-  describe(geometry, 0, "a", "kidney_left", "1", "0");
-  describe(geometry, 1, "b", "kidney_right", "2", "0");
-  describe(geometry, 2, "c", "Right Lung", "3", "0");
-  writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
-  const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  const auto answer = [&](const std::string& selector, const std::string& text) {
-    expectRefused(folder / "s.seg.nrrd", text, [&] { s.mask({selector}, s.grid()); });
-  };
-  answer("Kidneys", "\"Kidneys\"; did you mean kidney_left, kidney_right?");
-  answer("left kidney", "did you mean kidney_left?");
-  answer("lung", "did you mean Right Lung?");
-  answer("spleen", "it has a (kidney_left), b (kidney_right), c (Right Lung)");
-  EXPECT_EQ(s.mask({" kidney_left "}, s.grid()).names, std::vector<std::string>{"kidney_left"});
 }
 
 TEST(SegmentationReader, RefusesFilesThatAreNoSegmentation) {

@@ -1,9 +1,9 @@
 #include "files/looks/PresetReader.h"
 
+#include "base/Text.h"
 #include "base/safe/JsonNode.h"
 
 #include <algorithm>
-#include <cctype>
 #include <regex>
 
 namespace fenestra {
@@ -11,7 +11,6 @@ namespace {
 
 constexpr Modality modalities[] = {Modality::ct, Modality::mr, Modality::us};
 constexpr std::size_t longestPattern = 200;
-constexpr std::size_t longestName = 1000; ///< characters of a segment's name that are compared
 
 std::vector<std::string> textsAt(const JsonNode& parent, const std::string& key) {
   std::vector<std::string> texts;
@@ -56,34 +55,6 @@ std::string readValue(const JsonNode& node) {
   return text;
 }
 
-char lower(char c) {
-  return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-}
-
-bool isWordCharacter(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & 0x80) != 0;
-}
-
-bool isUpper(char c) {
-  return std::isupper(static_cast<unsigned char>(c)) != 0;
-}
-
-/// Words of `text` in lower case; characters in `globs` count as parts of words.
-std::vector<std::string> wordsOf(std::string_view text, std::string_view globs) {
-  std::vector<std::string> words;
-  char before = ' ';
-  for (const char c : text.substr(0, longestName)) {
-    const bool inWord = isWordCharacter(c) || globs.find(c) != std::string_view::npos;
-    const bool begins = before == ' ' || (isUpper(c) && !isUpper(before));
-    if (inWord && begins)
-      words.emplace_back();
-    if (inWord)
-      words.back() += lower(c);
-    before = inWord ? c : ' ';
-  }
-  return words;
-}
-
 /// Backtracks to the last * only: time at most the product of both lengths.
 bool matchesGlob(std::string_view glob, std::string_view word) {
   std::size_t g = 0, w = 0, star = std::string_view::npos, from = 0;
@@ -123,8 +94,8 @@ OrganPreset parsePreset(std::string_view json, const std::string& source) {
 }
 
 bool matchesName(std::string_view pattern, std::string_view name) {
-  const std::vector<std::string> globs = wordsOf(pattern, "*?");
-  const std::vector<std::string> words = wordsOf(name, "");
+  const std::vector<std::string> globs = nameWords(pattern, "*?");
+  const std::vector<std::string> words = nameWords(name);
   return !globs.empty() && std::search(words.begin(), words.end(), globs.begin(), globs.end(),
                                        [](const std::string& word, const std::string& glob) {
                                          return matchesGlob(glob, word);

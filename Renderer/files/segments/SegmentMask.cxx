@@ -202,12 +202,9 @@ void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_
 Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
   const Box voxels{extent.lower.cast<double>().array() - 0.5,
                    extent.upper.cast<double>().array() + 0.5};
-  Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner = grid.indexToWorld * voxels.corner(i);
-    bounds.lower = bounds.lower.cwiseMin(corner);
-    bounds.upper = bounds.upper.cwiseMax(corner);
-  }
+  Box bounds = Box::nothing();
+  for (int i = 0; i < 8; ++i)
+    bounds.extend(grid.indexToWorld * voxels.corner(i));
   return bounds;
 }
 
@@ -221,17 +218,11 @@ std::string listed(const std::vector<SegmentInfo>& segments) {
   return joined(segments, ", ", named, 12);
 }
 
-std::vector<std::string> wordsOf(const std::string& name) {
-  std::string text = lower(name);
-  std::ranges::replace(text, '_', ' ');
-  return words(text);
-}
-
 /// True if each word of the selector, without a final s, begins a word of the name: "Kidneys" means
 /// kidney_left, and "left kidney" as well.
 bool isMeant(const std::string& selector, const std::string& name) {
-  const std::vector<std::string> in = wordsOf(name), wanted = wordsOf(selector);
-  return std::ranges::all_of(wanted, [&](std::string word) {
+  const std::vector<std::string> in = nameWords(name), wanted = nameWords(selector);
+  return !wanted.empty() && std::ranges::all_of(wanted, [&](std::string word) {
     if (word.size() > 3 && word.back() == 's')
       word.pop_back();
     return std::ranges::any_of(in, [&](const std::string& one) { return one.starts_with(word); });
