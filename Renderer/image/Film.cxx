@@ -3,6 +3,11 @@
 namespace fenestra {
 
 void PixelSums::add(const PathSample& sample) {
+  if (samples % 2 == 0) {
+    const std::uint64_t evenSamples = samples / 2 + 1;
+    evenMean += (sample.radiance - evenMean) / static_cast<double>(evenSamples);
+    evenAlpha += sample.alpha;
+  }
   ++samples;
   const Rgb before = sample.radiance - mean;
   mean += before / static_cast<double>(samples);
@@ -15,6 +20,15 @@ void PixelSums::add(const PathSample& sample) {
     depth += sample.depth;
     ++collided;
   }
+}
+
+Halves PixelSums::halves() const {
+  const auto all = static_cast<double>(samples);
+  const std::uint64_t oddSamples = samples / 2;
+  const auto odd = static_cast<double>(oddSamples);
+  const double even = all - odd;
+  return {evenMean, (all * mean - even * evenMean) / odd, evenAlpha / even,
+          (alpha - evenAlpha) / odd};
 }
 
 Rgb PixelSums::standardError() const {

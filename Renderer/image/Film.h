@@ -18,6 +18,12 @@ struct PathSample {
   double scatterings = 0.0;   ///< count along the path: its cost
 };
 
+/// Means of a pixel over its samples of even and of odd index.
+struct Halves {
+  Rgb even, odd; ///< radiance
+  double evenAlpha, oddAlpha;
+};
+
 /// Running sums of one pixel, in double. Samples are added in the order of their indices, so that
 /// sums do not depend on passes or threads.
 struct PixelSums {
@@ -30,9 +36,14 @@ struct PixelSums {
   Rgb albedo = Rgb::Zero();
   Vec3 normal = Vec3::Zero();
   double scatterings = 0.0;
-  bool isCertain = false; ///< every further sample would equal the first
+  Rgb evenMean = Rgb::Zero(); ///< of radiance, over the samples of even index
+  double evenAlpha = 0.0;     ///< sum over the samples of even index
+  bool isCertain = false;     ///< every further sample would equal the first
 
   void add(const PathSample& sample);
+  /// Two independent estimates: means over the samples of even and of odd index. A function of the
+  /// samples alone, not of passes. Needs two samples.
+  Halves halves() const;
   /// Standard error of the mean radiance; 0 below two samples, which is right only if isCertain.
   Rgb standardError() const;
 };

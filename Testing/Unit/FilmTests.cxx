@@ -27,6 +27,28 @@ TEST(PixelSums, MeanAndStandardErrorEqualTwoPasses) {
   EXPECT_NEAR(sums.standardError()[0], std::sqrt(variance / 1000.0), 1e-9);
 }
 
+TEST(PixelSums, HalvesAreMeansBySampleIndex) {
+  PixelSums sums;
+  Rgb even = Rgb::Zero(), odd = Rgb::Zero();
+  double evenAlpha = 0.0, oddAlpha = 0.0;
+  for (int i = 0; i < 7; ++i) {
+    Random random(2, static_cast<std::uint64_t>(i), 0);
+    PathSample sample;
+    sample.radiance = Rgb(random.uniform(), 10.0 * random.uniform(), i);
+    sample.alpha = random.uniform();
+    sums.add(sample);
+    (i % 2 == 0 ? even : odd) += sample.radiance / (i % 2 == 0 ? 4.0 : 3.0);
+    (i % 2 == 0 ? evenAlpha : oddAlpha) += sample.alpha / (i % 2 == 0 ? 4.0 : 3.0);
+  }
+  const Halves halves = sums.halves();
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(halves.even[c], even[c], 1e-12);
+    EXPECT_NEAR(halves.odd[c], odd[c], 1e-12);
+  }
+  EXPECT_NEAR(halves.evenAlpha, evenAlpha, 1e-12);
+  EXPECT_NEAR(halves.oddAlpha, oddAlpha, 1e-12);
+}
+
 TEST(PixelSums, OneSampleHasNoError) {
   PixelSums sums;
   EXPECT_EQ(sums.standardError()[0], 0.0);

@@ -1,0 +1,15 @@
+#pragma once
+// A filter for the eye: least squares in windows of four sizes, the size chosen pixel by pixel by
+// the error that the filter tells of itself (ToldError.h). Biased, and never a part of the raw
+// channels.
+
+#include "filter/FilterInput.h"
+
+namespace fenestra {
+
+/// Filters both halves, each by itself, with the same features; the picture is their mean. Raw is
+/// one of the candidates. With `hasHalves` false (one sample a pixel) `odd` is not read, windows
+/// have one size, and the errors are empty. Independent of threads.
+FilteredPicture filtered(const FilterInput& input, bool hasHalves = true);
+
+} // namespace fenestra

@@ -1,0 +1,104 @@
+#include "filter/ToldError.h"
+
+#include "filter/Boxes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fenestra {
+namespace {
+
+double sumOf(const Plane& plane) {
+  double sum = 0.0;
+  for (const float value : plane)
+    sum += static_cast<double>(value);
+  return sum;
+}
+
+struct Parts {
+  std::array<Plane, 3> variance, bias; ///< relative
+};
+
+Parts partsOf(const FilterInput& input, const Plane& open, const FourPlanes& even,
+              const FourPlanes& odd, const FilteredPicture& picture) {
+  Parts parts;
+  for (std::size_t c = 0; c < 3; ++c) {
+    parts.variance[c].resize(open.size());
+    parts.bias[c].resize(open.size());
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      if (open[i] == 0.0F)
+        continue; // its colours may be infinite
+      const Told told = toldError(even[c][i], odd[c][i], input.even[c][i], input.odd[c][i]);
+      const float weight = relativeWeight(picture.color[c][i]);
+      parts.variance[c][i] = weight * told.variance;
+      parts.bias[c][i] = weight * told.bias;
+    }
+  }
+  return parts;
+}
+
+/// Mean over the picture of the bias part, drawn toward the prior, and its standard error.
+struct Bias {
+  double mean, deviation;
+};
+
+Bias biasOf(const Parts& parts, double variance, double count) {
+  constexpr double priorShare = 1.0, priorDeviation = 0.7; // of the variance
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < parts.bias[0].size(); ++i) {
+    const double mean =
+        static_cast<double>(parts.bias[0][i] + parts.bias[1][i] + parts.bias[2][i]) / 3.0;
+    sum += mean;
+    squares += mean * mean;
+  }
+  const double mean = sum / count;
+  const double ofMean = std::max(squares / count - mean * mean, 0.0) / count;
+  const double ofPrior = priorDeviation * priorDeviation * variance * variance;
+  if (!(ofMean + ofPrior > 0.0))
+    return {std::max(mean, 0.0), 0.0};
+  // Weights of the two: the other's variance over the sum of both.
+  const double told =
+      (std::max(mean, 0.0) * ofPrior + priorShare * variance * ofMean) / (ofMean + ofPrior);
+  return {told, std::sqrt(ofMean * ofPrior / (ofMean + ofPrior))};
+}
+
+} // namespace
+
+void tellErrors(const FilterInput& input, const Plane& open, const FourPlanes& even,
+                const FourPlanes& odd, FilteredPicture& picture) {
+  const double count = std::max(sumOf(open), 1.0);
+  const Parts parts = partsOf(input, open, even, odd, picture);
+  double variance = 0.0;
+  for (const Plane& plane : parts.variance)
+    variance += sumOf(plane) / (3.0 * count);
+  const Bias bias = biasOf(parts, variance, count);
+
+  const OpenMean near(open, input.width, input.height, 3),
+      wide(open, input.width, input.height, 10);
+  std::array<Plane, 3> local;
+  double nearSum = 0.0, wideSum = 0.0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    picture.error[c] = near(parts.variance[c]);
+    local[c] = wide(parts.bias[c]);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      local[c][i] = std::max(local[c][i], 0.0F) * open[i];
+      picture.error[c][i] *= open[i];
+    }
+    nearSum += sumOf(picture.error[c]) / (3.0 * count);
+    wideSum += sumOf(local[c]) / (3.0 * count);
+  }
+  const double byVariance = nearSum > 0.0 ? (wideSum > 0.0 ? 0.5 : 1.0) * bias.mean / nearSum : 0.0;
+  const double byBias = wideSum > 0.0 ? (nearSum > 0.0 ? 0.5 : 1.0) * bias.mean / wideSum : 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const float told = picture.error[c][i] * static_cast<float>(1.0 + byVariance) +
+                         local[c][i] * static_cast<float>(byBias);
+      picture.error[c][i] =
+          open[i] > 0.0F ? std::sqrt(told / relativeWeight(picture.color[c][i])) : 0.0F;
+    }
+  const double share = sumOf(open) / static_cast<double>(std::max<std::size_t>(open.size(), 1));
+  picture.toldError = share * (variance + bias.mean);
+  picture.toldDeviation = share * bias.deviation;
+}
+
+} // namespace fenestra

@@ -1,0 +1,37 @@
+#pragma once
+// The error that a filtered picture tells of itself, without any estimate of the samples' variance.
+//
+// A and B are the halves, of equal expectation m and independent; F_A is a function of A and of
+// features, F_B of B and of features. For F = (F_A + F_B) / 2
+//   (F - m)^2 = (F_A - F_B)^2 / 4 + (F_A - m)(F_B - m),
+// and E[(F_A - A)(F_B - B)] = E[F_A - m] E[F_B - m] = E[(F_A - m)(F_B - m)], so
+//   told = (F_A - F_B)^2 / 4 + (F_A - A)(F_B - B)
+// is an unbiased estimate of the squared error, pixel by pixel: the first part is variance, the
+// second is bias.
+
+#include "filter/FilterInput.h"
+
+namespace fenestra {
+
+/// Told error of one pixel and channel in its two parts.
+struct Told {
+  float variance, bias;
+};
+inline Told toldError(float fittedEven, float fittedOdd, float even, float odd) {
+  const float apart = fittedEven - fittedOdd;
+  return {0.25F * apart * apart, (fittedEven - even) * (fittedOdd - odd)};
+}
+
+/// Weight of a squared error, 1 / (x^2 + 0.01): errors are relative, except in the dark.
+inline float relativeWeight(float x) {
+  return 1.0F / (x * x + 0.01F);
+}
+
+/// Fills error, toldError and toldDeviation of a picture whose colours are those before clamping.
+/// `even`, `odd`: filtered halves. The variance part is averaged over 7x7 pixels. The bias part is
+/// too noisy for that: its sum over the picture is drawn toward a prior, bias^2 = variance, by its
+/// own standard error, and spread half by its mean over 21x21 pixels, half by the variance part.
+void tellErrors(const FilterInput& input, const Plane& open, const FourPlanes& even,
+                const FourPlanes& odd, FilteredPicture& picture);
+
+} // namespace fenestra

@@ -1,0 +1,32 @@
+#pragma once
+// Guided filter with several guides (He, Sun and Tang 2010) for one size of windows: colours are
+// fitted as linear functions of the features in every window, and a pixel gets the mean over all
+// windows that contain it. Windows are 5x5 cells of 2^level pixels: sums over cells are additive,
+// so every size costs about the same, and a picture is worked on in tiles, so that memory stays
+// small.
+
+#include "filter/FilterInput.h"
+#include "filter/WindowSums.h"
+
+namespace fenestra {
+
+/// Planes as the fit takes them: 0 where the pixel is not open.
+struct FitInput {
+  int width = 0, height = 0;
+  Plane open;                                 ///< 1 or 0
+  std::vector<Plane> features;                ///< mean 0 and deviation 1 over the open pixels
+  std::array<Plane, SumLayout::colors> color; ///< four of one half, four of the other
+};
+
+constexpr int tileEdge = 64; ///< cells; one thread works on a tile
+
+/// Half of a window's width in pixels.
+constexpr int halfWidth(int level) {
+  return 2 << level;
+}
+
+/// Fits all colours at once, each from itself alone. Closed pixels keep their colour. Independent
+/// of threads.
+std::array<Plane, SumLayout::colors> fitWindows(const FitInput& input, int level);
+
+} // namespace fenestra

@@ -1,0 +1,34 @@
+#pragma once
+// Order of a window's sums and of its coefficients: of the pixel count, k features and eight
+// colours, four of each half.
+
+#include <cstddef>
+
+namespace fenestra {
+
+struct SumLayout {
+  static constexpr std::size_t colors = 8, mostFeatures = 12;
+  std::size_t features; ///< k
+
+  /// Sums of 1, of each feature, of the products of two features, of each colour, and of the
+  /// products of a feature and a colour.
+  std::size_t sums() const { return featureColor(features, 0); }
+  std::size_t feature(std::size_t i) const { return 1 + i; }
+  /// For i <= j.
+  std::size_t product(std::size_t i, std::size_t j) const {
+    return 1 + features + i * features - i * (i + 1) / 2 + j;
+  }
+  std::size_t color(std::size_t c) const {
+    return 1 + features + features * (features + 1) / 2 + c;
+  }
+  std::size_t featureColor(std::size_t i, std::size_t c) const {
+    return color(colors) + i * colors + c;
+  }
+
+  /// Coefficients: the pixel count, then by colour an intercept and k slopes.
+  std::size_t coefficients() const { return intercept(colors); }
+  std::size_t intercept(std::size_t c) const { return 1 + c * (features + 1); }
+  std::size_t slope(std::size_t c, std::size_t i) const { return intercept(c) + 1 + i; }
+};
+
+} // namespace fenestra

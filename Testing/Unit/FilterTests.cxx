@@ -1,0 +1,241 @@
+// The filter on synthetic pictures whose truth is known: what it keeps, what it tells of its error,
+// and what makes it lie.
+
+#include "filter/Filter.h"
+
+#include "base/Random.h"
+#include "filter/ToldError.h"
+#include "filter/WindowFit.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <functional>
+
+namespace fenestra::testing::FilterTests {
+namespace {
+
+/// Picture of three bands and waves: a linear function of its features, plus `unknown` times a
+/// pattern that no feature knows.
+struct Subject {
+  int width = 96, height = 80;
+  double unknown = 0.3, noise = 0.5; ///< noise: deviation of a half's pixel
+
+  std::size_t count() const { return static_cast<std::size_t>(width * height); }
+  static double band(int x) { return x < 30 ? 0.2 : x < 60 ? 1.0 : 0.5; }
+  static double wave(int x, int y) { return std::sin(0.11 * x) * std::cos(0.17 * y); }
+  static double pattern(int x, int y) { return std::sin(0.05 * x + 0.21 * y); }
+
+  double truth(std::size_t channel, int x, int y) const {
+    const double scale = 1.0 - 0.2 * static_cast<double>(channel);
+    return scale * (1.0 + 0.8 * band(x) + 0.4 * wave(x, y) + unknown * pattern(x, y));
+  }
+  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * width + x); }
+
+  void fill(Plane& plane, const std::function<double(int, int)>& value) const {
+    plane.resize(count());
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        plane[at(x, y)] = static_cast<float>(value(x, y));
+  }
+
+  FilterInput input(std::uint64_t draw) const {
+    FilterInput in{width, height, {}, {}, {}, {}, std::vector<std::uint8_t>(count(), 1)};
+    const auto gaussian = [&](std::size_t stream, int x, int y) {
+      Random random(draw, at(x, y), stream);
+      const Vec2 u = random.uniform2();
+      return std::sqrt(-2.0 * std::log1p(-u.x())) * std::cos(2.0 * pi * u.y());
+    };
+    for (std::size_t c = 0; c < 4; ++c) {
+      fill(in.even[c],
+           [&](int x, int y) { return truth(c, x, y) + noise * gaussian(2 * c, x, y); });
+      fill(in.odd[c],
+           [&](int x, int y) { return truth(c, x, y) + noise * gaussian(2 * c + 1, x, y); });
+      if (c < 3)
+        fill(in.variance[c], [&](int, int) { return 0.5 * noise * noise; });
+    }
+    in.features.resize(2);
+    fill(in.features[0], [&](int x, int) { return band(x); });
+    fill(in.features[1], [&](int x, int y) { return 7.0 + 100.0 * wave(x, y); });
+    return in;
+  }
+
+  /// Mean over pixels and colours of (x - truth)^2 / (truth^2 + 0.01).
+  double relativeError(const FourPlanes& color) const {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          const double t = truth(c, x, y);
+          sum += std::pow(static_cast<double>(color[c][at(x, y)]) - t, 2) / (t * t + 0.01);
+        }
+    return sum / (3.0 * static_cast<double>(count()));
+  }
+};
+
+/// Told and true error, and the raw picture's, as means over several draws.
+struct Errors {
+  double told = 0.0, truth = 0.0, raw = 0.0;
+};
+
+Errors errorsOf(
+    const Subject& subject, int draws,
+    const std::function<void(FilterInput&)>& spoil = [](FilterInput&) {}) {
+  Errors errors;
+  for (int draw = 0; draw < draws; ++draw) {
+    FilterInput input = subject.input(static_cast<std::uint64_t>(draw) + 1);
+    FourPlanes raw = input.even;
+    for (std::size_t c = 0; c < 4; ++c)
+      for (std::size_t i = 0; i < subject.count(); ++i)
+        raw[c][i] = 0.5F * (input.even[c][i] + input.odd[c][i]);
+    spoil(input);
+    const FilteredPicture picture = filtered(input);
+    errors.told += picture.toldError / draws;
+    errors.truth += subject.relativeError(picture.color) / draws;
+    errors.raw += subject.relativeError(raw) / draws;
+  }
+  return errors;
+}
+
+TEST(Filter, PictureThatIsLinearInItsFeaturesStays) {
+  const Subject subject{.unknown = 0.0, .noise = 0.0};
+  const FilteredPicture picture = filtered(subject.input(1));
+  EXPECT_LT(std::sqrt(subject.relativeError(picture.color)), 1e-3);
+  EXPECT_LT(picture.toldError, 1e-6);
+}
+
+TEST(Filter, ErrorFallsAndTheToldErrorIsTrueInTheMean) {
+  const Errors errors = errorsOf({.width = 192, .height = 160}, 12);
+  EXPECT_GT(errors.raw / errors.truth, 10.0);
+  EXPECT_NEAR(errors.told / errors.truth, 1.0, 0.15);
+}
+
+TEST(ToldError, OfOneWindowIsUnbiased) {
+  const Subject subject{.width = 384, .height = 320};
+  const int draws = 8;
+  double told = 0.0, truth = 0.0;
+  for (int draw = 0; draw < draws; ++draw) {
+    const FilterInput input = subject.input(static_cast<std::uint64_t>(draw) + 100);
+    FitInput fit{subject.width, subject.height, Plane(subject.count(), 1.0F), {}, {}};
+    for (std::size_t c = 0; c < 4; ++c) {
+      fit.color[c] = input.even[c];
+      fit.color[4 + c] = input.odd[c];
+    }
+    subject.fill(fit.features.emplace_back(), [](int x, int) { return Subject::band(x); });
+    const auto fitted = fitWindows(fit, 0);
+    for (int y = 0; y < subject.height; ++y)
+      for (int x = 0; x < subject.width; ++x) {
+        const std::size_t i = subject.at(x, y);
+        const Told parts = toldError(fitted[0][i], fitted[4][i], fit.color[0][i], fit.color[4][i]);
+        told += static_cast<double>(parts.variance + parts.bias);
+        const double mean = 0.5 * static_cast<double>(fitted[0][i] + fitted[4][i]);
+        truth += std::pow(mean - subject.truth(0, x, y), 2);
+      }
+  }
+  EXPECT_NEAR(told / truth, 1.0, 0.15) << "four standard errors";
+}
+
+TEST(Filter, FeaturesWithTheSamplesOwnNoiseMakeTheToldErrorALie) {
+  const Errors errors = errorsOf({}, 4, [](FilterInput& input) {
+    for (std::size_t i = 0; i < input.pixelCount(); ++i)
+      input.features[0][i] = 0.5F * (input.even[0][i] + input.odd[0][i]);
+  });
+  EXPECT_LT(errors.told / errors.truth, 0.7);
+}
+
+TEST(Filter, ToldErrorsOfPixelsAverageToThePictures) {
+  const Subject subject;
+  const FilteredPicture picture = filtered(subject.input(3));
+  double sum = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < subject.count(); ++i) {
+      const double x = static_cast<double>(picture.color[c][i]);
+      sum += std::pow(static_cast<double>(picture.error[c][i]), 2) / (x * x + 0.01);
+    }
+  EXPECT_NEAR(sum / (3.0 * static_cast<double>(subject.count())) / picture.toldError, 1.0, 0.02);
+}
+
+TEST(Filter, BitsAreTheSameForOneTwoAndSevenThreads) {
+  const FilterInput input = Subject{.width = 200, .height = 150}.input(2);
+  std::vector<FourPlanes> pictures;
+  for (const std::size_t threads : {1U, 2U, 7U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    pictures.push_back(filtered(input).color);
+  }
+  EXPECT_EQ(pictures[0], pictures[1]);
+  EXPECT_EQ(pictures[0], pictures[2]);
+}
+
+TEST(Filter, NothingIsInventedInNoiseAroundAConstant) {
+  const Subject noisy{.unknown = 0.0};
+  FilterInput input = noisy.input(5);
+  const auto remove = [&](Plane& plane, std::size_t c) {
+    for (int y = 0; y < noisy.height; ++y)
+      for (int x = 0; x < noisy.width; ++x)
+        plane[noisy.at(x, y)] += static_cast<float>(2.0 - noisy.truth(c, x, y));
+  };
+  for (std::size_t c = 0; c < 4; ++c) {
+    remove(input.even[c], c);
+    remove(input.odd[c], c);
+  }
+  const FilteredPicture picture = filtered(input);
+  const double rawError = noisy.noise / std::sqrt(2.0);
+  double beyond = 0.0, farthest = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < noisy.count(); ++i) {
+      const double off = std::abs(static_cast<double>(picture.color[c][i]) - 2.0);
+      farthest = std::max(farthest, off / rawError);
+      beyond += off > 5.0 * static_cast<double>(picture.error[c][i]);
+    }
+  EXPECT_LT(farthest, 2.0) << "raw standard errors";
+  EXPECT_LT(beyond / (3.0 * static_cast<double>(noisy.count())), 0.05);
+}
+
+TEST(Filter, FireflyIsNoWorseThanRaw) {
+  const Errors errors = errorsOf({}, 1, [](FilterInput& input) {
+    input.even[0][4000] += 1e6F;
+    input.variance[0][4000] = 0.25e12F;
+  });
+  const double firefly = std::pow(0.5e6, 2) / (3.0 * static_cast<double>(Subject().count()));
+  EXPECT_LT(errors.truth, 1.02 * firefly);
+  EXPECT_TRUE(std::isfinite(errors.told));
+}
+
+TEST(Filter, ClosedAndUnusualPixelsStayRaw) {
+  const Subject subject{.width = 40, .height = 30};
+  FilterInput input = subject.input(1);
+  input.isOpen[100] = 0;
+  input.features[1][200] = std::numeric_limits<float>::quiet_NaN();
+  input.even[2][300] = std::numeric_limits<float>::infinity();
+  const FilteredPicture picture = filtered(input);
+  for (const std::size_t pixel : {100U, 200U})
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(picture.color[c][pixel], 0.5F * (input.even[c][pixel] + input.odd[c][pixel]));
+      EXPECT_EQ(picture.error[c][pixel], 0.0F);
+    }
+  for (const std::size_t pixel : {101U, 201U, 301U})
+    EXPECT_TRUE(std::isfinite(picture.color[2][pixel]));
+  FilterInput closed = subject.input(1);
+  std::ranges::fill(closed.isOpen, std::uint8_t{0});
+  EXPECT_EQ(filtered(closed).toldError, 0.0);
+}
+
+TEST(Filter, AnySizeOfPicture) {
+  for (const auto& [width, height] : {std::pair(1, 1), {1, 50}, {70, 1}, {3, 2}, {65, 129}}) {
+    const Subject subject{.width = width, .height = height};
+    for (const bool hasHalves : {true, false}) {
+      const FilteredPicture picture = filtered(subject.input(1), hasHalves);
+      EXPECT_TRUE(std::isfinite(subject.relativeError(picture.color))) << width << 'x' << height;
+      EXPECT_EQ(picture.error[0].size(), hasHalves ? subject.count() : 0U);
+    }
+  }
+}
+
+TEST(Filter, PictureWithoutFeaturesIsFilteredByMeans) {
+  const Errors errors = errorsOf({.unknown = 0.0}, 1, [](FilterInput& in) { in.features.clear(); });
+  EXPECT_LT(errors.truth, errors.raw);
+}
+
+} // namespace
+} // namespace fenestra::testing::FilterTests
