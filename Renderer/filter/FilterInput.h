@@ -1,13 +1,13 @@
 #pragma once
-// Input and result of the filter: planes of floats, one value a pixel, row 0 at the top.
+// Input and result of the filter: planes of one value a pixel.
+
+#include "image/Image.h"
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace fenestra {
-
-using Plane = std::vector<float>;
 
 /// Red, green and blue, premultiplied, and alpha.
 using FourPlanes = std::array<Plane, 4>;

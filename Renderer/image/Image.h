@@ -9,14 +9,17 @@
 
 namespace fenestra {
 
+/// One value a pixel, row 0 at the top.
+using Plane = std::vector<float>;
+
 /// Channels by their EXR names (R G B A Z clip.Z albedo.R … error.R … samples.N), each width *
 /// height floats, row 0 at the top.
 struct Image {
   int width = 0, height = 0;
-  std::map<std::string, std::vector<float>> channels;
+  std::map<std::string, Plane> channels;
   std::map<std::string, std::string> header; ///< version, target, seed, samples, camera, command …
 
-  const std::vector<float>* find(const std::string& name) const {
+  const Plane* find(const std::string& name) const {
     const auto it = channels.find(name);
     return it == channels.end() ? nullptr : &it->second;
   }

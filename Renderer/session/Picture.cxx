@@ -5,9 +5,6 @@
 namespace fenestra {
 namespace {
 
-/// Values of a channel, row 0 at the top.
-using Plane = std::vector<float>;
-
 double perSample(double sum, const PixelSums& pixel) {
   return pixel.samples > 0 ? sum / static_cast<double>(pixel.samples) : 0.0;
 }
@@ -16,8 +13,8 @@ double meanDepth(const PixelSums& pixel) {
   return pixel.collided > 0 ? pixel.depth / static_cast<double>(pixel.collided) : infinity;
 }
 
-/// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity:
-/// nothing lies behind the surface.
+} // namespace
+
 Plane clipPlane(const Camera& camera, const Clip& clip) {
   Plane result;
   for (int row = 0; row < camera.height(); ++row)
@@ -29,8 +26,6 @@ Plane clipPlane(const Camera& camera, const Clip& clip) {
     }
   return result;
 }
-
-} // namespace
 
 LayerSet layerSet(const std::vector<std::string>& names) {
   for (const std::string& name : names)

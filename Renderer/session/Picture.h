@@ -20,6 +20,10 @@ LayerSet layerSet(const std::vector<std::string>& names);
 
 Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers);
 
+/// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity:
+/// nothing lies behind the surface.
+Plane clipPlane(const Camera& camera, const Clip& clip);
+
 /// Place of the picture: on the plane through the target.
 ImagePlane picturePlane(const Camera& camera);
 

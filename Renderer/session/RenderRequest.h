@@ -84,7 +84,8 @@ struct SceneRequest {
   ViewRequest view;
   ClipRequest clip;
   int width = 512, height = 512;
-  bool measure = false; ///< measures the clip; traces the focus even if no clip needs it
+  bool features = false; ///< marches the filter's features
+  bool measure = false;  ///< measures the clip; traces the focus even if no clip needs it
   FocusRequest focusLook = {};
   /// Degrees to both sides over which a clipping surface is steadied
   /// (clip/surface/SteadySurface.h).

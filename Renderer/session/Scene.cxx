@@ -53,7 +53,9 @@ void Scene::make() {
   const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
   if (focus->mask && r.focusLook.isStyled())
     m_style.of(focus, r.focusLook.contextExtinction, r.focusLook.contextSaturation);
-  m_majorants.of(volume, ranges, look, clip, m_style.result());
+  const auto majorants = m_majorants.of(volume, ranges, look, clip, m_style.result());
+  if (r.features)
+    m_flight.of(volume, settings, look, camera, clip, m_style.result(), majorants);
 }
 
 StageSeconds Scene::seconds() const {
@@ -64,7 +66,8 @@ StageSeconds Scene::seconds() const {
               m_ranges.seconds() + m_matter.seconds() + m_style.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,
           .spline = clip.splineSeconds,
-          .fill = clip.fillSeconds};
+          .fill = clip.fillSeconds,
+          .features = m_flight.seconds()};
 }
 
 StagesMade Scene::made() const {

@@ -11,7 +11,7 @@ namespace fenestra {
 
 /// Wall-clock seconds by stage, for the stats; 0: shared.
 struct StageSeconds {
-  double load = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0;
+  double load = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0, features = 0.0;
 };
 
 /// Stages made for a scene; false: shared with the scene before.
@@ -52,6 +52,8 @@ public:
   /// Clip with its measures, and the depth of the focus.
   const ClipResult& clipResult() const { return *m_clip; }
   const CellRanges& ranges() const { return *m_ranges; }
+  /// Null unless the request asks for features.
+  const ExpectedFlight* flight() const { return m_flight.result().get(); }
   StageSeconds seconds() const;
   StagesMade made() const;
   std::vector<std::string> warnings() const;
@@ -70,7 +72,7 @@ private:
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_focus,
                     s.m_sceneLook, s.m_look, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter,
-                    s.m_camera, s.m_lights, s.m_clip, s.m_style, s.m_majorants);
+                    s.m_camera, s.m_lights, s.m_clip, s.m_style, s.m_majorants, s.m_flight);
   }
 
   SceneRequest m_request;
@@ -91,6 +93,7 @@ private:
   Stage<&builtClip> m_clip;
   Stage<&styleAround> m_style; ///< unused if the context is unchanged
   Stage<&majorantsOf> m_majorants;
+  Stage<&flightOf> m_flight; ///< unused without a filter
 };
 
 } // namespace fenestra

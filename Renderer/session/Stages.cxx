@@ -236,4 +236,12 @@ MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
   return {volume->volume.grid, *ranges, look->transfer, clip->clip, style.get()};
 }
 
+ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
+                        const Handle<Camera>& camera, const Handle<ClipResult>& clip,
+                        const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants) {
+  const LightSet dark({}, volume->volume.grid, *camera);
+  return expectedFlight({volume->volume, look->transfer, *majorants, dark, *camera, clip->clip,
+                         settings->crop, style.get()});
+}
+
 } // namespace fenestra

@@ -8,7 +8,7 @@
 #include "session/Input.h"
 #include "session/NamedLooks.h"
 #include "session/Stage.h"
-#include "transport/readable/MajorantGrid.h"
+#include "transport/render/ExpectedFlight.h"
 
 namespace fenestra {
 
@@ -85,5 +85,10 @@ ContextStyle styleAround(const Focus& focus, double extinction, double saturatio
 MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
                          const Handle<Look>& look, const Handle<ClipResult>& clip,
                          const Handle<ContextStyle>& style);
+
+/// Features of the filter: of everything that a picture depends on but its lights.
+ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
+                        const Handle<Camera>& camera, const Handle<ClipResult>& clip,
+                        const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants);
 
 } // namespace fenestra

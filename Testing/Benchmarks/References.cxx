@@ -43,16 +43,19 @@ void addPart(Image& sum, const Image& part, double parts) {
   }
 }
 
-/// Mean of independent pictures with equal sample counts, each with its own seed, until the noise
-/// target or the time limit is reached.
+/// Mean of independent pictures with equal sample counts, each with its own seed, until all wanted
+/// samples are there, or else the noise target or the time limit is reached.
 template <typename RenderPart>
-Image accumulate(const ReferenceSettings& wanted, RenderPart&& renderPart) {
+Image accumulate(const ReferenceSettings& wanted, std::uint64_t samples, RenderPart&& renderPart) {
   const Stopwatch watch;
   Image sum = renderPart(firstReferenceSeed);
   sum.channels.erase("samples.N");
-  for (std::uint64_t parts = 1; watch.seconds() < wanted.seconds; ++parts) {
-    if (Reference(sum, "").relMse <= wanted.noise * wanted.noise)
-      break;
+  const auto isEnough = [&](std::uint64_t parts) {
+    return wanted.samples > 0 ? parts * samples >= wanted.samples
+                              : watch.seconds() >= wanted.seconds ||
+                                    Reference(sum, "").relMse <= wanted.noise * wanted.noise;
+  };
+  for (std::uint64_t parts = 1; !isEnough(parts); ++parts) {
     addPart(sum, renderPart(firstReferenceSeed + parts), static_cast<double>(parts));
   }
   return sum;
@@ -60,7 +63,7 @@ Image accumulate(const ReferenceSettings& wanted, RenderPart&& renderPart) {
 
 Image byProduct(const Scene& scene, RenderSettings settings, const ReferenceSettings& wanted) {
   settings.samples = 16;
-  return accumulate(wanted, [&](std::uint64_t seed) {
+  return accumulate(wanted, settings.samples, [&](std::uint64_t seed) {
     settings.seed = seed;
     return imageOf(findMode("product").render(scene.forRender(), settings), scene);
   });
@@ -87,7 +90,7 @@ Image byOracle(const RenderOptions& options, const Scene& scene, const RenderSet
                                                        : std::nullopt,
                                     .background = settings.path.background};
   constexpr std::uint64_t samples = 4;
-  return accumulate(wanted, [&](std::uint64_t seed) {
+  return accumulate(wanted, samples, [&](std::uint64_t seed) {
     return testing::imageOf(oracle::render(subject, samples, seed));
   });
 }
@@ -117,6 +120,8 @@ std::string identity(const SceneCase& sceneCase, const Scene& scene,
   std::string text = std::to_string(scene.camera().width()) + "x" +
                      std::to_string(scene.camera().height()) + " noise " +
                      std::to_string(wanted.noise);
+  if (wanted.samples > 0)
+    text += " samples " + std::to_string(wanted.samples);
   for (const std::string& argument : sceneCase.arguments)
     text += " " + argument;
   return text;

@@ -12,6 +12,7 @@ struct ReferenceSettings {
   std::filesystem::path folder; ///< cache of references
   double noise = 0.03;          ///< target of Film::noise() for a new reference
   double seconds = 1800.0;      ///< time limit of a new reference
+  std::uint64_t samples = 0;    ///< of a new reference, in place of noise and seconds; 0: by these
 };
 
 struct Reference {

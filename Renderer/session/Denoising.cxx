@@ -1,0 +1,113 @@
+#include "session/Denoising.h"
+
+#include "session/Picture.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace fenestra {
+namespace {
+
+/// Halves of a pixel; its mean twice below two samples.
+Halves halvesOf(const PixelSums& pixel) {
+  return pixel.samples > 1 ? pixel.halves()
+                           : Halves{pixel.mean, pixel.mean, pixel.alpha, pixel.alpha};
+}
+
+void addHalves(const Film& film, FilterInput& input) {
+  const std::size_t count = film.pixelCount();
+  input.isOpen.resize(count);
+  for (std::size_t c = 0; c < 4; ++c) {
+    input.even[c].resize(count);
+    input.odd[c].resize(count);
+    if (c < 3)
+      input.variance[c].resize(count);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const PixelSums& pixel = film.pixels()[i];
+    const Halves halves = halvesOf(pixel);
+    const Rgb variance = pixel.standardError().square();
+    input.isOpen[i] = !pixel.isCertain;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto channel = static_cast<int>(c);
+      input.even[c][i] = static_cast<float>(halves.even[channel]);
+      input.odd[c][i] = static_cast<float>(halves.odd[channel]);
+      input.variance[c][i] = static_cast<float>(variance[channel]);
+    }
+    input.even[3][i] = static_cast<float>(halves.evenAlpha);
+    input.odd[3][i] = static_cast<float>(halves.oddAlpha);
+  }
+}
+
+/// Sums of depth as distances from their median, mm: a pixel that meets little has little.
+Plane centredDepth(const ExpectedFlight& flight) {
+  std::vector<float> depths;
+  for (std::size_t i = 0; i < flight.hit.size(); ++i)
+    if (flight.hit[i] > 0.5F)
+      depths.push_back(flight.depth[i] / flight.hit[i]);
+  if (depths.empty())
+    return flight.depth;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  Plane plane = flight.depth;
+  for (std::size_t i = 0; i < plane.size(); ++i)
+    plane[i] -= *middle * flight.hit[i];
+  return plane;
+}
+
+/// Central differences to the neighbours `step` pixels before and after; 0 at the border.
+Plane slopeOf(const Plane& plane, int width, int height, bool down) {
+  Plane slope(plane.size(), 0.0F);
+  const auto row = static_cast<std::size_t>(width);
+  const std::size_t step = down ? row : 1;
+  for (int y = down ? 1 : 0; y < height - (down ? 1 : 0); ++y)
+    for (int x = down ? 0 : 1; x < width - (down ? 0 : 1); ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
+      slope[i] = plane[i + step] - plane[i - step];
+    }
+  return slope;
+}
+
+/// Depth of the clip's surface where there is one, else that of the nearest pixel before it in the
+/// row: rays that the clip ends see nothing of it.
+Plane boundedClip(const Camera& camera, const Clip& clip) {
+  Plane plane = clipPlane(camera, clip);
+  float last = static_cast<float>(camera.targetDepth());
+  for (float& depth : plane)
+    depth = last = std::isfinite(depth) ? depth : last;
+  return plane;
+}
+
+void addFeatures(const Scene& scene, const ExpectedFlight& flight, FilterInput& input) {
+  for (const Plane& plane : flight.albedo)
+    input.features.push_back(plane);
+  for (const Plane& plane : flight.normal)
+    input.features.push_back(plane);
+  const Plane depth = centredDepth(flight);
+  input.features.push_back(slopeOf(depth, input.width, input.height, false));
+  input.features.push_back(slopeOf(depth, input.width, input.height, true));
+  input.features.push_back(depth);
+  if (!std::holds_alternative<ClipNone>(scene.clip()))
+    input.features.push_back(boundedClip(scene.camera(), scene.clip()));
+}
+
+bool hasHalves(const Film& film) {
+  return std::ranges::all_of(
+      film.pixels(), [](const PixelSums& pixel) { return pixel.isCertain || pixel.samples > 1; });
+}
+
+} // namespace
+
+FilterInput filterInput(const Film& film, const Scene& scene) {
+  FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}};
+  addHalves(film, input);
+  if (scene.flight())
+    addFeatures(scene, *scene.flight(), input);
+  return input;
+}
+
+FilteredPicture denoised(const Film& film, const Scene& scene) {
+  return filtered(filterInput(film, scene), hasHalves(film));
+}
+
+} // namespace fenestra

@@ -1,0 +1,28 @@
+#pragma once
+// What the first flight along the eye rays of each pixel meets on average, by a march: features for
+// the filter, free of noise, and independent of the samples, as the filter's told error needs them.
+//
+// The march has a step size. Features may: any function of the scene serves, and none of these
+// numbers becomes a part of the picture.
+
+#include "image/Image.h"
+#include "transport/render/Render.h"
+
+namespace fenestra {
+
+/// Expected values over the eye rays of each pixel; a ray that meets nothing counts as 0. Sums are
+/// over collisions, weighted by their probability T(t) sigma_t(t) dt.
+struct ExpectedFlight {
+  Plane hit;                   ///< probability of a collision, 0 to 1
+  Plane depth;                 ///< sum of view-space depth, mm: the mean depth times `hit`
+  std::array<Plane, 3> albedo; ///< linear, as Film's
+  std::array<Plane, 3> normal; ///< world axes, toward the eye
+};
+
+/// Rays start exactly behind the clip's surface; cells without matter are stepped over. One ray
+/// through the middle of a pixel, or, where that differs from a neighbour's by more than fixed
+/// thresholds, the mean of 2x2: a part of a picture is marched as the whole is. Uses the calling
+/// arena's threads; independent of their number.
+ExpectedFlight expectedFlight(const RenderScene& scene);
+
+} // namespace fenestra

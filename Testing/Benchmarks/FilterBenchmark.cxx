@@ -1,0 +1,167 @@
+// What the filter gains, what it costs, and whether its told error is true, over scenes and sample
+// counts (README.md here): prints a table in Markdown.
+
+#include "References.h"
+#include "base/Error.h"
+#include "image/Compare.h"
+#include "program/CommandLine.h"
+#include "session/Denoising.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+
+namespace fenestra::benchmarks {
+namespace {
+
+constexpr const char* group = "Benchmark";
+const Flag flags[] = {
+    {"scenes", "A,B,...", group, "Scenes of the table [all]"},
+    {"counts", "N,...", group, "Samples a pixel [1,2,4,8,16,64,1024]"},
+    {"seeds", "N", group, "Renders of a count below 1024 [3]", Takes::whole(1, 1000)},
+    {"referencesamples", "N", group, "Samples of references that are made here [1024]",
+     Takes::whole(16, 1 << 20)},
+    {"references", "DIR", group, "Where references are kept [benchmarks/filter of the build]"},
+    {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
+    {"table", "FILE", group, "Table of scenes [filter-scenes.txt beside the sources]"},
+};
+
+const CommandSyntax syntax = {
+    "FilterBenchmark", "Measures the filter against references.", {}, flags};
+
+double cpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Result and CPU seconds of some work.
+template <typename Work>
+auto timed(const Work& work, double& seconds) {
+  const double before = cpuSeconds();
+  auto result = work();
+  seconds = cpuSeconds() - before;
+  return result;
+}
+
+/// Means over the seeds of a count.
+struct Row {
+  double raw = 0.0, filtered = 0.0; ///< relMSE
+  double told = 0.0, toldDeviation = 0.0;
+  double render = 0.0, filter = 0.0; ///< CPU seconds
+
+  void add(const Row& other, double share) {
+    raw += share * other.raw;
+    filtered += share * other.filtered;
+    told += share * other.told;
+    toldDeviation += share * other.toldDeviation;
+    render += share * other.render;
+    filter += share * other.filter;
+  }
+};
+
+Image colorsOf(const FilteredPicture& picture, int width, int height) {
+  return {width,
+          height,
+          {{"R", picture.color[0]}, {"G", picture.color[1]}, {"B", picture.color[2]}},
+          {}};
+}
+
+Row measured(const Scene& scene, const RenderSettings& settings, const Image& reference) {
+  Row row;
+  const Film film = timed(
+      [&] {
+        RenderMonitor monitor;
+        return render(scene.forRender(), settings, monitor).film;
+      },
+      row.render);
+  const FilteredPicture picture = timed([&] { return denoised(film, scene); }, row.filter);
+  row.raw = compareImages(imageOf(film, scene), reference).relMse;
+  row.filtered = compareImages(colorsOf(picture, film.width(), film.height()), reference).relMse;
+  row.told = picture.toldError;
+  row.toldDeviation = picture.toldDeviation;
+  return row;
+}
+
+void print(const std::string& scene, std::uint64_t samples, const Row& row, double march) {
+  const double efficiency =
+      row.raw * row.render / (row.filtered * (row.render + row.filter + march));
+  std::cout << std::setprecision(3) << "| " << scene << " | " << samples << " | " << row.raw
+            << " | " << row.filtered << " | " << row.raw / row.filtered << " | ";
+  if (row.told > 0.0)
+    std::cout << row.told / row.filtered;
+  std::cout << " | " << efficiency << " | " << row.render << " | " << march << " | " << row.filter
+            << " |" << std::endl;
+}
+
+std::vector<std::uint64_t> countsOf(const FlagValues& values) {
+  std::vector<std::uint64_t> counts;
+  for (const std::string& text : values.list("counts"))
+    counts.push_back(std::stoull(text));
+  return counts.empty() ? std::vector<std::uint64_t>{1, 2, 4, 8, 16, 64, 1024} : counts;
+}
+
+void measureScene(const SceneCase& sceneCase, const FlagValues& values,
+                  const ReferenceSettings& wanted) {
+  if (!sceneCase.missing.empty()) {
+    std::cout << "| " << sceneCase.name << " | not present |" << std::endl;
+    return;
+  }
+  RenderOptions options = sceneCase.options();
+  options.scene.features = true;
+  const Scene scene(options.scene);
+  RenderSettings settings = settingsFor(options, scene.background());
+  const Reference reference = findReference(sceneCase, scene, settings, wanted);
+  double march = 0.0;
+  timed([&] { return expectedFlight(scene.forRender()); }, march);
+  for (const std::uint64_t count : countsOf(values)) {
+    settings.samples = count;
+    const std::uint64_t seeds = count < 1024 ? values.count("seeds").value_or(3) : 1;
+    Row mean;
+    for (settings.seed = 1; settings.seed <= seeds; ++settings.seed)
+      mean.add(measured(scene, settings, reference.image), 1.0 / static_cast<double>(seeds));
+    print(sceneCase.name, count, mean, march);
+  }
+}
+
+int benchmark(int argc, char** argv) {
+  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, 1);
+  if (!values)
+    return 0;
+  const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
+  const auto folder = [&](const char* name, const std::filesystem::path& otherwise) {
+    return std::filesystem::path(values->text(name).value_or(otherwise.string()));
+  };
+  const ReferenceSettings wanted{.folder = folder("references", build / "filter"),
+                                 .samples = values->count("referencesamples").value_or(1024)};
+  const std::vector<std::string> scenes = values->list("scenes");
+  std::cout << "| scene | samples | relMSE raw | filtered | gain | told / true | gain × time "
+               "| CPU s render | march | filter |\n|---|---|---|---|---|---|---|---|---|---|"
+            << std::endl;
+  for (const SceneCase& scene :
+       readScenes(folder("table", FENESTRA_FILTER_TABLE),
+                  {FENESTRA_REFERENCE, FENESTRA_DATA, folder("phantoms", build)}))
+    if (scenes.empty() || std::ranges::find(scenes, scene.name) != scenes.end())
+      measureScene(scene, *values, wanted);
+  return 0;
+}
+
+} // namespace
+} // namespace fenestra::benchmarks
+
+int main(int argc, char** argv) {
+  try {
+    return fenestra::benchmarks::benchmark(argc, argv);
+  } catch (const fenestra::Error& error) {
+    std::cerr << "FilterBenchmark: " << error.what() << '\n';
+    return error.exitStatus();
+  } catch (const std::exception& error) {
+    std::cerr << "FilterBenchmark: " << error.what() << '\n';
+    return 1;
+  }
+}
