@@ -205,6 +205,38 @@ HWY_INLINE F extinctionOf(const WideScene& scene, F s) {
   return valueIn(scene.extinction.channels[0], segmentOf(scene.extinction, s));
 }
 
+/// Majorant cells, one a lane (WideCells::cell).
+struct LaneCells {
+  I code;     ///< in the upper half
+  F majorant; ///< mm^-1
+  F reach;    ///< cells
+
+  HWY_INLINE M cut() const {
+    return hn::RebindMask(floats, hn::TestBit(code, hn::Set(ints, 0x10000)));
+  }
+};
+
+/// Cells of these numbers along the axes, whole and inside the grid.
+HWY_INLINE LaneCells cellsAt(const WideScene& scene, F x, F y, F z) {
+  // Fewer than 2^24 cells: exact.
+  const F place =
+      hn::MulAdd(z, all(scene.axes[2].cellStride),
+                 hn::MulAdd(y, all(scene.axes[1].cellStride), hn::Add(x, all(scene.firstCell))));
+  const Indices index(hn::ConvertTo(ints, place));
+  LaneCells cells;
+  cells.code = hn::ShiftLeft<16>(loadInts(scene.cells.codes.data(), index));
+  const auto filled = hn::Gt(cells.code, hn::Zero(ints));
+  constexpr int toMajorant = 16 + WideCells::reachBits + 1 - WideCells::majorantShift;
+  const I majorant = hn::Add(hn::And(hn::ShiftRight<toMajorant>(cells.code),
+                                     hn::Set(ints, 0x7ff << WideCells::majorantShift)),
+                             hn::Set(ints, static_cast<std::int32_t>(scene.cells.bias)));
+  cells.majorant = hn::BitCast(floats, hn::IfThenElseZero(filled, majorant));
+  const I reach = hn::And(hn::ShiftRight<17>(cells.code), hn::Set(ints, WideCells::mostReach));
+  cells.reach = hn::IfThenElse(hn::RebindMask(floats, filled), hn::ConvertTo(floats, reach),
+                               hn::Neg(hn::BitCast(floats, cells.code)));
+  return cells;
+}
+
 /// Length of a ray from inside [lower, upper] to the faces; 0 if rounding put the origin outside.
 HWY_INLINE F toFaces(const F3& lower, const F3& upper, const F3& origin, const F3& direction) {
   const auto along = [](F low, F high, F o, F d) {

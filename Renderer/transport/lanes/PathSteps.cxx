@@ -6,7 +6,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include "transport/lanes/LightSet-inl.h"
-#include "transport/lanes/Medium-inl.h"
+#include "transport/lanes/Matter-inl.h"
 #include "transport/lanes/Scattering-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
@@ -138,7 +138,7 @@ private:
                   {},
                   {zero, zero, zero},
                   noLane()};
-    at.albedo = albedoOf(at.scalar);
+    at.albedo = albedoOf(m_scene.albedo, at.scalar);
     if (m_volume.context)
       at.albedo = paled(*m_volume.context, index, at.albedo);
     const bool recorded = m_scene.wantNormals && !hn::AllFalse(floats, first);
@@ -156,31 +156,8 @@ private:
     return at;
   }
 
-  HWY_INLINE F3 albedoOf(F scalar) const {
-    const auto& channels = m_scene.albedo.channels;
-    if (m_scene.albedo.position.size() == 3) // one knot
-      return {all(channels[0][0].value), all(channels[1][0].value), all(channels[2][0].value)};
-    const Segment segment = segmentOf(m_scene.albedo, scalar);
-    return {valueIn(channels[0], segment), valueIn(channels[1], segment),
-            valueIn(channels[2], segment)};
-  }
-
-  /// ContextStyle::paled, outside the focus.
-  HWY_INLINE F3 paled(const WideScene::Context& context, const F3& index, const F3& albedo) const {
-    const F grey = dot(albedo, {all(0.2126F), all(0.7152F), all(0.0722F)});
-    const auto channel = [&](F x) { return lerp(grey, x, all(context.saturation)); };
-    return select(isFocus(context, index), albedo,
-                  F3{channel(albedo.x), channel(albedo.y), channel(albedo.z)});
-  }
-
   F3 gradientAt(const F3& p) const {
-    const F one = all(1.0F);
-    const auto value = [&](F x, F y, F z) { return scalarAt<Voxel>(m_volume.field, {x, y, z}); };
-    const F3 difference{
-        hn::Sub(value(hn::Add(p.x, one), p.y, p.z), value(hn::Sub(p.x, one), p.y, p.z)),
-        hn::Sub(value(p.x, hn::Add(p.y, one), p.z), value(p.x, hn::Sub(p.y, one), p.z)),
-        hn::Sub(value(p.x, p.y, hn::Add(p.z, one)), value(p.x, p.y, hn::Sub(p.z, one)))};
-    return mapDirection(m_scene.indexDifferenceToGradient, difference);
+    return mapDirection(m_scene.indexDifferenceToGradient, differenceAt<Voxel>(m_volume.field, p));
   }
 
   void recordFirst(std::size_t i, const Collisions& at, F distance) {

@@ -176,19 +176,19 @@ private:
   /// lane did.
   HWY_INLINE bool cross() {
     const F zero = hn::Zero(floats);
-    const F beyond = hn::Add(m_reach, all(1.0F));
+    const F beyond = hn::Add(m_cell.reach, all(1.0F));
     const F x = m_walk[0].toFace(beyond);
     const F y = m_walk[1].toFace(beyond);
     const F z = m_walk[2].toFace(beyond);
     const F toFace = hn::Min(hn::Min(x, y), z);
     const F stop = hn::Min(toFace, m_end);
-    const F toStop = hn::Mul(hn::Max(hn::Sub(stop, m_t), zero), m_majorant);
+    const F toStop = hn::Mul(hn::Max(hn::Sub(stop, m_t), zero), m_cell.majorant);
     m_hit = both(m_busy, hn::Lt(m_depth, toStop));
     const M crossing = hn::AndNot(m_hit, m_busy);
     if (hn::AllFalse(floats, crossing))
       return false;
     m_cells += hn::CountTrue(floats, crossing);
-    m_skipped += hn::CountTrue(floats, both(crossing, hn::Eq(m_majorant, zero)));
+    m_skipped += hn::CountTrue(floats, both(crossing, hn::Eq(m_cell.majorant, zero)));
     m_depth = hn::IfThenElse(crossing, hn::Sub(m_depth, toStop), m_depth);
     m_t = hn::IfThenElse(crossing, hn::Max(stop, m_t), m_t);
     const M ended = both(crossing, hn::Ge(toFace, m_end));
@@ -199,39 +199,24 @@ private:
     const M throughX = hn::Eq(x, toFace);
     const M throughY = hn::AndNot(throughX, hn::Eq(y, toFace));
     const M throughZ = hn::Not(hn::Or(throughX, throughY));
-    m_walk[0].advance(going, throughX, toFace, m_reach, beyond);
-    m_walk[1].advance(going, throughY, toFace, m_reach, beyond);
-    m_walk[2].advance(going, throughZ, toFace, m_reach, beyond);
+    m_walk[0].advance(going, throughX, toFace, m_cell.reach, beyond);
+    m_walk[1].advance(going, throughY, toFace, m_cell.reach, beyond);
+    m_walk[2].advance(going, throughZ, toFace, m_cell.reach, beyond);
     enterCells();
     return true;
   }
 
   /// Moves lanes of m_hit to their collisions, and prefetches voxels.
   HWY_INLINE void stop() {
-    m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_majorant)), m_t);
+    m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_cell.majorant)), m_t);
     m_place = placeOf(m_scene.field, point());
     prefetch<Voxel>(m_scene.field, m_place);
   }
 
-  /// Reads the codes of the lanes' cells (WideCells::cell).
   HWY_INLINE void enterCells() {
     const auto& axes = m_scene.axes;
-    // Fewer than 2^24 cells: exact.
-    const F place =
-        hn::MulAdd(m_walk[2].number(axes[2]), all(axes[2].cellStride),
-                   hn::MulAdd(m_walk[1].number(axes[1]), all(axes[1].cellStride),
-                              hn::Add(m_walk[0].number(axes[0]), all(m_scene.firstCell))));
-    const Indices index(hn::ConvertTo(ints, place));
-    m_code = hn::ShiftLeft<16>(loadInts(m_scene.cells.codes.data(), index));
-    const auto filled = hn::Gt(m_code, hn::Zero(ints));
-    constexpr int toMajorant = 16 + WideCells::reachBits + 1 - WideCells::majorantShift;
-    const I majorant = hn::Add(hn::And(hn::ShiftRight<toMajorant>(m_code),
-                                       hn::Set(ints, 0x7ff << WideCells::majorantShift)),
-                               hn::Set(ints, static_cast<std::int32_t>(m_scene.cells.bias)));
-    m_majorant = hn::BitCast(floats, hn::IfThenElseZero(filled, majorant));
-    const I reach = hn::And(hn::ShiftRight<17>(m_code), hn::Set(ints, WideCells::mostReach));
-    m_reach = hn::IfThenElse(hn::RebindMask(floats, filled), hn::ConvertTo(floats, reach),
-                             hn::Neg(hn::BitCast(floats, m_code)));
+    m_cell = cellsAt(m_scene, m_walk[0].number(axes[0]), m_walk[1].number(axes[1]),
+                     m_walk[2].number(axes[2]));
   }
 
   HWY_INLINE Point point() const {
@@ -242,17 +227,16 @@ private:
   /// Handles tentative collisions: a real one ends a flight, every one reduces a transmittance.
   HWY_INLINE void collide() {
     const M hit = m_hit;
-    const F majorant = hn::IfThenElse(hit, m_majorant, all(1.0F));
+    const F majorant = hn::IfThenElse(hit, m_cell.majorant, all(1.0F));
     m_lookups += hn::CountTrue(floats, hit);
     const F scalar = scalarAt<Voxel>(m_scene.field, m_place);
     F extinction = extinctionOf(m_scene, scalar);
     if (m_scene.context)
       extinction = hn::IfThenElse(isFocus(*m_scene.context, point()), extinction,
                                   hn::Mul(extinction, all(m_scene.context->extinction)));
-    const I last = hn::Set(ints, 0x10000); // of m_code: cut
     U counter = m_counter;
     const F u = uniform(counter);
-    const M cut = both(hit, hn::RebindMask(floats, hn::TestBit(m_code, last)));
+    const M cut = both(hit, m_cell.cut());
     if (!hn::AllFalse(floats, cut))
       extinction = clipped(cut, extinction, majorant, u, counter);
     const F share = hn::Div(extinction, majorant);
@@ -328,12 +312,10 @@ private:
   std::uint64_t m_cells = 0, m_skipped = 0, m_lookups = 0;
 
   AxisWalk m_walk[3] = {idleWalk(), idleWalk(), idleWalk()};
-  I m_code = hn::Zero(ints);       ///< of the cell (WideCells), in the upper half
-  F m_majorant = hn::Zero(floats); ///< mm^-1
-  F m_reach = hn::Zero(floats);    ///< cells
-  F m_t = hn::Zero(floats);        ///< mm
-  F m_end = hn::Zero(floats);      ///< mm
-  F m_depth = hn::Zero(floats);    ///< optical depth to the next tentative collision
+  LaneCells m_cell{hn::Zero(ints), hn::Zero(floats), hn::Zero(floats)};
+  F m_t = hn::Zero(floats);     ///< mm
+  F m_end = hn::Zero(floats);   ///< mm
+  F m_depth = hn::Zero(floats); ///< optical depth to the next tentative collision
   F m_ratio = hn::Zero(floats);
   F m_scalar = hn::Zero(floats); ///< at a real collision
   U m_counter = hn::Zero(bits);

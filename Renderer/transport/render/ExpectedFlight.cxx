@@ -1,187 +1,198 @@
 #include "transport/render/ExpectedFlight.h"
 
+#include "transport/lanes/March.h"
+#include "transport/readable/March.h"
+
 #include <tbb/parallel_for.h>
+
+#include <memory>
 
 namespace fenestra {
 namespace {
 
-/// Expected values of one ray or one pixel.
+/// Expected values of one pixel.
 struct Met {
-  double hit = 0.0, depth = 0.0;
-  Rgb albedo = Rgb::Zero();
-  Vec3 normal = Vec3::Zero();
-
-  void add(const Met& other, double share) {
-    hit += share * other.hit;
-    depth += share * other.depth;
-    albedo += share * other.albedo;
-    normal += share * other.normal;
-  }
+  float hit = 0.0F, depth = 0.0F;
+  std::array<float, 3> albedo = {}, normal = {};
 };
 
-/// Marches along eye rays.
+/// A point of the picture through which a ray is marched.
+struct RasterPoint {
+  double column, row;
+};
+
+/// Rays of a picture, marched one by one.
 template <typename Voxel>
-class March {
+class MarchedOneByOne {
 public:
-  March(const RenderScene& scene, const Medium<Voxel>& medium)
-      : m_scene(scene), m_medium(medium), m_domain(scene.volume.grid, scene.crop) {
-    const ClipEdge edge = std::visit([](const auto& clip) { return clip.edge; }, scene.clip);
-    m_keepIsOne = edge.isHard() && edge.softness == 0.0;
-  }
+  MarchedOneByOne(const RenderScene& scene, const Medium<Voxel>& medium)
+      : m_scene(scene),
+        m_march({scene.volume.grid, scene.crop}, medium, scene.majorants, scene.clip) {}
 
-  Met along(double column, double row) const {
-    const Ray eye = m_scene.camera.ray(column, row);
-    const Affine& worldToIndex = m_scene.volume.grid.worldToIndex;
-    const Interval inside =
-        m_domain.clip(transformed(worldToIndex, eye), visible(m_scene.clip, eye));
-    if (inside.empty())
-      return {};
-    const Ray ray{eye.at(inside.begin), eye.direction}; // keeps the digits of lengths
-    Walk walk{.ray = ray,
-              .indexRay = transformed(worldToIndex, ray),
-              .depthPerLength = m_scene.camera.depthPerLength(eye),
-              .depthAtStart = inside.begin * m_scene.camera.depthPerLength(eye)};
-    walk.shortest = 0.5 / walk.indexRay.direction.norm();
-    GridWalk cells(transformed(m_scene.majorants.worldToCell(), ray),
-                   {0.0, inside.end - inside.begin}, m_scene.majorants.cellCount());
-    for (; !cells.done() && walk.transmittance > dark; cells.next())
-      cross(m_scene.majorants.cell(cells.cell()), cells.interval(), walk);
-    // The rest of the light ends where the last of it did.
-    if (walk.transmittance <= dark)
-      walk.pending += walk.transmittance;
-    if (walk.pending > 0.0)
-      collect(walk);
-    return walk.met;
-  }
-
-private:
-  static constexpr double dark = 1e-3;      ///< transmittance at which a ray ends
-  static constexpr double thin = 0.05;      ///< optical depth that a step may always have
-  static constexpr double share = 1.0 / 64; ///< of the light, for which matter is looked up
-  static constexpr int mostSteps = 64;      ///< in a cell
-
-  struct Walk {
-    Ray ray, indexRay;                                   ///< from the entry into the domain
-    double depthPerLength, depthAtStart, shortest = 0.0; ///< shortest step, mm: half a voxel
-    double transmittance = 1.0;
-    double pending = 0.0; ///< share of collisions since the last one that was collected
-    double last = 0.0;    ///< mm to the last of these
-    Met met = {};
-  };
-
-  void cross(const MajorantGrid::Cell& cell, const Interval& interval, Walk& walk) const {
-    if (cell.majorant == 0.0F)
-      return;
-    const double length = interval.end - interval.begin;
-    const double step = std::max(walk.shortest, thin / static_cast<double>(cell.majorant));
-    const int steps = static_cast<int>(std::clamp(std::ceil(length / step), 1.0, 1.0 * mostSteps));
-    const double each = length / steps;
-    for (int i = 0; i < steps && walk.transmittance > dark; ++i) {
-      const double t = interval.begin + (i + 0.5) * each;
-      const double kept = cell.cut && !m_keepIsOne ? keep(m_scene.clip, walk.ray.at(t)) : 1.0;
-      const double extinction = kept > 0.0 ? kept * m_medium.extinction(walk.indexRay.at(t)) : 0.0;
-      if (!(extinction > 0.0))
-        continue;
-      const double stopped = walk.transmittance * -std::expm1(-extinction * each);
-      walk.transmittance -= stopped;
-      walk.pending += stopped;
-      walk.last = t;
-      if (walk.pending > share)
-        collect(walk);
+  void along(std::span<const RasterPoint> points, Met* out) const {
+    for (const RasterPoint& point : points) {
+      const Ray ray = m_scene.camera.ray(point.column, point.row);
+      const FirstMatter first = m_march.along(ray, visible(m_scene.clip, ray));
+      Met met{narrow(first.hit), narrow(first.distance * m_scene.camera.depthPerLength(ray))};
+      met.albedo = narrow3(first.albedo.matrix());
+      met.normal = narrow3(first.normal);
+      *out++ = met;
     }
   }
 
-  /// Adds the pending collisions with the matter at the last of them.
-  void collect(Walk& walk) const {
-    const Matter matter = m_medium.matter(walk.indexRay.at(walk.last), true);
-    const double slope = matter.gradient.norm();
-    Met here{1.0, walk.depthAtStart + walk.last * walk.depthPerLength, matter.albedo};
-    if (slope > 0.0 && std::isfinite(slope))
-      here.normal =
-          matter.gradient / (walk.ray.direction.dot(matter.gradient) < 0.0 ? slope : -slope);
-    walk.met.add(here, walk.pending);
-    walk.pending = 0.0;
+private:
+  const RenderScene& m_scene;
+  March<Voxel> m_march;
+};
+
+/// The same in lanes.
+class MarchedInLanes {
+public:
+  explicit MarchedInLanes(const RenderScene& scene)
+      : m_scene(scene),
+        m_domain(scene.volume.grid, scene.crop),
+        m_tracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip, scene.style),
+        m_events(scene.volume.grid, scene.transfer, scene.lights, 0, true) {}
+
+  void along(std::span<const RasterPoint> points, Met* out) const {
+    const auto batch = std::make_unique<MarchBatch>();
+    const WideMarch march(m_tracker.scene(), m_events);
+    std::array<double, RayBatch::capacity> before = {}, perLength = {};
+    for (std::size_t from = 0; from < points.size(); from += RayBatch::capacity) {
+      const std::size_t count = std::min(points.size() - from, RayBatch::capacity);
+      batch->rays.size = count;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
+        before[i] = setInside(batch->rays, i, m_domain, ray, visible(m_scene.clip, ray), 0);
+        perLength[i] = m_scene.camera.depthPerLength(ray);
+      }
+      march.along(*batch);
+      for (std::size_t i = 0; i < count; ++i)
+        *out++ = metIn(*batch, i, before[i], perLength[i]);
+    }
+  }
+
+private:
+  static Met metIn(const MarchBatch& batch, std::size_t i, double before, double perLength) {
+    Met met;
+    met.hit = batch.hit[i];
+    met.depth = narrow((batch.distance[i] + before * batch.hit[i]) * perLength);
+    for (std::size_t c = 0; c < 3; ++c) {
+      met.albedo[c] = batch.albedo[c][i];
+      met.normal[c] = batch.normal[c][i];
+    }
+    return met;
   }
 
   const RenderScene& m_scene;
-  const Medium<Voxel>& m_medium;
   Domain m_domain;
-  bool m_keepIsOne = false; ///< behind the clip's surface
+  WideTracker m_tracker;
+  EventScene m_events;
 };
 
-/// Pixels with their neighbours, row 0 at the top.
+/// Pixels, row 0 at the top.
 struct Raster {
   int width, height;
   std::vector<Met> pixels;
 
-  Met& at(int column, int row) {
-    return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(column)];
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(column);
   }
-  const Met& at(int column, int row) const { return const_cast<Raster&>(*this).at(column, row); }
 };
 
 /// True if two neighbouring rays see different things. `pitch`: mm between pixels.
 bool differ(const Met& a, const Met& b, double pitch) {
-  constexpr double colors = 0.08, slope = 4.0;
-  if (((a.albedo - b.albedo).abs() > colors).any() || std::abs(a.hit - b.hit) > colors)
+  constexpr float colors = 0.08F, slope = 4.0F;
+  const auto apart = [&](std::size_t c) { return std::abs(a.albedo[c] - b.albedo[c]) > colors; };
+  if (apart(0) || apart(1) || apart(2) || std::abs(a.hit - b.hit) > colors)
     return true;
-  const double both = std::min(a.hit, b.hit);
-  return both > 0.0 && std::abs(a.depth / a.hit - b.depth / b.hit) * both > slope * pitch;
+  const float both = std::min(a.hit, b.hit);
+  return both > 0.0F &&
+         std::abs(a.depth / a.hit - b.depth / b.hit) * both > slope * static_cast<float>(pitch);
 }
 
 bool isAtEdge(const Raster& raster, int column, int row, double pitch) {
-  const Met& here = raster.at(column, row);
+  const Met& here = raster.pixels[raster.index(column, row)];
   const auto differsFrom = [&](int x, int y) {
     return x >= 0 && y >= 0 && x < raster.width && y < raster.height &&
-           differ(here, raster.at(x, y), pitch);
+           differ(here, raster.pixels[raster.index(x, y)], pitch);
   };
   return differsFrom(column - 1, row) || differsFrom(column + 1, row) ||
          differsFrom(column, row - 1) || differsFrom(column, row + 1);
 }
 
-template <typename Voxel>
-Raster marched(const RenderScene& scene, const March<Voxel>& march) {
-  const int width = scene.camera.width(), height = scene.camera.height();
-  Raster middle{width, height, {}};
-  middle.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+Met meanOf(std::span<const Met> parts) {
+  Met mean;
+  const float share = 1.0F / static_cast<float>(parts.size());
+  for (const Met& part : parts) {
+    mean.hit += share * part.hit;
+    mean.depth += share * part.depth;
+    for (std::size_t c = 0; c < 3; ++c) {
+      mean.albedo[c] += share * part.albedo[c];
+      mean.normal[c] += share * part.normal[c];
+    }
+  }
+  return mean;
+}
+
+template <typename March>
+Raster marched(const Camera& camera, const March& march) {
+  const int width = camera.width(), height = camera.height();
+  Raster raster{width, height, {}};
+  raster.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  tbb::parallel_for(0, height, [&](int row) {
+    std::vector<RasterPoint> middles;
+    for (int column = 0; column < width; ++column)
+      middles.push_back({column + 0.5, row + 0.5});
+    march.along(middles, &raster.pixels[raster.index(0, row)]);
+  });
+  std::vector<std::vector<int>> edges(static_cast<std::size_t>(height)); // columns
   tbb::parallel_for(0, height, [&](int row) {
     for (int column = 0; column < width; ++column)
-      middle.at(column, row) = march.along(column + 0.5, row + 0.5);
+      if (isAtEdge(raster, column, row, camera.pixelPitch()))
+        edges[static_cast<std::size_t>(row)].push_back(column);
   });
-  Raster means = middle;
   tbb::parallel_for(0, height, [&](int row) {
-    for (int column = 0; column < width; ++column) {
-      if (!isAtEdge(middle, column, row, scene.camera.pixelPitch()))
-        continue;
-      Met mean;
+    std::vector<RasterPoint> points;
+    for (const int column : edges[static_cast<std::size_t>(row)])
       for (const double y : {0.25, 0.75})
         for (const double x : {0.25, 0.75})
-          mean.add(march.along(column + x, row + y), 0.25);
-      means.at(column, row) = mean;
+          points.push_back({column + x, row + y});
+    std::vector<Met> parts(points.size());
+    march.along(points, parts.data());
+    std::span<const Met> left = parts;
+    for (const int column : edges[static_cast<std::size_t>(row)]) {
+      raster.pixels[raster.index(column, row)] = meanOf(left.first(4));
+      left = left.subspan(4);
     }
   });
-  return means;
+  return raster;
+}
+
+Raster rasterOf(const RenderScene& scene) {
+  if (lanesServe(scene))
+    return marched(scene.camera, MarchedInLanes(scene));
+  return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
+    return marched(scene.camera, MarchedOneByOne<Voxel>(scene, medium));
+  });
 }
 
 } // namespace
 
 ExpectedFlight expectedFlight(const RenderScene& scene) {
-  const Raster raster =
-      withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
-        return marched(scene, March<Voxel>(scene, medium));
-      });
+  const Raster raster = rasterOf(scene);
   ExpectedFlight flight;
   const auto plane = [&](Plane& values, auto&& valueOf) {
     values.reserve(raster.pixels.size());
     for (const Met& met : raster.pixels)
-      values.push_back(static_cast<float>(valueOf(met)));
+      values.push_back(valueOf(met));
   };
   plane(flight.hit, [](const Met& met) { return met.hit; });
   plane(flight.depth, [](const Met& met) { return met.depth; });
-  for (int c = 0; c < 3; ++c) {
-    plane(flight.albedo[static_cast<std::size_t>(c)], [c](const Met& m) { return m.albedo[c]; });
-    plane(flight.normal[static_cast<std::size_t>(c)], [c](const Met& m) { return m.normal[c]; });
+  for (std::size_t c = 0; c < 3; ++c) {
+    plane(flight.albedo[c], [c](const Met& met) { return met.albedo[c]; });
+    plane(flight.normal[c], [c](const Met& met) { return met.normal[c]; });
   }
   return flight;
 }

@@ -158,11 +158,6 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& target, const
   return result;
 }
 
-bool lanesServe(const RenderScene& scene) {
-  return WideTracker::serves(scene.volume, scene.transfer) &&
-         EventScene::serves(scene.volume.grid, scene.transfer, scene.lights);
-}
-
 RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& settings,
                            RenderMonitor& monitor) {
   const Domain domain(scene.volume.grid, scene.crop);
@@ -189,6 +184,11 @@ RenderResult renderOneByOne(const RenderScene& scene, const RenderSettings& sett
 }
 
 } // namespace
+
+bool lanesServe(const RenderScene& scene) {
+  return WideTracker::serves(scene.volume, scene.transfer) &&
+         EventScene::serves(scene.volume.grid, scene.transfer, scene.lights);
+}
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                     RenderMonitor& monitor) {

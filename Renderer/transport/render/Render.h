@@ -43,7 +43,7 @@ auto withMedium(const RenderScene& scene, Work&& work, const StopFlag& stop = ne
 }
 
 /// Implementation of transport. Both are unbiased; `fast` falls back to `readable` if lanes do not
-/// serve (WideTracker::serves, EventScene::serves).
+/// serve.
 enum class Transport { fast, readable };
 
 /// Limits of a render, which stops at the first of samples, seconds and noise. With a noise target,
@@ -82,6 +82,9 @@ struct RenderResult {
   /// Arithmetic within which pictures are bit-identical: "scalar", or the lanes' instruction set.
   std::string target = "scalar";
 };
+
+/// True if SIMD lanes serve the scene (WideTracker::serves, EventScene::serves).
+bool lanesServe(const RenderScene& scene);
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                     RenderMonitor& monitor);

@@ -1,0 +1,28 @@
+#pragma once
+// What eye rays meet first, in expectation: March in SIMD lanes, a ray a lane.
+
+#include "transport/lanes/PathTables.h"
+#include "transport/lanes/Tracker.h"
+
+namespace fenestra {
+
+/// Rays, and FirstMatter of each, its distance from the ray's origin in the batch.
+struct MarchBatch {
+  RayBatch rays;
+  Column<float> hit, distance;
+  Columns3 albedo, normal;
+};
+
+class WideMarch {
+public:
+  /// A view. The rays begin behind the clip's surface: a clip with a sharp edge is asked no more.
+  WideMarch(const WideScene& volume, const EventScene& scene) : m_volume(volume), m_scene(scene) {}
+
+  void along(MarchBatch& batch) const;
+
+private:
+  const WideScene& m_volume;
+  const EventScene& m_scene;
+};
+
+} // namespace fenestra
