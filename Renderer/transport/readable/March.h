@@ -22,7 +22,7 @@ struct FirstMatter {
 struct MarchSteps {
   static constexpr double voxels = 0.5;       ///< a step is at least that long
   static constexpr double opticalDepth = 0.1; ///< or so deep under its cell's majorant
-  static constexpr double dark = 0.01;        ///< transmittance at which a ray ends
+  static constexpr double dark = 0.03;        ///< transmittance at which a ray ends
   static constexpr double share = 1.0 / 16.0; ///< of the collisions, for which matter is looked up
 };
 
