@@ -81,7 +81,8 @@ Plane boundedClip(const Camera& camera, const Clip& clip) {
 void addFeatures(const Scene& scene, const ExpectedFlight& flight, FilterInput& input) {
   for (const Plane& plane : flight.albedo)
     input.features.push_back(plane);
-  for (const Plane& plane : flight.normal)
+  // Where light scatters at surfaces, what it meets there is told by their normals.
+  for (const Plane& plane : scene.transfer().shading ? flight.facing : flight.normal)
     input.features.push_back(plane);
   const Plane depth = centredDepth(flight);
   input.features.push_back(slopeOf(depth, input.width, input.height, false));

@@ -56,7 +56,7 @@ private:
                          hn::Sqrt(dot(m_direction, m_direction)));
     m_t = m_pending = m_moment = m_hit = m_distance = zero;
     m_transmittance = all(1.0F);
-    m_albedo = m_normal = {zero, zero, zero};
+    m_albedo = m_normal = m_facing = {zero, zero, zero};
   }
 
   /// Number of the cell along one axis.
@@ -128,16 +128,20 @@ private:
     const F pending = hn::IfThenElseZero(due, m_pending);
     const F t = hn::Div(m_moment, hn::IfThenElse(due, m_pending, all(1.0F)));
     const F3 p = pointAt(hn::IfThenElse(due, t, m_t));
-    F3 albedo = albedoOf(m_scene.albedo, scalarAt<Voxel>(m_volume.field, p));
+    const F scalar = scalarAt<Voxel>(m_volume.field, p);
+    F3 albedo = albedoOf(m_scene.albedo, scalar);
     if (m_volume.context)
       albedo = paled(*m_volume.context, p, albedo);
+    m_albedo = m_albedo + pending * albedo;
     const F3 difference = differenceAt<Voxel>(m_volume.field, p);
     const F3 gradient = mapDirection(m_scene.indexDifferenceToGradient, difference);
     const F slope = hn::Sqrt(dot(gradient, gradient));
     const M away = hn::Lt(dot(m_direction, difference), hn::Zero(floats));
     const F scale = hn::Div(hn::IfThenElse(away, pending, hn::Neg(pending)), slope);
-    m_normal = m_normal + selectElseZero(hn::Gt(slope, hn::Zero(floats)), scale * gradient);
-    m_albedo = m_albedo + pending * albedo;
+    const F3 normal = selectElseZero(hn::Gt(slope, hn::Zero(floats)), scale * gradient);
+    m_normal = m_normal + normal;
+    if (m_scene.hybrid)
+      m_facing = m_facing + surfaceChance(m_volume, m_scene, scalar, slope) * normal;
     m_hit = hn::Add(m_hit, pending);
     m_distance = hn::MulAdd(pending, t, m_distance);
     m_pending = hn::IfThenZeroElse(due, m_pending);
@@ -157,6 +161,7 @@ private:
     put(m_distance, m_batch.distance);
     put3(m_albedo, m_batch.albedo);
     put3(m_normal, m_batch.normal);
+    put3(m_facing, m_batch.facing);
   }
 
   const WideScene& m_volume;
@@ -166,7 +171,7 @@ private:
   F3 m_origin, m_direction, m_inverse; ///< index space, per mm
   F m_end, m_shortest;                 ///< mm
   F m_t, m_transmittance, m_pending, m_moment, m_hit, m_distance;
-  F3 m_albedo, m_normal;
+  F3 m_albedo, m_normal, m_facing;
 };
 
 void marchAll(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {

@@ -10,7 +10,7 @@ namespace fenestra {
 struct MarchBatch {
   RayBatch rays;
   Column<float> hit, distance;
-  Columns3 albedo, normal;
+  Columns3 albedo, normal, facing;
 };
 
 class WideMarch {

@@ -42,6 +42,13 @@ HWY_INLINE F3 differenceAt(const WideField& field, const F3& p) {
           hn::Sub(value(p.x, p.y, hn::Add(p.z, one)), value(p.x, p.y, hn::Sub(p.z, one)))};
 }
 
+/// Medium's probability of scattering at a surface; `slope`: length of the gradient.
+HWY_INLINE F surfaceChance(const WideScene& volume, const EventScene& scene, F scalar, F slope) {
+  const auto missing = [](F x) { return hn::Neg(hn::Expm1(floats, hn::Neg(x))); };
+  const F opacity = missing(extinctionOf(volume, scalar));
+  return hn::Mul(opacity, missing(hn::Mul(all(scene.surfaceRate), slope)));
+}
+
 } // namespace fenestra::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -148,9 +148,7 @@ private:
     }
     if (m_scene.hybrid) {
       const F slope = hn::Sqrt(dot(at.gradient, at.gradient));
-      const auto missing = [](F x) { return hn::Neg(hn::Expm1(floats, hn::Neg(x))); };
-      const F opacity = missing(extinctionOf(m_volume, at.scalar));
-      const F chance = hn::Mul(opacity, missing(hn::Mul(all(m_scene.surfaceRate), slope)));
+      const F chance = surfaceChance(m_volume, m_scene, at.scalar, slope);
       at.surface = both(going, hn::Lt(draws.uniform(), chance));
     }
     return at;

@@ -15,6 +15,7 @@ struct FirstMatter {
   double hit = 0.0;      ///< probability of a collision
   double distance = 0.0; ///< from the ray's origin, mm
   Rgb albedo = Rgb::Zero();
+  Vec3 facing = Vec3::Zero(); ///< normal times the probability of scattering at a surface
   Vec3 normal = Vec3::Zero(); ///< unit where the gradient is not zero, world axes, toward the eye
 };
 
@@ -94,8 +95,11 @@ private:
     walk.met.albedo += walk.pending * matter.albedo;
     const double slope = matter.gradient.norm();
     const bool away = walk.ray.direction.dot(matter.gradient) < 0.0;
-    if (slope > 0.0)
-      walk.met.normal += matter.gradient * (walk.pending / (away ? slope : -slope));
+    if (slope > 0.0) {
+      const Vec3 normal = matter.gradient * (walk.pending / (away ? slope : -slope));
+      walk.met.normal += normal;
+      walk.met.facing += matter.surfaceProbability * normal;
+    }
     walk.pending = walk.moment = 0.0;
   }
 

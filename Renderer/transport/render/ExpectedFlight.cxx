@@ -13,7 +13,7 @@ namespace {
 /// Expected values of one pixel.
 struct Met {
   float hit = 0.0F, depth = 0.0F;
-  std::array<float, 3> albedo = {}, normal = {};
+  std::array<float, 3> albedo = {}, normal = {}, facing = {};
 };
 
 /// A point of the picture through which a ray is marched.
@@ -36,6 +36,7 @@ public:
       Met met{narrow(first.hit), narrow(first.distance * m_scene.camera.depthPerLength(ray))};
       met.albedo = narrow3(first.albedo.matrix());
       met.normal = narrow3(first.normal);
+      met.facing = narrow3(first.facing);
       *out++ = met;
     }
   }
@@ -80,6 +81,7 @@ private:
     for (std::size_t c = 0; c < 3; ++c) {
       met.albedo[c] = batch.albedo[c][i];
       met.normal[c] = batch.normal[c][i];
+      met.facing[c] = batch.facing[c][i];
     }
     return met;
   }
@@ -131,6 +133,7 @@ Met meanOf(std::span<const Met> parts) {
     for (std::size_t c = 0; c < 3; ++c) {
       mean.albedo[c] += share * part.albedo[c];
       mean.normal[c] += share * part.normal[c];
+      mean.facing[c] += share * part.facing[c];
     }
   }
   return mean;
@@ -193,6 +196,7 @@ ExpectedFlight expectedFlight(const RenderScene& scene) {
   for (std::size_t c = 0; c < 3; ++c) {
     plane(flight.albedo[c], [c](const Met& met) { return met.albedo[c]; });
     plane(flight.normal[c], [c](const Met& met) { return met.normal[c]; });
+    plane(flight.facing[c], [c](const Met& met) { return met.facing[c]; });
   }
   return flight;
 }

@@ -17,6 +17,7 @@ struct ExpectedFlight {
   Plane depth;                 ///< sum of view-space depth, mm: the mean depth times `hit`
   std::array<Plane, 3> albedo; ///< linear, as Film's
   std::array<Plane, 3> normal; ///< world axes, toward the eye
+  std::array<Plane, 3> facing; ///< the same, times the probability of scattering at a surface
 };
 
 /// Rays start exactly behind the clip's surface; cells without matter are stepped over. One ray
