@@ -18,6 +18,9 @@ constexpr std::uint64_t mixBits(std::uint64_t x) {
 /// SplitMix64 (Steele, Lea, Flood 2014), started at a hash of its coordinates.
 class Random {
 public:
+  /// Numbers of two samples of a pixel are independent.
+  static constexpr bool hasIndependentSamples = true;
+
   Random(std::uint64_t seed, std::uint64_t pixel, std::uint64_t sample)
       : m_state(mixBits(mixBits(mixBits(seed + gamma) ^ (pixel + gamma)) ^ (sample + gamma))) {}
 

@@ -7,6 +7,8 @@
 
 namespace fenestra {
 
+inline constexpr int filterVersion = 1; ///< changes whenever filtered pictures do
+
 /// Filters both halves, each by itself, with the same features; the picture is their mean. Raw is
 /// one of the candidates. With `hasHalves` false (one sample a pixel) `odd` is not read, windows
 /// have one size, and the errors are empty. Independent of threads.

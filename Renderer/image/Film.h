@@ -58,13 +58,17 @@ struct SampleCounts {
 /// Row 0 is the top row.
 class Film {
 public:
-  Film(int width, int height)
+  /// `hasIndependentHalves`: samples of even index share no random numbers with those of odd index.
+  Film(int width, int height, bool hasIndependentHalves = true)
       : m_width(width),
         m_height(height),
+        m_hasIndependentHalves(hasIndependentHalves),
         m_pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
   int width() const { return m_width; }
   int height() const { return m_height; }
+  /// What the filter needs to tell its error (filter/ToldError.h).
+  bool hasIndependentHalves() const { return m_hasIndependentHalves; }
   /// Index of a pixel in pixels().
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_width) +
@@ -82,6 +86,7 @@ public:
 
 private:
   int m_width, m_height;
+  bool m_hasIndependentHalves;
   std::vector<PixelSums> m_pixels;
 };
 

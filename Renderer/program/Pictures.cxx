@@ -4,11 +4,13 @@
 #include "base/safe/Inputs.h"
 #include "base/safe/ShownText.h"
 #include "clip/mesh/SurfaceWriter.h"
+#include "files/pictures/ImageFormat.h"
 #include "files/pictures/ImageWriter.h"
 #include "program/FileNames.h"
 #include "program/MergedFlags.h"
 #include "program/Version.h"
 
+#include <algorithm>
 #include <future>
 
 #include <unistd.h>
@@ -54,6 +56,26 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
   return entries;
 }
 
+/// What a picture's header says of its filter.
+std::string filterText(const std::optional<FilteredPicture>& filtered) {
+  const std::optional<double> noise = filteredNoise(filtered);
+  return textOf("filtered for the eye by least squares in windows, version ", filterVersion,
+                ", on ", "expected albedo, normal and depth; told error ",
+                noise ? numberText(*noise, 3) : "unknown",
+                "; --denoise off leaves the picture raw");
+}
+
+/// Adds the filtered channels that the layers name; R, G, B and A stay as they are.
+void addFilterChannels(const RenderOptions& options, const Scene& scene,
+                       const FilteredPicture& filtered, Image& image) {
+  if (options.layers.contains("denoised"))
+    addDenoised(image, filtered);
+  if (options.layers.contains("expected"))
+    addExpected(image, *scene.flight());
+  image.header["filter"] =
+      textOf("channels denoised.* are ", filterText(filtered), "; R, G, B and A are not filtered");
+}
+
 } // namespace
 
 PictureRequest pictureRequest(const FlagValues& given) {
@@ -79,7 +101,9 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
 
 /// Compared with physical memory: Linux grants more, and ends the process when it is used.
 void checkMemory(const SceneRequest& scene) {
-  constexpr double bytesPerPixel = 2.0 * sizeof(PixelSums); // the film, and its channels as written
+  constexpr double filter = 400.0; // its planes
+  const double bytesPerPixel =     // the film, and its channels as written
+      2.0 * sizeof(PixelSums) + (scene.features ? filter : 0.0);
   constexpr double gigabyte = 1e9;
   const double needed = bytesPerPixel * scene.width * scene.height;
   const double there =
@@ -91,16 +115,53 @@ void checkMemory(const SceneRequest& scene) {
                     numberText(there / gigabyte, 3), "; choose a smaller one");
 }
 
+RenderSettings pictureSettings(const RenderOptions& options, const Scene& scene) {
+  RenderSettings settings = settingsFor(options, scene.background());
+  if (options.noiseTarget == NoiseTarget::filtered)
+    settings.seenNoise = [&scene](const Film& film) {
+      const FilteredPicture picture = denoised(film, scene);
+      // Twice its standard error more, lest luck ends the render.
+      return std::sqrt(picture.toldError + 2.0 * picture.toldDeviation);
+    };
+  return settings;
+}
+
+std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film) {
+  if (!scene.flight())
+    return std::nullopt;
+  return denoised(film, scene);
+}
+
+std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered) {
+  if (!filtered || filtered->error[0].empty())
+    return std::nullopt;
+  return std::sqrt(filtered->toldError);
+}
+
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
+                   const std::optional<FilteredPicture>& filtered,
                    const std::vector<std::string>& words, Outputs& outputs) {
-  Image image = picture(result.film, scene.camera(), scene.clip(), options.layers);
-  image.header = header(scene, options, result, words);
+  const bool isRawWanted = !filtered || !std::ranges::all_of(options.outputs, isDisplayFile);
+  Image raw{options.scene.width, options.scene.height, {}, header(scene, options, result, words)};
+  Image shown = raw;
+  if (isRawWanted) {
+    Image channels = picture(result.film, scene.camera(), scene.clip(), options.layers);
+    raw.channels = std::move(channels.channels);
+  }
+  if (filtered) {
+    shown.channels = filteredColors(*filtered, raw.width, raw.height).channels;
+    shown.header["filter"] = filterText(filtered);
+    if (options.denoise == Denoise::on)
+      addFilterChannels(options, scene, *filtered, raw);
+  }
   // All files at once if threads are free: compressing one does not delay another.
   std::vector<std::future<void>> files;
-  for (const std::filesystem::path& path : options.outputs)
+  for (const std::filesystem::path& path : options.outputs) {
+    const Image& image = filtered && isDisplayFile(path) ? shown : raw;
     files.push_back(std::async([&image, &scene, &path, &outputs] {
       writeImage(image, picturePlane(scene.camera()), path, outputs);
     }));
+  }
   for (std::future<void>& file : files)
     file.get();
 }

@@ -3,6 +3,7 @@
 // it.
 
 #include "program/MergedFlags.h"
+#include "session/Denoising.h"
 #include "session/Scene.h"
 
 namespace fenestra {
@@ -23,9 +24,19 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs);
 /// Throws Error (output) if memory cannot hold the picture.
 void checkMemory(const SceneRequest& scene);
 
+/// Settings of a render of the scene, whose functions must not outlive it.
+RenderSettings pictureSettings(const RenderOptions& options, const Scene& scene);
+
+/// The film filtered, if the scene has features; else nothing.
+std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film);
+/// What the filter tells of its error, as Film::noise(); nothing if no error is told.
+std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered);
+
 /// Writes all of options.outputs; the caller commits them. Each header has the data that reproduce
-/// the picture, `fenestra words…` among them. Throws Error (output).
+/// the picture, `fenestra words…` among them; a picture that is `filtered` says so. Throws Error
+/// (output).
 void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
+                   const std::optional<FilteredPicture>& filtered,
                    const std::vector<std::string>& words, Outputs& outputs);
 
 } // namespace fenestra

@@ -27,7 +27,9 @@ using Json = nlohmann::ordered_json;
 
 /// Facts of a render beside its scene and its result.
 struct RenderStats {
-  double transport = 0.0, measure = 0.0, write = 0.0, total = 0.0; ///< wall-clock seconds
+  /// Wall-clock seconds; transport includes looks at a filtered picture's error.
+  double transport = 0.0, filter = 0.0, write = 0.0, measure = 0.0, total = 0.0;
+  std::optional<double> filtered = {}; ///< noise of the filtered picture, as it tells
   std::optional<FocusReport> focus = {};
   std::vector<std::string> warnings = {}; ///< beside the scene's
 };
@@ -94,9 +96,10 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
 
   Json json;
   json["seconds"] = {
-      {"load", stages.load},      {"classify", stages.classify}, {"focus", stages.focus},
-      {"spline", stages.spline},  {"fill", stages.fill},         {"transport", stats.transport},
-      {"measure", stats.measure}, {"write", stats.write},        {"total", stats.total}};
+      {"load", stages.load},          {"classify", stages.classify}, {"focus", stages.focus},
+      {"spline", stages.spline},      {"fill", stages.fill},         {"features", stages.features},
+      {"transport", stats.transport}, {"filter", stats.filter},      {"measure", stats.measure},
+      {"write", stats.write},         {"total", stats.total}};
   json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   json["paths"] = c.paths;
   json["collisions"] = c.collisions;
@@ -110,6 +113,8 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
   json["samplesPerPixel"] = {
       {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
   json["noise"] = result.film.noise(); // null: infinite
+  if (scene.flight())
+    json["noiseFiltered"] = stats.filtered ? Json(*stats.filtered) : Json(); // null: unknown
   json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
   addClip(json, scene, stats.focus);
   if (scene.focus())
@@ -145,7 +150,8 @@ std::vector<std::string> staleParts(const RenderOptions& options, const Outputs&
   return warnings;
 }
 
-void report(const RenderOptions& options, const RenderResult& result, double seconds) {
+void report(const RenderOptions& options, const RenderResult& result,
+            const std::optional<double>& filtered, double seconds) {
   const auto files = joined(options.outputs, ", ", [](const auto& path) { return path.string(); });
   const SampleCounts counts = result.film.sampleCounts();
   const double noise = result.film.noise();
@@ -157,6 +163,8 @@ void report(const RenderOptions& options, const RenderResult& result, double sec
               : textOf(" a pixel (", counts.least, " to ", counts.greatest, ")");
   if (noise < infinity)
     line += ", noise " + numberText(noise, 3);
+  if (filtered)
+    line += ", filtered " + numberText(*filtered, 3);
   line += ", " + numberText(seconds, 3) + " s";
   if (result.reason == StopReason::request)
     line += " (stopped on request)";
@@ -188,7 +196,7 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   RenderStats stats;
   const RenderResult result = [&] {
     const Progress progress(options, monitor);
-    return render(scene.forRender(), settingsFor(options, scene.background()), monitor);
+    return render(scene.forRender(), pictureSettings(options, scene), monitor);
   }();
   stats.transport = watch.seconds();
   surface.get();
@@ -197,7 +205,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
     return stopStatus();
   }
   watch.lap();
-  writePictures(options, scene, result, words, outputs);
+  const std::optional<FilteredPicture> filtered = filteredPicture(scene, result.film);
+  stats.filtered = filteredNoise(filtered);
+  stats.filter = watch.lap();
+  writePictures(options, scene, result, filtered, words, outputs);
   outputs.commit();
   stats.write = watch.lap();
   stats.warnings = staleParts(options, outputs);
@@ -214,10 +225,12 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
     outputs.write(*options.stats, statsJson(stats, options, scene, result));
   }
   if (options.returnValues)
-    outputs.write(*options.returnValues, returnValuesText({result.film.sampleCounts().mean,
-                                                           result.film.noise(), stats.transport}));
+    outputs.write(
+        *options.returnValues,
+        returnValuesText({result.film.sampleCounts().mean,
+                          stats.filtered.value_or(result.film.noise()), stats.transport}));
   outputs.commit();
-  report(options, result, total.seconds());
+  report(options, result, stats.filtered, total.seconds());
   return result.reason == StopReason::request ? stopStatus() : 0;
 }
 

@@ -231,10 +231,21 @@ struct RenderTable {
       {"seconds", "T", qualityGroup,
        "Stop after T seconds of rendering, but not before one sample a pixel",
        Takes::number(1e-3, 1e9).into(settings.seconds).shows(""), Topic::stop},
-      {"noise", "E", qualityGroup,
-       "Stop when the relative noise is at most E, for example 0.03; noisier pixels get more "
-       "samples",
+      {"noise", "E", qualityGroup, "Stop when the relative noise is at most E, for example 0.03",
        Takes::number(1e-6, 1e6).into(settings.noise).shows(""), Topic::stop},
+      {"noisetarget", "KIND", qualityGroup,
+       "Which noise --noise means: raw (of the samples; noisier pixels get more), filtered (what "
+       "the "
+       "filter tells of its own error), or auto: filtered if all outputs are .png or .tif",
+       Takes::word(options.noiseTarget, {{"auto", NoiseTarget::automatic},
+                                         {"raw", NoiseTarget::raw},
+                                         {"filtered", NoiseTarget::filtered}}),
+       Topic::stop},
+      {"denoise", "KIND", qualityGroup,
+       "auto: filter .png and .tif, for the eye, and leave colours of .exr and .nrrd raw; on: "
+       "filtered channels in these, too, beside the raw ones; off",
+       Takes::word(options.denoise,
+                   {{"auto", Denoise::automatic}, {"on", Denoise::on}, {"off", Denoise::off}})},
       {"bounces", "B", qualityGroup, "Scatterings a path, at most (biased) [unlimited]",
        Takes::whole(0, unlimited).into(settings.path.bounces).shows("")},
       {"seed", "S", qualityGroup, "Random seed", Takes::whole(0, 0x1p64).into(settings.seed)},
@@ -245,8 +256,9 @@ struct RenderTable {
        Takes::text().into(scene.volume)},
       // Slicer takes one file, hence colour alone in its panel.
       {"layers", "L,...", outputGroup,
-       "Channels of an .exr: color, depth, clip, albedo, normal, error, samples; of a .nrrd: "
-       "color, depth (a file of its own) [all]",
+       "Channels of an .exr: color, depth, clip, albedo, normal, error, samples, and with "
+       "--denoise "
+       "on denoised, expected; of a .nrrd: color, depth and denoised (files of their own) [all]",
        Takes::list().into(options.layers, readLayers).shows("color"), Topic::process},
       {"surface", "FILE", outputGroup,
        "Clipping surface as triangles in RAS mm, to a tenth of a pixel in depth (any --clip but "

@@ -8,6 +8,13 @@
 
 namespace fenestra {
 
+/// Pictures that are filtered: those for the eye (.png, .tif); the others, too, in channels of
+/// their own; none.
+enum class Denoise { automatic, on, off };
+/// Noise that a render stops by: of the raw picture, of the filtered one; automatic: filtered if
+/// all outputs are pictures for the eye.
+enum class NoiseTarget { automatic, raw, filtered };
+
 enum class ProgressMode { automatic, bar, xml, none };
 
 struct RenderOptions {
@@ -18,6 +25,8 @@ struct RenderOptions {
   std::vector<std::filesystem::path> outputs; ///< at least one
   NamedBy outputsNamedBy = NamedBy::user;
   LayerSet layers = allLayers;
+  Denoise denoise = Denoise::automatic;
+  NoiseTarget noiseTarget = NoiseTarget::automatic;  ///< settled: raw or filtered
   std::optional<std::filesystem::path> surface = {}; ///< only with a clip by depth
   std::optional<std::filesystem::path> stats = {};
   /// Slicer's return parameters. If set, warnings go to standard output: Slicer reports everything

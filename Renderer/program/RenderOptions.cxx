@@ -118,6 +118,26 @@ void settleLayers(const FlagValues& flags, RenderOptions& options) {
   options.settings.path.wantNormals = hasExr && options.layers.contains("normal");
 }
 
+/// Settles what is filtered, and which noise ends the render.
+void settleFilter(const FlagValues& flags, RenderOptions& options) {
+  options.scene.features =
+      options.denoise == Denoise::on || (options.denoise == Denoise::automatic &&
+                                         std::ranges::any_of(options.outputs, isDisplayFile));
+  if (options.noiseTarget == NoiseTarget::filtered && !options.scene.features)
+    throw usageError("--noisetarget: filtered needs a filtered picture; write a .png, or add "
+                     "--denoise on");
+  if (flags.differs("noisetarget") && !flags.has("noise"))
+    throw usageError("--noisetarget: only --noise uses it; add --noise E, or drop it");
+  for (const char* layer : {"denoised", "expected"})
+    if (flags.differs("layers") && options.layers.contains(layer) && options.denoise != Denoise::on)
+      throw usageError("--layers: ", layer, " needs --denoise on; add it");
+  if (options.noiseTarget == NoiseTarget::automatic)
+    options.noiseTarget =
+        options.scene.features && std::ranges::all_of(options.outputs, isDisplayFile)
+            ? NoiseTarget::filtered
+            : NoiseTarget::raw;
+}
+
 } // namespace
 
 RenderOptions renderOptions(const FlagValues& flags) {
@@ -136,6 +156,7 @@ RenderOptions renderOptions(const FlagValues& flags) {
     options.outputsNamedBy = NamedBy::standard;
   }
   settleLayers(flags, options);
+  settleFilter(flags, options);
   scene.measure = options.stats.has_value();
   if (options.returnValues && options.progress == ProgressMode::automatic)
     options.progress = ProgressMode::xml;

@@ -96,7 +96,7 @@ private:
         publish(result, false);
     };
     const RenderResult result =
-        render(m_scene->forRender(), settingsFor(m_options, m_scene->background()), m_monitor);
+        render(m_scene->forRender(), pictureSettings(m_options, *m_scene), m_monitor);
     m_complete = result.reason != StopReason::request;
     if (m_complete)
       publish(result, true);
@@ -106,9 +106,10 @@ private:
   /// intermediate pictures only once each; the next picture may have room again.
   void publish(const RenderResult& result, bool last) {
     try {
-      writePictures(m_options, *m_scene, result, m_flags.arguments(), m_outputs);
+      const auto filtered = filteredPicture(*m_scene, result.film);
+      writePictures(m_options, *m_scene, result, filtered, m_flags.arguments(), m_outputs);
       m_outputs.commit(Durability::none); // the next picture follows soon
-      tell(result, last);
+      tell(result, filteredNoise(filtered), last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())
         answerError(m_change.id, error.what());
@@ -117,10 +118,12 @@ private:
     m_published.emplace();
   }
 
-  void tell(const RenderResult& result, bool last) {
+  void tell(const RenderResult& result, const std::optional<double>& filtered, bool last) {
     nlohmann::ordered_json told = {{"event", "picture"}, {"id", m_change.id}};
     told["samples"] = result.finishedSamples;
     told["noise"] = result.film.noise(); // null: infinite
+    if (filtered)
+      told["noiseFiltered"] = *filtered;
     told["seconds"] = m_change.since.seconds();
     told["done"] = last;
     for (const std::filesystem::path& path : m_options.outputs)

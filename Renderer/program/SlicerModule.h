@@ -16,7 +16,8 @@ struct ReturnValue {
 };
 inline constexpr ReturnValue returnValues[] = {
     {"samplesPerPixel", "Samples a pixel, the mean over the picture"},
-    {"reachedNoise", "Relative noise of the picture; empty below two samples a pixel"},
+    {"reachedNoise",
+     "Relative noise of the picture, filtered if that is; empty below two samples a pixel"},
     {"renderSeconds", "Time of the rendering alone, by the clock"},
 };
 

@@ -96,11 +96,12 @@ private:
       warn(warning);
     RenderOptions options = m_options.render;
     options.outputs = m_options.pictures(frame);
-    const RenderResult result = render(m_view.scene.forRender(),
-                                       settingsFor(options, m_view.scene.background()), m_monitor);
+    const RenderResult result =
+        render(m_view.scene.forRender(), pictureSettings(options, m_view.scene), m_monitor);
     if (result.reason == StopReason::request)
       return false;
-    writePictures(options, m_view.scene, result, m_words, m_outputs);
+    writePictures(options, m_view.scene, result, filteredPicture(m_view.scene, result.film),
+                  m_words, m_outputs);
     m_outputs.commit();
     m_record.finish(frame, m_view.change, m_outputs);
     return true;

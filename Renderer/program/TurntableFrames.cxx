@@ -67,10 +67,14 @@ std::vector<std::filesystem::path> TurntableOptions::pictures(int frame) const {
 std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& picture : pictures(frame)) {
-    std::vector<std::filesystem::path> parts = imageFiles(picture);
-    if (!render.layers.contains("depth"))
-      parts.resize(1); // without the depth beside a .nrrd
-    files.insert(files.end(), parts.begin(), parts.end());
+    const std::vector<std::filesystem::path> parts = imageFiles(picture);
+    files.push_back(parts.front());
+    if (parts.size() == 1)
+      continue;
+    if (render.layers.contains("depth"))
+      files.push_back(parts[1]);
+    if (render.denoise == Denoise::on && render.layers.contains("denoised"))
+      files.push_back(parts[2]);
   }
   return files;
 }

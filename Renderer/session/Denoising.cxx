@@ -100,6 +100,8 @@ bool hasHalves(const Film& film) {
 } // namespace
 
 FilterInput filterInput(const Film& film, const Scene& scene) {
+  if (!film.hasIndependentHalves())
+    throw std::logic_error("a film without independent halves cannot be filtered");
   FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}};
   addHalves(film, input);
   if (scene.flight())

@@ -31,7 +31,8 @@ LayerSet layerSet(const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (!allLayers.contains(name))
       throw usageError("--layers: '" + name +
-                       "' is unknown; use color, depth, clip, albedo, normal, error, samples");
+                       "' is unknown; use color, depth, clip, albedo, normal, error, samples, "
+                       "denoised, expected");
   return names.empty() ? allLayers : LayerSet(names.begin(), names.end());
 }
 
@@ -58,6 +59,31 @@ Image picture(const Film& film, const Camera& camera, const Clip& clip, const La
   add("samples", "samples.N", [](const P& p) { return static_cast<double>(p.samples); });
   if (layers.contains("clip") && !std::holds_alternative<ClipNone>(clip))
     image.channels["clip.Z"] = clipPlane(camera, clip);
+  return image;
+}
+
+void addDenoised(Image& image, const FilteredPicture& filtered) {
+  for (std::size_t c = 0; c < 4; ++c)
+    image.channels[std::string("denoised.") + "RGBA"[c]] = filtered.color[c];
+  for (std::size_t c = 0; c < 3 && !filtered.error[c].empty(); ++c)
+    image.channels[std::string("denoised.error.") + "RGB"[c]] = filtered.error[c];
+}
+
+void addExpected(Image& image, const ExpectedFlight& flight) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    image.channels[std::string("expected.albedo.") + "RGB"[c]] = flight.albedo[c];
+    image.channels[std::string("expected.normal.") + "XYZ"[c]] = flight.normal[c];
+  }
+  Plane& depth = image.channels["expected.Z"];
+  for (std::size_t i = 0; i < flight.hit.size(); ++i)
+    depth.push_back(flight.hit[i] > 0.0F ? flight.depth[i] / flight.hit[i]
+                                         : std::numeric_limits<float>::infinity());
+}
+
+Image filteredColors(const FilteredPicture& filtered, int width, int height) {
+  Image image{width, height, {}, {}};
+  for (std::size_t c = 0; c < 4; ++c)
+    image.channels[std::string(1, "RGBA"[c])] = filtered.color[c];
   return image;
 }
 

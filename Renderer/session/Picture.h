@@ -2,8 +2,10 @@
 // Film as named channels, ready to be written.
 
 #include "clip/keep/Clip.h"
+#include "filter/FilterInput.h"
 #include "image/Film.h"
 #include "image/Image.h"
+#include "transport/render/ExpectedFlight.h"
 
 #include <set>
 
@@ -12,13 +14,21 @@ namespace fenestra {
 /// Groups of channels that a picture has, by their names in --layers.
 using LayerSet = std::set<std::string>;
 
-inline const LayerSet allLayers = {"color",  "depth", "clip",   "albedo",
-                                   "normal", "error", "samples"};
+inline const LayerSet allLayers = {"color", "depth",   "clip",     "albedo",  "normal",
+                                   "error", "samples", "denoised", "expected"};
 
 /// Layers of these names; empty list: all. Throws Error (usage) for an unknown name.
 LayerSet layerSet(const std::vector<std::string>& names);
 
 Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers);
+
+/// Adds the channels denoised.* and denoised.error.*.
+void addDenoised(Image& image, const FilteredPicture& filtered);
+/// Adds the channels expected.*: means over the rays that meet something, as Z; infinity where none
+/// does; albedo and normal as Film's.
+void addExpected(Image& image, const ExpectedFlight& flight);
+/// R, G, B and A of the filtered picture.
+Image filteredColors(const FilteredPicture& filtered, int width, int height);
 
 /// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity:
 /// nothing lies behind the surface.

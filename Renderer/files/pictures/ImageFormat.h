@@ -22,4 +22,10 @@ inline std::optional<ImageFormat> imageFormat(const std::filesystem::path& path)
   return it == formats.end() ? std::nullopt : std::optional(it->second);
 }
 
+/// True for a picture for the eye, by its extension.
+inline bool isDisplayFile(const std::filesystem::path& path) {
+  const auto format = imageFormat(path);
+  return format == ImageFormat::png || format == ImageFormat::tiff;
+}
+
 } // namespace fenestra

@@ -90,17 +90,40 @@ std::string bigEndian(std::uint32_t number) {
   return bytes;
 }
 
-/// Inserts the mark as a tEXt chunk after the first one, IHDR (PNG specification, 11.3.4.3):
-/// libpng's simple interface writes none.
-std::string withMark(std::string png) {
+/// A tEXt chunk (PNG specification, 11.3.4.3), which libpng's simple interface does not write; its
+/// checksum is set by closeChunk.
+std::string textChunk(const std::string& keyword, std::string_view text) {
+  const auto length = static_cast<std::uint32_t>(keyword.size() + 1 + text.size());
+  return bigEndian(length) + "tEXt" + keyword + std::string(1, '\0') + std::string(text) +
+         bigEndian(0);
+}
+
+/// Sets the checksum of the chunk of `size` bytes at `start`.
+void closeChunk(std::string& png, std::size_t start, std::size_t size) {
+  const auto* const bytes = reinterpret_cast<const Bytef*>(png.data()) + start + 4;
+  const uLong checksum = crc32(crc32(0, nullptr, 0), bytes, static_cast<uInt>(size - 8));
+  png.replace(start + size - 4, 4, bigEndian(static_cast<std::uint32_t>(checksum)));
+}
+
+/// Inserts the mark and, unless empty, a comment after the first chunk, IHDR.
+std::string withTexts(std::string png, const std::string& comment) {
   constexpr std::size_t afterHeader = 8 + 25; // signature and IHDR
-  const std::string chunk = "tEXtSoftware" + std::string(1, '\0') + std::string(unsealedMark);
-  const auto length = static_cast<std::uint32_t>(chunk.size());
-  png.insert(afterHeader, bigEndian(length - 4) + chunk + bigEndian(0));
+  if (!comment.empty()) {
+    const std::string chunk = textChunk("Comment", comment);
+    png.insert(afterHeader, chunk);
+    closeChunk(png, afterHeader, chunk.size());
+  }
+  const std::string mark = textChunk("Software", unsealedMark);
+  png.insert(afterHeader, mark);
   png = sealed(std::move(png));
-  const auto* const bytes = reinterpret_cast<const Bytef*>(png.data()) + afterHeader + 4;
-  const uLong checksum = crc32(crc32(0, nullptr, 0), bytes, length);
-  return png.replace(afterHeader + 4 + length, 4, bigEndian(static_cast<std::uint32_t>(checksum)));
+  closeChunk(png, afterHeader, mark.size());
+  return png;
+}
+
+/// What the header says of a filter; empty: nothing.
+std::string commentOf(const Image& image) {
+  const auto found = image.header.find("filter");
+  return found == image.header.end() ? std::string() : found->second;
 }
 
 std::string encodePng(const Image& image, const std::vector<float>& rgba) {
@@ -116,7 +139,7 @@ std::string encodePng(const Image& image, const std::vector<float>& rgba) {
   if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
     throw outputError("picture as PNG", png.message, "; write it as .exr");
   content.resize(size);
-  return withMark(std::move(content));
+  return withTexts(std::move(content), commentOf(image));
 }
 
 void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
@@ -132,6 +155,8 @@ void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
   TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
+  if (const std::string comment = commentOf(image); !comment.empty())
+    TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, comment.c_str());
   TIFFSetField(tiff, TIFFTAG_SOFTWARE, std::string(unsealedMark).c_str());
 }
 
@@ -172,19 +197,20 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
   return sealed(encodeNrrd(header, memoryOf(values)));
 }
 
-std::vector<float> interleavedRgba(const Image& image) {
-  const std::size_t count = image.channels.at("R").size();
+/// Channels R, G, B and A whose names begin with `prefix`.
+std::vector<float> interleavedRgba(const Image& image, const std::string& prefix = "") {
+  const std::size_t count = image.channels.at(prefix + "R").size();
   std::vector<float> values(4 * count, 1.0f);
-  const char* const names[4] = {"R", "G", "B", "A"};
   for (std::size_t c = 0; c < 4; ++c)
-    if (const std::vector<float>* channel = image.find(names[c]))
+    if (const std::vector<float>* channel = image.find(prefix + "RGBA"[c]))
       for (std::size_t i = 0; i < count; ++i)
         values[4 * i + c] = (*channel)[i];
   return values;
 }
 
-std::filesystem::path depthPath(const std::filesystem::path& path) {
-  return path.parent_path() / (path.stem().string() + "-Z.nrrd");
+/// Picture beside a `.nrrd`.
+std::filesystem::path besidePath(const std::filesystem::path& path, const char* part) {
+  return path.parent_path() / (path.stem().string() + "-" + part + ".nrrd");
 }
 
 /// Header lines of a NRRD that give its geometry: space, directions, origin.
@@ -228,7 +254,10 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
   if (format == ImageFormat::nrrd) {
     outputs.write(path, encodeSlice(image, plane, interleavedRgba(image)));
     if (const std::vector<float>* depth = image.find("Z"))
-      outputs.write(depthPath(path), encodeSlice(image, plane, *depth));
+      outputs.write(besidePath(path, "Z"), encodeSlice(image, plane, *depth));
+    if (image.find("denoised.R"))
+      outputs.write(besidePath(path, "denoised"),
+                    encodeSlice(image, plane, interleavedRgba(image, "denoised.")));
     return;
   }
   const std::vector<float> display = toDisplay(interleavedRgba(image), view);
@@ -238,7 +267,7 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
 
 std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path) {
   if (checkedFormat(path) == ImageFormat::nrrd)
-    return {path, depthPath(path)};
+    return {path, besidePath(path, "Z"), besidePath(path, "denoised")};
   return {path};
 }
 
@@ -248,8 +277,10 @@ void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy n
     outputs.add(path);
   else
     outputs.add(path, bearsMark);
-  if (format == ImageFormat::nrrd)
-    outputs.add(depthPath(path), [path](const auto& depth) { return isOurDepth(depth, path); });
+  if (format != ImageFormat::nrrd)
+    return;
+  outputs.add(besidePath(path, "Z"), [path](const auto& depth) { return isOurDepth(depth, path); });
+  outputs.add(besidePath(path, "denoised"), bearsMark);
 }
 
 } // namespace fenestra

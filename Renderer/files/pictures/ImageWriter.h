@@ -15,20 +15,22 @@ namespace fenestra {
 /// declared:
 /// - `.exr`: every channel as 32-bit float, and the header as string attributes "fenestra.<key>".
 /// - `.nrrd`: R, G, B, A (1 without A) as a float vector volume of one slice that lies on `plane`
-///   in the world, and Z, if present, as a scalar volume beside it, "<stem>-Z.nrrd".
+///   in the world; beside it, where present, Z as a scalar volume, "<stem>-Z.nrrd", and denoised.R,
+///   G, B, A as another vector volume, "<stem>-denoised.nrrd".
 /// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through `view`, with straight alpha if any
-///   pixel is not opaque.
+///   pixel is not opaque; the header's "filter" as a comment.
 /// Equal pictures give equal bytes, and all bear Fenestra's mark. Throws Error: usage for another
 /// extension or missing R, G, B; output where the file cannot be written.
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 Outputs& outputs, DisplayView view = DisplayView::photographic);
 
-/// Files that writeImage makes for this path. Throws Error (usage) for another extension.
+/// Files that writeImage may make for this path: itself, and the depth and the filtered colours
+/// beside a `.nrrd`. Throws Error (usage) for another extension.
 std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path);
 
 enum class NamedBy { user, standard };
-/// Declares the files of imageFiles, before a long render. A depth picture beside a `.nrrd`, and a
-/// picture with its standard name, replace only files that Fenestra wrote. Throws as Outputs does.
+/// Declares the files of imageFiles, before a long render. Pictures beside a `.nrrd`, and a picture
+/// with its standard name, replace only files that Fenestra wrote. Throws as Outputs does.
 void declareImage(const std::filesystem::path& path, Outputs& outputs,
                   NamedBy namedBy = NamedBy::user);
 

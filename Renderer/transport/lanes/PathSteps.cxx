@@ -155,7 +155,8 @@ private:
   }
 
   F3 gradientAt(const F3& p) const {
-    return mapDirection(m_scene.indexDifferenceToGradient, differenceAt<Voxel>(m_volume.field, p));
+    const F3 difference = differenceAt<Voxel>(m_volume.field, p);
+    return mapDirection(m_scene.indexDifferenceToGradient, difference);
   }
 
   void recordFirst(std::size_t i, const Collisions& at, F distance) {

@@ -1,5 +1,6 @@
 #include "transport/render/Render.h"
 
+#include "base/Random.h"
 #include "base/Stopwatch.h"
 #include "transport/readable/PathEstimator.h"
 #include "transport/render/EmptyPixels.h"
@@ -10,6 +11,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <bit>
 #include <numeric>
 
 namespace fenestra {
@@ -114,46 +116,86 @@ private:
   double m_last = 0.0, m_perSample = 0.0;
 };
 
+/// Number of samples at which the seen noise is looked at next.
+std::uint64_t nextLook(std::uint64_t done) {
+  constexpr std::uint64_t first = 4;
+  return std::max(first, std::bit_ceil(done + 1));
+}
+
+/// Decides how many samples a pass gets, and when the noise is low enough.
+class NoiseLimit {
+public:
+  explicit NoiseLimit(const RenderSettings& settings) : m_settings(settings) {}
+
+  std::uint64_t nextPass(std::uint64_t done, double noise) const {
+    if (isRaw())
+      return passTowardNoise(done, noise, m_plan, m_settings);
+    const std::uint64_t size = passSize(done, m_settings);
+    return isSeen() ? std::min(size, nextLook(done) - done) : size;
+  }
+  SamplePlan::Stage stage(std::uint64_t mean) const { return m_plan.at(mean); }
+
+  /// Looks at the film after a pass; `noise`: of the last look before, then of this one. Returns
+  /// true if the target is reached.
+  bool isReached(const Film& film, std::uint64_t done, std::atomic<double>& noise) {
+    if (!isSeen()) {
+      noise = film.noise();
+      if (!isRaw() || done < leastForNoise)
+        return false;
+      if (done == leastForNoise)
+        m_plan = SamplePlan(film);
+    } else if (nextLook(done - 1) == done) {
+      noise = m_settings.seenNoise(film);
+    }
+    return noise <= m_settings.noise;
+  }
+
+private:
+  bool isSeen() const { return m_settings.noise > 0.0 && m_settings.seenNoise; }
+  bool isRaw() const { return m_settings.noise > 0.0 && !m_settings.seenNoise; }
+
+  const RenderSettings& m_settings;
+  SamplePlan m_plan;
+};
+
 template <typename Tracer>
-RenderResult renderPasses(const Tracer& tracer, const std::string& target, const RenderScene& scene,
-                          const RenderSettings& settings, RenderMonitor& monitor) {
-  RenderResult result{Film(scene.camera.width(), scene.camera.height()), {}, {}, 0, target};
+RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
+                          const RenderScene& scene, const RenderSettings& settings,
+                          RenderMonitor& monitor) {
+  RenderResult result{
+      Film(scene.camera.width(), scene.camera.height(), Random::hasIndependentSamples),
+      {},
+      {},
+      0,
+      arithmetic};
   const EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
                                 ? EmptyPixels(scene.camera, scene.majorants)
                                 : EmptyPixels();
   for (int row = 0; row < result.film.height(); ++row)
     for (int column = 0; column < result.film.width(); ++column)
       result.film.at(column, row).isCertain = empty.contains(column, row);
-  const bool towardNoise = settings.noise > 0.0;
+  NoiseLimit target(settings);
   Pace pace(settings.seconds);
-  SamplePlan plan;
   while (result.finishedSamples < settings.samples) {
     const std::uint64_t done = result.finishedSamples;
-    const std::uint64_t size = towardNoise ? passTowardNoise(done, monitor.noise, plan, settings)
-                                           : passSize(done, settings);
-    const std::uint64_t count = std::min(size, pace.affordable());
+    const std::uint64_t count = std::min(target.nextPass(done, monitor.noise), pace.affordable());
     if (count == 0) {
       result.reason = StopReason::seconds;
       return result;
     }
     if (done > 0 && monitor.between)
       monitor.between(result);
-    if (!renderPass(tracer, plan.at(done), plan.at(done + count), empty, settings.seed, result.film,
-                    result.counters, monitor)) {
+    if (!renderPass(tracer, target.stage(done), target.stage(done + count), empty, settings.seed,
+                    result.film, result.counters, monitor)) {
       result.reason = StopReason::request;
       return result;
     }
     pace.passed(count);
     result.finishedSamples += count;
-    monitor.noise = result.film.noise();
-    if (!towardNoise || result.finishedSamples < leastForNoise)
-      continue;
-    if (monitor.noise <= settings.noise) {
+    if (target.isReached(result.film, result.finishedSamples, monitor.noise)) {
       result.reason = StopReason::noise;
       return result;
     }
-    if (result.finishedSamples == leastForNoise)
-      plan = SamplePlan(result.film);
   }
   return result;
 }

@@ -46,13 +46,17 @@ auto withMedium(const RenderScene& scene, Work&& work, const StopFlag& stop = ne
 /// serve.
 enum class Transport { fast, readable };
 
-/// Limits of a render, which stops at the first of samples, seconds and noise. With a noise target,
-/// noisier pixels get more samples, after a pilot of 16 (SamplePlan); else all get the same number.
+/// Limits of a render, which stops at the first of samples, seconds and noise. With a noise target
+/// on the raw picture, noisier pixels get more samples, after a pilot of 16 (SamplePlan); else all
+/// get the same number.
 struct RenderSettings {
   PathSettings path;
   std::uint64_t samples = 64; ///< limit of the mean number per pixel
   double seconds = infinity;  ///< limit of the time of transport
   double noise = -1.0; ///< limit of Film::noise() after a pass, from 16 samples on; negative: none
+  /// Noise of the picture as it will be seen, in place of Film::noise(): looked at after 4, 8, 16,
+  /// … samples, so that a lucky picture in between ends nothing. Empty: Film::noise().
+  std::function<double(const Film&)> seenNoise = {};
   std::uint64_t seed = 0;
   Transport transport = Transport::fast;
   int threads = 0;               ///< 0: all
