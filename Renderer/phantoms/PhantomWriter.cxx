@@ -97,8 +97,8 @@ struct PhantomFile {
 /// Archive of a scene and of the files that it names, which have a folder of their own.
 std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& path,
                           const std::string& name, const std::vector<PhantomFile>& files) {
-  std::vector<ZipEntry> entries = {
-      {name + "/" + name + ".mrml", phantomScene(phantom, name, "Data/")}};
+  const std::string scene = phantomScene(phantom, name, "Data/");
+  std::vector<ZipEntry> entries = {{name + "/" + name + ".mrml", scene}};
   for (const PhantomFile& file : files)
     if (file.isOfScene)
       entries.push_back({name + "/Data/" + file.name, file.content});

@@ -129,7 +129,7 @@ void settleFilter(const FlagValues& flags, RenderOptions& options) {
   if (flags.differs("noisetarget") && !flags.has("noise"))
     throw usageError("--noisetarget: only --noise uses it; add --noise E, or drop it");
   for (const char* layer : {"denoised", "expected"})
-    if (flags.differs("layers") && options.layers.contains(layer) && options.denoise != Denoise::on)
+    if (flags.has("layers") && options.layers.contains(layer) && options.denoise != Denoise::on)
       throw usageError("--layers: ", layer, " needs --denoise on; add it");
   if (options.noiseTarget == NoiseTarget::automatic)
     options.noiseTarget =

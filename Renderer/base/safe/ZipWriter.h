@@ -9,8 +9,12 @@
 namespace fenestra {
 
 struct ZipEntry {
-  std::string name; ///< path in the archive, with slashes
-  std::string_view content;
+  std::string name;         ///< path in the archive, with slashes
+  std::string_view content; ///< outlives the entry: a temporary text is refused
+
+  ZipEntry(std::string nameIn, const std::string& contentIn)
+      : name(std::move(nameIn)), content(contentIn) {}
+  ZipEntry(std::string nameIn, std::string&& contentIn) = delete;
 };
 
 /// Archive of the entries in this order, uncompressed (large ones already are), dated 1980-01-01,
