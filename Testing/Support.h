@@ -66,15 +66,21 @@ struct TestScene {
   std::optional<CropBox> crop = {};
   std::optional<ContextStyle> style = {};
 
-  RenderResult render(const RenderSettings& settings) const {
+  /// work(RenderScene).
+  template <typename Work>
+  auto with(Work&& work) const {
     const Camera camera(pose, width, height);
     const LightSet lightSet(lights, volume.grid, camera);
     const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
     const ContextStyle* const styled = style ? &*style : nullptr;
     const MajorantGrid majorants(volume.grid, ranges, transfer, clip, styled);
+    return work(RenderScene{volume, transfer, majorants, lightSet, camera, clip, crop, styled});
+  }
+
+  RenderResult render(const RenderSettings& settings) const {
     RenderMonitor monitor;
-    return fenestra::render({volume, transfer, majorants, lightSet, camera, clip, crop, styled},
-                            settings, monitor);
+    return with(
+        [&](const RenderScene& scene) { return fenestra::render(scene, settings, monitor); });
   }
 };
 

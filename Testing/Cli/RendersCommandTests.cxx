@@ -185,8 +185,13 @@ TEST_F(RendersCommand, StopsAtTimeLimitAndAtNoiseTarget) {
   outcome =
       run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--stats", "n.json"}, folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_LE(stats("n.json")["noise"], 0.1);
-  EXPECT_GE(stats("n.json")["samplesPerPixel"]["min"], 16);
+  EXPECT_LE(stats("n.json")["noiseFiltered"], 0.1); // of the picture for the eye
+  outcome = run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--noisetarget", "raw",
+                 "--stats", "r.json"},
+                folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_LE(stats("r.json")["noise"], 0.1);
+  EXPECT_GE(stats("r.json")["samplesPerPixel"]["min"], 16);
 }
 
 TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
@@ -198,7 +203,8 @@ TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json json = stats("knee.json");
   double stages = 0.0;
-  for (const char* stage : {"load", "classify", "focus", "spline", "fill", "transport", "write"}) {
+  for (const char* stage : {"load", "classify", "focus", "spline", "fill", "features", "transport", "filter",
+                            "write"}) {
     EXPECT_GT(json["seconds"][stage], 0.0) << stage;
     stages += json["seconds"][stage].get<double>();
   }
@@ -211,6 +217,8 @@ TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
   EXPECT_LE(json["skippedFraction"], 1.0);
   EXPECT_EQ(json["samplesPerPixel"], (nlohmann::json{{"min", 4}, {"mean", 4.0}, {"max", 4}}));
   EXPECT_GT(json["noise"], 0.0);
+  EXPECT_GT(json["noiseFiltered"], 0.0);
+  EXPECT_LT(json["noiseFiltered"], json["noise"]);
   EXPECT_GT(json["peakBytes"], 1'000'000);
   EXPECT_GE(json["boundaryMismatchMm"]["mean"], 0.0);
   EXPECT_GE(json["boundaryMismatchMm"]["p95"], json["boundaryMismatchMm"]["mean"]);

@@ -100,5 +100,26 @@ TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
   EXPECT_GE(quiet.finishedSamples, 16U);
 }
 
+TEST(Render, StopsBySeenNoiseAtFixedCountsAlikeInAllPixels) {
+  const TestScene s = scene();
+  RenderSettings settings;
+  settings.samples = 1000;
+  settings.noise = 0.5;
+  std::vector<std::uint64_t> looks;
+  settings.seenNoise = [&](const Film& film) {
+    looks.push_back(film.sampleCounts().greatest);
+    return looks.size() < 3 ? 0.6 : 0.4;
+  };
+  for (const std::uint64_t passSamples : {0U, 3U}) {
+    settings.passSamples = passSamples;
+    looks.clear();
+    const RenderResult result = s.render(settings);
+    EXPECT_EQ(result.reason, StopReason::noise);
+    EXPECT_EQ(looks, (std::vector<std::uint64_t>{4, 8, 16}));
+    EXPECT_EQ(result.film.sampleCounts().least, 16U);
+    EXPECT_EQ(result.film.sampleCounts().greatest, 16U);
+  }
+}
+
 } // namespace
 } // namespace fenestra::testing::DeterminismTests

@@ -173,18 +173,7 @@ Raster marched(const Camera& camera, const March& march) {
   return raster;
 }
 
-Raster rasterOf(const RenderScene& scene) {
-  if (lanesServe(scene))
-    return marched(scene.camera, MarchedInLanes(scene));
-  return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
-    return marched(scene.camera, MarchedOneByOne<Voxel>(scene, medium));
-  });
-}
-
-} // namespace
-
-ExpectedFlight expectedFlight(const RenderScene& scene) {
-  const Raster raster = rasterOf(scene);
+ExpectedFlight flightOf(const Raster& raster) {
   ExpectedFlight flight;
   const auto plane = [&](Plane& values, auto&& valueOf) {
     values.reserve(raster.pixels.size());
@@ -199,6 +188,20 @@ ExpectedFlight expectedFlight(const RenderScene& scene) {
     plane(flight.facing[c], [c](const Met& met) { return met.facing[c]; });
   }
   return flight;
+}
+
+} // namespace
+
+ExpectedFlight expectedFlight(const RenderScene& scene) {
+  if (lanesServe(scene))
+    return flightOf(marched(scene.camera, MarchedInLanes(scene)));
+  return expectedFlightOneByOne(scene);
+}
+
+ExpectedFlight expectedFlightOneByOne(const RenderScene& scene) {
+  return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
+    return flightOf(marched(scene.camera, MarchedOneByOne<Voxel>(scene, medium)));
+  });
 }
 
 } // namespace fenestra

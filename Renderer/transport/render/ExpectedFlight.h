@@ -26,4 +26,7 @@ struct ExpectedFlight {
 /// arena's threads; independent of their number.
 ExpectedFlight expectedFlight(const RenderScene& scene);
 
+/// The same, ray by ray (transport/readable/March.h): for scenes that lanes do not serve.
+ExpectedFlight expectedFlightOneByOne(const RenderScene& scene);
+
 } // namespace fenestra

@@ -1,0 +1,139 @@
+// Filtered pictures as a user meets them: what is filtered, what is not, and what is said of it.
+
+#include "CommandTesting.h"
+
+#include "files/pictures/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fenestra::FilterCommandTests {
+namespace {
+
+/// Folder with a knee, rendered at 48x48 pixels.
+class FilterCommand : public ::testing::Test {
+protected:
+  Outcome knee(const Arguments& arguments) const {
+    const std::string input = (kneeFolder() / "knee" / "knee").string();
+    Arguments all = {input + ".nrrd",    "--segmentation",   input + ".seg.nrrd",
+                     "--focus",          "FemoralCartilage", "--transfer",
+                     input + ".vp.json", "--size",           "48x48"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return run(all, folder.path());
+  }
+  void render(const Arguments& arguments) const {
+    const Outcome outcome = knee(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  }
+  nlohmann::json stats() const { return nlohmann::json::parse(bytesOf(folder / "s.json")); }
+
+  TemporaryFolder folder;
+};
+
+std::set<std::string> channelsOf(const Image& image) {
+  std::set<std::string> names;
+  for (const auto& [name, plane] : image.channels)
+    names.insert(name);
+  return names;
+}
+
+TEST_F(FilterCommand, RawChannelsKeepTheirBits) {
+  const Arguments four = {"--samples", "4", "--layers", "color,depth,albedo,normal,error,samples"};
+  const auto with = [&](const std::string& denoise, const std::string& name) {
+    Arguments arguments = four;
+    arguments.insert(arguments.end(), {"--denoise", denoise, "--output", name});
+    render(arguments);
+    return readImage(folder / name);
+  };
+  EXPECT_EQ(with("off", "off.exr").channels, with("on", "on.exr").channels);
+}
+
+TEST_F(FilterCommand, OnAddsChannelsBesideTheRawOnes) {
+  render({"--samples", "4", "--denoise", "on", "--output", "a.exr", "--output", "a.nrrd"});
+  const Image image = readImage(folder / "a.exr");
+  for (const char* name :
+       {"R", "A", "Z", "denoised.R", "denoised.G", "denoised.B", "denoised.A", "denoised.error.R",
+        "expected.albedo.R", "expected.normal.X", "expected.Z"})
+    EXPECT_TRUE(image.find(name)) << name;
+  EXPECT_NE(image.header.at("filter").find("R, G, B and A are not filtered"), std::string::npos);
+  EXPECT_EQ(filesIn(folder.path()),
+            (std::set<std::string>{"a.exr", "a.nrrd", "a-Z.nrrd", "a-denoised.nrrd"}));
+  EXPECT_EQ(*readImage(folder / "a-denoised.nrrd").find("R"), *image.find("denoised.R"));
+  EXPECT_EQ(*readImage(folder / "a.nrrd").find("R"), *image.find("R"));
+}
+
+TEST_F(FilterCommand, AutoFiltersPicturesForTheEyeAndSaysSo) {
+  const Arguments all = {"--samples", "2",        "--output", "a.png",   "--output",
+                         "a.tif",     "--output", "a.exr",    "--stats", "s.json"};
+  render(all);
+  const std::string png = bytesOf(folder / "a.png"), tiff = bytesOf(folder / "a.tif");
+  EXPECT_NE(png.find("filtered for the eye"), std::string::npos);
+  EXPECT_NE(tiff.find("filtered for the eye"), std::string::npos);
+  const Image exr = readImage(folder / "a.exr");
+  EXPECT_FALSE(channelsOf(exr).contains("denoised.R"));
+  EXPECT_FALSE(exr.header.contains("filter"));
+  EXPECT_GT(stats()["noiseFiltered"], 0.0);
+  EXPECT_LT(stats()["noiseFiltered"], stats()["noise"]);
+
+  Arguments off = all;
+  off.insert(off.end(), {"--denoise", "off"});
+  render(off);
+  EXPECT_EQ(bytesOf(folder / "a.png").find("filtered for the eye"), std::string::npos);
+  EXPECT_NE(bytesOf(folder / "a.png"), png);
+  EXPECT_FALSE(stats().contains("noiseFiltered"));
+  EXPECT_EQ(stats()["seconds"]["features"], 0.0);
+}
+
+TEST_F(FilterCommand, OneSampleIsFilteredButTellsNoError) {
+  render({"--samples", "1", "--denoise", "on", "--output", "a.exr", "--stats", "s.json"});
+  const Image image = readImage(folder / "a.exr");
+  EXPECT_TRUE(image.find("denoised.R"));
+  EXPECT_FALSE(image.find("denoised.error.R"));
+  EXPECT_TRUE(stats()["noiseFiltered"].is_null());
+}
+
+TEST_F(FilterCommand, NoiseMeansTheFilteredPictureIfThatIsAllThereIs) {
+  const Arguments noise = {"--noise", "0.15", "--stats", "s.json", "--output", "a.png"};
+  render(noise);
+  const std::uint64_t few = stats()["samplesPerPixel"]["max"];
+  EXPECT_EQ(stats()["samplesPerPixel"]["min"], few);
+  EXPECT_TRUE(few == 4 || few == 8 || few == 16) << few;
+  EXPECT_LE(stats()["noiseFiltered"], 0.15);
+  EXPECT_GT(stats()["noise"], 0.15);
+
+  Arguments raw = noise;
+  raw.insert(raw.end(), {"--output", "a.exr"});
+  render(raw);
+  EXPECT_LE(stats()["noise"], 0.15);
+  Arguments filtered = raw;
+  filtered.insert(filtered.end(), {"--noisetarget", "filtered"});
+  render(filtered);
+  EXPECT_EQ(stats()["samplesPerPixel"]["max"], few);
+}
+
+TEST_F(FilterCommand, ThreadsChangeNoBit) {
+  std::set<std::string> pictures;
+  for (const char* threads : {"1", "2", "7"}) {
+    render({"--samples", "2", "--denoise", "on", "--output", "a.exr", "--threads", threads});
+    Image image = readImage(folder / "a.exr");
+    std::string bytes;
+    for (const auto& [name, plane] : image.channels)
+      bytes.append(reinterpret_cast<const char*>(plane.data()), plane.size() * sizeof(float));
+    pictures.insert(bytes);
+  }
+  EXPECT_EQ(pictures.size(), 1U);
+}
+
+TEST_F(FilterCommand, ContradictionsAreRefused) {
+  const auto refused = [&](const Arguments& arguments, const std::string& mend) {
+    const Outcome outcome = knee(arguments);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find(mend), std::string::npos) << outcome.err;
+  };
+  refused({"--noise", "0.1", "--noisetarget", "filtered", "--denoise", "off"}, "--denoise on");
+  refused({"--noise", "0.1", "--noisetarget", "filtered", "--output", "a.exr"}, "--denoise on");
+  refused({"--noisetarget", "raw"}, "--noise E");
+  refused({"--layers", "denoised,color", "--output", "a.exr"}, "--denoise on");
+}
+
+} // namespace
+} // namespace fenestra::FilterCommandTests

@@ -1,0 +1,145 @@
+// The march of expected first flights: against closed forms, against the samples' own means, and
+// lanes against the readable one.
+
+#include "Support.h"
+#include "transport/readable/March.h"
+#include "transport/render/ExpectedFlight.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing::ExpectedFlightTests {
+namespace {
+
+ExpectedFlight flightIn(const TestScene& s) {
+  return s.with([](const RenderScene& scene) { return expectedFlight(scene); });
+}
+
+/// Slab of 10 mm with one extinction, seen face on by parallel rays that start 50 mm before it.
+TestScene slab(double extinction) {
+  TestScene s{
+      makeVolume(centredGrid({10, 40, 40}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
+      linearTransfer(extinction, Rgb(0.9, 0.5, 0.1)),
+      {},
+      {.position = {-55, 0, 0}, .target = Vec3::Zero(), .scale = 8.0}};
+  return s;
+}
+
+/// Waves of matter under hybrid shading, partly beside the frame.
+TestScene waves() {
+  TestScene s{makeVolume<std::int16_t>(centredGrid({24, 24, 24}, {1.0, 1.0, 1.5}),
+                                       [](const Vec3& p) {
+                                         return 100.0 * std::sin(0.5 * p.x()) *
+                                                std::cos(0.4 * p.y());
+                                       }),
+              {ScalarFunction({knot(-20.0, 0.0), knot(100.0, 0.8)}),
+               ColorFunction({{0.0, Rgb(0.9, 0.8, 0.7)}, {100.0, Rgb(0.2, 0.3, 0.9)}}),
+               {},
+               0.4,
+               SurfaceShading{}},
+              {EnvironmentLight{}},
+              {.position = {10, -60, 20}, .target = Vec3::Zero(), .scale = 14.0},
+              41,
+              29};
+  return s;
+}
+
+double meanDepth(double extinction, double length) {
+  const double passed = std::exp(-extinction * length);
+  return (1.0 - passed * (1.0 + extinction * length)) / extinction; // times the share that collides
+}
+
+TEST(ExpectedFlight, OfASlabHasItsClosedForm) {
+  for (const double extinction : {1e-3, 0.05, 0.4, 3.0}) {
+    const ExpectedFlight flight = flightIn(slab(extinction));
+    const double hit = 1.0 - std::exp(-10.0 * extinction);
+    const std::size_t middle = flight.hit.size() / 2 + 8;
+    EXPECT_NEAR(flight.hit[middle], hit, 0.03 * hit) << extinction; // a ray ends in the dark
+    EXPECT_NEAR(flight.depth[middle], 50.0 * hit + meanDepth(extinction, 10.0), 0.04 * 60.0 * hit);
+    EXPECT_NEAR(flight.albedo[1][middle], 0.5 * flight.hit[middle], 1e-5);
+    EXPECT_EQ(flight.normal[0][middle], 0.0F); // no gradient
+  }
+}
+
+TEST(ExpectedFlight, RaysThatMeetNothingGiveZeros) {
+  TestScene s = slab(0.0);
+  s.pose.scale = 100.0;
+  const ExpectedFlight flight = flightIn(s);
+  for (std::size_t i = 0; i < flight.hit.size(); ++i) {
+    EXPECT_EQ(flight.hit[i], 0.0F);
+    EXPECT_EQ(flight.depth[i], 0.0F);
+    EXPECT_EQ(flight.facing[2][i], 0.0F);
+  }
+}
+
+/// Root mean square of the differences, relative to that of `b`.
+double apart(const Plane& a, const Plane& b) {
+  double difference = 0.0, whole = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2.0);
+    whole += std::pow(static_cast<double>(b[i]), 2.0);
+  }
+  return std::sqrt(difference / whole);
+}
+
+TEST(ExpectedFlight, LanesAgreeWithTheReadableMarch) {
+  TestScene s = waves();
+  std::vector<Clip> clips = {ClipNone()};
+  clips.push_back(
+      ClipPlane{Camera(s.pose, s.width, s.height), Vec3(0, 2, 0), -Vec3::UnitY(), {0.0, 3.0}});
+  for (const Clip& clip : clips) {
+    s.clip = clip;
+    s.with([](const RenderScene& scene) {
+      ASSERT_TRUE(lanesServe(scene));
+      const ExpectedFlight lanes = expectedFlight(scene), readable = expectedFlightOneByOne(scene);
+      EXPECT_LT(apart(lanes.hit, readable.hit), 0.01);
+      EXPECT_LT(apart(lanes.depth, readable.depth), 0.01);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_LT(apart(lanes.albedo[c], readable.albedo[c]), 0.02);
+        EXPECT_LT(apart(lanes.normal[c], readable.normal[c]), 0.2);
+        EXPECT_LT(apart(lanes.facing[c], readable.facing[c]), 0.2);
+      }
+    });
+  }
+}
+
+TEST(ExpectedFlight, IsTheMeanOfTheSamples) {
+  const TestScene s = waves();
+  RenderSettings settings;
+  settings.samples = 512;
+  settings.path.wantNormals = true;
+  settings.path.bounces = 1;
+  const Film film = s.render(settings).film;
+  const ExpectedFlight flight = flightIn(s);
+  std::array<Plane, 7> means;
+  for (const PixelSums& pixel : film.pixels()) {
+    const auto n = static_cast<double>(pixel.samples);
+    means[6].push_back(static_cast<float>(pixel.depth / n));
+    for (int c = 0; c < 3; ++c) {
+      means[static_cast<std::size_t>(c)].push_back(static_cast<float>(pixel.albedo[c] / n));
+      means[static_cast<std::size_t>(3 + c)].push_back(static_cast<float>(pixel.normal[c] / n));
+    }
+  }
+  EXPECT_LT(apart(flight.depth, means[6]), 0.05);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_LT(apart(flight.albedo[c], means[c]), 0.07) << c;
+    EXPECT_LT(apart(flight.normal[c], means[3 + c]), 0.2) << c;
+  }
+}
+
+TEST(ExpectedFlight, PartOfAPictureMarchesAsTheWholeDoes) {
+  TestScene s = waves();
+  s.width = s.height = 40;
+  s.pose.scale = 10.0;
+  const ExpectedFlight whole = flightIn(s);
+  s.height = 20; // the middle rows
+  s.pose.scale = 5.0;
+  const ExpectedFlight part = flightIn(s);
+  for (int row = 1; row < 19; ++row) // neighbours decide, which the border lacks
+    for (int column = 0; column < 40; ++column)
+      ASSERT_NEAR(part.depth[static_cast<std::size_t>(row * 40 + column)],
+                  whole.depth[static_cast<std::size_t>((row + 10) * 40 + column)], 1e-3)
+          << column << " " << row;
+}
+
+} // namespace
+} // namespace fenestra::testing::ExpectedFlightTests
