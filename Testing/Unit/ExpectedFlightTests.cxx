@@ -29,7 +29,7 @@ TestScene waves() {
   TestScene s{makeVolume<std::int16_t>(centredGrid({24, 24, 24}, {1.0, 1.0, 1.5}),
                                        [](const Vec3& p) {
                                          return 100.0 * std::sin(0.5 * p.x()) *
-                                                std::cos(0.4 * p.y());
+                                                std::cos(0.4 * p.y() + 0.3 * p.z());
                                        }),
               {ScalarFunction({knot(-20.0, 0.0), knot(100.0, 0.8)}),
                ColorFunction({{0.0, Rgb(0.9, 0.8, 0.7)}, {100.0, Rgb(0.2, 0.3, 0.9)}}),
