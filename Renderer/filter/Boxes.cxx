@@ -3,22 +3,47 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 
 namespace fenestra {
 namespace {
 
-/// Running sums of a line of `count` values that lie `stride` apart.
-void sumLine(const float* in, float* out, std::size_t stride, int count, int radius) {
-  const auto at = [stride](int i) { return static_cast<std::size_t>(i) * stride; };
+/// Running sums along a row.
+void sumRow(const float* in, float* out, int count, int radius) {
   double sum = 0.0;
   for (int i = 0; i < std::min(radius, count); ++i)
-    sum += static_cast<double>(in[at(i)]);
+    sum += static_cast<double>(in[i]);
   for (int i = 0; i < count; ++i) {
     if (i + radius < count)
-      sum += static_cast<double>(in[at(i + radius)]);
+      sum += static_cast<double>(in[i + radius]);
     if (i - radius - 1 >= 0)
-      sum -= static_cast<double>(in[at(i - radius - 1)]);
-    out[at(i)] = static_cast<float>(sum);
+      sum -= static_cast<double>(in[i - radius - 1]);
+    out[i] = static_cast<float>(sum);
+  }
+}
+
+/// Columns that are summed together: neighbours in memory.
+constexpr std::size_t columnsAtOnce = 64;
+
+/// Running sums along `columns` columns; `row`: length of a row.
+void sumColumns(const float* in, float* out, std::size_t columns, std::size_t row, int height,
+                int radius) {
+  std::array<double, columnsAtOnce> sums = {};
+  const auto add = [&](int y, double sign) {
+    const float* from = in + static_cast<std::size_t>(y) * row;
+    for (std::size_t x = 0; x < columns; ++x)
+      sums[x] += sign * static_cast<double>(from[x]);
+  };
+  for (int y = 0; y < std::min(radius, height); ++y)
+    add(y, 1.0);
+  for (int y = 0; y < height; ++y) {
+    if (y + radius < height)
+      add(y + radius, 1.0);
+    if (y - radius - 1 >= 0)
+      add(y - radius - 1, -1.0);
+    float* to = out + static_cast<std::size_t>(y) * row;
+    for (std::size_t x = 0; x < columns; ++x)
+      to[x] = static_cast<float>(sums[x]);
   }
 }
 
@@ -29,11 +54,13 @@ Plane boxSum(const Plane& plane, int width, int height, int radius) {
   const auto row = static_cast<std::size_t>(width);
   tbb::parallel_for(0, height, [&](int y) {
     const std::size_t start = static_cast<std::size_t>(y) * row;
-    sumLine(&plane[start], &across[start], 1, width, radius);
+    sumRow(&plane[start], &across[start], width, radius);
   });
-  tbb::parallel_for(0, width, [&](int x) {
-    const auto start = static_cast<std::size_t>(x);
-    sumLine(&across[start], &sums[start], row, height, radius);
+  const std::size_t blocks = (row + columnsAtOnce - 1) / columnsAtOnce;
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+    const std::size_t start = block * columnsAtOnce;
+    sumColumns(&across[start], &sums[start], std::min(columnsAtOnce, row - start), row, height,
+               radius);
   });
   return sums;
 }

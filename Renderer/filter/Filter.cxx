@@ -4,6 +4,8 @@
 #include "filter/ToldError.h"
 #include "filter/WindowFit.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,58 +14,75 @@ namespace {
 
 constexpr int levels = 4;      ///< half-widths 2, 4, 8, 16
 constexpr int singleLevel = 2; ///< of pictures without halves
-constexpr std::size_t channels = 4;
 
-using Fitted = std::array<Plane, SumLayout::colors>;
+using Fitted = std::vector<Plane>;
+
+/// True if no pixel that takes part is even a little transparent: alpha needs no fit.
+bool isOpaque(const FilterInput& input) {
+  for (std::size_t i = 0; i < input.pixelCount(); ++i)
+    if (input.isOpen[i] && !(input.even[3][i] == 1.0F && input.odd[3][i] == 1.0F))
+      return false;
+  return true;
+}
 
 /// 1: the pixel takes part, and all that the fit reads of it is finite.
 Plane openPixels(const FilterInput& input, const Fitted& color) {
   Plane open(input.pixelCount());
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    const auto isFinite = [i](const Plane& plane) { return std::isfinite(plane[i]); };
-    open[i] = input.isOpen[i] && std::ranges::all_of(color, isFinite) &&
-                      std::ranges::all_of(input.features, isFinite)
-                  ? 1.0F
-                  : 0.0F;
-  }
+  for (std::size_t i = 0; i < open.size(); ++i)
+    open[i] = input.isOpen[i] ? 1.0F : 0.0F;
+  const auto close = [&open](const Plane& plane) {
+    for (std::size_t i = 0; i < open.size(); ++i)
+      if (!std::isfinite(plane[i]))
+        open[i] = 0.0F;
+  };
+  std::ranges::for_each(color, close);
+  std::ranges::for_each(input.features, close);
   return open;
 }
 
-/// Adds the feature with mean 0 and deviation 1 over the open pixels; nothing where it is constant.
-void addStandardised(const Plane& feature, FitInput& fit) {
-  double count = 0.0, sum = 0.0;
+/// Gives the feature mean 0 and deviation 1 over the open pixels, and 0 elsewhere; false if it is
+/// constant there.
+bool standardise(Plane& feature, const Plane& open) {
+  double count = 0.0, sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < feature.size(); ++i)
-    if (fit.open[i] > 0.0F) {
+    if (open[i] > 0.0F) {
       count += 1.0;
       sum += static_cast<double>(feature[i]);
     }
   const double mean = sum / std::max(count, 1.0);
-  double squares = 0.0;
   for (std::size_t i = 0; i < feature.size(); ++i)
-    if (fit.open[i] > 0.0F)
-      squares += std::pow(static_cast<double>(feature[i]) - mean, 2);
+    if (open[i] > 0.0F) {
+      const double off = static_cast<double>(feature[i]) - mean;
+      squares += off * off;
+    }
   const double deviation = std::sqrt(squares / std::max(count, 1.0));
   if (!(deviation > 1e-6 * std::abs(mean)) || !std::isfinite(deviation))
-    return;
-  Plane& plane = fit.features.emplace_back(feature.size(), 0.0F);
+    return false;
+  const double scale = 1.0 / deviation;
   for (std::size_t i = 0; i < feature.size(); ++i)
-    if (fit.open[i] > 0.0F)
-      plane[i] = static_cast<float>((static_cast<double>(feature[i]) - mean) / deviation);
+    feature[i] = open[i] > 0.0F
+                     ? static_cast<float>((static_cast<double>(feature[i]) - mean) * scale)
+                     : 0.0F;
+  return true;
 }
 
-FitInput prepared(const FilterInput& input, bool hasHalves) {
+FitInput prepared(FilterInput& input, std::size_t channels, bool hasHalves) {
   FitInput fit{input.width, input.height, {}, {}, {}};
-  for (std::size_t c = 0; c < channels; ++c) {
-    fit.color[c] = input.even[c];
-    fit.color[channels + c] = hasHalves ? input.odd[c] : input.even[c];
-  }
+  for (std::size_t c = 0; c < channels; ++c)
+    fit.color.push_back(std::move(input.even[c]));
+  for (std::size_t c = 0; c < channels && hasHalves; ++c)
+    fit.color.push_back(std::move(input.odd[c]));
   fit.open = openPixels(input, fit.color);
   for (Plane& plane : fit.color)
     for (std::size_t i = 0; i < plane.size(); ++i)
       if (fit.open[i] == 0.0F)
         plane[i] = 0.0F;
-  for (const Plane& feature : input.features)
-    addStandardised(feature, fit);
+  std::vector<char> isUsed(input.features.size());
+  tbb::parallel_for(std::size_t{0}, isUsed.size(),
+                    [&](std::size_t i) { isUsed[i] = standardise(input.features[i], fit.open); });
+  for (std::size_t i = 0; i < isUsed.size(); ++i)
+    if (isUsed[i])
+      fit.features.push_back(std::move(input.features[i]));
   return fit;
 }
 
@@ -71,9 +90,10 @@ FitInput prepared(const FilterInput& input, bool hasHalves) {
 /// knows the pixel's own noise.
 Plane choiceWeight(const FitInput& fit, const Fitted& small, std::size_t channel) {
   const OpenMean blur(fit.open, fit.width, fit.height, 1);
+  const Plane &even = small[channel], &odd = small[small.size() / 2 + channel];
   Plane mean(fit.open.size());
   for (std::size_t i = 0; i < mean.size(); ++i)
-    mean[i] = 0.5F * fit.open[i] * (small[channel][i] + small[channels + channel][i]);
+    mean[i] = 0.5F * fit.open[i] * (even[i] + odd[i]);
   Plane weight = blur(mean);
   for (float& w : weight)
     w = relativeWeight(w);
@@ -85,19 +105,20 @@ Plane choiceWeight(const FitInput& fit, const Fitted& small, std::size_t channel
 /// choice.
 class Judge {
 public:
-  Judge(const FilterInput& input, const FitInput& fit, const Fitted& small)
-      : m_input(input), m_fit(fit), m_mean(fit.open, fit.width, fit.height, 10, 2) {
+  Judge(const FitInput& fit, const Fitted& small)
+      : m_fit(fit), m_mean(fit.open, fit.width, fit.height, 10, 2) {
     for (std::size_t c = 0; c < 3; ++c)
       m_weight[c] = choiceWeight(fit, small, c);
   }
 
-  Plane raw() const {
-    return averaged([this](std::size_t c, std::size_t i) { return m_input.variance[c][i]; });
+  Plane raw(const std::array<Plane, 3>& variance) const {
+    return averaged([&](std::size_t c, std::size_t i) { return variance[c][i]; });
   }
   Plane of(const Fitted& fitted) const {
+    const std::size_t other = fitted.size() / 2;
     return averaged([&](std::size_t c, std::size_t i) {
-      const Told told = toldError(fitted[c][i], fitted[channels + c][i], m_fit.color[c][i],
-                                  m_fit.color[channels + c][i]);
+      const Told told = toldError(fitted[c][i], fitted[other + c][i], m_fit.color[c][i],
+                                  m_fit.color[other + c][i]);
       return told.variance + told.bias;
     });
   }
@@ -106,24 +127,42 @@ private:
   template <typename Error>
   Plane averaged(const Error& error) const {
     Plane sum(m_fit.open.size(), 0.0F);
-    for (std::size_t i = 0; i < sum.size(); ++i)
-      if (m_fit.open[i] > 0.0F)
-        for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        if (m_fit.open[i] > 0.0F)
           sum[i] += m_weight[c][i] * error(c, i);
     return m_mean(sum);
   }
 
-  const FilterInput& m_input;
   const FitInput& m_fit;
   OpenMean m_mean;
   std::array<Plane, 3> m_weight;
 };
 
+/// Candidates: raw, then each size of windows.
+class Candidates {
+public:
+  explicit Candidates(const FitInput& fit) : m_fit(fit) {
+    for (int level = 0; level < levels; ++level)
+      m_fitted.push_back(fitWindows(fit, level));
+  }
+
+  std::size_t count() const { return m_fitted.size() + 1; }
+  const Fitted& smallest() const { return m_fitted.front(); }
+  const Fitted& operator[](std::size_t k) const { return k == 0 ? m_fit.color : m_fitted[k - 1]; }
+
+private:
+  const FitInput& m_fit;
+  std::vector<Fitted> m_fitted;
+};
+
 /// Number of the candidate of least told error, by pixel.
-std::vector<std::uint8_t> choices(const Judge& judge, const std::vector<Fitted>& candidates) {
-  Plane least = judge.raw();
+std::vector<std::uint8_t> choices(const FitInput& fit, const Candidates& candidates,
+                                  const std::array<Plane, 3>& variance) {
+  const Judge judge(fit, candidates.smallest());
+  Plane least = judge.raw(variance);
   std::vector<std::uint8_t> choice(least.size(), 0);
-  for (std::size_t k = 1; k < candidates.size(); ++k) {
+  for (std::size_t k = 1; k < candidates.count(); ++k) {
     const Plane told = judge.of(candidates[k]);
     for (std::size_t i = 0; i < told.size(); ++i)
       if (told[i] < least[i]) {
@@ -135,17 +174,15 @@ std::vector<std::uint8_t> choices(const Judge& judge, const std::vector<Fitted>&
 }
 
 /// Candidates blended by their share of the choices in the 5x5 pixels around.
-Fitted blended(const std::vector<Fitted>& candidates, const std::vector<std::uint8_t>& choice,
-               const FitInput& fit, std::vector<double>& shares) {
+Fitted blended(const FitInput& fit, const Candidates& candidates,
+               const std::vector<std::uint8_t>& choice, std::vector<double>& shares) {
   const OpenMean mean(fit.open, fit.width, fit.height, 2);
-  Fitted blend;
-  for (Plane& plane : blend)
-    plane.assign(choice.size(), 0.0F);
+  Fitted blend(fit.color.size(), Plane(choice.size(), 0.0F));
   double count = 0.0;
   for (const float open : fit.open)
     count += static_cast<double>(open);
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    Plane chosen(choice.size());
+  Plane chosen(choice.size());
+  for (std::size_t k = 0; k < candidates.count(); ++k) {
     for (std::size_t i = 0; i < choice.size(); ++i)
       chosen[i] = choice[i] == k ? fit.open[i] : 0.0F;
     const Plane share = mean(chosen);
@@ -153,31 +190,28 @@ Fitted blended(const std::vector<Fitted>& candidates, const std::vector<std::uin
     for (std::size_t i = 0; i < choice.size(); ++i)
       sum += static_cast<double>(share[i] * fit.open[i]);
     shares.push_back(count > 0.0 ? sum / count : 0.0);
-    for (std::size_t c = 0; c < blend.size(); ++c)
+    tbb::parallel_for(std::size_t{0}, blend.size(), [&](std::size_t c) {
+      const Plane& candidate = candidates[k][c];
       for (std::size_t i = 0; i < choice.size(); ++i)
-        blend[c][i] += share[i] * candidates[k][c][i];
+        blend[c][i] += share[i] * candidate[i];
+    });
   }
   return blend;
 }
 
-/// Halves of a fit; closed pixels as they were.
-struct FilteredHalves {
-  FourPlanes even, odd;
-};
+Fitted chosenFits(const FitInput& fit, const std::array<Plane, 3>& variance,
+                  std::vector<double>& shares) {
+  const Candidates candidates(fit);
+  return blended(fit, candidates, choices(fit, candidates, variance), shares);
+}
 
-FilteredHalves halvesOf(Fitted&& fitted, const FilterInput& input, const Plane& open,
-                        bool hasHalves) {
-  FilteredHalves halves;
-  for (std::size_t c = 0; c < channels; ++c) {
-    halves.even[c] = std::move(fitted[c]);
-    halves.odd[c] = std::move(fitted[channels + c]);
-    for (std::size_t i = 0; i < open.size(); ++i)
-      if (open[i] == 0.0F) {
-        halves.even[c][i] = input.even[c][i];
-        halves.odd[c][i] = hasHalves ? input.odd[c][i] : input.even[c][i];
-      }
-  }
-  return halves;
+/// Colours as the samples have them.
+FourPlanes rawColors(const FilterInput& input, bool hasHalves) {
+  FourPlanes color = input.even;
+  for (std::size_t c = 0; c < color.size() && hasHalves; ++c)
+    for (std::size_t i = 0; i < color[c].size(); ++i)
+      color[c][i] = 0.5F * (color[c][i] + input.odd[c][i]);
+  return color;
 }
 
 void clampColors(FilteredPicture& picture) {
@@ -190,27 +224,20 @@ void clampColors(FilteredPicture& picture) {
 
 } // namespace
 
-FilteredPicture filtered(const FilterInput& input, bool hasHalves) {
-  const FitInput fit = prepared(input, hasHalves);
+FilteredPicture filtered(FilterInput input, bool hasHalves) {
   FilteredPicture picture;
-  Fitted chosen;
-  if (hasHalves) {
-    std::vector<Fitted> candidates = {fit.color};
-    for (int level = 0; level < levels; ++level)
-      candidates.push_back(fitWindows(fit, level));
-    const Judge judge(input, fit, candidates[1]);
-    chosen = blended(candidates, choices(judge, candidates), fit, picture.shares);
-  } else {
-    chosen = fitWindows(fit, singleLevel);
-  }
-  const FilteredHalves halves = halvesOf(std::move(chosen), input, fit.open, hasHalves);
-  for (std::size_t c = 0; c < channels; ++c) {
-    picture.color[c].resize(fit.open.size());
+  picture.color = rawColors(input, hasHalves); // closed pixels stay so
+  const std::size_t channels = isOpaque(input) ? 3 : 4;
+  const FitInput fit = prepared(input, channels, hasHalves);
+  const Fitted chosen =
+      hasHalves ? chosenFits(fit, input.variance, picture.shares) : fitWindows(fit, singleLevel);
+  const std::size_t other = hasHalves ? channels : 0;
+  for (std::size_t c = 0; c < channels; ++c)
     for (std::size_t i = 0; i < fit.open.size(); ++i)
-      picture.color[c][i] = 0.5F * (halves.even[c][i] + halves.odd[c][i]);
-  }
+      if (fit.open[i] > 0.0F)
+        picture.color[c][i] = 0.5F * (chosen[c][i] + chosen[other + c][i]);
   if (hasHalves)
-    tellErrors(input, fit.open, halves.even, halves.odd, picture);
+    tellErrors(fit, chosen, picture);
   clampColors(picture);
   return picture;
 }

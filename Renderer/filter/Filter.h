@@ -12,6 +12,6 @@ inline constexpr int filterVersion = 1; ///< changes whenever filtered pictures 
 /// Filters both halves, each by itself, with the same features; the picture is their mean. Raw is
 /// one of the candidates. With `hasHalves` false (one sample a pixel) `odd` is not read, windows
 /// have one size, and the errors are empty. Independent of threads.
-FilteredPicture filtered(const FilterInput& input, bool hasHalves = true);
+FilteredPicture filtered(FilterInput input, bool hasHalves = true);
 
 } // namespace fenestra

@@ -45,7 +45,7 @@ public:
       m_ridge.v[l] = ridge * (1.0F + 40.0F * m_inverse.v[l]);
     });
     factor(sums);
-    for (std::size_t c = 0; c < SumLayout::colors; ++c)
+    for (std::size_t c = 0; c < m_layout.colors; ++c)
       fit(sums, c, out);
     out[0] = m_count;
   }

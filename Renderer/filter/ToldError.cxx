@@ -19,16 +19,18 @@ struct Parts {
   std::array<Plane, 3> variance, bias; ///< relative
 };
 
-Parts partsOf(const FilterInput& input, const Plane& open, const FourPlanes& even,
-              const FourPlanes& odd, const FilteredPicture& picture) {
+Parts partsOf(const FitInput& fit, const std::vector<Plane>& filtered,
+              const FilteredPicture& picture) {
   Parts parts;
+  const std::size_t other = fit.color.size() / 2;
   for (std::size_t c = 0; c < 3; ++c) {
-    parts.variance[c].resize(open.size());
-    parts.bias[c].resize(open.size());
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      if (open[i] == 0.0F)
+    parts.variance[c].resize(fit.open.size());
+    parts.bias[c].resize(fit.open.size());
+    for (std::size_t i = 0; i < fit.open.size(); ++i) {
+      if (fit.open[i] == 0.0F)
         continue; // its colours may be infinite
-      const Told told = toldError(even[c][i], odd[c][i], input.even[c][i], input.odd[c][i]);
+      const Told told = toldError(filtered[c][i], filtered[other + c][i], fit.color[c][i],
+                                  fit.color[other + c][i]);
       const float weight = relativeWeight(picture.color[c][i]);
       parts.variance[c][i] = weight * told.variance;
       parts.bias[c][i] = weight * told.bias;
@@ -64,17 +66,16 @@ Bias biasOf(const Parts& parts, double variance, double count) {
 
 } // namespace
 
-void tellErrors(const FilterInput& input, const Plane& open, const FourPlanes& even,
-                const FourPlanes& odd, FilteredPicture& picture) {
+void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredPicture& picture) {
+  const Plane& open = fit.open;
   const double count = std::max(sumOf(open), 1.0);
-  const Parts parts = partsOf(input, open, even, odd, picture);
+  const Parts parts = partsOf(fit, filtered, picture);
   double variance = 0.0;
   for (const Plane& plane : parts.variance)
     variance += sumOf(plane) / (3.0 * count);
   const Bias bias = biasOf(parts, variance, count);
 
-  const OpenMean near(open, input.width, input.height, 3),
-      wide(open, input.width, input.height, 10);
+  const OpenMean near(open, fit.width, fit.height, 3), wide(open, fit.width, fit.height, 10);
   std::array<Plane, 3> local;
   double nearSum = 0.0, wideSum = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {

@@ -9,7 +9,7 @@
 // is an unbiased estimate of the squared error, pixel by pixel: the first part is variance, the
 // second is bias.
 
-#include "filter/FilterInput.h"
+#include "filter/WindowFit.h"
 
 namespace fenestra {
 
@@ -28,10 +28,10 @@ inline float relativeWeight(float x) {
 }
 
 /// Fills error, toldError and toldDeviation of a picture whose colours are those before clamping.
-/// `even`, `odd`: filtered halves. The variance part is averaged over 7x7 pixels. The bias part is
-/// too noisy for that: its sum over the picture is drawn toward a prior, bias^2 = variance, by its
-/// own standard error, and spread half by its mean over 21x21 pixels, half by the variance part.
-void tellErrors(const FilterInput& input, const Plane& open, const FourPlanes& even,
-                const FourPlanes& odd, FilteredPicture& picture);
+/// `filtered`: the halves of fit.color, filtered. The variance part is averaged over 7x7 pixels.
+/// The bias part is too noisy for that: its sum over the picture is drawn toward a prior, bias^2 =
+/// variance, by its own standard error, and spread half by its mean over 21x21 pixels, half by the
+/// variance part.
+void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredPicture& picture);
 
 } // namespace fenestra

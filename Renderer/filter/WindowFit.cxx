@@ -50,12 +50,12 @@ private:
 /// fits, row by row.
 class TileFit {
 public:
-  static constexpr std::int64_t edge = tileEdge;
+  static constexpr std::int64_t edge = tileColumns, rows = tileRows;
 
   TileFit(const FitInput& input, int level, std::int64_t column, std::int64_t row,
-          std::array<Plane, SumLayout::colors>& out)
+          std::vector<Plane>& out)
       : m_input(input),
-        m_layout{input.features.size()},
+        m_layout{input.features.size(), input.color.size()},
         m_level(level),
         m_cell(std::int64_t{1} << level),
         m_column(column),
@@ -66,12 +66,13 @@ public:
         m_fits(Rows::window, m_layout.coefficients(), width),
         m_means(2, m_layout.coefficients(), width),
         m_rowSum(width),
-        m_windowSums(m_layout.sums() * width) {}
+        m_windowSums(m_layout.sums() * width),
+        m_between(m_layout.coefficients() * width) {}
 
   HWY_ATTR void run() {
     // A mean needs fits two rows further, and a fit sums two rows further; one row of means more on
     // each side for the interpolation between cells.
-    const std::int64_t first = m_row - 1, end = std::min(m_row + edge, cells(m_input.height)) + 1;
+    const std::int64_t first = m_row - 1, end = std::min(m_row + rows, cells(m_input.height)) + 1;
     for (std::int64_t row = first - 4; row < end + 4; ++row) {
       sumCells(row);
       if (row >= first)
@@ -85,7 +86,7 @@ public:
 
 private:
   static constexpr std::int64_t margin = 5; ///< cells to each side of which sums are needed
-  static constexpr std::size_t width = 96;  ///< >= edge + 2 margin, and what blocks read beyond
+  static constexpr std::size_t width = 80;  ///< >= edge + 2 margin, and what is read beyond
 
   std::int64_t cells(int pixels) const { return (pixels + m_cell - 1) / m_cell; }
 
@@ -115,10 +116,10 @@ private:
       add(m_layout.feature(i), m_input.features[i], m_input.open);
       for (std::size_t j = i; j < m_layout.features; ++j)
         add(m_layout.product(i, j), m_input.features[i], m_input.features[j]);
-      for (std::size_t c = 0; c < SumLayout::colors; ++c)
+      for (std::size_t c = 0; c < m_layout.colors; ++c)
         add(m_layout.featureColor(i, c), m_input.features[i], m_input.color[c]);
     }
-    for (std::size_t c = 0; c < SumLayout::colors; ++c)
+    for (std::size_t c = 0; c < m_layout.colors; ++c)
       add(m_layout.color(c), m_input.color[c], m_input.open);
   }
   HWY_INLINE void addProducts(const float* a, const float* b) {
@@ -187,7 +188,7 @@ private:
   HWY_INLINE void evaluateBetween(std::int64_t row) {
     const std::int64_t begin = row * m_cell + m_cell / 2;
     const std::int64_t end = std::min(
-        {begin + m_cell, (m_row + edge) * m_cell, static_cast<std::int64_t>(m_input.height)});
+        {begin + m_cell, (m_row + rows) * m_cell, static_cast<std::int64_t>(m_input.height)});
     for (std::int64_t y = std::max(begin, m_row * m_cell); y < end; ++y) {
       const double down = (static_cast<double>(y) + 0.5) / static_cast<double>(m_cell) - 0.5;
       evaluate(y, row, static_cast<float>(down - static_cast<double>(row)));
@@ -195,48 +196,58 @@ private:
   }
 
   HWY_INLINE void evaluate(std::int64_t y, std::int64_t row, float down) {
+    for (std::size_t plane = 0; plane < m_means.planes(); ++plane) {
+      const float *upper = m_means.at(row + 1000, plane), *lower = m_means.at(row + 1001, plane);
+      float* between = &m_between[plane * width];
+      for (std::size_t x = 0; x < width; ++x)
+        between[x] = upper[x] + down * (lower[x] - upper[x]);
+    }
     const std::int64_t first = m_column * m_cell;
     const std::int64_t end = std::min<std::int64_t>((m_column + edge) * m_cell, m_input.width);
-    const auto count = static_cast<std::size_t>(end - first);
-    const auto start = static_cast<std::size_t>(y * m_input.width + first);
-    m_weights.resize(count);
-    m_expanded.resize(count);
-    m_pixels.resize(count);
-    expand(row, 0, down, m_weights);
-    for (std::size_t c = 0; c < SumLayout::colors; ++c) {
-      expand(row, m_layout.intercept(c), down, m_pixels);
-      for (std::size_t i = 0; i < m_layout.features; ++i) {
-        expand(row, m_layout.slope(c, i), down, m_expanded);
-        const float *f = &m_input.features[i][start], *slope = m_expanded.data();
-        float* pixel = m_pixels.data();
-        for (std::size_t x = 0; x < count; ++x)
-          pixel[x] += slope[x] * f[x];
-      }
-      const float* open = &m_input.open[start];
-      for (std::size_t x = 0; x < count; ++x)
-        if (open[x] > 0.0F && m_weights[x] > 0.0F)
-          m_out[c][start + x] = m_pixels[x] / m_weights[x];
+    for (std::int64_t phase = 0; phase < m_cell; ++phase) {
+      // Pixels at one place between the centres of two cells: every m_cell-th.
+      const std::int64_t before = phase < m_cell / 2 ? 1 : 0;
+      const std::int64_t x = first + before * m_cell + phase - m_cell / 2;
+      if (x >= end)
+        continue;
+      m_count = static_cast<std::size_t>((end - x + m_cell - 1) / m_cell);
+      const float across =
+          m_cell == 1 ? 1.0F : (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cell);
+      evaluateEvery(static_cast<std::size_t>(y * m_input.width + x),
+                    static_cast<std::size_t>(before), across);
     }
   }
 
-  /// A plane of the means at the pixels of a row, bilinear between the centres of cells.
-  HWY_INLINE void expand(std::int64_t row, std::size_t plane, float down, std::vector<float>& out) {
-    const float *upper = m_means.at(row + 1000, plane), *lower = m_means.at(row + 1001, plane);
-    if (m_cell == 1) {
-      std::copy_n(upper + 1, out.size(), out.data());
-      return;
+  /// Pixels from `start` on, m_cell apart; the first lies `across` of the way from place `place` of
+  /// the means to the next.
+  HWY_INLINE void evaluateEvery(std::size_t start, std::size_t place, float across) {
+    const auto step = static_cast<std::size_t>(m_cell);
+    for (std::size_t i = 0; i < m_layout.features; ++i)
+      for (std::size_t x = 0; x < m_count; ++x)
+        m_features[i][x] = m_input.features[i][start + x * step];
+    std::array<float, edge + 1> weights, pixels;
+    interpolate(0, place, across, weights);
+    for (std::size_t c = 0; c < m_layout.colors; ++c) {
+      interpolate(m_layout.intercept(c), place, across, pixels);
+      for (std::size_t i = 0; i < m_layout.features; ++i) {
+        const float* f = m_features[i].data();
+        const float* slope = &m_between[m_layout.slope(c, i) * width + place];
+        for (std::size_t x = 0; x < m_count; ++x)
+          pixels[x] += (slope[x] + across * (slope[x + 1] - slope[x])) * f[x];
+      }
+      for (std::size_t x = 0; x < m_count; ++x) {
+        const std::size_t at = start + x * step;
+        if (m_input.open[at] > 0.0F && weights[x] > 0.0F)
+          m_out[c][at] = pixels[x] / weights[x];
+      }
     }
-    float* between = m_rowSum.data();
-    for (std::size_t x = 0; x < width; ++x)
-      between[x] = upper[x] + down * (lower[x] - upper[x]);
-    const auto cell = static_cast<std::size_t>(m_cell);
-    const float step = 1.0F / static_cast<float>(m_cell);
-    for (std::size_t x = 0; x < out.size(); ++x) {
-      const std::size_t at = x + cell / 2; // from the centre of cell m_column - 1
-      const float* left = between + (at >> m_level);
-      const float across = (static_cast<float>(at & (cell - 1)) + 0.5F) * step;
-      out[x] = left[0] + across * (left[1] - left[0]);
-    }
+  }
+
+  HWY_INLINE void interpolate(std::size_t plane, std::size_t place, float across,
+                              std::array<float, edge + 1>& out) const {
+    const float* in = &m_between[plane * width + place];
+    for (std::size_t x = 0; x < m_count; ++x)
+      out[x] = in[x] + across * (in[x + 1] - in[x]);
   }
 
   const FitInput& m_input;
@@ -244,15 +255,17 @@ private:
   int m_level;
   std::int64_t m_cell; ///< pixels along an edge of a cell
   std::int64_t m_column, m_row;
-  std::array<Plane, SumLayout::colors>& m_out;
+  std::vector<Plane>& m_out;
   LocalFit m_fit;
   Rows m_sums, m_fits, m_means;
-  std::vector<float> m_rowSum, m_windowSums, m_products, m_weights, m_expanded, m_pixels;
+  std::vector<float> m_rowSum, m_windowSums, m_products, m_between;
+  std::array<std::array<float, edge + 1>, SumLayout::mostFeatures> m_features;
+  std::size_t m_count = 0; ///< pixels that are evaluated together
   std::vector<Lanes> m_blockSums, m_blockFits;
 };
 
 void fitTile(const FitInput& input, int level, std::int64_t column, std::int64_t row,
-             std::array<Plane, SumLayout::colors>& out) {
+             std::vector<Plane>& out) {
   TileFit(input, level, column, row, out).run();
 }
 
@@ -265,15 +278,15 @@ namespace fenestra {
 
 HWY_EXPORT(fitTile);
 
-std::array<Plane, SumLayout::colors> fitWindows(const FitInput& input, int level) {
-  std::array<Plane, SumLayout::colors> out = input.color;
-  const std::int64_t edge = std::int64_t{tileEdge} << level;
-  const std::int64_t columns = (input.width + edge - 1) / edge,
-                     rows = (input.height + edge - 1) / edge;
+std::vector<Plane> fitWindows(const FitInput& input, int level) {
+  std::vector<Plane> out = input.color;
+  const std::int64_t across = std::int64_t{tileColumns} << level,
+                     down = std::int64_t{tileRows} << level;
+  const std::int64_t columns = (input.width + across - 1) / across,
+                     rows = (input.height + down - 1) / down;
   tbb::parallel_for(std::int64_t{0}, columns * rows, [&](std::int64_t tile) {
     HWY_DYNAMIC_DISPATCH(fitTile)
-    (input, level, tile % columns * std::int64_t{tileEdge}, tile / columns * std::int64_t{tileEdge},
-     out);
+    (input, level, tile % columns * tileColumns, tile / columns * tileRows, out);
   });
   return out;
 }

@@ -13,12 +13,14 @@ namespace fenestra {
 /// Planes as the fit takes them: 0 where the pixel is not open.
 struct FitInput {
   int width = 0, height = 0;
-  Plane open;                                 ///< 1 or 0
-  std::vector<Plane> features;                ///< mean 0 and deviation 1 over the open pixels
-  std::array<Plane, SumLayout::colors> color; ///< four of one half, four of the other
+  Plane open;                  ///< 1 or 0
+  std::vector<Plane> features; ///< mean 0 and deviation 1 over the open pixels
+  std::vector<Plane> color;    ///< channels of one half, then those of the other
 };
 
-constexpr int tileEdge = 64; ///< cells; one thread works on a tile
+/// Cells of a tile, on which one thread works: with three windows more on each side its rows are
+/// four blocks of 16 fits.
+constexpr int tileColumns = 58, tileRows = 116;
 
 /// Half of a window's width in pixels.
 constexpr int halfWidth(int level) {
@@ -27,6 +29,6 @@ constexpr int halfWidth(int level) {
 
 /// Fits all colours at once, each from itself alone. Closed pixels keep their colour. Independent
 /// of threads.
-std::array<Plane, SumLayout::colors> fitWindows(const FitInput& input, int level);
+std::vector<Plane> fitWindows(const FitInput& input, int level);
 
 } // namespace fenestra

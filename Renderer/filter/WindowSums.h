@@ -1,14 +1,14 @@
 #pragma once
-// Order of a window's sums and of its coefficients: of the pixel count, k features and eight
-// colours, four of each half.
+// Order of a window's sums and of its coefficients: of the pixel count, k features and m colours.
 
 #include <cstddef>
 
 namespace fenestra {
 
 struct SumLayout {
-  static constexpr std::size_t colors = 8, mostFeatures = 12;
+  static constexpr std::size_t mostFeatures = 12;
   std::size_t features; ///< k
+  std::size_t colors;   ///< m
 
   /// Sums of 1, of each feature, of the products of two features, of each colour, and of the
   /// products of a feature and a colour.

@@ -118,18 +118,15 @@ TEST(ToldError, OfOneWindowIsUnbiased) {
   for (int draw = 0; draw < draws; ++draw) {
     const FilterInput input = subject.input(static_cast<std::uint64_t>(draw) + 100);
     FitInput fit{subject.width, subject.height, Plane(subject.count(), 1.0F), {}, {}};
-    for (std::size_t c = 0; c < 4; ++c) {
-      fit.color[c] = input.even[c];
-      fit.color[4 + c] = input.odd[c];
-    }
+    fit.color = {input.even[0], input.odd[0]};
     subject.fill(fit.features.emplace_back(), [](int x, int) { return Subject::band(x); });
     const auto fitted = fitWindows(fit, 0);
     for (int y = 0; y < subject.height; ++y)
       for (int x = 0; x < subject.width; ++x) {
         const std::size_t i = subject.at(x, y);
-        const Told parts = toldError(fitted[0][i], fitted[4][i], fit.color[0][i], fit.color[4][i]);
+        const Told parts = toldError(fitted[0][i], fitted[1][i], fit.color[0][i], fit.color[1][i]);
         told += static_cast<double>(parts.variance + parts.bias);
-        const double mean = 0.5 * static_cast<double>(fitted[0][i] + fitted[4][i]);
+        const double mean = 0.5 * static_cast<double>(fitted[0][i] + fitted[1][i]);
         truth += std::pow(mean - subject.truth(0, x, y), 2);
       }
   }
