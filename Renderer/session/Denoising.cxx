@@ -84,6 +84,7 @@ void addFeatures(const Scene& scene, const ExpectedFlight& flight, FilterInput& 
   // Where light scatters at surfaces, what it meets there is told by their normals.
   for (const Plane& plane : scene.transfer().shading ? flight.facing : flight.normal)
     input.features.push_back(plane);
+  input.features.push_back(flight.light);
   const Plane depth = centredDepth(flight);
   input.features.push_back(slopeOf(depth, input.width, input.height, false));
   input.features.push_back(slopeOf(depth, input.width, input.height, true));

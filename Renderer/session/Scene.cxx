@@ -49,13 +49,13 @@ void Scene::make() {
   const Box matter = settings->camera ? Box() : *m_matter.of(volume, ranges, look);
   const auto camera =
       m_camera.of(r.view, r.width, r.height, volume, settings, matter, focus, m_view.result());
-  m_lights.of({lights, camera}, volume);
+  const auto placed = m_lights.of({lights, camera}, volume);
   const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
   if (focus->mask && r.focusLook.isStyled())
     m_style.of(focus, r.focusLook.contextExtinction, r.focusLook.contextSaturation);
   const auto majorants = m_majorants.of(volume, ranges, look, clip, m_style.result());
   if (r.features)
-    m_flight.of(volume, settings, look, camera, clip, m_style.result(), majorants);
+    m_flight.of(volume, settings, look, placed, camera, clip, m_style.result(), majorants);
 }
 
 StageSeconds Scene::seconds() const {

@@ -237,10 +237,10 @@ MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
 }
 
 ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
-                        const Handle<Camera>& camera, const Handle<ClipResult>& clip,
-                        const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants) {
-  const LightSet dark({}, volume->volume.grid, *camera);
-  return expectedFlight({volume->volume, look->transfer, *majorants, dark, *camera, clip->clip,
+                        const Handle<LightSet>& lights, const Handle<Camera>& camera,
+                        const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
+                        const Handle<MajorantGrid>& majorants) {
+  return expectedFlight({volume->volume, look->transfer, *majorants, *lights, *camera, clip->clip,
                          settings->crop, style.get()});
 }
 

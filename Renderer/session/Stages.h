@@ -86,9 +86,10 @@ MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
                          const Handle<Look>& look, const Handle<ClipResult>& clip,
                          const Handle<ContextStyle>& style);
 
-/// Features of the filter: of everything that a picture depends on but its lights.
+/// Features of the filter.
 ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
-                        const Handle<Camera>& camera, const Handle<ClipResult>& clip,
-                        const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants);
+                        const Handle<LightSet>& lights, const Handle<Camera>& camera,
+                        const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
+                        const Handle<MajorantGrid>& majorants);
 
 } // namespace fenestra

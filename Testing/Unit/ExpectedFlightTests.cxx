@@ -36,7 +36,7 @@ TestScene waves() {
                {},
                0.4,
                SurfaceShading{}},
-              {EnvironmentLight{}},
+              {DirectionalLight{}},
               {.position = {10, -60, 20}, .target = Vec3::Zero(), .scale = 14.0},
               41,
               29};
@@ -58,6 +58,17 @@ TEST(ExpectedFlight, OfASlabHasItsClosedForm) {
     EXPECT_NEAR(flight.albedo[1][middle], 0.5 * flight.hit[middle], 1e-5);
     EXPECT_EQ(flight.normal[0][middle], 0.0F); // no gradient
   }
+}
+
+TEST(ExpectedFlight, LightOfASlabHasItsClosedForm) {
+  TestScene s = slab(0.1);
+  s.lights = {DirectionalLight{.direction = -Vec3::UnitX(), .irradiance = Rgb::Constant(2.0)}};
+  const ExpectedFlight flight = flightIn(s);
+  const std::size_t middle = flight.hit.size() / 2 + 8;
+  const double depth = static_cast<double>(flight.depth[middle] / flight.hit[middle]) - 50.0;
+  const double toFarSide = std::exp(-0.1 * (10.0 - depth)), phase = 1.0 / (4.0 * pi);
+  EXPECT_NEAR(flight.light[middle],
+              0.5 * phase * 2.0 * static_cast<double>(flight.hit[middle]) * toFarSide, 1e-3);
 }
 
 TEST(ExpectedFlight, RaysThatMeetNothingGiveZeros) {
@@ -93,6 +104,7 @@ TEST(ExpectedFlight, LanesAgreeWithTheReadableMarch) {
       const ExpectedFlight lanes = expectedFlight(scene), readable = expectedFlightOneByOne(scene);
       EXPECT_LT(apart(lanes.hit, readable.hit), 0.01);
       EXPECT_LT(apart(lanes.depth, readable.depth), 0.01);
+      EXPECT_LT(apart(lanes.light, readable.light), 0.2);
       for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_LT(apart(lanes.albedo[c], readable.albedo[c]), 0.02);
         EXPECT_LT(apart(lanes.normal[c], readable.normal[c]), 0.2);

@@ -19,6 +19,8 @@ public:
   WideMarch(const WideScene& volume, const EventScene& scene) : m_volume(volume), m_scene(scene) {}
 
   void along(MarchBatch& batch) const;
+  /// result: transmittance of each ray, in coarser steps. These rays may begin anywhere.
+  void through(RayBatch& rays) const;
 
 private:
   const WideScene& m_volume;

@@ -24,6 +24,7 @@ struct MarchSteps {
   static constexpr double voxels = 0.5;       ///< a step is at least that long
   static constexpr double opticalDepth = 0.1; ///< or so deep under its cell's majorant
   static constexpr double dark = 0.03;        ///< transmittance at which a ray ends
+  static constexpr double coarser = 2.0;      ///< factor of steps on the way to a light
   static constexpr double share = 1.0 / 16.0; ///< of the collisions, for which matter is looked up
 };
 
@@ -50,7 +51,48 @@ public:
     return walk.met;
   }
 
+  /// Transmittance over `range`, in coarser steps.
+  double through(const Ray& ray, const Interval& range) const {
+    const Affine& worldToIndex = m_domain.grid().worldToIndex;
+    const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
+    if (inside.empty())
+      return 1.0;
+    const Ray entering{ray.at(inside.begin), ray.direction};
+    const Ray indexRay = transformed(worldToIndex, entering);
+    GridWalk cells(transformed(m_majorants.worldToCell(), entering),
+                   {0.0, inside.end - inside.begin}, m_majorants.cellCount());
+    double depth = 0.0;
+    for (; !cells.done() && std::exp(-depth) > MarchSteps::dark; cells.next())
+      forEachStep(m_majorants.cell(cells.cell()), cells.interval(), indexRay, MarchSteps::coarser,
+                  [&](double t, double length, bool isCut) {
+                    const double kept = isCut ? keep(m_clip, entering.at(t)) : 1.0;
+                    if (kept > 0.0)
+                      depth += length * kept * m_medium.extinction(indexRay.at(t));
+                    return true;
+                  });
+    return std::exp(-depth);
+  }
+
 private:
+  /// Calls visit(middle, length, whether the clip cuts) for the steps in a cell until it returns
+  /// false.
+  template <typename Visit>
+  static void forEachStep(const MajorantGrid::Cell& cell, const Interval& interval,
+                          const Ray& indexRay, double coarser, Visit&& visit) {
+    if (cell.majorant == 0.0F)
+      return;
+    constexpr double mostSteps = 64.0;
+    const double length = interval.end - interval.begin;
+    const double step =
+        coarser * std::max(MarchSteps::voxels / indexRay.direction.norm(),
+                           MarchSteps::opticalDepth / static_cast<double>(cell.majorant));
+    const double steps = std::clamp(std::ceil(length / step), 1.0, mostSteps);
+    const double each = length / steps;
+    for (double i = 0.5; i < steps; i += 1.0)
+      if (!visit(interval.begin + i * each, each, cell.cut))
+        return;
+  }
+
   struct Walk {
     Ray ray, indexRay; ///< from the entry into the domain
     double before;     ///< mm from the ray's origin to there
@@ -61,27 +103,19 @@ private:
   };
 
   void cross(const MajorantGrid::Cell& cell, const Interval& interval, Walk& walk) const {
-    if (cell.majorant == 0.0F)
-      return;
-    constexpr double mostSteps = 64.0;
-    const double length = interval.end - interval.begin;
-    const double step = std::max(MarchSteps::voxels / walk.indexRay.direction.norm(),
-                                 MarchSteps::opticalDepth / static_cast<double>(cell.majorant));
-    const double steps = std::clamp(std::ceil(length / step), 1.0, mostSteps);
-    const double each = length / steps;
-    for (double i = 0.5; i < steps && walk.transmittance > MarchSteps::dark; i += 1.0) {
-      const double t = interval.begin + i * each;
-      const double kept = cell.cut ? keep(m_clip, walk.ray.at(t)) : 1.0;
+    forEachStep(cell, interval, walk.indexRay, 1.0, [&](double t, double length, bool isCut) {
+      const double kept = isCut ? keep(m_clip, walk.ray.at(t)) : 1.0;
       if (!(kept > 0.0))
-        continue;
+        return true;
       const double extinction = kept * m_medium.extinction(walk.indexRay.at(t));
-      const double stopped = walk.transmittance * -std::expm1(-extinction * each);
+      const double stopped = walk.transmittance * -std::expm1(-extinction * length);
       walk.transmittance -= stopped;
       walk.pending += stopped;
       walk.moment += stopped * t;
       if (walk.pending > MarchSteps::share)
         collect(walk);
-    }
+      return walk.transmittance > MarchSteps::dark;
+    });
   }
 
   /// Adds the pending collisions with the matter in their middle.

@@ -1,96 +1,11 @@
 #include "transport/render/ExpectedFlight.h"
 
-#include "transport/lanes/March.h"
-#include "transport/readable/March.h"
+#include "transport/render/MarchedRays.h"
 
 #include <tbb/parallel_for.h>
 
-#include <memory>
-
 namespace fenestra {
 namespace {
-
-/// Expected values of one pixel.
-struct Met {
-  float hit = 0.0F, depth = 0.0F;
-  std::array<float, 3> albedo = {}, normal = {}, facing = {};
-};
-
-/// A point of the picture through which a ray is marched.
-struct RasterPoint {
-  double column, row;
-};
-
-/// Rays of a picture, marched one by one.
-template <typename Voxel>
-class MarchedOneByOne {
-public:
-  MarchedOneByOne(const RenderScene& scene, const Medium<Voxel>& medium)
-      : m_scene(scene),
-        m_march({scene.volume.grid, scene.crop}, medium, scene.majorants, scene.clip) {}
-
-  void along(std::span<const RasterPoint> points, Met* out) const {
-    for (const RasterPoint& point : points) {
-      const Ray ray = m_scene.camera.ray(point.column, point.row);
-      const FirstMatter first = m_march.along(ray, visible(m_scene.clip, ray));
-      Met met{narrow(first.hit), narrow(first.distance * m_scene.camera.depthPerLength(ray))};
-      met.albedo = narrow3(first.albedo.matrix());
-      met.normal = narrow3(first.normal);
-      met.facing = narrow3(first.facing);
-      *out++ = met;
-    }
-  }
-
-private:
-  const RenderScene& m_scene;
-  March<Voxel> m_march;
-};
-
-/// The same in lanes.
-class MarchedInLanes {
-public:
-  explicit MarchedInLanes(const RenderScene& scene)
-      : m_scene(scene),
-        m_domain(scene.volume.grid, scene.crop),
-        m_tracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip, scene.style),
-        m_events(scene.volume.grid, scene.transfer, scene.lights, 0, true) {}
-
-  void along(std::span<const RasterPoint> points, Met* out) const {
-    const auto batch = std::make_unique<MarchBatch>();
-    const WideMarch march(m_tracker.scene(), m_events);
-    std::array<double, RayBatch::capacity> before = {}, perLength = {};
-    for (std::size_t from = 0; from < points.size(); from += RayBatch::capacity) {
-      const std::size_t count = std::min(points.size() - from, RayBatch::capacity);
-      batch->rays.size = count;
-      for (std::size_t i = 0; i < count; ++i) {
-        const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
-        before[i] = setInside(batch->rays, i, m_domain, ray, visible(m_scene.clip, ray), 0);
-        perLength[i] = m_scene.camera.depthPerLength(ray);
-      }
-      march.along(*batch);
-      for (std::size_t i = 0; i < count; ++i)
-        *out++ = metIn(*batch, i, before[i], perLength[i]);
-    }
-  }
-
-private:
-  static Met metIn(const MarchBatch& batch, std::size_t i, double before, double perLength) {
-    Met met;
-    met.hit = batch.hit[i];
-    met.depth = narrow((batch.distance[i] + before * batch.hit[i]) * perLength);
-    for (std::size_t c = 0; c < 3; ++c) {
-      met.albedo[c] = batch.albedo[c][i];
-      met.normal[c] = batch.normal[c][i];
-      met.facing[c] = batch.facing[c][i];
-    }
-    return met;
-  }
-
-  const RenderScene& m_scene;
-  Domain m_domain;
-  WideTracker m_tracker;
-  EventScene m_events;
-};
 
 /// Pixels, row 0 at the top.
 struct Raster {
@@ -173,6 +88,91 @@ Raster marched(const Camera& camera, const March& march) {
   return raster;
 }
 
+/// Light that reaches the mean collisions of a picture's pixels unscattered.
+template <typename Voxel, typename March>
+class FirstLight {
+public:
+  FirstLight(const RenderScene& scene, const Medium<Voxel>& medium, const March& march)
+      : m_scene(scene), m_medium(medium), m_march(march) {}
+
+  Plane of(const Raster& raster) const {
+    Plane light(raster.pixels.size(), 0.0F);
+    tbb::parallel_for(0, raster.height, [&](int row) { addRow(raster, row, light); });
+    return light;
+  }
+
+private:
+  static constexpr int samples = 4; ///< of the lights at each point
+
+  /// A pixel's mean collision.
+  struct Collision {
+    std::size_t pixel;
+    Vec3 point, incoming;
+    Matter matter;
+    double hit;
+  };
+
+  void addRow(const Raster& raster, int row, Plane& light) const {
+    const std::vector<Collision> collisions = collisionsIn(raster, row);
+    std::vector<ShadowRay> rays;
+    std::vector<std::size_t> pixels;
+    for (int sample = 0; sample < samples; ++sample) // neighbouring rays toward one light
+      for (const Collision& at : collisions)
+        if (const auto ray = toLight(at, sample)) {
+          rays.push_back(*ray);
+          pixels.push_back(at.pixel);
+        }
+    std::vector<float> transmittance(rays.size());
+    m_march.through(rays, transmittance.data());
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      light[pixels[i]] += transmittance[i] * narrow(rays[i].radiance.mean());
+  }
+
+  std::vector<Collision> collisionsIn(const Raster& raster, int row) const {
+    constexpr float least = 0.02F;
+    std::vector<Collision> collisions;
+    for (int column = 0; column < raster.width; ++column) {
+      const std::size_t pixel = raster.index(column, row);
+      const Met& met = raster.pixels[pixel];
+      if (!(met.hit > least))
+        continue;
+      const Ray eye = m_scene.camera.ray(column + 0.5, row + 0.5);
+      const double depth = static_cast<double>(met.depth / met.hit);
+      const Vec3 point = eye.at(depth / m_scene.camera.depthPerLength(eye));
+      const Vec3 index = m_scene.volume.grid.worldToIndex * point;
+      collisions.push_back({pixel, point, eye.direction, m_medium.matter(index, true),
+                            static_cast<double>(met.hit)});
+    }
+    return collisions;
+  }
+
+  /// Samples of lights are the same numbers everywhere: what they lack in precision is no noise.
+  std::optional<ShadowRay> toLight(const Collision& at, int sample) const {
+    Random random(0, 0, static_cast<std::uint64_t>(sample));
+    const double choice = (sample + random.uniform()) / samples;
+    const auto light = m_scene.lights.sample(at.point, choice, random.uniform2());
+    if (!light)
+      return std::nullopt;
+    const double share = at.matter.surfaceProbability;
+    Rgb factor = Rgb::Zero();
+    if (share < 1.0)
+      factor += (1.0 - share) * PhaseScattering(at.incoming, m_scene.transfer.g, at.matter.albedo)
+                                    .evaluate(light->direction);
+    if (share > 0.0)
+      factor += share * SurfaceScattering(at.incoming, at.matter.gradient,
+                                          *m_scene.transfer.shading, at.matter.albedo)
+                            .evaluate(light->direction);
+    const Rgb radiance = factor * light->radiance * (at.hit / (light->pdf * samples));
+    if (!(radiance.maxCoeff() > 0.0))
+      return std::nullopt;
+    return ShadowRay{{at.point, light->direction}, light->distance, radiance};
+  }
+
+  const RenderScene& m_scene;
+  const Medium<Voxel>& m_medium;
+  const March& m_march;
+};
+
 ExpectedFlight flightOf(const Raster& raster) {
   ExpectedFlight flight;
   const auto plane = [&](Plane& values, auto&& valueOf) {
@@ -190,17 +190,27 @@ ExpectedFlight flightOf(const Raster& raster) {
   return flight;
 }
 
+template <typename Voxel, typename March>
+ExpectedFlight flightBy(const RenderScene& scene, const Medium<Voxel>& medium, const March& march) {
+  const Raster raster = marched(scene.camera, march);
+  ExpectedFlight flight = flightOf(raster);
+  flight.light = FirstLight<Voxel, March>(scene, medium, march).of(raster);
+  return flight;
+}
+
 } // namespace
 
 ExpectedFlight expectedFlight(const RenderScene& scene) {
-  if (lanesServe(scene))
-    return flightOf(marched(scene.camera, MarchedInLanes(scene)));
-  return expectedFlightOneByOne(scene);
+  if (!lanesServe(scene))
+    return expectedFlightOneByOne(scene);
+  return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
+    return flightBy(scene, medium, MarchedInLanes(scene));
+  });
 }
 
 ExpectedFlight expectedFlightOneByOne(const RenderScene& scene) {
   return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
-    return flightOf(marched(scene.camera, MarchedOneByOne<Voxel>(scene, medium)));
+    return flightBy(scene, medium, MarchedOneByOne<Voxel>(scene, medium));
   });
 }
 

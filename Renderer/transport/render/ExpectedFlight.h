@@ -13,8 +13,9 @@ namespace fenestra {
 /// Expected values over the eye rays of each pixel; a ray that meets nothing counts as 0. Sums are
 /// over collisions, weighted by their probability T(t) sigma_t(t) dt.
 struct ExpectedFlight {
-  Plane hit;                   ///< probability of a collision, 0 to 1
-  Plane depth;                 ///< sum of view-space depth, mm: the mean depth times `hit`
+  Plane light; ///< radiance of light that a pixel's mean collision scatters first, mean of colours
+  Plane hit;   ///< probability of a collision, 0 to 1
+  Plane depth; ///< sum of view-space depth, mm: the mean depth times `hit`
   std::array<Plane, 3> albedo; ///< linear, as Film's
   std::array<Plane, 3> normal; ///< world axes, toward the eye
   std::array<Plane, 3> facing; ///< the same, times the probability of scattering at a surface
