@@ -28,7 +28,7 @@ QString statsLine(const QJsonObject& stats) {
              ? QString()
              : QObject::tr("%1 samples a pixel, noise %2, %3")
                    .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
-                   .arg(stats["noise"].toDouble(), 0, 'g', 2)
+                   .arg(stats["noiseFiltered"].toDouble(stats["noise"].toDouble()), 0, 'g', 2)
                    .arg(qSlicerFenestraMeasures::duration(
                        stats["seconds"].toObject()["total"].toDouble()));
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace fenestra {
 namespace {
@@ -214,6 +215,14 @@ FourPlanes rawColors(const FilterInput& input, bool hasHalves) {
   return color;
 }
 
+/// Mean of a half's colours, from channel `first` on; 0 in closed pixels.
+Plane lightOf(const Fitted& fitted, std::size_t first) {
+  Plane light(fitted[first].size());
+  for (std::size_t i = 0; i < light.size(); ++i)
+    light[i] = (fitted[first][i] + fitted[first + 1][i] + fitted[first + 2][i]) / 3.0F;
+  return light;
+}
+
 void clampColors(FilteredPicture& picture) {
   for (Plane& plane : picture.color)
     for (float& value : plane)
@@ -225,6 +234,8 @@ void clampColors(FilteredPicture& picture) {
 } // namespace
 
 FilteredPicture filtered(FilterInput input, bool hasHalves) {
+  if (input.features.size() > SumLayout::mostFeatures)
+    throw std::logic_error("more features than the filter has room for");
   FilteredPicture picture;
   picture.color = rawColors(input, hasHalves); // closed pixels stay so
   const std::size_t channels = isOpaque(input) ? 3 : 4;
@@ -236,8 +247,10 @@ FilteredPicture filtered(FilterInput input, bool hasHalves) {
     for (std::size_t i = 0; i < fit.open.size(); ++i)
       if (fit.open[i] > 0.0F)
         picture.color[c][i] = 0.5F * (chosen[c][i] + chosen[other + c][i]);
-  if (hasHalves)
+  if (hasHalves) {
+    picture.light = {lightOf(chosen, 0), lightOf(chosen, channels)};
     tellErrors(fit, chosen, picture);
+  }
   clampColors(picture);
   return picture;
 }

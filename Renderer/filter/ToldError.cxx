@@ -45,7 +45,7 @@ struct Bias {
 };
 
 Bias biasOf(const Parts& parts, double variance, double count) {
-  constexpr double priorShare = 1.0, priorDeviation = 0.7; // of the variance
+  constexpr double priorShare = 0.65, priorDeviation = 0.7; // of the variance
   double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < parts.bias[0].size(); ++i) {
     const double mean =

@@ -29,9 +29,9 @@ inline float relativeWeight(float x) {
 
 /// Fills error, toldError and toldDeviation of a picture whose colours are those before clamping.
 /// `filtered`: the halves of fit.color, filtered. The variance part is averaged over 7x7 pixels.
-/// The bias part is too noisy for that: its sum over the picture is drawn toward a prior, bias^2 =
-/// variance, by its own standard error, and spread half by its mean over 21x21 pixels, half by the
-/// variance part.
+/// The bias part is too noisy for that: its sum over the picture is drawn toward a prior, 0.65 of
+/// the variance (measured where windows suit a picture: 0.3 to 2), by its own standard error, and
+/// spread half by its mean over 21x21 pixels, half by the variance part.
 void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredPicture& picture);
 
 } // namespace fenestra

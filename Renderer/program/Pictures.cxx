@@ -126,10 +126,11 @@ RenderSettings pictureSettings(const RenderOptions& options, const Scene& scene)
   return settings;
 }
 
-std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film) {
+std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film,
+                                               const std::vector<Plane>& history) {
   if (!scene.flight())
     return std::nullopt;
-  return denoised(film, scene);
+  return denoised(film, scene, history);
 }
 
 std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered) {

@@ -27,8 +27,9 @@ void checkMemory(const SceneRequest& scene);
 /// Settings of a render of the scene, whose functions must not outlive it.
 RenderSettings pictureSettings(const RenderOptions& options, const Scene& scene);
 
-/// The film filtered, if the scene has features; else nothing.
-std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film);
+/// The film filtered, if the scene has features; else nothing. `history`: as denoised takes it.
+std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film,
+                                               const std::vector<Plane>& history = {});
 /// What the filter tells of its error, as Film::noise(); nothing if no error is told.
 std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered);
 

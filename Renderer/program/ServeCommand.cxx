@@ -65,6 +65,7 @@ private:
       checkMemory(options.scene);
       Scene scene = m_scene->changed(options.scene);
       m_outputs.checkInputs();
+      look(scene, options.scene);
       m_scene = std::move(scene);
       m_options = options;
       m_flags = flags;
@@ -83,15 +84,29 @@ private:
     return false;
   }
 
-  /// Publishes the first picture at once, later ones at most every `interval`.
+  /// Sees the last filtered picture again with the eye of `scene`, if nothing else has changed.
+  void look(const Scene& scene, const SceneRequest& request) {
+    m_history.clear();
+    const StagesMade made = scene.made();
+    const bool isOtherLight = request.lights != m_options.scene.lights ||
+                              request.environment != m_options.scene.environment ||
+                              request.environmentMap != m_options.scene.environmentMap;
+    if (m_filtered && scene.flight() && m_scene->flight() && made.camera && !made.volume &&
+        !made.focus && !made.transfer && !isOtherLight)
+      m_history = seenAgain(*m_filtered, *m_scene, scene);
+    m_filtered.reset();
+  }
+
+  /// Publishes the first picture at once, later ones at most every 0.1 seconds, and such that most
+  /// of the time goes to samples.
   void renderPictures() {
-    constexpr double interval = 0.1; // seconds
     m_complete = false;
     m_monitor.noise = infinity;
     m_monitor.paths = 0;
     m_published.reset();
     m_failure.clear();
     m_monitor.between = [this](const RenderResult& result) {
+      const double interval = std::max(0.1, 4.0 * m_publishing);
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
         publish(result, false);
     };
@@ -105,16 +120,21 @@ private:
   /// Puts the pictures in place and tells them. A failure (a full disk) is told as well, for
   /// intermediate pictures only once each; the next picture may have room again.
   void publish(const RenderResult& result, bool last) {
+    const Stopwatch watch;
     try {
-      const auto filtered = filteredPicture(*m_scene, result.film);
-      writePictures(m_options, *m_scene, result, filtered, m_flags.arguments(), m_outputs);
+      // One sample tells too little of what to make of history, and the last picture has none.
+      const bool usesHistory = !last && result.finishedSamples > 1;
+      m_filtered =
+          filteredPicture(*m_scene, result.film, usesHistory ? m_history : std::vector<Plane>());
+      writePictures(m_options, *m_scene, result, m_filtered, m_flags.arguments(), m_outputs);
       m_outputs.commit(Durability::none); // the next picture follows soon
-      tell(result, filteredNoise(filtered), last);
+      tell(result, filteredNoise(m_filtered), last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())
         answerError(m_change.id, error.what());
       m_failure = error.what();
     }
+    m_publishing = watch.seconds();
     m_published.emplace();
   }
 
@@ -142,8 +162,11 @@ private:
   RenderMonitor m_monitor;
   ServeInput m_input;
   std::optional<Scene> m_scene;
-  bool m_complete = false;              ///< true: the scene's picture is finished
+  std::optional<FilteredPicture> m_filtered; ///< of m_scene, published last
+  std::vector<Plane> m_history; ///< the picture before, seen with m_scene's eye; empty: none
+  bool m_complete = false;      ///< true: the scene's picture is finished
   std::optional<Stopwatch> m_published; ///< time since the scene's last picture; nullopt: none yet
+  double m_publishing = 0.0;            ///< seconds that it took
   std::string m_failure;                ///< last reported failure to write a picture of this scene
   std::set<std::string> m_warned;
 };

@@ -236,6 +236,8 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
                                        "--output=radiance.nrrd", "--layers=color,depth"});
   if (withSurface && !render->IsTurntable())
     arguments.push_back("--surface=surface.vtp");
+  if (render->GetFlags().count("noise") > 0) // of the picture that is looked at
+    arguments.push_back("--noisetarget=filtered");
   for (const auto& [name, value] : render->GetFlags()) // "=" keeps a value that begins with a dash
     arguments.push_back("--" + name + "=" + value);
   return arguments;

@@ -65,7 +65,7 @@ void qFenestraPreview::hear(const QString& line) {
   for (const QJsonValue& file : files)
     picture.files << file.toString();
   picture.samples = answer["samples"].toInt();
-  picture.noise = answer["noise"].toDouble(-1.0);
+  picture.noise = answer["noiseFiltered"].toDouble(answer["noise"].toDouble(-1.0));
   picture.seconds = answer["seconds"].toDouble();
   picture.done = answer["done"].toBool();
   emit refreshed(picture);

@@ -177,6 +177,25 @@ TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
   EXPECT_EQ(refused, bad.size());
 }
 
+/// Pictures on the way may use what the last view has shown; the last one is render's.
+TEST_F(ServeCommand, TurnedViewEndsWithTheFilteredPictureOfRender) {
+  const Arguments flags = {"volume.nrrd", "--size", "32x32", "--samples", "8", "--output"};
+  Arguments arguments = flags;
+  arguments.insert(arguments.begin(), "serve");
+  arguments.emplace_back("a.png");
+  Process process(arguments, folder.path());
+  ASSERT_TRUE(waitForPicture(process, "null"));
+  process.write(R"({"id": 1, "position": [5, 60, 9]})"
+                "\n");
+  ASSERT_TRUE(waitForPicture(process, "1")) << process.output();
+  for (const json& answer : answers(process))
+    EXPECT_EQ(answer.value("noiseFiltered", 0.0) > 0.0, answer["samples"] > 1) << answer;
+  Arguments render = flags;
+  render.insert(render.end(), {"b.png", "--position", "5,60,9"});
+  ASSERT_EQ(run(render, folder.path()).status, 0);
+  EXPECT_EQ(bytesOf(folder / "a.png"), bytesOf(folder / "b.png"));
+}
+
 /// A failing write, as on a full disk: the current render and the server go on.
 TEST_F(ServeCommand, WriteFailureIsAnsweredAndServingGoesOn) {
   const std::filesystem::path place = folder / "results";
