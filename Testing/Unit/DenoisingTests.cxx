@@ -1,0 +1,142 @@
+// What of a film and its scene goes into the filter.
+
+#include "session/Denoising.h"
+
+#include "MedicalFiles.h"
+
+#include <stdexcept>
+
+namespace fenestra::DenoisingTests {
+namespace {
+
+/// Ball of thin haze in a box of 16^3 voxels: many rays cross it without a collision.
+class Denoising : public ::testing::Test {
+protected:
+  Denoising() {
+    std::vector<std::int16_t> voxels;
+    for (int z = 0; z < edge; ++z)
+      for (int y = 0; y < edge; ++y)
+        for (int x = 0; x < edge; ++x) {
+          const double radius = (Vec3(x, y, z) - Vec3::Constant(7.5)).norm();
+          voxels.push_back(static_cast<std::int16_t>(radius < 5.0 ? 100.0 + 5.0 * x : 0.0));
+        }
+    FileGeometry geometry;
+    geometry.size = {edge, edge, edge};
+    writeFile(folder / "volume.nrrd", voxels, geometry);
+    folder.write("haze.json",
+                 R"({"extinction": [[50, 0], [200, 0.2]], "albedo": [[0, 0.8, 0.6, 0.4]]})");
+    request.input = folder / "volume.nrrd";
+    request.transfer = folder / "haze.json";
+    request.width = request.height = 48;
+    request.features = true;
+  }
+
+  static Film picture(const Scene& scene, std::uint64_t seed = 0, std::uint64_t samples = 2) {
+    RenderSettings settings;
+    settings.samples = samples;
+    settings.seed = seed;
+    settings.path.background = {Background::Kind::color, Rgb::Constant(0.5)};
+    RenderMonitor monitor;
+    return render(scene.forRender(), settings, monitor).film;
+  }
+
+  static constexpr int edge = 16;
+  TemporaryFolder folder;
+  SceneRequest request;
+};
+
+TEST_F(Denoising, ClosedAreCertainPixelsWhateverTheSamplesMet) {
+  const Scene scene(request);
+  const Film film = picture(scene);
+  const FilterInput input = filterInput(film, scene);
+  std::size_t without = 0, certain = 0;
+  for (std::size_t i = 0; i < film.pixelCount(); ++i) {
+    const PixelSums& pixel = film.pixels()[i];
+    EXPECT_EQ(input.isOpen[i] != 0, !pixel.isCertain);
+    without += !pixel.isCertain && pixel.collided == 0;
+    certain += pixel.isCertain;
+  }
+  EXPECT_GT(without, 100U);
+  EXPECT_GT(certain, 100U);
+}
+
+TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
+  const Scene scene(request);
+  const FilterInput one = filterInput(picture(scene, 1), scene);
+  const FilterInput other = filterInput(picture(scene, 2), scene);
+  EXPECT_GE(one.features.size(), 8U);
+  EXPECT_EQ(one.features, other.features);
+  EXPECT_NE(one.even, other.even);
+}
+
+TEST_F(Denoising, HalvesThatAreNotIndependentAreRefused) {
+  const Scene scene(request);
+  EXPECT_THROW(filterInput(Film(48, 48, false), scene), std::logic_error);
+}
+
+TEST_F(Denoising, HalvesAverageToThePicture) {
+  const Scene scene(request);
+  const Film film = picture(scene, 3, 4);
+  const FilterInput input = filterInput(film, scene);
+  for (std::size_t i = 0; i < film.pixelCount(); ++i)
+    ASSERT_NEAR(0.5 * static_cast<double>(input.even[1][i] + input.odd[1][i]),
+                film.pixels()[i].mean[1], 1e-6);
+}
+
+double errorOf(const FilteredPicture& picture, const Film& truth) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.pixelCount(); ++i)
+    sum += std::pow(static_cast<double>(picture.color[0][i]) - truth.pixels()[i].mean[0], 2.0);
+  return sum;
+}
+
+TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
+  const Scene scene(request);
+  const Film truth = picture(scene, 9, 512), film = picture(scene, 1, 4);
+  const FilteredPicture filtered = denoised(film, scene);
+  double raw = 0.0;
+  for (std::size_t i = 0; i < film.pixelCount(); ++i)
+    raw += std::pow(film.pixels()[i].mean[0] - truth.pixels()[i].mean[0], 2.0);
+  EXPECT_LT(errorOf(filtered, truth), 0.1 * raw);
+  EXPECT_EQ(filtered.error[0].size(), film.pixelCount());
+}
+
+TEST_F(Denoising, LightIsSeenAgainWhereTheEyeStays) {
+  const Scene scene(request);
+  const FilteredPicture filtered = denoised(picture(scene, 1, 4), scene);
+  const std::vector<Plane> again = seenAgain(filtered, scene, scene);
+  ASSERT_EQ(again.size(), 2U);
+  double offset = 0.0;
+  bool isFirst = true;
+  for (std::size_t i = 0; i < again[0].size(); ++i)
+    if (again[0][i] != 0.0F) { // else the expected depth does not find the pixel
+      const double off = static_cast<double>(filtered.light[0][i] - again[0][i]);
+      offset = isFirst ? off : offset;
+      isFirst = false;
+      ASSERT_NEAR(off, offset, 1e-4);
+    }
+  EXPECT_FALSE(isFirst);
+}
+
+TEST_F(Denoising, LightSeenFromAnotherEyeHarmsLittleWhereFeaturesKnowAll) {
+  const Scene before(request);
+  const FilteredPicture old = denoised(picture(before, 1, 8), before);
+  const CameraPose pose = turnedAroundTarget(before.camera().pose(), 3.0);
+  request.view = {.projection = pose.projection,
+                  .position = pose.position,
+                  .target = pose.target,
+                  .up = pose.up,
+                  .scale = pose.scale};
+  const Scene scene = before.changed(request);
+  const Film film = picture(scene, 2, 2), truth = picture(scene, 9, 512);
+  const std::vector<Plane> history = seenAgain(old, before, scene);
+  std::size_t found = 0;
+  for (const float light : history[0])
+    found += light != 0.0F;
+  EXPECT_GT(found, 200U);
+  EXPECT_LT(errorOf(denoised(film, scene, history), truth),
+            1.3 * errorOf(denoised(film, scene), truth));
+}
+
+} // namespace
+} // namespace fenestra::DenoisingTests
