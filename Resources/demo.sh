@@ -19,7 +19,7 @@ fi
 # The femoral cartilage from in front and a little below, with its two lesions; without the steps of the
 # labelmap's 1 mm slices (labelsmoothing), and those of the scan's own on its border (soft).
 scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
-  --focus "Femoral cartilage" --labelsmoothing 0.6 --position=-15,200,-90 --size 384x384 --samples 32)
+  --focus "Femoral cartilage" --labelsmoothing 0.6 --position=-15,200,-90 --size 384x384 --samples 16)
 
 render() { # MODE [flags]
   local mode=$1

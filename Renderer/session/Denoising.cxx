@@ -8,6 +8,26 @@
 namespace fenestra {
 namespace {
 
+/// Closes pixels around which the march met nothing: no window spreads a silhouette into the
+/// background. Never by what the samples met: a mask that knows their noise makes the told error a
+/// lie.
+void closeEmpty(const ExpectedFlight& flight, FilterInput& input) {
+  const auto hit = [&](int x, int y) {
+    return flight.hit[static_cast<std::size_t>(y) * static_cast<std::size_t>(input.width) +
+                      static_cast<std::size_t>(x)] > 0.0F;
+  };
+  for (int row = 0; row < input.height; ++row)
+    for (int column = 0; column < input.width; ++column) {
+      bool isEmpty = true;
+      for (int y = std::max(row - 1, 0); y <= std::min(row + 1, input.height - 1); ++y)
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, input.width - 1); ++x)
+          isEmpty = isEmpty && !hit(x, y);
+      if (isEmpty)
+        input.isOpen[static_cast<std::size_t>(row) * static_cast<std::size_t>(input.width) +
+                     static_cast<std::size_t>(column)] = 0;
+    }
+}
+
 /// Halves of a pixel; its mean twice below two samples.
 Halves halvesOf(const PixelSums& pixel) {
   return pixel.samples > 1 ? pixel.halves()
@@ -181,8 +201,10 @@ FilterInput filterInput(const Film& film, const Scene& scene) {
     throw std::logic_error("a film without independent halves cannot be filtered");
   FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}};
   addHalves(film, input);
-  if (scene.flight())
+  if (scene.flight()) {
     addFeatures(scene, *scene.flight(), input);
+    closeEmpty(*scene.flight(), input);
+  }
   return input;
 }
 
