@@ -56,7 +56,7 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
   return entries;
 }
 
-/// What a picture's header says of its filter.
+/// Sentence of a picture's header on its filter.
 std::string filterText(const std::optional<FilteredPicture>& filtered) {
   const std::optional<double> noise = filteredNoise(filtered);
   return textOf("filtered for the eye by least squares in windows, version ", filterVersion,

@@ -30,7 +30,7 @@ RenderSettings pictureSettings(const RenderOptions& options, const Scene& scene)
 /// The film filtered, if the scene has features; else nothing. `history`: as denoised takes it.
 std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film,
                                                const std::vector<Plane>& history = {});
-/// What the filter tells of its error, as Film::noise(); nothing if no error is told.
+/// Error that the filter tells of itself, as Film::noise(); nothing if it tells none.
 std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered);
 
 /// Writes all of options.outputs; the caller commits them. Each header has the data that reproduce

@@ -1,5 +1,5 @@
-// What the filter gains, what it costs, and whether its told error is true, over scenes and sample
-// counts (README.md here): prints a table in Markdown.
+// Gain and cost of the filter, and whether its told error is true, over scenes and sample counts
+// (README.md here): prints a table in Markdown.
 
 #include "References.h"
 #include "base/Error.h"

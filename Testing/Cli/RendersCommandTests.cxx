@@ -203,8 +203,8 @@ TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json json = stats("knee.json");
   double stages = 0.0;
-  for (const char* stage : {"load", "classify", "focus", "spline", "fill", "features", "transport", "filter",
-                            "write"}) {
+  for (const char* stage : {"load", "classify", "focus", "spline", "fill", "features", "transport",
+                            "filter", "write"}) {
     EXPECT_GT(json["seconds"][stage], 0.0) << stage;
     stages += json["seconds"][stage].get<double>();
   }

@@ -1,4 +1,4 @@
-// What of a film and its scene goes into the filter.
+// Input of the filter, from a film and its scene.
 
 #include "session/Denoising.h"
 

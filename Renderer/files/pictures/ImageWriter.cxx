@@ -120,7 +120,7 @@ std::string withTexts(std::string png, const std::string& comment) {
   return png;
 }
 
-/// What the header says of a filter; empty: nothing.
+/// Sentence of the header on a filter; empty: none.
 std::string commentOf(const Image& image) {
   const auto found = image.header.find("filter");
   return found == image.header.end() ? std::string() : found->second;

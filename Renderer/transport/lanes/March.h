@@ -1,5 +1,5 @@
 #pragma once
-// What eye rays meet first, in expectation: March in SIMD lanes, a ray a lane.
+// Expected first collisions of eye rays: March in SIMD lanes, a ray a lane.
 
 #include "transport/lanes/PathTables.h"
 #include "transport/lanes/Tracker.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What an eye ray meets first, in expectation: a march with a step size. It serves features of the
+// Expected first collision of an eye ray, by a march with a step size. It serves features of the
 // filter, never the picture: any function of the scene, free of noise, may be a feature.
 
 #include "model/medium/Medium.h"

@@ -1,6 +1,6 @@
 #pragma once
-// What the first flight along the eye rays of each pixel meets on average, by a march: features for
-// the filter, free of noise, and independent of the samples, as the filter's told error needs them.
+// Expected first flight along the eye rays of each pixel, by a march: features for the filter, free
+// of noise, and independent of the samples, as the filter's told error needs them.
 //
 // The march has a step size. Features may: any function of the scene serves, and none of these
 // numbers becomes a part of the picture.

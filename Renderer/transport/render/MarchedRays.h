@@ -52,7 +52,7 @@ private:
   March<Voxel> m_march;
 };
 
-/// The same in lanes.
+/// Rays of a picture, marched in lanes, as MarchedOneByOne.
 class MarchedInLanes {
 public:
   explicit MarchedInLanes(const RenderScene& scene)
