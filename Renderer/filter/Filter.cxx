@@ -215,6 +215,20 @@ FourPlanes rawColors(const FilterInput& input, bool hasHalves) {
   return color;
 }
 
+/// Adds the error of closed pixels, which is that of their samples: 0 where they are certain.
+void tellClosed(const std::array<Plane, 3>& variance, const Plane& open, FilteredPicture& picture) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      if (open[i] > 0.0F)
+        continue;
+      picture.error[c][i] = std::sqrt(variance[c][i]);
+      const float relative = variance[c][i] * relativeWeight(picture.color[c][i]);
+      sum += std::isfinite(relative) ? static_cast<double>(relative) : 0.0;
+    }
+  picture.toldError += sum / (3.0 * static_cast<double>(open.size()));
+}
+
 /// Mean of a half's colours, from channel `first` on; 0 in closed pixels.
 Plane lightOf(const Fitted& fitted, std::size_t first) {
   Plane light(fitted[first].size());
@@ -250,6 +264,7 @@ FilteredPicture filtered(FilterInput input, bool hasHalves) {
   if (hasHalves) {
     picture.light = {lightOf(chosen, 0), lightOf(chosen, channels)};
     tellErrors(fit, chosen, picture);
+    tellClosed(input.variance, fit.open, picture);
   }
   clampColors(picture);
   return picture;
