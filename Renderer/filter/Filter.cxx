@@ -21,7 +21,8 @@ using Fitted = std::vector<Plane>;
 /// True if no pixel that takes part is even a little transparent: alpha needs no fit.
 bool isOpaque(const FilterInput& input) {
   for (std::size_t i = 0; i < input.pixelCount(); ++i)
-    if (input.isOpen[i] && !(input.even[3][i] == 1.0F && input.odd[3][i] == 1.0F))
+    if (input.isOpen[i] &&
+        !(input.even[3][i] == 1.0F && (!input.hasHalves || input.odd[3][i] == 1.0F)))
       return false;
   return true;
 }
@@ -67,11 +68,11 @@ bool standardise(Plane& feature, const Plane& open) {
   return true;
 }
 
-FitInput prepared(FilterInput& input, std::size_t channels, bool hasHalves) {
+FitInput prepared(FilterInput& input, std::size_t channels) {
   FitInput fit{input.width, input.height, {}, {}, {}};
   for (std::size_t c = 0; c < channels; ++c)
     fit.color.push_back(std::move(input.even[c]));
-  for (std::size_t c = 0; c < channels && hasHalves; ++c)
+  for (std::size_t c = 0; c < channels && input.hasHalves; ++c)
     fit.color.push_back(std::move(input.odd[c]));
   fit.open = openPixels(input, fit.color);
   for (Plane& plane : fit.color)
@@ -143,9 +144,10 @@ private:
 /// Candidates: raw, then each size of windows.
 class Candidates {
 public:
-  explicit Candidates(const FitInput& fit) : m_fit(fit) {
-    for (int level = 0; level < levels; ++level)
-      m_fitted.push_back(fitWindows(fit, level));
+  explicit Candidates(const FitInput& fit) : m_fit(fit), m_fitted(levels) {
+    tbb::parallel_for(0, levels, [&](int level) {
+      m_fitted[static_cast<std::size_t>(level)] = fitWindows(fit, level);
+    });
   }
 
   std::size_t count() const { return m_fitted.size() + 1; }
@@ -176,21 +178,14 @@ std::vector<std::uint8_t> choices(const FitInput& fit, const Candidates& candida
 
 /// Candidates blended by their share of the choices in the 5x5 pixels around.
 Fitted blended(const FitInput& fit, const Candidates& candidates,
-               const std::vector<std::uint8_t>& choice, std::vector<double>& shares) {
+               const std::vector<std::uint8_t>& choice) {
   const OpenMean mean(fit.open, fit.width, fit.height, 2);
   Fitted blend(fit.color.size(), Plane(choice.size(), 0.0F));
-  double count = 0.0;
-  for (const float open : fit.open)
-    count += static_cast<double>(open);
   Plane chosen(choice.size());
   for (std::size_t k = 0; k < candidates.count(); ++k) {
     for (std::size_t i = 0; i < choice.size(); ++i)
       chosen[i] = choice[i] == k ? fit.open[i] : 0.0F;
     const Plane share = mean(chosen);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < choice.size(); ++i)
-      sum += static_cast<double>(share[i] * fit.open[i]);
-    shares.push_back(count > 0.0 ? sum / count : 0.0);
     tbb::parallel_for(std::size_t{0}, blend.size(), [&](std::size_t c) {
       const Plane& candidate = candidates[k][c];
       for (std::size_t i = 0; i < choice.size(); ++i)
@@ -200,16 +195,10 @@ Fitted blended(const FitInput& fit, const Candidates& candidates,
   return blend;
 }
 
-Fitted chosenFits(const FitInput& fit, const std::array<Plane, 3>& variance,
-                  std::vector<double>& shares) {
-  const Candidates candidates(fit);
-  return blended(fit, candidates, choices(fit, candidates, variance), shares);
-}
-
 /// Colours as the samples have them.
-FourPlanes rawColors(const FilterInput& input, bool hasHalves) {
+FourPlanes rawColors(const FilterInput& input) {
   FourPlanes color = input.even;
-  for (std::size_t c = 0; c < color.size() && hasHalves; ++c)
+  for (std::size_t c = 0; c < color.size() && input.hasHalves; ++c)
     for (std::size_t i = 0; i < color[c].size(); ++i)
       color[c][i] = 0.5F * (color[c][i] + input.odd[c][i]);
   return color;
@@ -229,14 +218,6 @@ void tellClosed(const std::array<Plane, 3>& variance, const Plane& open, Filtere
   picture.toldError += sum / (3.0 * static_cast<double>(open.size()));
 }
 
-/// Mean of a half's colours, from channel `first` on; 0 in closed pixels.
-Plane lightOf(const Fitted& fitted, std::size_t first) {
-  Plane light(fitted[first].size());
-  for (std::size_t i = 0; i < light.size(); ++i)
-    light[i] = (fitted[first][i] + fitted[first + 1][i] + fitted[first + 2][i]) / 3.0F;
-  return light;
-}
-
 void clampColors(FilteredPicture& picture) {
   for (Plane& plane : picture.color)
     for (float& value : plane)
@@ -247,22 +228,26 @@ void clampColors(FilteredPicture& picture) {
 
 } // namespace
 
-FilteredPicture filtered(FilterInput input, bool hasHalves) {
+Fitted chosenWindows(const FitInput& fit, const std::array<Plane, 3>& variance) {
+  const Candidates candidates(fit);
+  return blended(fit, candidates, choices(fit, candidates, variance));
+}
+
+FilteredPicture filtered(FilterInput input) {
   if (input.features.size() > SumLayout::mostFeatures)
     throw std::logic_error("more features than the filter has room for");
   FilteredPicture picture;
-  picture.color = rawColors(input, hasHalves); // closed pixels stay so
+  picture.color = rawColors(input); // closed pixels stay so
   const std::size_t channels = isOpaque(input) ? 3 : 4;
-  const FitInput fit = prepared(input, channels, hasHalves);
+  const FitInput fit = prepared(input, channels);
   const Fitted chosen =
-      hasHalves ? chosenFits(fit, input.variance, picture.shares) : fitWindows(fit, singleLevel);
-  const std::size_t other = hasHalves ? channels : 0;
+      input.hasHalves ? chosenWindows(fit, input.variance) : fitWindows(fit, singleLevel);
+  const std::size_t other = input.hasHalves ? channels : 0;
   for (std::size_t c = 0; c < channels; ++c)
     for (std::size_t i = 0; i < fit.open.size(); ++i)
       if (fit.open[i] > 0.0F)
         picture.color[c][i] = 0.5F * (chosen[c][i] + chosen[other + c][i]);
-  if (hasHalves) {
-    picture.light = {lightOf(chosen, 0), lightOf(chosen, channels)};
+  if (input.hasHalves) {
     tellErrors(fit, chosen, picture);
     tellClosed(input.variance, fit.open, picture);
   }

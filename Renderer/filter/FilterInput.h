@@ -14,25 +14,25 @@ using FourPlanes = std::array<Plane, 4>;
 
 struct FilterInput {
   int width = 0, height = 0;
-  /// Two estimates of the picture from independent samples, of equal expectation.
+  /// Two estimates of the picture from independent samples, of equal expectation. Without halves
+  /// (one sample a pixel) `even` is the picture, and `odd` is not read.
   FourPlanes even, odd;
   std::array<Plane, 3> variance; ///< of the mean over all samples, red, green and blue
   /// Functions of the scene alone: one that shares the samples' noise makes the filter believe that
-  /// noise, and its told error a lie. Of any scale, at most
-  /// SumLayout::mostFeatures. Where one is not finite, the pixel stays raw.
+  /// noise, and its told error a lie. At most SumLayout::mostFeatures, of any scale. Where one is
+  /// not finite, the pixel stays raw.
   std::vector<Plane> features;
-  std::vector<std::uint8_t> isOpen; ///< 0: the pixel is certain, takes no part and stays raw
+  std::vector<std::uint8_t> isOpen; ///< 0: the pixel takes no part and stays raw
+  bool hasHalves = true;
 
   std::size_t pixelCount() const { return isOpen.size(); }
 };
 
 struct FilteredPicture {
   FourPlanes color;           ///< colours not below 0, alpha in [0, 1]
-  std::array<Plane, 2> light; ///< of each half, filtered: mean of the colours; empty: no halves
   std::array<Plane, 3> error; ///< told standard error of red, green and blue
   /// Told mean over pixels and channels of error^2 / (x^2 + 0.01), and the standard error of that.
   double toldError = 0.0, toldDeviation = 0.0;
-  std::vector<double> shares; ///< of the open pixels: raw, then each window
 };
 
 } // namespace fenestra

@@ -37,7 +37,7 @@ class LocalFit {
 public:
   explicit LocalFit(const SumLayout& layout) : m_layout(layout) {}
 
-  /// `sums`: and `out`: by SumLayout.
+  /// Order of `sums` and of `out`: SumLayout.
   HWY_INLINE void solve(const Lanes* sums, Lanes* out) {
     each([&](std::size_t l) {
       m_count.v[l] = sums[0].v[l];

@@ -31,7 +31,8 @@ Parts partsOf(const FitInput& fit, const std::vector<Plane>& filtered,
         continue; // its colours may be infinite
       const Told told = toldError(filtered[c][i], filtered[other + c][i], fit.color[c][i],
                                   fit.color[other + c][i]);
-      const float weight = relativeWeight(picture.color[c][i]);
+      // Where windows cross black, the error is at most all that is there.
+      const float weight = std::min(relativeWeight(picture.color[c][i]), 1.0F / told.variance);
       parts.variance[c][i] = weight * told.variance;
       parts.bias[c][i] = weight * told.bias;
     }
@@ -95,7 +96,8 @@ void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, Filtere
       const float told = picture.error[c][i] * static_cast<float>(1.0 + byVariance) +
                          local[c][i] * static_cast<float>(byBias);
       picture.error[c][i] =
-          open[i] > 0.0F ? std::sqrt(told / relativeWeight(picture.color[c][i])) : 0.0F;
+          open[i] > 0.0F ? std::sqrt(std::max(told, 0.0F) / relativeWeight(picture.color[c][i]))
+                         : 0.0F;
     }
   const double share = sumOf(open) / static_cast<double>(std::max<std::size_t>(open.size(), 1));
   picture.toldError = share * (variance + bias.mean);

@@ -2,7 +2,8 @@
 // The error that a filtered picture tells of itself, without any estimate of the samples' variance.
 //
 // A and B are the halves, of equal expectation m and independent; F_A is a function of A and of
-// features, F_B of B and of features. For F = (F_A + F_B) / 2
+// features, F_B of B and of features. (A choice among windows knows both; Judge keeps it from
+// knowing the pixel's own noise.) For F = (F_A + F_B) / 2
 //   (F - m)^2 = (F_A - F_B)^2 / 4 + (F_A - m)(F_B - m),
 // and E[(F_A - A)(F_B - B)] = E[F_A - m] E[F_B - m] = E[(F_A - m)(F_B - m)], so
 //   told = (F_A - F_B)^2 / 4 + (F_A - A)(F_B - B)

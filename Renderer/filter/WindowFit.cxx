@@ -24,7 +24,8 @@ public:
       : m_rows(rows), m_planes(planes), m_width(width), m_values(rows * planes * width, 0.0F) {}
 
   float* at(std::int64_t row, std::size_t plane) {
-    const auto place = static_cast<std::size_t>(row) % m_rows;
+    constexpr std::int64_t before = 1000; // rows begin above the picture: keeps numbers positive
+    const auto place = static_cast<std::size_t>(row + before) % m_rows;
     return &m_values[(place * m_planes + plane) * m_width];
   }
   std::size_t planes() const { return m_planes; }
@@ -94,7 +95,7 @@ private:
 
   HWY_INLINE void sumCells(std::int64_t row) {
     for (std::size_t plane = 0; plane < m_sums.planes(); ++plane)
-      std::fill_n(m_sums.at(row + 1000, plane), width, 0.0F);
+      std::fill_n(m_sums.at(row, plane), width, 0.0F);
     if (row < 0 || row >= cells(m_input.height))
       return;
     const std::int64_t firstCell = std::max<std::int64_t>(m_column - margin, 0);
@@ -109,7 +110,7 @@ private:
         const std::int64_t start = y * m_input.width + first;
         addProducts(a.data() + start, b.data() + start);
       }
-      pool(m_sums.at(row + 1000, plane) + at);
+      pool(m_sums.at(row, plane) + at);
     };
     add(0, m_input.open, m_input.open);
     for (std::size_t i = 0; i < m_layout.features; ++i) {
@@ -165,7 +166,7 @@ private:
       else
         std::ranges::fill(m_blockFits, Lanes{});
       for (std::size_t plane = 0; plane < m_layout.coefficients(); ++plane)
-        std::copy_n(m_blockFits[plane].v, lanes, m_fits.at(row + 1000, plane) + x);
+        std::copy_n(m_blockFits[plane].v, lanes, m_fits.at(row, plane) + x);
     }
   }
 
@@ -175,7 +176,7 @@ private:
     for (std::size_t plane = 0; plane < m_fits.planes(); ++plane) {
       m_fits.sum(plane, m_rowSum.data());
       const float* in = m_rowSum.data();
-      float* out = m_means.at(row + 1000, plane);
+      float* out = m_means.at(row, plane);
       for (std::size_t x = 0; x + 4 < width; ++x)
         out[x] = ((in[x] + in[x + 1]) + (in[x + 2] + in[x + 3])) + in[x + 4];
     }
@@ -197,7 +198,7 @@ private:
 
   HWY_INLINE void evaluate(std::int64_t y, std::int64_t row, float down) {
     for (std::size_t plane = 0; plane < m_means.planes(); ++plane) {
-      const float *upper = m_means.at(row + 1000, plane), *lower = m_means.at(row + 1001, plane);
+      const float *upper = m_means.at(row, plane), *lower = m_means.at(row + 1, plane);
       float* between = &m_between[plane * width];
       for (std::size_t x = 0; x < width; ++x)
         between[x] = upper[x] + down * (lower[x] - upper[x]);
@@ -206,15 +207,17 @@ private:
     const std::int64_t end = std::min<std::int64_t>((m_column + edge) * m_cell, m_input.width);
     for (std::int64_t phase = 0; phase < m_cell; ++phase) {
       // Pixels at one place between the centres of two cells: every m_cell-th.
-      const std::int64_t before = phase < m_cell / 2 ? 1 : 0;
+      const std::int64_t before = m_cell > 1 && phase < m_cell / 2 ? 1 : 0;
       const std::int64_t x = first + before * m_cell + phase - m_cell / 2;
       if (x >= end)
         continue;
       m_count = static_cast<std::size_t>((end - x + m_cell - 1) / m_cell);
+      // Cells of one pixel: at the centre of the next cell.
+      const std::int64_t place = m_cell > 1 ? before : 1;
       const float across =
-          m_cell == 1 ? 1.0F : (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cell);
+          m_cell > 1 ? (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cell) : 0.0F;
       evaluateEvery(static_cast<std::size_t>(y * m_input.width + x),
-                    static_cast<std::size_t>(before), across);
+                    static_cast<std::size_t>(place), across);
     }
   }
 

@@ -22,11 +22,6 @@ struct FitInput {
 /// four blocks of 16 fits.
 constexpr int tileColumns = 58, tileRows = 116;
 
-/// Half of a window's width in pixels.
-constexpr int halfWidth(int level) {
-  return 2 << level;
-}
-
 /// Fits all colours at once, each from itself alone. Closed pixels keep their colour. Independent
 /// of threads.
 std::vector<Plane> fitWindows(const FitInput& input, int level);

@@ -60,7 +60,7 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
 std::string filterText(const std::optional<FilteredPicture>& filtered) {
   const std::optional<double> noise = filteredNoise(filtered);
   return textOf("filtered for the eye by least squares in windows, version ", filterVersion,
-                ", on ", "expected albedo, normal and depth; told error ",
+                ", on expected albedo, normal, depth and light; told error ",
                 noise ? numberText(*noise, 3) : "unknown",
                 "; --denoise off leaves the picture raw");
 }
@@ -68,10 +68,11 @@ std::string filterText(const std::optional<FilteredPicture>& filtered) {
 /// Adds the filtered channels that the layers name; R, G, B and A stay as they are.
 void addFilterChannels(const RenderOptions& options, const Scene& scene,
                        const FilteredPicture& filtered, Image& image) {
-  if (options.layers.contains("denoised"))
-    addDenoised(image, filtered);
-  if (options.layers.contains("expected"))
+  if (options.hasFilterLayer("expected"))
     addExpected(image, *scene.flight());
+  if (!options.hasFilterLayer("denoised"))
+    return;
+  addDenoised(image, filtered);
   image.header["filter"] =
       textOf("channels denoised.* are ", filterText(filtered), "; R, G, B and A are not filtered");
 }
@@ -91,7 +92,7 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
   for (const std::filesystem::path& input : options.inputs)
     expectInput(input);
   for (const std::filesystem::path& path : options.outputs)
-    declareImage(path, outputs, options.outputsNamedBy);
+    declareImage(path, outputs, options.outputsNamedBy, options.filteredFiles());
   if (options.surface)
     declareSurface(*options.surface, outputs);
   for (const auto& file : {options.stats, options.returnValues})
@@ -115,22 +116,24 @@ void checkMemory(const SceneRequest& scene) {
                     numberText(there / gigabyte, 3), "; choose a smaller one");
 }
 
-RenderSettings pictureSettings(const RenderOptions& options, const Scene& scene) {
-  RenderSettings settings = settingsFor(options, scene.background());
-  if (options.noiseTarget == NoiseTarget::filtered)
-    settings.seenNoise = [&scene](const Film& film) {
-      const FilteredPicture picture = denoised(film, scene);
+RenderSettings PictureFilter::settings() {
+  RenderSettings settings = settingsFor(m_options, m_scene.background());
+  if (m_options.noiseTarget == NoiseTarget::filtered)
+    settings.seenNoise = [this](const Film& film) {
+      m_seen = denoised(film, m_scene);
+      m_seenSamples = film.sampleCounts().greatest;
       // Twice its standard error more, lest luck ends the render.
-      return std::sqrt(picture.toldError + 2.0 * picture.toldDeviation);
+      return std::sqrt(m_seen.toldError + 2.0 * m_seen.toldDeviation);
     };
   return settings;
 }
 
-std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film,
-                                               const std::vector<Plane>& history) {
-  if (!scene.flight())
+std::optional<FilteredPicture> PictureFilter::of(const RenderResult& result) const {
+  if (!m_scene.flight())
     return std::nullopt;
-  return denoised(film, scene, history);
+  if (result.reason == StopReason::noise && m_seenSamples == result.finishedSamples)
+    return m_seen;
+  return denoised(result.film, m_scene);
 }
 
 std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered) {
@@ -152,8 +155,7 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
   if (filtered) {
     shown.channels = filteredColors(*filtered, raw.width, raw.height).channels;
     shown.header["filter"] = filterText(filtered);
-    if (options.denoise == Denoise::on)
-      addFilterChannels(options, scene, *filtered, raw);
+    addFilterChannels(options, scene, *filtered, raw);
   }
   // All files at once if threads are free: compressing one does not delay another.
   std::vector<std::future<void>> files;

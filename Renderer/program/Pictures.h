@@ -24,12 +24,24 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs);
 /// Throws Error (output) if memory cannot hold the picture.
 void checkMemory(const SceneRequest& scene);
 
-/// Settings of a render of the scene, whose functions must not outlive it.
-RenderSettings pictureSettings(const RenderOptions& options, const Scene& scene);
+/// Filter of one render, as the options ask for it. Both must outlive it.
+class PictureFilter {
+public:
+  PictureFilter(const RenderOptions& options, const Scene& scene)
+      : m_options(options), m_scene(scene) {}
 
-/// The film filtered, if the scene has features; else nothing. `history`: as denoised takes it.
-std::optional<FilteredPicture> filteredPicture(const Scene& scene, const Film& film,
-                                               const std::vector<Plane>& history = {});
+  /// Settings of the render; looks at the noise of filtered pictures are kept here.
+  RenderSettings settings();
+  /// The film filtered, if the scene has features; else nothing.
+  std::optional<FilteredPicture> of(const RenderResult& result) const;
+
+private:
+  const RenderOptions& m_options;
+  const Scene& m_scene;
+  FilteredPicture m_seen;          ///< at the last look
+  std::uint64_t m_seenSamples = 0; ///< samples a pixel then; 0: no look yet
+};
+
 /// Error that the filter tells of itself, as Film::noise(); nothing if it tells none.
 std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered);
 

@@ -194,9 +194,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   std::future<void> surface = startSurface(options, scene, outputs);
   Stopwatch watch;
   RenderStats stats;
+  PictureFilter filter(options, scene);
   const RenderResult result = [&] {
     const Progress progress(options, monitor);
-    return render(scene.forRender(), pictureSettings(options, scene), monitor);
+    return render(scene.forRender(), filter.settings(), monitor);
   }();
   stats.transport = watch.seconds();
   surface.get();
@@ -205,7 +206,7 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
     return stopStatus();
   }
   watch.lap();
-  const std::optional<FilteredPicture> filtered = filteredPicture(scene, result.film);
+  const std::optional<FilteredPicture> filtered = filter.of(result);
   stats.filtered = filteredNoise(filtered);
   stats.filter = watch.lap();
   writePictures(options, scene, result, filtered, words, outputs);

@@ -34,6 +34,14 @@ struct RenderOptions {
   std::optional<std::filesystem::path> returnValues = {};
   ProgressMode progress = ProgressMode::automatic;
   std::optional<std::string> preset = {}; ///< the organ preset's name
+
+  /// True if an `.exr` or `.nrrd` has a layer that the filter makes.
+  bool hasFilterLayer(const std::string& layer) const {
+    return denoise == Denoise::on && layers.contains(layer);
+  }
+  Filtered filteredFiles() const {
+    return hasFilterLayer("denoised") ? Filtered::yes : Filtered::no;
+  }
 };
 
 inline constexpr double unlimited = 0x1p40; ///< limit of samples and of scatterings

@@ -120,9 +120,13 @@ void settleLayers(const FlagValues& flags, RenderOptions& options) {
 
 /// Settles what is filtered, and which noise ends the render.
 void settleFilter(const FlagValues& flags, RenderOptions& options) {
-  options.scene.features =
-      options.denoise == Denoise::on || (options.denoise == Denoise::automatic &&
-                                         std::ranges::any_of(options.outputs, isDisplayFile));
+  const bool hasDisplay = std::ranges::any_of(options.outputs, isDisplayFile);
+  const bool hasLayers = options.hasFilterLayer("denoised") || options.hasFilterLayer("expected");
+  options.scene.features = options.denoise != Denoise::off && (hasDisplay || hasLayers);
+  if (options.denoise == Denoise::on && !hasLayers)
+    throw usageError(
+        "--denoise: on adds the layers denoised and expected; name one in --layers, or "
+        "drop --denoise");
   if (options.noiseTarget == NoiseTarget::filtered && !options.scene.features)
     throw usageError("--noisetarget: filtered needs a filtered picture; write a .png, or add "
                      "--denoise on");

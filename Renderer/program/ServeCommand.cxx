@@ -65,7 +65,6 @@ private:
       checkMemory(options.scene);
       Scene scene = m_scene->changed(options.scene);
       m_outputs.checkInputs();
-      look(scene, options.scene);
       m_scene = std::move(scene);
       m_options = options;
       m_flags = flags;
@@ -84,19 +83,6 @@ private:
     return false;
   }
 
-  /// Sees the last filtered picture again with the eye of `scene`, if nothing else has changed.
-  void look(const Scene& scene, const SceneRequest& request) {
-    m_history.clear();
-    const StagesMade made = scene.made();
-    const bool isOtherLight = request.lights != m_options.scene.lights ||
-                              request.environment != m_options.scene.environment ||
-                              request.environmentMap != m_options.scene.environmentMap;
-    if (m_filtered && scene.flight() && m_scene->flight() && made.camera && !made.volume &&
-        !made.focus && !made.transfer && !isOtherLight)
-      m_history = seenAgain(*m_filtered, *m_scene, scene);
-    m_filtered.reset();
-  }
-
   /// Publishes the first picture at once, later ones at most every 0.1 seconds, and such that most
   /// of the time goes to samples.
   void renderPictures() {
@@ -105,30 +91,27 @@ private:
     m_monitor.paths = 0;
     m_published.reset();
     m_failure.clear();
-    m_monitor.between = [this](const RenderResult& result) {
+    PictureFilter filter(m_options, *m_scene);
+    m_monitor.between = [this, &filter](const RenderResult& result) {
       const double interval = std::max(0.1, 4.0 * m_publishing);
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
-        publish(result, false);
+        publish(result, filter, false);
     };
-    const RenderResult result =
-        render(m_scene->forRender(), pictureSettings(m_options, *m_scene), m_monitor);
+    const RenderResult result = render(m_scene->forRender(), filter.settings(), m_monitor);
     m_complete = result.reason != StopReason::request;
     if (m_complete)
-      publish(result, true);
+      publish(result, filter, true);
   }
 
   /// Puts the pictures in place and tells them. A failure (a full disk) is told as well, for
   /// intermediate pictures only once each; the next picture may have room again.
-  void publish(const RenderResult& result, bool last) {
+  void publish(const RenderResult& result, const PictureFilter& filter, bool last) {
     const Stopwatch watch;
     try {
-      // One sample tells too little of what to make of history, and the last picture has none.
-      const bool usesHistory = !last && result.finishedSamples > 1;
-      m_filtered =
-          filteredPicture(*m_scene, result.film, usesHistory ? m_history : std::vector<Plane>());
-      writePictures(m_options, *m_scene, result, m_filtered, m_flags.arguments(), m_outputs);
+      const std::optional<FilteredPicture> filtered = filter.of(result);
+      writePictures(m_options, *m_scene, result, filtered, m_flags.arguments(), m_outputs);
       m_outputs.commit(Durability::none); // the next picture follows soon
-      tell(result, filteredNoise(m_filtered), last);
+      tell(result, filteredNoise(filtered), last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())
         answerError(m_change.id, error.what());
@@ -162,9 +145,7 @@ private:
   RenderMonitor m_monitor;
   ServeInput m_input;
   std::optional<Scene> m_scene;
-  std::optional<FilteredPicture> m_filtered; ///< of m_scene, published last
-  std::vector<Plane> m_history; ///< the picture before, seen with m_scene's eye; empty: none
-  bool m_complete = false;      ///< true: the scene's picture is finished
+  bool m_complete = false;              ///< true: the scene's picture is finished
   std::optional<Stopwatch> m_published; ///< time since the scene's last picture; nullopt: none yet
   double m_publishing = 0.0;            ///< seconds that it took
   std::string m_failure;                ///< last reported failure to write a picture of this scene

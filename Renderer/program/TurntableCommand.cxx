@@ -96,12 +96,11 @@ private:
       warn(warning);
     RenderOptions options = m_options.render;
     options.outputs = m_options.pictures(frame);
-    const RenderResult result =
-        render(m_view.scene.forRender(), pictureSettings(options, m_view.scene), m_monitor);
+    PictureFilter filter(options, m_view.scene);
+    const RenderResult result = render(m_view.scene.forRender(), filter.settings(), m_monitor);
     if (result.reason == StopReason::request)
       return false;
-    writePictures(options, m_view.scene, result, filteredPicture(m_view.scene, result.film),
-                  m_words, m_outputs);
+    writePictures(options, m_view.scene, result, filter.of(result), m_words, m_outputs);
     m_outputs.commit();
     m_record.finish(frame, m_view.change, m_outputs);
     return true;
@@ -208,7 +207,8 @@ void declareFrames(const TurntableOptions& options, const TurntableRecord& recor
   for (int frame = 0; frame < options.frames; ++frame) {
     const bool isOurs = !options.restart && !record.finished().contains(frame);
     for (const std::filesystem::path& path : options.pictures(frame))
-      declareImage(path, outputs, isOurs ? NamedBy::standard : options.render.outputsNamedBy);
+      declareImage(path, outputs, isOurs ? NamedBy::standard : options.render.outputsNamedBy,
+                   options.render.filteredFiles());
   }
   if (options.render.stats)
     outputs.add(*options.render.stats);

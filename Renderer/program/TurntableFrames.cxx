@@ -73,7 +73,7 @@ std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
       continue;
     if (render.layers.contains("depth"))
       files.push_back(parts[1]);
-    if (render.denoise == Denoise::on && render.layers.contains("denoised"))
+    if (render.hasFilterLayer("denoised"))
       files.push_back(parts[2]);
   }
   return files;

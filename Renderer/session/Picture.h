@@ -24,8 +24,8 @@ Image picture(const Film& film, const Camera& camera, const Clip& clip, const La
 
 /// Adds the channels denoised.* and denoised.error.*.
 void addDenoised(Image& image, const FilteredPicture& filtered);
-/// Adds the channels expected.*: means over the rays that meet something, as Z; infinity where none
-/// does; albedo and normal as Film's.
+/// Adds the channels expected.*: albedo and normal over all rays, as Film's; Z, like the channel Z,
+/// over those that meet something, and infinity where none does.
 void addExpected(Image& image, const ExpectedFlight& flight);
 /// R, G, B and A of the filtered picture.
 Image filteredColors(const FilteredPicture& filtered, int width, int height);

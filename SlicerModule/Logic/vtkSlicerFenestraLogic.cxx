@@ -236,9 +236,12 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
                                        "--output=radiance.nrrd", "--layers=color,depth"});
   if (withSurface && !render->IsTurntable())
     arguments.push_back("--surface=surface.vtp");
-  if (render->GetFlags().count("noise") > 0) // of the picture that is looked at
-    arguments.push_back("--noisetarget=filtered");
-  for (const auto& [name, value] : render->GetFlags()) // "=" keeps a value that begins with a dash
+  const std::map<std::string, std::string> flags = render->GetFlags();
+  const auto denoise = flags.find("denoise");
+  const bool isFiltered = denoise == flags.end() || denoise->second != "off";
+  if (isFiltered && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
+    arguments.push_back("--noisetarget=filtered"); // of the picture that is looked at
+  for (const auto& [name, value] : flags)          // "=" keeps a value that begins with a dash
     arguments.push_back("--" + name + "=" + value);
   return arguments;
 }

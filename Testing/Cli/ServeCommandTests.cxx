@@ -177,7 +177,6 @@ TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
   EXPECT_EQ(refused, bad.size());
 }
 
-/// Pictures on the way may use what the last view has shown; the last one is render's.
 TEST_F(ServeCommand, TurnedViewEndsWithTheFilteredPictureOfRender) {
   const Arguments flags = {"volume.nrrd", "--size", "32x32", "--samples", "8", "--output"};
   Arguments arguments = flags;

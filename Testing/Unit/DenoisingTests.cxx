@@ -103,41 +103,32 @@ TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
   EXPECT_EQ(filtered.error[0].size(), film.pixelCount());
 }
 
-TEST_F(Denoising, LightIsSeenAgainWhereTheEyeStays) {
+TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
   const Scene scene(request);
-  const FilteredPicture filtered = denoised(picture(scene, 1, 4), scene);
-  const std::vector<Plane> again = seenAgain(filtered, scene, scene);
-  ASSERT_EQ(again.size(), 2U);
-  double offset = 0.0;
-  bool isFirst = true;
-  for (std::size_t i = 0; i < again[0].size(); ++i)
-    if (again[0][i] != 0.0F) { // else the expected depth does not find the pixel
-      const double off = static_cast<double>(filtered.light[0][i] - again[0][i]);
-      offset = isFirst ? off : offset;
-      isFirst = false;
-      ASSERT_NEAR(off, offset, 1e-4);
-    }
-  EXPECT_FALSE(isFirst);
+  const Film film = picture(scene, 4, 3);
+  const FilterInput input = filterInput(film, scene);
+  const FilteredPicture filtered = denoised(film, scene);
+  for (std::size_t i = 0; i < film.pixelCount(); ++i) {
+    const auto mean = static_cast<float>(film.pixels()[i].mean[1]);
+    ASSERT_TRUE(input.isOpen[i] != 0 || filtered.color[1][i] == mean);
+  }
 }
 
-TEST_F(Denoising, LightSeenFromAnotherEyeHarmsLittleWhereFeaturesKnowAll) {
-  const Scene before(request);
-  const FilteredPicture old = denoised(picture(before, 1, 8), before);
-  const CameraPose pose = turnedAroundTarget(before.camera().pose(), 3.0);
-  request.view = {.projection = pose.projection,
-                  .position = pose.position,
-                  .target = pose.target,
-                  .up = pose.up,
-                  .scale = pose.scale};
-  const Scene scene = before.changed(request);
-  const Film film = picture(scene, 2, 2), truth = picture(scene, 9, 512);
-  const std::vector<Plane> history = seenAgain(old, before, scene);
-  std::size_t found = 0;
-  for (const float light : history[0])
-    found += light != 0.0F;
-  EXPECT_GT(found, 200U);
-  EXPECT_LT(errorOf(denoised(film, scene, history), truth),
-            1.3 * errorOf(denoised(film, scene), truth));
+TEST_F(Denoising, OnePixelWithOneSampleLeavesNoHalvesButTheWholePicture) {
+  const Scene scene(request);
+  Film film = picture(scene, 4, 2);
+  std::size_t open = 0;
+  while (film.pixels()[open].isCertain)
+    ++open;
+  PathSample sample;
+  sample.radiance = Rgb::Ones();
+  film.at(static_cast<int>(open) % 48, static_cast<int>(open) / 48) = PixelSums();
+  film.at(static_cast<int>(open) % 48, static_cast<int>(open) / 48).add(sample);
+  const FilterInput input = filterInput(film, scene);
+  EXPECT_FALSE(input.hasHalves);
+  for (std::size_t i = 0; i < film.pixelCount(); ++i)
+    ASSERT_EQ(input.even[0][i], static_cast<float>(film.pixels()[i].mean[0]));
+  EXPECT_TRUE(denoised(film, scene).error[0].empty());
 }
 
 } // namespace

@@ -82,6 +82,21 @@ TEST(ExpectedFlight, RaysThatMeetNothingGiveZeros) {
   }
 }
 
+/// An axis on which half a voxel is less than a float's last place.
+TEST(ExpectedFlight, EndsOnAxesOfAMillionVoxels) {
+  const Grid grid = centredGrid({2, 2, 600'000}, {1.0, 1.0, 1.0});
+  TestScene s{makeVolume<std::uint8_t>(grid, [](const Vec3& p) { return p.z() < 3.0 ? 1 : 0; }),
+              linearTransfer(0.1, Rgb(0.9, 0.5, 0.1)),
+              {DirectionalLight{}},
+              {.position = {0, 0, 4e5}, .target = Vec3::Zero(), .up = Vec3::UnitY(), .scale = 1.5},
+              4,
+              4};
+  s.with([](const RenderScene& scene) {
+    ASSERT_TRUE(lanesServe(scene));
+    EXPECT_GT(expectedFlight(scene).hit[5], 0.1F);
+  });
+}
+
 /// Root mean square of the differences, relative to that of `b`.
 double apart(const Plane& a, const Plane& b) {
   double difference = 0.0, whole = 0.0;

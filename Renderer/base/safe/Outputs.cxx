@@ -222,7 +222,8 @@ void Outputs::write(const fs::path& path, std::string_view content) {
 }
 
 std::optional<ContentState> Outputs::written(const fs::path& path) const {
-  return m_results.at(path)->written;
+  const auto result = m_results.find(path);
+  return result == m_results.end() ? std::nullopt : result->second->written;
 }
 
 void Outputs::place(const std::vector<Result*>& files, Durability durability) {

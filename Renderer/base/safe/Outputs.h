@@ -58,7 +58,7 @@ public:
   /// Writes the whole content of a declared result to the disk, not yet in place. Callable from any
   /// thread. Throws Error (output), a full disk included.
   void write(const std::filesystem::path& path, std::string_view content);
-  /// State of the content written last; nullopt: none.
+  /// State of the content written last; nullopt: none, or no declared result.
   std::optional<ContentState> written(const std::filesystem::path& path) const;
 
   /// Puts all content written since the last commit in place, all or nothing: after a failure the

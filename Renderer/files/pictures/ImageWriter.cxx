@@ -271,7 +271,8 @@ std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path)
   return {path};
 }
 
-void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy namedBy) {
+void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy namedBy,
+                  Filtered filtered) {
   const ImageFormat format = checkedFormat(path);
   if (namedBy == NamedBy::user)
     outputs.add(path);
@@ -280,7 +281,8 @@ void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy n
   if (format != ImageFormat::nrrd)
     return;
   outputs.add(besidePath(path, "Z"), [path](const auto& depth) { return isOurDepth(depth, path); });
-  outputs.add(besidePath(path, "denoised"), bearsMark);
+  if (filtered == Filtered::yes)
+    outputs.add(besidePath(path, "denoised"), bearsMark);
 }
 
 } // namespace fenestra

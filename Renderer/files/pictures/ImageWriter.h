@@ -29,9 +29,11 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
 std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path);
 
 enum class NamedBy { user, standard };
+/// Whether pictures have filtered channels.
+enum class Filtered { no, yes };
 /// Declares the files of imageFiles, before a long render. Pictures beside a `.nrrd`, and a picture
 /// with its standard name, replace only files that Fenestra wrote. Throws as Outputs does.
 void declareImage(const std::filesystem::path& path, Outputs& outputs,
-                  NamedBy namedBy = NamedBy::user);
+                  NamedBy namedBy = NamedBy::user, Filtered filtered = Filtered::no);
 
 } // namespace fenestra

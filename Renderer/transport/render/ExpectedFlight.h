@@ -23,8 +23,8 @@ struct ExpectedFlight {
 
 /// Rays start exactly behind the clip's surface; cells without matter are stepped over. One ray
 /// through the middle of a pixel, or, where that differs from a neighbour's by more than fixed
-/// thresholds, the mean of 2x2: a part of a picture is marched as the whole is. Uses the calling
-/// arena's threads; independent of their number.
+/// thresholds, the mean of 2x2: a part of a picture is marched as the whole is, but for its border.
+/// Uses the calling arena's threads; independent of their number.
 ExpectedFlight expectedFlight(const RenderScene& scene);
 
 /// The same, ray by ray (transport/readable/March.h): for scenes that lanes do not serve.

@@ -102,6 +102,8 @@ public:
     m_perSample = (now - m_last) / static_cast<double>(samples);
     m_last = now;
   }
+  /// Time until now went into a look, not into samples.
+  void looked() { m_last = m_watch.seconds(); }
   /// Number of samples that the remaining time allows, at the last pass's time per sample.
   std::uint64_t affordable() const {
     if (!(m_secondsInAll < infinity) || m_perSample == 0.0)
@@ -135,18 +137,20 @@ public:
   }
   SamplePlan::Stage stage(std::uint64_t mean) const { return m_plan.at(mean); }
 
-  /// Looks at the film after a pass; `noise`: of the last look before, then of this one. Returns
-  /// true if the target is reached.
+  /// Looks at the film after a pass, if a look is due, and sets `noise`. Returns true if the target
+  /// is reached.
   bool isReached(const Film& film, std::uint64_t done, std::atomic<double>& noise) {
-    if (!isSeen()) {
-      noise = film.noise();
-      if (!isRaw() || done < leastForNoise)
+    if (isSeen()) {
+      if (nextLook(done - 1) != done)
         return false;
-      if (done == leastForNoise)
-        m_plan = SamplePlan(film);
-    } else if (nextLook(done - 1) == done) {
       noise = m_settings.seenNoise(film);
+      return noise <= m_settings.noise;
     }
+    noise = film.noise();
+    if (!isRaw() || done < leastForNoise)
+      return false;
+    if (done == leastForNoise)
+      m_plan = SamplePlan(film);
     return noise <= m_settings.noise;
   }
 
@@ -196,6 +200,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
       result.reason = StopReason::noise;
       return result;
     }
+    pace.looked();
   }
   return result;
 }

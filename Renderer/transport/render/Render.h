@@ -69,7 +69,7 @@ struct RenderResult;
 struct RenderMonitor {
   std::atomic<bool> stop = false;
   std::atomic<std::uint64_t> paths = 0; ///< finished so far, as if no pixel were empty
-  std::atomic<double> noise = infinity; ///< at the end of the last pass
+  std::atomic<double> noise = infinity; ///< at the last look
   /// Called between two passes with the result so far; the render waits.
   std::function<void(const RenderResult&)> between = {};
 };
