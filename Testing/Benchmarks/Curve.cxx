@@ -1,24 +1,14 @@
 #include "Curve.h"
 
 #include "Agreement.h"
+#include "Program.h"
 #include "image/Compare.h"
-
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <numeric>
 
 namespace fenestra::benchmarks {
 namespace {
-
-double cpuSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 /// Measurements of one render.
 struct Sample {

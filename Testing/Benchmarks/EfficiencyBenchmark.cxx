@@ -1,5 +1,6 @@
 // Error against time over scenes and modes (README.md here).
 
+#include "Program.h"
 #include "Report.h"
 
 #include "base/Error.h"
@@ -154,13 +155,6 @@ int benchmark(int argc, char** argv) {
 } // namespace fenestra::benchmarks
 
 int main(int argc, char** argv) {
-  try {
-    return fenestra::benchmarks::benchmark(argc, argv);
-  } catch (const fenestra::Error& error) {
-    std::cerr << "EfficiencyBenchmark: " << error.what() << '\n';
-    return error.exitStatus();
-  } catch (const std::exception& error) {
-    std::cerr << "EfficiencyBenchmark: " << error.what() << '\n';
-    return 1;
-  }
+  using namespace fenestra::benchmarks;
+  return runBenchmark("EfficiencyBenchmark", benchmark, argc, argv);
 }

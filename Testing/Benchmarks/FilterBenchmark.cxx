@@ -1,15 +1,14 @@
 // Gain and cost of the filter, and whether its told error is true, over scenes and sample counts
 // (README.md here): prints a table in Markdown.
 
+#include "Program.h"
 #include "References.h"
-#include "base/Error.h"
 #include "image/Compare.h"
 #include "program/CommandLine.h"
 #include "session/Denoising.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
+#include <charconv>
 #include <iomanip>
 #include <iostream>
 
@@ -31,15 +30,6 @@ const Flag flags[] = {
 const CommandSyntax syntax = {
     "FilterBenchmark", "Measures the filter against references.", {}, flags};
 
-double cpuSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 /// Result and CPU seconds of some work.
 template <typename Work>
 auto timed(const Work& work, double& seconds) {
@@ -51,26 +41,18 @@ auto timed(const Work& work, double& seconds) {
 
 /// Means over the seeds of a count.
 struct Row {
-  double raw = 0.0, filtered = 0.0; ///< relMSE
-  double told = 0.0, toldDeviation = 0.0;
+  double raw = 0.0, filtered = 0.0;  ///< relMSE
+  double told = 0.0;                 ///< relMSE that the filter tells
   double render = 0.0, filter = 0.0; ///< CPU seconds
 
   void add(const Row& other, double share) {
     raw += share * other.raw;
     filtered += share * other.filtered;
     told += share * other.told;
-    toldDeviation += share * other.toldDeviation;
     render += share * other.render;
     filter += share * other.filter;
   }
 };
-
-Image colorsOf(const FilteredPicture& picture, int width, int height) {
-  return {width,
-          height,
-          {{"R", picture.color[0]}, {"G", picture.color[1]}, {"B", picture.color[2]}},
-          {}};
-}
 
 Row measured(const Scene& scene, const RenderSettings& settings, const Image& reference) {
   Row row;
@@ -82,9 +64,9 @@ Row measured(const Scene& scene, const RenderSettings& settings, const Image& re
       row.render);
   const FilteredPicture picture = timed([&] { return denoised(film, scene); }, row.filter);
   row.raw = compareImages(imageOf(film, scene), reference).relMse;
-  row.filtered = compareImages(colorsOf(picture, film.width(), film.height()), reference).relMse;
+  row.filtered =
+      compareImages(filteredColors(picture, film.width(), film.height()), reference).relMse;
   row.told = picture.toldError;
-  row.toldDeviation = picture.toldDeviation;
   return row;
 }
 
@@ -99,10 +81,19 @@ void print(const std::string& scene, std::uint64_t samples, const Row& row, doub
             << " |" << std::endl;
 }
 
+/// Throws Error (usage).
+std::uint64_t countOf(const std::string& text) {
+  std::uint64_t count = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (failed != std::errc() || end != text.data() + text.size() || count == 0)
+    throw usageError("--counts: expected whole numbers above 0, got '" + text + "'");
+  return count;
+}
+
 std::vector<std::uint64_t> countsOf(const FlagValues& values) {
   std::vector<std::uint64_t> counts;
   for (const std::string& text : values.list("counts"))
-    counts.push_back(std::stoull(text));
+    counts.push_back(countOf(text));
   return counts.empty() ? std::vector<std::uint64_t>{1, 2, 4, 8, 16, 64, 1024} : counts;
 }
 
@@ -155,13 +146,6 @@ int benchmark(int argc, char** argv) {
 } // namespace fenestra::benchmarks
 
 int main(int argc, char** argv) {
-  try {
-    return fenestra::benchmarks::benchmark(argc, argv);
-  } catch (const fenestra::Error& error) {
-    std::cerr << "FilterBenchmark: " << error.what() << '\n';
-    return error.exitStatus();
-  } catch (const std::exception& error) {
-    std::cerr << "FilterBenchmark: " << error.what() << '\n';
-    return 1;
-  }
+  using namespace fenestra::benchmarks;
+  return runBenchmark("FilterBenchmark", benchmark, argc, argv);
 }

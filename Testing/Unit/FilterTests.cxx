@@ -284,10 +284,18 @@ TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
         input.variance[c][i] *= scale * scale;
       }
   const FilteredPicture picture = filtered(input);
+  double told = 0.0, left = 0.0; // squares, over the black half
   for (std::size_t c = 0; c < 3; ++c)
-    for (const float error : picture.error[c])
-      ASSERT_TRUE(error >= 0.0F && std::isfinite(error));
+    for (int y = 0; y < subject.height; ++y)
+      for (int x = 0; x < subject.width; ++x) {
+        const std::size_t i = subject.at(x, y);
+        const auto error = static_cast<double>(picture.error[c][i]);
+        ASSERT_TRUE(error >= 0.0 && std::isfinite(error));
+        told += x < 40 ? error * error : 0.0;
+        left += x < 40 ? std::pow(static_cast<double>(picture.color[c][i]), 2) : 0.0;
+      }
   EXPECT_LT(picture.toldError, 1.0);
+  EXPECT_GT(told, 0.25 * left) << "told standard errors at least half of what is there";
 }
 
 TEST(Filter, PictureWithoutFeaturesIsFilteredByMeans) {

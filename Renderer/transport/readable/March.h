@@ -7,6 +7,8 @@
 #include "model/volume/GridWalk.h"
 #include "transport/readable/MajorantGrid.h"
 
+#include <optional>
+
 namespace fenestra {
 
 /// Sums over the first collisions of a ray, weighted by their probability T(t) sigma_t(t) dt; a ray
@@ -37,104 +39,102 @@ public:
       : m_domain(domain), m_medium(medium), m_majorants(majorants), m_clip(clip) {}
 
   FirstMatter along(const Ray& ray, const Interval& range) const {
-    const Affine& worldToIndex = m_domain.grid().worldToIndex;
-    const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
-    if (inside.empty())
+    const std::optional<Part> part = partInside(ray, range);
+    if (!part)
       return {};
-    const Ray entering{ray.at(inside.begin), ray.direction}; // keeps the digits of lengths
-    Walk walk{entering, transformed(worldToIndex, entering), inside.begin};
-    GridWalk cells(transformed(m_majorants.worldToCell(), entering),
-                   {0.0, inside.end - inside.begin}, m_majorants.cellCount());
-    for (; !cells.done() && walk.transmittance > MarchSteps::dark; cells.next())
-      cross(m_majorants.cell(cells.cell()), cells.interval(), walk);
-    collect(walk);
-    return walk.met;
+    Sums sums;
+    forEachStep(*part, 1.0, [&](double t, double length, double extinction) {
+      const double stopped = sums.transmittance * -std::expm1(-extinction * length);
+      sums.transmittance -= stopped;
+      sums.pending += stopped;
+      sums.moment += stopped * t;
+      if (sums.pending > MarchSteps::share)
+        collect(*part, sums);
+      return sums.transmittance > MarchSteps::dark;
+    });
+    collect(*part, sums);
+    return sums.met;
   }
 
   /// Transmittance over `range`, in coarser steps.
   double through(const Ray& ray, const Interval& range) const {
-    const Affine& worldToIndex = m_domain.grid().worldToIndex;
-    const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
-    if (inside.empty())
-      return 1.0;
-    const Ray entering{ray.at(inside.begin), ray.direction};
-    const Ray indexRay = transformed(worldToIndex, entering);
-    GridWalk cells(transformed(m_majorants.worldToCell(), entering),
-                   {0.0, inside.end - inside.begin}, m_majorants.cellCount());
-    double depth = 0.0;
-    for (; !cells.done() && std::exp(-depth) > MarchSteps::dark; cells.next())
-      forEachStep(m_majorants.cell(cells.cell()), cells.interval(), indexRay, MarchSteps::coarser,
-                  [&](double t, double length, bool isCut) {
-                    const double kept = isCut ? keep(m_clip, entering.at(t)) : 1.0;
-                    if (kept > 0.0)
-                      depth += length * kept * m_medium.extinction(indexRay.at(t));
-                    return true;
-                  });
-    return std::exp(-depth);
+    const std::optional<Part> part = partInside(ray, range);
+    double transmittance = 1.0;
+    if (part)
+      forEachStep(*part, MarchSteps::coarser, [&](double, double length, double extinction) {
+        transmittance *= std::exp(-extinction * length);
+        return transmittance > MarchSteps::dark;
+      });
+    return transmittance;
   }
 
 private:
-  /// Calls visit(middle, length, whether the clip cuts) for the steps in a cell until it returns
-  /// false.
-  template <typename Visit>
-  static void forEachStep(const MajorantGrid::Cell& cell, const Interval& interval,
-                          const Ray& indexRay, double coarser, Visit&& visit) {
-    if (cell.majorant == 0.0F)
-      return;
-    constexpr double mostSteps = 64.0;
-    const double length = interval.end - interval.begin;
-    const double step =
-        coarser * std::max(MarchSteps::voxels / indexRay.direction.norm(),
-                           MarchSteps::opticalDepth / static_cast<double>(cell.majorant));
-    const double steps = std::clamp(std::ceil(length / step), 1.0, mostSteps);
-    const double each = length / steps;
-    for (double i = 0.5; i < steps; i += 1.0)
-      if (!visit(interval.begin + i * each, each, cell.cut))
-        return;
-  }
-
-  struct Walk {
-    Ray ray, indexRay; ///< from the entry into the domain
-    double before;     ///< mm from the ray's origin to there
+  /// Part of a ray inside the domain; lengths count from its begin, which keeps their digits.
+  struct Part {
+    Ray ray, indexRay;
+    double before, length; ///< mm from the ray's origin to the begin; of the part
+  };
+  struct Sums {
     double transmittance = 1.0;
     double pending = 0.0; ///< probability of the collisions that are not collected yet
     double moment = 0.0;  ///< of these, times their distance
     FirstMatter met = {};
   };
 
-  void cross(const MajorantGrid::Cell& cell, const Interval& interval, Walk& walk) const {
-    forEachStep(cell, interval, walk.indexRay, 1.0, [&](double t, double length, bool isCut) {
-      const double kept = isCut ? keep(m_clip, walk.ray.at(t)) : 1.0;
-      if (!(kept > 0.0))
-        return true;
-      const double extinction = kept * m_medium.extinction(walk.indexRay.at(t));
-      const double stopped = walk.transmittance * -std::expm1(-extinction * length);
-      walk.transmittance -= stopped;
-      walk.pending += stopped;
-      walk.moment += stopped * t;
-      if (walk.pending > MarchSteps::share)
-        collect(walk);
-      return walk.transmittance > MarchSteps::dark;
-    });
+  std::optional<Part> partInside(const Ray& ray, const Interval& range) const {
+    const Affine& worldToIndex = m_domain.grid().worldToIndex;
+    const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
+    if (inside.empty())
+      return std::nullopt;
+    const Ray entering{ray.at(inside.begin), ray.direction};
+    return Part{entering, transformed(worldToIndex, entering), inside.begin,
+                inside.end - inside.begin};
+  }
+
+  /// Calls visit(middle, length, extinction there) for the steps in matter until it returns false.
+  template <typename Visit>
+  void forEachStep(const Part& part, double coarser, Visit&& visit) const {
+    constexpr double mostSteps = 64.0; // in a cell
+    const double voxels = MarchSteps::voxels / part.indexRay.direction.norm();
+    GridWalk cells(transformed(m_majorants.worldToCell(), part.ray), {0.0, part.length},
+                   m_majorants.cellCount());
+    for (; !cells.done(); cells.next()) {
+      const MajorantGrid::Cell& cell = m_majorants.cell(cells.cell());
+      if (cell.majorant == 0.0F)
+        continue;
+      const Interval& interval = cells.interval();
+      const double length = interval.end - interval.begin;
+      const double step =
+          coarser * std::max(voxels, MarchSteps::opticalDepth / static_cast<double>(cell.majorant));
+      const double steps = std::clamp(std::ceil(length / step), 1.0, mostSteps);
+      const double each = length / steps;
+      for (double i = 0.5; i < steps; i += 1.0) {
+        const double t = interval.begin + i * each;
+        const double kept = cell.cut ? keep(m_clip, part.ray.at(t)) : 1.0;
+        if (kept > 0.0 && !visit(t, each, kept * m_medium.extinction(part.indexRay.at(t))))
+          return;
+      }
+    }
   }
 
   /// Adds the pending collisions with the matter in their middle.
-  void collect(Walk& walk) const {
-    if (!(walk.pending > 0.0))
+  void collect(const Part& part, Sums& sums) const {
+    if (!(sums.pending > 0.0))
       return;
-    const double t = walk.moment / walk.pending;
-    const Matter matter = m_medium.matter(walk.indexRay.at(t), true);
-    walk.met.hit += walk.pending;
-    walk.met.distance += walk.pending * (walk.before + t);
-    walk.met.albedo += walk.pending * matter.albedo;
+    const double t = sums.moment / sums.pending;
+    const Matter matter = m_medium.matter(part.indexRay.at(t), true);
+    FirstMatter& met = sums.met;
+    met.hit += sums.pending;
+    met.distance += sums.pending * (part.before + t);
+    met.albedo += sums.pending * matter.albedo;
     const double slope = matter.gradient.norm();
-    const bool away = walk.ray.direction.dot(matter.gradient) < 0.0;
+    const bool away = part.ray.direction.dot(matter.gradient) < 0.0;
     if (slope > 0.0) {
-      const Vec3 normal = matter.gradient * (walk.pending / (away ? slope : -slope));
-      walk.met.normal += normal;
-      walk.met.facing += matter.surfaceProbability * normal;
+      const Vec3 normal = matter.gradient * (sums.pending / (away ? slope : -slope));
+      met.normal += normal;
+      met.facing += matter.surfaceProbability * normal;
     }
-    walk.pending = walk.moment = 0.0;
+    sums.pending = sums.moment = 0.0;
   }
 
   Domain m_domain;
