@@ -1,6 +1,8 @@
 #include "session/Defaults.h"
 
 #include "base/Error.h"
+#include "model/medium/Reflectance.h"
+#include "model/medium/VolumeProperty.h"
 
 #include <map>
 
@@ -140,20 +142,22 @@ TransferFunction relativeTransfer(const Volume& volume) {
 
   const double background = backgroundLevel(volume, low, high);
   const auto between = [&](double f) { return background + f * (high - background); };
+  const auto at = [&](double f) { return low + f * (high - low); };
   const auto knot = [](double s, double sigma_t) {
     return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
   };
   const double start = background - 0.35 * (background - low);
   return {ScalarFunction({knot(start, 0.0), knot(background, 0.8 * unit),
                           knot(between(0.3), 2.5 * unit), knot(high, 5.0 * unit)}),
-          ColorFunction({{start, Rgb(0.55, 0.22, 0.16)},
-                         {between(0.15), Rgb(0.74, 0.36, 0.27)},
-                         {between(0.45), Rgb(0.86, 0.60, 0.47)},
-                         {between(0.75), Rgb(0.94, 0.82, 0.68)},
-                         {high, Rgb(0.97, 0.93, 0.86)}}),
+          albedoFor(ColorFunction({{at(0.05), decodeSrgb(Rgb(0.878, 0.627, 0.541))},
+                                   {at(0.15), decodeSrgb(Rgb(0.839, 0.565, 0.471))},
+                                   {at(0.35), decodeSrgb(Rgb(0.800, 0.525, 0.439))},
+                                   {at(0.6), decodeSrgb(Rgb(0.878, 0.659, 0.541))},
+                                   {at(1.0), decodeSrgb(Rgb(0.957, 0.847, 0.745))}}),
+                    0.0),
           {},
           0.0,
-          SurfaceShading{}};
+          SurfaceShading::coat(0.2, 0.45)};
 }
 
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,

@@ -26,9 +26,9 @@ std::array<double, 2> usualRange(const Volume& volume);
 double transparentShare(const Mask& focus, const Volume& volume, const TransferFunction& transfer);
 
 /// Look for volumes without an absolute scale (MR, ultrasound, stored values): from transparent
-/// at the background's level to opaque at the 99.5th percentile, dark red-brown through tissue to
-/// ivory. Extinction is relative to the volume's size. A constant volume gets a uniform haze
-/// without shading.
+/// at the background's level to opaque at the 99.5th percentile, skin through tissue to ivory.
+/// Extinction is relative to the volume's size. A constant volume gets a uniform haze without
+/// shading.
 TransferFunction relativeTransfer(const Volume& volume);
 
 /// Pose of a view request for this volume and focus: named views look along the patient's axes at

@@ -65,6 +65,9 @@ Scatterer Scatterer::atSurface(const Vec3& incoming, const Rgb& albedo, const Ve
 
 /// At a surface, Lambert: albedo / pi; GGX (Walter et al. 2007): D F G / (4 cos_i cos_o), D of
 /// roughness^2 = 2 / (power + 2), G the product of Smith's two terms, F Schlick's with F0 = 0.04.
+/// As a coat of weight w, F0 = 0.028 over a matte base (Kelemen, Szirmay-Kalos 2001):
+/// base / pi (1 - w F(cos_i)) (1 - w F(cos_o)) / (1 - w F_mean), F_mean the integral of 2 x F(x);
+/// base / (1 - base) is odds times albedo / (1 - albedo).
 Rgb Scatterer::f(const Vec3& outgoing) const {
   if (!m_shading)
     return m_albedo * henyeyGreenstein(m_incoming.dot(outgoing), m_g);
@@ -77,10 +80,24 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
   const auto smith = [a2](double cosine) {
     return 2.0 / (1.0 + std::sqrt(1.0 + a2 * (1.0 / (cosine * cosine) - 1.0)));
   };
-  const double fresnel = 0.04 + 0.96 * std::pow(1.0 - h.dot(outgoing), 5.0);
-  const double glossy = d * fresnel * smith(cosIn) * smith(cosOut) / (4.0 * cosIn * cosOut);
+  const double normal = m_shading->coated ? 0.028 : 0.04;
+  const auto fresnel = [normal](double cosine) {
+    return normal + (1.0 - normal) * std::pow(1.0 - cosine, 5.0);
+  };
+  const double glossy =
+      d * fresnel(h.dot(outgoing)) * smith(cosIn) * smith(cosOut) / (4.0 * cosIn * cosOut);
+  const double w = m_shading->specular;
+  if (m_shading->coated) {
+    const double through = (1.0 - w * fresnel(cosIn)) * (1.0 - w * fresnel(cosOut));
+    const double everywhere = 1.0 - w * (20.0 * normal + 1.0) / 21.0;
+    Rgb base = m_albedo;
+    for (int c = 0; c < 3; ++c)
+      if (base[c] > 0.0)
+        base[c] = 1.0 / (1.0 + (1.0 / m_albedo[c] - 1.0) / m_shading->odds);
+    return (m_shading->diffuse * base / pi * through / everywhere + w * glossy) * cosOut;
+  }
   const double excess = std::max(1.0, m_shading->diffuse + m_shading->specular);
-  return (m_shading->diffuse * m_albedo / pi + m_shading->specular * glossy) / excess * cosOut;
+  return (m_shading->diffuse * m_albedo / pi + w * glossy) / excess * cosOut;
 }
 
 double Scatterer::facetDensity(const Vec3& h) const {

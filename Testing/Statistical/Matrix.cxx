@@ -44,6 +44,7 @@ Combination combination(int index) {
   constexpr double offsets[] = {0.0, 0.7, -0.7};
   const double offset = offsets[next(3)];
   const bool isOtherKind = next(2) == 0;
+  c.isCoated = c.isHybrid && next(2) == 0;
   if (index % 4 == 1 ||
       index % 4 == 2) { // the others are plain, which shows errors of other factors best
     c.edge = edge;
@@ -222,7 +223,8 @@ TransferFunction transferOf(const Combination& c) {
   if (c.transfer == TransferFactor::steepGradientOpacity)
     transfer.gradientOpacity = overGradient({{0.0, 0.0}, {0.1, 0.0}, {0.1, 1.0}, {0.3, 0.4}});
   if (c.isHybrid)
-    transfer.shading = SurfaceShading{0.8, 0.3, 12.0, 0.6};
+    transfer.shading =
+        c.isCoated ? SurfaceShading::coat(0.6, 0.35, c.g) : SurfaceShading{0.8, 0.3, 12.0, 0.6};
   return transfer;
 }
 
@@ -346,8 +348,8 @@ std::string describe(const Combination& c) {
     text << (c.offset < 0.0 ? ", nearer" : ", deeper");
   text << name(styles, c.style) << (c.isCropped ? ", cropped" : "") << " | "
        << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo) << " | "
-       << name(transfers, c.transfer) << (c.isHybrid ? ", hybrid" : "") << " | "
-       << name(voxels, c.voxels) << " | " << name(grids, c.grid) << " | "
+       << name(transfers, c.transfer) << (c.isHybrid ? c.isCoated ? ", coated" : ", hybrid" : "")
+       << " | " << name(voxels, c.voxels) << " | " << name(grids, c.grid) << " | "
        << name(backgrounds, c.background) << " | ";
   if (c.bounces == std::numeric_limits<std::uint64_t>::max())
     text << "any";

@@ -42,6 +42,7 @@ struct Combination {
   AlbedoFactor albedo{};
   TransferFactor transfer{};
   bool isHybrid = false;
+  bool isCoated = false; ///< where hybrid
   VoxelFactor voxels{};
   GridFactor grid{};
   bool isCropped = false;

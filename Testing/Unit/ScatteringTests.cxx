@@ -119,7 +119,44 @@ INSTANTIATE_TEST_SUITE_P(Lobes, Surface,
                                            SurfaceCase{0.6, {0.7, 0.3, 30.0, 0.5}},
                                            SurfaceCase{0.1, {0.0, 1.0, 4.0, 0.5}},
                                            SurfaceCase{0.3, {2.0, 1.0, 1.0, 0.5}},
-                                           SurfaceCase{0.8, {1.0, 0.0, 10.0, 0.5}}));
+                                           SurfaceCase{0.8, {1.0, 0.0, 10.0, 0.5}},
+                                           SurfaceCase{1.0, SurfaceShading::coat(0.2, 0.4)},
+                                           SurfaceCase{0.5, SurfaceShading::coat(1.0, 0.2)},
+                                           SurfaceCase{0.1, SurfaceShading::coat(0.7, 1.0)}));
+
+SurfaceScattering seenAt(double cosine, const SurfaceShading& shading, const Rgb& albedo) {
+  const Vec3 toViewer(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
+  return {-toViewer, -Vec3::UnitZ(), shading, albedo};
+}
+
+/// Share of the light of a uniform environment that goes to the viewer.
+double whiteness(const SurfaceScattering& surface) {
+  double sum = 0.0;
+  constexpr int n = 100000;
+  for (int i = 0; i < n; ++i) {
+    Random random(6, static_cast<std::uint64_t>(i), 0);
+    sum += surface.sample(random).weight.maxCoeff() / n;
+  }
+  return sum;
+}
+
+TEST(Coat, LeavesAWhiteSurfaceWhite) {
+  for (const double cosine : {1.0, 0.5}) {
+    const double coated = whiteness(seenAt(cosine, SurfaceShading::coat(0.2, 0.3), Rgb::Ones()));
+    EXPECT_GT(coated, 0.99);
+    EXPECT_LE(coated, 1.001);
+    EXPECT_NEAR(whiteness(seenAt(cosine, SurfaceShading::coat(0.0, 0.3), Rgb::Ones())), 1.0, 1e-9);
+  }
+}
+
+TEST(Coat, IsReciprocal) {
+  const SurfaceShading shading = SurfaceShading::coat(0.8, 0.3);
+  const Vec3 a(0.6, 0.0, 0.8), b(0.0, std::sqrt(0.99), 0.1);
+  const Rgb albedo(0.9, 0.6, 0.3);
+  const Rgb there = SurfaceScattering(-a, -Vec3::UnitZ(), shading, albedo).evaluate(b) / b.z();
+  const Rgb back = SurfaceScattering(-b, -Vec3::UnitZ(), shading, albedo).evaluate(a) / a.z();
+  EXPECT_TRUE(isApprox(there, back, 1e-12)) << there << "\n" << back;
+}
 
 TEST(SurfaceNormal, FacesTheIncomingPath) {
   const SurfaceShading matte{1.0, 0.0, 10.0, 0.5};

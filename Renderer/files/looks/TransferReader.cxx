@@ -2,6 +2,8 @@
 
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
+#include "files/looks/HexColor.h"
+#include "model/medium/Reflectance.h"
 #include "model/medium/VolumeProperty.h"
 
 #include <span>
@@ -36,18 +38,53 @@ PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double most) {
   return PiecewiseLinear<Channels>(std::move(knots));
 }
 
-TransferLook readOwn(const JsonNode& root) {
-  root.allowOnly({"scalars", "extinction", "albedo", "g", "shading"});
-  TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largestValue),
-                            .albedo = readCurve<3>(root.at("albedo"), 1.0)};
-  if (const auto g = root.find("g")) {
-    transfer.g = g->number();
-    if (!(std::abs(transfer.g) < 1.0))
-      throw g->error("must be between -1 and 1, both excluded");
+/// Albedo of rows [scalar, "#rrggbb"], the colours that are seen.
+ColorFunction readColors(const JsonNode& rows, double g) {
+  std::vector<ColorFunction::Knot> colors;
+  for (const JsonNode& row : rows.elements()) {
+    const std::vector<JsonNode> parts = row.elements();
+    if (parts.size() != 2)
+      throw row.error("must be [scalar, \"#rrggbb\"]");
+    colors.push_back({finite(parts[0]), readHexColor(parts[1])});
   }
-  if (const auto shading = root.find("shading");
-      shading && shading->oneOf({"volume", "hybrid"}) == 1)
-    transfer.shading = SurfaceShading();
+  if (colors.empty())
+    throw rows.error("is empty; give at least one point");
+  return albedoFor(ColorFunction(std::move(colors)), g);
+}
+
+/// Surface lobes: a coat where colour, specular or roughness is given; else those of Slicer's usual
+/// material.
+std::optional<SurfaceShading> readShading(const JsonNode& root, double g) {
+  const auto specular = root.find("specular"), roughness = root.find("roughness");
+  const auto shading = root.find("shading");
+  if (!shading || shading->oneOf({"volume", "hybrid"}) == 0) {
+    if (const auto& lobe = specular ? specular : roughness)
+      throw lobe->error("is of surfaces; add \"shading\": \"hybrid\"");
+    return std::nullopt;
+  }
+  if (!specular && !roughness && !root.find("color"))
+    return SurfaceShading();
+  return SurfaceShading::coat(specular ? specular->numberIn(0.0, 1.0) : 0.2,
+                              roughness ? roughness->numberIn(0.05, 1.0) : 0.4, g);
+}
+
+TransferLook readOwn(const JsonNode& root) {
+  root.allowOnly(
+      {"scalars", "extinction", "albedo", "color", "g", "shading", "specular", "roughness"});
+  double g = 0.0;
+  if (const auto node = root.find("g")) {
+    g = node->number();
+    if (!(std::abs(g) < 1.0))
+      throw node->error("must be between -1 and 1, both excluded");
+  }
+  const auto color = root.find("color");
+  if (color && root.find("albedo"))
+    throw color->error("and albedo contradict each other; give one");
+  TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largestValue),
+                            .albedo = color ? readColors(*color, g)
+                                            : readCurve<3>(root.at("albedo"), 1.0)};
+  transfer.g = g;
+  transfer.shading = readShading(root, g);
   const auto scalars = root.find("scalars");
   return {std::move(transfer), scalars && scalars->oneOf({"absolute", "relative"}) == 1};
 }

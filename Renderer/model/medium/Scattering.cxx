@@ -3,7 +3,6 @@
 namespace fenestra {
 namespace {
 
-constexpr double reflectanceAtNormal = 0.04; ///< F0 of Schlick 1994
 /// Roughness limit: a narrower lobe is finer than directions in double, and its density overflows.
 constexpr double leastRoughness = 1e-6;
 
@@ -11,11 +10,6 @@ Vec3 cosineHemisphere(const Vec2& u) {
   const double r = std::sqrt(u.x());
   const double phi = 2.0 * pi * u.y();
   return {r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0 - u.x())};
-}
-
-double schlick(double cosine) {
-  return reflectanceAtNormal +
-         (1.0 - reflectanceAtNormal) * std::pow(std::clamp(1.0 - cosine, 0.0, 1.0), 5.0);
 }
 
 } // namespace
@@ -51,13 +45,22 @@ SurfaceScattering::SurfaceScattering(const Vec3& incoming, const Vec3& gradient,
                                      const SurfaceShading& shading, const Rgb& albedo)
     : m_frame((incoming.dot(gradient) >= 0.0 ? -gradient : gradient).normalized()),
       m_viewer(m_frame.toLocal(-incoming)) {
-  const double total = std::max(1.0, shading.diffuse + shading.specular);
-  m_diffuse = shading.diffuse / total * albedo;
-  m_specular = shading.specular / total;
+  const SurfaceShading::Lobes lobes = shading.lobes();
+  m_specular = lobes.glossy;
+  m_f0 = lobes.f0;
+  m_coat = lobes.coat;
+  m_diffuse = lobes.lambert * (shading.odds * albedo / (1.0 - (1.0 - shading.odds) * albedo));
+  if (m_coat > 0.0)
+    m_diffuse *= belowCoat(m_viewer.z());
   m_roughness = std::max(leastRoughness, std::sqrt(2.0 / (shading.power + 2.0)));
   const double lambert = m_diffuse.maxCoeff();
-  const double glossy = m_specular * schlick(m_viewer.z());
+  const double glossy = m_specular * fresnel(m_viewer.z());
   m_lambertShare = lambert + glossy > 0.0 ? lambert / (lambert + glossy) : 1.0;
+}
+
+/// Schlick 1994.
+double SurfaceScattering::fresnel(double cosine) const {
+  return m_f0 + (1.0 - m_f0) * std::pow(std::clamp(1.0 - cosine, 0.0, 1.0), 5.0);
 }
 
 double SurfaceScattering::masking(const Vec3& v) const {
@@ -90,10 +93,12 @@ Rgb SurfaceScattering::evaluate(const Vec3& outgoing) const {
   if (l.z() <= 0.0)
     return Rgb::Zero();
   Rgb value = m_diffuse * lambertPdf(l);
+  if (m_coat > 0.0)
+    value *= belowCoat(l.z());
   if (m_specular > 0.0 && m_viewer.z() > 0.0) {
     // D F G / (4 cos cos) times the outgoing cosine, G separable (Smith).
     const Vec3 h = (l + m_viewer).normalized();
-    value += m_specular * schlick(l.dot(h)) * normalDensity(h) * masking(l) * masking(m_viewer) /
+    value += m_specular * fresnel(l.dot(h)) * normalDensity(h) * masking(l) * masking(m_viewer) /
              (4.0 * m_viewer.z());
   }
   return value;

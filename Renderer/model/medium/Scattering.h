@@ -35,7 +35,11 @@ private:
 };
 
 /// A Lambert lobe of the albedo and a GGX lobe (Walter et al. 2007; visible normals by Heitz 2018)
-/// with Schlick's Fresnel term at F0 = 0.04, weighted so that they never reflect more than arrives.
+/// with Schlick's Fresnel term F. Side by side they are weighted so that they never reflect more
+/// than arrives. Under a coat of weight w the Lambert lobe is
+/// albedo / pi (1 - w F(viewer)) (1 - w F(outgoing)) / (1 - w F_mean), which is reciprocal and
+/// white for albedo 1 (Kelemen, Szirmay-Kalos 2001): all but what the coat reflects, whose
+/// directional albedo w F(viewer) exceeds by less than w / 1000.
 class SurfaceScattering {
 public:
   /// `gradient` must not be zero; the normal is -gradient, flipped to the side of the path's
@@ -54,6 +58,9 @@ public:
 
 private:
   double lambertPdf(const Vec3& l) const { return std::max(l.z(), 0.0) / pi; }
+  double fresnel(double cosine) const;
+  /// Share of light that passes the coat.
+  double belowCoat(double cosine) const { return 1.0 - m_coat * fresnel(cosine); }
   double glossyPdf(const Vec3& l) const;
   double masking(const Vec3& v) const; ///< Smith's G1
   double normalDensity(const Vec3& h) const;
@@ -61,8 +68,10 @@ private:
 
   Frame m_frame; ///< local z is the normal
   Vec3 m_viewer; ///< local direction back along the path
-  Rgb m_diffuse; ///< weight * albedo
+  Rgb m_diffuse; ///< weight * albedo, and what the coat lets through from the viewer
   double m_specular;
+  double m_f0;
+  double m_coat; ///< weight of the coat; 0: the lobes stand side by side
   double m_roughness;
   double m_lambertShare; ///< probability that sample() takes the Lambert lobe
 };

@@ -47,6 +47,9 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
       hybrid(transfer.shading && transfer.extinction.span() > 0.0),
       diffuse(0.0F),
       specular(0.0F),
+      f0(0.0F),
+      coat(0.0F),
+      odds(1.0F),
       roughness(1.0F),
       surfaceRate(0.0F),
       wantNormals(normalsWanted || transfer.shading),
@@ -56,9 +59,12 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
       maps(lights.hasMaps() ? &lights : nullptr) {
   if (hybrid) {
     const SurfaceShading& shading = *transfer.shading;
-    const double total = std::max(1.0, shading.diffuse + shading.specular);
-    diffuse = narrow(shading.diffuse / total);
-    specular = narrow(shading.specular / total);
+    const SurfaceShading::Lobes lobes = shading.lobes();
+    diffuse = narrow(lobes.lambert);
+    specular = narrow(lobes.glossy);
+    f0 = narrow(lobes.f0);
+    coat = narrow(lobes.coat);
+    odds = narrow(shading.odds);
     roughness = narrow(roughnessOf(shading));
     surfaceRate = narrow(25.0 * std::pow(shading.gamma, 3));
   }

@@ -38,8 +38,8 @@ struct EventScene {
 
   WideTable albedo;
   float g;
-  bool hybrid; ///< surface shading
-  float diffuse, specular, roughness;
+  bool hybrid;                                        ///< surface shading
+  float diffuse, specular, f0, coat, odds, roughness; ///< of SurfaceShading
   float surfaceRate; ///< 25 gamma^3 of Medium's surface probability
   bool wantNormals;
   std::int32_t bounces; ///< greatest number of scatterings

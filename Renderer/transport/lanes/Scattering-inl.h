@@ -78,13 +78,19 @@ public:
   HWY_INLINE WideSurface(const EventScene& scene, const F3& incoming, const F3& gradient,
                          const F3& albedo)
       : m_specular(scene.specular),
+        m_f0(scene.f0),
+        m_coat(scene.coat),
         m_roughness(scene.roughness),
         m_frame(normalized(
             select(hn::Ge(dot(incoming, gradient), hn::Zero(floats)), -gradient, gradient))),
         m_viewer(m_frame.toLocal(-incoming)),
         m_diffuse(all(scene.diffuse) * albedo) {
+    if (scene.odds != 1.0F)
+      m_diffuse = all(scene.diffuse) * ofOdds(scene.odds, albedo);
+    if (m_coat > 0.0F)
+      m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
     const F lambert = greatest(m_diffuse);
-    const F sum = hn::MulAdd(all(m_specular), schlick(m_viewer.z), lambert);
+    const F sum = hn::MulAdd(all(m_specular), fresnel(m_viewer.z), lambert);
     const M some = hn::Gt(sum, hn::Zero(floats));
     m_lambertShare = hn::IfThenElse(some, hn::Div(lambert, sum), all(1.0F));
   }
@@ -110,9 +116,20 @@ public:
   }
 
 private:
-  static HWY_INLINE F schlick(F cosine) {
+  HWY_INLINE F fresnel(F cosine) const {
     const F x = notBelow0(hn::Min(hn::Sub(all(1.0F), cosine), all(1.0F)));
-    return hn::MulAdd(all(1.0F - 0.04F), hn::Mul(square(square(x)), x), all(0.04F));
+    return hn::MulAdd(all(1.0F - m_f0), hn::Mul(square(square(x)), x), all(m_f0));
+  }
+  /// Albedo whose odds are `odds` times those of the given one.
+  static HWY_INLINE F3 ofOdds(float odds, const F3& albedo) {
+    const auto channel = [odds](F a) {
+      return hn::Div(hn::Mul(all(odds), a), hn::NegMulAdd(all(1.0F - odds), a, all(1.0F)));
+    };
+    return {channel(albedo.x), channel(albedo.y), channel(albedo.z)};
+  }
+  /// Share of light that passes the coat.
+  HWY_INLINE F belowCoat(F cosine) const {
+    return hn::NegMulAdd(all(m_coat), fresnel(cosine), all(1.0F));
   }
 
   /// SurfaceScattering's evaluate() and pdf().
@@ -121,6 +138,8 @@ private:
     Scattered s{lambertPdf * m_diffuse, hn::Mul(m_lambertShare, lambertPdf)};
     if (!(m_specular > 0.0F))
       return s;
+    if (m_coat > 0.0F)
+      s.factor = belowCoat(l.z) * s.factor;
     const F zero = hn::Zero(floats);
     const F3 h = normalized(l + m_viewer);
     const F perViewer =
@@ -128,7 +147,7 @@ private:
     const M facing = hn::And(hn::Gt(l.z, zero), hn::Gt(m_viewer.z, zero));
     const F pdf = hn::IfThenElseZero(facing, perViewer);
     s.pdf = hn::MulAdd(hn::Sub(all(1.0F), m_lambertShare), pdf, s.pdf);
-    const F glossy = hn::Mul(hn::Mul(all(m_specular), schlick(dot(l, h))), masking(l));
+    const F glossy = hn::Mul(hn::Mul(all(m_specular), fresnel(dot(l, h))), masking(l));
     const F value = hn::IfThenElseZero(facing, hn::Mul(glossy, perViewer));
     s.factor = s.factor + F3{value, value, value};
     return s;
@@ -169,7 +188,7 @@ private:
         {hn::Mul(a, n.x), hn::Mul(a, n.y), hn::Max(n.z, all(std::numeric_limits<float>::min()))});
   }
 
-  float m_specular, m_roughness;
+  float m_specular, m_f0, m_coat, m_roughness;
   Frames m_frame; ///< local z is the normal
   F3 m_viewer;    ///< local direction back along the path
   F3 m_diffuse;

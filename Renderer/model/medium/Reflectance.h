@@ -1,0 +1,25 @@
+#pragma once
+// Colour as it is seen: of a thick, uniform scattering medium an eye sees less than its albedo.
+
+#include "model/medium/PiecewiseLinear.h"
+
+namespace fenestra {
+
+/// Radiance of a half-space seen along its normal under uniform light of radiance 1 (its plane
+/// albedo), by single-scattering albedo, 0 to 1, and Henyey-Greenstein mean cosine g. From a table
+/// that Testing/Oracle/MakeReflectance made; g below 0 reads as 0, and beyond 0.95 as 0.95.
+double reflectance(double albedo, double g);
+
+/// Greatest reflectance that albedoFor inverts: whiter matter would scatter for minutes.
+inline constexpr double whitest = 0.95;
+
+/// Albedo whose reflectance is that; its inverse.
+double albedoFor(double reflectance, double g);
+inline Rgb albedoFor(const Rgb& color, double g) {
+  return color.unaryExpr([g](double channel) { return albedoFor(channel, g); });
+}
+/// Of a function whose colours are seen. Between two knots colours are linear, which their albedo
+/// is not: knots in between follow it, within 3 % of the colour.
+ColorFunction albedoFor(const ColorFunction& colors, double g);
+
+} // namespace fenestra

@@ -1,0 +1,65 @@
+// Colour as it is asked for: a thick medium under an environment of 1, seen from the front, has it.
+
+#include "Slab.h"
+
+#include "model/medium/Reflectance.h"
+
+namespace fenestra::testing::ColorTests {
+namespace {
+
+/// Thickness in free paths that stands for a half-space: with g, as many more as light goes on.
+double deepFor(double g) {
+  return 300.0 / (1.0 - g);
+}
+
+class SeenColor : public ::testing::TestWithParam<double> {};
+
+TEST_P(SeenColor, IsRenderedByVolumeShading) {
+  const double g = GetParam();
+  for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)}) {
+    TestScene scene = endlessSlab(deepFor(g), albedoFor(color, g));
+    scene.transfer.g = g;
+    expectMean(seen(scene, 400, 41), color, 0.02, 0.03);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Anisotropies, SeenColor, ::testing::Values(0.0, 0.5, 0.9));
+
+/// Matter of `color` below air, where hybrid shading finds a surface: the scalar goes from 0 to 1
+/// within `ramp` mm.
+TestScene step(const Rgb& color, double ramp, const SurfaceShading& shading) {
+  const Grid grid = centredGrid({2, 2, 400}, {10000.0, 10000.0, ramp});
+  const double top = 198.0 * ramp;
+  TestScene scene = endlessSlab(400.0 * ramp, Rgb::Zero());
+  scene.volume = makeVolume(grid, [top](const Vec3& p) { return p.z() < top ? 1.0 : 0.0; });
+  scene.transfer = {ScalarFunction({knot(0.0, 0.0), knot(1.0, 3.0)}),
+                    ColorFunction({{0.0, albedoFor(color, 0.0)}}),
+                    {},
+                    0.0,
+                    shading};
+  return scene;
+}
+
+TEST(SeenColor, IsNearlyRenderedByHybridShading) {
+  const SurfaceShading skin = SurfaceShading::coat(0.2, 0.4);
+  for (const double ramp : {1.0, 3.0})
+    for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)}) {
+      const RgbEstimate estimate = seen(step(color, ramp, skin), 400, 43);
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(estimate.mean[c], color[c],
+                    4.0 * estimate.error[c] + std::max(0.015, 0.1 * color[c]))
+            << "ramp " << ramp << ", channel " << c;
+    }
+}
+
+/// Diffuse 1 without a coat: nothing is lost at any surface.
+TEST(Furnace, IsOneForAWhiteSurface) {
+  TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::coat(0.0, 0.4));
+  scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
+  const RgbEstimate estimate = seen(scene, 400, 47);
+  EXPECT_NEAR(estimate.mean[0], 1.0, 4.0 * estimate.error[0] + 1e-6); // lanes are float
+  EXPECT_LT(estimate.error[0], 0.01);
+}
+
+} // namespace
+} // namespace fenestra::testing::ColorTests
