@@ -5,6 +5,7 @@
 #include "Approx.h"
 #include "Curves.h"
 #include "Refusals.h"
+#include "model/medium/Reflectance.h"
 
 namespace fenestra::TransferReaderTests {
 namespace {
@@ -51,6 +52,32 @@ TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
                 [&] { parseTransferLook(R"({"scalars": "percent", )" + rest, "test"); });
 }
 
+TEST(TransferReader, ColorIsWhatIsSeen) {
+  const std::string e = R"("extinction": [[0, 0], [100, 4]], "shading": "hybrid")";
+  const TransferFunction f =
+      parsed("{" + e + R"(, "color": [[100, "#bcbcbc"], [0, "#000000"]], "g": 0.5})");
+  const double grey = std::pow((188.0 / 255.0 + 0.055) / 1.055, 2.4);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(reflectance(f.albedo(100)[c], 0.5), grey, 1e-6);
+    EXPECT_NEAR(reflectance(f.albedo(50)[c], 0.5), 0.5 * grey, 0.01);
+    EXPECT_EQ(f.albedo(0)[c], 0.0);
+  }
+  ASSERT_TRUE(f.shading && f.shading->coated);
+  EXPECT_EQ(f.shading->diffuse, 1.0);
+  EXPECT_EQ(f.shading->specular, 0.2);
+  EXPECT_NEAR(f.shading->power, 2.0 / 0.16 - 2.0, 1e-12);
+  EXPECT_NEAR(f.shading->odds, 0.235, 1e-12);
+  const TransferFunction wet = parsed("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]],
+      "specular": 0.5, "roughness": 0.1})");
+  EXPECT_EQ(wet.albedo(0)[0], 0.5) << "albedo stays what it is";
+  ASSERT_TRUE(wet.shading && wet.shading->coated);
+  EXPECT_EQ(wet.shading->specular, 0.5);
+  EXPECT_NEAR(wet.shading->power, 198.0, 1e-9);
+  const TransferFunction old = parsed("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]]})");
+  EXPECT_FALSE(old.shading->coated);
+  EXPECT_EQ(old.shading->odds, 1.0);
+}
+
 void expectRefusal(const std::string& json, const std::string& text) {
   expectRefused("test", text, [&] { parseTransferLook(json, "test"); });
 }
@@ -72,6 +99,19 @@ TEST(TransferReader, ErrorNamesTheField) {
   expectRefusal("{" + a + R"(, "extinction": [[0, 1e40]]})", "extinction[0][1]: is 1e+40");
   expectRefusal("{" + e + R"(, "albedo": [[0, 1, 1.5, 1]]})",
                 "albedo[0]: values must be from 0 to 1");
+  expectRefusal("{" + e + "," + a + R"(, "color": [[0, "#ffffff"]]})",
+                "color: and albedo contradict");
+  for (const char* color :
+       {"white", "#fff", "#12345", "#1234567", "#12345g", "# 12345", "12345678"})
+    expectRefusal("{" + e + R"(, "color": [[0, ")" + color + R"("]]})",
+                  "color[0][1]: must be a colour such as \"#d8a090\"");
+  expectRefusal("{" + e + R"(, "color": [[0, 1, 1, 1]]})",
+                "color[0]: must be [scalar, \"#rrggbb\"]");
+  expectRefusal("{" + e + R"(, "color": []})", "color: has 0 points");
+  expectRefusal("{" + e + "," + a + R"(, "specular": 0.2})",
+                "specular: is of surfaces; add \"shading\"");
+  expectRefusal("{" + e + "," + a + R"(, "shading": "hybrid", "roughness": 0})", "roughness: ");
+  expectRefusal("{" + e + "," + a + R"(, "shading": "hybrid", "specular": 1.5})", "specular: ");
   expectRefusal("[]", "must be an object");
   expectRefusal("", "is not JSON");
   expectRefusal("{\"extinction\": [[0,", "is not JSON");

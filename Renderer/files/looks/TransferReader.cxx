@@ -40,6 +40,7 @@ PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double most) {
 
 /// Albedo of rows [scalar, "#rrggbb"], the colours that are seen.
 ColorFunction readColors(const JsonNode& rows, double g) {
+  constexpr std::size_t mostColors = 4096;
   std::vector<ColorFunction::Knot> colors;
   for (const JsonNode& row : rows.elements()) {
     const std::vector<JsonNode> parts = row.elements();
@@ -47,8 +48,8 @@ ColorFunction readColors(const JsonNode& rows, double g) {
       throw row.error("must be [scalar, \"#rrggbb\"]");
     colors.push_back({finite(parts[0]), readHexColor(parts[1])});
   }
-  if (colors.empty())
-    throw rows.error("is empty; give at least one point");
+  if (colors.empty() || colors.size() > mostColors)
+    throw rows.error(textOf("has ", colors.size(), " points; give from 1 to ", mostColors));
   return albedoFor(ColorFunction(std::move(colors)), g);
 }
 
@@ -80,6 +81,8 @@ TransferLook readOwn(const JsonNode& root) {
   const auto color = root.find("color");
   if (color && root.find("albedo"))
     throw color->error("and albedo contradict each other; give one");
+  if (!color && !root.find("albedo"))
+    throw root.error("has no \"albedo\" and no \"color\"; give one");
   TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largestValue),
                             .albedo = color ? readColors(*color, g)
                                             : readCurve<3>(root.at("albedo"), 1.0)};

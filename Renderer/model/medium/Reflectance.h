@@ -19,7 +19,7 @@ inline Rgb albedoFor(const Rgb& color, double g) {
   return color.unaryExpr([g](double channel) { return albedoFor(channel, g); });
 }
 /// Of a function whose colours are seen. Between two knots colours are linear, which their albedo
-/// is not: knots in between follow it, within 3 % of the colour.
+/// is not: knots in between follow it, within 2 % of the colour for g = 0.
 ColorFunction albedoFor(const ColorFunction& colors, double g);
 
 } // namespace fenestra
