@@ -45,8 +45,19 @@ std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera
 }
 
 bool dependsOnCamera(const Light& light) {
-  const auto* area = std::get_if<AreaLight>(&light);
-  return area && area->frame == LightFrame::camera;
+  return std::visit(
+      [](const auto& kind) {
+        if constexpr (requires { kind.frame; })
+          return kind.frame == LightFrame::camera;
+        else
+          return false;
+      },
+      light);
+}
+
+/// True for light from all around, which --environment replaces.
+bool isAllAround(const Light& light) {
+  return std::holds_alternative<EnvironmentLight>(light) || std::holds_alternative<SkyLight>(light);
 }
 
 const Mask* maskOf(const Focus& focus) {
@@ -142,8 +153,7 @@ NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& e
   NamedLights named = namedLights(name);
   if (!environment && !environmentMap)
     return named;
-  std::erase_if(named.lights,
-                [](const Light& l) { return std::holds_alternative<EnvironmentLight>(l); });
+  std::erase_if(named.lights, isAllAround);
   EnvironmentLight replacement;
   if (environment) {
     replacement.radiance = *environment;

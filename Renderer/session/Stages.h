@@ -16,7 +16,8 @@ using Settings = Handle<SceneSettings>;
 using Focus = Handle<FocusInput>;
 using Read = Handle<VolumeInput>;
 
-/// Lights of that name or JSON (namedLights), with an environment or a map in place of their own.
+/// Lights of that name or JSON (namedLights), with an environment or a map in place of their own
+/// environments and skies.
 NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& environment,
                             const std::optional<std::filesystem::path>& environmentMap);
 

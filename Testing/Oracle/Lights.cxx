@@ -50,12 +50,29 @@ Rgb radianceOf(const EnvironmentLight& light, const Vec3& direction) {
   return light.radiance * Rgb(rgb[0], rgb[1], rgb[2]);
 }
 
+/// A sky's direction up in world space.
+SkyLight placed(const SkyLight& light, const View& view) {
+  SkyLight sky = light;
+  if (light.frame == LightFrame::camera)
+    sky.up = light.up.x() * view.right + light.up.y() * view.up - light.up.z() * view.forward;
+  return sky;
+}
+
+Rgb radianceOf(const SkyLight& sky, const Vec3& direction) {
+  const double height = direction.normalized().dot(sky.up.normalized());
+  if (height >= 0.0)
+    return (1.0 - height) * sky.middle + height * sky.top;
+  return (1.0 + height) * sky.middle - height * sky.bottom;
+}
+
 } // namespace
 
 Lights::Lights(const std::vector<Light>& lights, const Grid& volume, const View& view) {
   for (const Light& light : lights) {
     if (const auto* environment = std::get_if<EnvironmentLight>(&light))
       m_environments.push_back(*environment);
+    else if (const auto* sky = std::get_if<SkyLight>(&light))
+      m_skies.push_back(placed(*sky, view));
     else if (const auto* directional = std::get_if<DirectionalLight>(&light))
       m_directionals.push_back(*directional);
     else
@@ -67,6 +84,8 @@ Rgb Lights::environment(const Vec3& direction) const {
   Rgb sum = Rgb::Zero();
   for (const EnvironmentLight& light : m_environments)
     sum += radianceOf(light, direction);
+  for (const SkyLight& sky : m_skies)
+    sum += radianceOf(sky, direction);
   return sum;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Lights that a ray can hit (environments, areas), and directional lights, which it cannot.
+// Lights that a ray can hit (environments, skies, areas), and directional lights, which it cannot.
 
 #include "Scatter.h"
 #include "View.h"
@@ -22,7 +22,7 @@ class Lights {
 public:
   Lights(const std::vector<Light>& lights, const Grid& volume, const View& view);
 
-  /// Radiance of all environments; `direction`: of travel, toward the environment.
+  /// Radiance of all environments and skies; `direction`: of travel, toward the environment.
   Rgb environment(const Vec3& direction) const;
   /// Radiance of all area lights that a ray hits on their emitting side before `end`, mm.
   Rgb areas(const Ray& ray, double end) const;
@@ -35,6 +35,7 @@ public:
 
 private:
   std::vector<EnvironmentLight> m_environments;
+  std::vector<SkyLight> m_skies; ///< in world space
   std::vector<DirectionalLight> m_directionals;
   std::vector<PlacedArea> m_areas;
 };

@@ -1,5 +1,5 @@
 // Furnace: albedo 1 in a constant environment of 1 shows 1 everywhere, for every medium,
-// projection, clip and crop.
+// projection, clip and crop; and so it does under a sky of one colour.
 
 #include "Support.h"
 
@@ -112,6 +112,31 @@ INSTANTIATE_TEST_SUITE_P(Cropped, Furnace,
                                             ::testing::Values(ClipKind::none, ClipKind::plane,
                                                               ClipKind::cutaway, ClipKind::surface),
                                             ::testing::Values(0.7), ::testing::Values(true)));
+
+TEST(SkyOfOneColour, EqualsAConstantEnvironment) {
+  const Rgb color(0.9, 0.6, 0.3);
+  TestScene scene{volumeOf(MediumKind::heterogeneous),
+                  linearTransfer(0.4, Rgb(0.9, 0.7, 0.5)),
+                  {EnvironmentLight{color, {}}},
+                  {}};
+  scene.pose.position = {5.0, 40.0, 12.0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = 12.0;
+  RenderSettings settings;
+  settings.samples = 256;
+  settings.path.background.kind = Background::Kind::environment;
+  for (const Transport transport : {Transport::fast, Transport::readable}) {
+    settings.transport = transport;
+    settings.seed = 21;
+    scene.lights = {EnvironmentLight{color, {}}};
+    const Estimate constant = imageEstimate(scene.render(settings).film);
+    settings.seed = 22;
+    scene.lights = {SkyLight{color, color, color}};
+    const Estimate sky = imageEstimate(scene.render(settings).film);
+    EXPECT_NEAR(sky.mean, constant.mean, 4.0 * std::hypot(sky.error, constant.error));
+    EXPECT_LT(sky.error, 0.005 * constant.mean);
+  }
+}
 
 } // namespace
 } // namespace fenestra::testing::FurnaceTests

@@ -44,7 +44,8 @@ Combination combination(int index) {
   constexpr double offsets[] = {0.0, 0.7, -0.7};
   const double offset = offsets[next(3)];
   const bool isOtherKind = next(2) == 0;
-  c.isCoated = c.isHybrid && next(2) == 0;
+  const bool isOtherLight = next(3) == 0;
+  c.isCoated = next(2) == 0 && c.isHybrid;
   if (index % 4 == 1 ||
       index % 4 == 2) { // the others are plain, which shows errors of other factors best
     c.edge = edge;
@@ -55,6 +56,8 @@ Combination combination(int index) {
     if (isOtherKind && c.clip == ClipFactor::cutaway)
       c.clip = ClipFactor::hole;
   }
+  if (isOtherLight && c.light == LightFactor::constant)
+    c.light = LightFactor::sky;
   // Parallel light reaches the eye only through the phase function's peak: at g = 0.99 hardly one
   // path in ten thousand shows the light, and means are far from normal.
   const bool hasParallel = c.light == LightFactor::directional || c.light == LightFactor::several;
@@ -254,6 +257,11 @@ AreaLight areaOf(AreaLight::Shape shape, LightFrame frame, Generator& generator)
   return light;
 }
 
+SkyLight skyOf(LightFrame frame, Generator& generator) {
+  return {Rgb(0.2, 0.4, 1.4), Rgb(0.9, 1.0, 1.1), Rgb(0.5, 0.2, 0.0), randomDirection(generator),
+          frame};
+}
+
 std::vector<Light> lightsOf(const Combination& c, Generator& generator) {
   const Light parallel = DirectionalLight{randomDirection(generator), Rgb(3.0, 2.5, 2.0)};
   const LightFrame frame = c.index % 2 == 0 ? LightFrame::world : LightFrame::camera;
@@ -268,10 +276,12 @@ std::vector<Light> lightsOf(const Combination& c, Generator& generator) {
     return {areaOf(AreaLight::Shape::rectangle, frame, generator)};
   case LightFactor::disk:
     return {areaOf(AreaLight::Shape::disk, frame, generator)};
+  case LightFactor::sky:
+    return {skyOf(frame, generator), EnvironmentLight{Rgb(0.1, 0.1, 0.1), {}}};
   case LightFactor::several:
     return {EnvironmentLight{Rgb(0.2, 0.3, 0.4), {}},
             EnvironmentLight{Rgb(0.5, 0.5, 0.5), mapOf(generator)}, parallel,
-            areaOf(AreaLight::Shape::rectangle, frame, generator)};
+            areaOf(AreaLight::Shape::rectangle, frame, generator), skyOf(frame, generator)};
   }
   return {};
 }
@@ -330,8 +340,8 @@ std::string describe(const Combination& c) {
   static constexpr const char* edges[] = {"", ", ghost", ", soft", ", soft ghost"};
   static constexpr const char* styles[] = {"", ", thin context", ", pale context",
                                            ", thin pale context"};
-  static constexpr const char* lights[] = {"constant",  "map",  "directional",
-                                           "rectangle", "disk", "several"};
+  static constexpr const char* lights[] = {"constant", "map",     "directional", "rectangle",
+                                           "disk",     "several", "sky"};
   static constexpr const char* albedos[] = {"0", "0.5", "0.999", "1", "per channel", "by scalar"};
   static constexpr const char* transfers[] = {
       "linear", "step", "spike", "non-monotone", "gradient opacity", "steep gradient opacity"};

@@ -43,6 +43,34 @@ TEST(Background, GradientIsLinearInDisplayValues) {
     }
 }
 
+TEST(Background, ShowsASkyAcrossEachPixel) {
+  TestScene scene{
+      makeVolume(centredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 0.0; }),
+      linearTransfer(0.0, Rgb::Zero()),
+      {SkyLight{Rgb(1, 2, 3), Rgb(0.5, 0.5, 0.5), Rgb(3, 2, 1)}},
+      {},
+      1,
+      2};
+  scene.pose.projection = Projection::perspective;
+  scene.pose.position = {0, -100, 0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.angle = 90.0;
+  RenderSettings settings;
+  settings.samples = 4000;
+  settings.path.background.kind = Background::Kind::environment;
+  const Film film = scene.render(settings).film;
+  // Mean over a pixel of the cosine toward the camera's up, y / sqrt(1 + x^2 + y^2), for x from
+  // -1/2 to 1/2 and y from 0 to 1: int sqrt(2 + x^2) - sqrt(1 + x^2) dx.
+  const auto integral = [](double a) {
+    const double half = 0.5;
+    return half * std::sqrt(a + half * half) + a * std::asinh(half / std::sqrt(a));
+  };
+  const double cosine = integral(2.0) - integral(1.0);
+  EXPECT_NEAR(film.at(0, 0).mean[2], 0.5 + 2.5 * cosine, 4.0 * film.at(0, 0).standardError()[2]);
+  EXPECT_NEAR(film.at(0, 1).mean[0], 0.5 + 2.5 * cosine, 4.0 * film.at(0, 1).standardError()[0]);
+  EXPECT_GT(film.at(0, 0).standardError()[2], 0.0) << "varies inside the pixel";
+}
+
 TEST(Background, EqualColoursGiveAPlainBackground) {
   const Background background = Background::gradient(Rgb(0.5, 0.2, 1.0), Rgb(0.5, 0.2, 1.0));
   EXPECT_EQ(background.kind, Background::Kind::color);

@@ -38,6 +38,25 @@ TEST(LightReader, ReadsEveryKind) {
   EXPECT_EQ(disk.frame, LightFrame::world);
 }
 
+TEST(LightReader, ReadsASky) {
+  const auto lights = parseLights(R"({"lights": [
+    {"type": "sky", "top": [1, 2, 3], "middle": [4, 5, 6], "bottom": [0, 0, 0]},
+    {"type": "sky", "top": [1, 2, 3], "middle": [4, 5, 6], "bottom": [0, 0, 0], "frame": "world"},
+    {"type": "sky", "top": [1, 2, 3], "middle": [4, 5, 6], "bottom": [0, 0, 0], "up": [0, 0, 9]}
+    ]})",
+                                  "test");
+  ASSERT_EQ(lights.size(), 3u);
+  const auto sky = [&](std::size_t i) { return std::get<SkyLight>(lights[i]); };
+  EXPECT_TRUE(sky(0).top == Rgb(1, 2, 3));
+  EXPECT_TRUE(sky(0).middle == Rgb(4, 5, 6));
+  EXPECT_TRUE(sky(0).bottom == Rgb(0, 0, 0));
+  EXPECT_EQ(sky(0).frame, LightFrame::camera);
+  EXPECT_EQ(sky(0).up, Vec3(0, 1, 0));
+  EXPECT_EQ(sky(1).frame, LightFrame::world);
+  EXPECT_EQ(sky(1).up, Vec3(0, 0, 1)) << "superior";
+  EXPECT_EQ(sky(2).up, Vec3(0, 0, 1));
+}
+
 TEST(LightReader, ErrorNamesTheField) {
   const auto refuse = [](const std::string& light, const std::string& text) {
     const std::string json =
@@ -65,6 +84,10 @@ TEST(LightReader, ErrorNamesTheField) {
   refuse(R"({"type": "rectangle", )" + area +
              R"("normal": [0, 0, 1], "size": [1, 1], "frame": "eye"})",
          "lights[1].frame");
+  refuse(R"({"type": "sky", "top": [1, 1, 1], "middle": [1, 1, 1]})", "has no \"bottom\"");
+  refuse(R"({"type": "sky", "top": [1, 1, 1], "middle": [1, 1, 1], "bottom": [1, 1, 1],
+             "up": [0, 0, 0]})",
+         "lights[1].up: is the zero vector");
   refuse(R"({"type": "environment", "file": "a\nb.exr"})", "lights[1].file: \"a b.exr\"");
   expectRefused("test", "has no \"lights\"", [] { parseLights("{}", "test"); });
   expectRefused("test", "unknown key \"light\"",

@@ -126,6 +126,45 @@ TEST(LightSet, CameraFrameIsRightUpAndTowardTheViewer) {
   EXPECT_LT(sample->direction.y(), -0.99) << "the viewer stands at negative y";
 }
 
+/// Irradiance that arrives from all around on a plane with that normal, over pi.
+Rgb receivedFromAround(const LightSet& set, const Vec3& normal) {
+  Rgb sum = Rgb::Zero();
+  for (int channel = 0; channel < 3; ++channel) {
+    const auto arriving = [&](const Vec3& d) {
+      return set.environment(d).radiance[channel] * std::max(0.0, normal.dot(d));
+    };
+    for (const double part : binIntegrals(arriving, 16))
+      sum[channel] += part / pi;
+  }
+  return sum;
+}
+
+TEST(LightSet, SkyLightsAPlaneByTwoThirdsOfItsEndAndOneThirdOfItsMiddle) {
+  // E / pi = 2 int_0^1 (middle + (top - middle) t) t dt
+  const Vec3 up = Vec3(1, 2, -2) / 3.0;
+  SkyLight sky{Rgb(3, 2, 1), Rgb(0.3, 0.6, 0.9), Rgb(0, 0.5, 4), up, LightFrame::world};
+  const LightSet set({sky}, grid, camera());
+  EXPECT_LT((receivedFromAround(set, up) - (2 * sky.top + sky.middle) / 3).abs().maxCoeff(), 2e-3);
+  EXPECT_LT((receivedFromAround(set, -up) - (2 * sky.bottom + sky.middle) / 3).abs().maxCoeff(),
+            2e-3);
+  EXPECT_EQ(set.environment(up).pdf, 0.0) << "never sampled";
+  Random random(1, 1, 1);
+  EXPECT_FALSE(set.sample(Vec3::Zero(), random));
+}
+
+TEST(LightSet, SkyOfTheCameraTurnsWithTheCamera) {
+  SkyLight sky;
+  sky.bottom = Rgb::Zero();
+  sky.middle = Rgb::Constant(0.5);
+  const LightSet up({sky}, grid, camera());
+  EXPECT_NEAR(up.environment(Vec3::UnitZ()).radiance[0], 1.0, 1e-12) << "the camera's up";
+  EXPECT_NEAR(up.environment(-Vec3::UnitZ()).radiance[0], 0.0, 1e-12);
+  sky.up = Vec3::UnitZ();
+  const LightSet toViewer({sky}, grid, camera());
+  EXPECT_NEAR(toViewer.environment(-Vec3::UnitY()).radiance[0], 1.0, 1e-12);
+  EXPECT_NEAR(toViewer.environment(Vec3::UnitX()).radiance[0], 0.5, 1e-12);
+}
+
 TEST(LightSet, WithoutLightsNothingIsDrawn) {
   const LightSet set({}, grid, camera());
   Random random(1, 1, 1);

@@ -41,6 +41,25 @@ Light readEnvironment(const JsonNode& node, const std::filesystem::path& folder)
   return light;
 }
 
+LightFrame readFrame(const JsonNode& node) {
+  return node.oneOf({"world", "camera"}) == 1 ? LightFrame::camera : LightFrame::world;
+}
+
+Light readSky(const JsonNode& node) {
+  node.allowOnly({"type", "top", "middle", "bottom", "up", "frame"});
+  SkyLight light;
+  light.top = readRadiance(node.at("top"));
+  light.middle = readRadiance(node.at("middle"));
+  light.bottom = readRadiance(node.at("bottom"));
+  if (const auto frame = node.find("frame"))
+    light.frame = readFrame(*frame);
+  if (const auto up = node.find("up"))
+    light.up = readDirection(*up);
+  else if (light.frame == LightFrame::world)
+    light.up = Vec3::UnitZ(); // superior
+  return light;
+}
+
 Light readDirectional(const JsonNode& node) {
   node.allowOnly({"type", "direction", "irradiance"});
   return DirectionalLight{readDirection(node.at("direction")), readRadiance(node.at("irradiance"))};
@@ -72,7 +91,7 @@ Light readArea(const JsonNode& node, AreaLight::Shape shape) {
   light.size = readSize(node.at("size"), shape);
   light.radiance = readRadiance(node.at("radiance"));
   if (const auto frame = node.find("frame"))
-    light.frame = frame->oneOf({"world", "camera"}) == 1 ? LightFrame::camera : LightFrame::world;
+    light.frame = readFrame(*frame);
   return light;
 }
 
@@ -81,13 +100,15 @@ Light readLight(const JsonNode& node, const std::filesystem::path& folder) {
   const std::string name = type.text();
   if (name == "environment")
     return readEnvironment(node, folder);
+  if (name == "sky")
+    return readSky(node);
   if (name == "directional")
     return readDirectional(node);
   if (name == "rectangle")
     return readArea(node, AreaLight::Shape::rectangle);
   if (name == "disk")
     return readArea(node, AreaLight::Shape::disk);
-  throw type.error("must be environment, directional, rectangle or disk");
+  throw type.error("must be environment, sky, directional, rectangle or disk");
 }
 
 } // namespace

@@ -4,6 +4,8 @@
 
 #include "base/Vector.h"
 
+#include <algorithm>
+#include <cmath>
 #include <variant>
 #include <vector>
 
@@ -26,16 +28,31 @@ struct EnvironmentLight {
   EnvironmentMap map = {}; ///< empty (width 0): constant
 };
 
+/// Frame of a light's positions and directions. `camera`: x is right, y up, z toward the viewer,
+/// the origin is the volume's centre, and lengths are in radii of its bounding sphere.
+enum class LightFrame { world, camera };
+
+/// Radiance from every direction, by t, the cosine of the angle between the direction toward the
+/// sky and `up`: linear in t from `middle` (t = 0) to `top` (t = 1) and to `bottom` (t = -1).
+struct SkyLight {
+  Rgb top = Rgb::Ones(), middle = Rgb::Ones(), bottom = Rgb::Ones();
+  Vec3 up = Vec3::UnitY(); ///< unit
+  LightFrame frame = LightFrame::camera;
+
+  /// Radiance from a unit direction, toward the sky, in the sky's frame.
+  Rgb radiance(const Vec3& direction) const {
+    const double t = std::clamp(up.dot(direction), -1.0, 1.0);
+    return middle + std::abs(t) * ((t < 0.0 ? bottom : top) - middle);
+  }
+};
+
 /// Parallel light travelling along `direction`; `irradiance` on a plane facing the light.
 struct DirectionalLight {
   Vec3 direction = -Vec3::UnitZ(); ///< unit
   Rgb irradiance = Rgb::Ones();
 };
 
-enum class LightFrame { world, camera };
-
-/// Emits from one side, along `normal`. In the camera's frame x is right, y up, z toward the
-/// viewer, the origin is the volume's centre, and lengths are in radii of its bounding sphere.
+/// Emits from one side, along `normal`.
 struct AreaLight {
   enum class Shape { rectangle, disk };
   Shape shape = Shape::rectangle;
@@ -47,6 +64,6 @@ struct AreaLight {
   LightFrame frame = LightFrame::world;
 };
 
-using Light = std::variant<EnvironmentLight, DirectionalLight, AreaLight>;
+using Light = std::variant<EnvironmentLight, DirectionalLight, AreaLight, SkyLight>;
 
 } // namespace fenestra

@@ -7,6 +7,11 @@ namespace {
 /// may matter elsewhere.
 constexpr double leastShare = 0.05;
 
+/// Axes of the camera's frame, as columns.
+Mat3 axesOf(const Camera& camera) {
+  return {camera.right(), camera.up(), -camera.forward()};
+}
+
 } // namespace
 
 LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera)
@@ -20,6 +25,14 @@ void LightSet::place(const EnvironmentLight& light, const Grid&, const Camera&) 
   m_environments.push_back({EnvironmentSampler(light), 0.0});
 }
 
+void LightSet::place(const SkyLight& light, const Grid&, const Camera& camera) {
+  SkyLight sky = light;
+  sky.up = light.frame == LightFrame::camera ? axesOf(camera) * light.up : light.up;
+  sky.up = sky.up.normalized();
+  sky.frame = LightFrame::world;
+  m_skies.push_back(sky);
+}
+
 void LightSet::place(const DirectionalLight& light, const Grid&, const Camera&) {
   m_directionals.push_back({-light.direction.normalized(), light.irradiance, 0.0});
 }
@@ -29,7 +42,7 @@ void LightSet::place(const AreaLight& light, const Grid& volume, const Camera& c
   double unit = 1.0;
   Vec3 origin = Vec3::Zero();
   if (light.frame == LightFrame::camera) {
-    axes = Mat3(camera.right(), camera.up(), -camera.forward());
+    axes = axesOf(camera);
     unit = volume.boundingRadius();
     origin = volume.worldCenter();
   }
@@ -121,6 +134,8 @@ LightArrival LightSet::environment(const Vec3& direction) const {
     sum.radiance += environment.sampler.radiance(direction);
     sum.pdf += environment.share * environment.sampler.pdf(direction);
   }
+  for (const SkyLight& sky : m_skies)
+    sum.radiance += sky.radiance(direction);
   return sum;
 }
 

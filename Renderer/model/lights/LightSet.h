@@ -1,7 +1,8 @@
 #pragma once
 // The lights of a scene: samples for next-event estimation; and, for directions drawn by
 // scattering, the arriving radiance and the density of sample() (for multiple importance sampling).
-// A constant environment is never sampled: scattered rays meet it anyway, without a second ray.
+// A constant environment and a sky are never sampled: scattered rays meet them anyway, without a
+// second ray.
 // Area lights only emit: they block nothing, and eye rays do not see them.
 
 #include "base/Random.h"
@@ -65,7 +66,7 @@ public:
   /// of all area and directional lights.
   std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
-  /// Radiance and density of all environments together.
+  /// Radiance and density of all environments and skies together.
   LightArrival environment(const Vec3& direction) const;
 
   /// Sum of weigh(arrival) over all area lights that the ray meets before `end` (mm).
@@ -78,13 +79,16 @@ public:
     return sum;
   }
 
-  /// True if every light is an area, directional or environment light: the kinds that SIMD lanes
-  /// know, and that the members below list.
+  /// True if every light is an area, directional or environment light or a sky: the kinds that SIMD
+  /// lanes know, and that the members below list.
   bool hasOnlyListedKinds() const {
-    return m_areas.size() + m_directionals.size() + m_environments.size() == m_count;
+    return m_areas.size() + m_directionals.size() + m_environments.size() + m_skies.size() ==
+           m_count;
   }
   const std::vector<PlacedAreaLight>& areas() const { return m_areas; }
   const std::vector<PlacedDirectionalLight>& directionals() const { return m_directionals; }
+  /// Skies in the world's frame.
+  const std::vector<SkyLight>& skies() const { return m_skies; }
   /// Sum of the constant environments' radiance.
   Rgb constantEnvironment() const;
   /// True if any environment is not constant.
@@ -97,6 +101,7 @@ private:
   };
 
   void place(const EnvironmentLight& light, const Grid& volume, const Camera& camera);
+  void place(const SkyLight& light, const Grid& volume, const Camera& camera);
   void place(const DirectionalLight& light, const Grid& volume, const Camera& camera);
   void place(const AreaLight& light, const Grid& volume, const Camera& camera);
   void chooseShares(const Vec3& center);
@@ -105,6 +110,7 @@ private:
   std::vector<PlacedAreaLight> m_areas;
   std::vector<PlacedDirectionalLight> m_directionals;
   std::vector<SharedEnvironment> m_environments;
+  std::vector<SkyLight> m_skies;
 };
 
 } // namespace fenestra

@@ -74,7 +74,7 @@ public:
       sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
     const M escaped = both(which, hn::Eq(distance, all(std::numeric_limits<float>::infinity())));
     if (!m_scene.maps)
-      return sum + selectElseZero(escaped, all3(m_scene.constantEnvironment));
+      return sum + selectElseZero(escaped, around(direction));
     if (!hn::AllFalse(floats, escaped))
       sum = sum + fromMaps(escaped, direction, scatterPdf);
     return sum;
@@ -127,6 +127,18 @@ private:
     drawn.direction = {direction[0].vector(), direction[1].vector(), direction[2].vector()};
     drawn.radiance = {radiance[0].vector(), radiance[1].vector(), radiance[2].vector()};
     drawn.pdf = pdf.vector();
+  }
+
+  /// Radiance of constant environments and skies.
+  HWY_INLINE F3 around(const F3& direction) const {
+    const F zero = hn::Zero(floats), one = all(1.0F);
+    F3 sum = all3(m_scene.constantEnvironment);
+    for (const EventScene::Sky& sky : m_scene.skies) {
+      const F t = hn::Min(hn::Max(dot(all3(sky.up), direction), hn::Neg(one)), one);
+      const F3 slope = select(hn::Lt(t, zero), all3(sky.toBottom), all3(sky.toTop));
+      sum = sum + all3(sky.middle) + hn::Abs(t) * slope;
+    }
+    return sum;
   }
 
   static HWY_INLINE F3 arrivingFrom(const EventScene::Area& light, M which, const F3& origin,

@@ -80,6 +80,9 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
     areas.push_back(narrowArea(light, grid.worldCenter()));
   for (const PlacedDirectionalLight& light : lights.directionals())
     directionals.push_back({narrow3(light.toward), narrow3(light.irradiance), narrow(light.share)});
+  for (const SkyLight& sky : lights.skies())
+    skies.push_back({narrow3(sky.up), narrow3(sky.middle), narrow3(Rgb(sky.top - sky.middle)),
+                     narrow3(Rgb(sky.bottom - sky.middle))});
 }
 
 } // namespace fenestra

@@ -29,6 +29,11 @@ struct EventScene {
     float share;
   };
 
+  struct Sky {
+    Triple up, middle;
+    Triple toTop, toBottom; ///< difference of the radiance there and in the middle
+  };
+
   /// True if floats suffice: no lobe narrower than the resolution of directions in float, and no
   /// light so far away or bright that squares overflow.
   static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights);
@@ -46,6 +51,7 @@ struct EventScene {
 
   std::vector<Area> areas;
   std::vector<Directional> directionals;
+  std::vector<Sky> skies;
   Triple constantEnvironment;
   const LightSet* maps; ///< queried for environments; null if all are constant
 

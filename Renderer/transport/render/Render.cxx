@@ -89,7 +89,8 @@ bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const Sampl
 
 /// True if all eye rays through one pixel that meet no matter return the same radiance.
 bool isConstantInPixels(const Background& background, const LightSet& lights) {
-  return background.kind != Background::Kind::environment || !lights.hasMaps();
+  return background.kind != Background::Kind::environment ||
+         (!lights.hasMaps() && lights.skies().empty());
 }
 
 /// Duration of passes, and the samples that the time limit still allows.
