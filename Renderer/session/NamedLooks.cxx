@@ -108,12 +108,12 @@ bool isFileOfTransfer(const std::string& name, const Input& input) {
 
 NamedLights namedLights(const std::string& name) {
   if (isLookText(name))
-    return {parseLights(name, "--lights")};
+    return {parseLights(name, "--lights"), "--lights"};
   if (const std::string_view text = ownPreset("lights", name); !text.empty())
-    return {parseLights(text, name)};
+    return {parseLights(text, name), name};
   if (!isFoundAsFile(name))
     throw unknownPreset("lights", name, "a file or one of " + listed(ownPresets("lights")));
-  return {readLights(name), {name}};
+  return {readLights(name), name, {name}};
 }
 
 bool isFileOfLights(const std::string& name) {

@@ -39,6 +39,7 @@ bool isFileOfTransfer(const std::string& name, const Input& input);
 
 struct NamedLights {
   std::vector<Light> lights;
+  std::string source;                  ///< its name, or the flag for JSON
   std::vector<std::string> files = {}; ///< files read; empty: JSON or own preset
 };
 /// Lights from the JSON itself, else the program's preset of that name, or a file. Throws Error

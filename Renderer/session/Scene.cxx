@@ -49,7 +49,7 @@ void Scene::make() {
   const Box matter = settings->camera ? Box() : *m_matter.of(volume, ranges, look);
   const auto camera =
       m_camera.of(r.view, r.width, r.height, volume, settings, matter, focus, m_view.result());
-  const auto placed = m_lights.of({lights, camera}, volume);
+  const auto placed = m_lights.of({lights, camera, focus}, volume);
   const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
   if (focus->mask && r.focusLook.isStyled())
     m_style.of(focus, r.focusLook.contextExtinction, r.focusLook.contextSaturation);

@@ -44,15 +44,34 @@ std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera
   return depths;
 }
 
-bool dependsOnCamera(const Light& light) {
-  return std::visit(
-      [](const auto& kind) {
-        if constexpr (requires { kind.frame; })
-          return kind.frame == LightFrame::camera;
-        else
-          return false;
-      },
-      light);
+bool isIn(LightFrame frame, const Light& light) {
+  const auto isKindIn = [frame](const auto& kind) {
+    if constexpr (requires { kind.frame; })
+      return kind.frame == frame;
+    else
+      return false;
+  };
+  return std::visit(isKindIn, light);
+}
+
+bool someIn(LightFrame frame, const std::vector<Light>& lights) {
+  return std::ranges::any_of(lights, [&](const Light& light) { return isIn(frame, light); });
+}
+
+/// Mean of the voxels' centres, weighted by the indicator, world mm; the focus is not empty.
+Vec3 centroidOf(const Mask& focus) {
+  const Size3& size = focus.grid.size;
+  Vec3 moment = Vec3::Zero();
+  double weight = 0.0;
+  std::size_t i = 0;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x) {
+        const double indicator = focus.voxels[i++];
+        moment += indicator * Vec3(Size3(x, y, z).cast<double>());
+        weight += indicator;
+      }
+  return focus.grid.indexToWorld * Vec3(moment / weight);
 }
 
 /// True for light from all around, which --environment replaces.
@@ -215,11 +234,22 @@ Camera placedCamera(const ViewRequest& view, int width, int height, const Read& 
 
 bool FramedLights::operator==(const FramedLights& other) const {
   return lights == other.lights &&
-         (camera == other.camera || std::ranges::none_of(lights->lights, dependsOnCamera));
+         (camera == other.camera || !someIn(LightFrame::camera, lights->lights)) &&
+         (focus == other.focus || !someIn(LightFrame::focus, lights->lights));
 }
 
 LightSet placedLights(const FramedLights& framed, const Read& volume) {
-  return {framed.lights->lights, volume->volume.grid, *framed.camera};
+  const std::vector<Light>& lights = framed.lights->lights;
+  const Grid& grid = volume->volume.grid;
+  if (!someIn(LightFrame::focus, lights))
+    return {lights, grid, *framed.camera};
+  if (const Mask* const focus = maskOf(framed.focus))
+    return {lights, grid, *framed.camera, centroidOf(*focus)};
+  const auto first = std::ranges::find_if(
+      lights, [](const Light& light) { return isIn(LightFrame::focus, light); });
+  throw inputError(framed.lights->source, "lights[", first - lights.begin(),
+                   "].frame: is \"focus\", and there is no focus; name one with --focus, or use "
+                   "\"world\" or \"camera\"");
 }
 
 ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegrees,

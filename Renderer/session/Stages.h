@@ -50,14 +50,16 @@ Camera placedCamera(const ViewRequest& view, int width, int height, const Read& 
                     const Settings& settings, const Box& matter, const Focus& focus,
                     const Handle<ViewDirection>& best);
 
-/// Lights, and the camera for those in its frame.
+/// Lights, and the camera and the focus for those in their frames.
 struct FramedLights {
   Handle<NamedLights> lights;
   Handle<Camera> camera;
+  Focus focus;
 
-  /// True also for different cameras if no light is in the camera's frame.
+  /// True also for different cameras or focuses if no light is in such a frame.
   bool operator==(const FramedLights& other) const;
 };
+/// Throws Error (input) for a light in the frame of a focus that there is not.
 LightSet placedLights(const FramedLights& framed, const Read& volume);
 
 struct ClipResult {

@@ -16,14 +16,23 @@ double boundingRadius(const Grid& grid, const Vec3& center) {
   return radius;
 }
 
+/// Centre and radius of the volume, origin and unit of the camera's frame.
+struct VolumeBall {
+  Vec3 middle;
+  double radius;
+
+  explicit VolumeBall(const Grid& grid)
+      : middle(grid.indexToWorld * Vec3(0.5 * (grid.size.cast<double>() - Vec3::Ones()))),
+        radius(boundingRadius(grid, middle)) {}
+};
+
 PlacedArea placed(const AreaLight& light, const Grid& grid, const View& view) {
   PlacedArea area{light.shape, light.center, light.normal,  {},
                   light.up,    light.size,   light.radiance};
   if (light.shape == AreaLight::Shape::disk)
     area.size.y() = area.size.x();
   if (light.frame == LightFrame::camera) {
-    const Vec3 middle = grid.indexToWorld * Vec3(0.5 * (grid.size.cast<double>() - Vec3::Ones()));
-    const double radius = boundingRadius(grid, middle);
+    const auto [middle, radius] = VolumeBall(grid);
     const auto turned = [&](const Vec3& v) {
       return Vec3(v.x() * view.right + v.y() * view.up - v.z() * view.forward);
     };
@@ -36,6 +45,25 @@ PlacedArea placed(const AreaLight& light, const Grid& grid, const View& view) {
   area.up = (area.up - area.up.dot(area.normal) * area.normal).normalized();
   area.right = area.up.cross(area.normal);
   return area;
+}
+
+PlacedSphere placed(const SphereLight& light, const Grid& grid, const View& view) {
+  if (light.frame == LightFrame::world)
+    return {light.center, 0.5 * light.diameter, light.radiance};
+  const auto [middle, radius] = VolumeBall(grid);
+  const Vec3 from =
+      light.center.x() * view.right + light.center.y() * view.up - light.center.z() * view.forward;
+  return {middle + radius * from, 0.5 * radius * light.diameter, light.radiance};
+}
+
+/// Uniform point, by rejection.
+Vec3 somewhereOnUnitSphere(Generator& generator) {
+  for (;;) {
+    const Vec3 p(2.0 * uniform(generator) - 1.0, 2.0 * uniform(generator) - 1.0,
+                 2.0 * uniform(generator) - 1.0);
+    if (p.norm() > 0.1 && p.norm() <= 1.0)
+      return p.normalized();
+  }
 }
 
 Rgb radianceOf(const EnvironmentLight& light, const Vec3& direction) {
@@ -75,6 +103,8 @@ Lights::Lights(const std::vector<Light>& lights, const Grid& volume, const View&
       m_skies.push_back(placed(*sky, view));
     else if (const auto* directional = std::get_if<DirectionalLight>(&light))
       m_directionals.push_back(*directional);
+    else if (const auto* sphere = std::get_if<SphereLight>(&light))
+      m_spheres.push_back(placed(*sphere, volume, view));
     else
       m_areas.push_back(placed(std::get<AreaLight>(light), volume, view));
   }
@@ -105,16 +135,38 @@ double PlacedArea::meeting(const Ray& ray) const {
   return isOn ? t : infinity;
 }
 
+std::vector<double> PlacedSphere::crossings(const Ray& ray) const {
+  const Vec3 from = ray.origin - center;
+  const double b = from.dot(ray.direction);
+  const double discriminant = b * b - from.squaredNorm() + radius * radius;
+  std::vector<double> ahead;
+  if (discriminant >= 0.0)
+    for (const double t : {-b - std::sqrt(discriminant), -b + std::sqrt(discriminant)})
+      if (t > 0.0)
+        ahead.push_back(t);
+  return ahead;
+}
+
 Rgb Lights::areas(const Ray& ray, double end) const {
   Rgb sum = Rgb::Zero();
   for (const PlacedArea& light : m_areas)
     if (ray.direction.dot(light.normal) < 0.0 && light.meeting(ray) < end)
       sum += light.radiance;
+  for (const PlacedSphere& sphere : m_spheres) {
+    const std::vector<double> crossings = sphere.crossings(ray);
+    if (!crossings.empty() && crossings.front() < end)
+      sum += sphere.radiance;
+  }
   return sum;
 }
 
 Vec3 Lights::towardArea(const Vec3& point, Generator& generator) const {
-  const PlacedArea& light = m_areas[generator() % m_areas.size()];
+  const std::size_t which = generator() % (m_areas.size() + m_spheres.size());
+  if (which >= m_areas.size()) {
+    const PlacedSphere& sphere = m_spheres[which - m_areas.size()];
+    return (sphere.center + sphere.radius * somewhereOnUnitSphere(generator) - point).normalized();
+  }
+  const PlacedArea& light = m_areas[which];
   for (;;) {
     const double x = uniform(generator) - 0.5, y = uniform(generator) - 0.5;
     if (light.shape == AreaLight::Shape::disk && std::hypot(x, y) > 0.5)
@@ -131,7 +183,13 @@ double Lights::areaDensity(const Ray& ray) const {
     if (t < infinity)
       sum += t * t / (light.area() * std::abs(ray.direction.dot(light.normal)));
   }
-  return sum / static_cast<double>(m_areas.size());
+  for (const PlacedSphere& sphere : m_spheres)
+    for (const double t : sphere.crossings(ray)) {
+      const Vec3 normal = (ray.at(t) - sphere.center) / sphere.radius;
+      sum +=
+          t * t / (4.0 * pi * sphere.radius * sphere.radius * std::abs(ray.direction.dot(normal)));
+    }
+  return sum / static_cast<double>(m_areas.size() + m_spheres.size());
 }
 
 } // namespace fenestra::oracle

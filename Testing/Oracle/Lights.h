@@ -1,5 +1,6 @@
 #pragma once
-// Lights that a ray can hit (environments, skies, areas), and directional lights, which it cannot.
+// Lights that a ray can hit (environments, skies, areas, spheres), and directional lights, which it
+// cannot.
 
 #include "Scatter.h"
 #include "View.h"
@@ -18,17 +19,28 @@ struct PlacedArea {
   double meeting(const Ray& ray) const;
 };
 
+/// Sphere of light in world space, mm.
+struct PlacedSphere {
+  Vec3 center;
+  double radius;
+  Rgb radiance;
+
+  /// Distances ahead at which a ray crosses the sphere: none, one (from inside) or two.
+  std::vector<double> crossings(const Ray& ray) const;
+};
+
 class Lights {
 public:
   Lights(const std::vector<Light>& lights, const Grid& volume, const View& view);
 
   /// Radiance of all environments and skies; `direction`: of travel, toward the environment.
   Rgb environment(const Vec3& direction) const;
-  /// Radiance of all area lights that a ray hits on their emitting side before `end`, mm.
+  /// Radiance of all area lights that a ray hits on their emitting side before `end`, mm, and of
+  /// all spheres that it hits, counted once.
   Rgb areas(const Ray& ray, double end) const;
-  bool hasAreas() const { return !m_areas.empty(); }
-  /// Direction from `point` to a uniform point on one of the area lights; areaDensity: its pdf per
-  /// steradian.
+  bool hasAreas() const { return m_areas.size() + m_spheres.size() > 0; }
+  /// Direction from `point` to a uniform point on one of the area lights or spheres; areaDensity:
+  /// its pdf per steradian.
   Vec3 towardArea(const Vec3& point, Generator& generator) const;
   double areaDensity(const Ray& ray) const;
   const std::vector<DirectionalLight>& directionals() const { return m_directionals; }
@@ -38,6 +50,7 @@ private:
   std::vector<SkyLight> m_skies; ///< in world space
   std::vector<DirectionalLight> m_directionals;
   std::vector<PlacedArea> m_areas;
+  std::vector<PlacedSphere> m_spheres;
 };
 
 } // namespace fenestra::oracle

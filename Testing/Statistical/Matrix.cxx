@@ -58,6 +58,8 @@ Combination combination(int index) {
   }
   if (isOtherLight && c.light == LightFactor::constant)
     c.light = LightFactor::sky;
+  if (isOtherLight && c.light == LightFactor::disk)
+    c.light = LightFactor::sphere;
   // Parallel light reaches the eye only through the phase function's peak: at g = 0.99 hardly one
   // path in ten thousand shows the light, and means are far from normal.
   const bool hasParallel = c.light == LightFactor::directional || c.light == LightFactor::several;
@@ -262,6 +264,14 @@ SkyLight skyOf(LightFrame frame, Generator& generator) {
           frame};
 }
 
+/// Around a part of the volume, beside it, or far away.
+SphereLight sphereOf(const Combination& c, LightFrame frame, Generator& generator) {
+  const double unit = frame == LightFrame::world ? 10.0 : 1.0;
+  constexpr double distances[] = {0.3, 0.9, 2.2};
+  return {distances[c.index / 2 % 3] * unit * randomDirection(generator), 1.1 * unit,
+          Rgb(2.0, 1.6, 1.2), frame};
+}
+
 std::vector<Light> lightsOf(const Combination& c, Generator& generator) {
   const Light parallel = DirectionalLight{randomDirection(generator), Rgb(3.0, 2.5, 2.0)};
   const LightFrame frame = c.index % 2 == 0 ? LightFrame::world : LightFrame::camera;
@@ -278,10 +288,15 @@ std::vector<Light> lightsOf(const Combination& c, Generator& generator) {
     return {areaOf(AreaLight::Shape::disk, frame, generator)};
   case LightFactor::sky:
     return {skyOf(frame, generator), EnvironmentLight{Rgb(0.1, 0.1, 0.1), {}}};
+  case LightFactor::sphere:
+    return {sphereOf(c, frame, generator)};
   case LightFactor::several:
     return {EnvironmentLight{Rgb(0.2, 0.3, 0.4), {}},
-            EnvironmentLight{Rgb(0.5, 0.5, 0.5), mapOf(generator)}, parallel,
-            areaOf(AreaLight::Shape::rectangle, frame, generator), skyOf(frame, generator)};
+            EnvironmentLight{Rgb(0.5, 0.5, 0.5), mapOf(generator)},
+            parallel,
+            areaOf(AreaLight::Shape::rectangle, frame, generator),
+            skyOf(frame, generator),
+            sphereOf(c, frame, generator)};
   }
   return {};
 }
@@ -341,7 +356,7 @@ std::string describe(const Combination& c) {
   static constexpr const char* styles[] = {"", ", thin context", ", pale context",
                                            ", thin pale context"};
   static constexpr const char* lights[] = {"constant", "map",     "directional", "rectangle",
-                                           "disk",     "several", "sky"};
+                                           "disk",     "several", "sky",         "sphere"};
   static constexpr const char* albedos[] = {"0", "0.5", "0.999", "1", "per channel", "by scalar"};
   static constexpr const char* transfers[] = {
       "linear", "step", "spike", "non-monotone", "gradient opacity", "steep gradient opacity"};

@@ -19,7 +19,7 @@ enum class ClipFactor { none, plane, cutaway, surface, exactSurface, hole };
 enum class EdgeFactor { sharp, ghost, soft, softGhost };
 /// Look of the context.
 enum class StyleFactor { none, thin, pale, thinAndPale };
-enum class LightFactor { constant, map, directional, rectangle, disk, several, sky };
+enum class LightFactor { constant, map, directional, rectangle, disk, several, sky, sphere };
 enum class AlbedoFactor { black, half, nearlyOne, one, perChannel, byScalar };
 enum class TransferFactor {
   linear,

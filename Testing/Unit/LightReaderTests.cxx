@@ -57,6 +57,23 @@ TEST(LightReader, ReadsASky) {
   EXPECT_EQ(sky(2).up, Vec3(0, 0, 1));
 }
 
+TEST(LightReader, ReadsASphere) {
+  const auto lights = parseLights(R"({"lights": [
+    {"type": "sphere", "center": [1, 2, 3], "diameter": 4, "radiance": [5, 6, 7]},
+    {"type": "sphere", "center": [1, 2, 3], "diameter": 4, "radiance": [5, 6, 7],
+     "frame": "focus"},
+    {"type": "disk", "center": [0, 0, 0], "normal": [0, 0, 1], "size": 2, "radiance": [0, 0, 0],
+     "frame": "focus"}]})",
+                                  "test");
+  const auto& sphere = std::get<SphereLight>(lights.at(0));
+  EXPECT_EQ(sphere.center, Vec3(1, 2, 3));
+  EXPECT_EQ(sphere.diameter, 4.0);
+  EXPECT_TRUE(sphere.radiance == Rgb(5, 6, 7));
+  EXPECT_EQ(sphere.frame, LightFrame::world);
+  EXPECT_EQ(std::get<SphereLight>(lights.at(1)).frame, LightFrame::focus);
+  EXPECT_EQ(std::get<AreaLight>(lights.at(2)).frame, LightFrame::focus);
+}
+
 TEST(LightReader, ErrorNamesTheField) {
   const auto refuse = [](const std::string& light, const std::string& text) {
     const std::string json =
@@ -88,6 +105,13 @@ TEST(LightReader, ErrorNamesTheField) {
   refuse(R"({"type": "sky", "top": [1, 1, 1], "middle": [1, 1, 1], "bottom": [1, 1, 1],
              "up": [0, 0, 0]})",
          "lights[1].up: is the zero vector");
+  refuse(R"({"type": "sky", "top": [1, 1, 1], "middle": [1, 1, 1], "bottom": [1, 1, 1],
+             "frame": "focus"})",
+         "lights[1].frame: must be");
+  refuse(R"({"type": "sphere", "center": [0, 0, 0], "diameter": 0, "radiance": [1, 1, 1]})",
+         "lights[1].diameter: must be above 0");
+  refuse(R"({"type": "sphere", "center": [0, 0, 0], "radiance": [1, 1, 1]})",
+         "has no \"diameter\"");
   refuse(R"({"type": "environment", "file": "a\nb.exr"})", "lights[1].file: \"a b.exr\"");
   expectRefused("test", "has no \"lights\"", [] { parseLights("{}", "test"); });
   expectRefused("test", "unknown key \"light\"",

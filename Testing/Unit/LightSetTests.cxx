@@ -126,6 +126,114 @@ TEST(LightSet, CameraFrameIsRightUpAndTowardTheViewer) {
   EXPECT_LT(sample->direction.y(), -0.99) << "the viewer stands at negative y";
 }
 
+SphereLight ball(const Vec3& center, double diameter) {
+  return {center, diameter, Rgb(2.0, 1.0, 0.5)};
+}
+
+TEST(LightSet, SamplingOfASphereMatchesPdf) {
+  expectConsistent({ball({4, -3, 9}, 7)}, {4.5, 4.5, 4.5}, 300);
+  expectConsistent({ball({4, 4, 6}, 7)}, {4.5, 4.5, 4.5}, 60); // from inside
+  AreaLight disk;
+  disk.shape = AreaLight::Shape::disk;
+  disk.center = {-4, 5, 4};
+  disk.normal = Vec3::UnitX();
+  disk.size = {5, 5};
+  expectConsistent({ball({4, -3, 9}, 7), disk, ball({4, 4, 6}, 7)}, {4.5, 4.5, 4.5}, 300);
+}
+
+/// Irradiance that one light of the set sends to a point of a plane that faces `normal`, over pi:
+/// the mean of samples, and the integral over directions that meet the light.
+std::array<double, 2> received(const LightSet& set, const Vec3& point, const Vec3& normal) {
+  double sampled = 0.0;
+  constexpr int n = 40000;
+  for (int i = 0; i < n; ++i) {
+    Random random(5, static_cast<std::uint64_t>(i), 0);
+    const auto sample = set.sample(point, random);
+    if (sample)
+      sampled += sample->radiance[0] * std::max(0.0, normal.dot(sample->direction)) /
+                 (sample->pdf * n * pi);
+  }
+  const auto arriving = [&](const Vec3& d) {
+    const auto radiance = [](const LightArrival& arrival) { return arrival.radiance; };
+    return set.areaArrivals({point, d}, infinity, radiance)[0] * std::max(0.0, normal.dot(d));
+  };
+  double integrated = 0.0;
+  for (const double part : binIntegrals(arriving, 60))
+    integrated += part / pi;
+  return {sampled, integrated};
+}
+
+TEST(LightSet, SphereLightsAFacingPlaneByTheSquareOfRadiusOverDistance) {
+  // E = pi L (r / d)^2 outside, seen whole; pi L inside.
+  const Vec3 toward = Vec3(2, -1, 2) / 3.0;
+  const double radius = 3.0;
+  for (const double distance : {0.0, 1.0, 2.999, 3.001, 4.0, 12.0}) {
+    const LightSet set({ball(distance * toward, 2.0 * radius)}, grid, camera());
+    const auto [sampled, integrated] = received(set, Vec3::Zero(), toward);
+    const double expected = 2.0 * std::pow(radius / std::max(radius, distance), 2.0);
+    EXPECT_NEAR(sampled, expected, 0.02 * expected) << distance;
+    EXPECT_NEAR(integrated, expected, 0.01 * expected) << distance;
+  }
+}
+
+TEST(LightSet, SmallFarAndNearSpheresKeepTheirDigits) {
+  const Vec3 toward = Vec3(1, 2, -2) / 3.0;
+  const auto sampled = [&](double radius, double distance, const Vec2& u) {
+    const LightSet set({ball(distance * toward, 2.0 * radius)}, grid, camera());
+    return set.sample(Vec3::Zero(), 0.0, u);
+  };
+  const auto far = sampled(1e-6, 1e6, {0.5, 0.5});
+  ASSERT_TRUE(far);
+  EXPECT_NEAR(far->pdf * pi * 1e-24, 1.0, 1e-12) << "1 over the solid angle";
+  EXPECT_NEAR(far->distance, 1e6, 1e-6);
+  EXPECT_NEAR(far->direction.dot(toward), 1.0, 1e-15);
+  for (const double gap : {1e-9, -1e-9}) { // touching, from outside and inside
+    const auto near = sampled(1.0, 1.0 + gap, {0.0, 0.5});
+    ASSERT_TRUE(near);
+    EXPECT_NEAR(near->distance, gap > 0.0 ? 1e-9 : 2.0, 1e-8);
+    EXPECT_NEAR(near->pdf * 2.0 * pi, gap > 0.0 ? 1.0 : 0.5, 1e-4);
+  }
+  const auto centre = sampled(1.0, 0.0, {0.3, 0.7});
+  ASSERT_TRUE(centre);
+  EXPECT_NEAR(centre->distance, 1.0, 1e-12);
+}
+
+TEST(LightSet, ARayMeetsASphereOnceAndOnlyAhead) {
+  const LightSet set({ball({10, 0, 0}, 4)}, grid, camera());
+  const auto met = [&](const Vec3& from, const Vec3& direction, double end) {
+    const auto radiance = [](const LightArrival& arrival) { return arrival.radiance; };
+    return set.areaArrivals({from, direction}, end, radiance)[0];
+  };
+  const Vec3 x = Vec3::UnitX();
+  EXPECT_EQ(met({0, 1.99, 0}, x, infinity), 2.0);
+  EXPECT_EQ(met({0, 2.01, 0}, x, infinity), 0.0);
+  EXPECT_EQ(met({20, 0, 0}, x, infinity), 0.0) << "behind";
+  EXPECT_EQ(met({0, 0, 0}, x, 7.9), 0.0) << "too far";
+  EXPECT_EQ(met({0, 0, 0}, x, 8.1), 2.0);
+  EXPECT_EQ(met({11, 0, 0}, x, 1.1), 2.0) << "from inside";
+  EXPECT_EQ(met({11, 0, 0}, x, 0.9), 0.0);
+  EXPECT_EQ(met({11, 0, 0}, -x, 2.9), 0.0);
+  EXPECT_EQ(met({11, 0, 0}, -x, 3.1), 2.0);
+}
+
+TEST(LightSet, FocusFrameIsTheWorldAroundTheFocus) {
+  SphereLight sphere = ball({0, 0, 20}, 0.01);
+  sphere.frame = LightFrame::focus;
+  AreaLight disk;
+  disk.shape = AreaLight::Shape::disk;
+  disk.center = {0, 0, 20};
+  disk.normal = -Vec3::UnitZ();
+  disk.size = {0.01, 0.01};
+  disk.frame = LightFrame::focus;
+  for (const Light& light : {Light(sphere), Light(disk)}) {
+    const LightSet set({light}, grid, camera(), {1, 2, 3});
+    const auto sample = set.sample({1, 2, 3}, 0.0, {0.5, 0.5});
+    ASSERT_TRUE(sample);
+    EXPECT_NEAR(sample->distance, 20.0, 0.02);
+    EXPECT_NEAR(sample->direction.z(), 1.0, 1e-6);
+  }
+}
+
 /// Irradiance that arrives from all around on a plane with that normal, over pi.
 Rgb receivedFromAround(const LightSet& set, const Vec3& normal) {
   Rgb sum = Rgb::Zero();

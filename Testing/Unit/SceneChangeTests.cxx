@@ -3,6 +3,7 @@
 #include "session/Scene.h"
 
 #include "MedicalFiles.h"
+#include "Refusals.h"
 
 #include <functional>
 
@@ -16,6 +17,10 @@ struct Change {
 };
 
 /// Ball in a box of 16^3 voxels, and two labels in the ball.
+constexpr const char* lampAtTheFocus =
+    R"({"lights": [{"type": "sphere", "center": [0, 20, 0], "diameter": 5, "radiance": [9, 9, 9],
+                    "frame": "focus"}]})";
+
 class SceneChange : public ::testing::TestWithParam<Change> {
 protected:
   SceneChange() {
@@ -109,6 +114,9 @@ INSTANTIATE_TEST_SUITE_P(
                  r.lights = R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})";
                },
                {.lights = true}},
+        Change{"LightsAtTheFocus",
+               [](SceneRequest& r) { r.lights = lampAtTheFocus; },
+               {.lights = true}},
         Change{"Environment",
                [](SceneRequest& r) { r.environment = Rgb(1.0, 0.5, 0.2); },
                {.lights = true}},
@@ -119,6 +127,26 @@ INSTANTIATE_TEST_SUITE_P(
                [](SceneRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),
     [](const auto& info) { return info.param.name; });
+
+TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
+  request.lights = lampAtTheFocus;
+  request.view.position = Vec3(0, -100, 0); // the camera stays where it is
+  request.view.target = Vec3::Zero();
+  const Scene before(request);
+  const auto lamp = [](const Scene& scene) {
+    return scene.forRender().lights.spheres().at(0).center;
+  };
+  const Vec3 center = before.volume().grid.indexToWorld * Vec3::Constant(7.5);
+  EXPECT_LT((lamp(before) - center - Vec3(0, 20, 0)).norm(), 1e-9);
+  SceneRequest other = request;
+  other.focus = {"2"};
+  const Scene moved = before.changed(other);
+  EXPECT_TRUE(moved.made().lights);
+  EXPECT_GT((lamp(moved) - lamp(before)).norm(), 1.0);
+  request.focus.clear();
+  expectRefused("--lights", "lights[0].frame: is \"focus\", and there is no focus; name one",
+                [&] { Scene{request}; });
+}
 
 TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
   request.view.name = "auto";

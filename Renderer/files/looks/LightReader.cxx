@@ -41,8 +41,9 @@ Light readEnvironment(const JsonNode& node, const std::filesystem::path& folder)
   return light;
 }
 
+/// Frame of a light that has a place.
 LightFrame readFrame(const JsonNode& node) {
-  return node.oneOf({"world", "camera"}) == 1 ? LightFrame::camera : LightFrame::world;
+  return static_cast<LightFrame>(node.oneOf({"world", "camera", "focus"}));
 }
 
 Light readSky(const JsonNode& node) {
@@ -52,7 +53,7 @@ Light readSky(const JsonNode& node) {
   light.middle = readRadiance(node.at("middle"));
   light.bottom = readRadiance(node.at("bottom"));
   if (const auto frame = node.find("frame"))
-    light.frame = readFrame(*frame);
+    light.frame = static_cast<LightFrame>(frame->oneOf({"world", "camera"}));
   if (const auto up = node.find("up"))
     light.up = readDirection(*up);
   else if (light.frame == LightFrame::world)
@@ -95,6 +96,20 @@ Light readArea(const JsonNode& node, AreaLight::Shape shape) {
   return light;
 }
 
+Light readSphere(const JsonNode& node) {
+  node.allowOnly({"type", "center", "diameter", "radiance", "frame"});
+  SphereLight light;
+  light.center = node.at("center").triple(-largest, largest);
+  const JsonNode diameter = node.at("diameter");
+  light.diameter = diameter.numberIn(0.0, largest);
+  if (light.diameter == 0.0)
+    throw diameter.error("must be above 0");
+  light.radiance = readRadiance(node.at("radiance"));
+  if (const auto frame = node.find("frame"))
+    light.frame = readFrame(*frame);
+  return light;
+}
+
 Light readLight(const JsonNode& node, const std::filesystem::path& folder) {
   const JsonNode type = node.at("type");
   const std::string name = type.text();
@@ -108,7 +123,9 @@ Light readLight(const JsonNode& node, const std::filesystem::path& folder) {
     return readArea(node, AreaLight::Shape::rectangle);
   if (name == "disk")
     return readArea(node, AreaLight::Shape::disk);
-  throw type.error("must be environment, sky, directional, rectangle or disk");
+  if (name == "sphere")
+    return readSphere(node);
+  throw type.error("must be environment, sky, directional, rectangle, disk or sphere");
 }
 
 } // namespace

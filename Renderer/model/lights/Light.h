@@ -29,8 +29,9 @@ struct EnvironmentLight {
 };
 
 /// Frame of a light's positions and directions. `camera`: x is right, y up, z toward the viewer,
-/// the origin is the volume's centre, and lengths are in radii of its bounding sphere.
-enum class LightFrame { world, camera };
+/// the origin is the volume's centre, and lengths are in radii of its bounding sphere. `focus`: the
+/// world's axes and mm, the origin is the centroid of the focus.
+enum class LightFrame { world, camera, focus };
 
 /// Radiance from every direction, by t, the cosine of the angle between the direction toward the
 /// sky and `up`: linear in t from `middle` (t = 0) to `top` (t = 1) and to `bottom` (t = -1).
@@ -64,6 +65,15 @@ struct AreaLight {
   LightFrame frame = LightFrame::world;
 };
 
-using Light = std::variant<EnvironmentLight, DirectionalLight, AreaLight, SkyLight>;
+/// Ball of light. From outside its near half is seen, and emits outward; from inside it is light
+/// from all around: a ray from anywhere takes `radiance` once, where it first meets the sphere.
+struct SphereLight {
+  Vec3 center = Vec3::Zero();
+  double diameter = 1.0;
+  Rgb radiance = Rgb::Ones();
+  LightFrame frame = LightFrame::world;
+};
+
+using Light = std::variant<EnvironmentLight, DirectionalLight, AreaLight, SkyLight, SphereLight>;
 
 } // namespace fenestra

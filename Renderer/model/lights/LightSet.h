@@ -3,7 +3,7 @@
 // scattering, the arriving radiance and the density of sample() (for multiple importance sampling).
 // A constant environment and a sky are never sampled: scattered rays meet them anyway, without a
 // second ray.
-// Area lights only emit: they block nothing, and eye rays do not see them.
+// Area lights and spheres only emit: they block nothing, and eye rays do not see them.
 
 #include "base/Random.h"
 #include "model/camera/Camera.h"
@@ -42,6 +42,21 @@ struct PlacedAreaLight {
   std::optional<LightSample> sample(const Vec3& point, const Vec2& u) const;
   std::optional<LightArrival> arrival(const Ray& ray, double end) const;
 };
+/// A sphere of light in the world. Directions toward it are drawn uniformly: in the cone that it
+/// subtends, or from inside in all.
+struct PlacedSphereLight {
+  Vec3 center;
+  double radius; ///< mm
+  Rgb radiance;
+  double share; ///< probability that LightSet::sample() takes this light
+
+  std::optional<LightSample> sample(const Vec3& point, const Vec2& u) const;
+  std::optional<LightArrival> arrival(const Ray& ray, double end) const;
+
+private:
+  double spread(double distance2) const;
+  double toward(const Vec3& point, double along, double across2) const;
+};
 struct PlacedDirectionalLight {
   Vec3 toward; ///< unit, from the scene to the light
   Rgb irradiance;
@@ -50,8 +65,10 @@ struct PlacedDirectionalLight {
 
 class LightSet {
 public:
-  /// Lights in the camera's frame are placed around the volume's centre.
-  LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera);
+  /// Lights in the camera's frame are placed around the volume's centre, lights in the focus's
+  /// frame around `focus`, its centroid in the world.
+  LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera,
+           const Vec3& focus = Vec3::Zero());
 
   /// Sample of one light, chosen by its share; empty if that light does not reach the point, or
   /// without lights to sample.
@@ -63,29 +80,33 @@ public:
   std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
 
   /// Sample of an environment map; empty without maps. `choice`: a uniform number less the shares
-  /// of all area and directional lights.
+  /// of all area and directional lights and spheres.
   std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
   /// Radiance and density of all environments and skies together.
   LightArrival environment(const Vec3& direction) const;
 
-  /// Sum of weigh(arrival) over all area lights that the ray meets before `end` (mm).
+  /// Sum of weigh(arrival) over all area lights and spheres that the ray meets before `end` (mm).
   template <typename Weigh>
   Rgb areaArrivals(const Ray& ray, double end, Weigh&& weigh) const {
     Rgb sum = Rgb::Zero();
     for (const PlacedAreaLight& light : m_areas)
       if (const std::optional<LightArrival> arrival = light.arrival(ray, end))
         sum += weigh(*arrival);
+    for (const PlacedSphereLight& light : m_spheres)
+      if (const std::optional<LightArrival> arrival = light.arrival(ray, end))
+        sum += weigh(*arrival);
     return sum;
   }
 
-  /// True if every light is an area, directional or environment light or a sky: the kinds that SIMD
-  /// lanes know, and that the members below list.
+  /// True if every light is of a kind that SIMD lanes know, and that the members below list.
   bool hasOnlyListedKinds() const {
-    return m_areas.size() + m_directionals.size() + m_environments.size() + m_skies.size() ==
+    return m_areas.size() + m_spheres.size() + m_directionals.size() + m_environments.size() +
+               m_skies.size() ==
            m_count;
   }
   const std::vector<PlacedAreaLight>& areas() const { return m_areas; }
+  const std::vector<PlacedSphereLight>& spheres() const { return m_spheres; }
   const std::vector<PlacedDirectionalLight>& directionals() const { return m_directionals; }
   /// Skies in the world's frame.
   const std::vector<SkyLight>& skies() const { return m_skies; }
@@ -100,14 +121,22 @@ private:
     double share; ///< 0: never sampled
   };
 
-  void place(const EnvironmentLight& light, const Grid& volume, const Camera& camera);
-  void place(const SkyLight& light, const Grid& volume, const Camera& camera);
-  void place(const DirectionalLight& light, const Grid& volume, const Camera& camera);
-  void place(const AreaLight& light, const Grid& volume, const Camera& camera);
+  /// A frame's axes, its origin (mm) and its unit of length (mm) in the world.
+  struct FrameInWorld {
+    Mat3 axes = Mat3::Identity();
+    Vec3 origin = Vec3::Zero();
+    double unit = 1.0;
+  };
+  void place(const EnvironmentLight& light);
+  void place(const DirectionalLight& light);
+  void place(const SkyLight& light, const FrameInWorld& frame);
+  void place(const AreaLight& light, const FrameInWorld& frame);
+  void place(const SphereLight& light, const FrameInWorld& frame);
   void chooseShares(const Vec3& center);
 
   std::size_t m_count; ///< lights of all kinds
   std::vector<PlacedAreaLight> m_areas;
+  std::vector<PlacedSphereLight> m_spheres;
   std::vector<PlacedDirectionalLight> m_directionals;
   std::vector<SharedEnvironment> m_environments;
   std::vector<SkyLight> m_skies;

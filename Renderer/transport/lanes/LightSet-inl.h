@@ -34,7 +34,8 @@ public:
   explicit HWY_INLINE WideLights(const EventScene& scene) : m_scene(scene) {}
 
   bool some() const {
-    return !m_scene.areas.empty() || !m_scene.directionals.empty() || m_scene.maps != nullptr;
+    return !m_scene.areas.empty() || !m_scene.directionals.empty() || !m_scene.spheres.empty() ||
+           m_scene.maps != nullptr;
   }
 
   /// Draws one light for each lane of `which`, seen from a local point. `choice` selects the light.
@@ -60,6 +61,11 @@ public:
       drawn.pdf = hn::IfThenElse(mine, all(light.share), drawn.pdf);
       drawn.delta = hn::Or(mine, drawn.delta);
     }
+    for (const EventScene::Sphere& light : m_scene.spheres) {
+      const M mine = chosen(light.share);
+      if (!hn::AllFalse(floats, mine))
+        drawSphere(light, mine, point, u, v, drawn);
+    }
     if (m_scene.maps && !hn::AllFalse(floats, which))
       drawMaps(which, choice, u, v, drawn);
     return drawn;
@@ -71,6 +77,8 @@ public:
     const F zero = hn::Zero(floats);
     F3 sum{zero, zero, zero};
     for (const EventScene::Area& light : m_scene.areas)
+      sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
+    for (const EventScene::Sphere& light : m_scene.spheres)
       sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
     const M escaped = both(which, hn::Eq(distance, all(std::numeric_limits<float>::infinity())));
     if (!m_scene.maps)
@@ -103,6 +111,48 @@ private:
     drawn.radiance = select(lit, all3(light.radiance), drawn.radiance);
     drawn.distance = hn::IfThenElse(lit, distance, drawn.distance);
     drawn.pdf = hn::IfThenElse(lit, pdf, drawn.pdf);
+  }
+
+  /// 1 - cos of half the angle that a sphere subtends; 2 from inside.
+  static HWY_INLINE F spreadOf(const EventScene::Sphere& light, F distance2) {
+    const F one = all(1.0F);
+    const F sine2 = hn::Div(all(light.radius2), distance2);
+    const F cosine = hn::Sqrt(hn::Max(hn::Sub(one, sine2), hn::Zero(floats)));
+    return hn::IfThenElse(hn::Lt(sine2, one), hn::Div(sine2, hn::Add(one, cosine)), all(2.0F));
+  }
+  static HWY_INLINE F densityOf(const EventScene::Sphere& light, F spread) {
+    return hn::Div(all(light.share), hn::Mul(all(narrow(2.0 * pi)), spread));
+  }
+  /// Distance to a sphere whose centre is `along` ahead, and aside by the square root of `across2`.
+  static HWY_INLINE F distanceTo(const EventScene::Sphere& light, F distance2, F along, F across2) {
+    const F zero = hn::Zero(floats);
+    const F outside = hn::Sub(distance2, all(light.radius2));
+    const F half = hn::Sqrt(hn::Max(hn::Sub(all(light.radius2), across2), zero));
+    const F far = hn::Add(along, half);
+    return hn::IfThenElse(hn::Gt(outside, zero), hn::Div(outside, far), far);
+  }
+
+  static HWY_INLINE void drawSphere(const EventScene::Sphere& light, M mine, const F3& point, F u,
+                                    F v, LightDraw& drawn) {
+    const F zero = hn::Zero(floats), one = all(1.0F);
+    const F3 d = all3(light.center) - point;
+    const F distance2 = dot(d, d);
+    const F distance = hn::Sqrt(distance2);
+    const F spread = spreadOf(light, distance2);
+    const F fall = hn::Mul(spread, u); // 1 - cos of the angle to the axis
+    const F cosine = hn::Sub(one, fall);
+    const F sine2 = hn::Max(hn::Mul(fall, hn::Sub(all(2.0F), fall)), zero);
+    const F sine = hn::Sqrt(sine2);
+    const CosineSine phi = ofTurns(v);
+    const M apart = hn::Gt(distance, zero);
+    const F3 axis = select(apart, hn::Div(one, distance) * d, F3{zero, zero, one});
+    const F3 local{hn::Mul(sine, phi.cosine), hn::Mul(sine, phi.sine), cosine};
+    const F far =
+        distanceTo(light, distance2, hn::Mul(distance, cosine), hn::Mul(distance2, sine2));
+    drawn.direction = select(mine, normalized(Frames(axis).toWorld(local)), drawn.direction);
+    drawn.radiance = select(mine, all3(light.radiance), drawn.radiance);
+    drawn.distance = hn::IfThenElse(mine, far, drawn.distance);
+    drawn.pdf = hn::IfThenElse(mine, densityOf(light, spread), drawn.pdf);
   }
 
   void drawMaps(M which, F choice, F u, F v, LightDraw& drawn) const {
@@ -157,6 +207,26 @@ private:
     const F one = all(1.0F);
     met = both(met, hn::Le(light.disk ? hn::Add(x2, y2) : hn::Max(x2, y2), one));
     const F pdf = hn::Div(hn::Mul(all(light.share), square(t)), hn::Mul(all(light.area), cosine));
+    const F weight = hn::Div(scatterPdf, hn::Add(scatterPdf, pdf));
+    return selectElseZero(met, weight * all3(light.radiance));
+  }
+
+  static HWY_INLINE F3 arrivingFrom(const EventScene::Sphere& light, M which, const F3& origin,
+                                    const F3& direction, F distance, F scatterPdf) {
+    const F zero = hn::Zero(floats);
+    const F3 d = all3(light.center) - origin;
+    const F distance2 = dot(d, d);
+    const F along = dot(d, direction);
+    const F3 across = d - along * direction;
+    const F across2 = dot(across, across);
+    const F radius2 = all(light.radius2);
+    const M ahead = both(hn::Gt(along, zero), hn::Le(across2, radius2));
+    const M hits = hn::Or(hn::Le(distance2, radius2), ahead);
+    const F far = distanceTo(light, distance2, along, across2);
+    const M met = both(which, both(hits, hn::Lt(far, distance)));
+    if (hn::AllFalse(floats, met))
+      return {zero, zero, zero};
+    const F pdf = densityOf(light, spreadOf(light, distance2));
     const F weight = hn::Div(scatterPdf, hn::Add(scatterPdf, pdf));
     return selectElseZero(met, weight * all3(light.radiance));
   }

@@ -31,13 +31,21 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
   constexpr double greatestG = 0.9999;
   constexpr double farthest = 1e15; // mm; squares and areas stay far below the greatest float
   constexpr double brightest = 1e20;
-  const auto fits = [&](const PlacedAreaLight& light) {
+  constexpr double smallest = 1e-3; // mm; radius of a sphere whose square of the sine is a float
+  const auto isNear = [&](const auto& light) {
     return (light.center - grid.worldCenter()).norm() < farthest &&
-           light.half.maxCoeff() < farthest && light.radiance.maxCoeff() < brightest;
+           light.radiance.maxCoeff() < brightest;
+  };
+  const auto fits = [&](const PlacedAreaLight& light) {
+    return isNear(light) && light.half.maxCoeff() < farthest;
+  };
+  const auto sphereFits = [&](const PlacedSphereLight& light) {
+    return isNear(light) && light.radius > smallest && light.radius < farthest;
   };
   return lights.hasOnlyListedKinds() && std::abs(transfer.g) <= greatestG &&
          !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness) &&
-         std::all_of(lights.areas().begin(), lights.areas().end(), fits);
+         std::ranges::all_of(lights.areas(), fits) &&
+         std::ranges::all_of(lights.spheres(), sphereFits);
 }
 
 EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
@@ -80,6 +88,10 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
     areas.push_back(narrowArea(light, grid.worldCenter()));
   for (const PlacedDirectionalLight& light : lights.directionals())
     directionals.push_back({narrow3(light.toward), narrow3(light.irradiance), narrow(light.share)});
+  for (const PlacedSphereLight& light : lights.spheres())
+    spheres.push_back({narrow3(Vec3(light.center - grid.worldCenter())),
+                       narrow(light.radius * light.radius), narrow3(light.radiance),
+                       narrow(light.share)});
   for (const SkyLight& sky : lights.skies())
     skies.push_back({narrow3(sky.up), narrow3(sky.middle), narrow3(Rgb(sky.top - sky.middle)),
                      narrow3(Rgb(sky.bottom - sky.middle))});

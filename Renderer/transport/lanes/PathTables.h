@@ -29,6 +29,12 @@ struct EventScene {
     float share;
   };
 
+  struct Sphere {
+    Triple center; ///< local
+    float radius2; ///< mm^2
+    Triple radiance;
+    float share;
+  };
   struct Sky {
     Triple up, middle;
     Triple toTop, toBottom; ///< difference of the radiance there and in the middle
@@ -51,6 +57,7 @@ struct EventScene {
 
   std::vector<Area> areas;
   std::vector<Directional> directionals;
+  std::vector<Sphere> spheres;
   std::vector<Sky> skies;
   Triple constantEnvironment;
   const LightSet* maps; ///< queried for environments; null if all are constant
