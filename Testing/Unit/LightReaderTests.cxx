@@ -4,6 +4,7 @@
 #include "WriteResults.h"
 #include "base/safe/EmbeddedResources.h"
 #include "files/looks/LightReader.h"
+#include "model/medium/ContextStyle.h"
 
 #include "Refusals.h"
 
@@ -74,6 +75,46 @@ TEST(LightReader, ReadsASphere) {
   EXPECT_EQ(std::get<AreaLight>(lights.at(2)).frame, LightFrame::focus);
 }
 
+TEST(LightReader, ColorIsThatOfAWhiteSurfaceInTheLight) {
+  const auto lights = parseLights(R"({"lights": [
+    {"type": "environment", "color": "#808080", "radiance": 0.5},
+    {"type": "directional", "direction": [0, 0, 1], "color": "#FF0000", "irradiance": 3},
+    {"type": "disk", "center": [0, 0, 0], "normal": [0, 0, 1], "size": 2, "color": "#d8a090",
+     "radiance": 2},
+    {"type": "rectangle", "center": [0, 0, 0], "normal": [0, 0, 1], "size": [2, 1],
+     "color": "#d8a090", "radiance": 2},
+    {"type": "sphere", "center": [0, 0, 0], "diameter": 2, "color": "#6c5048", "radiance": 2}]})",
+                                  "test");
+  const Rgb grey = std::get<EnvironmentLight>(lights.at(0)).radiance;
+  EXPECT_LT((grey - 0.5).abs().maxCoeff(), 1e-15) << "luminance 0.5";
+  const Rgb red = std::get<DirectionalLight>(lights.at(1)).irradiance;
+  EXPECT_LT((red - Rgb(3.0 / 0.2126, 0.0, 0.0)).abs().maxCoeff(), 1e-12);
+  const Rgb linear(0.686685312, 0.351532600, 0.278894261); // of 216, 160, 144 by IEC 61966-2-1
+  const Rgb disk = std::get<AreaLight>(lights.at(2)).radiance;
+  EXPECT_NEAR(luminance(disk), 2.0, 1e-12);
+  EXPECT_LT((disk / disk[0] - linear / linear[0]).abs().maxCoeff(), 1e-8);
+  EXPECT_TRUE(std::get<AreaLight>(lights.at(3)).radiance == disk);
+  EXPECT_NEAR(luminance(std::get<SphereLight>(lights.at(4)).radiance), 2.0, 1e-12);
+}
+
+TEST(LightReader, RefusesWhatIsNoColor) {
+  const auto refuse = [](const std::string& color, const std::string& radiance,
+                         const std::string& text) {
+    const std::string json = R"({"lights": [{"type": "environment", "color": )" + color +
+                             R"(, "radiance": )" + radiance + "}]}";
+    expectRefused("test", "lights[0]." + text, [&] { parseLights(json, "test"); });
+  };
+  for (const char* color : {"1", "null", "\"\"", "\"d8a090\"", "\"#d8a09\"", "\"#d8a0900\"",
+                            "\"#d8a09g\"", "\"# d8a09\"", "\"#-8a090\"", "\"red\"", "[1, 1, 1]"})
+    refuse(color, "1", "color: must be a colour such as \"#d8a090\"");
+  refuse("\"#000000\"", "1", "color: is black");
+  refuse("\"#d8a090\"", "[1, 1, 1]", "radiance: must be a number");
+  refuse("\"#d8a090\"", "-1", "radiance: is -1");
+  expectRefused("test", "lights[0]: has no \"radiance\"", [] {
+    parseLights(R"({"lights": [{"type": "environment", "color": "#ffffff"}]})", "test");
+  });
+}
+
 TEST(LightReader, ErrorNamesTheField) {
   const auto refuse = [](const std::string& light, const std::string& text) {
     const std::string json =
@@ -88,7 +129,7 @@ TEST(LightReader, ErrorNamesTheField) {
   refuse(R"({"type": "environment", "radiance": [1, -1, 1]})", "lights[1].radiance[1]: is -1");
   refuse(R"({"type": "environment", "radiance": [1, 1, 1e35]})", "lights[1].radiance[2]");
   refuse(R"({"type": "environment", "radiance": 1})", "lights[1].radiance: must be an array");
-  refuse(R"({"type": "environment", "color": 1})", "lights[1]: unknown key \"color\"");
+  refuse(R"({"type": "environment", "colour": 1})", "lights[1]: unknown key \"colour\"");
   refuse(R"({"type": "directional", "direction": [0, 0, 0], "irradiance": [1, 1, 1]})",
          "lights[1].direction: is the zero vector");
   const std::string area = R"("center": [0, 0, 0], "radiance": [1, 1, 1], )";

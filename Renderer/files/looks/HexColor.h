@@ -1,14 +1,13 @@
 #pragma once
-// Colours as people write them.
+// Colours in JSON as they are chosen on a monitor.
 
 #include "base/Vector.h"
+#include "base/safe/JsonNode.h"
 
 namespace fenestra {
 
-class JsonNode;
-
-/// Linear Rec. 709 of the text "#rrggbb", which is sRGB (IEC 61966-2-1). Throws Error (input) for
-/// anything else.
+/// Reads an sRGB colour "#rrggbb" and decodes it (IEC 61966-2-1): linear Rec. 709, 0 to 1. Throws
+/// Error (input) for anything but # and six hexadecimal digits.
 Rgb readHexColor(const JsonNode& node);
 
 } // namespace fenestra

@@ -3,7 +3,9 @@
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
+#include "files/looks/HexColor.h"
 #include "files/pictures/ImageReader.h"
+#include "model/medium/ContextStyle.h"
 
 namespace fenestra {
 namespace {
@@ -18,8 +20,20 @@ Vec3 readDirection(const JsonNode& node) {
   return v.stableNormalized();
 }
 
-Rgb readRadiance(const JsonNode& node) {
+Rgb readTriple(const JsonNode& node) {
   return node.triple(0.0, largest).array();
+}
+
+/// Radiance, or irradiance, of a light, by `key`: a triple; or with "color" one number, the
+/// luminance of light of that colour.
+Rgb readRadiance(const JsonNode& light, const std::string& key) {
+  const auto color = light.find("color");
+  if (!color)
+    return readTriple(light.at(key));
+  const Rgb tint = readHexColor(*color);
+  if (tint.isZero(0.0))
+    throw color->error("is black, which no light is; use a radiance of 0 for a light that is off");
+  return tint * (light.at(key).numberIn(0.0, largest) / luminance(tint));
 }
 
 /// File name without zero bytes and line breaks, fit for a message of one line.
@@ -31,13 +45,13 @@ std::string readFileName(const JsonNode& node) {
 }
 
 Light readEnvironment(const JsonNode& node, const std::filesystem::path& folder) {
-  node.allowOnly({"type", "radiance", "file"});
+  node.allowOnly({"type", "color", "radiance", "file"});
   EnvironmentLight light;
   const auto file = node.find("file");
   if (file)
     light.map = readEnvironmentMap(folder / readFileName(*file));
-  if (const auto radiance = file ? node.find("radiance") : node.at("radiance"))
-    light.radiance = readRadiance(*radiance);
+  if (!file || node.find("radiance") || node.find("color"))
+    light.radiance = readRadiance(node, "radiance");
   return light;
 }
 
@@ -49,9 +63,9 @@ LightFrame readFrame(const JsonNode& node) {
 Light readSky(const JsonNode& node) {
   node.allowOnly({"type", "top", "middle", "bottom", "up", "frame"});
   SkyLight light;
-  light.top = readRadiance(node.at("top"));
-  light.middle = readRadiance(node.at("middle"));
-  light.bottom = readRadiance(node.at("bottom"));
+  light.top = readTriple(node.at("top"));
+  light.middle = readTriple(node.at("middle"));
+  light.bottom = readTriple(node.at("bottom"));
   if (const auto frame = node.find("frame"))
     light.frame = static_cast<LightFrame>(frame->oneOf({"world", "camera"}));
   if (const auto up = node.find("up"))
@@ -62,8 +76,8 @@ Light readSky(const JsonNode& node) {
 }
 
 Light readDirectional(const JsonNode& node) {
-  node.allowOnly({"type", "direction", "irradiance"});
-  return DirectionalLight{readDirection(node.at("direction")), readRadiance(node.at("irradiance"))};
+  node.allowOnly({"type", "direction", "color", "irradiance"});
+  return DirectionalLight{readDirection(node.at("direction")), readRadiance(node, "irradiance")};
 }
 
 /// Edges of a rectangle, or diameter of a disk: one number, or the same number twice.
@@ -82,7 +96,7 @@ Vec2 readSize(const JsonNode& node, AreaLight::Shape shape) {
 }
 
 Light readArea(const JsonNode& node, AreaLight::Shape shape) {
-  node.allowOnly({"type", "center", "normal", "up", "size", "radiance", "frame"});
+  node.allowOnly({"type", "center", "normal", "up", "size", "color", "radiance", "frame"});
   AreaLight light;
   light.shape = shape;
   light.center = node.at("center").triple(-largest, largest);
@@ -90,21 +104,21 @@ Light readArea(const JsonNode& node, AreaLight::Shape shape) {
   if (const auto up = node.find("up"))
     light.up = readDirection(*up);
   light.size = readSize(node.at("size"), shape);
-  light.radiance = readRadiance(node.at("radiance"));
+  light.radiance = readRadiance(node, "radiance");
   if (const auto frame = node.find("frame"))
     light.frame = readFrame(*frame);
   return light;
 }
 
 Light readSphere(const JsonNode& node) {
-  node.allowOnly({"type", "center", "diameter", "radiance", "frame"});
+  node.allowOnly({"type", "center", "diameter", "color", "radiance", "frame"});
   SphereLight light;
   light.center = node.at("center").triple(-largest, largest);
   const JsonNode diameter = node.at("diameter");
   light.diameter = diameter.numberIn(0.0, largest);
   if (light.diameter == 0.0)
     throw diameter.error("must be above 0");
-  light.radiance = readRadiance(node.at("radiance"));
+  light.radiance = readRadiance(node, "radiance");
   if (const auto frame = node.find("frame"))
     light.frame = readFrame(*frame);
   return light;
