@@ -23,12 +23,12 @@ inline void writeFile(const std::filesystem::path& path, std::string_view conten
 
 inline void writeImage(const Image& image, const ImagePlane& plane,
                        const std::filesystem::path& path,
-                       DisplayView view = DisplayView::photographic) {
+                       const Display& display = {}) {
   for (const std::filesystem::path& file : imageFiles(path))
     forgetIfRead(file);
   Outputs outputs;
   declareImage(path, outputs);
-  writeImage(image, plane, path, outputs, view);
+  writeImage(image, plane, path, outputs, display);
   outputs.commit();
 }
 

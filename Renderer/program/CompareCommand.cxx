@@ -85,7 +85,7 @@ int compareCommand(int argc, char** argv, int first) {
   const Image b = readWithError(*values, "B", "errorb");
   print(compared(*values, a, b));
   if (const auto output = values->text("output")) {
-    writeImage(differenceImage(a, b), {}, *output, outputs, DisplayView::standard);
+    writeImage(differenceImage(a, b), {}, *output, outputs, {DisplayView::standard});
     outputs.commit();
   }
   return 0;

@@ -161,8 +161,8 @@ void writePictures(const RenderOptions& options, const Scene& scene, const Rende
   std::vector<std::future<void>> files;
   for (const std::filesystem::path& path : options.outputs) {
     const Image& image = filtered && isDisplayFile(path) ? shown : raw;
-    files.push_back(std::async([&image, &scene, &path, &outputs] {
-      writeImage(image, picturePlane(scene.camera()), path, outputs);
+    files.push_back(std::async([&image, &scene, &path, &options, &outputs] {
+      writeImage(image, picturePlane(scene.camera()), path, outputs, options.display);
     }));
   }
   for (std::future<void>& file : files)

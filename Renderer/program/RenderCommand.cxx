@@ -3,6 +3,7 @@
 #include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
 #include "clip/mesh/SurfaceWriter.h"
+#include "files/pictures/ImageFormat.h"
 #include "files/pictures/ImageWriter.h"
 #include "measure/FocusMeasures.h"
 #include "program/CommandLine.h"
@@ -67,10 +68,13 @@ void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& f
     json["contextRemoved"] = *focus->contextRemoved;
 }
 
-/// Adds the sources of the picture, and the warnings.
+/// Adds how pictures for the eye are shown, the sources of the picture, and the warnings.
 void addSources(Json& json, const RenderStats& stats, const RenderOptions& options,
                 const Scene& scene) {
   const std::filesystem::path folder = options.stats->parent_path();
+  if (std::ranges::any_of(options.outputs, isDisplayFile))
+    json["display"] = {{"tone", nameOf(options.display.view)},
+                       {"exposure", options.display.exposure}};
   if (options.preset)
     json["preset"] = relativeName(*options.preset, folder);
   json["filesRead"] = Json::array();

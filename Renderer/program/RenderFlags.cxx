@@ -220,6 +220,9 @@ struct RenderTable {
        "Linear colour (the photographic tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
        "white), transparent or environment [the scene's, else 0,0,0]",
        Takes::text().into(options.background, readBackground)},
+      {"exposure", "EV", lookGroup,
+       "Stops, -16 to 16, by which .png and .tif are shown brighter or darker; .exr and .nrrd stay",
+       Takes::number(-16.0, 16.0).into(options.display.exposure)},
       {"size", "WxH", qualityGroup, "Pixels",
        Takes::text()
            .into(scene, readSize)

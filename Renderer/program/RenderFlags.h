@@ -25,6 +25,7 @@ struct RenderOptions {
   std::vector<std::filesystem::path> outputs; ///< at least one
   NamedBy outputsNamedBy = NamedBy::user;
   LayerSet layers = allLayers;
+  Display display = {}; ///< of .png and .tif
   Denoise denoise = Denoise::automatic;
   NoiseTarget noiseTarget = NoiseTarget::automatic;  ///< settled: raw or filtered
   std::optional<std::filesystem::path> surface = {}; ///< only with a clip by depth

@@ -106,6 +106,7 @@ const std::vector<Flag>& flags() {
                                         {"lights", Kind::look},
                                         {"environment", Kind::look},
                                         {"background", Kind::colour},
+                                        {"exposure", Kind::number},
                                         {"size", Kind::size},
                                         {"samples", Kind::whole},
                                         {"seconds", Kind::number},

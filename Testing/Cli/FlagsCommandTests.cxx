@@ -89,6 +89,7 @@ TEST_F(FlagsCommand, RefusesNumbersOutOfRange) {
     refuseAll(flag, {"1,2", "1,2,3,4", "1,2,nan", "1,2,inf", "a,b,c", "1,,3", ""});
   refuseAll("--environment", {"1,2", "-1,0,0", "1,2,nan", "1e300,0,0", "sky.hdr"});
   refuseAll("--background", {"1,2", "0,0,-1", "1,2,nan", "blue"});
+  refuseAll("--exposure", {"17", "-16.5", "nan", "1,2", "bright"});
   refuseAll("--size", {"0x0", "32", "-1x3", "1x1x1", "1e3x2", "32X32", "16385x1", "1x16385",
                        "99999999999x1", "x", "nanxnan", ""});
   expectRefused(refusals, folder.path());
@@ -207,6 +208,7 @@ TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
         "lights",
         "environment",
         "background",
+        "exposure",
         "size",
         "samples",
         "seconds",

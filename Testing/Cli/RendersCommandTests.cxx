@@ -58,6 +58,33 @@ TEST_F(RendersCommand, OneNumberIsAGrey) {
   EXPECT_EQ(readImage(folder / "a.exr").channels, readImage(folder / "b.exr").channels);
 }
 
+TEST_F(RendersCommand, ExposureChangesPicturesForTheEyeAlone) {
+  const auto with = [&](const Arguments& more, const std::string& name) {
+    Arguments arguments = {"--denoise", "on",           "--output", name + ".exr",
+                           "--output",  name + ".nrrd", "--output", name + ".png",
+                           "--output",  name + ".tif",  "--stats",  name + ".json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(renderWith(arguments).status, 0);
+    return readImage(folder / (name + ".exr")).channels;
+  };
+  EXPECT_EQ(with({}, "a"), with({"--exposure", "2"}, "b"));
+  for (const char* part : {".nrrd", "-Z.nrrd", "-denoised.nrrd"})
+    EXPECT_EQ(bytesOf(folder / ("a" + std::string(part))),
+              bytesOf(folder / ("b" + std::string(part))))
+        << part;
+  for (const char* kind : {".png", ".tif"}) {
+    const auto picture = [&](const char* name) {
+      return *readImage(folder / (name + std::string(kind))).find("G");
+    };
+    EXPECT_NE(picture("a"), picture("b")) << kind;
+    EXPECT_NE(bytesOf(folder / ("b" + std::string(kind))).find("exposure 2 EV"), std::string::npos);
+  }
+  EXPECT_EQ(stats("a.json")["display"]["exposure"], 0.0);
+  EXPECT_EQ(stats("b.json")["display"]["exposure"], 2.0);
+  with({"--exposure", "0"}, "c");
+  EXPECT_EQ(bytesOf(folder / "a.png"), bytesOf(folder / "c.png"));
+}
+
 TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {
   const Arguments names = {"a.png", "a.tif", "A.EXR", "a.nrrd"};
   Arguments arguments;

@@ -31,7 +31,7 @@ std::string errorImages(const Image& image, const Image& baseline,
   const Image z = differenceImage(image, baseline);
   writeImage(image, {}, folder / "render.png");
   writeImage(baseline, {}, folder / "baseline.png");
-  writeImage(z, {}, folder / "z.png", DisplayView::standard);
+  writeImage(z, {}, folder / "z.png", {DisplayView::standard});
   writeImage(z, {}, folder / "z.exr");
   return "see render.png, baseline.png, z.png and z.exr in " + folder.string();
 }

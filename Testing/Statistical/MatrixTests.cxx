@@ -24,7 +24,7 @@ std::string errorImages(const Outcome& c) {
   const Image product = imageOf(c.product), truth = imageOf(c.truth);
   writeImage(product, {}, folder / "product.exr");
   writeImage(truth, {}, folder / "oracle.exr");
-  writeImage(differenceImage(product, truth), {}, folder / "z.png", DisplayView::standard);
+  writeImage(differenceImage(product, truth), {}, folder / "z.png", {DisplayView::standard});
   return "see product.exr, oracle.exr and z.png in " + folder.string();
 }
 

@@ -105,7 +105,7 @@ void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& b
   if (::testing::Test::HasFailure())
     writeImage(differenceImage(tiles, reference), {},
                std::filesystem::temp_directory_path() / (name + "-difference.png"),
-               DisplayView::standard);
+               {DisplayView::standard});
 }
 
 class Reference : public ::testing::TestWithParam<ReferenceCase> {};

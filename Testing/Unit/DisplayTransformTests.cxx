@@ -21,7 +21,7 @@ double decodedSrgb(double v) {
 
 /// Display values of one opaque pixel.
 std::vector<float> shown(DisplayView view, float r, float g, float b) {
-  return toDisplay({r, g, b, 1.0f}, view);
+  return toDisplay({r, g, b, 1.0f}, {view});
 }
 
 float shownGrey(DisplayView view, float value) {
@@ -106,10 +106,10 @@ TEST(DisplayTransform, HandlesEveryPixelAlike) {
   std::vector<float> many;
   for (int i = 0; i < 1000; ++i)
     many.insert(many.end(), {0.3f, 0.3f, 0.3f, 1.0f});
-  const std::vector<float> display = toDisplay(many, photographic);
+  const std::vector<float> display = toDisplay(many, {photographic});
   for (std::size_t i = 0; i < display.size(); ++i)
     EXPECT_EQ(display[i], i % 4 == 3 ? 1.0f : grey);
-  EXPECT_TRUE(toDisplay({}, photographic).empty());
+  EXPECT_TRUE(toDisplay({}, {photographic}).empty());
 }
 
 TEST(DisplayTransform, IgnoresTheEnvironmentAndPrintsNothing) {
@@ -125,9 +125,25 @@ TEST(DisplayTransform, IgnoresTheEnvironmentAndPrintsNothing) {
   ::unsetenv("OCIO_ACTIVE_DISPLAYS");
 }
 
+TEST(ToDisplay, ExposureMultipliesRadianceBeforeTheTone) {
+  const std::vector<float> picture = {0.04f, 0.02f, 0.3f, 0.5f};
+  std::vector<float> brighter = picture, darker = picture;
+  for (std::size_t c = 0; c < 3; ++c) {
+    brighter[c] *= 4.0f;
+    darker[c] /= 8.0f;
+  }
+  EXPECT_EQ(toDisplay(picture, {photographic, 2.0}), toDisplay(brighter, {photographic}));
+  EXPECT_EQ(toDisplay(picture, {photographic, -3.0}), toDisplay(darker, {photographic}));
+  EXPECT_EQ(toDisplay(picture, {DisplayView::standard, 2.0}),
+            toDisplay(picture, {DisplayView::standard}));
+  const float bright = toDisplay({infinite, infinite, infinite, 1.0f}, {photographic, -16.0})[0];
+  EXPECT_GT(bright, 0.999f);
+  EXPECT_EQ(toDisplay({notANumber, 0.0f, 0.0f, 1.0f}, {photographic, 16.0})[0], 0.0f);
+}
+
 TEST(ToDisplay, DividesByAlphaBeforeTheView) {
-  const auto half = toDisplay({0.4f, 0.2f, 0.1f, 0.5f}, photographic);
-  const auto full = toDisplay({0.8f, 0.4f, 0.2f, 1.0f}, photographic);
+  const auto half = toDisplay({0.4f, 0.2f, 0.1f, 0.5f}, {photographic});
+  const auto full = toDisplay({0.8f, 0.4f, 0.2f, 1.0f}, {photographic});
   for (std::size_t c = 0; c < 3; ++c)
     EXPECT_FLOAT_EQ(half[c], full[c]);
   EXPECT_EQ(half[3], 0.5f);
@@ -135,10 +151,10 @@ TEST(ToDisplay, DividesByAlphaBeforeTheView) {
 }
 
 TEST(ToDisplay, TransparentIsBlackAndAlphaIsFrom0To1) {
-  EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, 0.0f}, photographic),
+  EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, 0.0f}, {photographic}),
             (std::vector<float>{0.0f, 0.0f, 0.0f, 0.0f}));
-  EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, notANumber}, photographic)[3], 0.0f);
-  EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, 1.5f}, photographic)[3], 1.0f);
+  EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, notANumber}, {photographic})[3], 0.0f);
+  EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, 1.5f}, {photographic})[3], 1.0f);
 }
 
 } // namespace fenestra::DisplayTransformTests

@@ -204,7 +204,7 @@ TEST_F(DisplayFiles, KnownValuesHaveStraightAlpha) {
   for (const auto& [name, tolerance] :
        {std::pair("a.png", 0.5f / 255.0f), std::pair("a.tif", 0.5f / 65535.0f)}) {
     const Image read = readImage(
-        written(onePixel(grey / 2, grey / 2, grey / 2, 0.5f), name, {}, DisplayView::standard));
+        written(onePixel(grey / 2, grey / 2, grey / 2, 0.5f), name, {}, {DisplayView::standard}));
     EXPECT_NEAR(read.channels.at("R")[0], 0.46135f, tolerance + 2e-5f) << name;
     EXPECT_NEAR(read.channels.at("A")[0], 0.5f, tolerance + 2e-5f) << name;
   }

@@ -74,8 +74,8 @@ protected:
         std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()));
   }
   fs::path written(const Image& image, const std::string& name, const ImagePlane& plane = {},
-                   DisplayView view = DisplayView::photographic) const {
-    writeImage(image, plane, path(name), view);
+                   const Display& display = {}) const {
+    writeImage(image, plane, path(name), display);
     return path(name);
   }
 

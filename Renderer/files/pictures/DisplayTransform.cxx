@@ -6,6 +6,7 @@
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fenestra {
 
@@ -41,18 +42,24 @@ float sanitized(float value, float most) {
 
 } // namespace
 
-std::vector<float> toDisplay(std::vector<float> rgba, DisplayView view) {
+std::string_view nameOf(DisplayView view) {
+  return view == DisplayView::standard ? "standard" : "photographic";
+}
+
+std::vector<float> toDisplay(std::vector<float> rgba, const Display& display) {
   if (rgba.empty())
     return rgba; // OpenColorIO refuses empty pictures
+  const bool isExposed = display.view != DisplayView::standard;
+  const auto gain = static_cast<float>(isExposed ? std::exp2(display.exposure) : 1.0);
   for (std::size_t i = 0; i < rgba.size(); i += 4) {
     const float alpha = rgba[i + 3] = sanitized(rgba[i + 3], 1.0f);
     for (std::size_t c = i; c < i + 3; ++c)
-      rgba[c] = alpha > 0.0f ? sanitized(rgba[c] / alpha, brightest) : 0.0f;
+      rgba[c] = alpha > 0.0f ? sanitized(rgba[c] / alpha * gain, brightest) : 0.0f;
   }
   constexpr std::ptrdiff_t pixel = 4 * sizeof(float); // OpenColorIO passes over alpha
   ocio::PackedImageDesc colours(rgba.data(), static_cast<long>(rgba.size() / 4), 1, 3,
                                 ocio::BIT_DEPTH_F32, sizeof(float), pixel, ocio::AutoStride);
-  processorOf(view)->apply(colours);
+  processorOf(display.view)->apply(colours);
   // Rounding takes white past 1.
   std::ranges::transform(rgba, rgba.begin(), [](float x) { return std::clamp(x, 0.0f, 1.0f); });
   return rgba;

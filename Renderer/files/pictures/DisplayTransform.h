@@ -1,6 +1,7 @@
 #pragma once
 // Radiance to display values, by the views of Resources/color/fenestra.ocio.
 
+#include <string_view>
 #include <vector>
 
 namespace fenestra {
@@ -8,9 +9,20 @@ namespace fenestra {
 /// `photographic`: for renders, rolls off below white. `standard`: the sRGB encoding, clipped.
 enum class DisplayView { photographic, standard };
 
+/// Name of a view, as --tone has it.
+std::string_view nameOf(DisplayView view);
+
+/// How radiance is shown.
+struct Display {
+  DisplayView view = DisplayView::photographic;
+  double exposure =
+      0.0; ///< stops, EV; radiance is multiplied by 2^exposure, but not for `standard`
+};
+
 /// Display values, sRGB-encoded and in [0, 1], of a picture in linear Rec. 709, R G B A by pixel.
 /// NaN becomes black, infinity white. Alpha becomes straight: colours are divided by alpha before
-/// the view applies; black where alpha is 0. OpenColorIO's environment variables have no effect.
-std::vector<float> toDisplay(std::vector<float> rgba, DisplayView view);
+/// exposure and view apply; black where alpha is 0. OpenColorIO's environment variables have no
+/// effect.
+std::vector<float> toDisplay(std::vector<float> rgba, const Display& display);
 
 } // namespace fenestra

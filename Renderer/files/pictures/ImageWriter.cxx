@@ -120,13 +120,20 @@ std::string withTexts(std::string png, const std::string& comment) {
   return png;
 }
 
-/// Sentence of the header on a filter; empty: none.
-std::string commentOf(const Image& image) {
-  const auto found = image.header.find("filter");
-  return found == image.header.end() ? std::string() : found->second;
+/// What a display picture tells of itself: tone and exposure, and the header's words on a filter;
+/// empty: neither.
+std::string commentOf(const Image& image, const Display& display) {
+  std::string comment;
+  if (display.view != DisplayView::standard)
+    comment =
+        textOf("tone ", nameOf(display.view), ", exposure ", numberText(display.exposure), " EV");
+  if (const auto found = image.header.find("filter"); found != image.header.end())
+    comment += (comment.empty() ? "" : "; ") + found->second;
+  return comment;
 }
 
-std::string encodePng(const Image& image, const std::vector<float>& rgba) {
+std::string encodePng(const Image& image, const std::vector<float>& rgba,
+                      const std::string& comment) {
   const std::vector<std::uint8_t> values = quantized<std::uint8_t>(rgba);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -139,10 +146,10 @@ std::string encodePng(const Image& image, const std::vector<float>& rgba) {
   if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
     throw outputError("picture as PNG", png.message, "; write it as .exr");
   content.resize(size);
-  return withTexts(std::move(content), commentOf(image));
+  return withTexts(std::move(content), comment);
 }
 
-void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
+void setTiffFields(TIFF* tiff, const Image& image, bool opaque, const std::string& comment) {
   const std::uint16_t straightAlpha = EXTRASAMPLE_UNASSALPHA;
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, image.width);
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, image.height);
@@ -155,19 +162,20 @@ void setTiffFields(TIFF* tiff, const Image& image, bool opaque) {
   TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
   TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
-  if (const std::string comment = commentOf(image); !comment.empty())
+  if (!comment.empty())
     TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, comment.c_str());
   TIFFSetField(tiff, TIFFTAG_SOFTWARE, std::string(unsealedMark).c_str());
 }
 
-std::string encodeTiff(const Image& image, const std::vector<float>& rgba) {
+std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
+                       const std::string& comment) {
   std::vector<std::uint16_t> values = quantized<std::uint16_t>(rgba);
   const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
   TextWriter stream;
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("picture", &stream), TIFFClose);
   bool good = tiff != nullptr;
   if (good)
-    setTiffFields(tiff.get(), image, isOpaque(rgba));
+    setTiffFields(tiff.get(), image, isOpaque(rgba), comment);
   for (std::size_t row = 0; good && row < static_cast<std::size_t>(image.height); ++row)
     good = TIFFWriteScanline(tiff.get(), &values[row * rowLength],
                              static_cast<std::uint32_t>(row)) == 1;
@@ -246,7 +254,7 @@ void requireColour(const Image& image, const std::filesystem::path& path) {
 } // namespace
 
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
-                Outputs& outputs, DisplayView view) {
+                Outputs& outputs, const Display& display) {
   const ImageFormat format = checkedFormat(path);
   if (format == ImageFormat::exr)
     return outputs.write(path, encodeExr(image));
@@ -260,9 +268,10 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
                     encodeSlice(image, plane, interleavedRgba(image, "denoised.")));
     return;
   }
-  const std::vector<float> display = toDisplay(interleavedRgba(image), view);
-  outputs.write(path, format == ImageFormat::png ? encodePng(image, display)
-                                                 : encodeTiff(image, display));
+  const std::vector<float> shown = toDisplay(interleavedRgba(image), display);
+  const std::string comment = commentOf(image, display);
+  outputs.write(path, format == ImageFormat::png ? encodePng(image, shown, comment)
+                                                 : encodeTiff(image, shown, comment));
 }
 
 std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path) {

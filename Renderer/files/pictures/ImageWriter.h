@@ -17,12 +17,12 @@ namespace fenestra {
 /// - `.nrrd`: R, G, B, A (1 without A) as a float vector volume of one slice that lies on `plane`
 ///   in the world; beside it, where present, Z as a scalar volume, "<stem>-Z.nrrd", and denoised.R,
 ///   G, B, A as another vector volume, "<stem>-denoised.nrrd".
-/// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through `view`, with straight alpha if any
-///   pixel is not opaque; the header's "filter" as a comment.
+/// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B as `display` shows them, with straight alpha
+///   if any pixel is not opaque; tone, exposure and the header's "filter" as a comment.
 /// Equal pictures give equal bytes, and all bear Fenestra's mark. Throws Error: usage for another
 /// extension or missing R, G, B; output where the file cannot be written.
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
-                Outputs& outputs, DisplayView view = DisplayView::photographic);
+                Outputs& outputs, const Display& display = {});
 
 /// Files that writeImage may make for this path: itself, and the depth and the filtered colours
 /// beside a `.nrrd`. Throws Error (usage) for another extension.
