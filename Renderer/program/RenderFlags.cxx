@@ -217,12 +217,17 @@ struct RenderTable {
        "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own",
        Takes::text().into(scene, readEnvironment), Topic::lights},
       {"background", "R,G,B|GREY|KIND", lookGroup,
-       "Linear colour (the photographic tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
+       "Linear colour (the tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
        "white), transparent or environment [the scene's, else 0,0,0]",
        Takes::text().into(options.background, readBackground)},
       {"exposure", "EV", lookGroup,
        "Stops, -16 to 16, by which .png and .tif are shown brighter or darker; .exr and .nrrd stay",
        Takes::number(-16.0, 16.0).into(options.display.exposure)},
+      {"tone", "CURVE", lookGroup,
+       "Tone curve of .png and .tif: film (more contrast, colours keep their hue) or photographic "
+       "(dark and middle values as they are, for measuring)",
+       Takes::word(options.display.view,
+                   {{"film", DisplayView::film}, {"photographic", DisplayView::photographic}})},
       {"size", "WxH", qualityGroup, "Pixels",
        Takes::text()
            .into(scene, readSize)

@@ -107,6 +107,7 @@ const std::vector<Flag>& flags() {
                                         {"environment", Kind::look},
                                         {"background", Kind::colour},
                                         {"exposure", Kind::number},
+                                        {"tone", Kind::word},
                                         {"size", Kind::size},
                                         {"samples", Kind::whole},
                                         {"seconds", Kind::number},

@@ -209,6 +209,7 @@ TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
         "environment",
         "background",
         "exposure",
+        "tone",
         "size",
         "samples",
         "seconds",

@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
+
 namespace fenestra::RendersCommandTests {
 namespace {
 
@@ -58,7 +60,7 @@ TEST_F(RendersCommand, OneNumberIsAGrey) {
   EXPECT_EQ(readImage(folder / "a.exr").channels, readImage(folder / "b.exr").channels);
 }
 
-TEST_F(RendersCommand, ExposureChangesPicturesForTheEyeAlone) {
+TEST_F(RendersCommand, ExposureAndToneChangePicturesForTheEyeAlone) {
   const auto with = [&](const Arguments& more, const std::string& name) {
     Arguments arguments = {"--denoise", "on",           "--output", name + ".exr",
                            "--output",  name + ".nrrd", "--output", name + ".png",
@@ -67,22 +69,25 @@ TEST_F(RendersCommand, ExposureChangesPicturesForTheEyeAlone) {
     EXPECT_EQ(renderWith(arguments).status, 0);
     return readImage(folder / (name + ".exr")).channels;
   };
-  EXPECT_EQ(with({}, "a"), with({"--exposure", "2"}, "b"));
-  for (const char* part : {".nrrd", "-Z.nrrd", "-denoised.nrrd"})
-    EXPECT_EQ(bytesOf(folder / ("a" + std::string(part))),
-              bytesOf(folder / ("b" + std::string(part))))
-        << part;
-  for (const char* kind : {".png", ".tif"}) {
-    const auto picture = [&](const char* name) {
-      return *readImage(folder / (name + std::string(kind))).find("G");
-    };
-    EXPECT_NE(picture("a"), picture("b")) << kind;
-    EXPECT_NE(bytesOf(folder / ("b" + std::string(kind))).find("exposure 2 EV"), std::string::npos);
+  const auto file = [&](const std::string& name) { return bytesOf(folder / name); };
+  const auto raw = with({}, "a");
+  for (const auto& [flag, value, told] :
+       {std::array{"--exposure", "2", "tone film, exposure 2 EV"},
+        std::array{"--tone", "photographic", "tone photographic, exposure 0 EV"}}) {
+    EXPECT_EQ(with({flag, value}, "b"), raw) << flag;
+    for (const std::string part : {".nrrd", "-Z.nrrd", "-denoised.nrrd"})
+      EXPECT_EQ(file("a" + part), file("b" + part)) << flag << part;
+    for (const std::string kind : {".png", ".tif"}) {
+      EXPECT_NE(readImage(folder / ("a" + kind)).channels,
+                readImage(folder / ("b" + kind)).channels)
+          << flag << kind;
+      EXPECT_NE(file("b" + kind).find(told), std::string::npos) << kind;
+    }
   }
-  EXPECT_EQ(stats("a.json")["display"]["exposure"], 0.0);
-  EXPECT_EQ(stats("b.json")["display"]["exposure"], 2.0);
-  with({"--exposure", "0"}, "c");
-  EXPECT_EQ(bytesOf(folder / "a.png"), bytesOf(folder / "c.png"));
+  EXPECT_EQ(stats("a.json")["display"], (nlohmann::json{{"tone", "film"}, {"exposure", 0.0}}));
+  EXPECT_EQ(stats("b.json")["display"]["tone"], "photographic");
+  with({"--exposure", "-1.5", "--tone", "film"}, "c");
+  EXPECT_EQ(stats("c.json")["display"]["exposure"], -1.5);
 }
 
 TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -26,8 +28,9 @@ std::vector<float> shown(DisplayView view, float r, float g, float b) {
 
 float shownGrey(DisplayView view, float value) {
   const std::vector<float> rgba = shown(view, value, value, value);
-  EXPECT_EQ(rgba[0], rgba[1]);
-  EXPECT_EQ(rgba[0], rgba[2]);
+  constexpr float rounding = 4e-6f; // a quarter of a 16-bit step
+  EXPECT_NEAR(rgba[0], rgba[1], view == DisplayView::film ? rounding : 0.0f);
+  EXPECT_NEAR(rgba[0], rgba[2], view == DisplayView::film ? rounding : 0.0f);
   return rgba[0];
 }
 
@@ -36,6 +39,78 @@ double displayLight(DisplayView view, double value) {
 }
 
 constexpr DisplayView photographic = DisplayView::photographic;
+constexpr DisplayView film = DisplayView::film;
+
+using Colour = std::array<double, 3>;
+
+/// Display light of one opaque pixel.
+Colour lightOf(DisplayView view, const Colour& c) {
+  const std::vector<float> rgba =
+      shown(view, static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]));
+  return {decodedSrgb(double{rgba[0]}), decodedSrgb(double{rgba[1]}), decodedSrgb(double{rgba[2]})};
+}
+
+double luminance(const Colour& c) {
+  return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+}
+
+/// Shoulder of the film: reaches 1 at 6.
+double shoulder(double x) {
+  return x * (1.0 + x / 36.0) / (1.0 + x);
+}
+
+/// Contrast of the film about middle grey, and the gain after which the shoulder keeps that.
+Colour contrasted(Colour c) {
+  for (double& x : c)
+    x = 1.21058 * 0.18 * std::pow(x / 0.18, 1.15);
+  return c;
+}
+
+/// The film as specified: its shoulder by 60 % on luminance, by 40 % on channels.
+Colour blended(const Colour& scene) {
+  Colour c = contrasted(scene);
+  const double y = luminance(c), scale = y > 0.0 ? shoulder(y) / y : 1.0;
+  for (double& x : c)
+    x = 0.6 * scale * x + 0.4 * shoulder(x);
+  return c;
+}
+
+/// The film as the view says it: 0.4 of the roll-off on luminance, then the rest by channel.
+Colour filmed(const Colour& scene) {
+  Colour c = contrasted(scene);
+  const double scale = 1.0 / (1.0 + 0.4 * luminance(c));
+  for (double& x : c) {
+    const double y = x * scale;
+    x = y < 2.4 ? std::min(1.0, shoulder(y / (1.0 - 0.4 * y))) : 1.0;
+  }
+  return c;
+}
+
+/// CIE 1976 L*a*b* of linear Rec. 709 under D65.
+Colour lab(const Colour& c) {
+  const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116.0; };
+  const double x = f((0.4124 * c[0] + 0.3576 * c[1] + 0.1805 * c[2]) / 0.9505);
+  const double y = f(luminance(c));
+  const double z = f((0.0193 * c[0] + 0.1192 * c[1] + 0.9505 * c[2]) / 1.089);
+  return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
+}
+
+double distance(const Colour& a, const Colour& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// The sRGB gamut in five steps a channel, from 4 stops under to 4 over.
+std::vector<Colour> exposedGamut() {
+  std::vector<Colour> colours;
+  for (int stops = -4; stops <= 4; ++stops)
+    for (int i = 1; i < 216; ++i) {
+      Colour c = {i / 36 / 5.0, i / 6 % 6 / 5.0, i % 6 / 5.0};
+      for (double& x : c)
+        x = decodedSrgb(x) * std::exp2(stops);
+      colours.push_back(c);
+    }
+  return colours;
+}
 
 } // namespace
 
@@ -83,6 +158,56 @@ TEST(PhotographicView, KeepsDarkTissueAndTheOrderOfChannels) {
   }
 }
 
+TEST(FilmView, FollowsItsFormula) {
+  for (const Colour& c : exposedGamut()) {
+    const Colour light = lightOf(film, c), expected = filmed(c);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(light[i], expected[i], 2e-3) << c[0] << " " << c[1] << " " << c[2];
+  }
+}
+
+TEST(FilmView, ComesNearAShoulderOfLuminanceBlendedWithOneOfChannels) {
+  double sum = 0.0, greatest = 0.0;
+  int count = 0;
+  for (const Colour& c : exposedGamut()) {
+    const Colour expected = blended(c);
+    if (std::ranges::max(expected) > 1.0)
+      continue; // the blend leaves the gamut
+    const double difference = distance(lab(lightOf(film, c)), lab(expected));
+    sum += difference;
+    greatest = std::max(greatest, difference);
+    ++count;
+  }
+  EXPECT_GT(count, 1200);
+  EXPECT_LT(sum / count, 1.3);
+  EXPECT_LT(greatest, 10.5);
+}
+
+TEST(FilmView, KeepsBlackAndMiddleGreyAndWhitesBelowThoseOfPhotographic) {
+  EXPECT_EQ(shown(film, 0.0f, 0.0f, 0.0f), (std::vector<float>{0.0f, 0.0f, 0.0f, 1.0f}));
+  EXPECT_NEAR(displayLight(film, 0.18), 0.18, 1e-3);
+  EXPECT_NEAR(displayLight(film, 1.0), 0.637, 2e-3);
+  EXPECT_NEAR(displayLight(photographic, 1.0), 0.698, 2e-3);
+  EXPECT_LT(displayLight(film, 3.0), 0.995);
+  EXPECT_EQ(std::lround(255.0f * shownGrey(film, 3.3f)), 255);
+  EXPECT_GT(shownGrey(film, 65504.0f), 0.999999f);
+}
+
+TEST(FilmView, RisesInEveryChannelAsAColourGetsBrighter) {
+  for (const Colour& hue :
+       {Colour{1, 1, 1}, Colour{1, 0.3, 0.2}, Colour{0, 0, 1}, Colour{0, 1, 0.1}}) {
+    Colour previous = {};
+    for (double stops = -12.0; stops < 20.0; stops += 0.02) {
+      const double x = 0.18 * std::exp2(stops);
+      const Colour light = lightOf(film, {x * hue[0], x * hue[1], x * hue[2]});
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_GE(light[i], previous[i] - 4e-6) << x << " " << i;
+      EXPECT_TRUE(std::ranges::max(light) > 0.9999 || luminance(light) > luminance(previous)) << x;
+      previous = light;
+    }
+  }
+}
+
 TEST(StandardView, IsTheSrgbEncodingWithClipping) {
   constexpr DisplayView view = DisplayView::standard;
   for (const double x : {0.0, 0.001, 0.01, 0.18, 0.5, 0.9, 1.0})
@@ -93,7 +218,7 @@ TEST(StandardView, IsTheSrgbEncodingWithClipping) {
 }
 
 TEST(DisplayTransform, ShowsNanAsBlackAndInfinityAsWhite) {
-  for (const DisplayView view : {photographic, DisplayView::standard}) {
+  for (const DisplayView view : {film, photographic, DisplayView::standard}) {
     EXPECT_EQ(shownGrey(view, notANumber), 0.0f);
     EXPECT_EQ(shownGrey(view, -infinite), 0.0f);
     EXPECT_GT(shownGrey(view, infinite), 0.999f);

@@ -24,12 +24,25 @@ ocio::ConstConfigRcPtr loadConfig() {
   return ocio::Config::CreateFromStream(text);
 }
 
+/// The configuration's name of a view.
+const char* viewName(DisplayView view) {
+  switch (view) {
+  case DisplayView::film:
+    return "Film";
+  case DisplayView::photographic:
+    return "Photographic";
+  case DisplayView::standard:
+    break;
+  }
+  return "Standard";
+}
+
 ocio::ConstCPUProcessorRcPtr processorOf(DisplayView view) {
   static const ocio::ConstConfigRcPtr config = loadConfig();
   const auto transform = ocio::DisplayViewTransform::Create();
   transform->setSrc(ocio::ROLE_SCENE_LINEAR);
   transform->setDisplay("sRGB");
-  transform->setView(view == DisplayView::standard ? "Standard" : "Photographic");
+  transform->setView(viewName(view));
   // Lossless, since the default's fast approximations of log and exp move black and differ by
   // machine.
   return config->getProcessor(transform)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
@@ -43,7 +56,15 @@ float sanitized(float value, float most) {
 } // namespace
 
 std::string_view nameOf(DisplayView view) {
-  return view == DisplayView::standard ? "standard" : "photographic";
+  switch (view) {
+  case DisplayView::film:
+    return "film";
+  case DisplayView::photographic:
+    return "photographic";
+  case DisplayView::standard:
+    break;
+  }
+  return "standard";
 }
 
 std::vector<float> toDisplay(std::vector<float> rgba, const Display& display) {

@@ -6,15 +6,17 @@
 
 namespace fenestra {
 
-/// `photographic`: for renders, rolls off below white. `standard`: the sRGB encoding, clipped.
-enum class DisplayView { photographic, standard };
+/// Views of the configuration. `film`: for pictures to look at, contrast in the middle, colours
+/// keep their hue. `photographic`: for measuring, dark and middle values as they are, channel by
+/// channel. Both roll off below white. `standard`: the sRGB encoding, clipped.
+enum class DisplayView { film, photographic, standard };
 
 /// Name of a view, as --tone has it.
 std::string_view nameOf(DisplayView view);
 
 /// How radiance is shown.
 struct Display {
-  DisplayView view = DisplayView::photographic;
+  DisplayView view = DisplayView::film;
   double exposure =
       0.0; ///< stops, EV; radiance is multiplied by 2^exposure, but not for `standard`
 };
