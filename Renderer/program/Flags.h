@@ -46,6 +46,13 @@ struct Takes {
   static Takes whole(double least, double greatest) {
     return {"integer", "", "", "", least, greatest};
   }
+  /// A number, or the word auto, which leaves `place` empty and is the default.
+  static Takes numberOrAuto(std::optional<double>& place, double least, double greatest) {
+    Takes takes = Takes{.least = least, .greatest = greatest, .standard = "auto"};
+    return takes.into(place, [](const auto& flags, const auto& name, auto& at) {
+      at = flags.text(name) == "auto" ? std::nullopt : flags.number(name);
+    });
+  }
   static Takes word(std::vector<std::string> words) {
     return {.type = "string-enumeration", .words = std::move(words)};
   }

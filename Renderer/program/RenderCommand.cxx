@@ -123,6 +123,11 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
   addClip(json, scene, stats.focus);
   if (scene.focus())
     json["focusVoxels"] = scene.focus()->grid.voxelCount();
+  if (const auto& contrast = scene.contrast().contrast)
+    json["contrast"] = {
+        {"deltaE", contrast->deltaE[0]},       {"deltaEProtan", contrast->deltaE[1]},
+        {"deltaEDeutan", contrast->deltaE[2]}, {"deltaETritan", contrast->deltaE[3]},
+        {"deltaL", contrast->deltaL},          {"contextSaturation", scene.contrast().saturation}};
   addSources(json, stats, options, scene);
   return jsonText(json);
 }

@@ -131,8 +131,8 @@ struct RenderTable {
        Takes::numbers().into(focus.shaping.margins, readMargins), Topic::focus, Needs::focus},
       {"labelsmoothing", "MM", clipGroup,
        "Smooths the focus's labels by a Gaussian of this deviation, against stair steps; thick "
-       "slices are interpolated first",
-       Takes::number(0.0, 100.0).into(focus.shaping.smoothing), Topic::own, Needs::focus},
+       "slices are interpolated first; auto: 0.6 of a voxel's longest edge, less for thin parts",
+       Takes::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0), Topic::own, Needs::focus},
       {"clip", "MODE", clipGroup,
        "none, plane, hole, cutaway, ghost, surface, or auto: surface with a focus, else none",
        Takes::word(clip.mode, {{"auto", std::nullopt},
@@ -167,14 +167,17 @@ struct RenderTable {
       {"offset", "MM", clipGroup,
        "Moves the cut away from the eye, into the focus, or toward it (negative)",
        Takes::number(-1e6, 1e6).into(surface.offset), Topic::clip, Needs::clip},
-      {"soft", "MM", clipGroup, "Matter comes back gradually over this depth behind the cut",
-       Takes::number(0.0, 1e6).into(surface.edge.softness), Topic::clip, Needs::clip},
+      {"soft", "MM", clipGroup,
+       "Matter comes back gradually over this depth behind the cut; auto: 0.6 of the longest edge "
+       "of the labels' voxels for --clip surface, hole and cutaway, else 0",
+       Takes::numberOrAuto(clip.softness, 0.0, 1e6), Topic::clip, Needs::clip},
       {"contextdensity", "F", clipGroup,
        "Multiplies the extinction of everything that is not focus, 0 to 1",
        Takes::number(0.0, 1.0).into(focus.contextExtinction), Topic::own, Needs::focus},
       {"contextsaturation", "S", clipGroup,
-       "Colour of everything that is not focus, from 0 (grey) to 1 (as it is)",
-       Takes::number(0.0, 1.0).into(focus.contextSaturation), Topic::own, Needs::focus},
+       "Colour of everything that is not focus, from 0 (grey) to 1 (as it is); auto: 0.35 where "
+       "the focus would not be told from its surroundings, else 1",
+       Takes::numberOrAuto(focus.contextSaturation, 0.0, 1.0), Topic::own, Needs::focus},
       {"view", "NAME", viewGroup,
        "anterior, posterior, left, right, superior, inferior, or auto: the direction that shows "
        "most of the focus, least foreshortened, with least removed [the scene's camera, else "

@@ -31,7 +31,10 @@ struct ClipRequest {
   std::optional<ClipMode> mode = {}; ///< by default `surface` when there is a focus, else `none`
   std::optional<PlaneRequest> plane = {}; ///< by default the focus's own (focusPlane)
   double ghost = 0.1; ///< share of the extinction left in front of the surface, in mode `ghost`
-  /// A plane takes its offset and softness; `mode` decides its mode and its edge's ghost.
+  /// mm behind the cut over which matter comes back; nothing: as far as the focus's labels are
+  /// uncertain (automaticSmoothing) in the modes surface, hole and cutaway, else 0.
+  std::optional<double> softness = {};
+  /// A plane takes its offset; `mode` and `softness` decide its mode and its edge.
   SurfaceOptions surface = {};
 
   ClipMode modeWith(bool focus) const {
@@ -43,11 +46,10 @@ struct ClipRequest {
 
 /// Shaping of the focus's labels into a mask, and look of the context.
 struct FocusRequest {
-  MaskShaping shaping = {};
+  MaskShaping shaping = {.smoothing = std::nullopt};
   double contextExtinction = 1.0; ///< factor of the extinction outside the focus, 0 to 1
-  double contextSaturation = 1.0; ///< factor of the colours' saturation there, 0 to 1
-
-  bool isStyled() const { return contextExtinction != 1.0 || contextSaturation != 1.0; }
+  /// Factor of the colours' saturation there, 0 to 1; nothing: by the contrast (Contrast.h).
+  std::optional<double> contextSaturation = {};
 
   bool operator==(const FocusRequest&) const = default;
 };

@@ -51,8 +51,11 @@ void Scene::make() {
       m_camera.of(r.view, r.width, r.height, volume, settings, matter, focus, m_view.result());
   const auto placed = m_lights.of({lights, camera, focus}, volume);
   const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
-  if (focus->mask && r.focusLook.isStyled())
-    m_style.of(focus, r.focusLook.contextExtinction, r.focusLook.contextSaturation);
+  const double extinction = r.focusLook.contextExtinction;
+  const double saturation =
+      m_contrast.of(volume, focus, look, r.focusLook.contextSaturation)->saturation;
+  if (focus->mask && (extinction != 1.0 || saturation != 1.0))
+    m_style.of(focus, extinction, saturation);
   const auto majorants = m_majorants.of(volume, ranges, look, clip, m_style.result());
   if (r.features)
     m_flight.of(volume, settings, look, placed, camera, clip, m_style.result(), majorants);
@@ -62,8 +65,8 @@ StageSeconds Scene::seconds() const {
   const ClipResult none, &clip = m_clip.isNew() ? *m_clip : none;
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_focus.seconds() + m_sceneLook.seconds() + m_look.seconds(),
-          .classify =
-              m_ranges.seconds() + m_matter.seconds() + m_style.seconds() + m_majorants.seconds(),
+          .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
+                      m_style.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,
           .spline = clip.splineSeconds,
           .fill = clip.fillSeconds,
@@ -86,10 +89,20 @@ std::string Scene::choices() const {
   std::vector<std::string> labels;
   if (!m_focus->namesFrom.empty())
     labels.push_back("names from " + m_focus->namesFrom);
-  if (m_focus->mask && r.focusLook.shaping.smoothing > 0.0)
-    labels.push_back("smoothed " + numberText(r.focusLook.shaping.smoothing, 3) + " mm");
+  if (m_focus->mask && m_focus->mask->smoothing > 0.0)
+    labels.push_back("smoothed " + numberText(m_focus->mask->smoothing, 3) + " mm");
   if (!labels.empty())
     parts.push_back("labels: " + joined(labels, ", "));
+  const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
+  if (softness > 0.0)
+    parts.push_back("cut: soft over " + numberText(softness, 3) + " mm");
+  if (const auto& contrast = m_contrast->contrast)
+    parts.push_back(textOf("contrast: ", numberText(contrast->deltaE[0], 3), " (colour-blind ",
+                           numberText(std::min(contrast->deltaE[1], contrast->deltaE[2]), 3),
+                           m_contrast->saturation < 1.0
+                               ? "; surroundings paled to " + numberText(m_contrast->saturation, 3)
+                               : "",
+                           ")"));
   return joined(parts, "; ");
 }
 

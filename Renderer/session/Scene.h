@@ -49,6 +49,8 @@ public:
   const Clip& clip() const { return m_clip->clip; }
   /// Style of the context; null: unchanged.
   const ContextStyle* style() const { return m_style.result().get(); }
+  /// Saturation of the context, and the contrast that it leaves.
+  const FocusContrast& contrast() const { return *m_contrast; }
   /// Clip with its measures, and the depth of the focus.
   const ClipResult& clipResult() const { return *m_clip; }
   const CellRanges& ranges() const { return *m_ranges; }
@@ -72,7 +74,8 @@ private:
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_focus,
                     s.m_sceneLook, s.m_look, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter,
-                    s.m_camera, s.m_lights, s.m_clip, s.m_style, s.m_majorants, s.m_flight);
+                    s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style, s.m_majorants,
+                    s.m_flight);
   }
 
   SceneRequest m_request;
@@ -91,6 +94,7 @@ private:
   Stage<&placedCamera> m_camera;
   Stage<&placedLights> m_lights;
   Stage<&builtClip> m_clip;
+  Stage<&contrastOf> m_contrast;
   Stage<&styleAround> m_style; ///< unused if the context is unchanged
   Stage<&majorantsOf> m_majorants;
   Stage<&flightOf> m_flight; ///< unused without a filter

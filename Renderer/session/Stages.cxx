@@ -119,7 +119,7 @@ ClipPlane placedPlane(const ClipRequest& request, const Camera& camera, const Fo
   ClipPlane plane = request.plane ? ClipPlane{camera, request.plane->origin, request.plane->normal}
                                   : focusPlane(camera, *depth);
   plane.point += request.surface.offset * camera.forward();
-  plane.edge = {0.0, request.surface.edge.softness};
+  plane.edge = {0.0, request.softness.value_or(0.0)};
   return plane;
 }
 
@@ -149,6 +149,8 @@ ClipResult depthClip(const ClipRequest& request, ClipMode mode, const Domain& do
                                              : SurfaceMode::surface;
   if (mode == ClipMode::ghost)
     options.edge.ghost = double{static_cast<float>(request.ghost)};
+  options.edge.softness =
+      request.softness.value_or(mode == ClipMode::ghost ? 0.0 : automaticSmoothing(focus.grid));
   ClippingSurface surface = buildSteadySurface(camera, domain, focus, options, steadyDegrees);
   ClipResult result{.clip = std::move(surface.clip),
                     .focusDepth = viewportDepths(surface.focus, camera),
@@ -264,6 +266,12 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
 
 CellRanges rangesOf(const Read& volume, int apron) {
   return {volume->volume, apron};
+}
+
+FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
+                         const std::optional<double>& saturation) {
+  return focus->mask ? chosenContrast(saturation, *focus->mask, volume->volume, look->transfer)
+                     : FocusContrast();
 }
 
 ContextStyle styleAround(const Focus& focus, double extinction, double saturation) {

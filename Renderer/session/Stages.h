@@ -5,6 +5,7 @@
 #include "measure/BoundaryMeasures.h"
 #include "model/lights/LightSet.h"
 #include "session/AutomaticView.h"
+#include "session/Contrast.h"
 #include "session/Input.h"
 #include "session/NamedLooks.h"
 #include "session/Stage.h"
@@ -81,6 +82,10 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
 
 /// `apron`: MajorantGrid::apronFor.
 CellRanges rangesOf(const Read& volume, int apron);
+
+/// `saturation`: of the request.
+FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
+                         const std::optional<double>& saturation);
 
 ContextStyle styleAround(const Focus& focus, double extinction, double saturation);
 

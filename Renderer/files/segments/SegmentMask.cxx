@@ -315,7 +315,7 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
     return maskOf(chosen);
   const auto shaped = [&](const std::vector<SegmentInfo>& segments, double margin) {
     const Mask mask = maskOf(segments);
-    return grown(shaping.smoothing > 0.0 ? betweenSlices(mask) : mask, margin, volume);
+    return grown(shaping.smoothing == 0.0 ? mask : betweenSlices(mask), margin, volume);
   };
   std::vector<Mask> masks;
   if (shaping.margins.size() <= 1) // the union first: no gaps where segments touch
@@ -323,7 +323,9 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
   else
     for (std::size_t i = 0; i < chosen.size(); ++i)
       masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
-  Mask mask = smoothed(united(masks), shaping.smoothing, volume);
+  const Mask all = united(masks);
+  Mask mask = shaping.smoothing ? smoothed(all, *shaping.smoothing, volume)
+                                : smoothedAutomatically(all, volume);
   if (mask.count == 0)
     throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (",
                      listed(chosen), "); choose a margin nearer to 0, or less smoothing");

@@ -1,10 +1,10 @@
 #include "model/masks/MaskShaping.h"
 
 #include "base/Error.h"
+#include "model/masks/GaussianBlur.h"
 
 #include <itkImage.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>
-#include <itkSmoothingRecursiveGaussianImageFilter.h>
 
 #include <algorithm>
 
@@ -147,15 +147,22 @@ Mask smoothed(const Mask& mask, double deviation, const Grid& volume) {
     return mask;
   constexpr double farthest = 3.0; // deviations
   const Part part = around(mask, farthest * deviation, volume);
-  const auto gaussian = itk::SmoothingRecursiveGaussianImageFilter<Pixels, Pixels>::New();
-  gaussian->SetInput(pixelsOf(mask, part));
-  gaussian->SetSigma(deviation); // mm
-  gaussian->Update();
-  const float* const from = gaussian->GetOutput()->GetBufferPointer();
-  constexpr std::uint8_t full = 255;
-  return maskOf(mask, part, full, [&](std::size_t i) {
-    return static_cast<std::uint8_t>(std::lround(std::clamp(from[i], 0.0F, 1.0F) * float{full}));
-  });
+  const Vec3 deviations = deviation * mask.grid.spacing().cwiseInverse();
+  const std::vector<std::uint8_t> values = blurred(mask, part.first, part.size, deviations);
+  Mask result = maskOf(mask, part, 255, [&](std::size_t i) { return values[i]; });
+  result.smoothing = deviation;
+  return result;
+}
+
+Mask smoothedAutomatically(const Mask& mask, const Grid& volume) {
+  constexpr double least = 0.8;
+  const double deviation = automaticSmoothing(mask.grid);
+  for (const double factor : {1.0, 2.0 / 3.0}) {
+    Mask result = smoothed(mask, factor * deviation, volume);
+    if (static_cast<double>(result.count) >= least * static_cast<double>(mask.count))
+      return result;
+  }
+  return mask;
 }
 
 } // namespace fenestra

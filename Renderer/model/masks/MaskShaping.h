@@ -3,6 +3,7 @@
 
 #include "model/volume/Mask.h"
 
+#include <optional>
 #include <vector>
 
 namespace fenestra {
@@ -12,8 +13,8 @@ struct MaskShaping {
   /// shrinks; empty: none.
   std::vector<double> margins = {};
   /// Standard deviation of a Gaussian, mm, applied after thick slices are interpolated
-  /// (betweenSlices); 0: neither is done.
-  double smoothing = 0.0;
+  /// (betweenSlices); 0: neither is done; nothing: automaticSmoothing(), or less for thin parts.
+  std::optional<double> smoothing = 0.0;
 
   bool operator==(const MaskShaping&) const = default;
 };
@@ -33,8 +34,16 @@ Mask united(const std::vector<Mask>& masks);
 /// wide as the outline's shift from slice to slice, and only a Gaussian of that width smooths it.
 Mask betweenSlices(const Mask& mask);
 
+/// Deviation, mm, that takes the stairs off a label map and leaves the shapes: 0.6 of the longest
+/// edge of its voxels, after betweenSlices. `labels`: before it or after, which makes no
+/// difference.
+double automaticSmoothing(const Grid& labels);
+
 /// Indicator convolved with a Gaussian, `deviation` in mm; `full` is 255. Parts thinner than about
 /// the deviation vanish.
 Mask smoothed(const Mask& mask, double deviation, const Grid& volume);
+/// The same with automaticSmoothing(), two thirds of it, or 0: the first that leaves four fifths of
+/// the voxels, as it does not of thin vessels.
+Mask smoothedAutomatically(const Mask& mask, const Grid& volume);
 
 } // namespace fenestra

@@ -114,6 +114,15 @@ Grid divided(const Grid& grid, int axis, std::int64_t parts) {
 
 } // namespace
 
+double automaticSmoothing(const Grid& labels) {
+  Vec3 edges = labels.spacing();
+  Mask empty;
+  empty.grid = labels;
+  const Slices slices(empty);
+  edges[slices.axis()] /= static_cast<double>(slices.parts());
+  return 0.6 * edges.maxCoeff();
+}
+
 Mask betweenSlices(const Mask& mask) {
   const Slices slices(mask);
   const std::int64_t parts = slices.parts();

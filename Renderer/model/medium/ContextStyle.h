@@ -2,17 +2,13 @@
 // Style of the context, to set off the focus: thinner or paler. (Viola, Kanitsar, Groeller 2005,
 // "Importance-Driven Feature Enhancement in Volume Visualization".)
 
+#include "base/Color.h"
 #include "model/volume/Mask.h"
 #include "model/volume/Volume.h"
 
 #include <memory>
 
 namespace fenestra {
-
-/// Luminance of linear Rec. 709.
-inline double luminance(const Rgb& color) {
-  return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
-}
 
 /// Look of the context, where the focus's indicator is below 1/2. The focus is unchanged.
 struct ContextStyle {

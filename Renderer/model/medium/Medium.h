@@ -30,7 +30,8 @@ public:
   /// Extinction in mm^-1.
   double extinction(const Vec3& index) const {
     double sigma_t = m_transfer.extinction(m_field.value(index)).value();
-    if (sigma_t != 0.0 && m_context && !m_context->isFocus(index))
+    if (sigma_t != 0.0 && m_context && m_context->style().extinction != 1.0 &&
+        !m_context->isFocus(index))
       sigma_t *= m_context->style().extinction;
     if (sigma_t == 0.0 || !m_transfer.gradientOpacity)
       return sigma_t;

@@ -226,11 +226,6 @@ double curveProgress(double u, double midpoint, double sharpness) {
   return std::clamp(s * s * (3.0 - 2.0 * s) + (1.0 - sharpness) * ends, 0.0, 1.0);
 }
 
-Rgb decodeSrgb(const Rgb& encoded) {
-  return encoded.unaryExpr(
-      [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); });
-}
-
 TransferFunction tabulate(const VolumeProperty& property, const std::string& source) {
   check(property, source);
   const auto extinction = [unit = property.unitDistance](double opacity) {

@@ -1,6 +1,7 @@
 #pragma once
 // A Slicer volume property as stored in files, and its tabulation into the medium.
 
+#include "base/Color.h"
 #include "model/medium/TransferFunction.h"
 
 #include <vector>
@@ -35,8 +36,6 @@ struct VolumeProperty {
 /// (RGB): the midpoint bends u, sharpness compresses the result, and a Hermite curve with end
 /// slopes (1 - sharpness) follows.
 double curveProgress(double u, double midpoint, double sharpness);
-/// The sRGB electro-optical transfer function (IEC 61966-2-1), per component.
-Rgb decodeSrgb(const Rgb& encoded);
 
 /// Extinction -ln(1 - opacity) / unitDistance with opacity capped at 0.9999, decoded colour as
 /// albedo; both piecewise linear with knots kept and a relative error of at most 1e-4.

@@ -21,6 +21,7 @@ struct Mask {
   std::int64_t count = 0;           ///< number of voxels in the segments
   std::vector<std::string> names;   ///< names of the segments, for messages
   std::uint8_t full = 1;            ///< voxel of indicator 1; 255 in a smoothed mask
+  double smoothing = 0.0;           ///< deviation of the Gaussian that made it, mm; 0: none
 
   /// Least voxel in the focus: full / 2, rounded up.
   std::uint8_t half() const { return static_cast<std::uint8_t>(full - full / 2); }

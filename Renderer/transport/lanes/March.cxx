@@ -107,7 +107,7 @@ private:
     const F middle = hn::MulAdd(all(0.5F), length, m_t);
     const F3 p = pointAt(middle);
     F extinction = extinctionOf(m_volume, scalarAt<Voxel>(m_volume.field, p));
-    if (m_volume.context)
+    if (m_volume.context && m_volume.context->extinction != 1.0F)
       extinction = hn::IfThenElse(isFocus(*m_volume.context, p), extinction,
                                   hn::Mul(extinction, all(m_volume.context->extinction)));
     if (m_asksKeep) {

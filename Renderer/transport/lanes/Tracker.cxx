@@ -231,7 +231,7 @@ private:
     m_lookups += hn::CountTrue(floats, hit);
     const F scalar = scalarAt<Voxel>(m_scene.field, m_place);
     F extinction = extinctionOf(m_scene, scalar);
-    if (m_scene.context)
+    if (m_scene.context && m_scene.context->extinction != 1.0F)
       extinction = hn::IfThenElse(isFocus(*m_scene.context, point()), extinction,
                                   hn::Mul(extinction, all(m_scene.context->extinction)));
     U counter = m_counter;

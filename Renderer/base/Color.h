@@ -1,0 +1,19 @@
+#pragma once
+// Colours in numbers: linear Rec. 709, and sRGB as displays encode it.
+
+#include "base/Vector.h"
+
+namespace fenestra {
+
+/// Luminance of linear Rec. 709.
+inline double luminance(const Rgb& color) {
+  return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+}
+
+/// The sRGB electro-optical transfer function (IEC 61966-2-1), per component.
+inline Rgb decodeSrgb(const Rgb& encoded) {
+  return encoded.unaryExpr(
+      [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); });
+}
+
+} // namespace fenestra

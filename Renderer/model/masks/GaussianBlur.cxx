@@ -1,0 +1,159 @@
+#include "model/masks/GaussianBlur.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fenestra {
+namespace {
+
+/// Weights from the centre on, w[0] + 2 (w[1] + ...) = 1.
+std::vector<float> halfKernel(double deviation) {
+  const auto reach = static_cast<int>(std::ceil(3.0 * deviation));
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (int k = 0; k <= reach; ++k) {
+    weights.push_back(k == 0 ? 1.0 : std::exp(-0.5 * k * k / (deviation * deviation)));
+    sum += k == 0 ? weights.back() : 2.0 * weights.back();
+  }
+  std::vector<float> kernel;
+  for (const double weight : weights)
+    kernel.push_back(static_cast<float>(weight / sum));
+  return kernel;
+}
+
+/// Adds weight * from to a row.
+void addRow(float weight, const float* from, std::int64_t count, float* to) {
+  for (std::int64_t x = 0; x < count; ++x)
+    to[x] += weight * from[x];
+}
+
+/// Slice of floats; rows that hold nothing but 0 are not stored.
+struct Plane {
+  std::vector<float> values;
+  std::vector<char> isEmpty; ///< by row
+
+  Plane(std::int64_t columns, std::int64_t rows)
+      : values(static_cast<std::size_t>(columns * rows)), isEmpty(static_cast<std::size_t>(rows)) {}
+};
+
+class Blur {
+public:
+  Blur(const Mask& mask, const Size3& first, const Size3& size, const Vec3& deviations)
+      : m_mask(mask),
+        m_first(first),
+        m_size(size),
+        m_kernels{halfKernel(deviations[0]), halfKernel(deviations[1]), halfKernel(deviations[2])} {
+  }
+
+  /// Slices [begin, end) into `to`, the whole part's voxels. Each needs the slices around it, of
+  /// which a ring is kept.
+  void slices(std::int64_t begin, std::int64_t end, std::uint8_t* to) const {
+    const std::int64_t reach = reachOf(2), ringSize = 2 * reach + 1;
+    std::vector<Plane> ring(static_cast<std::size_t>(ringSize), Plane(m_size.x(), m_size.y()));
+    Plane raw(m_size.x(), m_size.y());
+    const auto at = [&](std::int64_t z) -> Plane& {
+      return ring[static_cast<std::size_t>((z + ringSize) % ringSize)];
+    };
+    for (std::int64_t z = begin - reach; z < end + reach; ++z) {
+      blurSlice(z, raw, at(z));
+      const std::int64_t done = z - reach;
+      if (done >= begin)
+        for (std::int64_t y = 0; y < m_size.y(); ++y)
+          writeRow(at, done, y, to + (done * m_size.y() + y) * m_size.x());
+    }
+  }
+
+private:
+  std::int64_t reachOf(std::size_t axis) const {
+    return static_cast<std::int64_t>(m_kernels[axis].size()) - 1;
+  }
+
+  /// Nearest coordinate in the mask's grid of one in the part.
+  std::int64_t inMask(int axis, std::int64_t coordinate) const {
+    return std::clamp<std::int64_t>(m_first[axis] + coordinate, 0, m_mask.grid.size[axis] - 1);
+  }
+
+  /// Slice z of the part, blurred along rows and columns; `raw`: room for the former alone.
+  void blurSlice(std::int64_t z, Plane& raw, Plane& to) const {
+    for (std::int64_t y = 0; y < m_size.y(); ++y)
+      blurAlongRow(z, y, raw);
+    for (std::int64_t y = 0; y < m_size.y(); ++y) {
+      char& isEmpty = to.isEmpty[static_cast<std::size_t>(y)] = 1;
+      float* const row = to.values.data() + y * m_size.x();
+      forKernel(1, [&](std::int64_t k, float weight) {
+        const std::int64_t other = std::clamp<std::int64_t>(y + k, 0, m_size.y() - 1);
+        addTo(row, isEmpty, raw, other, weight);
+      });
+    }
+  }
+
+  void blurAlongRow(std::int64_t z, std::int64_t y, Plane& to) const {
+    const Size3 start(0, inMask(1, y), inMask(2, z));
+    const std::uint8_t* const from = m_mask.voxels.data() + numberOf(start, m_mask.grid.size);
+    const std::int64_t columns = m_mask.grid.size.x(), reach = reachOf(0);
+    char& isEmpty = to.isEmpty[static_cast<std::size_t>(y)];
+    isEmpty = std::all_of(from, from + columns, [](std::uint8_t value) { return value == 0; });
+    if (isEmpty)
+      return;
+    std::vector<float> padded(static_cast<std::size_t>(m_size.x() + 2 * reach));
+    const float perFull = 1.0F / static_cast<float>(m_mask.full);
+    for (std::int64_t x = 0; x < m_size.x() + 2 * reach; ++x)
+      padded[static_cast<std::size_t>(x)] =
+          perFull * static_cast<float>(from[inMask(0, x - reach)]);
+    float* const row = to.values.data() + y * m_size.x();
+    std::fill_n(row, m_size.x(), 0.0F);
+    forKernel(0, [&](std::int64_t k, float weight) {
+      addRow(weight, padded.data() + reach + k, m_size.x(), row);
+    });
+  }
+
+  /// Calls visit(offset, weight) for each sample of an axis' kernel.
+  template <typename Visit>
+  void forKernel(std::size_t axis, const Visit& visit) const {
+    for (std::int64_t k = -reachOf(axis); k <= reachOf(axis); ++k)
+      visit(k, m_kernels[axis][static_cast<std::size_t>(std::abs(k))]);
+  }
+
+  /// Adds a plane's row to one that is empty so far, or not.
+  void addTo(float* row, char& isEmpty, const Plane& from, std::int64_t y, float weight) const {
+    if (from.isEmpty[static_cast<std::size_t>(y)])
+      return;
+    if (isEmpty)
+      std::fill_n(row, m_size.x(), 0.0F);
+    isEmpty = 0;
+    addRow(weight, from.values.data() + y * m_size.x(), m_size.x(), row);
+  }
+
+  template <typename PlaneAt>
+  void writeRow(const PlaneAt& at, std::int64_t z, std::int64_t y, std::uint8_t* to) const {
+    std::vector<float> row(static_cast<std::size_t>(m_size.x()));
+    char isEmpty = 1;
+    forKernel(
+        2, [&](std::int64_t k, float weight) { addTo(row.data(), isEmpty, at(z + k), y, weight); });
+    if (!isEmpty)
+      for (std::size_t x = 0; x < row.size(); ++x)
+        to[x] = static_cast<std::uint8_t>(std::min(row[x] * 255.0F + 0.5F, 255.0F));
+  }
+
+  const Mask& m_mask;
+  Size3 m_first, m_size;
+  std::array<std::vector<float>, 3> m_kernels;
+};
+
+} // namespace
+
+std::vector<std::uint8_t> blurred(const Mask& mask, const Size3& first, const Size3& size,
+                                  const Vec3& deviations) {
+  std::vector<std::uint8_t> result(static_cast<std::size_t>(size.prod()));
+  const Blur blur(mask, first, size, deviations);
+  constexpr std::int64_t together = 32; // slices: those around are blurred anew for each block
+  const std::int64_t blocks = (size.z() + together - 1) / together;
+  tbb::parallel_for(std::int64_t{0}, blocks, [&](std::int64_t block) {
+    blur.slices(block * together, std::min((block + 1) * together, size.z()), result.data());
+  });
+  return result;
+}
+
+} // namespace fenestra

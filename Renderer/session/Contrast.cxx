@@ -1,0 +1,140 @@
+#include "session/Contrast.h"
+
+#include "base/Color.h"
+#include "files/pictures/DisplayTransform.h"
+#include "model/medium/ContextStyle.h"
+#include "model/medium/Reflectance.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+/// Median of a sample, which is reordered.
+double medianOf(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Samples of the volume to both sides of the faces between voxels of the focus and others.
+template <typename Voxel>
+class BorderSamples {
+public:
+  BorderSamples(const Mask& focus, const Volume& volume, const std::vector<Voxel>& voxels,
+                const TransferFunction& transfer)
+      : m_focus(focus),
+        m_field(volume.grid, voxels),
+        m_box(volume.grid.indexBox()),
+        m_toVolume(volume.grid.worldToIndex * focus.grid.indexToWorld),
+        m_transfer(transfer) {}
+
+  /// Visits faces of at most about `mostVoxels` of the mask's voxels, spread over its rows.
+  std::optional<BorderScalars> medians() {
+    constexpr double mostVoxels = 4e6;
+    const Size3& size = m_focus.grid.size;
+    const double surplus = static_cast<double>(m_focus.voxels.size()) / mostVoxels;
+    const auto stride = static_cast<std::int64_t>(std::ceil(std::sqrt(std::max(1.0, surplus))));
+    for (std::int64_t z = 0; z < size.z(); z += stride)
+      for (std::int64_t y = 0; y < size.y(); y += stride)
+        for (std::int64_t x = 0; x < size.x(); ++x)
+          if (isInside({x, y, z}))
+            visitFaces({x, y, z});
+    if (m_inner.empty() || m_outer.empty())
+      return std::nullopt;
+    return BorderScalars{medianOf(m_inner), medianOf(m_outer)};
+  }
+
+private:
+  bool isInside(const Size3& voxel) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (voxel[axis] < 0 || voxel[axis] >= m_focus.grid.size[axis])
+        return false;
+    return m_focus.voxels[numberOf(voxel, m_focus.grid.size)] >= m_focus.half();
+  }
+
+  void visitFaces(const Size3& voxel) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (const std::int64_t way : {-1, 1}) {
+        Size3 step = Size3::Zero();
+        step[axis] = way;
+        if (!isInside(voxel + step))
+          sampleAcross(voxel, step);
+      }
+  }
+
+  /// Takes voxels of one kind each, up to the shell's depth or the first of the other kind.
+  void sampleAcross(const Size3& voxel, const Size3& step) {
+    constexpr std::int64_t shell = 3; // voxels
+    for (std::int64_t k = 0; k < shell && isInside(voxel - k * step); ++k)
+      sample(voxel - k * step, m_inner);
+    for (std::int64_t k = 1; k <= shell && !isInside(voxel + k * step); ++k)
+      sample(voxel + k * step, m_outer);
+  }
+
+  void sample(const Size3& voxel, std::vector<double>& into) const {
+    const Vec3 index = m_toVolume * voxel.cast<double>();
+    if (index != Vec3(index.cwiseMax(m_box.lower).cwiseMin(m_box.upper)))
+      return;
+    const double value = m_field.value(index);
+    if (m_transfer.extinction(value)[0] > 0.0)
+      into.push_back(value);
+  }
+
+  const Mask& m_focus;
+  Field<Voxel> m_field;
+  Box m_box;
+  Affine m_toVolume;
+  const TransferFunction& m_transfer;
+  std::vector<double> m_inner, m_outer;
+};
+
+/// Display light, linear, of thick matter of that albedo.
+Rgb displayed(const Rgb& albedo, double g) {
+  constexpr float light = 1.1F;
+  std::vector<float> pixel(4, 1.0F);
+  for (int c = 0; c < 3; ++c)
+    pixel[static_cast<std::size_t>(c)] = light * static_cast<float>(reflectance(albedo[c], g));
+  pixel = toDisplay(pixel, {DisplayView::film});
+  return decodeSrgb(Rgb(double{pixel[0]}, double{pixel[1]}, double{pixel[2]}));
+}
+
+} // namespace
+
+bool Contrast::isEnough() const {
+  constexpr double normal = 20.0, colorBlind = 12.0;
+  return deltaE[0] > normal && deltaE[1] > colorBlind && deltaE[2] > colorBlind;
+}
+
+std::optional<BorderScalars> borderScalars(const Mask& focus, const Volume& volume,
+                                           const TransferFunction& transfer) {
+  return std::visit(
+      [&](const auto& voxels) { return BorderSamples(focus, volume, voxels, transfer).medians(); },
+      volume.voxels);
+}
+
+Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfer,
+                    double saturation) {
+  const ContextStyle style{.focus = nullptr, .saturation = saturation};
+  const Rgb focus = displayed(transfer.albedo(border.focus), transfer.g);
+  const Rgb context = displayed(style.paled(transfer.albedo(border.context)), transfer.g);
+  Contrast contrast = {};
+  for (const ColorSight sight : colorSights)
+    contrast.deltaE[static_cast<std::size_t>(sight)] =
+        deltaE2000(labOf(seenBy(sight, focus)), labOf(seenBy(sight, context)));
+  contrast.deltaL = std::abs(labOf(focus).L - labOf(context).L);
+  return contrast;
+}
+
+FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& focus,
+                             const Volume& volume, const TransferFunction& transfer) {
+  const std::optional<BorderScalars> border = borderScalars(focus, volume, transfer);
+  if (!border)
+    return {asked.value_or(1.0)};
+  const Contrast asIs = contrastAt(*border, transfer, asked.value_or(1.0));
+  if (asked || asIs.isEnough())
+    return {asked.value_or(1.0), asIs};
+  return {pale, contrastAt(*border, transfer, pale)};
+}
+
+} // namespace fenestra

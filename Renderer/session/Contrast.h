@@ -1,0 +1,50 @@
+#pragma once
+// Contrast of the focus with what surrounds it: arithmetic on two colours, before anything is
+// rendered, and thus the same for every camera, clip and number of samples.
+
+#include "image/ColorVision.h"
+#include "model/medium/TransferFunction.h"
+#include "model/volume/Mask.h"
+#include "model/volume/Volume.h"
+
+#include <optional>
+
+namespace fenestra {
+
+/// Differences of the colours in which thick matter of the focus and of its surroundings is shown,
+/// lit a little above white (radiance 1.1), by the film curve.
+struct Contrast {
+  std::array<double, 4> deltaE; ///< CIEDE2000 by ColorSight
+  double deltaL;                ///< of CIELAB lightness, in absolute value
+
+  /// True: normal sight and the two frequent kinds of colour blindness tell them apart.
+  bool isEnough() const;
+};
+
+/// Typical scalars at the focus's border: medians over the three voxels to either side of its
+/// labels' faces, of those that the transfer function shows.
+struct BorderScalars {
+  double focus, context;
+};
+
+/// Nothing where one side is transparent. `focus`: of at least one voxel.
+std::optional<BorderScalars> borderScalars(const Mask& focus, const Volume& volume,
+                                           const TransferFunction& transfer);
+
+/// `saturation`: of the context (ContextStyle).
+Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfer,
+                    double saturation);
+
+/// Context's saturation, and the contrast that it gives.
+struct FocusContrast {
+  double saturation = 1.0;
+  std::optional<Contrast> contrast = {}; ///< nothing where one side is transparent
+};
+
+/// `asked`: by the user; nothing: `pale` where the contrast is not enough without, else 1.
+FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& focus,
+                             const Volume& volume, const TransferFunction& transfer);
+
+inline constexpr double pale = 0.35;
+
+} // namespace fenestra
