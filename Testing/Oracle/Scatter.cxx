@@ -39,6 +39,12 @@ double roughness2(const SurfaceShading& shading) {
   return 2.0 / (shading.power + 2.0);
 }
 
+double coatAt(const CoatReflectance& coat, double cosine) {
+  const double x = 1.0 - cosine;
+  return coat.constant + coat.x2 * std::pow(x, 2) + coat.x4 * std::pow(x, 4) +
+         coat.x8 * std::pow(x, 8);
+}
+
 } // namespace
 
 double henyeyGreenstein(double cosine, double g) {
@@ -66,8 +72,8 @@ Scatterer Scatterer::atSurface(const Vec3& incoming, const Rgb& albedo, const Ve
 /// At a surface, Lambert: albedo / pi; GGX (Walter et al. 2007): D F G / (4 cos_i cos_o), D of
 /// roughness^2 = 2 / (power + 2), G the product of Smith's two terms, F Schlick's with F0 = 0.04.
 /// As a coat of weight w, F0 = 0.028 over a matte base (Kelemen, Szirmay-Kalos 2001):
-/// base / pi (1 - w F(cos_i)) (1 - w F(cos_o)) / (1 - w F_mean), F_mean the integral of 2 x F(x);
-/// base / (1 - base) is odds times albedo / (1 - albedo).
+/// base / pi (1 - w E(cos_i)) (1 - w E(cos_o)) / (1 - w E_mean), E what the coat reflects in all,
+/// E_mean the integral of 2 x E(x); base / (1 - base) is odds times albedo / (1 - albedo).
 Rgb Scatterer::f(const Vec3& outgoing) const {
   if (!m_shading)
     return m_albedo * henyeyGreenstein(m_incoming.dot(outgoing), m_g);
@@ -88,8 +94,12 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
       d * fresnel(h.dot(outgoing)) * smith(cosIn) * smith(cosOut) / (4.0 * cosIn * cosOut);
   const double w = m_shading->specular;
   if (m_shading->coated) {
-    const double through = (1.0 - w * fresnel(cosIn)) * (1.0 - w * fresnel(cosOut));
-    const double everywhere = 1.0 - w * (20.0 * normal + 1.0) / 21.0;
+    const auto under = [&](double cosine) { return 1.0 - w * coatAt(*m_shading->coated, cosine); };
+    const double through = under(cosIn) * under(cosOut);
+    double everywhere = 0.0; // 2 x under(x), by the midpoint rule
+    constexpr int steps = 64;
+    for (int i = 0; i < steps; ++i)
+      everywhere += 2.0 * (i + 0.5) / steps * under((i + 0.5) / steps) / steps;
     Rgb base = m_albedo;
     for (int c = 0; c < 3; ++c)
       if (base[c] > 0.0)

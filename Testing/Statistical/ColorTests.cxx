@@ -29,9 +29,8 @@ INSTANTIATE_TEST_SUITE_P(Anisotropies, SeenColor, ::testing::Values(0.0, 0.5, 0.
 /// within `ramp` mm.
 TestScene step(const Rgb& color, double ramp, const SurfaceShading& shading) {
   const Grid grid = centredGrid({2, 2, 400}, {10000.0, 10000.0, ramp});
-  const double top = 198.0 * ramp;
   TestScene scene = endlessSlab(400.0 * ramp, Rgb::Zero());
-  scene.volume = makeVolume(grid, [top](const Vec3& p) { return p.z() < top ? 1.0 : 0.0; });
+  scene.volume = makeVolume(grid, [](const Vec3& index) { return index.z() < 396.0 ? 1.0 : 0.0; });
   scene.transfer = {ScalarFunction({knot(0.0, 0.0), knot(1.0, 3.0)}),
                     ColorFunction({{0.0, albedoFor(color, 0.0)}}),
                     {},

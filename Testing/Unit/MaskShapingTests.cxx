@@ -136,6 +136,58 @@ TEST(MaskShaping, SurfaceThatLeansAcrossThickSlicesIsASlope) {
   }
 }
 
+/// Voxels of a smoothed mask against the sum of its definition.
+TEST(MaskShaping, SmoothingIsASampledGaussian) {
+  const Mask mask = maskOf(centredGrid({9, 12, 40}, {1.0, 0.5, 1.5}), [](const Vec3& p) {
+    return p.x() + p.y() > 0.3 && std::abs(p.z() - 2.0) < 14.0;
+  });
+  const double deviation = 1.3;
+  const Mask smooth = smoothed(mask, deviation, volume);
+  EXPECT_EQ(smooth.smoothing, deviation);
+  const Vec3 spacing = mask.grid.spacing();
+  const auto at = [&](const Size3& voxel) {
+    const Size3 nearest = voxel.cwiseMax(0).cwiseMin((mask.grid.size.array() - 1).matrix());
+    return mask.voxels[numberOf(nearest, mask.grid.size)];
+  };
+  for (const Vec3& place : {Vec3(0, 0, 0), Vec3(2, 1, -20), Vec3(-4, 2.5, 15), Vec3(3, -1, 16.5)}) {
+    const Size3 voxel = (mask.grid.worldToIndex * place).array().round().cast<std::int64_t>();
+    double sum = 0.0, weights = 0.0;
+    for (int z = -3; z <= 3; ++z)
+      for (int y = -8; y <= 8; ++y)
+        for (int x = -4; x <= 4; ++x) {
+          const Vec3 d = Vec3(x, y, z).cwiseProduct(spacing) / deviation;
+          const double weight = std::exp(-0.5 * d.squaredNorm());
+          weights += weight;
+          sum += weight * at(voxel + Size3(x, y, z));
+        }
+    const Vec3 there = smooth.grid.worldToIndex * (mask.grid.indexToWorld * voxel.cast<double>());
+    const Size3 same = there.array().round().cast<std::int64_t>();
+    EXPECT_NEAR(smooth.voxels[numberOf(same, smooth.grid.size)], 255.0 * sum / weights, 1.0);
+  }
+}
+
+TEST(MaskShaping, AutomaticSmoothingGoesByTheLongestEdge) {
+  EXPECT_NEAR(automaticSmoothing(centredGrid({9, 9, 9}, {1.0, 0.5, 1.5})), 0.9, 1e-12);
+  const Grid thick = centredGrid({9, 9, 9}, {0.9, 0.5, 5.0}); // five slices in place of one
+  EXPECT_NEAR(automaticSmoothing(thick), 0.6, 1e-12);
+  Mask mask = maskOf(thick, [](const Vec3& p) { return p.norm() < 4.0; });
+  EXPECT_NEAR(automaticSmoothing(betweenSlices(mask).grid), 0.6, 1e-12);
+}
+
+TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
+  const Grid grid = centredGrid({31, 31, 31});
+  const auto smoothing = [&](double radius) {
+    const Mask tube = maskOf(grid, [radius](const Vec3& p) {
+      return std::hypot(p.x(), p.y()) < radius && std::abs(p.z()) < 14.0;
+    });
+    const Mask smooth = smoothedAutomatically(tube, volume);
+    EXPECT_GE(static_cast<double>(smooth.count), 0.8 * static_cast<double>(tube.count));
+    return smooth.smoothing;
+  };
+  EXPECT_NEAR(smoothing(6.0), 0.6, 1e-12);
+  EXPECT_LT(smoothing(0.5), 0.6) << "a line of voxels";
+}
+
 TEST(MaskShaping, InterpolationKeepsThickSlicesAndTheVolumeOfABall) {
   const double radius = 10.0;
   for (const int axis : {0, 1, 2}) {

@@ -14,6 +14,23 @@ Vec3 cosineHemisphere(const Vec2& u) {
 
 } // namespace
 
+SurfaceShading SurfaceShading::coat(double specular, double roughness, double g) {
+  return {.diffuse = 1.0,
+          .specular = specular,
+          .power = 2.0 / (roughness * roughness) - 2.0,
+          .coated = coatReflectance(roughness),
+          .odds = 0.47 * (1.0 - g)};
+}
+
+SurfaceShading::Lobes SurfaceShading::lobes() const {
+  if (coated) {
+    const CoatReflectance coat = coated->scaled(specular);
+    return {diffuse / (1.0 - coat.mean()), specular, tissueF0, coat};
+  }
+  const double total = std::max(1.0, diffuse + specular);
+  return {diffuse / total, specular / total, 0.04, {}};
+}
+
 double PhaseScattering::pdf(const Vec3& outgoing) const {
   if (m_g == 0.0)
     return 0.25 / pi;
@@ -50,7 +67,8 @@ SurfaceScattering::SurfaceScattering(const Vec3& incoming, const Vec3& gradient,
   m_f0 = lobes.f0;
   m_coat = lobes.coat;
   m_diffuse = lobes.lambert * (shading.odds * albedo / (1.0 - (1.0 - shading.odds) * albedo));
-  if (m_coat > 0.0)
+  m_isCoated = shading.coated.has_value();
+  if (m_isCoated)
     m_diffuse *= belowCoat(m_viewer.z());
   m_roughness = std::max(leastRoughness, std::sqrt(2.0 / (shading.power + 2.0)));
   const double lambert = m_diffuse.maxCoeff();
@@ -93,7 +111,7 @@ Rgb SurfaceScattering::evaluate(const Vec3& outgoing) const {
   if (l.z() <= 0.0)
     return Rgb::Zero();
   Rgb value = m_diffuse * lambertPdf(l);
-  if (m_coat > 0.0)
+  if (m_isCoated)
     value *= belowCoat(l.z());
   if (m_specular > 0.0 && m_viewer.z() > 0.0) {
     // D F G / (4 cos cos) times the outgoing cosine, G separable (Smith).

@@ -36,10 +36,9 @@ private:
 
 /// A Lambert lobe of the albedo and a GGX lobe (Walter et al. 2007; visible normals by Heitz 2018)
 /// with Schlick's Fresnel term F. Side by side they are weighted so that they never reflect more
-/// than arrives. Under a coat of weight w the Lambert lobe is
-/// albedo / pi (1 - w F(viewer)) (1 - w F(outgoing)) / (1 - w F_mean), which is reciprocal and
-/// white for albedo 1 (Kelemen, Szirmay-Kalos 2001): all but what the coat reflects, whose
-/// directional albedo w F(viewer) exceeds by less than w / 1000.
+/// than arrives. Under a coat that reflects E the Lambert lobe is
+/// albedo / pi (1 - E(viewer)) (1 - E(outgoing)) / (1 - E_mean), which is reciprocal and returns,
+/// for albedo 1, all but what the coat reflects (Kelemen, Szirmay-Kalos 2001).
 class SurfaceScattering {
 public:
   /// `gradient` must not be zero; the normal is -gradient, flipped to the side of the path's
@@ -60,7 +59,7 @@ private:
   double lambertPdf(const Vec3& l) const { return std::max(l.z(), 0.0) / pi; }
   double fresnel(double cosine) const;
   /// Share of light that passes the coat.
-  double belowCoat(double cosine) const { return 1.0 - m_coat * fresnel(cosine); }
+  double belowCoat(double cosine) const { return 1.0 - m_coat(cosine); }
   double glossyPdf(const Vec3& l) const;
   double masking(const Vec3& v) const; ///< Smith's G1
   double normalDensity(const Vec3& h) const;
@@ -71,7 +70,8 @@ private:
   Rgb m_diffuse; ///< weight * albedo, and what the coat lets through from the viewer
   double m_specular;
   double m_f0;
-  double m_coat; ///< weight of the coat; 0: the lobes stand side by side
+  bool m_isCoated;
+  CoatReflectance m_coat;
   double m_roughness;
   double m_lambertShare; ///< probability that sample() takes the Lambert lobe
 };

@@ -2,6 +2,7 @@
 // Optical properties as functions of the scalar. These functions *are* the medium: the product and
 // every oracle read extinction and albedo from here.
 
+#include "model/medium/CoatReflectance.h"
 #include "model/medium/PiecewiseLinear.h"
 
 #include <optional>
@@ -15,9 +16,9 @@ struct SurfaceShading {
   double specular = 0.2;
   double power = 10.0; ///< Blinn-Phong exponent: roughness^2 = 2 / (power + 2)
   double gamma = 0.5;  ///< Kroes, Post, Botha 2012: how readily a gradient counts as a surface
-  /// GGX lies over the Lambert lobe as a coat, and what it reflects the other does not get; F0 is
-  /// tissue's. Else the lobes stand side by side, and F0 is 0.04.
-  bool coated = false;
+  /// Set: GGX lies over the Lambert lobe as a coat, and what it reflects the other does not get; F0
+  /// is tissue's. Else the lobes stand side by side, and F0 is 0.04.
+  std::optional<CoatReflectance> coated = {};
   /// Factor on the odds a / (1 - a) of the albedo a, for the Lambert lobe.
   double odds = 1.0;
 
@@ -26,28 +27,15 @@ struct SurfaceShading {
   /// albedo it would look brighter than the matter. With 0.47 of its odds a half-space of surfaces
   /// alone looks like one of isotropic scattering (within 2 % of 1 - a; measured, 300,000 paths),
   /// and 1 - g brings anisotropic scattering to isotropic (similarity, van de Hulst 1980).
-  static SurfaceShading coat(double specular, double roughness, double g = 0.0) {
-    return {.diffuse = 1.0,
-            .specular = specular,
-            .power = 2.0 / (roughness * roughness) - 2.0,
-            .coated = true,
-            .odds = 0.47 * (1.0 - g)};
-  }
+  static SurfaceShading coat(double specular, double roughness, double g = 0.0);
 
-  /// Weights of the lobes, and F0: reflectance at normal incidence of refractive index 1.4 or 1.5.
+  /// Weights of the lobes, and F0: reflectance at normal incidence, of refractive index 1.4 or 1.5.
   struct Lobes {
     double lambert, glossy, f0;
-    double coat; ///< weight of the coat over the Lambert lobe; 0: they stand side by side
+    CoatReflectance coat; ///< over the Lambert lobe, its weight included; 0: side by side
   };
   /// Weights that never reflect more than arrives.
-  Lobes lobes() const {
-    const double total = std::max(1.0, diffuse + specular);
-    if (!coated)
-      return {diffuse / total, specular / total, 0.04, 0.0};
-    constexpr double f0 = 0.028;
-    constexpr double mean = f0 + (1.0 - f0) / 21.0; // of Schlick's term, by the cosine
-    return {diffuse / (1.0 - specular * mean), specular, f0, specular};
-  }
+  Lobes lobes() const;
 };
 
 struct TransferFunction {

@@ -56,9 +56,10 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
       diffuse(0.0F),
       specular(0.0F),
       f0(0.0F),
-      coat(0.0F),
       odds(1.0F),
       roughness(1.0F),
+      isCoated(false),
+      coat(),
       surfaceRate(0.0F),
       wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
@@ -71,7 +72,9 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
     diffuse = narrow(lobes.lambert);
     specular = narrow(lobes.glossy);
     f0 = narrow(lobes.f0);
-    coat = narrow(lobes.coat);
+    isCoated = shading.coated.has_value();
+    coat = {narrow(lobes.coat.constant), narrow(lobes.coat.x2), narrow(lobes.coat.x4),
+            narrow(lobes.coat.x8)};
     odds = narrow(shading.odds);
     roughness = narrow(roughnessOf(shading));
     surfaceRate = narrow(25.0 * std::pow(shading.gamma, 3));

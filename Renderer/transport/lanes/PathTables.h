@@ -49,9 +49,11 @@ struct EventScene {
 
   WideTable albedo;
   float g;
-  bool hybrid;                                        ///< surface shading
-  float diffuse, specular, f0, coat, odds, roughness; ///< of SurfaceShading
-  float surfaceRate; ///< 25 gamma^3 of Medium's surface probability
+  bool hybrid;                                  ///< surface shading
+  float diffuse, specular, f0, odds, roughness; ///< of SurfaceShading
+  bool isCoated;
+  std::array<float, 4> coat; ///< of CoatReflectance
+  float surfaceRate;         ///< 25 gamma^3 of Medium's surface probability
   bool wantNormals;
   std::int32_t bounces; ///< greatest number of scatterings
 

@@ -79,15 +79,16 @@ public:
                          const F3& albedo)
       : m_specular(scene.specular),
         m_f0(scene.f0),
-        m_coat(scene.coat),
         m_roughness(scene.roughness),
+        m_isCoated(scene.isCoated),
+        m_coat(scene.coat),
         m_frame(normalized(
             select(hn::Ge(dot(incoming, gradient), hn::Zero(floats)), -gradient, gradient))),
         m_viewer(m_frame.toLocal(-incoming)),
         m_diffuse(all(scene.diffuse) * albedo) {
     if (scene.odds != 1.0F)
       m_diffuse = all(scene.diffuse) * ofOdds(scene.odds, albedo);
-    if (m_coat > 0.0F)
+    if (m_isCoated)
       m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
     const F lambert = greatest(m_diffuse);
     const F sum = hn::MulAdd(all(m_specular), fresnel(m_viewer.z), lambert);
@@ -129,7 +130,11 @@ private:
   }
   /// Share of light that passes the coat.
   HWY_INLINE F belowCoat(F cosine) const {
-    return hn::NegMulAdd(all(m_coat), fresnel(cosine), all(1.0F));
+    const F x = notBelow0(hn::Min(hn::Sub(all(1.0F), cosine), all(1.0F)));
+    const F x2 = square(x), x4 = square(x2);
+    const F high = hn::MulAdd(all(m_coat[3]), x4, all(m_coat[2]));
+    const F low = hn::MulAdd(all(m_coat[1]), x2, all(m_coat[0]));
+    return hn::Sub(all(1.0F), hn::MulAdd(high, x4, low));
   }
 
   /// SurfaceScattering's evaluate() and pdf().
@@ -138,7 +143,7 @@ private:
     Scattered s{lambertPdf * m_diffuse, hn::Mul(m_lambertShare, lambertPdf)};
     if (!(m_specular > 0.0F))
       return s;
-    if (m_coat > 0.0F)
+    if (m_isCoated)
       s.factor = belowCoat(l.z) * s.factor;
     const F zero = hn::Zero(floats);
     const F3 h = normalized(l + m_viewer);
@@ -188,7 +193,9 @@ private:
         {hn::Mul(a, n.x), hn::Mul(a, n.y), hn::Max(n.z, all(std::numeric_limits<float>::min()))});
   }
 
-  float m_specular, m_f0, m_coat, m_roughness;
+  float m_specular, m_f0, m_roughness;
+  bool m_isCoated;
+  std::array<float, 4> m_coat;
   Frames m_frame; ///< local z is the normal
   F3 m_viewer;    ///< local direction back along the path
   F3 m_diffuse;

@@ -1,0 +1,44 @@
+#include "model/medium/CoatReflectance.h"
+
+#include "model/medium/Scattering.h"
+
+#include <Eigen/Dense>
+
+namespace fenestra {
+namespace {
+
+/// Mean weight of GGX's samples, spread evenly.
+double reflectedBy(const SurfaceShading& ggx, double cosine) {
+  constexpr int strata = 32;
+  const Vec3 incoming(-std::sqrt(1.0 - cosine * cosine), 0.0, -cosine);
+  const SurfaceScattering surface(incoming, -Vec3::UnitZ(), ggx, Rgb::Zero());
+  double sum = 0.0;
+  for (int i = 0; i < strata; ++i)
+    for (int j = 0; j < strata; ++j)
+      sum += surface.sample(0.5, Vec2((i + 0.5) / strata, (j + 0.5) / strata)).weight[0];
+  return sum / (strata * strata);
+}
+
+} // namespace
+
+CoatReflectance coatReflectance(double roughness) {
+  constexpr int angles = 40;
+  const SurfaceShading ggx{.diffuse = 0.0,
+                           .specular = 1.0,
+                           .power = 2.0 / (roughness * roughness) - 2.0,
+                           .coated = CoatReflectance()};
+  Eigen::Matrix<double, angles, 4> powers;
+  Eigen::Vector<double, angles> reflected, weights;
+  for (int i = 0; i < angles; ++i) {
+    const double cosine = (i + 0.5) / angles, x = 1.0 - cosine;
+    reflected[i] = reflectedBy(ggx, cosine);
+    powers.row(i) << 1.0, std::pow(x, 2), std::pow(x, 4), std::pow(x, 8);
+    weights[i] = std::sqrt(cosine);
+  }
+  const Eigen::Vector4d fit =
+      (weights.asDiagonal() * powers).colPivHouseholderQr().solve(weights.asDiagonal() * reflected);
+  const double missing = (reflected - powers * fit).maxCoeff();
+  return {fit[0] + std::max(0.0, missing), fit[1], fit[2], fit[3]};
+}
+
+} // namespace fenestra

@@ -1,0 +1,120 @@
+// Colour differences against published pairs, and the contrast of a focus with its surroundings.
+
+#include "session/Contrast.h"
+
+#include "Support.h"
+#include "base/Color.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing::ContrastTests {
+namespace {
+
+/// Sharma, Wu, Dalal 2005, table 1.
+TEST(ColorVision, DeltaE2000OfPublishedPairs) {
+  const auto expectPair = [](const Lab& x, const Lab& y, double expected) {
+    EXPECT_NEAR(deltaE2000(x, y), expected, 5e-5);
+    EXPECT_NEAR(deltaE2000(y, x), expected, 5e-5);
+  };
+  expectPair({50.0, 2.6772, -79.7751}, {50.0, 0.0, -82.7485}, 2.0425);
+  expectPair({50.0, -1.3802, -84.2814}, {50.0, 0.0, -82.7485}, 1.0000);
+  expectPair({50.0, 0.0, 0.0}, {50.0, -1.0, 2.0}, 2.3669);
+  expectPair({50.0, 2.49, -0.001}, {50.0, -2.49, 0.0011}, 7.2195);
+  expectPair({50.0, -0.001, 2.49}, {50.0, 0.0009, -2.49}, 4.8045);
+  expectPair({50.0, 2.5, 0.0}, {73.0, 25.0, -18.0}, 27.1492);
+  expectPair({50.0, 2.5, 0.0}, {58.0, 24.0, 15.0}, 19.4535);
+  expectPair({60.2574, -34.0099, 36.2677}, {60.4626, -34.1751, 39.4387}, 1.2644);
+  expectPair({63.0109, -31.0961, -5.8663}, {62.8187, -29.7946, -4.0864}, 1.2630);
+  expectPair({22.7233, 20.0904, -46.694}, {23.0331, 14.973, -42.5619}, 2.0373);
+  expectPair({2.0776, 0.0795, -1.135}, {0.9033, -0.0636, -0.5514}, 0.9082);
+  expectPair({0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, 0.0);
+}
+
+TEST(ColorVision, LabOfPrimaries) {
+  const Lab white = labOf(Rgb::Ones()), red = labOf(Rgb(1.0, 0.0, 0.0));
+  EXPECT_NEAR(white.L, 100.0, 0.01);
+  EXPECT_NEAR(std::hypot(white.a, white.b), 0.0, 0.02);
+  EXPECT_NEAR(red.L, 53.24, 0.02);
+  EXPECT_NEAR(red.a, 80.09, 0.05);
+  EXPECT_NEAR(red.b, 67.20, 0.05);
+  EXPECT_NEAR(labOf(Rgb::Constant(0.001)).L, 0.9033, 1e-3) << "the line near black";
+  EXPECT_NEAR(deltaE76(white, red), 114.57, 0.1);
+}
+
+TEST(ColorVision, DichromatsSeeGreysAsTheyAreAndLoseOneHue) {
+  const Rgb red(0.5, 0.1, 0.1), olive(0.22, 0.2, 0.1), blue(0.1, 0.1, 0.5), teal(0.02, 0.18, 0.2);
+  const auto difference = [](ColorSight sight, const Rgb& x, const Rgb& y) {
+    return deltaE2000(labOf(seenBy(sight, x)), labOf(seenBy(sight, y)));
+  };
+  for (const ColorSight sight : colorSights)
+    for (const double grey : {0.0, 0.2, 1.0})
+      EXPECT_LT(deltaE76(labOf(seenBy(sight, Rgb::Constant(grey))), labOf(Rgb::Constant(grey))),
+                0.01);
+  EXPECT_LT(difference(ColorSight::deutan, red, olive),
+            0.5 * difference(ColorSight::normal, red, olive));
+  EXPECT_GT(difference(ColorSight::tritan, red, olive), difference(ColorSight::deutan, red, olive));
+  EXPECT_LT(difference(ColorSight::tritan, blue, teal),
+            0.6 * difference(ColorSight::normal, blue, teal));
+}
+
+constexpr double inside = 60.0, outside = 20.0, air = -1000.0;
+
+/// Ball of radius 6 mm in other matter up to `radius`, then air.
+Volume ballVolume(double radius) {
+  return makeVolume<float>(centredGrid({40, 40, 40}, Vec3::Ones()), [radius](const Vec3& index) {
+    const double distance = (index - Vec3::Constant(19.5)).norm();
+    return distance <= 6.0 ? inside : distance <= radius ? outside : air;
+  });
+}
+
+Mask ballMask() {
+  const Grid grid = centredGrid({16, 16, 16}, Vec3::Ones());
+  Mask mask{grid, {}, 0, {"ball"}};
+  for (int z = 0; z < 16; ++z)
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) {
+        mask.voxels.push_back((grid.indexToWorld * Vec3(x, y, z)).norm() <= 6.0);
+        mask.count += mask.voxels.back();
+      }
+  return mask;
+}
+
+/// Air is transparent; the two kinds of matter have these albedos.
+TransferFunction twoColors(const Rgb& context, const Rgb& focus) {
+  return {ScalarFunction({knot(-500.0, 0.0), knot(0.0, 1.0)}),
+          ColorFunction({{outside, context}, {inside, focus}})};
+}
+
+TEST(Contrast, TakesTheMediansOfBothSidesOfTheBorder) {
+  const TransferFunction transfer = twoColors(Rgb(0.9, 0.5, 0.4), Rgb(0.9, 0.9, 0.9));
+  const auto border = borderScalars(ballMask(), ballVolume(8.0), transfer);
+  ASSERT_TRUE(border);
+  EXPECT_EQ(border->focus, inside);
+  EXPECT_EQ(border->context, outside) << "air beyond does not count";
+  EXPECT_FALSE(borderScalars(ballMask(), ballVolume(6.0), transfer)) << "air all around";
+}
+
+/// Surroundings of the focus's own red are paled; of another colour they are not; what is asked
+/// for is done.
+TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
+  const Rgb red(0.9, 0.4, 0.35), cream(0.99, 0.97, 0.9);
+  const Volume volume = ballVolume(15.0);
+  const FocusContrast same = chosenContrast({}, ballMask(), volume, twoColors(red, red));
+  EXPECT_EQ(same.saturation, pale);
+  ASSERT_TRUE(same.contrast);
+  EXPECT_GT(same.contrast->deltaE[0], 8.0);
+  EXPECT_LT(same.contrast->deltaE[1], same.contrast->deltaE[0]);
+  const FocusContrast other = chosenContrast({}, ballMask(), volume, twoColors(red, cream));
+  EXPECT_EQ(other.saturation, 1.0);
+  EXPECT_TRUE(other.contrast && other.contrast->isEnough());
+  const FocusContrast asked = chosenContrast(1.0, ballMask(), volume, twoColors(red, red));
+  EXPECT_EQ(asked.saturation, 1.0);
+  EXPECT_EQ(asked.contrast->deltaE[0], 0.0);
+  EXPECT_EQ(asked.contrast->deltaL, 0.0);
+  const FocusContrast alone = chosenContrast({}, ballMask(), ballVolume(6.0), twoColors(red, red));
+  EXPECT_EQ(alone.saturation, 1.0);
+  EXPECT_FALSE(alone.contrast);
+}
+
+} // namespace
+} // namespace fenestra::testing::ContrastTests
