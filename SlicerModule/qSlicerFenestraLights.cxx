@@ -5,6 +5,20 @@
 #include <QJsonDocument>
 #include <QJsonObject>
 
+namespace {
+
+/// Radiance of a light, a number or a triple, times a factor.
+QJsonValue scaled(const QJsonValue& radiance, double factor) {
+  if (!radiance.isArray())
+    return radiance.toDouble() * factor;
+  QJsonArray triple;
+  for (const QJsonValue& value : radiance.toArray())
+    triple.append(value.toDouble() * factor);
+  return triple;
+}
+
+} // namespace
+
 QString qSlicerFenestraLights::flag(const QString& rig, const Strengths& strengths) {
   if (strengths == unchanged)
     return rig;
@@ -16,12 +30,11 @@ QString qSlicerFenestraLights::flag(const QString& rig, const Strengths& strengt
   constexpr std::size_t environment = 3;
   for (int i = 0; i < lights.size(); ++i) {
     QJsonObject light = lights[i].toObject();
-    const bool surrounds = light["type"] == "environment";
+    const bool surrounds = light["type"] == "environment" || light["type"] == "sky";
     const std::size_t which = surrounds ? environment : std::min(area++, environment - 1);
-    QJsonArray radiance = light["radiance"].toArray();
-    for (int c = 0; c < radiance.size(); ++c)
-      radiance[c] = radiance[c].toDouble() * strengths[which];
-    light["radiance"] = radiance;
+    for (const char* key : {"radiance", "top", "middle", "bottom"})
+      if (light.contains(key))
+        light[key] = scaled(light[key], strengths[which]);
     lights[i] = light;
   }
   const QJsonObject document = {{"lights", lights}};

@@ -263,7 +263,10 @@ void qSlicerFenestraPanel::buildView(QVBoxLayout* layout) {
                      tr("Colours and opacities; set up your own in the Volume Rendering module"));
   form->addRow(tr("Tissue colours:"), transfer);
   rig = choices("RigBox",
-                {{tr("Studio"), "studio"}, {tr("Headlight"), "headlight"}, {tr("Soft"), "soft"}},
+                {{tr("Cinema"), "cinema"},
+                 {tr("Studio"), "studio"},
+                 {tr("Headlight"), "headlight"},
+                 {tr("Soft"), "soft"}},
                 tr("Where light comes from"));
   form->addRow(tr("Lights:"), rig);
   const QString names[4] = {tr("Key:"), tr("Fill:"), tr("Rim:"), tr("Environment:")};

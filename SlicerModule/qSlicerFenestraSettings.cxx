@@ -374,7 +374,7 @@ void qSlicerFenestraSettings::takePreset() {
       m_panel->clipping->reset();
       choose(m_panel->view, chosen ? "preset" : "", "view");
       choose(m_panel->transfer, "", "transfer");
-      choose(m_panel->rig, chosen ? "" : "studio", "lights");
+      choose(m_panel->rig, chosen ? "" : "cinema", "lights");
     }
   }
   take();

@@ -214,7 +214,7 @@ struct RenderTable {
       {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000",
        Takes::number(0.0, 1000.0).into(scene.density)},
       {"lights", "FILE|PRESET|JSON", lookGroup,
-       "Lights: .json, studio, headlight, soft, or the text of a .json itself, {...}",
+       "Lights: .json, cinema, studio, headlight, soft, or the text of a .json itself, {...}",
        Takes::text().into(scene.lights), Topic::lights},
       {"environment", "R,G,B|GREY|FILE", lookGroup,
        "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own",

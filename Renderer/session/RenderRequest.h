@@ -80,7 +80,7 @@ struct SceneRequest {
       {}; ///< a file, or a preset's name; by default the scene's, else from the volume
   double shift = 0.0;
   double density = 1.0;
-  std::string lights = "studio";       ///< a file, a preset's name, or the JSON itself
+  std::string lights = "cinema";       ///< a file, a preset's name, or the JSON itself
   std::optional<Rgb> environment = {}; ///< replaces the lights' own environment
   std::optional<std::filesystem::path> environmentMap = {};
   ViewRequest view;

@@ -130,7 +130,7 @@ TEST_F(FilesCommand, RefusesMissingOrDamagedLooks) {
            {"constant.nrrd", "--transfer", "hybrid.json"},
            3,
            "constant.nrrd: every voxel has the same value"},
-          {"light preset", with("--lights", "sun"), 3, "one of amber, headlight, soft, studio"},
+          {"light preset", with("--lights", "sun"), 3, "one of amber, cinema, headlight, soft, studio"},
           {"light type", with("--lights", "spot.json"), 3, "spot.json: lights[0].type: "},
           {"half of a light", with("--lights", "cut.json"), 3, "cut.json: is not JSON"},
           {"half of a text", with("--lights", R"({"lights": [)"), 3,

@@ -43,12 +43,12 @@ TEST_F(RendersCommand, DefaultNameIsThatOfTheInputInTheCurrentFolder) {
 
 TEST_F(RendersCommand, TellsWhatItChose) {
   EXPECT_EQ(renderWith({"--output", "a.png"}).choices,
-            "look: by the volume's range; light: studio");
+            "look: by the volume's range; light: cinema");
   EXPECT_EQ(renderWith({"--output", "a.png", "--environment", "1"}).choices,
             "look: by the volume's range; light: all around");
   EXPECT_EQ(renderWith({"--output", "a.png", "--progress", "none"}).choices, "");
   const Outcome ct = renderWith({"--output", "a.png", "--transfer", "ct-bone"});
-  EXPECT_EQ(ct.choices, "look: ct-bone; light: studio");
+  EXPECT_EQ(ct.choices, "look: ct-bone; light: cinema");
   EXPECT_NE(ct.err.find("ct-bone is made for CT, which this volume does not seem to be"),
             std::string::npos);
 }

@@ -4,6 +4,7 @@
 #include "WriteResults.h"
 #include "base/safe/EmbeddedResources.h"
 #include "files/looks/LightReader.h"
+#include "model/lights/LightSet.h"
 #include "model/medium/ContextStyle.h"
 
 #include "Refusals.h"
@@ -205,6 +206,29 @@ TEST(LightReader, ReadsEveryPreset) {
   EXPECT_FALSE(names.empty());
   for (const std::string& name : names)
     EXPECT_NO_THROW(parseLights(embeddedResource(name), name)) << name;
+}
+
+TEST(LightReader, CinemasKeyIsAboutFourTimesItsFillAndSky) {
+  const auto lights = parseLights(embeddedResource("lights/cinema.json"), "cinema");
+  ASSERT_EQ(lights.size(), 4u);
+  const Grid grid({10, 10, 10}, Affine::Identity());
+  const Camera camera({}, 8, 8);
+  const auto facing = [&](std::size_t i) { // irradiance over pi of a plane that faces the light
+    const LightSet set({lights[i]}, grid, camera);
+    double sum = 0.0;
+    constexpr int n = 64; // n x n points of the light
+    for (int k = 0; k < n * n; ++k) {
+      const Vec2 u((k % n + 0.5) / n, (k / n + 0.5) / n);
+      const auto sample = set.sample(grid.worldCenter(), 0.0, u);
+      const double cosine = -set.areas().at(0).normal.dot(sample->direction);
+      sum += luminance(sample->radiance) * cosine / (sample->pdf * pi * n * n);
+    }
+    return sum;
+  };
+  EXPECT_NEAR(facing(0), 1.48, 0.01);
+  EXPECT_NEAR(facing(1), 0.17, 0.003);
+  const auto& sky = std::get<SkyLight>(lights[3]);
+  EXPECT_NEAR(luminance((sky.top + 2.0 * sky.middle + sky.bottom) / 4.0), 0.17, 0.003) << "mean";
 }
 
 TEST(LightReader, ReadsLightsOfTheReference) {

@@ -191,6 +191,11 @@ private:
     return sum;
   }
 
+  static HWY_INLINE F3 weighted(M met, F scatterPdf, F pdf, const EventScene::Triple& radiance) {
+    const F weight = hn::Div(scatterPdf, hn::Add(scatterPdf, pdf));
+    return selectElseZero(met, weight * all3(radiance));
+  }
+
   static HWY_INLINE F3 arrivingFrom(const EventScene::Area& light, M which, const F3& origin,
                                     const F3& direction, F distance, F scatterPdf) {
     const F zero = hn::Zero(floats);
@@ -207,8 +212,7 @@ private:
     const F one = all(1.0F);
     met = both(met, hn::Le(light.disk ? hn::Add(x2, y2) : hn::Max(x2, y2), one));
     const F pdf = hn::Div(hn::Mul(all(light.share), square(t)), hn::Mul(all(light.area), cosine));
-    const F weight = hn::Div(scatterPdf, hn::Add(scatterPdf, pdf));
-    return selectElseZero(met, weight * all3(light.radiance));
+    return weighted(met, scatterPdf, pdf, light.radiance);
   }
 
   static HWY_INLINE F3 arrivingFrom(const EventScene::Sphere& light, M which, const F3& origin,
@@ -227,8 +231,7 @@ private:
     if (hn::AllFalse(floats, met))
       return {zero, zero, zero};
     const F pdf = densityOf(light, spreadOf(light, distance2));
-    const F weight = hn::Div(scatterPdf, hn::Add(scatterPdf, pdf));
-    return selectElseZero(met, weight * all3(light.radiance));
+    return weighted(met, scatterPdf, pdf, light.radiance);
   }
 
   F3 fromMaps(M escaped, const F3& direction, F scatterPdf) const {

@@ -270,7 +270,7 @@ int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
     panel.choose("ViewBox", "left");
     CHECK_STD_STRING(panel.flag("view"), "left");
     panel.choose("PresetBox", "");
-    CHECK_STD_STRING(panel.chosen("RigBox").toStdString(), "studio");
+    CHECK_STD_STRING(panel.chosen("RigBox").toStdString(), "cinema");
     CHECK_STD_STRING(panel.flag("clip"), "");
     panel.choose("RigBox", "soft");
   }
