@@ -16,4 +16,11 @@ inline Rgb decodeSrgb(const Rgb& encoded) {
       [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); });
 }
 
+/// Its inverse, of linear values from 0 to 1.
+inline Rgb encodeSrgb(const Rgb& linear) {
+  return linear.unaryExpr([](double v) {
+    return v <= 0.04045 / 12.92 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
+  });
+}
+
 } // namespace fenestra

@@ -68,9 +68,11 @@ void readBackground(const FlagValues& flags, const std::string& name,
     background = Background{Background::Kind::transparent};
   else if (text == "environment")
     background = Background{Background::Kind::environment};
+  else if (text == "gradient")
+    background = Background::standard();
   else
-    background =
-        Background{Background::Kind::color, linearColor(flags, name, "transparent or environment")};
+    background = Background{Background::Kind::color,
+                            linearColor(flags, name, "gradient, transparent or environment")};
 }
 
 void readSize(const FlagValues& flags, const std::string& name, SceneRequest& scene) {
@@ -221,7 +223,7 @@ struct RenderTable {
        Takes::text().into(scene, readEnvironment), Topic::lights},
       {"background", "R,G,B|GREY|KIND", lookGroup,
        "Linear colour (the tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
-       "white), transparent or environment [the scene's, else 0,0,0]",
+       "white), gradient (dark greys), transparent or environment [the scene's, else gradient]",
        Takes::text().into(options.background, readBackground)},
       {"exposure", "EV", lookGroup,
        "Stops, -16 to 16, by which .png and .tif are shown brighter or darker; .exr and .nrrd stay",

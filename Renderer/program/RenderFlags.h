@@ -20,7 +20,7 @@ enum class ProgressMode { automatic, bar, xml, none };
 struct RenderOptions {
   SceneRequest scene;
   RenderSettings settings;
-  std::optional<Background> background = {};  ///< nullopt: the scene's, else the settings'
+  std::optional<Background> background = {};  ///< nullopt: the scene's, else the standard
   std::vector<std::filesystem::path> inputs;  ///< input files given as such, without presets
   std::vector<std::filesystem::path> outputs; ///< at least one
   NamedBy outputsNamedBy = NamedBy::user;
@@ -68,7 +68,7 @@ RenderOptions givenOptions(const FlagValues& flags);
 RenderOptions renderOptions(const FlagValues& flags);
 
 /// options.settings with their background: the flags', else `scene` (a Slicer scene's; nullopt for
-/// other inputs).
+/// other inputs), else Background::standard.
 RenderSettings settingsFor(const RenderOptions& options, const std::optional<Background>& scene);
 
 } // namespace fenestra

@@ -169,7 +169,7 @@ RenderOptions renderOptions(const FlagValues& flags) {
 
 RenderSettings settingsFor(const RenderOptions& options, const std::optional<Background>& scene) {
   RenderSettings settings = options.settings;
-  settings.path.background = options.background.value_or(scene.value_or(settings.path.background));
+  settings.path.background = options.background.value_or(scene.value_or(Background::standard()));
   return settings;
 }
 

@@ -53,6 +53,20 @@ TEST_F(RendersCommand, TellsWhatItChose) {
             std::string::npos);
 }
 
+TEST_F(RendersCommand, BackgroundIsAGradientUnlessSomethingIsSaid) {
+  const Arguments nothing = {"--scale", "100", "--denoise", "off"}; // in the corners
+  const auto with = [&](const Arguments& more) {
+    Arguments arguments = nothing;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return rendered(arguments).channels;
+  };
+  const auto standard = with({});
+  EXPECT_NEAR(standard.at("R").front(), 0.060, 0.004); // upper edge
+  EXPECT_NEAR(standard.at("B").back(), 0.016, 0.002);  // lower edge
+  EXPECT_EQ(with({"--background", "gradient"}), standard);
+  EXPECT_EQ(with({"--background", "0,0,0"}).at("R").front(), 0.0f);
+}
+
 TEST_F(RendersCommand, OneNumberIsAGrey) {
   renderWith({"--output", "a.exr", "--environment", "0.5", "--background", "0.25"});
   renderWith(

@@ -79,6 +79,15 @@ TEST(Background, EqualColoursGiveAPlainBackground) {
   EXPECT_EQ((behindNothing(background).at(0, 0).mean - background.color).abs().maxCoeff(), 0.0);
 }
 
+TEST(Background, StandardIsDarkGreyAndLighterAtTheTop) {
+  const Background background = Background::standard();
+  EXPECT_LT((background.at(1.0) - Rgb(0.060, 0.066, 0.078)).abs().maxCoeff(), 1e-12);
+  EXPECT_LT((background.at(0.0) - Rgb(0.012, 0.013, 0.016)).abs().maxCoeff(), 1e-12);
+  const Film film = behindNothing(background);
+  for (int row = 1; row < 8; ++row)
+    EXPECT_TRUE((film.at(0, row).mean < film.at(0, row - 1).mean).all()) << "row " << row;
+}
+
 TEST(Background, ShowsThroughTheVolumeForAnyNumberOfThreads) {
   const Background background = Background::gradient(Rgb(0.1, 0.2, 0.3), Rgb(0.9, 0.8, 0.7));
   const Film one = behindNothing(background, 0.3, 1);

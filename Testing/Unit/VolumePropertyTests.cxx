@@ -91,6 +91,11 @@ TEST(VolumeProperty, DecodesSrgb) {
   EXPECT_NEAR(linear[2], 1.0, 1e-15);
 }
 
+TEST(VolumeProperty, EncodingIsTheInverseOfDecoding) {
+  for (const double v : {0.0, 0.001, 0.04045, 0.041, 0.3, 1.0})
+    EXPECT_NEAR(encodeSrgb(decodeSrgb(Rgb::Constant(v)))[1], v, 1e-14) << v;
+}
+
 TEST(VolumeProperty, ExtinctionIsWithin1e4OfTheFormula) {
   const std::vector<std::vector<OpacityNode>> curves = {
       {{0, 0}, {1, 1}},
