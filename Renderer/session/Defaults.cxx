@@ -86,6 +86,31 @@ Vec3 centerOf(const Domain& domain) {
   return domain.grid().indexToWorld * box.center();
 }
 
+/// Coordinates of the domain along a unit vector in the world, mm.
+Interval extentAlong(const Domain& domain, const Vec3& axis) {
+  Interval extent{infinity, -infinity};
+  for (const Vec3& corner : domain.indexCorners()) {
+    const double at = axis.dot(domain.grid().indexToWorld * corner);
+    extent = {std::min(extent.begin, at), std::max(extent.end, at)};
+  }
+  return extent;
+}
+
+/// Way along `up`, mm, that takes a frame of `half` above and below `center` from beyond an end of
+/// the scan back over its matter, but no farther than until as much is empty on the other side.
+/// 0 where matter ends inside the scan: what is empty there belongs to the picture.
+double wayFromEnd(const Domain& matter, const Vec3& up, const Vec3& center, double half) {
+  const Interval seen = extentAlong(matter, up), scan = extentAlong(matter.grid(), up);
+  const double at = up.dot(center), rounding = 1e-6 * half;
+  const double above = at + half - seen.end, below = seen.begin - (at - half); // empty
+  const double way = std::min(std::max(above, below), 0.5 * std::abs(above - below));
+  if (way <= 0.0)
+    return 0.0;
+  if (above > below)
+    return seen.end > scan.end - rounding ? -way : 0.0;
+  return seen.begin < scan.begin + rounding ? way : 0.0;
+}
+
 } // namespace
 
 std::optional<std::string> transferPresetFor(const Volume& volume) {
@@ -195,6 +220,8 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   if (focus)
     half = std::min(half, surroundings * halfHeight(focus->grid));
   pose.scale = view.scale.value_or(half);
+  if (focus && !view.target && !view.position && !view.scale)
+    pose.target += wayFromEnd(volume, up, pose.target, half) * up; // a turntable turns about `up`
 
   // The eye stands outside the volume, and in perspective at least as far as pose.angle demands; a
   // farther eye gets a narrower angle.

@@ -32,7 +32,9 @@ double transparentShare(const Mask& focus, const Volume& volume, const TransferF
 TransferFunction relativeTransfer(const Volume& volume);
 
 /// Pose of a view request for this volume and focus: named views look along the patient's axes at
-/// the focus with its surroundings, or at the part of the volume to frame where that is smaller.
+/// the focus with its surroundings, or at the part of the volume to frame where that is smaller. A
+/// frame around a focus moves up or down from beyond an end of the scan, unless the request has a
+/// target, a position or a scale.
 /// `best`: direction for the name auto; null: anterior. Throws Error (usage) for an unknown view
 /// name.
 CameraPose frameView(const ViewRequest& view, const Domain& framed, const Mask* focus, int width,

@@ -70,6 +70,36 @@ TEST(FrameView, FocusFramingIsEqualInBothProjections) {
   EXPECT_GT((fromCenter.cwiseAbs() - half).maxCoeff(), 0.0) << "the eye is outside the volume";
 }
 
+TEST(FrameView, AFocusNearAnEndOfTheScanIsFramedWithoutWhatLiesBeyond) {
+  const Grid grid = ramp(0, 1).grid; // 40 mm high
+  const auto focusAt = [&](double height, int voxels) {
+    const Vec3 place = grid.worldCenter() + Vec3(0.0, 0.0, height);
+    const Affine moved =
+        Affine(translationBy(place)) * Affine(translationBy(Vec3::Constant(0.5 - 0.5 * voxels)));
+    return Mask{Grid({voxels, voxels, voxels}, moved), {}, 0, {"A"}};
+  };
+  const auto framed = [&](const Mask& focus, const Domain& matter, const ViewRequest& view = {}) {
+    const CameraPose pose = frameView(view, matter, &focus, 64, 64);
+    return Vec2(pose.target.z() - grid.worldCenter().z(), pose.scale);
+  };
+  for (const double side : {-1.0, 1.0}) {
+    const Mask near = focusAt(side * 15.0, 10);
+    const Vec2 seen = framed(near, grid);
+    EXPECT_NEAR(seen.y(), 8.0, 1e-9) << "as large as elsewhere";
+    EXPECT_NEAR(seen.x(), side * 12.0, 1e-9) << "up to the end";
+    Box matter = grid.indexBox();
+    (side > 0.0 ? matter.upper : matter.lower).z() -= side * 1.0;
+    EXPECT_NEAR(framed(near, Domain(grid).within(matter)).x(), side * 15.0, 1e-9)
+        << "matter ends before the scan";
+    ViewRequest view;
+    view.scale = 8.0;
+    EXPECT_NEAR(framed(near, grid, view).x(), side * 15.0, 1e-9);
+    const Mask large = focusAt(side * 4.0, 30);
+    EXPECT_NEAR(framed(large, grid).x(), 0.0, 1e-9) << "empty on both sides alike";
+  }
+  EXPECT_NEAR(framed(focusAt(3.0, 10), grid).x(), 3.0, 1e-9);
+}
+
 TEST(FrameView, CroppedVolumeIsFramed) {
   const Grid grid = ramp(0, 1).grid; // 80 x 60 x 40 mm
   // Rotated box that reaches beyond the volume's right face.
