@@ -252,20 +252,28 @@ Clipping::Clipping(const ClipDescription& description, const View& view, const M
   }
 }
 
+double Clipping::sampleDepth(std::size_t column, std::size_t row) const {
+  const auto& clip = std::get<DepthClip>(m_description);
+  return m_depths[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
+                  std::min(column, clip.columns.size() - 1)];
+}
+
+double Clipping::linearSurface(const Vec2& at) const {
+  const auto& clip = std::get<DepthClip>(m_description);
+  const Place x = placeOf(clip.columns, at.x()), y = placeOf(clip.rows, at.y());
+  return (1.0 - y.share) * ((1.0 - x.share) * sampleDepth(x.before, y.before) +
+                            x.share * sampleDepth(x.before + 1, y.before)) +
+         y.share * ((1.0 - x.share) * sampleDepth(x.before, y.before + 1) +
+                    x.share * sampleDepth(x.before + 1, y.before + 1));
+}
+
 double Clipping::keepAtDepth(double here, const Vec2& at) const {
   const auto& clip = std::get<DepthClip>(m_description);
   const Place x = placeOf(clip.columns, at.x()), y = placeOf(clip.rows, at.y());
-  const auto depth = [&](std::size_t column, std::size_t row) {
-    return m_depths[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
-                    std::min(column, clip.columns.size() - 1)];
-  };
   const auto keptBehind = [&](double surface) { return kept(clip.edge, here - surface); };
   if (clip.hasSteps())
-    return keptBehind(depth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5)));
-  const double between = (1.0 - y.share) * ((1.0 - x.share) * depth(x.before, y.before) +
-                                            x.share * depth(x.before + 1, y.before)) +
-                         y.share * ((1.0 - x.share) * depth(x.before, y.before + 1) +
-                                    x.share * depth(x.before + 1, y.before + 1));
+    return keptBehind(sampleDepth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5)));
+  const double between = linearSurface(at);
   const auto seam = clip.seams.find(y.before * clip.columns.size() + x.before);
   if (seam == clip.seams.end())
     return keptBehind(between);
@@ -300,6 +308,29 @@ double Clipping::keep(const Vec3& world) const {
   if (const auto* plane = std::get_if<PlaneClip>(&m_description))
     return kept(plane->edge, (plane->point - world).dot(plane->normal));
   return keepAtDepth(m_view.depth(world), m_view.onPlane(world));
+}
+
+Vec3 Clipping::cutGradient(const Vec3& world) const {
+  const auto* plane = std::get_if<PlaneClip>(&m_description);
+  const auto* depth = std::get_if<DepthClip>(&m_description);
+  if (!plane && !depth)
+    return Vec3::Zero();
+  const Edge& edge = plane ? plane->edge : depth->edge;
+  const double share = keep(world);
+  if (!(share > edge.ghost && share < 1.0)) // not within the softness
+    return Vec3::Zero();
+  Vec3 inward = m_view.forward;
+  if (plane)
+    inward = -plane->normal;
+  else if (!depth->hasSteps())
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 step = 1e-5 * Vec3::Unit(axis);
+      const auto behind = [&](const Vec3& at) {
+        return m_view.depth(at) - linearSurface(m_view.onPlane(at));
+      };
+      inward[axis] = behind(world + step) - behind(world - step);
+    }
+  return 0.5 / edge.softness * inward.normalized();
 }
 
 } // namespace fenestra::oracle

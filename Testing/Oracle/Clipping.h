@@ -33,11 +33,21 @@ public:
   /// Share of the extinction that the clip leaves, 0 to 1.
   double keep(const Vec3& world) const;
 
+  /// Gradient that a soft cut adds to matter's, spans of the transfer function per mm: from 0 to
+  /// `softness` behind the cut half a span over `softness`, along the cut's normal, into the
+  /// matter. A depth clip's normal is that of the surface linear between samples, by differences;
+  /// where the surface has steps, the view's axis.
+  Vec3 cutGradient(const Vec3& world) const;
+
   /// Depth buffer of a depth clip, mm, row by row; -infinity where a cutaway removes nothing.
   const std::vector<double>& depths() const { return m_depths; }
 
 private:
   double keepAtDepth(double here, const Vec2& at) const;
+  /// Depth of sample (column, row), or of the last one.
+  double sampleDepth(std::size_t column, std::size_t row) const;
+  /// Depth of a surface without steps, linear between samples.
+  double linearSurface(const Vec2& at) const;
   double surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, double between) const;
 
   const ClipDescription& m_description;

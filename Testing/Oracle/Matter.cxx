@@ -98,14 +98,14 @@ Vec3 Matter::gradient(const Vec3& world) const {
   return m_worldToIndex.linear().transpose() * perVoxel; // chain rule
 }
 
-double Matter::surfaceProbability(const Vec3& world) const {
-  if (!m_transfer.shading)
-    return 0.0;
+Vec3 Matter::spansPerMm(const Vec3& world) const {
   const auto& knots = m_transfer.extinction.knots();
-  const double span = knots.back().position - knots.front().position;
+  return gradient(world) / (knots.back().position - knots.front().position);
+}
+
+double Matter::surfaceProbability(const Vec3& world, double slope) const {
   const double o = 1.0 - std::exp(-extinction(world));
-  const double m = gradient(world).norm() / span;
-  return o * (1.0 - std::exp(-25.0 * std::pow(m_transfer.shading->gamma, 3.0) * m));
+  return o * (1.0 - std::exp(-25.0 * std::pow(m_transfer.shading->gamma, 3.0) * slope));
 }
 
 Interval Matter::inBox(const Vec3& origin, const Vec3& direction) const {

@@ -19,11 +19,15 @@ public:
   Rgb albedo(const Vec3& world) const;
   /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;
-  /// Probability that a collision scatters at a surface (Kroes, Post, Botha 2012).
-  double surfaceProbability(const Vec3& world) const;
+  /// The same in spans of the transfer function, which must have two knots.
+  Vec3 spansPerMm(const Vec3& world) const;
+  /// Probability that a collision scatters at a surface (Kroes, Post, Botha 2012), where matter's
+  /// gradient is `slope`, spans per mm.
+  double surfaceProbability(const Vec3& world, double slope) const;
   /// Upper bound of the extinction, mm^-1.
   double majorant() const { return m_majorant; }
   double g() const { return m_transfer.g; }
+  bool hasSurfaces() const { return m_transfer.shading.has_value(); }
   const SurfaceShading& shading() const { return *m_transfer.shading; }
 
   /// Interval of a world ray, t >= 0, inside the volume's box; empty: ray misses.

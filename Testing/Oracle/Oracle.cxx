@@ -93,9 +93,11 @@ private:
   }
 
   Scatterer collide(const Vec3& point, const Vec3& incoming, Generator& generator) const {
-    if (uniform(generator) < m_matter.surfaceProbability(point))
-      return Scatterer::atSurface(incoming, albedo(point), m_matter.gradient(point),
-                                  m_matter.shading());
+    if (m_matter.hasSurfaces()) {
+      const Vec3 gradient = m_matter.spansPerMm(point) + m_clipping.cutGradient(point);
+      if (uniform(generator) < m_matter.surfaceProbability(point, gradient.norm()))
+        return Scatterer::atSurface(incoming, albedo(point), gradient, m_matter.shading());
+    }
     return Scatterer::byPhase(incoming, albedo(point), m_matter.g());
   }
 

@@ -43,6 +43,21 @@ TestScene waves() {
   return s;
 }
 
+/// Soft cut along a tilted surface through the target.
+Clip tiltedCut(const TestScene& s) {
+  const Camera camera(s.pose, s.width, s.height);
+  auto buffer = std::make_shared<DepthBuffer>(camera, s.volume.grid);
+  for (std::int64_t row = 0; row < buffer->rows(); ++row)
+    for (std::int64_t column = 0; column < buffer->columns(); ++column)
+      buffer->set(buffer->sample(column, row),
+                  camera.targetDepth() + buffer->position(column, row).dot(Vec2(0.5, -0.3)));
+  return ClipDepth{camera,
+                   buffer,
+                   std::make_shared<const DepthPyramid>(*buffer),
+                   ClipDepth::Lookup::linear,
+                   {0.0, 3.0}};
+}
+
 double meanDepth(double extinction, double length) {
   const double passed = std::exp(-extinction * length);
   return (1.0 - passed * (1.0 + extinction * length)) / extinction; // times the share that collides
@@ -109,7 +124,7 @@ double apart(const Plane& a, const Plane& b) {
 
 TEST(ExpectedFlight, LanesAgreeWithTheReadableMarch) {
   TestScene s = waves();
-  std::vector<Clip> clips = {ClipNone()};
+  std::vector<Clip> clips = {ClipNone(), tiltedCut(s)};
   clips.push_back(
       ClipPlane{Camera(s.pose, s.width, s.height), Vec3(0, 2, 0), -Vec3::UnitY(), {0.0, 3.0}});
   for (const Clip& clip : clips) {
@@ -129,8 +144,32 @@ TEST(ExpectedFlight, LanesAgreeWithTheReadableMarch) {
   }
 }
 
+/// Nearly all collisions lie in the cut's softness, and matter alone has no surface.
+TEST(ExpectedFlight, FacesTheSoftCutOfHomogeneousMatter) {
+  for (const Projection projection : {Projection::orthographic, Projection::perspective}) {
+    TestScene s = slab(6.0);
+    s.pose.projection = projection;
+    s.transfer.shading = SurfaceShading{};
+    s.clip = tiltedCut(s);
+    const double opacity = 1.0 - std::exp(-6.0);
+    const double probability = opacity * (1.0 - std::exp(-25.0 * 0.125 * cutShading / 3.0));
+    const std::size_t middle = static_cast<std::size_t>(s.width * s.height / 2 + s.width / 2);
+    const Vec3 normal = -cutGradient(s.clip, Vec3(1.0, 0.0, 0.0)).normalized();
+    s.with([&](const RenderScene& scene) {
+      for (const ExpectedFlight& flight : {expectedFlight(scene), expectedFlightOneByOne(scene)})
+        for (std::size_t c = 0; c < 3; ++c) {
+          const double hit = static_cast<double>(flight.hit[middle]);
+          const double expected = normal[static_cast<int>(c)] * hit;
+          EXPECT_NEAR(flight.normal[c][middle], expected, 0.01) << c;
+          EXPECT_NEAR(flight.facing[c][middle], expected * probability, 0.01) << c;
+        }
+    });
+  }
+}
+
 TEST(ExpectedFlight, IsTheMeanOfTheSamples) {
-  const TestScene s = waves();
+  TestScene s = waves();
+  s.clip = tiltedCut(s);
   RenderSettings settings;
   settings.samples = 512;
   settings.path.wantNormals = true;

@@ -142,6 +142,21 @@ public:
   }
   double depth(const Vec2& position) const { return depthIn(cell(position)); }
 
+  /// Derivatives of depthIn along x and y, mm per mm; 0 along an axis at whose end the cell lies
+  /// with its place: beyond the samples the depth is constant.
+  Vec2 slopeIn(const Cell& cell) const {
+    const auto depth = [&](std::int64_t column, std::int64_t row) {
+      return static_cast<double>(m_depths[index(sample(column, row))]);
+    };
+    const double first = depth(cell.column, cell.row), right = depth(cell.nextColumn, cell.row);
+    const double below = depth(cell.column, cell.nextRow);
+    const double last = depth(cell.nextColumn, cell.nextRow);
+    const Vec2& f = cell.fraction;
+    const double alongX = (1.0 - f.y()) * (right - first) + f.y() * (last - below);
+    const double alongY = (1.0 - f.x()) * (below - first) + f.x() * (last - right);
+    return {alongX * perLength(m_x, cell.column, f.x()), alongY * perLength(m_y, cell.row, f.y())};
+  }
+
   /// Depth of the nearest sample.
   double nearest(const Vec2& position) const {
     const auto column = static_cast<std::int64_t>(m_x.index(position.x()) + 0.5);
@@ -159,6 +174,11 @@ private:
     const double x = axis.index(coordinate);
     const auto low = static_cast<std::int64_t>(x);
     return {low, std::min(low + 1, axis.size() - 1), x - static_cast<double>(low)};
+  }
+  /// Samples per mm in the cell that begins with sample `low`; 0 at the axis's ends.
+  static double perLength(const DepthAxis& axis, std::int64_t low, double fraction) {
+    const bool isEnd = low + 1 >= axis.size() || (low == 0 && fraction == 0.0);
+    return isEnd ? 0.0 : 1.0 / (axis.coordinate(low + 1) - axis.coordinate(low));
   }
   static std::size_t index(std::int64_t sample) { return static_cast<std::size_t>(sample); }
 

@@ -32,6 +32,35 @@ Interval behindPart(const ClipDepth& clip, const Ray& eyeRay) {
   return {std::max(0.0, depth / depthPerLength), infinity};
 }
 
+Vec3 cutOf(const ClipNone&, const Vec3&) {
+  return Vec3::Zero();
+}
+
+Vec3 cutOf(const ClipPlane& clip, const Vec3& world) {
+  if (behindEye(clip.camera, clip.camera.toView(world).z()) ||
+      !clip.edge.isRamp(clip.behind(world)))
+    return Vec3::Zero();
+  return -cutShading / clip.edge.softness * clip.normal;
+}
+
+Vec3 cutOf(const ClipDepth& clip, const Vec3& world) {
+  const Camera& camera = clip.camera;
+  const Vec3 at = toBuffer(camera, world);
+  if (behindEye(camera, at.z()) || !clip.edge.isRamp(clip.behind(at)))
+    return Vec3::Zero();
+  Vec2 slope = Vec2::Zero();
+  if (clip.lookup == ClipDepth::Lookup::linear)
+    slope = clip.buffer->slopeIn(clip.buffer->cell(at.head<2>()));
+  double forward = 1.0;
+  if (camera.pose().projection == Projection::perspective) {
+    forward += slope.dot(at.head<2>()) / at.z();
+    slope *= camera.targetDepth() / at.z();
+  }
+  const Vec3 gradient =
+      forward * camera.forward() - slope.x() * camera.right() - slope.y() * camera.up();
+  return cutShading / clip.edge.softness * gradient.normalized();
+}
+
 /// Position of a box relative to a part of space.
 enum class Side { inside, across, outside };
 
@@ -99,6 +128,14 @@ double ClipDepth::inSeam(const DepthBuffer::Cell& cell, const Vec2& position, do
   Seams::Question question{seam, position, linear - reference, between.begin - reference};
   seams->answer({&question, 1});
   return reference + question.surface;
+}
+
+Vec3 cutGradient(const Clip& clip, const Vec3& world) {
+  return std::visit(
+      [&](const auto& kind) -> Vec3 {
+        return kind.edge.softness > 0.0 ? cutOf(kind, world) : Vec3::Zero();
+      },
+      clip);
 }
 
 Interval behindSurface(const Clip& clip, const Ray& eyeRay) {

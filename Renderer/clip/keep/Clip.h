@@ -24,6 +24,8 @@ struct ClipEdge {
       return ghost;
     return behind < softness ? ghost + (1.0 - ghost) * (behind / softness) : 1.0;
   }
+  /// True: keep rises at `behind`.
+  bool isRamp(double behind) const { return behind >= 0.0 && behind < softness; }
   /// True: keep = 0 in front of the surface.
   bool isHard() const { return ghost == 0.0; }
 
@@ -69,6 +71,12 @@ struct ClipDepth {
     return seams ? inSeam(cell, position, linear, between) : linear;
   }
 
+  /// Depth of a point behind the surface, mm; negative: in front. Exact in the edge's ramp; beyond
+  /// it only the side is guaranteed. `at`: as toBuffer returns it.
+  double behind(const Vec3& at) const {
+    return at.z() - surfaceFor(at.head<2>(), {at.z() - edge.softness, at.z()});
+  }
+
 private:
   double inSeam(const DepthBuffer::Cell& cell, const Vec2& position, double linear,
                 const Interval& between) const;
@@ -92,14 +100,27 @@ inline double keep(const ClipDepth& clip, const Vec3& world) {
   const Vec3 at = toBuffer(clip.camera, world);
   if (behindEye(clip.camera, at.z()))
     return 0.0;
-  // surface < between.begin: keep = 1; surface > between.end: keep = ghost.
-  const Interval between{at.z() - clip.edge.softness, at.z()};
-  return clip.edge(at.z() - clip.surfaceFor(at.head<2>(), between));
+  return clip.edge(clip.behind(at));
 }
 
 inline double keep(const Clip& clip, const Vec3& world) {
   return std::visit([&](const auto& kind) { return keep(kind, world); }, clip);
 }
+
+/// Weight of a soft cut among the gradients that make surfaces.
+inline constexpr double cutShading = 0.5;
+
+/// Gradient, mm^-1, world axes, that a soft cut adds to the scalar's in spans of the transfer
+/// function (Weiskopf, Engel, Ertl 2003: shading on the cut):
+///   cutShading / softness n   for 0 <= behind < softness, else 0
+/// where `behind` is as in keep, mm, and n is the unit normal of the cut, into the matter that is
+/// left: n = grad(behind) / |grad(behind)|. A plane's n is its normal, turned round. In front of a
+/// depth buffer, with view axes (right, up, forward), (x, y) as in toBuffer and D the surface's
+/// depth there, linear between samples (in seams too),
+///   grad(behind) = (-D_x, -D_y, 1)                                         orthographic,
+///   grad(behind) = (-s D_x, -s D_y, 1 + (x D_x + y D_y) / z), s = target's depth / z perspective.
+/// Steps (Lookup::nearest) have no slope: n is the camera's forward axis.
+Vec3 cutGradient(const Clip& clip, const Vec3& world);
 
 /// Part of an eye ray, t >= 0, behind the clip's surface: one interval for every kind of clip. With
 /// a hard edge keep = 0 on the rest of the ray.

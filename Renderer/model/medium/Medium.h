@@ -12,7 +12,7 @@ namespace fenestra {
 /// Matter at a real collision, for the estimator.
 struct Matter {
   Rgb albedo;
-  Vec3 gradient;             ///< of the scalar, per mm, world axes; zero unless needsGradient()
+  Vec3 gradient; ///< of the scalar, with a cut's, per mm, world axes; zero unless needsGradient()
   double surfaceProbability; ///< probability that the path scatters at a surface here
 };
 
@@ -39,8 +39,10 @@ public:
   }
 
   bool needsGradient(bool wantGradient) const { return wantGradient || m_transfer.shading; }
-  /// `wantGradient`: fills the gradient even without shading.
-  Matter matter(const Vec3& index, bool wantGradient) const {
+  /// `wantGradient`: fills the gradient even without shading. `cut`: gradient that a cut adds where
+  /// there is shading, spans of the transfer function per mm, world axes; it changes surfaces, not
+  /// the extinction.
+  Matter matter(const Vec3& index, bool wantGradient, const Vec3& cut = Vec3::Zero()) const {
     const bool oneAlbedo = m_transfer.albedo.knots().size() == 1;
     const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
     Matter m{m_transfer.albedo(scalar), Vec3::Zero(), 0.0};
@@ -53,7 +55,9 @@ public:
       double sigma_t = m_transfer.extinction(scalar).value();
       if (m_transfer.gradientOpacity)
         sigma_t *= (*m_transfer.gradientOpacity)(slope).value();
-      m.surfaceProbability = surfaceProbability(sigma_t, slope);
+      if (!cut.isZero(0.0))
+        m.gradient += m_transfer.extinction.span() * cut;
+      m.surfaceProbability = surfaceProbability(sigma_t, m.gradient.norm());
     }
     return m;
   }

@@ -6,6 +6,7 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/March.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
+#include "transport/lanes/Clip-inl.h"
 #include "transport/lanes/Matter-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
@@ -149,9 +150,14 @@ public:
       albedo = paled(*m_volume.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;
     const F3 difference = differenceAt<Voxel>(m_volume.field, p);
-    const F3 gradient = mapDirection(m_scene.indexDifferenceToGradient, difference);
+    F3 gradient = mapDirection(m_scene.indexDifferenceToGradient, difference);
+    F along = dot(walk.direction(), difference); // of the gradient's sign
+    if (m_scene.hybrid && m_volume.cutSlope > 0.0F) {
+      gradient = gradient + cutGradient(m_volume, p, which);
+      along = dot(mapDirection(m_scene.toLocal, walk.direction()), gradient);
+    }
     const F slope = hn::Sqrt(dot(gradient, gradient));
-    const M away = hn::Lt(dot(walk.direction(), difference), hn::Zero(floats));
+    const M away = hn::Lt(along, hn::Zero(floats));
     const F scale = hn::Div(hn::IfThenElse(away, probability, hn::Neg(probability)), slope);
     const F3 normal = selectElseZero(hn::Gt(slope, hn::Zero(floats)), scale * gradient);
     m_normal = m_normal + normal;

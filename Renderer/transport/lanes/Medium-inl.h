@@ -1,5 +1,5 @@
-// Look-ups of lanes at points in index space: extinction, and keep. Compiled once for each
-// instruction set (see Tracker.cxx).
+// Look-ups of lanes at points in index space: scalar, extinction, majorant cells. Compiled once for
+// each instruction set (see Tracker.cxx).
 
 #if defined(FENESTRA_WIDE_LOOKUP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_WIDE_LOOKUP_INL_H
@@ -8,7 +8,6 @@
 #define FENESTRA_WIDE_LOOKUP_INL_H
 #endif
 
-#include "clip/keep/Seams.h"
 #include "transport/lanes/TrackerTables.h"
 // After foreach_target.h:
 #include "base/Lanes-inl.h"
@@ -263,113 +262,10 @@ HWY_INLINE F lengthInside(const WideScene& scene, const F3& origin, const F3& di
   return hn::Min(toBox, toCrop);
 }
 
-/// Continuous index of a coordinate in mm among a depth buffer's samples (DepthAxis::index).
-HWY_INLINE F depthIndex(const WideScene::DepthAxis& axis, F coordinate) {
-  const F pixel = hn::MulSub(coordinate, all(axis.perPitch), all(axis.start));
-  const F fine = hn::Max(hn::Min(pixel, all(axis.lastInside)), hn::Zero(floats));
-  const F index =
-      hn::MulAdd(hn::Sub(pixel, fine), all(axis.perFactor), hn::Add(fine, all(axis.before)));
-  return hn::Max(hn::Min(index, all(axis.last)), hn::Zero(floats));
-}
-
 /// Lanes whose point (index space) lies in the focus, where a style changes nothing.
 HWY_INLINE M isFocus(const WideScene::Context& context, const Point& p) {
   return hn::Ge(scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)),
                 all(context.level));
-}
-
-/// Exact surface depth at (x, y) in seams for the lanes of `isAsked`; `surface` for the others.
-inline F askSeams(const Seams& seams, M isAsked, I seam, F x, F y, F depth, double softness,
-                  F surface) {
-  constexpr std::size_t lanes = HWY_MAX_BYTES / sizeof(float);
-  static_assert(lanes <= Seams::mostQuestions);
-  const Indices numbers(seam);
-  struct alignas(64) Floats : std::array<float, lanes> {};
-  Floats xs, ys, depths, surfaces, asked;
-  hn::Store(x, floats, xs.data());
-  hn::Store(y, floats, ys.data());
-  hn::Store(depth, floats, depths.data());
-  hn::Store(surface, floats, surfaces.data());
-  hn::Store(hn::IfThenElseZero(isAsked, all(1.0F)), floats, asked.data());
-  std::array<Seams::Question, lanes> questions;
-  std::array<std::size_t, lanes> lane;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < hn::Lanes(floats); ++i)
-    if (asked[i] > 0.0F) {
-      lane[count] = i;
-      questions[count++] = {numbers[i], Vec2(xs[i], ys[i]), surfaces[i], depths[i] - softness};
-    }
-  seams.answer(std::span(questions).first(count));
-  for (std::size_t i = 0; i < count; ++i)
-    surfaces[lane[i]] = static_cast<float>(questions[i].surface);
-  return hn::Load(floats, surfaces.data());
-}
-
-/// Surface depth for points at (x, y) and `depth` (ClipDepth::surfaceFor): exact in seams for the
-/// lanes of `which`, else `surface`.
-HWY_INLINE F sewn(const WideScene& scene, M which, I sample, F x, F y, F depth, F surface) {
-  const I seam = hn::GatherIndex(ints, scene.seams->numbers().data(), sample);
-  const auto isSeam = hn::Gt(seam, hn::Set(ints, -1));
-  if (hn::AllFalse(ints, isSeam))
-    return surface;
-  const I first = hn::ShiftLeft<1>(hn::Max(seam, hn::Zero(ints)));
-  const float* const reaches = &scene.seams->reaches().data()->least;
-  const F least = hn::Min(surface, hn::GatherIndex(floats, reaches, first));
-  const F greatest =
-      hn::Max(surface, hn::GatherIndex(floats, reaches + 1, first)); // least and greatest alternate
-  const M isNear =
-      hn::And(hn::Ge(depth, least), hn::Le(depth, hn::Add(greatest, all(scene.softness))));
-  const M isAsked = both(which, both(hn::RebindMask(floats, isSeam), isNear));
-  if (hn::AllFalse(floats, isAsked))
-    return surface;
-  return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
-}
-
-/// keep (clip/keep/Clip.h) for every kind of clip, for the lanes of `which`.
-inline F keep(const WideScene& scene, const Point& p, M which) {
-  const F depth = apply(scene.toView[2], p); // from the target
-  F scale = all(1.0F);
-  M before = hn::Lt(depth, depth); // at or behind the eye: no lane
-  if (scene.perspective) {
-    const F fromEye = hn::Add(depth, all(scene.targetDepth));
-    before = hn::Le(fromEye, hn::Zero(floats));
-    scale = hn::Div(all(scene.targetDepth), fromEye);
-  }
-  const auto edge = [&](F behind) {
-    const F zero = hn::Zero(floats), one = all(1.0F), ghost = all(scene.ghost);
-    const F rise =
-        scene.perSoftness > 0.0F ? hn::Min(hn::Mul(behind, all(scene.perSoftness)), one) : one;
-    const F share = hn::IfThenElse(hn::Lt(behind, zero), ghost, lerp(ghost, one, rise));
-    return hn::IfThenElse(before, zero, share);
-  };
-  if (scene.clipKind == WideScene::ClipKind::plane)
-    return edge(hn::Neg(apply(scene.toPlane, p)));
-  const F x = hn::Mul(apply(scene.toView[0], p), scale);
-  const F y = hn::Mul(apply(scene.toView[1], p), scale);
-  const F column = depthIndex(scene.depthX, x);
-  const F row = depthIndex(scene.depthY, y);
-  const I columns = hn::Set(ints, scene.depthColumns);
-  F surface;
-  if (scene.clipKind == WideScene::ClipKind::depthNearest) {
-    const I c = hn::ConvertTo(ints, hn::Add(column, all(0.5F)));
-    const I r = hn::ConvertTo(ints, hn::Add(row, all(0.5F)));
-    surface = hn::GatherIndex(floats, scene.depths, hn::Add(hn::Mul(r, columns), c));
-  } else {
-    const I one = hn::Set(ints, 1);
-    const I c0 = hn::ConvertTo(ints, column);
-    const I r0 = hn::ConvertTo(ints, row);
-    const I c1 = hn::Min(hn::Add(c0, one), hn::ConvertTo(ints, all(scene.depthX.last)));
-    const I r1 = hn::Min(hn::Add(r0, one), hn::ConvertTo(ints, all(scene.depthY.last)));
-    const F fc = hn::Sub(column, hn::ConvertTo(floats, c0));
-    const F fr = hn::Sub(row, hn::ConvertTo(floats, r0));
-    const auto at = [&](I c, I r) {
-      return hn::GatherIndex(floats, scene.depths, hn::Add(hn::Mul(r, columns), c));
-    };
-    surface = lerp(lerp(at(c0, r0), at(c1, r0), fc), lerp(at(c0, r1), at(c1, r1), fc), fr);
-    if (scene.seams)
-      surface = sewn(scene, which, hn::Add(hn::Mul(r0, columns), c0), x, y, depth, surface);
-  }
-  return edge(hn::Sub(depth, surface));
 }
 
 } // namespace fenestra::HWY_NAMESPACE

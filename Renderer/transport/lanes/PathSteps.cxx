@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/PathSteps.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
+#include "transport/lanes/Clip-inl.h"
 #include "transport/lanes/LightSet-inl.h"
 #include "transport/lanes/Matter-inl.h"
 #include "transport/lanes/Scattering-inl.h"
@@ -147,6 +148,8 @@ private:
       m_gradients += hn::CountTrue(floats, m_scene.hybrid ? going : first);
     }
     if (m_scene.hybrid) {
+      if (m_volume.cutSlope > 0.0F)
+        at.gradient = at.gradient + cutGradient(m_volume, index, going);
       const F slope = hn::Sqrt(dot(at.gradient, at.gradient));
       const F chance = surfaceChance(m_volume, m_scene, at.scalar, slope);
       at.surface = both(going, hn::Lt(draws.uniform(), chance));

@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/Tracker.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
+#include "transport/lanes/Clip-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {

@@ -114,16 +114,20 @@ void WideTracker::setClip(const Clip& clip, const Grid& grid) {
     m_scene.targetDepth = narrow(camera.targetDepth());
     m_scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
                       row(grid, camera.forward(), eye, -camera.targetDepth())};
+    m_scene.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
+    m_scene.cutNormal = narrow3(camera.forward());
   };
   const auto setEdge = [&](const ClipEdge& edge) {
     m_scene.ghost = narrow(edge.ghost);
     m_scene.softness = narrow(edge.softness);
     m_scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
+    m_scene.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
   };
   if (const auto* plane = std::get_if<ClipPlane>(&clip)) {
     m_scene.clipKind = WideScene::ClipKind::plane;
     setEdge(plane->edge);
     setCamera(plane->camera);
+    m_scene.cutNormal = narrow3(-plane->normal.normalized());
     m_scene.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
     return;
   }

@@ -68,12 +68,15 @@ struct WideScene {
   std::optional<Context> context = {};
 
   ClipKind clipKind = ClipKind::none;
-  float ghost = 0.0F;       ///< ClipEdge
-  float softness = 0.0F;    ///< mm
-  float perSoftness = 0.0F; ///< 1 / mm; 0: sharp edge
+  float ghost = 0.0F;                  ///< ClipEdge
+  float softness = 0.0F;               ///< mm
+  float perSoftness = 0.0F;            ///< 1 / mm; 0: sharp edge
+  float cutSlope = 0.0F;               ///< cutShading / softness, mm^-1; 0: sharp edge
+  std::array<float, 3> cutNormal = {}; ///< into matter, world: a plane's; else the view's axis
   bool perspective = false;
   /// Rows of the map from index space to view space, depth counted from the target.
   AffineRows toView = {};
+  AffineRows fromView = {};          ///< directions: view space to world
   std::array<float, 4> toPlane = {}; ///< distance from the plane, mm; > 0: removed
   float targetDepth = 0.0F;
   DepthAxis depthX = {}, depthY = {};

@@ -2,10 +2,10 @@
 // Expected first collision of an eye ray, by a march with a step size. It serves features of the
 // filter, never the picture: any function of the scene, free of noise, may be a feature.
 
-#include "model/medium/Medium.h"
 #include "model/volume/Domain.h"
 #include "model/volume/GridWalk.h"
 #include "transport/readable/MajorantGrid.h"
+#include "transport/readable/Matter.h"
 
 #include <optional>
 
@@ -122,7 +122,7 @@ private:
     if (!(sums.pending > 0.0))
       return;
     const double t = sums.moment / sums.pending;
-    const Matter matter = m_medium.matter(part.indexRay.at(t), true);
+    const Matter matter = matterAt(m_medium, m_clip, part.ray.at(t), part.indexRay.at(t), true);
     FirstMatter& met = sums.met;
     met.hit += sums.pending;
     met.distance += sums.pending * (part.before + t);

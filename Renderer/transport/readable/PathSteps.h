@@ -11,10 +11,10 @@
 
 #include "image/Film.h"
 #include "model/lights/LightSet.h"
-#include "model/medium/Medium.h"
 #include "model/medium/Scattering.h"
 #include "transport/readable/Counters.h"
 #include "transport/readable/EyeRays.h"
+#include "transport/readable/Matter.h"
 
 #include <optional>
 
@@ -56,6 +56,7 @@ public:
             const Camera& camera, const Clip& clip, const PathSettings& settings)
       : m_worldToIndex(grid.worldToIndex),
         m_medium(medium),
+        m_clip(clip),
         m_lights(lights),
         m_eye(camera, clip, lights, settings.background),
         m_settings(settings) {}
@@ -83,7 +84,7 @@ public:
     const bool first = path.bounces == 0;
     const bool wantGradient = first && m_settings.wantNormals;
     counters.gradients += m_medium.needsGradient(wantGradient) ? 1 : 0;
-    const Matter matter = m_medium.matter(m_worldToIndex * point, wantGradient);
+    const Matter matter = matterAt(m_medium, m_clip, point, m_worldToIndex * point, wantGradient);
     if (first)
       recordFirst(path, distance, matter);
     const Scattering scattering = chooseScattering(path.ray.direction, matter, path.random);
@@ -159,6 +160,7 @@ private:
 
   Affine m_worldToIndex;
   const Medium<Voxel>& m_medium;
+  const Clip& m_clip;
   const LightSet& m_lights;
   EyeRays m_eye;
   const PathSettings& m_settings;

@@ -140,7 +140,8 @@ private:
       const double depth = static_cast<double>(met.depth / met.hit);
       const Vec3 point = eye.at(depth / m_scene.camera.depthPerLength(eye));
       const Vec3 index = m_scene.volume.grid.worldToIndex * point;
-      collisions.push_back({pixel, point, eye.direction, m_medium.matter(index, true),
+      collisions.push_back({pixel, point, eye.direction,
+                            matterAt(m_medium, m_scene.clip, point, index, true),
                             static_cast<double>(met.hit)});
     }
     return collisions;
