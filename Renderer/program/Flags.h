@@ -29,6 +29,7 @@ struct Takes {
   double least = -infinity, greatest = infinity; ///< range of a number
   std::vector<std::string> words = {};           ///< values, if not empty
   std::string standard = {}; ///< default, shown in the help and in Slicer's panel; empty: none
+  std::string idle = {};     ///< value that changes nothing, whatever else is given; empty: none
   /// Puts a given value into its place; empty: the command asks for the value by name.
   std::function<void(const FlagValues&, const std::string& name)> put = {};
 
@@ -47,8 +48,9 @@ struct Takes {
     return {"integer", "", "", "", least, greatest};
   }
   /// A number, or the word auto, which leaves `place` empty and is the default.
-  static Takes numberOrAuto(std::optional<double>& place, double least, double greatest) {
-    Takes takes = Takes{.least = least, .greatest = greatest, .standard = "auto"};
+  static Takes numberOrAuto(std::optional<double>& place, double least, double greatest,
+                            const char* idle) {
+    Takes takes = Takes{.least = least, .greatest = greatest, .standard = "auto", .idle = idle};
     return takes.into(place, [](const auto& flags, const auto& name, auto& at) {
       at = flags.text(name) == "auto" ? std::nullopt : flags.number(name);
     });

@@ -134,7 +134,7 @@ struct RenderTable {
       {"labelsmoothing", "MM", clipGroup,
        "Smooths the focus's labels by a Gaussian of this deviation, against stair steps; thick "
        "slices are interpolated first; auto: 0.6 of a voxel's longest edge, less for thin parts",
-       Takes::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0), Topic::own, Needs::focus},
+       Takes::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, "0"), Topic::own, Needs::focus},
       {"clip", "MODE", clipGroup,
        "none, plane, hole, cutaway, ghost, surface, or auto: surface with a focus, else none",
        Takes::word(clip.mode, {{"auto", std::nullopt},
@@ -172,14 +172,14 @@ struct RenderTable {
       {"soft", "MM", clipGroup,
        "Matter comes back gradually over this depth behind the cut; auto: 0.6 of the longest edge "
        "of the labels' voxels for --clip surface, hole and cutaway, else 0",
-       Takes::numberOrAuto(clip.softness, 0.0, 1e6), Topic::clip, Needs::clip},
+       Takes::numberOrAuto(clip.softness, 0.0, 1e6, "0"), Topic::clip, Needs::clip},
       {"contextdensity", "F", clipGroup,
        "Multiplies the extinction of everything that is not focus, 0 to 1",
        Takes::number(0.0, 1.0).into(focus.contextExtinction), Topic::own, Needs::focus},
       {"contextsaturation", "S", clipGroup,
        "Colour of everything that is not focus, from 0 (grey) to 1 (as it is); auto: 0.35 where "
        "the focus would not be told from its surroundings, else 1",
-       Takes::numberOrAuto(focus.contextSaturation, 0.0, 1.0), Topic::own, Needs::focus},
+       Takes::numberOrAuto(focus.contextSaturation, 0.0, 1.0, "1"), Topic::own, Needs::focus},
       {"view", "NAME", viewGroup,
        "anterior, posterior, left, right, superior, inferior, or auto: the direction that shows "
        "most of the focus, least foreshortened, with least removed [the scene's camera, else "
