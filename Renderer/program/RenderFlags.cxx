@@ -190,7 +190,7 @@ struct RenderTable {
        Topic::eye},
       {"position", "R,A,S", viewGroup, "Eye, mm", Takes::numbers().into(view.position), Topic::eye},
       {"target", "R,A,S", viewGroup,
-       "Point looked at, mm [centre of the focus, else of the volume]",
+       "Point looked at, mm [focus's centre, higher or lower at an end of the scan; else volume's]",
        Takes::numbers().into(view.target), Topic::view},
       {"up", "R,A,S", viewGroup, "Direction that is up in the picture",
        Takes::numbers().into(view.up), Topic::view},

@@ -120,7 +120,7 @@ std::string withTexts(std::string png, const std::string& comment) {
   return png;
 }
 
-/// What a display picture tells of itself: tone and exposure, and the header's words on a filter;
+/// Comment of a display picture: tone and exposure, and the header's words on a filter;
 /// empty: neither.
 std::string commentOf(const Image& image, const Display& display) {
   std::string comment;
