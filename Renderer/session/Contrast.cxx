@@ -10,11 +10,14 @@
 namespace fenestra {
 namespace {
 
-/// Median of a sample, which is reordered.
-double medianOf(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// Every n-th value, so that some ten thousand are left.
+std::vector<double> thinned(const std::vector<double>& values) {
+  constexpr std::size_t most = 20000;
+  const std::size_t stride = values.size() / most + 1;
+  std::vector<double> some;
+  for (std::size_t i = 0; i < values.size(); i += stride)
+    some.push_back(values[i]);
+  return some;
 }
 
 /// Samples of the volume to both sides of the faces between voxels of the focus and others.
@@ -30,7 +33,7 @@ public:
         m_transfer(transfer) {}
 
   /// Visits faces of at most about `mostVoxels` of the mask's voxels, spread over its rows.
-  std::optional<BorderScalars> medians() {
+  BorderScalars scalars() {
     constexpr double mostVoxels = 4e6;
     const Size3& size = m_focus.grid.size;
     const double surplus = static_cast<double>(m_focus.voxels.size()) / mostVoxels;
@@ -40,9 +43,7 @@ public:
         for (std::int64_t x = 0; x < size.x(); ++x)
           if (isInside({x, y, z}))
             visitFaces({x, y, z});
-    if (m_inner.empty() || m_outer.empty())
-      return std::nullopt;
-    return BorderScalars{medianOf(m_inner), medianOf(m_outer)};
+    return {thinned(m_inner), thinned(m_outer)};
   }
 
 private:
@@ -89,12 +90,17 @@ private:
   std::vector<double> m_inner, m_outer;
 };
 
-/// Display light, linear, of thick matter of that albedo.
-Rgb displayed(const Rgb& albedo, double g) {
-  constexpr float light = 1.1F;
+/// Display light, linear, of thick matter: the mean over scalars of `albedoOf` their albedo.
+template <typename AlbedoOf>
+Rgb displayed(const std::vector<double>& scalars, double g, const AlbedoOf& albedoOf) {
+  constexpr double light = 1.1;
+  Rgb sum = Rgb::Zero();
+  for (const double scalar : scalars)
+    sum += Rgb(albedoOf(scalar)).unaryExpr([g](double albedo) { return reflectance(albedo, g); });
   std::vector<float> pixel(4, 1.0F);
   for (int c = 0; c < 3; ++c)
-    pixel[static_cast<std::size_t>(c)] = light * static_cast<float>(reflectance(albedo[c], g));
+    pixel[static_cast<std::size_t>(c)] =
+        static_cast<float>(light * sum[c] / static_cast<double>(scalars.size()));
   pixel = toDisplay(pixel, {DisplayView::film});
   return decodeSrgb(Rgb(double{pixel[0]}, double{pixel[1]}, double{pixel[2]}));
 }
@@ -106,18 +112,21 @@ bool Contrast::isEnough() const {
   return deltaE[0] > normal && deltaE[1] > colorBlind && deltaE[2] > colorBlind;
 }
 
-std::optional<BorderScalars> borderScalars(const Mask& focus, const Volume& volume,
-                                           const TransferFunction& transfer) {
+BorderScalars borderScalars(const Mask& focus, const Volume& volume,
+                            const TransferFunction& transfer) {
   return std::visit(
-      [&](const auto& voxels) { return BorderSamples(focus, volume, voxels, transfer).medians(); },
+      [&](const auto& voxels) { return BorderSamples(focus, volume, voxels, transfer).scalars(); },
       volume.voxels);
 }
 
 Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfer,
                     double saturation) {
   const ContextStyle style{.focus = nullptr, .saturation = saturation};
-  const Rgb focus = displayed(transfer.albedo(border.focus), transfer.g);
-  const Rgb context = displayed(style.paled(transfer.albedo(border.context)), transfer.g);
+  const Rgb focus =
+      displayed(border.focus, transfer.g, [&](double scalar) { return transfer.albedo(scalar); });
+  const Rgb context = displayed(border.context, transfer.g, [&](double scalar) {
+    return style.paled(transfer.albedo(scalar));
+  });
   Contrast contrast = {};
   for (const ColorSight sight : colorSights)
     contrast.deltaE[static_cast<std::size_t>(sight)] =
@@ -128,13 +137,14 @@ Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfe
 
 FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& focus,
                              const Volume& volume, const TransferFunction& transfer) {
-  const std::optional<BorderScalars> border = borderScalars(focus, volume, transfer);
-  if (!border)
+  const BorderScalars border = borderScalars(focus, volume, transfer);
+  if (border.focus.empty() || border.context.empty())
     return {asked.value_or(1.0)};
-  const Contrast asIs = contrastAt(*border, transfer, asked.value_or(1.0));
+  const Contrast asIs = contrastAt(border, transfer, asked.value_or(1.0));
   if (asked || asIs.isEnough())
     return {asked.value_or(1.0), asIs};
-  return {pale, contrastAt(*border, transfer, pale)};
+  const Contrast paled = contrastAt(border, transfer, pale);
+  return paled.deltaE[0] > asIs.deltaE[0] ? FocusContrast{pale, paled} : FocusContrast{1.0, asIs};
 }
 
 } // namespace fenestra

@@ -21,17 +21,18 @@ struct Contrast {
   bool isEnough() const;
 };
 
-/// Typical scalars at the focus's border: medians over the three voxels to either side of its
-/// labels' faces, of those that the transfer function shows.
+/// Scalars at the focus's border: of the three voxels to either side of its labels' faces, those
+/// that the transfer function shows; at most some ten thousand of each.
 struct BorderScalars {
-  double focus, context;
+  std::vector<double> focus, context;
 };
 
-/// Nothing where one side is transparent. `focus`: of at least one voxel.
-std::optional<BorderScalars> borderScalars(const Mask& focus, const Volume& volume,
-                                           const TransferFunction& transfer);
+/// `focus`: of at least one voxel. A side that is transparent has none.
+BorderScalars borderScalars(const Mask& focus, const Volume& volume,
+                            const TransferFunction& transfer);
 
-/// `saturation`: of the context (ContextStyle).
+/// Of the mean colours of both sides, which have at least one scalar each. `saturation`: of the
+/// context (ContextStyle).
 Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfer,
                     double saturation);
 
@@ -41,7 +42,8 @@ struct FocusContrast {
   std::optional<Contrast> contrast = {}; ///< nothing where one side is transparent
 };
 
-/// `asked`: by the user; nothing: `pale` where the contrast is not enough without, else 1.
+/// `asked`: by the user; nothing: `pale` where the contrast is not enough without and greater with
+/// it, else 1.
 FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& focus,
                              const Volume& volume, const TransferFunction& transfer);
 
