@@ -25,6 +25,7 @@ Combination combination(int index) {
   constexpr double anisotropies[] = {-0.9, -0.4, 0.0, 0.3, 0.7, 0.9, 0.99};
   constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
   constexpr std::uint64_t bounces[] = {unlimited, unlimited, unlimited, 1, 3};
+  const bool isSoftCut = index % 8 == 2;
   Combination c;
   c.index = index;
   c.view = static_cast<ViewFactor>(next(4));
@@ -33,13 +34,13 @@ Combination combination(int index) {
   c.g = anisotropies[next(7)];
   c.albedo = static_cast<AlbedoFactor>(next(6));
   c.transfer = static_cast<TransferFactor>(next(6));
-  c.isHybrid = next(3) == 0;
+  c.isHybrid = next(3) == 0 || isSoftCut;
   c.voxels = static_cast<VoxelFactor>(next(4));
   c.grid = static_cast<GridFactor>(next(5));
   c.isCropped = next(4) == 0;
   c.background = static_cast<BackgroundFactor>(next(3));
   c.bounces = bounces[next(5)];
-  const auto edge = static_cast<EdgeFactor>(next(4));
+  const int edge = next(4);
   const auto style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // half of them: none
   constexpr double offsets[] = {0.0, 0.7, -0.7};
   const double offset = offsets[next(3)];
@@ -48,7 +49,7 @@ Combination combination(int index) {
   c.isCoated = next(2) == 0 && c.isHybrid;
   if (index % 4 == 1 ||
       index % 4 == 2) { // the others are plain, which shows errors of other factors best
-    c.edge = edge;
+    c.edge = static_cast<EdgeFactor>(isSoftCut ? 2 + edge % 2 : edge);
     c.style = style;
     c.offset = offset;
     if (isOtherKind && c.clip == ClipFactor::surface)

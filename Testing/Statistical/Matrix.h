@@ -4,7 +4,9 @@
 //
 // Each factor runs through its levels in blocks, every block in its own order: over n combinations
 // every level occurs n / levels times, and every pair of levels of two factors about n / levels^2
-// times. Combination i is always the same scene; only the estimators' seeds change.
+// times. Every eighth combination has hybrid shading and, if it has a clip, a soft edge, whatever
+// the design says of these two: by itself it makes too few for each kind of clip. Combination i is
+// always the same scene; only the estimators' seeds change.
 
 #include "Oracle/OracleScene.h"
 #include "Support.h"
