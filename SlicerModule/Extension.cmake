@@ -17,11 +17,12 @@ string(TOUPPER ${MODULE_NAME} MODULE_NAME_UPPER)
 add_subdirectory(MRML)
 add_subdirectory(Logic)
 
-set(module_classes qSlicerFenestraClipping qSlicerFenestraMargins qSlicerFenestraModule
+set(module_classes qSlicerFenestraClipping qSlicerFenestraLook qSlicerFenestraMargins qSlicerFenestraModule
   qSlicerFenestraModuleWidget qSlicerFenestraPanel qSlicerFenestraPlayer qSlicerFenestraSession
   qSlicerFenestraSettings)
 set(module_sources qSlicerFenestraSessionPreview.cxx qSlicerFenestraLights.cxx qSlicerFenestraLights.h qSlicerFenestraMeasures.cxx
-  qSlicerFenestraMeasures.h qSlicerFenestraResults.cxx qSlicerFenestraResults.h)
+  qSlicerFenestraMeasures.h qSlicerFenestraResults.cxx qSlicerFenestraResults.h
+  qSlicerFenestraWidgets.cxx qSlicerFenestraWidgets.h)
 set(module_moc)
 foreach(class ${module_classes})
   list(APPEND module_sources ${class}.cxx ${class}.h)

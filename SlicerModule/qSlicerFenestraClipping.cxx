@@ -1,6 +1,7 @@
 #include "qSlicerFenestraClipping.h"
 
 #include "qSlicerFenestraMargins.h"
+#include "qSlicerFenestraWidgets.h"
 
 #include <ctkCollapsibleGroupBox.h>
 #include <qMRMLNodeComboBox.h>
@@ -12,7 +13,7 @@
 #include <QSignalBlocker>
 #include <QVBoxLayout>
 
-#include <utility>
+using namespace qSlicerFenestraWidgets;
 
 namespace {
 
@@ -25,29 +26,26 @@ const QStringList& cutting() {
 }
 const QStringList anyMode; ///< empty list: any mode with a focus
 
-QString flagOf(const Flags& flags, const char* name) {
-  const auto found = flags.find(name);
-  return found == flags.end() ? QString() : QString::fromStdString(found->second);
-}
+constexpr double automatic = -1.0; ///< value of an AutomaticBox for the word auto
 
-void choose(QComboBox* box, const QString& data) {
-  const int index = box->findData(data);
-  box->setCurrentIndex(index < 0 ? 0 : index);
-}
+/// Numbers from 0, and one step below 0 the word auto: Arrow Down or Page Down, without a second
+/// control. Negative numbers cannot be typed.
+class AutomaticBox : public QDoubleSpinBox {
+public:
+  AutomaticBox() { setSpecialValueText(QObject::tr("auto")); }
 
-QComboBox* choices(const QString& name, const QString& help) {
-  auto* box = new QComboBox;
-  box->setObjectName(name);
-  box->setToolTip(help);
-  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  return box;
-}
+  void stepBy(int steps) override {
+    const double from = value() < 0.0 ? -singleStep() : value();
+    const double to = from + steps * singleStep();
+    setValue(to >= 0.0 ? to : from > 0.0 && steps == -1 ? 0.0 : automatic);
+  }
 
-void showRow(const QFormLayout* form, QWidget* editor, bool shown) {
-  editor->setVisible(shown);
-  if (QWidget* label = form->labelForField(editor))
-    label->setVisible(shown);
-}
+protected:
+  QValidator::State validate(QString& text, int& at) const override {
+    const bool isNegative = text.contains('-') || text.contains(locale().negativeSign());
+    return isNegative ? QValidator::Invalid : QDoubleSpinBox::validate(text, at);
+  }
+};
 
 } // namespace
 
@@ -74,30 +72,27 @@ qSlicerFenestraClipping::qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, Q
 }
 
 void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
-  m_clip = choices("ClipBox", tr("What is taken away, so that the focus shows"));
-  m_clip->addItem(tr("Smooth surface through the focus"), "");
-  m_clip->addItem(tr("Surface, tissue in front left faint"), "ghost");
-  m_clip->addItem(tr("All in front of the focus (cut-away)"), "cutaway");
-  m_clip->addItem(tr("Hole toward the focus"), "hole");
-  m_clip->addItem(tr("Flat plane"), "plane");
-  m_clip->addItem(tr("Nothing"), "none");
+  m_clip = choices("ClipBox",
+                   {{tr("Smooth surface through the focus"), ""},
+                    {tr("Surface, tissue in front left faint"), "ghost"},
+                    {tr("All in front of the focus (cut-away)"), "cutaway"},
+                    {tr("Hole toward the focus"), "hole"},
+                    {tr("Flat plane"), "plane"},
+                    {tr("Nothing"), "none"}},
+                   tr("What is taken away, so that the focus shows"));
   form->addRow(tr("Clip:"), m_clip);
-  m_boundary = choices("BoundaryBox",
+  m_boundary = choices("BoundaryBox", {{tr("Exact"), "exact"}, {tr("Smoothed (spline)"), "spline"}},
                        tr("How the surface goes on beside the focus. Exact: from its very edge, "
                           "without a step or a kink. Smoothed: near it, as in the paper"));
-  m_boundary->addItem(tr("Exact"), "exact");
-  m_boundary->addItem(tr("Smoothed (spline)"), "spline");
   form->addRow(tr("Edge of the focus:"), m_boundary);
   addNumber(form, "ghost", tr("Left in front:"), 0.01, 10.0, {"ghost"},
             tr("Share of its density that tissue in front of the surface keeps"));
-  m_hole = choices("HoleBox", tr("The hole leads from the eye to the focus"));
-  m_hole->addItem(tr("Cylinder"), "");
-  m_hole->addItem(tr("Box"), "box");
-  m_hole->addItem(tr("Sphere"), "sphere");
+  m_hole = choices("HoleBox", {{tr("Cylinder"), ""}, {tr("Box"), "box"}, {tr("Sphere"), "sphere"}},
+                   tr("The hole leads from the eye to the focus"));
   form->addRow(tr("Shape:"), m_hole);
   addNumber(form, "holemargin", tr("Wider by:"), 1.0, 5.0, {"hole"},
             tr("How much wider than the focus"));
-  m_plane = choices("PlaneBox", tr("Where the plane lies"));
+  m_plane = choices("PlaneBox", {}, tr("Where the plane lies"));
   m_plane->addItem(tr("Placed by the focus"), int(Plane::automatic));
   m_plane->addItem(tr("A plane of the scene"), int(Plane::node));
   form->addRow(tr("Plane:"), m_plane);
@@ -110,16 +105,19 @@ void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
 void qSlicerFenestraClipping::buildDetails(QFormLayout* form) {
   m_margins = new qSlicerFenestraMargins;
   form->addRow(tr("Margin:"), m_margins);
-  addNumber(form, "labelsmoothing", tr("Smooth labels by:"), 1.0, 0.0, anyMode,
-            tr("Against stair steps of the segments' voxels; about half a slice's thickness"));
+  addNumber(form, "labelsmoothing", tr("Smooth labels by:"), 1.0, automatic, anyMode,
+            tr("Against stair steps of the segments' voxels. auto, below 0: by the size of the "
+               "voxels, or as the anatomy preset"));
   addNumber(form, "offset", tr("Move the cut by:"), 1.0, 0.0, cutting(),
             tr("Away from the eye, into the focus; negative: toward the eye"));
-  addNumber(form, "soft", tr("Soft edge:"), 1.0, 0.0, cutting(),
-            tr("Tissue comes back gradually over this depth behind the cut"));
+  addNumber(form, "soft", tr("Soft edge:"), 1.0, automatic, cutting(),
+            tr("Tissue comes back gradually over this depth behind the cut. auto, below 0: by the "
+               "size of the voxels, or as the anatomy preset"));
   addNumber(form, "contextdensity", tr("Surroundings, density:"), 0.01, 100.0, anyMode,
             tr("Makes all but the focus more transparent"));
-  addNumber(form, "contextsaturation", tr("Surroundings, colour:"), 0.01, 100.0, anyMode,
-            tr("0 %: all but the focus is grey"));
+  addNumber(form, "contextsaturation", tr("Surroundings, colour:"), 0.01, automatic, anyMode,
+            tr("0 %: all but the focus is grey. auto, below 0: paler where the focus would not be "
+               "told from its surroundings, or as the anatomy preset"));
 }
 
 void qSlicerFenestraClipping::addNumber(QFormLayout* form, const char* flag, const QString& label,
@@ -127,10 +125,11 @@ void qSlicerFenestraClipping::addNumber(QFormLayout* form, const char* flag, con
                                         const QString& help) {
   const bool share = unit != 1.0;
   const bool isSigned = flag == std::string("offset");
+  const bool mayBeAutomatic = standard == automatic;
   const double most = share || flag == std::string("labelsmoothing") ? 100.0 : 1000.0;
-  auto* box = new QDoubleSpinBox;
+  auto* box = mayBeAutomatic ? new AutomaticBox : new QDoubleSpinBox;
   box->setObjectName(QString(flag) + "Box");
-  box->setRange(isSigned ? -most : 0.0, most);
+  box->setRange(mayBeAutomatic ? automatic : isSigned ? -most : 0.0, most);
   box->setDecimals(share ? 1 : 2);
   box->setSingleStep(share ? 5.0 : 0.5);
   box->setSuffix(share ? tr(" %") : tr(" mm"));
@@ -203,13 +202,13 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
     if (!hasFocus || !(number.modes.isEmpty() || number.modes.contains(now)))
       continue;
     number.shown = flagOf(flags, number.flag);
-    number.box->setValue(number.shown.isEmpty() ? number.standard
-                                                : number.shown.toDouble() / number.unit);
+    number.box->setValue(number.shown.isEmpty() || number.shown == "auto"
+                             ? number.standard
+                             : number.shown.toDouble() / number.unit);
     number.shownValue = number.box->value();
   }
   if (hasFocus)
     m_margins->show(flagOf(flags, "margin"), focus);
-  m_isFresh = m_isFresh && !hasFocus;
   m_hasFocus = hasFocus;
   m_byPreset = byPreset;
   showMode();
@@ -225,20 +224,6 @@ void qSlicerFenestraClipping::reset() {
     number.shownValue = number.standard;
   }
   m_margins->show({}, {});
-  m_isFresh = true;
-}
-
-/// Interpolated slices need 1 voxel of label smoothing. Partial-volume steps at the border need 2
-/// voxels of softness.
-void qSlicerFenestraClipping::begin(double voxel) {
-  if (!m_isFresh)
-    return;
-  m_isFresh = false;
-  const QSignalBlocker unheard(this);
-  for (Number& number : m_numbers)
-    for (const auto& [flag, voxels] : {std::pair("labelsmoothing", 1.0), std::pair("soft", 2.0)})
-      if (number.flag == std::string(flag))
-        number.box->setValue(voxels * voxel);
 }
 
 void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool hasFocus,

@@ -36,9 +36,6 @@ public:
             bool byPreset);
   /// Sets all widgets to defaults, also those hidden now.
   void reset();
-  /// Sets smoothing and softness that remove voxel steps. `voxel`: shortest edge of a voxel, mm.
-  /// Call with the first focus; no effect once the user or the shown flags have chosen.
-  void begin(double voxel);
   /// Sets all flags of clipping; empty: not passed. `plane`: flag value of the chosen plane node.
   void take(Flags& flags, const std::string& plane, bool hasFocus, bool byPreset) const;
   Plane plane() const;
@@ -53,7 +50,7 @@ private:
     const char* flag;
     QDoubleSpinBox* box;
     double unit;       ///< flag value per unit of the box
-    double standard;   ///< default, in the box's units
+    double standard;   ///< default, in the box's units; below 0 may be the word auto
     QStringList modes; ///< clipping modes that use the flag; empty: all
     QString shown;     ///< flag text as shown, possibly with more digits than the box
     double shownValue;
@@ -76,7 +73,6 @@ private:
   QFormLayout* m_form;
   QWidget* m_details;      ///< enabled only with a focus
   bool m_hasFocus = false; ///< of the flags last shown
-  bool m_isFresh = true;   ///< nothing chosen yet
   bool m_byPreset = false; ///< of the flags last shown
 };
 

@@ -1,14 +1,39 @@
 #include "qSlicerFenestraLights.h"
 
 #include <QFile>
-#include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
 
+#include <algorithm>
+#include <vector>
+
 namespace {
 
+enum Role : std::size_t { key, fill, rim, environment, none };
+
+/// Role of each light.
+std::vector<Role> rolesOf(const QJsonArray& lights) {
+  std::vector<Role> roles;
+  Role before = key; // the role of the next light before the volume
+  for (const QJsonValue& value : lights) {
+    const QJsonObject light = value.toObject();
+    const QString type = light["type"].toString();
+    const bool surrounds = type == "environment" || type == "sky";
+    const bool isPlaced = light["frame"] == "camera" && light.contains("center");
+    if (surrounds || !isPlaced) {
+      roles.push_back(surrounds ? environment : none);
+    } else if (light["center"].toArray().at(2).toDouble() < 0.0) { // z is toward the viewer
+      roles.push_back(rim);
+    } else {
+      roles.push_back(before);
+      before = before == key ? fill : none;
+    }
+  }
+  return roles;
+}
+
 /// Radiance of a light, a number or a triple, times a factor.
-QJsonValue scaled(const QJsonValue& radiance, double factor) {
+QJsonValue product(const QJsonValue& radiance, double factor) {
   if (!radiance.isArray())
     return radiance.toDouble() * factor;
   QJsonArray triple;
@@ -17,26 +42,43 @@ QJsonValue scaled(const QJsonValue& radiance, double factor) {
   return triple;
 }
 
-} // namespace
-
-QString qSlicerFenestraLights::flag(const QString& rig, const Strengths& strengths) {
-  if (strengths == unchanged)
-    return rig;
+/// Lights of a rig of the renderer; empty: it has no such rig.
+QJsonArray lightsOf(const QString& rig) {
   QFile file(":/Lights/" + rig + ".json");
   if (!file.open(QIODevice::ReadOnly))
-    return rig;
-  QJsonArray lights = QJsonDocument::fromJson(file.readAll()).object()["lights"].toArray();
-  std::size_t area = 0;
-  constexpr std::size_t environment = 3;
+    return {};
+  return QJsonDocument::fromJson(file.readAll()).object()["lights"].toArray();
+}
+
+} // namespace
+
+QJsonArray qSlicerFenestraLights::scaled(const QJsonArray& lights, const Strengths& strengths) {
+  const std::vector<Role> roles = rolesOf(lights);
+  QJsonArray all;
   for (int i = 0; i < lights.size(); ++i) {
     QJsonObject light = lights[i].toObject();
-    const bool surrounds = light["type"] == "environment" || light["type"] == "sky";
-    const std::size_t which = surrounds ? environment : std::min(area++, environment - 1);
-    for (const char* key : {"radiance", "top", "middle", "bottom"})
-      if (light.contains(key))
-        light[key] = scaled(light[key], strengths[which]);
-    lights[i] = light;
+    const Role role = roles[static_cast<std::size_t>(i)];
+    for (const char* name : {"radiance", "top", "middle", "bottom"})
+      if (role != none && strengths[role] != 1.0 && light.contains(name))
+        light[name] = product(light[name], strengths[role]);
+    all.append(light);
   }
-  const QJsonObject document = {{"lights", lights}};
+  return all;
+}
+
+QString qSlicerFenestraLights::flag(const QString& rig, const Strengths& strengths) {
+  const QJsonArray lights = lightsOf(rig);
+  const QJsonArray changed = scaled(lights, strengths);
+  if (changed == lights)
+    return rig;
+  const QJsonObject document = {{"lights", changed}};
   return QString::fromUtf8(QJsonDocument(document).toJson(QJsonDocument::Compact));
+}
+
+std::array<bool, 4> qSlicerFenestraLights::lightsIn(const QString& rig) {
+  const std::vector<Role> roles = rolesOf(lightsOf(rig));
+  std::array<bool, 4> has{};
+  for (std::size_t role = key; role <= environment; ++role)
+    has[role] = std::find(roles.begin(), roles.end(), role) != roles.end();
+  return has;
 }

@@ -1,6 +1,7 @@
 #ifndef __qSlicerFenestraLights_h
 #define __qSlicerFenestraLights_h
 
+#include <QJsonArray>
 #include <QString>
 #include <array>
 
@@ -12,9 +13,17 @@ namespace qSlicerFenestraLights {
 using Strengths = std::array<double, 4>;
 constexpr Strengths unchanged = {1.0, 1.0, 1.0, 1.0};
 
-/// `rig`: "cinema", "studio", "headlight" or "soft". Its first area light is the key, the second
-/// the fill, the third the rim; strengths of lights that the rig lacks have no effect.
+/// Lights in the renderer's form with radiances scaled by what each light is. Of lights with a
+/// place in the camera's frame those behind the volume are rims, the first before it is the key,
+/// the second the fill. All other lights stay as they are: a lamp in the world may stand anywhere.
+QJsonArray scaled(const QJsonArray& lights, const Strengths& strengths);
+
+/// `rig`: name of a rig in Resources/lights, or any other value of the flag, which is returned as
+/// it is. Strengths of lights that the rig lacks have no effect.
 QString flag(const QString& rig, const Strengths& strengths);
+
+/// True for each strength that has a light in the rig; an unknown rig has none.
+std::array<bool, 4> lightsIn(const QString& rig);
 
 } // namespace qSlicerFenestraLights
 

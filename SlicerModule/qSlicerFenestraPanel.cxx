@@ -1,17 +1,18 @@
 #include "qSlicerFenestraPanel.h"
 
-#include "FenestraFlags.h"
 #include "qFenestraAbilities.h"
 #include "qSlicerFenestraClipping.h"
+#include "qSlicerFenestraLook.h"
 #include "qSlicerFenestraPlayer.h"
+#include "qSlicerFenestraWidgets.h"
 
 #include <ctkCollapsibleButton.h>
-#include <ctkSliderWidget.h>
 #include <qMRMLNodeComboBox.h>
 
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QFile>
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QHash>
@@ -19,36 +20,15 @@
 #include <QListWidget>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QSignalBlocker>
 #include <QSpinBox>
 #include <QToolButton>
 #include <QVBoxLayout>
 
+using namespace qSlicerFenestraWidgets;
+
 namespace {
 
-struct Choice {
-  QString text, data;
-};
-
-QComboBox* choices(const QString& name, const QList<Choice>& all, const QString& help) {
-  auto* box = new QComboBox;
-  box->setObjectName(name);
-  box->setToolTip(help);
-  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon); // long texts fit
-  for (const Choice& choice : all)
-    box->addItem(choice.text, choice.data);
-  return box;
-}
-
-/// Adds or removes a choice at `index`.
-void offerChoice(QComboBox* box, int index, const Choice& choice, bool offered) {
-  const QSignalBlocker unheard(box); // the selection stays
-  const int found = box->findData(choice.data);
-  if (offered && found < 0)
-    box->insertItem(index, choice.text, choice.data);
-  if (!offered && found >= 0)
-    box->removeItem(found);
-}
+constexpr int pictureSide = 48; ///< pixels of an anatomy's picture
 
 /// Anatomy presets of the renderer, with their names for users.
 QList<Choice> anatomies() {
@@ -168,6 +148,7 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
       choices("PresetBox", {{tr("My own choice"), ""}, {tr("By the segments' names"), "auto"}},
               tr("Focus, clipping, tissue colours, light and view for an anatomy, in one; what "
                  "you choose yourself wins over it"));
+  preset->setIconSize({pictureSide, pictureSide});
   form->addRow(tr("Anatomy:"), preset);
   preset->hide();
   form->labelForField(preset)->hide();
@@ -256,36 +237,9 @@ void qSlicerFenestraPanel::buildView(QVBoxLayout* layout) {
   row->addWidget(view3D, 1);
   row->addWidget(follow);
   form->addRow(tr("3D view:"), row);
-  transfer = choices("TransferBox",
-                     {{tr("As in Volume Rendering"), ""},
-                      {tr("CT: soft tissue"), "ct-soft"},
-                      {tr("CT: bone"), "ct-bone"}},
-                     tr("Colours and opacities; set up your own in the Volume Rendering module"));
-  form->addRow(tr("Tissue colours:"), transfer);
-  rig = choices("RigBox",
-                {{tr("Cinema"), "cinema"},
-                 {tr("Studio"), "studio"},
-                 {tr("Headlight"), "headlight"},
-                 {tr("Soft"), "soft"}},
-                tr("Where light comes from"));
-  form->addRow(tr("Lights:"), rig);
-  const QString names[4] = {tr("Key:"), tr("Fill:"), tr("Rim:"), tr("Environment:")};
-  for (int i = 0; i < 4; ++i) {
-    strengths[i] = new ctkSliderWidget;
-    strengths[i]->setObjectName(QString("Strength%1").arg(i));
-    strengths[i]->setRange(0.0, 300.0);
-    strengths[i]->setDecimals(0);
-    strengths[i]->setSuffix(" %");
-    strengths[i]->setValue(100.0);
-    form->addRow(names[i], strengths[i]);
-  }
-  background = choices("BackgroundBox",
-                       {{tr("Black"), "0,0,0"},
-                        {tr("Grey"), "0.1,0.1,0.1"},
-                        {tr("White"), "100,100,100"},
-                        {tr("Transparent"), "transparent"}},
-                       tr("Behind the volume"));
-  form->addRow(tr("Background:"), background);
+  look = new qSlicerFenestraLook;
+  look->setObjectName("Look");
+  form->addRow(look);
 }
 
 void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
@@ -378,21 +332,21 @@ void qSlicerFenestraPanel::offer(const qFenestraAbilities& abilities) {
   const QString best = tr("Best view of the focus");
   offerChoice(view, 1, {best, "auto"}, abilities.takes("view", "auto"));
   const bool presets = abilities.flags.contains("preset");
-  preset->setVisible(presets);
-  m_subject->labelForField(preset)->setVisible(presets);
-  for (const Choice& anatomy : anatomies())
+  showRow(m_subject, preset, presets);
+  for (Choice anatomy : anatomies()) {
+    const QString picture = ":/Icons/preset-" + anatomy.data + ".png";
+    if (QFile::exists(picture))
+      anatomy.icon = QIcon(picture);
     offerChoice(preset, preset->count(), anatomy, abilities.names("preset", anatomy.data));
+  }
+  look->offer(abilities);
   animation->setVisible(abilities.turns());
   const bool steadies = abilities.turntable.contains("--steady");
-  steady->setVisible(steadies);
-  qobject_cast<QFormLayout*>(animation->layout())->labelForField(steady)->setVisible(steadies);
+  showRow(qobject_cast<QFormLayout*>(animation->layout()), steady, steadies);
 }
 
 void qSlicerFenestraPanel::offerPresets(bool chosen) {
-  const QString left = tr("As the anatomy preset");
-  offerChoice(view, 0, {left, "preset"}, chosen);
-  offerChoice(rig, 0, {left, ""}, chosen);
-  transfer->setItemText(transfer->findData(""), chosen ? left : tr("As in Volume Rendering"));
+  offerChoice(view, 0, {tr("As the anatomy preset"), "preset"}, chosen);
 }
 
 void qSlicerFenestraPanel::showWithheld(const std::map<std::string, std::string>& what,
@@ -404,15 +358,4 @@ void qSlicerFenestraPanel::showWithheld(const std::map<std::string, std::string>
   withheld->setText(lines.join('\n'));
   withheld->setVisible(!what.empty());
   allow->setVisible(files);
-}
-
-bool qSlicerFenestraPanel::namesFile(const char* flag, const QString& value) {
-  return FenestraScene::verdictOn(flag, value.toStdString()) == FenestraScene::Verdict::file;
-}
-
-void qSlicerFenestraPanel::choose(QComboBox* box, const QString& data, const char* flag) {
-  if (box->findData(data) < 0 && namesFile(flag, data))
-    box->addItem(data, data);
-  const int index = box->findData(data);
-  box->setCurrentIndex(index < 0 ? 0 : index);
 }

@@ -6,9 +6,9 @@
 #include <map>
 #include <string>
 
-class ctkSliderWidget;
 class qMRMLNodeComboBox;
 class qSlicerFenestraClipping;
+class qSlicerFenestraLook;
 class qSlicerFenestraPlayer;
 class QCheckBox;
 class QComboBox;
@@ -33,16 +33,10 @@ public:
 
   /// Adds choices that only newer renderers support.
   void offer(const qFenestraAbilities& abilities);
-  /// Adds or removes the choices that leave a flag to the anatomy preset; data: "preset" for the
-  /// view, empty for others.
+  /// Adds or removes the view that the anatomy preset has; data: "preset".
   void offerPresets(bool chosen);
   /// Shows flags of the scene that are withheld, name and value; `files`: some name files.
   void showWithheld(const std::map<std::string, std::string>& what, bool files);
-
-  /// Selects the item with `data`, else the first. If `data` is the value of `flag` and names a
-  /// file that the user allowed, adds an item.
-  static void choose(QComboBox* box, const QString& data, const char* flag);
-  static bool namesFile(const char* flag, const QString& value);
 
   QPushButton* sample;
   qMRMLNodeComboBox* volume;
@@ -57,10 +51,7 @@ public:
   QComboBox* view; ///< data: the flag's word; empty: the camera of a 3-D view
   qMRMLNodeComboBox* view3D;
   QCheckBox* follow; ///< follow the camera of the 3-D view live
-  QComboBox* transfer;
-  QComboBox* rig;
-  ctkSliderWidget* strengths[4]; ///< per cent; key, fill, rim, environment
-  QComboBox* background;
+  qSlicerFenestraLook* look;
 
   QComboBox* quality; ///< data: "samples noise seconds"; empty: values of the boxes
   QSpinBox* samples;

@@ -1,11 +1,12 @@
 #include "qSlicerFenestraSettings.h"
 
+#include "FenestraFlags.h"
 #include "qSlicerFenestraClipping.h"
-#include "qSlicerFenestraLights.h"
+#include "qSlicerFenestraLook.h"
 #include "qSlicerFenestraPanel.h"
+#include "qSlicerFenestraWidgets.h"
 #include "vtkSlicerFenestraLogic.h"
 
-#include <ctkSliderWidget.h>
 #include <qMRMLNodeComboBox.h>
 
 #include <vtkMRMLCameraNode.h>
@@ -27,22 +28,13 @@
 #include <QStandardItemModel>
 
 #include <algorithm>
-#include <cmath>
+
+using namespace qSlicerFenestraWidgets;
 
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
-constexpr auto choose = qSlicerFenestraPanel::choose;
 constexpr const char* rigAttribute = "Fenestra.Lights"; ///< value: "rig key fill rim environment"
-
-std::string chosenIn(const QComboBox* box) {
-  return box->currentData().toString().toStdString();
-}
-
-QString flagOf(const std::map<std::string, std::string>& flags, const char* name) {
-  const auto found = flags.find(name);
-  return found == flags.end() ? QString() : QString::fromStdString(found->second);
-}
 
 /// Flag value of a limit; empty, thus not passed: no limit.
 std::string limit(double value) {
@@ -73,15 +65,13 @@ void qSlicerFenestraSettings::connectPanel() {
   connect(panel.clipping, &qSlicerFenestraClipping::changed, this, &Settings::take);
   connect(panel.preset, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
           &Settings::takePreset);
-  for (QComboBox* box : {panel.view, panel.transfer, panel.rig, panel.background})
-    connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &Settings::take);
+  connect(panel.view, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &Settings::take);
+  connect(panel.look, &qSlicerFenestraLook::changed, this, &Settings::take);
   connect(panel.allow, &QPushButton::clicked, this, [this] {
     if (m_node)
       m_node->AllowFiles();
   });
   connect(panel.follow, &QCheckBox::toggled, this, &Settings::take);
-  for (ctkSliderWidget* slider : panel.strengths)
-    connect(slider, &ctkSliderWidget::valueChanged, this, &Settings::take);
   connect(panel.quality, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
           &Settings::takeQuality);
   for (QSpinBox* box : {panel.samples, panel.width, panel.height, panel.frames})
@@ -215,10 +205,8 @@ void qSlicerFenestraSettings::show() {
     showSegments();
     showSubject(flags);
     m_panel->showWithheld(m_node->GetWithheld(), m_node->WithholdsFiles());
-    choose(m_panel->transfer, flagOf(flags, "transfer"), "transfer");
-    choose(m_panel->background, flagOf(flags, "background"), "background");
     showView(flags);
-    showLights(flags);
+    m_panel->look->show(flags, m_node->GetAttribute(rigAttribute), hasPreset());
     showQuality(flags);
   }
   emit changed();
@@ -255,7 +243,9 @@ void qSlicerFenestraSettings::showSegments() {
 
 void qSlicerFenestraSettings::showSubject(const Flags& flags) {
   using Plane = qSlicerFenestraClipping::Plane;
-  choose(m_panel->preset, flagOf(flags, "preset"), "preset");
+  const QString preset = flagOf(flags, "preset");
+  const auto verdict = FenestraScene::verdictOn("preset", preset.toStdString());
+  (verdict == FenestraScene::Verdict::file ? chooseOrAdd : choose)(m_panel->preset, preset);
   m_panel->offerPresets(hasPreset());
   m_panel->focusHint->setVisible(hasPreset() && m_node->GetFocus().empty());
   const bool isPlaced = flags.count("plane") > 0;
@@ -270,7 +260,7 @@ void qSlicerFenestraSettings::showView(const Flags& flags) {
   vtkMRMLNode* view3D = m_node->GetNodeReference(Node::ViewRole);
   const bool byPreset = hasPreset() && !view3D && flags.count("position") == 0;
   const QString word = flagOf(flags, "view");
-  choose(m_panel->view, word.isEmpty() && byPreset ? "preset" : word, "view");
+  choose(m_panel->view, word.isEmpty() && byPreset ? "preset" : word);
   if (auto* model = qobject_cast<QStandardItemModel*>(m_panel->view->model()))
     if (const int best = m_panel->view->findData("auto"); best >= 0)
       model->item(best)->setEnabled(hasPreset() || !m_node->GetFocus().empty());
@@ -280,21 +270,6 @@ void qSlicerFenestraSettings::showView(const Flags& flags) {
   m_panel->view3D->setEnabled(fromCamera);
   m_panel->follow->setEnabled(fromCamera);
   m_panel->follow->setChecked(flags.count("position") == 0);
-}
-
-void qSlicerFenestraSettings::showLights(const Flags& flags) {
-  const QString lights = flagOf(flags, "lights");
-  const char* stored = qSlicerFenestraPanel::namesFile("lights", lights)
-                           ? nullptr
-                           : m_node->GetAttribute(rigAttribute);
-  const QStringList rig = stored ? QString(stored).split(' ') : QStringList{lights};
-  choose(m_panel->rig, rig.value(0), "lights");
-  const bool isOwn = !m_panel->rig->currentData().toString().isEmpty();
-  for (int i = 0; i < 4; ++i) {
-    const double strength = rig.value(i + 1, "100").toDouble();
-    m_panel->strengths[i]->setValue(std::isfinite(strength) ? strength : 100.0);
-    m_panel->strengths[i]->setEnabled(isOwn);
-  }
 }
 
 void qSlicerFenestraSettings::showQuality(const Flags& flags) {
@@ -331,14 +306,9 @@ void qSlicerFenestraSettings::take() {
   m_node->SetFocus(focus);
   Flags flags = m_node->GetFlags();
   flags["preset"] = chosenIn(m_panel->preset);
-  if (auto* volume = vtkMRMLVolumeNode::SafeDownCast(m_volume);
-      volume && !focus.empty() && flags["preset"].empty())
-    m_panel->clipping->begin(*std::min_element(volume->GetSpacing(), volume->GetSpacing() + 3));
   takeClipping(flags);
-  flags["transfer"] = chosenIn(m_panel->transfer);
-  flags["background"] = chosenIn(m_panel->background);
   takeView(flags);
-  takeLights(flags);
+  m_node->SetAttribute(rigAttribute, m_panel->look->take(flags).toUtf8().constData());
   flags["samples"] = std::to_string(m_panel->samples->value());
   flags["noise"] = limit(m_panel->noise->value());
   flags["seconds"] = limit(m_panel->seconds->value());
@@ -372,9 +342,8 @@ void qSlicerFenestraSettings::takePreset() {
     m_panel->offerPresets(chosen);
     if (chosen != hasPreset()) {
       m_panel->clipping->reset();
-      choose(m_panel->view, chosen ? "preset" : "", "view");
-      choose(m_panel->transfer, "", "transfer");
-      choose(m_panel->rig, chosen ? "" : "cinema", "lights");
+      choose(m_panel->view, chosen ? "preset" : "");
+      m_panel->look->handBack();
     }
   }
   take();
@@ -399,18 +368,6 @@ void qSlicerFenestraSettings::takeView(Flags& flags) {
   }
   for (const char* name : {"position", "target", "up", "scale", "angle", "projection"})
     flags.erase(name);
-}
-
-void qSlicerFenestraSettings::takeLights(Flags& flags) {
-  const QString rig = m_panel->rig->currentData().toString();
-  QString stored = rig;
-  qSlicerFenestraLights::Strengths strengths{};
-  for (std::size_t i = 0; i < strengths.size(); ++i) {
-    strengths[i] = m_panel->strengths[i]->value() / 100.0;
-    stored += QString(" %1").arg(m_panel->strengths[i]->value());
-  }
-  flags["lights"] = qSlicerFenestraLights::flag(rig, strengths).toStdString();
-  m_node->SetAttribute(rigAttribute, stored.toUtf8().constData());
 }
 
 void qSlicerFenestraSettings::takeQuality() {

@@ -62,11 +62,9 @@ private:
   void watchPlane();
   void showSubject(const Flags& flags);
   void showView(const Flags& flags);
-  void showLights(const Flags& flags);
   void showQuality(const Flags& flags);
   void takeClipping(Flags& flags);
   void takeView(Flags& flags);
-  void takeLights(Flags& flags);
 
   qSlicerFenestraPanel* m_panel;
   vtkSlicerFenestraLogic* m_logic;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A picture of each organ preset that there is something to see on, for the README: phantoms, and real
-# volumes where they are present. usage: bash Resources/figures/presets.sh
+# volumes where they are present; and from these the small pictures in Slicer's list of anatomies.
+# usage: bash Resources/figures/presets.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 shown=$top/Resources/pictures
 
@@ -35,4 +36,10 @@ real lungs $torso/ct.nii.gz $torso/seg_totalsegmentator_rtstruct.nii.gz "$(label
 abdomen=abdomen_ct_totalseg
 real spine $abdomen/ct.nii.gz $abdomen/seg_multiorgan.nii.gz "$(labels $abdomen/seg_labels.json 'vertebra|sacrum')"
 real brain-surface head_mr_seg3d/t1.nii.gz head_mr_seg3d/seg_brain_skull.nii.gz 1
+
+# Few colours keep each below 8 kB. A new one is named in the module's .qrc.
+for picture in "$shown"/preset-*.jpg; do
+  convert "$picture" -resize 96x96 -strip -colors 64 \
+    "PNG8:$top/SlicerModule/Resources/Icons/$(basename "$picture" .jpg).png"
+done
 say "Done: $shown"

@@ -70,7 +70,7 @@ Node* vtkSlicerFenestraLogic::GetSettings() {
   node->SetSingletonTag("Settings");
   node->SetHideFromEditors(true);
   node->SetFlags(
-      {{"samples", "256"}, {"noise", "0.05"}, {"size", "512x512"}, {"background", "0,0,0"}});
+      {{"samples", "256"}, {"noise", "0.05"}, {"size", "512x512"}, {"background", "gradient"}});
   return Node::SafeDownCast(scene->AddNode(node));
 }
 

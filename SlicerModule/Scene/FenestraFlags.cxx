@@ -60,6 +60,8 @@ bool isKind(FlagKind kind, const std::string& value) {
     return isWhole(value);
   case FlagKind::number:
     return areNumbers(value, false);
+  case FlagKind::automatic:
+    return value == "auto" || areNumbers(value, false);
   case FlagKind::numbers:
     return areNumbers(value, true);
   case FlagKind::size:
@@ -80,7 +82,7 @@ const std::vector<Flag>& flags() {
   static const std::vector<Flag> all = {{"focus", Kind::text},
                                         {"preset", Kind::look},
                                         {"margin", Kind::numbers},
-                                        {"labelsmoothing", Kind::number},
+                                        {"labelsmoothing", Kind::automatic},
                                         {"clip", Kind::word},
                                         {"boundary", Kind::word},
                                         {"controlpoints", Kind::whole},
@@ -90,9 +92,9 @@ const std::vector<Flag>& flags() {
                                         {"holemargin", Kind::number},
                                         {"ghost", Kind::number},
                                         {"offset", Kind::number},
-                                        {"soft", Kind::number},
+                                        {"soft", Kind::automatic},
                                         {"contextdensity", Kind::number},
-                                        {"contextsaturation", Kind::number},
+                                        {"contextsaturation", Kind::automatic},
                                         {"view", Kind::word},
                                         {"position", Kind::numbers},
                                         {"target", Kind::numbers},

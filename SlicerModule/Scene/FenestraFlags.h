@@ -10,13 +10,14 @@ namespace FenestraScene {
 /// Form of a flag's value. The renderer checks the limits.
 enum class FlagKind {
   text,
-  word,    ///< lower-case letters
-  whole,   ///< a whole number, not negative
-  number,  ///< a finite number
-  numbers, ///< finite numbers, separated by commas
-  size,    ///< two whole numbers, WxH
-  colour,  ///< a word or numbers
-  look     ///< a name, numbers, a JSON text, or the name of a file
+  word,      ///< lower-case letters
+  whole,     ///< a whole number, not negative
+  number,    ///< a finite number
+  automatic, ///< a finite number, or the word auto
+  numbers,   ///< finite numbers, separated by commas
+  size,      ///< two whole numbers, WxH
+  colour,    ///< a word or numbers
+  look       ///< a name, numbers, a JSON text, or the name of a file
 };
 
 struct Flag {

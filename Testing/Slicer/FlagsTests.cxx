@@ -23,6 +23,12 @@ TEST(SlicerFlags, ValuesThatTheRendererTakesAreGood) {
        std::vector<Case>{{"focus", "Segment_1,a\\,b, <\xc3\xa9>"},
                          {"margin", "1,-0.5,3e-2"},
                          {"clip", "cutaway"},
+                         {"labelsmoothing", "0.6"},
+                         {"soft", "auto"},
+                         {"contextsaturation", "auto"},
+                         {"exposure", "-1.25"},
+                         {"tone", "photographic"},
+                         {"background", "gradient"},
                          {"controlpoints", "50"},
                          {"plane", "1,2,3,0,0,-1"},
                          {"position", "-1.5,2,3"},
@@ -52,6 +58,13 @@ TEST(SlicerFlags, MalformedValuesAreRejected) {
                                                      {"margin", "1,,2"},
                                                      {"margin", "1,"},
                                                      {"noise", "0.05,1"},
+                                                     {"soft", "automatic"},
+                                                     {"soft", "auto,1"},
+                                                     {"soft", "1 auto"},
+                                                     {"soft", "nan"},
+                                                     {"labelsmoothing", "auto "},
+                                                     {"offset", "auto"},
+                                                     {"exposure", "bright"},
                                                      {"clip", "--output=x"},
                                                      {"clip", "surface\n"},
                                                      {"size", "512"},
@@ -91,7 +104,10 @@ TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
       continue;
     const QString name = QString::fromStdString(flag.name);
     ASSERT_TRUE(known.contains(name)) << flag.name;
-    EXPECT_EQ(flag.kind == FlagKind::word, !known[name].words.isEmpty()) << flag.name;
+    const bool hasWords = !known[name].words.isEmpty();
+    EXPECT_EQ(flag.kind == FlagKind::word, hasWords) << flag.name;
+    EXPECT_EQ(flag.kind == FlagKind::automatic, !hasWords && known[name].text.contains("auto:"))
+        << flag.name;
     for (const QString& word : known[name].words)
       EXPECT_EQ(verdictOn(flag.name, word.toStdString()), Verdict::good) << flag.name;
   }

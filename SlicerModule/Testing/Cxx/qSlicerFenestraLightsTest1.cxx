@@ -4,31 +4,53 @@
 
 #include "qSlicerFenestraLights.h"
 
-#include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
 
-int qSlicerFenestraLightsTest1(int, char*[]) {
-  using namespace qSlicerFenestraLights;
-  for (const char* rig : {"cinema", "studio", "headlight", "soft"}) {
+#include <map>
+
+namespace {
+
+using namespace qSlicerFenestraLights;
+using Has = std::array<bool, 4>;
+
+QJsonArray lightsOf(const QString& rig) {
+  return QJsonDocument::fromJson(rig.toUtf8()).object()["lights"].toArray();
+}
+
+int checkRigs() {
+  for (const char* rig : {"cinema", "studio", "headlight", "soft", "amber"}) {
     CHECK_STD_STRING(flag(rig, unchanged).toStdString(), std::string(rig));
-    const QJsonArray lights = QJsonDocument::fromJson(flag(rig, {1.0, 1.0, 1.0, 2.0}).toUtf8())
-                                  .object()["lights"]
-                                  .toArray();
+    const QJsonArray lights = lightsOf(flag(rig, {1.0, 1.0, 1.0, 2.0}));
     CHECK_BOOL(lights.isEmpty(), false);
     CHECK_STD_STRING(lights.last().toObject()["type"].toString().toStdString(),
                      std::string(rig) == "cinema" ? "sky" : "environment");
   }
+  const std::map<QString, Has> expected = {{"cinema", {true, true, true, true}},
+                                           {"amber", {true, true, false, true}},
+                                           {"headlight", {true, false, false, true}},
+                                           {"soft", {false, false, false, true}},
+                                           {"nothing", {false, false, false, false}}};
+  for (const auto& [rig, has] : expected)
+    CHECK_BOOL(lightsIn(rig) == has, true);
+  const Strengths others = {0.5, 2.0, 0.0, 1.0}; // of lights that these have not
+  CHECK_STD_STRING(flag("soft", others).toStdString(), "soft");
+  CHECK_STD_STRING(flag("my.json", others).toStdString(), "my.json");
+  return EXIT_SUCCESS;
+}
+
+int checkStrengths() {
   const auto first = [](const Strengths& strengths, int light) {
-    const QJsonObject rig = QJsonDocument::fromJson(flag("studio", strengths).toUtf8()).object();
-    return rig["lights"].toArray()[light].toObject()["radiance"].toArray()[0].toDouble();
+    return lightsOf(flag("studio", strengths))[light]
+        .toObject()["radiance"]
+        .toArray()[0]
+        .toDouble();
   };
   CHECK_DOUBLE(first({2.0, 1.0, 1.0, 1.0}, 0), 2.0 * first({1.0, 0.5, 1.0, 1.0}, 0));
   CHECK_DOUBLE(first({1.0, 0.5, 1.0, 1.0}, 1), 0.5 * first({2.0, 1.0, 1.0, 1.0}, 1));
   CHECK_DOUBLE(first({1.0, 1.0, 0.0, 1.0}, 2), 0.0);
   const auto cinema = [](const Strengths& strengths, int light, const char* key) {
-    const QJsonObject rig = QJsonDocument::fromJson(flag("cinema", strengths).toUtf8()).object();
-    return rig["lights"].toArray()[light].toObject()[key];
+    return lightsOf(flag("cinema", strengths))[light].toObject()[key];
   };
   const Strengths half = {0.5, 1.0, 1.0, 0.5};
   CHECK_DOUBLE(cinema(half, 0, "radiance").toDouble(),
@@ -36,5 +58,43 @@ int qSlicerFenestraLightsTest1(int, char*[]) {
   CHECK_DOUBLE(cinema(half, 3, "top").toArray()[2].toDouble(),
                0.25 * cinema({1.0, 1.0, 1.0, 2.0}, 3, "top").toArray()[2].toDouble());
   CHECK_BOOL(cinema(half, 0, "color").toString().startsWith("#"), true);
+  return EXIT_SUCCESS;
+}
+
+/// Lights of a rig unlike the renderer's own: a sphere is a key, a rim comes first, and lights that
+/// may stand anywhere, or are more than the strengths, stay as they are.
+int checkOthers() {
+  const QJsonArray lights = lightsOf(R"({"lights": [
+    {"type": "disk", "frame": "camera", "center": [0, 1, -2], "radiance": 1},
+    {"type": "sphere", "frame": "focus", "center": [0, 9, 9], "radiance": [1, 1, 1]},
+    {"type": "rectangle", "center": [0, 500, 0], "radiance": 1},
+    {"type": "directional", "direction": [0, -1, 0], "irradiance": [1, 1, 1]},
+    {"type": "sphere", "frame": "camera", "center": [1, 1, 2], "color": "#ffeedd", "radiance": 1},
+    {"type": "rectangle", "frame": "camera", "center": [-1, 1, 2], "radiance": 1},
+    {"type": "rectangle", "frame": "camera", "center": [0, 3, 2], "radiance": 1},
+    {"type": "glow", "radiance": 1},
+    {"type": "sky", "top": [1, 1, 1], "middle": [1, 1, 1], "bottom": [1, 1, 1]}]})");
+  const QJsonArray all = scaled(lights, {2.0, 3.0, 5.0, 7.0});
+  CHECK_INT(all.size(), lights.size());
+  const double expected[] = {5.0, 1.0, 1.0, 1.0, 2.0, 3.0, 1.0, 1.0};
+  for (int i = 0; i < 8; ++i) {
+    const QJsonObject light = all[i].toObject();
+    const QJsonValue radiance = light["radiance"];
+    if (expected[i] == 1.0) {
+      CHECK_BOOL(all[i] == lights[i], true);
+    } else {
+      CHECK_DOUBLE(radiance.toDouble(), expected[i]);
+    }
+  }
+  CHECK_DOUBLE(all[8].toObject()["bottom"].toArray()[1].toDouble(), 7.0);
+  return EXIT_SUCCESS;
+}
+
+} // namespace
+
+int qSlicerFenestraLightsTest1(int, char*[]) {
+  CHECK_EXIT_SUCCESS(checkRigs());
+  CHECK_EXIT_SUCCESS(checkStrengths());
+  CHECK_EXIT_SUCCESS(checkOthers());
   return EXIT_SUCCESS;
 }

@@ -23,6 +23,8 @@ std::string example(FenestraScene::FlagKind kind) {
     return "12";
   case Kind::number:
     return "-0.5";
+  case Kind::automatic:
+    return "auto";
   case Kind::size:
     return "8x6";
   case Kind::look:
@@ -78,12 +80,12 @@ int testUnknown() {
 int testWithheld() {
   const std::string text =
       R"(<MRML version="Slicer 5.2"><FenestraRender id="r" name="r" )"
-      R"(clip="surface" frames="x" transfer="/etc/passwd" seed="-1" )"
+      R"(clip="surface" frames="x" transfer="/etc/passwd" seed="-1" soft="auto" )"
       R"(lights="{&quot;file&quot;: &quot;a.exr&quot;}"></FenestraRender></MRML>)";
   vtkNew<vtkMRMLScene> scene;
   Node* node = readIn(scene, text);
   CHECK_NOT_NULL(node);
-  CHECK_INT(static_cast<int>(node->GetFlags().size()), 1);
+  CHECK_INT(static_cast<int>(node->GetFlags().size()), 2);
   CHECK_STD_STRING(node->GetFlag("clip"), "surface");
   CHECK_INT(static_cast<int>(node->GetWithheld().size()), 4);
   CHECK_BOOL(node->WithholdsFiles(), true);

@@ -382,8 +382,6 @@ bool qSlicerFenestraTour::runCommand() {
   node->SetParameterAsString("focus", "Femoral cartilage");
   node->SetParameterAsString("transfer", "mr-knee");
   node->SetParameterAsString("boundary", "exact");
-  node->SetParameterAsDouble("labelsmoothing", 0.6);
-  node->SetParameterAsDouble("soft", 2.0);
   node->SetParameterAsNode("output", output);
   node->SetParameterAsInt("samples", 16);
   node->SetParameterAsString("size", "512x512");

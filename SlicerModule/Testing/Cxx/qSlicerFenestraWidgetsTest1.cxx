@@ -1,0 +1,207 @@
+// Widgets of look and clipping without a scene: flags that they show, and flags that they make.
+
+#include "FenestraTesting.h"
+
+#include "qFenestraAbilities.h"
+#include "qSlicerFenestraClipping.h"
+#include "qSlicerFenestraLights.h"
+#include "qSlicerFenestraLook.h"
+#include "qSlicerFenestraMargins.h"
+#include "qSlicerFenestraPanel.h"
+
+#include <ctkSliderWidget.h>
+#include <qMRMLNodeComboBox.h>
+
+#include <QApplication>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QKeyEvent>
+
+namespace {
+
+using Flags = std::map<std::string, std::string>;
+using Look = qSlicerFenestraLook;
+using Clipping = qSlicerFenestraClipping;
+
+QComboBox& box(const QWidget& widget, const char* name) {
+  return *widget.findChild<QComboBox*>(name);
+}
+
+void choose(const QWidget& widget, const char* name, const QString& data) {
+  box(widget, name).setCurrentIndex(box(widget, name).findData(data));
+}
+
+QDoubleSpinBox& number(const QWidget& widget, const char* name) {
+  return *widget.findChild<QDoubleSpinBox*>(name);
+}
+
+void press(QWidget& widget, int key, const QString& text = {}) {
+  QKeyEvent event(QEvent::KeyPress, key, Qt::NoModifier, text);
+  QApplication::sendEvent(&widget, &event);
+}
+
+/// Flags that the widget makes of none, without the empty ones.
+Flags made(const Look& look) {
+  Flags flags, given;
+  look.take(flags);
+  for (const auto& [name, value] : flags)
+    if (!value.empty())
+      given[name] = value;
+  return given;
+}
+
+int checkLookDefaults() {
+  Look look;
+  const Flags gradient = {{"background", "gradient"}};
+  CHECK_BOOL(made(look) == gradient, true);
+  look.show(gradient, {}, false);
+  CHECK_BOOL(made(look) == gradient, true);
+  for (const char* preset : {"ct-soft", "ct-bone", "ct-skeleton", "ct-liver", "ct-heart", "ct-lung",
+                             "mr-brain", "mr-knee", "us-fetal"}) {
+    choose(look, "TransferBox", preset);
+    CHECK_STD_STRING(made(look)["transfer"], std::string(preset));
+  }
+  for (const char* rig : {"cinema", "studio", "headlight", "soft", "amber"}) {
+    choose(look, "RigBox", rig);
+    CHECK_STD_STRING(made(look)["lights"], std::string(rig));
+  }
+  look.handBack();
+  CHECK_BOOL(made(look) == gradient, true);
+  choose(look, "ToneBox", "photographic");
+  CHECK_STD_STRING(made(look)["tone"], "photographic");
+  number(look, "ExposureBox").setValue(-0.75);
+  CHECK_STD_STRING(made(look)["exposure"], "-0.75");
+  look.show({{"exposure", "-0.75"}, {"tone", "photographic"}, {"background", "0,0,0"}}, {}, false);
+  choose(look, "ToneBox", "film");
+  number(look, "ExposureBox").setValue(0.0);
+  CHECK_BOOL(made(look) == Flags({{"background", "0,0,0"}}), true);
+  return EXIT_SUCCESS;
+}
+
+/// Values that no widget has stay until the user chooses another.
+int checkLookKeeps() {
+  Look look;
+  const Flags flags = {{"transfer", "CT-AAA"},
+                       {"lights", R"({"lights": [{"type": "environment", "radiance": 1}]})"},
+                       {"background", "0.3,0.2,0.1"},
+                       {"exposure", "-9.125"},
+                       {"tone", "film"}};
+  look.show(flags, "cinema 50 100 100 100", false); // a rig that these lights do not follow from
+  Flags taken = flags;
+  look.take(taken);
+  CHECK_BOOL(taken == flags, true);
+  CHECK_DOUBLE(look.findChild<ctkSliderWidget*>("Strength0")->value(), 100.0);
+  choose(look, "TransferBox", "ct-bone");
+  look.take(taken);
+  CHECK_STD_STRING(taken["transfer"], "ct-bone");
+  CHECK_STD_STRING(taken["exposure"], "-9.125");
+  look.show({{"transfer", "MR-Default"}}, {}, false); // in place of the last of its kind
+  CHECK_INT(box(look, "TransferBox").findData("CT-AAA"), -1);
+  return EXIT_SUCCESS;
+}
+
+int checkRigs() {
+  Look look;
+  const auto strength = [&look](int i) {
+    return look.findChild<ctkSliderWidget*>(QString("Strength%1").arg(i));
+  };
+  for (int i = 0; i < 4; ++i) {
+    look.show({}, {}, false);
+    CHECK_BOOL(strength(i)->isEnabled(), false); // by default
+    look.show({{"lights", "cinema"}}, {}, false);
+    CHECK_BOOL(strength(i)->isEnabled(), true);
+    look.show({{"lights", "soft"}}, {}, false);
+    CHECK_BOOL(strength(i)->isEnabled(), i == 3);
+  }
+  choose(look, "RigBox", "studio");
+  strength(0)->setValue(50.0);
+  Flags flags;
+  const QString stored = look.take(flags);
+  CHECK_STD_STRING(stored.toStdString(), "studio 50 100 100 100");
+  CHECK_BOOL(flags["lights"].front() == '{', true);
+  Look again;
+  again.show(flags, stored, false);
+  CHECK_STD_STRING(box(again, "RigBox").currentData().toString().toStdString(), "studio");
+  CHECK_DOUBLE(again.findChild<ctkSliderWidget*>("Strength0")->value(), 50.0);
+  const Flags before = flags;
+  CHECK_STD_STRING(again.take(flags).toStdString(), stored.toStdString());
+  CHECK_BOOL(flags == before, true);
+  return EXIT_SUCCESS;
+}
+
+/// Older renderers have neither exposure nor tone.
+int checkAbilities() {
+  Look look;
+  qFenestraAbilities abilities;
+  look.offer(abilities);
+  CHECK_BOOL(number(look, "ExposureBox").isHidden(), true);
+  abilities.flags["exposure"] = abilities.flags["tone"] = {};
+  look.offer(abilities);
+  CHECK_BOOL(number(look, "ExposureBox").isHidden(), false);
+  CHECK_BOOL(box(look, "ToneBox").isHidden(), false);
+  return EXIT_SUCCESS;
+}
+
+/// Anatomies are listed with a picture where there is one.
+int checkPictures() {
+  qSlicerFenestraPanel panel;
+  qFenestraAbilities abilities;
+  abilities.flags["preset"].text = "(spine, heart, lungs)";
+  panel.offer(abilities);
+  QComboBox& anatomies = box(panel, "PresetBox");
+  CHECK_INT(anatomies.count(), 5);
+  for (const char* name : {"spine", "heart", "lungs"})
+    CHECK_BOOL(anatomies.itemIcon(anatomies.findData(name)).isNull(), name == std::string("heart"));
+  return EXIT_SUCCESS;
+}
+
+/// Numbers that may be automatic, by the keyboard alone.
+int checkAutomatic() {
+  Clipping clipping(new qMRMLNodeComboBox);
+  const QList<qSlicerFenestraSegment> focus = {{"A", "A"}};
+  const auto taken = [&clipping](const char* flag) {
+    Flags flags;
+    clipping.take(flags, {}, true, false);
+    return flags[flag];
+  };
+  for (const char* flag : {"labelsmoothing", "soft", "contextsaturation"}) {
+    clipping.show({}, Clipping::Plane::automatic, focus, false);
+    QDoubleSpinBox& one = number(clipping, (std::string(flag) + "Box").c_str());
+    CHECK_STD_STRING(one.text().toStdString(), "auto");
+    CHECK_STD_STRING(taken(flag), "");
+    press(one, Qt::Key_Up);
+    CHECK_DOUBLE(one.value(), 0.0);
+    CHECK_STD_STRING(taken(flag), "0");
+    press(one, Qt::Key_Down);
+    CHECK_STD_STRING(one.text().toStdString(), "auto");
+    one.selectAll();
+    for (const QChar sign : QString("-0.3")) // the minus is not taken
+      press(one, 0, sign);
+    CHECK_DOUBLE(one.value(), 0.3);
+    press(one, Qt::Key_Down);
+    CHECK_DOUBLE(one.value(), 0.0);
+    press(one, Qt::Key_PageDown);
+    CHECK_STD_STRING(taken(flag), "");
+    clipping.show({{flag, "0.5"}}, Clipping::Plane::automatic, focus, false); // of an old scene
+    CHECK_STD_STRING(taken(flag), "0.5");
+    clipping.show({{flag, "auto"}}, Clipping::Plane::automatic, focus, false);
+    CHECK_STD_STRING(one.text().toStdString(), "auto");
+    CHECK_STD_STRING(taken(flag), "auto"); // over a preset
+    clipping.reset();
+    CHECK_STD_STRING(taken(flag), "");
+  }
+  return EXIT_SUCCESS;
+}
+
+} // namespace
+
+int qSlicerFenestraWidgetsTest1(int argc, char* argv[]) {
+  const QApplication application(argc, argv);
+  CHECK_EXIT_SUCCESS(checkLookDefaults());
+  CHECK_EXIT_SUCCESS(checkLookKeeps());
+  CHECK_EXIT_SUCCESS(checkRigs());
+  CHECK_EXIT_SUCCESS(checkAbilities());
+  CHECK_EXIT_SUCCESS(checkPictures());
+  CHECK_EXIT_SUCCESS(checkAutomatic());
+  return EXIT_SUCCESS;
+}
