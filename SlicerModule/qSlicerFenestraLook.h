@@ -14,7 +14,7 @@ struct qFenestraAbilities;
 
 /// \brief How the picture looks: widgets for tissue colours, lights, background, exposure and tone.
 ///
-/// The renderer's defaults are no flags: the command line without them makes the same picture. The
+/// Defaults of the renderer are no flags: the command line without them makes the same picture. The
 /// background is always a flag, for a scene that Slicer saves has one of its own.
 class qSlicerFenestraLook : public QWidget {
   Q_OBJECT

@@ -50,7 +50,7 @@ int checkStrengths() {
   CHECK_DOUBLE(first({1.0, 0.5, 1.0, 1.0}, 1), 0.5 * first({2.0, 1.0, 1.0, 1.0}, 1));
   CHECK_DOUBLE(first({1.0, 1.0, 0.0, 1.0}, 2), 0.0);
   const auto cinema = [](const Strengths& strengths, int light, const char* key) {
-    return lightsOf(flag("cinema", strengths))[light].toObject()[key];
+    return lightsOf(flag("cinema", strengths))[light].toObject().value(key);
   };
   const Strengths half = {0.5, 1.0, 1.0, 0.5};
   CHECK_DOUBLE(cinema(half, 0, "radiance").toDouble(),
@@ -78,8 +78,7 @@ int checkOthers() {
   CHECK_INT(all.size(), lights.size());
   const double expected[] = {5.0, 1.0, 1.0, 1.0, 2.0, 3.0, 1.0, 1.0};
   for (int i = 0; i < 8; ++i) {
-    const QJsonObject light = all[i].toObject();
-    const QJsonValue radiance = light["radiance"];
+    const QJsonValue radiance = all[i].toObject().value("radiance");
     if (expected[i] == 1.0) {
       CHECK_BOOL(all[i] == lights[i], true);
     } else {

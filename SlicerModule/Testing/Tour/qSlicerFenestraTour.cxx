@@ -247,7 +247,7 @@ bool qSlicerFenestraTour::changeClipping() {
   });
   m_panel->findChild<ctkCollapsibleGroupBox*>("ClipDetails")->setCollapsed(true);
   return hole && surroundings && settings()->GetFlag("boundary") == "exact" &&
-         settings()->GetFlag("hole").empty();
+         settings()->GetFlag("hole").empty() && settings()->GetFlag("soft").empty();
 }
 
 /// Tests the automatic view, if the renderer supports it.
