@@ -1,5 +1,7 @@
 #include "image/ColorVision.h"
 
+#include "base/Color.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -67,7 +69,7 @@ Rgb seenBy(ColorSight sight, const Rgb& linear) {
 Lab labOf(const Rgb& linear) {
   // XYZ of Rec. 709 (IEC 61966-2-1), each relative to its value for white.
   const double x = (0.4124 * linear[0] + 0.3576 * linear[1] + 0.1805 * linear[2]) / 0.9505;
-  const double y = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+  const double y = luminance(linear);
   const double z = (0.0193 * linear[0] + 0.1192 * linear[1] + 0.9505 * linear[2]) / 1.089;
   const auto f = [](double t) {
     return t > 216.0 / 24389.0 ? std::cbrt(t) : (24389.0 / 27.0 * t + 16.0) / 116.0;

@@ -22,7 +22,7 @@ struct Lab {
   double L, a, b;
 };
 
-/// Of linear Rec. 709, 1: the display's white.
+/// CIELAB of linear Rec. 709, in which 1 is the display's white.
 Lab labOf(const Rgb& linear);
 
 /// Colour difference of 1976: the distance in CIELAB.

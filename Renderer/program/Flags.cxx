@@ -34,12 +34,14 @@ Error badValue(const std::string& flag, const std::string& expected, const std::
 
 /// Throws Error (usage) unless there is a value, and in the flag's range.
 template <typename Number>
-Number inRange(std::optional<Number> value, const Flag& flag, const std::string& given) {
+Number inRange(std::optional<Number> value, const Flag& flag, const std::string& given,
+               const char* otherwise = "") {
   const auto [least, greatest] = std::pair(flag.takes.least, flag.takes.greatest);
   if (value && least <= static_cast<double>(*value) && static_cast<double>(*value) <= greatest)
     return *value;
   const char* const kind = std::is_integral_v<Number> ? "a whole number from " : "a number from ";
-  throw badValue(flag.name, textOf(kind, numberText(least), " to ", numberText(greatest)), given);
+  throw badValue(flag.name,
+                 textOf(kind, numberText(least), " to ", numberText(greatest), otherwise), given);
 }
 
 } // namespace
@@ -81,6 +83,18 @@ std::vector<std::string> FlagValues::texts(const std::string& name) const {
 std::optional<double> FlagValues::number(const std::string& name) const {
   const auto given = text(name);
   return given ? std::optional(inRange(parsedNumber(*given), flag(name), *given)) : std::nullopt;
+}
+
+std::optional<double> FlagValues::numberOrAuto(const std::string& name) const {
+  const std::string given = *text(name);
+  if (given == "auto")
+    return std::nullopt;
+  return inRange(parsedNumber(given), flag(name), given, ", or auto");
+}
+
+bool FlagValues::isIdle(const std::string& name) const {
+  const std::optional<double>& idle = flag(name).takes.idle;
+  return idle && parsedNumber(text(name).value_or("")) == idle;
 }
 
 std::optional<std::uint64_t> FlagValues::count(const std::string& name) const {

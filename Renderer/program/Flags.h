@@ -29,7 +29,7 @@ struct Takes {
   double least = -infinity, greatest = infinity; ///< range of a number
   std::vector<std::string> words = {};           ///< values, if not empty
   std::string standard = {}; ///< default, shown in the help and in Slicer's panel; empty: none
-  std::string idle = {};     ///< value that changes nothing, whatever else is given; empty: none
+  std::optional<double> idle = {}; ///< number that changes nothing, whatever else is given
   /// Puts a given value into its place; empty: the command asks for the value by name.
   std::function<void(const FlagValues&, const std::string& name)> put = {};
 
@@ -49,10 +49,10 @@ struct Takes {
   }
   /// A number, or the word auto, which leaves `place` empty and is the default.
   static Takes numberOrAuto(std::optional<double>& place, double least, double greatest,
-                            const char* idle) {
+                            double idle) {
     Takes takes = Takes{.least = least, .greatest = greatest, .standard = "auto", .idle = idle};
     return takes.into(place, [](const auto& flags, const auto& name, auto& at) {
-      at = flags.text(name) == "auto" ? std::nullopt : flags.number(name);
+      at = flags.numberOrAuto(name);
     });
   }
   static Takes word(std::vector<std::string> words) {
@@ -171,6 +171,10 @@ public:
   std::optional<std::string> text(const std::string& name) const;
   /// Finite number in the flag's range.
   std::optional<double> number(const std::string& name) const;
+  /// The same; nothing for auto.
+  std::optional<double> numberOrAuto(const std::string& name) const;
+  /// True for a flag's value that changes nothing (Takes::idle).
+  bool isIdle(const std::string& name) const;
   std::optional<std::uint64_t> count(const std::string& name) const;
   /// Exactly `size` finite numbers, separated by commas.
   std::vector<double> numbers(const std::string& name, std::size_t size) const;

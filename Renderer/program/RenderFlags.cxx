@@ -133,8 +133,8 @@ struct RenderTable {
        Takes::numbers().into(focus.shaping.margins, readMargins), Topic::focus, Needs::focus},
       {"labelsmoothing", "MM", clipGroup,
        "Smooths the focus's labels by a Gaussian of this deviation, against stair steps; thick "
-       "slices are interpolated first; auto: 0.6 of a voxel's longest edge, less for thin parts",
-       Takes::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, "0"), Topic::own, Needs::focus},
+       "slices are interpolated first; auto: 0.6 of a voxel's longest edge, not for thin parts",
+       Takes::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, 0.0), Topic::own, Needs::focus},
       {"clip", "MODE", clipGroup,
        "none, plane, hole, cutaway, ghost, surface, or auto: surface with a focus, else none",
        Takes::word(clip.mode, {{"auto", std::nullopt},
@@ -170,16 +170,16 @@ struct RenderTable {
        "Moves the cut away from the eye, into the focus, or toward it (negative)",
        Takes::number(-1e6, 1e6).into(surface.offset), Topic::clip, Needs::clip},
       {"soft", "MM", clipGroup,
-       "Matter comes back gradually over this depth behind the cut; auto: 0.6 of the longest edge "
-       "of the labels' voxels for --clip surface, hole and cutaway, else 0",
-       Takes::numberOrAuto(clip.softness, 0.0, 1e6, "0"), Topic::clip, Needs::clip},
+       "Matter comes back gradually over this depth behind the cut; auto: as for --labelsmoothing, "
+       "with --clip surface, hole and cutaway, else 0",
+       Takes::numberOrAuto(clip.softness, 0.0, 1e6, 0.0), Topic::clip, Needs::clip},
       {"contextdensity", "F", clipGroup,
        "Multiplies the extinction of everything that is not focus, 0 to 1",
        Takes::number(0.0, 1.0).into(focus.contextExtinction), Topic::own, Needs::focus},
       {"contextsaturation", "S", clipGroup,
        "Colour of everything that is not focus, from 0 (grey) to 1 (as it is); auto: 0.35 where "
        "the focus would not be told from its surroundings, else 1",
-       Takes::numberOrAuto(focus.contextSaturation, 0.0, 1.0, "1"), Topic::own, Needs::focus},
+       Takes::numberOrAuto(focus.contextSaturation, 0.0, 1.0, 1.0), Topic::own, Needs::focus},
       {"view", "NAME", viewGroup,
        "anterior, posterior, left, right, superior, inferior, or auto: the direction that shows "
        "most of the focus, least foreshortened, with least removed [the scene's camera, else "
@@ -216,7 +216,8 @@ struct RenderTable {
       {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000",
        Takes::number(0.0, 1000.0).into(scene.density)},
       {"lights", "FILE|PRESET|JSON", lookGroup,
-       "Lights: .json, cinema, studio, headlight, soft, or the text of a .json itself, {...}",
+       "Lights: .json, cinema, studio, headlight, soft, amber, or the text of a .json itself, "
+       "{...}",
        Takes::text().into(scene.lights), Topic::lights},
       {"environment", "R,G,B|GREY|FILE", lookGroup,
        "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own",

@@ -69,7 +69,7 @@ void checkClip(const FlagValues& flags, const ClipRequest& clip) {
     throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ, or a --focus to place it by");
   for (const Flag& flag : renderSyntax.flags)
     if (const auto why = whyWithoutEffect(flag.needs, hasFocus, mode, clip.surface.boundary);
-        !why.empty() && flags.differs(flag.name) && flags.text(flag.name) != flag.takes.idle)
+        !why.empty() && flags.differs(flag.name) && !flags.isIdle(flag.name))
       throw usageError("--", flag.name, ": ", why);
   if (flags.has("surface") && !isDepthClip(mode))
     throw usageError("--surface: --clip none and plane have none; add --focus A,B,... without "

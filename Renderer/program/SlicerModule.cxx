@@ -37,7 +37,7 @@ std::string typeOf(const Takes& takes) {
 /// Adds a slider if the range is narrow enough to set by hand.
 void addConstraints(pugi::xml_node parameter, const Takes& takes) {
   constexpr double widest = 1e6;
-  if (takes.standard.empty() || takes.greatest - takes.least > widest)
+  if (typeOf(takes) == "string" || takes.standard.empty() || takes.greatest - takes.least > widest)
     return;
   pugi::xml_node constraints = parameter.append_child("constraints");
   addText(constraints, "minimum", numberText(takes.least));

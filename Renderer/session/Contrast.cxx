@@ -10,15 +10,28 @@
 namespace fenestra {
 namespace {
 
-/// Every n-th value, so that some ten thousand are left.
-std::vector<double> thinned(const std::vector<double>& values) {
-  constexpr std::size_t most = 20000;
-  const std::size_t stride = values.size() / most + 1;
-  std::vector<double> some;
-  for (std::size_t i = 0; i < values.size(); i += stride)
-    some.push_back(values[i]);
-  return some;
-}
+/// Every n-th of the values added, n a power of two, so that some ten thousand are left.
+class Thinned {
+public:
+  void add(double value) {
+    if (m_count++ % m_stride != 0)
+      return;
+    m_values.push_back(value);
+    if (m_values.size() < most)
+      return;
+    for (std::size_t i = 0; 2 * i < m_values.size(); ++i)
+      m_values[i] = m_values[2 * i];
+    m_values.resize(m_values.size() / 2);
+    m_stride *= 2;
+  }
+  const std::vector<double>& values() const { return m_values; }
+
+private:
+  static constexpr std::size_t most = 1 << 15;
+
+  std::vector<double> m_values;
+  std::size_t m_count = 0, m_stride = 1;
+};
 
 /// Samples of the volume to both sides of the faces between voxels of the focus and others.
 template <typename Voxel>
@@ -43,7 +56,7 @@ public:
         for (std::int64_t x = 0; x < size.x(); ++x)
           if (isInside({x, y, z}))
             visitFaces({x, y, z});
-    return {thinned(m_inner), thinned(m_outer)};
+    return {m_inner.values(), m_outer.values()};
   }
 
 private:
@@ -73,13 +86,13 @@ private:
       sample(voxel + k * step, m_outer);
   }
 
-  void sample(const Size3& voxel, std::vector<double>& into) const {
+  void sample(const Size3& voxel, Thinned& into) const {
     const Vec3 index = m_toVolume * voxel.cast<double>();
     if (index != Vec3(index.cwiseMax(m_box.lower).cwiseMin(m_box.upper)))
       return;
     const double value = m_field.value(index);
     if (m_transfer.extinction(value)[0] > 0.0)
-      into.push_back(value);
+      into.add(value);
   }
 
   const Mask& m_focus;
@@ -87,7 +100,7 @@ private:
   Box m_box;
   Affine m_toVolume;
   const TransferFunction& m_transfer;
-  std::vector<double> m_inner, m_outer;
+  Thinned m_inner, m_outer;
 };
 
 /// Display light, linear, of thick matter: the mean over scalars of `albedoOf` their albedo.
@@ -107,9 +120,9 @@ Rgb displayed(const std::vector<double>& scalars, double g, const AlbedoOf& albe
 
 } // namespace
 
-bool Contrast::isEnough() const {
+double Contrast::share() const {
   constexpr double normal = 20.0, colorBlind = 12.0;
-  return deltaE[0] > normal && deltaE[1] > colorBlind && deltaE[2] > colorBlind;
+  return std::min({deltaE[0] / normal, deltaE[1] / colorBlind, deltaE[2] / colorBlind});
 }
 
 BorderScalars borderScalars(const Mask& focus, const Volume& volume,
@@ -141,10 +154,10 @@ FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& foc
   if (border.focus.empty() || border.context.empty())
     return {asked.value_or(1.0)};
   const Contrast asIs = contrastAt(border, transfer, asked.value_or(1.0));
-  if (asked || asIs.isEnough())
+  if (asked || asIs.share() > 1.0)
     return {asked.value_or(1.0), asIs};
   const Contrast paled = contrastAt(border, transfer, pale);
-  return paled.deltaE[0] > asIs.deltaE[0] ? FocusContrast{pale, paled} : FocusContrast{1.0, asIs};
+  return paled.share() > asIs.share() ? FocusContrast{pale, paled} : FocusContrast{1.0, asIs};
 }
 
 } // namespace fenestra

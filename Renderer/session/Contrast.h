@@ -17,8 +17,9 @@ struct Contrast {
   std::array<double, 4> deltaE; ///< CIEDE2000 by ColorSight
   double deltaL;                ///< of CIELAB lightness, in absolute value
 
-  /// True: normal sight and the two frequent kinds of colour blindness tell them apart.
-  bool isEnough() const;
+  /// Least share of what normal sight and the two frequent kinds of colour blindness need, 20, 12
+  /// and 12, to tell them apart.
+  double share() const;
 };
 
 /// Scalars at the focus's border: of the three voxels to either side of its labels' faces, those
@@ -31,8 +32,8 @@ struct BorderScalars {
 BorderScalars borderScalars(const Mask& focus, const Volume& volume,
                             const TransferFunction& transfer);
 
-/// Of the mean colours of both sides, which have at least one scalar each. `saturation`: of the
-/// context (ContextStyle).
+/// Contrast of the mean colours of both sides, which have at least one scalar each. `saturation`:
+/// of the context (ContextStyle).
 Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfer,
                     double saturation);
 
@@ -42,8 +43,8 @@ struct FocusContrast {
   std::optional<Contrast> contrast = {}; ///< nothing where one side is transparent
 };
 
-/// `asked`: by the user; nothing: `pale` where the contrast is not enough without and greater with
-/// it, else 1.
+/// `asked`: by the user; nothing: `pale` where the contrast's share is at most 1 without and
+/// greater with it, else 1.
 FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& focus,
                              const Volume& volume, const TransferFunction& transfer);
 

@@ -1,8 +1,8 @@
 #include "session/Defaults.h"
 
+#include "base/Color.h"
 #include "base/Error.h"
 #include "model/medium/Reflectance.h"
-#include "model/medium/VolumeProperty.h"
 
 #include <map>
 
@@ -174,11 +174,11 @@ TransferFunction relativeTransfer(const Volume& volume) {
   const double start = background - 0.35 * (background - low);
   return {ScalarFunction({knot(start, 0.0), knot(background, 0.8 * unit),
                           knot(between(0.3), 2.5 * unit), knot(high, 5.0 * unit)}),
-          albedoFor(ColorFunction({{at(0.05), decodeSrgb(Rgb(0.878, 0.627, 0.541))},
-                                   {at(0.15), decodeSrgb(Rgb(0.839, 0.565, 0.471))},
-                                   {at(0.35), decodeSrgb(Rgb(0.800, 0.525, 0.439))},
-                                   {at(0.6), decodeSrgb(Rgb(0.878, 0.659, 0.541))},
-                                   {at(1.0), decodeSrgb(Rgb(0.957, 0.847, 0.745))}}),
+          albedoFor(ColorFunction({{at(0.05), decodeSrgb(Rgb(0.816, 0.643, 0.580))},
+                                   {at(0.15), decodeSrgb(Rgb(0.769, 0.565, 0.502))},
+                                   {at(0.35), decodeSrgb(Rgb(0.729, 0.525, 0.455))},
+                                   {at(0.6), decodeSrgb(Rgb(0.808, 0.627, 0.541))},
+                                   {at(1.0), decodeSrgb(Rgb(0.925, 0.831, 0.745))}}),
                     0.0),
           {},
           0.0,

@@ -42,6 +42,7 @@ SceneRequest requestFor(const Subject& subject) {
     request.segmentation = subject.labelmap.string();
   request.focus = {subject.focus};
   request.focusLook.shaping.smoothing = subject.smoothing;
+  request.clip.softness = 0.0; // depths are those of the surface itself
   return request;
 }
 
@@ -128,7 +129,7 @@ std::vector<float> depthsInPicture(const Subject& subject, const View& view,
   std::ostringstream arguments;
   arguments.precision(17);
   arguments << quoted(subject.input.string()) << " --focus " << quoted(subject.focus)
-            << " --labelsmoothing " << subject.smoothing << " --boundary " << boundary
+            << " --labelsmoothing " << subject.smoothing << " --soft 0 --boundary " << boundary
             << " --position=" << listed(view.position) << " --target=" << listed(view.target)
             << " --up=" << listed(view.up) << " --scale " << view.halfHeight
             << " --projection orthographic --size " << view.size << 'x' << view.size

@@ -188,8 +188,8 @@ TEST_F(RendersCommand, StatsCountOnlyFilesAndRaysThatTheSceneNeeds) {
   EXPECT_GT(lit["gradients"], 0);
   EXPECT_LE(lit["gradients"], lit["collisions"]);
 
-  const nlohmann::json focused =
-      counted({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--clip", "cutaway"});
+  const nlohmann::json focused = counted({"--segmentation", "segments.seg.nrrd", "--focus", "A",
+                                          "--clip", "cutaway", "--labelsmoothing", "0"});
   EXPECT_EQ(focused["focusVoxels"], 27) << "one, and a margin";
   EXPECT_EQ(focused["filesRead"],
             (nlohmann::json{"haze.json", "segments.seg.nrrd", "volume.nrrd"}));
@@ -241,11 +241,11 @@ TEST_F(RendersCommand, StopsAtTimeLimitAndAtNoiseTarget) {
 }
 
 TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
-  const Outcome outcome =
-      run({"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
-           "--transfer", "knee/knee.vp.json", "--size", "32x32", "--samples", "4", "--output",
-           (folder / "knee.png").string(), "--stats", (folder / "knee.json").string()},
-          kneeFolder().path());
+  const Outcome outcome = run(
+      {"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
+       "--transfer", "knee/knee.vp.json", "--labelsmoothing", "0", "--size", "32x32", "--samples",
+       "4", "--output", (folder / "knee.png").string(), "--stats", (folder / "knee.json").string()},
+      kneeFolder().path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json json = stats("knee.json");
   double stages = 0.0;
@@ -271,6 +271,9 @@ TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
   EXPECT_GE(json["boundaryMismatchMm"]["max"], json["boundaryMismatchMm"]["p95"]);
   EXPECT_GT(json["focusCoverage"], 0.5);
   EXPECT_LE(json["focusCoverage"], 1.0);
+  for (const char* key : {"deltaE", "deltaEProtan", "deltaEDeutan", "deltaETritan", "deltaL"})
+    EXPECT_GE(json["contrast"][key], 0.0) << key;
+  EXPECT_GT(json["contrast"]["contextSaturation"], 0.0);
   EXPECT_TRUE(json["warnings"].is_array());
 }
 

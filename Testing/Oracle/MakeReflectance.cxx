@@ -8,6 +8,7 @@
 // reciprocity this is the radiance seen along the normal under uniform light of radiance 1.
 
 #include "Scatter.h"
+#include "model/medium/Reflectance.h"
 
 #include <tbb/parallel_for.h>
 
@@ -19,11 +20,11 @@
 
 namespace {
 
+using fenestra::greatestColorG;
 using fenestra::oracle::Generator;
 using fenestra::oracle::uniform;
 
 constexpr int rows = 16, columns = 32;
-constexpr double greatestG = 0.95;
 constexpr int photons = 1 << 20, parts = 64;
 constexpr double followed = 500.0; ///< scatterings, times 1 - g
 
@@ -90,17 +91,17 @@ double reflectance(const Counts& shares, double albedo) {
 } // namespace
 
 int main() {
-  std::puts("#pragma once\n"
-            "// Made by Testing/Oracle/MakeReflectance.cxx. Rows: g from 0 to greatestG; columns: "
-            "s from 0\n"
-            "// to 1; values: reflectance / ((1 - s) / (1 + 2 s)).\n\n"
-            "namespace fenestra::seen {\n");
+  std::puts(
+      "#pragma once\n"
+      "// Made by Testing/Oracle/MakeReflectance.cxx. Rows: g from 0 to greatestColorG; columns: "
+      "s from 0\n"
+      "// to 1; values: reflectance / ((1 - s) / (1 + 2 s)).\n\n"
+      "namespace fenestra::seen {\n");
   std::printf("inline constexpr int rows = %d, columns = %d;\n"
-              "inline constexpr double greatestG = %g;\n"
               "inline constexpr float ratios[rows][columns] = {\n",
-              rows, columns, greatestG);
+              rows, columns);
   for (int r = 0; r < rows; ++r) {
-    const double g = greatestG * r / (rows - 1.0);
+    const double g = greatestColorG * r / (rows - 1.0);
     const Counts shares = leaving(g, static_cast<std::uint64_t>(r) + 1);
     std::printf("    {");
     for (int c = 0; c < columns; ++c) {

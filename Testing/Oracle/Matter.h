@@ -19,7 +19,7 @@ public:
   Rgb albedo(const Vec3& world) const;
   /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;
-  /// The same in spans of the transfer function, which must have two knots.
+  /// Gradient in spans of the transfer function, which must have two knots.
   Vec3 spansPerMm(const Vec3& world) const;
   /// Probability that a collision scatters at a surface (Kroes, Post, Botha 2012), where matter's
   /// gradient is `slope`, spans per mm.

@@ -71,7 +71,7 @@ Scatterer Scatterer::atSurface(const Vec3& incoming, const Rgb& albedo, const Ve
 
 /// At a surface, Lambert: albedo / pi; GGX (Walter et al. 2007): D F G / (4 cos_i cos_o), D of
 /// roughness^2 = 2 / (power + 2), G the product of Smith's two terms, F Schlick's with F0 = 0.04.
-/// As a coat of weight w, F0 = 0.028 over a matte base (Kelemen, Szirmay-Kalos 2001):
+/// Coat of weight w, F0 = 0.028 over a matte base (Kelemen, Szirmay-Kalos 2001):
 /// base / pi (1 - w E(cos_i)) (1 - w E(cos_o)) / (1 - w E_mean), E what the coat reflects in all,
 /// E_mean the integral of 2 x E(x); base / (1 - base) is odds times albedo / (1 - albedo).
 Rgb Scatterer::f(const Vec3& outgoing) const {

@@ -4,6 +4,7 @@
 
 #include "Support.h"
 #include "base/Color.h"
+#include "model/medium/Reflectance.h"
 
 #include <gtest/gtest.h>
 
@@ -110,7 +111,7 @@ TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
   EXPECT_LT(same.contrast->deltaE[1], same.contrast->deltaE[0]);
   const FocusContrast other = chosenContrast({}, ballMask(), volume, twoColors(red, cream));
   EXPECT_EQ(other.saturation, 1.0);
-  EXPECT_TRUE(other.contrast && other.contrast->isEnough());
+  EXPECT_TRUE(other.contrast && other.contrast->share() > 1.0);
   const FocusContrast asked = chosenContrast(1.0, ballMask(), volume, twoColors(red, red));
   EXPECT_EQ(asked.saturation, 1.0);
   EXPECT_EQ(asked.contrast->deltaE[0], 0.0);
@@ -118,6 +119,20 @@ TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
   const FocusContrast alone = chosenContrast({}, ballMask(), ballVolume(6.0), twoColors(red, red));
   EXPECT_EQ(alone.saturation, 1.0);
   EXPECT_FALSE(alone.contrast);
+}
+
+/// Purple around grey-blue: paled, normal sight tells them apart better, and the colour-blind no
+/// longer do.
+TEST(Contrast, TakesNothingFromTheColorBlind) {
+  const auto albedoOf = [](const Rgb& encoded) { return albedoFor(decodeSrgb(encoded), 0.0); };
+  const TransferFunction transfer =
+      twoColors(albedoOf(Rgb(0.82, 0.486, 0.918)), albedoOf(Rgb(0.435, 0.506, 0.545)));
+  const Volume volume = ballVolume(15.0);
+  const Contrast paled = *chosenContrast(pale, ballMask(), volume, transfer).contrast;
+  const FocusContrast chosen = chosenContrast({}, ballMask(), volume, transfer);
+  EXPECT_EQ(chosen.saturation, 1.0);
+  EXPECT_GT(paled.deltaE[0], chosen.contrast->deltaE[0]);
+  EXPECT_LT(paled.deltaE[1], chosen.contrast->deltaE[1]);
 }
 
 } // namespace

@@ -109,7 +109,7 @@ TEST(LightReader, RefusesWhatIsNoColor) {
                             "\"#d8a09g\"", "\"# d8a09\"", "\"#-8a090\"", "\"red\"", "[1, 1, 1]"})
     refuse(color, "1", "color: must be a colour such as \"#d8a090\"");
   refuse("\"#000000\"", "1", "color: is black");
-  refuse("\"#d8a090\"", "[1, 1, 1]", "radiance: must be a number");
+  refuse("\"#d8a090\"", "[1, 1, 1]", "radiance: must be one number with \"color\"");
   refuse("\"#d8a090\"", "-1", "radiance: is -1");
   expectRefused("test", "lights[0]: has no \"radiance\"", [] {
     parseLights(R"({"lights": [{"type": "environment", "color": "#ffffff"}]})", "test");
@@ -129,7 +129,8 @@ TEST(LightReader, ErrorNamesTheField) {
   refuse(R"({"type": "environment", "radiance": [1, 1]})", "lights[1].radiance: must have 3");
   refuse(R"({"type": "environment", "radiance": [1, -1, 1]})", "lights[1].radiance[1]: is -1");
   refuse(R"({"type": "environment", "radiance": [1, 1, 1e35]})", "lights[1].radiance[2]");
-  refuse(R"({"type": "environment", "radiance": 1})", "lights[1].radiance: must be an array");
+  refuse(R"({"type": "environment", "radiance": 1})",
+         "lights[1].radiance: must be one number with \"color\", and three without");
   refuse(R"({"type": "environment", "colour": 1})", "lights[1]: unknown key \"colour\"");
   refuse(R"({"type": "directional", "direction": [0, 0, 0], "irradiance": [1, 1, 1]})",
          "lights[1].direction: is the zero vector");

@@ -174,18 +174,38 @@ TEST(MaskShaping, AutomaticSmoothingGoesByTheLongestEdge) {
   EXPECT_NEAR(automaticSmoothing(betweenSlices(mask).grid), 0.6, 1e-12);
 }
 
+/// Parts that vanish stay as labelled, also beside others that do not.
 TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
-  const Grid grid = centredGrid({31, 31, 31});
-  const auto smoothing = [&](double radius) {
-    const Mask tube = maskOf(grid, [radius](const Vec3& p) {
-      return std::hypot(p.x(), p.y()) < radius && std::abs(p.z()) < 14.0;
-    });
-    const Mask smooth = smoothedAutomatically(tube, volume);
-    EXPECT_GE(static_cast<double>(smooth.count), 0.8 * static_cast<double>(tube.count));
-    return smooth.smoothing;
+  const Mask mask = maskOf(centredGrid({41, 31, 31}), [](const Vec3& p) {
+    const bool isLine = std::hypot(p.x() + 15.0, p.y()) < 0.5;
+    return (isLine || (p - Vec3(5.0, 0.0, 0.0)).norm() < 6.0) && std::abs(p.z()) < 14.0;
+  });
+  const auto valueAt = [](const Mask& of, const Vec3& p) {
+    const Vec3 index = of.grid.worldToIndex * p;
+    return of.voxels[numberOf(index.array().round().cast<std::int64_t>(), of.grid.size)];
   };
-  EXPECT_NEAR(smoothing(6.0), 0.6, 1e-12);
-  EXPECT_LT(smoothing(0.5), 0.6) << "a line of voxels";
+  const Mask smooth = smoothedAutomatically(mask, volume), plain = smoothed(mask, 0.6, volume);
+  EXPECT_NEAR(smooth.smoothing, 0.6, 1e-12);
+  EXPECT_LT(valueAt(plain, Vec3(-15.0, 0.0, 3.0)), plain.half());
+  EXPECT_EQ(valueAt(smooth, Vec3(-15.0, 0.0, 3.0)), 255);
+  EXPECT_EQ(smooth.count, plain.count + 27) << "27 voxels of a line";
+  EXPECT_EQ(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)));
+  const Mask flakes = maskOf(centredGrid({9, 9, 9}, {1.0, 1.0, 0.01}),
+                             [](const Vec3& p) { return std::abs(p.x()) < 2.5; });
+  EXPECT_EQ(smoothedAutomatically(flakes, volume).full, 1) << "as labelled";
+}
+
+TEST(MaskShaping, WideSmoothingTakesTimeThatItsWidthDoesNotChange) {
+  const Mask mask = maskOf(centredGrid({21, 21, 21}, {1.0, 1.0, 1e-4}),
+                           [](const Vec3& p) { return std::abs(p.x()) < 4.5; });
+  const Mask smooth = smoothed(mask, 1.0, volume);
+  const auto at = [&](int x) {
+    const Vec3 index = smooth.grid.worldToIndex * Vec3(x, 0.0, 0.0);
+    return smooth.voxels[numberOf(index.array().round().cast<std::int64_t>(), smooth.grid.size)];
+  };
+  EXPECT_GT(at(0), 250);
+  EXPECT_GT(at(4), 128);
+  EXPECT_LT(at(5), 128);
 }
 
 TEST(MaskShaping, InterpolationKeepsThickSlicesAndTheVolumeOfABall) {

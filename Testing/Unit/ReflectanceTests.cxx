@@ -10,7 +10,8 @@
 namespace fenestra::testing::ReflectanceTests {
 namespace {
 
-/// Of a half-space of isotropic scattering, to 5e-5: 1 - sqrt(1 - a) H(1) with Chandrasekhar's H.
+/// Reflectance of a half-space of isotropic scattering, to 5e-5: 1 - sqrt(1 - a) H(1) with
+/// Chandrasekhar's H.
 TEST(Reflectance, EqualsChandrasekharsForIsotropicScattering) {
   EXPECT_NEAR(reflectance(0.5, 0.0), 0.1152, 0.01 * 0.1152);
   EXPECT_NEAR(reflectance(0.9, 0.0), 0.4149, 0.01 * 0.4149);
@@ -51,7 +52,9 @@ TEST(SeenColors, AreLinearBetweenKnots) {
     for (double s = 10.0; s < 30.0; s += 0.25) {
       const Rgb color = dark + (s - 10.0) / 20.0 * (light - dark);
       for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(reflectance(albedo(s)[c], g), color[c], (g > 0.0 ? 0.1 : 0.02) * color[c] + 0.003) << s;
+        EXPECT_NEAR(reflectance(albedo(s)[c], g), color[c],
+                    (g > 0.0 ? 0.1 : 0.02) * color[c] + 0.003)
+            << s;
     }
     EXPECT_TRUE(isApprox(albedo(30.0), albedoFor(dark, g), 1e-12)) << "a step stays one";
     EXPECT_TRUE(isApprox(albedo(50.0), albedoFor(dark, g), 1e-12));

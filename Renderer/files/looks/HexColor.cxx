@@ -1,8 +1,8 @@
 #include "files/looks/HexColor.h"
 
-#include "model/medium/VolumeProperty.h"
+#include "base/Color.h"
 
-#include <charconv>
+#include <string>
 
 namespace fenestra {
 
@@ -14,10 +14,8 @@ Rgb readHexColor(const JsonNode& node) {
     throw node.error("must be a colour such as \"#d8a090\"");
   Rgb encoded;
   for (int channel = 0; channel < 3; ++channel) {
-    const char* const digits = text.data() + 1 + 2 * channel;
-    int value = 0;
-    std::from_chars(digits, digits + 2, value, 16);
-    encoded[channel] = value / 255.0;
+    const auto digit = static_cast<std::size_t>(1 + 2 * channel);
+    encoded[channel] = std::stoi(text.substr(digit, 2), nullptr, 16) / 255.0;
   }
   return decodeSrgb(encoded);
 }

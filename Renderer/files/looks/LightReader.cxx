@@ -1,11 +1,11 @@
 #include "files/looks/LightReader.h"
 
+#include "base/Color.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
 #include "files/looks/HexColor.h"
 #include "files/pictures/ImageReader.h"
-#include "model/medium/ContextStyle.h"
 
 namespace fenestra {
 namespace {
@@ -28,12 +28,15 @@ Rgb readTriple(const JsonNode& node) {
 /// luminance of light of that colour.
 Rgb readRadiance(const JsonNode& light, const std::string& key) {
   const auto color = light.find("color");
+  const JsonNode value = light.at(key);
+  if (value.isNumber() != color.has_value())
+    throw value.error("must be one number with \"color\", and three without");
   if (!color)
-    return readTriple(light.at(key));
+    return readTriple(value);
   const Rgb tint = readHexColor(*color);
   if (tint.isZero(0.0))
     throw color->error("is black, which no light is; use a radiance of 0 for a light that is off");
-  return tint * (light.at(key).numberIn(0.0, largest) / luminance(tint));
+  return tint * (value.numberIn(0.0, largest) / luminance(tint));
 }
 
 /// File name without zero bytes and line breaks, fit for a message of one line.

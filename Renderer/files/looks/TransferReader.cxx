@@ -81,11 +81,14 @@ TransferLook readOwn(const JsonNode& root) {
   const auto color = root.find("color");
   if (color && root.find("albedo"))
     throw color->error("and albedo contradict each other; give one");
+  if (color && !(g >= 0.0 && g <= greatestColorG))
+    throw root.at("g").error(
+        textOf("must be from 0 to ", numberText(greatestColorG), " with \"color\""));
+  ScalarFunction extinction = readCurve<1>(root.at("extinction"), largestValue);
   if (!color && !root.find("albedo"))
     throw root.error("has no \"albedo\" and no \"color\"; give one");
-  TransferFunction transfer{.extinction = readCurve<1>(root.at("extinction"), largestValue),
-                            .albedo = color ? readColors(*color, g)
-                                            : readCurve<3>(root.at("albedo"), 1.0)};
+  TransferFunction transfer{std::move(extinction),
+                            color ? readColors(*color, g) : readCurve<3>(root.at("albedo"), 1.0)};
   transfer.g = g;
   transfer.shading = readShading(root, g);
   const auto scalars = root.find("scalars");

@@ -29,7 +29,7 @@ void addRow(float weight, const float* from, std::int64_t count, float* to) {
     to[x] += weight * from[x];
 }
 
-/// Slice of floats; rows that hold nothing but 0 are not stored.
+/// Slice of floats; rows that hold nothing but 0 are marked, and not written.
 struct Plane {
   std::vector<float> values;
   std::vector<char> isEmpty; ///< by row

@@ -1,5 +1,6 @@
 #pragma once
-// Gaussian of a mask, a few slices at a time: little memory, and rows without matter cost nothing.
+// Narrow Gaussian of a mask, a few slices at a time: little memory, and rows without matter cost
+// nothing. Time and memory grow with the deviation.
 
 #include "model/volume/Mask.h"
 

@@ -5,6 +5,7 @@
 
 #include <itkImage.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>
+#include <itkSmoothingRecursiveGaussianImageFilter.h>
 
 #include <algorithm>
 
@@ -33,7 +34,7 @@ Part around(const Mask& mask, double reach, const Grid& volume) {
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
   const Vec3 first = (-voxels).cwiseMax((lower.array().floor() - 1.0).matrix()).cwiseMin(0.0);
   const Vec3 end = (last + voxels).cwiseMin((upper.array().ceil() + 1.0).matrix()).cwiseMax(last);
-  constexpr double fewest = 4.0; // voxels that recursive filters need
+  constexpr double fewest = 4.0; // voxels that recursive filters and ContextStyle need
   const Vec3 size = (end - first + Vec3::Ones()).cwiseMax(fewest);
   if (size.prod() > 0x1p31)
     throw outputError("--margin and --labelsmoothing",
@@ -142,27 +143,77 @@ Mask united(const std::vector<Mask>& masks) {
   return result;
 }
 
+namespace {
+
+/// Widest deviation that is blurred by a kernel, voxels; the time of ITK's recursive filter does
+/// not grow with it.
+constexpr double widestKernel = 8.0;
+
+std::vector<std::uint8_t> blurredRecursively(const Mask& mask, const Part& part, double deviation) {
+  const auto gaussian = itk::SmoothingRecursiveGaussianImageFilter<Pixels, Pixels>::New();
+  gaussian->SetInput(pixelsOf(mask, part));
+  gaussian->SetSigma(deviation); // mm
+  gaussian->Update();
+  const float* const from = gaussian->GetOutput()->GetBufferPointer();
+  std::vector<std::uint8_t> result(static_cast<std::size_t>(part.size.prod()));
+  std::transform(from, from + result.size(), result.begin(), [](float value) {
+    return static_cast<std::uint8_t>(value > 0.0F ? std::min(value, 1.0F) * 255.0F + 0.5F : 0.0F);
+  });
+  return result;
+}
+
+/// Voxels of the mask around which nothing is left of it.
+std::vector<std::size_t> vanished(const Mask& mask, const Mask& smooth, const Size3& first) {
+  std::vector<std::size_t> voxels;
+  const Size3& size = smooth.grid.size;
+  forVoxels(Part{Size3::Zero(), mask.grid.size}, [&](const Size3& voxel, std::size_t number) {
+    if (mask.voxels[number] < mask.half())
+      return;
+    const Size3 at = voxel - first;
+    const auto isLeft = [&](const Size3& other) {
+      return smooth.voxels[numberOf(other, size)] >= smooth.half();
+    };
+    bool isAny = isLeft(at);
+    const Size3 lower = (at - Size3::Constant(1)).cwiseMax(0);
+    const Size3 upper = (at + Size3::Constant(1)).cwiseMin((size.array() - 1).matrix());
+    for (std::int64_t z = lower.z(); z <= upper.z() && !isAny; ++z)
+      for (std::int64_t y = lower.y(); y <= upper.y() && !isAny; ++y)
+        for (std::int64_t x = lower.x(); x <= upper.x() && !isAny; ++x)
+          isAny = isLeft({x, y, z});
+    if (!isAny)
+      voxels.push_back(numberOf(at, size));
+  });
+  return voxels;
+}
+
+} // namespace
+
 Mask smoothed(const Mask& mask, double deviation, const Grid& volume) {
   if (deviation == 0.0)
     return mask;
   constexpr double farthest = 3.0; // deviations
   const Part part = around(mask, farthest * deviation, volume);
   const Vec3 deviations = deviation * mask.grid.spacing().cwiseInverse();
-  const std::vector<std::uint8_t> values = blurred(mask, part.first, part.size, deviations);
+  const std::vector<std::uint8_t> values = deviations.maxCoeff() > widestKernel
+                                               ? blurredRecursively(mask, part, deviation)
+                                               : blurred(mask, part.first, part.size, deviations);
   Mask result = maskOf(mask, part, 255, [&](std::size_t i) { return values[i]; });
   result.smoothing = deviation;
   return result;
 }
 
 Mask smoothedAutomatically(const Mask& mask, const Grid& volume) {
-  constexpr double least = 0.8;
   const double deviation = automaticSmoothing(mask.grid);
-  for (const double factor : {1.0, 2.0 / 3.0}) {
-    Mask result = smoothed(mask, factor * deviation, volume);
-    if (static_cast<double>(result.count) >= least * static_cast<double>(mask.count))
-      return result;
+  if (deviation > widestKernel * mask.grid.spacing().minCoeff())
+    return mask; // voxels like needles, or flakes
+  Mask result = smoothed(mask, deviation, volume);
+  const Vec3 first = mask.grid.worldToIndex * result.grid.indexToWorld.translation();
+  for (const std::size_t voxel :
+       vanished(mask, result, first.array().round().cast<std::int64_t>())) {
+    result.voxels[voxel] = result.full;
+    ++result.count;
   }
-  return mask;
+  return result;
 }
 
 } // namespace fenestra

@@ -13,7 +13,7 @@ struct MaskShaping {
   /// shrinks; empty: none.
   std::vector<double> margins = {};
   /// Standard deviation of a Gaussian, mm, applied after thick slices are interpolated
-  /// (betweenSlices); 0: neither is done; nothing: automaticSmoothing(), or less for thin parts.
+  /// (betweenSlices); 0: neither is done; nothing: smoothedAutomatically().
   std::optional<double> smoothing = 0.0;
 
   bool operator==(const MaskShaping&) const = default;
@@ -42,8 +42,9 @@ double automaticSmoothing(const Grid& labels);
 /// Indicator convolved with a Gaussian, `deviation` in mm; `full` is 255. Parts thinner than about
 /// the deviation vanish.
 Mask smoothed(const Mask& mask, double deviation, const Grid& volume);
-/// The same with automaticSmoothing(), two thirds of it, or 0: the first that leaves four fifths of
-/// the voxels, as it does not of thin vessels.
+/// Indicator convolved by automaticSmoothing(); but parts that it would erase, such as vessels a
+/// voxel wide, stay as they are labelled; and all of a mask does whose voxels are more than ten
+/// times as long as they are wide.
 Mask smoothedAutomatically(const Mask& mask, const Grid& volume);
 
 } // namespace fenestra

@@ -8,12 +8,28 @@
 namespace fenestra {
 namespace {
 
+/// Axis along which voxels are longest, and the number of slices in place of one across it: odd, so
+/// that no voxel lies half-way between two straight outlines, neither inside nor outside.
+struct Division {
+  int axis;
+  std::int64_t parts;
+};
+
+Division divisionOf(const Grid& grid) {
+  constexpr double most = 9.0; // bounds memory: more would be guesses
+  const Vec3 edges = grid.spacing();
+  const int axis = static_cast<int>(std::max_element(edges.begin(), edges.end()) - edges.begin());
+  const double widest = std::max(edges[axis == 0 ? 1 : 0], edges[axis == 2 ? 1 : 2]);
+  const double ratio = edges[axis] / widest * (1.0 + 1e-6); // rounding
+  return {axis, 2 * static_cast<std::int64_t>(std::min(ratio, most) / 2.0) + 1};
+}
+
 /// Slices of a mask, across the axis along which its voxels are longest; lengths in mm.
 class Slices {
 public:
   explicit Slices(const Mask& mask) : m_mask(mask) {
     const Vec3 spacing = mask.grid.spacing();
-    m_axis = static_cast<int>(std::max_element(spacing.begin(), spacing.end()) - spacing.begin());
+    m_axis = divisionOf(mask.grid).axis;
     m_thickness = spacing[m_axis];
     const int column = m_axis == 0 ? 1 : 0, row = m_axis == 2 ? 1 : 2;
     const Size3& size = mask.grid.size;
@@ -25,14 +41,6 @@ public:
 
   int axis() const { return m_axis; }
   std::int64_t count() const { return m_count[2]; }
-
-  /// Number of slices in place of one: odd, so that no voxel lies half-way between two straight
-  /// outlines, neither inside nor outside.
-  std::int64_t parts() const {
-    constexpr double most = 9.0; // bounds memory: more would be guesses
-    const double ratio = m_thickness / std::max(m_edge[0], m_edge[1]) * (1.0 + 1e-6); // rounding
-    return 2 * static_cast<std::int64_t>(std::min(ratio, most) / 2.0) + 1;
-  }
 
   bool isInside(std::int64_t column, std::int64_t row, std::int64_t slice) const {
     return m_mask.voxels[static_cast<std::size_t>(column * m_step[0] + row * m_step[1] +
@@ -115,19 +123,17 @@ Grid divided(const Grid& grid, int axis, std::int64_t parts) {
 } // namespace
 
 double automaticSmoothing(const Grid& labels) {
-  Vec3 edges = labels.spacing();
-  Mask empty;
-  empty.grid = labels;
-  const Slices slices(empty);
-  edges[slices.axis()] /= static_cast<double>(slices.parts());
-  return 0.6 * edges.maxCoeff();
+  Grid grid = labels;
+  for (Division division = divisionOf(grid); division.parts > 1; division = divisionOf(grid))
+    grid = divided(grid, division.axis, division.parts);
+  return 0.6 * grid.spacing().maxCoeff();
 }
 
 Mask betweenSlices(const Mask& mask) {
-  const Slices slices(mask);
-  const std::int64_t parts = slices.parts();
+  const std::int64_t parts = divisionOf(mask.grid).parts;
   if (parts == 1)
     return mask;
+  const Slices slices(mask);
   std::vector<std::vector<float>> distances(static_cast<std::size_t>(slices.count()));
   tbb::parallel_for(std::size_t{0}, distances.size(), [&](std::size_t slice) {
     distances[slice] = slices.distances(static_cast<std::int64_t>(slice));

@@ -9,7 +9,8 @@ namespace {
 /// g look nearly alike (van de Hulst 1980): the closed form for g = 0, corrected by the table.
 double reflectanceOf(double s, double g) {
   using namespace seen;
-  const double row = std::clamp(g / greatestG, 0.0, 1.0) * (rows - 1), column = s * (columns - 1);
+  const double row = std::clamp(g / greatestColorG, 0.0, 1.0) * (rows - 1),
+               column = s * (columns - 1);
   const int r = std::min(static_cast<int>(row), rows - 2);
   const int c = std::min(static_cast<int>(column), columns - 2);
   const auto across = [&](int of) {
@@ -24,13 +25,13 @@ double reflectanceOf(double s, double g) {
 } // namespace
 
 double reflectance(double albedo, double g) {
-  const double a = std::clamp(albedo, 0.0, 1.0), forward = std::clamp(g, 0.0, seen::greatestG);
+  const double a = std::clamp(albedo, 0.0, 1.0), forward = std::clamp(g, 0.0, greatestColorG);
   return reflectanceOf(std::sqrt((1.0 - a) / (1.0 - forward * a)), forward);
 }
 
 double albedoFor(double reflectance, double g) {
   const double wanted = std::clamp(reflectance, 0.0, whitest);
-  const double forward = std::clamp(g, 0.0, seen::greatestG);
+  const double forward = std::clamp(g, 0.0, greatestColorG);
   double least = 0.0, greatest = 1.0; // of s: reflectance falls with it
   for (int i = 0; i < 50; ++i) {
     const double s = 0.5 * (least + greatest);

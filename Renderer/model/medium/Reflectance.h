@@ -10,6 +10,8 @@ namespace fenestra {
 /// that Testing/Oracle/MakeReflectance made; g below 0 reads as 0, and beyond 0.95 as 0.95.
 double reflectance(double albedo, double g);
 
+/// Mean cosines of the table: 0 to this.
+inline constexpr double greatestColorG = 0.95;
 /// Greatest reflectance that albedoFor inverts: whiter matter would scatter for minutes.
 inline constexpr double whitest = 0.95;
 
@@ -18,8 +20,8 @@ double albedoFor(double reflectance, double g);
 inline Rgb albedoFor(const Rgb& color, double g) {
   return color.unaryExpr([g](double channel) { return albedoFor(channel, g); });
 }
-/// Of a function whose colours are seen. Between two knots colours are linear, which their albedo
-/// is not: knots in between follow it, within 2 % of the colour for g = 0.
+/// Albedo of a function whose colours are seen. Between two knots colours are linear, which their
+/// albedo is not: knots in between follow it, within 2 % of the colour for g = 0.
 ColorFunction albedoFor(const ColorFunction& colors, double g);
 
 } // namespace fenestra

@@ -1,11 +1,10 @@
 #pragma once
-// Made by Testing/Oracle/MakeReflectance.cxx. Rows: g from 0 to greatestG; columns: s from 0
+// Made by Testing/Oracle/MakeReflectance.cxx. Rows: g from 0 to greatestColorG; columns: s from 0
 // to 1; values: reflectance / ((1 - s) / (1 + 2 s)).
 
 namespace fenestra::seen {
 
 inline constexpr int rows = 16, columns = 32;
-inline constexpr double greatestG = 0.95;
 inline constexpr float ratios[rows][columns] = {
     {1.0000F, 1.0024F, 1.0036F, 1.0039F, 1.0034F, 1.0022F, 1.0006F, 0.9985F,
      0.9961F, 0.9934F, 0.9906F, 0.9876F, 0.9844F, 0.9812F, 0.9779F, 0.9746F,

@@ -1,5 +1,7 @@
 #include "model/medium/Scattering.h"
 
+#include "model/medium/Reflectance.h"
+
 namespace fenestra {
 namespace {
 
@@ -19,7 +21,7 @@ SurfaceShading SurfaceShading::coat(double specular, double roughness, double g)
           .specular = specular,
           .power = 2.0 / (roughness * roughness) - 2.0,
           .coated = coatReflectance(roughness),
-          .odds = 0.47 * (1.0 - g)};
+          .odds = 0.47 * (1.0 - std::clamp(g, 0.0, greatestColorG))};
 }
 
 SurfaceShading::Lobes SurfaceShading::lobes() const {

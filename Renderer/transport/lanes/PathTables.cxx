@@ -32,6 +32,7 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
   constexpr double farthest = 1e15; // mm; squares and areas stay far below the greatest float
   constexpr double brightest = 1e20;
   constexpr double smallest = 1e-3; // mm; radius of a sphere whose square of the sine is a float
+  constexpr double greatestSphere = 1e6; // mm; distance^2 - radius^2 has digits left in float
   const auto isNear = [&](const auto& light) {
     return (light.center - grid.worldCenter()).norm() < farthest &&
            light.radiance.maxCoeff() < brightest;
@@ -40,7 +41,9 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
     return isNear(light) && light.half.maxCoeff() < farthest;
   };
   const auto sphereFits = [&](const PlacedSphereLight& light) {
-    return isNear(light) && light.radius > smallest && light.radius < farthest;
+    return light.radius > smallest && light.radius < greatestSphere &&
+           (light.center - grid.worldCenter()).norm() < greatestSphere &&
+           light.radiance.maxCoeff() < brightest;
   };
   return lights.hasOnlyListedKinds() && std::abs(transfer.g) <= greatestG &&
          !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness) &&
