@@ -14,7 +14,7 @@ Rgb readHexColor(const JsonNode& node) {
     throw node.error("must be a colour such as \"#d8a090\"");
   Rgb encoded;
   for (int channel = 0; channel < 3; ++channel) {
-    const auto digit = static_cast<std::size_t>(1 + 2 * channel);
+    const std::size_t digit = 1 + 2 * static_cast<std::size_t>(channel);
     encoded[channel] = std::stoi(text.substr(digit, 2), nullptr, 16) / 255.0;
   }
   return decodeSrgb(encoded);
