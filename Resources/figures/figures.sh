@@ -21,11 +21,12 @@ phantom() {
   [ -s "$folder/$kind.nrrd" ] || "$fenestra" phantom "$kind" --output "$folder" "${@:3}" >/dev/null
 }
 
-# render NAME arguments...: $out/NAME.png and NAME.json, unless they are there from the same arguments.
+# render NAME arguments...: $out/NAME.png and NAME.json, unless they are there from the same arguments
+# and executable.
 render() {
   local name=$1
   shift
-  local line="$* $size $samples"
+  local line="$* $size $samples $(stat -c %Y "$fenestra")"
   if [ "$(cat "$out/$name.arguments" 2>/dev/null)" != "$line" ]; then
     say "Rendering: $name"
     "$fenestra" "$@" --size "${size}x$size" --samples "$samples" --progress none \
