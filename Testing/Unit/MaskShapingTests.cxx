@@ -196,7 +196,7 @@ TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
 }
 
 TEST(MaskShaping, WideSmoothingTakesTimeThatItsWidthDoesNotChange) {
-  const Mask mask = maskOf(centredGrid({21, 21, 21}, {1.0, 1.0, 1e-4}),
+  const Mask mask = maskOf(centredGrid({21, 21, 21}, {1.0, 1.0, 0.02}),
                            [](const Vec3& p) { return std::abs(p.x()) < 4.5; });
   const Mask smooth = smoothed(mask, 1.0, volume);
   const auto at = [&](int x) {
