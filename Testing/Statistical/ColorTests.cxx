@@ -60,5 +60,19 @@ TEST(Furnace, IsOneForAWhiteSurface) {
   EXPECT_LT(estimate.error[0], 0.01);
 }
 
+/// Coat and base return what arrives but for a few thousandths, by both transports.
+TEST(Furnace, IsNearlyOneForAWhiteSurfaceUnderACoat) {
+  TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::coat(0.5, 0.4));
+  scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
+  for (const Transport transport : {Transport::fast, Transport::readable}) {
+    RenderSettings settings;
+    settings.samples = 40;
+    settings.transport = transport;
+    const RgbEstimate estimate = pictureEstimate(scene.render(settings).film);
+    EXPECT_GT(estimate.mean[0], 0.985);
+    EXPECT_LE(estimate.mean[0], 1.0 + 4.0 * estimate.error[0]);
+  }
+}
+
 } // namespace
 } // namespace fenestra::testing::ColorTests
