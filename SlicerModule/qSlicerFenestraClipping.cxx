@@ -116,8 +116,8 @@ void qSlicerFenestraClipping::buildDetails(QFormLayout* form) {
   addNumber(form, "contextdensity", tr("Surroundings, density:"), 0.01, 100.0, anyMode,
             tr("Makes all but the focus more transparent"));
   addNumber(form, "contextsaturation", tr("Surroundings, colour:"), 0.01, automatic, anyMode,
-            tr("0 %: all but the focus is grey. auto, below 0: paler where the focus would not be "
-               "told from its surroundings, or as the anatomy preset"));
+            tr("0 %: all but the focus is grey. auto, below 0: paler, or grey, where the focus "
+               "would not be told from its surroundings, or as the anatomy preset"));
 }
 
 void qSlicerFenestraClipping::addNumber(QFormLayout* form, const char* flag, const QString& label,

@@ -177,8 +177,8 @@ struct RenderTable {
        "Multiplies the extinction of everything that is not focus, 0 to 1",
        Takes::number(0.0, 1.0).into(focus.contextExtinction), Topic::own, Needs::focus},
       {"contextsaturation", "S", clipGroup,
-       "Colour of everything that is not focus, from 0 (grey) to 1 (as it is); auto: 0.35 where "
-       "the focus would not be told from its surroundings, else 1",
+       "Colour of everything that is not focus, from 0 (grey) to 1 (as it is); auto: the "
+       "first of 1, 0.35 and 0 with which the focus is told from its surroundings",
        Takes::numberOrAuto(focus.contextSaturation, 0.0, 1.0, 1.0), Topic::own, Needs::focus},
       {"view", "NAME", viewGroup,
        "anterior, posterior, left, right, superior, inferior, or auto: the direction that shows "

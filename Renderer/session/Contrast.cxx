@@ -153,11 +153,20 @@ FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& foc
   const BorderScalars border = borderScalars(focus, volume, transfer);
   if (border.focus.empty() || border.context.empty())
     return {asked.value_or(1.0)};
-  const Contrast asIs = contrastAt(border, transfer, asked.value_or(1.0));
-  if (asked || asIs.share() > 1.0)
-    return {asked.value_or(1.0), asIs};
-  const Contrast paled = contrastAt(border, transfer, pale);
-  return paled.share() > asIs.share() ? FocusContrast{pale, paled} : FocusContrast{1.0, asIs};
+  const auto at = [&](double saturation) {
+    return FocusContrast{saturation, contrastAt(border, transfer, saturation)};
+  };
+  FocusContrast best = at(asked.value_or(1.0));
+  if (asked)
+    return best;
+  for (const double saturation : {pale, grey}) {
+    if (best.contrast->share() > 1.0)
+      break;
+    const FocusContrast paler = at(saturation);
+    if (paler.contrast->share() > best.contrast->share())
+      best = paler;
+  }
+  return best;
 }
 
 } // namespace fenestra

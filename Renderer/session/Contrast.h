@@ -43,11 +43,14 @@ struct FocusContrast {
   std::optional<Contrast> contrast = {}; ///< nothing where one side is transparent
 };
 
-/// `asked`: by the user; nothing: `pale` where the contrast's share is at most 1 without and
-/// greater with it, else 1.
+/// Saturations of a context that would hide the focus: tissue keeps its hue, or nothing does.
+inline constexpr double pale = 0.35, grey = 0.0;
+
+/// `asked`: by the user; nothing: the first of 1, `pale` and `grey` with which the contrast's share
+/// exceeds 1; where none does, that of the greatest share, among equals the most colourful. `grey`
+/// goes beyond the plan, which ended with `pale`: a brain in a head then differed by 8 across its
+/// edge for the red-blind, who need 12.
 FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& focus,
                              const Volume& volume, const TransferFunction& transfer);
-
-inline constexpr double pale = 0.35;
 
 } // namespace fenestra

@@ -99,15 +99,15 @@ TEST(Contrast, TakesScalarsOfBothSidesOfTheBorder) {
   EXPECT_TRUE(borderScalars(ballMask(), ballVolume(6.0), transfer).context.empty()) << "air alone";
 }
 
-/// Surroundings of the focus's own red are paled; of another colour they are not; what is asked
-/// for is done.
+/// Surroundings of the focus's own red lose it; of another colour they do not; what is asked for is
+/// done.
 TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
   const Rgb red(0.9, 0.4, 0.35), cream(0.99, 0.97, 0.9);
   const Volume volume = ballVolume(15.0);
   const FocusContrast same = chosenContrast({}, ballMask(), volume, twoColors(red, red));
-  EXPECT_EQ(same.saturation, pale);
+  EXPECT_EQ(same.saturation, grey);
   ASSERT_TRUE(same.contrast);
-  EXPECT_GT(same.contrast->deltaE[0], 8.0);
+  EXPECT_GT(same.contrast->deltaE[0], 20.0);
   EXPECT_LT(same.contrast->deltaE[1], same.contrast->deltaE[0]);
   const FocusContrast other = chosenContrast({}, ballMask(), volume, twoColors(red, cream));
   EXPECT_EQ(other.saturation, 1.0);
@@ -119,6 +119,25 @@ TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
   const FocusContrast alone = chosenContrast({}, ballMask(), ballVolume(6.0), twoColors(red, red));
   EXPECT_EQ(alone.saturation, 1.0);
   EXPECT_FALSE(alone.contrast);
+}
+
+/// Surroundings of a colour near the focus's stay as colourful as they can: pale where that is
+/// enough, grey where it is not, be that enough or not.
+TEST(Contrast, PalesNoMoreThanIsNeeded) {
+  const Volume volume = ballVolume(15.0);
+  const auto chosen = [&volume](const Rgb& context, const Rgb& focus) {
+    const auto albedoOf = [](const Rgb& encoded) { return albedoFor(decodeSrgb(encoded), 0.0); };
+    return chosenContrast({}, ballMask(), volume, twoColors(albedoOf(context), albedoOf(focus)));
+  };
+  const Rgb yellow(0.9, 0.75, 0.25), orange(0.9, 0.5, 0.3), red(0.78, 0.49, 0.43);
+  const FocusContrast pales = chosen(orange, yellow), greys = chosen(yellow, yellow),
+                      hides = chosen(red, red);
+  EXPECT_EQ(pales.saturation, pale);
+  EXPECT_GT(pales.contrast->share(), 1.0);
+  EXPECT_EQ(greys.saturation, grey);
+  EXPECT_GT(greys.contrast->share(), 1.0);
+  EXPECT_EQ(hides.saturation, grey);
+  EXPECT_LT(hides.contrast->share(), 1.0);
 }
 
 /// Purple around grey-blue: paled, normal sight tells them apart better, and the colour-blind no
