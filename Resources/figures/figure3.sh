@@ -60,7 +60,7 @@ cube" has a side of 1 without a unit; p = 0.5 smooths by one, so here are both.
 END
 for mm in 1 512; do
   phantom cube "cube-$mm" --edge "$mm"
-  cube=("$out/cube-$mm/cube.mrml" --focus Focus)
+  cube=("$out/cube-$mm/cube.mrml" --focus Focus --contextsaturation 1)
   render "cube$mm-plane" "${cube[@]}" --clip plane
   render "cube$mm-cutaway" "${cube[@]}" --clip cutaway
   render "cube$mm-spline" "${cube[@]}" --clip surface

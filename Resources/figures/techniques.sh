@@ -66,5 +66,5 @@ else
   printf '\n## Liver\n\nSKIPPED: there is no %s.\n' "torso_ct_ccth_a01 in FENESTRA_DATA" >>"$page"
 fi
 phantom cube cube256 --size 256 --edge 512
-subject cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus
+subject cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --contextsaturation 1
 say "Done: $page"
