@@ -97,7 +97,7 @@ TEST(ExpectedFlight, RaysThatMeetNothingGiveZeros) {
   }
 }
 
-/// An axis on which half a voxel is less than a float's last place.
+/// An axis on which half a voxel is less than a float's last place: nothing for lanes.
 TEST(ExpectedFlight, EndsOnAxesOfAMillionVoxels) {
   const Grid grid = centredGrid({2, 2, 600'000}, {1.0, 1.0, 1.0});
   TestScene s{makeVolume<std::uint8_t>(grid, [](const Vec3& p) { return p.z() < 3.0 ? 1 : 0; }),
@@ -107,7 +107,7 @@ TEST(ExpectedFlight, EndsOnAxesOfAMillionVoxels) {
               4,
               4};
   s.with([](const RenderScene& scene) {
-    ASSERT_TRUE(lanesServe(scene));
+    EXPECT_FALSE(lanesServe(scene));
     EXPECT_GT(expectedFlight(scene).hit[5], 0.1F);
   });
 }

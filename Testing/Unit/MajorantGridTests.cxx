@@ -27,7 +27,26 @@ std::vector<Voxel> noise(const Size3& size, double low, double high) {
   return voxels;
 }
 
-/// Expects extinction <= the cell's majorant at every point.
+/// Index of the cell that holds a point (index space).
+std::int64_t cellOf(const MajorantGrid& majorants, const Grid& grid, const Vec3& p) {
+  const Vec3 inCells = majorants.worldToCell() * (grid.indexToWorld * p);
+  Size3 cell;
+  for (int axis = 0; axis < 3; ++axis)
+    cell[axis] = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(inCells[axis])), 0,
+                                          majorants.cellCount()[axis] - 1);
+  return cell.x() + majorants.cellCount().x() * (cell.y() + majorants.cellCount().y() * cell.z());
+}
+
+/// A point at most MajorantGrid::margin away along each axis, in the box.
+Vec3 inStripAround(const Vec3& p, const Box& box, Random& random) {
+  Vec3 q;
+  for (int axis = 0; axis < 3; ++axis)
+    q[axis] = std::clamp(p[axis] + MajorantGrid::margin * (2.0 * random.uniform() - 1.0),
+                         box.lower[axis], box.upper[axis]);
+  return q;
+}
+
+/// Expects extinction <= the cell's majorant at every point of the cell and of the strip around it.
 template <typename Voxel>
 void expectConservative(const TransferFunction& transfer, double low, double high) {
   Affine map = Affine::Identity();
@@ -49,13 +68,10 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
       if (random.uniform() < 0.3) // often on voxel centres and cell faces
         p[axis] = std::round(2.0 * p[axis]) / 2.0;
     }
-    const Vec3 inCells = majorants.worldToCell() * (grid.indexToWorld * p);
-    Size3 cell;
-    for (int axis = 0; axis < 3; ++axis)
-      cell[axis] = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(inCells[axis])), 0,
-                                            majorants.cellCount()[axis] - 1);
-    const std::int64_t index =
-        cell.x() + majorants.cellCount().x() * (cell.y() + majorants.cellCount().y() * cell.z());
+    const std::int64_t index = cellOf(majorants, grid, p);
+    const Vec3 q = inStripAround(p, box, random);
+    ASSERT_LE(medium.extinction(q), static_cast<double>(majorants.cell(index).majorant))
+        << "at " << q << " beside the cell of " << p;
     const double sigma_t = medium.extinction(p);
     ASSERT_LE(sigma_t, static_cast<double>(majorants.cell(index).majorant)) << "at " << p;
     tightest = std::min(tightest, static_cast<double>(majorants.cell(index).majorant));
@@ -140,6 +156,37 @@ TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
 
   const TransferFunction empty{ScalarFunction({knot(1.5, 0), knot(2, 2)}), grey};
   EXPECT_EQ(emptyFraction(MajorantGrid(grid, ranges, empty, ClipNone{})), 1.0);
+}
+
+TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
+  const Grid grid(Size3(24, 24, 24), Affine::Identity());
+  Volume volume{grid, std::vector<float>(13824, 1.0F), 1.0, 1.0, "ones", {}};
+  const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), grey};
+  CameraPose pose;
+  pose.position = {12, 12, 100};
+  pose.target = {12, 12, 12};
+  pose.up = Vec3::UnitY();
+  const Clip plane =
+      ClipPlane{Camera(pose, 8, 8), Vec3(12.2, 11.7, 12.1), Vec3(0.3, -0.5, 1.0).normalized()};
+  const auto focus = std::make_shared<Mask>(
+      Mask{.grid = grid, .voxels = std::vector<std::uint8_t>(13824, 0), .names = {}});
+  for (std::size_t i = 0; i < 24 * 24 * 11 + 24 * 9; ++i)
+    focus->voxels[i] = 1;
+  const ContextStyle style{.focus = focus, .extinction = 0.25};
+  const MajorantGrid majorants(grid, CellRanges(volume, 0), opaque, plane, &style);
+  const Medium<float> medium(grid, std::get<std::vector<float>>(volume.voxels), opaque, &style);
+  const Box box = grid.indexBox();
+  for (int i = 0; i < briefly(200000); ++i) {
+    Random random(8, static_cast<std::uint64_t>(i), 0);
+    Vec3 p;
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] = box.lower[axis] + random.uniform() * (box.upper[axis] - box.lower[axis]);
+    const MajorantGrid::Cell& cell = majorants.cell(cellOf(majorants, grid, p));
+    const Vec3 q = inStripAround(p, box, random);
+    const double kept = keep(plane, q);
+    ASSERT_LE(kept * medium.extinction(q), static_cast<double>(cell.majorant)) << "at " << q;
+    ASSERT_TRUE(cell.cut || cell.majorant == 0.0F || kept == 1.0) << "at " << q;
+  }
 }
 
 TEST(CellRanges, ThickSlicesMakeNoLongCells) {

@@ -32,19 +32,27 @@ MajorantGrid cellsOf(Extinction extinction, const Clip& clip = ClipNone{}) {
 struct Walk {
   MajorantGrid majorants;
   WideCells wide{majorants};
-  Size3 count = majorants.cellCount();
-  float greatest = 0.0F;
+  Size3 count = wide.count;
 
-  const MajorantGrid::Cell& narrow(const Size3& c) const {
-    return majorants.cell(c.x() + count.x() * (c.y() + count.y() * c.z()));
+  /// Greatest majorant of the cells that cell c is made of; cut if one of them is.
+  MajorantGrid::Cell narrow(const Size3& c) const {
+    MajorantGrid::Cell all{0.0F, false};
+    const Size3& fine = majorants.cellCount();
+    const Size3 low = wide.merged * c;
+    const Size3 high = (low.array() + wide.merged).matrix().cwiseMin(fine);
+    for (std::int64_t z = low.z(); z < high.z(); ++z)
+      for (std::int64_t y = low.y(); y < high.y(); ++y)
+        for (std::int64_t x = low.x(); x < high.x(); ++x) {
+          const MajorantGrid::Cell& cell = majorants.cell(x + fine.x() * (y + fine.y() * z));
+          all = {std::max(all.majorant, cell.majorant), all.cut || cell.cut};
+        }
+    return all;
   }
   WideCells::Cell cell(const Size3& c) const {
     return wide.cell(static_cast<std::size_t>(
         c.x() + 1 + (count.x() + 2) * (c.y() + 1 + (count.y() + 2) * (c.z() + 1))));
   }
-  explicit Walk(MajorantGrid of) : majorants(std::move(of)) {
-    forEach([&](const Size3& c) { greatest = std::max(greatest, narrow(c).majorant); });
-  }
+  explicit Walk(MajorantGrid of) : majorants(std::move(of)) {}
   template <typename Visit>
   void forEach(const Size3& from, const Size3& to, Visit&& visit) const {
     const Size3 low = from.cwiseMax(Size3::Zero());
@@ -66,11 +74,11 @@ void expectBounds(const Walk& walk) {
     if ((c.x() + 3 * c.y() + 7 * c.z()) % 16 != 0)
       return;
     const WideCells::Cell cell = walk.cell(c);
-    const MajorantGrid::Cell& own = walk.narrow(c);
+    const MajorantGrid::Cell own = walk.narrow(c);
     ASSERT_EQ(cell.majorant == 0.0F, own.majorant == 0.0F) << c;
     ASSERT_EQ(cell.cut, own.cut) << c;
-    if (cell.reach == 0) { // six bits, rounded up, relative to the greatest
-      ASSERT_LE(cell.majorant, own.majorant * 1.016F + walk.greatest * 1e-8F) << c;
+    if (cell.reach == 0) { // fifteen bits, rounded up
+      ASSERT_LE(cell.majorant, own.majorant * (1.0F + 0x1p-15F)) << c;
     }
     const Size3 around = Size3::Constant(static_cast<std::int64_t>(cell.reach));
     walk.forEach(c - around, c + around, [&](const Size3& other) {
@@ -109,6 +117,18 @@ TEST(WideCells, ReachIsZeroInCutCells) {
     EXPECT_TRUE(!walk.cell(c).cut || walk.cell(c).reach == 0) << c;
   });
   EXPECT_GT(cut, 100);
+}
+
+TEST(WideCells, CellsOfFewVoxelsAreMergedAndOthersNot) {
+  EXPECT_EQ(Walk{cellsOf(ballInMist)}.wide.merged, 2) << "2^3 voxels";
+  const Grid grid(Size3(256, 256, 256), Affine::Identity());
+  const Volume volume{grid, std::vector<std::uint8_t>(1 << 24, 1), 0.0, 1.0, "", {}};
+  const TransferFunction thin{
+      ScalarFunction({{0.0, ScalarFunction::Value(0.1)}, {1.0, ScalarFunction::Value(0.1)}}),
+      ColorFunction({{0.0, Rgb::Ones()}})};
+  const WideCells wide(MajorantGrid(grid, CellRanges(volume, 0), thin, ClipNone{}));
+  EXPECT_EQ(wide.merged, 1) << "4^3 voxels";
+  EXPECT_EQ(wide.count, Size3(64, 64, 64));
 }
 
 TEST(WideCells, ExtinctionsOfAnySizeAreBounded) {

@@ -8,7 +8,7 @@
 #define FENESTRA_WIDE_LIGHTS_INL_H
 #endif
 
-#include "base/Lanes-inl.h"
+#include "base/LaneMath-inl.h"
 #include "transport/lanes/PathTables.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,17 +16,10 @@ namespace fenestra::HWY_NAMESPACE {
 
 /// LightSample in lanes; radiance 0: no sample.
 struct LightDraw {
-  F3 direction, radiance;
-  F distance;
-  F pdf;
-  M delta;
-};
-
-/// One number a lane, in memory, for work lane by lane.
-struct alignas(64) LaneNumbers : std::array<float, HWY_MAX_BYTES / sizeof(float)> {
-  LaneNumbers() = default;
-  explicit LaneNumbers(F v) { hn::Store(v, floats, data()); }
-  F vector() const { return hn::Load(floats, data()); }
+  Float3 direction, radiance;
+  Float distance;
+  Float pdf;
+  Mask delta;
 };
 
 class WideLights {
@@ -39,131 +32,134 @@ public:
   }
 
   /// Draws one light for each lane of `which`, seen from a local point. `choice` selects the light.
-  LightDraw draw(M which, const F3& point, F choice, F u, F v) const {
-    const F zero = hn::Zero(floats);
-    const F far = all(std::numeric_limits<float>::infinity());
-    LightDraw drawn{{zero, zero, all(1.0F)}, {zero, zero, zero}, far, all(1.0F), noLane()};
+  LightDraw draw(Mask which, const Float3& point, Float choice, Float u, Float v) const {
+    const Float zero = 0.0F;
+    const Float far = std::numeric_limits<float>::infinity();
+    LightDraw drawn{{zero, zero, 1.0F}, {zero, zero, zero}, far, 1.0F, Mask::none()};
     const auto chosen = [&](float share) {
-      const M mine = both(which, hn::Le(choice, all(share)));
-      which = hn::AndNot(mine, which);
-      choice = hn::Sub(choice, all(share));
+      const Mask mine = which & (choice <= share);
+      which = which.without(mine);
+      choice = choice - share;
       return mine;
     };
     for (const EventScene::Area& light : m_scene.areas) {
-      const M mine = chosen(light.share);
-      if (!hn::AllFalse(floats, mine))
+      const Mask mine = chosen(light.share);
+      if (mine.any())
         drawArea(light, mine, point, u, v, drawn);
     }
     for (const EventScene::Directional& light : m_scene.directionals) {
-      const M mine = chosen(light.share);
-      drawn.direction = select(mine, all3(light.toward), drawn.direction);
-      drawn.radiance = select(mine, all3(light.irradiance), drawn.radiance);
-      drawn.pdf = hn::IfThenElse(mine, all(light.share), drawn.pdf);
-      drawn.delta = hn::Or(mine, drawn.delta);
+      const Mask mine = chosen(light.share);
+      drawn.direction = select(mine, Float3(light.toward), drawn.direction);
+      drawn.radiance = select(mine, Float3(light.irradiance), drawn.radiance);
+      drawn.pdf = select(mine, light.share, drawn.pdf);
+      drawn.delta = mine | drawn.delta;
     }
     for (const EventScene::Sphere& light : m_scene.spheres) {
-      const M mine = chosen(light.share);
-      if (!hn::AllFalse(floats, mine))
+      const Mask mine = chosen(light.share);
+      if (mine.any())
         drawSphere(light, mine, point, u, v, drawn);
     }
-    if (m_scene.maps && !hn::AllFalse(floats, which))
+    if (m_scene.maps && which.any())
       drawMaps(which, choice, u, v, drawn);
     return drawn;
   }
 
   /// Light that scattered rays from local points meet before `distance`, or at infinity, weighted
   /// against drawing that light (Veach 1997, eq. 9.8).
-  F3 arriving(M which, const F3& origin, const F3& direction, F distance, F scatterPdf) const {
-    const F zero = hn::Zero(floats);
-    F3 sum{zero, zero, zero};
+  Float3 arriving(Mask which, const Float3& origin, const Float3& direction, Float distance,
+                  Float scatterPdf) const {
+    const Float zero = 0.0F;
+    Float3 sum{zero, zero, zero};
     for (const EventScene::Area& light : m_scene.areas)
       sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
     for (const EventScene::Sphere& light : m_scene.spheres)
       sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
-    const M escaped = both(which, hn::Eq(distance, all(std::numeric_limits<float>::infinity())));
+    const Mask escaped = which & (distance == std::numeric_limits<float>::infinity());
     if (!m_scene.maps)
-      return sum + selectElseZero(escaped, around(direction));
-    if (!hn::AllFalse(floats, escaped))
+      return sum + orZero(escaped, around(direction));
+    if (escaped.any())
       sum = sum + fromMaps(escaped, direction, scatterPdf);
     return sum;
   }
 
 private:
-  static HWY_INLINE void drawArea(const EventScene::Area& light, M mine, const F3& point, F u, F v,
-                                  LightDraw& drawn) {
-    F x = hn::MulSub(all(2.0F), u, all(1.0F));
-    F y = hn::MulSub(all(2.0F), v, all(1.0F));
+  static HWY_INLINE void drawArea(const EventScene::Area& light, Mask mine, const Float3& point,
+                                  Float u, Float v, LightDraw& drawn) {
+    Float x = fms(2.0F, u, 1.0F);
+    Float y = fms(2.0F, v, 1.0F);
     if (light.disk) {
       const CosineSine phi = ofTurns(v);
-      const F r = hn::Sqrt(u);
-      x = hn::Mul(r, phi.cosine);
-      y = hn::Mul(r, phi.sine);
+      const Float r = sqrt(u);
+      x = r * phi.cosine;
+      y = r * phi.sine;
     }
-    const F3 d = all3(light.center) + x * all3(light.right) + y * all3(light.up) - point;
-    const F distance2 = dot(d, d);
-    const F distance = hn::Sqrt(distance2);
-    const F3 direction = hn::Div(all(1.0F), distance) * d;
-    const F cosine = hn::Neg(dot(all3(light.normal), direction));
+    const Float3 d = Float3(light.center) + x * Float3(light.right) + y * Float3(light.up) - point;
+    const Float distance2 = dot(d, d);
+    const Float distance = sqrt(distance2);
+    const Float3 direction = (1.0F / distance) * d;
+    const Float cosine = -dot(Float3(light.normal), direction);
     // False behind the light, in its plane, and on the light (NaN).
-    const M lit = both(mine, hn::Gt(cosine, hn::Zero(floats)));
-    const F pdf = hn::Div(hn::Mul(all(light.share), distance2), hn::Mul(all(light.area), cosine));
+    const Mask lit = mine & (cosine > 0.0F);
+    const Float pdf = light.share * distance2 / (light.area * cosine);
     drawn.direction = select(lit, direction, drawn.direction);
-    drawn.radiance = select(lit, all3(light.radiance), drawn.radiance);
-    drawn.distance = hn::IfThenElse(lit, distance, drawn.distance);
-    drawn.pdf = hn::IfThenElse(lit, pdf, drawn.pdf);
+    drawn.radiance = select(lit, Float3(light.radiance), drawn.radiance);
+    drawn.distance = select(lit, distance, drawn.distance);
+    drawn.pdf = select(lit, pdf, drawn.pdf);
   }
 
   /// 1 - cos of half the angle that a sphere subtends; 2 from inside.
-  static HWY_INLINE F spreadOf(const EventScene::Sphere& light, F distance2) {
-    const F one = all(1.0F);
-    const F sine2 = hn::Div(all(light.radius2), distance2);
-    const F cosine = hn::Sqrt(hn::Max(hn::Sub(one, sine2), hn::Zero(floats)));
-    return hn::IfThenElse(hn::Lt(sine2, one), hn::Div(sine2, hn::Add(one, cosine)), all(2.0F));
+  static HWY_INLINE Float spreadOf(const EventScene::Sphere& light, Float distance2) {
+    const Float one = 1.0F;
+    const Float sine2 = light.radius2 / distance2;
+    const Float cosine = sqrt(max(one - sine2, 0.0F));
+    return select(sine2 < one, sine2 / (one + cosine), 2.0F);
   }
-  static HWY_INLINE F densityOf(const EventScene::Sphere& light, F spread) {
-    return hn::Div(all(light.share), hn::Mul(all(narrow(2.0 * pi)), spread));
+  static HWY_INLINE Float densityOf(const EventScene::Sphere& light, Float spread) {
+    return light.share / (narrow(2.0 * pi) * spread);
   }
   /// Distance to a sphere whose centre is `along` ahead, and aside by the square root of `across2`.
-  static HWY_INLINE F distanceTo(const EventScene::Sphere& light, F distance2, F along, F across2) {
-    const F zero = hn::Zero(floats);
-    const F outside = hn::Sub(distance2, all(light.radius2));
-    const F half = hn::Sqrt(hn::Max(hn::Sub(all(light.radius2), across2), zero));
-    const F far = hn::Add(along, half);
-    return hn::IfThenElse(hn::Gt(outside, zero), hn::Div(outside, far), far);
+  static HWY_INLINE Float distanceTo(const EventScene::Sphere& light, Float distance2, Float along,
+                                     Float across2) {
+    const Float zero = 0.0F;
+    const Float outside = distance2 - light.radius2;
+    const Float half = sqrt(max(light.radius2 - across2, zero));
+    const Float far = along + half;
+    return select(outside > zero, outside / far, far);
   }
 
-  static HWY_INLINE void drawSphere(const EventScene::Sphere& light, M mine, const F3& point, F u,
-                                    F v, LightDraw& drawn) {
-    const F zero = hn::Zero(floats), one = all(1.0F);
-    const F3 d = all3(light.center) - point;
-    const F distance2 = dot(d, d);
-    const F distance = hn::Sqrt(distance2);
-    const F spread = spreadOf(light, distance2);
-    const F fall = hn::Mul(spread, u); // 1 - cos of the angle to the axis
-    const F cosine = hn::Sub(one, fall);
-    const F sine2 = hn::Max(hn::Mul(fall, hn::Sub(all(2.0F), fall)), zero);
-    const F sine = hn::Sqrt(sine2);
+  static HWY_INLINE void drawSphere(const EventScene::Sphere& light, Mask mine, const Float3& point,
+                                    Float u, Float v, LightDraw& drawn) {
+    const Float zero = 0.0F, one = 1.0F;
+    const Float3 d = Float3(light.center) - point;
+    const Float distance2 = dot(d, d);
+    const Float distance = sqrt(distance2);
+    const Float spread = spreadOf(light, distance2);
+    const Float fall = spread * u; // 1 - cos of the angle to the axis
+    const Float cosine = one - fall;
+    const Float sine2 = max(fall * (2.0F - fall), zero);
+    const Float sine = sqrt(sine2);
     const CosineSine phi = ofTurns(v);
-    const M apart = hn::Gt(distance, zero);
-    const F3 axis = select(apart, hn::Div(one, distance) * d, F3{zero, zero, one});
-    const F3 local{hn::Mul(sine, phi.cosine), hn::Mul(sine, phi.sine), cosine};
-    const F far =
-        distanceTo(light, distance2, hn::Mul(distance, cosine), hn::Mul(distance2, sine2));
+    const Mask apart = distance > zero;
+    const Float3 axis = select(apart, (one / distance) * d, Float3{zero, zero, one});
+    const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
+    const Float far = distanceTo(light, distance2, distance * cosine, distance2 * sine2);
     drawn.direction = select(mine, normalized(Frames(axis).toWorld(local)), drawn.direction);
-    drawn.radiance = select(mine, all3(light.radiance), drawn.radiance);
-    drawn.distance = hn::IfThenElse(mine, far, drawn.distance);
-    drawn.pdf = hn::IfThenElse(mine, densityOf(light, spread), drawn.pdf);
+    drawn.radiance = select(mine, Float3(light.radiance), drawn.radiance);
+    drawn.distance = select(mine, far, drawn.distance);
+    drawn.pdf = select(mine, densityOf(light, spread), drawn.pdf);
   }
 
-  void drawMaps(M which, F choice, F u, F v, LightDraw& drawn) const {
-    const LaneNumbers choices(choice), us(u), vs(v);
-    LaneNumbers direction[3] = {LaneNumbers(drawn.direction.x), LaneNumbers(drawn.direction.y),
-                                LaneNumbers(drawn.direction.z)};
-    LaneNumbers radiance[3] = {LaneNumbers(drawn.radiance.x), LaneNumbers(drawn.radiance.y),
-                               LaneNumbers(drawn.radiance.z)};
-    LaneNumbers pdf(drawn.pdf);
+  void drawMaps(Mask which, Float choice, Float u, Float v, LightDraw& drawn) const {
+    const LaneArray<float> choices(choice), us(u), vs(v);
+    LaneArray<float> direction[3] = {LaneArray<float>(drawn.direction.x),
+                                     LaneArray<float>(drawn.direction.y),
+                                     LaneArray<float>(drawn.direction.z)};
+    LaneArray<float> radiance[3] = {LaneArray<float>(drawn.radiance.x),
+                                    LaneArray<float>(drawn.radiance.y),
+                                    LaneArray<float>(drawn.radiance.z)};
+    LaneArray<float> pdf(drawn.pdf);
     forEachLane(which, [&](std::size_t lane) {
-      const auto number = [&](const LaneNumbers& x) { return static_cast<double>(x[lane]); };
+      const auto number = [&](const LaneArray<float>& x) { return static_cast<double>(x[lane]); };
       const std::optional<LightSample> light =
           m_scene.maps->sampleEnvironment(number(choices), {number(us), number(vs)});
       if (!light)
@@ -174,79 +170,83 @@ private:
       }
       pdf[lane] = narrow(light->pdf);
     });
-    drawn.direction = {direction[0].vector(), direction[1].vector(), direction[2].vector()};
-    drawn.radiance = {radiance[0].vector(), radiance[1].vector(), radiance[2].vector()};
-    drawn.pdf = pdf.vector();
+    drawn.direction = {load(direction[0].data()), load(direction[1].data()),
+                       load(direction[2].data())};
+    drawn.radiance = {load(radiance[0].data()), load(radiance[1].data()), load(radiance[2].data())};
+    drawn.pdf = load(pdf.data());
   }
 
   /// Radiance of constant environments and skies.
-  HWY_INLINE F3 around(const F3& direction) const {
-    const F zero = hn::Zero(floats), one = all(1.0F);
-    F3 sum = all3(m_scene.constantEnvironment);
+  HWY_INLINE Float3 around(const Float3& direction) const {
+    const Float zero = 0.0F, one = 1.0F;
+    Float3 sum = Float3(m_scene.constantEnvironment);
     for (const EventScene::Sky& sky : m_scene.skies) {
-      const F t = hn::Min(hn::Max(dot(all3(sky.up), direction), hn::Neg(one)), one);
-      const F3 slope = select(hn::Lt(t, zero), all3(sky.toBottom), all3(sky.toTop));
-      sum = sum + all3(sky.middle) + hn::Abs(t) * slope;
+      const Float t = min(max(dot(Float3(sky.up), direction), -one), one);
+      const Float3 slope = select(t < zero, Float3(sky.toBottom), Float3(sky.toTop));
+      sum = sum + Float3(sky.middle) + abs(t) * slope;
     }
     return sum;
   }
 
-  static HWY_INLINE F3 weighted(M met, F scatterPdf, F pdf, const EventScene::Triple& radiance) {
-    const F weight = hn::Div(scatterPdf, hn::Add(scatterPdf, pdf));
-    return selectElseZero(met, weight * all3(radiance));
+  static HWY_INLINE Float3 weighted(Mask met, Float scatterPdf, Float pdf,
+                                    const EventScene::Triple& radiance) {
+    const Float weight = scatterPdf / (scatterPdf + pdf);
+    return orZero(met, weight * Float3(radiance));
   }
 
-  static HWY_INLINE F3 arrivingFrom(const EventScene::Area& light, M which, const F3& origin,
-                                    const F3& direction, F distance, F scatterPdf) {
-    const F zero = hn::Zero(floats);
-    const F3 normal = all3(light.normal);
-    const F cosine = hn::Neg(dot(normal, direction));
-    const F t = hn::Div(dot(normal, origin - all3(light.center)), cosine);
-    const M ahead = both(hn::Gt(cosine, zero), both(hn::Gt(t, zero), hn::Lt(t, distance)));
-    M met = both(which, ahead);
-    if (hn::AllFalse(floats, met))
+  static HWY_INLINE Float3 arrivingFrom(const EventScene::Area& light, Mask which,
+                                        const Float3& origin, const Float3& direction,
+                                        Float distance, Float scatterPdf) {
+    const Float zero = 0.0F;
+    const Float3 normal = Float3(light.normal);
+    const Float cosine = -dot(normal, direction);
+    const Float t = dot(normal, origin - Float3(light.center)) / cosine;
+    const Mask ahead = (cosine > zero) & (t > zero) & (t < distance);
+    Mask met = which & ahead;
+    if (!met.any())
       return {zero, zero, zero};
-    const F3 d = origin + t * direction - all3(light.center);
-    const F x2 = square(hn::Mul(dot(d, all3(light.right)), all(light.perRight)));
-    const F y2 = square(hn::Mul(dot(d, all3(light.up)), all(light.perUp)));
-    const F one = all(1.0F);
-    met = both(met, hn::Le(light.disk ? hn::Add(x2, y2) : hn::Max(x2, y2), one));
-    const F pdf = hn::Div(hn::Mul(all(light.share), square(t)), hn::Mul(all(light.area), cosine));
+    const Float3 d = origin + t * direction - Float3(light.center);
+    const Float x2 = square(dot(d, Float3(light.right)) * light.perRight);
+    const Float y2 = square(dot(d, Float3(light.up)) * light.perUp);
+    const Float one = 1.0F;
+    met = met & ((light.disk ? x2 + y2 : max(x2, y2)) <= one);
+    const Float pdf = light.share * square(t) / (light.area * cosine);
     return weighted(met, scatterPdf, pdf, light.radiance);
   }
 
-  static HWY_INLINE F3 arrivingFrom(const EventScene::Sphere& light, M which, const F3& origin,
-                                    const F3& direction, F distance, F scatterPdf) {
-    const F zero = hn::Zero(floats);
-    const F3 d = all3(light.center) - origin;
-    const F distance2 = dot(d, d);
-    const F along = dot(d, direction);
-    const F3 across = d - along * direction;
-    const F across2 = dot(across, across);
-    const F radius2 = all(light.radius2);
-    const M ahead = both(hn::Gt(along, zero), hn::Le(across2, radius2));
-    const M hits = hn::Or(hn::Le(distance2, radius2), ahead);
-    const F far = distanceTo(light, distance2, along, across2);
-    const M met = both(which, both(hits, hn::Lt(far, distance)));
-    if (hn::AllFalse(floats, met))
+  static HWY_INLINE Float3 arrivingFrom(const EventScene::Sphere& light, Mask which,
+                                        const Float3& origin, const Float3& direction,
+                                        Float distance, Float scatterPdf) {
+    const Float zero = 0.0F;
+    const Float3 d = Float3(light.center) - origin;
+    const Float distance2 = dot(d, d);
+    const Float along = dot(d, direction);
+    const Float3 across = d - along * direction;
+    const Float across2 = dot(across, across);
+    const Float radius2 = light.radius2;
+    const Mask ahead = (along > zero) & (across2 <= radius2);
+    const Mask hits = (distance2 <= radius2) | ahead;
+    const Float far = distanceTo(light, distance2, along, across2);
+    const Mask met = which & hits & (far < distance);
+    if (!met.any())
       return {zero, zero, zero};
-    const F pdf = densityOf(light, spreadOf(light, distance2));
+    const Float pdf = densityOf(light, spreadOf(light, distance2));
     return weighted(met, scatterPdf, pdf, light.radiance);
   }
 
-  F3 fromMaps(M escaped, const F3& direction, F scatterPdf) const {
-    const F zero = hn::Zero(floats);
-    const LaneNumbers x(direction.x), y(direction.y), z(direction.z), pdf(scatterPdf);
-    LaneNumbers r(zero), g(zero), b(zero);
+  Float3 fromMaps(Mask escaped, const Float3& direction, Float scatterPdf) const {
+    const Float zero = 0.0F;
+    const LaneArray<float> x(direction.x), y(direction.y), z(direction.z), pdf(scatterPdf);
+    LaneArray<float> r(zero), g(zero), b(zero);
     forEachLane(escaped, [&](std::size_t lane) {
-      const auto number = [&](const LaneNumbers& v) { return static_cast<double>(v[lane]); };
+      const auto number = [&](const LaneArray<float>& v) { return static_cast<double>(v[lane]); };
       const LightArrival arrival = m_scene.maps->environment({number(x), number(y), number(z)});
       const Rgb sum = arrival.radiance * (number(pdf) / (number(pdf) + arrival.pdf));
       r[lane] = narrow(sum[0]);
       g[lane] = narrow(sum[1]);
       b[lane] = narrow(sum[2]);
     });
-    return {r.vector(), g.vector(), b.vector()};
+    return {load(r.data()), load(g.data()), load(b.data())};
   }
 
   const EventScene& m_scene;

@@ -155,57 +155,54 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
   return best;
 }
 
-std::uint32_t biasFor(float greatest) {
-  constexpr std::uint32_t exponents = 31; // 32 fit; one is left for rounding up
-  const std::uint32_t exponent = std::bit_cast<std::uint32_t>(greatest) >> 23;
-  return (exponent - std::min(exponent, exponents - 1)) << 23;
-}
+constexpr std::uint32_t cutBit = 1U << 31;
 
-/// Code of a bound >= majorant.
-std::uint32_t majorantCode(float majorant, std::uint32_t bias) {
-  const auto bits = std::bit_cast<std::uint32_t>(majorant);
-  constexpr std::uint32_t below = (1U << WideCells::majorantShift) - 1;
-  return bits <= bias ? 1 : (bits - bias + below) >> WideCells::majorantShift;
+/// Cells of this many voxels at most are merged (measured: looser bounds cost less than more
+/// cells).
+constexpr std::int64_t mostMergedVoxels = 16;
+
+/// Code of a bound >= majorant, which is not 0.
+std::uint32_t majorantCode(float majorant) {
+  constexpr auto below = static_cast<std::uint32_t>(WideCells::reachBits);
+  return (std::bit_cast<std::uint32_t>(majorant) + below) & ~below;
 }
 
 } // namespace
 
-WideCells::WideCells(const MajorantGrid& majorants) {
-  const Size3& count = majorants.cellCount();
+WideCells::WideCells(const MajorantGrid& majorants)
+    : merged(majorants.edge().prod() <= mostMergedVoxels ? 2 : 1),
+      count((majorants.cellCount().array() + merged - 1) / merged) {
   const Bordered at{count.array() + 2};
   std::vector<float> bound(at.count(), 0.0F);
   std::vector<bool> cut(at.count(), false);
+  const Size3& fine = majorants.cellCount();
   std::int64_t next = 0;
-  at.forEachInner([&](auto x, auto y, auto z) {
-    const MajorantGrid::Cell& cell = majorants.cell(next++);
-    bound[at.index(x, y, z)] = cell.majorant;
-    cut[at.index(x, y, z)] = cell.cut;
-  });
-  const double edge = std::cbrt(std::abs(1.0 / majorants.worldToCell().linear().determinant()));
+  for (std::int64_t z = 0; z < fine.z(); ++z)
+    for (std::int64_t y = 0; y < fine.y(); ++y)
+      for (std::int64_t x = 0; x < fine.x(); ++x) {
+        const MajorantGrid::Cell& cell = majorants.cell(next++);
+        const std::size_t i = at.index(x / merged + 1, y / merged + 1, z / merged + 1);
+        bound[i] = std::max(bound[i], cell.majorant);
+        cut[i] = cut[i] || cell.cut;
+      }
+  const double edge = static_cast<double>(merged) *
+                      std::cbrt(std::abs(1.0 / majorants.worldToCell().linear().determinant()));
   const std::vector<std::int32_t> around = emptyAround(at, bound);
   const Reach reach = findReach(at, bound, cut, edge);
-  bias = biasFor(*std::max_element(bound.begin(), bound.end()));
-  codes.assign(at.count() + 1, 0);
+  codes.assign(at.count(), 0);
   for (std::size_t i = 0; i < at.count(); ++i) {
     if (bound[i] > 0.0F)
-      codes[i] = static_cast<std::int16_t>(majorantCode(reach.bound[i], bias) << (reachBits + 1) |
-                                           static_cast<std::uint32_t>(reach.cells[i] << 1) |
-                                           (cut[i] ? 1U : 0U));
-    else if (around[i] > 0)
-      codes[i] = static_cast<std::int16_t>(
-          std::bit_cast<std::uint32_t>(static_cast<float>(-around[i])) >> 16);
+      codes[i] = static_cast<std::int32_t>((cut[i] ? cutBit : 0U) | majorantCode(reach.bound[i]) |
+                                           reach.cells[i]);
+    else
+      codes[i] = std::min(std::max(around[i], 0), reachBits);
   }
 }
 
 WideCells::Cell WideCells::cell(std::size_t place) const {
   const std::int32_t code = codes[place];
-  if (code <= 0) {
-    const auto around = std::bit_cast<float>(static_cast<std::uint32_t>(code) << 16);
-    return {0.0F, static_cast<std::uint32_t>(-around), false};
-  }
-  const auto filled = static_cast<std::uint32_t>(code);
-  return {std::bit_cast<float>((filled >> (reachBits + 1) << majorantShift) + bias),
-          filled >> 1 & mostReach, (filled & 1) != 0};
+  return {std::bit_cast<float>(code & majorantBits), static_cast<std::uint32_t>(code & reachBits),
+          code < 0};
 }
 
 } // namespace fenestra

@@ -1,8 +1,10 @@
 #pragma once
-// Majorants for lanes: 16 bits a cell, so that cells stay in the cache, as lanes enter more cells
-// than they fetch voxels. A cell stores its reach: to how many cells on every side the majorant
-// holds. A lane leaves all of the reach in one step. Empty cells have the greatest reach, others as
-// much as a looser majorant is worth: dense matter is walked cell by cell, thin matter in blocks.
+// Majorants for lanes: 32 bits a cell. A cell stores its reach: to how many cells on every side the
+// majorant holds. A lane leaves all of the reach in one step. Empty cells have the greatest reach,
+// others as much as a looser majorant is worth: dense matter is walked cell by cell, thin matter in
+// blocks. Cells of few voxels are merged, eight to one; between a cell that clipping removes and
+// one that it leaves alone lies one that it cuts, as their bounds overlap (MajorantGrid::margin):
+// what is merged of the two is cut.
 
 #include "transport/readable/MajorantGrid.h"
 
@@ -12,10 +14,10 @@
 namespace fenestra {
 
 struct WideCells {
-  /// Bits of a code > 0, from the lowest: cut (1), reach (3), majorant (11: a float's bits from bit
-  /// 17 on, less `bias`). Code 0: an empty cell of reach 0.
-  static constexpr int reachBits = 3, majorantShift = 17;
-  static constexpr std::uint32_t mostReach = (1U << reachBits) - 1;
+  /// Bits of a code: a float's upper bits are the majorant, its sign says that the cell is cut, and
+  /// its lowest bits are the reach.
+  static constexpr std::int32_t reachBits = 0xff, majorantBits = 0x7fffff00;
+  static constexpr std::uint32_t mostReach = 7; ///< of a cell that is not empty
 
   struct Cell {
     float majorant;      ///< mm^-1, rounded up; 0: empty cell
@@ -26,13 +28,13 @@ struct WideCells {
   WideCells() = default;
   explicit WideCells(const MajorantGrid& majorants);
 
-  /// Decodes codes[place]; lanes have a decoder of their own (WideTracker.cxx).
+  /// Decodes codes[place]; lanes have a decoder of their own (Medium-inl.h).
   Cell cell(std::size_t place) const;
 
-  /// Codes of all cells, with a border of empty cells, and one code more at the end, as lanes read
-  /// two at a time. A negative code is the upper half of a float: -reach of an empty cell.
-  std::vector<std::int16_t> codes;
-  std::uint32_t bias = 0; ///< float bits, subtracted from a majorant's
+  std::int64_t merged = 1;     ///< cells of the MajorantGrid in a cell, along each axis
+  Size3 count = Size3::Zero(); ///< cells, without the border
+  /// Codes of all cells, with a border of empty cells.
+  std::vector<std::int32_t> codes;
 };
 
 } // namespace fenestra

@@ -20,118 +20,108 @@ public:
   Walk(const WideScene& volume, const RayBatch& rays, std::size_t first, double coarser,
        bool asksKeep)
       : m_volume(volume),
-        m_origin(load(rays.origin, first)),
-        m_direction(load(rays.direction, first)),
-        m_inverse{hn::Div(all(1.0F), m_direction.x), hn::Div(all(1.0F), m_direction.y),
-                  hn::Div(all(1.0F), m_direction.z)},
-        m_end(hn::LoadU(floats, &rays.length[first])),
-        m_shortest(hn::Div(all(narrow(coarser * MarchSteps::voxels)),
-                           hn::Sqrt(dot(m_direction, m_direction)))),
-        m_opticalDepth(all(narrow(coarser * MarchSteps::opticalDepth))),
+        m_origin(load3(rays.origin, first)),
+        m_direction(load3(rays.direction, first)),
+        m_inverse{1.0F / m_direction.x, 1.0F / m_direction.y, 1.0F / m_direction.z},
+        m_end(load(&rays.length[first])),
+        m_shortest(narrow(coarser * MarchSteps::voxels) / sqrt(dot(m_direction, m_direction))),
+        m_opticalDepth(narrow(coarser * MarchSteps::opticalDepth)),
         m_asksKeep(asksKeep && volume.clipKind != WideScene::ClipKind::none),
-        m_busy(both(hn::FirstN(floats, rays.size - first), hn::Gt(m_end, hn::Zero(floats)))) {}
+        m_busy(Mask::first(rays.size - first) & (m_end > 0.0F)) {}
 
-  bool isDone() const { return hn::AllFalse(floats, m_busy); }
-  F transmittance() const { return m_transmittance; }
-  const F3& direction() const { return m_direction; }
-  HWY_INLINE F3 pointAt(F t) const { return m_origin + t * m_direction; }
+  bool isDone() const { return !m_busy.any(); }
+  Float transmittance() const { return m_transmittance; }
+  const Float3& direction() const { return m_direction; }
+  HWY_INLINE Float3 pointAt(Float t) const { return m_origin + t * m_direction; }
 
   /// Each lane leaves an empty cell with its reach, or takes one step in matter. Returns the lanes
   /// that end with it.
-  HWY_INLINE M step() {
-    const F3 p = pointAt(m_t);
+  HWY_INLINE Mask step() {
+    const Float3 p = pointAt(m_t);
     const auto& axes = m_volume.axes;
-    const F x = cellOf(axes[0], p.x), y = cellOf(axes[1], p.y), z = cellOf(axes[2], p.z);
-    const LaneCells cell = cellsAt(m_volume, x, y, z);
-    const F stop = hn::Min(
-        hn::Min(leaving(axes[0], x, cell.reach, m_origin.x, m_direction.x, m_inverse.x),
+    const Float x = cellOf(axes[0], p.x), y = cellOf(axes[1], p.y), z = cellOf(axes[2], p.z);
+    const LaneCells cell = cellsAt(
+        m_volume, fma(z, axes[2].cellStride, fma(y, axes[1].cellStride, x + m_volume.firstCell)));
+    const Float stop =
+        min(min(leaving(axes[0], x, cell.reach, m_origin.x, m_direction.x, m_inverse.x),
                 leaving(axes[1], y, cell.reach, m_origin.y, m_direction.y, m_inverse.y)),
-        hn::Min(leaving(axes[2], z, cell.reach, m_origin.z, m_direction.z, m_inverse.z), m_end));
+            min(leaving(axes[2], z, cell.reach, m_origin.z, m_direction.z, m_inverse.z), m_end));
     // A little beyond the face: the next point lies in the next cell, whatever rounding does.
-    const F beyond = hn::MulAdd(m_shortest, all(0.02F), hn::Max(stop, m_t));
-    const M filled = both(m_busy, hn::Gt(cell.majorant, hn::Zero(floats)));
-    const F wanted = hn::Max(m_shortest, hn::Div(m_opticalDepth, cell.majorant));
-    const F wished = hn::IfThenElse(filled, hn::Min(hn::Add(m_t, wanted), beyond), beyond);
-    // Further by a float's last place at least: on an axis of a million voxels steps are shorter.
-    const F next = hn::Max(wished, hn::Mul(m_t, all(1.0F + 0x1p-22F)));
-    if (!hn::AllFalse(floats, filled))
+    const Float beyond = fma(m_shortest, 0.02F, max(stop, m_t));
+    const Mask filled = m_busy & (cell.majorant > 0.0F);
+    const Float wanted = max(m_shortest, m_opticalDepth / cell.majorant);
+    const Float next = select(filled, min(m_t + wanted, beyond), beyond);
+    if (filled.any())
       stopLight(filled, cell, next);
-    m_t = hn::IfThenElse(m_busy, next, m_t);
-    const M lit = hn::Gt(m_transmittance, all(narrow(MarchSteps::dark)));
-    const M going = both(m_busy, both(lit, hn::Lt(m_t, m_end)));
-    const M ended = hn::AndNot(going, m_busy);
+    m_t = select(m_busy, next, m_t);
+    const Mask lit = m_transmittance > narrow(MarchSteps::dark);
+    const Mask going = m_busy & lit & (m_t < m_end);
+    const Mask ended = m_busy.without(going);
     m_busy = going;
     return ended;
   }
 
   /// Collisions that have not been taken: their probability, and the middle of them.
   struct Pending {
-    F probability, middle;
+    Float probability, middle;
   };
-  HWY_INLINE M pendingAbove(F least) const { return hn::Gt(m_pending, least); }
+  HWY_INLINE Mask pendingAbove(Float least) const { return m_pending > least; }
   /// Takes those of the lanes of `which`; 0 in the others.
-  HWY_INLINE Pending take(M which) {
-    const F t = hn::Div(m_moment, hn::IfThenElse(which, m_pending, all(1.0F)));
-    const Pending taken{hn::IfThenElseZero(which, m_pending), hn::IfThenElse(which, t, m_t)};
-    m_pending = hn::IfThenZeroElse(which, m_pending);
-    m_moment = hn::IfThenZeroElse(which, m_moment);
+  HWY_INLINE Pending take(Mask which) {
+    const Float t = m_moment / select(which, m_pending, 1.0F);
+    const Pending taken{orZero(which, m_pending), select(which, t, m_t)};
+    m_pending = select(which, 0.0F, m_pending);
+    m_moment = select(which, 0.0F, m_moment);
     return taken;
   }
 
 private:
-  static HWY_INLINE F3 load(const Columns3& c, std::size_t first) {
-    return {hn::LoadU(floats, &c[0][first]), hn::LoadU(floats, &c[1][first]),
-            hn::LoadU(floats, &c[2][first])};
-  }
-
   /// Number of the cell along one axis.
-  static HWY_INLINE F cellOf(const WideScene::Axis& axis, F x) {
-    const F at = hn::MulAdd(x, all(axis.cellsPerVoxel), all(0.5F * axis.cellsPerVoxel));
-    return hn::Floor(hn::Min(hn::Max(at, hn::Zero(floats)), all(axis.insideCells)));
+  static HWY_INLINE Float cellOf(const WideScene::Axis& axis, Float x) {
+    const Float at = fma(x, axis.cellsPerVoxel, (0.5F * axis.cellsPerVoxel));
+    return floor(min(max(at, 0.0F), axis.insideCells));
   }
 
   /// t at the face through which a ray leaves the cell and its reach.
-  static HWY_INLINE F leaving(const WideScene::Axis& axis, F cell, F reach, F origin, F direction,
-                              F inverse) {
-    const M down = hn::Lt(direction, hn::Zero(floats));
-    const F face =
-        hn::IfThenElse(down, hn::Sub(cell, reach), hn::Add(cell, hn::Add(reach, all(1.0F))));
-    const F at = hn::MulSub(face, all(axis.cellEdge), all(0.5F));
-    const F t = hn::Mul(hn::Sub(at, origin), inverse);
-    const M moves = hn::Ge(hn::Abs(direction), all(std::numeric_limits<float>::min()));
-    return hn::IfThenElse(moves, t, all(std::numeric_limits<float>::infinity()));
+  static HWY_INLINE Float leaving(const WideScene::Axis& axis, Float cell, Float reach,
+                                  Float origin, Float direction, Float inverse) {
+    const Mask down = direction < 0.0F;
+    const Float face = select(down, cell - reach, cell + reach + 1.0F);
+    const Float at = fms(face, axis.cellEdge, 0.5F);
+    const Float t = (at - origin) * inverse;
+    const Mask moves = abs(direction) >= std::numeric_limits<float>::min();
+    return select(moves, t, std::numeric_limits<float>::infinity());
   }
 
   /// Light that matter stops from m_t to `next`, by its extinction in the middle.
-  HWY_INLINE void stopLight(M filled, const LaneCells& cell, F next) {
-    const F length = hn::Sub(next, m_t);
-    const F middle = hn::MulAdd(all(0.5F), length, m_t);
-    const F3 p = pointAt(middle);
-    F extinction = extinctionOf(m_volume, scalarAt<Voxel>(m_volume.field, p));
+  HWY_INLINE void stopLight(Mask filled, const LaneCells& cell, Float next) {
+    const Float length = next - m_t;
+    const Float middle = fma(0.5F, length, m_t);
+    const Float3 p = pointAt(middle);
+    Float extinction = extinctionOf(m_volume, scalarAt<Voxel>(m_volume.field, p));
     if (m_volume.context && m_volume.context->extinction != 1.0F)
-      extinction = hn::IfThenElse(isFocus(*m_volume.context, p), extinction,
-                                  hn::Mul(extinction, all(m_volume.context->extinction)));
+      extinction = select(isFocus(*m_volume.context, p), extinction,
+                          extinction * m_volume.context->extinction);
     if (m_asksKeep) {
-      const M cut = both(filled, cell.cut());
-      if (!hn::AllFalse(floats, cut))
-        extinction = hn::IfThenElse(cut, hn::Mul(extinction, keep(m_volume, p, cut)), extinction);
+      const Mask cut = filled & cell.cut;
+      if (cut.any())
+        extinction.where(cut, extinction * keep(m_volume, p, cut));
     }
-    const F passed = hn::Exp(floats, hn::Neg(hn::Mul(extinction, length)));
-    const F stopped =
-        hn::IfThenElseZero(filled, hn::Mul(m_transmittance, hn::Sub(all(1.0F), passed)));
-    m_transmittance = hn::Sub(m_transmittance, stopped);
-    m_pending = hn::Add(m_pending, stopped);
-    m_moment = hn::MulAdd(stopped, middle, m_moment);
+    const Float passed = exp(-(extinction * length));
+    const Float stopped = orZero(filled, m_transmittance * (1.0F - passed));
+    m_transmittance = m_transmittance - stopped;
+    m_pending = m_pending + stopped;
+    m_moment = fma(stopped, middle, m_moment);
   }
 
   const WideScene& m_volume;
-  F3 m_origin, m_direction, m_inverse; ///< index space, per mm
-  F m_end, m_shortest;                 ///< mm
-  F m_opticalDepth;                    ///< of a step
+  Float3 m_origin, m_direction, m_inverse; ///< index space, per mm
+  Float m_end, m_shortest;                 ///< mm
+  Float m_opticalDepth;                    ///< of a step
   bool m_asksKeep;
-  M m_busy;
-  F m_t = hn::Zero(floats), m_transmittance = all(1.0F);
-  F m_pending = hn::Zero(floats), m_moment = hn::Zero(floats);
+  Mask m_busy;
+  Float m_t = 0.0F, m_transmittance = 1.0F;
+  Float m_pending = 0.0F, m_moment = 0.0F;
 };
 
 /// Sums of FirstMatter.
@@ -141,80 +131,73 @@ public:
   Sums(const WideScene& volume, const EventScene& scene) : m_volume(volume), m_scene(scene) {}
 
   /// Adds the pending collisions of the lanes of `which` with the matter in their middle.
-  void collect(Walk<Voxel>& walk, M which) {
+  void collect(Walk<Voxel>& walk, Mask which) {
     const auto [probability, middle] = walk.take(which);
-    const F3 p = walk.pointAt(middle);
-    const F scalar = scalarAt<Voxel>(m_volume.field, p);
-    F3 albedo = albedoOf(m_scene.albedo, scalar);
+    const Float3 p = walk.pointAt(middle);
+    const Float scalar = scalarAt<Voxel>(m_volume.field, p);
+    Float3 albedo = albedoOf(m_scene.albedo, scalar);
     if (m_volume.context)
       albedo = paled(*m_volume.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;
-    const F3 difference = differenceAt<Voxel>(m_volume.field, p);
-    F3 gradient = mapDirection(m_scene.indexDifferenceToGradient, difference);
-    F along = dot(walk.direction(), difference); // of the gradient's sign
+    const Float3 difference = differenceAt<Voxel>(m_volume.field, p);
+    Float3 gradient = mapDirection(m_scene.indexDifferenceToGradient, difference);
+    Float along = dot(walk.direction(), difference); // of the gradient's sign
     if (m_scene.hybrid && m_volume.cutSlope > 0.0F) {
       gradient = gradient + cutGradient(m_volume, p, which);
       along = dot(mapDirection(m_scene.toLocal, walk.direction()), gradient);
     }
-    const F slope = hn::Sqrt(dot(gradient, gradient));
-    const M away = hn::Lt(along, hn::Zero(floats));
-    const F scale = hn::Div(hn::IfThenElse(away, probability, hn::Neg(probability)), slope);
-    const F3 normal = selectElseZero(hn::Gt(slope, hn::Zero(floats)), scale * gradient);
+    const Float slope = sqrt(dot(gradient, gradient));
+    const Mask away = along < 0.0F;
+    const Float scale = select(away, probability, -probability) / slope;
+    const Float3 normal = orZero(slope > 0.0F, scale * gradient);
     m_normal = m_normal + normal;
     if (m_scene.hybrid)
       m_facing = m_facing + surfaceChance(m_volume, m_scene, scalar, slope) * normal;
-    m_hit = hn::Add(m_hit, probability);
-    m_distance = hn::MulAdd(probability, middle, m_distance);
+    m_hit = m_hit + probability;
+    m_distance = fma(probability, middle, m_distance);
   }
 
-  void store(MarchBatch& batch, std::size_t first) const {
-    const auto put = [first](F value, Column<float>& column) {
-      hn::StoreU(value, floats, &column[first]);
-    };
-    const auto put3 = [&](const F3& value, Columns3& columns) {
-      put(value.x, columns[0]);
-      put(value.y, columns[1]);
-      put(value.z, columns[2]);
-    };
-    put(m_hit, batch.hit);
-    put(m_distance, batch.distance);
-    put3(m_albedo, batch.albedo);
-    put3(m_normal, batch.normal);
-    put3(m_facing, batch.facing);
+  void putTo(MarchBatch& batch, std::size_t first) const {
+    store(m_hit, &batch.hit[first]);
+    store(m_distance, &batch.distance[first]);
+    store3(m_albedo, batch.albedo, first);
+    store3(m_normal, batch.normal, first);
+    store3(m_facing, batch.facing, first);
   }
 
 private:
   const WideScene& m_volume;
   const EventScene& m_scene;
-  F m_hit = hn::Zero(floats), m_distance = hn::Zero(floats);
-  F3 m_albedo{m_hit, m_hit, m_hit}, m_normal{m_hit, m_hit, m_hit}, m_facing{m_hit, m_hit, m_hit};
+  Float m_hit = 0.0F, m_distance = 0.0F;
+  Float3 m_albedo{m_hit, m_hit, m_hit}, m_normal{m_hit, m_hit, m_hit},
+      m_facing{m_hit, m_hit, m_hit};
 };
 
 template <typename Voxel>
 void marchBatch(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
   // Eye rays begin behind the surface: only an edge that is not sharp matters there.
   const bool asksKeep = volume.ghost > 0.0F || volume.softness > 0.0F;
-  for (std::size_t first = 0; first < batch.rays.size; first += hn::Lanes(floats)) {
+  for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
     Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
     Sums<Voxel> sums(volume, scene);
     while (!walk.isDone()) {
-      const M ended = walk.step();
-      const F least = hn::IfThenElse(ended, hn::Zero(floats), all(narrow(MarchSteps::share)));
-      const M due = walk.pendingAbove(least);
-      if (!hn::AllFalse(floats, due))
+      const Mask ended = walk.step();
+      const Float least = select(ended, 0.0F, narrow(MarchSteps::share));
+      const Mask due = walk.pendingAbove(least);
+      if (due.any())
         sums.collect(walk, due);
     }
-    sums.store(batch, first);
+    sums.putTo(batch, first);
   }
 }
 
 template <typename Voxel>
 void passBatch(const WideScene& volume, RayBatch& rays) {
-  for (std::size_t first = 0; first < rays.size; first += hn::Lanes(floats)) {
+  for (std::size_t first = 0; first < rays.size; first += laneCount) {
     Walk<Voxel> walk(volume, rays, first, MarchSteps::coarser, true);
     while (!walk.isDone())
       walk.step();
-    hn::StoreU(walk.transmittance(), floats, &rays.result[first]);
+    store(walk.transmittance(), &rays.result[first]);
   }
 }
 

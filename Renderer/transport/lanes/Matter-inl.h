@@ -15,38 +15,40 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-HWY_INLINE F3 albedoOf(const WideTable& table, F scalar) {
+HWY_INLINE Float3 albedoOf(const WideTable& table, Float scalar) {
   const auto& channels = table.channels;
   if (table.position.size() == 3) // one knot
-    return {all(channels[0][0].value), all(channels[1][0].value), all(channels[2][0].value)};
+    return {channels[0][0].value, channels[1][0].value, channels[2][0].value};
   const Segment segment = segmentOf(table, scalar);
   return {valueIn(channels[0], segment), valueIn(channels[1], segment),
           valueIn(channels[2], segment)};
 }
 
 /// ContextStyle::paled, outside the focus.
-HWY_INLINE F3 paled(const WideScene::Context& context, const F3& index, const F3& albedo) {
-  const F grey = dot(albedo, {all(0.2126F), all(0.7152F), all(0.0722F)});
-  const auto channel = [&](F x) { return lerp(grey, x, all(context.saturation)); };
+HWY_INLINE Float3 paled(const WideScene::Context& context, const Float3& index,
+                        const Float3& albedo) {
+  const Float grey = dot(albedo, {0.2126F, 0.7152F, 0.0722F});
+  const auto channel = [&](Float x) { return lerp(grey, x, context.saturation); };
   return select(isFocus(context, index), albedo,
-                F3{channel(albedo.x), channel(albedo.y), channel(albedo.z)});
+                Float3{channel(albedo.x), channel(albedo.y), channel(albedo.z)});
 }
 
 /// Differences of the scalar over two voxels along each axis.
 template <typename Voxel>
-HWY_INLINE F3 differenceAt(const WideField& field, const F3& p) {
-  const F one = all(1.0F);
-  const auto value = [&](F x, F y, F z) { return scalarAt<Voxel>(field, {x, y, z}); };
-  return {hn::Sub(value(hn::Add(p.x, one), p.y, p.z), value(hn::Sub(p.x, one), p.y, p.z)),
-          hn::Sub(value(p.x, hn::Add(p.y, one), p.z), value(p.x, hn::Sub(p.y, one), p.z)),
-          hn::Sub(value(p.x, p.y, hn::Add(p.z, one)), value(p.x, p.y, hn::Sub(p.z, one)))};
+HWY_INLINE Float3 differenceAt(const WideField& field, const Float3& p) {
+  const Float one = 1.0F;
+  const auto value = [&](Float x, Float y, Float z) { return scalarAt<Voxel>(field, {x, y, z}); };
+  return {value(p.x + one, p.y, p.z) - value(p.x - one, p.y, p.z),
+          value(p.x, p.y + one, p.z) - value(p.x, p.y - one, p.z),
+          value(p.x, p.y, p.z + one) - value(p.x, p.y, p.z - one)};
 }
 
 /// Medium's probability of scattering at a surface; `slope`: length of the gradient.
-HWY_INLINE F surfaceChance(const WideScene& volume, const EventScene& scene, F scalar, F slope) {
-  const auto missing = [](F x) { return hn::Neg(hn::Expm1(floats, hn::Neg(x))); };
-  const F opacity = missing(extinctionOf(volume, scalar));
-  return hn::Mul(opacity, missing(hn::Mul(all(scene.surfaceRate), slope)));
+HWY_INLINE Float surfaceChance(const WideScene& volume, const EventScene& scene, Float scalar,
+                               Float slope) {
+  const auto missing = [](Float x) { return -expm1(-x); };
+  const Float opacity = missing(extinctionOf(volume, scalar));
+  return opacity * missing(scene.surfaceRate * slope);
 }
 
 } // namespace fenestra::HWY_NAMESPACE

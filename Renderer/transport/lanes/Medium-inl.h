@@ -1,59 +1,58 @@
 // Look-ups of lanes at points in index space: scalar, extinction, majorant cells. Compiled once for
 // each instruction set (see Tracker.cxx).
 
-#if defined(FENESTRA_WIDE_LOOKUP_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_LOOKUP_INL_H
-#undef FENESTRA_WIDE_LOOKUP_INL_H
+#if defined(FENESTRA_LANE_MEDIUM_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_LANE_MEDIUM_INL_H
+#undef FENESTRA_LANE_MEDIUM_INL_H
 #else
-#define FENESTRA_WIDE_LOOKUP_INL_H
+#define FENESTRA_LANE_MEDIUM_INL_H
 #endif
 
 #include "transport/lanes/TrackerTables.h"
 // After foreach_target.h:
-#include "base/Lanes-inl.h"
+#include "base/LaneMath-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-/// Indices of lanes, stored in memory.
-struct alignas(64) Indices : std::array<std::int32_t, HWY_MAX_BYTES / sizeof(std::int32_t)> {
-  explicit HWY_INLINE Indices(I index) { hn::Store(index, ints, data()); }
-};
+using Indices = LaneArray<std::int32_t>;
 
-/// Loads a Number from each of `count` places, aligned or not. Loads one by one are less work for
-/// the processor than gathers, once the indices are in memory.
-template <typename Number, std::size_t count, typename Element>
+/// Loads a Number from each of `count` places, `step` indices apart, aligned or not. Loads one by
+/// one are less work for the processor than gathers, once the indices are in memory.
+template <typename Number, std::size_t count, std::size_t step, typename Element>
 HWY_INLINE auto loadEach(const Element* memory, const std::int32_t* index) {
   constexpr hn::CappedTag<Number, count> d;
   if constexpr (count == 1)
     return hn::LoadU(d, reinterpret_cast<const Number*>(memory + *index));
 #if HWY_TARGET != HWY_SCALAR
   else
-    return hn::Combine(d, loadEach<Number, count / 2>(memory, index + count / 2),
-                       loadEach<Number, count / 2>(memory, index));
+    return hn::Combine(d, loadEach<Number, count / 2, step>(memory, index + step * count / 2),
+                       loadEach<Number, count / 2, step>(memory, index));
 #endif
 }
 
 /// Loads 32 bits from memory[i] on for each i.
 template <typename Element>
-HWY_INLINE I loadInts(const Element* memory, const Indices& index) {
-  return loadEach<std::int32_t, hn::MaxLanes(ints)>(memory, index.data());
+HWY_INLINE Int loadInts(const Element* memory, const Indices& index) {
+  return loadEach<std::int32_t, laneCount, 1>(memory, index.data());
 }
 
 /// Two floats a lane, neighbours in memory.
 struct Pairs {
-  F first, second;
+  Float first, second;
 };
 
 /// Loads memory[i] and memory[i + 1] for each i.
 HWY_INLINE Pairs loadPairs(const float* memory, const Indices& index) {
 #if HWY_TARGET == HWY_SCALAR
-  return {hn::Set(floats, memory[index[0]]), hn::Set(floats, memory[index[0] + 1])};
+  return {memory[index[0]], memory[index[0] + 1]};
 #else
-  constexpr std::size_t half = hn::MaxLanes(floats) / 2;
-  const F low = hn::BitCast(floats, loadEach<std::int64_t, half>(memory, index.data()));
-  const F high = hn::BitCast(floats, loadEach<std::int64_t, half>(memory, index.data() + half));
-  return {hn::ConcatEven(floats, high, low), hn::ConcatOdd(floats, high, low)};
+  constexpr std::size_t half = laneCount / 2;
+  const Float::Vector even =
+      hn::BitCast(floats, loadEach<std::int64_t, half, 2>(memory, index.data()));
+  const Float::Vector odd =
+      hn::BitCast(floats, loadEach<std::int64_t, half, 2>(memory, index.data() + 1));
+  return {hn::OddEven(hn::DupEven(odd), even), hn::OddEven(odd, hn::DupOdd(even))};
 #endif
 }
 
@@ -67,7 +66,7 @@ HWY_INLINE std::array<std::int32_t, 4> rowsOf(const WideField& field) {
   return {0, up, deep, deep + up};
 }
 
-HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, I first) {
+HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, Int first) {
   Corners c;
   const std::array<std::int32_t, 4> rows = rowsOf(field);
   const Indices index(first);
@@ -78,194 +77,161 @@ HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, I firs
 
 /// Corners of 16-bit voxels: 32 bits hold a row's two voxels, extracted by `lower` and `upper`.
 template <typename Voxel, typename Lower, typename Upper>
-HWY_INLINE Corners cornersInPairs(const WideField& field, const Voxel* voxels, I first,
+HWY_INLINE Corners cornersInPairs(const WideField& field, const Voxel* voxels, Int first,
                                   Lower&& lower, Upper&& upper) {
   Corners c;
   const std::array<std::int32_t, 4> rows = rowsOf(field);
   const Indices index(first);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const I both = loadInts(voxels + rows[i], index);
-    c[i] = {hn::ConvertTo(floats, lower(both)), hn::ConvertTo(floats, upper(both))};
+    const Int both = loadInts(voxels + rows[i], index);
+    c[i] = {toFloat(lower(both)), toFloat(upper(both))};
   }
   return c;
 }
-HWY_INLINE Corners cornersAt(const WideField& field, const std::int16_t* voxels, I first) {
+HWY_INLINE Corners cornersAt(const WideField& field, const std::int16_t* voxels, Int first) {
   return cornersInPairs(
-      field, voxels, first, [](I both) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(both)); },
-      [](I both) { return hn::ShiftRight<16>(both); });
+      field, voxels, first, [](Int both) { return shiftRight<16>(shiftLeft<16>(both)); },
+      [](Int both) { return shiftRight<16>(both); });
 }
-HWY_INLINE Corners cornersAt(const WideField& field, const std::uint16_t* voxels, I first) {
-  const I low = hn::Set(ints, 0xffff);
+HWY_INLINE Corners cornersAt(const WideField& field, const std::uint16_t* voxels, Int first) {
   return cornersInPairs(
-      field, voxels, first, [&](I both) { return hn::And(both, low); },
-      [&](I both) { return hn::And(hn::ShiftRight<16>(both), low); });
+      field, voxels, first, [](Int both) { return both & 0xffff; },
+      [](Int both) { return shiftRight<16>(both) & 0xffff; });
 }
-HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels, I first) {
+HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels, Int first) {
   Corners c;
   const std::array<std::int32_t, 4> rows = rowsOf(field);
-  const I low = hn::Set(ints, 0xff);
-  const I lastFour = hn::Set(ints, static_cast<std::int32_t>(field.count - 4));
+  const Int lastFour = static_cast<std::int32_t>(field.count - 4);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     // Reads four bytes, never beyond the last voxel.
-    const I row = hn::Add(first, hn::Set(ints, rows[i]));
-    const I from = hn::Min(row, lastFour);
-    const I shift = hn::ShiftLeft<3>(hn::Sub(row, from));
-    const I four = loadInts(voxels, Indices(from));
-    const I both = hn::Shr(four, shift);
-    c[i] = {hn::ConvertTo(floats, hn::And(both, low)),
-            hn::ConvertTo(floats, hn::And(hn::ShiftRight<8>(both), low))};
+    const Int row = first + rows[i];
+    const Int from = min(row, lastFour);
+    const Int four = loadInts(voxels, Indices(from));
+    const Int both = hn::Shr(four.v, shiftLeft<3>(row - from).v);
+    c[i] = {toFloat(both & 0xff), toFloat(shiftRight<8>(both) & 0xff)};
   }
   return c;
 }
 
 /// A point among voxel centres, clamped in the outer half voxel.
 struct Place {
-  I first;      ///< index of the lowest of the eight voxels around it
-  F3 fractions; ///< position from there, 0 to 1
+  Int first;        ///< index of the lowest of the eight voxels around it
+  Float3 fractions; ///< position from there, 0 to 1
 };
 
-HWY_INLINE Place placeOf(const WideField& field, const Point& p) {
-  const auto cell = [&](std::size_t axis, F x, F& fraction) {
+HWY_INLINE Place placeOf(const WideField& field, const Float3& p) {
+  const auto cell = [&](std::size_t axis, Float x, Float& fraction) {
     const WideField::Axis& a = field.axes[axis];
     // This order of min and max maps NaN to 0.
-    const F inside = hn::Max(hn::Min(x, all(a.last)), hn::Zero(floats));
-    const I index = hn::Min(hn::ConvertTo(ints, inside), hn::Set(ints, a.lastCell));
-    fraction = hn::Sub(inside, hn::ConvertTo(floats, index));
-    return index;
+    const Float inside = max(min(x, a.last), 0.0F);
+    const Float lower = min(floor(inside), a.lastCell);
+    fraction = inside - lower;
+    return wholeToInt(lower);
   };
   Place place;
-  const I x = cell(0, p.x, place.fractions.x);
-  const I y = cell(1, p.y, place.fractions.y);
-  const I z = cell(2, p.z, place.fractions.z);
-  place.first = hn::Add(x, hn::Add(hn::Mul(y, hn::Set(ints, field.axes[1].stride)),
-                                   hn::Mul(z, hn::Set(ints, field.axes[2].stride))));
+  const Int x = cell(0, p.x, place.fractions.x);
+  const Int y = cell(1, p.y, place.fractions.y);
+  const Int z = cell(2, p.z, place.fractions.z);
+  place.first = x + y * field.axes[1].stride + z * field.axes[2].stride;
   return place;
-}
-
-/// Prefetches the voxels around the places of all lanes.
-template <typename Voxel>
-HWY_INLINE void prefetch(const WideField& field, const Place& place) {
-  const auto* voxels = static_cast<const Voxel*>(field.voxels);
-  const Indices first(place.first);
-  const std::array<std::int32_t, 4> rows = rowsOf(field);
-  for (std::size_t lane = 0; lane < hn::Lanes(floats); ++lane)
-    for (const std::int32_t row : rows)
-      hwy::Prefetch(voxels + first[lane] + row);
 }
 
 /// The scalar, trilinear between voxel centres.
 template <typename Voxel>
-HWY_INLINE F scalarAt(const WideField& field, const Place& place) {
+HWY_INLINE Float scalarAt(const WideField& field, const Float3& p) {
+  const Place place = placeOf(field, p);
   const Corners c = cornersAt(field, static_cast<const Voxel*>(field.voxels), place.first);
-  const F3& f = place.fractions;
+  const Float3& f = place.fractions;
   const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, f.x); };
-  const F low = lerp(along(c[0]), along(c[1]), f.y);
-  const F high = lerp(along(c[2]), along(c[3]), f.y);
+  const Float low = lerp(along(c[0]), along(c[1]), f.y);
+  const Float high = lerp(along(c[2]), along(c[3]), f.y);
   return lerp(low, high, f.z);
-}
-template <typename Voxel>
-HWY_INLINE F scalarAt(const WideField& field, const Point& p) {
-  return scalarAt<Voxel>(field, placeOf(field, p));
 }
 
 /// Segment of a table that holds a scalar.
 struct Segment {
-  I index;
-  F beyondStart; ///< scalar units from the segment's start; not finite in the first segment
+  Int index;
+  Float beyondStart; ///< scalar units from the segment's start; not finite in the first segment
 };
 
-HWY_INLINE Segment segmentOf(const WideTable& table, F s) {
-  s = hn::Min(s, all(std::numeric_limits<float>::max())); // interpolation can overflow
+HWY_INLINE Segment segmentOf(const WideTable& table, Float s) {
+  s = min(s, std::numeric_limits<float>::max()); // interpolation can overflow
   const auto lastBin = static_cast<float>(table.binSegment.size() - 1);
-  const F bin = hn::Mul(hn::Sub(s, all(table.binStart)), all(table.binsPerUnit));
-  const I inTable = hn::ConvertTo(ints, hn::Max(hn::Min(bin, all(lastBin)), hn::Zero(floats)));
-  I segment = hn::GatherIndex(ints, table.binSegment.data(), inTable);
+  const Float bin = (s - table.binStart) * table.binsPerUnit;
+  Int segment = gather(table.binSegment.data(), toInt(max(min(bin, lastBin), 0.0F)));
   for (;;) {
     const Pairs ends = loadPairs(table.position.data(), Indices(segment));
-    const M beyond = hn::Ge(s, ends.second);
-    if (hn::AllFalse(floats, beyond))
-      return {segment, hn::Sub(s, ends.first)};
-    segment =
-        hn::IfThenElse(hn::RebindMask(ints, beyond), hn::Add(segment, hn::Set(ints, 1)), segment);
+    const Mask beyond = s >= ends.second;
+    if (!beyond.any())
+      return {segment, s - ends.first};
+    segment.where(beyond, segment + 1);
   }
 }
 
 /// Value of a channel in a segment, clamped to >= 0.
-HWY_INLINE F valueIn(const WideTable::Channel& channel, const Segment& at) {
-  const auto [value, slope] = loadPairs(&channel[0].value, Indices(hn::ShiftLeft<1>(at.index)));
+HWY_INLINE Float valueIn(const WideTable::Channel& channel, const Segment& at) {
+  const auto [value, slope] = loadPairs(&channel[0].value, Indices(shiftLeft<1>(at.index)));
   // Constant segments may begin at -infinity.
-  const F rise =
-      hn::IfThenZeroElse(hn::Eq(slope, hn::Zero(floats)), hn::Mul(at.beyondStart, slope));
-  return notBelow0(hn::Add(value, rise));
+  return notBelow0(value + select(slope == 0.0F, 0.0F, at.beyondStart * slope));
 }
 
-/// Extinction (mm^-1) of a scalar.
-HWY_INLINE F extinctionOf(const WideScene& scene, F s) {
-  return valueIn(scene.extinction.channels[0], segmentOf(scene.extinction, s));
+/// Extinction (mm^-1) of a scalar: one load where its bin lies in one segment.
+HWY_INLINE Float extinctionOf(const WideScene& scene, Float s) {
+  const WideTable& table = scene.extinction;
+  const auto lastLine = static_cast<float>(table.lines.size() - 1);
+  const Float place = max(min((s - table.binStart) * table.linesPerUnit, lastLine), 0.0F);
+  const Float line = floor(place);
+  const auto [value, rise] =
+      loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(wholeToInt(line))));
+  const Float extinction = notBelow0(fma(place - line, rise, value));
+  const Mask mixed = ~(rise == rise);
+  return mixed.any() ? select(mixed, valueIn(table.channels[0], segmentOf(table, s)), extinction)
+                     : extinction;
 }
 
-/// Majorant cells, one a lane (WideCells::cell).
+/// Majorant cells, one a lane (WideCells).
 struct LaneCells {
-  I code;     ///< in the upper half
-  F majorant; ///< mm^-1
-  F reach;    ///< cells
-
-  HWY_INLINE M cut() const {
-    return hn::RebindMask(floats, hn::TestBit(code, hn::Set(ints, 0x10000)));
-  }
+  Float majorant; ///< mm^-1
+  Float reach;    ///< cells
+  Mask cut;
 };
 
-/// Cells of these numbers along the axes, whole and inside the grid.
-HWY_INLINE LaneCells cellsAt(const WideScene& scene, F x, F y, F z) {
-  // Fewer than 2^24 cells: exact.
-  const F place =
-      hn::MulAdd(z, all(scene.axes[2].cellStride),
-                 hn::MulAdd(y, all(scene.axes[1].cellStride), hn::Add(x, all(scene.firstCell))));
-  const Indices index(hn::ConvertTo(ints, place));
-  LaneCells cells;
-  cells.code = hn::ShiftLeft<16>(loadInts(scene.cells.codes.data(), index));
-  const auto filled = hn::Gt(cells.code, hn::Zero(ints));
-  constexpr int toMajorant = 16 + WideCells::reachBits + 1 - WideCells::majorantShift;
-  const I majorant = hn::Add(hn::And(hn::ShiftRight<toMajorant>(cells.code),
-                                     hn::Set(ints, 0x7ff << WideCells::majorantShift)),
-                             hn::Set(ints, static_cast<std::int32_t>(scene.cells.bias)));
-  cells.majorant = hn::BitCast(floats, hn::IfThenElseZero(filled, majorant));
-  const I reach = hn::And(hn::ShiftRight<17>(cells.code), hn::Set(ints, WideCells::mostReach));
-  cells.reach = hn::IfThenElse(hn::RebindMask(floats, filled), hn::ConvertTo(floats, reach),
-                               hn::Neg(hn::BitCast(floats, cells.code)));
-  return cells;
+/// Cells at `place` of WideCells::codes: whole numbers.
+HWY_INLINE LaneCells cellsAt(const WideScene& scene, Float place) {
+  // This order of min and max maps NaN to 0.
+  const Int index = wholeToInt(max(min(place, scene.lastCell), 0.0F));
+  const Int code = gather(scene.cells.codes.data(), index);
+  return {bitsAsFloat(code & WideCells::majorantBits), toFloat(code & WideCells::reachBits),
+          code < 0};
 }
 
 /// Length of a ray from inside [lower, upper] to the faces; 0 if rounding put the origin outside.
-HWY_INLINE F toFaces(const F3& lower, const F3& upper, const F3& origin, const F3& direction) {
-  const auto along = [](F low, F high, F o, F d) {
-    const F zero = hn::Zero(floats);
-    const F face = hn::IfThenElse(hn::Lt(d, zero), low, high);
-    const F t = hn::Div(hn::Sub(face, o), d);
-    return hn::IfThenElse(hn::Eq(d, zero), all(std::numeric_limits<float>::infinity()), t);
+HWY_INLINE Float toFaces(const Float3& lower, const Float3& upper, const Float3& origin,
+                         const Float3& direction) {
+  const auto along = [](Float low, Float high, Float o, Float d) {
+    const Float t = (select(d < 0.0F, low, high) - o) / d;
+    return select(d == 0.0F, std::numeric_limits<float>::infinity(), t);
   };
-  const F x = along(lower.x, upper.x, origin.x, direction.x);
-  const F y = along(lower.y, upper.y, origin.y, direction.y);
-  const F z = along(lower.z, upper.z, origin.z, direction.z);
-  return notBelow0(hn::Min(hn::Min(x, y), z));
+  const Float x = along(lower.x, upper.x, origin.x, direction.x);
+  const Float y = along(lower.y, upper.y, origin.y, direction.y);
+  const Float z = along(lower.z, upper.z, origin.z, direction.z);
+  return notBelow0(min(min(x, y), z));
 }
 
 /// Length (mm) of a ray from inside the domain to its end; ray in index space, t in mm.
-HWY_INLINE F lengthInside(const WideScene& scene, const F3& origin, const F3& direction) {
-  const F toBox = toFaces(all3(scene.lower), all3(scene.upper), origin, direction);
+HWY_INLINE Float lengthInside(const WideScene& scene, const Float3& origin,
+                              const Float3& direction) {
+  const Float toBox = toFaces(scene.lower, scene.upper, origin, direction);
   if (!scene.cropped)
     return toBox;
-  const F one = all(1.0F);
-  const F minusOne = all(-1.0F);
-  const F toCrop = toFaces({minusOne, minusOne, minusOne}, {one, one, one},
-                           mapPoint(scene.toCrop, origin), mapDirection(scene.toCrop, direction));
-  return hn::Min(toBox, toCrop);
+  const Float3 lower(-1.0F, -1.0F, -1.0F), upper(1.0F, 1.0F, 1.0F);
+  return min(toBox, toFaces(lower, upper, mapPoint(scene.toCrop, origin),
+                            mapDirection(scene.toCrop, direction)));
 }
 
 /// Lanes whose point (index space) lies in the focus, where a style changes nothing.
-HWY_INLINE M isFocus(const WideScene::Context& context, const Point& p) {
-  return hn::Ge(scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)),
-                all(context.level));
+HWY_INLINE Mask isFocus(const WideScene::Context& context, const Float3& p) {
+  return scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)) >= context.level;
 }
 
 } // namespace fenestra::HWY_NAMESPACE

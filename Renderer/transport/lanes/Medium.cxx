@@ -3,6 +3,43 @@
 #include "base/Narrow.h"
 
 namespace fenestra {
+namespace {
+
+/// Lines of the first channel over equal bins, the last one for what lies beyond.
+template <int Channels>
+std::vector<WideTable::Line> linesOf(const PiecewiseLinear<Channels>& function, std::size_t bins) {
+  const auto& knots = function.knots();
+  const double start = knots.front().position;
+  const double width = function.span() / static_cast<double>(bins);
+  // What a float may be off by.
+  const double rounding =
+      2.5e-4 * width + 0x1p-22 * std::max(std::abs(start), std::abs(knots.back().position));
+  const bool isFine = rounding < 0.1 * width || knots.size() == 1;
+  std::vector<WideTable::Line> lines;
+  std::size_t next = 0; // knot
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    const double low = start + width * static_cast<double>(bin), high = low + width;
+    while (next < knots.size() && knots[next].position < low - rounding)
+      ++next;
+    // At its edges a bin may have one knot, where the function bends and does not jump.
+    std::size_t after = next;
+    int atLow = 0, atHigh = 0;
+    for (; after < knots.size() && knots[after].position <= low + rounding; ++after)
+      ++atLow;
+    const bool isBent = after < knots.size() && knots[after].position < high - rounding;
+    for (; after < knots.size() && knots[after].position <= high + rounding; ++after)
+      ++atHigh;
+    const double value = function(low + 0.25 * width)[0], later = function(low + 0.75 * width)[0];
+    const double rise = 2.0 * (later - value);
+    const bool isLine = isFine && !isBent && atLow <= 1 && atHigh <= 1;
+    lines.push_back({narrow(value - 0.25 * rise),
+                     isLine ? narrow(rise) : std::numeric_limits<float>::quiet_NaN()});
+  }
+  lines.push_back({narrow(knots.back().value[0]), 0.0F});
+  return lines;
+}
+
+} // namespace
 
 template <int Channels>
 WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
@@ -37,6 +74,13 @@ WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
     while (static_cast<double>(position[segment + 1]) <= start && segment + 2 < position.size())
       ++segment;
     binSegment.push_back(binsPerUnit > 0.0F ? static_cast<std::int32_t>(segment) : 0);
+  }
+  constexpr std::size_t lineCount = 1024;
+  lines = linesOf(function, lineCount);
+  linesPerUnit = span > 0.0 ? narrow(static_cast<double>(lineCount) / span) : 0.0F;
+  if (!std::isfinite(linesPerUnit)) {
+    linesPerUnit = 0.0F;
+    lines.assign(1, {0.0F, std::numeric_limits<float>::quiet_NaN()});
   }
 }
 

@@ -20,6 +20,10 @@ struct WideTable {
   std::vector<std::int32_t> binSegment; ///< first candidate of each equal bin, from binStart on
   float binStart = 0.0F, binsPerUnit = 0.0F;
   std::vector<Channel> channels;
+  /// The first channel in equal bins from binStart on, each a line over the bin: value, and rise
+  /// over the bin; then the value beyond. NaN rise: the bin holds a knot, ask the segments.
+  std::vector<Line> lines;
+  float linesPerUnit = 0.0F;
 
   WideTable() = default;
   template <int Channels>

@@ -15,34 +15,31 @@ namespace {
 
 /// A path's own random numbers: hashes of a counter and a key.
 struct Draws {
-  U key, counter;
+  Word key, counter;
 
-  HWY_INLINE U nextBits() {
-    counter = hn::Add(counter, hn::Set(bits, 0x9e3779b9U));
-    return mixBits(hn::Xor(counter, key));
+  HWY_INLINE Word nextBits() {
+    counter = counter + 0x9e3779b9U;
+    return mixBits(counter ^ key);
   }
-  HWY_INLINE F uniform() { return uniformOf(nextBits()); }
+  HWY_INLINE Float uniform() { return uniformOf(nextBits()); }
 };
-
-HWY_INLINE F3 loadFrom(const Columns3& columns, std::size_t i) {
-  return {hn::LoadU(floats, &columns[0][i]), hn::LoadU(floats, &columns[1][i]),
-          hn::LoadU(floats, &columns[2][i])};
-}
-HWY_INLINE void storeTo(Columns3& columns, std::size_t i, const F3& v) {
-  hn::StoreU(v.x, floats, &columns[0][i]);
-  hn::StoreU(v.y, floats, &columns[1][i]);
-  hn::StoreU(v.z, floats, &columns[2][i]);
-}
 
 /// One path a lane, at its collision.
 struct Collisions {
-  M going;  ///< lanes that scatter
-  M first;  ///< lanes that scatter for the first time
-  F3 index; ///< points, index space
-  F scalar;
-  F3 incoming, weight;
-  F3 albedo, gradient; ///< gradient: 0 unless needed
-  M surface;
+  Mask going;   ///< lanes that scatter
+  Mask first;   ///< lanes that scatter for the first time
+  Float3 index; ///< points, index space
+  Float scalar;
+  Float3 incoming, weight;
+  Float3 albedo, gradient; ///< gradient: 0 unless needed
+  Mask surface;
+};
+
+/// First collisions whose normals are still to be found, which is done in whole vectors.
+struct FirstCollisions {
+  std::size_t size = 0;
+  Column<std::uint32_t> path;
+  Columns3 index, incoming;
 };
 
 template <typename Voxel>
@@ -54,8 +51,11 @@ public:
   void run(Counters& counters) {
     m_out.rays.size = 0;
     m_paths.endedCount = 0;
-    for (std::size_t i = 0; i < m_paths.rays.size; i += hn::Lanes(floats))
+    for (std::size_t i = 0; i < m_paths.rays.size; i += laneCount)
       step(i);
+    for (std::size_t i = 0; i < m_firsts.size; i += laneCount)
+      findNormals(i);
+    m_gradients += m_firsts.size;
     counters.collisions += m_collisions;
     counters.gradients += m_gradients;
     counters.shadowRays += m_out.rays.size;
@@ -63,191 +63,209 @@ public:
 
 private:
   void step(std::size_t i) {
-    const M there = hn::FirstN(floats, m_paths.rays.size - i);
-    const F distance = hn::LoadU(floats, &m_paths.rays.result[i]);
-    const I bounces = hn::LoadU(ints, &m_paths.bounces[i]);
-    const M first = hn::RebindMask(floats, hn::Eq(bounces, hn::Zero(ints)));
-    const F3 origin = loadFrom(m_paths.rays.origin, i);
-    gather(i, hn::AndNot(first, there), origin, distance);
+    const Mask there = Mask::first(m_paths.rays.size - i);
+    const Float distance = load(&m_paths.rays.result[i]);
+    const Int bounces = load(&m_paths.bounces[i]);
+    const Mask first = bounces == 0;
+    const Float3 origin = load3(m_paths.rays.origin, i);
+    gather(i, there.without(first), origin, distance);
 
-    const M escaped = hn::Eq(distance, all(std::numeric_limits<float>::infinity()));
-    const M free = hn::RebindMask(floats, hn::Lt(bounces, hn::Set(ints, m_scene.bounces)));
-    const M going = hn::AndNot(escaped, both(there, free));
-    m_collisions += hn::CountTrue(floats, going);
-    M alive = going;
-    if (!hn::AllFalse(floats, going)) {
-      const I one = hn::IfThenElseZero(hn::RebindMask(ints, going), hn::Set(ints, 1));
-      hn::StoreU(hn::Add(bounces, one), ints, &m_paths.bounces[i]);
-      alive = collide(i, going, both(first, going), origin, hn::IfThenElseZero(going, distance));
+    const Mask escaped = distance == std::numeric_limits<float>::infinity();
+    const Mask free = bounces < m_scene.bounces;
+    const Mask going = (there & free).without(escaped);
+    m_collisions += going.count();
+    Mask alive = going;
+    if (going.any()) {
+      const Int one = orZero(going, 1);
+      store(bounces + one, &m_paths.bounces[i]);
+      alive = collide(i, going, first & going, origin, orZero(going, distance));
     }
-    listEnded(i, hn::AndNot(alive, there));
+    listEnded(i, there.without(alive));
   }
 
   /// Adds the light that scattered rays met before their collisions, or at infinity.
-  HWY_INLINE void gather(std::size_t i, M scattered, const F3& origin, F distance) {
-    if (hn::AllFalse(floats, scattered))
+  HWY_INLINE void gather(std::size_t i, Mask scattered, const Float3& origin, Float distance) {
+    if (!scattered.any())
       return;
-    const F3 light = m_lights.arriving(scattered, mapPoint(m_scene.toLocal, origin),
-                                       loadFrom(m_paths.direction, i), distance,
-                                       hn::LoadU(floats, &m_paths.scatterPdf[i]));
-    const F3 sum = loadFrom(m_paths.radiance, i);
-    storeTo(m_paths.radiance, i, select(scattered, sum + loadFrom(m_paths.weight, i) * light, sum));
+    const Float3 light =
+        m_lights.arriving(scattered, mapPoint(m_scene.toLocal, origin), load3(m_paths.direction, i),
+                          distance, load(&m_paths.scatterPdf[i]));
+    const Float3 sum = load3(m_paths.radiance, i);
+    store3(select(scattered, sum + load3(m_paths.weight, i) * light, sum), m_paths.radiance, i);
   }
 
   /// Scatters the lanes of `going`; returns the lanes that go on afterwards.
-  M collide(std::size_t i, M going, M first, const F3& origin, F distance) {
-    Draws draws{hn::LoadU(bits, &m_paths.key[i]), hn::LoadU(bits, &m_paths.counter[i])};
-    const F3 index = origin + distance * loadFrom(m_paths.rays.direction, i);
+  Mask collide(std::size_t i, Mask going, Mask first, const Float3& origin, Float distance) {
+    Draws draws{load(&m_paths.key[i]), load(&m_paths.counter[i])};
+    const Float3 index = origin + distance * load3(m_paths.rays.direction, i);
     const Collisions at = matter(i, going, first, index, draws);
-    if (!hn::AllFalse(floats, first))
+    if (first.any())
       recordFirst(i, at, distance);
 
     const WidePhase phase(m_scene, at.incoming, at.albedo);
-    const bool surfaces = !hn::AllFalse(floats, at.surface);
+    const bool surfaces = at.surface.any();
     const auto surface = [&] { return WideSurface(m_scene, at.incoming, at.gradient, at.albedo); };
     if (m_lights.some())
-      sampleLights(i, at, draws, [&](const F3& toward) {
+      sampleLights(i, at, draws, [&](const Float3& toward) {
         const Scattered s = phase.toward(toward);
         if (!surfaces)
           return s;
         const Scattered o = surface().toward(toward);
-        return Scattered{select(at.surface, o.factor, s.factor),
-                         hn::IfThenElse(at.surface, o.pdf, s.pdf)};
+        return Scattered{select(at.surface, o.factor, s.factor), select(at.surface, o.pdf, s.pdf)};
       });
 
-    const F choice = m_scene.hybrid ? draws.uniform() : all(0.0F); // independent of neighbours
-    const F u = draws.uniform();
-    const F v = draws.uniform();
+    const Float choice = m_scene.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
+    const Float u = draws.uniform();
+    const Float v = draws.uniform();
     ScatterDraw drawn = phase.draw(u, v);
     if (surfaces) {
       const ScatterDraw other = surface().draw(choice, u, v);
       drawn = {select(at.surface, other.outgoing, drawn.outgoing),
                select(at.surface, other.weight, drawn.weight),
-               hn::IfThenElse(at.surface, other.pdf, drawn.pdf)};
+               select(at.surface, other.pdf, drawn.pdf)};
     }
     return goOn(i, at, drawn, draws);
   }
 
-  HWY_INLINE Collisions matter(std::size_t i, M going, M first, const F3& index, Draws& draws) {
-    const F zero = hn::Zero(floats);
+  HWY_INLINE Collisions matter(std::size_t i, Mask going, Mask first, const Float3& index,
+                               Draws& draws) {
+    const Float zero = 0.0F;
     Collisions at{going,
                   first,
                   index,
-                  hn::LoadU(floats, &m_paths.rays.scalar[i]),
-                  loadFrom(m_paths.direction, i),
-                  loadFrom(m_paths.weight, i),
+                  load(&m_paths.rays.scalar[i]),
+                  load3(m_paths.direction, i),
+                  load3(m_paths.weight, i),
                   {},
                   {zero, zero, zero},
-                  noLane()};
+                  Mask::none()};
     at.albedo = albedoOf(m_scene.albedo, at.scalar);
     if (m_volume.context)
       at.albedo = paled(*m_volume.context, index, at.albedo);
-    const bool recorded = m_scene.wantNormals && !hn::AllFalse(floats, first);
-    if (m_scene.hybrid || recorded) {
-      at.gradient = gradientAt(index);
-      m_gradients += hn::CountTrue(floats, m_scene.hybrid ? going : first);
-    }
     if (m_scene.hybrid) {
+      at.gradient = gradientAt(index);
+      m_gradients += going.count();
       if (m_volume.cutSlope > 0.0F)
         at.gradient = at.gradient + cutGradient(m_volume, index, going);
-      const F slope = hn::Sqrt(dot(at.gradient, at.gradient));
-      const F chance = surfaceChance(m_volume, m_scene, at.scalar, slope);
-      at.surface = both(going, hn::Lt(draws.uniform(), chance));
+      const Float slope = sqrt(dot(at.gradient, at.gradient));
+      const Float chance = surfaceChance(m_volume, m_scene, at.scalar, slope);
+      at.surface = going & (draws.uniform() < chance);
     }
     return at;
   }
 
-  F3 gradientAt(const F3& p) const {
-    const F3 difference = differenceAt<Voxel>(m_volume.field, p);
+  Float3 gradientAt(const Float3& p) const {
+    const Float3 difference = differenceAt<Voxel>(m_volume.field, p);
     return mapDirection(m_scene.indexDifferenceToGradient, difference);
   }
 
-  void recordFirst(std::size_t i, const Collisions& at, F distance) {
-    const auto keep = [&](F now, Column<float>& column) {
-      const F before = hn::LoadU(floats, &column[i]);
-      hn::StoreU(hn::IfThenElse(at.first, now, before), floats, &column[i]);
+  void recordFirst(std::size_t i, const Collisions& at, Float distance) {
+    const auto keep = [&](Float now, Column<float>& column) {
+      const Float before = load(&column[i]);
+      store(select(at.first, now, before), &column[i]);
     };
-    const auto keep3 = [&](const F3& now, Columns3& columns) {
+    const auto keep3 = [&](const Float3& now, Columns3& columns) {
       keep(now.x, columns[0]);
       keep(now.y, columns[1]);
       keep(now.z, columns[2]);
     };
     keep(distance, m_paths.firstDistance);
     keep3(at.albedo, m_paths.firstAlbedo);
-    const F slope = hn::Sqrt(dot(at.gradient, at.gradient));
-    const M away = hn::Lt(dot(at.incoming, at.gradient), hn::Zero(floats));
-    const F scale = hn::Div(hn::IfThenElse(away, all(1.0F), all(-1.0F)), slope);
-    const M some = hn::Gt(slope, hn::Zero(floats));
-    keep3(selectElseZero(some, scale * at.gradient), m_paths.firstNormal);
+    if (m_scene.hybrid)
+      keep3(normalOf(at.gradient, at.incoming), m_paths.firstNormal);
+    else if (m_scene.wantNormals)
+      listFirst(i, at);
+  }
+
+  void listFirst(std::size_t i, const Collisions& at) {
+    const Shuffle pack = Shuffle::packing(at.first);
+    const std::size_t to = m_firsts.size;
+    store(pack(numbersFrom(i)), &m_firsts.path[to]);
+    store3(pack(at.index), m_firsts.index, to);
+    store3(pack(at.incoming), m_firsts.incoming, to);
+    m_firsts.size += at.first.count();
+  }
+
+  void findNormals(std::size_t i) {
+    const Float3 normal =
+        normalOf(gradientAt(load3(m_firsts.index, i)), load3(m_firsts.incoming, i));
+    const LaneArray<float> x(normal.x), y(normal.y), z(normal.z);
+    forEachLane(Mask::first(m_firsts.size - i), [&](std::size_t lane) {
+      const std::size_t path = m_firsts.path[i + lane];
+      m_paths.firstNormal[0][path] = x[lane];
+      m_paths.firstNormal[1][path] = y[lane];
+      m_paths.firstNormal[2][path] = z[lane];
+    });
+  }
+
+  /// Unit, toward the ray's origin; 0 where there is no gradient.
+  static HWY_INLINE Float3 normalOf(const Float3& gradient, const Float3& incoming) {
+    const Float slope = sqrt(dot(gradient, gradient));
+    const Mask away = dot(incoming, gradient) < 0.0F;
+    return orZero(slope > 0.0F, select(away, 1.0F, -1.0F) / slope * gradient);
   }
 
   /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
   /// toward that light.
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
-    const F choice = draws.uniform();
-    const F u = draws.uniform();
-    const F v = draws.uniform();
+    const Float choice = draws.uniform();
+    const Float u = draws.uniform();
+    const Float v = draws.uniform();
     const LightDraw light =
         m_lights.draw(at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
     const Scattered scattered = toward(light.direction);
-    const F zero = hn::Zero(floats);
-    const F pdf = hn::Add(light.pdf, hn::IfThenElse(light.delta, zero, scattered.pdf));
-    const F3 radiance = hn::Div(all(1.0F), pdf) * (at.weight * scattered.factor * light.radiance);
-    const M arrives = both(at.going, hn::Gt(greatest(radiance), zero));
-    const std::size_t count = hn::CountTrue(floats, arrives);
-    const U seed = draws.nextBits();
+    const Float zero = 0.0F;
+    const Float pdf = light.pdf + select(light.delta, zero, scattered.pdf);
+    const Float3 radiance = (1.0F / pdf) * (at.weight * scattered.factor * light.radiance);
+    const Mask arrives = at.going & (greatest(radiance) > zero);
+    const std::size_t count = arrives.count();
+    const Word seed = draws.nextBits();
     if (count == 0)
       return;
-    const F3 direction = mapDirection(m_scene.localToIndex, light.direction);
-    const F length = hn::Min(light.distance, lengthInside(m_volume, at.index, direction));
+    const Float3 direction = mapDirection(m_scene.localToIndex, light.direction);
+    const Float length = min(light.distance, lengthInside(m_volume, at.index, direction));
     const std::size_t to = m_out.rays.size;
-    const auto put = [&](F x, Column<float>& column) {
-      hn::StoreU(hn::Compress(x, arrives), floats, &column[to]);
-    };
-    const auto put3 = [&](const F3& x, Columns3& columns) {
-      put(x.x, columns[0]);
-      put(x.y, columns[1]);
-      put(x.z, columns[2]);
-    };
-    const auto putBits = [&](U x, Column<std::uint32_t>& column) {
-      hn::StoreU(hn::Compress(x, hn::RebindMask(bits, arrives)), bits, &column[to]);
-    };
-    put3(at.index, m_out.rays.origin);
-    put3(direction, m_out.rays.direction);
+    const Shuffle pack = Shuffle::packing(arrives);
+    const auto put = [&](auto x, auto& column) { store(pack(x), &column[to]); };
+    store3(pack(at.index), m_out.rays.origin, to);
+    store3(pack(direction), m_out.rays.direction, to);
     put(length, m_out.rays.length);
-    put3(radiance, m_out.radiance);
-    putBits(seed, m_out.rays.seed);
-    putBits(hn::Iota(bits, static_cast<std::uint32_t>(i)), m_out.path);
+    store3(pack(radiance), m_out.radiance, to);
+    put(seed, m_out.rays.seed);
+    put(numbersFrom(i), m_out.path);
     m_out.rays.size += count;
   }
 
   /// Sets the paths' weights and new rays. Returns the lanes that survive Russian roulette.
-  HWY_INLINE M goOn(std::size_t i, const Collisions& at, const ScatterDraw& drawn, Draws& draws) {
-    const F zero = hn::Zero(floats);
+  HWY_INLINE Mask goOn(std::size_t i, const Collisions& at, const ScatterDraw& drawn,
+                       Draws& draws) {
+    const Float zero = 0.0F;
     constexpr auto below = static_cast<float>(rouletteBelow);
-    F3 weight = at.weight * drawn.weight;
-    const F most = greatest(weight);
-    const F chance = hn::Min(hn::Mul(most, all(1.0F / below)), all(1.0F));
-    const M survives = hn::Le(draws.uniform(), chance);
-    weight = selectElseZero(survives, hn::Div(all(1.0F), chance) * weight);
-    storeTo(m_paths.weight, i, weight);
-    hn::StoreU(drawn.pdf, floats, &m_paths.scatterPdf[i]);
-    storeTo(m_paths.direction, i, drawn.outgoing);
-    storeTo(m_paths.rays.origin, i, at.index);
-    const F3 direction = mapDirection(m_scene.localToIndex, drawn.outgoing);
-    storeTo(m_paths.rays.direction, i, direction);
-    hn::StoreU(lengthInside(m_volume, at.index, direction), floats, &m_paths.rays.length[i]);
-    hn::StoreU(draws.nextBits(), bits, &m_paths.rays.seed[i]);
-    hn::StoreU(draws.counter, bits, &m_paths.counter[i]);
-    return both(at.going, hn::Gt(greatest(weight), zero));
+    Float3 weight = at.weight * drawn.weight;
+    const Float most = greatest(weight);
+    const Float chance = min(most * (1.0F / below), 1.0F);
+    const Mask survives = draws.uniform() <= chance;
+    weight = orZero(survives, (1.0F / chance) * weight);
+    store3(weight, m_paths.weight, i);
+    store(drawn.pdf, &m_paths.scatterPdf[i]);
+    store3(drawn.outgoing, m_paths.direction, i);
+    store3(at.index, m_paths.rays.origin, i);
+    const Float3 direction = mapDirection(m_scene.localToIndex, drawn.outgoing);
+    store3(direction, m_paths.rays.direction, i);
+    store(lengthInside(m_volume, at.index, direction), &m_paths.rays.length[i]);
+    store(draws.nextBits(), &m_paths.rays.seed[i]);
+    store(draws.counter, &m_paths.counter[i]);
+    return at.going & (greatest(weight) > zero);
   }
 
-  void listEnded(std::size_t i, M ended) {
-    const U number = hn::Iota(bits, static_cast<std::uint32_t>(i));
-    hn::StoreU(hn::Compress(number, hn::RebindMask(bits, ended)), bits,
-               &m_paths.ended[m_paths.endedCount]);
-    m_paths.endedCount += hn::CountTrue(floats, ended);
+  static HWY_INLINE Word numbersFrom(std::size_t i) {
+    return hn::Iota(words, static_cast<std::uint32_t>(i));
+  }
+
+  void listEnded(std::size_t i, Mask ended) {
+    store(Shuffle::packing(ended)(numbersFrom(i)), &m_paths.ended[m_paths.endedCount]);
+    m_paths.endedCount += ended.count();
   }
 
   const WideScene& m_volume;
@@ -255,6 +273,7 @@ private:
   PathBatch& m_paths;
   LightBatch& m_out;
   WideLights m_lights;
+  FirstCollisions m_firsts;
   std::size_t m_collisions = 0, m_gradients = 0;
 };
 

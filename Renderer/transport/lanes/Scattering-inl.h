@@ -8,7 +8,7 @@
 #define FENESTRA_WIDE_SCATTERING_INL_H
 #endif
 
-#include "base/Lanes-inl.h"
+#include "base/LaneMath-inl.h"
 #include "transport/lanes/PathTables.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -16,190 +16,184 @@ namespace fenestra::HWY_NAMESPACE {
 
 /// Factor of scattering on radiance toward a direction, and the density of drawing that direction.
 struct Scattered {
-  F3 factor;
-  F pdf;
+  Float3 factor;
+  Float pdf;
 };
 struct ScatterDraw {
-  F3 outgoing;
-  F3 weight; ///< factor / pdf
-  F pdf;
+  Float3 outgoing;
+  Float3 weight; ///< factor / pdf
+  Float pdf;
 };
 
 inline constexpr float perSphere = static_cast<float>(0.25 / pi);
 
 class WidePhase {
 public:
-  HWY_INLINE WidePhase(const EventScene& scene, const F3& incoming, const F3& albedo)
+  HWY_INLINE WidePhase(const EventScene& scene, const Float3& incoming, const Float3& albedo)
       : m_g(std::abs(scene.g)), m_peak(scene.g < 0.0F ? -incoming : incoming), m_albedo(albedo) {}
 
-  HWY_INLINE Scattered toward(const F3& outgoing) const {
-    const F3 chord = outgoing - m_peak;
-    const F pdf = density(dot(chord, chord));
+  HWY_INLINE Scattered toward(const Float3& outgoing) const {
+    const Float3 chord = outgoing - m_peak;
+    const Float pdf = density(dot(chord, chord));
     return {pdf * m_albedo, pdf};
   }
 
-  HWY_INLINE ScatterDraw draw(F u, F v) const {
-    const F one = all(1.0F);
+  HWY_INLINE ScatterDraw draw(Float u, Float v) const {
+    const Float one = 1.0F;
     const CosineSine phi = ofTurns(v);
     if (m_g == 0.0F) {
-      const F z = hn::NegMulAdd(all(2.0F), u, one);
-      const F r = root(hn::NegMulAdd(z, z, one));
-      return {{hn::Mul(r, phi.cosine), hn::Mul(r, phi.sine), z}, m_albedo, all(perSphere)};
+      const Float z = fnma(2.0F, u, one);
+      const Float r = root(fnma(z, z, one));
+      return {{r * phi.cosine, r * phi.sine, z}, m_albedo, perSphere};
     }
     // PhaseScattering::sample's formula, in 1 - cos.
-    const F g = all(m_g);
-    const F a = hn::NegMulAdd(all(2.0F * m_g), u, all(1.0F + m_g));
-    const F part = hn::Mul(all(2.0F * (1.0F - m_g) * (1.0F - m_g)), u);
-    const F rest = hn::MulAdd(g, hn::Sub(one, u), one);
-    const F oneMinusCosine = hn::Min(hn::Div(hn::Mul(part, rest), square(a)), all(2.0F));
-    const F cosine = hn::Sub(one, oneMinusCosine);
-    const F sine = root(hn::Mul(oneMinusCosine, hn::Add(one, cosine)));
-    const F3 local{hn::Mul(sine, phi.cosine), hn::Mul(sine, phi.sine), cosine};
-    return {normalized(Frames(m_peak).toWorld(local)), m_albedo,
-            density(hn::Mul(all(2.0F), oneMinusCosine))};
+    const Float g = m_g;
+    const Float a = fnma(2.0F * m_g, u, 1.0F + m_g);
+    const Float part = (2.0F * (1.0F - m_g) * (1.0F - m_g)) * u;
+    const Float rest = fma(g, one - u, one);
+    const Float oneMinusCosine = min(part * rest / square(a), 2.0F);
+    const Float cosine = one - oneMinusCosine;
+    const Float sine = root(oneMinusCosine * (one + cosine));
+    const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
+    return {normalized(Frames(m_peak).toWorld(local)), m_albedo, density(2.0F * oneMinusCosine)};
   }
 
 private:
   /// Density of a direction; chord2: squared distance of that unit vector from the lobe's peak.
-  HWY_INLINE F density(F chord2) const {
+  HWY_INLINE Float density(Float chord2) const {
     if (m_g == 0.0F)
-      return all(perSphere);
-    const F d = hn::MulAdd(all(m_g), chord2, all((1.0F - m_g) * (1.0F - m_g)));
-    return hn::Div(all(perSphere * (1.0F - m_g) * (1.0F + m_g)), hn::Mul(d, hn::Sqrt(d)));
+      return perSphere;
+    const Float d = fma(m_g, chord2, (1.0F - m_g) * (1.0F - m_g));
+    return (perSphere * (1.0F - m_g) * (1.0F + m_g)) / (d * sqrt(d));
   }
 
   float m_g; ///< |g|
-  F3 m_peak;
-  F3 m_albedo;
+  Float3 m_peak;
+  Float3 m_albedo;
 };
 
 class WideSurface {
 public:
-  HWY_INLINE WideSurface(const EventScene& scene, const F3& incoming, const F3& gradient,
-                         const F3& albedo)
+  HWY_INLINE WideSurface(const EventScene& scene, const Float3& incoming, const Float3& gradient,
+                         const Float3& albedo)
       : m_specular(scene.specular),
         m_f0(scene.f0),
         m_roughness(scene.roughness),
         m_isCoated(scene.isCoated),
         m_coat(scene.coat),
-        m_frame(normalized(
-            select(hn::Ge(dot(incoming, gradient), hn::Zero(floats)), -gradient, gradient))),
+        m_frame(normalized(select(dot(incoming, gradient) >= 0.0F, -gradient, gradient))),
         m_viewer(m_frame.toLocal(-incoming)),
-        m_diffuse(all(scene.diffuse) * albedo) {
+        m_diffuse(scene.diffuse * albedo) {
     if (scene.odds != 1.0F)
-      m_diffuse = all(scene.diffuse) * ofOdds(scene.odds, albedo);
+      m_diffuse = scene.diffuse * ofOdds(scene.odds, albedo);
     if (m_isCoated)
       m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
-    const F lambert = greatest(m_diffuse);
-    const F sum = hn::MulAdd(all(m_specular), fresnel(m_viewer.z), lambert);
-    const M some = hn::Gt(sum, hn::Zero(floats));
-    m_lambertShare = hn::IfThenElse(some, hn::Div(lambert, sum), all(1.0F));
+    const Float lambert = greatest(m_diffuse);
+    const Float sum = fma(m_specular, fresnel(m_viewer.z), lambert);
+    const Mask some = sum > 0.0F;
+    m_lambertShare = select(some, lambert / sum, 1.0F);
   }
 
-  HWY_INLINE Scattered toward(const F3& outgoing) const {
+  HWY_INLINE Scattered toward(const Float3& outgoing) const {
     return towardLocal(m_frame.toLocal(outgoing));
   }
 
-  HWY_INLINE ScatterDraw draw(F choice, F u, F v) const {
+  HWY_INLINE ScatterDraw draw(Float choice, Float u, Float v) const {
     const CosineSine phi = ofTurns(v);
-    const F r = hn::Sqrt(u);
-    const F3 lambert{hn::Mul(r, phi.cosine), hn::Mul(r, phi.sine), root(hn::Sub(all(1.0F), u))};
-    F3 local = lambert;
+    const Float r = sqrt(u);
+    const Float3 lambert{r * phi.cosine, r * phi.sine, root(1.0F - u)};
+    Float3 local = lambert;
     if (m_specular > 0.0F) {
-      const F3 h = visibleNormal(r, phi);
-      const F3 glossy = hn::Mul(all(2.0F), dot(m_viewer, h)) * h - m_viewer;
-      local = select(hn::Lt(choice, m_lambertShare), lambert, glossy);
+      const Float3 h = visibleNormal(r, phi);
+      const Float3 glossy = (2.0F * dot(m_viewer, h)) * h - m_viewer;
+      local = select(choice < m_lambertShare, lambert, glossy);
     }
-    const F3 outgoing = normalized(m_frame.toWorld(local));
+    const Float3 outgoing = normalized(m_frame.toWorld(local));
     const Scattered s = toward(outgoing);
-    const M possible = hn::Gt(s.pdf, hn::Zero(floats));
-    return {outgoing, selectElseZero(possible, hn::Div(all(1.0F), s.pdf) * s.factor), s.pdf};
+    const Mask possible = s.pdf > 0.0F;
+    return {outgoing, orZero(possible, (1.0F / s.pdf) * s.factor), s.pdf};
   }
 
 private:
-  HWY_INLINE F fresnel(F cosine) const {
-    const F x = notBelow0(hn::Min(hn::Sub(all(1.0F), cosine), all(1.0F)));
-    return hn::MulAdd(all(1.0F - m_f0), hn::Mul(square(square(x)), x), all(m_f0));
+  HWY_INLINE Float fresnel(Float cosine) const {
+    const Float x = notBelow0(min(1.0F - cosine, 1.0F));
+    return fma(1.0F - m_f0, square(square(x)) * x, m_f0);
   }
   /// Albedo whose odds are `odds` times those of the given one.
-  static HWY_INLINE F3 ofOdds(float odds, const F3& albedo) {
-    const auto channel = [odds](F a) {
-      return hn::Div(hn::Mul(all(odds), a), hn::NegMulAdd(all(1.0F - odds), a, all(1.0F)));
-    };
+  static HWY_INLINE Float3 ofOdds(float odds, const Float3& albedo) {
+    const auto channel = [odds](Float a) { return odds * a / fnma(1.0F - odds, a, 1.0F); };
     return {channel(albedo.x), channel(albedo.y), channel(albedo.z)};
   }
   /// Share of light that passes the coat.
-  HWY_INLINE F belowCoat(F cosine) const {
-    const F x = notBelow0(hn::Min(hn::Sub(all(1.0F), cosine), all(1.0F)));
-    const F x2 = square(x), x4 = square(x2);
-    const F high = hn::MulAdd(all(m_coat[3]), x4, all(m_coat[2]));
-    const F low = hn::MulAdd(all(m_coat[1]), x2, all(m_coat[0]));
-    return hn::Sub(all(1.0F), hn::MulAdd(high, x4, low));
+  HWY_INLINE Float belowCoat(Float cosine) const {
+    const Float x = notBelow0(min(1.0F - cosine, 1.0F));
+    const Float x2 = square(x), x4 = square(x2);
+    const Float high = fma(m_coat[3], x4, m_coat[2]);
+    const Float low = fma(m_coat[1], x2, m_coat[0]);
+    return 1.0F - fma(high, x4, low);
   }
 
   /// SurfaceScattering's evaluate() and pdf().
-  HWY_INLINE Scattered towardLocal(const F3& l) const {
-    const F lambertPdf = hn::Mul(notBelow0(l.z), all(static_cast<float>(1.0 / pi)));
-    Scattered s{lambertPdf * m_diffuse, hn::Mul(m_lambertShare, lambertPdf)};
+  HWY_INLINE Scattered towardLocal(const Float3& l) const {
+    const Float lambertPdf = notBelow0(l.z) * static_cast<float>(1.0 / pi);
+    Scattered s{lambertPdf * m_diffuse, m_lambertShare * lambertPdf};
     if (!(m_specular > 0.0F))
       return s;
     if (m_isCoated)
       s.factor = belowCoat(l.z) * s.factor;
-    const F zero = hn::Zero(floats);
-    const F3 h = normalized(l + m_viewer);
-    const F perViewer =
-        hn::Div(hn::Mul(masking(m_viewer), normalDensity(h)), hn::Mul(all(4.0F), m_viewer.z));
-    const M facing = hn::And(hn::Gt(l.z, zero), hn::Gt(m_viewer.z, zero));
-    const F pdf = hn::IfThenElseZero(facing, perViewer);
-    s.pdf = hn::MulAdd(hn::Sub(all(1.0F), m_lambertShare), pdf, s.pdf);
-    const F glossy = hn::Mul(hn::Mul(all(m_specular), fresnel(dot(l, h))), masking(l));
-    const F value = hn::IfThenElseZero(facing, hn::Mul(glossy, perViewer));
-    s.factor = s.factor + F3{value, value, value};
+    const Float zero = 0.0F;
+    const Float3 h = normalized(l + m_viewer);
+    const Float perViewer = masking(m_viewer) * normalDensity(h) / (4.0F * m_viewer.z);
+    const Mask facing = (l.z > zero) & (m_viewer.z > zero);
+    const Float pdf = orZero(facing, perViewer);
+    s.pdf = fma(1.0F - m_lambertShare, pdf, s.pdf);
+    const Float glossy = m_specular * fresnel(dot(l, h)) * masking(l);
+    const Float value = orZero(facing, glossy * perViewer);
+    s.factor = s.factor + Float3{value, value, value};
     return s;
   }
 
   /// Smith's G1.
-  HWY_INLINE F masking(const F3& v) const {
-    const F sine2 = hn::MulAdd(v.x, v.x, square(v.y));
-    const F cosine = hn::Abs(v.z);
-    const F slope = hn::Sqrt(hn::MulAdd(all(m_roughness * m_roughness), sine2, square(cosine)));
-    return hn::Div(hn::Mul(all(2.0F), cosine), hn::Add(cosine, slope));
+  HWY_INLINE Float masking(const Float3& v) const {
+    const Float sine2 = fma(v.x, v.x, square(v.y));
+    const Float cosine = abs(v.z);
+    const Float slope = sqrt(fma(m_roughness * m_roughness, sine2, square(cosine)));
+    return 2.0F * cosine / (cosine + slope);
   }
 
-  HWY_INLINE F normalDensity(const F3& h) const {
-    const F a2 = all(m_roughness * m_roughness);
-    const F d = hn::MulAdd(h.x, h.x, hn::MulAdd(h.y, h.y, hn::Mul(a2, square(h.z))));
-    return hn::Div(a2, hn::Mul(all(static_cast<float>(pi)), square(d)));
+  HWY_INLINE Float normalDensity(const Float3& h) const {
+    const Float a2 = (m_roughness * m_roughness);
+    const Float d = fma(h.x, h.x, fma(h.y, h.y, a2 * square(h.z)));
+    return a2 / (static_cast<float>(pi) * square(d));
   }
 
   /// Heitz 2018, listing 1; `r`, `phi`: polar coordinates of a point in the unit disc.
-  HWY_INLINE F3 visibleNormal(F r, const CosineSine& phi) const {
-    const F a = all(m_roughness);
-    const F one = all(1.0F);
-    const F3 stretched = normalized({hn::Mul(a, m_viewer.x), hn::Mul(a, m_viewer.y), m_viewer.z});
-    const F length2 = hn::MulAdd(stretched.x, stretched.x, square(stretched.y));
-    const M slanted = hn::Gt(length2, hn::Zero(floats));
-    const F perLength = hn::Div(one, hn::Sqrt(hn::IfThenElse(slanted, length2, one)));
-    const F zero = hn::Zero(floats);
-    const F3 side = select(slanted, perLength * F3{hn::Neg(stretched.y), stretched.x, zero},
-                           F3{one, zero, zero});
-    const F3 other = cross(stretched, side);
-    const F p1 = hn::Mul(r, phi.cosine);
-    const F s = hn::Mul(all(0.5F), hn::Add(one, stretched.z));
-    const F p2 = lerp(root(hn::NegMulAdd(p1, p1, one)), hn::Mul(r, phi.sine), s);
-    const F p3 = root(hn::NegMulAdd(p1, p1, hn::NegMulAdd(p2, p2, one)));
-    const F3 n = p1 * side + p2 * other + p3 * stretched;
-    return normalized(
-        {hn::Mul(a, n.x), hn::Mul(a, n.y), hn::Max(n.z, all(std::numeric_limits<float>::min()))});
+  HWY_INLINE Float3 visibleNormal(Float r, const CosineSine& phi) const {
+    const Float a = m_roughness;
+    const Float one = 1.0F;
+    const Float3 stretched = normalized({a * m_viewer.x, a * m_viewer.y, m_viewer.z});
+    const Float length2 = fma(stretched.x, stretched.x, square(stretched.y));
+    const Mask slanted = length2 > 0.0F;
+    const Float perLength = one / sqrt(select(slanted, length2, one));
+    const Float zero = 0.0F;
+    const Float3 side = select(slanted, perLength * Float3{-stretched.y, stretched.x, zero},
+                               Float3{one, zero, zero});
+    const Float3 other = cross(stretched, side);
+    const Float p1 = r * phi.cosine;
+    const Float s = 0.5F * (one + stretched.z);
+    const Float p2 = lerp(root(fnma(p1, p1, one)), r * phi.sine, s);
+    const Float p3 = root(fnma(p1, p1, fnma(p2, p2, one)));
+    const Float3 n = p1 * side + p2 * other + p3 * stretched;
+    return normalized({a * n.x, a * n.y, max(n.z, std::numeric_limits<float>::min())});
   }
 
   float m_specular, m_f0, m_roughness;
   bool m_isCoated;
   std::array<float, 4> m_coat;
-  Frames m_frame; ///< local z is the normal
-  F3 m_viewer;    ///< local direction back along the path
-  F3 m_diffuse;
-  F m_lambertShare;
+  Frames m_frame;  ///< local z is the normal
+  Float3 m_viewer; ///< local direction back along the path
+  Float3 m_diffuse;
+  Float m_lambertShare;
 };
 
 } // namespace fenestra::HWY_NAMESPACE

@@ -3,6 +3,8 @@
 #include "base/Error.h"
 #include "base/LaneTargets.h"
 
+#include <numeric>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "transport/lanes/Tracker.cxx"
 #include <hwy/foreach_target.h>
@@ -12,72 +14,43 @@ HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
 
-/// Idle lanes take new rays once 1 / refillShare of all lanes are idle.
-constexpr std::size_t refillShare = 4;
-/// Look-ups wait until at most 1 / crossingShare of the busy lanes are not at a tentative
-/// collision.
-constexpr std::size_t crossingShare = 3;
+/// Idle lanes take new rays once there are as many.
+constexpr std::size_t idleForRefill = std::max<std::size_t>(1, laneCount / 4);
+/// Lanes at a tentative collision wait until there are as many, or until all are.
+constexpr std::size_t hitsForLookup = (5 * laneCount + 7) / 8;
 
-/// One axis of the walk through cells, in units of a cell's edge, mirrored for rays that go down,
-/// so that all rays go up.
-struct AxisWalk {
-  F origin, direction; ///< direction: per mm, >= 0
-  F inverse;           ///< 1 / direction; infinity: no motion along this axis
-  F cell;              ///< cell of the ray, a whole number
-  M mirrored;
+/// One axis of rays in units of a cell's edge: where they are, and when they leave a cell.
+struct Way {
+  Float start, speed; ///< cells, cells per mm
+  Float inverse;      ///< 1 / speed; 0: the ray does not move
+  Float toMiddle;     ///< t of the middle of cell 0; infinity if the ray does not move
 
-  /// Walk from the cell of the origin, or from the cell ahead if the origin lies in a face.
-  static HWY_INLINE AxisWalk entered(const WideScene::Axis& axis, F origin, F direction) {
-    const F perEdge = all(axis.cellsPerVoxel);
-    // Clamp below the last face, so that a ray lying in that face starts inside the last cell.
-    const F at = hn::Max(
-        hn::Min(hn::MulAdd(origin, perEdge, all(0.5F * axis.cellsPerVoxel)), all(axis.insideCells)),
-        hn::Zero(floats));
-    const F along = hn::Mul(direction, perEdge);
-    AxisWalk w;
-    w.direction = hn::Abs(along);
-    const M moves = hn::Ge(w.direction, all(std::numeric_limits<float>::min()));
-    w.direction = hn::IfThenElseZero(moves, w.direction);
-    w.inverse = hn::Div(all(1.0F), w.direction);
-    w.mirrored = both(moves, hn::Lt(along, hn::Zero(floats)));
-    w.origin = hn::IfThenElse(w.mirrored, hn::Sub(all(axis.cells), at), at);
-    w.cell = hn::Min(hn::Floor(w.origin), all(axis.cells - 1.0F));
-    return w;
+  HWY_INLINE Float at(Float t) const { return fma(speed, t, start); }
+  /// t at which a ray has left cell number `cell` and the cells up to `half` edges around its
+  /// middle; rounding moves it by some last places of the farthest t.
+  HWY_INLINE Float leaving(Float cell, Float half) const {
+    return fma(cell, inverse, fma(half, abs(inverse), toMiddle));
   }
 
-  HWY_INLINE void takeFrom(const AxisWalk& other, M which) {
-    origin = hn::IfThenElse(which, other.origin, origin);
-    direction = hn::IfThenElse(which, other.direction, direction);
-    inverse = hn::IfThenElse(which, other.inverse, inverse);
-    cell = hn::IfThenElse(which, other.cell, cell);
-    mirrored = hn::Or(both(which, other.mirrored), hn::AndNot(which, mirrored));
+  /// Axis of rays given in index space.
+  static HWY_INLINE Way entered(const WideScene::Axis& axis, Float origin, Float direction) {
+    Way way;
+    way.speed = direction * axis.cellsPerVoxel;
+    // Clamped below the last face, so that a ray lying in that face starts inside the last cell.
+    const Float inside = fma(origin, axis.cellsPerVoxel, 0.5F * axis.cellsPerVoxel);
+    way.start = max(min(inside, axis.insideCells), 0.0F);
+    const Mask moves = abs(way.speed) >= 1e-30F;
+    way.inverse = orZero(moves, 1.0F / way.speed);
+    way.toMiddle =
+        select(moves, (0.5F - way.start) * way.inverse, std::numeric_limits<float>::infinity());
+    return way;
   }
 
-  /// t (mm) of the face where the ray leaves its cell and `beyond` - 1 further cells.
-  HWY_INLINE F toFace(F beyond) const {
-    return hn::Mul(hn::Sub(hn::Add(cell, beyond), origin), inverse);
-  }
-
-  /// Moves the lanes of `which` to the cell entered at `t`: `beyond` cells further for lanes that
-  /// pass `through` a face of this axis, else 0 to `reach` cells (never back, so that rounding
-  /// cannot trap a ray).
-  HWY_INLINE void advance(M which, M through, F t, F reach, F beyond) {
-    const F there = hn::Floor(hn::MulAdd(t, direction, origin));
-    const F within = hn::Min(hn::Max(there, cell), hn::Add(cell, reach));
-    const F entered = hn::IfThenElse(through, hn::Add(cell, beyond), within);
-    cell = hn::IfThenElse(which, entered, cell);
-  }
-
-  /// The cell's number along the axis.
-  HWY_INLINE F number(const WideScene::Axis& axis) const {
-    return hn::IfThenElse(mirrored, hn::Sub(all(axis.cells - 1.0F), cell), cell);
-  }
-
-  /// Coordinate at t, index space.
-  HWY_INLINE F at(F t, const WideScene::Axis& axis) const {
-    const F mirroredAt = hn::MulAdd(t, direction, origin);
-    const F cells = hn::IfThenElse(mirrored, hn::Sub(all(axis.cells), mirroredAt), mirroredAt);
-    return hn::MulSub(cells, all(axis.cellEdge), all(0.5F));
+  HWY_INLINE void where(Mask which, const Way& other) {
+    start.where(which, other.start);
+    speed.where(which, other.speed);
+    inverse.where(which, other.inverse);
+    toMiddle.where(which, other.toMiddle);
   }
 };
 
@@ -86,7 +59,7 @@ struct Queue {
   RayBatch& rays;
   std::size_t next = 0;
 
-  bool empty() const { return next == rays.size; }
+  std::size_t left() const { return rays.size - next; }
 };
 
 /// One ray a lane, all followed together.
@@ -96,253 +69,215 @@ public:
   Lanes(const WideScene& scene, Queue& queue)
       : m_scene(scene), m_queue(queue), m_rays(queue.rays) {}
 
-  /// Advances all lanes: collisions found in the step before, then cells. Returns false if no ray
-  /// is left.
-  bool step() {
-    if (m_due)
+  /// Advances all lanes: look-ups where enough lanes wait for one, then cells. Returns false if no
+  /// ray is left. What is decided here was computed a step ago: while other sets took their turns
+  /// the processor has come to know it, and seldom guesses wrong for long.
+  HWY_INLINE bool step() {
+    const std::size_t hits = m_hit.count();
+    if (hits >= hitsForLookup || (hits > 0 && hits == m_busy.count()))
       collide();
-    const std::size_t lanes = hn::Lanes(floats);
-    std::size_t count = hn::CountTrue(floats, m_busy);
-    if (count + std::max<std::size_t>(1, lanes / refillShare) <= lanes && !m_queue.empty()) {
+    const Mask idle = ~m_busy;
+    if (idle.count() >= idleForRefill) {
       handIn();
-      refill();
-      count = hn::CountTrue(floats, m_busy);
+      if (m_queue.left() > 0)
+        refill(idle);
+      else if (!m_busy.any())
+        return false;
     }
-    if (count == 0) {
-      handIn();
-      return false;
-    }
-    const bool crossed = cross();
-    const std::size_t hits = hn::CountTrue(floats, m_hit);
-    m_due = !crossed || (count - hits) * crossingShare <= count;
-    if (m_due)
-      stop();
+    cross();
     return true;
   }
 
   void addTo(Counters& counters) const {
-    counters.cells += m_cells;
-    counters.skippedCells += m_skipped;
+    counters.cells += sumOf(m_cells);
+    counters.skippedCells += sumOf(m_skipped);
     counters.lookups += m_lookups;
   }
 
 private:
-  static constexpr std::size_t maxLanes = HWY_MAX_BYTES / sizeof(float);
-  struct alignas(64) OfLanes : std::array<float, maxLanes> {};
+  static std::uint64_t sumOf(Word numbers) {
+    const LaneArray<std::uint32_t> each(numbers);
+    return std::accumulate(each.begin(), each.end(), std::uint64_t{0});
+  }
 
-  /// Gives idle lanes the next rays, while there are any.
-  void refill() {
+  /// Gives idle lanes the next rays, while there are any: neighbours in memory.
+  void refill(Mask idle) {
+    std::uint64_t set = idle.bits();
+    std::size_t count = idle.count();
+    for (; count > m_queue.left(); --count)
+      set &= ~std::bit_floor(set);
+    const Mask fresh = Mask::fromBits(set);
     const std::size_t first = m_queue.next;
-    std::uint64_t fresh = 0;
-    alignas(64) std::array<std::int32_t, maxLanes> rank = {};
-    forEachLane(hn::Not(m_busy), [&](std::size_t lane) {
-      if (m_queue.empty())
-        return;
-      fresh |= std::uint64_t{1} << lane;
-      rank[lane] = static_cast<std::int32_t>(m_queue.next - first);
-      m_ray[lane] = static_cast<std::uint32_t>(m_queue.next++);
-    });
-    const M started = maskOf(fresh);
-    start(started, first, hn::Load(ints, rank.data()));
-    m_busy = hn::Or(m_busy, started);
-  }
+    m_queue.next += count;
 
-  /// Gives lanes of `which` rays `first + rank`: neighbours, so that whole vectors are loaded.
-  HWY_INLINE void start(M which, std::size_t first, I rank) {
-    const auto take = [&](auto& old, const auto& now) {
-      old = hn::IfThenElse(hn::RebindMask(hn::DFromV<std::decay_t<decltype(now)>>(), which), now,
-                           old);
-    };
-    const auto ofRays = [&](const auto& column) {
-      using Number = typename std::decay_t<decltype(column)>::value_type;
-      constexpr hn::Rebind<Number, Floats> d;
-      return hn::TableLookupLanes(hn::LoadU(d, &column[first]), hn::IndicesFromVec(d, rank));
-    };
+    const Shuffle deal = Shuffle::dealing(fresh);
+    const auto dealt = [&](const auto& column) { return deal(load(&column[first])); };
     for (std::size_t axis = 0; axis < 3; ++axis)
-      m_walk[axis].takeFrom(AxisWalk::entered(m_scene.axes[axis], ofRays(m_rays.origin[axis]),
-                                              ofRays(m_rays.direction[axis])),
-                            which);
-    enterCells();
-    take(m_t, hn::Zero(floats));
-    take(m_end, ofRays(m_rays.length));
-    take(m_ratio, all(1.0F));
-    U counter = ofRays(m_rays.seed);
-    const F depth = exponential(counter);
-    take(m_counter, counter);
-    take(m_depth, depth);
+      m_way[axis].where(fresh, Way::entered(m_scene.axes[axis], dealt(m_rays.origin[axis]),
+                                            dealt(m_rays.direction[axis])));
+    m_t.where(fresh, 0.0F);
+    m_end.where(fresh, dealt(m_rays.length));
+    m_ratio.where(fresh, 1.0F);
+    Word counter = dealt(m_rays.seed);
+    m_depth.where(fresh, exponential(counter));
+    m_counter.where(fresh, counter);
+    m_ray.where(fresh, deal.from() + static_cast<std::int32_t>(first));
+    m_busy = m_busy | fresh;
   }
 
-  /// Lanes without a collision in their cell and its reach leave these cells. Returns false if no
-  /// lane did.
-  HWY_INLINE bool cross() {
-    const F zero = hn::Zero(floats);
-    const F beyond = hn::Add(m_cell.reach, all(1.0F));
-    const F x = m_walk[0].toFace(beyond);
-    const F y = m_walk[1].toFace(beyond);
-    const F z = m_walk[2].toFace(beyond);
-    const F toFace = hn::Min(hn::Min(x, y), z);
-    const F stop = hn::Min(toFace, m_end);
-    const F toStop = hn::Mul(hn::Max(hn::Sub(stop, m_t), zero), m_cell.majorant);
-    m_hit = both(m_busy, hn::Lt(m_depth, toStop));
-    const M crossing = hn::AndNot(m_hit, m_busy);
-    if (hn::AllFalse(floats, crossing))
-      return false;
-    m_cells += hn::CountTrue(floats, crossing);
-    m_skipped += hn::CountTrue(floats, both(crossing, hn::Eq(m_cell.majorant, zero)));
-    m_depth = hn::IfThenElse(crossing, hn::Sub(m_depth, toStop), m_depth);
-    m_t = hn::IfThenElse(crossing, hn::Max(stop, m_t), m_t);
-    const M ended = both(crossing, hn::Ge(toFace, m_end));
+  /// Busy lanes that do not wait for a look-up reach a tentative collision in their cell and its
+  /// reach, or leave these cells.
+  HWY_INLINE void cross() {
+    const Float x = floor(m_way[0].at(m_t));
+    const Float y = floor(m_way[1].at(m_t));
+    const Float z = floor(m_way[2].at(m_t));
+    const LaneCells cell =
+        cellsAt(m_scene, fma(z, m_scene.axes[2].cellStride,
+                             fma(y, m_scene.axes[1].cellStride, x + m_scene.firstCell)));
+    const Float half = cell.reach + 0.5F;
+    const Float toFace =
+        min(min(m_way[0].leaving(x, half), m_way[1].leaving(y, half)), m_way[2].leaving(z, half));
+    const Float stop = min(max(toFace, m_t) + m_scene.overshoot, m_end);
+    const Float depthToStop = (stop - m_t) * cell.majorant;
+
+    const Mask going = m_busy.without(m_hit);
+    const Mask hit = going & (m_depth < depthToStop);
+    const Mask crossed = going.without(hit);
+    m_t = select(hit, m_t + m_depth / cell.majorant, select(crossed, stop, m_t));
+    m_depth = m_depth - depthToStop; // of use in crossed lanes alone
+    m_majorant.where(hit, cell.majorant);
+    m_cut = (cell.cut & hit) | m_cut.without(hit);
+    m_hit = m_hit | hit;
+    m_cells = m_cells + orZero(crossed, 1U);
+    m_skipped = m_skipped + orZero(crossed & (cell.majorant == 0.0F), 1U);
+
+    const Mask ended = crossed & (stop >= m_end);
     if constexpr (!wantRatio)
-      m_t = hn::IfThenElse(ended, all(std::numeric_limits<float>::infinity()), m_t);
+      m_t.where(ended, std::numeric_limits<float>::infinity());
     finish(ended);
-    const M going = hn::AndNot(ended, crossing);
-    const M throughX = hn::Eq(x, toFace);
-    const M throughY = hn::AndNot(throughX, hn::Eq(y, toFace));
-    const M throughZ = hn::Not(hn::Or(throughX, throughY));
-    m_walk[0].advance(going, throughX, toFace, m_cell.reach, beyond);
-    m_walk[1].advance(going, throughY, toFace, m_cell.reach, beyond);
-    m_walk[2].advance(going, throughZ, toFace, m_cell.reach, beyond);
-    enterCells();
-    return true;
   }
 
-  /// Moves lanes of m_hit to their collisions, and prefetches voxels.
-  HWY_INLINE void stop() {
-    m_t = hn::IfThenElse(m_hit, hn::Add(m_t, hn::Div(m_depth, m_cell.majorant)), m_t);
-    m_place = placeOf(m_scene.field, point());
-    prefetch<Voxel>(m_scene.field, m_place);
-  }
-
-  HWY_INLINE void enterCells() {
-    const auto& axes = m_scene.axes;
-    m_cell = cellsAt(m_scene, m_walk[0].number(axes[0]), m_walk[1].number(axes[1]),
-                     m_walk[2].number(axes[2]));
-  }
-
-  HWY_INLINE Point point() const {
-    return {m_walk[0].at(m_t, m_scene.axes[0]), m_walk[1].at(m_t, m_scene.axes[1]),
-            m_walk[2].at(m_t, m_scene.axes[2])};
+  /// Point of each lane, index space.
+  HWY_INLINE Float3 point() const {
+    const auto along = [&](std::size_t axis) {
+      return fms(m_way[axis].at(m_t), m_scene.axes[axis].cellEdge, 0.5F);
+    };
+    return {along(0), along(1), along(2)};
   }
 
   /// Handles tentative collisions: a real one ends a flight, every one reduces a transmittance.
   HWY_INLINE void collide() {
-    const M hit = m_hit;
-    const F majorant = hn::IfThenElse(hit, m_cell.majorant, all(1.0F));
-    m_lookups += hn::CountTrue(floats, hit);
-    const F scalar = scalarAt<Voxel>(m_scene.field, m_place);
-    F extinction = extinctionOf(m_scene, scalar);
+    const Mask hit = m_hit;
+    m_hit = Mask::none();
+    m_lookups += hit.count();
+    const Float3 at = point();
+    const Float scalar = scalarAt<Voxel>(m_scene.field, at);
+    Float extinction = extinctionOf(m_scene, scalar);
     if (m_scene.context && m_scene.context->extinction != 1.0F)
-      extinction = hn::IfThenElse(isFocus(*m_scene.context, point()), extinction,
-                                  hn::Mul(extinction, all(m_scene.context->extinction)));
-    U counter = m_counter;
-    const F u = uniform(counter);
-    const M cut = both(hit, m_cell.cut());
-    if (!hn::AllFalse(floats, cut))
-      extinction = clipped(cut, extinction, majorant, u, counter);
-    const F share = hn::Div(extinction, majorant);
+      extinction = select(isFocus(*m_scene.context, at), extinction,
+                          extinction * m_scene.context->extinction);
+    Word counter = m_counter;
+    const Float u = uniform(counter);
+    const Mask cut = hit & m_cut;
+    if (cut.any())
+      extinction = clipped(cut, at, extinction, u, counter);
+    m_depth.where(hit, exponential(counter));
+    m_counter.where(hit, counter);
     if constexpr (wantRatio) {
       constexpr float rouletteBelow = 0.1F;
-      const F thinned = hn::Mul(m_ratio, hn::Max(hn::Sub(all(1.0F), share), hn::Zero(floats)));
-      const M little = hn::Lt(thinned, all(rouletteBelow));
-      const F survived =
-          hn::IfThenElseZero(hn::Lt(hn::Mul(u, all(rouletteBelow)), thinned), all(rouletteBelow));
-      m_ratio = hn::IfThenElse(hit, hn::IfThenElse(little, survived, thinned), m_ratio);
-      finish(both(hit, hn::Le(m_ratio, hn::Zero(floats))));
+      const Float thinned = m_ratio * notBelow0(1.0F - extinction / m_majorant);
+      const Float survived = orZero(u * rouletteBelow < thinned, rouletteBelow);
+      m_ratio.where(hit, select(thinned < rouletteBelow, survived, thinned));
+      finish(hit & (m_ratio <= 0.0F));
     } else {
-      const M real = both(hit, hn::Lt(u, share));
-      m_scalar = hn::IfThenElse(real, scalar, m_scalar);
+      const Mask real = hit & (u * m_majorant < extinction);
+      m_scalar.where(real, scalar);
       finish(real);
     }
-    const F depth = exponential(counter);
-    m_depth = hn::IfThenElse(hit, depth, m_depth);
-    m_counter = hn::IfThenElse(hn::RebindMask(bits, hit), counter, m_counter);
   }
 
   /// Extinction times keep for lanes of `cut`; unchanged for others. keep is queried only where
-  /// needed: for a flight if the collision would be real without clipping (u < extinction /
-  /// majorant); for a transmittance if extinction > 0. Seams make a query cost more than everything
-  /// else: chance then decides first whether a transmittance's collision would be real without
-  /// clipping, and only for real collisions keep is queried (delta instead of ratio tracking; Novák
-  /// et al. 2018, section 4.2). Such estimates vary a little more, and cost half.
-  HWY_INLINE F clipped(M cut, F extinction, F majorant, F u, U& counter) {
+  /// needed: for a flight if the collision would be real without clipping; for a transmittance if
+  /// extinction > 0. Seams make a query cost more than everything else: chance then decides first
+  /// whether a transmittance's collision would be real without clipping, and only for real
+  /// collisions keep is queried (delta instead of ratio tracking; Novák et al. 2018, section 4.2).
+  /// Such estimates vary a little more, and cost half.
+  HWY_INLINE Float clipped(Mask cut, const Float3& at, Float extinction, Float u, Word& counter) {
     if constexpr (wantRatio) {
-      cut = both(cut, hn::Gt(extinction, hn::Zero(floats)));
+      cut = cut & (extinction > 0.0F);
       if (m_scene.seams) {
-        U after = counter;
-        const M isReal = hn::Lt(hn::Mul(uniform(after), majorant), extinction);
-        counter = hn::IfThenElse(hn::RebindMask(bits, cut), after, counter);
-        extinction = hn::IfThenElse(cut, hn::IfThenElseZero(isReal, majorant), extinction);
-        cut = both(cut, isReal);
+        Word after = counter;
+        const Mask isReal = uniform(after) * m_majorant < extinction;
+        counter.where(cut, after);
+        extinction.where(cut, orZero(isReal, m_majorant));
+        cut = cut & isReal;
       }
     } else {
-      cut = both(cut, hn::Lt(u, hn::Div(extinction, majorant)));
+      cut = cut & (u * m_majorant < extinction);
     }
-    if (hn::AllFalse(floats, cut))
-      return extinction;
-    return hn::IfThenElse(cut, hn::Mul(extinction, keep(m_scene, point(), cut)), extinction);
+    if (cut.any())
+      extinction.where(cut, extinction * keep(m_scene, at, cut));
+    return extinction;
   }
 
-  /// Makes lanes idle; results stay until handIn().
-  HWY_INLINE void finish(M which) {
-    m_ended = hn::Or(m_ended, which);
-    m_busy = hn::AndNot(which, m_busy);
+  /// Makes lanes idle; their results stay until handIn().
+  HWY_INLINE void finish(Mask ended) {
+    m_busy = m_busy.without(ended);
+    m_ended = m_ended | ended;
   }
 
-  /// Stores the results of lanes of m_ended to their rays.
+  /// Stores the results of rays that have ended.
   HWY_INLINE void handIn() {
-    OfLanes results, scalars;
-    hn::Store(wantRatio ? m_ratio : m_t, floats, results.data());
-    hn::Store(m_scalar, floats, scalars.data());
+    const LaneArray<std::int32_t> rays(m_ray);
+    const LaneArray<float> results(wantRatio ? m_ratio : m_t), scalars(m_scalar);
     forEachLane(m_ended, [&](std::size_t lane) {
-      m_rays.result[m_ray[lane]] = results[lane];
+      const auto ray = static_cast<std::size_t>(rays[lane]);
+      m_rays.result[ray] = results[lane];
       if constexpr (!wantRatio)
-        m_rays.scalar[m_ray[lane]] = scalars[lane];
+        m_rays.scalar[ray] = scalars[lane];
     });
-    m_ended = noLane();
+    m_ended = Mask::none();
   }
 
   const WideScene& m_scene;
   Queue& m_queue;
   RayBatch& m_rays;
-  M m_busy = noLane();
-  M m_ended = noLane(); ///< lanes with results to hand in
-  M m_hit = noLane();   ///< lanes at a tentative collision
-  bool m_due = false;   ///< the next step begins with collide()
-  std::array<std::uint32_t, maxLanes> m_ray = {};
-  std::uint64_t m_cells = 0, m_skipped = 0, m_lookups = 0;
+  Mask m_busy = Mask::none();
+  Mask m_ended = Mask::none(); ///< idle lanes with results to hand in
+  Mask m_hit = Mask::none();   ///< busy lanes at a tentative collision
+  Mask m_cut = Mask::none();   ///< lanes whose collision lies in a cut cell
+  Int m_ray = 0;               ///< index of the ray in the batch
 
-  AxisWalk m_walk[3] = {idleWalk(), idleWalk(), idleWalk()};
-  LaneCells m_cell{hn::Zero(ints), hn::Zero(floats), hn::Zero(floats)};
-  F m_t = hn::Zero(floats);     ///< mm
-  F m_end = hn::Zero(floats);   ///< mm
-  F m_depth = hn::Zero(floats); ///< optical depth to the next tentative collision
-  F m_ratio = hn::Zero(floats);
-  F m_scalar = hn::Zero(floats); ///< at a real collision
-  U m_counter = hn::Zero(bits);
-  Place m_place{hn::Zero(ints), {m_t, m_t, m_t}}; ///< of the collisions
+  Way m_way[3] = {idle(), idle(), idle()};
+  Float m_t = 0.0F;        ///< mm
+  Float m_end = 0.0F;      ///< mm
+  Float m_depth = 0.0F;    ///< optical depth to the next tentative collision
+  Float m_majorant = 0.0F; ///< at that collision
+  Float m_ratio = 0.0F;
+  Float m_scalar = 0.0F; ///< at a real collision
+  Word m_counter = 0U;   ///< of the random numbers
+  Word m_cells = 0U, m_skipped = 0U;
+  std::uint64_t m_lookups = 0;
 
-  static AxisWalk idleWalk() {
-    const F zero = hn::Zero(floats);
-    return {zero, zero, zero, zero, noLane()};
-  }
+  static Way idle() { return {0.0F, 0.0F, 0.0F, 0.0F}; }
 };
 
 /// Two sets of lanes take turns: while one waits for memory, the other computes.
 template <typename Voxel, bool wantRatio>
 void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
   Queue queue{rays};
-  Lanes<Voxel, wantRatio> one(scene, queue), other(scene, queue);
-  bool oneBusy = true, otherBusy = true;
-  for (std::uint32_t steps = 1; oneBusy || otherBusy; ++steps) {
+  using Set = Lanes<Voxel, wantRatio>;
+  std::array<Set, 2> sets{Set(scene, queue), Set(scene, queue)};
+  bool isBusy = true;
+  for (std::uint32_t steps = 1; isBusy; ++steps) {
     if (steps % stepsBetweenLooks == 0 && stop.load(std::memory_order_relaxed))
       return;
-    if (oneBusy)
-      oneBusy = one.step();
-    if (otherBusy)
-      otherBusy = other.step();
+    isBusy = false;
+    for (Set& set : sets)
+      isBusy = set.step() | isBusy;
   }
-  one.addTo(counters);
-  other.addTo(counters);
+  for (const Set& set : sets)
+    set.addTo(counters);
 }
 
 template <bool wantRatio>

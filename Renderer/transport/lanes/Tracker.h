@@ -62,7 +62,8 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
 class WideTracker {
 public:
   /// True if floats suffice and lanes support every part of the medium: no gradient opacity, at
-  /// least two voxels along x, 4 to 2^31 voxels in all, optical depth across the volume <= 1e5.
+  /// least two voxels along x, 4 to 2^31 voxels in all, its diagonal at most 2^17 of its smallest
+  /// voxels' edges, optical depth across the volume <= 1e5.
   static bool serves(const Volume& volume, const TransferFunction& transfer);
 
   /// A view: volume, clip, style and stop must outlive the tracker. Once `stop` is true rays are
@@ -92,7 +93,7 @@ public:
 
 private:
   void setDomain(const Domain& domain);
-  void setCells(const MajorantGrid& majorants);
+  void setCells(const MajorantGrid& majorants, const Grid& grid);
   void setClip(const Clip& clip, const Grid& grid);
   void setContext(const ContextStyle& style, const Grid& grid);
 

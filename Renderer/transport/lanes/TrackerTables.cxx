@@ -22,14 +22,18 @@ std::array<float, 4> row(const Grid& grid, const Vec3& normal, const Vec3& from,
   return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
 }
 
+/// Greatest number of voxels, along one axis, that 1 mm crosses in any direction.
+double mostVoxelsPerMm(const Grid& grid) {
+  return grid.worldToIndex.linear().transpose().columnNorms().maxCoeff();
+}
+
 WideField fieldOf(const void* voxels, const Grid& grid) {
   WideField field{voxels, grid.voxelCount()};
   std::int64_t stride = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t size = grid.size[axis];
     field.axes[static_cast<std::size_t>(axis)] = {
-        static_cast<float>(size - 1),
-        static_cast<std::int32_t>(std::max<std::int64_t>(size - 2, 0)),
+        static_cast<float>(size - 1), static_cast<float>(std::max<std::int64_t>(size - 2, 0)),
         static_cast<std::int32_t>(size > 1 ? stride : 0)};
     stride *= size;
   }
@@ -54,9 +58,13 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
 
 bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer) {
   constexpr double deepest = 1e5; // rounding moves a collision by 0.6 % of a free path, at most
+  // Voxels in a row; a float's last place is then far below MajorantGrid::margin.
+  constexpr double longest = 1 << 17;
   const std::int64_t count = volume.grid.voxelCount();
   constexpr std::int64_t most = std::int64_t{1} << 31; // indices of 32 bits
   if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most)
+    return false;
+  if (2.0 * volume.grid.boundingRadius() * mostVoxelsPerMm(volume.grid) > longest)
     return false;
   double greatest = 0.0;
   for (const auto& knot : transfer.extinction.knots())
@@ -72,7 +80,7 @@ WideTracker::WideTracker(const Volume& volume, const Domain& domain,
       std::visit([](const auto& v) { return WideScene::FirstVoxel(v.data()); }, volume.voxels);
   m_scene.field = fieldOf(
       std::visit([](const auto* v) -> const void* { return v; }, m_scene.voxels), volume.grid);
-  setCells(majorants);
+  setCells(majorants, volume.grid);
   m_scene.extinction = WideTable(transfer.extinction);
   setDomain(domain);
   setClip(clip, volume.grid);
@@ -90,19 +98,20 @@ void WideTracker::setDomain(const Domain& domain) {
     m_scene.toCrop = affineRows(*toCrop);
 }
 
-void WideTracker::setCells(const MajorantGrid& majorants) {
-  const Size3& cells = majorants.cellCount();
-  const Size3 bordered = cells.array() + 2;
+void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {
+  m_scene.cells = WideCells(majorants);
+  const Size3& count = m_scene.cells.count;
   std::int64_t cellStride = 1;
   for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t edge = m_scene.cells.merged * majorants.edge()[axis];
     m_scene.axes[static_cast<std::size_t>(axis)] = {
-        static_cast<float>(majorants.edge()[axis]),
-        narrow(1.0 / static_cast<double>(majorants.edge()[axis])), static_cast<float>(cells[axis]),
-        std::nextafter(static_cast<float>(cells[axis]), 0.0F), static_cast<float>(cellStride)};
+        static_cast<float>(edge), narrow(1.0 / static_cast<double>(edge)),
+        std::nextafter(static_cast<float>(count[axis]), 0.0F), static_cast<float>(cellStride)};
     m_scene.firstCell += static_cast<float>(cellStride);
-    cellStride *= bordered[axis];
+    cellStride *= count[axis] + 2;
   }
-  m_scene.cells = WideCells(majorants);
+  m_scene.lastCell = static_cast<float>(m_scene.cells.codes.size() - 1);
+  m_scene.overshoot = narrow(0.5 * MajorantGrid::margin / mostVoxelsPerMm(grid));
 }
 
 void WideTracker::setClip(const Clip& clip, const Grid& grid) {

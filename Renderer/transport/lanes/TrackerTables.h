@@ -17,9 +17,9 @@ class Seams;
 /// Voxels for interpolation in lanes.
 struct WideField {
   struct Axis {
-    float last;            ///< index of the last voxel
-    std::int32_t lastCell; ///< greatest index of a lower voxel in interpolation
-    std::int32_t stride;   ///< offset of the next voxel in this axis, 0 if the axis has one voxel
+    float last;          ///< index of the last voxel
+    float lastCell;      ///< greatest index of a lower voxel in interpolation
+    std::int32_t stride; ///< offset of the next voxel in this axis, 0 if the axis has one voxel
   };
   const void* voxels = nullptr;
   std::int64_t count = 0;
@@ -35,7 +35,6 @@ struct WideScene {
   struct Axis {
     float cellEdge;      ///< voxels
     float cellsPerVoxel; ///< 1 / cellEdge
-    float cells;         ///< number of cells, without the border
     float insideCells;   ///< greatest float below `cells`
     float cellStride;    ///< offset of the next cell in WideCells::codes
   };
@@ -62,8 +61,12 @@ struct WideScene {
 
   WideTable extinction; ///< mm^-1 over the scalar
 
-  WideCells cells;        ///< fewer than 2^24
+  WideCells cells;        ///< fewer than 2^23
   float firstCell = 0.0F; ///< index in WideCells::codes of the first cell inside the border
+  float lastCell = 0.0F;  ///< index of the last one, the border's
+  /// Way, mm, that a ray goes on behind a face before it looks for its cell: half of
+  /// MajorantGrid::margin at most, so that the new cell is not the old one, whatever rounding does.
+  float overshoot = 0.0F;
 
   std::optional<Context> context = {};
 

@@ -26,9 +26,10 @@ float roundedUp(double x) {
   return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-Corners cornersOf(const Affine& cellToWorld, const Vec3& cell) {
+/// Corners of a cell with the strip around it, `margin` in cells.
+Corners cornersOf(const Affine& cellToWorld, const Vec3& cell, const Vec3& margin) {
   Corners corners;
-  const Box box{cell, cell.array() + 1.0};
+  const Box box{cell - margin, cell + margin + Vec3::Ones()};
   for (int i = 0; i < 8; ++i)
     corners[static_cast<std::size_t>(i)] = cellToWorld * box.corner(i);
   return corners;
@@ -52,10 +53,10 @@ bool meetsMask(const Mask& mask, const Box& box) {
   return false;
 }
 
-/// Greatest factor of a style on the extinction in a cell.
-double greatestFactor(const ContextStyle& style, const Affine& cellToWorld, const Vec3& cell) {
+/// Greatest factor of a style on the extinction among the corners of a cell.
+double greatestFactor(const ContextStyle& style, const Corners& corners) {
   Box box = Box::nothing();
-  for (const Vec3& corner : cornersOf(cellToWorld, cell))
+  for (const Vec3& corner : corners)
     box.extend(style.focus->grid.worldToIndex * corner);
   return meetsMask(*style.focus, box) ? 1.0 : style.extinction;
 }
@@ -78,10 +79,7 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
       return extinction;
     return extinction * greatest(*transfer.gradientOpacity, 0.0, gradientBound(grid, high - low));
   };
-  const auto keptOf = [&](const Vec3& cell) {
-    return std::holds_alternative<ClipNone>(clip) ? Kept::all
-                                                  : keptIn(clip, cornersOf(cellToWorld, cell));
-  };
+  const Vec3 strip = margin * ranges.edge().cast<double>().cwiseInverse();
   tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
       for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {
@@ -89,9 +87,11 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
         double majorant = bound(cell);
         bool isCut = false;
         if (majorant > 0.0) {
-          const Vec3 lower = Size3(x, y, z).cast<double>();
-          const Kept kept = keptOf(lower);
-          majorant *= kept.most * (style ? greatestFactor(*style, cellToWorld, lower) : 1.0);
+          const Corners corners =
+              cornersOf(cellToWorld, Size3(x, y, z).cast<double>(), strip);
+          const Kept kept =
+              std::holds_alternative<ClipNone>(clip) ? Kept::all : keptIn(clip, corners);
+          majorant *= kept.most * (style ? greatestFactor(*style, corners) : 1.0);
           isCut = majorant > 0.0 && !(kept.isUniform && kept.most == 1.0);
         }
         m_cells[cell] = {roundedUp(majorant), isCut};

@@ -23,6 +23,10 @@ public:
   MajorantGrid(const Grid& grid, const CellRanges& ranges, const TransferFunction& transfer,
                const Clip& clip, const ContextStyle* style = nullptr);
 
+  /// Width, voxels, of the strip around a cell in which its bound holds, too: lanes may walk that
+  /// far beyond a face. Scalars are bounded half a voxel beyond (CellRanges).
+  static constexpr double margin = 0.125;
+
   /// Apron of CellRanges, voxels: central differences read one voxel further.
   static int apronFor(const TransferFunction& transfer) { return transfer.gradientOpacity ? 1 : 0; }
 

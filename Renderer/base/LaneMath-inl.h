@@ -1,0 +1,266 @@
+// Tools shared by all lane code: arithmetic in three dimensions, random numbers, angles, and lanes
+// that change places. Compiled once for each instruction set: include after Highway's
+// foreach_target.h.
+
+#if defined(FENESTRA_LANE_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_LANE_MATH_INL_H
+#undef FENESTRA_LANE_MATH_INL_H
+#else
+#define FENESTRA_LANE_MATH_INL_H
+#endif
+
+#include "base/Lanes-inl.h"
+
+#include <initializer_list>
+
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+
+HWY_INLINE Float lerp(Float a, Float b, Float f) {
+  return fma(b - a, f, a);
+}
+HWY_INLINE Float notBelow0(Float x) {
+  return max(x, 0.0F);
+}
+/// sqrt(max(x, 0)): rounding may have made x negative.
+HWY_INLINE Float root(Float x) {
+  return sqrt(notBelow0(x));
+}
+HWY_INLINE Float square(Float x) {
+  return x * x;
+}
+
+/// A vector, point or colour in every lane.
+struct Float3 {
+  Float x, y, z;
+
+  Float3() = default;
+  HWY_INLINE Float3(Float a, Float b, Float c) : x(a), y(b), z(c) {}
+  HWY_INLINE Float3(const std::array<float, 3>& v) : x(v[0]), y(v[1]), z(v[2]) {}
+};
+
+HWY_INLINE Float3 operator+(const Float3& a, const Float3& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE Float3 operator-(const Float3& a, const Float3& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+HWY_INLINE Float3 operator*(const Float3& a, const Float3& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+HWY_INLINE Float3 operator*(Float s, const Float3& v) {
+  return {s * v.x, s * v.y, s * v.z};
+}
+HWY_INLINE Float3 operator-(const Float3& v) {
+  return {-v.x, -v.y, -v.z};
+}
+HWY_INLINE Float dot(const Float3& a, const Float3& b) {
+  return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+HWY_INLINE Float3 cross(const Float3& a, const Float3& b) {
+  return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
+}
+HWY_INLINE Float greatest(const Float3& v) {
+  return max(max(v.x, v.y), v.z);
+}
+HWY_INLINE Float3 normalized(const Float3& v) {
+  return 1.0F / sqrt(dot(v, v)) * v;
+}
+HWY_INLINE Float3 select(Mask which, const Float3& yes, const Float3& no) {
+  return {select(which, yes.x, no.x), select(which, yes.y, no.y), select(which, yes.z, no.z)};
+}
+HWY_INLINE Float3 orZero(Mask which, const Float3& v) {
+  return {orZero(which, v.x), orZero(which, v.y), orZero(which, v.z)};
+}
+
+/// Applies one row of an affine map.
+HWY_INLINE Float apply(const std::array<float, 4>& row, const Float3& p) {
+  return fma(row[0], p.x, fma(row[1], p.y, fma(row[2], p.z, row[3])));
+}
+HWY_INLINE Float3 mapPoint(const AffineRows& map, const Float3& p) {
+  return {apply(map[0], p), apply(map[1], p), apply(map[2], p)};
+}
+HWY_INLINE Float3 mapDirection(const AffineRows& map, const Float3& d) {
+  const auto row = [&](const std::array<float, 4>& r) {
+    return fma(r[0], d.x, fma(r[1], d.y, r[2] * d.z));
+  };
+  return {row(map[0]), row(map[1]), row(map[2])};
+}
+
+/// Three columns of a structure of arrays, from index i on.
+template <typename Columns>
+HWY_INLINE Float3 load3(const Columns& columns, std::size_t i) {
+  return {load(&columns[0][i]), load(&columns[1][i]), load(&columns[2][i])};
+}
+template <typename Columns>
+HWY_INLINE void store3(const Float3& v, Columns& columns, std::size_t i) {
+  store(v.x, &columns[0][i]);
+  store(v.y, &columns[1][i]);
+  store(v.z, &columns[2][i]);
+}
+
+/// Bit mixer of 32 bits with low bias (the Hash Prospector project).
+HWY_INLINE Word mixBits(Word x) {
+  x = (x ^ shiftRight<16>(x)) * 0x21f0aaadU;
+  x = (x ^ shiftRight<15>(x)) * 0x735a2d97U;
+  return x ^ shiftRight<15>(x);
+}
+
+/// Random numbers of a lane: hashes of a counter that starts at a seed.
+HWY_INLINE Word nextBits(Word& counter) {
+  counter = counter + 0x9e3779b9U;
+  return mixBits(counter);
+}
+
+/// (h + 1/2) / 2^32 for h < 2^31: as precise near 0 as 32 bits can be.
+HWY_INLINE Float fraction(Word h) {
+  return fma(toFloat(bitsAsInt(h)), 0x1p-32F, 0x1p-33F);
+}
+
+/// The half of the unit interval that random bits lie in, and the place in it.
+struct Halved {
+  Mask upper;
+  Float low; ///< in (0, 1/2)
+};
+HWY_INLINE Halved halved(Word h) {
+  return {bitsAsInt(h) < 0, fraction(h & 0x7fffffffU)};
+}
+
+/// Uniform in (0, 1].
+HWY_INLINE Float uniformOf(Word h) {
+  const Halved u = halved(h);
+  return u.low + orZero(u.upper, 0.5F);
+}
+HWY_INLINE Float uniform(Word& counter) {
+  return uniformOf(nextBits(counter));
+}
+
+/// Polynomial in x by Horner's rule: coefficient of the highest power, then the lower ones.
+HWY_INLINE Float polynomial(Float x, float highest, std::initializer_list<float> lower) {
+  Float sum = highest;
+  for (const float coefficient : lower)
+    sum = fma(sum, x, coefficient);
+  return sum;
+}
+
+/// The logarithm of a positive number that is not subnormal, to a float's last place (the
+/// polynomial of Cephes' logf).
+HWY_INLINE Float logOf(Float x) {
+  const Int raw = bitsAsInt(x);
+  // sqrt(1/2): mantissas lie in [sqrt(1/2), sqrt(2)).
+  const Int power = shiftRight<23>(raw - 0x3f3504f3);
+  const Float f = bitsAsFloat(raw - shiftLeft<23>(power)) - 1.0F;
+  const Float e = toFloat(power);
+  const Float p =
+      polynomial(f, 7.0376836292E-2F,
+                 {-1.1514610310E-1F, 1.1676998740E-1F, -1.2420140846E-1F, 1.4249322787E-1F,
+                  -1.6668057665E-1F, 2.0000714765E-1F, -2.4999993993E-1F, 3.3333331174E-1F});
+  const Float f2 = f * f;
+  const Float low = fnma(0.5F, f2, fma(e, -2.12194440E-4F, p * f * f2));
+  return fma(e, 0.693359375F, f + low);
+}
+
+/// Exponential with mean 1, precise near 0 and in the tail: each half of the unit interval is
+/// measured from its own end.
+HWY_INLINE Float exponentialOf(Word h) {
+  const Halved u = halved(h);
+  // -log(1 - u) where the exponential is small, -log(u) where it is large.
+  const Float x = select(u.upper, 1.0F - u.low, u.low);
+  const Float lost = orZero(u.upper, 1.0F - x - u.low); // rounding error of 1 - u
+  return -(logOf(x) + lost);
+}
+HWY_INLINE Float exponential(Word& counter) {
+  return exponentialOf(nextBits(counter));
+}
+
+/// Cosine and sine of an angle in turns, 0 <= turns <= 1, to 1e-7: Taylor series about the nearest
+/// multiple of a quarter turn.
+struct CosineSine {
+  Float cosine, sine;
+};
+HWY_INLINE CosineSine ofTurns(Float turns) {
+  const Float quarters = turns * 4.0F;
+  const Float nearest = floor(quarters + 0.5F);
+  const Float x = (quarters - nearest) * 1.57079632679F;
+  const Float x2 = x * x;
+  const Float cubic =
+      polynomial(x2, 2.75573192e-6F, {-1.98412698e-4F, 8.33333333e-3F, -1.66666667e-1F});
+  const Float sine = fma(x * x2, cubic, x);
+  const Float cosine = polynomial(x2, -2.75573192e-7F,
+                                  {2.48015873e-5F, -1.38888889e-3F, 4.16666667e-2F, -0.5F, 1.0F});
+  const Word quadrant = bitsAsWord(toInt(nearest));
+  const Word odd = quadrant & 1U;
+  const Mask swapped = odd == 1U;
+  const Word sineSign = shiftLeft<30>(quadrant & 2U);
+  const Word cosineSign = sineSign ^ shiftLeft<31>(odd);
+  const auto signedBy = [](Float value, Word sign) { return bitsAsFloat(bitsAsWord(value) ^ sign); };
+  return {signedBy(select(swapped, sine, cosine), cosineSign),
+          signedBy(select(swapped, cosine, sine), sineSign)};
+}
+
+/// A right-handed orthonormal frame around a unit normal (base/Vector.h's Frame).
+struct Frames {
+  Float3 tangent, bitangent, normal;
+
+  explicit HWY_INLINE Frames(const Float3& n) : normal(n) {
+    const Float sign = copySign(1.0F, n.z);
+    const Float a = Float(-1.0F) / (sign + n.z);
+    const Float b = n.x * n.y * a;
+    tangent = {fma(sign * square(n.x), a, 1.0F), sign * b, -(sign * n.x)};
+    bitangent = {b, fma(square(n.y), a, sign), -n.y};
+  }
+
+  HWY_INLINE Float3 toWorld(const Float3& v) const {
+    return v.x * tangent + v.y * bitangent + v.z * normal;
+  }
+  HWY_INLINE Float3 toLocal(const Float3& v) const {
+    return {dot(v, tangent), dot(v, bitangent), dot(v, normal)};
+  }
+};
+
+/// Sends lanes to other places, in whole vectors.
+class Shuffle {
+public:
+  /// The lanes of `which` first, in their order; lanes behind them hold no number of use.
+  static HWY_INLINE Shuffle packing(Mask which) {
+#if HWY_TARGET <= HWY_AVX3 // an instruction; no table
+    return Shuffle(Int(hn::Compress(hn::Iota(ints, 0), which.of(ints))));
+#else
+    return Shuffle(promoted({lanePacks[which.bits()]}));
+#endif
+  }
+  /// Numbers in a row to the lanes of `which`, in their order.
+  static HWY_INLINE Shuffle dealing(Mask which) {
+    const std::uint64_t set = which.bits();
+    if constexpr (laneCount <= 8)
+      return Shuffle(promoted({laneRanks[set]}));
+    constexpr std::uint64_t everyByte = 0x0101010101010101U;
+    const std::uint64_t low = set & 0xff;
+    const auto before = static_cast<std::uint64_t>(std::popcount(low));
+    return Shuffle(promoted({laneRanks[low], laneRanks[set >> 8] + everyByte * before}));
+  }
+
+  template <typename N>
+  HWY_INLINE N operator()(N numbers) const {
+    return hn::TableLookupLanes(numbers.v, hn::IndicesFromVec(typename N::Tag(), m_from.v));
+  }
+  HWY_INLINE Float3 operator()(const Float3& v) const {
+    return {(*this)(v.x), (*this)(v.y), (*this)(v.z)};
+  }
+  /// Lane that each lane's number comes from.
+  HWY_INLINE Int from() const { return m_from; }
+
+private:
+  explicit HWY_INLINE Shuffle(Int from) : m_from(from) {}
+  static HWY_INLINE Int promoted(const std::array<std::uint64_t, 2>& orders) {
+    constexpr hn::Rebind<std::uint8_t, Floats> bytes;
+    return hn::PromoteTo(ints, hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(&orders)));
+  }
+
+  Int m_from;
+};
+
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

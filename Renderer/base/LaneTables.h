@@ -1,0 +1,45 @@
+#pragma once
+// Orders of lanes, for moving lanes in whole vectors: tables that stay where they are. (Highway
+// 1.0.3 copies its table for Compress to the stack at each call.)
+
+#include <array>
+#include <cstdint>
+
+namespace fenestra {
+
+/// Eight small numbers, the first in the lowest byte, for each set of eight lanes.
+using LaneOrders = std::array<std::uint64_t, 256>;
+
+/// Numbers of the lanes in the set, ascending; then the last lane's.
+constexpr LaneOrders packedOrders() {
+  LaneOrders orders{};
+  for (std::uint64_t set = 0; set < orders.size(); ++set) {
+    int count = 0;
+    std::uint64_t last = 0;
+    for (std::uint64_t lane = 0; lane < 8; ++lane)
+      if ((set >> lane & 1) != 0) {
+        last = lane;
+        orders[set] |= lane << 8 * count++;
+      }
+    for (; count < 8; ++count)
+      orders[set] |= last << 8 * count;
+  }
+  return orders;
+}
+
+/// How many lanes of the set come before each lane.
+constexpr LaneOrders rankOrders() {
+  LaneOrders orders{};
+  for (std::uint64_t set = 0; set < orders.size(); ++set) {
+    std::uint64_t rank = 0;
+    for (std::uint64_t lane = 0; lane < 8; ++lane) {
+      orders[set] |= rank << 8 * lane;
+      rank += set >> lane & 1;
+    }
+  }
+  return orders;
+}
+
+inline constexpr LaneOrders lanePacks = packedOrders(), laneRanks = rankOrders();
+
+} // namespace fenestra
