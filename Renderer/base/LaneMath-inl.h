@@ -198,6 +198,20 @@ HWY_INLINE CosineSine ofTurns(Float turns) {
           signedBy(select(swapped, cosine, sine), sineSign)};
 }
 
+/// Angle of the point (x, y) in turns from the axis of x, in [-1/2, 1/2], to 1e-7; 0 at the origin.
+HWY_INLINE Float turnsOf(Float x, Float y) {
+  const Float across = min(abs(x), abs(y));
+  const Float along = max(abs(x), abs(y));
+  const Float q = across / max(along, std::numeric_limits<float>::min());
+  // Minimax polynomial of atan(q) / (2 pi q), to 1.5e-8 of it.
+  const Float octant =
+      q * polynomial(q * q, 4.535739899e-4F,
+                     {-2.557401608e-3F, 6.794566131e-3F, -1.194345555e-2F, 1.693557243e-2F,
+                      -2.260580226e-2F, 3.181924202e-2F, -5.305123391e-2F, 1.591549407e-1F});
+  const Float quadrant = select(abs(y) > abs(x), 0.25F - octant, octant);
+  return copySign(select(x < 0.0F, 0.5F - quadrant, quadrant), y);
+}
+
 /// A right-handed orthonormal frame around a unit normal (base/Vector.h's Frame).
 struct Frames {
   Float3 tangent, bitangent, normal;

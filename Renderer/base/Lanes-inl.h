@@ -118,6 +118,16 @@ HWY_INLINE Numbers<T> shiftRight(Numbers<T> x) {
   return hn::ShiftRight<by>(x.v);
 }
 
+/// By a number of bits, the same in every lane.
+template <typename T>
+HWY_INLINE Numbers<T> shiftLeft(Numbers<T> x, int by) {
+  return hn::ShiftLeftSame(x.v, by);
+}
+template <typename T>
+HWY_INLINE Numbers<T> shiftRight(Numbers<T> x, int by) {
+  return hn::ShiftRightSame(x.v, by);
+}
+
 HWY_INLINE Float select(Mask m, Float yes, Float no) {
   return hn::IfThenElse(m.m, yes.v, no.v);
 }

@@ -99,7 +99,9 @@ TEST(LightSet, SamplingOfSeveralLightsMatchesPdf) {
   constant.radiance = Rgb::Constant(0.3);
   EnvironmentLight map;
   map.map = roughMap();
-  expectConsistent({constant, map, DirectionalLight{}}, {1, 2, 3}, 120);
+  EnvironmentLight black;
+  black.map = {2, 1, std::vector<float>(6, 0.0F)};
+  expectConsistent({constant, black, map, DirectionalLight{}}, {1, 2, 3}, 120);
 }
 
 TEST(LightSet, AreaLightsShineFromOneSide) {

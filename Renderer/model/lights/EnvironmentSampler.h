@@ -17,6 +17,16 @@ public:
   /// Radiance averaged over the sphere.
   const Rgb& mean() const { return m_mean; }
 
+  const EnvironmentLight& light() const { return m_light; }
+  /// Integral of a map's brightness over the sphere; 0 of a constant.
+  double total() const { return m_total; }
+  /// Sums of the rows' probabilities: 0, ..., 1; all 0 if the map is black.
+  const std::vector<double>& rows() const { return m_rowCdf; }
+  /// The same of the texels of a row.
+  const std::vector<double>& columns(int row) const {
+    return m_columnCdf[static_cast<std::size_t>(row)];
+  }
+
   bool constant() const { return m_light.map.width == 0; }
 
 private:
@@ -32,7 +42,7 @@ private:
   Rgb m_mean = Rgb::Zero();
   std::vector<double> m_rowCdf;                 ///< height + 1 entries, last 1
   std::vector<std::vector<double>> m_columnCdf; ///< width + 1 entries for each row
-  double m_total = 0.0;                         ///< integral of brightness over the sphere
+  double m_total = 0.0;
 };
 
 } // namespace fenestra

@@ -70,7 +70,7 @@ void LightSet::place(const SphereLight& light, const FrameInWorld& frame) {
 void LightSet::chooseShares(const Vec3& center) {
   std::vector<double*> shares;
   for (SharedEnvironment& environment : m_environments) {
-    if (environment.sampler.constant())
+    if (!(environment.sampler.total() > 0.0)) // constant, or black: nothing to draw
       continue;
     environment.share = pi * brightness(environment.sampler.mean());
     shares.push_back(&environment.share);

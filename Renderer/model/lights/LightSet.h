@@ -63,6 +63,12 @@ struct PlacedDirectionalLight {
   double share;
 };
 
+/// An environment in the world.
+struct SharedEnvironment {
+  EnvironmentSampler sampler;
+  double share; ///< probability that LightSet::sample() takes this light; 0: never sampled
+};
+
 class LightSet {
 public:
   /// Lights in the camera's frame are placed around the volume's centre, lights in the focus's
@@ -78,10 +84,6 @@ public:
   }
   /// `choice`, in [0, 1), selects the light.
   std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
-
-  /// Sample of an environment map; empty without maps. `choice`: a uniform number less the shares
-  /// of all area and directional lights and spheres.
-  std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
   /// Radiance and density of all environments and skies together.
   LightArrival environment(const Vec3& direction) const;
@@ -108,6 +110,7 @@ public:
   const std::vector<PlacedAreaLight>& areas() const { return m_areas; }
   const std::vector<PlacedSphereLight>& spheres() const { return m_spheres; }
   const std::vector<PlacedDirectionalLight>& directionals() const { return m_directionals; }
+  const std::vector<SharedEnvironment>& environments() const { return m_environments; }
   /// Skies in the world's frame.
   const std::vector<SkyLight>& skies() const { return m_skies; }
   /// Sum of the constant environments' radiance.
@@ -116,10 +119,9 @@ public:
   bool hasMaps() const;
 
 private:
-  struct SharedEnvironment {
-    EnvironmentSampler sampler;
-    double share; ///< 0: never sampled
-  };
+  /// Sample of an environment map; empty without maps. `choice`: a uniform number less the shares
+  /// of all area and directional lights and spheres.
+  std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
   /// A frame's axes, its origin (mm) and its unit of length (mm) in the world.
   struct FrameInWorld {

@@ -9,6 +9,7 @@
 #endif
 
 #include "base/LaneMath-inl.h"
+#include "transport/lanes/EnvironmentSampler-inl.h"
 #include "transport/lanes/PathTables.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,11 +29,13 @@ public:
 
   bool some() const {
     return !m_scene.areas.empty() || !m_scene.directionals.empty() || !m_scene.spheres.empty() ||
-           m_scene.maps != nullptr;
+           !m_scene.maps.empty();
   }
 
-  /// Draws one light for each lane of `which`, seen from a local point. `choice` selects the light.
-  LightDraw draw(Mask which, const Float3& point, Float choice, Float u, Float v) const {
+  /// Draws one light for each lane of `which`, seen from a local point. `choice` selects the
+  /// light; `uBits`, `vBits`: random bits.
+  LightDraw draw(Mask which, const Float3& point, Float choice, Word uBits, Word vBits) const {
+    const Float u = uniformOf(uBits), v = uniformOf(vBits);
     const Float zero = 0.0F;
     const Float far = std::numeric_limits<float>::infinity();
     LightDraw drawn{{zero, zero, 1.0F}, {zero, zero, zero}, far, 1.0F, Mask::none()};
@@ -59,8 +62,8 @@ public:
       if (mine.any())
         drawSphere(light, mine, point, u, v, drawn);
     }
-    if (m_scene.maps && which.any())
-      drawMaps(which, choice, u, v, drawn);
+    if (!m_scene.maps.empty() && which.any())
+      drawMaps(which, choice, uBits, vBits, drawn);
     return drawn;
   }
 
@@ -75,11 +78,14 @@ public:
     for (const EventScene::Sphere& light : m_scene.spheres)
       sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
     const Mask escaped = which & (distance == std::numeric_limits<float>::infinity());
-    if (!m_scene.maps)
+    if (m_scene.maps.empty())
       return sum + orZero(escaped, around(direction));
-    if (escaped.any())
-      sum = sum + fromMaps(escaped, direction, scatterPdf);
-    return sum;
+    if (!escaped.any())
+      return sum;
+    const Arrival far =
+        around(direction, [&](const WideMap& map) { return map.texelToward(direction); });
+    const Float weight = scatterPdf / (scatterPdf + far.pdf);
+    return sum + orZero(escaped, weight * far.radiance);
   }
 
 private:
@@ -149,31 +155,44 @@ private:
     drawn.pdf = select(mine, densityOf(light, spread), drawn.pdf);
   }
 
-  void drawMaps(Mask which, Float choice, Float u, Float v, LightDraw& drawn) const {
-    const LaneArray<float> choices(choice), us(u), vs(v);
-    LaneArray<float> direction[3] = {LaneArray<float>(drawn.direction.x),
-                                     LaneArray<float>(drawn.direction.y),
-                                     LaneArray<float>(drawn.direction.z)};
-    LaneArray<float> radiance[3] = {LaneArray<float>(drawn.radiance.x),
-                                    LaneArray<float>(drawn.radiance.y),
-                                    LaneArray<float>(drawn.radiance.z)};
-    LaneArray<float> pdf(drawn.pdf);
-    forEachLane(which, [&](std::size_t lane) {
-      const auto number = [&](const LaneArray<float>& x) { return static_cast<double>(x[lane]); };
-      const std::optional<LightSample> light =
-          m_scene.maps->sampleEnvironment(number(choices), {number(us), number(vs)});
-      if (!light)
-        return;
-      for (int axis = 0; axis < 3; ++axis) {
-        direction[axis][lane] = narrow(light->direction[axis]);
-        radiance[axis][lane] = narrow(light->radiance[axis]);
-      }
-      pdf[lane] = narrow(light->pdf);
+  void drawMaps(Mask which, Float choice, Word u, Word v, LightDraw& drawn) const {
+    const std::size_t count = m_scene.maps.size();
+    WideMap::Drawn toward = WideMap(m_scene.maps[0]).draw(u, v);
+    Mask later = which;
+    for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
+      const float before = m_scene.maps[i - 1].share;
+      later = later & (choice > before);
+      choice = choice - before;
+      if (later.any())
+        toward.direction =
+            select(later, WideMap(m_scene.maps[i]).draw(u, v).direction, toward.direction);
+    }
+    const Arrival light = around(toward.direction, [&](const WideMap& map) {
+      return count == 1 ? toward.texel : map.texelToward(toward.direction);
     });
-    drawn.direction = {load(direction[0].data()), load(direction[1].data()),
-                       load(direction[2].data())};
-    drawn.radiance = {load(radiance[0].data()), load(radiance[1].data()), load(radiance[2].data())};
-    drawn.pdf = load(pdf.data());
+    const Mask lit = which & (light.pdf > 0.0F);
+    drawn.direction = select(lit, toward.direction, drawn.direction);
+    drawn.radiance = select(lit, light.radiance, drawn.radiance);
+    drawn.pdf = select(lit, light.pdf, drawn.pdf);
+  }
+
+  /// LightArrival in lanes.
+  struct Arrival {
+    Float3 radiance;
+    Float pdf;
+  };
+  /// Radiance and density of all environments and skies together; texelOf(map): each map's texel in
+  /// the direction.
+  template <typename TexelOf>
+  HWY_INLINE Arrival around(const Float3& direction, TexelOf&& texelOf) const {
+    Arrival sum{around(direction), 0.0F};
+    for (const MapTables& each : m_scene.maps) {
+      const WideMap map(each);
+      const Float3 radiance = map.radiance(texelOf(map));
+      sum.radiance = sum.radiance + radiance;
+      sum.pdf = sum.pdf + map.pdf(radiance);
+    }
+    return sum;
   }
 
   /// Radiance of constant environments and skies.
@@ -232,21 +251,6 @@ private:
       return {zero, zero, zero};
     const Float pdf = densityOf(light, spreadOf(light, distance2));
     return weighted(met, scatterPdf, pdf, light.radiance);
-  }
-
-  Float3 fromMaps(Mask escaped, const Float3& direction, Float scatterPdf) const {
-    const Float zero = 0.0F;
-    const LaneArray<float> x(direction.x), y(direction.y), z(direction.z), pdf(scatterPdf);
-    LaneArray<float> r(zero), g(zero), b(zero);
-    forEachLane(escaped, [&](std::size_t lane) {
-      const auto number = [&](const LaneArray<float>& v) { return static_cast<double>(v[lane]); };
-      const LightArrival arrival = m_scene.maps->environment({number(x), number(y), number(z)});
-      const Rgb sum = arrival.radiance * (number(pdf) / (number(pdf) + arrival.pdf));
-      r[lane] = narrow(sum[0]);
-      g[lane] = narrow(sum[1]);
-      b[lane] = narrow(sum[2]);
-    });
-    return {load(r.data()), load(g.data()), load(b.data())};
   }
 
   const EventScene& m_scene;

@@ -210,8 +210,8 @@ private:
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
     const Float choice = draws.uniform();
-    const Float u = draws.uniform();
-    const Float v = draws.uniform();
+    const Word u = draws.nextBits();
+    const Word v = draws.nextBits();
     const LightDraw light =
         m_lights.draw(at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
     const Scattered scattered = toward(light.direction);

@@ -45,10 +45,14 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
            (light.center - grid.worldCenter()).norm() < greatestSphere &&
            light.radiance.maxCoeff() < brightest;
   };
+  const auto mapFits = [](const SharedEnvironment& environment) {
+    return MapTables::serves(environment.sampler);
+  };
   return lights.hasOnlyListedKinds() && std::abs(transfer.g) <= greatestG &&
          !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness) &&
          std::ranges::all_of(lights.areas(), fits) &&
-         std::ranges::all_of(lights.spheres(), sphereFits);
+         std::ranges::all_of(lights.spheres(), sphereFits) &&
+         std::ranges::all_of(lights.environments(), mapFits);
 }
 
 EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
@@ -67,8 +71,7 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
       wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
           std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
-      constantEnvironment(narrow3(lights.constantEnvironment())),
-      maps(lights.hasMaps() ? &lights : nullptr) {
+      constantEnvironment(narrow3(lights.constantEnvironment())) {
   if (hybrid) {
     const SurfaceShading& shading = *transfer.shading;
     const SurfaceShading::Lobes lobes = shading.lobes();
@@ -101,6 +104,10 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
   for (const SkyLight& sky : lights.skies())
     skies.push_back({narrow3(sky.up), narrow3(sky.middle), narrow3(Rgb(sky.top - sky.middle)),
                      narrow3(Rgb(sky.bottom - sky.middle))});
+  if (bounces > 0) // else nothing is lit, and large tables are not needed
+    for (const SharedEnvironment& environment : lights.environments())
+      if (environment.share > 0.0) // no constant, no black map
+        maps.emplace_back(environment.sampler, environment.share);
 }
 
 } // namespace fenestra

@@ -5,6 +5,7 @@
 #include "model/lights/LightSet.h"
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Grid.h"
+#include "transport/lanes/MapTables.h"
 #include "transport/lanes/Medium.h"
 
 #include <vector>
@@ -44,6 +45,7 @@ struct EventScene {
   /// light so far away or bright that squares overflow.
   static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights);
 
+  /// A view of environment maps: `lights` must outlive the object if there are any.
   EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
              std::uint64_t mostBounces, bool normalsWanted);
 
@@ -62,7 +64,7 @@ struct EventScene {
   std::vector<Sphere> spheres;
   std::vector<Sky> skies;
   Triple constantEnvironment;
-  const LightSet* maps; ///< queried for environments; null if all are constant
+  std::vector<MapTables> maps;
 
   AffineRows toLocal;      ///< points, from index space
   AffineRows localToIndex; ///< directions

@@ -1,0 +1,95 @@
+// Environment maps for many paths: model/lights/EnvironmentSampler.h in lanes. Compiled once for
+// each instruction set (see PathSteps.cxx).
+
+#if defined(FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
+#undef FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
+#else
+#define FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
+#endif
+
+#include "transport/lanes/MapTables.h"
+// After foreach_target.h:
+#include "transport/lanes/Medium-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+
+/// A bin of an alias table, and a place inside it, uniform in (0, 1].
+struct Bin {
+  Int index;
+  Float place;
+};
+
+/// `table`: number of the table among the tables.
+HWY_INLINE Bin drawBin(const AliasTables& tables, Int table, Word random) {
+  const Int own = bitsAsInt(random & static_cast<std::uint32_t>(tables.size() - 1));
+  const Int place = shiftLeft(table, tables.bits) + own;
+  const auto [threshold, other] =
+      loadPairs(&tables.places[0].threshold, Indices(shiftLeft<1>(place)));
+  const Float rest = toFloat(bitsAsInt(shiftRight(random, tables.bits)));
+  const Mask below = rest < threshold;
+  const Float inside = select(below, rest, rest - threshold) + 0.5F;
+  const Float size = select(below, threshold, tables.height() - threshold);
+  return {select(below, own, toInt(other)), inside / size};
+}
+
+/// Texels of a map: directions are drawn in proportion to brightness times solid angle.
+class WideMap {
+public:
+  explicit HWY_INLINE WideMap(const MapTables& map) : m_map(map) {}
+
+  struct Drawn {
+    Float3 direction;
+    Int texel;
+  };
+  HWY_INLINE Drawn draw(Word u, Word v) const {
+    const Bin row = drawBin(m_map.rows, 0, u);
+    const Bin column = drawBin(m_map.columns, row.index, v);
+
+    // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
+    const Int fromSouth = Int(m_map.height - 1) - row.index;
+    const Mask isSouth = row.index > fromSouth;
+    const auto [upper, lower] =
+        loadPairs(m_map.falls.data(), Indices(select(isSouth, fromSouth, row.index)));
+    const Float fall = lerp(upper, lower, row.place);
+    const Float sine = root(fall * (2.0F - fall));
+    const CosineSine phi = ofTurns((toFloat(column.index) + column.place) * (1.0F / width()));
+    const Float z = 1.0F - fall;
+    return {{-sine * phi.sine, -sine * phi.cosine, select(isSouth, -z, z)},
+            row.index * m_map.width + column.index};
+  }
+
+  HWY_INLINE Int texelToward(const Float3& d) const {
+    const auto cell = [](Float place, std::int32_t count) { // NaN, too, gets one that is there
+      return toInt(notBelow0(min(place, static_cast<float>(count - 1))));
+    };
+    const Float sine = sqrt(square(d.x) + square(d.y));
+    const Int column = cell((0.5F + turnsOf(d.y, d.x)) * width(), m_map.width);
+    const Int row =
+        cell(turnsOf(d.z, sine) * (2.0F * static_cast<float>(m_map.height)), m_map.height);
+    return row * m_map.width + column;
+  }
+
+  HWY_INLINE Float3 radiance(Int texel) const {
+    const Indices first(texel * 3);
+    const auto channel = [&](std::size_t c) {
+      return m_map.tint[c] * bitsAsFloat(loadInts(m_map.rgb + c, first));
+    };
+    return {channel(0), channel(1), channel(2)};
+  }
+  /// Density of drawing this map and a direction of that radiance.
+  HWY_INLINE Float pdf(const Float3& radiance) const {
+    return m_map.perBrightness * greatest(radiance);
+  }
+
+private:
+  float width() const { return static_cast<float>(m_map.width); }
+
+  const MapTables& m_map;
+};
+
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,298 @@
+// Lanes' environment maps against the scalar ones', on every instruction set: what is drawn, with
+// which density, and what escaping rays meet.
+
+#include "Histogram.h"
+
+#include "transport/lanes/PathSteps.h"
+
+#include <memory>
+
+namespace fenestra::testing::WideLightsTests {
+namespace {
+
+EnvironmentMap randomMap(int width, int height, std::uint64_t seed) {
+  EnvironmentMap map{width, height, {}};
+  for (int i = 0; i < width * height; ++i) {
+    Random random(seed, static_cast<std::uint64_t>(i), 0);
+    const float value = i % 11 == 3 ? 0.0F : i == 40 ? 20.0F : static_cast<float>(random.uniform());
+    map.rgb.insert(map.rgb.end(), {value, 0.5F * value, 0.1F * value});
+  }
+  return map;
+}
+
+/// One texel of light; the pole's row among them.
+EnvironmentMap lamp(int width, int height, int lit) {
+  EnvironmentMap map{width, height,
+                     std::vector<float>(static_cast<std::size_t>(3 * width * height))};
+  map.rgb[static_cast<std::size_t>(3 * lit)] = 3.0F;
+  return map;
+}
+
+struct Surroundings {
+  const char* name;
+  std::vector<Light> lights;
+};
+
+std::vector<Surroundings> surroundings() {
+  const SkyLight sky{Rgb(0.3, 0.2, 0.1), Rgb::Ones(), Rgb::Zero(), Vec3::UnitX(),
+                     LightFrame::world};
+  return {
+      {"one map", {EnvironmentLight{Rgb(0.5, 1.0, 2.0), randomMap(12, 6, 9)}}},
+      {"odd numbers of texels", {EnvironmentLight{Rgb::Ones(), randomMap(7, 5, 8)}}},
+      {"one texel", {EnvironmentLight{Rgb::Ones(), randomMap(1, 1, 5)}}},
+      {"more columns than 256", {EnvironmentLight{Rgb::Ones(), randomMap(600, 3, 4)}}},
+      {"lamp at the north pole", {EnvironmentLight{Rgb::Ones(), lamp(16, 12, 5)}}},
+      {"lamp at the south pole", {EnvironmentLight{Rgb::Ones(), lamp(16, 12, 16 * 11 + 2)}}},
+      {"two maps, a constant, a sky, a black map",
+       {EnvironmentLight{Rgb(0.2, 0.3, 0.4), {}},
+        EnvironmentLight{Rgb::Ones(), randomMap(12, 6, 3)},
+        EnvironmentLight{Rgb::Ones(), EnvironmentMap{2, 1, std::vector<float>(6, 0.0F)}}, sky,
+        EnvironmentLight{Rgb(2.0, 0.0, 1.0), lamp(16, 12, 70)}}},
+  };
+}
+
+/// A thin volume of 1 mm voxels around the origin, index axes along RAS; albedo 1, isotropic.
+struct Fog {
+  static Volume volume() {
+    Affine toWorld = Affine::Identity();
+    toWorld.translation() = Vec3::Constant(-3.5);
+    Volume made{Grid(Size3(8, 8, 8), toWorld), std::vector<float>(512, 1.0F), 0.0, 0.0, "", {}};
+    computeRange(made);
+    return made;
+  }
+
+  Volume matter = volume();
+  TransferFunction transfer{
+      ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {1.0, ScalarFunction::Value(0.1)}}),
+      ColorFunction({{0.0, Rgb::Ones()}})};
+  Domain domain{matter.grid, std::nullopt};
+  MajorantGrid majorants{matter.grid, CellRanges(matter, 0), transfer, ClipNone{}};
+  Clip clip = ClipNone{};
+  WideTracker tracker{matter, domain, transfer, majorants, clip};
+  LightSet lights;
+  WideEvents events;
+
+  explicit Fog(const std::vector<Light>& around)
+      : lights(around, matter.grid, camera()),
+        events(tracker.scene(), EventScene(matter.grid, transfer, lights, 100, false)) {}
+
+  static Camera camera() {
+    CameraPose pose;
+    pose.position = {0, -50, 0};
+    return {pose, 8, 8};
+  }
+};
+
+/// What one scattering in the fog draws of the lights: a direction, and radiance times phase
+/// function over the sum of both densities, channel by channel.
+struct Sampled {
+  Vec3 direction;
+  Rgb estimate;
+};
+
+/// Light drawn by paths that scatter at the origin; those that drew none are left out.
+std::vector<Sampled> sampled(const Fog& fog, std::uint64_t seed, std::size_t count) {
+  const auto paths = std::make_unique<PathBatch>();
+  const auto lights = std::make_unique<LightBatch>();
+  std::vector<Sampled> all;
+  for (std::size_t from = 0; from < count; from += RayBatch::capacity) {
+    paths->rays.size = std::min(RayBatch::capacity, count - from);
+    for (std::size_t i = 0; i < paths->rays.size; ++i) {
+      Random random(seed, from + i, 0);
+      paths->begin(i, Vec3::UnitX(), random.bits());
+      paths->rays.set(i, {Vec3::Constant(3.5), Vec3::UnitX()}, 9.0, 0);
+      paths->rays.result[i] = 0.0F;
+      paths->rays.scalar[i] = 1.0F;
+    }
+    Counters counters;
+    fog.events.scatter(*paths, *lights, counters);
+    for (std::size_t i = 0; i < lights->rays.size; ++i) {
+      Sampled s;
+      for (int axis = 0; axis < 3; ++axis) {
+        s.direction[axis] = static_cast<double>(lights->rays.direction[std::size_t(axis)][i]);
+        s.estimate[axis] = static_cast<double>(lights->radiance[std::size_t(axis)][i]);
+      }
+      all.push_back(s);
+    }
+  }
+  return all;
+}
+
+/// Light that rays scattered with density 1 / 4 pi take from beyond the fog.
+std::vector<Rgb> met(const Fog& fog, const std::vector<Vec3>& directions) {
+  const auto paths = std::make_unique<PathBatch>();
+  const auto lights = std::make_unique<LightBatch>();
+  std::vector<Rgb> all;
+  for (std::size_t from = 0; from < directions.size(); from += RayBatch::capacity) {
+    paths->rays.size = std::min(RayBatch::capacity, directions.size() - from);
+    for (std::size_t i = 0; i < paths->rays.size; ++i) {
+      paths->begin(i, directions[from + i], i);
+      paths->bounces[i] = 1;
+      paths->scatterPdf[i] = static_cast<float>(0.25 / pi);
+      paths->rays.set(i, {Vec3::Constant(3.5), directions[from + i]}, 9.0, 0);
+      paths->rays.result[i] = std::numeric_limits<float>::infinity();
+    }
+    Counters counters;
+    fog.events.scatter(*paths, *lights, counters);
+    for (std::size_t i = 0; i < paths->rays.size; ++i)
+      all.emplace_back(paths->radiance[0][i], paths->radiance[1][i], paths->radiance[2][i]);
+  }
+  return all;
+}
+
+/// What the scalar lights say of a scattering with density 1 / 4 pi in that direction: both of
+/// sampling and of meeting the light, for both have the same estimate.
+Rgb truth(const LightSet& lights, const Vec3& direction) {
+  const LightArrival arrival = lights.environment(direction);
+  return arrival.radiance * (0.25 / pi / (0.25 / pi + arrival.pdf));
+}
+
+bool isNear(const Rgb& a, const Rgb& b) {
+  return ((a - b).abs() <= 2e-5 * (1e-3 + a.abs() + b.abs())).all();
+}
+
+/// Number of directions in which values differ from the truth: all but those beside edges of
+/// texels.
+template <typename Values, typename DirectionOf, typename ValueOf>
+std::size_t differences(const Fog& fog, const Values& values, DirectionOf&& directionOf,
+                        ValueOf&& valueOf) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    count += isNear(valueOf(i), truth(fog.lights, directionOf(i).normalized())) ? 0 : 1;
+  return count;
+}
+
+class WideLights : public ::testing::TestWithParam<std::size_t> {
+protected:
+  void SetUp() override {
+    const std::vector<std::string> known = WideTracker::instructionSets();
+    if (GetParam() >= known.size())
+      GTEST_SKIP() << "this machine has fewer";
+    WideTracker::useInstructionSet(known[GetParam()]);
+  }
+  void TearDown() override {
+    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
+  }
+};
+
+/// Chi-squared of two histograms of equal weight against each other, as a standard normal deviate.
+double deviateBetween(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> mean(a.size()),
+      apart(a.size()); // (apart - mean)^2 / mean = (a - b)^2 / (a + b)
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    mean[i] = 0.5 * (a[i] + b[i]);
+    apart[i] = mean[i] + std::sqrt(0.5) * (a[i] - b[i]);
+  }
+  return chiSquaredDeviate(apart, mean);
+}
+
+TEST_P(WideLights, DrawDirectionsAsTheScalarLightsDo) {
+  for (const Surroundings& s : surroundings()) {
+    SCOPED_TRACE(s.name);
+    const Fog fog(s.lights);
+    constexpr std::size_t count = 200000;
+    const std::vector<Sampled> all = sampled(fog, 31, count);
+    std::vector<double> here(SphereBins::count, 0.0), there(SphereBins::count, 0.0);
+    for (const Sampled& one : all)
+      here[static_cast<std::size_t>(SphereBins::of(one.direction))] += 1.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      Random random(32, i, 0);
+      if (const auto sample = fog.lights.sample(Vec3::Zero(), random))
+        there[static_cast<std::size_t>(SphereBins::of(sample->direction))] += 1.0;
+    }
+    EXPECT_LT(deviateBetween(here, there), 4.5);
+    const std::size_t apart = differences(
+        fog, all, [&](std::size_t i) { return all[i].direction; },
+        [&](std::size_t i) { return all[i].estimate; });
+    EXPECT_LT(apart, count / 10000) << "the scalar lights' radiance and density";
+  }
+}
+
+TEST_P(WideLights, MeanOfRadianceOverDensityIsTheIntegral) {
+  for (const Surroundings& s : surroundings()) {
+    SCOPED_TRACE(s.name);
+    const Fog fog(s.lights);
+    // Sampling and meeting together, each by its weight, estimate the mean radiance.
+    constexpr std::size_t count = 200000;
+    std::vector<Vec3> directions;
+    for (std::size_t i = 0; i < count; ++i) {
+      Random random(7, i, 0);
+      directions.push_back(uniformDirection(random.uniform2()));
+    }
+    Rgb sum = Rgb::Zero(), squares = Rgb::Zero(), expected = fog.lights.constantEnvironment();
+    for (const Sampled& one : sampled(fog, 8, count)) {
+      sum += one.estimate;
+      squares += one.estimate.square();
+    }
+    for (const Rgb& one : met(fog, directions)) {
+      sum += one;
+      squares += one.square();
+    }
+    for (const SharedEnvironment& each : fog.lights.environments())
+      if (!each.sampler.constant())
+        expected += each.sampler.mean();
+    for (const SkyLight& sky : fog.lights.skies()) // linear in the cosine
+      expected += 0.5 * sky.middle + 0.25 * (sky.top + sky.bottom);
+    const Rgb deviation = squares.sqrt() / count; // no less than the standard error
+    EXPECT_TRUE(((sum / count - expected).abs() <= 4.5 * deviation).all())
+        << sum[0] / count << " for " << expected[0];
+  }
+}
+
+TEST_P(WideLights, EscapingRaysMeetTheScalarLights) {
+  std::vector<Vec3> directions = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}};
+  for (std::size_t i = 0; i < 100000; ++i) {
+    Random random(6, i, 0);
+    directions.push_back(uniformDirection(random.uniform2()));
+  }
+  for (const Surroundings& s : surroundings()) {
+    SCOPED_TRACE(s.name);
+    const Fog fog(s.lights);
+    const std::vector<Rgb> light = met(fog, directions);
+    const std::size_t apart = differences(
+        fog, light, [&](std::size_t i) { return directions[i]; },
+        [&](std::size_t i) { return light[i]; });
+    EXPECT_LT(apart, directions.size() / 2000);
+    EXPECT_TRUE(isNear(light[0], truth(fog.lights, directions[0]))) << "north pole";
+    EXPECT_TRUE(isNear(light[1], truth(fog.lights, directions[1]))) << "south pole";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(InstructionSets, WideLights, ::testing::Values(0, 1, 2, 3),
+                         [](const auto& info) { return "Set" + std::to_string(info.param); });
+
+/// Probability of each bin in a table, in units of 2^-32.
+std::vector<std::uint64_t> drawnBy(const AliasTables& tables) {
+  const auto full = static_cast<std::uint64_t>(tables.height());
+  std::vector<std::uint64_t> drawn(tables.size(), 0);
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const auto own = static_cast<std::uint64_t>(tables.places[i].threshold);
+    drawn[i] += own;
+    drawn[static_cast<std::size_t>(tables.places[i].other)] += full - own;
+  }
+  return drawn;
+}
+
+TEST(AliasTables, DrawBinsByTheirProbabilitiesToTheLastBit) {
+  for (const std::size_t bins : {1U, 2U, 255U, 256U, 257U, 5000U}) {
+    std::vector<double> sums{0.0};
+    for (std::size_t i = 0; i < bins; ++i) {
+      Random random(2, i, 0);
+      const double weight = bins > 1 && i % 5 == 1 ? 0.0 : std::pow(random.uniform(), 8.0);
+      sums.push_back(sums.back() + weight);
+    }
+    for (double& sum : sums)
+      sum /= sums.back();
+    AliasTables tables(bins);
+    tables.append(sums);
+    const std::vector<std::uint64_t> drawn = drawnBy(tables);
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      const double probability = i < bins ? sums[i + 1] - sums[i] : 0.0;
+      ASSERT_NEAR(static_cast<double>(drawn[i]), 0x1p32 * probability, 1.0) << bins << ", " << i;
+      ASSERT_TRUE(probability > 0.0 || drawn[i] == 0U) << "a bin of probability 0";
+    }
+  }
+}
+
+} // namespace
+} // namespace fenestra::testing::WideLightsTests
