@@ -193,7 +193,9 @@ HWY_INLINE CosineSine ofTurns(Float turns) {
   const Mask swapped = odd == 1U;
   const Word sineSign = shiftLeft<30>(quadrant & 2U);
   const Word cosineSign = sineSign ^ shiftLeft<31>(odd);
-  const auto signedBy = [](Float value, Word sign) { return bitsAsFloat(bitsAsWord(value) ^ sign); };
+  const auto signedBy = [](Float value, Word sign) {
+    return bitsAsFloat(bitsAsWord(value) ^ sign);
+  };
   return {signedBy(select(swapped, sine, cosine), cosineSign),
           signedBy(select(swapped, cosine, sine), sineSign)};
 }
@@ -262,7 +264,9 @@ public:
     return {(*this)(v.x), (*this)(v.y), (*this)(v.z)};
   }
   /// Lane that each lane's number comes from.
-  HWY_INLINE Int from() const { return m_from; }
+  HWY_INLINE Int from() const {
+    return m_from;
+  }
 
 private:
   explicit HWY_INLINE Shuffle(Int from) : m_from(from) {}

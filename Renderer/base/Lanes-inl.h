@@ -1,7 +1,7 @@
-// Numbers of all lanes at once, so that lane code reads like arithmetic: Float, Int, Word, and Mask,
-// one value a lane. Operators and functions take plain numbers, too, which stand for that number in
-// every lane. Nothing is fused unless fma() says so. Compiled once for each instruction set: include
-// after Highway's foreach_target.h.
+// Numbers of all lanes at once, so that lane code reads like arithmetic: Float, Int, Word, and
+// Mask, one value a lane. Operators and functions take plain numbers, too, which stand for that
+// number in every lane. Nothing is fused unless fma() says so. Compiled once for each instruction
+// set: include after Highway's foreach_target.h.
 
 #if defined(FENESTRA_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_LANES_INL_H
@@ -83,9 +83,7 @@ struct Numbers {
   template <std::same_as<T> X> // no other plain number becomes one unseen
   HWY_INLINE Numbers(X x) : v(hn::Set(Tag(), x)) {}
 
-  HWY_INLINE void where(Mask m, Numbers value) {
-    v = hn::IfThenElse(m.of(Tag()), value.v, v);
-  }
+  HWY_INLINE void where(Mask m, Numbers value) { v = hn::IfThenElse(m.of(Tag()), value.v, v); }
   HWY_INLINE Numbers operator-() const { return hn::Neg(v); }
   friend HWY_INLINE Numbers operator+(Numbers a, Numbers b) { return hn::Add(a.v, b.v); }
   friend HWY_INLINE Numbers operator-(Numbers a, Numbers b) { return hn::Sub(a.v, b.v); }

@@ -15,29 +15,44 @@ constexpr std::uint64_t mixBits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+/// Uniform in [0, 1) from random bits: 0 occurs, the largest value is 1 - 2^-53.
+constexpr double uniformOf(std::uint64_t bits) {
+  return static_cast<double>(bits >> 11) * 0x1p-53;
+}
+
+/// Two from one, of 32 bits each.
+inline Vec2 uniform2Of(std::uint64_t bits) {
+  return {static_cast<double>(bits >> 32) * 0x1p-32,
+          static_cast<double>(bits & 0xffffffffU) * 0x1p-32};
+}
+
+/// Exponential with mean 1 from a uniform number of [0, 1); finite for every number, 0 included.
+inline double exponentialOf(double uniform) {
+  return -std::log1p(-uniform);
+}
+
 /// SplitMix64 (Steele, Lea, Flood 2014), started at a hash of its coordinates.
 class Random {
 public:
-  /// Numbers of two samples of a pixel are independent.
-  static constexpr bool hasIndependentSamples = true;
+  /// The greatest odd multiple of the golden ratio: steps of a state.
+  static constexpr std::uint64_t gamma = 0x9e3779b97f4a7c15ULL;
 
   Random(std::uint64_t seed, std::uint64_t pixel, std::uint64_t sample)
       : m_state(mixBits(mixBits(mixBits(seed + gamma) ^ (pixel + gamma)) ^ (sample + gamma))) {}
+  /// From random bits.
+  explicit Random(std::uint64_t start) : m_state(start) {}
 
   std::uint64_t bits() { return mixBits(m_state += gamma); }
 
-  /// Uniform in [0, 1): 0 occurs, the largest value is 1 - 2^-53.
-  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+  double uniform() { return uniformOf(bits()); }
   Vec2 uniform2() {
     const double u = uniform();
     return {u, uniform()};
   }
 
-  /// Exponential with mean 1; finite for every draw, 0 included.
-  double exponential() { return -std::log1p(-uniform()); }
+  double exponential() { return exponentialOf(uniform()); }
 
 private:
-  static constexpr std::uint64_t gamma = 0x9e3779b97f4a7c15ULL;
   std::uint64_t m_state;
 };
 

@@ -1,5 +1,7 @@
 #include "image/Film.h"
 
+#include <utility>
+
 namespace fenestra {
 
 void PixelSums::add(const PathSample& sample) {
@@ -12,6 +14,8 @@ void PixelSums::add(const PathSample& sample) {
   const Rgb before = sample.radiance - mean;
   mean += before / static_cast<double>(samples);
   deviation += before * (sample.radiance - mean);
+  if (block > 1)
+    addToBlock(sample.radiance);
   alpha += sample.alpha;
   albedo += sample.albedo;
   normal += sample.normal;
@@ -31,11 +35,50 @@ Halves PixelSums::halves() const {
           (alpha - evenAlpha) / odd};
 }
 
+/// Adds the radiance of the newest sample, which counts already.
+void PixelSums::addToBlock(const Rgb& radiance) {
+  const std::uint64_t half = (samples - 1) % 2;
+  open[half] += radiance;
+  if (openSamples(half) > 0.0)
+    return;
+  const Rgb sum = std::exchange(open[half], Rgb::Zero());
+  const double count = completeBlocks();
+  if (count < 2.0)
+    return;
+  // Welford 1962: the block before the mean of all is moved.
+  const Rgb apart = sum / static_cast<double>(block) - meanOfBlocks();
+  blockDeviation += apart * apart * (count / (count - 1.0));
+}
+
+double PixelSums::completeBlocks() const {
+  return static_cast<double>((samples + 1) / 2 / block + samples / 2 / block);
+}
+
+Rgb PixelSums::meanOfBlocks() const {
+  return (static_cast<double>(samples) * mean - open[0] - open[1]) /
+         (completeBlocks() * static_cast<double>(block));
+}
+
 Rgb PixelSums::standardError() const {
   if (samples < 2)
     return Rgb::Zero();
   const auto n = static_cast<double>(samples);
-  return (deviation / (n * (n - 1.0))).sqrt();
+  if (block == 1)
+    return (deviation / (n * (n - 1.0))).sqrt();
+  Rgb squares = Rgb::Zero(); // of S_b - m_b mean
+  double sizes = 0.0;        // sum of m_b^2
+  for (std::uint64_t half = 0; half < 2; ++half) {
+    const double size = openSamples(half);
+    squares += (open[half] - size * mean).square();
+    sizes += size * size;
+  }
+  const double complete = completeBlocks();
+  if (complete > 0.0) {
+    const auto size = static_cast<double>(block);
+    squares += size * size * (blockDeviation + complete * (meanOfBlocks() - mean).square());
+    sizes += complete * size * size;
+  }
+  return (squares / (n * n - sizes)).sqrt();
 }
 
 double Film::noise() const {

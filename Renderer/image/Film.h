@@ -3,6 +3,7 @@
 
 #include "base/Vector.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct Halves {
 
 /// Running sums of one pixel, in double. Samples are added in the order of their indices, so that
 /// sums do not depend on passes or threads.
+///
+/// Samples of a block may depend on each other, blocks do not: the first `block` samples of even
+/// index are a block, the next `block` another, and those of odd index likewise. The last block of
+/// each half may be incomplete.
 struct PixelSums {
   std::uint64_t samples = 0;
   Rgb mean = Rgb::Zero();      ///< of radiance
@@ -38,14 +43,34 @@ struct PixelSums {
   double scatterings = 0.0;
   Rgb evenMean = Rgb::Zero(); ///< of radiance, over the samples of even index
   double evenAlpha = 0.0;     ///< sum over the samples of even index
-  bool isCertain = false;     ///< every further sample would equal the first
+  /// Radiance: sums over the last blocks of even and of odd index, while they are incomplete, and
+  /// the complete blocks' sum of squared deviations from the mean of their means.
+  std::array<Rgb, 2> open = {Rgb::Zero(), Rgb::Zero()};
+  Rgb blockDeviation = Rgb::Zero();
+  std::uint32_t block = 1; ///< samples
+  bool isCertain = false;  ///< every further sample would equal the first
 
   void add(const PathSample& sample);
   /// Two independent estimates: means over the samples of even and of odd index. A function of the
   /// samples alone, not of passes. Needs two samples.
   Halves halves() const;
-  /// Standard error of the mean radiance; 0 below two samples, which is right only if isCertain.
+  /// Standard error of the mean radiance; 0 below two samples, which is right only if isCertain. Of
+  /// N samples in blocks of m_b, with sums S_b,
+  ///   variance = sum of (S_b - m_b mean)^2 / (N^2 - sum of m_b^2),
+  /// which is unbiased if all blocks are complete or none has more than one sample. Else it is too
+  /// great on average, by a few per cent, as far as samples that share a block cancel each other's
+  /// noise (incomplete blocks do so less than complete ones).
   Rgb standardError() const;
+
+private:
+  void addToBlock(const Rgb& radiance);
+  double completeBlocks() const;
+  /// Mean over all samples in complete blocks, of which there must be some.
+  Rgb meanOfBlocks() const;
+  /// Samples in the incomplete block of a half: 0 even, 1 odd.
+  double openSamples(std::uint64_t half) const {
+    return static_cast<double>((samples + 1 - half) / 2 % block);
+  }
 };
 
 /// Samples per pixel, over pixels with isCertain = false; over all pixels if all are certain.
@@ -59,11 +84,15 @@ struct SampleCounts {
 class Film {
 public:
   /// `hasIndependentHalves`: samples of even index share no random numbers with those of odd index.
-  Film(int width, int height, bool hasIndependentHalves = true)
+  /// `block`: PixelSums::block.
+  Film(int width, int height, bool hasIndependentHalves = true, std::uint32_t block = 1)
       : m_width(width),
         m_height(height),
         m_hasIndependentHalves(hasIndependentHalves),
-        m_pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+        m_pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
+    for (PixelSums& pixel : m_pixels)
+      pixel.block = block;
+  }
 
   int width() const { return m_width; }
   int height() const { return m_height; }

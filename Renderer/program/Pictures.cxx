@@ -47,6 +47,7 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
       {"version", versionText},
       {"target", textOf(processorText, "-", result.target)},
       {"seed", textOf(options.settings.seed)},
+      {"sampling", nameOf(options.settings.sampling)},
       {"samples", textOf(result.finishedSamples)},
       {"camera", cameraFlags(scene.camera().pose())},
       {"look", relativeName(scene.look(), folder)},

@@ -114,6 +114,7 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
   json["gradients"] = c.gradients;
   json["cells"] = {{"all", majorants.size()}, {"empty", majorants.emptyCount()}};
   json["emptyPixels"] = samples.certainPixels;
+  json["sampling"] = nameOf(options.settings.sampling);
   json["samplesPerPixel"] = {
       {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
   json["noise"] = result.film.noise(); // null: infinite

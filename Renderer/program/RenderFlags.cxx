@@ -263,6 +263,11 @@ struct RenderTable {
       {"bounces", "B", qualityGroup, "Scatterings a path, at most (biased) [unlimited]",
        Takes::whole(0, unlimited).into(settings.path.bounces).shows("")},
       {"seed", "S", qualityGroup, "Random seed", Takes::whole(0, 0x1p64).into(settings.seed)},
+      {"sampling", "KIND", qualityGroup,
+       "strata: a pixel's samples share out the numbers that decide most of its noise, eight by "
+       "eight; independent: they share nothing (noisier). Both are unbiased",
+       Takes::word(settings.sampling,
+                   {{"strata", Sampling::strata}, {"independent", Sampling::independent}})},
       {"threads", "K", qualityGroup, "Threads, at most one a core; 0 is all",
        Takes::whole(0, 1024).into(settings.threads), Topic::process},
       {"volume", "NAME", outputGroup,

@@ -116,6 +116,7 @@ const std::vector<Flag>& flags() {
                                         {"noise", Kind::number},
                                         {"bounces", Kind::whole},
                                         {"seed", Kind::whole},
+                                        {"sampling", Kind::word},
                                         {"frames", Kind::whole, true},
                                         {"degrees", Kind::number, true},
                                         {"steady", Kind::number, true}};

@@ -34,15 +34,19 @@ public:
         m_clip(scene.clip),
         m_majorant(greatestExtinction(scene)) {}
 
-  double sampleCollision(const Ray& ray, const Interval& range, Random& random,
+  double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
-    const auto walk = [&](auto&& visit) { visitTentative(ray, range, random, counters, visit); };
-    return firstRealCollision(walk, random);
+    const auto walk = [&](auto&& visit) {
+      visitTentative(ray, range, exponentialOf(first.x()), random, counters, visit);
+    };
+    return firstRealCollision(walk, first.y(), random);
   }
 
   double transmittance(const Ray& ray, const Interval& range, Random& random,
                        Counters& counters) const {
-    const auto walk = [&](auto&& visit) { visitTentative(ray, range, random, counters, visit); };
+    const auto walk = [&](auto&& visit) {
+      visitTentative(ray, range, random.exponential(), random, counters, visit);
+    };
     return ratioTracked(walk, random);
   }
 
@@ -57,12 +61,12 @@ private:
   }
 
   template <typename Visit>
-  void visitTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
-                      Visit&& visit) const {
+  void visitTentative(const Ray& ray, const Interval& range, double opticalDepth, Random& random,
+                      Counters& counters, Visit&& visit) const {
     const Crossing crossing(m_domain, ray, range);
     if (m_majorant == 0.0)
       return;
-    for (double t = random.exponential() / m_majorant; t < crossing.length;
+    for (double t = opticalDepth / m_majorant; t < crossing.length;
          t += random.exponential() / m_majorant) {
       double extinction = keep(m_clip, crossing.world.at(t));
       if (extinction > 0.0) {
@@ -94,9 +98,9 @@ public:
         m_clip(scene.clip),
         m_step(step * scene.volume.grid.worldToIndex.inverse().linear().columnNorms().minCoeff()) {}
 
-  double sampleCollision(const Ray& ray, const Interval& range, Random& random,
+  double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
-    const double wanted = random.exponential();
+    const double wanted = exponentialOf(first.x());
     double distance = infinity;
     march(ray, range, random, counters, [&](double t, double opticalDepth) {
       if (opticalDepth < wanted)
@@ -148,17 +152,17 @@ template <typename MakeTracker>
 Film tracePicture(const RenderScene& scene, const RenderSettings& settings,
                   MakeTracker&& makeTracker) {
   Film film(scene.camera.width(), scene.camera.height());
+  const SampleSource source(Sampling::independent, settings.seed);
   const std::atomic<bool> stop = false;
   const auto tracePixels = [&](const auto& estimator) {
     tbb::parallel_for(0, film.height(), [&](int row) {
       Counters counters;
       for (int column = 0; column < film.width(); ++column)
         for (std::uint64_t sample = 0; sample < settings.samples; ++sample) {
-          Random random(settings.seed, static_cast<std::uint64_t>(row * film.width() + column),
-                        sample);
-          const Vec2 jitter = random.uniform2();
+          const SampleNumbers numbers = source.numbers(film.index(column, row), sample);
+          const Vec2 jitter = uniform2Of(numbers.position);
           film.at(column, row)
-              .add(*estimator.trace(column + jitter.x(), row + jitter.y(), random, counters));
+              .add(*estimator.trace(column + jitter.x(), row + jitter.y(), numbers, counters));
         }
     });
   };

@@ -83,7 +83,9 @@ public:
     for (std::uint64_t i = 0; i < draws; ++i) {
       Random random(1, 2, i);
       light += tracker.transmittance(ray, {}, random, counters) / draws;
-      passing += (tracker.sampleCollision(ray, {}, random, counters) == infinity) * (1.0 / draws);
+      passing +=
+          (tracker.sampleCollision(ray, {}, random.uniform2(), random, counters) == infinity) *
+          (1.0 / draws);
     }
     return {light, passing};
   }

@@ -216,6 +216,7 @@ TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
         "noise",
         "bounces",
         "seed",
+        "sampling",
         "threads",
         "output",
         "layers",

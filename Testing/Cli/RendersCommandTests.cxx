@@ -145,6 +145,7 @@ TEST_F(RendersCommand, WritesRequestedLayersAndTheHeader) {
   for (const char* name : {"R", "A", "Z", "albedo.G", "normal.Y", "error.B", "samples.N"})
     EXPECT_TRUE(all.find(name)) << name;
   EXPECT_EQ(all.header.at("seed"), "0");
+  EXPECT_EQ(all.header.at("sampling"), "strata");
   EXPECT_EQ(all.header.at("samples"), "2");
   EXPECT_EQ(all.header.at("command"),
             "fenestra volume.nrrd --size 16x16 --samples 2 --output picture.exr");
@@ -209,6 +210,16 @@ TEST_F(RendersCommand, LightsAsFileOrTextGiveTheSamePicture) {
   EXPECT_NE(file.channels, rendered({}).channels);
   const std::string longerThanPaths = text + std::string(5000, ' ');
   EXPECT_EQ(file.channels, rendered({"--lights=" + longerThanPaths}).channels);
+}
+
+TEST_F(RendersCommand, SamplingIsChosenAndTold) {
+  const Image strata = rendered({"--stats", "s.json"});
+  EXPECT_EQ(stats("s.json")["sampling"], "strata");
+  const Image plain = rendered({"--sampling", "independent", "--stats", "s.json"});
+  EXPECT_EQ(stats("s.json")["sampling"], "independent");
+  EXPECT_EQ(plain.header.at("sampling"), "independent");
+  EXPECT_NE(strata.channels.at("R"), plain.channels.at("R"));
+  EXPECT_EQ(strata.channels, rendered({"--sampling", "strata"}).channels);
 }
 
 TEST_F(RendersCommand, SameSeedGivesTheSamePictureForAnyThreads) {

@@ -28,6 +28,7 @@ TEST(SlicerFlags, ValuesThatTheRendererTakesAreGood) {
                          {"contextsaturation", "auto"},
                          {"exposure", "-1.25"},
                          {"tone", "photographic"},
+                         {"sampling", "independent"},
                          {"background", "gradient"},
                          {"controlpoints", "50"},
                          {"plane", "1,2,3,0,0,-1"},

@@ -16,7 +16,7 @@ oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
     oracle::PixelEstimate& pixel = estimates.pixels[i];
     pixel.samples = static_cast<double>(samples); // all samples, even for certain pixels
     pixel.mean = sums.mean;
-    pixel.squares = sums.deviation;
+    pixel.squares = sums.standardError().square() * pixel.samples * (pixel.samples - 1.0);
     pixel.first =
         oracle::FirstCollision(static_cast<double>(sums.collided), sums.depth, sums.albedo.mean()) /
         pixel.samples;
@@ -30,6 +30,7 @@ struct Sums {
   oracle::FirstCollision first = oracle::FirstCollision::Zero();
   oracle::FirstCollision firstVariance = oracle::FirstCollision::Zero();
   double samples = 0.0, pixels = 0.0;
+  double blocks = 0.0; ///< Estimated::blocks
 
   void add(const oracle::PixelEstimate& pixel) {
     mean += pixel.mean;
@@ -40,7 +41,13 @@ struct Sums {
     pixels += 1.0;
   }
   Estimated channel(int c, const Rgb& skewness = Rgb::Zero()) const {
-    return {mean[c] / pixels, variance[c] / (pixels * pixels), samples, skewness[c]};
+    return {mean[c] / pixels, variance[c] / (pixels * pixels), samples, skewness[c], blocks};
+  }
+  /// Of pictures whose samples depend on each other within blocks of `size` (PixelSums::block).
+  Sums inBlocks(double size) const {
+    Sums sums = *this;
+    sums.blocks = samples / size;
+    return sums;
   }
 };
 
@@ -94,7 +101,7 @@ double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
   int channel = outcome.combination.index;
   for (int top = 0; top < outcome.truth.height; top += size)
     for (int left = 0; left < outcome.truth.width; left += size) {
-      const Sums a = sumsOf(outcome.product, left, top, size);
+      const Sums a = sumsOf(outcome.product, left, top, size).inBlocks(SampleSource::blockSize);
       const Sums b = sumsOf(outcome.truth, left, top, size);
       for (int c = 0; c < 3; ++c)
         least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
@@ -108,7 +115,7 @@ double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
 
 void comparePicture(Outcome& outcome) {
   const int size = outcome.truth.width;
-  const Sums a = sumsOf(outcome.product, 0, 0, size);
+  const Sums a = sumsOf(outcome.product, 0, 0, size).inBlocks(SampleSource::blockSize);
   const Sums b = sumsOf(outcome.truth, 0, 0, size);
   const Rgb skewness = skewnessOf(outcome.truth);
   Least least;

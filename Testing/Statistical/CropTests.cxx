@@ -73,7 +73,8 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
     const Ray ray{origin, (through - origin).normalized()};
     const double expected = std::exp(-sigma_t * chord(box, ray));
     passed.add(tracker.transmittance(ray, {}, random, counters), expected);
-    const bool free = tracker.sampleCollision(ray, {}, random, counters) == infinity;
+    const bool free =
+        tracker.sampleCollision(ray, {}, random.uniform2(), random, counters) == infinity;
     survived.add(free ? 1.0 : 0.0, expected);
   }
   EXPECT_NEAR(passed.z(), 0.0, 4.0);

@@ -23,8 +23,10 @@ std::optional<double> welchProbability(const Estimated& a, const Estimated& b) {
     return std::nullopt;
   if (!(variance > 0.0) || !std::isfinite(difference))
     return 0.0;
-  const double satterthwaite = square(variance) / (square(a.variance) / (a.samples - 1.0) +
-                                                   square(b.variance) / (b.samples - 1.0));
+  const auto ofVariance = [](const Estimated& e) {
+    return square(e.variance) / ((e.blocks > 0.0 ? e.blocks : e.samples) - 1.0);
+  };
+  const double satterthwaite = square(variance) / (ofVariance(a) + ofVariance(b));
   const double all = a.samples + b.samples;
   const double mean = (a.samples * a.mean + b.samples * b.mean) / all;
   const double perSample = (square(a.samples) * a.variance + square(b.samples) * b.variance) / all;

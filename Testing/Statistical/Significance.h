@@ -13,6 +13,7 @@ struct Estimated {
   double variance = 0.0; ///< of the mean
   double samples = 0.0;  ///< number of samples
   double skewness = 0.0; ///< of one sample; 0 if unknown
+  double blocks = 0.0;   ///< independent values that tell the variance; 0: all samples
 };
 
 /// Two-sided probability of the difference between two estimates of one value, by Welch's t (1947)

@@ -183,20 +183,23 @@ public:
         m_tracker(s.volume.grid, m_medium, majorants, m_clip) {}
 
   std::vector<double> collisions(const std::vector<Travel>& travels) const override {
-    return oneByOne(travels, &Tracker<Voxel>::sampleCollision);
+    return oneByOne(travels, [this](Travel& t, Counters& counters) {
+      return m_tracker.sampleCollision(t.ray, t.range, t.random.uniform2(), t.random, counters);
+    });
   }
   std::vector<double> transmittances(const std::vector<Travel>& travels) const override {
-    return oneByOne(travels, &Tracker<Voxel>::transmittance);
+    return oneByOne(travels, [this](Travel& t, Counters& counters) {
+      return m_tracker.transmittance(t.ray, t.range, t.random, counters);
+    });
   }
 
 private:
-  using Follow = double (Tracker<Voxel>::*)(const Ray&, const Interval&, Random&, Counters&) const;
-
-  std::vector<double> oneByOne(const std::vector<Travel>& travels, Follow follow) const {
+  template <typename Follow>
+  std::vector<double> oneByOne(const std::vector<Travel>& travels, Follow&& follow) const {
     std::vector<double> results;
     Counters counters;
     for (Travel t : travels)
-      results.push_back((m_tracker.*follow)(t.ray, t.range, t.random, counters));
+      results.push_back(follow(t, counters));
     return results;
   }
 
@@ -234,8 +237,9 @@ private:
       begins.clear();
     };
     for (Travel t : travels) {
-      begins.push_back(setInside(rays, rays.size++, m_domain, t.ray, t.range,
-                                 static_cast<std::uint32_t>(t.random.bits() >> 32)));
+      const RayNumbers numbers{static_cast<std::uint32_t>(t.random.bits() >> 32),
+                               static_cast<float>(t.random.uniform())};
+      begins.push_back(setInside(rays, rays.size++, m_domain, t.ray, t.range, numbers));
       if (rays.full())
         flush();
     }

@@ -88,7 +88,8 @@ TEST(NullCollisions, ThinMatterUnderALargeMajorantIsClear) {
     EXPECT_NEAR(ratio, 1.0 - 1.6e-10, 2e-10);
     EXPECT_NEAR(static_cast<double>(counters.lookups), tentative, 6.0 * std::sqrt(tentative));
     Random again(4, static_cast<std::uint64_t>(i), 0);
-    EXPECT_EQ(probe.tracker().sampleCollision(ray, {}, again, counters), infinity);
+    EXPECT_EQ(probe.tracker().sampleCollision(ray, {}, again.uniform2(), again, counters),
+              infinity);
   }
 }
 

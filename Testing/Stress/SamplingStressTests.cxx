@@ -272,8 +272,8 @@ TEST(TrackingEnds, CollisionsStayInTheRange) {
       for (const Vec3& origin : {Vec3(-8, 0.3, 0.2), Vec3(-8, 0, 0), Vec3(0, 0, 0)}) {
         Counters counters;
         Random forCollision = randomWithDraw(draw, bits);
-        const double t =
-            probe.tracker().sampleCollision({origin, Vec3::UnitX()}, range, forCollision, counters);
+        const double t = probe.tracker().sampleCollision(
+            {origin, Vec3::UnitX()}, range, forCollision.uniform2(), forCollision, counters);
         EXPECT_TRUE(t == infinity || (t >= range.begin && t <= range.end)) << t;
         Random forRatio = randomWithDraw(draw, bits);
         const double ratio =
@@ -283,10 +283,10 @@ TEST(TrackingEnds, CollisionsStayInTheRange) {
       }
 }
 
-/// Sample of one path, with its counters; one of its draws is chosen (randomWithDraw).
-PathSample tracedPath(const TestScene& scene, Random random, Counters& counters) {
+/// Sample of one path, with its counters.
+PathSample tracedPath(const TestScene& scene, const SampleNumbers& numbers, Counters& counters) {
   return withEstimator(scene, [&](const auto& estimator) {
-    return *estimator.trace(0.5 * scene.width, 0.5 * scene.height, random, counters);
+    return *estimator.trace(0.5 * scene.width, 0.5 * scene.height, numbers, counters);
   });
 }
 
@@ -302,8 +302,7 @@ TEST(PathEnds, RadianceIsBoundedByTheNumberOfCollisions) {
       for (const std::uint64_t bits : endBits)
         for (int draw = 1; draw <= 150; ++draw) {
           Counters counters;
-          const Random random = randomWithDraw(draw, bits);
-          const Rgb radiance = tracedPath(scene, random, counters).radiance;
+          const Rgb radiance = tracedPath(scene, numbersWithDraw(draw, bits), counters).radiance;
           // At each collision the sampled light and the light that is hit, weighted by the balance
           // heuristic, add at most one weight each.
           const double weight = hybrid ? 25.0 : 1.0;

@@ -34,10 +34,20 @@ constexpr std::uint64_t unmixBits(std::uint64_t y) {
 /// Random whose `draw`-th call of bits(), counted from 1, returns `bits`; other draws stay random.
 /// Feeds 0 and the largest u to code that takes only a Random.
 inline Random randomWithDraw(int draw, std::uint64_t bits) {
-  constexpr std::uint64_t gamma = 0x9e3779b97f4a7c15ULL; // as in Random
-  const std::uint64_t state = unmixBits(bits) - static_cast<std::uint64_t>(draw) * gamma;
-  const std::uint64_t seeded = mixBits(mixBits(gamma) ^ gamma); // of seed 0, pixel 0
-  return {0, 0, (unmixBits(state) ^ seeded) - gamma};
+  return Random(unmixBits(bits) - static_cast<std::uint64_t>(draw) * Random::gamma);
+}
+
+/// Numbers of a path of which the `draw`-th one, in the order of SampleNumbers from depth on, is
+/// `bits`.
+inline SampleNumbers numbersWithDraw(int draw, std::uint64_t bits) {
+  constexpr int given = 3;
+  Random random = randomWithDraw(draw, bits);
+  const std::uint64_t depth = random.bits();
+  const std::uint64_t acceptance = random.bits();
+  const std::uint64_t scattered = random.bits();
+  const std::uint64_t rest =
+      unmixBits(bits) - static_cast<std::uint64_t>(draw - given) * Random::gamma;
+  return {0, depth, acceptance, scattered, rest};
 }
 
 /// Length of a ray inside a grid's box, t >= 0, mm; in long double, without the product's code.
@@ -95,7 +105,9 @@ public:
     Counters counters;
     for (int i = 0; i < n; ++i) {
       Random random(41, static_cast<std::uint64_t>(i), 0);
-      free += m_tracker.sampleCollision(ray, range, random, counters) == infinity ? 1.0 / n : 0.0;
+      free += m_tracker.sampleCollision(ray, range, random.uniform2(), random, counters) == infinity
+                  ? 1.0 / n
+                  : 0.0;
       ratio += m_tracker.transmittance(ray, range, random, counters) / n;
     }
     const double error = 4.0 * std::sqrt(expected * (1.0 - expected) / n) + 1e-12 * expected + 1e-9;

@@ -56,6 +56,62 @@ TEST(PixelSums, OneSampleHasNoError) {
   EXPECT_EQ(sums.standardError()[1], 0.0);
 }
 
+/// Standard error of samples in blocks, from its definition.
+double errorOf(const std::vector<double>& values, std::size_t block) {
+  struct Block {
+    double sum = 0.0, size = 0.0;
+  };
+  std::vector<Block> blocks(2 * (values.size() / 2 / block + 1));
+  double mean = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    Block& to = blocks[i / 2 / block * 2 + i % 2];
+    to.sum += values[i];
+    to.size += 1.0;
+    mean += values[i] / static_cast<double>(values.size());
+  }
+  double squares = 0.0, sizes = 0.0;
+  for (const Block& b : blocks) {
+    squares += std::pow(b.sum - b.size * mean, 2.0);
+    sizes += b.size * b.size;
+  }
+  return std::sqrt(squares / (static_cast<double>(values.size() * values.size()) - sizes));
+}
+
+TEST(PixelSums, ErrorComesFromBlocks) {
+  for (const std::uint32_t block : {2U, 4U, 8U}) {
+    PixelSums sums, far;
+    sums.block = block;
+    far.block = block;
+    std::vector<double> values;
+    for (std::uint64_t i = 0; i < 70; ++i) {
+      values.push_back(Random(3, i, 0).uniform());
+      PathSample sample;
+      sample.radiance = Rgb::Constant(values.back());
+      sums.add(sample);
+      sample.radiance += 1e6; // sums of squares would cancel
+      far.add(sample);
+      if (i == 0)
+        continue;
+      const double expected = errorOf(values, block);
+      ASSERT_TRUE(std::isfinite(expected));
+      EXPECT_NEAR(sums.standardError()[0], expected, 1e-12) << i + 1 << " samples";
+      EXPECT_NEAR(far.standardError()[0], expected, 1e-6) << i + 1 << " samples";
+    }
+  }
+}
+
+TEST(PixelSums, BlocksThatCancelHaveNoError) {
+  PixelSums sums;
+  sums.block = 2;
+  for (int i = 0; i < 16; ++i) {
+    PathSample sample;
+    sample.radiance = Rgb::Constant(i / 2 % 2 == 0 ? 1.0 : 3.0); // each half: 1 3 1 3 ...
+    sums.add(sample);
+  }
+  EXPECT_EQ(sums.standardError()[0], 0.0);
+  EXPECT_GT(sums.deviation[0], 0.0);
+}
+
 TEST(Film, NoiseFollowsItsDefinition) {
   Film film(1, 2);
   EXPECT_EQ(film.noise(), infinity);

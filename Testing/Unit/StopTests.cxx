@@ -43,7 +43,7 @@ TEST(Stop, EndsAWalkThatMeetsNothing) {
     const Tracker<float> tracker(s.volume.grid, medium, majorants, s.clip, stop);
     Random random(1, 2, 3);
     Counters counters;
-    tracker.sampleCollision(ray, {}, random, counters);
+    tracker.sampleCollision(ray, {}, random.uniform2(), random, counters);
     EXPECT_EQ(counters.lookups, stepsBetweenLooks);
     tracker.transmittance(ray, {}, random, counters);
     EXPECT_EQ(counters.lookups, 2 * stepsBetweenLooks);
@@ -57,7 +57,7 @@ TEST(Stop, EndsTheLanesOfABatch) {
     const WideTracker tracker(s.volume, domain, s.transfer, majorants, s.clip, nullptr, stop);
     const auto rays = std::make_unique<RayBatch>();
     for (rays->size = 0; !rays->full(); ++rays->size)
-      setInside(*rays, rays->size, domain, ray, {}, static_cast<std::uint32_t>(rays->size));
+      setInside(*rays, rays->size, domain, ray, {}, {static_cast<std::uint32_t>(rays->size), 0.5F});
     Counters counters;
     tracker.sampleCollisions(*rays, counters);
     tracker.estimateTransmittances(*rays, counters);

@@ -26,7 +26,6 @@ public:
   double pdf(const Vec3& outgoing) const;
   Rgb evaluate(const Vec3& outgoing) const { return m_albedo * pdf(outgoing); }
   ScatterSample sample(const Vec2& u) const;
-  ScatterSample sample(Random& random) const { return sample(random.uniform2()); }
 
 private:
   Vec3 m_peak; ///< incoming; -incoming for g < 0, as the lobe (g, d) equals (-g, -d)
@@ -50,10 +49,6 @@ public:
   Rgb evaluate(const Vec3& outgoing) const;
   /// `choice`, in [0, 1), selects the lobe.
   ScatterSample sample(double choice, const Vec2& u) const;
-  ScatterSample sample(Random& random) const {
-    const double choice = random.uniform();
-    return sample(choice, random.uniform2());
-  }
 
 private:
   double lambertPdf(const Vec3& l) const { return std::max(l.z(), 0.0) / pi; }
@@ -84,8 +79,11 @@ inline double scatterPdf(const Scattering& s, const Vec3& outgoing) {
 inline Rgb scatterEvaluate(const Scattering& s, const Vec3& outgoing) {
   return std::visit([&](const auto& kind) { return kind.evaluate(outgoing); }, s);
 }
-inline ScatterSample scatterSample(const Scattering& s, Random& random) {
-  return std::visit([&](const auto& kind) { return kind.sample(random); }, s);
+/// `u` gives the direction, `random` the choice of a lobe.
+inline ScatterSample scatterSample(const Scattering& s, const Vec2& u, Random& random) {
+  if (const auto* surface = std::get_if<SurfaceScattering>(&s))
+    return surface->sample(random.uniform(), u);
+  return std::get<PhaseScattering>(s).sample(u);
 }
 
 } // namespace fenestra

@@ -11,11 +11,11 @@
 
 namespace fenestra {
 
-/// Start of a path: raster position, random numbers from there on, and the ticket under which the
-/// sample is delivered.
+/// Start of a path: raster position, random numbers, and the ticket under which the sample is
+/// delivered.
 struct PathStart {
   double column, row;
-  Random random;
+  SampleNumbers numbers;
   std::uint64_t ticket;
 };
 
@@ -79,11 +79,14 @@ private:
     std::array<Origin, RayBatch::capacity> origins;
   };
 
-  void begin(Batch& batch, std::size_t place, PathStart from) const {
+  void begin(Batch& batch, std::size_t place, const PathStart& from) const {
     const Ray ray = m_eye.ray(from.column, from.row);
-    batch.paths.begin(place, ray.direction, from.random.bits());
-    const auto seed = static_cast<std::uint32_t>(from.random.bits() >> 32);
-    const double begins = setInside(batch.paths.rays, place, m_domain, ray, m_eye.range(ray), seed);
+    const SampleNumbers& numbers = from.numbers;
+    batch.paths.begin(place, ray.direction, uniform2Of(numbers.scattered), numbers.rest);
+    const RayNumbers ofRay{static_cast<std::uint32_t>(numbers.depth >> 32),
+                           narrow(uniformOf(numbers.acceptance))};
+    const double begins =
+        setInside(batch.paths.rays, place, m_domain, ray, m_eye.range(ray), ofRay);
     batch.origins[place] = {from.ticket, from.row, ray, begins};
   }
 

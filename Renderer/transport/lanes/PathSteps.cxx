@@ -115,8 +115,8 @@ private:
       });
 
     const Float choice = m_scene.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
-    const Float u = draws.uniform();
-    const Float v = draws.uniform();
+    const Float u = select(first, load(&m_paths.scattered[0][i]), draws.uniform());
+    const Float v = select(first, load(&m_paths.scattered[1][i]), draws.uniform());
     ScatterDraw drawn = phase.draw(u, v);
     if (surfaces) {
       const ScatterDraw other = surface().draw(choice, u, v);
@@ -220,7 +220,8 @@ private:
     const Float3 radiance = (1.0F / pdf) * (at.weight * scattered.factor * light.radiance);
     const Mask arrives = at.going & (greatest(radiance) > zero);
     const std::size_t count = arrives.count();
-    const Word seed = draws.nextBits();
+    const Word depth = draws.nextBits();
+    const Float acceptance = draws.uniform();
     if (count == 0)
       return;
     const Float3 direction = mapDirection(m_scene.localToIndex, light.direction);
@@ -232,7 +233,8 @@ private:
     store3(pack(direction), m_out.rays.direction, to);
     put(length, m_out.rays.length);
     store3(pack(radiance), m_out.radiance, to);
-    put(seed, m_out.rays.seed);
+    put(depth, m_out.rays.depth);
+    put(acceptance, m_out.rays.acceptance);
     put(numbersFrom(i), m_out.path);
     m_out.rays.size += count;
   }
@@ -254,7 +256,8 @@ private:
     const Float3 direction = mapDirection(m_scene.localToIndex, drawn.outgoing);
     store3(direction, m_paths.rays.direction, i);
     store(lengthInside(m_volume, at.index, direction), &m_paths.rays.length[i]);
-    store(draws.nextBits(), &m_paths.rays.seed[i]);
+    store(draws.nextBits(), &m_paths.rays.depth[i]);
+    store(draws.uniform(), &m_paths.rays.acceptance[i]);
     store(draws.counter, &m_paths.counter[i]);
     return at.going & (greatest(weight) > zero);
   }
@@ -297,13 +300,16 @@ void WideEvents::scatter(PathBatch& paths, LightBatch& lights, Counters& counter
   HWY_DYNAMIC_DISPATCH(scatterAll)(m_volume, m_scene, paths, lights, counters);
 }
 
-void PathBatch::begin(std::size_t i, const Vec3& worldDirection, std::uint64_t randomBits) {
+void PathBatch::begin(std::size_t i, const Vec3& worldDirection, const Vec2& scatteredNumbers,
+                      std::uint64_t randomBits) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     direction[a][i] = narrow(worldDirection[axis]);
     weight[a][i] = 1.0F;
     radiance[a][i] = 0.0F;
   }
+  scattered[0][i] = narrow(scatteredNumbers.x());
+  scattered[1][i] = narrow(scatteredNumbers.y());
   bounces[i] = 0;
   key[i] = static_cast<std::uint32_t>(randomBits);
   counter[i] = static_cast<std::uint32_t>(randomBits >> 32);
@@ -311,24 +317,26 @@ void PathBatch::begin(std::size_t i, const Vec3& worldDirection, std::uint64_t r
 
 void PathBatch::move(std::size_t from, std::size_t to) {
   const auto one = [&](auto& column) { column[to] = column[from]; };
-  const auto three = [&](Columns3& columns) {
+  const auto each = [&](auto& columns) {
     for (Column<float>& column : columns)
       one(column);
   };
-  three(rays.origin);
-  three(rays.direction);
+  each(rays.origin);
+  each(rays.direction);
   one(rays.length);
-  one(rays.seed);
-  three(direction);
-  three(weight);
-  three(radiance);
+  one(rays.depth);
+  one(rays.acceptance);
+  each(direction);
+  each(weight);
+  each(radiance);
   one(scatterPdf);
   one(bounces);
   one(key);
   one(counter);
+  each(scattered);
   one(firstDistance);
-  three(firstAlbedo);
-  three(firstNormal);
+  each(firstAlbedo);
+  each(firstNormal);
 }
 
 } // namespace fenestra

@@ -15,7 +15,8 @@ struct PathBatch {
   Columns3 weight, radiance;
   Column<float> scatterPdf;
   Column<std::int32_t> bounces;
-  Column<std::uint32_t> key, counter; ///< of the paths' random numbers
+  Column<std::uint32_t> key, counter;     ///< of the paths' random numbers
+  std::array<Column<float>, 2> scattered; ///< numbers of the first scattered directions
 
   /// First collision.
   Column<float> firstDistance;
@@ -25,7 +26,8 @@ struct PathBatch {
   Column<std::uint32_t> ended; ///< indices of the ended paths
 
   /// Begins path i; the caller sets its ray.
-  void begin(std::size_t i, const Vec3& worldDirection, std::uint64_t randomBits);
+  void begin(std::size_t i, const Vec3& worldDirection, const Vec2& scatteredNumbers,
+             std::uint64_t randomBits);
   /// Copies path `from` to path `to`.
   void move(std::size_t from, std::size_t to);
 };

@@ -118,9 +118,10 @@ private:
     m_t.where(fresh, 0.0F);
     m_end.where(fresh, dealt(m_rays.length));
     m_ratio.where(fresh, 1.0F);
-    Word counter = dealt(m_rays.seed);
-    m_depth.where(fresh, exponential(counter));
-    m_counter.where(fresh, counter);
+    const Word depth = dealt(m_rays.depth);
+    m_depth.where(fresh, exponentialOf(depth));
+    m_counter.where(fresh, depth);
+    m_acceptance.where(fresh, dealt(m_rays.acceptance));
     m_ray.where(fresh, deal.from() + static_cast<std::int32_t>(first));
     m_busy = m_busy | fresh;
   }
@@ -177,11 +178,12 @@ private:
       extinction = select(isFocus(*m_scene.context, at), extinction,
                           extinction * m_scene.context->extinction);
     Word counter = m_counter;
-    const Float u = uniform(counter);
+    const Float u = m_acceptance;
     const Mask cut = hit & m_cut;
     if (cut.any())
       extinction = clipped(cut, at, extinction, u, counter);
     m_depth.where(hit, exponential(counter));
+    m_acceptance.where(hit, uniform(counter));
     m_counter.where(hit, counter);
     if constexpr (wantRatio) {
       constexpr float rouletteBelow = 0.1F;
@@ -249,10 +251,11 @@ private:
   Int m_ray = 0;               ///< index of the ray in the batch
 
   Way m_way[3] = {idle(), idle(), idle()};
-  Float m_t = 0.0F;        ///< mm
-  Float m_end = 0.0F;      ///< mm
-  Float m_depth = 0.0F;    ///< optical depth to the next tentative collision
-  Float m_majorant = 0.0F; ///< at that collision
+  Float m_t = 0.0F;          ///< mm
+  Float m_end = 0.0F;        ///< mm
+  Float m_depth = 0.0F;      ///< optical depth to the next tentative collision
+  Float m_acceptance = 0.0F; ///< of that collision
+  Float m_majorant = 0.0F;   ///< there
   Float m_ratio = 0.0F;
   Float m_scalar = 0.0F; ///< at a real collision
   Word m_counter = 0U;   ///< of the random numbers

@@ -43,16 +43,16 @@ WideField fieldOf(const void* voxels, const Grid& grid) {
 } // namespace
 
 double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
-                 const Interval& range, std::uint32_t seed) {
+                 const Interval& range, const RayNumbers& numbers) {
   const Affine& worldToIndex = domain.grid().worldToIndex;
   const Ray indexRay = transformed(worldToIndex, ray);
   const Interval inside = domain.clip(indexRay, range);
   if (inside.empty()) {
-    rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0, seed);
+    rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0, numbers);
     return 0.0;
   }
   const Vec3 origin = inside.begin > 0.0 ? worldToIndex * ray.at(inside.begin) : indexRay.origin;
-  rays.set(i, {origin, indexRay.direction}, inside.end - inside.begin, seed);
+  rays.set(i, {origin, indexRay.direction}, inside.end - inside.begin, numbers);
   return inside.begin;
 }
 

@@ -9,6 +9,7 @@
 // estimation) and combined with light met by the scattered ray itself by the balance heuristic
 // (Veach 1997, eq. 9.8).
 
+#include "base/Sampling.h"
 #include "image/Film.h"
 #include "model/lights/LightSet.h"
 #include "model/medium/Scattering.h"
@@ -32,6 +33,8 @@ inline constexpr double rouletteBelow = 0.5;
 /// A path under way: its next ray, and the sample gathered so far.
 struct Path {
   Random random;
+  Vec2 flight;    ///< numbers of the next flight's first collision
+  Vec2 scattered; ///< numbers of the next direction
   double row;     ///< raster row of the eye ray
   Ray ray;        ///< world space
   Interval range; ///< part of the ray left by clipping, mm
@@ -48,7 +51,8 @@ struct ShadowRay {
   Rgb radiance;
 };
 
-/// A view of the scene. Random numbers come from the path's own stream, in the order of its steps.
+/// A view of the scene. Random numbers of the first flight and direction are given; others come
+/// from the path's own stream, in the order of its steps.
 template <typename Voxel>
 class PathSteps {
 public:
@@ -62,9 +66,11 @@ public:
         m_settings(settings) {}
 
   /// Begins a path through raster position (column, row).
-  Path begin(double column, double row, const Random& random) const {
+  Path begin(double column, double row, const SampleNumbers& numbers) const {
     const Ray ray = m_eye.ray(column, row);
-    return {random, row, ray, m_eye.range(ray)};
+    const Vec2 flight{uniformOf(numbers.depth), uniformOf(numbers.acceptance)};
+    return {Random(numbers.rest), flight, uniform2Of(numbers.scattered), row, ray,
+            m_eye.range(ray)};
   }
 
   /// Ends the path's ray at its next collision, after `distance` mm, or at infinity (no collision).
@@ -89,12 +95,14 @@ public:
       recordFirst(path, distance, matter);
     const Scattering scattering = chooseScattering(path.ray.direction, matter, path.random);
     std::optional<ShadowRay> light = sampledLight(point, scattering, path);
-    const ScatterSample scattered = scatterSample(scattering, path.random);
+    const ScatterSample scattered = scatterSample(scattering, path.scattered, path.random);
+    path.scattered = path.random.uniform2();
     path.weight *= scattered.weight;
     roulette(path);
     path.scatterPdf = scattered.pdf;
     path.ray = {point, scattered.outgoing};
     path.range = {};
+    path.flight = path.random.uniform2();
     ++path.bounces;
     path.sample.scatterings += 1.0;
     return light;

@@ -10,15 +10,18 @@
 #include "transport/readable/MajorantGrid.h"
 #include "transport/readable/StopFlag.h"
 
+#include <utility>
+
 namespace fenestra {
 
 /// Delta tracking: t of the first real collision, or infinity. `walk(visit)` calls visit(t,
-/// probability of a real collision) at each tentative collision until visit returns false.
+/// probability of a real collision) at each tentative collision until visit returns false. The
+/// first one is judged by `acceptance`, uniform in [0, 1).
 template <typename Walk>
-double firstRealCollision(Walk&& walk, Random& random) {
+double firstRealCollision(Walk&& walk, double acceptance, Random& random) {
   double distance = infinity;
   walk([&](double t, double realShare) {
-    if (random.uniform() >= realShare)
+    if (std::exchange(acceptance, random.uniform()) >= realShare)
       return true; // a null collision
     distance = t;
     return false;
@@ -49,17 +52,22 @@ public:
           const Clip& clip, const StopFlag& stop = neverStopped)
       : m_domain(domain), m_medium(medium), m_majorants(majorants), m_clip(clip), m_stop(stop) {}
 
-  /// Distance (mm) to the next real collision within `range`, or infinity.
-  double sampleCollision(const Ray& ray, const Interval& range, Random& random,
+  /// Distance (mm) to the next real collision within `range`, or infinity. `first`: numbers of the
+  /// first tentative collision, its optical depth's and its acceptance.
+  double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
-    const auto walk = [&](auto&& visit) { walkTentative(ray, range, random, counters, visit); };
-    return firstRealCollision(walk, random);
+    const auto walk = [&](auto&& visit) {
+      walkTentative(ray, range, exponentialOf(first.x()), random, counters, visit);
+    };
+    return firstRealCollision(walk, first.y(), random);
   }
 
   /// Unbiased estimate of the transmittance over `range`.
   double transmittance(const Ray& ray, const Interval& range, Random& random,
                        Counters& counters) const {
-    const auto walk = [&](auto&& visit) { walkTentative(ray, range, random, counters, visit); };
+    const auto walk = [&](auto&& visit) {
+      walkTentative(ray, range, random.exponential(), random, counters, visit);
+    };
     return ratioTracked(walk, random);
   }
 
@@ -68,8 +76,8 @@ private:
   /// false. One exponential optical depth is spent across cell borders and redrawn after each
   /// collision.
   template <typename Visit>
-  void walkTentative(const Ray& ray, const Interval& range, Random& random, Counters& counters,
-                     Visit&& visit) const {
+  void walkTentative(const Ray& ray, const Interval& range, double opticalDepth, Random& random,
+                     Counters& counters, Visit&& visit) const {
     const Affine& worldToIndex = m_domain.grid().worldToIndex;
     // Cells may reach beyond the volume and its crop: the domain itself bounds the walk.
     const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
@@ -81,7 +89,6 @@ private:
     const Ray indexRay = transformed(worldToIndex, entering);
     GridWalk walk(transformed(m_majorants.worldToCell(), entering),
                   {0.0, inside.end - inside.begin}, m_majorants.cellCount());
-    double opticalDepth = random.exponential();
     std::uint32_t steps = 0;
     for (; !walk.done(); walk.next()) {
       const MajorantGrid::Cell& cell = m_majorants.cell(walk.cell());

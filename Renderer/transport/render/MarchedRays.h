@@ -74,7 +74,7 @@ public:
       batch->rays.size = count;
       for (std::size_t i = 0; i < count; ++i) {
         const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
-        before[i] = setInside(batch->rays, i, m_domain, ray, visible(m_scene.clip, ray), 0);
+        before[i] = setInside(batch->rays, i, m_domain, ray, visible(m_scene.clip, ray), {});
         perLength[i] = m_scene.camera.depthPerLength(ray);
       }
       march.along(*batch);
@@ -89,7 +89,7 @@ public:
     for (std::size_t from = 0; from < rays.size(); from += RayBatch::capacity) {
       batch->size = std::min(rays.size() - from, RayBatch::capacity);
       for (std::size_t i = 0; i < batch->size; ++i)
-        setInside(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance}, 0);
+        setInside(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance}, {});
       march.through(*batch);
       out = std::copy_n(batch->result.begin(), batch->size, out);
     }

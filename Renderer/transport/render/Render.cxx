@@ -1,6 +1,5 @@
 #include "transport/render/Render.h"
 
-#include "base/Random.h"
 #include "base/Stopwatch.h"
 #include "transport/readable/PathEstimator.h"
 #include "transport/render/EmptyPixels.h"
@@ -29,7 +28,7 @@ struct OneByOne {
   bool trace(Source& source, std::size_t /*atOnce*/, Counters& counters) const {
     while (std::optional<PathStart> from = source.next()) {
       const std::optional<PathSample> sample =
-          estimator.trace(from->column, from->row, from->random, counters);
+          estimator.trace(from->column, from->row, from->numbers, counters);
       if (!sample)
         return false;
       source.deliver(from->ticket, *sample);
@@ -67,9 +66,9 @@ std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan
 /// done; tiles are done whole or not at all.
 template <typename Tracer>
 bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
-                const EmptyPixels& empty, std::uint64_t seed, Film& film, Counters& total,
+                const EmptyPixels& empty, const SampleSource& source, Film& film, Counters& total,
                 RenderMonitor& monitor) {
-  Pass pass(from, to, empty, seed, film, monitor.paths);
+  Pass pass(from, to, empty, source, film, monitor.paths);
   const int threads = tbb::this_task_arena::max_concurrency();
   // Paths at once in a thread: limited, so that all threads get some and tails are short.
   const std::size_t atOnce =
@@ -167,12 +166,13 @@ template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
                           const RenderScene& scene, const RenderSettings& settings,
                           RenderMonitor& monitor) {
-  RenderResult result{
-      Film(scene.camera.width(), scene.camera.height(), Random::hasIndependentSamples),
-      {},
-      {},
-      0,
-      arithmetic};
+  const SampleSource source(settings.sampling, settings.seed);
+  RenderResult result{Film(scene.camera.width(), scene.camera.height(),
+                           SampleSource::hasIndependentHalves, source.block()),
+                      {},
+                      {},
+                      0,
+                      arithmetic};
   const EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
                                 ? EmptyPixels(scene.camera, scene.majorants)
                                 : EmptyPixels();
@@ -190,7 +190,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
     }
     if (done > 0 && monitor.between)
       monitor.between(result);
-    if (!renderPass(tracer, target.stage(done), target.stage(done + count), empty, settings.seed,
+    if (!renderPass(tracer, target.stage(done), target.stage(done + count), empty, source,
                     result.film, result.counters, monitor)) {
       result.reason = StopReason::request;
       return result;

@@ -14,7 +14,9 @@ namespace {
 constexpr double leastNoise = 0.25;
 constexpr int reach = 2; ///< pixels to each side in around()
 
-/// Variance of one sample / (x^2 + 0.01), mean over the channels.
+/// Variance of one sample / (x^2 + 0.01), mean over the channels. Strata leave it as it is: what
+/// they take from the variance of a mean differs little from pixel to pixel, and would be known
+/// from very few blocks.
 double relativeVariance(const PixelSums& pixel) {
   if (pixel.isCertain)
     return 0.0;

@@ -11,11 +11,11 @@ std::uint64_t ticketOf(std::uint32_t tile, std::size_t sample) {
 } // namespace
 
 Pass::Pass(const SamplePlan::Stage& from, const SamplePlan::Stage& to, const EmptyPixels& empty,
-           std::uint64_t seed, Film& film, std::atomic<std::uint64_t>& paths)
+           const SampleSource& source, Film& film, std::atomic<std::uint64_t>& paths)
     : m_from(from),
       m_to(to),
       m_empty(empty),
-      m_seed(seed),
+      m_source(source),
       m_film(film),
       m_paths(paths),
       m_tilesAcross((film.width() + tileSize - 1) / tileSize),
@@ -27,9 +27,10 @@ std::optional<PathStart> TileStream::next() {
   const std::vector<Sample>& samples = m_tiles[m_current].samples;
   const std::size_t index = samples.size() - m_left--;
   const Sample& sample = samples[index];
-  Random random(m_pass.m_seed, m_pass.m_film.index(sample.column, sample.row), sample.number);
-  const Vec2 jitter = random.uniform2();
-  return PathStart{sample.column + jitter.x(), sample.row + jitter.y(), random,
+  const SampleNumbers numbers =
+      m_pass.m_source.numbers(m_pass.m_film.index(sample.column, sample.row), sample.number);
+  const Vec2 jitter = uniform2Of(numbers.position);
+  return PathStart{sample.column + jitter.x(), sample.row + jitter.y(), numbers,
                    ticketOf(m_current, index)};
 }
 

@@ -1,0 +1,70 @@
+#pragma once
+// The standard errors that pictures tell, against how far pictures of many seeds lie apart.
+
+#include "Support.h"
+
+namespace fenestra::testing {
+
+/// Sum over pixels of the told variance / that of the variance over seeds, with its standard error:
+/// 1 if pictures tell their error as it is.
+struct ErrorRatio {
+  double ratio = 0.0, error = 0.0;
+  double variance = 0.0; ///< over seeds, mean of pixels
+};
+
+/// Of the green channel, which should be everywhere as noisy. `settings.seed` is the first seed.
+inline ErrorRatio errorRatio(const TestScene& scene, RenderSettings settings, int seeds) {
+  struct Pixel {
+    double mean = 0.0, deviation = 0.0, told = 0.0;
+  };
+  std::vector<Pixel> pixels(static_cast<std::size_t>(scene.width * scene.height));
+  for (int n = 1; n <= seeds; ++n, ++settings.seed) {
+    const Film film = scene.render(settings).film;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      Pixel& pixel = pixels[i];
+      const PixelSums& sums = film.pixels()[i];
+      const double before = sums.mean[1] - pixel.mean;
+      pixel.mean += before / n;
+      pixel.deviation += before * (sums.mean[1] - pixel.mean) / (seeds - 1.0);
+      pixel.told += std::pow(sums.standardError()[1], 2.0) / seeds;
+    }
+  }
+  double told = 0.0, real = 0.0, squares = 0.0;
+  for (const Pixel& pixel : pixels) {
+    told += pixel.told;
+    real += pixel.deviation;
+  }
+  const double ratio = told / real;
+  for (const Pixel& pixel : pixels)
+    squares += std::pow(pixel.told - ratio * pixel.deviation, 2.0);
+  return {ratio, std::sqrt(squares) / real, real / static_cast<double>(pixels.size())};
+}
+
+/// Fog between the eye and an environment: most of the noise lies in the first collision and the
+/// first direction.
+inline TestScene fogScene() {
+  const Grid grid = centredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
+  const Vec3 centre(7.5, 7.5, 7.5);
+  TestScene scene{makeVolume(grid,
+                             [&](const Vec3& p) {
+                               return std::max(0.0, 1.0 - 0.02 * (p - centre).squaredNorm()) *
+                                      (0.7 + 0.3 * std::sin(p.x()) * std::cos(p.z()));
+                             }),
+                  linearTransfer(0.5, Rgb(0.6, 0.6, 0.9), 0.3),
+                  {},
+                  {},
+                  16,
+                  16};
+  scene.lights = {EnvironmentLight{.radiance = Rgb::Constant(0.2)},
+                  DirectionalLight{.direction = Vec3(0.0, 0.6, -0.8), .irradiance = Rgb::Ones()},
+                  AreaLight{.center = {0, 0, 12},
+                            .normal = -Vec3::UnitZ(),
+                            .size = {12, 12},
+                            .radiance = Rgb::Constant(3.0)}};
+  scene.pose.position = {0, -40, 0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = 6.0;
+  return scene;
+}
+
+} // namespace fenestra::testing
