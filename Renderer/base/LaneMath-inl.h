@@ -66,10 +66,10 @@ HWY_INLINE Float greatest(const Float3& v) {
 HWY_INLINE Float3 normalized(const Float3& v) {
   return 1.0F / sqrt(dot(v, v)) * v;
 }
-HWY_INLINE Float3 select(Mask which, const Float3& yes, const Float3& no) {
+HWY_INLINE Float3 select(LaneMask which, const Float3& yes, const Float3& no) {
   return {select(which, yes.x, no.x), select(which, yes.y, no.y), select(which, yes.z, no.z)};
 }
-HWY_INLINE Float3 orZero(Mask which, const Float3& v) {
+HWY_INLINE Float3 orZero(LaneMask which, const Float3& v) {
   return {orZero(which, v.x), orZero(which, v.y), orZero(which, v.z)};
 }
 
@@ -119,7 +119,7 @@ HWY_INLINE Float fraction(Word h) {
 
 /// The half of the unit interval that random bits lie in, and the place in it.
 struct Halved {
-  Mask upper;
+  LaneMask upper;
   Float low; ///< in (0, 1/2)
 };
 HWY_INLINE Halved halved(Word h) {
@@ -190,7 +190,7 @@ HWY_INLINE CosineSine ofTurns(Float turns) {
                                   {2.48015873e-5F, -1.38888889e-3F, 4.16666667e-2F, -0.5F, 1.0F});
   const Word quadrant = bitsAsWord(toInt(nearest));
   const Word odd = quadrant & 1U;
-  const Mask swapped = odd == 1U;
+  const LaneMask swapped = odd == 1U;
   const Word sineSign = shiftLeft<30>(quadrant & 2U);
   const Word cosineSign = sineSign ^ shiftLeft<31>(odd);
   const auto signedBy = [](Float value, Word sign) {
@@ -238,7 +238,7 @@ struct Frames {
 class Shuffle {
 public:
   /// The lanes of `which` first, in their order; lanes behind them hold no number of use.
-  static HWY_INLINE Shuffle packing(Mask which) {
+  static HWY_INLINE Shuffle packing(LaneMask which) {
 #if HWY_TARGET <= HWY_AVX3 // an instruction; no table
     return Shuffle(Int(hn::Compress(hn::Iota(ints, 0), which.of(ints))));
 #else
@@ -246,7 +246,7 @@ public:
 #endif
   }
   /// Numbers in a row to the lanes of `which`, in their order.
-  static HWY_INLINE Shuffle dealing(Mask which) {
+  static HWY_INLINE Shuffle dealing(LaneMask which) {
     const std::uint64_t set = which.bits();
     if constexpr (laneCount <= 8)
       return Shuffle(promoted({laneRanks[set]}));

@@ -1,5 +1,5 @@
 // Numbers of all lanes at once, so that lane code reads like arithmetic: Float, Int, Word, and
-// Mask, one value a lane. Operators and functions take plain numbers, too, which stand for that
+// LaneMask, one value a lane. Operators and functions take plain numbers, too, which stand for that
 // number in every lane. Nothing is fused unless fma() says so. Compiled once for each instruction
 // set: include after Highway's foreach_target.h.
 
@@ -37,18 +37,18 @@ inline constexpr Words words{};
 inline constexpr std::size_t laneCount = hn::MaxLanes(floats);
 
 /// True or false in each lane.
-struct Mask {
+struct LaneMask {
   hn::Mask<Floats> m;
 
-  Mask() = default;
-  /// Of any vector's comparison.
+  LaneMask() = default;
+  /// Takes any vector's comparison.
   template <typename Of>
-  HWY_INLINE Mask(Of mask) : m(hn::RebindMask(floats, mask)) {}
+  HWY_INLINE LaneMask(Of mask) : m(hn::RebindMask(floats, mask)) {}
   /// The first n lanes; all where there are no more.
-  static HWY_INLINE Mask first(std::size_t n) { return hn::FirstN(floats, n); }
-  static HWY_INLINE Mask none() { return first(0); }
+  static HWY_INLINE LaneMask first(std::size_t n) { return hn::FirstN(floats, n); }
+  static HWY_INLINE LaneMask none() { return first(0); }
   /// Lane i from bit i.
-  static HWY_INLINE Mask fromBits(std::uint64_t packed) {
+  static HWY_INLINE LaneMask fromBits(std::uint64_t packed) {
     return hn::LoadMaskBits(floats, reinterpret_cast<const std::uint8_t*>(&packed));
   }
 
@@ -59,10 +59,10 @@ struct Mask {
   }
   HWY_INLINE bool any() const { return !hn::AllFalse(floats, m); }
   HWY_INLINE std::size_t count() const { return hn::CountTrue(floats, m); }
-  HWY_INLINE Mask without(Mask other) const { return hn::AndNot(other.m, m); }
-  HWY_INLINE Mask operator&(Mask other) const { return hn::And(m, other.m); }
-  HWY_INLINE Mask operator|(Mask other) const { return hn::Or(m, other.m); }
-  HWY_INLINE Mask operator~() const { return hn::Not(m); }
+  HWY_INLINE LaneMask without(LaneMask other) const { return hn::AndNot(other.m, m); }
+  HWY_INLINE LaneMask operator&(LaneMask other) const { return hn::And(m, other.m); }
+  HWY_INLINE LaneMask operator|(LaneMask other) const { return hn::Or(m, other.m); }
+  HWY_INLINE LaneMask operator~() const { return hn::Not(m); }
   /// For a vector of other numbers.
   template <typename Tag>
   HWY_INLINE auto of(Tag tag) const {
@@ -83,7 +83,7 @@ struct Numbers {
   template <std::same_as<T> X> // no other plain number becomes one unseen
   HWY_INLINE Numbers(X x) : v(hn::Set(Tag(), x)) {}
 
-  HWY_INLINE void where(Mask m, Numbers value) { v = hn::IfThenElse(m.of(Tag()), value.v, v); }
+  HWY_INLINE void where(LaneMask m, Numbers value) { v = hn::IfThenElse(m.of(Tag()), value.v, v); }
   HWY_INLINE Numbers operator-() const { return hn::Neg(v); }
   friend HWY_INLINE Numbers operator+(Numbers a, Numbers b) { return hn::Add(a.v, b.v); }
   friend HWY_INLINE Numbers operator-(Numbers a, Numbers b) { return hn::Sub(a.v, b.v); }
@@ -91,11 +91,11 @@ struct Numbers {
   friend HWY_INLINE Numbers operator/(Numbers a, Numbers b) { return hn::Div(a.v, b.v); }
   friend HWY_INLINE Numbers operator&(Numbers a, Numbers b) { return hn::And(a.v, b.v); }
   friend HWY_INLINE Numbers operator^(Numbers a, Numbers b) { return hn::Xor(a.v, b.v); }
-  friend HWY_INLINE Mask operator<(Numbers a, Numbers b) { return hn::Lt(a.v, b.v); }
-  friend HWY_INLINE Mask operator<=(Numbers a, Numbers b) { return hn::Le(a.v, b.v); }
-  friend HWY_INLINE Mask operator>(Numbers a, Numbers b) { return hn::Gt(a.v, b.v); }
-  friend HWY_INLINE Mask operator>=(Numbers a, Numbers b) { return hn::Ge(a.v, b.v); }
-  friend HWY_INLINE Mask operator==(Numbers a, Numbers b) { return hn::Eq(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator<(Numbers a, Numbers b) { return hn::Lt(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator<=(Numbers a, Numbers b) { return hn::Le(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator>(Numbers a, Numbers b) { return hn::Gt(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator>=(Numbers a, Numbers b) { return hn::Ge(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator==(Numbers a, Numbers b) { return hn::Eq(a.v, b.v); }
   /// b where either is NaN.
   friend HWY_INLINE Numbers min(Numbers a, Numbers b) { return hn::Min(a.v, b.v); }
   /// b where either is NaN.
@@ -110,7 +110,7 @@ template <int by, typename T>
 HWY_INLINE Numbers<T> shiftLeft(Numbers<T> x) {
   return hn::ShiftLeft<by>(x.v);
 }
-/// Of Int arithmetic: the sign stays.
+/// Shift of Int is arithmetic: the sign stays.
 template <int by, typename T>
 HWY_INLINE Numbers<T> shiftRight(Numbers<T> x) {
   return hn::ShiftRight<by>(x.v);
@@ -126,19 +126,19 @@ HWY_INLINE Numbers<T> shiftRight(Numbers<T> x, int by) {
   return hn::ShiftRightSame(x.v, by);
 }
 
-HWY_INLINE Float select(Mask m, Float yes, Float no) {
+HWY_INLINE Float select(LaneMask m, Float yes, Float no) {
   return hn::IfThenElse(m.m, yes.v, no.v);
 }
-HWY_INLINE Int select(Mask m, Int yes, Int no) {
+HWY_INLINE Int select(LaneMask m, Int yes, Int no) {
   return hn::IfThenElse(m.of(ints), yes.v, no.v);
 }
-HWY_INLINE Float orZero(Mask m, Float yes) {
+HWY_INLINE Float orZero(LaneMask m, Float yes) {
   return hn::IfThenElseZero(m.m, yes.v);
 }
-HWY_INLINE Word orZero(Mask m, Word yes) {
+HWY_INLINE Word orZero(LaneMask m, Word yes) {
   return hn::IfThenElseZero(m.of(words), yes.v);
 }
-HWY_INLINE Int orZero(Mask m, Int yes) {
+HWY_INLINE Int orZero(LaneMask m, Int yes) {
   return hn::IfThenElseZero(m.of(ints), yes.v);
 }
 
@@ -178,7 +178,7 @@ HWY_INLINE Float copySign(Float magnitude, Float sign) {
 HWY_INLINE Float toFloat(Int x) {
   return hn::ConvertTo(floats, x.v);
 }
-/// Of whole numbers from 0 to 2^23 - 1.
+/// Conversion of whole numbers from 0 to 2^23 - 1.
 HWY_INLINE Int wholeToInt(Float x) {
   constexpr float shift = 0x1p23F; // moves the number to the mantissa's lowest bits
   return Int(hn::BitCast(ints, (x + shift).v)) & 0x7fffff;
@@ -187,7 +187,7 @@ HWY_INLINE Int wholeToInt(Float x) {
 HWY_INLINE Int toInt(Float x) {
   return hn::ConvertTo(ints, x.v);
 }
-/// The same bits as another kind of number.
+/// Bits of a number as another kind of number.
 template <typename T>
 HWY_INLINE Float bitsAsFloat(Numbers<T> x) {
   return hn::BitCast(floats, x.v);
@@ -226,7 +226,7 @@ struct alignas(64) LaneArray : std::array<T, laneCount> {
 
 /// Calls visit(lane) for every lane of `which`.
 template <typename Visit>
-HWY_INLINE void forEachLane(Mask which, Visit&& visit) {
+HWY_INLINE void forEachLane(LaneMask which, Visit&& visit) {
   for (std::uint64_t left = which.bits(); left != 0; left &= left - 1)
     visit(static_cast<std::size_t>(std::countr_zero(left)));
 }

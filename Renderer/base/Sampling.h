@@ -23,7 +23,7 @@ struct SampleNumbers {
   std::uint64_t position;          ///< in the pixel: uniform2Of
   std::uint64_t depth, acceptance; ///< optical depth to the eye ray's first tentative collision,
                                    ///< and whether that one is real: uniformOf
-  std::uint64_t scattered; ///< the first scattered direction: uniform2Of
+  std::uint64_t scattered;         ///< the first scattered direction: uniform2Of
   std::uint64_t rest;
 };
 
@@ -37,12 +37,12 @@ struct SampleNumbers {
 /// by a random element for each pair, so that one pair's strata tell nothing of another's; then the
 /// strata of each number are shifted by adding a random element, so that each is as likely as any
 /// other whatever the place and the other numbers are.
-class SampleSource {
+class NumberSource {
 public:
   static constexpr bool hasIndependentHalves = true;
   static constexpr std::uint32_t blockSize = 8; ///< samples
 
-  SampleSource(Sampling sampling, std::uint64_t seed)
+  NumberSource(Sampling sampling, std::uint64_t seed)
       : m_seed(Random(seed, 0, 0).bits()), m_isStratified(sampling == Sampling::strata) {}
 
   /// Samples of a half that depend on each other.

@@ -51,7 +51,8 @@ void PixelSums::addToBlock(const Rgb& radiance) {
 }
 
 double PixelSums::completeBlocks() const {
-  return static_cast<double>((samples + 1) / 2 / block + samples / 2 / block);
+  const std::uint64_t blocks = (samples + 1) / 2 / block + samples / 2 / block;
+  return static_cast<double>(blocks);
 }
 
 Rgb PixelSums::meanOfBlocks() const {

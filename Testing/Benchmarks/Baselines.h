@@ -152,7 +152,7 @@ template <typename MakeTracker>
 Film tracePicture(const RenderScene& scene, const RenderSettings& settings,
                   MakeTracker&& makeTracker) {
   Film film(scene.camera.width(), scene.camera.height());
-  const SampleSource source(Sampling::independent, settings.seed);
+  const NumberSource source(Sampling::independent, settings.seed);
   const std::atomic<bool> stop = false;
   const auto tracePixels = [&](const auto& estimator) {
     tbb::parallel_for(0, film.height(), [&](int row) {

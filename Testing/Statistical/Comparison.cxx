@@ -43,7 +43,8 @@ struct Sums {
   Estimated channel(int c, const Rgb& skewness = Rgb::Zero()) const {
     return {mean[c] / pixels, variance[c] / (pixels * pixels), samples, skewness[c], blocks};
   }
-  /// Of pictures whose samples depend on each other within blocks of `size` (PixelSums::block).
+  /// Sums of pictures whose samples depend on each other within blocks of `size`
+  /// (PixelSums::block).
   Sums inBlocks(double size) const {
     Sums sums = *this;
     sums.blocks = samples / size;
@@ -101,7 +102,7 @@ double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
   int channel = outcome.combination.index;
   for (int top = 0; top < outcome.truth.height; top += size)
     for (int left = 0; left < outcome.truth.width; left += size) {
-      const Sums a = sumsOf(outcome.product, left, top, size).inBlocks(SampleSource::blockSize);
+      const Sums a = sumsOf(outcome.product, left, top, size).inBlocks(NumberSource::blockSize);
       const Sums b = sumsOf(outcome.truth, left, top, size);
       for (int c = 0; c < 3; ++c)
         least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
@@ -115,7 +116,7 @@ double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
 
 void comparePicture(Outcome& outcome) {
   const int size = outcome.truth.width;
-  const Sums a = sumsOf(outcome.product, 0, 0, size).inBlocks(SampleSource::blockSize);
+  const Sums a = sumsOf(outcome.product, 0, 0, size).inBlocks(NumberSource::blockSize);
   const Sums b = sumsOf(outcome.truth, 0, 0, size);
   const Rgb skewness = skewnessOf(outcome.truth);
   Least least;

@@ -12,7 +12,8 @@ struct ErrorRatio {
   double variance = 0.0; ///< over seeds, mean of pixels
 };
 
-/// Of the green channel, which should be everywhere as noisy. `settings.seed` is the first seed.
+/// Ratio in the green channel, which should be everywhere as noisy. `settings.seed` is the first
+/// seed.
 inline ErrorRatio errorRatio(const TestScene& scene, RenderSettings settings, int seeds) {
   struct Pixel {
     double mean = 0.0, deviation = 0.0, told = 0.0;

@@ -32,7 +32,7 @@ std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, s
   samples.reserve(count);
   withEstimator(scene, [&](const auto& estimator) {
     Counters counters;
-    const SampleSource source(RenderSettings().sampling, 7);
+    const NumberSource source(RenderSettings().sampling, 7);
     const auto pixel = static_cast<std::uint64_t>(row * scene.width + column);
     for (std::uint64_t i = first; i < first + count; ++i) {
       const SampleNumbers numbers = source.numbers(pixel, i);

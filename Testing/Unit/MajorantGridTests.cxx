@@ -179,8 +179,11 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
   for (int i = 0; i < briefly(200000); ++i) {
     Random random(8, static_cast<std::uint64_t>(i), 0);
     Vec3 p;
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3; ++axis) {
       p[axis] = box.lower[axis] + random.uniform() * (box.upper[axis] - box.lower[axis]);
+      if (random.uniform() < 0.8) // often in a face
+        p[axis] = std::floor(p[axis]) + 0.5;
+    }
     const MajorantGrid::Cell& cell = majorants.cell(cellOf(majorants, grid, p));
     const Vec3 q = inStripAround(p, box, random);
     const double kept = keep(plane, q);

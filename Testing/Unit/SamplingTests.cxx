@@ -12,7 +12,7 @@
 namespace fenestra::testing::SamplingTests {
 namespace {
 
-constexpr std::uint64_t size = SampleSource::blockSize;
+constexpr std::uint64_t size = NumberSource::blockSize;
 constexpr std::size_t numberCount = 6;
 using Six = std::array<double, numberCount>;
 
@@ -54,7 +54,7 @@ void expectJointlyUniform(Draw&& draw, std::size_t cells, const std::string& wha
 }
 
 TEST(Strata, BlocksHitEachStratumOnce) {
-  const SampleSource source(Sampling::strata, 3);
+  const NumberSource source(Sampling::strata, 3);
   for (std::uint64_t pixel = 0; pixel < 200; ++pixel)
     for (std::uint64_t half = 0; half < 2; ++half)
       for (const std::uint64_t block : {0ULL, 1ULL, 5ULL, 1ULL << 40}) {
@@ -79,7 +79,7 @@ TEST(Strata, BlocksHitEachStratumOnce) {
 /// Each sample alone is drawn as an independent one is, at each place of a block.
 TEST(Strata, NumbersOfASampleAreUniformAndIndependent) {
   for (const Sampling sampling : {Sampling::strata, Sampling::independent}) {
-    const SampleSource source(sampling, 11);
+    const NumberSource source(sampling, 11);
     for (const std::uint64_t sample : {0ULL, 1ULL, 2ULL, 14ULL, 15ULL, 16ULL, 77ULL}) {
       for (std::size_t i = 0; i < numberCount; ++i)
         for (std::size_t j = i + 1; j < numberCount; ++j)
@@ -104,7 +104,7 @@ TEST(Strata, NumbersOfASampleAreUniformAndIndependent) {
 /// Two samples of one block: no number of one tells more of another number of the other than that
 /// they differ in their strata, pair by pair.
 TEST(Strata, PairsOfNumbersAreShuffledApart) {
-  const SampleSource source(Sampling::strata, 12);
+  const NumberSource source(Sampling::strata, 12);
   for (const std::uint64_t place : {1ULL, 4ULL, 7ULL}) {
     std::vector<double> counts((size - 1) * (size - 1), 0.0);
     for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
@@ -115,14 +115,14 @@ TEST(Strata, PairsOfNumbersAreShuffledApart) {
       ASSERT_TRUE(first > 0 && second > 0);
       counts[(first - 1) * (size - 1) + second - 1] += 1.0;
     }
-    // Of eight random factors two stand for 1.
+    // Two of eight random factors stand for 1.
     for (const double count : counts)
       EXPECT_TRUE(count > 40000.0 / 64 * 0.8 && count < 40000.0 / 16 * 1.1) << count;
   }
 }
 
 TEST(Strata, HalvesAndBlocksAreIndependent) {
-  const SampleSource source(Sampling::strata, 13);
+  const NumberSource source(Sampling::strata, 13);
   const std::uint64_t here = sampleAt(0, 0, 3);
   for (std::uint64_t place = 0; place < size; ++place)
     for (const std::uint64_t other :
@@ -139,8 +139,8 @@ TEST(Strata, HalvesAndBlocksAreIndependent) {
 
 TEST(Strata, NeighboursAndSeedsShareNothing) {
   for (const bool otherSeed : {false, true}) {
-    const SampleSource a(Sampling::strata, 1);
-    const SampleSource b(Sampling::strata, otherSeed ? 2 : 1);
+    const NumberSource a(Sampling::strata, 1);
+    const NumberSource b(Sampling::strata, otherSeed ? 2 : 1);
     expectJointlyUniform(
         [&](std::uint64_t pixel) {
           return std::array{uniformOf(a.numbers(pixel, 4).depth),
@@ -151,7 +151,7 @@ TEST(Strata, NeighboursAndSeedsShareNothing) {
 }
 
 TEST(Independent, SamplesShareNothing) {
-  const SampleSource source(Sampling::independent, 14);
+  const NumberSource source(Sampling::independent, 14);
   EXPECT_EQ(source.block(), 1U);
   for (const std::uint64_t other : {1ULL, 2ULL, 3ULL, 14ULL})
     for (std::size_t i = 0; i < numberCount; ++i)
@@ -165,8 +165,8 @@ TEST(Independent, SamplesShareNothing) {
 
 /// Every bit of the seed of all further numbers is as often 0 as 1, and strata do not touch it.
 TEST(Strata, TheRestIsAsWithoutThem) {
-  const SampleSource strata(Sampling::strata, 15);
-  const SampleSource plain(Sampling::independent, 15);
+  const NumberSource strata(Sampling::strata, 15);
+  const NumberSource plain(Sampling::independent, 15);
   std::array<int, 64> ones = {};
   constexpr int count = 40000;
   for (std::uint64_t i = 0; i < count; ++i) {

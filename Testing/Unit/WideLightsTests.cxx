@@ -83,7 +83,7 @@ struct Fog {
   }
 };
 
-/// What one scattering in the fog draws of the lights: a direction, and radiance times phase
+/// Lights that one scattering in the fog draws: a direction, and radiance times phase
 /// function over the sum of both densities, channel by channel.
 struct Sampled {
   Vec3 direction;
@@ -99,8 +99,8 @@ std::vector<Sampled> sampled(const Fog& fog, std::uint64_t seed, std::size_t cou
     paths->rays.size = std::min(RayBatch::capacity, count - from);
     for (std::size_t i = 0; i < paths->rays.size; ++i) {
       Random random(seed, from + i, 0);
-      paths->begin(i, Vec3::UnitX(), random.bits());
-      paths->rays.set(i, {Vec3::Constant(3.5), Vec3::UnitX()}, 9.0, 0);
+      paths->begin(i, Vec3::UnitX(), random.uniform2(), random.bits());
+      paths->rays.set(i, {Vec3::Constant(3.5), Vec3::UnitX()}, 9.0, {});
       paths->rays.result[i] = 0.0F;
       paths->rays.scalar[i] = 1.0F;
     }
@@ -126,10 +126,10 @@ std::vector<Rgb> met(const Fog& fog, const std::vector<Vec3>& directions) {
   for (std::size_t from = 0; from < directions.size(); from += RayBatch::capacity) {
     paths->rays.size = std::min(RayBatch::capacity, directions.size() - from);
     for (std::size_t i = 0; i < paths->rays.size; ++i) {
-      paths->begin(i, directions[from + i], i);
+      paths->begin(i, directions[from + i], Vec2::Zero(), i);
       paths->bounces[i] = 1;
       paths->scatterPdf[i] = static_cast<float>(0.25 / pi);
-      paths->rays.set(i, {Vec3::Constant(3.5), directions[from + i]}, 9.0, 0);
+      paths->rays.set(i, {Vec3::Constant(3.5), directions[from + i]}, 9.0, {});
       paths->rays.result[i] = std::numeric_limits<float>::infinity();
     }
     Counters counters;
@@ -140,7 +140,7 @@ std::vector<Rgb> met(const Fog& fog, const std::vector<Vec3>& directions) {
   return all;
 }
 
-/// What the scalar lights say of a scattering with density 1 / 4 pi in that direction: both of
+/// Light of the scalar lights for a scattering with density 1 / 4 pi in that direction: both of
 /// sampling and of meeting the light, for both have the same estimate.
 Rgb truth(const LightSet& lights, const Vec3& direction) {
   const LightArrival arrival = lights.environment(direction);

@@ -22,7 +22,7 @@ public:
   double total() const { return m_total; }
   /// Sums of the rows' probabilities: 0, ..., 1; all 0 if the map is black.
   const std::vector<double>& rows() const { return m_rowCdf; }
-  /// The same of the texels of a row.
+  /// Sums of the probabilities of a row's texels, in the same way.
   const std::vector<double>& columns(int row) const {
     return m_columnCdf[static_cast<std::size_t>(row)];
   }

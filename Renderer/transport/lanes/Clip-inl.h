@@ -24,7 +24,7 @@ HWY_INLINE Float depthIndex(const WideScene::DepthAxis& axis, Float coordinate) 
 }
 
 /// Exact surface depth at (x, y) in seams for the lanes of `isAsked`; `surface` for the others.
-inline Float askSeams(const Seams& seams, Mask isAsked, Int seam, Float x, Float y, Float depth,
+inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, Float x, Float y, Float depth,
                       double softness, Float surface) {
   static_assert(laneCount <= Seams::mostQuestions);
   const LaneArray<std::int32_t> numbers(seam);
@@ -46,18 +46,18 @@ inline Float askSeams(const Seams& seams, Mask isAsked, Int seam, Float x, Float
 
 /// Surface depth for points at (x, y) and `depth` (ClipDepth::surfaceFor): exact in seams for the
 /// lanes of `which`, else `surface`.
-HWY_INLINE Float sewn(const WideScene& scene, Mask which, Int sample, Float x, Float y, Float depth,
-                      Float surface) {
+HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, Int sample, Float x, Float y,
+                      Float depth, Float surface) {
   const Int seam = gather(scene.seams->numbers().data(), sample);
-  const Mask isSeam = seam > -1;
+  const LaneMask isSeam = seam > -1;
   if (!isSeam.any())
     return surface;
   const Int first = shiftLeft<1>(max(seam, 0));
   const float* const reaches = &scene.seams->reaches().data()->least;
   const Float least = min(surface, gather(reaches, first));
   const Float greatest = max(surface, gather(reaches + 1, first)); // least and greatest alternate
-  const Mask isNear = (depth >= least) & (depth <= greatest + scene.softness);
-  const Mask isAsked = which & isSeam & isNear;
+  const LaneMask isNear = (depth >= least) & (depth <= greatest + scene.softness);
+  const LaneMask isAsked = which & isSeam & isNear;
   if (!isAsked.any())
     return surface;
   return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
@@ -65,15 +65,15 @@ HWY_INLINE Float sewn(const WideScene& scene, Mask which, Int sample, Float x, F
 
 /// Points in view space.
 struct InView {
-  Float x, y;     ///< as toBuffer's; 0 for a plane
-  Float depth;    ///< from the target, mm
-  Float scale;    ///< target's depth / depth; 1 in orthographic views
-  Mask behindEye; ///< no lane in orthographic views
+  Float x, y;         ///< as toBuffer's; 0 for a plane
+  Float depth;        ///< from the target, mm
+  Float scale;        ///< target's depth / depth; 1 in orthographic views
+  LaneMask behindEye; ///< no lane in orthographic views
 };
 
 HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
   const Float zero = 0.0F;
-  InView at{zero, zero, apply(scene.toView[2], p), 1.0F, Mask::none()};
+  InView at{zero, zero, apply(scene.toView[2], p), 1.0F, LaneMask::none()};
   if (scene.perspective) {
     const Float fromEye = at.depth + scene.targetDepth;
     at.behindEye = fromEye <= zero;
@@ -122,14 +122,14 @@ HWY_INLINE Float nearestDepth(const WideScene& scene, const InView& view) {
 
 /// Depth of a linear surface: exact in seams for the lanes of `which`.
 HWY_INLINE Float linearDepth(const WideScene& scene, const InView& view, const DepthCell& cell,
-                             Mask which) {
+                             LaneMask which) {
   const Float surface = cell.depth();
   return scene.seams ? sewn(scene, which, cell.first, view.x, view.y, view.depth, surface)
                      : surface;
 }
 
 /// keep for every kind of clip, for the lanes of `which`.
-inline Float keep(const WideScene& scene, const Float3& p, Mask which) {
+inline Float keep(const WideScene& scene, const Float3& p, LaneMask which) {
   const InView view = inView(scene, p);
   const auto edge = [&](Float behind) {
     const Float zero = 0.0F, one = 1.0F, ghost = scene.ghost;
@@ -149,8 +149,8 @@ inline Float keep(const WideScene& scene, const Float3& p, Mask which) {
 /// the samples, and at the first of them, 0.
 HWY_INLINE Float slopeAlong(const WideScene::DepthAxis& axis, Float index, Float rise) {
   const Float before = axis.before;
-  const Mask isFine = (index >= before) & (index < before + axis.lastInside);
-  const Mask isBetween = (index > 0.0F) & (index < axis.last);
+  const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
+  const LaneMask isBetween = (index > 0.0F) & (index < axis.last);
   const Float perLength = select(isFine, axis.perPitch, axis.perPitch * axis.perFactor);
   return orZero(isBetween, rise * perLength);
 }
@@ -173,10 +173,10 @@ HWY_INLINE Float3 behindGradient(const WideScene& scene, const InView& view,
 }
 
 /// cutGradient, world axes, for the lanes of `which`; 0 in the others. Requires a soft edge.
-inline Float3 cutGradient(const WideScene& scene, const Float3& p, Mask which) {
+inline Float3 cutGradient(const WideScene& scene, const Float3& p, LaneMask which) {
   const InView view = inView(scene, p);
   const auto ramp = [&](Float behind) {
-    const Mask isRamp = (behind >= 0.0F) & (behind < scene.softness);
+    const LaneMask isRamp = (behind >= 0.0F) & (behind < scene.softness);
     return (which & isRamp).without(view.behindEye);
   };
   const Float length = scene.cutSlope;
@@ -185,7 +185,7 @@ inline Float3 cutGradient(const WideScene& scene, const Float3& p, Mask which) {
   if (scene.clipKind == WideScene::ClipKind::depthNearest)
     return orZero(ramp(view.depth - nearestDepth(scene, view)), length * Float3(scene.cutNormal));
   const DepthCell cell = depthCell(scene, view);
-  const Mask isRamp = ramp(view.depth - linearDepth(scene, view, cell, which));
+  const LaneMask isRamp = ramp(view.depth - linearDepth(scene, view, cell, which));
   if (!isRamp.any())
     return {0.0F, 0.0F, 0.0F};
   const Float3 normal = normalized(mapDirection(scene.fromView, behindGradient(scene, view, cell)));

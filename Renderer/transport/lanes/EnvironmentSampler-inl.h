@@ -28,7 +28,7 @@ HWY_INLINE Bin drawBin(const AliasTables& tables, Int table, Word random) {
   const auto [threshold, other] =
       loadPairs(&tables.places[0].threshold, Indices(shiftLeft<1>(place)));
   const Float rest = toFloat(bitsAsInt(shiftRight(random, tables.bits)));
-  const Mask below = rest < threshold;
+  const LaneMask below = rest < threshold;
   const Float inside = select(below, rest, rest - threshold) + 0.5F;
   const Float size = select(below, threshold, tables.height() - threshold);
   return {select(below, own, toInt(other)), inside / size};
@@ -49,7 +49,7 @@ public:
 
     // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
     const Int fromSouth = Int(m_map.height - 1) - row.index;
-    const Mask isSouth = row.index > fromSouth;
+    const LaneMask isSouth = row.index > fromSouth;
     const auto [upper, lower] =
         loadPairs(m_map.falls.data(), Indices(select(isSouth, fromSouth, row.index)));
     const Float fall = lerp(upper, lower, row.place);

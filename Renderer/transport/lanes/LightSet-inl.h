@@ -20,7 +20,7 @@ struct LightDraw {
   Float3 direction, radiance;
   Float distance;
   Float pdf;
-  Mask delta;
+  LaneMask delta;
 };
 
 class WideLights {
@@ -34,31 +34,31 @@ public:
 
   /// Draws one light for each lane of `which`, seen from a local point. `choice` selects the
   /// light; `uBits`, `vBits`: random bits.
-  LightDraw draw(Mask which, const Float3& point, Float choice, Word uBits, Word vBits) const {
+  LightDraw draw(LaneMask which, const Float3& point, Float choice, Word uBits, Word vBits) const {
     const Float u = uniformOf(uBits), v = uniformOf(vBits);
     const Float zero = 0.0F;
     const Float far = std::numeric_limits<float>::infinity();
-    LightDraw drawn{{zero, zero, 1.0F}, {zero, zero, zero}, far, 1.0F, Mask::none()};
+    LightDraw drawn{{zero, zero, 1.0F}, {zero, zero, zero}, far, 1.0F, LaneMask::none()};
     const auto chosen = [&](float share) {
-      const Mask mine = which & (choice <= share);
+      const LaneMask mine = which & (choice <= share);
       which = which.without(mine);
       choice = choice - share;
       return mine;
     };
     for (const EventScene::Area& light : m_scene.areas) {
-      const Mask mine = chosen(light.share);
+      const LaneMask mine = chosen(light.share);
       if (mine.any())
         drawArea(light, mine, point, u, v, drawn);
     }
     for (const EventScene::Directional& light : m_scene.directionals) {
-      const Mask mine = chosen(light.share);
+      const LaneMask mine = chosen(light.share);
       drawn.direction = select(mine, Float3(light.toward), drawn.direction);
       drawn.radiance = select(mine, Float3(light.irradiance), drawn.radiance);
       drawn.pdf = select(mine, light.share, drawn.pdf);
       drawn.delta = mine | drawn.delta;
     }
     for (const EventScene::Sphere& light : m_scene.spheres) {
-      const Mask mine = chosen(light.share);
+      const LaneMask mine = chosen(light.share);
       if (mine.any())
         drawSphere(light, mine, point, u, v, drawn);
     }
@@ -69,7 +69,7 @@ public:
 
   /// Light that scattered rays from local points meet before `distance`, or at infinity, weighted
   /// against drawing that light (Veach 1997, eq. 9.8).
-  Float3 arriving(Mask which, const Float3& origin, const Float3& direction, Float distance,
+  Float3 arriving(LaneMask which, const Float3& origin, const Float3& direction, Float distance,
                   Float scatterPdf) const {
     const Float zero = 0.0F;
     Float3 sum{zero, zero, zero};
@@ -77,7 +77,7 @@ public:
       sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
     for (const EventScene::Sphere& light : m_scene.spheres)
       sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
-    const Mask escaped = which & (distance == std::numeric_limits<float>::infinity());
+    const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
     if (m_scene.maps.empty())
       return sum + orZero(escaped, around(direction));
     if (!escaped.any())
@@ -89,7 +89,7 @@ public:
   }
 
 private:
-  static HWY_INLINE void drawArea(const EventScene::Area& light, Mask mine, const Float3& point,
+  static HWY_INLINE void drawArea(const EventScene::Area& light, LaneMask mine, const Float3& point,
                                   Float u, Float v, LightDraw& drawn) {
     Float x = fms(2.0F, u, 1.0F);
     Float y = fms(2.0F, v, 1.0F);
@@ -105,7 +105,7 @@ private:
     const Float3 direction = (1.0F / distance) * d;
     const Float cosine = -dot(Float3(light.normal), direction);
     // False behind the light, in its plane, and on the light (NaN).
-    const Mask lit = mine & (cosine > 0.0F);
+    const LaneMask lit = mine & (cosine > 0.0F);
     const Float pdf = light.share * distance2 / (light.area * cosine);
     drawn.direction = select(lit, direction, drawn.direction);
     drawn.radiance = select(lit, Float3(light.radiance), drawn.radiance);
@@ -133,8 +133,8 @@ private:
     return select(outside > zero, outside / far, far);
   }
 
-  static HWY_INLINE void drawSphere(const EventScene::Sphere& light, Mask mine, const Float3& point,
-                                    Float u, Float v, LightDraw& drawn) {
+  static HWY_INLINE void drawSphere(const EventScene::Sphere& light, LaneMask mine,
+                                    const Float3& point, Float u, Float v, LightDraw& drawn) {
     const Float zero = 0.0F, one = 1.0F;
     const Float3 d = Float3(light.center) - point;
     const Float distance2 = dot(d, d);
@@ -145,7 +145,7 @@ private:
     const Float sine2 = max(fall * (2.0F - fall), zero);
     const Float sine = sqrt(sine2);
     const CosineSine phi = ofTurns(v);
-    const Mask apart = distance > zero;
+    const LaneMask apart = distance > zero;
     const Float3 axis = select(apart, (one / distance) * d, Float3{zero, zero, one});
     const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
     const Float far = distanceTo(light, distance2, distance * cosine, distance2 * sine2);
@@ -155,10 +155,10 @@ private:
     drawn.pdf = select(mine, densityOf(light, spread), drawn.pdf);
   }
 
-  void drawMaps(Mask which, Float choice, Word u, Word v, LightDraw& drawn) const {
+  void drawMaps(LaneMask which, Float choice, Word u, Word v, LightDraw& drawn) const {
     const std::size_t count = m_scene.maps.size();
     WideMap::Drawn toward = WideMap(m_scene.maps[0]).draw(u, v);
-    Mask later = which;
+    LaneMask later = which;
     for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
       const float before = m_scene.maps[i - 1].share;
       later = later & (choice > before);
@@ -170,7 +170,7 @@ private:
     const Arrival light = around(toward.direction, [&](const WideMap& map) {
       return count == 1 ? toward.texel : map.texelToward(toward.direction);
     });
-    const Mask lit = which & (light.pdf > 0.0F);
+    const LaneMask lit = which & (light.pdf > 0.0F);
     drawn.direction = select(lit, toward.direction, drawn.direction);
     drawn.radiance = select(lit, light.radiance, drawn.radiance);
     drawn.pdf = select(lit, light.pdf, drawn.pdf);
@@ -207,21 +207,21 @@ private:
     return sum;
   }
 
-  static HWY_INLINE Float3 weighted(Mask met, Float scatterPdf, Float pdf,
+  static HWY_INLINE Float3 weighted(LaneMask met, Float scatterPdf, Float pdf,
                                     const EventScene::Triple& radiance) {
     const Float weight = scatterPdf / (scatterPdf + pdf);
     return orZero(met, weight * Float3(radiance));
   }
 
-  static HWY_INLINE Float3 arrivingFrom(const EventScene::Area& light, Mask which,
+  static HWY_INLINE Float3 arrivingFrom(const EventScene::Area& light, LaneMask which,
                                         const Float3& origin, const Float3& direction,
                                         Float distance, Float scatterPdf) {
     const Float zero = 0.0F;
     const Float3 normal = Float3(light.normal);
     const Float cosine = -dot(normal, direction);
     const Float t = dot(normal, origin - Float3(light.center)) / cosine;
-    const Mask ahead = (cosine > zero) & (t > zero) & (t < distance);
-    Mask met = which & ahead;
+    const LaneMask ahead = (cosine > zero) & (t > zero) & (t < distance);
+    LaneMask met = which & ahead;
     if (!met.any())
       return {zero, zero, zero};
     const Float3 d = origin + t * direction - Float3(light.center);
@@ -233,7 +233,7 @@ private:
     return weighted(met, scatterPdf, pdf, light.radiance);
   }
 
-  static HWY_INLINE Float3 arrivingFrom(const EventScene::Sphere& light, Mask which,
+  static HWY_INLINE Float3 arrivingFrom(const EventScene::Sphere& light, LaneMask which,
                                         const Float3& origin, const Float3& direction,
                                         Float distance, Float scatterPdf) {
     const Float zero = 0.0F;
@@ -243,10 +243,10 @@ private:
     const Float3 across = d - along * direction;
     const Float across2 = dot(across, across);
     const Float radius2 = light.radius2;
-    const Mask ahead = (along > zero) & (across2 <= radius2);
-    const Mask hits = (distance2 <= radius2) | ahead;
+    const LaneMask ahead = (along > zero) & (across2 <= radius2);
+    const LaneMask hits = (distance2 <= radius2) | ahead;
     const Float far = distanceTo(light, distance2, along, across2);
-    const Mask met = which & hits & (far < distance);
+    const LaneMask met = which & hits & (far < distance);
     if (!met.any())
       return {zero, zero, zero};
     const Float pdf = densityOf(light, spreadOf(light, distance2));

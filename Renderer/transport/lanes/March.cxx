@@ -27,7 +27,7 @@ public:
         m_shortest(narrow(coarser * MarchSteps::voxels) / sqrt(dot(m_direction, m_direction))),
         m_opticalDepth(narrow(coarser * MarchSteps::opticalDepth)),
         m_asksKeep(asksKeep && volume.clipKind != WideScene::ClipKind::none),
-        m_busy(Mask::first(rays.size - first) & (m_end > 0.0F)) {}
+        m_busy(LaneMask::first(rays.size - first) & (m_end > 0.0F)) {}
 
   bool isDone() const { return !m_busy.any(); }
   Float transmittance() const { return m_transmittance; }
@@ -36,7 +36,7 @@ public:
 
   /// Each lane leaves an empty cell with its reach, or takes one step in matter. Returns the lanes
   /// that end with it.
-  HWY_INLINE Mask step() {
+  HWY_INLINE LaneMask step() {
     const Float3 p = pointAt(m_t);
     const auto& axes = m_volume.axes;
     const Float x = cellOf(axes[0], p.x), y = cellOf(axes[1], p.y), z = cellOf(axes[2], p.z);
@@ -48,15 +48,15 @@ public:
             min(leaving(axes[2], z, cell.reach, m_origin.z, m_direction.z, m_inverse.z), m_end));
     // A little beyond the face: the next point lies in the next cell, whatever rounding does.
     const Float beyond = fma(m_shortest, 0.02F, max(stop, m_t));
-    const Mask filled = m_busy & (cell.majorant > 0.0F);
+    const LaneMask filled = m_busy & (cell.majorant > 0.0F);
     const Float wanted = max(m_shortest, m_opticalDepth / cell.majorant);
     const Float next = select(filled, min(m_t + wanted, beyond), beyond);
     if (filled.any())
       stopLight(filled, cell, next);
     m_t = select(m_busy, next, m_t);
-    const Mask lit = m_transmittance > narrow(MarchSteps::dark);
-    const Mask going = m_busy & lit & (m_t < m_end);
-    const Mask ended = m_busy.without(going);
+    const LaneMask lit = m_transmittance > narrow(MarchSteps::dark);
+    const LaneMask going = m_busy & lit & (m_t < m_end);
+    const LaneMask ended = m_busy.without(going);
     m_busy = going;
     return ended;
   }
@@ -65,9 +65,9 @@ public:
   struct Pending {
     Float probability, middle;
   };
-  HWY_INLINE Mask pendingAbove(Float least) const { return m_pending > least; }
+  HWY_INLINE LaneMask pendingAbove(Float least) const { return m_pending > least; }
   /// Takes those of the lanes of `which`; 0 in the others.
-  HWY_INLINE Pending take(Mask which) {
+  HWY_INLINE Pending take(LaneMask which) {
     const Float t = m_moment / select(which, m_pending, 1.0F);
     const Pending taken{orZero(which, m_pending), select(which, t, m_t)};
     m_pending = select(which, 0.0F, m_pending);
@@ -85,16 +85,16 @@ private:
   /// t at the face through which a ray leaves the cell and its reach.
   static HWY_INLINE Float leaving(const WideScene::Axis& axis, Float cell, Float reach,
                                   Float origin, Float direction, Float inverse) {
-    const Mask down = direction < 0.0F;
+    const LaneMask down = direction < 0.0F;
     const Float face = select(down, cell - reach, cell + reach + 1.0F);
     const Float at = fms(face, axis.cellEdge, 0.5F);
     const Float t = (at - origin) * inverse;
-    const Mask moves = abs(direction) >= std::numeric_limits<float>::min();
+    const LaneMask moves = abs(direction) >= std::numeric_limits<float>::min();
     return select(moves, t, std::numeric_limits<float>::infinity());
   }
 
   /// Light that matter stops from m_t to `next`, by its extinction in the middle.
-  HWY_INLINE void stopLight(Mask filled, const LaneCells& cell, Float next) {
+  HWY_INLINE void stopLight(LaneMask filled, const LaneCells& cell, Float next) {
     const Float length = next - m_t;
     const Float middle = fma(0.5F, length, m_t);
     const Float3 p = pointAt(middle);
@@ -103,7 +103,7 @@ private:
       extinction = select(isFocus(*m_volume.context, p), extinction,
                           extinction * m_volume.context->extinction);
     if (m_asksKeep) {
-      const Mask cut = filled & cell.cut;
+      const LaneMask cut = filled & cell.cut;
       if (cut.any())
         extinction.where(cut, extinction * keep(m_volume, p, cut));
     }
@@ -119,7 +119,7 @@ private:
   Float m_end, m_shortest;                 ///< mm
   Float m_opticalDepth;                    ///< of a step
   bool m_asksKeep;
-  Mask m_busy;
+  LaneMask m_busy;
   Float m_t = 0.0F, m_transmittance = 1.0F;
   Float m_pending = 0.0F, m_moment = 0.0F;
 };
@@ -131,7 +131,7 @@ public:
   Sums(const WideScene& volume, const EventScene& scene) : m_volume(volume), m_scene(scene) {}
 
   /// Adds the pending collisions of the lanes of `which` with the matter in their middle.
-  void collect(Walk<Voxel>& walk, Mask which) {
+  void collect(Walk<Voxel>& walk, LaneMask which) {
     const auto [probability, middle] = walk.take(which);
     const Float3 p = walk.pointAt(middle);
     const Float scalar = scalarAt<Voxel>(m_volume.field, p);
@@ -147,7 +147,7 @@ public:
       along = dot(mapDirection(m_scene.toLocal, walk.direction()), gradient);
     }
     const Float slope = sqrt(dot(gradient, gradient));
-    const Mask away = along < 0.0F;
+    const LaneMask away = along < 0.0F;
     const Float scale = select(away, probability, -probability) / slope;
     const Float3 normal = orZero(slope > 0.0F, scale * gradient);
     m_normal = m_normal + normal;
@@ -181,9 +181,9 @@ void marchBatch(const WideScene& volume, const EventScene& scene, MarchBatch& ba
     Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
     Sums<Voxel> sums(volume, scene);
     while (!walk.isDone()) {
-      const Mask ended = walk.step();
+      const LaneMask ended = walk.step();
       const Float least = select(ended, 0.0F, narrow(MarchSteps::share));
-      const Mask due = walk.pendingAbove(least);
+      const LaneMask due = walk.pendingAbove(least);
       if (due.any())
         sums.collect(walk, due);
     }

@@ -161,7 +161,7 @@ HWY_INLINE Segment segmentOf(const WideTable& table, Float s) {
   Int segment = gather(table.binSegment.data(), toInt(max(min(bin, lastBin), 0.0F)));
   for (;;) {
     const Pairs ends = loadPairs(table.position.data(), Indices(segment));
-    const Mask beyond = s >= ends.second;
+    const LaneMask beyond = s >= ends.second;
     if (!beyond.any())
       return {segment, s - ends.first};
     segment.where(beyond, segment + 1);
@@ -184,7 +184,7 @@ HWY_INLINE Float extinctionOf(const WideScene& scene, Float s) {
   const auto [value, rise] =
       loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(wholeToInt(line))));
   const Float extinction = notBelow0(fma(place - line, rise, value));
-  const Mask mixed = ~(rise == rise);
+  const LaneMask mixed = ~(rise == rise);
   return mixed.any() ? select(mixed, valueIn(table.channels[0], segmentOf(table, s)), extinction)
                      : extinction;
 }
@@ -193,7 +193,7 @@ HWY_INLINE Float extinctionOf(const WideScene& scene, Float s) {
 struct LaneCells {
   Float majorant; ///< mm^-1
   Float reach;    ///< cells
-  Mask cut;
+  LaneMask cut;
 };
 
 /// Cells at `place` of WideCells::codes: whole numbers.
@@ -230,7 +230,7 @@ HWY_INLINE Float lengthInside(const WideScene& scene, const Float3& origin,
 }
 
 /// Lanes whose point (index space) lies in the focus, where a style changes nothing.
-HWY_INLINE Mask isFocus(const WideScene::Context& context, const Float3& p) {
+HWY_INLINE LaneMask isFocus(const WideScene::Context& context, const Float3& p) {
   return scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)) >= context.level;
 }
 

@@ -11,7 +11,7 @@ std::vector<WideTable::Line> linesOf(const PiecewiseLinear<Channels>& function, 
   const auto& knots = function.knots();
   const double start = knots.front().position;
   const double width = function.span() / static_cast<double>(bins);
-  // What a float may be off by.
+  // Rounding of a float.
   const double rounding =
       2.5e-4 * width + 0x1p-22 * std::max(std::abs(start), std::abs(knots.back().position));
   const bool isFine = rounding < 0.1 * width || knots.size() == 1;

@@ -26,13 +26,13 @@ struct Draws {
 
 /// One path a lane, at its collision.
 struct Collisions {
-  Mask going;   ///< lanes that scatter
-  Mask first;   ///< lanes that scatter for the first time
-  Float3 index; ///< points, index space
+  LaneMask going; ///< lanes that scatter
+  LaneMask first; ///< lanes that scatter for the first time
+  Float3 index;   ///< points, index space
   Float scalar;
   Float3 incoming, weight;
   Float3 albedo, gradient; ///< gradient: 0 unless needed
-  Mask surface;
+  LaneMask surface;
 };
 
 /// First collisions whose normals are still to be found, which is done in whole vectors.
@@ -63,18 +63,18 @@ public:
 
 private:
   void step(std::size_t i) {
-    const Mask there = Mask::first(m_paths.rays.size - i);
+    const LaneMask there = LaneMask::first(m_paths.rays.size - i);
     const Float distance = load(&m_paths.rays.result[i]);
     const Int bounces = load(&m_paths.bounces[i]);
-    const Mask first = bounces == 0;
+    const LaneMask first = bounces == 0;
     const Float3 origin = load3(m_paths.rays.origin, i);
     gather(i, there.without(first), origin, distance);
 
-    const Mask escaped = distance == std::numeric_limits<float>::infinity();
-    const Mask free = bounces < m_scene.bounces;
-    const Mask going = (there & free).without(escaped);
+    const LaneMask escaped = distance == std::numeric_limits<float>::infinity();
+    const LaneMask free = bounces < m_scene.bounces;
+    const LaneMask going = (there & free).without(escaped);
     m_collisions += going.count();
-    Mask alive = going;
+    LaneMask alive = going;
     if (going.any()) {
       const Int one = orZero(going, 1);
       store(bounces + one, &m_paths.bounces[i]);
@@ -84,7 +84,7 @@ private:
   }
 
   /// Adds the light that scattered rays met before their collisions, or at infinity.
-  HWY_INLINE void gather(std::size_t i, Mask scattered, const Float3& origin, Float distance) {
+  HWY_INLINE void gather(std::size_t i, LaneMask scattered, const Float3& origin, Float distance) {
     if (!scattered.any())
       return;
     const Float3 light =
@@ -95,7 +95,8 @@ private:
   }
 
   /// Scatters the lanes of `going`; returns the lanes that go on afterwards.
-  Mask collide(std::size_t i, Mask going, Mask first, const Float3& origin, Float distance) {
+  LaneMask collide(std::size_t i, LaneMask going, LaneMask first, const Float3& origin,
+                   Float distance) {
     Draws draws{load(&m_paths.key[i]), load(&m_paths.counter[i])};
     const Float3 index = origin + distance * load3(m_paths.rays.direction, i);
     const Collisions at = matter(i, going, first, index, draws);
@@ -127,7 +128,7 @@ private:
     return goOn(i, at, drawn, draws);
   }
 
-  HWY_INLINE Collisions matter(std::size_t i, Mask going, Mask first, const Float3& index,
+  HWY_INLINE Collisions matter(std::size_t i, LaneMask going, LaneMask first, const Float3& index,
                                Draws& draws) {
     const Float zero = 0.0F;
     Collisions at{going,
@@ -138,7 +139,7 @@ private:
                   load3(m_paths.weight, i),
                   {},
                   {zero, zero, zero},
-                  Mask::none()};
+                  LaneMask::none()};
     at.albedo = albedoOf(m_scene.albedo, at.scalar);
     if (m_volume.context)
       at.albedo = paled(*m_volume.context, index, at.albedo);
@@ -190,7 +191,7 @@ private:
     const Float3 normal =
         normalOf(gradientAt(load3(m_firsts.index, i)), load3(m_firsts.incoming, i));
     const LaneArray<float> x(normal.x), y(normal.y), z(normal.z);
-    forEachLane(Mask::first(m_firsts.size - i), [&](std::size_t lane) {
+    forEachLane(LaneMask::first(m_firsts.size - i), [&](std::size_t lane) {
       const std::size_t path = m_firsts.path[i + lane];
       m_paths.firstNormal[0][path] = x[lane];
       m_paths.firstNormal[1][path] = y[lane];
@@ -201,7 +202,7 @@ private:
   /// Unit, toward the ray's origin; 0 where there is no gradient.
   static HWY_INLINE Float3 normalOf(const Float3& gradient, const Float3& incoming) {
     const Float slope = sqrt(dot(gradient, gradient));
-    const Mask away = dot(incoming, gradient) < 0.0F;
+    const LaneMask away = dot(incoming, gradient) < 0.0F;
     return orZero(slope > 0.0F, select(away, 1.0F, -1.0F) / slope * gradient);
   }
 
@@ -218,7 +219,7 @@ private:
     const Float zero = 0.0F;
     const Float pdf = light.pdf + select(light.delta, zero, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.weight * scattered.factor * light.radiance);
-    const Mask arrives = at.going & (greatest(radiance) > zero);
+    const LaneMask arrives = at.going & (greatest(radiance) > zero);
     const std::size_t count = arrives.count();
     const Word depth = draws.nextBits();
     const Float acceptance = draws.uniform();
@@ -240,14 +241,14 @@ private:
   }
 
   /// Sets the paths' weights and new rays. Returns the lanes that survive Russian roulette.
-  HWY_INLINE Mask goOn(std::size_t i, const Collisions& at, const ScatterDraw& drawn,
-                       Draws& draws) {
+  HWY_INLINE LaneMask goOn(std::size_t i, const Collisions& at, const ScatterDraw& drawn,
+                           Draws& draws) {
     const Float zero = 0.0F;
     constexpr auto below = static_cast<float>(rouletteBelow);
     Float3 weight = at.weight * drawn.weight;
     const Float most = greatest(weight);
     const Float chance = min(most * (1.0F / below), 1.0F);
-    const Mask survives = draws.uniform() <= chance;
+    const LaneMask survives = draws.uniform() <= chance;
     weight = orZero(survives, (1.0F / chance) * weight);
     store3(weight, m_paths.weight, i);
     store(drawn.pdf, &m_paths.scatterPdf[i]);
@@ -266,7 +267,7 @@ private:
     return hn::Iota(words, static_cast<std::uint32_t>(i));
   }
 
-  void listEnded(std::size_t i, Mask ended) {
+  void listEnded(std::size_t i, LaneMask ended) {
     store(Shuffle::packing(ended)(numbersFrom(i)), &m_paths.ended[m_paths.endedCount]);
     m_paths.endedCount += ended.count();
   }

@@ -90,7 +90,7 @@ public:
       m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
     const Float lambert = greatest(m_diffuse);
     const Float sum = fma(m_specular, fresnel(m_viewer.z), lambert);
-    const Mask some = sum > 0.0F;
+    const LaneMask some = sum > 0.0F;
     m_lambertShare = select(some, lambert / sum, 1.0F);
   }
 
@@ -110,7 +110,7 @@ public:
     }
     const Float3 outgoing = normalized(m_frame.toWorld(local));
     const Scattered s = toward(outgoing);
-    const Mask possible = s.pdf > 0.0F;
+    const LaneMask possible = s.pdf > 0.0F;
     return {outgoing, orZero(possible, (1.0F / s.pdf) * s.factor), s.pdf};
   }
 
@@ -144,7 +144,7 @@ private:
     const Float zero = 0.0F;
     const Float3 h = normalized(l + m_viewer);
     const Float perViewer = masking(m_viewer) * normalDensity(h) / (4.0F * m_viewer.z);
-    const Mask facing = (l.z > zero) & (m_viewer.z > zero);
+    const LaneMask facing = (l.z > zero) & (m_viewer.z > zero);
     const Float pdf = orZero(facing, perViewer);
     s.pdf = fma(1.0F - m_lambertShare, pdf, s.pdf);
     const Float glossy = m_specular * fresnel(dot(l, h)) * masking(l);
@@ -173,7 +173,7 @@ private:
     const Float one = 1.0F;
     const Float3 stretched = normalized({a * m_viewer.x, a * m_viewer.y, m_viewer.z});
     const Float length2 = fma(stretched.x, stretched.x, square(stretched.y));
-    const Mask slanted = length2 > 0.0F;
+    const LaneMask slanted = length2 > 0.0F;
     const Float perLength = one / sqrt(select(slanted, length2, one));
     const Float zero = 0.0F;
     const Float3 side = select(slanted, perLength * Float3{-stretched.y, stretched.x, zero},

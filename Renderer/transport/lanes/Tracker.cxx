@@ -39,14 +39,14 @@ struct Way {
     // Clamped below the last face, so that a ray lying in that face starts inside the last cell.
     const Float inside = fma(origin, axis.cellsPerVoxel, 0.5F * axis.cellsPerVoxel);
     way.start = max(min(inside, axis.insideCells), 0.0F);
-    const Mask moves = abs(way.speed) >= 1e-30F;
+    const LaneMask moves = abs(way.speed) >= 1e-30F;
     way.inverse = orZero(moves, 1.0F / way.speed);
     way.toMiddle =
         select(moves, (0.5F - way.start) * way.inverse, std::numeric_limits<float>::infinity());
     return way;
   }
 
-  HWY_INLINE void where(Mask which, const Way& other) {
+  HWY_INLINE void where(LaneMask which, const Way& other) {
     start.where(which, other.start);
     speed.where(which, other.speed);
     inverse.where(which, other.inverse);
@@ -76,7 +76,7 @@ public:
     const std::size_t hits = m_hit.count();
     if (hits >= hitsForLookup || (hits > 0 && hits == m_busy.count()))
       collide();
-    const Mask idle = ~m_busy;
+    const LaneMask idle = ~m_busy;
     if (idle.count() >= idleForRefill) {
       handIn();
       if (m_queue.left() > 0)
@@ -101,12 +101,12 @@ private:
   }
 
   /// Gives idle lanes the next rays, while there are any: neighbours in memory.
-  void refill(Mask idle) {
+  void refill(LaneMask idle) {
     std::uint64_t set = idle.bits();
     std::size_t count = idle.count();
     for (; count > m_queue.left(); --count)
       set &= ~std::bit_floor(set);
-    const Mask fresh = Mask::fromBits(set);
+    const LaneMask fresh = LaneMask::fromBits(set);
     const std::size_t first = m_queue.next;
     m_queue.next += count;
 
@@ -141,9 +141,9 @@ private:
     const Float stop = min(max(toFace, m_t) + m_scene.overshoot, m_end);
     const Float depthToStop = (stop - m_t) * cell.majorant;
 
-    const Mask going = m_busy.without(m_hit);
-    const Mask hit = going & (m_depth < depthToStop);
-    const Mask crossed = going.without(hit);
+    const LaneMask going = m_busy.without(m_hit);
+    const LaneMask hit = going & (m_depth < depthToStop);
+    const LaneMask crossed = going.without(hit);
     m_t = select(hit, m_t + m_depth / cell.majorant, select(crossed, stop, m_t));
     m_depth = m_depth - depthToStop; // of use in crossed lanes alone
     m_majorant.where(hit, cell.majorant);
@@ -152,7 +152,7 @@ private:
     m_cells = m_cells + orZero(crossed, 1U);
     m_skipped = m_skipped + orZero(crossed & (cell.majorant == 0.0F), 1U);
 
-    const Mask ended = crossed & (stop >= m_end);
+    const LaneMask ended = crossed & (stop >= m_end);
     if constexpr (!wantRatio)
       m_t.where(ended, std::numeric_limits<float>::infinity());
     finish(ended);
@@ -168,8 +168,8 @@ private:
 
   /// Handles tentative collisions: a real one ends a flight, every one reduces a transmittance.
   HWY_INLINE void collide() {
-    const Mask hit = m_hit;
-    m_hit = Mask::none();
+    const LaneMask hit = m_hit;
+    m_hit = LaneMask::none();
     m_lookups += hit.count();
     const Float3 at = point();
     const Float scalar = scalarAt<Voxel>(m_scene.field, at);
@@ -179,7 +179,7 @@ private:
                           extinction * m_scene.context->extinction);
     Word counter = m_counter;
     const Float u = m_acceptance;
-    const Mask cut = hit & m_cut;
+    const LaneMask cut = hit & m_cut;
     if (cut.any())
       extinction = clipped(cut, at, extinction, u, counter);
     m_depth.where(hit, exponential(counter));
@@ -192,7 +192,7 @@ private:
       m_ratio.where(hit, select(thinned < rouletteBelow, survived, thinned));
       finish(hit & (m_ratio <= 0.0F));
     } else {
-      const Mask real = hit & (u * m_majorant < extinction);
+      const LaneMask real = hit & (u * m_majorant < extinction);
       m_scalar.where(real, scalar);
       finish(real);
     }
@@ -204,12 +204,13 @@ private:
   /// whether a transmittance's collision would be real without clipping, and only for real
   /// collisions keep is queried (delta instead of ratio tracking; Novák et al. 2018, section 4.2).
   /// Such estimates vary a little more, and cost half.
-  HWY_INLINE Float clipped(Mask cut, const Float3& at, Float extinction, Float u, Word& counter) {
+  HWY_INLINE Float clipped(LaneMask cut, const Float3& at, Float extinction, Float u,
+                           Word& counter) {
     if constexpr (wantRatio) {
       cut = cut & (extinction > 0.0F);
       if (m_scene.seams) {
         Word after = counter;
-        const Mask isReal = uniform(after) * m_majorant < extinction;
+        const LaneMask isReal = uniform(after) * m_majorant < extinction;
         counter.where(cut, after);
         extinction.where(cut, orZero(isReal, m_majorant));
         cut = cut & isReal;
@@ -223,7 +224,7 @@ private:
   }
 
   /// Makes lanes idle; their results stay until handIn().
-  HWY_INLINE void finish(Mask ended) {
+  HWY_INLINE void finish(LaneMask ended) {
     m_busy = m_busy.without(ended);
     m_ended = m_ended | ended;
   }
@@ -238,17 +239,17 @@ private:
       if constexpr (!wantRatio)
         m_rays.scalar[ray] = scalars[lane];
     });
-    m_ended = Mask::none();
+    m_ended = LaneMask::none();
   }
 
   const WideScene& m_scene;
   Queue& m_queue;
   RayBatch& m_rays;
-  Mask m_busy = Mask::none();
-  Mask m_ended = Mask::none(); ///< idle lanes with results to hand in
-  Mask m_hit = Mask::none();   ///< busy lanes at a tentative collision
-  Mask m_cut = Mask::none();   ///< lanes whose collision lies in a cut cell
-  Int m_ray = 0;               ///< index of the ray in the batch
+  LaneMask m_busy = LaneMask::none();
+  LaneMask m_ended = LaneMask::none(); ///< idle lanes with results to hand in
+  LaneMask m_hit = LaneMask::none();   ///< busy lanes at a tentative collision
+  LaneMask m_cut = LaneMask::none();   ///< lanes whose collision lies in a cut cell
+  Int m_ray = 0;                       ///< index of the ray in the batch
 
   Way m_way[3] = {idle(), idle(), idle()};
   Float m_t = 0.0F;          ///< mm

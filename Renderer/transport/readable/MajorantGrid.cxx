@@ -87,8 +87,7 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
         double majorant = bound(cell);
         bool isCut = false;
         if (majorant > 0.0) {
-          const Corners corners =
-              cornersOf(cellToWorld, Size3(x, y, z).cast<double>(), strip);
+          const Corners corners = cornersOf(cellToWorld, Size3(x, y, z).cast<double>(), strip);
           const Kept kept =
               std::holds_alternative<ClipNone>(clip) ? Kept::all : keptIn(clip, corners);
           majorant *= kept.most * (style ? greatestFactor(*style, corners) : 1.0);

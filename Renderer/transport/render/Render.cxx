@@ -66,7 +66,7 @@ std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan
 /// done; tiles are done whole or not at all.
 template <typename Tracer>
 bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
-                const EmptyPixels& empty, const SampleSource& source, Film& film, Counters& total,
+                const EmptyPixels& empty, const NumberSource& source, Film& film, Counters& total,
                 RenderMonitor& monitor) {
   Pass pass(from, to, empty, source, film, monitor.paths);
   const int threads = tbb::this_task_arena::max_concurrency();
@@ -166,9 +166,9 @@ template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
                           const RenderScene& scene, const RenderSettings& settings,
                           RenderMonitor& monitor) {
-  const SampleSource source(settings.sampling, settings.seed);
+  const NumberSource source(settings.sampling, settings.seed);
   RenderResult result{Film(scene.camera.width(), scene.camera.height(),
-                           SampleSource::hasIndependentHalves, source.block()),
+                           NumberSource::hasIndependentHalves, source.block()),
                       {},
                       {},
                       0,

@@ -11,7 +11,7 @@ std::uint64_t ticketOf(std::uint32_t tile, std::size_t sample) {
 } // namespace
 
 Pass::Pass(const SamplePlan::Stage& from, const SamplePlan::Stage& to, const EmptyPixels& empty,
-           const SampleSource& source, Film& film, std::atomic<std::uint64_t>& paths)
+           const NumberSource& source, Film& film, std::atomic<std::uint64_t>& paths)
     : m_from(from),
       m_to(to),
       m_empty(empty),

@@ -20,7 +20,7 @@ public:
   /// A view of plan, empty pixels and film. Each finished tile adds its planned number of samples
   /// to `paths`.
   Pass(const SamplePlan::Stage& from, const SamplePlan::Stage& to, const EmptyPixels& empty,
-       const SampleSource& source, Film& film, std::atomic<std::uint64_t>& paths);
+       const NumberSource& source, Film& film, std::atomic<std::uint64_t>& paths);
 
   /// True once all tiles have been added to the film.
   bool whole() const { return m_tilesDone == m_tileCount; }
@@ -31,7 +31,7 @@ private:
 
   const SamplePlan::Stage m_from, m_to;
   const EmptyPixels& m_empty;
-  SampleSource m_source;
+  NumberSource m_source;
   Film& m_film;
   std::atomic<std::uint64_t>& m_paths;
   int m_tilesAcross, m_tileCount;
