@@ -12,6 +12,7 @@
 #   clang         the whole suite, and the benchmarks that nothing tests, built by clang
 #   headers       each header of the renderer compiled alone
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
+#   paths         instructions a path, against the record in Testing/Benchmarks/Report
 # and only where it is named:
 #   fuzz          10^6 executions of every fuzz target, in an hour each at most, and 10^4 damaged
 #                 files through the child that reads DICOM and transforms
@@ -200,6 +201,11 @@ stage_faults() {
     say "damaged files do harm: see $record/mutations.md"
 }
 
+stage_paths() {
+  bash "$top/Testing/Benchmarks/instructions.sh" >"$logs/paths.log" 2>&1 ||
+    say "a path takes more instructions than the record has: $logs/paths.log"
+}
+
 stage_boundary() {
   (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target BoundaryCheck)
   (sed '/^## /,$d' "$record/boundary.md" && "$top/build/bin/BoundaryCheck" 256 12) \
@@ -217,7 +223,7 @@ stage_fuzz() {
 
 mkdir -p "$logs"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
-[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang headers faults
+[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang headers faults paths
 for name in "$@"; do
   say "$name"
   "stage_$name"
