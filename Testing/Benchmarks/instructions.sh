@@ -51,8 +51,7 @@ recorded() {
 }
 
 install_packages "${build_packages[@]}" valgrind
-mkdir -p "$work"
-work=$(realpath "$work")
+mkdir -p "$work" && work=$(realpath "$work")
 if [ -z "$program" ]; then
   (cd "$top" && cmake --preset release -B "$folder" >/dev/null && cmake --build "$folder" --target fenestra) ||
     die "the build failed (see above)"
@@ -63,10 +62,7 @@ knee=$(realpath "$folder")/benchmarks/knee
 # Highway's timer, which fenestra links but never reads, has instructions that valgrind lacks on some processors.
 c++ -shared -fPIC -x c++ -o "$work/timer.so" - <<'CODE'
 #include <cstdint>
-namespace hwy::platform {
-std::uint64_t TimerResolution() { return 100; }
-double Now() { return 0; }
-} // namespace hwy::platform
+namespace hwy::platform { std::uint64_t TimerResolution() { return 100; } double Now() { return 0; } }
 CODE
 
 say "Instructions a path"
