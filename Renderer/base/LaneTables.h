@@ -10,19 +10,14 @@ namespace fenestra {
 /// Eight small numbers, the first in the lowest byte, for each set of eight lanes.
 using LaneOrders = std::array<std::uint64_t, 256>;
 
-/// Numbers of the lanes in the set, ascending; then the last lane's.
+/// Numbers of the lanes in the set, ascending; then zeros.
 constexpr LaneOrders packedOrders() {
   LaneOrders orders{};
   for (std::uint64_t set = 0; set < orders.size(); ++set) {
     int count = 0;
-    std::uint64_t last = 0;
     for (std::uint64_t lane = 0; lane < 8; ++lane)
-      if ((set >> lane & 1) != 0) {
-        last = lane;
+      if ((set >> lane & 1) != 0)
         orders[set] |= lane << 8 * count++;
-      }
-    for (; count < 8; ++count)
-      orders[set] |= last << 8 * count;
   }
   return orders;
 }

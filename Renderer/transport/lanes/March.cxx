@@ -40,8 +40,7 @@ public:
     const Float3 p = pointAt(m_t);
     const auto& axes = m_volume.axes;
     const Float x = cellOf(axes[0], p.x), y = cellOf(axes[1], p.y), z = cellOf(axes[2], p.z);
-    const LaneCells cell = cellsAt(
-        m_volume, fma(z, axes[2].cellStride, fma(y, axes[1].cellStride, x + m_volume.firstCell)));
+    const LaneCells cell = cellsAt(m_volume, x, y, z);
     const Float stop =
         min(min(leaving(axes[0], x, cell.reach, m_origin.x, m_direction.x, m_inverse.x),
                 leaving(axes[1], y, cell.reach, m_origin.y, m_direction.y, m_inverse.y)),

@@ -196,8 +196,10 @@ struct LaneCells {
   LaneMask cut;
 };
 
-/// Cells at `place` of WideCells::codes: whole numbers.
-HWY_INLINE LaneCells cellsAt(const WideScene& scene, Float place) {
+/// Cells of these numbers along the axes: whole, -1 and one too many for the border.
+HWY_INLINE LaneCells cellsAt(const WideScene& scene, Float x, Float y, Float z) {
+  const Float place =
+      fma(z, scene.axes[2].cellStride, fma(y, scene.axes[1].cellStride, x + scene.firstCell));
   // This order of min and max maps NaN to 0.
   const Int index = wholeToInt(max(min(place, scene.lastCell), 0.0F));
   const Int code = gather(scene.cells.codes.data(), index);

@@ -132,9 +132,7 @@ private:
     const Float x = floor(m_way[0].at(m_t));
     const Float y = floor(m_way[1].at(m_t));
     const Float z = floor(m_way[2].at(m_t));
-    const LaneCells cell =
-        cellsAt(m_scene, fma(z, m_scene.axes[2].cellStride,
-                             fma(y, m_scene.axes[1].cellStride, x + m_scene.firstCell)));
+    const LaneCells cell = cellsAt(m_scene, x, y, z);
     const Float half = cell.reach + 0.5F;
     const Float toFace =
         min(min(m_way[0].leaving(x, half), m_way[1].leaving(y, half)), m_way[2].leaving(z, half));
