@@ -12,29 +12,50 @@
 // After foreach_target.h:
 #include "base/LaneMath-inl.h"
 
+#include <cstring>
+
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-using Indices = LaneArray<std::int32_t>;
+/// Places in memory, one a lane. Without a sign, so that they are addresses as they are.
+struct Indices : LaneArray<std::uint32_t> {
+  explicit HWY_INLINE Indices(Int notNegative) : LaneArray(bitsAsWord(notNegative)) {}
+};
 
-/// Loads a Number from each of `count` places, `step` indices apart, aligned or not. Loads one by
-/// one are less work for the processor than gathers, once the indices are in memory.
-template <typename Number, std::size_t count, std::size_t step, typename Element>
-HWY_INLINE auto loadEach(const Element* memory, const std::int32_t* index) {
-  constexpr hn::CappedTag<Number, count> d;
-  if constexpr (count == 1)
-    return hn::LoadU(d, reinterpret_cast<const Number*>(memory + *index));
+/// Reads a number, aligned or not.
+template <typename Number>
+HWY_INLINE Number numberAt(const void* memory) {
+  Number number;
+  std::memcpy(&number, memory, sizeof(number));
+  return number;
+}
+
 #if HWY_TARGET != HWY_SCALAR
-  else
+/// Loads a Number from each of `count` places, `step` indices apart, aligned or not. Loads one by
+/// one are less work for the processor than gathers, once the indices are in registers.
+template <typename Number, std::size_t count, std::size_t step, typename Element>
+HWY_INLINE auto loadEach(const Element* memory, const std::uint32_t* index) {
+  constexpr hn::CappedTag<Number, count> d;
+  if constexpr (count * sizeof(Number) > 16) {
     return hn::Combine(d, loadEach<Number, count / 2, step>(memory, index + step * count / 2),
                        loadEach<Number, count / 2, step>(memory, index));
-#endif
+  } else {
+    auto numbers = hn::Zero(d);
+    for (std::size_t i = 0; i < count; ++i)
+      numbers = hn::InsertLane(numbers, i, numberAt<Number>(memory + index[step * i]));
+    return numbers;
+  }
 }
+#endif
 
 /// Loads 32 bits from memory[i] on for each i.
 template <typename Element>
 HWY_INLINE Int loadInts(const Element* memory, const Indices& index) {
+#if HWY_TARGET == HWY_SCALAR
+  return numberAt<std::int32_t>(memory + index[0]);
+#else
   return loadEach<std::int32_t, laneCount, 1>(memory, index.data());
+#endif
 }
 
 /// Two floats a lane, neighbours in memory.
@@ -178,8 +199,7 @@ HWY_INLINE Float valueIn(const WideTable::Channel& channel, const Segment& at) {
 /// Extinction (mm^-1) of a scalar: one load where its bin lies in one segment.
 HWY_INLINE Float extinctionOf(const WideScene& scene, Float s) {
   const WideTable& table = scene.extinction;
-  const auto lastLine = static_cast<float>(table.lines.size() - 1);
-  const Float place = max(min((s - table.binStart) * table.linesPerUnit, lastLine), 0.0F);
+  const Float place = max(min((s - table.binStart) * table.linesPerUnit, table.lastLine), 0.0F);
   const Float line = floor(place);
   const auto [value, rise] =
       loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(wholeToInt(line))));

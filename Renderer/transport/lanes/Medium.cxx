@@ -82,6 +82,7 @@ WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
     linesPerUnit = 0.0F;
     lines.assign(1, {0.0F, std::numeric_limits<float>::quiet_NaN()});
   }
+  lastLine = static_cast<float>(lines.size() - 1);
 }
 
 template WideTable::WideTable(const PiecewiseLinear<1>&);

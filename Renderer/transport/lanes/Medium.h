@@ -23,7 +23,7 @@ struct WideTable {
   /// The first channel in equal bins from binStart on, each a line over the bin: value, and rise
   /// over the bin; then the value beyond. NaN rise: the bin holds a knot, ask the segments.
   std::vector<Line> lines;
-  float linesPerUnit = 0.0F;
+  float linesPerUnit = 0.0F, lastLine = 0.0F;
 
   WideTable() = default;
   template <int Channels>

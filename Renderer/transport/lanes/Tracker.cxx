@@ -222,32 +222,26 @@ private:
   }
 
   /// Makes lanes idle; their results stay until handIn().
-  HWY_INLINE void finish(LaneMask ended) {
-    m_busy = m_busy.without(ended);
-    m_ended = m_ended | ended;
-  }
+  HWY_INLINE void finish(LaneMask ended) { m_busy = m_busy.without(ended); }
 
   /// Stores the results of rays that have ended.
   HWY_INLINE void handIn() {
-    const LaneArray<std::int32_t> rays(m_ray);
+    const Indices rays(m_ray);
     const LaneArray<float> results(wantRatio ? m_ratio : m_t), scalars(m_scalar);
-    forEachLane(m_ended, [&](std::size_t lane) {
-      const auto ray = static_cast<std::size_t>(rays[lane]);
-      m_rays.result[ray] = results[lane];
+    for (std::size_t lane = 0; lane < laneCount; ++lane) {
+      m_rays.result[rays[lane]] = results[lane];
       if constexpr (!wantRatio)
-        m_rays.scalar[ray] = scalars[lane];
-    });
-    m_ended = LaneMask::none();
+        m_rays.scalar[rays[lane]] = scalars[lane];
+    }
   }
 
   const WideScene& m_scene;
   Queue& m_queue;
   RayBatch& m_rays;
   LaneMask m_busy = LaneMask::none();
-  LaneMask m_ended = LaneMask::none(); ///< idle lanes with results to hand in
-  LaneMask m_hit = LaneMask::none();   ///< busy lanes at a tentative collision
-  LaneMask m_cut = LaneMask::none();   ///< lanes whose collision lies in a cut cell
-  Int m_ray = 0;                       ///< index of the ray in the batch
+  LaneMask m_hit = LaneMask::none(); ///< busy lanes at a tentative collision
+  LaneMask m_cut = LaneMask::none(); ///< lanes whose collision lies in a cut cell
+  Int m_ray = static_cast<std::int32_t>(RayBatch::capacity); ///< index of the ray in the batch
 
   Way m_way[3] = {idle(), idle(), idle()};
   Float m_t = 0.0F;          ///< mm
