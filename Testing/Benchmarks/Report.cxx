@@ -117,6 +117,36 @@ void writeTable(std::ostream& out, const std::vector<CurveRecord>& curves, const
   out << "\n\n";
 }
 
+/// Efficiency of other programs in the scenes that have independent references, as measured once on
+/// an idle machine of two cores with two threads; empty: not measured.
+struct Peer {
+  const char *name, *s1, *s2, *s2hi;
+};
+constexpr Peer peers[] = {
+    {"pbrt-v4, volumetric path tracer", "4.0", "4.5", ""},
+    {"Cycles (Blender 3.4), step rate 1: biased", "3.1", "9.8", ""},
+    {"plain scalar tracker: delta tracking, 32³ majorants", "29", "51", "14"},
+};
+
+void writePeers(std::ostream& out, const std::vector<CurveRecord>& curves) {
+  out << "## Other renderers\n\nThe same scenes, lights and cameras, 256 × 256 pixels, two "
+         "threads, "
+         "measured once on another machine of two cores: they tell the order, not the last digit. "
+         "Cycles marches in steps of a voxel; pbrt absorbs whole paths, meets the volume's box as "
+         "triangles after every collision, and renders colour by wavelengths.\n\n"
+         "| renderer | S1 | S2 | S2hi |\n|---|---|---|---|\n| Fenestra (above) |";
+  for (const char* scene : {"S1", "S2", "S2hi"}) {
+    const CurveRecord* curve = find(curves, scene, "product");
+    out << ' ' << (curve ? efficiencyCell(*curve) : "–") << " |";
+  }
+  for (const Peer& peer : peers) {
+    out << "\n| " << peer.name << " |";
+    for (const std::string cell : {peer.s1, peer.s2, peer.s2hi})
+      out << ' ' << (cell.empty() ? "–" : cell) << " |";
+  }
+  out << "\n\n";
+}
+
 double largestSpread(const std::vector<CurveRecord>& curves) {
   double largest = 0.0;
   for (const CurveRecord& curve : curves)
@@ -139,6 +169,7 @@ std::string readme(const std::vector<CurveRecord>& curves, const std::string& no
         return curve.reference + " (" + scientific(curve.referenceRelMse) + ")";
       },
       efficiencyCell);
+  writePeers(out, curves);
   out << "## Bias\n\nOf the image mean at the most samples measured, in percent of the "
          "reference's, and one standard error.\n\n";
   writeTable(
