@@ -230,8 +230,20 @@ std::string table(const std::string& indent, const std::vector<Row>& rows,
 
 // ---- sections
 
+/// Cells of a segment's material: name, colour, kind, and why it has it.
+Row materialCells(const Json& material) {
+  const Json& color = material["color"];
+  const std::string colors = color.is_null() ? "as it is"
+                             : color[0].is_array()
+                                 ? hex(color[0][1]) + " to " + hex(color.back()[1])
+                                 : hex(color);
+  return {material["name"].is_null() ? "-" : text(material, "name", 24), colors, material["kind"],
+          text(material, "why", 48)};
+}
+
 std::string segmentTable(const Json& segments) {
-  std::vector<Row> rows = {{"value", "layer", "color", "voxels", "ml", "id", "name"}};
+  std::vector<Row> rows = {
+      {"value", "layer", "color", "voxels", "ml", "id", "name", "material", "seen", "kind", "why"}};
   const std::size_t count = std::min(segments.size(), mostSegments);
   for (std::size_t i = 0; i < count; ++i) {
     const Json& segment = segments[i];
@@ -239,10 +251,13 @@ std::string segmentTable(const Json& segments) {
                     segment["voxels"].dump(), number(segment["milliliters"], "%.2f"),
                     text(segment, "id", 40),
                     text(segment, "name", 64) + (segment["shown"] == true ? "" : " (hidden)")});
+    std::ranges::move(materialCells(segment["material"]), std::back_inserter(rows.back()));
   }
-  if (segments.size() > count)
-    rows.push_back({"...", "", "", "", "",
-                    textOf(segments.size() - count, " more (--json lists them all)"), ""});
+  if (segments.size() > count) {
+    rows.push_back(Row(rows.front().size()));
+    rows.back()[0] = "...";
+    rows.back()[5] = textOf(segments.size() - count, " more (--json lists them all)");
+  }
   return table("      ", rows, ">> >>");
 }
 

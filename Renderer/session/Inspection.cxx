@@ -1,8 +1,11 @@
 #include "session/Inspection.h"
 
+#include "base/Color.h"
+#include "base/safe/Inputs.h"
 #include "files/medical/DicomSeries.h"
 #include "session/Defaults.h"
 #include "session/InspectionParts.h"
+#include "session/SegmentMaterials.h"
 
 namespace fenestra {
 namespace {
@@ -63,6 +66,29 @@ FileVolume inspectVolume(const SceneRequest& request, const Input& input, Json& 
       add(read->volume, read->volume.warnings);
   }
   return result;
+}
+
+/// Colour, display-encoded; of several knots each with its scalar; null: none.
+Json colorJson(const std::optional<ColorFunction>& color) {
+  if (!color)
+    return nullptr;
+  if (color->knots().size() == 1)
+    return encodeSrgb(color->knots().front().value);
+  Json knots;
+  for (const auto& [scalar, value] : color->knots())
+    knots.push_back({scalar, encodeSrgb(value)});
+  return knots;
+}
+
+Json materialJson(const SegmentMaterial& material) {
+  const SegmentMatter& matter = material.matter;
+  return {{"name", orNull(material.name)},
+          {"kind", matter.material.kind == MaterialKind::tint ? "tint" : "matter"},
+          {"color", colorJson(seenColor(matter.material))},
+          {"priority", matter.priority},
+          {"clip", matter.isClipped},
+          {"density", matter.density},
+          {"why", material.why}};
 }
 
 Json inspectFiles(const SceneRequest& request, const Input& input) {
@@ -176,6 +202,8 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
   json["spacing"] = grid.spacing();
   const double milliliters = std::abs(grid.indexToWorld.linear().determinant()) / cubicMmInMl;
   const std::vector<SegmentStatistics> statistics = segmentation.statistics();
+  const std::vector<SegmentMaterial> materials =
+      materialsOf(segmentation.segments(), materialLibrary());
   for (std::size_t i = 0; i < statistics.size(); ++i) {
     const SegmentInfo& info = segmentation.segments()[i];
     const auto& [voxels, bounds] = statistics[i];
@@ -188,7 +216,8 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
                     {"voxels", voxels},
                     {"milliliters", milliliters * static_cast<double>(voxels)},
                     {"bounds", nullptr},
-                    {"shown", visible == shown.end() || visible->second}};
+                    {"shown", visible == shown.end() || visible->second},
+                    {"material", materialJson(materials[i])}};
     if (voxels > 0)
       segment["bounds"] = {{"lower", bounds.lower}, {"upper", bounds.upper}};
     json["segments"].push_back(std::move(segment));

@@ -15,7 +15,9 @@ namespace fenestra {
 ///     volumes [NODE]
 ///     segmentations [NODE + kind ("segmentation" | "labelMap" | "file"), shown, size, spacing,
 ///       segments [id, name, labelValue, layer, color, voxels, milliliters, bounds {lower, upper},
-///       shown]]
+///       shown, material {name (null: a colour alone), kind ("tint" | "matter"), color (null: the
+///       volume's own; what is seen, or [scalar, color] of each knot), priority, clip, density, why
+///       (SegmentMaterials.h)}]]
 ///     volumeRenderings [NODE + volume, property, roi, cropping, followsDisplay, shown]
 ///     volumeProperties [NODE], rois [NODE]
 ///     views [NODE + layout, technique, background {bottom, top}]

@@ -11,11 +11,6 @@ namespace {
 
 using Fits = std::vector<const OrganPreset*>;
 
-bool matchesAny(const std::vector<std::string>& patterns, const std::string& name) {
-  return std::ranges::any_of(
-      patterns, [&](const std::string& pattern) { return matchesName(pattern, name); });
-}
-
 bool hasAny(const std::vector<std::string>& codes, const SegmentInfo& segment) {
   return std::ranges::any_of(codes, [&](const std::string& code) {
     return code == segment.type || code == segment.type + "~" + segment.region;
@@ -35,12 +30,13 @@ std::string listedFits(const Fits& fits, const std::vector<SegmentInfo>& segment
 
 } // namespace
 
-std::vector<SegmentInfo> focusOf(const FocusPatterns& patterns,
+std::vector<SegmentInfo> focusOf(const SegmentPatterns& patterns,
                                  const std::vector<SegmentInfo>& segments) {
   std::vector<SegmentInfo> focus;
   std::ranges::copy_if(segments, std::back_inserter(focus), [&](const SegmentInfo& segment) {
-    return (matchesAny(patterns.names, segment.name) || hasAny(patterns.codes, segment)) &&
-           !matchesAny(patterns.except, segment.name);
+    const std::vector<std::string> name = nameWords(segment.name);
+    return (firstMatch(patterns.names, name) || hasAny(patterns.codes, segment)) &&
+           !firstMatch(patterns.except, name);
   });
   return focus;
 }

@@ -11,7 +11,7 @@
 namespace fenestra {
 
 /// Segments that the preset's patterns or codes name, in the order of `segments`.
-std::vector<SegmentInfo> focusOf(const FocusPatterns& patterns,
+std::vector<SegmentInfo> focusOf(const SegmentPatterns& patterns,
                                  const std::vector<SegmentInfo>& segments);
 
 /// Names for a message, at most 12: "liver, left lung, …".

@@ -115,6 +115,21 @@ TEST_F(InspectCommand, DescribesSegments) {
   EXPECT_TRUE(segments[1]["bounds"].is_null());
 }
 
+TEST_F(InspectCommand, TellsWhatEachSegmentIsMadeOf) {
+  const Json said = inspect({"segments.seg.nrrd"});
+  const Json& bone = said["segmentations"][0]["segments"][0]["material"];
+  EXPECT_EQ(bone["name"], "bone");
+  EXPECT_EQ(bone["kind"], "tint");
+  EXPECT_NEAR(bone["color"][2].get<double>(), 0xdc / 255.0, 1e-9);
+  EXPECT_EQ(bone["priority"], 10);
+  EXPECT_EQ(bone["clip"], true);
+  EXPECT_EQ(bone["density"], 1.0);
+  EXPECT_EQ(bone["why"], "by name 'bone*'");
+  const Json& other = said["segmentations"][0]["segments"][1]["material"];
+  EXPECT_TRUE(other["name"].is_null()) << other;
+  EXPECT_NE(text.find("bone      #f6eedc  tint  by name 'bone*'"), std::string::npos) << text;
+}
+
 TEST_F(InspectCommand, ReportsLabelMapAsSegmentation) {
   std::string labels(64, '\0');
   std::fill(labels.begin() + 8, labels.begin() + 24, '\3');
@@ -442,6 +457,7 @@ TEST_F(InspectCommand, DescribesSceneWrittenBySlicer) {
   EXPECT_EQ(said["segmentations"][0]["segments"].size(), 7u);
   EXPECT_EQ(said["segmentations"][0]["segments"][4]["name"], "right lung");
   EXPECT_EQ(said["segmentations"][0]["segments"][4]["voxels"], 34450);
+  EXPECT_EQ(said["segmentations"][0]["segments"][4]["material"]["why"], "by SCT^39607008");
   EXPECT_NEAR(said["transforms"][0]["toWorld"][0][1].get<double>(), -0.34202, 1e-5);
   EXPECT_EQ(said["warnings"], Json::array());
 }

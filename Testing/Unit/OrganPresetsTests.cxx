@@ -36,13 +36,14 @@ Texts namesOf(const std::vector<SegmentInfo>& infos) {
   return names;
 }
 
-OrganPreset preset(const std::string& name, Modality modality, const FocusPatterns& focus,
+OrganPreset preset(const std::string& name, Modality modality, const SegmentPatterns& focus,
                    const Texts& before = {}) {
   return {.name = name, .title = name, .modality = modality, .focus = focus, .before = before};
 }
 
 TEST(OrganPresets, FocusTakesSegmentsByNameOrCode) {
-  const FocusPatterns patterns{{"lung*"}, {"nodule"}, {"SCT^39607008", "SCT^4147007~SCT^39607008"}};
+  const SegmentPatterns patterns{
+      {"lung*"}, {"nodule"}, {"SCT^39607008", "SCT^4147007~SCT^39607008"}};
   const std::vector<SegmentInfo> all = {segment("heart", "SCT^80891009"),
                                         segment("left lung"),
                                         segment("Segment_6", "SCT^39607008"),

@@ -1,5 +1,6 @@
 // Organ presets: content of their files, refusals, and matches of name patterns.
 
+#include "base/Text.h"
 #include "base/safe/EmbeddedResources.h"
 #include "files/looks/PresetReader.h"
 #include "files/looks/TransferReader.h"
@@ -21,8 +22,8 @@ TEST(PresetReader, ReadsEveryField) {
   EXPECT_EQ(preset.name, "spleen");
   EXPECT_EQ(preset.title, "A spleen");
   EXPECT_EQ(preset.modality, Modality::ct);
-  EXPECT_EQ(preset.focus.names, Texts{"spleen"});
-  EXPECT_EQ(preset.focus.except, Texts{"accessory"});
+  EXPECT_EQ(preset.focus.names, std::vector<NamePattern>{"spleen"});
+  EXPECT_EQ(preset.focus.except, std::vector<NamePattern>{"accessory"});
   EXPECT_EQ(preset.focus.codes, Texts{"SCT^78961009"});
   EXPECT_EQ(preset.before, Texts{"liver"});
   EXPECT_EQ(preset.tested, "no");
@@ -61,6 +62,10 @@ TEST(PresetReader, ErrorNamesTheField) {
   refuse("{" + t + m + f + R"("flags": {"new\nline": null}})", "flags.new line: must be a string");
   refuse("[]", "must be an object");
   refuse("{", "is not JSON");
+}
+
+bool matchesName(const std::string& pattern, const std::string& name) {
+  return NamePattern(pattern).matches(nameWords(name));
 }
 
 TEST(PresetReader, MatchesWordsInAnyCaseAndSpelling) {

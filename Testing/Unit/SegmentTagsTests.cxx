@@ -22,8 +22,8 @@ TEST(SegmentTags, AnatomyOfSegmentsIsReadWithoutTheirLabels) {
       "Segmentation.Status:inprogress|TerminologyEntry:Segmentation category and type - 3D Slicer "
       "General Anatomy list~SCT^123037004^Anatomical Structure~SCT^39607008^Lung~SCT^7771000^Left~"
       "Anatomic codes - DICOM master list~^^~^^|";
-  geometry.fields["Segment1_Tags"] =
-      "TerminologyEntry:L~SCT^49755003^Altered~SCT^4147007^Mass~^^~A~SCT^12738006^Brain~^^";
+  geometry.fields["Segment1_Tags"] = "Segmentation.TerminologyEntry:L~SCT^49755003^Altered~SCT^"
+                                     "4147007^Mass~^^~A~SCT^12738006^Brain~^^";
   geometry.fields["Segment2_Tags"] = "TerminologyEntry:~^|x";
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
   const auto infos = readSegmentInfos(folder / "s.seg.nrrd");
@@ -31,9 +31,12 @@ TEST(SegmentTags, AnatomyOfSegmentsIsReadWithoutTheirLabels) {
   EXPECT_EQ(infos[0].name, "left lung");
   EXPECT_EQ(infos[0].type, "SCT^39607008");
   EXPECT_EQ(infos[0].region, "");
+  EXPECT_EQ(infos[0].category, "SCT^123037004");
+  EXPECT_EQ(infos[1].category, "SCT^49755003");
   EXPECT_EQ(infos[1].type, "SCT^4147007");
   EXPECT_EQ(infos[1].region, "SCT^12738006");
   EXPECT_EQ(infos[2].type, "");
+  EXPECT_EQ(infos[2].category, "");
   EXPECT_EQ(readSegmentation(folder / "s.seg.nrrd").segments()[1].region, "SCT^12738006");
   writeFile(folder / "labels.nrrd", std::vector<std::uint8_t>(24, 1));
   EXPECT_TRUE(readSegmentInfos(folder / "labels.nrrd").empty());

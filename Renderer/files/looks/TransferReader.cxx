@@ -2,56 +2,16 @@
 
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
-#include "files/looks/HexColor.h"
+#include "files/looks/CurveReader.h"
 #include "model/medium/Reflectance.h"
 #include "model/medium/VolumeProperty.h"
-
-#include <span>
 
 namespace fenestra {
 namespace {
 
-constexpr double largestValue = 1e30; ///< largest scalar and extinction; differences stay finite
 constexpr double mostForward = 0.999; ///< g = 1 would never scatter
 
-double finite(const JsonNode& node) {
-  return node.numberIn(-largestValue, largestValue);
-}
-
 // ---- Fenestra
-
-/// Rows [scalar, value...], each value from 0 to `most`.
-template <int Channels>
-PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double most) {
-  std::vector<typename PiecewiseLinear<Channels>::Knot> knots;
-  for (const JsonNode& row : rows.elements()) {
-    const auto numbers = row.numbers(Channels + 1, -largestValue, largestValue);
-    for (const double value : std::span(numbers).subspan(1))
-      if (value < 0.0 || value > most)
-        throw row.error(most == 1.0 ? "values must be from 0 to 1" : "value must not be negative");
-    Array<double, Channels> value;
-    std::copy_n(numbers.begin() + 1, Channels, value.data());
-    knots.push_back({numbers[0], value});
-  }
-  if (knots.empty())
-    throw rows.error("is empty; give at least one point");
-  return PiecewiseLinear<Channels>(std::move(knots));
-}
-
-/// Albedo of rows [scalar, "#rrggbb"], the colours that are seen.
-ColorFunction readColors(const JsonNode& rows, double g) {
-  constexpr std::size_t mostColors = 4096;
-  std::vector<ColorFunction::Knot> colors;
-  for (const JsonNode& row : rows.elements()) {
-    const std::vector<JsonNode> parts = row.elements();
-    if (parts.size() != 2)
-      throw row.error("must be [scalar, \"#rrggbb\"]");
-    colors.push_back({finite(parts[0]), readHexColor(parts[1])});
-  }
-  if (colors.empty() || colors.size() > mostColors)
-    throw rows.error(textOf("has ", colors.size(), " points; give from 1 to ", mostColors));
-  return albedoFor(ColorFunction(std::move(colors)), g);
-}
 
 /// Surface lobes: a coat where colour, specular or roughness is given; else those of Slicer's usual
 /// material.
@@ -72,23 +32,14 @@ std::optional<SurfaceShading> readShading(const JsonNode& root, double g) {
 TransferLook readOwn(const JsonNode& root) {
   root.allowOnly(
       {"scalars", "extinction", "albedo", "color", "g", "shading", "specular", "roughness"});
-  double g = 0.0;
-  if (const auto node = root.find("g")) {
-    g = node->number();
-    if (!(std::abs(g) < 1.0))
-      throw node->error("must be between -1 and 1, both excluded");
-  }
-  const auto color = root.find("color");
-  if (color && root.find("albedo"))
-    throw color->error("and albedo contradict each other; give one");
-  if (color && !(g >= 0.0 && g <= greatestColorG))
-    throw root.at("g").error(
-        textOf("must be from 0 to ", numberText(greatestColorG), " with \"color\""));
+  const ColorKind kind = colorKind(root);
+  const double g = readMeanCosine(root, 0.0, kind);
   ScalarFunction extinction = readCurve<1>(root.at("extinction"), largestValue);
-  if (!color && !root.find("albedo"))
+  if (kind == ColorKind::none)
     throw root.error("has no \"albedo\" and no \"color\"; give one");
-  TransferFunction transfer{std::move(extinction),
-                            color ? readColors(*color, g) : readCurve<3>(root.at("albedo"), 1.0)};
+  TransferFunction transfer{std::move(extinction), kind == ColorKind::seen
+                                                       ? albedoFor(readColors(root.at("color")), g)
+                                                       : readCurve<3>(root.at("albedo"), 1.0)};
   transfer.g = g;
   transfer.shading = readShading(root, g);
   const auto scalars = root.find("scalars");

@@ -176,7 +176,7 @@ void SegmentInfo::readTerminology(std::string_view tags) {
     return;
   tags.remove_prefix(at + key.size());
   const std::vector<std::string> parts = split(tags.substr(0, tags.find('|')), '~');
-  for (const auto& [place, code] : {std::pair(2U, &type), {5U, &region}})
+  for (const auto& [place, code] : {std::pair(1U, &category), {2U, &type}, {5U, &region}})
     if (const std::size_t meaning = place < parts.size() ? parts[place].rfind('^') : 0;
         meaning != std::string::npos && meaning > 1)
       *code = parts[place].substr(0, meaning);

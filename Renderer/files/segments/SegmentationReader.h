@@ -21,10 +21,10 @@ struct SegmentInfo {
   std::int32_t labelValue = 1; ///< never 0, which is the background
   std::size_t layer = 0;
   Rgb color = Rgb::Constant(0.5); ///< display-encoded
-  /// Terminology codes of type and body region, like "SCT^39607008"; empty: not stated.
-  std::string type = {}, region = {};
+  /// Terminology codes of category, type and body region, like "SCT^39607008"; empty: not stated.
+  std::string category = {}, type = {}, region = {};
 
-  /// Sets type and region from Slicer's tags of a segment; ignores malformed ones.
+  /// Sets category, type and region from Slicer's tags of a segment; ignores malformed ones.
   void readTerminology(std::string_view tags);
 };
 

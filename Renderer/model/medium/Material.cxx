@@ -1,0 +1,16 @@
+#include "model/medium/Material.h"
+
+#include "model/medium/Reflectance.h"
+
+namespace fenestra {
+
+std::optional<ColorFunction> seenColor(const Material& material) {
+  if (!material.color || !material.colorIsAlbedo)
+    return material.color;
+  return material.color->withKnots([&](ColorFunction::Knot& knot) {
+    knot.value =
+        knot.value.unaryExpr([&](double albedo) { return reflectance(albedo, material.g); });
+  });
+}
+
+} // namespace fenestra

@@ -1,0 +1,132 @@
+#include "session/SegmentMaterials.h"
+
+#include "base/Color.h"
+#include "base/Text.h"
+#include "base/safe/EmbeddedResources.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <tuple>
+
+namespace fenestra {
+namespace {
+
+/// Part of a segment that a rule matches, weakest first.
+enum class Match { none, name, region, category, type, typeAndRegion, value };
+
+struct Found {
+  Match by = Match::none;
+  std::string why;
+};
+
+bool holds(const auto& list, const auto& value) {
+  return std::ranges::find(list, value) != list.end();
+}
+
+/// Match of the segment's codes, which are empty where there are none.
+Found findCode(const MaterialRule& rule, const SegmentInfo& segment) {
+  const std::vector<std::string>& codes = rule.patterns.codes;
+  const std::string both = segment.type + "~" + segment.region;
+  if (holds(codes, both))
+    return {Match::typeAndRegion, "by " + both};
+  if (holds(codes, segment.type))
+    return {Match::type, "by " + segment.type};
+  if (!rule.category.empty() && rule.category == segment.category)
+    return {Match::category, "by category " + segment.category};
+  if (holds(codes, segment.region))
+    return {Match::region, "by region " + segment.region};
+  return {};
+}
+
+/// Strongest match of the rule; `words`: of the segment's name.
+Found findMatch(const MaterialRule& rule, const SegmentInfo& segment,
+                const std::vector<std::string>& words) {
+  Found found = findCode(rule, segment);
+  if (holds(rule.values, segment.labelValue))
+    found = {Match::value, textOf("by value ", segment.labelValue)};
+  if (found.by == Match::none)
+    if (const NamePattern* pattern = firstMatch(rule.patterns.names, words))
+      found = {Match::name, "by name '" + pattern->text + "'"};
+  if (found.by != Match::none && firstMatch(rule.patterns.except, words))
+    return {};
+  return found;
+}
+
+std::optional<SegmentMaterial> byRule(const SegmentInfo& segment, const MaterialTable& table) {
+  const std::vector<std::string> words = nameWords(segment.name);
+  const MaterialRule* best = nullptr;
+  Found bestFound;
+  const auto rank = [](const MaterialRule& rule, const Found& found) {
+    return std::tuple(rule.isOwn, found.by, found.by == Match::name ? rule.priority : 0);
+  };
+  for (const MaterialRule& rule : table.rules) {
+    Found found = findMatch(rule, segment, words);
+    if (found.by != Match::none && (!best || rank(rule, found) > rank(*best, bestFound))) {
+      best = &rule;
+      bestFound = std::move(found);
+    }
+  }
+  if (!best)
+    return std::nullopt;
+  return SegmentMaterial{
+      {table.materials.at(best->material), best->priority, best->isClipped, best->density},
+      best->material,
+      std::move(bestFound.why)};
+}
+
+/// Grey that Slicer, and this program, give to segments without a colour.
+bool isDefault(const Rgb& color) {
+  constexpr double byte = 1.0 / 255.0;
+  return ((color - 0.5).abs() < byte).all();
+}
+
+SegmentMaterial colored(const Rgb& encoded, const char* why) {
+  SegmentMaterial result{.why = why};
+  result.matter.material.color = ColorFunction({{0.0, decodeSrgb(encoded)}});
+  return result;
+}
+
+/// Colours, sRGB, each as far from those before it in CIELAB as it can be, of a lightness from 45
+/// to 88 and a chroma from 24 to 68; no two are nearer than 30.
+constexpr std::array<std::uint32_t, 20> palette = {
+    0x9396ec, 0xc5e057, 0xc4362b, 0x11ece6, 0x706c43, 0xe74da3, 0xf2a236,
+    0xffb7ba, 0x0c9d52, 0x1b7f97, 0xbfddac, 0x8f5a79, 0xa9daff, 0x9648b7,
+    0x71871b, 0x9b5b15, 0xfdb0f3, 0xd5ad73, 0x47977c, 0x30f0ad};
+
+Rgb paletteColor(std::size_t i) {
+  const std::uint32_t color = palette[i % palette.size()];
+  return Rgb((color >> 16U) & 0xffU, (color >> 8U) & 0xffU, color & 0xffU) / 255.0;
+}
+
+} // namespace
+
+const MaterialTable& materialLibrary() {
+  static const MaterialTable library = [] {
+    MaterialTable all;
+    for (const std::string& file : embeddedResourceNames("materials/")) {
+      MaterialTable table = parseMaterials(embeddedResource(file), file);
+      all.materials.merge(table.materials);
+      std::ranges::move(table.rules, std::back_inserter(all.rules));
+    }
+    return all;
+  }();
+  return library;
+}
+
+std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segments,
+                                         const MaterialTable& table) {
+  std::vector<SegmentMaterial> materials;
+  std::size_t unknown = 0;
+  for (const SegmentInfo& segment : segments) {
+    if (auto found = byRule(segment, table))
+      materials.push_back(std::move(*found));
+    else if (!isDefault(segment.color))
+      materials.push_back(colored(segment.color, "by its own colour"));
+    else
+      materials.push_back(colored(paletteColor(unknown++), "by palette"));
+  }
+  return materials;
+}
+
+} // namespace fenestra

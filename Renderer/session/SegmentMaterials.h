@@ -1,0 +1,33 @@
+#pragma once
+// Matter of each segment, by what the segmentation says of it.
+
+#include "files/looks/MaterialReader.h"
+#include "files/segments/SegmentationReader.h"
+
+#include <string>
+#include <vector>
+
+namespace fenestra {
+
+struct SegmentMaterial {
+  SegmentMatter matter = {};
+  std::string name = {}; ///< of the material; empty: none of the table's, but a colour
+  /// Reason: "by SCT^10200004", "by name 'liver'", "by value 5", "by its own colour", "by palette".
+  std::string why = {};
+};
+
+/// Materials and rules that are compiled in (Resources/materials).
+const MaterialTable& materialLibrary();
+
+/// Materials of the segments, in their order. A rule of the table's own file is taken before any
+/// beneath it, and among those the first of
+///   1. the segment's label value,
+///   2. its terminology: type and region, type, category, region,
+///   3. its name; of several rules that of the greatest priority, then the first.
+/// A rule whose exceptions the name matches is passed over. A segment without a rule is tinted in
+/// its own colour, if that is not Slicer's default grey; else in a colour of a palette, so that
+/// no two of the first 20 look alike.
+std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segments,
+                                         const MaterialTable& table);
+
+} // namespace fenestra

@@ -1,0 +1,13 @@
+// Materials; a line without a brace is a change to one segment.
+#include "Harness.h"
+
+#include "files/looks/MaterialReader.h"
+
+FENESTRA_FUZZ(Materials, input) {
+  static const fenestra::MaterialTable beneath = fenestra::parseMaterials(
+      R"({"version": 1, "materials": {"fog": {"albedo": [1, 1, 1], "g": -0.5}}})", "beneath");
+  if (input.find('{') != input.npos)
+    fenestra::parseMaterials(input, "materials.json", beneath);
+  else
+    fenestra::parseMaterialChange(std::string(input), beneath);
+}

@@ -1,0 +1,250 @@
+// Tables of materials and changes to them: content, refusals, and the library that is compiled in.
+
+#include "base/safe/EmbeddedResources.h"
+#include "files/looks/MaterialReader.h"
+#include "model/medium/Reflectance.h"
+
+#include "Refusals.h"
+
+#include <set>
+
+namespace fenestra::MaterialReaderTests {
+namespace {
+
+constexpr const char* organs = R"({"version": 1,
+  "materials": {
+    "liver": {"color": [[-20, "#b48a66"], [50, "#963e2e"]], "extinction": "base", "g": 0.5,
+              "specular": 0.25, "roughness": 0.35, "border": 0.1},
+    "lesion": {"albedo": [0.9, 0.8, 0.1], "extinction": 6, "g": -0.5, "diffuse": 0.8},
+    "bone": {"color": "#ffffff", "extinction": [[100, 0], [300, 8]]},
+    "stone": {"albedo": [[0, 0.1, 0.2, 0.3], [1, 1, 1, 1]], "kind": "matter"},
+    "tissue": {}},
+  "segments": [
+    {"match": {"codes": ["SCT^10200004"], "names": ["liver"], "except": ["vessel*"], "values": [5]},
+     "material": "liver", "priority": 12, "clip": false, "density": 2},
+    {"match": {"category": "SCT^49755003"}, "material": "lesion"}],
+  "rest": {"material": "tissue"},
+  "context": {"saturation": 0.6, "lightness": 0.15}})";
+
+double extinctionOf(const Material& material, double scalar) {
+  return (*material.extinction)(scalar).value();
+}
+
+TEST(MaterialReader, ReadsEveryFieldOfAMaterial) {
+  const auto materials = parseMaterials(organs, "test").materials;
+  ASSERT_EQ(materials.size(), 5u);
+  const Material& liver = materials.at("liver");
+  EXPECT_EQ(liver.kind, MaterialKind::tint);
+  ASSERT_TRUE(liver.color);
+  EXPECT_FALSE(liver.colorIsAlbedo);
+  EXPECT_EQ(liver.color->knots().size(), 2u);
+  EXPECT_NEAR((*liver.color)(50)[0], std::pow((0x96 / 255.0 + 0.055) / 1.055, 2.4), 1e-12);
+  EXPECT_FALSE(liver.extinction) << "the volume's own";
+  EXPECT_EQ(liver.g, 0.5);
+  EXPECT_EQ(liver.diffuse, 1.0) << "the default";
+  EXPECT_EQ(liver.specular, 0.25);
+  EXPECT_EQ(liver.roughness, 0.35);
+  EXPECT_EQ(liver.border, 0.1);
+  const Material& lesion = materials.at("lesion");
+  EXPECT_EQ(lesion.kind, MaterialKind::matter) << "extinction of its own";
+  EXPECT_TRUE(lesion.colorIsAlbedo);
+  EXPECT_EQ((*lesion.color)(-1000)[2], 0.1);
+  EXPECT_EQ(extinctionOf(lesion, 1e6), 6.0);
+  EXPECT_EQ(lesion.g, -0.5);
+  EXPECT_EQ(lesion.diffuse, 0.8);
+  EXPECT_EQ(extinctionOf(materials.at("bone"), 200), 4.0);
+  EXPECT_EQ(materials.at("stone").kind, MaterialKind::matter);
+  EXPECT_EQ((*materials.at("stone").color)(0)[1], 0.2);
+  EXPECT_FALSE(materials.at("tissue").color) << "the volume's own";
+}
+
+TEST(MaterialReader, ReadsEveryFieldOfARule) {
+  const MaterialTable table = parseMaterials(organs, "test");
+  ASSERT_EQ(table.rules.size(), 2u);
+  const MaterialRule& rule = table.rules[0];
+  EXPECT_EQ(rule.patterns.codes, std::vector<std::string>{"SCT^10200004"});
+  EXPECT_EQ(rule.patterns.names, std::vector<NamePattern>{"liver"});
+  EXPECT_EQ(rule.patterns.except, std::vector<NamePattern>{"vessel*"});
+  EXPECT_EQ(rule.values, std::vector<std::int32_t>{5});
+  EXPECT_EQ(rule.material, "liver");
+  EXPECT_EQ(rule.priority, 12);
+  EXPECT_FALSE(rule.isClipped);
+  EXPECT_EQ(rule.density, 2.0);
+  EXPECT_EQ(table.rules[1].category, "SCT^49755003");
+  EXPECT_EQ(table.rules[1].priority, 10);
+  EXPECT_TRUE(table.rules[1].isClipped);
+  EXPECT_EQ(table.rest, "tissue");
+  EXPECT_EQ(table.context.saturation, 0.6);
+  EXPECT_EQ(table.context.lightness, 0.15);
+}
+
+TEST(MaterialReader, AFileStandsOnTheTableBeneath) {
+  const MaterialTable beneath = parseMaterials(organs, "test");
+  const MaterialTable table = parseMaterials(
+      R"({"version": 1, "materials": {"lesion": {"color": "#00ff00"}},
+          "segments": [{"match": {"names": ["spleen"]}, "material": "liver"}]})",
+      "mine", beneath);
+  EXPECT_EQ(table.materials.size(), 5u);
+  EXPECT_FALSE(table.materials.at("lesion").extinction) << "replaced whole";
+  ASSERT_EQ(table.rules.size(), 3u);
+  EXPECT_EQ(table.rules[0].patterns.names, std::vector<NamePattern>{"spleen"});
+  EXPECT_TRUE(table.rules[0].isOwn);
+  EXPECT_FALSE(table.rules[1].isOwn);
+  EXPECT_EQ(table.rest, "tissue");
+}
+
+TEST(MaterialReader, SeenColorOfAnAlbedoIsItsReflectance) {
+  const auto materials = parseMaterials(organs, "test").materials;
+  const Material& lesion = materials.at("lesion");
+  EXPECT_NEAR((*seenColor(lesion))(0)[0], reflectance(0.9, -0.5), 1e-12);
+  const Material& bone = materials.at("bone");
+  EXPECT_EQ((*seenColor(bone))(0)[0], 1.0);
+  EXPECT_FALSE(seenColor(materials.at("tissue")));
+}
+
+void refuse(const std::string& json, const std::string& text) {
+  expectRefused("test", text, [&] { parseMaterials(json, "test"); });
+}
+
+void refuseMaterial(const std::string& fields, const std::string& text) {
+  refuse(R"({"version": 1, "materials": {"m": {)" + fields + "}}}", text);
+}
+
+void refuseRule(const std::string& fields, const std::string& text) {
+  refuse(R"({"version": 1, "materials": {"m": {}}, "segments": [{)" + fields + "}]}", text);
+}
+
+TEST(MaterialReader, ErrorNamesTheFieldOfATable) {
+  refuse("[]", "must be an object");
+  refuse("{", "is not JSON");
+  refuse("{}", "has no \"version\"; add it");
+  refuse(R"({"version": 2})", "version: must be 1");
+  refuse(R"({"version": "1"})", "version: must be a number");
+  refuse(R"({"version": 1, "labels": "x"})", "unknown key \"labels\"; known ones are version");
+  refuse(R"({"version": 1, "materials": []})", "materials: must be an object");
+  refuse(R"({"version": 1, "segments": {}})", "segments: must be an array");
+  refuse(R"({"version": 1, "rest": {"material": "air"}})",
+         "rest.material: there is no material \"air\"; name one");
+  refuse(R"({"version": 1, "rest": {}})", "rest: has no \"material\"");
+  refuse(R"({"version": 1, "context": {"saturation": 2}})", "context.saturation: is 2; it must be");
+  refuse(R"({"version": 1, "context": {"hue": 2}})", "context: unknown key \"hue\"");
+}
+
+TEST(MaterialReader, ErrorNamesTheFieldOfAMaterial) {
+  refuseMaterial(R"("colour": "#ffffff")", "materials.m: unknown key \"colour\"");
+  refuseMaterial(R"("emission": [0, 0, 1])", "unknown key \"emission\"");
+  refuseMaterial(R"("color": "red")", "materials.m.color: must be a colour such as");
+  refuseMaterial(R"("color": [[0, "#ffffff", 1]])", "materials.m.color[0]: must be [scalar");
+  refuseMaterial(R"("color": [])", "materials.m.color: has 0 points");
+  refuseMaterial(R"("color": "#ffffff", "albedo": [1, 1, 1])", "color: and albedo contradict");
+  refuseMaterial(R"("albedo": [1, 1])", "materials.m.albedo: must have 3 numbers, not 2");
+  refuseMaterial(R"("albedo": [1, 1, 2])", "materials.m.albedo[2]: is 2; it must be from 0 to 1");
+  refuseMaterial(R"("albedo": [[0, 1, 1]])", "materials.m.albedo[0]: must have 4 numbers");
+  refuseMaterial(R"("albedo": "#ffffff")", "materials.m.albedo: must be an array");
+  refuseMaterial(R"("albedo": [])", "materials.m.albedo: is empty");
+  refuseMaterial(R"("extinction": "basis")", "extinction: must be \"base\", a number per mm");
+  refuseMaterial(R"("extinction": -1)", "extinction: is -1; it must be from 0");
+  refuseMaterial(R"("extinction": [[0, -1]])", "extinction[0]: value must not be negative");
+  refuseMaterial(R"("g": 1)", "materials.m.g: must be between -1 and 1");
+  refuseMaterial(R"("color": "#ffffff", "g": -0.5)", "materials.m.g: must be from 0 to 0.95");
+  refuseMaterial(R"("kind": "ghost")", "materials.m.kind: must be \"tint\" or \"matter\"");
+  refuseMaterial(R"("kind": "tint", "extinction": 2)",
+                 "materials.m.kind: is \"tint\", which keeps");
+  refuseMaterial(R"("roughness": 0)", "materials.m.roughness: is 0; it must be from 0.05 to 1");
+  refuseMaterial(R"("specular": 1.5)", "materials.m.specular: is 1.5");
+  refuseMaterial(R"("diffuse": "1")", "materials.m.diffuse: must be a number");
+  refuseMaterial(R"("border": -0.1)", "materials.m.border: is -0.1; it must be from 0 to 10");
+}
+
+TEST(MaterialReader, ErrorNamesTheFieldOfARule) {
+  const std::string match = R"("match": {"names": ["a"]}, )";
+  refuseRule(R"("material": "m")", "segments[0]: has no \"match\"");
+  refuseRule(R"("match": {}, "material": "m")", "segments[0].match: has no \"codes\", \"names\"");
+  refuseRule(R"("match": {"except": ["a"]}, "material": "m")", "segments[0].match: has no");
+  refuseRule(R"("match": {"name": ["a"]}, "material": "m")", "match: unknown key \"name\"");
+  refuseRule(R"("match": {"names": ["", "a"]}, "material": "m")", "match.names[0]: must have 1 to");
+  refuseRule(R"("match": {"codes": ["10200004"]}, "material": "m")",
+             "codes[0]: must be a code like");
+  refuseRule(R"("match": {"category": "altered"}, "material": "m")", "category: must be a code");
+  refuseRule(R"("match": {"values": [0]}, "material": "m")", "values[0]: is 0, which is the back");
+  refuseRule(R"("match": {"values": [1.5]}, "material": "m")", "values[0]: must be a whole number");
+  refuseRule(R"("match": {"values": [3e9]}, "material": "m")", "values[0]: is 3000000000");
+  refuseRule(match + R"("material": "liver")",
+             "segments[0].material: there is no material \"liver\"");
+  refuseRule(match + R"("materials": "m")", "segments[0]: unknown key \"materials\"");
+  refuseRule(match + R"("priority": 1)", "segments[0]: has no \"material\"");
+  refuseRule(match + R"("material": "m", "priority": 1.5)", "priority: must be a whole number");
+  refuseRule(match + R"("material": "m", "priority": -1)", "priority: is -1; it must be from 0");
+  refuseRule(match + R"("material": "m", "clip": "no")", "segments[0].clip: must be true or false");
+  refuseRule(match + R"("material": "m", "density": 1001)", "density: is 1001; it must be from 0");
+  refuseRule(match + R"("material": "m", "importance": 1)", "unknown key \"importance\"");
+}
+
+TEST(MaterialReader, ChangesOneSegment) {
+  const MaterialTable table = parseMaterials(organs, "test");
+  const MaterialChange change =
+      parseMaterialChange("Liver: left : color=#00ff00, density=2.5 ,clip=no,priority=7", table);
+  EXPECT_EQ(change.selector, "Liver: left") << "up to the last colon";
+  SegmentMatter matter{table.materials.at("liver"), 10, true, 1.0};
+  matter = changed(matter, change, table);
+  EXPECT_EQ((*matter.material.color)(0)[1], 1.0);
+  EXPECT_EQ((*matter.material.color)(0)[0], 0.0);
+  EXPECT_EQ(matter.material.specular, 0.25) << "the liver's, unchanged";
+  EXPECT_EQ(matter.density, 2.5);
+  EXPECT_FALSE(matter.isClipped);
+  EXPECT_EQ(matter.priority, 7);
+  matter = changed(matter, parseMaterialChange("x: material=lesion, extinction=3", table), table);
+  EXPECT_EQ(extinctionOf(matter.material, 0), 3.0);
+  EXPECT_EQ(matter.material.diffuse, 0.8) << "the lesion's";
+  EXPECT_EQ(matter.density, 2.5) << "the segment's";
+  matter = changed(matter, parseMaterialChange("x: extinction=base, kind=tint", table), table);
+  EXPECT_FALSE(matter.material.extinction);
+  EXPECT_EQ(matter.material.kind, MaterialKind::tint);
+}
+
+TEST(MaterialReader, ErrorNamesTheFieldOfAChange) {
+  const MaterialTable table = parseMaterials(organs, "test");
+  const auto refuseChange = [&](const std::string& text, const std::string& source,
+                                const std::string& line) {
+    expectRefused("--material " + source, line, [&] { parseMaterialChange(text, table); });
+  };
+  refuseChange("liver", "liver", "must name a segment and what to change");
+  refuseChange(": density=2", ": density=2", "must name a segment");
+  refuseChange("liver:", "liver", "changes nothing");
+  refuseChange("liver: density", "liver", "\" density\" must be a key and a value");
+  refuseChange("liver: density=2, density=3", "liver", "density: is given twice");
+  refuseChange("liver: colour=#ffffff", "liver", "unknown key \"colour\"");
+  refuseChange("liver: color=red", "liver", "color: must be a colour such as");
+  refuseChange("liver: den\x97sity=2", "liver", "unknown key \"den?sity\"");
+  refuseChange("liver: clip=maybe", "liver", "clip: must be true or false");
+  refuseChange("liver: density=-1", "liver", "density: is -1");
+  refuseChange("liver: material=stomach", "liver", "material: there is no material \"stomach\"");
+  const MaterialChange color = parseMaterialChange("a: color=#ffffff", table);
+  const SegmentMatter backward{table.materials.at("lesion")};
+  expectRefused("--material a", "has no \"g\"", [&] { changed(backward, color, table); });
+}
+
+/// Each file stands alone, no name or code says two things, and all colours are constant: scalars
+/// of MR have no unit.
+TEST(MaterialReader, ReadsTheLibrary) {
+  const auto files = embeddedResourceNames("materials/");
+  EXPECT_GE(files.size(), 8u);
+  std::set<std::string> names, codes;
+  for (const std::string& file : files) {
+    SCOPED_TRACE(file);
+    const MaterialTable table = parseMaterials(embeddedResource(file), file);
+    for (const auto& [name, material] : table.materials) {
+      EXPECT_TRUE(names.insert(name).second) << name;
+      EXPECT_EQ(material.kind, MaterialKind::tint) << name;
+      EXPECT_EQ(material.color.has_value(), name != "tissue") << name;
+      EXPECT_TRUE(!material.color || material.color->knots().size() == 1) << name;
+    }
+    for (const MaterialRule& rule : table.rules)
+      for (const std::string& code : rule.patterns.codes)
+        EXPECT_TRUE(codes.insert(code).second) << code;
+  }
+  EXPECT_GE(names.size(), 24u);
+}
+
+} // namespace
+} // namespace fenestra::MaterialReaderTests
