@@ -65,6 +65,7 @@ struct TestScene {
   Clip clip = {};
   std::optional<CropBox> crop = {};
   std::optional<ContextStyle> style = {};
+  std::optional<Tint> tint = {};
 
   /// work(RenderScene).
   template <typename Work>
@@ -74,7 +75,8 @@ struct TestScene {
     const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
     const ContextStyle* const styled = style ? &*style : nullptr;
     const MajorantGrid majorants(volume.grid, ranges, transfer, clip, styled);
-    return work(RenderScene{volume, transfer, majorants, lightSet, camera, clip, crop, styled});
+    return work(RenderScene{volume, transfer, majorants, lightSet, camera, clip, crop, styled,
+                            tint ? &*tint : nullptr});
   }
 
   RenderResult render(const RenderSettings& settings) const {

@@ -2,6 +2,7 @@
 // The classified volume at a point: extinction for tracking, matter for the estimator.
 
 #include "model/medium/ContextStyle.h"
+#include "model/medium/Tint.h"
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Volume.h"
 
@@ -16,15 +17,18 @@ struct Matter {
   double surfaceProbability; ///< probability that the path scatters at a surface here
 };
 
-/// A view: voxels, transfer function and style must outlive the medium. Points are in index space.
+/// A view: voxels, transfer function, style and tint must outlive the medium. Points are in index
+/// space.
 template <typename Voxel>
 class Medium {
 public:
   Medium(const Grid& grid, const std::vector<Voxel>& voxels, const TransferFunction& transfer,
-         const ContextStyle* style = nullptr)
+         const ContextStyle* style = nullptr, const Tint* tint = nullptr)
       : m_field(grid, voxels), m_transfer(transfer) {
     if (style)
       m_context.emplace(*style, grid);
+    if (tint)
+      m_tinted.emplace(*tint, grid);
   }
 
   /// Extinction in mm^-1.
@@ -43,9 +47,11 @@ public:
   /// there is shading, spans of the transfer function per mm, world axes; it changes surfaces, not
   /// the extinction.
   Matter matter(const Vec3& index, bool wantGradient, const Vec3& cut = Vec3::Zero()) const {
-    const bool oneAlbedo = m_transfer.albedo.knots().size() == 1;
+    const bool oneAlbedo = m_transfer.albedo.knots().size() == 1 && !m_tinted;
     const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
     Matter m{m_transfer.albedo(scalar), Vec3::Zero(), 0.0};
+    if (m_tinted)
+      m.albedo = m_tinted->albedo(index, scalar, m.albedo);
     if (m_context && !m_context->isFocus(index))
       m.albedo = m_context->style().paled(m.albedo);
     if (needsGradient(wantGradient))
@@ -80,6 +86,7 @@ private:
   Field<Voxel> m_field;
   const TransferFunction& m_transfer;
   std::optional<StyledContext> m_context;
+  std::optional<TintedField> m_tinted;
 };
 
 } // namespace fenestra

@@ -7,7 +7,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include "transport/lanes/Clip-inl.h"
-#include "transport/lanes/Matter-inl.h"
+#include "transport/lanes/Tint-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
@@ -135,6 +135,8 @@ public:
     const Float3 p = walk.pointAt(middle);
     const Float scalar = scalarAt<Voxel>(m_volume.field, p);
     Float3 albedo = albedoOf(m_scene.albedo, scalar);
+    if (m_scene.tint)
+      albedo = LaneTint(*m_scene.tint, scalar, albedo).at(which, p);
     if (m_volume.context)
       albedo = paled(*m_volume.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;

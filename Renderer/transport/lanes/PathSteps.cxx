@@ -7,8 +7,8 @@
 // After foreach_target.h:
 #include "transport/lanes/Clip-inl.h"
 #include "transport/lanes/LightSet-inl.h"
-#include "transport/lanes/Matter-inl.h"
 #include "transport/lanes/Scattering-inl.h"
+#include "transport/lanes/Tint-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
@@ -141,6 +141,8 @@ private:
                   {zero, zero, zero},
                   LaneMask::none()};
     at.albedo = albedoOf(m_scene.albedo, at.scalar);
+    if (m_scene.tint)
+      at.albedo = LaneTint(*m_scene.tint, at.scalar, at.albedo).at(going, index);
     if (m_volume.context)
       at.albedo = paled(*m_volume.context, index, at.albedo);
     if (m_scene.hybrid) {

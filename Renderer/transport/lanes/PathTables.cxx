@@ -56,7 +56,7 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
 }
 
 EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-                       std::uint64_t mostBounces, bool normalsWanted)
+                       std::uint64_t mostBounces, bool normalsWanted, const Tint* tints)
     : albedo(transfer.albedo),
       g(narrow(transfer.g)),
       hybrid(transfer.shading && transfer.extinction.span() > 0.0),
@@ -72,6 +72,8 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
       bounces(static_cast<std::int32_t>(
           std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
       constantEnvironment(narrow3(lights.constantEnvironment())) {
+  if (tints)
+    tint.emplace(*tints, grid);
   if (hybrid) {
     const SurfaceShading& shading = *transfer.shading;
     const SurfaceShading::Lobes lobes = shading.lobes();

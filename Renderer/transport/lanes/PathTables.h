@@ -7,6 +7,7 @@
 #include "model/volume/Grid.h"
 #include "transport/lanes/MapTables.h"
 #include "transport/lanes/Medium.h"
+#include "transport/lanes/Tint.h"
 
 #include <vector>
 
@@ -45,11 +46,12 @@ struct EventScene {
   /// light so far away or bright that squares overflow.
   static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights);
 
-  /// A view of environment maps: `lights` must outlive the object if there are any.
+  /// A view of environment maps and tint, which must outlive the object.
   EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-             std::uint64_t mostBounces, bool normalsWanted);
+             std::uint64_t mostBounces, bool normalsWanted, const Tint* tints = nullptr);
 
   WideTable albedo;
+  std::optional<WideTint> tint;
   float g;
   bool hybrid;                                  ///< surface shading
   float diffuse, specular, f0, odds, roughness; ///< of SurfaceShading

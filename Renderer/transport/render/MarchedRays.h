@@ -61,7 +61,7 @@ public:
         m_volume(WideTracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip,
                              scene.style)
                      .scene()),
-        m_events(scene.volume.grid, scene.transfer, scene.lights, 0, true) {
+        m_events(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint) {
     m_volume.seams = nullptr; // exact surfaces cost more than features gain
   }
 

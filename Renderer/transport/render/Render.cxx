@@ -213,7 +213,7 @@ RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& setti
                             scene.style, monitor.stop);
   const WideEvents events(tracker.scene(),
                           EventScene(scene.volume.grid, scene.transfer, scene.lights,
-                                     settings.path.bounces, settings.path.wantNormals));
+                                     settings.path.bounces, settings.path.wantNormals, scene.tint));
   const EyeRays eye(scene.camera, scene.clip, scene.lights, settings.path.background);
   const PathWave wave(domain, tracker, events, eye, monitor.stop);
   return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor);

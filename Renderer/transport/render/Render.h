@@ -26,6 +26,7 @@ struct RenderScene {
   const Clip& clip;
   std::optional<CropBox> crop = {};
   const ContextStyle* style = nullptr; ///< of the context; null: unchanged
+  const Tint* tint = nullptr;          ///< of segments; null: none
 };
 
 /// Calls work(medium, tracker) for the volume's storage type.
@@ -34,7 +35,8 @@ auto withMedium(const RenderScene& scene, Work&& work, const StopFlag& stop = ne
   return std::visit(
       [&](const auto& voxels) {
         using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
-        const Medium<Voxel> medium(scene.volume.grid, voxels, scene.transfer, scene.style);
+        const Medium<Voxel> medium(scene.volume.grid, voxels, scene.transfer, scene.style,
+                                   scene.tint);
         const Tracker<Voxel> tracker(Domain(scene.volume.grid, scene.crop), medium, scene.majorants,
                                      scene.clip, stop);
         return work(medium, tracker);

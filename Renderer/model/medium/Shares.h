@@ -1,0 +1,103 @@
+#pragma once
+// Shares: how much of each voxel belongs to which component of the medium. The only thing that
+// transport knows of a segmentation.
+//
+// Most voxels belong to one component alone, and most others to two. A grid of voxels is cut into
+// bricks of 4^3 cells, which hold all 5^3 voxels that interpolation inside them reads: a look-up
+// reads one brick. A pure brick is one number. A mixed one holds its components by fours, and for
+// each four 32 bits a voxel: lanes read all shares of a voxel at once. Bricks of more than four
+// components have several such groups, one after the other; nothing is left out.
+
+#include "model/volume/Mask.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace fenestra {
+
+class Shares {
+public:
+  /// Voxels of a segment, or of several of one component.
+  struct Part {
+    Mask mask; ///< all on voxels of one labelmap
+    int priority;
+    std::uint8_t component; ///< 0: what is in no segment
+  };
+
+  static constexpr std::int64_t edge = 4; ///< cells of a brick along each axis
+  static constexpr std::size_t voxelsInBrick = (edge + 1) * (edge + 1) * (edge + 1);
+  static constexpr std::size_t inGroup = 4;
+
+  /// Four components of a mixed brick; those that it lacks have no share.
+  struct Group {
+    std::array<std::uint8_t, inGroup> components;
+    std::uint32_t isLast; ///< 1: the brick's last group; else 0, and the next one is its, too
+    /// Shares of `components` in each voxel, of 255, x fastest.
+    std::array<std::array<std::uint8_t, inGroup>, voxelsInBrick> shares;
+  };
+
+  /// Shares in order of the parts' priority, the greater first: with `left` = 1, and U the sum of
+  /// the indicators u of a priority, each gets u min(1, left / U), and `left` loses min(left, U);
+  /// component 0 gets the rest. Rounded to 255ths that sum to 255. Where masks overlap it makes no
+  /// difference which of one priority comes first. At least one part.
+  explicit Shares(const std::vector<Part>& parts);
+
+  /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.
+  const Grid& grid() const { return m_grid; }
+  const Size3& brickCount() const { return m_brickCount; }
+  /// A pure brick's component; for a mixed brick ~n, its first group's number n. x fastest.
+  const std::vector<std::int32_t>& bricks() const { return m_bricks; }
+  const std::vector<Group>& groups() const { return m_groups; }
+  /// Share of pure bricks, 0 to 1.
+  double pureFraction() const;
+  std::size_t bytes() const {
+    return m_bricks.size() * sizeof(std::int32_t) + m_groups.size() * sizeof(Group);
+  }
+
+  /// Calls visit(component, share) for the components at a point (the grid's index space): shares
+  /// are trilinear between voxels, > 0, and sum to 1. A component may come twice.
+  template <typename Visit>
+  void at(const Vec3& index, Visit&& visit) const;
+
+private:
+  Grid m_grid;
+  Size3 m_brickCount;
+  std::vector<std::int32_t> m_bricks;
+  std::vector<Group> m_groups;
+};
+
+template <typename Visit>
+void Shares::at(const Vec3& index, Visit&& visit) const {
+  const Vec3 last = (m_grid.size.array() - 1).cast<double>();
+  const Vec3 inside = index.cwiseMax(0.0).cwiseMin(last);
+  const Size3 cell =
+      inside.cast<std::int64_t>().cwiseMin((m_grid.size.array() - 2).max(0).matrix());
+  const Size3 brick = cell.array() / edge;
+  const std::int32_t code = m_bricks[numberOf(brick, m_brickCount)];
+  if (code >= 0) {
+    visit(static_cast<std::uint8_t>(code), 1.0);
+    return;
+  }
+  const Vec3 f = inside - cell.cast<double>();
+  const std::size_t first =
+      numberOf(cell.array() - edge * brick.array(), Size3::Constant(edge + 1));
+  for (auto number = static_cast<std::size_t>(~code);; ++number) {
+    const Group& group = m_groups[number];
+    for (std::size_t i = 0; i < inGroup; ++i) {
+      const auto row = [&](std::size_t offset) {
+        const double a = group.shares[first + offset][i], b = group.shares[first + offset + 1][i];
+        return a + f.x() * (b - a);
+      };
+      constexpr std::size_t up = edge + 1, deep = up * up;
+      const double low = row(0) + f.y() * (row(up) - row(0));
+      const double high = row(deep) + f.y() * (row(deep + up) - row(deep));
+      if (const double share = (low + f.z() * (high - low)) / 255.0; share > 0.0)
+        visit(group.components[i], share);
+    }
+    if (group.isLast)
+      return;
+  }
+}
+
+} // namespace fenestra

@@ -1,0 +1,42 @@
+#pragma once
+// Tint: colours of segments. Extinction, phase function, surfaces and normals stay the transfer
+// function's, so that an error of the segmentation can colour wrongly, and never move, hide or
+// invent a surface.
+
+#include "model/medium/PiecewiseLinear.h"
+#include "model/medium/Shares.h"
+
+#include <memory>
+#include <optional>
+
+namespace fenestra {
+
+struct Tint {
+  std::shared_ptr<const Shares> shares;
+  /// Albedo of each component over the scalar; nothing: as the transfer function has it.
+  std::vector<std::optional<ColorFunction>> albedo;
+};
+
+/// A volume's tint at its points. A view: the tint must outlive the object.
+class TintedField {
+public:
+  TintedField(const Tint& tint, const Grid& volume)
+      : m_tint(tint), m_toShares(tint.shares->grid().worldToIndex * volume.indexToWorld) {}
+
+  /// Mean of the components' albedo at a point (the volume's index space), weighted by their
+  /// shares; `own`: of the transfer function.
+  Rgb albedo(const Vec3& index, double scalar, const Rgb& own) const {
+    Rgb sum = Rgb::Zero();
+    m_tint.shares->at(m_toShares * index, [&](std::uint8_t component, double share) {
+      const std::optional<ColorFunction>& albedo = m_tint.albedo[component];
+      sum += share * (albedo ? Rgb((*albedo)(scalar)) : own);
+    });
+    return sum;
+  }
+
+private:
+  const Tint& m_tint;
+  Affine m_toShares;
+};
+
+} // namespace fenestra
