@@ -10,7 +10,9 @@
 namespace fenestra {
 namespace {
 
+/// A number for each voxel of a brick, in 255ths: whole numbers add up alike in any order.
 using InBrick = std::array<float, Shares::voxelsInBrick>;
+constexpr float full = 255.0F;
 
 /// A part's mask in the common grid.
 struct Placed {
@@ -34,7 +36,7 @@ std::vector<Placed> placed(const std::vector<Shares::Part>& parts) {
 /// Indicators of a mask in the voxels of a brick; false: all are 0.
 bool indicators(const Placed& placed, const Size3& from, const Size3& last, InBrick& values) {
   const Mask& mask = placed.part->mask;
-  const float scale = 1.0F / static_cast<float>(mask.full);
+  const float scale = full / static_cast<float>(mask.full);
   bool some = false;
   std::size_t next = 0;
   for (std::int64_t z = 0; z <= Shares::edge; ++z)
@@ -51,12 +53,12 @@ bool indicators(const Placed& placed, const Size3& from, const Size3& last, InBr
   return some;
 }
 
-/// Shares of a brick's components, in no order; each component once.
+/// Shares of a brick's components, in their order, each once.
 class BrickShares {
 public:
   /// Adds the parts that meet the brick whose first voxel is `from`.
   BrickShares(const std::vector<Placed>& parts, const Size3& from, const Size3& last) {
-    m_left.fill(1.0F);
+    m_left.fill(full);
     const Size3 end = from + Size3::Constant(Shares::edge + 1);
     for (auto p = parts.begin(); p != parts.end();) {
       m_class.clear();
@@ -73,6 +75,7 @@ public:
     }
     if (std::ranges::any_of(m_left, [](float left) { return left > 0.0F; }))
       add(0, m_left);
+    std::ranges::sort(m_shares, {}, &Component::component);
   }
 
   /// Component of the whole brick; nothing: several.
@@ -125,12 +128,13 @@ private:
     }
   }
 
-  /// Rounds the shares of a voxel; the greatest takes what rounding loses or gains.
+  /// Rounds the shares of a voxel; the greatest, of equals the first component's, takes what
+  /// rounding loses or gains.
   void writeVoxel(std::size_t voxel, Shares::Group* groups) const {
-    int left = 255;
+    int left = static_cast<int>(full);
     std::size_t greatest = 0;
     for (std::size_t c = 0; c < m_shares.size(); ++c) {
-      const int share = static_cast<int>(std::lround(255.0F * m_shares[c].share[voxel]));
+      const int share = static_cast<int>(std::lround(m_shares[c].share[voxel]));
       left -= share;
       groups[c / Shares::inGroup].shares[voxel][c % Shares::inGroup] =
           static_cast<std::uint8_t>(share);

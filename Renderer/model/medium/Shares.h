@@ -39,8 +39,8 @@ public:
 
   /// Shares in order of the parts' priority, the greater first: with `left` = 1, and U the sum of
   /// the indicators u of a priority, each gets u min(1, left / U), and `left` loses min(left, U);
-  /// component 0 gets the rest. Rounded to 255ths that sum to 255. Where masks overlap it makes no
-  /// difference which of one priority comes first. At least one part.
+  /// component 0 gets the rest. Rounded to 255ths that sum to 255. Parts of one priority may come
+  /// in any order, and be of different components. At least one part.
   explicit Shares(const std::vector<Part>& parts);
 
   /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.

@@ -1,0 +1,231 @@
+#include "model/medium/Tint.h"
+
+#include "Support.h"
+#include "base/Random.h"
+#include "transport/render/ExpectedFlight.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace fenestra::testing::SharesTests {
+namespace {
+
+/// Box of a labelmap with `value` (0 to 255) in each voxel: index coordinates of the labelmap.
+template <typename Value>
+Mask maskOf(const Size3& first, const Size3& size, const Value& value) {
+  Affine map = Affine::Identity();
+  map.linear() = Mat3::Diagonal(Vec3(0.5, 0.75, 2.0));
+  map.translation() = Vec3(3.0, -7.0, 11.0);
+  map.translate(first.cast<double>());
+  Mask mask;
+  mask.grid = Grid(size, map);
+  mask.full = 255;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x)
+        mask.voxels.push_back(static_cast<std::uint8_t>(value(first + Size3(x, y, z))));
+  return mask;
+}
+
+/// Boxes of random indicators that overlap, with a margin of 0; priorities 0 to 2.
+std::vector<Shares::Part> randomParts(int count) {
+  std::vector<Shares::Part> parts;
+  for (int i = 0; i < count; ++i) {
+    Random random(7, static_cast<std::uint64_t>(i), 0);
+    const auto whole = [&](double most) {
+      return static_cast<std::int64_t>(random.uniform() * most);
+    };
+    const Size3 first(whole(9), whole(9), whole(9)), size(4 + whole(9), 4 + whole(9), 4 + whole(9));
+    const bool isHard = i % 2 == 0;
+    const auto priority = static_cast<int>(whole(3));
+    const auto value = [&, last = Size3(first + size)](const Size3& voxel) {
+      const bool inside =
+          (voxel.array() > first.array()).all() && (voxel.array() + 1 < last.array()).all();
+      if (!inside)
+        return std::int64_t{0};
+      return isHard ? 255 : whole(256);
+    };
+    parts.push_back({maskOf(first, size, value), priority, static_cast<std::uint8_t>(i % 6 + 1)});
+  }
+  return parts;
+}
+
+using ByComponent = std::map<int, double>;
+ByComponent sharesAt(const Shares& shares, const Vec3& world) {
+  ByComponent sums;
+  shares.at(shares.grid().worldToIndex * world,
+            [&](std::uint8_t component, double share) { sums[component] += share; });
+  return sums;
+}
+
+/// Shares at a voxel's centre by the definition, 0 to 1, not rounded.
+ByComponent definedAt(const std::vector<Shares::Part>& parts, const Vec3& world) {
+  ByComponent shares;
+  double left = 1.0;
+  for (int priority = 2; priority >= 0; --priority) {
+    const auto indicator = [&](const Shares::Part& part) {
+      const Vec3 index = part.mask.grid.worldToIndex * world;
+      const Size3 voxel = index.array().round().cast<std::int64_t>();
+      const bool inside =
+          (voxel.array() >= 0).all() && (voxel.array() < part.mask.grid.size.array()).all();
+      return inside && part.priority == priority
+                 ? part.mask.voxels[numberOf(voxel, part.mask.grid.size)] / 255.0
+                 : 0.0;
+    };
+    double sum = 0.0;
+    for (const Shares::Part& part : parts)
+      sum += indicator(part);
+    for (const Shares::Part& part : parts)
+      shares[part.component] += indicator(part) * (sum > left ? left / sum : 1.0);
+    left -= std::min(left, sum);
+  }
+  shares[0] += left;
+  return shares;
+}
+
+/// Calls visit(world point) for voxel centres of a grid, its outermost too.
+template <typename Visit>
+void forVoxels(const Grid& grid, const Visit& visit) {
+  for (std::int64_t z = 0; z < grid.size.z(); ++z)
+    for (std::int64_t y = 0; y < grid.size.y(); ++y)
+      for (std::int64_t x = 0; x < grid.size.x(); ++x)
+        visit(grid.indexToWorld * Size3(x, y, z).cast<double>());
+}
+
+TEST(Shares, AreThoseOfTheDefinitionAtVoxels) {
+  const std::vector<Shares::Part> parts = randomParts(12);
+  const Shares shares(parts);
+  forVoxels(shares.grid(), [&](const Vec3& at) {
+    ByComponent found = sharesAt(shares, at), defined = definedAt(parts, at);
+    double sum = 0.0;
+    for (const auto& [component, share] : found)
+      sum += share;
+    ASSERT_NEAR(sum, 1.0, 1e-12);
+    for (const auto& [component, share] : defined)
+      ASSERT_NEAR(found[component], share, 2.5 / 255.0) << component; // others' rounding, too
+  });
+  const auto last = [](const Shares::Group& group) { return group.isLast != 0; };
+  EXPECT_FALSE(std::ranges::all_of(shares.groups(), last)); // some bricks have two groups
+}
+
+TEST(Shares, AreTrilinearBetweenVoxelsAndAcrossBricks) {
+  const Shares shares(randomParts(12));
+  const Grid& grid = shares.grid();
+  for (int i = 0; i < 2000; ++i) {
+    Random random(9, static_cast<std::uint64_t>(i), 0);
+    const Vec3 last = (grid.size.array() - 1).cast<double>();
+    const Vec3 index =
+        last.cwiseProduct(Vec3(random.uniform(), random.uniform(), random.uniform()));
+    const Vec3 low = index.array().floor().min(last.array() - 1.0), f = index - low;
+    ByComponent mean;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
+      const double weight =
+          (step.array() * f.array() + (1.0 - step.array()) * (1.0 - f.array())).prod();
+      for (const auto& [component, share] : sharesAt(shares, grid.indexToWorld * (low + step)))
+        mean[component] += weight * share;
+    }
+    ByComponent found = sharesAt(shares, grid.indexToWorld * index);
+    for (const auto& [component, share] : mean)
+      ASSERT_NEAR(found[component], share, 1e-12);
+  }
+}
+
+TEST(Shares, DoNotDependOnTheOrderOfParts) {
+  std::vector<Shares::Part> parts = randomParts(6); // of six components
+  const Shares shares(parts);
+  std::ranges::reverse(parts);
+  const Shares reversed(parts);
+  forVoxels(shares.grid(),
+            [&](const Vec3& at) { ASSERT_EQ(sharesAt(shares, at), sharesAt(reversed, at)); });
+}
+
+TEST(Shares, BricksOfOneComponentArePure) {
+  const auto inside = [](const Size3&) { return 255; };
+  const Shares shares({{maskOf({0, 0, 0}, {33, 9, 9}, inside), 1, 3}});
+  EXPECT_EQ(shares.pureFraction(), 1.0);
+  EXPECT_EQ(shares.bricks(), std::vector<std::int32_t>(8 * 2 * 2, 3));
+  EXPECT_TRUE(shares.groups().empty());
+}
+
+/// Dense matter, with components that differ in colour; two of them have the matter's own.
+TestScene tintedScene() {
+  const auto shares = std::make_shared<const Shares>(randomParts(12));
+  Affine map = shares->grid().indexToWorld;
+  map.translate(Vec3(0.4, -0.7, 0.2)); // off the segmentation's grid, and partly beyond it
+  const Grid grid(shares->grid().size, map);
+  TestScene scene{makeVolume(grid, [](const Vec3& p) { return 0.3 + 0.02 * p.x(); }),
+                  linearTransfer(0.6, Rgb(0.9, 0.8, 0.3)),
+                  {EnvironmentLight{}},
+                  {.position = grid.worldCenter() + Vec3(0, -100, 20),
+                   .target = grid.worldCenter(),
+                   .scale = 8.0}};
+  scene.tint = Tint{shares, {std::nullopt}};
+  for (int i = 1; i <= 6; ++i)
+    scene.tint->albedo.push_back(
+        ColorFunction({{0.2, Rgb(0.15 * i, 0.5, 0.9 - 0.1 * i)}, {0.6, Rgb(0.9, 0.1 * i, 0.2)}}));
+  scene.tint->albedo[2] = std::nullopt;
+  return scene;
+}
+
+Film rendered(TestScene scene, bool isTinted, Transport transport) {
+  if (!isTinted)
+    scene.tint.reset();
+  RenderSettings settings;
+  settings.samples = 64;
+  settings.transport = transport;
+  settings.path.wantNormals = true;
+  return scene.render(settings).film;
+}
+
+/// Root mean square over pixels and channels of the difference of `value`.
+template <typename Value>
+double apart(const Film& a, const Film& b, const Value& value) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.pixelCount(); ++i)
+    sum += (value(a.pixels()[i]) - value(b.pixels()[i])).matrix().squaredNorm();
+  return std::sqrt(sum / (3.0 * static_cast<double>(a.pixelCount())));
+}
+
+TEST(Tint, LanesAreTheScalarEstimator) {
+  const TestScene scene = tintedScene();
+  const Film lanes = rendered(scene, true, Transport::fast);
+  const Film scalar = rendered(scene, true, Transport::readable);
+  const Film plain = rendered(scene, false, Transport::readable);
+  const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
+  const auto radiance = [](const PixelSums& pixel) { return pixel.mean; };
+  EXPECT_LT(apart(lanes, scalar, albedo), 0.02);
+  EXPECT_LT(apart(lanes, scalar, radiance), 0.05);
+  EXPECT_GT(apart(plain, scalar, albedo), 0.03);
+}
+
+TEST(Tint, MarchInLanesIsTheReadableOne) {
+  tintedScene().with([](const RenderScene& scene) {
+    ASSERT_TRUE(lanesServe(scene));
+    const ExpectedFlight lanes = expectedFlight(scene), readable = expectedFlightOneByOne(scene);
+    double sum = 0.0;
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < lanes.hit.size(); ++i)
+        sum += std::pow(static_cast<double>(lanes.albedo[c][i] - readable.albedo[c][i]), 2.0);
+    EXPECT_LT(std::sqrt(sum / (3.0 * static_cast<double>(lanes.hit.size()))), 0.02);
+  });
+}
+
+TEST(Tint, ChangesNothingButColour) {
+  const TestScene scene = tintedScene();
+  for (const Transport transport : {Transport::fast, Transport::readable}) {
+    const Film plain = rendered(scene, false, transport), tinted = rendered(scene, true, transport);
+    for (std::size_t i = 0; i < plain.pixelCount(); ++i) {
+      const PixelSums &a = plain.pixels()[i], &b = tinted.pixels()[i];
+      ASSERT_EQ(a.alpha, b.alpha);
+      ASSERT_EQ(a.depth, b.depth);
+      ASSERT_EQ(a.collided, b.collided);
+      ASSERT_TRUE(a.normal == b.normal);
+    }
+    EXPECT_GT(apart(plain, tinted, [](const PixelSums& pixel) { return pixel.albedo; }), 1.0);
+  }
+}
+
+} // namespace
+} // namespace fenestra::testing::SharesTests
