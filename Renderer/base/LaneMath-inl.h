@@ -99,7 +99,7 @@ HWY_INLINE void store3(const Float3& v, Columns& columns, std::size_t i) {
   store(v.z, &columns[2][i]);
 }
 
-/// Bit mixer of 32 bits with low bias (the Hash Prospector project).
+/// mixBits32 of base/Random.h.
 HWY_INLINE Word mixBits(Word x) {
   x = (x ^ shiftRight<16>(x)) * 0x21f0aaadU;
   x = (x ^ shiftRight<15>(x)) * 0x735a2d97U;

@@ -48,71 +48,94 @@ public:
   /// Samples of a half that depend on each other.
   std::uint32_t block() const { return m_isStratified ? blockSize : 1; }
 
-  SampleNumbers numbers(std::uint64_t pixel, std::uint64_t sample) const {
-    const Stream stream{mixBits(m_seed + pixel * Random::gamma)};
-    constexpr std::uint64_t each = 8; // numbers of a sample, five of use
-    const std::uint64_t first = each * sample;
-    SampleNumbers numbers{stream.at(first), stream.at(first + 1), stream.at(first + 2),
-                          stream.at(first + 3), stream.at(first + 4)};
-    if (m_isStratified)
-      stratify(stream, sample, numbers);
-    return numbers;
-  }
+  bool isStratified() const { return m_isStratified; }
 
-private:
-  static constexpr unsigned places = 3;                    ///< binary places of a stratum
-  static constexpr std::uint64_t elements = blockSize - 1; ///< mask
-  /// Leading places of both halves of 64 bits.
-  static constexpr std::uint64_t leading = elements << 61 | elements << 29;
-
-  /// Numbers of a pixel.
+  /// Words for up to `samples` successive samples of a pixel: hashes of a counter and a key.
   struct Stream {
-    std::uint64_t start;
-    std::uint64_t at(std::uint64_t n) const { return mixBits(start + n * Random::gamma); }
+    static constexpr std::uint32_t samples = std::uint32_t{1} << 27;
+    static constexpr std::uint32_t each = 16; ///< words of a sample, eleven of use
+    static constexpr std::uint32_t step = 0x9e3779b9U;
+
+    std::uint32_t start, key;
+
+    std::uint32_t at(std::uint32_t n) const { return mixBits32((start + n * step) ^ key); }
   };
 
-  /// Strata of a pair, in the leading places of both halves of 64 bits: element `place` times
-  /// element `factor` modulo x^3 + x + 1, and in the low half its places in reverse order. Factor 0
+  /// Stream of a sample, which is number `sample` % Stream::samples in there.
+  Stream stream(std::uint64_t pixel, std::uint64_t sample) const {
+    const std::uint64_t bits =
+        mixBits(mixBits(m_seed + pixel * Random::gamma) + sample / Stream::samples);
+    return {static_cast<std::uint32_t>(bits >> 32), static_cast<std::uint32_t>(bits)};
+  }
+
+  SampleNumbers numbers(std::uint64_t pixel, std::uint64_t sample) const {
+    return numbers(stream(pixel, sample), static_cast<std::uint32_t>(sample % Stream::samples));
+  }
+
+  /// Numbers of sample number `sample` of a stream. base/Sampling-inl.h draws the same in lanes.
+  SampleNumbers numbers(const Stream& stream, std::uint32_t sample) const {
+    Words words;
+    for (std::uint32_t i = 0; i < words.size(); ++i)
+      words[i] = stream.at(Stream::each * sample + i);
+    if (m_isStratified)
+      stratify(stream, sample, words);
+    const auto joined = [&](std::size_t high, std::size_t low) {
+      return std::uint64_t{words[high]} << 32 | words[low];
+    };
+    return {joined(0, 1), joined(2, 8), joined(3, 9), joined(4, 5), joined(6, 7)};
+  }
+
+  static constexpr unsigned places = 3;                    ///< binary places of a stratum
+  static constexpr std::uint32_t elements = blockSize - 1; ///< mask
+  static constexpr std::uint32_t leading = elements << (32 - places); ///< places of a word
+  /// Index of the word that shuffles a block's strata, among those of the block's first sample.
+  static constexpr std::uint32_t ofBlock = Stream::each - 1;
+
+  /// Strata of a pair, at blockSize * factor + place: element `place` times element `factor` modulo
+  /// x^3 + x + 1 in a word's leading places, and behind them its places in reverse order. Factor 0
   /// stands for 1.
-  using Nets = std::array<std::array<std::uint64_t, blockSize>, blockSize>;
+  using Nets = std::array<std::uint32_t, blockSize * blockSize>;
+  static const Nets nets;
+
+private:
+  /// Hashes of a sample: position (0, 1), depth, acceptance, direction (4, 5), rest (6, 7), and the
+  /// less significant bits of depth and acceptance, which lanes leave out.
+  using Words = std::array<std::uint32_t, 10>;
+
+  /// Replaces leading bits by strata.
+  static void stratify(const Stream& stream, std::uint32_t sample, Words& words) {
+    const std::uint32_t place = sample / 2 % blockSize;
+    const std::uint32_t shuffle = stream.at(Stream::each * (sample - 2 * place) + ofBlock);
+    for (const std::uint32_t pair : {0, 1, 2}) {
+      const std::uint32_t net = nets[blockSize * (shuffle >> places * pair & elements) + place];
+      const auto put = [&](std::uint32_t strata, std::uint32_t& word) {
+        word = (strata & leading) | word >> places;
+      };
+      put(net ^ shuffle << places * pair, words[2 * pair]);
+      put(net << places ^ shuffle << places * (pair + 3), words[2 * pair + 1]);
+    }
+  }
+
   static constexpr Nets makeNets() {
-    Nets nets = {};
-    for (std::uint64_t factor = 0; factor < blockSize; ++factor)
-      for (std::uint64_t place = 0; place < blockSize; ++place) {
-        std::uint64_t product = 0;
-        std::uint64_t shifted = factor > 0 ? factor : 1;
+    Nets made = {};
+    for (std::uint32_t factor = 0; factor < blockSize; ++factor)
+      for (std::uint32_t place = 0; place < blockSize; ++place) {
+        std::uint32_t product = 0;
+        std::uint32_t shifted = factor > 0 ? factor : 1;
         for (unsigned i = 0; i < places; ++i) {
           product ^= place >> i & 1 ? shifted : 0;
           shifted = shifted << 1 ^ (shifted > 3 ? 0b1011 : 0);
         }
-        const std::uint64_t reversed = (product & 1) << 2 | (product & 2) | product >> 2;
-        nets[factor][place] = product << 61 | reversed << 29;
+        const std::uint32_t reversed = (product & 1) << 2 | (product & 2) | product >> 2;
+        made[blockSize * factor + place] = product << 29 | reversed << 26;
       }
-    return nets;
-  }
-
-  /// Replaces leading bits by strata.
-  static void stratify(const Stream& stream, std::uint64_t sample, SampleNumbers& numbers) {
-    static constexpr Nets nets = makeNets();
-    constexpr std::uint64_t aside = std::uint64_t{1} << 63; // far from every sample's numbers
-    const std::uint64_t half = sample % 2;
-    const std::uint64_t place = sample / 2 % blockSize;
-    const std::uint64_t block = sample / (2 * blockSize);
-    const std::uint64_t ofBlock = stream.at(aside + 2 * block + half);
-    const auto strataOf = [&](unsigned pair) {
-      return nets[ofBlock >> (places * pair) & elements][place] ^
-             (ofBlock << (places * pair) & leading);
-    };
-    const auto inside = [](std::uint64_t bits) { return bits >> places & ~leading; };
-    numbers.position = strataOf(0) | inside(numbers.position);
-    numbers.scattered = strataOf(1) | inside(numbers.scattered);
-    const std::uint64_t flight = strataOf(2);
-    numbers.depth = (flight & elements << 61) | numbers.depth >> places;
-    numbers.acceptance = flight << 32 | numbers.acceptance >> places;
+    return made;
   }
 
   std::uint64_t m_seed;
   bool m_isStratified;
 };
+
+inline constexpr NumberSource::Nets NumberSource::nets = NumberSource::makeNets();
 
 } // namespace fenestra

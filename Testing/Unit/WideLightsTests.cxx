@@ -90,6 +90,22 @@ struct Sampled {
   Rgb estimate;
 };
 
+/// Sets path i, at the middle of the fog.
+void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2& scattered,
+             std::uint64_t key) {
+  paths.rays.set(i, {Vec3::Constant(3.5), direction}, 9.0, {});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    paths.direction[axis][i] = static_cast<float>(direction[static_cast<int>(axis)]);
+    paths.weight[axis][i] = 1.0F;
+    paths.radiance[axis][i] = 0.0F;
+  }
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    paths.scattered[axis][i] = static_cast<float>(scattered[static_cast<int>(axis)]);
+  paths.bounces[i] = 0;
+  paths.key[i] = static_cast<std::uint32_t>(key);
+  paths.counter[i] = static_cast<std::uint32_t>(key >> 32);
+}
+
 /// Light drawn by paths that scatter at the origin; those that drew none are left out.
 std::vector<Sampled> sampled(const Fog& fog, std::uint64_t seed, std::size_t count) {
   const auto paths = std::make_unique<PathBatch>();
@@ -99,8 +115,8 @@ std::vector<Sampled> sampled(const Fog& fog, std::uint64_t seed, std::size_t cou
     paths->rays.size = std::min(RayBatch::capacity, count - from);
     for (std::size_t i = 0; i < paths->rays.size; ++i) {
       Random random(seed, from + i, 0);
-      paths->begin(i, Vec3::UnitX(), random.uniform2(), random.bits());
-      paths->rays.set(i, {Vec3::Constant(3.5), Vec3::UnitX()}, 9.0, {});
+      const Vec2 scattered = random.uniform2();
+      setPath(*paths, i, Vec3::UnitX(), scattered, random.bits());
       paths->rays.result[i] = 0.0F;
       paths->rays.scalar[i] = 1.0F;
     }
@@ -126,10 +142,9 @@ std::vector<Rgb> met(const Fog& fog, const std::vector<Vec3>& directions) {
   for (std::size_t from = 0; from < directions.size(); from += RayBatch::capacity) {
     paths->rays.size = std::min(RayBatch::capacity, directions.size() - from);
     for (std::size_t i = 0; i < paths->rays.size; ++i) {
-      paths->begin(i, directions[from + i], Vec2::Zero(), i);
+      setPath(*paths, i, directions[from + i], Vec2::Zero(), i);
       paths->bounces[i] = 1;
       paths->scatterPdf[i] = static_cast<float>(0.25 / pi);
-      paths->rays.set(i, {Vec3::Constant(3.5), directions[from + i]}, 9.0, {});
       paths->rays.result[i] = std::numeric_limits<float>::infinity();
     }
     Counters counters;

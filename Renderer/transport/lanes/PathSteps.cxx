@@ -35,13 +35,6 @@ struct Collisions {
   LaneMask surface;
 };
 
-/// First collisions whose normals are still to be found, which is done in whole vectors.
-struct FirstCollisions {
-  std::size_t size = 0;
-  Column<std::uint32_t> path;
-  Columns3 index, incoming;
-};
-
 template <typename Voxel>
 class Events {
 public:
@@ -50,12 +43,9 @@ public:
 
   void run(Counters& counters) {
     m_out.rays.size = 0;
-    m_paths.endedCount = 0;
+    m_paths.ended = {};
     for (std::size_t i = 0; i < m_paths.rays.size; i += laneCount)
       step(i);
-    for (std::size_t i = 0; i < m_firsts.size; i += laneCount)
-      findNormals(i);
-    m_gradients += m_firsts.size;
     counters.collisions += m_collisions;
     counters.gradients += m_gradients;
     counters.shadowRays += m_out.rays.size;
@@ -80,7 +70,7 @@ private:
       store(bounces + one, &m_paths.bounces[i]);
       alive = collide(i, going, first & going, origin, orZero(going, distance));
     }
-    listEnded(i, there.without(alive));
+    m_paths.ended[i / 64] |= there.without(alive).bits() << i % 64;
   }
 
   /// Adds the light that scattered rays met before their collisions, or at infinity.
@@ -172,33 +162,15 @@ private:
       keep(now.y, columns[1]);
       keep(now.z, columns[2]);
     };
-    keep(distance, m_paths.firstDistance);
+    const Float depth = fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i]));
+    keep(depth, m_paths.firstDepth);
     keep3(at.albedo, m_paths.firstAlbedo);
-    if (m_scene.hybrid)
+    if (m_scene.hybrid) {
       keep3(normalOf(at.gradient, at.incoming), m_paths.firstNormal);
-    else if (m_scene.wantNormals)
-      listFirst(i, at);
-  }
-
-  void listFirst(std::size_t i, const Collisions& at) {
-    const Shuffle pack = Shuffle::packing(at.first);
-    const std::size_t to = m_firsts.size;
-    store(pack(numbersFrom(i)), &m_firsts.path[to]);
-    store3(pack(at.index), m_firsts.index, to);
-    store3(pack(at.incoming), m_firsts.incoming, to);
-    m_firsts.size += at.first.count();
-  }
-
-  void findNormals(std::size_t i) {
-    const Float3 normal =
-        normalOf(gradientAt(load3(m_firsts.index, i)), load3(m_firsts.incoming, i));
-    const LaneArray<float> x(normal.x), y(normal.y), z(normal.z);
-    forEachLane(LaneMask::first(m_firsts.size - i), [&](std::size_t lane) {
-      const std::size_t path = m_firsts.path[i + lane];
-      m_paths.firstNormal[0][path] = x[lane];
-      m_paths.firstNormal[1][path] = y[lane];
-      m_paths.firstNormal[2][path] = z[lane];
-    });
+    } else if (m_scene.wantNormals) {
+      keep3(normalOf(gradientAt(at.index), at.incoming), m_paths.firstNormal);
+      m_gradients += at.first.count();
+    }
   }
 
   /// Unit, toward the ray's origin; 0 where there is no gradient.
@@ -269,17 +241,11 @@ private:
     return hn::Iota(words, static_cast<std::uint32_t>(i));
   }
 
-  void listEnded(std::size_t i, LaneMask ended) {
-    store(Shuffle::packing(ended)(numbersFrom(i)), &m_paths.ended[m_paths.endedCount]);
-    m_paths.endedCount += ended.count();
-  }
-
   const WideScene& m_volume;
   const EventScene& m_scene;
   PathBatch& m_paths;
   LightBatch& m_out;
   WideLights m_lights;
-  FirstCollisions m_firsts;
   std::size_t m_collisions = 0, m_gradients = 0;
 };
 
@@ -301,45 +267,6 @@ HWY_EXPORT(scatterAll);
 
 void WideEvents::scatter(PathBatch& paths, LightBatch& lights, Counters& counters) const {
   HWY_DYNAMIC_DISPATCH(scatterAll)(m_volume, m_scene, paths, lights, counters);
-}
-
-void PathBatch::begin(std::size_t i, const Vec3& worldDirection, const Vec2& scatteredNumbers,
-                      std::uint64_t randomBits) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    direction[a][i] = narrow(worldDirection[axis]);
-    weight[a][i] = 1.0F;
-    radiance[a][i] = 0.0F;
-  }
-  scattered[0][i] = narrow(scatteredNumbers.x());
-  scattered[1][i] = narrow(scatteredNumbers.y());
-  bounces[i] = 0;
-  key[i] = static_cast<std::uint32_t>(randomBits);
-  counter[i] = static_cast<std::uint32_t>(randomBits >> 32);
-}
-
-void PathBatch::move(std::size_t from, std::size_t to) {
-  const auto one = [&](auto& column) { column[to] = column[from]; };
-  const auto each = [&](auto& columns) {
-    for (Column<float>& column : columns)
-      one(column);
-  };
-  each(rays.origin);
-  each(rays.direction);
-  one(rays.length);
-  one(rays.depth);
-  one(rays.acceptance);
-  each(direction);
-  each(weight);
-  each(radiance);
-  one(scatterPdf);
-  one(bounces);
-  one(key);
-  one(counter);
-  each(scattered);
-  one(firstDistance);
-  each(firstAlbedo);
-  each(firstNormal);
 }
 
 } // namespace fenestra

@@ -6,6 +6,8 @@
 #include "model/camera/Background.h"
 #include "model/lights/LightSet.h"
 
+#include <vector>
+
 namespace fenestra {
 
 /// A view: camera, clip, lights and background must outlive the object.
@@ -13,10 +15,16 @@ class EyeRays {
 public:
   EyeRays(const Camera& camera, const Clip& clip, const LightSet& lights,
           const Background& background)
-      : m_camera(camera), m_clip(clip), m_lights(lights), m_background(background) {}
+      : m_camera(camera), m_clip(clip), m_lights(lights), m_background(background) {
+    if (background.kind == Background::Kind::gradient)
+      for (int row = 0; row < camera.height(); ++row)
+        m_gradient.push_back(background.at(1.0 - (row + 0.5) / camera.height()));
+  }
 
   /// Eye ray through raster position (column, row).
   Ray ray(double column, double row) const { return m_camera.ray(column, row); }
+  /// True if clipping leaves every eye ray whole.
+  bool isWhole() const { return std::holds_alternative<ClipNone>(m_clip); }
   /// Part of an eye ray that clipping leaves.
   Interval range(const Ray& ray) const { return visible(m_clip, ray); }
   /// View-space depth at `distance` along an eye ray; mm.
@@ -26,20 +34,20 @@ public:
 
   /// Sample of an eye ray without collision: the background. A gradient has one colour for a whole
   /// row of pixels, so that a sample's position inside the pixel adds no noise.
-  PathSample escaped(double row, const Ray& ray) const {
+  PathSample escaped(double row, const Vec3& direction) const {
     PathSample sample;
     switch (m_background.kind) {
     case Background::Kind::color:
       sample.radiance = m_background.color;
       break;
     case Background::Kind::gradient:
-      sample.radiance = m_background.at(1.0 - (std::floor(row) + 0.5) / m_camera.height());
+      sample.radiance = m_gradient[static_cast<std::size_t>(row)];
       break;
     case Background::Kind::transparent:
       sample.alpha = 0.0;
       break;
     case Background::Kind::environment:
-      sample.radiance = m_lights.environment(ray.direction).radiance;
+      sample.radiance = m_lights.environment(direction).radiance;
       break;
     }
     return sample;
@@ -50,6 +58,7 @@ private:
   const Clip& m_clip;
   const LightSet& m_lights;
   const Background& m_background;
+  std::vector<Rgb> m_gradient; ///< colours of the rows of a gradient
 };
 
 } // namespace fenestra

@@ -79,7 +79,7 @@ public:
     if (path.bounces > 0)
       path.sample.radiance += path.weight * arriving(path.ray, distance, path.scatterPdf);
     else if (distance == infinity)
-      path.sample = m_eye.escaped(path.row, path.ray);
+      path.sample = m_eye.escaped(path.row, path.ray.direction);
     return distance < infinity && path.bounces < m_settings.bounces;
   }
 

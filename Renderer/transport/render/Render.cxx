@@ -25,14 +25,21 @@ struct OneByOne {
   PathEstimator<Voxel> estimator;
 
   template <typename Source>
-  bool trace(Source& source, std::size_t /*atOnce*/, Counters& counters) const {
-    while (std::optional<PathStart> from = source.next()) {
-      const std::optional<PathSample> sample =
-          estimator.trace(from->column, from->row, from->numbers, counters);
-      if (!sample)
-        return false;
-      source.deliver(from->ticket, *sample);
-    }
+  bool trace(Source& source, std::size_t atOnce, Counters& counters) const {
+    const auto starts = std::make_unique<PathStarts>();
+    do {
+      source.fill(*starts, std::min(atOnce, RayBatch::capacity));
+      for (std::size_t i = 0; i < starts->size; ++i) {
+        const SampleNumbers numbers =
+            source.numbers().numbers({starts->start[i], starts->key[i]}, starts->number[i]);
+        const Vec2 place = uniform2Of(numbers.position) + Vec2(starts->column[i], starts->row[i]);
+        const std::optional<PathSample> sample =
+            estimator.trace(place.x(), place.y(), numbers, counters);
+        if (!sample)
+          return false;
+        source.deliver(starts->tile[i], starts->ofTile[i], *sample);
+      }
+    } while (starts->size > 0);
     return true;
   }
 };
@@ -215,7 +222,8 @@ RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& setti
                           EventScene(scene.volume.grid, scene.transfer, scene.lights,
                                      settings.path.bounces, settings.path.wantNormals, scene.tint));
   const EyeRays eye(scene.camera, scene.clip, scene.lights, settings.path.background);
-  const PathWave wave(domain, tracker, events, eye, monitor.stop);
+  const WideEyeRays begin(tracker.scene(), domain, scene.camera, eye);
+  const PathWave wave(begin, tracker, events, eye, monitor.stop);
   return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor);
 }
 

@@ -1,14 +1,6 @@
 #include "transport/render/TileStream.h"
 
 namespace fenestra {
-namespace {
-
-/// Ticket of a sample: the tile's place, and the sample's index in the tile.
-std::uint64_t ticketOf(std::uint32_t tile, std::size_t sample) {
-  return std::uint64_t{tile} << 32 | sample;
-}
-
-} // namespace
 
 Pass::Pass(const SamplePlan::Stage& from, const SamplePlan::Stage& to, const EmptyPixels& empty,
            const NumberSource& source, Film& film, std::atomic<std::uint64_t>& paths)
@@ -21,27 +13,35 @@ Pass::Pass(const SamplePlan::Stage& from, const SamplePlan::Stage& to, const Emp
       m_tilesAcross((film.width() + tileSize - 1) / tileSize),
       m_tileCount(m_tilesAcross * ((film.height() + tileSize - 1) / tileSize)) {}
 
-std::optional<PathStart> TileStream::next() {
-  if (m_left == 0 && !openTile())
-    return std::nullopt;
-  const std::vector<Sample>& samples = m_tiles[m_current].samples;
-  const std::size_t index = samples.size() - m_left--;
-  const Sample& sample = samples[index];
-  const SampleNumbers numbers =
-      m_pass.m_source.numbers(m_pass.m_film.index(sample.column, sample.row), sample.number);
-  const Vec2 jitter = uniform2Of(numbers.position);
-  return PathStart{sample.column + jitter.x(), sample.row + jitter.y(), numbers,
-                   ticketOf(m_current, index)};
-}
-
-void TileStream::deliver(std::uint64_t ticket, const PathSample& sample) {
-  const auto place = static_cast<std::uint32_t>(ticket >> 32);
-  Tile& tile = m_tiles[place];
-  tile.results[ticket & 0xffffffffU] = sample;
-  if (--tile.awaited > 0)
-    return;
-  close(tile);
-  m_free.push_back(place);
+void TileStream::fill(PathStarts& starts, std::size_t most) {
+  const NumberSource& source = m_pass.m_source;
+  starts.size = 0;
+  starts.isStratified = source.isStratified();
+  while (starts.size < most && (m_left > 0 || openTile())) {
+    const Tile& tile = m_tiles[m_current];
+    const Run& run = tile.runs[m_run];
+    const NumberSource::Stream stream =
+        source.stream(m_pass.m_film.index(run.column, run.row), m_next);
+    const auto first = static_cast<std::uint32_t>(m_next % stream.samples);
+    const std::size_t count =
+        std::min({most - starts.size, run.end - m_next, std::size_t{stream.samples} - first});
+    const auto begun = static_cast<std::uint32_t>(tile.results.size() - m_left);
+    const std::size_t size = starts.size;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      starts.column[size + i] = static_cast<float>(run.column);
+      starts.row[size + i] = static_cast<float>(run.row);
+      starts.start[size + i] = stream.start;
+      starts.key[size + i] = stream.key;
+      starts.number[size + i] = first + i;
+      starts.tile[size + i] = m_current;
+      starts.ofTile[size + i] = begun + i;
+    }
+    starts.size += count;
+    m_left -= count;
+    m_next += count;
+    if (m_next == run.end && m_left > 0)
+      m_next = tile.runs[++m_run].begin;
+  }
 }
 
 /// Makes the next tile that has samples the current one; false if none is left.
@@ -56,13 +56,14 @@ bool TileStream::openTile() {
     if (index >= m_pass.m_tileCount)
       return false;
     list(tile, index);
-    if (!tile.samples.empty())
+    if (tile.awaited > 0)
       break;
     close(tile);
   }
-  tile.results.resize(tile.samples.size());
-  tile.awaited = tile.samples.size();
-  m_left = tile.samples.size();
+  tile.results.resize(tile.awaited);
+  m_left = tile.awaited;
+  m_run = 0;
+  m_next = tile.runs[0].begin;
   m_current = m_free.back();
   m_free.pop_back();
   return true;
@@ -71,7 +72,8 @@ bool TileStream::openTile() {
 /// Lists the samples of tile `index`, pixel by pixel.
 void TileStream::list(Tile& tile, int index) const {
   tile.planned = 0;
-  tile.samples.clear();
+  tile.awaited = 0;
+  tile.runs.clear();
   const Film& film = m_pass.m_film;
   const int left = index % m_pass.m_tilesAcross * Pass::tileSize;
   const int top = index / m_pass.m_tilesAcross * Pass::tileSize;
@@ -81,15 +83,22 @@ void TileStream::list(Tile& tile, int index) const {
       const std::uint64_t begin = m_pass.m_from.count(here);
       const std::uint64_t end = m_pass.m_to.count(here);
       tile.planned += end - begin;
-      const std::uint64_t enough = m_pass.m_empty.contains(column, row) ? 1 : end;
-      for (std::uint64_t number = begin; number < std::min(end, enough); ++number)
-        tile.samples.push_back({column, row, number});
+      const std::uint64_t enough =
+          m_pass.m_empty.contains(column, row) ? std::min<std::uint64_t>(1, end) : end;
+      if (begin >= enough)
+        continue;
+      tile.runs.push_back({column, row, begin, enough});
+      tile.awaited += enough - begin;
     }
 }
 
 void TileStream::close(Tile& tile) {
-  for (std::size_t i = 0; i < tile.samples.size(); ++i)
-    m_pass.m_film.at(tile.samples[i].column, tile.samples[i].row).add(tile.results[i]);
+  const PathSample* result = tile.results.data();
+  for (const Run& run : tile.runs) {
+    PixelSums& sums = m_pass.m_film.at(run.column, run.row);
+    for (std::uint64_t number = run.begin; number < run.end; ++number)
+      sums.add(*result++);
+  }
   m_pass.m_paths.fetch_add(tile.planned, std::memory_order_relaxed);
   m_pass.m_tilesDone.fetch_add(1, std::memory_order_relaxed);
 }

@@ -8,8 +8,6 @@
 #include "transport/render/SamplePlan.h"
 
 #include <atomic>
-#include <memory>
-#include <optional>
 
 namespace fenestra {
 
@@ -43,21 +41,31 @@ class TileStream {
 public:
   explicit TileStream(Pass& pass) : m_pass(pass) {}
 
-  /// Start of the next path; empty if none is left.
-  std::optional<PathStart> next();
-  /// Takes samples in any order. A tile is added to the film as a whole, with its last sample; each
-  /// pixel's samples in the order of their numbers.
-  void deliver(std::uint64_t ticket, const PathSample& sample);
+  /// Random numbers of the starts.
+  const NumberSource& numbers() const { return m_pass.m_source; }
+  /// Replaces `starts` by the next ones, `most` at most: fewer only if no more are left.
+  void fill(PathStarts& starts, std::size_t most);
+  /// Takes the samples of starts in any order. A tile is added to the film as a whole, with its
+  /// last sample; each pixel's samples in the order of their numbers.
+  void deliver(std::uint32_t place, std::uint32_t ofTile, const PathSample& sample) {
+    Tile& tile = m_tiles[place];
+    tile.results[ofTile] = sample;
+    if (--tile.awaited > 0)
+      return;
+    close(tile);
+    m_free.push_back(place);
+  }
 
 private:
-  struct Sample {
+  /// Successive samples of a pixel.
+  struct Run {
     int column, row;
-    std::uint64_t number; ///< among the pixel's samples
+    std::uint64_t begin, end;
   };
   struct Tile {
     std::uint64_t planned = 0; ///< number of samples if no pixel were empty
-    std::vector<Sample> samples;
-    std::vector<PathSample> results;
+    std::vector<Run> runs;
+    std::vector<PathSample> results; ///< of all runs, one after the other
     std::size_t awaited = 0;
   };
 
@@ -70,6 +78,8 @@ private:
   std::vector<std::uint32_t> m_free; ///< free places in m_tiles
   std::uint32_t m_current = 0;       ///< place of the tile of the next samples
   std::size_t m_left = 0;            ///< samples left in that tile
+  std::size_t m_run = 0;             ///< their first run there
+  std::uint64_t m_next = 0;          ///< its next sample
 };
 
 } // namespace fenestra

@@ -1,0 +1,58 @@
+// Random numbers of samples, one a lane: base/Sampling.h, bit for bit. Compiled once for each
+// instruction set: include after Highway's foreach_target.h.
+
+#if defined(FENESTRA_LANE_SAMPLING_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_LANE_SAMPLING_INL_H
+#undef FENESTRA_LANE_SAMPLING_INL_H
+#else
+#define FENESTRA_LANE_SAMPLING_INL_H
+#endif
+
+#include "base/Sampling.h"
+// After foreach_target.h:
+#include "base/LaneMath-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+
+/// The 32 leading bits of each number of a sample, in the order of NumberSource's words.
+struct LaneNumbers {
+  std::array<Word, 2> position, flight, scattered, rest;
+};
+
+/// NumberSource::numbers of `sample` in the stream (start, key).
+HWY_INLINE LaneNumbers numbersOf(Word start, Word key, Word sample, bool isStratified) {
+  using Stream = NumberSource::Stream;
+  constexpr int places = NumberSource::places;
+  const auto at = [&](Word n) { return mixBits((start + n * Stream::step) ^ key); };
+  const Word first = sample * Stream::each;
+  const auto two = [&](std::uint32_t i) { return std::array{at(first + i), at(first + (i + 1))}; };
+  LaneNumbers numbers{two(0), two(2), two(4), two(6)};
+  if (!isStratified)
+    return numbers;
+  const Word place = shiftRight<1>(sample) & NumberSource::elements;
+  const Word shuffle = at((sample - (place + place)) * Stream::each + NumberSource::ofBlock);
+  int pair = 0;
+  for (std::array<Word, 2>* words : {&numbers.position, &numbers.flight, &numbers.scattered}) {
+    const Word factor = shiftRight(shuffle, places * pair) & NumberSource::elements;
+    const Word net =
+        gather(NumberSource::nets.data(), bitsAsInt(factor * NumberSource::blockSize + place));
+    const auto put = [&](Word strata, Word& word) {
+      word = (strata & NumberSource::leading) ^ shiftRight<places>(word);
+    };
+    put(net ^ shiftLeft(shuffle, places * pair), (*words)[0]);
+    put(shiftLeft<places>(net) ^ shiftLeft(shuffle, places * (pair + 3)), (*words)[1]);
+    ++pair;
+  }
+  return numbers;
+}
+
+/// Uniform in [0, 1): the 24 leading bits.
+HWY_INLINE Float below1(Word bits) {
+  return toFloat(bitsAsInt(shiftRight<8>(bits))) * 0x1p-24F;
+}
+
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

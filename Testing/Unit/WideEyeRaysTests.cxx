@@ -1,0 +1,172 @@
+// Where paths begin in lanes, against the scalar code, on each of the machine's instruction sets.
+
+#include "transport/lanes/EyeRays.h"
+
+#include "Support.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing::WideEyeRaysTests {
+namespace {
+
+class WideEyeRaysOf : public ::testing::TestWithParam<std::size_t> {
+protected:
+  void SetUp() override {
+    const std::vector<std::string> known = WideTracker::instructionSets();
+    if (GetParam() >= known.size())
+      GTEST_SKIP() << "this machine has fewer";
+    WideTracker::useInstructionSet(known[GetParam()]);
+  }
+  void TearDown() override {
+    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
+  }
+};
+
+constexpr int width = 40, height = 30;
+
+struct View {
+  std::string name;
+  CameraPose pose;
+  Clip clip = ClipNone{};
+  std::optional<CropBox> crop = {};
+};
+
+CameraPose pose(Projection projection, const Vec3& position, double extent) {
+  CameraPose made;
+  made.projection = projection;
+  made.position = position;
+  made.target = {1.0, 2.0, 3.0};
+  made.up = Vec3(0.2, 0.1, 1.0);
+  made.scale = extent;
+  made.angle = extent;
+  return made;
+}
+
+std::vector<View> views() {
+  const Affine box = rotationBy(0.4, Vec3(1.0, 2.0, 2.0) / 3.0);
+  const CameraPose near = pose(Projection::perspective, {-30.0, -80.0, 20.0}, 30.0);
+  const CropBox crop(Affine(15.0 * box.linear(), Vec3(2.0, 1.0, 0.0)));
+  return {{"orthographic", pose(Projection::orthographic, {-60.0, -80.0, 20.0}, 40.0)},
+          {"perspective", near},
+          {"within", pose(Projection::perspective, {-3.0, 4.0, 5.0}, 100.0)},
+          {"far", pose(Projection::perspective, {-3e7, -8e7, 2e7}, 5e-5)},
+          {"far, orthographic", pose(Projection::orthographic, {-3e7, -8e7, 2e7}, 40.0)},
+          {"cropped", near, ClipNone{}, crop},
+          {"clipped", near,
+           ClipPlane{Camera(near, width, height), Vec3::Zero(), Vec3(0.0, -1.0, 0.3).normalized()},
+           crop}};
+}
+
+/// Starts of one sample each in neighbouring pixels.
+void fill(PathStarts& starts, const NumberSource& source, std::uint64_t pixel,
+          std::uint64_t sample) {
+  starts.isStratified = source.isStratified();
+  for (starts.size = 0; starts.size < RayBatch::capacity - 50; ++starts.size) {
+    const std::uint64_t here = pixel + starts.size, number = sample + starts.size;
+    const NumberSource::Stream stream = source.stream(here, number);
+    starts.column[starts.size] = static_cast<float>(here % width);
+    starts.row[starts.size] = static_cast<float>(here / width);
+    starts.start[starts.size] = stream.start;
+    starts.key[starts.size] = stream.key;
+    starts.number[starts.size] = static_cast<std::uint32_t>(number % stream.samples);
+    starts.tile[starts.size] = 7;
+    starts.ofTile[starts.size] = static_cast<std::uint32_t>(here);
+  }
+}
+
+TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
+  const Grid grid = centredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
+  const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
+  TestScene scene{volume, linearTransfer(0.1, Rgb::Ones()), {}, views()[0].pose, width, height};
+  scene.with([&](const RenderScene& s) {
+    const Domain domain(grid);
+    const WideTracker tracker(s.volume, domain, s.transfer, s.majorants, s.clip);
+    const Background background;
+    const EyeRays eye(s.camera, s.clip, s.lights, background);
+    const WideEyeRays wide(tracker.scene(), domain, s.camera, eye);
+    const auto starts = std::make_unique<PathStarts>();
+    const auto paths = std::make_unique<PathBatch>();
+    constexpr std::uint64_t inStream = NumberSource::Stream::samples;
+    for (const Sampling sampling : {Sampling::strata, Sampling::independent})
+      for (const std::uint64_t sample : {std::uint64_t{0}, inStream - 100, inStream << 9}) {
+        const NumberSource source(sampling, 5);
+        fill(*starts, source, 400, sample);
+        paths->rays.size = 0;
+        wide.begin(*starts, *paths);
+        ASSERT_EQ(paths->rays.size, starts->size);
+        const auto below1 = [](std::uint64_t bits) {
+          return static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24F;
+        };
+        for (std::size_t i = 0; i < starts->size; ++i) {
+          const SampleNumbers numbers = source.numbers(400 + i, sample + i);
+          ASSERT_EQ(paths->rays.depth[i], numbers.depth >> 32) << i;
+          ASSERT_EQ(paths->rays.acceptance[i], below1(numbers.acceptance >> 32)) << i;
+          ASSERT_EQ(paths->scattered[0][i], below1(numbers.scattered >> 32)) << i;
+          ASSERT_EQ(paths->scattered[1][i], below1(numbers.scattered)) << i;
+          ASSERT_EQ(std::uint64_t{paths->counter[i]} << 32 | paths->key[i], numbers.rest) << i;
+          const Vec2 jitter = uniform2Of(numbers.position);
+          const std::uint64_t pixel = 400 + i;
+          ASSERT_NEAR(double{starts->column[i]} + 0.5 * width, double(pixel % width) + jitter.x(),
+                      2e-6);
+          ASSERT_NEAR(double{starts->row[i]} + 0.5 * height, double(pixel / width) + jitter.y(),
+                      2e-6);
+          ASSERT_EQ(paths->row[i], static_cast<float>(pixel / width));
+          ASSERT_EQ(paths->ofTile[i], pixel);
+        }
+      }
+  });
+}
+
+/// Origins, lengths and depths as they are in double, to some last places of the volume's edge,
+/// however far away the eye is.
+TEST_P(WideEyeRaysOf, RaysAreThoseInDouble) {
+  const Grid grid = centredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
+  const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
+  for (const View& view : views()) {
+    SCOPED_TRACE(view.name);
+    TestScene scene{volume,   linearTransfer(0.1, Rgb::Ones()), {}, view.pose, width, height,
+                    view.clip};
+    scene.with([&](const RenderScene& s) {
+      const Domain domain(grid, view.crop);
+      const WideTracker tracker(s.volume, domain, s.transfer, s.majorants, s.clip);
+      const Background background;
+      const EyeRays eye(s.camera, s.clip, s.lights, background);
+      const WideEyeRays wide(tracker.scene(), domain, s.camera, eye);
+      const auto starts = std::make_unique<PathStarts>();
+      const auto paths = std::make_unique<PathBatch>();
+      const auto exact = std::make_unique<RayBatch>();
+      std::size_t met = 0;
+      for (std::uint64_t pixel = 0; pixel + RayBatch::capacity < width * height; pixel += 400) {
+        fill(*starts, NumberSource(Sampling::strata, pixel), pixel, 0);
+        paths->rays.size = 3;
+        wide.begin(*starts, *paths);
+        for (std::size_t i = 0; i < starts->size; ++i) {
+          const std::size_t at = i + 3;
+          const Ray ray = eye.ray(double{starts->column[i]} + 0.5 * width,
+                                  double{starts->row[i]} + 0.5 * height);
+          setInside(*exact, i, domain, ray, eye.range(ray), {});
+          ASSERT_NEAR(exact->length[i], paths->rays.length[at], 2e-4);
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            ASSERT_NEAR(ray.direction[static_cast<int>(axis)], paths->direction[axis][at], 2e-7);
+          if (exact->length[i] < 1e-3F)
+            continue;
+          ++met;
+          const double before = (wide.nearDepth() + double{paths->depth[at]}) / eye.depth(ray, 1.0);
+          const Vec3 origin = grid.worldToIndex * ray.at(before);
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            ASSERT_NEAR(exact->direction[axis][i], paths->rays.direction[axis][at], 3e-7);
+            ASSERT_NEAR(exact->origin[axis][i], paths->rays.origin[axis][at], 2e-4);
+            ASSERT_NEAR(origin[static_cast<int>(axis)], paths->rays.origin[axis][at], 1e-5);
+          }
+          ASSERT_NEAR(eye.depth(ray, 1.0), paths->depthPerLength[at], 2e-7);
+        }
+      }
+      EXPECT_GT(met, 100U);
+    });
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(InstructionSets, WideEyeRaysOf, ::testing::Range<std::size_t>(0, 4));
+
+} // namespace
+} // namespace fenestra::testing::WideEyeRaysTests
