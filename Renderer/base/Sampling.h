@@ -106,7 +106,7 @@ private:
   static void stratify(const Stream& stream, std::uint32_t sample, Words& words) {
     const std::uint32_t place = sample / 2 % blockSize;
     const std::uint32_t shuffle = stream.at(Stream::each * (sample - 2 * place) + ofBlock);
-    for (const std::uint32_t pair : {0, 1, 2}) {
+    for (const std::uint32_t pair : {0U, 1U, 2U}) {
       const std::uint32_t net = nets[blockSize * (shuffle >> places * pair & elements) + place];
       const auto put = [&](std::uint32_t strata, std::uint32_t& word) {
         word = (strata & leading) | word >> places;

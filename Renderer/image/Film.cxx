@@ -14,8 +14,12 @@ void PixelSums::add(const PathSample& sample) {
   const Rgb before = sample.radiance - mean;
   mean += before / static_cast<double>(samples);
   deviation += before * (sample.radiance - mean);
-  if (block > 1)
-    addToBlock(sample.radiance);
+  if (block > 1) {
+    const std::uint64_t half = (samples - 1) % 2;
+    open[half] += sample.radiance;
+    if (openSamples(half) == 0)
+      closeBlock(half);
+  }
   alpha += sample.alpha;
   albedo += sample.albedo;
   normal += sample.normal;
@@ -35,12 +39,8 @@ Halves PixelSums::halves() const {
           (alpha - evenAlpha) / odd};
 }
 
-/// Adds the radiance of the newest sample, which counts already.
-void PixelSums::addToBlock(const Rgb& radiance) {
-  const std::uint64_t half = (samples - 1) % 2;
-  open[half] += radiance;
-  if (openSamples(half) > 0.0)
-    return;
+/// Adds the open block of a half, now complete, to the others; its samples count already.
+void PixelSums::closeBlock(std::uint64_t half) {
   const Rgb sum = std::exchange(open[half], Rgb::Zero());
   const double count = completeBlocks();
   if (count < 2.0)
@@ -69,7 +69,7 @@ Rgb PixelSums::standardError() const {
   Rgb squares = Rgb::Zero(); // of S_b - m_b mean
   double sizes = 0.0;        // sum of m_b^2
   for (std::uint64_t half = 0; half < 2; ++half) {
-    const double size = openSamples(half);
+    const auto size = static_cast<double>(openSamples(half));
     squares += (open[half] - size * mean).square();
     sizes += size * size;
   }

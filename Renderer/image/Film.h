@@ -63,14 +63,12 @@ struct PixelSums {
   Rgb standardError() const;
 
 private:
-  void addToBlock(const Rgb& radiance);
+  void closeBlock(std::uint64_t half);
   double completeBlocks() const;
   /// Mean over all samples in complete blocks, of which there must be some.
   Rgb meanOfBlocks() const;
   /// Samples in the incomplete block of a half: 0 even, 1 odd.
-  double openSamples(std::uint64_t half) const {
-    return static_cast<double>((samples + 1 - half) / 2 % block);
-  }
+  std::uint64_t openSamples(std::uint64_t half) const { return (samples + 1 - half) / 2 % block; }
 };
 
 /// Samples per pixel, over pixels with isCertain = false; over all pixels if all are certain.

@@ -3,9 +3,8 @@
 namespace fenestra::oracle {
 namespace {
 
-/// Value at s of sorted knots; at a step, the value on its right.
 template <int Channels>
-auto valueAt(const PiecewiseLinear<Channels>& f, double s) {
+auto valueOf(const PiecewiseLinear<Channels>& f, double s) {
   const auto& knots = f.knots();
   std::size_t right = 0; // first knot with position > s
   while (right < knots.size() && knots[right].position <= s)
@@ -32,6 +31,10 @@ std::vector<float> asFloats(const Voxels& voxels) {
 }
 
 } // namespace
+
+Rgb valueAt(const ColorFunction& f, double s) {
+  return valueOf(f, s);
+}
 
 Matter::Matter(const Volume& volume, const TransferFunction& transfer,
                const std::optional<Affine>& crop)
@@ -78,14 +81,14 @@ double Matter::scalarAtIndex(const Vec3& index) const {
 }
 
 double Matter::extinction(const Vec3& world) const {
-  const double sigma_t = valueAt(m_transfer.extinction, scalarAtIndex(m_worldToIndex * world))[0];
+  const double sigma_t = valueOf(m_transfer.extinction, scalar(world))[0];
   if (!m_transfer.gradientOpacity || sigma_t == 0.0)
     return sigma_t;
-  return sigma_t * valueAt(*m_transfer.gradientOpacity, gradient(world).norm())[0];
+  return sigma_t * valueOf(*m_transfer.gradientOpacity, gradient(world).norm())[0];
 }
 
 Rgb Matter::albedo(const Vec3& world) const {
-  return valueAt(m_transfer.albedo, scalarAtIndex(m_worldToIndex * world));
+  return valueAt(m_transfer.albedo, scalar(world));
 }
 
 Vec3 Matter::gradient(const Vec3& world) const {

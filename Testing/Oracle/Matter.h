@@ -5,6 +5,9 @@
 
 namespace fenestra::oracle {
 
+/// Value at s of sorted knots; at a step, the value on its right.
+Rgb valueAt(const ColorFunction& f, double s);
+
 /// Interval of a ray, t >= 0, inside a box; empty: ray misses.
 Interval partIn(const Box& box, const Ray& ray);
 
@@ -16,6 +19,7 @@ public:
   bool inside(const Vec3& world) const;
   /// Extinction, mm^-1; valid inside only.
   double extinction(const Vec3& world) const;
+  double scalar(const Vec3& world) const { return scalarAtIndex(m_worldToIndex * world); }
   Rgb albedo(const Vec3& world) const;
   /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;

@@ -3,6 +3,7 @@
 #include "Clipping.h"
 #include "Lights.h"
 #include "Scatter.h"
+#include "Segments.h"
 
 #include <tbb/parallel_for.h>
 
@@ -21,6 +22,8 @@ public:
         m_lights(scene.lights, scene.volume.grid, m_view) {
     if (scene.style)
       m_styledFocus.emplace(scene.style->focus);
+    if (scene.tint)
+      m_segments.emplace(*scene.tint);
     if (scene.background.kind == Background::Kind::gradient)
       throw std::invalid_argument("the oracle has no gradient background");
   }
@@ -106,7 +109,9 @@ private:
     return isStyled(point) ? m_scene.style->extinction : 1.0;
   }
   Rgb albedo(const Vec3& point) const {
-    const Rgb own = m_matter.albedo(point);
+    Rgb own = m_matter.albedo(point);
+    if (m_segments)
+      own = m_segments->albedo(point, m_matter.scalar(point), own);
     if (!isStyled(point))
       return own;
     const Rgb grey = Rgb::Constant(own.matrix().dot(Vec3(0.2126, 0.7152, 0.0722)));
@@ -157,6 +162,7 @@ private:
   Matter m_matter;
   Clipping m_clipping;
   std::optional<FocusField> m_styledFocus;
+  std::optional<Segments> m_segments;
   Lights m_lights;
 };
 

@@ -66,6 +66,17 @@ struct StyleDescription {
   double extinction = 1.0, saturation = 1.0;
 };
 
+/// Colours of segments, whose labels lie on voxels of one labelmap.
+struct TintDescription {
+  struct Segment {
+    Mask mask;
+    int priority;          ///< where segments overlap, the greater takes what it covers
+    std::size_t component; ///< 0: what is in no segment
+  };
+  std::vector<Segment> segments;
+  std::vector<std::optional<ColorFunction>> albedo; ///< of each component; nothing: matter's own
+};
+
 struct OracleScene {
   const Volume& volume;
   const TransferFunction& transfer;
@@ -77,6 +88,7 @@ struct OracleScene {
   Background background = {};      ///< any but a gradient
   std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max();
   std::optional<StyleDescription> style = {};
+  std::optional<TintDescription> tint = {};
 };
 
 } // namespace fenestra::oracle

@@ -24,6 +24,12 @@ oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
   return estimates;
 }
 
+/// One path's radiance in each channel over a whole picture: events that are rare in one pixel
+/// occur in others. See Estimated.
+struct Paths {
+  Rgb skewness = Rgb::Zero(), brightness = Rgb::Zero();
+};
+
 /// Sums over pixels, for the mean of their means.
 struct Sums {
   Rgb mean = Rgb::Zero(), variance = Rgb::Zero();
@@ -40,8 +46,9 @@ struct Sums {
     samples += pixel.samples;
     pixels += 1.0;
   }
-  Estimated channel(int c, const Rgb& skewness = Rgb::Zero()) const {
-    return {mean[c] / pixels, variance[c] / (pixels * pixels), samples, skewness[c], blocks};
+  Estimated channel(int c, const Paths& paths = {}) const {
+    return {mean[c] / pixels,   variance[c] / (pixels * pixels), samples, paths.skewness[c], blocks,
+            paths.brightness[c]};
   }
   /// Sums of pictures whose samples depend on each other within blocks of `size`
   /// (PixelSums::block).
@@ -52,22 +59,25 @@ struct Sums {
   }
 };
 
-/// Skewness of one path's radiance in each channel over a whole picture: events that are rare in
-/// one pixel occur in others.
-Rgb skewnessOf(const oracle::Estimates& picture) {
-  Rgb squares = Rgb::Zero(), cubes = Rgb::Zero();
+Paths pathsOf(const oracle::Estimates& picture) {
+  Rgb squares = Rgb::Zero(), cubes = Rgb::Zero(), sum = Rgb::Zero(), squaresOfMeans = Rgb::Zero();
   double samples = 0.0;
   for (const oracle::PixelEstimate& pixel : picture.pixels) {
     squares += pixel.squares;
     cubes += pixel.cubes;
+    sum += pixel.samples * pixel.mean;
+    squaresOfMeans += pixel.samples * pixel.mean.square();
     samples += pixel.samples;
   }
   const Rgb deviation = (squares / samples).sqrt();
-  Rgb skewness = Rgb::Zero();
-  for (int c = 0; c < 3; ++c)
+  Paths paths;
+  for (int c = 0; c < 3; ++c) {
     if (squares[c] > 0.0)
-      skewness[c] = cubes[c] / samples / (deviation[c] * deviation[c] * deviation[c]);
-  return skewness;
+      paths.skewness[c] = cubes[c] / samples / (deviation[c] * deviation[c] * deviation[c]);
+    if (sum[c] > 0.0)
+      paths.brightness[c] = (squares[c] + squaresOfMeans[c]) / sum[c];
+  }
+  return paths;
 }
 
 /// Sums over a square of pixels.
@@ -97,7 +107,7 @@ private:
 /// Compares squares of `size` pixels; `visit` receives the probability of one channel of each.
 template <typename Visit>
 double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
-  const Rgb skewness = skewnessOf(outcome.truth);
+  const Paths paths = pathsOf(outcome.truth);
   Least least;
   int channel = outcome.combination.index;
   for (int top = 0; top < outcome.truth.height; top += size)
@@ -105,10 +115,10 @@ double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
       const Sums a = sumsOf(outcome.product, left, top, size).inBlocks(NumberSource::blockSize);
       const Sums b = sumsOf(outcome.truth, left, top, size);
       for (int c = 0; c < 3; ++c)
-        least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
+        least.add(welchProbability(a.channel(c, paths), b.channel(c, paths)));
       const int one = ++channel % 3;
       const auto p = welchProbability(a.channel(one), b.channel(one));
-      if (p && isEven(b.channel(one, skewness)))
+      if (p && isEven(b.channel(one, paths)))
         visit(*p);
     }
   return least.corrected();
@@ -118,10 +128,10 @@ void comparePicture(Outcome& outcome) {
   const int size = outcome.truth.width;
   const Sums a = sumsOf(outcome.product, 0, 0, size).inBlocks(NumberSource::blockSize);
   const Sums b = sumsOf(outcome.truth, 0, 0, size);
-  const Rgb skewness = skewnessOf(outcome.truth);
+  const Paths paths = pathsOf(outcome.truth);
   Least least;
   for (int c = 0; c < 3; ++c)
-    least.add(welchProbability(a.channel(c, skewness), b.channel(c, skewness)));
+    least.add(welchProbability(a.channel(c, paths), b.channel(c, paths)));
   const double share = 0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels); // colliding paths
   // Both draw first collisions from the same distribution, so the oracle's variance serves for
   // both.
@@ -143,7 +153,7 @@ void comparePicture(Outcome& outcome) {
     outcome.difference = difference / truth.mean;
   if (probability)
     outcome.deviate = difference / std::sqrt(product.variance + truth.variance);
-  if (isEven(b.channel(channel, skewness)))
+  if (isEven(b.channel(channel, paths)))
     outcome.pictureProbability = probability;
 }
 

@@ -1,4 +1,5 @@
 #include "MatrixClips.h"
+#include "MatrixSegments.h"
 
 #include <numeric>
 #include <sstream>
@@ -47,6 +48,11 @@ Combination combination(int index) {
   const bool isOtherKind = next(2) == 0;
   const bool isOtherLight = next(3) == 0;
   c.isCoated = next(2) == 0 && c.isHybrid;
+  constexpr int counts[] = {1, 3, 8};
+  const int tints = counts[next(3)];
+  c.segments = static_cast<SegmentFactor>(next(3));
+  c.areSoft = next(2) == 0;
+  c.tints = index % 2 == 1 ? tints : 0;
   if (index % 4 == 1 ||
       index % 4 == 2) { // the others are plain, which shows errors of other factors best
     c.edge = static_cast<EdgeFactor>(isSoftCut ? 2 + edge % 2 : edge);
@@ -356,6 +362,7 @@ std::string describe(const Combination& c) {
   static constexpr const char* edges[] = {"", ", ghost", ", soft", ", soft ghost"};
   static constexpr const char* styles[] = {"", ", thin context", ", pale context",
                                            ", thin pale context"};
+  static constexpr const char* segments[] = {"overlapping tints", "nested tints", "disjoint tints"};
   static constexpr const char* lights[] = {"constant", "map",     "directional", "rectangle",
                                            "disk",     "several", "sky",         "sphere"};
   static constexpr const char* albedos[] = {"0", "0.5", "0.999", "1", "per channel", "by scalar"};
@@ -372,6 +379,8 @@ std::string describe(const Combination& c) {
     text << name(edges, c.edge);
   if (c.clip > ClipFactor::plane && c.offset != 0.0)
     text << (c.offset < 0.0 ? ", nearer" : ", deeper");
+  if (c.tints > 0)
+    text << ", " << c.tints << (c.areSoft ? " soft " : " hard ") << name(segments, c.segments);
   text << name(styles, c.style) << (c.isCropped ? ", cropped" : "") << " | "
        << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo) << " | "
        << name(transfers, c.transfer) << (c.isHybrid ? c.isCoated ? ", coated" : ", hybrid" : "")
@@ -395,6 +404,7 @@ MatrixScene matrixScene(const Combination& c) {
     scene.product.crop = CropBox(cropOf(generator));
   placeClip(c, generator, scene);
   styleContext(c.style, scene);
+  tintSegments(c, generator, scene);
   return scene;
 }
 
@@ -412,7 +422,8 @@ oracle::OracleScene MatrixScene::forOracle() const {
           crop,
           settings.path.background,
           settings.path.bounces,
-          style};
+          style,
+          tint};
 }
 
 } // namespace fenestra::testing

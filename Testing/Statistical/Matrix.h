@@ -35,6 +35,9 @@ enum class VoxelFactor { uint8, int16, uint16, float32 };
 enum class GridFactor { cubes, thickSlices, turned, shearedMirrored, fine };
 enum class BackgroundFactor { color, transparent, environment };
 
+/// How segments lie that are coloured.
+enum class SegmentFactor { overlapping, nested, disjoint };
+
 struct Combination {
   int index = 0;
   ViewFactor view{};
@@ -53,6 +56,9 @@ struct Combination {
   EdgeFactor edge{};
   StyleFactor style{};
   double offset = 0.0; ///< of the clip, mm
+  int tints = 0;       ///< coloured segments
+  SegmentFactor segments{};
+  bool areSoft = false; ///< segments, at their borders
 };
 
 /// First `count` combinations of an endless list.
@@ -67,6 +73,7 @@ struct MatrixScene {
   RenderSettings settings; ///< background and bounces
   oracle::ClipDescription clip = {};
   std::optional<oracle::StyleDescription> style = {};
+  std::optional<oracle::TintDescription> tint = {};
   /// Depth clip's buffer, mm, row by row, for comparison with the oracle's.
   std::vector<double> productDepths = {};
 

@@ -12,9 +12,17 @@ double square(double x) {
   return x * x;
 }
 
+/// Estimate with a variance, where none of its samples saw what the other's did.
+Estimated withRareEvents(Estimated e, const Estimated& other) {
+  if (e.mean == 0.0 && e.variance == 0.0)
+    e.variance = std::abs(other.mean) * e.brightness / e.samples;
+  return e;
+}
+
 } // namespace
 
-std::optional<double> welchProbability(const Estimated& a, const Estimated& b) {
+std::optional<double> welchProbability(const Estimated& given, const Estimated& other) {
+  const Estimated a = withRareEvents(given, other), b = withRareEvents(other, given);
   const double difference = a.mean - b.mean;
   const double variance = a.variance + b.variance;
   // Rounding error of equal numbers: the product's lanes compute in float.

@@ -14,14 +14,17 @@ struct Estimated {
   double samples = 0.0;  ///< number of samples
   double skewness = 0.0; ///< of one sample; 0 if unknown
   double blocks = 0.0;   ///< independent values that tell the variance; 0: all samples
+  double brightness =
+      0.0; ///< mean square over mean of a sample, wherever there is light; 0: unknown
 };
 
 /// Two-sided probability of the difference between two estimates of one value, by Welch's t (1947)
 /// with Satterthwaite's degrees of freedom. A mean of few bright paths is skewed like their count,
 /// so the degrees of freedom are limited by the number of equally bright paths and by n /
-/// skewness^2: lower limits give heavier tails. Empty if both estimates are exact and agree; 0 if
-/// both are exact and differ, or a value is not finite.
-std::optional<double> welchProbability(const Estimated& a, const Estimated& b);
+/// skewness^2: lower limits give heavier tails. Samples that are all 0 tell nothing of their
+/// variance: it is that of events of the given brightness, as rare as the other mean says. Empty if
+/// both estimates are exact and agree; 0 if both are exact and differ, or a value is not finite.
+std::optional<double> welchProbability(const Estimated& given, const Estimated& other);
 
 /// True if a mean is not decided by few paths: n / skewness^2 >= 100. Few paths also decide on the
 /// error of their mean, and t is then too often near 1. Measured over sixteen seed bases of the
