@@ -1,4 +1,3 @@
-#include "MatrixClips.h"
 #include "MatrixSegments.h"
 
 #include <numeric>

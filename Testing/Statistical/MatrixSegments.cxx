@@ -1,7 +1,5 @@
 #include "MatrixSegments.h"
 
-#include "MatrixClips.h"
-
 namespace fenestra::testing {
 namespace {
 

@@ -1,8 +1,7 @@
 #pragma once
 // Coloured segments of the matrix's scenes: built for the product, and described for the oracle.
 
-#include "Matrix.h"
-#include "Oracle/Estimates.h"
+#include "MatrixClips.h"
 
 namespace fenestra::testing {
 

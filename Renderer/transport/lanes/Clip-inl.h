@@ -72,11 +72,10 @@ struct InView {
 };
 
 HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
-  const Float zero = 0.0F;
-  InView at{zero, zero, apply(scene.toView[2], p), 1.0F, LaneMask::none()};
+  InView at{0.0F, 0.0F, apply(scene.toView[2], p), 1.0F, LaneMask::none()};
   if (scene.perspective) {
     const Float fromEye = at.depth + scene.targetDepth;
-    at.behindEye = fromEye <= zero;
+    at.behindEye = fromEye <= 0.0F;
     at.scale = scene.targetDepth / fromEye;
   }
   if (scene.clipKind == WideScene::ClipKind::plane)
@@ -102,11 +101,10 @@ HWY_INLINE DepthCell depthCell(const WideScene& scene, const InView& view) {
   const Float column = depthIndex(scene.depthX, view.x);
   const Float row = depthIndex(scene.depthY, view.y);
   const Int columns = scene.depthColumns;
-  const Int one = 1;
   const Int c0 = toInt(column);
   const Int r0 = toInt(row);
-  const Int c1 = min(c0 + one, toInt(scene.depthX.last));
-  const Int r1 = min(r0 + one, toInt(scene.depthY.last));
+  const Int c1 = min(c0 + 1, toInt(scene.depthX.last));
+  const Int r1 = min(r0 + 1, toInt(scene.depthY.last));
   const Float fc = column - toFloat(c0);
   const Float fr = row - toFloat(r0);
   const auto at = [&](Int c, Int r) { return gather(scene.depths, r * columns + c); };
@@ -132,10 +130,10 @@ HWY_INLINE Float linearDepth(const WideScene& scene, const InView& view, const D
 inline Float keep(const WideScene& scene, const Float3& p, LaneMask which) {
   const InView view = inView(scene, p);
   const auto edge = [&](Float behind) {
-    const Float zero = 0.0F, one = 1.0F, ghost = scene.ghost;
-    const Float rise = scene.perSoftness > 0.0F ? min(behind * scene.perSoftness, one) : one;
-    const Float share = select(behind < zero, ghost, lerp(ghost, one, rise));
-    return select(view.behindEye, zero, share);
+    const Float ghost = scene.ghost;
+    const Float rise = scene.perSoftness > 0.0F ? min(behind * scene.perSoftness, 1.0F) : 1.0F;
+    const Float share = select(behind < 0.0F, ghost, lerp(ghost, 1.0F, rise));
+    return select(view.behindEye, 0.0F, share);
   };
   if (scene.clipKind == WideScene::ClipKind::plane)
     return edge(-apply(scene.toPlane, p));
@@ -164,12 +162,11 @@ HWY_INLINE Float3 behindGradient(const WideScene& scene, const InView& view,
   const Float y =
       slopeAlong(scene.depthY, cell.row,
                  lerp(cell.downLeft - cell.upLeft, cell.downRight - cell.upRight, cell.fc));
-  const Float one = 1.0F;
   if (!scene.perspective)
-    return {-x, -y, one};
+    return {-x, -y, 1.0F};
   const Float perDepth = view.scale / scene.targetDepth;
   const Float along = fma(x, view.x, y * view.y);
-  return {-(x * view.scale), -(y * view.scale), fma(along, perDepth, one)};
+  return {-(x * view.scale), -(y * view.scale), fma(along, perDepth, 1.0F)};
 }
 
 /// cutGradient, world axes, for the lanes of `which`; 0 in the others. Requires a soft edge.

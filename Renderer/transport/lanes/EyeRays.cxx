@@ -84,12 +84,11 @@ HWY_INLINE void beginRays(const WideScene& volume, const EyeTable& eye, const Pa
 
 void beginAll(const WideScene& volume, const EyeTable& eye, const PathStarts& starts,
               PathBatch& paths) {
-  const Float zero = 0.0F, one = 1.0F;
   for (std::size_t i = 0; i < starts.size; i += laneCount) {
     const std::size_t to = paths.rays.size + i;
     beginRays(volume, eye, starts, i, paths, to);
-    store3({one, one, one}, paths.weight, to);
-    store3({zero, zero, zero}, paths.radiance, to);
+    store3({1.0F, 1.0F, 1.0F}, paths.weight, to);
+    store3({0.0F, 0.0F, 0.0F}, paths.radiance, to);
     store(Int(0), &paths.bounces[to]);
   }
 }

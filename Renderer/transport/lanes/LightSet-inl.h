@@ -36,9 +36,8 @@ public:
   /// light; `uBits`, `vBits`: random bits.
   LightDraw draw(LaneMask which, const Float3& point, Float choice, Word uBits, Word vBits) const {
     const Float u = uniformOf(uBits), v = uniformOf(vBits);
-    const Float zero = 0.0F;
     const Float far = std::numeric_limits<float>::infinity();
-    LightDraw drawn{{zero, zero, 1.0F}, {zero, zero, zero}, far, 1.0F, LaneMask::none()};
+    LightDraw drawn{{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, far, 1.0F, LaneMask::none()};
     const auto chosen = [&](float share) {
       const LaneMask mine = which & (choice <= share);
       which = which.without(mine);
@@ -71,8 +70,7 @@ public:
   /// against drawing that light (Veach 1997, eq. 9.8).
   Float3 arriving(LaneMask which, const Float3& origin, const Float3& direction, Float distance,
                   Float scatterPdf) const {
-    const Float zero = 0.0F;
-    Float3 sum{zero, zero, zero};
+    Float3 sum{0.0F, 0.0F, 0.0F};
     for (const EventScene::Area& light : m_scene.areas)
       sum = sum + arrivingFrom(light, which, origin, direction, distance, scatterPdf);
     for (const EventScene::Sphere& light : m_scene.spheres)
@@ -115,10 +113,9 @@ private:
 
   /// 1 - cos of half the angle that a sphere subtends; 2 from inside.
   static HWY_INLINE Float spreadOf(const EventScene::Sphere& light, Float distance2) {
-    const Float one = 1.0F;
     const Float sine2 = light.radius2 / distance2;
-    const Float cosine = sqrt(max(one - sine2, 0.0F));
-    return select(sine2 < one, sine2 / (one + cosine), 2.0F);
+    const Float cosine = sqrt(max(1.0F - sine2, 0.0F));
+    return select(sine2 < 1.0F, sine2 / (1.0F + cosine), 2.0F);
   }
   static HWY_INLINE Float densityOf(const EventScene::Sphere& light, Float spread) {
     return light.share / (narrow(2.0 * pi) * spread);
@@ -126,27 +123,25 @@ private:
   /// Distance to a sphere whose centre is `along` ahead, and aside by the square root of `across2`.
   static HWY_INLINE Float distanceTo(const EventScene::Sphere& light, Float distance2, Float along,
                                      Float across2) {
-    const Float zero = 0.0F;
     const Float outside = distance2 - light.radius2;
-    const Float half = sqrt(max(light.radius2 - across2, zero));
+    const Float half = sqrt(max(light.radius2 - across2, 0.0F));
     const Float far = along + half;
-    return select(outside > zero, outside / far, far);
+    return select(outside > 0.0F, outside / far, far);
   }
 
   static HWY_INLINE void drawSphere(const EventScene::Sphere& light, LaneMask mine,
                                     const Float3& point, Float u, Float v, LightDraw& drawn) {
-    const Float zero = 0.0F, one = 1.0F;
     const Float3 d = Float3(light.center) - point;
     const Float distance2 = dot(d, d);
     const Float distance = sqrt(distance2);
     const Float spread = spreadOf(light, distance2);
     const Float fall = spread * u; // 1 - cos of the angle to the axis
-    const Float cosine = one - fall;
-    const Float sine2 = max(fall * (2.0F - fall), zero);
+    const Float cosine = 1.0F - fall;
+    const Float sine2 = max(fall * (2.0F - fall), 0.0F);
     const Float sine = sqrt(sine2);
     const CosineSine phi = ofTurns(v);
-    const LaneMask apart = distance > zero;
-    const Float3 axis = select(apart, (one / distance) * d, Float3{zero, zero, one});
+    const LaneMask apart = distance > 0.0F;
+    const Float3 axis = select(apart, (1.0F / distance) * d, Float3{0.0F, 0.0F, 1.0F});
     const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
     const Float far = distanceTo(light, distance2, distance * cosine, distance2 * sine2);
     drawn.direction = select(mine, normalized(Frames(axis).toWorld(local)), drawn.direction);
@@ -197,11 +192,10 @@ private:
 
   /// Radiance of constant environments and skies.
   HWY_INLINE Float3 around(const Float3& direction) const {
-    const Float zero = 0.0F, one = 1.0F;
     Float3 sum = Float3(m_scene.constantEnvironment);
     for (const EventScene::Sky& sky : m_scene.skies) {
-      const Float t = min(max(dot(Float3(sky.up), direction), -one), one);
-      const Float3 slope = select(t < zero, Float3(sky.toBottom), Float3(sky.toTop));
+      const Float t = min(max(dot(Float3(sky.up), direction), -1.0F), 1.0F);
+      const Float3 slope = select(t < 0.0F, Float3(sky.toBottom), Float3(sky.toTop));
       sum = sum + Float3(sky.middle) + abs(t) * slope;
     }
     return sum;
@@ -216,19 +210,17 @@ private:
   static HWY_INLINE Float3 arrivingFrom(const EventScene::Area& light, LaneMask which,
                                         const Float3& origin, const Float3& direction,
                                         Float distance, Float scatterPdf) {
-    const Float zero = 0.0F;
     const Float3 normal = Float3(light.normal);
     const Float cosine = -dot(normal, direction);
     const Float t = dot(normal, origin - Float3(light.center)) / cosine;
-    const LaneMask ahead = (cosine > zero) & (t > zero) & (t < distance);
+    const LaneMask ahead = (cosine > 0.0F) & (t > 0.0F) & (t < distance);
     LaneMask met = which & ahead;
     if (!met.any())
-      return {zero, zero, zero};
+      return {0.0F, 0.0F, 0.0F};
     const Float3 d = origin + t * direction - Float3(light.center);
     const Float x2 = square(dot(d, Float3(light.right)) * light.perRight);
     const Float y2 = square(dot(d, Float3(light.up)) * light.perUp);
-    const Float one = 1.0F;
-    met = met & ((light.disk ? x2 + y2 : max(x2, y2)) <= one);
+    met = met & ((light.disk ? x2 + y2 : max(x2, y2)) <= 1.0F);
     const Float pdf = light.share * square(t) / (light.area * cosine);
     return weighted(met, scatterPdf, pdf, light.radiance);
   }
@@ -236,19 +228,18 @@ private:
   static HWY_INLINE Float3 arrivingFrom(const EventScene::Sphere& light, LaneMask which,
                                         const Float3& origin, const Float3& direction,
                                         Float distance, Float scatterPdf) {
-    const Float zero = 0.0F;
     const Float3 d = Float3(light.center) - origin;
     const Float distance2 = dot(d, d);
     const Float along = dot(d, direction);
     const Float3 across = d - along * direction;
     const Float across2 = dot(across, across);
     const Float radius2 = light.radius2;
-    const LaneMask ahead = (along > zero) & (across2 <= radius2);
+    const LaneMask ahead = (along > 0.0F) & (across2 <= radius2);
     const LaneMask hits = (distance2 <= radius2) | ahead;
     const Float far = distanceTo(light, distance2, along, across2);
     const LaneMask met = which & hits & (far < distance);
     if (!met.any())
-      return {zero, zero, zero};
+      return {0.0F, 0.0F, 0.0F};
     const Float pdf = densityOf(light, spreadOf(light, distance2));
     return weighted(met, scatterPdf, pdf, light.radiance);
   }

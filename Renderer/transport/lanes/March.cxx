@@ -8,6 +8,7 @@
 // After foreach_target.h:
 #include "transport/lanes/Clip-inl.h"
 #include "transport/lanes/Tint-inl.h"
+#include "transport/lanes/Way-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
@@ -22,7 +23,9 @@ public:
       : m_volume(volume),
         m_origin(load3(rays.origin, first)),
         m_direction(load3(rays.direction, first)),
-        m_inverse{1.0F / m_direction.x, 1.0F / m_direction.y, 1.0F / m_direction.z},
+        m_way{Way::entered(volume.axes[0], m_origin.x, m_direction.x),
+              Way::entered(volume.axes[1], m_origin.y, m_direction.y),
+              Way::entered(volume.axes[2], m_origin.z, m_direction.z)},
         m_end(load(&rays.length[first])),
         m_shortest(narrow(coarser * MarchSteps::voxels) / sqrt(dot(m_direction, m_direction))),
         m_opticalDepth(narrow(coarser * MarchSteps::opticalDepth)),
@@ -37,14 +40,13 @@ public:
   /// Each lane leaves an empty cell with its reach, or takes one step in matter. Returns the lanes
   /// that end with it.
   HWY_INLINE LaneMask step() {
-    const Float3 p = pointAt(m_t);
-    const auto& axes = m_volume.axes;
-    const Float x = cellOf(axes[0], p.x), y = cellOf(axes[1], p.y), z = cellOf(axes[2], p.z);
+    const Float x = floor(m_way[0].at(m_t));
+    const Float y = floor(m_way[1].at(m_t));
+    const Float z = floor(m_way[2].at(m_t));
     const LaneCells cell = cellsAt(m_volume, x, y, z);
-    const Float stop =
-        min(min(leaving(axes[0], x, cell.reach, m_origin.x, m_direction.x, m_inverse.x),
-                leaving(axes[1], y, cell.reach, m_origin.y, m_direction.y, m_inverse.y)),
-            min(leaving(axes[2], z, cell.reach, m_origin.z, m_direction.z, m_inverse.z), m_end));
+    const Float half = cell.reach + 0.5F;
+    const Float stop = min(min(m_way[0].leaving(x, half), m_way[1].leaving(y, half)),
+                           min(m_way[2].leaving(z, half), m_end));
     // A little beyond the face: the next point lies in the next cell, whatever rounding does.
     const Float beyond = fma(m_shortest, 0.02F, max(stop, m_t));
     const LaneMask filled = m_busy & (cell.majorant > 0.0F);
@@ -75,23 +77,6 @@ public:
   }
 
 private:
-  /// Number of the cell along one axis.
-  static HWY_INLINE Float cellOf(const WideScene::Axis& axis, Float x) {
-    const Float at = fma(x, axis.cellsPerVoxel, (0.5F * axis.cellsPerVoxel));
-    return floor(min(max(at, 0.0F), axis.insideCells));
-  }
-
-  /// t at the face through which a ray leaves the cell and its reach.
-  static HWY_INLINE Float leaving(const WideScene::Axis& axis, Float cell, Float reach,
-                                  Float origin, Float direction, Float inverse) {
-    const LaneMask down = direction < 0.0F;
-    const Float face = select(down, cell - reach, cell + reach + 1.0F);
-    const Float at = fms(face, axis.cellEdge, 0.5F);
-    const Float t = (at - origin) * inverse;
-    const LaneMask moves = abs(direction) >= std::numeric_limits<float>::min();
-    return select(moves, t, std::numeric_limits<float>::infinity());
-  }
-
   /// Light that matter stops from m_t to `next`, by its extinction in the middle.
   HWY_INLINE void stopLight(LaneMask filled, const LaneCells& cell, Float next) {
     const Float length = next - m_t;
@@ -114,9 +99,10 @@ private:
   }
 
   const WideScene& m_volume;
-  Float3 m_origin, m_direction, m_inverse; ///< index space, per mm
-  Float m_end, m_shortest;                 ///< mm
-  Float m_opticalDepth;                    ///< of a step
+  Float3 m_origin, m_direction; ///< index space, per mm
+  Way m_way[3];
+  Float m_end, m_shortest; ///< mm
+  Float m_opticalDepth;    ///< of a step
   bool m_asksKeep;
   LaneMask m_busy;
   Float m_t = 0.0F, m_transmittance = 1.0F;

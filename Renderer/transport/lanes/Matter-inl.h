@@ -17,7 +17,7 @@ namespace fenestra::HWY_NAMESPACE {
 
 HWY_INLINE Float3 albedoOf(const WideTable& table, Float scalar) {
   const auto& channels = table.channels;
-  if (table.position.size() == 3) // one knot
+  if (table.position.size() == 3) // 1.0F knot
     return {channels[0][0].value, channels[1][0].value, channels[2][0].value};
   const Segment segment = segmentOf(table, scalar);
   return {valueIn(channels[0], segment), valueIn(channels[1], segment),
@@ -36,11 +36,10 @@ HWY_INLINE Float3 paled(const WideScene::Context& context, const Float3& index,
 /// Differences of the scalar over two voxels along each axis.
 template <typename Voxel>
 HWY_INLINE Float3 differenceAt(const WideField& field, const Float3& p) {
-  const Float one = 1.0F;
   const auto value = [&](Float x, Float y, Float z) { return scalarAt<Voxel>(field, {x, y, z}); };
-  return {value(p.x + one, p.y, p.z) - value(p.x - one, p.y, p.z),
-          value(p.x, p.y + one, p.z) - value(p.x, p.y - one, p.z),
-          value(p.x, p.y, p.z + one) - value(p.x, p.y, p.z - one)};
+  return {value(p.x + 1.0F, p.y, p.z) - value(p.x - 1.0F, p.y, p.z),
+          value(p.x, p.y + 1.0F, p.z) - value(p.x, p.y - 1.0F, p.z),
+          value(p.x, p.y, p.z + 1.0F) - value(p.x, p.y, p.z - 1.0F)};
 }
 
 /// Medium's probability of scattering at a surface; `slope`: length of the gradient.

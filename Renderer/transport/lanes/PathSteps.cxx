@@ -120,7 +120,6 @@ private:
 
   HWY_INLINE Collisions matter(std::size_t i, LaneMask going, LaneMask first, const Float3& index,
                                Draws& draws) {
-    const Float zero = 0.0F;
     Collisions at{going,
                   first,
                   index,
@@ -128,7 +127,7 @@ private:
                   load3(m_paths.direction, i),
                   load3(m_paths.weight, i),
                   {},
-                  {zero, zero, zero},
+                  {0.0F, 0.0F, 0.0F},
                   LaneMask::none()};
     at.albedo = albedoOf(m_scene.albedo, at.scalar);
     if (m_scene.tint)
@@ -190,10 +189,9 @@ private:
     const LightDraw light =
         m_lights.draw(at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
     const Scattered scattered = toward(light.direction);
-    const Float zero = 0.0F;
-    const Float pdf = light.pdf + select(light.delta, zero, scattered.pdf);
+    const Float pdf = light.pdf + select(light.delta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.weight * scattered.factor * light.radiance);
-    const LaneMask arrives = at.going & (greatest(radiance) > zero);
+    const LaneMask arrives = at.going & (greatest(radiance) > 0.0F);
     const std::size_t count = arrives.count();
     const Word depth = draws.nextBits();
     const Float acceptance = draws.uniform();
@@ -217,7 +215,6 @@ private:
   /// Sets the paths' weights and new rays. Returns the lanes that survive Russian roulette.
   HWY_INLINE LaneMask goOn(std::size_t i, const Collisions& at, const ScatterDraw& drawn,
                            Draws& draws) {
-    const Float zero = 0.0F;
     constexpr auto below = static_cast<float>(rouletteBelow);
     Float3 weight = at.weight * drawn.weight;
     const Float most = greatest(weight);
@@ -234,7 +231,7 @@ private:
     store(draws.nextBits(), &m_paths.rays.depth[i]);
     store(draws.uniform(), &m_paths.rays.acceptance[i]);
     store(draws.counter, &m_paths.counter[i]);
-    return at.going & (greatest(weight) > zero);
+    return at.going & (greatest(weight) > 0.0F);
   }
 
   static HWY_INLINE Word numbersFrom(std::size_t i) {

@@ -39,21 +39,20 @@ public:
   }
 
   HWY_INLINE ScatterDraw draw(Float u, Float v) const {
-    const Float one = 1.0F;
     const CosineSine phi = ofTurns(v);
     if (m_g == 0.0F) {
-      const Float z = fnma(2.0F, u, one);
-      const Float r = root(fnma(z, z, one));
+      const Float z = fnma(2.0F, u, 1.0F);
+      const Float r = root(fnma(z, z, 1.0F));
       return {{r * phi.cosine, r * phi.sine, z}, m_albedo, perSphere};
     }
     // PhaseScattering::sample's formula, in 1 - cos.
     const Float g = m_g;
     const Float a = fnma(2.0F * m_g, u, 1.0F + m_g);
     const Float part = (2.0F * (1.0F - m_g) * (1.0F - m_g)) * u;
-    const Float rest = fma(g, one - u, one);
+    const Float rest = fma(g, 1.0F - u, 1.0F);
     const Float oneMinusCosine = min(part * rest / square(a), 2.0F);
-    const Float cosine = one - oneMinusCosine;
-    const Float sine = root(oneMinusCosine * (one + cosine));
+    const Float cosine = 1.0F - oneMinusCosine;
+    const Float sine = root(oneMinusCosine * (1.0F + cosine));
     const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
     return {normalized(Frames(m_peak).toWorld(local)), m_albedo, density(2.0F * oneMinusCosine)};
   }
@@ -141,10 +140,9 @@ private:
       return s;
     if (m_isCoated)
       s.factor = belowCoat(l.z) * s.factor;
-    const Float zero = 0.0F;
     const Float3 h = normalized(l + m_viewer);
     const Float perViewer = masking(m_viewer) * normalDensity(h) / (4.0F * m_viewer.z);
-    const LaneMask facing = (l.z > zero) & (m_viewer.z > zero);
+    const LaneMask facing = (l.z > 0.0F) & (m_viewer.z > 0.0F);
     const Float pdf = orZero(facing, perViewer);
     s.pdf = fma(1.0F - m_lambertShare, pdf, s.pdf);
     const Float glossy = m_specular * fresnel(dot(l, h)) * masking(l);
@@ -170,19 +168,17 @@ private:
   /// Heitz 2018, listing 1; `r`, `phi`: polar coordinates of a point in the unit disc.
   HWY_INLINE Float3 visibleNormal(Float r, const CosineSine& phi) const {
     const Float a = m_roughness;
-    const Float one = 1.0F;
     const Float3 stretched = normalized({a * m_viewer.x, a * m_viewer.y, m_viewer.z});
     const Float length2 = fma(stretched.x, stretched.x, square(stretched.y));
     const LaneMask slanted = length2 > 0.0F;
-    const Float perLength = one / sqrt(select(slanted, length2, one));
-    const Float zero = 0.0F;
-    const Float3 side = select(slanted, perLength * Float3{-stretched.y, stretched.x, zero},
-                               Float3{one, zero, zero});
+    const Float perLength = 1.0F / sqrt(select(slanted, length2, 1.0F));
+    const Float3 side = select(slanted, perLength * Float3{-stretched.y, stretched.x, 0.0F},
+                               Float3{1.0F, 0.0F, 0.0F});
     const Float3 other = cross(stretched, side);
     const Float p1 = r * phi.cosine;
-    const Float s = 0.5F * (one + stretched.z);
-    const Float p2 = lerp(root(fnma(p1, p1, one)), r * phi.sine, s);
-    const Float p3 = root(fnma(p1, p1, fnma(p2, p2, one)));
+    const Float s = 0.5F * (1.0F + stretched.z);
+    const Float p2 = lerp(root(fnma(p1, p1, 1.0F)), r * phi.sine, s);
+    const Float p3 = root(fnma(p1, p1, fnma(p2, p2, 1.0F)));
     const Float3 n = p1 * side + p2 * other + p3 * stretched;
     return normalized({a * n.x, a * n.y, max(n.z, std::numeric_limits<float>::min())});
   }

@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include "transport/lanes/Clip-inl.h"
+#include "transport/lanes/Way-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
@@ -18,41 +19,6 @@ namespace {
 constexpr std::size_t idleForRefill = std::max<std::size_t>(1, laneCount / 4);
 /// Lanes at a tentative collision wait until there are as many, or until all are.
 constexpr std::size_t hitsForLookup = (5 * laneCount + 7) / 8;
-
-/// One axis of rays in units of a cell's edge: where they are, and when they leave a cell.
-struct Way {
-  Float start, speed; ///< cells, cells per mm
-  Float inverse;      ///< 1 / speed; 0: the ray does not move
-  Float toMiddle;     ///< t of the middle of cell 0; infinity if the ray does not move
-
-  HWY_INLINE Float at(Float t) const { return fma(speed, t, start); }
-  /// t at which a ray has left cell number `cell` and the cells up to `half` edges around its
-  /// middle; rounding moves it by some last places of the farthest t.
-  HWY_INLINE Float leaving(Float cell, Float half) const {
-    return fma(cell, inverse, fma(half, abs(inverse), toMiddle));
-  }
-
-  /// Axis of rays given in index space.
-  static HWY_INLINE Way entered(const WideScene::Axis& axis, Float origin, Float direction) {
-    Way way;
-    way.speed = direction * axis.cellsPerVoxel;
-    // Clamped below the last face, so that a ray lying in that face starts inside the last cell.
-    const Float inside = fma(origin, axis.cellsPerVoxel, 0.5F * axis.cellsPerVoxel);
-    way.start = max(min(inside, axis.insideCells), 0.0F);
-    const LaneMask moves = abs(way.speed) >= 1e-30F;
-    way.inverse = orZero(moves, 1.0F / way.speed);
-    way.toMiddle =
-        select(moves, (0.5F - way.start) * way.inverse, std::numeric_limits<float>::infinity());
-    return way;
-  }
-
-  HWY_INLINE void where(LaneMask which, const Way& other) {
-    start.where(which, other.start);
-    speed.where(which, other.speed);
-    inverse.where(which, other.inverse);
-    toMiddle.where(which, other.toMiddle);
-  }
-};
 
 /// Rays of a batch that no lane has taken yet.
 struct Queue {

@@ -1,0 +1,55 @@
+// Rays through majorant cells, axis by axis. Compiled once for each instruction set.
+
+#if defined(FENESTRA_LANE_WAY_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_LANE_WAY_INL_H
+#undef FENESTRA_LANE_WAY_INL_H
+#else
+#define FENESTRA_LANE_WAY_INL_H
+#endif
+
+#include "transport/lanes/TrackerTables.h"
+// After foreach_target.h:
+#include "base/LaneMath-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+
+/// One axis of rays in units of a cell's edge: where they are, and when they leave a cell.
+struct Way {
+  Float start, speed; ///< cells, cells per mm
+  Float inverse;      ///< 1 / speed; 0: the ray does not move
+  Float toMiddle;     ///< t of the middle of cell 0; infinity if the ray does not move
+
+  HWY_INLINE Float at(Float t) const { return fma(speed, t, start); }
+  /// t at which a ray has left cell number `cell` and the cells up to `half` edges around its
+  /// middle; rounding moves it by some last places of the farthest t.
+  HWY_INLINE Float leaving(Float cell, Float half) const {
+    return fma(cell, inverse, fma(half, abs(inverse), toMiddle));
+  }
+
+  /// Axis of rays given in index space.
+  static HWY_INLINE Way entered(const WideScene::Axis& axis, Float origin, Float direction) {
+    Way way;
+    way.speed = direction * axis.cellsPerVoxel;
+    // Clamped below the last face, so that a ray lying in that face starts inside the last cell.
+    const Float inside = fma(origin, axis.cellsPerVoxel, 0.5F * axis.cellsPerVoxel);
+    way.start = max(min(inside, axis.insideCells), 0.0F);
+    const LaneMask moves = abs(way.speed) >= 1e-30F;
+    way.inverse = orZero(moves, 1.0F / way.speed);
+    way.toMiddle =
+        select(moves, (0.5F - way.start) * way.inverse, std::numeric_limits<float>::infinity());
+    return way;
+  }
+
+  HWY_INLINE void where(LaneMask which, const Way& other) {
+    start.where(which, other.start);
+    speed.where(which, other.speed);
+    inverse.where(which, other.inverse);
+    toMiddle.where(which, other.toMiddle);
+  }
+};
+
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
