@@ -152,8 +152,8 @@ std::optional<FocusReport> measureFocus(const RenderScene& scene, const CellRang
     return MajorantGrid(scene.volume.grid, ranges, scene.transfer, noClip, style);
   };
   const auto unclipped = [&](const MajorantGrid& majorants, const ContextStyle* style) {
-    return RenderScene{scene.volume, scene.transfer, majorants,  scene.lights,
-                       scene.camera, noClip,         scene.crop, style};
+    return RenderScene{scene.volume, scene.transfer, majorants, scene.lights, scene.camera,
+                       noClip,       scene.crop,     style,     scene.tint};
   };
   const ContextStyle nothingElse{shared(focus), 0.0, 1.0};
   const MajorantGrid whole = majorantsFor(scene.style), alone = majorantsFor(&nothingElse);

@@ -29,11 +29,13 @@ struct Takes {
   double least = -infinity, greatest = infinity; ///< range of a number
   std::vector<std::string> words = {};           ///< values, if not empty
   std::string standard = {}; ///< default, shown in the help and in Slicer's panel; empty: none
+  bool repeats = false;      ///< may be given several times, each value one by itself (texts)
   std::optional<double> idle = {}; ///< number that changes nothing, whatever else is given
   /// Puts a given value into its place; empty: the command asks for the value by name.
   std::function<void(const FlagValues&, const std::string& name)> put = {};
 
   static Takes text() { return {}; } ///< checked by the code that uses it
+  static Takes texts() { return {.repeats = true}; }
   static Takes list() { return {"string-vector"}; }
   static Takes numbers() { return {"double-vector"}; }
   static Takes labels() { return {"image", "input", "label"}; }
@@ -113,6 +115,7 @@ enum class Topic {
   view,
   eye,    ///< part of view
   extent, ///< part of view
+  materials,
   lights,
   stop,
   process ///< files, and how the program works: stored in no scene, for it shapes no picture
@@ -126,8 +129,9 @@ constexpr Topic wholeOf(Topic topic) {
   return topic == eye || topic == extent ? view : topic;
 }
 
-/// Things without which a flag has no effect, and is refused: a focus, any clip, or a kind of clip.
-enum class Needs { nothing, focus, clip, plane, hole, ghost, surface, spline };
+/// Things without which a flag has no effect, and is refused: a focus, any clip, labels (of a
+/// focus or of materials), or a kind of clip.
+enum class Needs { nothing, focus, labels, clip, plane, hole, ghost, surface, spline };
 
 struct Flag {
   std::string name;  ///< one lower-case word, without dashes

@@ -103,6 +103,8 @@ bool isFile(const std::string& name, const std::string& value, const Input& inpu
     return isFileName("presets", value);
   if (name == "lights")
     return isFileOfLights(value);
+  if (name == "materials")
+    return isFileOfMaterials(value);
   return name == "transfer" && isFileOfTransfer(value, input);
 }
 
@@ -186,7 +188,11 @@ SceneFlags withSceneFlags(const FlagValues& given, const Input& input) {
       result.leftOut.push_back(textOf(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
                                       "\" ", why, "; give --", name, ' ', shown(value)));
   }
-  if (!merged.has("focus") && !given.has("segmentation")) // the stored choice does not matter
+  const bool hasMaterials = merged.differs("materials");
+  if (!hasMaterials && !given.has("material")) // changes of what was not taken
+    merged.remove("material");
+  const bool usesLabels = merged.has("focus") || hasMaterials;
+  if (!usesLabels && !given.has("segmentation")) // the stored choice does not matter
     merged.remove("segmentation");
   return result;
 }

@@ -100,10 +100,10 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
 
   Json json;
   json["seconds"] = {
-      {"load", stages.load},          {"classify", stages.classify}, {"focus", stages.focus},
-      {"spline", stages.spline},      {"fill", stages.fill},         {"features", stages.features},
-      {"transport", stats.transport}, {"filter", stats.filter},      {"measure", stats.measure},
-      {"write", stats.write},         {"total", stats.total}};
+      {"load", stages.load},         {"materials", stages.materials}, {"classify", stages.classify},
+      {"focus", stages.focus},       {"spline", stages.spline},       {"fill", stages.fill},
+      {"features", stages.features}, {"transport", stats.transport},  {"filter", stats.filter},
+      {"measure", stats.measure},    {"write", stats.write},          {"total", stats.total}};
   json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   json["paths"] = c.paths;
   json["collisions"] = c.collisions;
@@ -124,6 +124,10 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
   addClip(json, scene, stats.focus);
   if (scene.focus())
     json["focusVoxels"] = scene.focus()->grid.voxelCount();
+  if (const Tint* tint = scene.tint())
+    json["labels"] = {{"components", tint->albedo.size()},
+                      {"pureFraction", tint->shares->pureFraction()},
+                      {"bytes", tint->shares->bytes()}};
   if (const auto& contrast = scene.contrast().contrast)
     json["contrast"] = {
         {"deltaE", contrast->deltaE[0]},       {"deltaEProtan", contrast->deltaE[1]},

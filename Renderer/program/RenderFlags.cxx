@@ -86,6 +86,10 @@ void readSize(const FlagValues& flags, const std::string& name, SceneRequest& sc
                      ", got '", oneLine(text), "'");
 }
 
+void readTexts(const FlagValues& flags, const std::string& name, std::vector<std::string>& texts) {
+  texts = flags.texts(name);
+}
+
 void readLayers(const FlagValues& flags, const std::string& name, LayerSet& layers) {
   layers = layerSet(flags.list(name));
 }
@@ -132,9 +136,10 @@ struct RenderTable {
        "each [0]",
        Takes::numbers().into(focus.shaping.margins, readMargins), Topic::focus, Needs::focus},
       {"labelsmoothing", "MM", clipGroup,
-       "Smooths the focus's labels by a Gaussian of this deviation, against stair steps; thick "
-       "slices are interpolated first; auto: 0.6 of a voxel's longest edge, not for thin parts",
-       Takes::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, 0.0), Topic::own, Needs::focus},
+       "Smooths the labels of focus and materials by a Gaussian of this deviation, against stair "
+       "steps; thick slices are interpolated first; auto: 0.6 of a voxel's longest edge, not for "
+       "thin parts",
+       Takes::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, 0.0), Topic::own, Needs::labels},
       {"clip", "MODE", clipGroup,
        "none, plane, hole, cutaway, ghost, surface, or auto: surface with a focus, else none",
        Takes::word(clip.mode, {{"auto", std::nullopt},
@@ -178,7 +183,8 @@ struct RenderTable {
        Takes::number(0.0, 1.0).into(focus.contextExtinction), Topic::own, Needs::focus},
       {"contextsaturation", "S", clipGroup,
        "Colour of everything that is not focus, from 0 (grey) to 1 (as it is); auto: the "
-       "first of 1, 0.35 and 0 with which the focus is told from its surroundings",
+       "first of 1, 0.35 and 0 with which the focus is told from its surroundings; 1 with "
+       "materials",
        Takes::numberOrAuto(focus.contextSaturation, 0.0, 1.0, 1.0), Topic::own, Needs::focus},
       {"view", "NAME", viewGroup,
        "anterior, posterior, left, right, superior, inferior, or auto: the direction that shows "
@@ -215,6 +221,13 @@ struct RenderTable {
        Takes::number(-1e30, 1e30).into(scene.shift)},
       {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000",
        Takes::number(0.0, 1000.0).into(scene.density)},
+      {"materials", "none|library|FILE", lookGroup,
+       "Colours of the segments by what they are made of: Fenestra's library, or a .json over it; "
+       "surfaces stay the data's",
+       Takes::text().into(scene.materials), Topic::materials},
+      {"material", "TEXT", lookGroup,
+       "Changes the material of one segment, such as \"Liver: color=#963e2e\"; may be repeated",
+       Takes::texts().into(scene.materialChanges, readTexts), Topic::materials},
       {"lights", "FILE|PRESET|JSON", lookGroup,
        "Lights: .json, cinema, studio, headlight, soft, amber, or the text of a .json itself, "
        "{...}",

@@ -11,18 +11,26 @@
 namespace fenestra {
 namespace {
 
+bool hasMaterials(const SceneRequest& scene) {
+  return scene.materials != noMaterials;
+}
+
 void checkInput(const FlagValues& flags, const SceneRequest& scene) {
-  const bool isScene = isSceneFile(scene.input);
+  const bool isScene = isSceneFile(scene.input),
+             usesLabels = !scene.focus.empty() || hasMaterials(scene);
   if (scene.volume && !isScene && !isFolder(scene.input))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   if (!scene.focus.empty() && !scene.segmentation && !isScene)
     throw usageError("--focus: needs --segmentation FILE to find segments in");
-  if (scene.segmentation && scene.focus.empty())
-    throw usageError(
-        "--segmentation: only --focus and --preset use it; add --focus A,B,... or --preset auto");
-  if (scene.labels && scene.focus.empty())
-    throw usageError(
-        "--labels: only --focus and --preset use it; add --focus A,B,... or --preset auto");
+  if (hasMaterials(scene) && !scene.segmentation && !isScene)
+    throw usageError("--materials: needs --segmentation FILE with the segments to colour");
+  if (!scene.materialChanges.empty() && !hasMaterials(scene))
+    throw usageError("--material: changes what --materials gives; add --materials library");
+  for (const char* name : {"segmentation", "labels"})
+    if (flags.has(name) && !usesLabels)
+      throw usageError("--", name,
+                       ": only --focus, --materials and --preset use it; add --focus A,B,..., "
+                       "--materials library or --preset auto");
   if (flags.differs("view") && flags.differs("position"))
     throw usageError("--view and --position contradict each other; give one");
 }
@@ -41,10 +49,13 @@ void checkView(const ViewRequest& view, const SceneRequest& scene) {
 }
 
 /// Reason why a flag has no effect with this clip; empty: it has one.
-std::string_view whyWithoutEffect(Needs needs, bool hasFocus, ClipMode mode, Boundary boundary) {
+std::string_view whyWithoutEffect(Needs needs, bool hasFocus, bool hasLabels, ClipMode mode,
+                                  Boundary boundary) {
   const bool isSurface = mode == ClipMode::surface || mode == ClipMode::ghost;
   if (needs == Needs::focus && !hasFocus)
     return "needs a focus; add --focus, or drop it";
+  if (needs == Needs::labels && !hasLabels)
+    return "needs a focus or materials; add --focus or --materials, or drop it";
   if (needs == Needs::clip && mode == ClipMode::none)
     return "without a clip there is nothing to change; drop it";
   if (needs == Needs::plane && mode != ClipMode::plane)
@@ -60,15 +71,17 @@ std::string_view whyWithoutEffect(Needs needs, bool hasFocus, ClipMode mode, Bou
   return "";
 }
 
-void checkClip(const FlagValues& flags, const ClipRequest& clip) {
-  const bool hasFocus = flags.has("focus");
+void checkClip(const FlagValues& flags, const SceneRequest& scene) {
+  const ClipRequest& clip = scene.clip;
+  const bool hasFocus = flags.has("focus"), hasLabels = hasFocus || hasMaterials(scene);
   const ClipMode mode = clip.modeWith(hasFocus);
   if (!hasFocus && isDepthClip(mode))
     throw usageError("--clip: ", *flags.text("clip"), " needs a focus; add --focus");
   if (mode == ClipMode::plane && !clip.plane && !hasFocus)
     throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ, or a --focus to place it by");
   for (const Flag& flag : renderSyntax.flags)
-    if (const auto why = whyWithoutEffect(flag.needs, hasFocus, mode, clip.surface.boundary);
+    if (const auto why =
+            whyWithoutEffect(flag.needs, hasFocus, hasLabels, mode, clip.surface.boundary);
         !why.empty() && flags.differs(flag.name) && !flags.isIdle(flag.name))
       throw usageError("--", flag.name, ": ", why);
   if (flags.has("surface") && !isDepthClip(mode))
@@ -150,7 +163,7 @@ RenderOptions renderOptions(const FlagValues& flags) {
   scene.input = *flags.text("INPUT");
   checkInput(flags, scene);
   checkView(scene.view, scene);
-  checkClip(flags, scene.clip);
+  checkClip(flags, scene);
 
   if (!flags.has("samples") && (flags.has("seconds") || flags.has("noise")))
     options.settings.samples = static_cast<std::uint64_t>(unlimited);

@@ -77,6 +77,11 @@ FlagValues changedFlags(const json& change, const FlagValues& flags) {
     if (!shapesPicture(*flag))
       throw usageError(name, ": cannot change while serving; start another server");
     result.remove(name);
+    if (flag->takes.repeats && value.is_array()) {
+      for (const json& item : value)
+        result.add(name, valueText(name, item));
+      continue;
+    }
     const std::string text = value.is_null()    ? ""
                              : value.is_array() ? listText(name, value)
                                                 : valueText(name, value);
@@ -93,6 +98,8 @@ void checkChange(const json& change, const FlagValues& flags, const Input& input
     namedLights(scene.lights);
   if (scene.transfer && (isPreset || change.contains("transfer")))
     namedTransfer(*scene.transfer, input);
+  if (isPreset || change.contains("materials"))
+    namedMaterials(scene.materials);
   if (scene.environmentMap && change.contains("environment"))
     readEnvironmentMap(*scene.environmentMap);
 }

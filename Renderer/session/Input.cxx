@@ -33,11 +33,11 @@ std::optional<SegmentNames> namesInFile(const InputChoice& choice) {
   return SegmentNames{*choice.segmentation, readSegmentInfos(*choice.segmentation, choice.labels)};
 }
 
-/// Mask of a focus with the files and the warnings of its segmentation.
-FocusInput focusFrom(const Segmentation& segmentation, Mask mask, FilesRead files) {
+/// Labels with the files that they were read from.
+SegmentsInput segmentsFrom(Segmentation segmentation, FilesRead files) {
   if (isThere(segmentation.namesFrom()))
     files.push_back(segmentation.namesFrom());
-  return {std::move(mask), std::move(files), segmentation.warnings(), segmentation.namesFrom()};
+  return {std::move(segmentation), std::move(files)};
 }
 
 } // namespace
@@ -140,15 +140,10 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
   });
 }
 
-FocusInput Input::focus(const InputChoice& choice, const std::vector<std::string>& names,
-                        const MaskShaping& shaping, const Grid& volume) const {
-  if (names.empty())
-    return {};
+SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) const {
   const auto inFile = [&] {
-    const Segmentation segmentation =
-        readSegmentation(*choice.segmentation, &volume, choice.labels);
-    return focusFrom(segmentation, segmentation.mask(names, volume, shaping),
-                     {*choice.segmentation});
+    return segmentsFrom(readSegmentation(*choice.segmentation, &volume, choice.labels),
+                        {*choice.segmentation});
   };
   if (!m_opened->isScene)
     return inFile();
@@ -161,10 +156,10 @@ FocusInput Input::focus(const InputChoice& choice, const std::vector<std::string
                        "has no segmentation \"" + *choice.segmentation +
                            "\", and there is no file of that name; fenestra inspect lists what "
                            "there is");
-    const Segmentation segmentation =
+    Segmentation segmentation =
         readSceneSegmentation(scene, *plan.segmentation, &volume, choice.labels);
-    Mask mask = scene.files.knowingly([&] { return segmentation.mask(names, volume, shaping); });
-    return focusFrom(segmentation, std::move(mask), scene.files.filesRead());
+    segmentation.setSource(scene.files.asKnown(segmentation.source()));
+    return segmentsFrom(std::move(segmentation), scene.files.filesRead());
   });
 }
 

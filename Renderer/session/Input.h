@@ -6,7 +6,6 @@
 #include "model/camera/Camera.h"
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Domain.h"
-#include "model/volume/Mask.h"
 #include "model/volume/Volume.h"
 #include "session/RenderRequest.h"
 
@@ -45,11 +44,9 @@ struct SceneLook {
   FilesRead files = {};
 };
 
-struct FocusInput {
-  std::optional<Mask> mask = {}; ///< nothing: no focus is requested
+struct SegmentsInput {
+  Segmentation segmentation;
   FilesRead files = {};
-  std::vector<std::string> warnings = {};
-  std::string namesFrom = {}; ///< Segmentation's
 };
 
 /// Names of all segments that would be searched for a focus, without labels.
@@ -90,9 +87,8 @@ public:
                  const std::array<double, 2>& range) const;
   /// Nothing without a segmentation.
   std::optional<SegmentNames> segmentNames(const InputChoice& choice) const;
-  /// Mask of the segments `names` on the grid of the volume.
-  FocusInput focus(const InputChoice& choice, const std::vector<std::string>& names,
-                   const MaskShaping& shaping, const Grid& volume) const;
+  /// Labels, for a volume of that grid.
+  SegmentsInput segments(const InputChoice& choice, const Grid& volume) const;
   /// Volume property of that name or id.
   SceneLook property(const std::string& name) const;
   std::vector<std::string> propertyNames() const;

@@ -8,6 +8,7 @@
 #include "files/looks/LightReader.h"
 #include "files/slicer/MrmlScene.h"
 #include "files/slicer/SlicerPresets.h"
+#include "session/SegmentMaterials.h"
 
 #include <optional>
 
@@ -118,6 +119,18 @@ NamedLights namedLights(const std::string& name) {
 
 bool isFileOfLights(const std::string& name) {
   return isLookText(name) ? namesFiles(name, "--lights") : isFileName("lights", name);
+}
+
+NamedMaterials namedMaterials(const std::string& name) {
+  if (!isFileOfMaterials(name))
+    return {materialLibrary(), name};
+  if (!isFoundAsFile(name))
+    throw unknownPreset("materials", name, "none, library, or a file");
+  return {parseMaterials(readText(name), name, materialLibrary()), name, {name}};
+}
+
+bool isFileOfMaterials(const std::string& name) {
+  return name != noMaterials && name != "library";
 }
 
 OrganPreset namedPreset(const std::string& name) {

@@ -2,6 +2,7 @@
 // Looks by name: presets compiled into the program, files, nodes of a Slicer scene, and the presets
 // of an installed 3D Slicer.
 
+#include "files/looks/MaterialReader.h"
 #include "files/looks/PresetReader.h"
 #include "files/looks/TransferReader.h"
 #include "model/lights/Light.h"
@@ -48,6 +49,17 @@ NamedLights namedLights(const std::string& name);
 
 /// True if namedLights would open a file: of that name, or named in the JSON.
 bool isFileOfLights(const std::string& name);
+
+struct NamedMaterials {
+  MaterialTable table;
+  std::string source;                  ///< its name
+  std::vector<std::string> files = {}; ///< files read; empty: the library alone
+};
+/// Materials of the library, or of a file over it. Throws Error (input).
+NamedMaterials namedMaterials(const std::string& name);
+
+/// True if namedMaterials would open a file of that name.
+bool isFileOfMaterials(const std::string& name);
 
 /// Organ preset of the program, or from a file. Throws Error (input).
 OrganPreset namedPreset(const std::string& name);

@@ -44,11 +44,13 @@ struct ClipRequest {
   bool operator==(const ClipRequest&) const = default;
 };
 
-/// Shaping of the focus's labels into a mask, and look of the context.
+/// Shaping of the focus's labels into a mask (materials' labels are smoothed alike), and look of
+/// the context.
 struct FocusRequest {
   MaskShaping shaping = {.smoothing = std::nullopt};
   double contextExtinction = 1.0; ///< factor of the extinction outside the focus, 0 to 1
-  /// Factor of the colours' saturation there, 0 to 1; nothing: by the contrast (Contrast.h).
+  /// Factor of the colours' saturation there, 0 to 1; nothing: 1 with materials, else by the
+  /// contrast (Contrast.h).
   std::optional<double> contextSaturation = {};
 
   bool operator==(const FocusRequest&) const = default;
@@ -70,12 +72,17 @@ struct ViewRequest {
   bool operator==(const ViewRequest&) const = default;
 };
 
+/// SceneRequest::materials of a picture in the volume's own colours.
+inline constexpr const char* noMaterials = "none";
+
 struct SceneRequest {
   std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
   std::optional<std::string> volume = {};       ///< choice among several: a node, or a DICOM series
   std::optional<std::string> segmentation = {}; ///< a node of the scene, or a file
   std::optional<std::string> labels = {};       ///< names of a label map's values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values
+  std::string materials = noMaterials;          ///< or "library", or a file of materials over it
+  std::vector<std::string> materialChanges = {}; ///< parseMaterialChange's texts
   std::optional<std::string> transfer =
       {}; ///< a file, or a preset's name; by default the scene's, else from the volume
   double shift = 0.0;

@@ -36,12 +36,17 @@ void Scene::make() {
     m_namedTransfer.of(*r.transfer, m_input);
   const auto volume = m_volume.of(m_input, r.volume);
   const auto settings = m_settings.of(m_input, r.volume, r.view.followsScene());
-  const auto focus = m_focus.of(m_input, {r.volume, r.segmentation, r.labels}, r.focus,
-                                r.focusLook.shaping, volume->volume.grid);
+  const bool hasMaterials = r.materials != noMaterials;
+  if (hasMaterials || !r.focus.empty())
+    m_segments.of(m_input, {r.volume, r.segmentation, r.labels}, volume->volume.grid);
+  const auto focus =
+      m_focus.of(m_segments.result(), r.focus, r.focusLook.shaping, volume->volume.grid);
   if (!r.transfer)
     m_sceneLook.of(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
   const auto look = m_look.of(volume, m_namedTransfer.result(), m_sceneLook.result(), r.transferFor,
                               r.shift, r.density);
+  if (hasMaterials)
+    makeTint(look->transfer.g);
   m_focusWarnings.of(volume, focus, look);
   if (r.view.isAutomatic() && focus->mask)
     m_view.of(volume, settings, focus, look);
@@ -53,29 +58,42 @@ void Scene::make() {
   const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
   const double extinction = r.focusLook.contextExtinction;
   const double saturation =
-      m_contrast.of(volume, focus, look, r.focusLook.contextSaturation)->saturation;
+      m_contrast.of(volume, focus, look, m_tint.result(), r.focusLook.contextSaturation)
+          ->saturation;
   if (focus->mask && (extinction != 1.0 || saturation != 1.0))
     m_style.of(focus, extinction, saturation);
   const auto majorants = m_majorants.of(volume, ranges, look, clip, m_style.result());
   if (r.features)
-    m_flight.of(volume, settings, look, placed, camera, clip, m_style.result(), majorants);
+    m_flight.of(volume, settings, look, m_tint.result(), placed, camera, clip, m_style.result(),
+                majorants);
+}
+
+void Scene::makeTint(double g) {
+  const auto plan = m_plan.of(m_segments.result(), m_materials.of(m_request.materials),
+                              m_request.materialChanges);
+  const auto shares = m_shares.of(m_segments.result(), plan->parts,
+                                  m_request.focusLook.shaping.smoothing, volume().grid);
+  m_tint.of(plan, shares, g);
 }
 
 StageSeconds Scene::seconds() const {
   const ClipResult none, &clip = m_clip.isNew() ? *m_clip : none;
-  return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
-                  m_focus.seconds() + m_sceneLook.seconds() + m_look.seconds(),
-          .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
-                      m_style.seconds() + m_majorants.seconds(),
-          .focus = clip.focusSeconds,
-          .spline = clip.splineSeconds,
-          .fill = clip.fillSeconds,
-          .features = m_flight.seconds()};
+  return {
+      .load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
+              m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() + m_look.seconds(),
+      .materials = m_materials.seconds() + m_plan.seconds() + m_shares.seconds() + m_tint.seconds(),
+      .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
+                  m_style.seconds() + m_majorants.seconds(),
+      .focus = clip.focusSeconds,
+      .spline = clip.splineSeconds,
+      .fill = clip.fillSeconds,
+      .features = m_flight.seconds()};
 }
 
 StagesMade Scene::made() const {
-  return {m_volume.isNew(), m_focus.isNew(), m_look.isNew(),   m_camera.isNew(),
-          m_lights.isNew(), m_clip.isNew(),  m_ranges.isNew(), m_majorants.isNew()};
+  return {m_volume.isNew(), m_focus.isNew(),     m_look.isNew(),
+          m_camera.isNew(), m_lights.isNew(),    m_clip.isNew(),
+          m_ranges.isNew(), m_majorants.isNew(), m_tint.isNew()};
 }
 
 std::string Scene::choices() const {
@@ -87,12 +105,17 @@ std::string Scene::choices() const {
   else
     parts.push_back("light: " + (r.lights.starts_with('{') ? "its own" : r.lights));
   std::vector<std::string> labels;
-  if (!m_focus->namesFrom.empty())
-    labels.push_back("names from " + m_focus->namesFrom);
+  if (m_segments.result() && !m_segments->segmentation.namesFrom().empty())
+    labels.push_back("names from " + m_segments->segmentation.namesFrom());
   if (m_focus->mask && m_focus->mask->smoothing > 0.0)
     labels.push_back("smoothed " + numberText(m_focus->mask->smoothing, 3) + " mm");
   if (!labels.empty())
     parts.push_back("labels: " + joined(labels, ", "));
+  if (tint()) {
+    const std::size_t colors = tint()->albedo.size() - 1;
+    parts.push_back(
+        textOf("materials: ", r.materials, ", ", colors, colors == 1 ? " colour" : " colours"));
+  }
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)
     parts.push_back("cut: soft over " + numberText(softness, 3) + " mm");
@@ -110,7 +133,8 @@ std::vector<std::string> Scene::warnings() const {
   std::vector<std::string> warnings = m_request.leftOut;
   append(volume().warnings, warnings);
   append(m_settings->warnings, warnings);
-  append(m_focus->warnings, warnings);
+  if (m_segments.result())
+    append(m_segments->segmentation.warnings(), warnings);
   append(m_look->warnings, warnings);
   append(*m_focusWarnings, warnings);
   if (domain().indexCorners().empty())

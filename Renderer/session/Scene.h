@@ -11,13 +11,14 @@ namespace fenestra {
 
 /// Wall-clock seconds by stage, for the stats; 0: shared.
 struct StageSeconds {
-  double load = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0, features = 0.0;
+  double load = 0.0, materials = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0,
+         features = 0.0;
 };
 
 /// Stages made for a scene; false: shared with the scene before.
 struct StagesMade {
   bool volume = false, focus = false, transfer = false, camera = false, lights = false,
-       clip = false, ranges = false, majorants = false;
+       clip = false, ranges = false, majorants = false, tint = false;
 
   bool operator==(const StagesMade&) const = default;
 };
@@ -34,8 +35,8 @@ public:
   Scene changed(const SceneRequest& request) const;
 
   RenderScene forRender() const {
-    return {volume(),  transfer(), *m_majorants,     *m_lights,
-            *m_camera, clip(),     m_settings->crop, style()};
+    return {volume(), transfer(),       *m_majorants, *m_lights, *m_camera,
+            clip(),   m_settings->crop, style(),      tint()};
   }
   const Volume& volume() const { return m_volume->volume; }
   /// Volume's box, or its part inside a Slicer scene's cropping box.
@@ -49,6 +50,8 @@ public:
   const Clip& clip() const { return m_clip->clip; }
   /// Style of the context; null: unchanged.
   const ContextStyle* style() const { return m_style.result().get(); }
+  /// Colours of the segments; null: no materials.
+  const Tint* tint() const { return m_tint.result().get(); }
   /// Saturation of the context, and the contrast that it leaves.
   const FocusContrast& contrast() const { return *m_contrast; }
   /// Clip with its measures, and the depth of the focus.
@@ -70,12 +73,13 @@ public:
 private:
   /// Makes all stages that m_request needs, in their order.
   void make();
+  void makeTint(double g);
   template <typename Self>
   static auto stages(Self& s) {
-    return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_focus,
-                    s.m_sceneLook, s.m_look, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter,
-                    s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style, s.m_majorants,
-                    s.m_flight);
+    return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
+                    s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_plan, s.m_shares,
+                    s.m_tint, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter, s.m_camera,
+                    s.m_lights, s.m_clip, s.m_contrast, s.m_style, s.m_majorants, s.m_flight);
   }
 
   SceneRequest m_request;
@@ -84,9 +88,14 @@ private:
   Stage<&namedTransfer> m_namedTransfer; ///< unused without --transfer
   Stage<&Input::volume> m_volume;
   Stage<&Input::settings> m_settings;
-  Stage<&Input::focus> m_focus;
+  Stage<&Input::segments> m_segments; ///< unused without a focus and materials
+  Stage<&requestedFocus> m_focus;
   Stage<&Input::look> m_sceneLook; ///< unused with --transfer
   Stage<&chosenLook> m_look;
+  Stage<&namedMaterials> m_materials; ///< this and the next three: unused without materials
+  Stage<&tintPlan> m_plan;
+  Stage<&tintShares> m_shares;
+  Stage<&tintOf> m_tint;
   Stage<&focusWarnings> m_focusWarnings;
   Stage<&bestView> m_view; ///< used by automatic views alone
   Stage<&rangesOf> m_ranges;

@@ -186,6 +186,14 @@ NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& e
   return named;
 }
 
+FocusInput requestedFocus(const Handle<SegmentsInput>& segments,
+                          const std::vector<std::string>& names, const MaskShaping& shaping,
+                          const Grid& volume) {
+  if (names.empty())
+    return {};
+  return {segments->segmentation.mask(names, volume, shaping)};
+}
+
 Look chosenLook(const Read& read, const Handle<NamedTransfer>& named,
                 const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor,
                 double shift, double density) {
@@ -269,7 +277,9 @@ CellRanges rangesOf(const Read& volume, int apron) {
 }
 
 FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
-                         const std::optional<double>& saturation) {
+                         const Handle<Tint>& tint, const std::optional<double>& saturation) {
+  if (tint)
+    return {saturation.value_or(1.0)};
   return focus->mask ? chosenContrast(saturation, *focus->mask, volume->volume, look->transfer)
                      : FocusContrast();
 }
@@ -285,11 +295,11 @@ MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
 }
 
 ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
-                        const Handle<LightSet>& lights, const Handle<Camera>& camera,
-                        const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
-                        const Handle<MajorantGrid>& majorants) {
+                        const Handle<Tint>& tint, const Handle<LightSet>& lights,
+                        const Handle<Camera>& camera, const Handle<ClipResult>& clip,
+                        const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants) {
   return expectedFlight({volume->volume, look->transfer, *majorants, *lights, *camera, clip->clip,
-                         settings->crop, style.get()});
+                         settings->crop, style.get(), tint.get()});
 }
 
 } // namespace fenestra

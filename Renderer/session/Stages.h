@@ -8,10 +8,15 @@
 #include "session/Contrast.h"
 #include "session/Input.h"
 #include "session/NamedLooks.h"
+#include "session/SegmentTint.h"
 #include "session/Stage.h"
 #include "transport/render/ExpectedFlight.h"
 
 namespace fenestra {
+
+struct FocusInput {
+  std::optional<Mask> mask = {}; ///< nothing: no focus is requested
+};
 
 using Settings = Handle<SceneSettings>;
 using Focus = Handle<FocusInput>;
@@ -21,6 +26,11 @@ using Read = Handle<VolumeInput>;
 /// environments and skies.
 NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& environment,
                             const std::optional<std::filesystem::path>& environmentMap);
+
+/// Mask of the segments `names`, on the volume's grid; `segments`: null only without names.
+FocusInput requestedFocus(const Handle<SegmentsInput>& segments,
+                          const std::vector<std::string>& names, const MaskShaping& shaping,
+                          const Grid& volume);
 
 struct Look {
   TransferFunction transfer;
@@ -83,9 +93,10 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
 /// `apron`: MajorantGrid::apronFor.
 CellRanges rangesOf(const Read& volume, int apron);
 
-/// `saturation`: of the request.
+/// `saturation`: of the request. `tint`: null without materials; with them no contrast is told, as
+/// its arithmetic knows the transfer function's colours alone.
 FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
-                         const std::optional<double>& saturation);
+                         const Handle<Tint>& tint, const std::optional<double>& saturation);
 
 ContextStyle styleAround(const Focus& focus, double extinction, double saturation);
 
@@ -94,10 +105,10 @@ MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
                          const Handle<Look>& look, const Handle<ClipResult>& clip,
                          const Handle<ContextStyle>& style);
 
-/// Features of the filter.
+/// Features of the filter. `style`, `tint`: null if unused.
 ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
-                        const Handle<LightSet>& lights, const Handle<Camera>& camera,
-                        const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
-                        const Handle<MajorantGrid>& majorants);
+                        const Handle<Tint>& tint, const Handle<LightSet>& lights,
+                        const Handle<Camera>& camera, const Handle<ClipResult>& clip,
+                        const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants);
 
 } // namespace fenestra

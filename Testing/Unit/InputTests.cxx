@@ -36,7 +36,7 @@ TEST_F(InputOfAnArchive, IsOpenedOnceForAllCopies) {
   std::filesystem::remove(archive); // a second opening would fail
   const Volume volume = copy.volume({}).volume;
   EXPECT_EQ(volume.name, "CT");
-  EXPECT_TRUE(copy.focus({{}, "L"}, {"5"}, {}, volume.grid).mask);
+  EXPECT_EQ(copy.segments({{}, "L"}, volume.grid).segmentation.segments().size(), 1U);
   EXPECT_TRUE(input.segmentNames({{}, "L"}));
   EXPECT_TRUE(input.property("P").transfer);
   EXPECT_EQ(input.propertyNames(), std::vector<std::string>{"P"});
@@ -63,7 +63,7 @@ TEST_F(InputOfAnArchive, ListsTheFilesOfEachReading) {
   const Input input(archive);
   const VolumeInput read = input.volume({});
   EXPECT_EQ(read.files, (FilesRead{archive.string(), inArchive + "ct.nrrd"}));
-  EXPECT_EQ(input.focus({{}, "L"}, {"5"}, {}, read.volume.grid).files,
+  EXPECT_EQ(input.segments({{}, "L"}, read.volume.grid).files,
             (FilesRead{archive.string(), inArchive + "labels.nrrd"}));
   EXPECT_EQ(input.settings({}, true).files, FilesRead{archive.string()});
 }

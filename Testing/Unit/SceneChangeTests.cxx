@@ -69,7 +69,8 @@ TEST_P(SceneChange, RemakesOnlyDependentStages) {
   EXPECT_EQ(changed.made(), GetParam().made);
 
   const Scene fromNothing(request);
-  EXPECT_EQ(fromNothing.made(), (StagesMade{true, true, true, true, true, true, true, true}));
+  EXPECT_EQ(fromNothing.made(), (StagesMade{true, true, true, true, true, true, true, true,
+                                            request.materials != noMaterials}));
   EXPECT_EQ(changed.files(), fromNothing.files());
   EXPECT_EQ(changed.warnings(), fromNothing.warnings());
   EXPECT_EQ(changed.look(), fromNothing.look());
@@ -123,6 +124,9 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Clip",
                [](SceneRequest& r) { r.clip.mode = ClipMode::cutaway; },
                {.clip = true, .majorants = true}},
+        Change{"Materials",
+               [](SceneRequest& r) { r.materials = "library"; },
+               {.majorants = true, .tint = true}}, // no pale context
         Change{"Volume",
                [](SceneRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),
@@ -191,6 +195,33 @@ TEST_F(SceneChange, LookThatLeavesTheFocusTransparentIsWarnedOf) {
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("leaves 100 % of the focus transparent"), std::string::npos)
       << warnings[0];
+}
+
+TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
+  request.materials = "library";
+  const Scene before(request);
+  std::filesystem::remove(*request.segmentation); // a second reading would fail
+  request.materialChanges = {"1: color=#00ff00"};
+  const Scene green = before.changed(request);
+  EXPECT_TRUE(green.made().tint);
+  EXPECT_EQ(green.tint()->shares, before.tint()->shares);
+  EXPECT_FALSE(green.made().majorants);
+  request.focus = {"2"};
+  EXPECT_TRUE(green.changed(request).made().focus);
+  EXPECT_FALSE(green.changed(request).made().tint);
+  request.focusLook.shaping.smoothing = 0.5;
+  EXPECT_NE(green.changed(request).tint()->shares, green.tint()->shares);
+  request.materials = noMaterials;
+  EXPECT_FALSE(green.changed(request).tint());
+}
+
+TEST_F(SceneChange, MaterialsLeaveTheContextItsColoursUnlessAsked) {
+  ASSERT_LT(Scene(request).contrast().saturation, 1.0);
+  request.materials = "library";
+  EXPECT_EQ(Scene(request).contrast().saturation, 1.0);
+  EXPECT_FALSE(Scene(request).contrast().contrast) << "it would be of other colours";
+  request.focusLook.contextSaturation = 0.4;
+  EXPECT_EQ(Scene(request).contrast().saturation, 0.4);
 }
 
 TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {

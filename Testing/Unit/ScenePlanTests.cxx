@@ -169,7 +169,7 @@ TEST(ScenePlan, ChoosesTheVisibleOrNamedSegmentation) {
   EXPECT_EQ(segmentationOf("", {.segmentation = "file.nrrd", .needsSegmentation = true}), "none");
   refuse("<Volume id=\"v\"/><Segmentation id=\"s\"/><Segmentation id=\"t\"/>",
          "several segmentations ((s), (t)); choose one with --segmentation", any);
-  refuse("<Volume id=\"v\"/>", "no segmentation to find a focus in", any);
+  refuse("<Volume id=\"v\"/>", "no segmentation to find segments in", any);
 }
 
 TEST(ScenePlan, ListsIgnoredNodes) {

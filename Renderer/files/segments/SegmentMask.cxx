@@ -249,7 +249,7 @@ std::string meantInstead(const std::string& selector, const std::vector<SegmentI
 
 } // namespace
 
-SegmentInfo Segmentation::find(const std::string& selector) const {
+std::size_t Segmentation::find(const std::string& selector) const {
   const auto value = parsed<std::int32_t>(selector);
   const std::array<std::function<bool(const SegmentInfo&)>, 3> ways = {
       [&](const SegmentInfo& segment) { return segment.id == selector; },
@@ -262,7 +262,8 @@ SegmentInfo Segmentation::find(const std::string& selector) const {
       throw inputError(m_source, "segment \"", shown(selector), "\" can be any of ", listed(found),
                        "; name one by its id");
     if (!found.empty())
-      return found.front();
+      return static_cast<std::size_t>(std::ranges::find_if(m_segments, matches) -
+                                      m_segments.begin());
   }
   if (const std::string_view bare = trimmed(selector); bare.size() < selector.size())
     return find(std::string(bare));
@@ -296,8 +297,17 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
     throw usageError("--margin: give one for all segments of --focus, or one each");
   std::vector<SegmentInfo> chosen;
   for (const std::string& selector : selectors)
-    chosen.push_back(find(selector));
-  const auto maskOf = [&](const std::vector<SegmentInfo>& segments) {
+    chosen.push_back(m_segments[find(selector)]);
+  Mask mask = maskOf(chosen, volume, shaping);
+  if (mask.count == 0)
+    throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (",
+                     listed(chosen), "); choose a margin nearer to 0, or less smoothing");
+  return mask;
+}
+
+Mask Segmentation::maskOf(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                          const MaskShaping& shaping) const {
+  const auto labelled = [&](const std::vector<SegmentInfo>& segments) {
     Mask mask;
     for (const SegmentInfo& segment : segments)
       mask.names.push_back(segment.name);
@@ -312,9 +322,9 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
     return mask;
   };
   if (shaping == MaskShaping())
-    return maskOf(chosen);
+    return labelled(chosen);
   const auto shaped = [&](const std::vector<SegmentInfo>& segments, double margin) {
-    const Mask mask = maskOf(segments);
+    const Mask mask = labelled(segments);
     return grown(shaping.smoothing == 0.0 ? mask : betweenSlices(mask), margin, volume);
   };
   std::vector<Mask> masks;
@@ -324,12 +334,8 @@ Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& v
     for (std::size_t i = 0; i < chosen.size(); ++i)
       masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
   const Mask all = united(masks);
-  Mask mask = shaping.smoothing ? smoothed(all, *shaping.smoothing, volume)
-                                : smoothedAutomatically(all, volume);
-  if (mask.count == 0)
-    throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (",
-                     listed(chosen), "); choose a margin nearer to 0, or less smoothing");
-  return mask;
+  return shaping.smoothing ? smoothed(all, *shaping.smoothing, volume)
+                           : smoothedAutomatically(all, volume);
 }
 
 } // namespace fenestra

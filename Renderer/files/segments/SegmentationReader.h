@@ -50,6 +50,9 @@ public:
         m_segments(std::move(segments)) {}
 
   const Grid& grid() const { return m_grid; }
+  /// Name of the file in messages.
+  const std::string& source() const { return m_source; }
+  void setSource(std::string source) { m_source = std::move(source); }
   /// Source of the names of a label map's values: a file or a table; empty: they have none, or are
   /// the segmentation's own.
   const std::string& namesFrom() const { return m_namesFrom; }
@@ -65,16 +68,21 @@ public:
   /// Statistics of each segment, in their order: one pass over the labels.
   std::vector<SegmentStatistics> statistics() const;
 
-  /// Union of the segments that the selectors name, each by id, else by name, else by label value;
-  /// cropped, and continued over the faces that the labelmap shares with `volume`, as Mask.h says:
-  /// faces parallel to a face of the volume, and within half a voxel of it. Throws Error (input)
-  /// where a selector names no segment or several, or no voxel is chosen or left by `shaping`.
+  /// Place in segments() of the one that the selector names by id, else by name, else by label
+  /// value. Throws Error (input) where it names none or several.
+  std::size_t find(const std::string& selector) const;
+
+  /// Union of the segments that the selectors name. Throws Error (input) as find and maskOf do, and
+  /// where `shaping` leaves no voxel.
   Mask mask(const std::vector<std::string>& selectors, const Grid& volume,
             const MaskShaping& shaping = {}) const;
+  /// Union of some of segments(); cropped, and continued over the faces that the labelmap shares
+  /// with `volume`, as Mask.h says: faces parallel to a face of the volume, and within half a voxel
+  /// of it. Throws Error (input) where no voxel is chosen.
+  Mask maskOf(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+              const MaskShaping& shaping = {}) const;
 
 private:
-  SegmentInfo find(const std::string& selector) const;
-
   std::string m_source, m_namesFrom;
   std::vector<std::string> m_warnings;
   Grid m_grid;

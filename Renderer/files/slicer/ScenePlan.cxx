@@ -118,7 +118,7 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoi
                                     "segmentations", "segmentation"))
     return one;
   throw inputError(document.source(),
-                   "has no segmentation to find a focus in; give --segmentation FILE");
+                   "has no segmentation to find segments in; give --segmentation FILE");
 }
 
 /// Rank of a view: the user most likely looked at the view of the greatest rank.

@@ -111,6 +111,16 @@ private:
   std::array<double, 2> m_edge;        ///< distances of columns, of rows
 };
 
+/// Place between two slices.
+struct Between {
+  const float *before, *after; ///< their distances
+  float share;                 ///< of the way from one to the other, 0 to 1
+
+  bool isInside(std::int64_t pixel) const {
+    return (1.0F - share) * before[pixel] + share * after[pixel] < 0.0F;
+  }
+};
+
 /// Grid with `parts` times as many steps along an axis, between the same outermost centres.
 Grid divided(const Grid& grid, int axis, std::int64_t parts) {
   Size3 size = grid.size;
@@ -142,19 +152,26 @@ Mask betweenSlices(const Mask& mask) {
   Mask result{divided(mask.grid, axis, parts), {}, 0, mask.names};
   const Size3& size = result.grid.size;
   result.voxels.resize(static_cast<std::size_t>(result.grid.voxelCount()));
+  const auto around = [&](std::int64_t at) {
+    const auto before = static_cast<std::size_t>(at / parts);
+    const std::size_t after = std::min(before + 1, distances.size() - 1);
+    const float share = static_cast<float>(at % parts) / static_cast<float>(parts);
+    return Between{distances[before].data(), distances[after].data(), share};
+  };
   const std::int64_t columns = axis == 0 ? size.y() : size.x();
   tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
-    for (std::int64_t y = 0; y < size.y(); ++y)
-      for (std::int64_t x = 0; x < size.x(); ++x) {
-        const Size3 voxel{x, y, z};
-        const auto pixel =
-            static_cast<std::size_t>((axis == 0 ? y : x) + columns * (axis == 2 ? y : z));
-        const auto before = static_cast<std::size_t>(voxel[axis] / parts);
-        const std::size_t after = std::min(before + 1, distances.size() - 1);
-        const float share = static_cast<float>(voxel[axis] % parts) / static_cast<float>(parts);
-        const float distance = std::lerp(distances[before][pixel], distances[after][pixel], share);
-        result.voxels[numberOf(voxel, size)] = distance < 0.0F;
+    for (std::int64_t y = 0; y < size.y(); ++y) {
+      std::uint8_t* const to = result.voxels.data() + numberOf(Size3(0, y, z), size);
+      if (axis == 0) {
+        for (std::int64_t x = 0; x < size.x(); ++x)
+          to[x] = around(x).isInside(y + columns * z);
+        continue;
       }
+      const Between between = around(axis == 1 ? y : z);
+      const std::int64_t first = columns * (axis == 1 ? z : y);
+      for (std::int64_t x = 0; x < size.x(); ++x)
+        to[x] = between.isInside(first + x);
+    }
   });
   result.count = std::ranges::count(result.voxels, std::uint8_t{1});
   return result;

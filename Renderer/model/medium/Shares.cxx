@@ -1,9 +1,12 @@
 #include "model/medium/Shares.h"
 
+#include "model/medium/PackedMask.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <optional>
 
@@ -14,66 +17,116 @@ namespace {
 using InBrick = std::array<float, Shares::voxelsInBrick>;
 constexpr float full = 255.0F;
 
-/// A part's mask in the common grid.
+/// Voxels of a brick along an axis, and its rows.
+constexpr std::int64_t width = Shares::edge + 1, rowsInBrick = width * width;
+
+/// A part in the common grid.
 struct Placed {
-  const Shares::Part* part;
+  PackedMask mask;
+  int priority;
+  std::uint8_t component;
   Size3 first, end; ///< voxels of the common grid
 };
 
-/// Where the masks lie in the grid of the first one, whatever that one's extent is.
-std::vector<Placed> placed(const std::vector<Shares::Part>& parts) {
-  const Affine& toFirst = parts.front().mask.grid.worldToIndex;
+/// Parts in the grid of the first one, whatever that one's extent is.
+std::vector<Placed> placed(std::size_t count,
+                           const std::function<Shares::Part(std::size_t)>& partAt) {
   std::vector<Placed> all;
-  for (const Shares::Part& part : parts) {
-    const Vec3 origin = toFirst * part.mask.grid.indexToWorld.translation();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Shares::Part part = partAt(i);
+    const Grid& reference = all.empty() ? part.mask.grid : all.front().mask.grid();
+    const Vec3 origin = reference.worldToIndex * part.mask.grid.indexToWorld.translation();
     const Size3 first = origin.array().round().cast<std::int64_t>();
-    all.push_back({&part, first, first + part.mask.grid.size});
+    all.push_back(
+        {PackedMask(part.mask), part.priority, part.component, first, first + part.mask.grid.size});
   }
-  std::ranges::stable_sort(all, std::greater{}, [](const Placed& p) { return p.part->priority; });
   return all;
 }
 
-/// Indicators of a mask in the voxels of a brick; false: all are 0.
-bool indicators(const Placed& placed, const Size3& from, const Size3& last, InBrick& values) {
-  const Mask& mask = placed.part->mask;
-  const float scale = full / static_cast<float>(mask.full);
-  bool some = false;
-  std::size_t next = 0;
-  for (std::int64_t z = 0; z <= Shares::edge; ++z)
-    for (std::int64_t y = 0; y <= Shares::edge; ++y)
-      for (std::int64_t x = 0; x <= Shares::edge; ++x, ++next) {
-        const Size3 voxel = (from + Size3(x, y, z)).cwiseMin(last);
-        const bool inside = (voxel.array() >= placed.first.array()).all() &&
-                            (voxel.array() < placed.end.array()).all();
-        const std::uint8_t value =
-            inside ? mask.voxels[numberOf(voxel - placed.first, mask.grid.size)] : 0;
-        values[next] = scale * static_cast<float>(value);
-        some = some || value > 0;
+/// Indicators of a part in the voxels of a row of bricks along x.
+class PartRows {
+public:
+  PartRows(const Placed& part, const Size3& grid)
+      : m_part(part), m_last(grid.array() - 1), m_stride(grid.x() + padding) {
+    m_voxels.resize(static_cast<std::size_t>(m_stride * rowsInBrick));
+  }
+
+  int priority() const { return m_part.priority; }
+  std::uint8_t component() const { return m_part.component; }
+
+  /// Takes the bricks whose first voxels have these y and z.
+  void take(std::int64_t y, std::int64_t z) {
+    if (m_hasSome)
+      std::ranges::fill(m_voxels, std::uint8_t{0});
+    m_hasSome = false;
+    std::uint8_t* row = m_voxels.data();
+    for (std::int64_t k = 0; k < width; ++k)
+      for (std::int64_t j = 0; j < width; ++j, row += m_stride)
+        takeRow(std::min(y + j, m_last.y()), std::min(z + k, m_last.z()), row);
+  }
+
+  /// Indicators in the brick whose first voxel has this x; false: all are 0.
+  bool at(std::int64_t x, InBrick& values) const {
+    if (!m_hasSome || x >= m_part.end.x() || x + width <= m_part.first.x())
+      return false;
+    const std::uint8_t* row = m_voxels.data() + x;
+    std::uint64_t some = 0; // of the eight voxels from x on; padding has them all
+    for (std::int64_t i = 0; i < rowsInBrick; ++i) {
+      std::uint64_t eight;
+      std::memcpy(&eight, row + i * m_stride, sizeof eight);
+      some |= eight;
+    }
+    if (some == 0)
+      return false;
+    const float scale = full / static_cast<float>(m_part.mask.full());
+    float* to = values.data();
+    bool isAny = false;
+    for (std::int64_t i = 0; i < rowsInBrick; ++i, row += m_stride)
+      for (std::int64_t k = 0; k < width; ++k, ++to) {
+        *to = scale * static_cast<float>(row[k]);
+        isAny = isAny || row[k] > 0;
       }
-  return some;
-}
+    return isAny;
+  }
+
+private:
+  static constexpr std::int64_t padding = 8;
+
+  void takeRow(std::int64_t y, std::int64_t z, std::uint8_t* row) {
+    const Size3 at(0, y - m_part.first.y(), z - m_part.first.z());
+    const Size3& size = m_part.mask.grid().size;
+    if (at.minCoeff() < 0 || at.y() >= size.y() || at.z() >= size.z() ||
+        !m_part.mask.unpack(at.y(), at.z(), row + m_part.first.x()))
+      return;
+    m_hasSome = true;
+    std::fill_n(row + m_last.x() + 1, padding - 1, row[m_last.x()]);
+  }
+
+  const Placed& m_part;
+  Size3 m_last;
+  std::int64_t m_stride;
+  std::vector<std::uint8_t> m_voxels; ///< x fastest, then y, then z
+  bool m_hasSome = false;
+};
 
 /// Shares of a brick's components, in their order, each once.
 class BrickShares {
 public:
-  /// Adds the parts that meet the brick whose first voxel is `from`.
-  BrickShares(const std::vector<Placed>& parts, const Size3& from, const Size3& last) {
+  /// Adds the parts, by priority, in the brick whose first voxel has this x.
+  BrickShares(const std::vector<PartRows>& parts, std::int64_t x) {
     m_left.fill(full);
-    const Size3 end = from + Size3::Constant(Shares::edge + 1);
-    for (auto p = parts.begin(); p != parts.end();) {
+    for (auto p = parts.begin(); p != parts.end() && isLeft();) {
       m_class.clear();
-      const int priority = p->part->priority;
-      for (; p != parts.end() && p->part->priority == priority; ++p) {
-        const bool meets =
-            (p->first.array() < end.array()).all() && (p->end.array() > from.array()).all();
+      const int priority = p->priority();
+      for (; p != parts.end() && p->priority() == priority; ++p) {
         InBrick values;
-        if (meets && indicators(*p, from, last, values))
-          m_class.push_back({p->part->component, values});
+        if (p->at(x, values))
+          m_class.push_back({p->component(), values});
       }
       if (!m_class.empty())
         shareOut();
     }
-    if (std::ranges::any_of(m_left, [](float left) { return left > 0.0F; }))
+    if (isLeft())
       add(0, m_left);
     std::ranges::sort(m_shares, {}, &Component::component);
   }
@@ -100,6 +153,10 @@ private:
     std::uint8_t component;
     InBrick share;
   };
+
+  bool isLeft() const {
+    return std::ranges::any_of(m_left, [](float left) { return left > 0.0F; });
+  }
 
   void add(std::uint8_t component, const InBrick& share) {
     const auto found = std::ranges::find(m_shares, component, &Component::component);
@@ -152,32 +209,40 @@ private:
 
 } // namespace
 
-Shares::Shares(const std::vector<Part>& parts) {
-  std::vector<Placed> masks = placed(parts);
-  Size3 first = masks.front().first, end = masks.front().end;
-  for (const Placed& p : masks) {
-    first = first.cwiseMin(p.first);
-    end = end.cwiseMax(p.end);
+Shares::Shares(const std::vector<Part>& parts)
+    : Shares(parts.size(), [&parts](std::size_t i) { return parts[i]; }) {}
+
+Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt) {
+  std::vector<Placed> parts = placed(count, partAt);
+  Size3 first = parts.front().first, end = parts.front().end;
+  for (const Placed& part : parts) {
+    first = first.cwiseMin(part.first);
+    end = end.cwiseMax(part.end);
   }
-  for (Placed& p : masks) {
-    p.first -= first;
-    p.end -= first;
-  }
-  Affine indexToWorld = parts.front().mask.grid.indexToWorld;
+  Affine indexToWorld = parts.front().mask.grid().indexToWorld;
   indexToWorld.translate(first.cast<double>());
+  for (Placed& part : parts) {
+    part.first -= first;
+    part.end -= first;
+  }
+  std::ranges::stable_sort(parts, std::greater{}, &Placed::priority);
   m_grid = Grid(end - first, indexToWorld);
   m_brickCount = ((m_grid.size.array() - 1).max(1) + edge - 1) / edge;
   m_bricks.resize(static_cast<std::size_t>(m_brickCount.prod()));
 
-  const Size3 last = m_grid.size.array() - 1;
   std::vector<std::vector<Group>> layers(static_cast<std::size_t>(m_brickCount.z()));
   tbb::parallel_for(std::int64_t{0}, m_brickCount.z(), [&](std::int64_t z) {
     std::vector<Group>& groups = layers[static_cast<std::size_t>(z)];
-    for (std::int64_t y = 0; y < m_brickCount.y(); ++y)
+    std::vector<PartRows> rows;
+    for (const Placed& part : parts)
+      if (part.first.z() < edge * z + width && part.end.z() > edge * z)
+        rows.emplace_back(part, m_grid.size);
+    for (std::int64_t y = 0; y < m_brickCount.y(); ++y) {
+      for (PartRows& part : rows)
+        part.take(edge * y, edge * z);
       for (std::int64_t x = 0; x < m_brickCount.x(); ++x) {
-        const Size3 brick(x, y, z);
-        const BrickShares shares(masks, edge * brick, last);
-        std::int32_t& code = m_bricks[numberOf(brick, m_brickCount)];
+        const BrickShares shares(rows, edge * x);
+        std::int32_t& code = m_bricks[numberOf(Size3(x, y, z), m_brickCount)];
         if (const std::optional<std::uint8_t> pure = shares.pure()) {
           code = *pure;
           continue;
@@ -186,6 +251,7 @@ Shares::Shares(const std::vector<Part>& parts) {
         groups.resize(groups.size() + shares.groupCount(), Group{});
         shares.write(&groups[static_cast<std::size_t>(~code)]);
       }
+    }
   });
   // A layer's groups are counted from its own first one until now.
   std::int64_t next = 0;

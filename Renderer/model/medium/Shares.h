@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace fenestra {
@@ -42,6 +43,8 @@ public:
   /// component 0 gets the rest. Rounded to 255ths that sum to 255. Parts of one priority may come
   /// in any order, and be of different components. At least one part.
   explicit Shares(const std::vector<Part>& parts);
+  /// The same of `count` parts, of which one mask at a time is held.
+  Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt);
 
   /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.
   const Grid& grid() const { return m_grid; }

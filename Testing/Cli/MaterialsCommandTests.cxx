@@ -1,0 +1,183 @@
+// Materials on the command line: what they change of a picture, what they leave, and refusals.
+
+#include "CommandTesting.h"
+#include "files/pictures/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+namespace fenestra::MaterialsCommandTests {
+namespace {
+
+const std::filesystem::path data = FENESTRA_DATA;
+
+Image rendered(Arguments arguments, const std::filesystem::path& folder,
+               const std::string& name = "p.exr") {
+  arguments.insert(arguments.end(), {"--output", name});
+  const Outcome outcome = run(arguments, folder);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return readImage(folder / name);
+}
+
+bool isOfColor(const std::string& channel) {
+  return channel.size() == 1 ? channel != "A" && channel != "Z"
+                             : channel.starts_with("error.") || channel.starts_with("albedo.");
+}
+
+/// Expects that materials change colours of the picture, and nothing else in it by a bit.
+void expectOnlyColors(Arguments arguments) {
+  const TemporaryFolder folder;
+  arguments.insert(arguments.end(), {"--size", "40x40", "--samples", "2"});
+  const Image none = rendered(arguments, folder.path());
+  arguments.insert(arguments.end(), {"--materials", "library", "--stats", "s.json"});
+  const Image tinted = rendered(arguments, folder.path());
+  EXPECT_EQ(none.channels.size(), tinted.channels.size());
+  for (const char* name : {"A", "Z", "clip.Z", "normal.X", "samples.N"})
+    EXPECT_TRUE(tinted.find(name)) << name;
+  for (const auto& [name, plane] : none.channels)
+    if (isOfColor(name))
+      EXPECT_NE(tinted.channels.at(name), plane) << name << " is not tinted";
+    else
+      EXPECT_EQ(tinted.channels.at(name), plane) << name;
+  const auto stats = nlohmann::json::parse(bytesOf(folder / "s.json"));
+  EXPECT_GE(stats.at("/labels/components"_json_pointer), 3);
+  EXPECT_GT(stats.at("/labels/pureFraction"_json_pointer), 0.1);
+  EXPECT_GT(stats.at("/labels/bytes"_json_pointer), 0);
+  EXPECT_GT(stats.at("/seconds/materials"_json_pointer), 0.0);
+}
+
+TEST(Materials, ChangeColoursAloneOfTheKnee) {
+  const std::string knee = (kneeFolder() / "knee").string();
+  expectOnlyColors({knee + "/knee.nrrd", "--segmentation", knee + "/knee.seg.nrrd", "--focus",
+                    "FemoralCartilage", "--transfer", knee + "/knee.vp.json"});
+}
+
+class RealMaterials : public ::testing::Test {
+protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(data))
+      GTEST_SKIP() << data << " is absent";
+  }
+};
+
+TEST_F(RealMaterials, ChangeColoursAloneOfAnAbdomen) {
+  const std::string folder = (data / "abdomen_ct_totalseg").string();
+  expectOnlyColors({folder + "/ct.nii.gz", "--segmentation", folder + "/seg_multiorgan.nii.gz",
+                    "--focus", "liver"});
+}
+
+TEST_F(RealMaterials, ChangeColoursAloneOfAKneeAtlas) {
+  const std::string folder = (data / "spl_knee_atlas_labels").string();
+  expectOnlyColors({folder + "/SYNTHETIC_mr_256.nii.gz", "--segmentation",
+                    folder + "/seg_256.nii.gz", "--labels", folder + "/knee.ctbl", "--focus",
+                    "83"});
+}
+
+TEST_F(RealMaterials, ChangeColoursAloneOfOverlappingLayers) {
+  const std::string folder = (data / "slicerio_segnrrd").string();
+  expectOnlyColors({folder + "/CTChest4.nrrd", "--segmentation",
+                    folder + "/SegmentationOverlapping.seg.nrrd", "--focus", "ribs"});
+}
+
+/// The volume and its segments, of which "Bone, left" has a voxel and "Void" none.
+class MaterialsCommand : public SmallScene {
+protected:
+  static Arguments with(const Arguments& more) {
+    Arguments all = {
+        "volume.nrrd", "--segmentation", "segments.seg.nrrd", "--size", "8x8", "--samples", "2"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+TEST_F(MaterialsCommand, NeedNoFocusAndAreTold) {
+  const Outcome outcome = run(with({"--materials", "library", "--output", "a.png"}), folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(outcome.choices,
+            "look: by the volume's range; light: cinema; materials: library, 1 colour");
+}
+
+TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
+  folder.write("green.json",
+               R"({"version": 1, "materials": {"green": {"albedo": [0, 1, 0]}},
+                   "segments": [{"match": {"names": ["*bone*"]}, "material": "green"}]})");
+  const auto albedo = [&](const Arguments& more) {
+    const Image image = rendered(with(more), folder.path());
+    const auto mean = [&](const char* name) {
+      const Plane& plane = image.channels.at(name);
+      return std::accumulate(plane.begin(), plane.end(), 0.0F);
+    };
+    return std::array{mean("albedo.R"), mean("albedo.G")};
+  };
+  const auto library = albedo({"--materials", "library"});
+  const auto green = albedo({"--materials", "green.json"});
+  EXPECT_LT(green[0], library[0]);
+  EXPECT_GT(green[1], library[1]);
+  EXPECT_EQ(albedo({"--materials", "library", "--material", "A: color=#ff0000", "--material",
+                    "Bone, left: material=bone, color=#00ff00"})[0],
+            albedo({"--materials", "library", "--material", "1: color=#00ff00"})[0]);
+  EXPECT_LT(albedo({"--materials", "library", "--material", "1: color=#00ff00"})[0], library[0]);
+}
+
+TEST_F(MaterialsCommand, RefusesInOneLine) {
+  folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colour": "#ffffff"}}})");
+  folder.write("dense.json",
+               R"({"version": 1, "segments":
+                   [{"match": {"names": ["bone*"]}, "material": "bone", "density": 2}]})");
+  const auto refusal = [](Arguments more, int status, const std::string& text) {
+    return Refusal{text, with(more), status, text};
+  };
+  const Arguments on = {"--materials", "library"};
+  const auto change = [&](const std::string& text, const std::string& answer) {
+    return refusal({on[0], on[1], "--material", text}, 3, answer);
+  };
+  expectRefused(
+      {
+          {"no labels",
+           {"volume.nrrd", "--materials", "library"},
+           2,
+           "--materials: needs --segmentation FILE with the segments to colour"},
+          {"smoothing",
+           {"volume.nrrd", "--labelsmoothing", "1"},
+           2,
+           "--labelsmoothing: needs a focus or materials; add --focus or --materials"},
+          refusal({"--materials", "none"}, 2, "--segmentation: only --focus, --materials and"),
+          refusal({"--material", "A: g=0"}, 2, "--material: changes what --materials gives"),
+          refusal({"--materials", "liver"}, 3,
+                  "liver: no such file, and no preset of that name; --materials takes none, "
+                  "library, or a file"),
+          refusal({"--materials", "broken.json"}, 3,
+                  "broken.json: materials.a: unknown key \"colour\""),
+          refusal({"--materials", "dense.json"}, 3,
+                  "dense.json: segment \"Bone, left\": density: is 2, and materials only colour"),
+          change("A", "must name a segment and what to change"),
+          change("A: colour=#ffffff", "--material A: unknown key \"colour\""),
+          change("A: color=red", "--material A: color"),
+          change("C: color=#ffffff", "has no segment \"C\"; it has A (Bone, left), B (Void)"),
+          change("A: density=2", "--material: segment \"Bone, left\": density: is 2"),
+          change("A: clip=no", "--material: segment \"Bone, left\": clip: is false"),
+          change("A: kind=matter", "--material: segment \"Bone, left\": kind: is \"matter\""),
+      },
+      folder.path());
+}
+
+TEST_F(MaterialsCommand, AServerTakesThemAsAList) {
+  Process process({"serve", "volume.nrrd", "--segmentation", "segments.seg.nrrd", "--materials",
+                   "library", "--size", "8x8", "--samples", "2", "--output", "a.exr"},
+                  folder.path());
+  process.write(R"({"id": 1, "material": ["A: color=#00ff00, priority=3", "B: color=#ff0000"]})"
+                "\n");
+  ASSERT_TRUE(process.waitForOutput("\"picture\",\"id\":1,[^\n]*\"done\":true[^\n]*\n"))
+      << process.output();
+  EXPECT_EQ(readImage(folder / "a.exr").channels,
+            rendered(with({"--materials", "library", "--material", "A: color=#00ff00, priority=3",
+                           "--material", "B: color=#ff0000"}),
+                     folder.path())
+                .channels);
+  process.write("{\"id\": 2, \"materials\": \"nothing\"}\n");
+  EXPECT_TRUE(process.waitForOutput("\"error\",\"id\":2,\"message\":\"nothing: no such file"))
+      << process.output();
+}
+
+} // namespace
+} // namespace fenestra::MaterialsCommandTests

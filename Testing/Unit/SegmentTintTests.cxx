@@ -1,0 +1,157 @@
+// Components of a tint, by segments and their materials, and what tint refuses.
+
+#include "model/medium/Reflectance.h"
+#include "session/SegmentTint.h"
+
+#include "Refusals.h"
+
+namespace fenestra::SegmentTintTests {
+namespace {
+
+/// Labelmap of one row, a voxel a segment (value i + 1 at voxel 2 i + 2, names as given); of the
+/// segment "empty" there is none.
+Handle<SegmentsInput> row(const std::vector<std::string>& names) {
+  std::vector<SegmentInfo> segments;
+  std::vector<std::uint8_t> labels(2 * names.size() + 3);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    segments.push_back({.id = "id" + std::to_string(i),
+                        .name = names[i],
+                        .labelValue = static_cast<std::int32_t>(i + 1)});
+    if (names[i] != "empty")
+      labels[2 * i + 2] = static_cast<std::uint8_t>(i + 1);
+  }
+  const Grid grid(Size3(static_cast<std::int64_t>(labels.size()), 1, 1), Affine::Identity());
+  return std::make_shared<SegmentsInput>(
+      SegmentsInput{Segmentation("row.seg.nrrd", grid, 1, labels, segments)});
+}
+
+Handle<NamedMaterials> materials(const std::string& json) {
+  return std::make_shared<NamedMaterials>(
+      NamedMaterials{parseMaterials(json, "m.json", namedMaterials("library").table), "m.json"});
+}
+
+const Handle<NamedMaterials> library = std::make_shared<NamedMaterials>(namedMaterials("library"));
+
+using Parts = std::vector<TintPart>;
+
+TEST(SegmentTint, OnePartAColourAndPriority) {
+  const auto segments = row({"kidney_left", "empty", "aorta", "kidney_right", "body_trunc"});
+  const TintPlan plan = tintPlan(segments, library, {});
+  EXPECT_EQ(plan.components.size(), 3U) << "the volume's own, kidney, artery";
+  EXPECT_EQ(plan.parts, (Parts{{{0, 3}, 10, 1}, {{2}, 15, 2}}))
+      << "the body has the volume's own look, and no priority over anything";
+  const TintPlan lifted = tintPlan(segments, library, {"aorta: priority=3"});
+  EXPECT_EQ(lifted.parts, (Parts{{{4}, 5, 0}, {{0, 3}, 10, 1}, {{2}, 3, 2}}))
+      << "the body takes from the aorta what both cover";
+}
+
+TEST(SegmentTint, ChangesOfASegmentMakeItAComponentOfItsOwn) {
+  const auto segments = row({"kidney_left", "kidney_right", "spleen"});
+  const TintPlan red = tintPlan(segments, library, {"kidney_left: color=#ff0000"});
+  EXPECT_EQ(red.parts, (Parts{{{0}, 10, 1}, {{1}, 10, 2}, {{2}, 10, 3}}));
+  const TintPlan blue =
+      tintPlan(segments, library, {"id0: color=#ff0000", "1: color=#0000ff, priority=12"});
+  EXPECT_EQ(blue.parts, (Parts{{{0}, 12, 1}, {{1}, 10, 2}, {{2}, 10, 3}}));
+  EXPECT_EQ(blue.components[1].color->knots()[0].value.z(), 1.0);
+  const TintPlan same = tintPlan(segments, library, {"spleen: material=kidney"});
+  EXPECT_EQ(same.parts, (Parts{{{0, 1, 2}, 10, 1}}));
+}
+
+TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {
+  const auto segments = row({"liver", "body"});
+  const TintPlan plan =
+      tintPlan(segments, materials(R"({"version": 1, "materials": {"red": {"color": "#ff0000"}},
+                              "rest": {"material": "red"}})"),
+               {});
+  ASSERT_EQ(plan.components.size(), 3U);
+  EXPECT_EQ(plan.components[0].color->knots()[0].value.x(), 1.0);
+  EXPECT_FALSE(plan.components[2].color) << "the body's: the volume's own, not the rest's";
+  const TintPlan bare = tintPlan(row({"body"}), library, {});
+  EXPECT_EQ(bare.parts, (Parts{{{0}, 5, 0}})) << "nothing is coloured, and there is a part";
+}
+
+TEST(SegmentTint, RefusesWhatItCannotShow) {
+  const auto segments = row({"liver", "empty"});
+  const auto refuse = [&](const std::vector<std::string>& changes, const std::string& text) {
+    expectRefused("--material", text, [&] { tintPlan(segments, library, changes); });
+  };
+  refuse({"liver: extinction=2"}, "segment \"liver\": kind: is \"matter\", and materials only");
+  refuse({"liver: density=2"}, "segment \"liver\": density: is 2, and materials only colour yet");
+  refuse({"liver: clip=no"}, "segment \"liver\": clip: is false, and materials only colour yet");
+  EXPECT_EQ(tintPlan(segments, library, {"empty: density=2"}).parts.size(), 1U);
+  expectRefused("row.seg.nrrd", "has no segment \"live\"; did you mean liver?",
+                [&] { tintPlan(segments, library, {"live: color=#ffffff"}); });
+  expectRefused("row.seg.nrrd", "no segment has a voxel, so there is nothing to colour",
+                [&] { tintPlan(row({"empty"}), library, {}); });
+  const auto refuseTable = [&](const std::string& members, const std::string& text) {
+    const auto table = materials(R"({"version": 1, )" + members + "}");
+    expectRefused("m.json", text, [&] { tintPlan(segments, table, {}); });
+  };
+  refuseTable(R"("context": {"saturation": 0.5})", "context: is not applied yet; leave it out");
+  refuseTable(R"("materials": {"m": {"kind": "matter"}}, "rest": {"material": "m"})",
+              "rest \"m\": kind: is \"matter\"");
+  refuseTable(R"("segments": [{"match": {"names": ["liver"]}, "material": "liver", "density": 3}])",
+              "segment \"liver\": density: is 3");
+}
+
+TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
+  std::vector<SegmentInfo> segments;
+  std::vector<std::int16_t> labels;
+  for (int i = 0; i < 256; ++i) {
+    labels.push_back(static_cast<std::int16_t>(i + 1));
+    segments.push_back({.id = std::to_string(i),
+                        .name = "thing",
+                        .labelValue = i + 1,
+                        .color = Rgb(i / 255.0, 0.2, 0.3)});
+  }
+  const auto inputOf = [&](std::size_t count) {
+    segments.resize(count);
+    return std::make_shared<SegmentsInput>(SegmentsInput{
+        Segmentation("s.nrrd", Grid(Size3(256, 1, 1), Affine::Identity()), 1, labels, segments)});
+  };
+  expectRefused("s.nrrd", "more than 255 colours", [&] { tintPlan(inputOf(256), library, {}); });
+  EXPECT_EQ(tintPlan(inputOf(255), library, {}).components.size(), 256U);
+}
+
+TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
+  const auto segments = row({"liver", "spleen"});
+  const auto plan = std::make_shared<TintPlan>(tintPlan(segments, library, {}));
+  const Grid& grid = segments->segmentation.grid();
+  const auto shares = std::make_shared<Shares>(tintShares(segments, plan->parts, 0.0, grid));
+  const Rgb own(0.1, 0.2, 0.3);
+  for (const double g : {0.0, 0.5}) {
+    const Tint tint = tintOf(plan, shares, g);
+    const TintedField field(tint, grid);
+    const auto seen = [&](double x) {
+      return Rgb(field.albedo(Vec3(x, 0, 0), 7.0, own).unaryExpr([g](double albedo) {
+        return reflectance(albedo, g);
+      }));
+    };
+    for (const std::size_t i : {0U, 1U}) {
+      const Rgb expected = (*plan->components[i + 1].color)(7.0);
+      EXPECT_LT((seen(2.0 * static_cast<double>(i) + 2.0) - expected).abs().maxCoeff(), 1e-3);
+    }
+    EXPECT_EQ(field.albedo(Vec3(3, 0, 0), 7.0, own).matrix(), own.matrix());
+    const Rgb half = 0.5 * (own + field.albedo(Vec3(2, 0, 0), 7.0, own));
+    EXPECT_LT((field.albedo(Vec3(2.5, 0, 0), 7.0, own) - half).abs().maxCoeff(), 1e-12);
+  }
+  const Shares smooth = tintShares(segments, plan->parts, 1.0, grid);
+  double liver = 0.0;
+  smooth.at(smooth.grid().worldToIndex * Vec3(2, 0, 0),
+            [&](std::uint8_t component, double share) { liver += component == 1 ? share : 0.0; });
+  EXPECT_GT(liver, 0.0);
+  EXPECT_LT(liver, 0.5) << "smoothed as asked";
+}
+
+TEST(SegmentTint, AlbedoIsTakenAsItIs) {
+  const auto segments = row({"liver"});
+  const auto plan = std::make_shared<TintPlan>(tintPlan(
+      segments, materials(R"({"version": 1, "materials": {"liver": {"albedo": [0.5, 0.6, 0.7]}}})"),
+      {}));
+  const auto shares = std::make_shared<Shares>(
+      tintShares(segments, plan->parts, 0.0, segments->segmentation.grid()));
+  EXPECT_EQ((*tintOf(plan, shares, 0.3).albedo[1])(0.0).matrix(), Vec3(0.5, 0.6, 0.7));
+}
+
+} // namespace
+} // namespace fenestra::SegmentTintTests
