@@ -22,9 +22,9 @@ struct Change {
 
 std::string text(const StagesMade& made) {
   const std::pair<const char*, bool> stages[] = {
-      {"volume", made.volume}, {"focus", made.focus},        {"transfer function", made.transfer},
-      {"camera", made.camera}, {"lights", made.lights},      {"clip", made.clip},
-      {"ranges", made.ranges}, {"majorants", made.majorants}};
+      {"volume", made.volume}, {"focus", made.focus},         {"transfer function", made.transfer},
+      {"camera", made.camera}, {"lights", made.lights},       {"clip", made.clip},
+      {"ranges", made.ranges}, {"majorants", made.majorants}, {"materials", made.tint}};
   std::string list;
   for (const auto& [name, isMade] : stages)
     if (isMade)

@@ -161,6 +161,53 @@ TEST_F(MaterialsCommand, RefusesInOneLine) {
       folder.path());
 }
 
+/// Materials need no focus, use the scene's segmentation, and may not name a file.
+TEST_F(MaterialsCommand, StoredMaterialsReproduceThePicture) {
+  const auto write = [&](const std::string& name, const std::string& stored) {
+    folder.write(name, R"(<MRML version="Slicer 5.6.2 32448">
+        <Volume id="v" name="ramp" references="storage:vs;"/>
+        <VolumeArchetypeStorage id="vs" fileName="volume.nrrd"/>
+        <Segmentation id="s" name="parts" references="storage:ss;"/>
+        <SegmentationStorage id="ss" fileName="segments.seg.nrrd"/>)" +
+                           stored + "</MRML>");
+  };
+  const auto stored = [&](const std::string& name, const std::string& materials) {
+    write(name, R"(<FenestraRender id="f" references="volume:v;segmentation:s;" size="8x8"
+                     samples="2" materials=")" +
+                    materials + R"(" material="A: color=#00ff00"/>)");
+  };
+  folder.write("mine.json", R"({"version": 1})");
+  write("plain.mrml", "");
+  stored("library.mrml", "library");
+  stored("file.mrml", "mine.json");
+  const auto renderedScene = [&](const Arguments& arguments, const std::string& warning = "") {
+    Arguments all = arguments;
+    all.insert(all.end(), {"--output", "a.exr"});
+    const Outcome outcome = run(all, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE((outcome.err + "$").find(warning.empty() ? "$" : warning), std::string::npos)
+        << outcome.err;
+    return readImage(folder / "a.exr").channels;
+  };
+  const Arguments small = {"plain.mrml", "--size", "8x8", "--samples", "2"};
+  const auto with = [&](Arguments more) {
+    more.insert(more.begin(), small.begin(), small.end());
+    return more;
+  };
+  const auto none = renderedScene(small);
+  const auto green =
+      renderedScene(with({"--materials", "library", "--material", "A: color=#00ff00"}));
+  EXPECT_NE(green, none);
+  EXPECT_EQ(renderedScene({"library.mrml"}), green);
+  EXPECT_EQ(renderedScene({"library.mrml", "--materials", "library"}),
+            renderedScene(with({"--materials", "library"})))
+      << "given materials replace the stored changes, too";
+  EXPECT_EQ(renderedScene({"library.mrml", "--materials", "none"}), none);
+  EXPECT_EQ(
+      renderedScene({"file.mrml"}, "materials \"mine.json\" names a file, which a scene may not"),
+      none);
+}
+
 TEST_F(MaterialsCommand, AServerTakesThemAsAList) {
   Process process({"serve", "volume.nrrd", "--segmentation", "segments.seg.nrrd", "--materials",
                    "library", "--size", "8x8", "--samples", "2", "--output", "a.exr"},

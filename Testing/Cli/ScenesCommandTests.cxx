@@ -293,47 +293,6 @@ TEST_F(ScenesCommand, StoredFlagsReproduceThePicture) {
       << inspected.out;
 }
 
-/// Materials need no focus, use the scene's segmentation, and may not name a file.
-TEST_F(ScenesCommand, StoredMaterialsReproduceThePicture) {
-  const std::string plain = scene(R"(parallelProjection="true" parallelScale="4")", false);
-  folder.write("plain.mrml", plain);
-  folder.write("mine.json", R"({"version": 1})");
-  const auto stored = [&](const std::string& name, const std::string& materials) {
-    std::string text = plain;
-    text.insert(text.find("</MRML>"),
-                R"(<FenestraRender id="f" references="volume:v;segmentation:s;" size="8x8"
-                     samples="2" materials=")" +
-                    materials + R"(" material="A: color=#00ff00"/>)");
-    folder.write(name, text);
-  };
-  stored("library.mrml", "library");
-  stored("file.mrml", "mine.json");
-  const auto rendered = [&](const Arguments& arguments, const std::string& warning = "") {
-    Arguments all = arguments;
-    all.insert(all.end(), {"--output", "a.exr"});
-    const Outcome outcome = run(all, folder.path());
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE((outcome.err + "$").find(warning.empty() ? "$" : warning), std::string::npos)
-        << outcome.err;
-    return readImage(folder / "a.exr").channels;
-  };
-  const Arguments small = {"plain.mrml", "--size", "8x8", "--samples", "2"};
-  const auto with = [&](Arguments more) {
-    more.insert(more.begin(), small.begin(), small.end());
-    return more;
-  };
-  const auto none = rendered(small);
-  const auto green = rendered(with({"--materials", "library", "--material", "A: color=#00ff00"}));
-  EXPECT_NE(green, none);
-  EXPECT_EQ(rendered({"library.mrml"}), green);
-  EXPECT_EQ(rendered({"library.mrml", "--materials", "library"}),
-            rendered(with({"--materials", "library"})))
-      << "given materials replace the stored changes, too";
-  EXPECT_EQ(rendered({"library.mrml", "--materials", "none"}), none);
-  EXPECT_EQ(rendered({"file.mrml"}, "materials \"mine.json\" names a file, which a scene may not"),
-            none);
-}
-
 TEST_F(ScenesCommand, RefusesDamagedScenesAndMissingNodes) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   folder.write("perspective.mrml", scene(R"(viewAngle="16")", false));

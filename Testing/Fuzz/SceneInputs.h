@@ -16,7 +16,7 @@ inline void loadScene(const std::filesystem::path& path) {
   if (!allFinite(volume.grid.indexToWorld) ||
       (settings.crop && !allFinite(settings.crop->worldToBox)))
     throw std::logic_error("a place that is none");
-  input.focus({}, {"A"}, {}, volume.grid);
+  input.segments({}, volume.grid).segmentation.mask({"A"}, volume.grid);
 }
 
 } // namespace fenestra::fuzzing

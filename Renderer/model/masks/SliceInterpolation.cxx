@@ -83,16 +83,32 @@ private:
     return result;
   }
 
-  /// Squared distances of each pixel to the nearest pixel that is inside (false: outside).
+  /// True if a pixel of the row is inside.
+  bool hasInside(std::int64_t row, std::int64_t slice) const {
+    for (std::int64_t column = 0; column < m_count[0]; ++column)
+      if (isInside(column, row, slice))
+        return true;
+    return false;
+  }
+
+  /// Squared distances of each pixel to the nearest pixel that is inside; false: of each that is
+  /// inside to the nearest that is outside.
   std::vector<double> squaresTo(bool inside, std::int64_t slice) const {
     const auto [columns, rows, slices] = m_count;
+    std::vector<std::uint8_t> isSome(static_cast<std::size_t>(rows));
+    for (std::int64_t row = 0; row < rows; ++row)
+      isSome[static_cast<std::size_t>(row)] = hasInside(row, slice);
     const std::vector<double> along = alongRows(inside, slice);
     std::vector<double> result(along.size(), farthest() * farthest());
     const auto reach = static_cast<std::int64_t>(farthest() / m_edge[1]);
     for (std::int64_t row = 0; row < rows; ++row) {
+      if (!inside && !isSome[static_cast<std::size_t>(row)])
+        continue;
       double* const to = result.data() + columns * row;
       const std::int64_t end = std::min(row + reach + 1, rows);
       for (std::int64_t other = std::max<std::int64_t>(row - reach, 0); other < end; ++other) {
+        if (inside && !isSome[static_cast<std::size_t>(other)])
+          continue;
         const double across = static_cast<double>(other - row) * m_edge[1];
         const double* const from = along.data() + columns * other;
         std::transform(from, from + columns, to, to, [&](double distance, double least) {
