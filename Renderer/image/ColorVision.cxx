@@ -8,6 +8,11 @@
 namespace fenestra {
 namespace {
 
+/// XYZ of Rec. 709 (IEC 61966-2-1), and that of its white.
+constexpr Mat3 toXyz =
+    Mat3::FromRows({0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505});
+constexpr Vec3 white(0.9505, 1.0, 1.089);
+
 double degreesOf(double y, double x) {
   const double angle = std::atan2(y, x) * 180.0 / pi;
   return angle < 0.0 ? angle + 360.0 : angle;
@@ -67,14 +72,23 @@ Rgb seenBy(ColorSight sight, const Rgb& linear) {
 }
 
 Lab labOf(const Rgb& linear) {
-  // XYZ of Rec. 709 (IEC 61966-2-1), each relative to its value for white.
-  const double x = (0.4124 * linear[0] + 0.3576 * linear[1] + 0.1805 * linear[2]) / 0.9505;
-  const double y = luminance(linear);
-  const double z = (0.0193 * linear[0] + 0.1192 * linear[1] + 0.9505 * linear[2]) / 1.089;
+  const Vec3 xyz = toXyz * Vec3(linear[0], linear[1], linear[2]);
+  const double x = xyz.x() / white.x(), y = xyz.y(), z = xyz.z() / white.z();
   const auto f = [](double t) {
     return t > 216.0 / 24389.0 ? std::cbrt(t) : (24389.0 / 27.0 * t + 16.0) / 116.0;
   };
   return {116.0 * f(y) - 16.0, 500.0 * (f(x) - f(y)), 200.0 * (f(y) - f(z))};
+}
+
+Rgb linearOf(const Lab& lab) {
+  const auto t = [](double f) {
+    return f > 6.0 / 29.0 ? f * f * f : (116.0 * f - 16.0) * 27.0 / 24389.0;
+  };
+  const double middle = (lab.L + 16.0) / 116.0;
+  const Vec3 xyz =
+      white.cwiseProduct(Vec3(t(middle + lab.a / 500.0), t(middle), t(middle - lab.b / 200.0)));
+  static const Mat3 fromXyz = toXyz.inverse();
+  return (fromXyz * xyz).array();
 }
 
 double deltaE76(const Lab& x, const Lab& y) {

@@ -24,6 +24,8 @@ struct Lab {
 
 /// CIELAB of linear Rec. 709, in which 1 is the display's white.
 Lab labOf(const Rgb& linear);
+/// Its inverse; beyond [0, 1] where the display has no such colour.
+Rgb linearOf(const Lab& lab);
 
 /// Colour difference of 1976: the distance in CIELAB.
 double deltaE76(const Lab& x, const Lab& y);

@@ -43,6 +43,26 @@ Json jsonOf(const Distribution& values) {
   return {{"mean", values.mean}, {"p95", values.p95}, {"max", values.max}};
 }
 
+/// Differences of the focus's colours from its neighbours', and what they were reached with.
+void addContrast(Json& json, const Scene& scene) {
+  const TintContrast* tint = scene.tintContrast();
+  const auto& contrast = tint ? tint->contrast : scene.contrast().contrast;
+  if (!contrast)
+    return;
+  Json& told = json["contrast"];
+  told = {
+      {"deltaE", contrast->deltaE[0]},       {"deltaEProtan", contrast->deltaE[1]},
+      {"deltaEDeutan", contrast->deltaE[2]}, {"deltaETritan", contrast->deltaE[3]},
+      {"deltaL", contrast->deltaL},          {"contextSaturation", scene.contrast().saturation}};
+  if (tint)
+    told.update(Json{{"segment", tint->segment},
+                     {"neighbour", tint->neighbour},
+                     {"contextSaturation", tint->knobs.contextSaturation},
+                     {"contextLightness", tint->knobs.contextLightness},
+                     {"focusChroma", tint->knobs.focusChroma},
+                     {"focusLightness", tint->knobs.focusLightness}});
+}
+
 /// Adds the measures of the clip.
 void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& focus) {
   const ClipResult& clip = scene.clipResult();
@@ -128,11 +148,7 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
     json["labels"] = {{"components", tint->albedo.size()},
                       {"pureFraction", tint->shares->pureFraction()},
                       {"bytes", tint->shares->bytes()}};
-  if (const auto& contrast = scene.contrast().contrast)
-    json["contrast"] = {
-        {"deltaE", contrast->deltaE[0]},       {"deltaEProtan", contrast->deltaE[1]},
-        {"deltaEDeutan", contrast->deltaE[2]}, {"deltaETritan", contrast->deltaE[3]},
-        {"deltaL", contrast->deltaL},          {"contextSaturation", scene.contrast().saturation}};
+  addContrast(json, scene);
   addSources(json, stats, options, scene);
   return jsonText(json);
 }

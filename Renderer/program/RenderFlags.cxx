@@ -221,9 +221,11 @@ struct RenderTable {
        Takes::number(-1e30, 1e30).into(scene.shift)},
       {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000",
        Takes::number(0.0, 1000.0).into(scene.density)},
-      {"materials", "none|library|FILE", lookGroup,
+      {"materials", "none|auto|library|FILE", lookGroup,
        "Colours of the segments by what they are made of: Fenestra's library, or a .json over it; "
-       "surfaces stay the data's",
+       "auto: the library's, changed until the focus is told from its neighbours; surfaces stay "
+       "the "
+       "data's",
        Takes::text().into(scene.materials), Topic::materials},
       {"material", "TEXT", lookGroup,
        "Changes the material of one segment, such as \"Liver: color=#963e2e\"; may be repeated",

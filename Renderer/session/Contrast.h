@@ -3,11 +3,11 @@
 // rendered, and thus the same for every camera, clip and number of samples.
 
 #include "image/ColorVision.h"
-#include "model/medium/TransferFunction.h"
-#include "model/volume/Mask.h"
-#include "model/volume/Volume.h"
+#include "session/FocusBorder.h"
 
+#include <algorithm>
 #include <optional>
+#include <string>
 
 namespace fenestra {
 
@@ -20,17 +20,12 @@ struct Contrast {
   /// Least share of what normal sight and the two frequent kinds of colour blindness need, 20, 12
   /// and 12, to tell them apart.
   double share() const;
+  /// Least difference for the two frequent kinds of colour blindness.
+  double colorBlind() const { return std::min(deltaE[1], deltaE[2]); }
 };
 
-/// Scalars at the focus's border: of the three voxels to either side of its labels' faces, those
-/// that the transfer function shows; at most some ten thousand of each.
-struct BorderScalars {
-  std::vector<double> focus, context;
-};
-
-/// `focus`: of at least one voxel. A side that is transparent has none.
-BorderScalars borderScalars(const Mask& focus, const Volume& volume,
-                            const TransferFunction& transfer);
+/// Contrast of two colours that an eye sees of thick matter in white light, linear.
+Contrast contrastBetween(const Rgb& focus, const Rgb& context);
 
 /// Contrast of the mean colours of both sides, which have at least one scalar each. `saturation`:
 /// of the context (ContextStyle).
@@ -52,5 +47,8 @@ inline constexpr double pale = 0.35, grey = 0.0;
 /// edge for the red-blind, who need 12.
 FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& focus,
                              const Volume& volume, const TransferFunction& transfer);
+
+/// Contrast and what it took, in a few words; empty: none.
+std::string told(const FocusContrast& contrast);
 
 } // namespace fenestra

@@ -122,15 +122,18 @@ bool isFileOfLights(const std::string& name) {
 }
 
 NamedMaterials namedMaterials(const std::string& name) {
-  if (!isFileOfMaterials(name))
-    return {materialLibrary(), name};
+  if (!isFileOfMaterials(name)) {
+    NamedMaterials materials{materialLibrary(), name};
+    materials.table.hasContrast = name == autoMaterials;
+    return materials;
+  }
   if (!isFoundAsFile(name))
-    throw unknownPreset("materials", name, "none, library, or a file");
+    throw unknownPreset("materials", name, "none, auto, library, or a file");
   return {parseMaterials(readText(name), name, materialLibrary()), name, {name}};
 }
 
 bool isFileOfMaterials(const std::string& name) {
-  return name != noMaterials && name != "library";
+  return name != noMaterials && name != autoMaterials && name != "library";
 }
 
 OrganPreset namedPreset(const std::string& name) {

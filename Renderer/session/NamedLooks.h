@@ -54,8 +54,13 @@ struct NamedMaterials {
   MaterialTable table;
   std::string source;                  ///< its name
   std::vector<std::string> files = {}; ///< files read; empty: the library alone
+
+  /// True if focus and context get colours of their own (TintContrast.h).
+  bool setsOffFocus() const {
+    return table.hasContrast || table.context.saturation || table.context.lightness;
+  }
 };
-/// Materials of the library, or of a file over it. Throws Error (input).
+/// Materials of the library ("auto": with contrast), or of a file over it. Throws Error (input).
 NamedMaterials namedMaterials(const std::string& name);
 
 /// True if namedMaterials would open a file of that name.

@@ -75,13 +75,16 @@ struct ViewRequest {
 /// SceneRequest::materials of a picture in the volume's own colours.
 inline constexpr const char* noMaterials = "none";
 
+/// Materials of the library, with the focus's contrast made sure of (TintContrast.h).
+inline constexpr const char* autoMaterials = "auto";
+
 struct SceneRequest {
   std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
   std::optional<std::string> volume = {};       ///< choice among several: a node, or a DICOM series
   std::optional<std::string> segmentation = {}; ///< a node of the scene, or a file
   std::optional<std::string> labels = {};       ///< names of a label map's values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values
-  std::string materials = noMaterials;          ///< or "library", or a file of materials over it
+  std::string materials = noMaterials;          ///< or "auto", "library", or a file over it
   std::vector<std::string> materialChanges = {}; ///< parseMaterialChange's texts
   std::optional<std::string> transfer =
       {}; ///< a file, or a preset's name; by default the scene's, else from the volume

@@ -46,7 +46,7 @@ void Scene::make() {
   const auto look = m_look.of(volume, m_namedTransfer.result(), m_sceneLook.result(), r.transferFor,
                               r.shift, r.density);
   if (hasMaterials)
-    makeTint(look->transfer.g);
+    makeTint();
   m_focusWarnings.of(volume, focus, look);
   if (r.view.isAutomatic() && focus->mask)
     m_view.of(volume, settings, focus, look);
@@ -58,42 +58,54 @@ void Scene::make() {
   const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
   const double extinction = r.focusLook.contextExtinction;
   const double saturation =
-      m_contrast.of(volume, focus, look, m_tint.result(), r.focusLook.contextSaturation)
-          ->saturation;
+      m_contrast.of(volume, focus, look, tintInUse(), r.focusLook.contextSaturation)->saturation;
   if (focus->mask && (extinction != 1.0 || saturation != 1.0))
     m_style.of(focus, extinction, saturation);
   const auto majorants = m_majorants.of(volume, ranges, look, clip, m_style.result());
   if (r.features)
-    m_flight.of(volume, settings, look, m_tint.result(), placed, camera, clip, m_style.result(),
+    m_flight.of(volume, settings, look, tintInUse(), placed, camera, clip, m_style.result(),
                 majorants);
 }
 
-void Scene::makeTint(double g) {
-  const auto plan = m_plan.of(m_segments.result(), m_materials.of(m_request.materials),
-                              m_request.materialChanges);
-  const auto shares = m_shares.of(m_segments.result(), plan->parts,
-                                  m_request.focusLook.shaping.smoothing, volume().grid);
-  m_tint.of(plan, shares, g);
+void Scene::makeTint() {
+  const SceneRequest& r = m_request;
+  const auto materials = m_materials.of(r.materials);
+  const bool setsOff = materials->setsOffFocus();
+  const auto plan = m_plan.of(m_segments.result(), materials, r.materialChanges,
+                              setsOff ? r.focus : std::vector<std::string>());
+  const auto shares =
+      m_shares.of(m_segments.result(), plan->parts, r.focusLook.shaping.smoothing, volume().grid);
+  const auto look = m_look.result();
+  const auto tint = m_tint.of(plan, shares, look->transfer.g);
+  if (!setsOff || !focus())
+    return;
+  const auto borders =
+      m_borders.of(m_volume.result(), m_focus.result(), look, shares, plan->isFocus);
+  const auto contrast =
+      m_tintContrast.of(borders, plan, tint, materials, look, r.focusLook.contextSaturation);
+  m_contrastedTint.of(tint, plan, contrast, look);
 }
 
 StageSeconds Scene::seconds() const {
   const ClipResult none, &clip = m_clip.isNew() ? *m_clip : none;
-  return {
-      .load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
-              m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() + m_look.seconds(),
-      .materials = m_materials.seconds() + m_plan.seconds() + m_shares.seconds() + m_tint.seconds(),
-      .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
-                  m_style.seconds() + m_majorants.seconds(),
-      .focus = clip.focusSeconds,
-      .spline = clip.splineSeconds,
-      .fill = clip.fillSeconds,
-      .features = m_flight.seconds()};
+  return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
+                  m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() +
+                  m_look.seconds(),
+          .materials = m_materials.seconds() + m_plan.seconds() + m_shares.seconds() +
+                       m_tint.seconds() + m_borders.seconds() + m_tintContrast.seconds() +
+                       m_contrastedTint.seconds(),
+          .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
+                      m_style.seconds() + m_majorants.seconds(),
+          .focus = clip.focusSeconds,
+          .spline = clip.splineSeconds,
+          .fill = clip.fillSeconds,
+          .features = m_flight.seconds()};
 }
 
 StagesMade Scene::made() const {
   return {m_volume.isNew(), m_focus.isNew(),     m_look.isNew(),
           m_camera.isNew(), m_lights.isNew(),    m_clip.isNew(),
-          m_ranges.isNew(), m_majorants.isNew(), m_tint.isNew()};
+          m_ranges.isNew(), m_majorants.isNew(), m_tint.isNew() || m_contrastedTint.isNew()};
 }
 
 std::string Scene::choices() const {
@@ -119,13 +131,9 @@ std::string Scene::choices() const {
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)
     parts.push_back("cut: soft over " + numberText(softness, 3) + " mm");
-  if (const auto& contrast = m_contrast->contrast)
-    parts.push_back(textOf("contrast: ", numberText(contrast->deltaE[0], 3), " (colour-blind ",
-                           numberText(std::min(contrast->deltaE[1], contrast->deltaE[2]), 3),
-                           m_contrast->saturation < 1.0
-                               ? "; surroundings paled to " + numberText(m_contrast->saturation, 3)
-                               : "",
-                           ")"));
+  if (const std::string text = tintContrast() ? told(*tintContrast()) : told(contrast());
+      !text.empty())
+    parts.push_back("contrast: " + text);
   return joined(parts, "; ");
 }
 

@@ -51,9 +51,11 @@ public:
   /// Style of the context; null: unchanged.
   const ContextStyle* style() const { return m_style.result().get(); }
   /// Colours of the segments; null: no materials.
-  const Tint* tint() const { return m_tint.result().get(); }
-  /// Saturation of the context, and the contrast that it leaves.
+  const Tint* tint() const { return tintInUse().get(); }
+  /// Saturation of the context, and the contrast that it leaves; none told with materials.
   const FocusContrast& contrast() const { return *m_contrast; }
+  /// Contrast of a tinted focus; null: nothing sets it off.
+  const TintContrast* tintContrast() const { return m_tintContrast.result().get(); }
   /// Clip with its measures, and the depth of the focus.
   const ClipResult& clipResult() const { return *m_clip; }
   const CellRanges& ranges() const { return *m_ranges; }
@@ -73,13 +75,17 @@ public:
 private:
   /// Makes all stages that m_request needs, in their order.
   void make();
-  void makeTint(double g);
+  void makeTint();
+  const Handle<Tint>& tintInUse() const {
+    return m_contrastedTint.result() ? m_contrastedTint.result() : m_tint.result();
+  }
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
                     s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_plan, s.m_shares,
-                    s.m_tint, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter, s.m_camera,
-                    s.m_lights, s.m_clip, s.m_contrast, s.m_style, s.m_majorants, s.m_flight);
+                    s.m_tint, s.m_borders, s.m_tintContrast, s.m_contrastedTint, s.m_focusWarnings,
+                    s.m_view, s.m_ranges, s.m_matter, s.m_camera, s.m_lights, s.m_clip,
+                    s.m_contrast, s.m_style, s.m_majorants, s.m_flight);
   }
 
   SceneRequest m_request;
@@ -96,6 +102,9 @@ private:
   Stage<&tintPlan> m_plan;
   Stage<&tintShares> m_shares;
   Stage<&tintOf> m_tint;
+  Stage<&bordersOf> m_borders; ///< this and the next two: unused unless materials set off a focus
+  Stage<&tintContrastOf> m_tintContrast;
+  Stage<&contrastedTintOf> m_contrastedTint;
   Stage<&focusWarnings> m_focusWarnings;
   Stage<&bestView> m_view; ///< used by automatic views alone
   Stage<&rangesOf> m_ranges;

@@ -123,8 +123,10 @@ std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segment
       materials.push_back(std::move(*found));
     else if (!isDefault(segment.color))
       materials.push_back(colored(segment.color, "by its own colour"));
-    else
+    else {
       materials.push_back(colored(paletteColor(unknown++), "by palette"));
+      materials.back().isOfPalette = true;
+    }
   }
   return materials;
 }

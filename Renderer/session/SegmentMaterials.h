@@ -14,6 +14,7 @@ struct SegmentMaterial {
   std::string name = {}; ///< of the material; empty: none of the table's, but a colour
   /// Reason: "by SCT^10200004", "by name 'liver'", "by value 5", "by its own colour", "by palette".
   std::string why = {};
+  bool isOfPalette = false; ///< nothing is known of the segment
 };
 
 /// Materials and rules that are compiled in (Resources/materials).

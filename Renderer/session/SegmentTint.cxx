@@ -24,36 +24,33 @@ void requireTint(const SegmentMatter& matter, const std::string& who) {
     throw inputError(who, "clip: is false", why, "leave it at true");
 }
 
-/// Matter of each segment, with the changes; empty segments as they come.
-std::vector<SegmentMatter> matterOf(const Segmentation& segmentation,
-                                    const std::vector<SegmentStatistics>& statistics,
-                                    const NamedMaterials& materials,
-                                    const std::vector<std::string>& changes) {
+/// Material of each segment, with the changes; empty segments as they come.
+std::vector<SegmentMaterial> matterOf(const Segmentation& segmentation,
+                                      const std::vector<SegmentStatistics>& statistics,
+                                      const NamedMaterials& materials,
+                                      const std::vector<std::string>& changes) {
   const std::vector<SegmentInfo>& segments = segmentation.segments();
-  std::vector<SegmentMatter> all;
-  std::vector<std::string> sources;
-  for (const SegmentMaterial& material : materialsOf(segments, materials.table)) {
-    all.push_back(material.matter);
-    sources.push_back(materials.source);
-  }
+  std::vector<SegmentMaterial> all = materialsOf(segments, materials.table);
+  std::vector<std::string> sources(all.size(), materials.source);
+  if (materials.table.hasContrast)
+    for (SegmentMaterial& material : all)
+      if (material.isOfPalette)
+        material.matter.material = {};
   for (const std::string& text : changes) {
     const MaterialChange change = parseMaterialChange(text, materials.table);
     const std::size_t i = segmentation.find(change.selector);
-    all[i] = changed(all[i], change, materials.table);
+    all[i].matter = changed(all[i].matter, change, materials.table);
     sources[i] = "--material";
   }
   for (std::size_t i = 0; i < all.size(); ++i)
     if (statistics[i].voxels > 0)
-      requireTint(all[i], textOf(sources[i], ": segment \"", shown(segments[i].name), "\""));
+      requireTint(all[i].matter, textOf(sources[i], ": segment \"", shown(segments[i].name), "\""));
   return all;
 }
 
 /// Material of what no segment covers.
 Material restOf(const NamedMaterials& materials) {
   const MaterialTable& table = materials.table;
-  if (table.context.saturation != 1.0 || table.context.lightness != 0.0)
-    throw inputError(materials.source,
-                     "context: is not applied yet; leave it out, and give --contextsaturation");
   if (table.rest.empty())
     return {};
   const Material& rest = table.materials.at(table.rest);
@@ -71,18 +68,37 @@ bool looksLike(const Material& a, const Material& b) {
          });
 }
 
-/// Component of that look, a new one if there is none.
-std::uint8_t componentOf(const Material& material, std::vector<Material>& components,
-                         const std::string& source) {
-  const auto like = [&](const Material& other) { return looksLike(material, other); };
-  const auto found = std::ranges::find_if(components, like);
-  const auto component = static_cast<std::size_t>(found - components.begin());
-  if (found == components.end())
-    components.push_back(material);
-  if (components.size() > mostComponents)
+/// Component of the material's look, a new one if there is none. `segment`: its name.
+std::uint8_t componentOf(const SegmentMaterial& material, const std::string& segment, bool isFocus,
+                         TintPlan& plan, const std::string& source) {
+  const std::string& name = material.name.empty() ? segment : material.name;
+  for (std::size_t i = 0; i < plan.components.size(); ++i)
+    if (plan.isFocus[i] == isFocus && looksLike(material.matter.material, plan.components[i])) {
+      if (i > 0)
+        plan.names[i] = name;
+      return static_cast<std::uint8_t>(i);
+    }
+  if (plan.components.size() == mostComponents)
     throw inputError(source, "its segments have more than ", mostComponents - 1,
                      " colours; give several of them one material with --materials FILE");
-  return static_cast<std::uint8_t>(component);
+  plan.components.push_back(material.matter.material);
+  plan.names.push_back(segment);
+  plan.isFocus.push_back(isFocus);
+  return static_cast<std::uint8_t>(plan.components.size() - 1);
+}
+
+/// Segments of the focus, by place; none where materials do not set it off.
+std::vector<bool> focusOf(const Segmentation& segmentation, const NamedMaterials& materials,
+                          const std::vector<std::string>& focus) {
+  const ContextColors& context = materials.table.context;
+  if (focus.empty() && (context.saturation || context.lightness))
+    throw inputError(materials.source,
+                     "context: is what is not focus; add --focus, or leave it out");
+  std::vector<bool> isFocus(segmentation.segments().size());
+  if (materials.setsOffFocus())
+    for (const std::string& selector : focus)
+      isFocus[segmentation.find(selector)] = true;
+  return isFocus;
 }
 
 /// Parts without those of component 0 that leave to others what they cover.
@@ -101,17 +117,19 @@ std::vector<TintPart> withoutIdle(std::vector<TintPart> parts) {
 } // namespace
 
 TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<NamedMaterials>& materials,
-                  const std::vector<std::string>& changes) {
+                  const std::vector<std::string>& changes, const std::vector<std::string>& focus) {
   const Segmentation& segmentation = input->segmentation;
   const std::vector<SegmentStatistics> statistics = segmentation.statistics();
-  const std::vector<SegmentMatter> matter = matterOf(segmentation, statistics, *materials, changes);
-  TintPlan plan{.parts = {}, .components = {restOf(*materials)}};
+  const std::vector<SegmentMaterial> all = matterOf(segmentation, statistics, *materials, changes);
+  const std::vector<bool> isFocus = focusOf(segmentation, *materials, focus);
+  TintPlan plan{
+      .parts = {}, .components = {restOf(*materials)}, .names = {"the rest"}, .isFocus = {false}};
   std::map<std::pair<std::uint8_t, int>, std::vector<std::size_t>> segments;
-  for (std::size_t i = 0; i < matter.size(); ++i)
+  for (std::size_t i = 0; i < all.size(); ++i)
     if (statistics[i].voxels > 0) {
-      const std::uint8_t component =
-          componentOf(matter[i].material, plan.components, segmentation.source());
-      segments[{component, matter[i].priority}].push_back(i);
+      const std::uint8_t component = componentOf(all[i], segmentation.segments()[i].name,
+                                                 isFocus[i], plan, segmentation.source());
+      segments[{component, all[i].matter.priority}].push_back(i);
     }
   for (auto& [of, places] : segments)
     plan.parts.push_back({std::move(places), of.second, of.first});

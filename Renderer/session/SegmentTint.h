@@ -24,14 +24,18 @@ struct TintPlan {
   /// Materials of the components, at least one. Component 0 is what no segment covers, and every
   /// segment that looks as that does.
   std::vector<Material> components;
+  std::vector<std::string> names; ///< of the components: a segment's, else a material's
+  std::vector<bool> isFocus;      ///< by component; none is where nothing sets off the focus
 };
 
-/// Components of the segments that have voxels: one for each colour. `changes`: of --material, over
-/// the materials that the table gives. Throws Error (input) for a change to an unknown segment, for
-/// what tint cannot show (matter, a density, a segment that is not clipped, colours of the
-/// context), without any voxel, and for more than 256 colours.
+/// Components of the segments that have voxels: one for each colour, and, where materials set off
+/// the focus, those of the focus apart. `changes`: of --material, over the materials that the table
+/// gives; with contrast a segment of which nothing is known keeps the volume's own colours.
+/// `focus`: ids, names or label values. Throws Error (input) for a change to an unknown segment,
+/// for what tint cannot show (matter, a density, a segment that is not clipped), for colours of a
+/// context without a focus, without any voxel, and for more than 256 colours.
 TintPlan tintPlan(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
-                  const std::vector<std::string>& changes);
+                  const std::vector<std::string>& changes, const std::vector<std::string>& focus);
 
 /// Shares of the components. `smoothing`: MaskShaping's.
 Shares tintShares(const Handle<SegmentsInput>& segments, const std::vector<TintPart>& parts,

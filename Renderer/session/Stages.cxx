@@ -276,6 +276,23 @@ CellRanges rangesOf(const Read& volume, int apron) {
   return {volume->volume, apron};
 }
 
+TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
+                      const Handle<Shares>& shares, const std::vector<bool>& isFocus) {
+  return componentBorders(*focus->mask, volume->volume, look->transfer, *shares, isFocus);
+}
+
+TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,
+                            const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
+                            const Handle<Look>& look, const std::optional<double>& saturation) {
+  return tintContrast(*borders, *plan, *tint, materials->table, look->transfer,
+                      saturation.value_or(1.0));
+}
+
+Tint contrastedTintOf(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
+                      const Handle<TintContrast>& contrast, const Handle<Look>& look) {
+  return contrastedTint(*tint, *plan, contrast->knobs, look->transfer);
+}
+
 FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
                          const Handle<Tint>& tint, const std::optional<double>& saturation) {
   if (tint)

@@ -10,6 +10,7 @@
 #include "session/NamedLooks.h"
 #include "session/SegmentTint.h"
 #include "session/Stage.h"
+#include "session/TintContrast.h"
 #include "transport/render/ExpectedFlight.h"
 
 namespace fenestra {
@@ -21,6 +22,7 @@ struct FocusInput {
 using Settings = Handle<SceneSettings>;
 using Focus = Handle<FocusInput>;
 using Read = Handle<VolumeInput>;
+using TintBorders = std::vector<ComponentBorder>;
 
 /// Lights of that name or JSON (namedLights), with an environment or a map in place of their own
 /// environments and skies.
@@ -93,8 +95,20 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
 /// `apron`: MajorantGrid::apronFor.
 CellRanges rangesOf(const Read& volume, int apron);
 
-/// `saturation`: of the request. `tint`: null without materials; with them no contrast is told, as
-/// its arithmetic knows the transfer function's colours alone.
+/// Where the focus's components meet the others. `isFocus`: TintPlan's.
+TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
+                      const Handle<Shares>& shares, const std::vector<bool>& isFocus);
+
+/// Knobs of the tint. `saturation`: of the request.
+TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,
+                            const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
+                            const Handle<Look>& look, const std::optional<double>& saturation);
+
+Tint contrastedTintOf(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
+                      const Handle<TintContrast>& contrast, const Handle<Look>& look);
+
+/// `saturation`: of the request. `tint`: null without materials; with them nothing is paled
+/// unasked, and what contrast there is tintContrastOf tells.
 FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
                          const Handle<Tint>& tint, const std::optional<double>& saturation);
 

@@ -124,8 +124,10 @@ void printContrast(const Scene& scene, const std::vector<float>& rgba) {
   for (const ColorSight sight : {ColorSight::normal, ColorSight::protan, ColorSight::deutan})
     std::cout << "| " << deltaE76(seen(inside, sight), seen(outside, sight)) << ' ';
   std::cout << "| " << std::abs(labOf(inside.linear()).L - labOf(outside.linear()).L) << " | ";
-  if (const auto& told = scene.contrast().contrast)
-    std::cout << told->deltaE[0] << ", " << scene.contrast().saturation;
+  if (const TintContrast* tint = scene.tintContrast())
+    std::cout << told(*tint);
+  else
+    std::cout << told(scene.contrast());
   std::cout << " |" << std::endl;
 }
 
@@ -152,7 +154,7 @@ int benchmark(int argc, char** argv) {
   const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
   const std::vector<std::string> scenes = values->list("scenes");
   std::cout << "| scene | L* spread at mean | mean sRGB | ΔE*ab | protan | deutan | ΔL* | told: "
-               "ΔE00, saturation |\n|---|---|---|---|---|---|---|---|"
+               "ΔE00 |\n|---|---|---|---|---|---|---|---|"
             << std::endl;
   for (const SceneCase& scene : readScenes(
            values->text("table").value_or(FENESTRA_LOOK_TABLE),

@@ -24,11 +24,11 @@ bool isOfColor(const std::string& channel) {
 }
 
 /// Expects that materials change colours of the picture, and nothing else in it by a bit.
-void expectOnlyColors(Arguments arguments) {
+void expectOnlyColors(Arguments arguments, const std::string& materials = "library") {
   const TemporaryFolder folder;
   arguments.insert(arguments.end(), {"--size", "40x40", "--samples", "2"});
   const Image none = rendered(arguments, folder.path());
-  arguments.insert(arguments.end(), {"--materials", "library", "--stats", "s.json"});
+  arguments.insert(arguments.end(), {"--materials", materials, "--stats", "s.json"});
   const Image tinted = rendered(arguments, folder.path());
   EXPECT_EQ(none.channels.size(), tinted.channels.size());
   for (const char* name : {"A", "Z", "clip.Z", "normal.X", "samples.N"})
@@ -43,12 +43,27 @@ void expectOnlyColors(Arguments arguments) {
   EXPECT_GT(stats.at("/labels/pureFraction"_json_pointer), 0.1);
   EXPECT_GT(stats.at("/labels/bytes"_json_pointer), 0);
   EXPECT_GT(stats.at("/seconds/materials"_json_pointer), 0.0);
+  EXPECT_EQ(stats.contains("contrast"), materials == "auto");
+  if (materials == "auto") {
+    for (const char* key : {"deltaE", "deltaEProtan", "deltaEDeutan", "deltaETritan", "deltaL"})
+      EXPECT_GE(stats.at("contrast").at(key), 0.0) << key;
+    EXPECT_NE(stats.at("contrast").at("segment"), stats.at("contrast").at("neighbour"));
+    EXPECT_GE(stats.at("contrast").at("contextSaturation"), 0.5);
+    EXPECT_LE(stats.at("contrast").at("focusChroma"), 1.4);
+  }
 }
 
 TEST(Materials, ChangeColoursAloneOfTheKnee) {
   const std::string knee = (kneeFolder() / "knee").string();
   expectOnlyColors({knee + "/knee.nrrd", "--segmentation", knee + "/knee.seg.nrrd", "--focus",
                     "FemoralCartilage", "--transfer", knee + "/knee.vp.json"});
+}
+
+TEST(Materials, ChangeColoursAloneOfTheKneeWithContrast) {
+  const std::string knee = (kneeFolder() / "knee").string();
+  expectOnlyColors({knee + "/knee.nrrd", "--segmentation", knee + "/knee.seg.nrrd", "--focus",
+                    "FemoralCartilage", "--transfer", knee + "/knee.vp.json"},
+                   "auto");
 }
 
 class RealMaterials : public ::testing::Test {
@@ -119,6 +134,30 @@ TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
   EXPECT_LT(albedo({"--materials", "library", "--material", "1: color=#00ff00"})[0], library[0]);
 }
 
+TEST_F(MaterialsCommand, ContextOfAFileIsAppliedAroundAFocus) {
+  const std::string context = R"("context": {"saturation": 0.7, "lightness": 0.2}})";
+  folder.write("given.json", R"({"version": 1, )" + context);
+  folder.write("contrast.json", R"({"version": 1, "contrast": true, )" + context);
+  const auto told = [&](const std::string& materials) {
+    Arguments arguments =
+        with({"--focus", "A", "--materials", materials, "--stats", "s.json", "--output", "a.png"});
+    const Outcome outcome = run(arguments, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.choices.find("; contrast: "), std::string::npos) << outcome.choices;
+    return nlohmann::json::parse(bytesOf(folder / "s.json")).at("contrast");
+  };
+  for (const char* file : {"given.json", "contrast.json"}) {
+    EXPECT_EQ(told(file).at("contextSaturation"), 0.7) << file;
+    EXPECT_EQ(told(file).at("contextLightness"), 0.2) << file;
+    EXPECT_EQ(told(file).at("segment"), "Bone, left");
+    EXPECT_EQ(told(file).at("neighbour"), "the rest");
+  }
+  EXPECT_EQ(told("given.json").at("focusLightness"), 0.0);
+  expectRefused({{"no focus", with({"--materials", "given.json"}), 3,
+                  "given.json: context: is what is not focus; add --focus, or leave it out"}},
+                folder.path());
+}
+
 TEST_F(MaterialsCommand, RefusesInOneLine) {
   folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colour": "#ffffff"}}})");
   folder.write("dense.json",
@@ -145,7 +184,7 @@ TEST_F(MaterialsCommand, RefusesInOneLine) {
           refusal({"--material", "A: g=0"}, 2, "--material: changes what --materials gives"),
           refusal({"--materials", "liver"}, 3,
                   "liver: no such file, and no preset of that name; --materials takes none, "
-                  "library, or a file"),
+                  "auto, library, or a file"),
           refusal({"--materials", "broken.json"}, 3,
                   "broken.json: materials.a: unknown key \"colour\""),
           refusal({"--materials", "dense.json"}, 3,

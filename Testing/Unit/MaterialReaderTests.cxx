@@ -76,6 +76,12 @@ TEST(MaterialReader, ReadsEveryFieldOfARule) {
   EXPECT_EQ(table.rest, "tissue");
   EXPECT_EQ(table.context.saturation, 0.6);
   EXPECT_EQ(table.context.lightness, 0.15);
+  EXPECT_FALSE(table.hasContrast);
+  const MaterialTable bare = parseMaterials(
+      R"({"version": 1, "contrast": true, "context": {"lightness": 0}})", "bare.json");
+  EXPECT_TRUE(bare.hasContrast);
+  EXPECT_FALSE(bare.context.saturation);
+  EXPECT_EQ(bare.context.lightness, 0.0);
 }
 
 TEST(MaterialReader, AFileStandsOnTheTableBeneath) {
@@ -127,6 +133,7 @@ TEST(MaterialReader, ErrorNamesTheFieldOfATable) {
          "rest.material: there is no material \"air\"; name one");
   refuse(R"({"version": 1, "rest": {}})", "rest: has no \"material\"");
   refuse(R"({"version": 1, "context": {"saturation": 2}})", "context.saturation: is 2; it must be");
+  refuse(R"({"version": 1, "contrast": "much"})", "contrast: must be true or false");
   refuse(R"({"version": 1, "context": {"hue": 2}})", "context: unknown key \"hue\"");
 }
 

@@ -31,63 +31,96 @@ Handle<NamedMaterials> materials(const std::string& json) {
 }
 
 const Handle<NamedMaterials> library = std::make_shared<NamedMaterials>(namedMaterials("library"));
+const Handle<NamedMaterials> automatic = std::make_shared<NamedMaterials>(namedMaterials("auto"));
+
+TintPlan planOf(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
+                const std::vector<std::string>& changes = {},
+                const std::vector<std::string>& focus = {}) {
+  return tintPlan(segments, materials, changes, focus);
+}
 
 using Parts = std::vector<TintPart>;
 
 TEST(SegmentTint, OnePartAColourAndPriority) {
   const auto segments = row({"kidney_left", "empty", "aorta", "kidney_right", "body_trunc"});
-  const TintPlan plan = tintPlan(segments, library, {});
+  const TintPlan plan = planOf(segments, library, {});
   EXPECT_EQ(plan.components.size(), 3U) << "the volume's own, kidney, artery";
   EXPECT_EQ(plan.parts, (Parts{{{0, 3}, 10, 1}, {{2}, 15, 2}}))
       << "the body has the volume's own look, and no priority over anything";
-  const TintPlan lifted = tintPlan(segments, library, {"aorta: priority=3"});
+  const TintPlan lifted = planOf(segments, library, {"aorta: priority=3"});
   EXPECT_EQ(lifted.parts, (Parts{{{4}, 5, 0}, {{0, 3}, 10, 1}, {{2}, 3, 2}}))
       << "the body takes from the aorta what both cover";
 }
 
 TEST(SegmentTint, ChangesOfASegmentMakeItAComponentOfItsOwn) {
   const auto segments = row({"kidney_left", "kidney_right", "spleen"});
-  const TintPlan red = tintPlan(segments, library, {"kidney_left: color=#ff0000"});
+  const TintPlan red = planOf(segments, library, {"kidney_left: color=#ff0000"});
   EXPECT_EQ(red.parts, (Parts{{{0}, 10, 1}, {{1}, 10, 2}, {{2}, 10, 3}}));
   const TintPlan blue =
-      tintPlan(segments, library, {"id0: color=#ff0000", "1: color=#0000ff, priority=12"});
+      planOf(segments, library, {"id0: color=#ff0000", "1: color=#0000ff, priority=12"});
   EXPECT_EQ(blue.parts, (Parts{{{0}, 12, 1}, {{1}, 10, 2}, {{2}, 10, 3}}));
   EXPECT_EQ(blue.components[1].color->knots()[0].value.z(), 1.0);
-  const TintPlan same = tintPlan(segments, library, {"spleen: material=kidney"});
+  const TintPlan same = planOf(segments, library, {"spleen: material=kidney"});
   EXPECT_EQ(same.parts, (Parts{{{0, 1, 2}, 10, 1}}));
+}
+
+/// Set off, the focus has components of its own, be they of the context's colour or of the rest's.
+TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
+  const auto segments = row({"kidney_left", "kidney_right", "aorta", "body", "Thing"});
+  const TintPlan one = planOf(segments, automatic, {}, {"kidney_right"});
+  EXPECT_EQ(one.names,
+            (std::vector<std::string>{"the rest", "kidney_left", "kidney_right", "aorta"}));
+  EXPECT_EQ(one.isFocus, (std::vector<bool>{false, false, true, false}));
+  EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{0}, 10, 1}, {{1}, 10, 2}, {{2}, 15, 3}}));
+  const TintPlan both = planOf(segments, automatic, {}, {"1", "body", "id1"});
+  EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "kidney", "aorta", "body"}));
+  EXPECT_EQ(both.isFocus, (std::vector<bool>{false, true, false, true}));
+  EXPECT_FALSE(both.components[3].color) << "the volume's own";
+  EXPECT_EQ(planOf(segments, library, {}, {"aorta"}).isFocus, std::vector<bool>(4, false));
+}
+
+/// A name that says nothing gets a palette's colour from the library, and none beside a focus that
+/// is to stand out.
+TEST(SegmentTint, AutoColoursOnlyWhatIsKnown) {
+  const auto segments = row({"liver", "Thing", "Other"});
+  EXPECT_EQ(planOf(segments, library).components.size(), 4U);
+  EXPECT_EQ(planOf(segments, automatic).components.size(), 2U);
+  const TintPlan asked = planOf(segments, automatic, {"Thing: color=#00ff00"});
+  EXPECT_EQ(asked.components.size(), 3U);
 }
 
 TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {
   const auto segments = row({"liver", "body"});
   const TintPlan plan =
-      tintPlan(segments, materials(R"({"version": 1, "materials": {"red": {"color": "#ff0000"}},
+      planOf(segments, materials(R"({"version": 1, "materials": {"red": {"color": "#ff0000"}},
                               "rest": {"material": "red"}})"),
-               {});
+             {});
   ASSERT_EQ(plan.components.size(), 3U);
   EXPECT_EQ(plan.components[0].color->knots()[0].value.x(), 1.0);
   EXPECT_FALSE(plan.components[2].color) << "the body's: the volume's own, not the rest's";
-  const TintPlan bare = tintPlan(row({"body"}), library, {});
+  const TintPlan bare = planOf(row({"body"}), library, {});
   EXPECT_EQ(bare.parts, (Parts{{{0}, 5, 0}})) << "nothing is coloured, and there is a part";
 }
 
 TEST(SegmentTint, RefusesWhatItCannotShow) {
   const auto segments = row({"liver", "empty"});
   const auto refuse = [&](const std::vector<std::string>& changes, const std::string& text) {
-    expectRefused("--material", text, [&] { tintPlan(segments, library, changes); });
+    expectRefused("--material", text, [&] { planOf(segments, library, changes); });
   };
   refuse({"liver: extinction=2"}, "segment \"liver\": kind: is \"matter\", and materials only");
   refuse({"liver: density=2"}, "segment \"liver\": density: is 2, and materials only colour yet");
   refuse({"liver: clip=no"}, "segment \"liver\": clip: is false, and materials only colour yet");
-  EXPECT_EQ(tintPlan(segments, library, {"empty: density=2"}).parts.size(), 1U);
+  EXPECT_EQ(planOf(segments, library, {"empty: density=2"}).parts.size(), 1U);
   expectRefused("row.seg.nrrd", "has no segment \"live\"; did you mean liver?",
-                [&] { tintPlan(segments, library, {"live: color=#ffffff"}); });
+                [&] { planOf(segments, library, {"live: color=#ffffff"}); });
   expectRefused("row.seg.nrrd", "no segment has a voxel, so there is nothing to colour",
-                [&] { tintPlan(row({"empty"}), library, {}); });
+                [&] { planOf(row({"empty"}), library, {}); });
   const auto refuseTable = [&](const std::string& members, const std::string& text) {
     const auto table = materials(R"({"version": 1, )" + members + "}");
-    expectRefused("m.json", text, [&] { tintPlan(segments, table, {}); });
+    expectRefused("m.json", text, [&] { planOf(segments, table, {}); });
   };
-  refuseTable(R"("context": {"saturation": 0.5})", "context: is not applied yet; leave it out");
+  refuseTable(R"("context": {"saturation": 0.5})", "context: is what is not focus; add --focus");
+  refuseTable(R"("context": {"lightness": 0})", "context: is what is not focus; add --focus");
   refuseTable(R"("materials": {"m": {"kind": "matter"}}, "rest": {"material": "m"})",
               "rest \"m\": kind: is \"matter\"");
   refuseTable(R"("segments": [{"match": {"names": ["liver"]}, "material": "liver", "density": 3}])",
@@ -109,13 +142,13 @@ TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
     return std::make_shared<SegmentsInput>(SegmentsInput{
         Segmentation("s.nrrd", Grid(Size3(256, 1, 1), Affine::Identity()), 1, labels, segments)});
   };
-  expectRefused("s.nrrd", "more than 255 colours", [&] { tintPlan(inputOf(256), library, {}); });
-  EXPECT_EQ(tintPlan(inputOf(255), library, {}).components.size(), 256U);
+  expectRefused("s.nrrd", "more than 255 colours", [&] { planOf(inputOf(256), library, {}); });
+  EXPECT_EQ(planOf(inputOf(255), library, {}).components.size(), 256U);
 }
 
 TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
   const auto segments = row({"liver", "spleen"});
-  const auto plan = std::make_shared<TintPlan>(tintPlan(segments, library, {}));
+  const auto plan = std::make_shared<TintPlan>(planOf(segments, library, {}));
   const Grid& grid = segments->segmentation.grid();
   const auto shares = std::make_shared<Shares>(tintShares(segments, plan->parts, 0.0, grid));
   const Rgb own(0.1, 0.2, 0.3);
@@ -145,7 +178,7 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
 
 TEST(SegmentTint, AlbedoIsTakenAsItIs) {
   const auto segments = row({"liver"});
-  const auto plan = std::make_shared<TintPlan>(tintPlan(
+  const auto plan = std::make_shared<TintPlan>(planOf(
       segments, materials(R"({"version": 1, "materials": {"liver": {"albedo": [0.5, 0.6, 0.7]}}})"),
       {}));
   const auto shares = std::make_shared<Shares>(

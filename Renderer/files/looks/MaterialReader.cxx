@@ -14,7 +14,8 @@ constexpr double greatestDensity = 1000.0; ///< as --density
 
 // ---- materials
 
-void readIfThere(const JsonNode& object, const char* key, double low, double high, double& value) {
+template <typename Value>
+void readIfThere(const JsonNode& object, const char* key, double low, double high, Value& value) {
   if (const auto node = object.find(key))
     value = node->numberIn(low, high);
 }
@@ -173,7 +174,7 @@ MaterialTable parseMaterials(std::string_view json, const std::string& source,
                              const MaterialTable& beneath) {
   const nlohmann::json document = parseJson(json, source);
   const JsonNode root(document, source);
-  root.allowOnly({"version", "materials", "segments", "rest", "context"});
+  root.allowOnly({"version", "materials", "segments", "rest", "context", "contrast"});
   if (const JsonNode version = root.at("version"); version.number() != 1.0)
     throw version.error("must be 1, which is the form that this Fenestra reads");
   MaterialTable table = beneath;
@@ -196,6 +197,8 @@ MaterialTable parseMaterials(std::string_view json, const std::string& source,
   }
   if (const auto context = root.find("context"))
     table.context = readContext(*context);
+  if (const auto contrast = root.find("contrast"))
+    table.hasContrast = contrast->boolean();
   return table;
 }
 

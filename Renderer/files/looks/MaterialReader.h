@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,10 +26,10 @@ struct MaterialRule {
   bool isOwn = false; ///< of the file itself, not of the table beneath
 };
 
-/// Colours of what is not focus.
+/// Colours of what is not focus; nothing: not said.
 struct ContextColors {
-  double saturation = 1.0; ///< 0: grey, 1: unchanged
-  double lightness = 0.0;  ///< share of the way to white, 0 to 1
+  std::optional<double> saturation = {}; ///< 0: grey, 1: unchanged
+  std::optional<double> lightness = {};  ///< share of the way to white, 0 to 1
 };
 
 struct MaterialTable {
@@ -36,6 +37,7 @@ struct MaterialTable {
   std::vector<MaterialRule> rules; ///< of equals the first is taken
   std::string rest;                ///< material of what is no segment; empty: the volume's own
   ContextColors context;
+  bool hasContrast = false; ///< colours are changed until the focus is told from its neighbours
 };
 
 /// Reads a table over the table `beneath`: its materials replace those of the same name, its rules

@@ -9,6 +9,9 @@ namespace fenestra {
 /// albedo), by single-scattering albedo, 0 to 1, and Henyey-Greenstein mean cosine g. From a table
 /// that Testing/Oracle/MakeReflectance made; g below 0 reads as 0, and beyond 0.95 as 0.95.
 double reflectance(double albedo, double g);
+inline Rgb reflectance(const Rgb& albedo, double g) {
+  return albedo.unaryExpr([g](double channel) { return reflectance(channel, g); });
+}
 
 /// Mean cosines of the table: 0 to this.
 inline constexpr double greatestColorG = 0.95;

@@ -247,9 +247,10 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
           code = *pure;
           continue;
         }
-        code = ~static_cast<std::int32_t>(groups.size());
-        groups.resize(groups.size() + shares.groupCount(), Group{});
-        shares.write(&groups[static_cast<std::size_t>(~code)]);
+        const std::size_t before = groups.size();
+        code = ~static_cast<std::int32_t>(before);
+        groups.resize(before + shares.groupCount(), Group{});
+        shares.write(&groups[before]);
       }
     }
   });
@@ -257,11 +258,11 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
   std::int64_t next = 0;
   for (std::int64_t z = 0; z < m_brickCount.z(); ++z) {
     const std::vector<Group>& groups = layers[static_cast<std::size_t>(z)];
-    const auto before = static_cast<std::int32_t>(m_groups.size());
+    const auto layersBefore = static_cast<std::int32_t>(m_groups.size());
     m_groups.insert(m_groups.end(), groups.begin(), groups.end());
     for (std::int64_t i = 0; i < m_brickCount.x() * m_brickCount.y(); ++i, ++next)
       if (std::int32_t& code = m_bricks[static_cast<std::size_t>(next)]; code < 0)
-        code -= before;
+        code -= layersBefore;
   }
 }
 

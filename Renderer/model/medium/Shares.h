@@ -43,7 +43,7 @@ public:
   /// component 0 gets the rest. Rounded to 255ths that sum to 255. Parts of one priority may come
   /// in any order, and be of different components. At least one part.
   explicit Shares(const std::vector<Part>& parts);
-  /// The same of `count` parts, of which one mask at a time is held.
+  /// Shares of `count` parts, of which one mask at a time is held.
   Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt);
 
   /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.

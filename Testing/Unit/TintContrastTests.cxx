@@ -1,0 +1,266 @@
+// Contrast of a tinted focus: what borders on it, and how colours are changed until they differ.
+
+#include "session/TintContrast.h"
+
+#include "Support.h"
+#include "base/Color.h"
+#include "model/medium/Reflectance.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace fenestra::testing::TintContrastTests {
+namespace {
+
+Rgb colorOf(std::uint32_t rgb) {
+  return decodeSrgb(Rgb((rgb >> 16U) & 0xffU, (rgb >> 8U) & 0xffU, rgb & 0xffU) / 255.0);
+}
+
+const Rgb liver = colorOf(0x963e2e), muscle = colorOf(0xa03e38), bone = colorOf(0xf6eedc),
+          spleen = colorOf(0x763448), skin = colorOf(0xdea98f), teal = colorOf(0x207068);
+
+ContrastKnobs chosen(const std::vector<BorderColors>& colors, const ContextColors& context = {}) {
+  return chosenKnobs(colors, context, true, 1.0, 0.0);
+}
+double shareOf(const ContrastKnobs& knobs, const BorderColors& colors) {
+  return tintShare(contrastUnder(knobs, colors, 1.0, 0.0));
+}
+
+// ---- colours
+
+TEST(TintContrast, LinearIsTheInverseOfLab) {
+  for (const Rgb& color : {liver, bone, teal, Rgb(Rgb::Zero()), Rgb(1e-3, 2e-3, 5e-4)})
+    EXPECT_LT((linearOf(labOf(color)) - color).abs().maxCoeff(), 1e-9);
+}
+
+TEST(TintContrast, KnobsChangeWhatTheySay) {
+  EXPECT_LT((changedContext(liver, {}) - liver).abs().maxCoeff(), 1e-9);
+  EXPECT_LT((changedFocus(liver, {}) - liver).abs().maxCoeff(), 1e-9);
+  const Lab before = labOf(liver);
+  const Lab context =
+      labOf(changedContext(liver, {.contextSaturation = 0.5, .contextLightness = 0.25}));
+  EXPECT_NEAR(context.L, before.L + 0.25 * (72.0 - before.L), 1e-6);
+  EXPECT_NEAR(context.a, 0.5 * before.a, 1e-6);
+  EXPECT_NEAR(context.b, 0.5 * before.b, 1e-6);
+  const Lab focus = labOf(changedFocus(liver, {.focusChroma = 1.1, .focusLightness = -5.0}));
+  EXPECT_NEAR(focus.L, before.L - 5.0, 1e-6);
+  EXPECT_NEAR(focus.a, 1.1 * before.a, 1e-6);
+  const Rgb white = changedFocus(Rgb::Constant(0.94), {.focusLightness = 12.0});
+  EXPECT_EQ(white.maxCoeff(), whitest) << "no whiter than matter can be";
+}
+
+// ---- knobs
+
+TEST(TintContrast, LeavesColoursThatDiffer) {
+  EXPECT_EQ(chosen({{spleen, bone, 1.0}}), ContrastKnobs());
+  EXPECT_EQ(shareOf({}, {spleen, bone, 1.0}), 1.0);
+}
+
+TEST(TintContrast, FocusWithoutNeighboursStaysAsItIs) {
+  EXPECT_EQ(chosen({}), ContrastKnobs());
+}
+
+/// Expects that `knob` alone is turned, in the middle of its range, and that a step of it less
+/// would not be enough.
+void expectAlone(double ContrastKnobs::*knob, double farthest, const BorderColors& colors) {
+  const ContrastKnobs knobs = chosen({colors}), none;
+  const double step = (farthest - none.*knob) / 20.0, turned = (knobs.*knob - none.*knob) / step;
+  EXPECT_GT(turned, 0.5);
+  EXPECT_LT(turned, 19.5);
+  EXPECT_GE(shareOf(knobs, colors), enoughShare);
+  ContrastKnobs less = knobs;
+  less.*knob -= step;
+  EXPECT_LT(shareOf(less, colors), enoughShare);
+  less.*knob = none.*knob;
+  EXPECT_EQ(less, none) << "others are turned, too";
+}
+
+TEST(TintContrast, TurnsAKnobNoFurtherThanNeeded) {
+  expectAlone(&ContrastKnobs::contextSaturation, 0.5, {colorOf(0xc03030), colorOf(0xff98b8), 1.0});
+  expectAlone(&ContrastKnobs::contextLightness, 0.35, {colorOf(0x802018), colorOf(0xe08060), 1.0});
+}
+
+/// Knobs that do not help stay; of those that do, a later one is turned only if the earlier are
+/// turned out.
+TEST(TintContrast, TurnsKnobsInTheirOrder) {
+  const ContrastKnobs red = chosen({{liver, muscle, 1.0}});
+  EXPECT_EQ(red.contextSaturation, 0.5);
+  EXPECT_EQ(red.contextLightness, 0.35);
+  EXPECT_EQ(red.focusLightness, -12.0) << "away from the context's";
+  EXPECT_LE(red.focusChroma, 1.4);
+  const ContrastKnobs both = chosen({{colorOf(0x705040), colorOf(0xf09070), 1.0}});
+  EXPECT_LT(both.contextSaturation, 1.0);
+  EXPECT_GT(both.contextLightness, 0.0);
+  EXPECT_LT(both.contextLightness, 0.35) << "would be farther, or alone, if it came first";
+  const ContrastKnobs grey = chosen({{Rgb::Constant(0.6), Rgb::Constant(0.2), 1.0}});
+  EXPECT_EQ(grey.contextSaturation, 1.0) << "it has none";
+  EXPECT_EQ(grey.contextLightness, 0.0) << "would come nearer";
+  EXPECT_GT(grey.focusLightness, 0.0);
+}
+
+/// Green and red of one lightness: normal sight needs nothing, the red-blind do.
+TEST(TintContrast, MindsTheColourBlindAndGreyPrints) {
+  Contrast contrast{{30.0, 15.0, 15.0, 30.0}, 20.0};
+  EXPECT_EQ(tintShare(contrast), 1.0);
+  for (double* poor :
+       {&contrast.deltaE[0], &contrast.deltaE[1], &contrast.deltaE[2], &contrast.deltaL}) {
+    const double before = std::exchange(*poor, 1.0);
+    EXPECT_LT(tintShare(contrast), 0.85);
+    *poor = before;
+  }
+  const BorderColors colors{colorOf(0xa06848), colorOf(0x608048), 1.0};
+  EXPECT_GT(contrastUnder({}, colors, 1.0, 0.0).deltaE[0], 16.0);
+  const ContrastKnobs knobs = chosen({colors});
+  EXPECT_NE(knobs, ContrastKnobs());
+  const Contrast before = contrastUnder({}, colors, 1.0, 0.0),
+                 after = contrastUnder(knobs, colors, 1.0, 0.0);
+  EXPECT_GT(std::min(after.deltaE[1], after.deltaE[2]),
+            std::min(before.deltaE[1], before.deltaE[2]));
+  EXPECT_GT(after.deltaL, before.deltaL);
+}
+
+TEST(TintContrast, WhatTheUserSetsIsNotTurned) {
+  const std::vector<BorderColors> colors = {{liver, muscle, 1.0}};
+  const ContrastKnobs pale = chosen(colors, {.saturation = 0.8, .lightness = {}});
+  EXPECT_EQ(pale.contextSaturation, 0.8);
+  EXPECT_EQ(pale.contextLightness, 0.35);
+  const ContrastKnobs light = chosen(colors, {.saturation = {}, .lightness = 0.1});
+  EXPECT_EQ(light.contextSaturation, 0.5);
+  EXPECT_EQ(light.contextLightness, 0.1);
+  EXPECT_EQ(light.contextGoal, 100.0) << "white";
+  const ContrastKnobs fixed =
+      chosenKnobs(colors, {.saturation = 0.8, .lightness = {}}, false, 1.0, 0.0);
+  EXPECT_EQ(fixed, ContrastKnobs{.contextSaturation = 0.8}) << "nothing else is turned unasked";
+}
+
+/// Most of the border decides.
+TEST(TintContrast, PartsCountByTheirArea) {
+  const BorderColors dark{skin, bone, 1.0}, light{skin, liver, 1.0};
+  const auto shift = [&](double darkArea, double lightArea) {
+    BorderColors first = dark, second = light;
+    first.area = darkArea;
+    second.area = lightArea;
+    return chosen({first, second}).focusLightness;
+  };
+  EXPECT_LT(shift(10.0, 1.0), 0.0);
+  EXPECT_GE(shift(1.0, 10.0), 0.0);
+}
+
+/// A context paled by --contextsaturation 0 is grey, whatever its tint.
+TEST(TintContrast, KnowsHowFarTheContextIsPaled) {
+  const BorderColors colors{liver, teal, 1.0};
+  const Contrast grey = contrastUnder({}, colors, 0.0, 0.0);
+  const double own = luminance(albedoFor(teal, 0.0));
+  const BorderColors same{liver, Rgb::Constant(reflectance(own, 0.0)), 1.0};
+  EXPECT_NEAR(grey.deltaE[0], contrastUnder({}, same, 1.0, 0.0).deltaE[0], 0.05);
+}
+
+// ---- borders
+
+/// Cube of 6^3 voxels (component 1), whose neighbours are component 2 where x is beyond it, else
+/// the rest; scalars 10, 20, 30; voxels of 1 x 2 x 4 mm.
+class Borders : public ::testing::Test {
+protected:
+  static constexpr std::int64_t edge = 16, low = 5, high = 11;
+
+  static bool isCube(const Size3& v) { return v.minCoeff() >= low && v.maxCoeff() < high; }
+
+  Mask maskOf(const auto& holds) const {
+    Mask mask{grid, std::vector<std::uint8_t>(grid.voxelCount()), 0, {"part"}};
+    Size3 v;
+    std::size_t i = 0;
+    for (v[2] = 0; v[2] < edge; ++v[2])
+      for (v[1] = 0; v[1] < edge; ++v[1])
+        for (v[0] = 0; v[0] < edge; ++v[0], ++i)
+          mask.count += mask.voxels[i] = holds(v);
+    return mask;
+  }
+  std::vector<ComponentBorder> borders(const TransferFunction& transfer) const {
+    const Volume volume = makeVolume<float>(grid, [](const Vec3& index) {
+      const Size3 v = index.array().round().cast<std::int64_t>();
+      return isCube(v) ? 20.0 : v.x() >= high ? 30.0 : 10.0;
+    });
+    const Shares shares(
+        {{maskOf(isCube), 10, 1}, {maskOf([](const Size3& v) { return v.x() >= high; }), 10, 2}});
+    return componentBorders(maskOf(isCube), volume, transfer, shares, {false, true, false});
+  }
+
+  const Grid grid = centredGrid({edge, edge, edge}, Vec3(1.0, 2.0, 4.0));
+  const TransferFunction all{ScalarFunction({knot(0.0, 1.0)}), ColorFunction({{0.0, skin}})};
+};
+
+TEST_F(Borders, AreMeasuredInSquareMillimetres) {
+  const std::vector<ComponentBorder> found = borders(all);
+  ASSERT_EQ(found.size(), 2U);
+  const double x = 36 * 8.0, y = 36 * 4.0, z = 36 * 2.0;
+  EXPECT_EQ(found[0].context, 0);
+  EXPECT_NEAR(found[0].area, x + 2.0 * y + 2.0 * z, 1e-6);
+  EXPECT_EQ(found[1].context, 2);
+  EXPECT_NEAR(found[1].area, x, 1e-6);
+  for (const ComponentBorder& border : found) {
+    EXPECT_EQ(border.focus, 1);
+    EXPECT_EQ(border.focusScalar, 20.0);
+  }
+  EXPECT_EQ(found[0].contextScalar, 10.0);
+  EXPECT_EQ(found[1].contextScalar, 30.0);
+}
+
+TEST_F(Borders, WhatIsTransparentIsNoNeighbour) {
+  TransferFunction transfer = all;
+  transfer.extinction = ScalarFunction({knot(10.0, 0.0), knot(20.0, 1.0)});
+  const std::vector<ComponentBorder> found = borders(transfer);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].context, 2);
+}
+
+/// A neighbour of less than a twentieth of the border does not turn a knob.
+TEST_F(Borders, SmallOnesDoNotCount) {
+  const TintPlan plan{.parts = {},
+                      .components = {{}, {}, {}},
+                      .names = {"the rest", "focus", "neighbour"},
+                      .isFocus = {false, true, false}};
+  Tint tint{nullptr, {}};
+  for (const Rgb& color : {bone, spleen, spleen})
+    tint.albedo.emplace_back(albedoFor(ColorFunction({{0.0, color}}), 0.0));
+  MaterialTable table;
+  table.hasContrast = true;
+  const auto at = [&](double area) {
+    return tintContrast({{1, 0, 100.0, 0.0, 0.0}, {1, 2, area, 0.0, 0.0}}, plan, tint, table, all,
+                        1.0);
+  };
+  EXPECT_EQ(at(4.0).knobs, ContrastKnobs());
+  EXPECT_EQ(at(4.0).neighbour, "the rest");
+  EXPECT_NE(at(6.0).knobs, ContrastKnobs());
+  EXPECT_EQ(at(6.0).segment, "focus");
+  EXPECT_EQ(at(6.0).neighbour, "neighbour");
+  EXPECT_FALSE(tintContrast({}, plan, tint, table, all, 1.0).contrast);
+
+  const Tint turned = contrastedTint(tint, plan, {.contextSaturation = 0.0}, all);
+  const auto chroma = [&](std::size_t i) {
+    const Lab lab = labOf(reflectance(Rgb((*turned.albedo[i])(0.0)), 0.0));
+    return std::hypot(lab.a, lab.b);
+  };
+  EXPECT_LT(chroma(0), 0.5);
+  EXPECT_GT(chroma(1), 10.0) << "the focus's";
+  EXPECT_LT(chroma(2), 0.5);
+}
+
+/// Colours that are the volume's own are changed over the scalar, knot by knot.
+TEST_F(Borders, OwnColoursAreChangedToo) {
+  TransferFunction transfer = all;
+  transfer.albedo = ColorFunction({{0.0, albedoFor(skin, 0.0)}, {9.0, albedoFor(liver, 0.0)}});
+  const TintPlan plan{.parts = {}, .components = {{}}, .names = {"the rest"}, .isFocus = {false}};
+  const Tint own{nullptr, {std::nullopt}};
+  EXPECT_FALSE(contrastedTint(own, plan, {}, transfer).albedo[0]);
+  const ContrastKnobs knobs{.contextSaturation = 0.5, .contextLightness = 0.2};
+  const Tint turned = contrastedTint(own, plan, knobs, transfer);
+  for (const auto& [scalar, color] : {std::pair(0.0, skin), std::pair(9.0, liver)})
+    EXPECT_LT((reflectance(Rgb((*turned.albedo[0])(scalar)), 0.0) - changedContext(color, knobs))
+                  .abs()
+                  .maxCoeff(),
+              1e-3);
+}
+
+} // namespace
+} // namespace fenestra::testing::TintContrastTests
