@@ -167,7 +167,8 @@ protected:
   static bool isCube(const Size3& v) { return v.minCoeff() >= low && v.maxCoeff() < high; }
 
   Mask maskOf(const auto& holds) const {
-    Mask mask{grid, std::vector<std::uint8_t>(grid.voxelCount()), 0, {"part"}};
+    Mask mask{
+        grid, std::vector<std::uint8_t>(static_cast<std::size_t>(grid.voxelCount())), 0, {"part"}};
     Size3 v;
     std::size_t i = 0;
     for (v[2] = 0; v[2] < edge; ++v[2])
