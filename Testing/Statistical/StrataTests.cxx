@@ -30,7 +30,7 @@ RenderSettings settingsOf(const Way& way, std::uint64_t samples, std::uint64_t s
 TEST(Strata, MeansAreThoseOfIndependentSamples) {
   const TestScene scene = fogScene();
   const int seeds = budget(80);
-  for (const std::uint64_t samples : {3, 8, 24}) {
+  for (const std::uint64_t samples : {3U, 8U, 24U}) {
     std::vector<Rgb> means;
     std::vector<Rgb> variances;
     for (const Way& way : ways) {
