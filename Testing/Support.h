@@ -55,6 +55,11 @@ inline TransferFunction linearTransfer(double sigma_t, const Rgb& albedo, double
   return transfer;
 }
 
+/// Shares of parts that all lie in memory.
+inline Shares sharesOf(const std::vector<Shares::Part>& parts) {
+  return {parts.size(), [&](std::size_t i) { return parts[i]; }};
+}
+
 /// Owner of everything that a RenderScene refers to.
 struct TestScene {
   Volume volume;

@@ -72,7 +72,7 @@ void tintSegments(const Combination& c, Generator& generator, MatrixScene& scene
     else
       tint.albedo.emplace_back(ColorFunction({{low, color()}, {high, color()}}));
   }
-  scene.product.tint = Tint{std::make_shared<const Shares>(parts), tint.albedo};
+  scene.product.tint = Tint{std::make_shared<const Shares>(sharesOf(parts)), tint.albedo};
   scene.tint = std::move(tint);
 }
 

@@ -95,7 +95,7 @@ void forVoxels(const Grid& grid, const Visit& visit) {
 
 TEST(Shares, AreThoseOfTheDefinitionAtVoxels) {
   const std::vector<Shares::Part> parts = randomParts(12);
-  const Shares shares(parts);
+  const Shares shares = sharesOf(parts);
   forVoxels(shares.grid(), [&](const Vec3& at) {
     ByComponent found = sharesAt(shares, at), defined = definedAt(parts, at);
     double sum = 0.0;
@@ -110,7 +110,7 @@ TEST(Shares, AreThoseOfTheDefinitionAtVoxels) {
 }
 
 TEST(Shares, AreTrilinearBetweenVoxelsAndAcrossBricks) {
-  const Shares shares(randomParts(12));
+  const Shares shares = sharesOf(randomParts(12));
   const Grid& grid = shares.grid();
   for (int i = 0; i < 2000; ++i) {
     Random random(9, static_cast<std::uint64_t>(i), 0);
@@ -134,16 +134,16 @@ TEST(Shares, AreTrilinearBetweenVoxelsAndAcrossBricks) {
 
 TEST(Shares, DoNotDependOnTheOrderOfParts) {
   std::vector<Shares::Part> parts = randomParts(6); // of six components
-  const Shares shares(parts);
+  const Shares shares = sharesOf(parts);
   std::ranges::reverse(parts);
-  const Shares reversed(parts);
+  const Shares reversed = sharesOf(parts);
   forVoxels(shares.grid(),
             [&](const Vec3& at) { ASSERT_EQ(sharesAt(shares, at), sharesAt(reversed, at)); });
 }
 
 TEST(Shares, BricksOfOneComponentArePure) {
   const auto inside = [](const Size3&) { return 255; };
-  const Shares shares({{maskOf({0, 0, 0}, {33, 9, 9}, inside), 1, 3}});
+  const Shares shares = sharesOf({{maskOf({0, 0, 0}, {33, 9, 9}, inside), 1, 3}});
   EXPECT_EQ(shares.pureFraction(), 1.0);
   EXPECT_EQ(shares.bricks(), std::vector<std::int32_t>(8 * 2 * 2, 3));
   EXPECT_TRUE(shares.groups().empty());
@@ -151,7 +151,7 @@ TEST(Shares, BricksOfOneComponentArePure) {
 
 /// Dense matter, with components that differ in colour; two of them have the matter's own.
 TestScene tintedScene() {
-  const auto shares = std::make_shared<const Shares>(randomParts(12));
+  const auto shares = std::make_shared<const Shares>(sharesOf(randomParts(12)));
   Affine map = shares->grid().indexToWorld;
   map.translate(Vec3(0.4, -0.7, 0.2)); // off the segmentation's grid, and partly beyond it
   const Grid grid(shares->grid().size, map);

@@ -2,25 +2,13 @@
 
 #include "transport/lanes/EyeRays.h"
 
+#include "EachInstructionSet.h"
 #include "Support.h"
-
-#include <gtest/gtest.h>
 
 namespace fenestra::testing::WideEyeRaysTests {
 namespace {
 
-class WideEyeRaysOf : public ::testing::TestWithParam<std::size_t> {
-protected:
-  void SetUp() override {
-    const std::vector<std::string> known = WideTracker::instructionSets();
-    if (GetParam() >= known.size())
-      GTEST_SKIP() << "this machine has fewer";
-    WideTracker::useInstructionSet(known[GetParam()]);
-  }
-  void TearDown() override {
-    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
-  }
-};
+class WideEyeRaysOf : public OnInstructionSet {};
 
 constexpr int width = 40, height = 30;
 
@@ -57,6 +45,23 @@ std::vector<View> views() {
            crop}};
 }
 
+/// All that begins paths in a scene.
+struct Beginning {
+  Domain domain;
+  WideTracker tracker;
+  Background background = {};
+  EyeRays eye;
+  WideEyeRays wide;
+  std::unique_ptr<PathStarts> starts = std::make_unique<PathStarts>();
+  std::unique_ptr<PathBatch> paths = std::make_unique<PathBatch>();
+
+  Beginning(const RenderScene& s, const Domain& in)
+      : domain(in),
+        tracker(s.volume, domain, s.transfer, s.majorants, s.clip),
+        eye(s.camera, s.clip, s.lights, background),
+        wide(tracker.scene(), domain, s.camera, eye) {}
+};
+
 /// Starts of one sample each in neighbouring pixels.
 void fill(PathStarts& starts, const NumberSource& source, std::uint64_t pixel,
           std::uint64_t sample) {
@@ -79,13 +84,8 @@ TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
   const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
   TestScene scene{volume, linearTransfer(0.1, Rgb::Ones()), {}, views()[0].pose, width, height};
   scene.with([&](const RenderScene& s) {
-    const Domain domain(grid);
-    const WideTracker tracker(s.volume, domain, s.transfer, s.majorants, s.clip);
-    const Background background;
-    const EyeRays eye(s.camera, s.clip, s.lights, background);
-    const WideEyeRays wide(tracker.scene(), domain, s.camera, eye);
-    const auto starts = std::make_unique<PathStarts>();
-    const auto paths = std::make_unique<PathBatch>();
+    const Beginning begun(s, Domain(grid));
+    const auto& [domain, tracker, background, eye, wide, starts, paths] = begun;
     constexpr std::uint64_t inStream = NumberSource::Stream::samples;
     for (const Sampling sampling : {Sampling::strata, Sampling::independent})
       for (const std::uint64_t sample : {std::uint64_t{0}, inStream - 100, inStream << 9}) {
@@ -127,13 +127,8 @@ TEST_P(WideEyeRaysOf, RaysAreThoseInDouble) {
     TestScene scene{volume,   linearTransfer(0.1, Rgb::Ones()), {}, view.pose, width, height,
                     view.clip};
     scene.with([&](const RenderScene& s) {
-      const Domain domain(grid, view.crop);
-      const WideTracker tracker(s.volume, domain, s.transfer, s.majorants, s.clip);
-      const Background background;
-      const EyeRays eye(s.camera, s.clip, s.lights, background);
-      const WideEyeRays wide(tracker.scene(), domain, s.camera, eye);
-      const auto starts = std::make_unique<PathStarts>();
-      const auto paths = std::make_unique<PathBatch>();
+      const Beginning begun(s, Domain(grid, view.crop));
+      const auto& [domain, tracker, background, eye, wide, starts, paths] = begun;
       const auto exact = std::make_unique<RayBatch>();
       std::size_t met = 0;
       for (std::uint64_t pixel = 0; pixel + RayBatch::capacity < width * height; pixel += 400) {
@@ -166,7 +161,7 @@ TEST_P(WideEyeRaysOf, RaysAreThoseInDouble) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, WideEyeRaysOf, ::testing::Range<std::size_t>(0, 4));
+INSTANTIATE_TEST_SUITE_P(InstructionSets, WideEyeRaysOf, eachInstructionSet);
 
 } // namespace
 } // namespace fenestra::testing::WideEyeRaysTests

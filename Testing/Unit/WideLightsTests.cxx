@@ -1,6 +1,7 @@
 // Lanes' environment maps against the scalar ones', on every instruction set: what is drawn, with
 // which density, and what escaping rays meet.
 
+#include "EachInstructionSet.h"
 #include "Histogram.h"
 
 #include "transport/lanes/PathSteps.h"
@@ -177,18 +178,7 @@ std::size_t differences(const Fog& fog, const Values& values, DirectionOf&& dire
   return count;
 }
 
-class WideLights : public ::testing::TestWithParam<std::size_t> {
-protected:
-  void SetUp() override {
-    const std::vector<std::string> known = WideTracker::instructionSets();
-    if (GetParam() >= known.size())
-      GTEST_SKIP() << "this machine has fewer";
-    WideTracker::useInstructionSet(known[GetParam()]);
-  }
-  void TearDown() override {
-    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
-  }
-};
+class WideLights : public OnInstructionSet {};
 
 /// Chi-squared of two histograms of equal weight against each other, as a standard normal deviate.
 double deviateBetween(const std::vector<double>& a, const std::vector<double>& b) {

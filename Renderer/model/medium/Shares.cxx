@@ -209,9 +209,6 @@ private:
 
 } // namespace
 
-Shares::Shares(const std::vector<Part>& parts)
-    : Shares(parts.size(), [&parts](std::size_t i) { return parts[i]; }) {}
-
 Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt) {
   std::vector<Placed> parts = placed(count, partAt);
   Size3 first = parts.front().first, end = parts.front().end;

@@ -41,9 +41,8 @@ public:
   /// Shares in order of the parts' priority, the greater first: with `left` = 1, and U the sum of
   /// the indicators u of a priority, each gets u min(1, left / U), and `left` loses min(left, U);
   /// component 0 gets the rest. Rounded to 255ths that sum to 255. Parts of one priority may come
-  /// in any order, and be of different components. At least one part.
-  explicit Shares(const std::vector<Part>& parts);
-  /// Shares of `count` parts, of which one mask at a time is held.
+  /// in any order, and be of different components. `count`: of parts, at least one; one at a time
+  /// is held.
   Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt);
 
   /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.

@@ -40,13 +40,8 @@ public:
   /// Each lane leaves an empty cell with its reach, or takes one step in matter. Returns the lanes
   /// that end with it.
   HWY_INLINE LaneMask step() {
-    const Float x = floor(m_way[0].at(m_t));
-    const Float y = floor(m_way[1].at(m_t));
-    const Float z = floor(m_way[2].at(m_t));
-    const LaneCells cell = cellsAt(m_volume, x, y, z);
-    const Float half = cell.reach + 0.5F;
-    const Float stop = min(min(m_way[0].leaving(x, half), m_way[1].leaving(y, half)),
-                           min(m_way[2].leaving(z, half), m_end));
+    const auto [cell, toFace] = stayAt(m_volume, m_way, m_t);
+    const Float stop = min(toFace, m_end);
     // A little beyond the face: the next point lies in the next cell, whatever rounding does.
     const Float beyond = fma(m_shortest, 0.02F, max(stop, m_t));
     const LaneMask filled = m_busy & (cell.majorant > 0.0F);

@@ -2,6 +2,11 @@
 
 namespace fenestra {
 
+bool WideTint::serves(const Tint& tint) {
+  constexpr std::size_t most = std::size_t{1} << 31; // indices of 32 bits
+  return tint.shares->groups().size() < most / (sizeof(Shares::Group) / sizeof(std::int32_t));
+}
+
 WideTint::WideTint(const Tint& tint, const Grid& volume)
     : toShares(affineRows(tint.shares->grid().worldToIndex * volume.indexToWorld)),
       bricks(tint.shares->bricks().data()),

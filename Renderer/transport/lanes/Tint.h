@@ -19,6 +19,8 @@ struct WideTint {
     std::int32_t brick; ///< offset of the next brick
   };
 
+  /// True if lanes can number the words of all groups.
+  static bool serves(const Tint& tint);
   /// `volume`: whose points are asked for.
   WideTint(const Tint& tint, const Grid& volume);
 

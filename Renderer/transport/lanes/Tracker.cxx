@@ -95,13 +95,7 @@ private:
   /// Busy lanes that do not wait for a look-up reach a tentative collision in their cell and its
   /// reach, or leave these cells.
   HWY_INLINE void cross() {
-    const Float x = floor(m_way[0].at(m_t));
-    const Float y = floor(m_way[1].at(m_t));
-    const Float z = floor(m_way[2].at(m_t));
-    const LaneCells cell = cellsAt(m_scene, x, y, z);
-    const Float half = cell.reach + 0.5F;
-    const Float toFace =
-        min(min(m_way[0].leaving(x, half), m_way[1].leaving(y, half)), m_way[2].leaving(z, half));
+    const auto [cell, toFace] = stayAt(m_scene, m_way, m_t);
     const Float stop = min(max(toFace, m_t) + m_scene.overshoot, m_end);
     const Float depthToStop = (stop - m_t) * cell.majorant;
 

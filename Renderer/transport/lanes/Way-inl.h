@@ -9,7 +9,7 @@
 
 #include "transport/lanes/TrackerTables.h"
 // After foreach_target.h:
-#include "base/LaneMath-inl.h"
+#include "transport/lanes/Medium-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
@@ -48,6 +48,19 @@ struct Way {
     toMiddle.where(which, other.toMiddle);
   }
 };
+
+/// Cells in which rays are, and t at which they have left these with their reach.
+struct Stay {
+  LaneCells cell;
+  Float end;
+};
+HWY_INLINE Stay stayAt(const WideScene& scene, const Way (&ways)[3], Float t) {
+  const Float x = floor(ways[0].at(t)), y = floor(ways[1].at(t)), z = floor(ways[2].at(t));
+  const LaneCells cell = cellsAt(scene, x, y, z);
+  const Float half = cell.reach + 0.5F;
+  return {cell,
+          min(min(ways[0].leaving(x, half), ways[1].leaving(y, half)), ways[2].leaving(z, half))};
+}
 
 } // namespace fenestra::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -243,7 +243,8 @@ RenderResult renderOneByOne(const RenderScene& scene, const RenderSettings& sett
 
 bool lanesServe(const RenderScene& scene) {
   return WideTracker::serves(scene.volume, scene.transfer) &&
-         EventScene::serves(scene.volume.grid, scene.transfer, scene.lights);
+         EventScene::serves(scene.volume.grid, scene.transfer, scene.lights) &&
+         (!scene.tint || WideTint::serves(*scene.tint));
 }
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,

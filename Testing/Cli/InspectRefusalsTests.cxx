@@ -1,0 +1,159 @@
+// `fenestra inspect` of what a render refuses: damaged, ambiguous and hostile inputs.
+
+#include "InspectTesting.h"
+
+#include <sstream>
+
+namespace fenestra::InspectRefusalsTests {
+namespace {
+
+std::vector<std::string> lines(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> all;
+  for (std::string line; std::getline(in, line);)
+    all.push_back(line);
+  return all;
+}
+
+TEST_F(InspectCommand, ReportsWhyRenderWouldRefuse) {
+  struct Case {
+    std::string name, nodes, line;
+  };
+  const std::string plainVolume = R"(
+    <VolumeArchetypeStorage id="store1" name="s" fileName="volume.nrrd"/>
+    <Volume id="vol1" name="CT" references="storage:store1;transform:t1;"/>)";
+  for (const Case& c : std::vector<Case>{
+           {"no volume", segmentationNode, "holds no scalar volume"},
+           {"technique",
+            volumeNode + settings + R"(<View id="view1" name="V" layoutName="1" active="true"
+              raycastTechnique="MaximumIntensityProjection"/>)",
+            "a maximum intensity projection"},
+           {"missing file",
+            R"(<VolumeArchetypeStorage id="s" fileName="gone.nrrd"/>
+               <Volume id="vol1" name="CT" references="storage:s;"/>)",
+            "gone.nrrd, which is not there"},
+           {"warp", plainVolume + R"(<BSplineTransform id="t1" name="Warp"/>)", "is not linear"},
+           {"camera", plainVolume + R"(<Camera id="c" name="Eye" position="1 2" focalPoint="0 0 0"
+              viewUp="0 0 1"/>)",
+            "position: must be three numbers"},
+       }) {
+    SCOPED_TRACE(c.name);
+    const Json said = inspectScene(c.nodes);
+    ASSERT_TRUE(said["refused"].is_string());
+    EXPECT_NE(said["refused"].get<std::string>().find(c.line), std::string::npos)
+        << said["refused"];
+    EXPECT_EQ(said["volumes"].size() + said["segmentations"].size(), 1u);
+    expectAsRendered(said, "scene.mrml");
+  }
+}
+
+TEST_F(InspectCommand, NamesTheDamagedPart) {
+  folder.write("cut.seg.nrrd", segments().substr(0, segments().size() - 9));
+  const std::string cut = R"(<SegmentationStorage id="store3" fileName="cut.seg.nrrd"/>
+    <Segmentation id="seg2" name="Cut" references="storage:store3;"/>
+    <BSplineTransform id="t2" name="Warp"/>)";
+  const Json said = inspectScene(volumeNode + cut + segmentationNode + settings);
+  EXPECT_TRUE(said["refused"].is_null());
+  EXPECT_NE(said["segmentations"][0]["problem"].get<std::string>().find("cut.seg.nrrd: "),
+            std::string::npos);
+  EXPECT_TRUE(said["segmentations"][0]["size"].is_null());
+  EXPECT_TRUE(said["segmentations"][1]["problem"].is_null());
+  EXPECT_EQ(said["segmentations"][1]["segments"].size(), 2u);
+  EXPECT_EQ(said["transforms"][0]["linear"], false);
+  EXPECT_NE(said["transforms"][0]["problem"].get<std::string>().find("is not linear"),
+            std::string::npos);
+
+  const Json missing = inspectScene(
+      R"(<VolumeArchetypeStorage id="s" fileName="gone%20away.nrrd"/>
+         <Volume id="vol1" name="CT" references="storage:s;"/>)");
+  EXPECT_EQ(missing["volumes"][0]["files"],
+            Json::parse(R"([{"name": "gone away.nrrd", "there": false}])"));
+  EXPECT_NE(text.find("gone away.nrrd (missing)"), std::string::npos) << text;
+}
+
+/// HDF5 file of symbols in a tree of five levels; the `children` entries of each node all point to
+/// one node below: a walk meets children^5 leaves.
+std::string fanningTree(std::size_t children) {
+  using namespace std::string_literals;
+  const auto number = [](std::uint64_t value, std::size_t size) { // little-endian, as here
+    return std::string(reinterpret_cast<const char*>(&value), size);
+  };
+  constexpr std::size_t root = 72, firstNode = 200;
+  const std::size_t nodeSize = 32 + 16 * children;
+  const std::size_t leaf = firstNode + 5 * nodeSize, heap = leaf + 8 + 4 * 40;
+  std::string file = "\x89HDF\r\n\x1a\n"s + std::string(5, '\0') + "\x08\x08" +
+                     std::string(49, '\0') + number(root, 8);
+  file += "\1"s + std::string(7, '\0') + number(24, 4) + number(0, 4); // header of the root
+  file += number(0x11, 2) + number(16, 2) + number(0, 4) + number(firstNode, 8) + number(heap, 8);
+  for (std::size_t level = 0; level < 5; ++level) {
+    const std::size_t begin = firstNode + level * nodeSize;
+    file.resize(begin);
+    file += "TREE\0"s + (level < 4 ? '\1' : '\0') + number(children, 2) + std::string(16, '\0');
+    for (std::size_t i = 0; i < children; ++i)
+      file += number(0, 8) + number(level < 4 ? begin + nodeSize : leaf, 8);
+  }
+  file.resize(leaf);
+  file += "SNOD\0\0"s + number(4, 2);
+  for (int i = 0; i < 4; ++i)
+    file += number(0, 8) + number(root, 8) + std::string(24, '\0');
+  return file + "HEAP\0\0\0\0"s + number(16, 8) + number(0, 8) + number(heap + 32, 8) +
+         number('a', 8) + number(0, 8);
+}
+
+TEST_F(InspectCommand, RefusesHdf5TreeThatFansOut) {
+  const std::string line = "t.h5: is damaged, truncated or no transform of ITK's; save it again";
+  writeScene(volumeNode + R"(<LinearTransformStorage id="ts" fileName="t.h5"/>
+    <LinearTransform id="t1" references="storage:ts;"/>)");
+  folder.write("t.h5", fanningTree(40));
+  const Outcome inspected = run({"inspect", "scene.mrml"}, folder.path());
+  EXPECT_NE(inspected.out.find("problem: " + line), std::string::npos) << inspected.out;
+  folder.write("t.h5", fanningTree(2000));
+  const Outcome rendered = run({"scene.mrml", "--size", "8x8"}, folder.path());
+  EXPECT_EQ(rendered.status, 3);
+  EXPECT_EQ(rendered.err, "fenestra: " + line + "\n");
+}
+
+TEST_F(InspectCommand, PrintsUntrustedNamesOnOneLine) {
+  const std::string evil = "&#27;[31mred&#10;" + std::string(300, 'x') + "\xc3\xa4";
+  std::string models;
+  for (int i = 0; i < 300; ++i)
+    models += "<Model id=\"m" + std::to_string(i) + "\" name=\"Model\"/>";
+  const Json said =
+      inspectScene(volumeNode + settings + "<VolumeProperty id=\"p2\" name=\"" + evil +
+                   "\"/><Camera id=\"c2\" layoutName=\"" + evil + "\"/>" + models);
+  EXPECT_EQ(said["volumeProperties"][1]["name"],
+            "\033[31mred\n" + std::string(300, 'x') + "\xc3\xa4");
+  for (const std::string& line : lines(text)) {
+    EXPECT_LE(line.size(), 100u) << line;
+    EXPECT_EQ(std::count_if(line.begin(), line.end(), [](char c) { return c >= 0 && c < ' '; }), 0);
+    EXPECT_FALSE(line.ends_with(' ')) << line;
+  }
+  EXPECT_LT(lines(text).size(), 60u) << "300 models are a number";
+  EXPECT_NE(text.find("Model (300)"), std::string::npos) << text;
+  EXPECT_EQ(said["others"]["Model"], 300);
+}
+
+TEST_F(InspectCommand, RefusesInputThatIsNoVolumeOrScene) {
+  folder.write("text.nrrd", "These are\nonly words.\n");
+  folder.write("text.mrml", "<html/>");
+  folder.write("text.mrb", "words");
+  const auto of = [](const std::string& file) { return Arguments{"inspect", file}; };
+  expectRefused(
+      {
+          {"nothing", {"inspect"}, 2, "INPUT: is missing"},
+          {"missing", of("missing.nrrd"), 3, "missing.nrrd: there is no such file"},
+          {"missing scene", of("missing.mrml"), 3, "missing.mrml: there is no such file"},
+          {"words", of("text.nrrd"), 3, "text.nrrd: is not a NRRD file"},
+          {"web page", of("text.mrml"), 3, "text.mrml: has no MRML element"},
+          {"no archive", of("text.mrb"), 3, "text.mrb: "},
+          {"no images", of("."), 3, ".: "},
+          {"switch with a value", {"inspect", "volume.nrrd", "--json=1"}, 2, "--json: is a switch"},
+          {"volume of one", {"inspect", "volume.nrrd", "--volume", "CT"}, 2, "--volume: only a"},
+          {"flag of another", {"inspect", "volume.nrrd", "--seed", "1"}, 2, "no such flag"},
+          {"misspelt", {"inspct", "volume.nrrd"}, 2, "did you mean fenestra inspect?"},
+      },
+      folder.path());
+}
+
+} // namespace
+} // namespace fenestra::InspectRefusalsTests

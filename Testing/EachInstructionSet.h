@@ -1,0 +1,26 @@
+#pragma once
+// Tests of lanes on each of the machine's instruction sets.
+
+#include "transport/lanes/Tracker.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing {
+
+/// Pins the instruction set of that number, the best first; skips where the machine has fewer.
+class OnInstructionSet : public ::testing::TestWithParam<std::size_t> {
+protected:
+  void SetUp() override {
+    const std::vector<std::string> known = WideTracker::instructionSets();
+    if (GetParam() >= known.size())
+      GTEST_SKIP() << "this machine has fewer";
+    WideTracker::useInstructionSet(known[GetParam()]);
+  }
+  void TearDown() override {
+    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
+  }
+};
+
+inline const auto eachInstructionSet = ::testing::Range<std::size_t>(0, 4);
+
+} // namespace fenestra::testing
