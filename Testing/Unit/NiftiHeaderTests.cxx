@@ -130,4 +130,15 @@ TEST(NiftiHeader, FileWithoutFormsIsPlacedWithAWarning) {
   EXPECT_NE(volume.warnings[0].find("neither qform nor sform"), std::string::npos);
 }
 
+/// Found by fuzzing: converted before it was bounded.
+TEST(NiftiHeader, OffsetBeforeTheSamplesIsTheirs) {
+  const TemporaryFolder folder;
+  const std::string whole = NiftiFile().bytes();
+  for (const float offset : {-1e38f, -std::numeric_limits<float>::infinity(), 0.0f, 351.9f}) {
+    std::string bytes = whole;
+    std::memcpy(&bytes[108], &offset, sizeof offset);
+    EXPECT_EQ(readVolume(folder.write("v.nii", bytes)).grid.size, Size3(3, 4, 2)) << offset;
+  }
+}
+
 } // namespace

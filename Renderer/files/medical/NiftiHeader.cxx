@@ -183,7 +183,7 @@ NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::pat
   header.type = niftiType(fields);
   header.rescaling = niftiRescaling(fields);
   // Samples follow the header and four bytes that announce extensions.
-  header.offset = std::max<std::int64_t>(static_cast<std::int64_t>(offset), 352);
+  header.offset = static_cast<std::int64_t>(std::max(offset, 352.0));
   header.indexToRas = niftiGeometry(fields, header.warnings);
   return header;
 }
