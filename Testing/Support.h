@@ -71,6 +71,7 @@ struct TestScene {
   std::optional<CropBox> crop = {};
   std::optional<ContextStyle> style = {};
   std::optional<Tint> tint = {};
+  std::optional<Mixture> mixture = {}; ///< in place of a tint
 
   /// work(RenderScene).
   template <typename Work>
@@ -79,9 +80,10 @@ struct TestScene {
     const LightSet lightSet(lights, volume.grid, camera);
     const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
     const ContextStyle* const styled = style ? &*style : nullptr;
-    const MajorantGrid majorants(volume.grid, ranges, transfer, clip, styled);
+    const Mixture* const mixed = mixture ? &*mixture : nullptr;
+    const MajorantGrid majorants(volume.grid, ranges, transfer, clip, styled, mixed);
     return work(RenderScene{volume, transfer, majorants, lightSet, camera, clip, crop, styled,
-                            tint ? &*tint : nullptr});
+                            tint ? &*tint : nullptr, mixed});
   }
 
   RenderResult render(const RenderSettings& settings) const {

@@ -224,11 +224,11 @@ struct RenderTable {
       {"materials", "none|auto|library|FILE", lookGroup,
        "Colours of the segments by what they are made of: Fenestra's library, or a .json over it; "
        "auto: the library's, changed until the focus is told from its neighbours; surfaces stay "
-       "the "
-       "data's",
+       "the data's",
        Takes::text().into(scene.materials), Topic::materials},
       {"material", "TEXT", lookGroup,
-       "Changes the material of one segment, such as \"Liver: color=#963e2e\"; may be repeated",
+       "Changes the material of one segment, such as \"Liver: color=#963e2e\" or \"Aorta: clip=no\", "
+       "which then stays where all else is clipped; may be repeated",
        Takes::texts().into(scene.materialChanges, readTexts), Topic::materials},
       {"lights", "FILE|PRESET|JSON", lookGroup,
        "Lights: .json, cinema, studio, headlight, soft, amber, or the text of a .json itself, "

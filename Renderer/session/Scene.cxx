@@ -45,8 +45,11 @@ void Scene::make() {
     m_sceneLook.of(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
   const auto look = m_look.of(volume, m_namedTransfer.result(), m_sceneLook.result(), r.transferFor,
                               r.shift, r.density);
-  if (hasMaterials)
+  if (hasMaterials) {
     makeTint();
+    if (!isTint(*m_plan))
+      m_mixture.of(m_plan.result(), tintInUse(), look);
+  }
   m_focusWarnings.of(volume, focus, look);
   if (r.view.isAutomatic() && focus->mask)
     m_view.of(volume, settings, focus, look);
@@ -61,9 +64,10 @@ void Scene::make() {
       m_contrast.of(volume, focus, look, tintInUse(), r.focusLook.contextSaturation)->saturation;
   if (focus->mask && (extinction != 1.0 || saturation != 1.0))
     m_style.of(focus, extinction, saturation);
-  const auto majorants = m_majorants.of(volume, ranges, look, clip, m_style.result());
+  const auto majorants =
+      m_majorants.of(volume, ranges, look, clip, m_style.result(), m_mixture.result());
   if (r.features)
-    m_flight.of(volume, settings, look, tintInUse(), placed, camera, clip, m_style.result(),
+    m_flight.of(volume, settings, look, segmentsShown(), placed, camera, clip, m_style.result(),
                 majorants);
 }
 
@@ -93,7 +97,7 @@ StageSeconds Scene::seconds() const {
                   m_look.seconds(),
           .materials = m_materials.seconds() + m_plan.seconds() + m_shares.seconds() +
                        m_tint.seconds() + m_borders.seconds() + m_tintContrast.seconds() +
-                       m_contrastedTint.seconds(),
+                       m_contrastedTint.seconds() + m_mixture.seconds(),
           .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
                       m_style.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,

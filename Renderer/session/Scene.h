@@ -35,8 +35,9 @@ public:
   Scene changed(const SceneRequest& request) const;
 
   RenderScene forRender() const {
-    return {volume(), transfer(),       *m_majorants, *m_lights, *m_camera,
-            clip(),   m_settings->crop, style(),      tint()};
+    const SegmentsShown segments = segmentsShown();
+    return {volume(),         transfer(), *m_majorants,        *m_lights,             *m_camera, clip(),
+            m_settings->crop, style(),    segments.tint.get(), segments.mixture.get()};
   }
   const Volume& volume() const { return m_volume->volume; }
   /// Volume's box, or its part inside a Slicer scene's cropping box.
@@ -52,6 +53,8 @@ public:
   const ContextStyle* style() const { return m_style.result().get(); }
   /// Colours of the segments; null: no materials.
   const Tint* tint() const { return tintInUse().get(); }
+  /// Matter of the segments; null: they differ in colour alone, or there are no materials.
+  const Mixture* mixture() const { return m_mixture.result().get(); }
   /// Saturation of the context, and the contrast that it leaves; none told with materials.
   const FocusContrast& contrast() const { return *m_contrast; }
   /// Contrast of a tinted focus; null: nothing sets it off.
@@ -79,11 +82,15 @@ private:
   const Handle<Tint>& tintInUse() const {
     return m_contrastedTint.result() ? m_contrastedTint.result() : m_tint.result();
   }
+  SegmentsShown segmentsShown() const {
+    return m_mixture.result() ? SegmentsShown{nullptr, m_mixture.result()}
+                              : SegmentsShown{tintInUse(), nullptr};
+  }
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
                     s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_plan, s.m_shares,
-                    s.m_tint, s.m_borders, s.m_tintContrast, s.m_contrastedTint, s.m_focusWarnings,
+                    s.m_tint, s.m_borders, s.m_tintContrast, s.m_contrastedTint, s.m_mixture, s.m_focusWarnings,
                     s.m_view, s.m_ranges, s.m_matter, s.m_camera, s.m_lights, s.m_clip,
                     s.m_contrast, s.m_style, s.m_majorants, s.m_flight);
   }
@@ -105,6 +112,7 @@ private:
   Stage<&bordersOf> m_borders; ///< this and the next two: unused unless materials set off a focus
   Stage<&tintContrastOf> m_tintContrast;
   Stage<&contrastedTintOf> m_contrastedTint;
+  Stage<&mixedMatterOf> m_mixture; ///< unused where segments differ in colour alone
   Stage<&focusWarnings> m_focusWarnings;
   Stage<&bestView> m_view; ///< used by automatic views alone
   Stage<&rangesOf> m_ranges;

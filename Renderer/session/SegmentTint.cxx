@@ -7,31 +7,19 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 namespace fenestra {
 namespace {
 
 constexpr std::size_t mostComponents = 256; ///< a component is a byte
 
-/// Refuses `matter`, a segment's, where tint cannot show it. `who`: who asks for it.
-void requireTint(const SegmentMatter& matter, const std::string& who) {
-  constexpr const char* why = ", and materials only colour yet; ";
-  if (matter.material.kind != MaterialKind::tint)
-    throw inputError(who, "kind: is \"matter\"", why, "make it \"tint\", without \"extinction\"");
-  if (matter.density != 1.0)
-    throw inputError(who, "density: is ", numberText(matter.density), why, "leave it at 1");
-  if (!matter.isClipped)
-    throw inputError(who, "clip: is false", why, "leave it at true");
-}
-
 /// Material of each segment, with the changes; empty segments as they come.
 std::vector<SegmentMaterial> matterOf(const Segmentation& segmentation,
-                                      const std::vector<SegmentStatistics>& statistics,
                                       const NamedMaterials& materials,
                                       const std::vector<std::string>& changes) {
   const std::vector<SegmentInfo>& segments = segmentation.segments();
   std::vector<SegmentMaterial> all = materialsOf(segments, materials.table);
-  std::vector<std::string> sources(all.size(), materials.source);
   if (materials.table.hasContrast)
     for (SegmentMaterial& material : all)
       if (material.isOfPalette)
@@ -40,11 +28,7 @@ std::vector<SegmentMaterial> matterOf(const Segmentation& segmentation,
     const MaterialChange change = parseMaterialChange(text, materials.table);
     const std::size_t i = segmentation.find(change.selector);
     all[i].matter = changed(all[i].matter, change, materials.table);
-    sources[i] = "--material";
   }
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (statistics[i].voxels > 0)
-      requireTint(all[i].matter, textOf(sources[i], ": segment \"", shown(segments[i].name), "\""));
   return all;
 }
 
@@ -53,35 +37,46 @@ Material restOf(const NamedMaterials& materials) {
   const MaterialTable& table = materials.table;
   if (table.rest.empty())
     return {};
-  const Material& rest = table.materials.at(table.rest);
-  requireTint({rest}, textOf(materials.source, ": rest \"", shown(table.rest), "\""));
-  return rest;
+  return table.materials.at(table.rest);
 }
 
-/// True if both give one albedo under any transfer function.
-bool looksLike(const Material& a, const Material& b) {
-  if (!a.color || !b.color)
-    return a.color.has_value() == b.color.has_value();
-  return a.colorIsAlbedo == b.colorIsAlbedo &&
-         std::ranges::equal(a.color->knots(), b.color->knots(), [](const auto& k, const auto& l) {
-           return k.position == l.position && k.value == l.value;
-         });
+template <int Channels>
+bool isSame(const std::optional<PiecewiseLinear<Channels>>& a,
+            const std::optional<PiecewiseLinear<Channels>>& b) {
+  if (!a || !b)
+    return a.has_value() == b.has_value();
+  return std::ranges::equal(a->knots(), b->knots(), [](const auto& k, const auto& l) {
+    return k.position == l.position && k.value == l.value;
+  });
 }
 
-/// Component of the material's look, a new one if there is none. `segment`: its name.
+/// True if both are the same under any transfer function; priority aside.
+bool isSame(const SegmentMatter& a, const SegmentMatter& b) {
+  const Material &m = a.material, &n = b.material;
+  const bool looksAlike =
+      isSame(m.color, n.color) && (!m.color || m.colorIsAlbedo == n.colorIsAlbedo);
+  if (!looksAlike || m.kind != n.kind || a.isClipped != b.isClipped || a.density != b.density)
+    return false;
+  return m.kind == MaterialKind::tint ||
+         (isSame(m.extinction, n.extinction) &&
+          std::tie(m.g, m.diffuse, m.specular, m.roughness, m.border) ==
+              std::tie(n.g, n.diffuse, n.specular, n.roughness, n.border));
+}
+
+/// Component of the matter, a new one if there is none. `segment`: its name.
 std::uint8_t componentOf(const SegmentMaterial& material, const std::string& segment, bool isFocus,
                          TintPlan& plan, const std::string& source) {
   const std::string& name = material.name.empty() ? segment : material.name;
   for (std::size_t i = 0; i < plan.components.size(); ++i)
-    if (plan.isFocus[i] == isFocus && looksLike(material.matter.material, plan.components[i])) {
+    if (plan.isFocus[i] == isFocus && isSame(material.matter, plan.components[i])) {
       if (i > 0)
         plan.names[i] = name;
       return static_cast<std::uint8_t>(i);
     }
   if (plan.components.size() == mostComponents)
     throw inputError(source, "its segments have more than ", mostComponents - 1,
-                     " colours; give several of them one material with --materials FILE");
-  plan.components.push_back(material.matter.material);
+                     " materials; give several of them one material with --materials FILE");
+  plan.components.push_back(material.matter);
   plan.names.push_back(segment);
   plan.isFocus.push_back(isFocus);
   return static_cast<std::uint8_t>(plan.components.size() - 1);
@@ -114,16 +109,38 @@ std::vector<TintPart> withoutIdle(std::vector<TintPart> parts) {
   return parts;
 }
 
+/// Takes what a material says beside colour; the component is of the volume's own matter, with the
+/// material's albedo for that one's mean cosine.
+void takeMaterial(const Material& material, Component& component) {
+  TransferFunction& transfer = component.transfer;
+  if (!material.colorIsAlbedo)
+    transfer.albedo = transfer.albedo.withKnots([&](ColorFunction::Knot& knot) {
+      knot.value = albedoFor(reflectance(Rgb(knot.value), transfer.g), material.g);
+    });
+  transfer.g = material.g;
+  if (material.extinction) {
+    transfer.extinction = *material.extinction;
+    transfer.gradientOpacity.reset();
+  }
+  if (transfer.shading) {
+    const double gamma = transfer.shading->gamma;
+    transfer.shading = SurfaceShading::coat(material.specular, material.roughness, material.g);
+    transfer.shading->diffuse = material.diffuse;
+    transfer.shading->gamma = gamma;
+  }
+  component.border = material.border;
+}
+
 } // namespace
 
 TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<NamedMaterials>& materials,
                   const std::vector<std::string>& changes, const std::vector<std::string>& focus) {
   const Segmentation& segmentation = input->segmentation;
   const std::vector<SegmentStatistics> statistics = segmentation.statistics();
-  const std::vector<SegmentMaterial> all = matterOf(segmentation, statistics, *materials, changes);
+  const std::vector<SegmentMaterial> all = matterOf(segmentation, *materials, changes);
   const std::vector<bool> isFocus = focusOf(segmentation, *materials, focus);
   TintPlan plan{
-      .parts = {}, .components = {restOf(*materials)}, .names = {"the rest"}, .isFocus = {false}};
+      .parts = {}, .components = {{restOf(*materials)}}, .names = {"the rest"}, .isFocus = {false}};
   std::map<std::pair<std::uint8_t, int>, std::vector<std::size_t>> segments;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (statistics[i].voxels > 0) {
@@ -156,12 +173,34 @@ Shares tintShares(const Handle<SegmentsInput>& input, const std::vector<TintPart
 
 Tint tintOf(const Handle<TintPlan>& plan, const Handle<Shares>& shares, double g) {
   Tint tint{shares, {}};
-  for (const Material& material : plan->components) {
-    const std::optional<ColorFunction>& color = material.color;
-    const bool isAlbedo = material.colorIsAlbedo;
+  for (const SegmentMatter& component : plan->components) {
+    const std::optional<ColorFunction>& color = component.material.color;
+    const bool isAlbedo = component.material.colorIsAlbedo;
     tint.albedo.push_back(!color || isAlbedo ? color : std::optional(albedoFor(*color, g)));
   }
   return tint;
+}
+
+bool isTint(const TintPlan& plan) {
+  return std::ranges::all_of(plan.components, [](const SegmentMatter& component) {
+    return component.material.kind == MaterialKind::tint && component.isClipped &&
+           component.density == 1.0;
+  });
+}
+
+Mixture mixtureOf(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer) {
+  Mixture mixture{tint.shares, {}};
+  for (std::size_t i = 0; i < plan.components.size(); ++i) {
+    const SegmentMatter& matter = plan.components[i];
+    Component component{transfer, matter.isClipped};
+    if (tint.albedo[i])
+      component.transfer.albedo = *tint.albedo[i];
+    if (matter.material.kind == MaterialKind::matter)
+      takeMaterial(matter.material, component);
+    component.transfer = component.transfer.scaled(matter.density);
+    mixture.components.push_back(std::move(component));
+  }
+  return mixture;
 }
 
 } // namespace fenestra

@@ -1,8 +1,10 @@
 #pragma once
-// Colours of a scene's segments, in stages (Stage.h): what is said of the segments decides which
-// component of the tint each belongs to, their labels how much of each voxel it gets, and the
-// transfer function which albedo makes its colour. Another colour needs no labels anew.
+// Matter of a scene's segments, in stages (Stage.h): what is said of the segments decides which
+// component each belongs to, their labels how much of each voxel it gets, and the transfer function
+// which albedo makes its colour. Another colour needs no labels anew. Where segments differ in more
+// than colour, the components become a mixture.
 
+#include "model/medium/Mixture.h"
 #include "model/medium/Tint.h"
 #include "session/Input.h"
 #include "session/NamedLooks.h"
@@ -21,19 +23,18 @@ struct TintPart {
 
 struct TintPlan {
   std::vector<TintPart> parts; ///< at least one
-  /// Materials of the components, at least one. Component 0 is what no segment covers, and every
-  /// segment that looks as that does.
-  std::vector<Material> components;
+  /// Matter of the components, at least one; their priority is the parts'. Component 0 is what no
+  /// segment covers, and every segment of the same matter.
+  std::vector<SegmentMatter> components;
   std::vector<std::string> names; ///< of the components: a segment's, else a material's
   std::vector<bool> isFocus;      ///< by component; none is where nothing sets off the focus
 };
 
-/// Components of the segments that have voxels: one for each colour, and, where materials set off
+/// Components of the segments that have voxels: one for each matter, and, where materials set off
 /// the focus, those of the focus apart. `changes`: of --material, over the materials that the table
 /// gives; with contrast a segment of which nothing is known keeps the volume's own colours.
 /// `focus`: ids, names or label values. Throws Error (input) for a change to an unknown segment,
-/// for what tint cannot show (matter, a density, a segment that is not clipped), for colours of a
-/// context without a focus, without any voxel, and for more than 256 colours.
+/// for colours of a context without a focus, without any voxel, and for more than 256 components.
 TintPlan tintPlan(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
                   const std::vector<std::string>& changes, const std::vector<std::string>& focus);
 
@@ -43,5 +44,12 @@ Shares tintShares(const Handle<SegmentsInput>& segments, const std::vector<TintP
 
 /// `g`: mean cosine of whatever scatters, by which albedo makes a colour.
 Tint tintOf(const Handle<TintPlan>& plan, const Handle<Shares>& shares, double g);
+
+/// True if components differ in colour alone.
+bool isTint(const TintPlan& plan);
+
+/// Components with the albedo of `tint`, which was made for the mean cosine of `transfer`, the
+/// volume's own.
+Mixture mixtureOf(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer);
 
 } // namespace fenestra

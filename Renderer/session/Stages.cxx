@@ -288,6 +288,11 @@ TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<Tin
                       saturation.value_or(1.0));
 }
 
+Mixture mixedMatterOf(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
+                      const Handle<Look>& look) {
+  return mixtureOf(*plan, *tint, look->transfer);
+}
+
 Tint contrastedTintOf(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
                       const Handle<TintContrast>& contrast, const Handle<Look>& look) {
   return contrastedTint(*tint, *plan, contrast->knobs, look->transfer);
@@ -307,16 +312,17 @@ ContextStyle styleAround(const Focus& focus, double extinction, double saturatio
 
 MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
                          const Handle<Look>& look, const Handle<ClipResult>& clip,
-                         const Handle<ContextStyle>& style) {
-  return {volume->volume.grid, *ranges, look->transfer, clip->clip, style.get()};
+                         const Handle<ContextStyle>& style, const Handle<Mixture>& mixture) {
+  return {volume->volume.grid, *ranges, look->transfer, clip->clip, style.get(), mixture.get()};
 }
 
 ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
-                        const Handle<Tint>& tint, const Handle<LightSet>& lights,
+                        const SegmentsShown& segments, const Handle<LightSet>& lights,
                         const Handle<Camera>& camera, const Handle<ClipResult>& clip,
                         const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants) {
   return expectedFlight({volume->volume, look->transfer, *majorants, *lights, *camera, clip->clip,
-                         settings->crop, style.get(), tint.get()});
+                         settings->crop, style.get(), segments.tint.get(),
+                         segments.mixture.get()});
 }
 
 } // namespace fenestra

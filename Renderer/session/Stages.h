@@ -104,6 +104,10 @@ TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<Tin
                             const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
                             const Handle<Look>& look, const std::optional<double>& saturation);
 
+/// Only where isTint() is false.
+Mixture mixedMatterOf(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
+                      const Handle<Look>& look);
+
 Tint contrastedTintOf(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
                       const Handle<TintContrast>& contrast, const Handle<Look>& look);
 
@@ -114,14 +118,22 @@ FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Lo
 
 ContextStyle styleAround(const Focus& focus, double extinction, double saturation);
 
-/// `style`: null if the context is unchanged.
+/// `style`: null if the context is unchanged; `mixture`: null if there is none.
 MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
                          const Handle<Look>& look, const Handle<ClipResult>& clip,
-                         const Handle<ContextStyle>& style);
+                         const Handle<ContextStyle>& style, const Handle<Mixture>& mixture);
 
-/// Features of the filter. `style`, `tint`: null if unused.
+/// Colours or matter of segments, as transport reads them; null: none.
+struct SegmentsShown {
+  Handle<Tint> tint;
+  Handle<Mixture> mixture; ///< in place of a tint
+
+  bool operator==(const SegmentsShown&) const = default;
+};
+
+/// Features of the filter. `style`: null if unused.
 ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
-                        const Handle<Tint>& tint, const Handle<LightSet>& lights,
+                        const SegmentsShown& segments, const Handle<LightSet>& lights,
                         const Handle<Camera>& camera, const Handle<ClipResult>& clip,
                         const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants);
 

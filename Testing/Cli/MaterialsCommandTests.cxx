@@ -158,11 +158,35 @@ TEST_F(MaterialsCommand, ContextOfAFileIsAppliedAroundAFocus) {
                 folder.path());
 }
 
-TEST_F(MaterialsCommand, RefusesInOneLine) {
-  folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colour": "#ffffff"}}})");
+/// What a clip removes of the rest it leaves of a segment that is not clipped.
+TEST_F(MaterialsCommand, MatterCanBeDenserAndStandThroughTheClip) {
   folder.write("dense.json",
                R"({"version": 1, "segments":
-                   [{"match": {"names": ["bone*"]}, "material": "bone", "density": 2}]})");
+                   [{"match": {"names": ["bone*"]}, "material": "bone", "density": 8}]})");
+  const auto seen = [&](const Arguments& more) {
+    const Image image = rendered(with(more), folder.path());
+    const Plane& alpha = image.channels.at("A");
+    return std::accumulate(alpha.begin(), alpha.end(), 0.0F);
+  };
+  const Arguments library = {"--materials", "library", "--samples", "64"};
+  const auto changed = [&](Arguments more) {
+    more.insert(more.begin(), library.begin(), library.end());
+    return seen(more);
+  };
+  const float plain = seen(library);
+  EXPECT_GT(seen({"--materials", "dense.json", "--samples", "64"}), plain);
+  EXPECT_GT(changed({"--material", "A: density=8"}), plain);
+  EXPECT_LT(changed({"--material", "A: extinction=0"}), plain);
+  const auto clipped = [&](Arguments more) {
+    more.insert(more.end(), {"--clip", "plane", "--plane", "1000,0,0,-1,0,0"});
+    return changed(more);
+  };
+  EXPECT_EQ(clipped({}), 0.0F);
+  EXPECT_GT(clipped({"--material", "A: clip=no"}), 0.0F);
+}
+
+TEST_F(MaterialsCommand, RefusesInOneLine) {
+  folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colour": "#ffffff"}}})");
   const auto refusal = [](Arguments more, int status, const std::string& text) {
     return Refusal{text, with(more), status, text};
   };
@@ -187,15 +211,10 @@ TEST_F(MaterialsCommand, RefusesInOneLine) {
                   "auto, library, or a file"),
           refusal({"--materials", "broken.json"}, 3,
                   "broken.json: materials.a: unknown key \"colour\""),
-          refusal({"--materials", "dense.json"}, 3,
-                  "dense.json: segment \"Bone, left\": density: is 2, and materials only colour"),
           change("A", "must name a segment and what to change"),
           change("A: colour=#ffffff", "--material A: unknown key \"colour\""),
           change("A: color=red", "--material A: color"),
           change("C: color=#ffffff", "has no segment \"C\"; it has A (Bone, left), B (Void)"),
-          change("A: density=2", "--material: segment \"Bone, left\": density: is 2"),
-          change("A: clip=no", "--material: segment \"Bone, left\": clip: is false"),
-          change("A: kind=matter", "--material: segment \"Bone, left\": kind: is \"matter\""),
       },
       folder.path());
 }

@@ -142,8 +142,9 @@ TEST(CutGradient, MakesASurfaceOfHomogeneousMatter) {
   transfer.shading = SurfaceShading{0.8, 0.3, 12.0, 0.6};
   const auto at = [&](double y, bool wantGradient = false) {
     const Vec3 point(1.0, y, 2.0);
-    return matterAt(Medium<float>(grid, voxels, transfer), clip, point, grid.worldToIndex * point,
-                    wantGradient);
+    Random random(0);
+    return drawMatter(Medium<float>(grid, voxels, transfer), clip, point, grid.worldToIndex * point,
+                      wantGradient, random);
   };
   const double opacity = 1.0 - std::exp(-0.8);
   const double expected = opacity * (1.0 - std::exp(-25.0 * 0.216 * 0.5 / 4.0));

@@ -1,4 +1,4 @@
-// Components of a tint, by segments and their materials, and what tint refuses.
+// Components by segments and their materials, as a tint and as a mixture, and refusals.
 
 #include "model/medium/Reflectance.h"
 #include "session/SegmentTint.h"
@@ -59,7 +59,7 @@ TEST(SegmentTint, ChangesOfASegmentMakeItAComponentOfItsOwn) {
   const TintPlan blue =
       planOf(segments, library, {"id0: color=#ff0000", "1: color=#0000ff, priority=12"});
   EXPECT_EQ(blue.parts, (Parts{{{0}, 12, 1}, {{1}, 10, 2}, {{2}, 10, 3}}));
-  EXPECT_EQ(blue.components[1].color->knots()[0].value.z(), 1.0);
+  EXPECT_EQ(blue.components[1].material.color->knots()[0].value.z(), 1.0);
   const TintPlan same = planOf(segments, library, {"spleen: material=kidney"});
   EXPECT_EQ(same.parts, (Parts{{{0, 1, 2}, 10, 1}}));
 }
@@ -75,7 +75,7 @@ TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
   const TintPlan both = planOf(segments, automatic, {}, {"1", "body", "id1"});
   EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "kidney", "aorta", "body"}));
   EXPECT_EQ(both.isFocus, (std::vector<bool>{false, true, false, true}));
-  EXPECT_FALSE(both.components[3].color) << "the volume's own";
+  EXPECT_FALSE(both.components[3].material.color) << "the volume's own";
   EXPECT_EQ(planOf(segments, library, {}, {"aorta"}).isFocus, std::vector<bool>(4, false));
 }
 
@@ -96,21 +96,79 @@ TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {
                               "rest": {"material": "red"}})"),
              {});
   ASSERT_EQ(plan.components.size(), 3U);
-  EXPECT_EQ(plan.components[0].color->knots()[0].value.x(), 1.0);
-  EXPECT_FALSE(plan.components[2].color) << "the body's: the volume's own, not the rest's";
+  EXPECT_EQ(plan.components[0].material.color->knots()[0].value.x(), 1.0);
+  EXPECT_FALSE(plan.components[2].material.color) << "the body's: the volume's own, not the rest's";
   const TintPlan bare = planOf(row({"body"}), library, {});
   EXPECT_EQ(bare.parts, (Parts{{{0}, 5, 0}})) << "nothing is coloured, and there is a part";
 }
 
+/// Segments of one colour are apart where their matter differs; an empty one is nothing.
+TEST(SegmentTint, MatterMakesAMixture) {
+  const auto segments = row({"kidney_left", "kidney_right", "spleen", "empty"});
+  EXPECT_TRUE(isTint(planOf(segments, library)));
+  EXPECT_TRUE(isTint(planOf(segments, library, {"empty: density=2"})));
+  for (const char* change : {"kidney_right: clip=no", "kidney_right: density=2",
+                             "kidney_right: extinction=2", "kidney_right: kind=matter"}) {
+    const TintPlan plan = planOf(segments, library, {change});
+    EXPECT_FALSE(isTint(plan)) << change;
+    EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1}, {{1}, 10, 2}, {{2}, 10, 3}})) << change;
+  }
+  EXPECT_EQ(planOf(segments, library, {"0: density=2", "1: density=2"}).parts.size(), 3U);
+  EXPECT_EQ(planOf(segments, library, {"id0: density=2", "id1: density=2"}).parts,
+            (Parts{{{0, 1}, 10, 1}, {{2}, 10, 2}}));
+}
+
+TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
+  const auto segments = row({"kidney_left", "kidney_right", "spleen", "liver"});
+  TransferFunction own{ScalarFunction({{0.0, ScalarFunction::Value(0.0)},
+                                       {100.0, ScalarFunction::Value(2.0)}}),
+                       ColorFunction({{0.0, Rgb(0.3, 0.4, 0.5)}})};
+  own.g = 0.3;
+  own.gradientOpacity = own.extinction;
+  own.shading = SurfaceShading{0.8, 0.3, 12.0, 0.7};
+  const auto plan = std::make_shared<TintPlan>(
+      planOf(segments, library,
+             {"kidney_left: density=3", "kidney_right: clip=no",
+              "spleen: color=#808080, extinction=1.5, g=0.6, specular=0.4, roughness=0.25, "
+              "diffuse=0.7, border=0.5",
+              "liver: kind=matter"}));
+  const auto shares = std::make_shared<Shares>(
+      tintShares(segments, plan->parts, 0.0, segments->segmentation.grid()));
+  const Mixture mixture = mixtureOf(*plan, *std::make_shared<Tint>(tintOf(plan, shares, own.g)), own);
+  ASSERT_EQ(mixture.components.size(), 5U);
+  EXPECT_TRUE(mixture.hasFree());
+  const auto extinctionAt = [&](std::size_t i, double scalar) {
+    return mixture.components[i].transfer.extinction(scalar).value();
+  };
+  EXPECT_EQ(extinctionAt(0, 50.0), 1.0);
+  EXPECT_EQ(mixture.components[0].transfer.albedo(50.0).matrix(), Vec3(0.3, 0.4, 0.5));
+  EXPECT_EQ(extinctionAt(1, 50.0), 3.0);
+  EXPECT_EQ(extinctionAt(2, 50.0), 1.0);
+  EXPECT_FALSE(mixture.components[2].isClipped);
+  EXPECT_TRUE(mixture.components[1].isClipped);
+  EXPECT_EQ(mixture.components[2].transfer.g, 0.3) << "a tint keeps the volume's scattering";
+
+  const Component& spleen = mixture.components[3];
+  EXPECT_EQ(extinctionAt(3, -500.0), 1.5);
+  EXPECT_EQ(extinctionAt(4, 50.0), 1.0) << "the base's";
+  EXPECT_FALSE(spleen.transfer.gradientOpacity) << "of the base's extinction";
+  EXPECT_TRUE(mixture.components[4].transfer.gradientOpacity);
+  EXPECT_EQ(spleen.transfer.g, 0.6);
+  EXPECT_EQ(spleen.border, 0.5);
+  const double grey = decodeSrgb(Rgb::Constant(128.0 / 255.0)).x();
+  EXPECT_NEAR(reflectance(spleen.transfer.albedo(0.0).x(), 0.6), grey, 1e-3);
+  EXPECT_EQ(spleen.transfer.shading->diffuse, 0.7);
+  EXPECT_EQ(spleen.transfer.shading->specular, 0.4);
+  EXPECT_EQ(spleen.transfer.shading->gamma, 0.7) << "the base's";
+  EXPECT_TRUE(spleen.transfer.shading->coated);
+
+  own.shading.reset();
+  for (const Component& component : mixtureOf(*plan, tintOf(plan, shares, own.g), own).components)
+    EXPECT_FALSE(component.transfer.shading) << "as the volume's own";
+}
+
 TEST(SegmentTint, RefusesWhatItCannotShow) {
   const auto segments = row({"liver", "empty"});
-  const auto refuse = [&](const std::vector<std::string>& changes, const std::string& text) {
-    expectRefused("--material", text, [&] { planOf(segments, library, changes); });
-  };
-  refuse({"liver: extinction=2"}, "segment \"liver\": kind: is \"matter\", and materials only");
-  refuse({"liver: density=2"}, "segment \"liver\": density: is 2, and materials only colour yet");
-  refuse({"liver: clip=no"}, "segment \"liver\": clip: is false, and materials only colour yet");
-  EXPECT_EQ(planOf(segments, library, {"empty: density=2"}).parts.size(), 1U);
   expectRefused("row.seg.nrrd", "has no segment \"live\"; did you mean liver?",
                 [&] { planOf(segments, library, {"live: color=#ffffff"}); });
   expectRefused("row.seg.nrrd", "no segment has a voxel, so there is nothing to colour",
@@ -121,10 +179,6 @@ TEST(SegmentTint, RefusesWhatItCannotShow) {
   };
   refuseTable(R"("context": {"saturation": 0.5})", "context: is what is not focus; add --focus");
   refuseTable(R"("context": {"lightness": 0})", "context: is what is not focus; add --focus");
-  refuseTable(R"("materials": {"m": {"kind": "matter"}}, "rest": {"material": "m"})",
-              "rest \"m\": kind: is \"matter\"");
-  refuseTable(R"("segments": [{"match": {"names": ["liver"]}, "material": "liver", "density": 3}])",
-              "segment \"liver\": density: is 3");
 }
 
 TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
@@ -142,7 +196,7 @@ TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
     return std::make_shared<SegmentsInput>(SegmentsInput{
         Segmentation("s.nrrd", Grid(Size3(256, 1, 1), Affine::Identity()), 1, labels, segments)});
   };
-  expectRefused("s.nrrd", "more than 255 colours", [&] { planOf(inputOf(256), library, {}); });
+  expectRefused("s.nrrd", "more than 255 materials", [&] { planOf(inputOf(256), library, {}); });
   EXPECT_EQ(planOf(inputOf(255), library, {}).components.size(), 256U);
 }
 
@@ -161,7 +215,7 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
       }));
     };
     for (const std::size_t i : {0U, 1U}) {
-      const Rgb expected = (*plan->components[i + 1].color)(7.0);
+      const Rgb expected = (*plan->components[i + 1].material.color)(7.0);
       EXPECT_LT((seen(2.0 * static_cast<double>(i) + 2.0) - expected).abs().maxCoeff(), 1e-3);
     }
     EXPECT_EQ(field.albedo(Vec3(3, 0, 0), 7.0, own).matrix(), own.matrix());

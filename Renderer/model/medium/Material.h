@@ -11,11 +11,10 @@
 // the rules that say which segments they are for; `session/SegmentMaterials` chooses by these rules
 // one SegmentMatter for each segment, in the segments' order. Transport sees no rule, code or name.
 //
-// A renderer of them takes a list of components, one for each distinct material of a volume: its
-// transfer function, `density`, whether the clip removes it, and its share of each voxel, on the
-// segmentation's grid and under its transform; all shares of a volume sum to 1, by `priority` where
-// segments overlap. Tint is then the mean of the components' albedo, weighted by their shares, in
-// the scalar estimator and in lanes alike. A volume without segments is one component.
+// A renderer of them takes a list of components (Mixture.h, Tint.h), one for each distinct material
+// of a volume, and the share of each in every voxel, on the segmentation's grid and under its
+// transform; all shares of a volume sum to 1, by `priority` where segments overlap. A volume without
+// segments is one component.
 
 #include "model/medium/PiecewiseLinear.h"
 

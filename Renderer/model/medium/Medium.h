@@ -1,7 +1,9 @@
 #pragma once
 // The classified volume at a point: extinction for tracking, matter for the estimator.
 
+#include "base/Random.h"
 #include "model/medium/ContextStyle.h"
+#include "model/medium/Mixture.h"
 #include "model/medium/Tint.h"
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Volume.h"
@@ -15,69 +17,106 @@ struct Matter {
   Rgb albedo;
   Vec3 gradient; ///< of the scalar, with a cut's, per mm, world axes; zero unless needsGradient()
   double surfaceProbability; ///< probability that the path scatters at a surface here
+  const TransferFunction* transfer; ///< its phase function and surfaces scatter
 };
 
-/// A view: voxels, transfer function, style and tint must outlive the medium. Points are in index
-/// space.
+/// A view: voxels, transfer function, style, tint and mixture must outlive the medium. Points are
+/// in index space. With a mixture the transfer function is the volume's own; a mixture has no
+/// tint.
 template <typename Voxel>
 class Medium {
 public:
   Medium(const Grid& grid, const std::vector<Voxel>& voxels, const TransferFunction& transfer,
-         const ContextStyle* style = nullptr, const Tint* tint = nullptr)
+         const ContextStyle* style = nullptr, const Tint* tint = nullptr,
+         const Mixture* mixture = nullptr)
       : m_field(grid, voxels), m_transfer(transfer) {
     if (style)
       m_context.emplace(*style, grid);
     if (tint)
       m_tinted.emplace(*tint, grid);
+    if (mixture)
+      m_mixed.emplace(*mixture, grid);
   }
 
-  /// Extinction in mm^-1.
-  double extinction(const Vec3& index) const {
+  /// True if the extinction may be above 0 where a clip keeps `kept`.
+  bool hasMatter(double kept) const { return kept > 0.0 || (m_mixed && m_mixed->hasFree()); }
+  /// Extinction, mm^-1, of which the clip keeps `kept`.
+  double extinction(const Vec3& index, double kept = 1.0) const {
+    if (m_mixed)
+      return thinning(index) * m_mixed->extinction(at(index, kept));
     double sigma_t = m_transfer.extinction(m_field.value(index)).value();
-    if (sigma_t != 0.0 && m_context && m_context->style().extinction != 1.0 &&
-        !m_context->isFocus(index))
-      sigma_t *= m_context->style().extinction;
-    if (sigma_t == 0.0 || !m_transfer.gradientOpacity)
-      return sigma_t;
-    return sigma_t * (*m_transfer.gradientOpacity)(m_field.gradient(index).norm()).value();
+    if (sigma_t != 0.0)
+      sigma_t *= thinning(index);
+    if (sigma_t != 0.0 && m_transfer.gradientOpacity)
+      sigma_t *= (*m_transfer.gradientOpacity)(m_field.gradient(index).norm()).value();
+    return kept * sigma_t;
   }
 
   bool needsGradient(bool wantGradient) const { return wantGradient || m_transfer.shading; }
-  /// `wantGradient`: fills the gradient even without shading. `cut`: gradient that a cut adds where
-  /// there is shading, spans of the transfer function per mm, world axes; it changes surfaces, not
-  /// the extinction.
+  const TransferFunction& transfer() const { return m_transfer; }
+  /// Null: the volume's transfer function is all of the matter.
+  const MixedField* mixed() const { return m_mixed ? &*m_mixed : nullptr; }
+  const Mixture* mixture() const { return m_mixed ? &m_mixed->mixture() : nullptr; }
+
+  /// Matter without a mixture. `wantGradient`: fills the gradient even without shading. `cut`:
+  /// gradient that a cut adds where there is shading, spans of the transfer function per mm, world
+  /// axes; it changes surfaces, not the extinction.
   Matter matter(const Vec3& index, bool wantGradient, const Vec3& cut = Vec3::Zero()) const {
     const bool oneAlbedo = m_transfer.albedo.knots().size() == 1 && !m_tinted;
     const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
-    Matter m{m_transfer.albedo(scalar), Vec3::Zero(), 0.0};
+    Rgb albedo = m_transfer.albedo(scalar);
     if (m_tinted)
-      m.albedo = m_tinted->albedo(index, scalar, m.albedo);
+      albedo = m_tinted->albedo(index, scalar, albedo);
+    return matterOf(m_transfer, albedo, index, scalar, wantGradient, cut);
+  }
+  /// Matter of a mixture's component.
+  Matter matter(std::uint8_t number, const MixedPoint& point, bool wantGradient,
+                const Vec3& cut = Vec3::Zero()) const {
+    const Component& component = m_mixed->mixture().components[number];
+    const Vec3 border = component.border > 0.0 && component.transfer.shading
+                            ? Vec3(component.border * m_mixed->shareGradient(number, point.index))
+                            : Vec3::Zero();
+    return matterOf(component.transfer, component.transfer.albedo(point.scalar), point.index,
+                    point.scalar, wantGradient, border + (component.isClipped ? cut : Vec3::Zero()));
+  }
+  /// A point with what a mixture's parts there depend on.
+  MixedPoint at(const Vec3& index, double kept) const { return {index, m_field.value(index), kept}; }
+
+private:
+  /// Factor of the context's style on the extinction.
+  double thinning(const Vec3& index) const {
+    return m_context && m_context->style().extinction != 1.0 && !m_context->isFocus(index)
+               ? m_context->style().extinction
+               : 1.0;
+  }
+
+  /// `added`: to the scalar's gradient, spans of the volume's own extinction per mm.
+  Matter matterOf(const TransferFunction& transfer, const Rgb& albedo, const Vec3& index,
+                  double scalar, bool wantGradient, const Vec3& added) const {
+    Matter m{albedo, Vec3::Zero(), 0.0, &transfer};
     if (m_context && !m_context->isFocus(index))
       m.albedo = m_context->style().paled(m.albedo);
-    if (needsGradient(wantGradient))
+    if (wantGradient || transfer.shading)
       m.gradient = m_field.gradient(index);
-    if (m_transfer.shading) {
+    if (transfer.shading) {
       const double slope = m.gradient.norm();
-      double sigma_t = m_transfer.extinction(scalar).value();
-      if (m_transfer.gradientOpacity)
-        sigma_t *= (*m_transfer.gradientOpacity)(slope).value();
-      if (!cut.isZero(0.0))
-        m.gradient += m_transfer.extinction.span() * cut;
-      m.surfaceProbability = surfaceProbability(sigma_t, m.gradient.norm());
+      double sigma_t = transfer.extinction(scalar).value();
+      if (transfer.gradientOpacity)
+        sigma_t *= (*transfer.gradientOpacity)(slope).value();
+      if (!added.isZero(0.0))
+        m.gradient += m_transfer.extinction.span() * added;
+      m.surfaceProbability =
+          surfaceProbability(transfer.shading->gamma, sigma_t, m.gradient.norm());
     }
     return m;
   }
 
-  const TransferFunction& transfer() const { return m_transfer; }
-
-private:
   /// Kroes, Post, Botha 2012, with opacity and gradient over 1 mm:
   /// P = o (1 - exp(-25 gamma^3 m)).
-  double surfaceProbability(double sigma_t, double gradientMagnitude) const {
+  double surfaceProbability(double gamma, double sigma_t, double gradientMagnitude) const {
     const double span = m_transfer.extinction.span();
     if (!(span > 0.0))
       return 0.0; // one knot: no scale to call a gradient large
-    const double gamma = m_transfer.shading->gamma;
     const double opacity = -std::expm1(-sigma_t);
     const double m = gradientMagnitude / span;
     return opacity * -std::expm1(-25.0 * gamma * gamma * gamma * m);
@@ -87,6 +126,7 @@ private:
   const TransferFunction& m_transfer;
   std::optional<StyledContext> m_context;
   std::optional<TintedField> m_tinted;
+  std::optional<MixedField> m_mixed;
 };
 
 } // namespace fenestra

@@ -140,8 +140,10 @@ public:
   }
   /// Writes groupCount() groups.
   void write(Shares::Group* groups) const {
-    for (std::size_t g = 0; g < groupCount(); ++g)
+    for (std::size_t g = 0; g < groupCount(); ++g) {
       groups[g].isLast = g + 1 == groupCount();
+      groups[g].components.fill(m_shares.front().component);
+    }
     for (std::size_t c = 0; c < m_shares.size(); ++c)
       groups[c / Shares::inGroup].components[c % Shares::inGroup] = m_shares[c].component;
     for (std::size_t voxel = 0; voxel < Shares::voxelsInBrick; ++voxel)

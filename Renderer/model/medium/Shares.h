@@ -30,7 +30,7 @@ public:
   static constexpr std::size_t voxelsInBrick = (edge + 1) * (edge + 1) * (edge + 1);
   static constexpr std::size_t inGroup = 4;
 
-  /// Four components of a mixed brick; those that it lacks have no share.
+  /// Four components of a mixed brick; of those that it lacks others stand in, without a share.
   struct Group {
     std::array<std::uint8_t, inGroup> components;
     std::uint32_t isLast; ///< 1: the brick's last group; else 0, and the next one is its, too
@@ -57,6 +57,11 @@ public:
     return m_bricks.size() * sizeof(std::int32_t) + m_groups.size() * sizeof(Group);
   }
 
+  /// Calls visit(component) for all components that may have a share in a box (the grid's index
+  /// space); some more than once.
+  template <typename Visit>
+  void forEachIn(const Box& box, Visit&& visit) const;
+
   /// Calls visit(component, share) for the components at a point (the grid's index space): shares
   /// are trilinear between voxels, > 0, and sum to 1. A component may come twice.
   template <typename Visit>
@@ -68,6 +73,31 @@ private:
   std::vector<std::int32_t> m_bricks;
   std::vector<Group> m_groups;
 };
+
+template <typename Visit>
+void Shares::forEachIn(const Box& box, Visit&& visit) const {
+  const Vec3 last = (m_brickCount.array() - 1).cast<double>();
+  const auto brickOf = [&](const Vec3& index) -> Size3 {
+    const Vec3 brick = (index / static_cast<double>(edge)).array().floor();
+    return brick.cwiseMax(0.0).cwiseMin(last).cast<std::int64_t>();
+  };
+  const Size3 first = brickOf(box.lower), end = brickOf(box.upper).array() + 1;
+  for (std::int64_t z = first.z(); z < end.z(); ++z)
+    for (std::int64_t y = first.y(); y < end.y(); ++y)
+      for (std::int64_t x = first.x(); x < end.x(); ++x) {
+        const std::int32_t code = m_bricks[numberOf(Size3(x, y, z), m_brickCount)];
+        if (code >= 0) {
+          visit(static_cast<std::uint8_t>(code));
+          continue;
+        }
+        for (auto group = m_groups.begin() + ~code;; ++group) {
+          for (std::size_t i = 0; i < inGroup; ++i)
+            visit(group->components[i]);
+          if (group->isLast)
+            break;
+        }
+      }
+}
 
 template <typename Visit>
 void Shares::at(const Vec3& index, Visit&& visit) const {

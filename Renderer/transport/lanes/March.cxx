@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/March.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/Clip-inl.h"
+#include "transport/lanes/Mixture-inl.h"
 #include "transport/lanes/Tint-inl.h"
 #include "transport/lanes/Way-inl.h"
 HWY_BEFORE_NAMESPACE();
@@ -77,15 +77,14 @@ private:
     const Float length = next - m_t;
     const Float middle = fma(0.5F, length, m_t);
     const Float3 p = pointAt(middle);
-    Float extinction = extinctionOf(m_volume, scalarAt<Voxel>(m_volume.field, p));
-    if (m_volume.context && m_volume.context->extinction != 1.0F)
-      extinction = select(isFocus(*m_volume.context, p), extinction,
-                          extinction * m_volume.context->extinction);
+    LaneExtinctions all =
+        extinctionsAt(m_volume, filled, p, scalarAt<Voxel>(m_volume.field, p));
     if (m_asksKeep) {
       const LaneMask cut = filled & cell.cut;
       if (cut.any())
-        extinction.where(cut, extinction * keep(m_volume, p, cut));
+        all.clipped.where(cut, all.clipped * keep(m_volume, p, cut));
     }
+    const Float extinction = all.clipped + all.free;
     const Float passed = exp(-(extinction * length));
     const Float stopped = orZero(filled, m_transmittance * (1.0F - passed));
     m_transmittance = m_transmittance - stopped;
@@ -115,9 +114,8 @@ public:
     const auto [probability, middle] = walk.take(which);
     const Float3 p = walk.pointAt(middle);
     const Float scalar = scalarAt<Voxel>(m_volume.field, p);
-    Float3 albedo = albedoOf(m_scene.albedo, scalar);
-    if (m_scene.tint)
-      albedo = LaneTint(*m_scene.tint, scalar, albedo).at(which, p);
+    const Mean mean = m_volume.mixture ? meanOfParts(which, p, scalar) : own(which, p, scalar);
+    Float3 albedo = mean.albedo;
     if (m_volume.context)
       albedo = paled(*m_volume.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;
@@ -134,9 +132,39 @@ public:
     const Float3 normal = orZero(slope > 0.0F, scale * gradient);
     m_normal = m_normal + normal;
     if (m_scene.hybrid)
-      m_facing = m_facing + surfaceChance(m_volume, m_scene, scalar, slope) * normal;
+      m_facing = m_facing + mean.opacity * missing(m_scene.surfaceRate * slope) * normal;
     m_hit = m_hit + probability;
     m_distance = fma(probability, middle, m_distance);
+  }
+
+  /// Albedo and opacity over 1 mm, means over what a collision may meet.
+  struct Mean {
+    Float3 albedo;
+    Float opacity;
+  };
+
+  Mean own(LaneMask which, const Float3& p, Float scalar) const {
+    Mean mean{albedoOf(m_scene.albedo, scalar), 0.0F};
+    if (m_scene.tint)
+      mean.albedo = tintedAlbedo(*m_scene.tint, which, p, scalar, mean.albedo);
+    if (m_scene.hybrid)
+      mean.opacity = missing(extinctionOf(m_volume, scalar));
+    return mean;
+  }
+
+  Mean meanOfParts(LaneMask which, const Float3& p, Float scalar) const {
+    const WideMixture& mixture = *m_volume.mixture;
+    const Float kept = keptOfParts(m_volume, which, p);
+    Mean sums{{0.0F, 0.0F, 0.0F}, 0.0F};
+    Float all = 0.0F;
+    forEachPart(mixture, which, p, scalar, kept, [&](LaneMask lanes, Int components, Float part) {
+      all = all + part;
+      sums.albedo = sums.albedo + part * albedoIn(m_scene, lanes, components, scalar);
+      sums.opacity =
+          sums.opacity + part * missing(extinctionOf(mixture, lanes, components, scalar));
+    });
+    const Float scale = orZero(all > 0.0F, 1.0F / all);
+    return {scale * sums.albedo, scale * sums.opacity};
   }
 
   void putTo(MarchBatch& batch, std::size_t first) const {
@@ -157,8 +185,10 @@ private:
 
 template <typename Voxel>
 void marchBatch(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
-  // Eye rays begin behind the surface: only an edge that is not sharp matters there.
-  const bool asksKeep = volume.ghost > 0.0F || volume.softness > 0.0F;
+  // Eye rays begin behind the surface, where only an edge that is not sharp matters; unless they
+  // are whole, for matter that the clip leaves.
+  const bool asksKeep = volume.ghost > 0.0F || volume.softness > 0.0F ||
+                        (volume.mixture && volume.mixture->hasFree);
   for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
     Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
     Sums<Voxel> sums(volume, scene);

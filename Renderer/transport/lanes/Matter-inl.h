@@ -42,12 +42,14 @@ HWY_INLINE Float3 differenceAt(const WideField& field, const Float3& p) {
           value(p.x, p.y, p.z + 1.0F) - value(p.x, p.y, p.z - 1.0F)};
 }
 
+/// 1 - e^-x.
+HWY_INLINE Float missing(Float x) {
+  return -expm1(-x);
+}
+
 /// Medium's probability of scattering at a surface; `slope`: length of the gradient.
-HWY_INLINE Float surfaceChance(const WideScene& volume, const EventScene& scene, Float scalar,
-                               Float slope) {
-  const auto missing = [](Float x) { return -expm1(-x); };
-  const Float opacity = missing(extinctionOf(volume, scalar));
-  return opacity * missing(scene.surfaceRate * slope);
+HWY_INLINE Float surfaceChance(const EventScene& scene, Float extinction, Float slope) {
+  return missing(extinction) * missing(scene.surfaceRate * slope);
 }
 
 } // namespace fenestra::HWY_NAMESPACE

@@ -5,19 +5,31 @@
 namespace fenestra {
 namespace {
 
-/// Lines of the first channel over equal bins, the last one for what lies beyond.
+constexpr std::size_t lineCount = 1024;
+
+} // namespace
+
+WideTable::Bins::Bins(double low, double high)
+    : start(low),
+      end(high),
+      perUnit(high > low ? narrow(static_cast<double>(lineCount) / (high - low)) : 0.0F) {
+  if (!std::isfinite(perUnit))
+    perUnit = 0.0F;
+}
+
 template <int Channels>
-std::vector<WideTable::Line> linesOf(const PiecewiseLinear<Channels>& function, std::size_t bins) {
+std::vector<WideTable::Line>
+WideTable::Bins::linesOf(const PiecewiseLinear<Channels>& function) const {
+  if (end > start && perUnit == 0.0F)
+    return {{0.0F, std::numeric_limits<float>::quiet_NaN()}};
   const auto& knots = function.knots();
-  const double start = knots.front().position;
-  const double width = function.span() / static_cast<double>(bins);
+  const double width = (end - start) / static_cast<double>(lineCount);
   // Rounding of a float.
-  const double rounding =
-      2.5e-4 * width + 0x1p-22 * std::max(std::abs(start), std::abs(knots.back().position));
+  const double rounding = 2.5e-4 * width + 0x1p-22 * std::max(std::abs(start), std::abs(end));
   const bool isFine = rounding < 0.1 * width || knots.size() == 1;
-  std::vector<WideTable::Line> lines;
+  std::vector<Line> lines;
   std::size_t next = 0; // knot
-  for (std::size_t bin = 0; bin < bins; ++bin) {
+  for (std::size_t bin = 0; bin < lineCount; ++bin) {
     const double low = start + width * static_cast<double>(bin), high = low + width;
     while (next < knots.size() && knots[next].position < low - rounding)
       ++next;
@@ -38,8 +50,6 @@ std::vector<WideTable::Line> linesOf(const PiecewiseLinear<Channels>& function, 
   lines.push_back({narrow(knots.back().value[0]), 0.0F});
   return lines;
 }
-
-} // namespace
 
 template <int Channels>
 WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
@@ -75,17 +85,14 @@ WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
       ++segment;
     binSegment.push_back(binsPerUnit > 0.0F ? static_cast<std::int32_t>(segment) : 0);
   }
-  constexpr std::size_t lineCount = 1024;
-  lines = linesOf(function, lineCount);
-  linesPerUnit = span > 0.0 ? narrow(static_cast<double>(lineCount) / span) : 0.0F;
-  if (!std::isfinite(linesPerUnit)) {
-    linesPerUnit = 0.0F;
-    lines.assign(1, {0.0F, std::numeric_limits<float>::quiet_NaN()});
-  }
+  const Bins equal(knots.front().position, knots.back().position);
+  lines = equal.linesOf(function);
+  linesPerUnit = equal.perUnit;
   lastLine = static_cast<float>(lines.size() - 1);
 }
 
 template WideTable::WideTable(const PiecewiseLinear<1>&);
 template WideTable::WideTable(const PiecewiseLinear<3>&);
+template std::vector<WideTable::Line> WideTable::Bins::linesOf(const PiecewiseLinear<1>&) const;
 
 } // namespace fenestra

@@ -16,13 +16,24 @@ struct WideTable {
     float value, slope;
   };
   using Channel = std::vector<Line>;
+
+  /// Equal bins from the scalar `low` to `high`.
+  struct Bins {
+    double start, end;
+    float perUnit; ///< bins; 0: none have a width that floats can tell
+
+    Bins(double low, double high);
+    /// The first channel over the bins, each a line: value, and rise over the bin; then the value
+    /// beyond. NaN rise: the bin holds a knot, ask the segments.
+    template <int Channels>
+    std::vector<Line> linesOf(const PiecewiseLinear<Channels>& function) const;
+  };
+
   std::vector<float> position;
   std::vector<std::int32_t> binSegment; ///< first candidate of each equal bin, from binStart on
   float binStart = 0.0F, binsPerUnit = 0.0F;
   std::vector<Channel> channels;
-  /// The first channel in equal bins from binStart on, each a line over the bin: value, and rise
-  /// over the bin; then the value beyond. NaN rise: the bin holds a knot, ask the segments.
-  std::vector<Line> lines;
+  std::vector<Line> lines; ///< of Bins over all knots, from binStart on
   float linesPerUnit = 0.0F, lastLine = 0.0F;
 
   WideTable() = default;
@@ -32,5 +43,7 @@ struct WideTable {
 
 extern template WideTable::WideTable(const PiecewiseLinear<1>&);
 extern template WideTable::WideTable(const PiecewiseLinear<3>&);
+extern template std::vector<WideTable::Line>
+WideTable::Bins::linesOf(const PiecewiseLinear<1>&) const;
 
 } // namespace fenestra

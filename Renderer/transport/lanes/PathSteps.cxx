@@ -5,8 +5,8 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/PathSteps.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/Clip-inl.h"
 #include "transport/lanes/LightSet-inl.h"
+#include "transport/lanes/Mixture-inl.h"
 #include "transport/lanes/Scattering-inl.h"
 #include "transport/lanes/Tint-inl.h"
 HWY_BEFORE_NAMESPACE();
@@ -33,6 +33,7 @@ struct Collisions {
   Float3 incoming, weight;
   Float3 albedo, gradient; ///< gradient: 0 unless needed
   LaneMask surface;
+  Int component; ///< of a mixture
 };
 
 template <typename Voxel>
@@ -92,10 +93,19 @@ private:
     const Collisions at = matter(i, going, first, index, draws);
     if (first.any())
       recordFirst(i, at, distance);
+    return m_volume.mixture ? scatter(i, at, draws, lawsOf(m_scene, at.component))
+                            : scatter(i, at, draws, m_scene.law);
+  }
 
-    const WidePhase phase(m_scene, at.incoming, at.albedo);
+  /// Scatters lanes by the law; returns those that go on afterwards.
+  template <typename Number>
+  HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, Draws& draws,
+                              const ScatterLaw<Number>& law) {
+    const WidePhase<Number> phase(law, at.incoming, at.albedo);
     const bool surfaces = at.surface.any();
-    const auto surface = [&] { return WideSurface(m_scene, at.incoming, at.gradient, at.albedo); };
+    const auto surface = [&] {
+      return WideSurface<Number>(law, at.incoming, at.gradient, at.albedo);
+    };
     if (m_lights.some())
       sampleLights(i, at, draws, [&](const Float3& toward) {
         const Scattered s = phase.toward(toward);
@@ -106,8 +116,8 @@ private:
       });
 
     const Float choice = m_scene.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
-    const Float u = select(first, load(&m_paths.scattered[0][i]), draws.uniform());
-    const Float v = select(first, load(&m_paths.scattered[1][i]), draws.uniform());
+    const Float u = select(at.first, load(&m_paths.scattered[0][i]), draws.uniform());
+    const Float v = select(at.first, load(&m_paths.scattered[1][i]), draws.uniform());
     ScatterDraw drawn = phase.draw(u, v);
     if (surfaces) {
       const ScatterDraw other = surface().draw(choice, u, v);
@@ -128,22 +138,38 @@ private:
                   load3(m_paths.weight, i),
                   {},
                   {0.0F, 0.0F, 0.0F},
-                  LaneMask::none()};
-    at.albedo = albedoOf(m_scene.albedo, at.scalar);
+                  LaneMask::none(),
+                  0};
+    if (m_volume.mixture) {
+      at.component = drawComponents(*m_volume.mixture, going, index, at.scalar,
+                                    keptOfParts(m_volume, going, index), draws.uniform());
+      at.albedo = albedoIn(m_scene, going, at.component, at.scalar);
+    } else {
+      at.albedo = albedoOf(m_scene.albedo, at.scalar);
+    }
     if (m_scene.tint)
-      at.albedo = LaneTint(*m_scene.tint, at.scalar, at.albedo).at(going, index);
+      at.albedo = tintedAlbedo(*m_scene.tint, going, index, at.scalar, at.albedo);
     if (m_volume.context)
       at.albedo = paled(*m_volume.context, index, at.albedo);
     if (m_scene.hybrid) {
       at.gradient = gradientAt(index);
       m_gradients += going.count();
       if (m_volume.cutSlope > 0.0F)
-        at.gradient = at.gradient + cutGradient(m_volume, index, going);
+        at.gradient = at.gradient + cutGradient(m_volume, index, removable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
-      const Float chance = surfaceChance(m_volume, m_scene, at.scalar, slope);
-      at.surface = going & (draws.uniform() < chance);
+      const Float extinction =
+          m_volume.mixture ? extinctionOf(*m_volume.mixture, going, at.component, at.scalar)
+                           : extinctionOf(m_volume, at.scalar);
+      at.surface = going & (draws.uniform() < surfaceChance(m_scene, extinction, slope));
     }
     return at;
+  }
+
+  /// Lanes whose matter the clip may remove.
+  HWY_INLINE LaneMask removable(const Collisions& at) const {
+    return m_volume.mixture && m_volume.mixture->hasFree
+               ? at.going.without(freeIn(*m_volume.mixture, at.going, at.component))
+               : at.going;
   }
 
   Float3 gradientAt(const Float3& p) const {

@@ -23,12 +23,35 @@ double roughnessOf(const SurfaceShading& shading) {
   return std::sqrt(2.0 / (shading.power + 2.0));
 }
 
+ScatterLaw<float> lawOf(const TransferFunction& transfer) {
+  ScatterLaw<float> law{narrow(transfer.g), 0.0F, 0.0F, 0.0F, 1.0F, 1.0F, false, {}};
+  if (!transfer.shading)
+    return law;
+  const SurfaceShading& shading = *transfer.shading;
+  const SurfaceShading::Lobes lobes = shading.lobes();
+  law.diffuse = narrow(lobes.lambert);
+  law.specular = narrow(lobes.glossy);
+  law.f0 = narrow(lobes.f0);
+  law.odds = narrow(shading.odds);
+  law.roughness = narrow(roughnessOf(shading));
+  law.isCoated = shading.coated.has_value();
+  law.coat = {narrow(lobes.coat.constant), narrow(lobes.coat.x2), narrow(lobes.coat.x4),
+              narrow(lobes.coat.x8)};
+  return law;
+}
+
+/// True if no lobe is narrower than the resolution of directions in float.
+bool isWide(const TransferFunction& transfer) {
+  constexpr double leastRoughness = 1e-2;
+  constexpr double greatestG = 0.9999;
+  return std::abs(transfer.g) <= greatestG &&
+         !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness);
+}
+
 } // namespace
 
 bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
-                        const LightSet& lights) {
-  constexpr double leastRoughness = 1e-2;
-  constexpr double greatestG = 0.9999;
+                        const LightSet& lights, const Mixture* mixture) {
   constexpr double farthest = 1e15; // mm; squares and areas stay far below the greatest float
   constexpr double brightest = 1e20;
   constexpr double smallest = 1e-3; // mm; radius of a sphere whose square of the sine is a float
@@ -48,45 +71,31 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
   const auto mapFits = [](const SharedEnvironment& environment) {
     return MapTables::serves(environment.sampler);
   };
-  return lights.hasOnlyListedKinds() && std::abs(transfer.g) <= greatestG &&
-         !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness) &&
+  return lights.hasOnlyListedKinds() && isWide(transfer) &&
+         (!mixture || std::ranges::all_of(mixture->components, isWide, &Component::transfer)) &&
          std::ranges::all_of(lights.areas(), fits) &&
          std::ranges::all_of(lights.spheres(), sphereFits) &&
          std::ranges::all_of(lights.environments(), mapFits);
 }
 
 EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-                       std::uint64_t mostBounces, bool normalsWanted, const Tint* tints)
+                       std::uint64_t mostBounces, bool normalsWanted, const Tint* tints,
+                       const Mixture* mixture)
     : albedo(transfer.albedo),
-      g(narrow(transfer.g)),
+      law(lawOf(transfer)),
       hybrid(transfer.shading && transfer.extinction.span() > 0.0),
-      diffuse(0.0F),
-      specular(0.0F),
-      f0(0.0F),
-      odds(1.0F),
-      roughness(1.0F),
-      isCoated(false),
-      coat(),
-      surfaceRate(0.0F),
+      surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
       wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
           std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
       constantEnvironment(narrow3(lights.constantEnvironment())) {
   if (tints)
     tint.emplace(*tints, grid);
-  if (hybrid) {
-    const SurfaceShading& shading = *transfer.shading;
-    const SurfaceShading::Lobes lobes = shading.lobes();
-    diffuse = narrow(lobes.lambert);
-    specular = narrow(lobes.glossy);
-    f0 = narrow(lobes.f0);
-    isCoated = shading.coated.has_value();
-    coat = {narrow(lobes.coat.constant), narrow(lobes.coat.x2), narrow(lobes.coat.x4),
-            narrow(lobes.coat.x8)};
-    odds = narrow(shading.odds);
-    roughness = narrow(roughnessOf(shading));
-    surfaceRate = narrow(25.0 * std::pow(shading.gamma, 3));
-  }
+  if (mixture)
+    for (const Component& component : mixture->components) {
+      albedos.emplace_back(component.transfer.albedo);
+      laws.push_back(lawOf(component.transfer));
+    }
   Affine local = grid.indexToWorld;
   local.translation() -= grid.worldCenter();
   toLocal = affineRows(local);

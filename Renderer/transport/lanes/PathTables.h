@@ -7,11 +7,21 @@
 #include "model/volume/Grid.h"
 #include "transport/lanes/MapTables.h"
 #include "transport/lanes/Medium.h"
+#include "transport/lanes/Mixture.h"
 #include "transport/lanes/Tint.h"
 
 #include <vector>
 
 namespace fenestra {
+
+/// How matter scatters, beside its albedo; `Number`: plain, or one a lane.
+template <typename Number>
+struct ScatterLaw {
+  Number g;
+  Number diffuse, specular, f0, odds, roughness; ///< of SurfaceShading
+  bool isCoated;
+  std::array<Number, 4> coat; ///< of CoatReflectance; 0: reflects nothing
+};
 
 /// "Local" space: world axes, mm, origin at the volume's centre: floats keep their digits wherever
 /// the volume lies.
@@ -44,20 +54,22 @@ struct EventScene {
 
   /// True if floats suffice: no lobe narrower than the resolution of directions in float, and no
   /// light so far away or bright that squares overflow.
-  static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights);
+  static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
+                     const Mixture* mixture = nullptr);
 
   /// A view of environment maps and tint, which must outlive the object.
   EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-             std::uint64_t mostBounces, bool normalsWanted, const Tint* tints = nullptr);
+             std::uint64_t mostBounces, bool normalsWanted, const Tint* tints = nullptr,
+             const Mixture* mixture = nullptr);
 
   WideTable albedo;
   std::optional<WideTint> tint;
-  float g;
-  bool hybrid;                                  ///< surface shading
-  float diffuse, specular, f0, odds, roughness; ///< of SurfaceShading
-  bool isCoated;
-  std::array<float, 4> coat; ///< of CoatReflectance
-  float surfaceRate;         ///< 25 gamma^3 of Medium's surface probability
+  ScatterLaw<float> law;
+  bool hybrid;       ///< surface shading
+  float surfaceRate; ///< 25 gamma^3 of Medium's surface probability
+  /// Of a mixture's components; empty: there is none.
+  std::vector<WideTable> albedos;
+  std::vector<ScatterLaw<float>> laws;
   bool wantNormals;
   std::int32_t bounces; ///< greatest number of scatterings
 

@@ -27,10 +27,32 @@ struct ScatterDraw {
 
 inline constexpr float perSphere = static_cast<float>(0.25 / pi);
 
+/// Plain numbers, or one a lane.
+HWY_INLINE bool isEverywhere(float x, float value) {
+  return x == value;
+}
+HWY_INLINE bool isEverywhere(Float x, float value) {
+  return !(~(x == value)).any();
+}
+HWY_INLINE float magnitude(float x) {
+  return std::abs(x);
+}
+HWY_INLINE Float magnitude(Float x) {
+  return abs(x);
+}
+HWY_INLINE Float3 turnedBelow0(float g, const Float3& direction) {
+  return g < 0.0F ? -direction : direction;
+}
+HWY_INLINE Float3 turnedBelow0(Float g, const Float3& direction) {
+  return select(g < 0.0F, -direction, direction);
+}
+
+/// `Number`: of the law, float or Float.
+template <typename Number>
 class WidePhase {
 public:
-  HWY_INLINE WidePhase(const EventScene& scene, const Float3& incoming, const Float3& albedo)
-      : m_g(std::abs(scene.g)), m_peak(scene.g < 0.0F ? -incoming : incoming), m_albedo(albedo) {}
+  HWY_INLINE WidePhase(const ScatterLaw<Number>& law, const Float3& incoming, const Float3& albedo)
+      : m_g(magnitude(law.g)), m_peak(turnedBelow0(law.g, incoming)), m_albedo(albedo) {}
 
   HWY_INLINE Scattered toward(const Float3& outgoing) const {
     const Float3 chord = outgoing - m_peak;
@@ -40,7 +62,7 @@ public:
 
   HWY_INLINE ScatterDraw draw(Float u, Float v) const {
     const CosineSine phi = ofTurns(v);
-    if (m_g == 0.0F) {
+    if (isEverywhere(m_g, 0.0F)) {
       const Float z = fnma(2.0F, u, 1.0F);
       const Float r = root(fnma(z, z, 1.0F));
       return {{r * phi.cosine, r * phi.sine, z}, m_albedo, perSphere};
@@ -60,31 +82,33 @@ public:
 private:
   /// Density of a direction; chord2: squared distance of that unit vector from the lobe's peak.
   HWY_INLINE Float density(Float chord2) const {
-    if (m_g == 0.0F)
+    if (isEverywhere(m_g, 0.0F))
       return perSphere;
     const Float d = fma(m_g, chord2, (1.0F - m_g) * (1.0F - m_g));
     return (perSphere * (1.0F - m_g) * (1.0F + m_g)) / (d * sqrt(d));
   }
 
-  float m_g; ///< |g|
+  Number m_g; ///< |g|
   Float3 m_peak;
   Float3 m_albedo;
 };
 
+/// `Number`: of the law, float or Float.
+template <typename Number>
 class WideSurface {
 public:
-  HWY_INLINE WideSurface(const EventScene& scene, const Float3& incoming, const Float3& gradient,
-                         const Float3& albedo)
-      : m_specular(scene.specular),
-        m_f0(scene.f0),
-        m_roughness(scene.roughness),
-        m_isCoated(scene.isCoated),
-        m_coat(scene.coat),
+  HWY_INLINE WideSurface(const ScatterLaw<Number>& law, const Float3& incoming,
+                         const Float3& gradient, const Float3& albedo)
+      : m_specular(law.specular),
+        m_f0(law.f0),
+        m_roughness(law.roughness),
+        m_isCoated(law.isCoated),
+        m_coat(law.coat),
         m_frame(normalized(select(dot(incoming, gradient) >= 0.0F, -gradient, gradient))),
         m_viewer(m_frame.toLocal(-incoming)),
-        m_diffuse(scene.diffuse * albedo) {
-    if (scene.odds != 1.0F)
-      m_diffuse = scene.diffuse * ofOdds(scene.odds, albedo);
+        m_diffuse(law.diffuse * albedo) {
+    if (!isEverywhere(law.odds, 1.0F))
+      m_diffuse = law.diffuse * ofOdds(law.odds, albedo);
     if (m_isCoated)
       m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
     const Float lambert = greatest(m_diffuse);
@@ -102,7 +126,7 @@ public:
     const Float r = sqrt(u);
     const Float3 lambert{r * phi.cosine, r * phi.sine, root(1.0F - u)};
     Float3 local = lambert;
-    if (m_specular > 0.0F) {
+    if (!isEverywhere(m_specular, 0.0F)) {
       const Float3 h = visibleNormal(r, phi);
       const Float3 glossy = (2.0F * dot(m_viewer, h)) * h - m_viewer;
       local = select(choice < m_lambertShare, lambert, glossy);
@@ -119,7 +143,7 @@ private:
     return fma(1.0F - m_f0, square(square(x)) * x, m_f0);
   }
   /// Albedo whose odds are `odds` times those of the given one.
-  static HWY_INLINE Float3 ofOdds(float odds, const Float3& albedo) {
+  static HWY_INLINE Float3 ofOdds(Number odds, const Float3& albedo) {
     const auto channel = [odds](Float a) { return odds * a / fnma(1.0F - odds, a, 1.0F); };
     return {channel(albedo.x), channel(albedo.y), channel(albedo.z)};
   }
@@ -136,7 +160,7 @@ private:
   HWY_INLINE Scattered towardLocal(const Float3& l) const {
     const Float lambertPdf = notBelow0(l.z) * static_cast<float>(1.0 / pi);
     Scattered s{lambertPdf * m_diffuse, m_lambertShare * lambertPdf};
-    if (!(m_specular > 0.0F))
+    if (isEverywhere(m_specular, 0.0F))
       return s;
     if (m_isCoated)
       s.factor = belowCoat(l.z) * s.factor;
@@ -183,9 +207,9 @@ private:
     return normalized({a * n.x, a * n.y, max(n.z, std::numeric_limits<float>::min())});
   }
 
-  float m_specular, m_f0, m_roughness;
+  Number m_specular, m_f0, m_roughness;
   bool m_isCoated;
-  std::array<float, 4> m_coat;
+  std::array<Number, 4> m_coat;
   Frames m_frame;  ///< local z is the normal
   Float3 m_viewer; ///< local direction back along the path
   Float3 m_diffuse;

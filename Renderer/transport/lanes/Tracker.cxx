@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/Tracker.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/Clip-inl.h"
+#include "transport/lanes/Mixture-inl.h"
 #include "transport/lanes/Way-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
@@ -131,15 +131,13 @@ private:
     m_lookups += hit.count();
     const Float3 at = point();
     const Float scalar = scalarAt<Voxel>(m_scene.field, at);
-    Float extinction = extinctionOf(m_scene, scalar);
-    if (m_scene.context && m_scene.context->extinction != 1.0F)
-      extinction = select(isFocus(*m_scene.context, at), extinction,
-                          extinction * m_scene.context->extinction);
+    LaneExtinctions all = extinctionsAt(m_scene, hit, at, scalar);
     Word counter = m_counter;
     const Float u = m_acceptance;
     const LaneMask cut = hit & m_cut;
     if (cut.any())
-      extinction = clipped(cut, at, extinction, u, counter);
+      all.clipped = clipped(cut, at, all, u, counter);
+    const Float extinction = all.clipped + all.free;
     m_depth.where(hit, exponential(counter));
     m_acceptance.where(hit, uniform(counter));
     m_counter.where(hit, counter);
@@ -156,17 +154,19 @@ private:
     }
   }
 
-  /// Extinction times keep for lanes of `cut`; unchanged for others. keep is queried only where
-  /// needed: for a flight if the collision would be real without clipping; for a transmittance if
-  /// extinction > 0. Seams make a query cost more than everything else: chance then decides first
+  /// What may be removed, times keep, for lanes of `cut`; unchanged for others. keep is queried
+  /// only where needed: for a flight if the collision would be real without clipping; for a
+  /// transmittance if there is something to remove. Seams make a query cost more than everything else: chance then decides first
   /// whether a transmittance's collision would be real without clipping, and only for real
   /// collisions keep is queried (delta instead of ratio tracking; Novák et al. 2018, section 4.2).
-  /// Such estimates vary a little more, and cost half.
-  HWY_INLINE Float clipped(LaneMask cut, const Float3& at, Float extinction, Float u,
+  /// Such estimates vary a little more, and cost half. (Not where something is left: together they
+  /// could exceed the majorant.)
+  HWY_INLINE Float clipped(LaneMask cut, const Float3& at, const LaneExtinctions& all, Float u,
                            Word& counter) {
+    Float extinction = all.clipped;
     if constexpr (wantRatio) {
       cut = cut & (extinction > 0.0F);
-      if (m_scene.seams) {
+      if (m_scene.seams && !(m_scene.mixture && m_scene.mixture->hasFree)) {
         Word after = counter;
         const LaneMask isReal = uniform(after) * m_majorant < extinction;
         counter.where(cut, after);
@@ -174,7 +174,7 @@ private:
         cut = cut & isReal;
       }
     } else {
-      cut = cut & (u * m_majorant < extinction);
+      cut = cut & (u * m_majorant < extinction + all.free);
     }
     if (cut.any())
       extinction.where(cut, extinction * keep(m_scene, at, cut));

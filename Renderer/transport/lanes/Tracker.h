@@ -74,13 +74,14 @@ public:
   /// True if floats suffice and lanes support every part of the medium: no gradient opacity, at
   /// least two voxels along x, 4 to 2^31 voxels in all, its diagonal at most 2^17 of its smallest
   /// voxels' edges, optical depth across the volume <= 1e5.
-  static bool serves(const Volume& volume, const TransferFunction& transfer);
+  static bool serves(const Volume& volume, const TransferFunction& transfer,
+                     const Mixture* mixture = nullptr);
 
-  /// A view: volume, clip, style and stop must outlive the tracker. Once `stop` is true rays are
+  /// A view: volume, clip, style, mixture and stop must outlive the tracker. Once `stop` is true rays are
   /// abandoned and results are meaningless.
   WideTracker(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
               const MajorantGrid& majorants, const Clip& clip, const ContextStyle* style = nullptr,
-              const StopFlag& stop = neverStopped);
+              const StopFlag& stop = neverStopped, const Mixture* mixture = nullptr);
 
   const WideScene& scene() const { return m_scene; }
 

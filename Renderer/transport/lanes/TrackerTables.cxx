@@ -56,7 +56,8 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
   return inside.begin;
 }
 
-bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer) {
+bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer,
+                         const Mixture* mixture) {
   constexpr double deepest = 1e5; // rounding moves a collision by 0.6 % of a free path, at most
   // Voxels in a row; a float's last place is then far below MajorantGrid::margin.
   constexpr double longest = 1 << 17;
@@ -67,14 +68,23 @@ bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer)
   if (2.0 * volume.grid.boundingRadius() * mostVoxelsPerMm(volume.grid) > longest)
     return false;
   double greatest = 0.0;
-  for (const auto& knot : transfer.extinction.knots())
-    greatest = std::max(greatest, knot.value[0]);
+  const auto add = [&](const ScalarFunction& extinction) {
+    for (const auto& knot : extinction.knots())
+      greatest = std::max(greatest, knot.value[0]);
+  };
+  add(transfer.extinction);
+  if (mixture && !WideMixture::serves(*mixture))
+    return false;
+  if (mixture)
+    for (const Component& component : mixture->components)
+      add(component.transfer.extinction);
   return greatest * 2.0 * volume.grid.boundingRadius() <= deepest;
 }
 
 WideTracker::WideTracker(const Volume& volume, const Domain& domain,
                          const TransferFunction& transfer, const MajorantGrid& majorants,
-                         const Clip& clip, const ContextStyle* style, const StopFlag& stop)
+                         const Clip& clip, const ContextStyle* style, const StopFlag& stop,
+                         const Mixture* mixture)
     : m_stop(stop) {
   m_scene.voxels =
       std::visit([](const auto& v) { return WideScene::FirstVoxel(v.data()); }, volume.voxels);
@@ -82,6 +92,8 @@ WideTracker::WideTracker(const Volume& volume, const Domain& domain,
       std::visit([](const auto* v) -> const void* { return v; }, m_scene.voxels), volume.grid);
   setCells(majorants, volume.grid);
   m_scene.extinction = WideTable(transfer.extinction);
+  if (mixture)
+    m_scene.mixture.emplace(*mixture, volume.grid);
   setDomain(domain);
   setClip(clip, volume.grid);
   if (style)

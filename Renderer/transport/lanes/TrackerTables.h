@@ -4,6 +4,7 @@
 #include "base/Narrow.h"
 #include "transport/lanes/MajorantGrid.h"
 #include "transport/lanes/Medium.h"
+#include "transport/lanes/Mixture.h"
 
 #include <cstdint>
 #include <optional>
@@ -60,6 +61,7 @@ struct WideScene {
   AffineRows toCrop = {};
 
   WideTable extinction; ///< mm^-1 over the scalar
+  std::optional<WideMixture> mixture = {}; ///< in place of `extinction`
 
   WideCells cells;        ///< fewer than 2^23
   float firstCell = 0.0F; ///< index in WideCells::codes of the first cell inside the border

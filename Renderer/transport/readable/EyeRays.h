@@ -5,12 +5,20 @@
 #include "image/Film.h"
 #include "model/camera/Background.h"
 #include "model/lights/LightSet.h"
+#include "model/medium/Mixture.h"
 
 #include <vector>
 
 namespace fenestra {
 
-/// A view: camera, clip, lights and background must outlive the object.
+/// Clip by which eye rays are shortened: none where the clip leaves some of a mixture, which may
+/// stand in front of its surface.
+inline const Clip& eyeClip(const Clip& clip, const Mixture* mixture) {
+  static const Clip none = ClipNone();
+  return mixture && mixture->hasFree() ? none : clip;
+}
+
+/// A view: camera, clip (eyeClip), lights and background must outlive the object.
 class EyeRays {
 public:
   EyeRays(const Camera& camera, const Clip& clip, const LightSet& lights,

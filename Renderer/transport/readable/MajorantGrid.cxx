@@ -61,39 +61,69 @@ double greatestFactor(const ContextStyle& style, const Corners& corners) {
   return meetsMask(*style.focus, box) ? 1.0 : style.extinction;
 }
 
+/// Greatest extinction, mm^-1, of the matter in a cell that the clip may remove, and of that which
+/// it leaves.
+struct CellBound {
+  double clipped = 0.0, free = 0.0;
+};
+
+/// A cell's majorant under the clip and the style.
+MajorantGrid::Cell cellOf(const CellBound& bound, const Corners& corners, const Clip& clip,
+                          const ContextStyle* style) {
+  const Kept kept = std::holds_alternative<ClipNone>(clip) ? Kept::all : keptIn(clip, corners);
+  const double majorant = std::max(bound.clipped * kept.most, bound.free) *
+                          (style ? greatestFactor(*style, corners) : 1.0);
+  const bool isCut = majorant > 0.0 && !(kept.isUniform && kept.most == 1.0);
+  return {roundedUp(majorant), isCut};
+}
+
+double greatest(const TransferFunction& transfer, const Grid& grid, double low, double high) {
+  const double extinction = greatest(transfer.extinction, low, high);
+  if (extinction == 0.0 || !transfer.gradientOpacity)
+    return extinction;
+  return extinction * greatest(*transfer.gradientOpacity, 0.0, gradientBound(grid, high - low));
+}
+
+/// Bound for a mixture, among the corners of a cell whose scalars lie in [low, high].
+CellBound mixtureBound(const Mixture& mixture, const Corners& corners, double low, double high) {
+  // Shares sum to 1 but for rounding.
+  constexpr double rounding = 1.0 + 64.0 * std::numeric_limits<double>::epsilon();
+  Box box = Box::nothing();
+  for (const Vec3& corner : corners)
+    box.extend(mixture.shares->grid().worldToIndex * corner);
+  CellBound bound;
+  mixture.shares->forEachIn(box, [&](std::uint8_t number) {
+    const Component& component = mixture.components[number];
+    double& most = component.isClipped ? bound.clipped : bound.free;
+    most = std::max(most, rounding * greatest(component.transfer.extinction, low, high));
+  });
+  return bound;
+}
+
 } // namespace
 
 MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
                            const TransferFunction& transfer, const Clip& clip,
-                           const ContextStyle* style)
+                           const ContextStyle* style, const Mixture* mixture)
     : m_cellCount(ranges.cellCount()), m_edge(ranges.edge()), m_cells(ranges.size()) {
   m_worldToCell = scalingBy(ranges.edge().cast<double>().cwiseInverse()) *
                   (translationBy(Vec3::Constant(0.5)) * grid.worldToIndex);
   const Affine cellToWorld = m_worldToCell.inverse();
 
-  const auto bound = [&](std::size_t cell) {
-    const double low = ranges.low(cell);
-    const double high = ranges.high(cell);
-    const double extinction = greatest(transfer.extinction, low, high);
-    if (extinction == 0.0 || !transfer.gradientOpacity)
-      return extinction;
-    return extinction * greatest(*transfer.gradientOpacity, 0.0, gradientBound(grid, high - low));
-  };
   const Vec3 strip = margin * ranges.edge().cast<double>().cwiseInverse();
   tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
       for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {
         const auto cell = static_cast<std::size_t>(x + m_cellCount.x() * (y + m_cellCount.y() * z));
-        double majorant = bound(cell);
-        bool isCut = false;
-        if (majorant > 0.0) {
-          const Corners corners = cornersOf(cellToWorld, Size3(x, y, z).cast<double>(), strip);
-          const Kept kept =
-              std::holds_alternative<ClipNone>(clip) ? Kept::all : keptIn(clip, corners);
-          majorant *= kept.most * (style ? greatestFactor(*style, corners) : 1.0);
-          isCut = majorant > 0.0 && !(kept.isUniform && kept.most == 1.0);
-        }
-        m_cells[cell] = {roundedUp(majorant), isCut};
+        const double low = ranges.low(cell), high = ranges.high(cell);
+        const auto corners = [&] {
+          return cornersOf(cellToWorld, Size3(x, y, z).cast<double>(), strip);
+        };
+        const CellBound bound = mixture ? mixtureBound(*mixture, corners(), low, high)
+                                        : CellBound{greatest(transfer, grid, low, high)};
+        m_cells[cell] = bound.clipped > 0.0 || bound.free > 0.0
+                            ? cellOf(bound, corners(), clip, style)
+                            : Cell{0.0F, false};
       }
   });
 }

@@ -4,6 +4,7 @@
 
 #include "clip/keep/Clip.h"
 #include "model/medium/ContextStyle.h"
+#include "model/medium/Mixture.h"
 #include "model/medium/TransferFunction.h"
 #include "model/volume/CellRanges.h"
 
@@ -19,9 +20,11 @@ public:
   /// The majorant is the transfer function's greatest value over the cell's whole range of scalars
   /// (not at its maximum: opacity need not grow with the scalar), times the greatest gradient
   /// opacity that the range allows, times the greatest keep and the style's greatest factor in the
-  /// cell. `ranges` needs the apron of apronFor().
+  /// cell. Of a mixture it is the greatest over the components that have a share in the cell, since
+  /// shares sum to 1. `ranges` needs the apron of apronFor().
   MajorantGrid(const Grid& grid, const CellRanges& ranges, const TransferFunction& transfer,
-               const Clip& clip, const ContextStyle* style = nullptr);
+               const Clip& clip, const ContextStyle* style = nullptr,
+               const Mixture* mixture = nullptr);
 
   /// Width, voxels, of the strip around a cell in which its bound holds, too: lanes may walk that
   /// far beyond a face. Scalars are bounded half a voxel beyond (CellRanges).

@@ -111,7 +111,8 @@ private:
       for (double i = 0.5; i < steps; i += 1.0) {
         const double t = interval.begin + i * each;
         const double kept = cell.cut ? keep(m_clip, part.ray.at(t)) : 1.0;
-        if (kept > 0.0 && !visit(t, each, kept * m_medium.extinction(part.indexRay.at(t))))
+        if (m_medium.hasMatter(kept) &&
+            !visit(t, each, m_medium.extinction(part.indexRay.at(t), kept)))
           return;
       }
     }
@@ -122,18 +123,21 @@ private:
     if (!(sums.pending > 0.0))
       return;
     const double t = sums.moment / sums.pending;
-    const Matter matter = matterAt(m_medium, m_clip, part.ray.at(t), part.indexRay.at(t), true);
     FirstMatter& met = sums.met;
     met.hit += sums.pending;
     met.distance += sums.pending * (part.before + t);
-    met.albedo += sums.pending * matter.albedo;
-    const double slope = matter.gradient.norm();
-    const bool away = part.ray.direction.dot(matter.gradient) < 0.0;
-    if (slope > 0.0) {
-      const Vec3 normal = matter.gradient * (sums.pending / (away ? slope : -slope));
-      met.normal += normal;
-      met.facing += matter.surfaceProbability * normal;
-    }
+    const auto add = [&](const Matter& matter, double probability) {
+      const double weight = sums.pending * probability;
+      met.albedo += weight * matter.albedo;
+      const double slope = matter.gradient.norm();
+      const bool away = part.ray.direction.dot(matter.gradient) < 0.0;
+      if (slope > 0.0) {
+        const Vec3 normal = matter.gradient * (weight / (away ? slope : -slope));
+        met.normal += normal;
+        met.facing += matter.surfaceProbability * normal;
+      }
+    };
+    forEachMatter(m_medium, m_clip, part.ray.at(t), part.indexRay.at(t), true, add);
     sums.pending = sums.moment = 0.0;
   }
 

@@ -1,19 +1,50 @@
 #pragma once
-// Matter of the clipped volume at a point.
+// Matter of the clipped volume at a point, given in world and in index space. `wantGradient`: as
+// Medium::matter.
 
 #include "clip/keep/Clip.h"
 #include "model/medium/Medium.h"
 
 namespace fenestra {
 
-/// Matter at a point, given in world and in index space; where there is surface shading, with the
-/// gradient of the clip's cut. `wantGradient`: as Medium::matter.
+/// Gradient of the clip's cut, where surfaces are shaded.
 template <typename Voxel>
-Matter matterAt(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world, const Vec3& index,
-                bool wantGradient) {
-  if (!medium.transfer().shading)
-    return medium.matter(index, wantGradient);
-  return medium.matter(index, wantGradient, cutGradient(clip, world));
+Vec3 cutAt(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world) {
+  return medium.transfer().shading ? cutGradient(clip, world) : Vec3::Zero();
+}
+
+/// Parts of a mixture; what a clip keeps matters where it does not keep as much of all.
+template <typename Voxel>
+MixedPoint mixedAt(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
+                   const Vec3& index) {
+  return medium.at(index, medium.mixed()->hasFree() ? keep(clip, world) : 1.0);
+}
+
+/// Matter that a collision meets; of a mixture one component, drawn.
+template <typename Voxel>
+Matter drawMatter(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
+                  const Vec3& index, bool wantGradient, Random& random) {
+  const Vec3 cut = cutAt(medium, clip, world);
+  if (!medium.mixed())
+    return medium.matter(index, wantGradient, cut);
+  const MixedPoint point = mixedAt(medium, clip, world, index);
+  return medium.matter(medium.mixed()->draw(point, random), point, wantGradient, cut);
+}
+
+/// Calls visit(matter, probability) for all matter that a collision may meet.
+template <typename Voxel, typename Visit>
+void forEachMatter(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
+                   const Vec3& index, bool wantGradient, Visit&& visit) {
+  const Vec3 cut = cutAt(medium, clip, world);
+  if (!medium.mixed()) {
+    visit(medium.matter(index, wantGradient, cut), 1.0);
+    return;
+  }
+  const MixedPoint point = mixedAt(medium, clip, world, index);
+  const double all = medium.mixed()->extinction(point);
+  medium.mixed()->forEachPart(point, [&](const MixturePart& part) {
+    visit(medium.matter(part.component, point, wantGradient, cut), part.extinction / all);
+  });
 }
 
 } // namespace fenestra

@@ -62,7 +62,7 @@ public:
         m_medium(medium),
         m_clip(clip),
         m_lights(lights),
-        m_eye(camera, clip, lights, settings.background),
+        m_eye(camera, eyeClip(clip, medium.mixture()), lights, settings.background),
         m_settings(settings) {}
 
   /// Begins a path through raster position (column, row).
@@ -90,7 +90,8 @@ public:
     const bool first = path.bounces == 0;
     const bool wantGradient = first && m_settings.wantNormals;
     counters.gradients += m_medium.needsGradient(wantGradient) ? 1 : 0;
-    const Matter matter = matterAt(m_medium, m_clip, point, m_worldToIndex * point, wantGradient);
+    const Matter matter = drawMatter(m_medium, m_clip, point, m_worldToIndex * point, wantGradient,
+                                     path.random);
     if (first)
       recordFirst(path, distance, matter);
     const Scattering scattering = chooseScattering(path.ray.direction, matter, path.random);
@@ -121,8 +122,8 @@ private:
           matter.gradient / (path.ray.direction.dot(matter.gradient) < 0.0 ? slope : -slope);
   }
 
-  Scattering chooseScattering(const Vec3& incoming, const Matter& matter, Random& random) const {
-    const TransferFunction& transfer = m_medium.transfer();
+  static Scattering chooseScattering(const Vec3& incoming, const Matter& matter, Random& random) {
+    const TransferFunction& transfer = *matter.transfer;
     if (matter.surfaceProbability > 0.0 && random.uniform() < matter.surfaceProbability)
       return SurfaceScattering(incoming, matter.gradient, *transfer.shading, matter.albedo);
     return PhaseScattering(incoming, transfer.g, matter.albedo);

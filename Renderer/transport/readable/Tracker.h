@@ -72,7 +72,7 @@ public:
   }
 
 private:
-  /// Calls visit(t, keep * extinction / majorant) at each tentative collision until it returns
+  /// Calls visit(t, extinction / majorant) at each tentative collision until it returns
   /// false. One exponential optical depth is spent across cell borders and redrawn after each
   /// collision.
   template <typename Visit>
@@ -106,10 +106,11 @@ private:
           break;
         }
         t += opticalDepth / majorant;
-        double extinction = cell.cut ? keep(m_clip, entering.at(t)) : 1.0;
-        if (extinction > 0.0) {
+        const double kept = cell.cut ? keep(m_clip, entering.at(t)) : 1.0;
+        double extinction = 0.0;
+        if (m_medium.hasMatter(kept)) {
           ++counters.lookups;
-          extinction *= m_medium.extinction(indexRay.at(t));
+          extinction = m_medium.extinction(indexRay.at(t), kept);
         }
         if (!visit(inside.begin + t, extinction / majorant))
           return;

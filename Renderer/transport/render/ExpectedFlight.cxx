@@ -140,11 +140,24 @@ private:
       const double depth = static_cast<double>(met.depth / met.hit);
       const Vec3 point = eye.at(depth / m_scene.camera.depthPerLength(eye));
       const Vec3 index = m_scene.volume.grid.worldToIndex * point;
-      collisions.push_back({pixel, point, eye.direction,
-                            matterAt(m_medium, m_scene.clip, point, index, true),
-                            static_cast<double>(met.hit)});
+      if (const auto matter = mostProbable(point, index))
+        collisions.push_back({pixel, point, eye.direction, *matter, static_cast<double>(met.hit)});
     }
     return collisions;
+  }
+
+  /// Matter that a collision meets with the greatest probability.
+  std::optional<Matter> mostProbable(const Vec3& point, const Vec3& index) const {
+    std::optional<Matter> found;
+    double most = 0.0;
+    forEachMatter(m_medium, m_scene.clip, point, index, true,
+                  [&](const Matter& matter, double probability) {
+                    if (probability <= most)
+                      return;
+                    found = matter;
+                    most = probability;
+                  });
+    return found;
   }
 
   /// Samples of lights are the same numbers everywhere: what they lack in precision is no noise.
@@ -157,11 +170,11 @@ private:
     const double share = at.matter.surfaceProbability;
     Rgb factor = Rgb::Zero();
     if (share < 1.0)
-      factor += (1.0 - share) * PhaseScattering(at.incoming, m_scene.transfer.g, at.matter.albedo)
+      factor += (1.0 - share) * PhaseScattering(at.incoming, at.matter.transfer->g, at.matter.albedo)
                                     .evaluate(light->direction);
     if (share > 0.0)
       factor += share * SurfaceScattering(at.incoming, at.matter.gradient,
-                                          *m_scene.transfer.shading, at.matter.albedo)
+                                          *at.matter.transfer->shading, at.matter.albedo)
                             .evaluate(light->direction);
     const Rgb radiance = factor * light->radiance * (at.hit / (light->pdf * samples));
     if (!(radiance.maxCoeff() > 0.0))

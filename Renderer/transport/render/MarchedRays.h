@@ -34,7 +34,7 @@ public:
   void along(std::span<const RasterPoint> points, Met* out) const {
     for (const RasterPoint& point : points) {
       const Ray ray = m_scene.camera.ray(point.column, point.row);
-      const FirstMatter first = m_march.along(ray, visible(m_scene.clip, ray));
+      const FirstMatter first = m_march.along(ray, visible(eyeClip(m_scene.clip, m_scene.mixture), ray));
       Met met{narrow(first.hit), narrow(first.distance * m_scene.camera.depthPerLength(ray))};
       met.albedo = narrow3(first.albedo.matrix());
       met.normal = narrow3(first.normal);
@@ -59,9 +59,10 @@ public:
       : m_scene(scene),
         m_domain(scene.volume.grid, scene.crop),
         m_volume(WideTracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip,
-                             scene.style)
+                             scene.style, neverStopped, scene.mixture)
                      .scene()),
-        m_events(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint) {
+        m_events(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint,
+                 scene.mixture) {
     m_volume.seams = nullptr; // exact surfaces cost more than features gain
   }
 
@@ -74,7 +75,7 @@ public:
       batch->rays.size = count;
       for (std::size_t i = 0; i < count; ++i) {
         const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
-        before[i] = setInside(batch->rays, i, m_domain, ray, visible(m_scene.clip, ray), {});
+        before[i] = setInside(batch->rays, i, m_domain, ray, visible(eyeClip(m_scene.clip, m_scene.mixture), ray), {});
         perLength[i] = m_scene.camera.depthPerLength(ray);
       }
       march.along(*batch);

@@ -217,11 +217,13 @@ RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& setti
                            RenderMonitor& monitor) {
   const Domain domain(scene.volume.grid, scene.crop);
   const WideTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
-                            scene.style, monitor.stop);
+                            scene.style, monitor.stop, scene.mixture);
   const WideEvents events(tracker.scene(),
                           EventScene(scene.volume.grid, scene.transfer, scene.lights,
-                                     settings.path.bounces, settings.path.wantNormals, scene.tint));
-  const EyeRays eye(scene.camera, scene.clip, scene.lights, settings.path.background);
+                                     settings.path.bounces, settings.path.wantNormals, scene.tint,
+                                     scene.mixture));
+  const EyeRays eye(scene.camera, eyeClip(scene.clip, scene.mixture), scene.lights,
+                    settings.path.background);
   const WideEyeRays begin(tracker.scene(), domain, scene.camera, eye);
   const PathWave wave(begin, tracker, events, eye, monitor.stop);
   return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor);
@@ -242,9 +244,9 @@ RenderResult renderOneByOne(const RenderScene& scene, const RenderSettings& sett
 } // namespace
 
 bool lanesServe(const RenderScene& scene) {
-  return WideTracker::serves(scene.volume, scene.transfer) &&
-         EventScene::serves(scene.volume.grid, scene.transfer, scene.lights) &&
-         (!scene.tint || WideTint::serves(*scene.tint));
+  return WideTracker::serves(scene.volume, scene.transfer, scene.mixture) &&
+         EventScene::serves(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
+         (!scene.tint || WideShares::serves(*scene.tint->shares));
 }
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,

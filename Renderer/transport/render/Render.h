@@ -27,6 +27,7 @@ struct RenderScene {
   std::optional<CropBox> crop = {};
   const ContextStyle* style = nullptr; ///< of the context; null: unchanged
   const Tint* tint = nullptr;          ///< of segments; null: none
+  const Mixture* mixture = nullptr;    ///< of segments, in place of a tint; null: none
 };
 
 /// Calls work(medium, tracker) for the volume's storage type.
@@ -36,7 +37,7 @@ auto withMedium(const RenderScene& scene, Work&& work, const StopFlag& stop = ne
       [&](const auto& voxels) {
         using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
         const Medium<Voxel> medium(scene.volume.grid, voxels, scene.transfer, scene.style,
-                                   scene.tint);
+                                   scene.tint, scene.mixture);
         const Tracker<Voxel> tracker(Domain(scene.volume.grid, scene.crop), medium, scene.majorants,
                                      scene.clip, stop);
         return work(medium, tracker);

@@ -1,0 +1,139 @@
+#pragma once
+// Mixture: a medium that is a sum of components, each with its own matter. At a point x component j
+// has the share w_j(x) of the segmentation (all sum to 1), and
+//
+//     sigma_j(x) = keep_j(x) w_j(x) extinction_j(s(x)),   sigma_t = sum of sigma_j,
+//
+// where s is the interpolated scalar, and keep_j the clip's, or 1 for a component that the clip
+// leaves. At a collision one component is drawn with probability sigma_j / sigma_t, and all that
+// follows (albedo, phase function or surface) is that component's: unbiased, whatever differs. The
+// estimator knows a list of parts alone: another volume's matter would join it with shares of its
+// own.
+//
+// Where components differ in nothing but albedo, Tint is the same medium with less noise.
+
+#include "base/Random.h"
+#include "model/medium/Shares.h"
+#include "model/medium/TransferFunction.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace fenestra {
+
+/// Matter of a component.
+struct Component {
+  TransferFunction transfer; ///< its density is in the extinction
+  bool isClipped = true;     ///< false: stays where the clip removes all else
+  /// Weight of the border as a surface: of the share's gradient, per mm, beside the scalar's, in
+  /// spans of the volume's own extinction per mm.
+  double border = 0.0;
+};
+
+struct Mixture {
+  std::shared_ptr<const Shares> shares;
+  /// By number in `shares`, at least one. All have surface shading where the volume's own transfer
+  /// function has it, else none. Gradients count by that function's span for all of them: a
+  /// constant extinction has none.
+  std::vector<Component> components;
+
+  /// True if the clip leaves some component.
+  bool hasFree() const {
+    return !std::ranges::all_of(components, &Component::isClipped);
+  }
+};
+
+/// Part of a mixture's extinction at a point.
+struct MixturePart {
+  std::uint8_t component;
+  double extinction; ///< sigma_j, mm^-1, > 0
+};
+
+/// A point of the volume (its index space) with what a mixture's parts there depend on.
+struct MixedPoint {
+  Vec3 index;
+  double scalar;
+  double kept; ///< keep of the clip there
+};
+
+/// A volume's mixture at its points. A view: the mixture must outlive the object.
+class MixedField {
+public:
+  MixedField(const Mixture& mixture, const Grid& volume)
+      : m_mixture(mixture),
+        m_toShares(mixture.shares->grid().worldToIndex * volume.indexToWorld),
+        m_hasFree(mixture.hasFree()) {}
+
+  const Mixture& mixture() const { return m_mixture; }
+  bool hasFree() const { return m_hasFree; }
+
+  /// Calls visit(part) for the parts at a point. A component may come twice.
+  template <typename Visit>
+  void forEachPart(const MixedPoint& point, Visit&& visit) const {
+    m_mixture.shares->at(m_toShares * point.index, [&](std::uint8_t number, double share) {
+      const Component& component = m_mixture.components[number];
+      const double extinction = (component.isClipped ? point.kept : 1.0) * share *
+                                component.transfer.extinction(point.scalar).value();
+      if (extinction > 0.0)
+        visit(MixturePart{number, extinction});
+    });
+  }
+
+  /// sigma_t, mm^-1.
+  double extinction(const MixedPoint& point) const {
+    double sum = 0.0;
+    forEachPart(point, [&](const MixturePart& part) { sum += part.extinction; });
+    return sum;
+  }
+
+  /// Component that a collision meets, with probability sigma_j / sigma_t. Draws a number where
+  /// there are several; component 0 where the extinction is 0.
+  std::uint8_t draw(const MixedPoint& point, Random& random) const {
+    double sum = 0.0;
+    std::uint8_t last = 0;
+    int count = 0;
+    forEachPart(point, [&](const MixturePart& part) {
+      sum += part.extinction;
+      last = part.component;
+      ++count;
+    });
+    if (count < 2)
+      return last;
+    double left = random.uniform() * sum;
+    std::optional<std::uint8_t> drawn;
+    forEachPart(point, [&](const MixturePart& part) {
+      if (!drawn && left < part.extinction)
+        drawn = part.component;
+      left -= part.extinction;
+    });
+    return drawn.value_or(last);
+  }
+
+  /// Gradient of a component's share at a point (the volume's index space), per mm, world axes:
+  /// central differences over one voxel of the shares to each side.
+  Vec3 shareGradient(std::uint8_t number, const Vec3& index) const {
+    const Vec3 middle = m_toShares * index;
+    const auto shareAt = [&](const Vec3& at) {
+      double sum = 0.0;
+      m_mixture.shares->at(at, [&](std::uint8_t other, double share) {
+        sum += other == number ? share : 0.0;
+      });
+      return sum;
+    };
+    Vec3 difference;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 step = Vec3::Unit(axis);
+      difference[axis] = 0.5 * (shareAt(middle + step) - shareAt(middle - step));
+    }
+    return m_mixture.shares->grid().worldToIndex.linear().transpose() * difference;
+  }
+
+private:
+  const Mixture& m_mixture;
+  Affine m_toShares;
+  bool m_hasFree;
+};
+
+} // namespace fenestra

@@ -1,0 +1,29 @@
+#pragma once
+// Extinctions of a mixture's components in the form that lanes read.
+
+#include "model/medium/Mixture.h"
+#include "transport/lanes/Shares.h"
+
+#include <vector>
+
+namespace fenestra {
+
+/// A view: the mixture must outlive the object.
+struct WideMixture {
+  /// True if lanes support every part of the mixture: no gradient opacity, no borders as surfaces.
+  static bool serves(const Mixture& mixture);
+  /// `volume`: whose points are asked for.
+  WideMixture(const Mixture& mixture, const Grid& volume);
+
+  WideShares shares;
+  bool hasFree;                      ///< the clip leaves some component
+  std::vector<std::int32_t> isFree;  ///< of each component: 1, or 0
+  std::vector<WideTable> extinction; ///< of each component, mm^-1
+  /// Extinctions as WideTable::lines has them, but all over the same bins, so that one load serves
+  /// lanes of different components: `count` lines of one component, then the next.
+  std::vector<WideTable::Line> lines;
+  std::int32_t count;
+  float start, linesPerUnit, lastLine;
+};
+
+} // namespace fenestra

@@ -1,0 +1,169 @@
+// Mixtures: their parts by definition, and the same picture from both estimators.
+
+#include "model/medium/Mixture.h"
+
+#include "SharesTesting.h"
+#include "transport/render/ExpectedFlight.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace fenestra::testing::MixtureTests {
+namespace {
+
+Component componentOf(double extinction, const Rgb& albedo, double g = 0.0) {
+  return {linearTransfer(extinction, albedo, g)};
+}
+
+/// Share of component 1: x / 8 along a row of nine voxels, 0.5 mm apart; the rest is component 0's.
+Mixture rampMixture() {
+  const auto value = [](const Size3& voxel) { return std::lround(255.0 * static_cast<double>(voxel.x()) / 8.0); };
+  const auto shares = std::make_shared<const Shares>(
+      sharesOf({{maskOf({0, 0, 0}, {9, 2, 2}, value), 1, 1}}));
+  return {shares, {componentOf(1.0, Rgb::Ones()), componentOf(3.0, Rgb::Ones())}};
+}
+
+std::map<int, double> partsAt(const MixedField& field, const MixedPoint& point) {
+  std::map<int, double> parts;
+  field.forEachPart(point, [&](const MixturePart& p) { parts[p.component] += p.extinction; });
+  return parts;
+}
+
+TEST(Mixture, PartsAreSharesOfEachExtinction) {
+  Mixture mixture = rampMixture();
+  const MixedField field(mixture, mixture.shares->grid());
+  const MixedPoint point{Vec3(2.0, 0.5, 0.5), 0.5, 1.0};
+  const double share = 64.0 / 255.0;
+  const std::map<int, double> parts = partsAt(field, point);
+  EXPECT_NEAR(parts.at(0), 0.5 * (1.0 - share), 1e-12);
+  EXPECT_NEAR(parts.at(1), 1.5 * share, 1e-12);
+  EXPECT_NEAR(field.extinction(point), parts.at(0) + parts.at(1), 1e-12);
+
+  mixture.components[1].isClipped = false;
+  const MixedField open(mixture, mixture.shares->grid());
+  EXPECT_TRUE(open.hasFree());
+  EXPECT_FALSE(field.hasFree());
+  EXPECT_NEAR(open.extinction({point.index, 0.5, 0.25}), 0.25 * parts.at(0) + parts.at(1), 1e-12);
+  EXPECT_EQ(partsAt(open, {point.index, 0.5, 0.0}).count(0), 0U) << "a part of 0 is none";
+}
+
+TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
+  const Mixture mixture = rampMixture();
+  const MixedField field(mixture, mixture.shares->grid());
+  const MixedPoint point{Vec3(3.0, 0.5, 0.5), 0.5, 1.0};
+  Random random(5, 0, 0);
+  constexpr int draws = 40000;
+  int second = 0;
+  for (int i = 0; i < draws; ++i)
+    second += field.draw(point, random);
+  const double expected = partsAt(field, point).at(1) / field.extinction(point);
+  const double error = std::sqrt(expected * (1.0 - expected) / draws);
+  EXPECT_NEAR(second / double{draws}, expected, 4.0 * error);
+  EXPECT_GT(expected, 0.62) << "by shares alone it would be 3/8";
+
+  Random alone(5, 0, 0), untouched(5, 0, 0);
+  EXPECT_EQ(field.draw({Vec3(8.0, 0.0, 0.0), 0.5, 1.0}, alone), 1);
+  EXPECT_EQ(field.draw({Vec3(3.0, 0.5, 0.5), 0.0, 1.0}, alone), 0) << "nothing is there";
+  EXPECT_EQ(alone.bits(), untouched.bits()) << "one component takes no number";
+}
+
+TEST(Mixture, GradientsOfSharesAreInTheWorld) {
+  const Mixture mixture = rampMixture();
+  const MixedField field(mixture, mixture.shares->grid());
+  const Vec3 gradient = field.shareGradient(1, Vec3(4.0, 0.5, 0.5));
+  EXPECT_LT((gradient - Vec3(0.25, 0.0, 0.0)).norm(), 1e-2) << "1/8 a voxel of 0.5 mm";
+  EXPECT_LT((field.shareGradient(0, Vec3(4.0, 0.5, 0.5)) + gradient).norm(), 1e-12);
+}
+
+/// Dense matter of seven components that differ in all; two of them the clip leaves.
+TestScene mixedScene(bool isHybrid) {
+  TestScene scene = sceneOfParts();
+  if (isHybrid)
+    scene.transfer.shading = SurfaceShading{};
+  Mixture mixture{std::make_shared<const Shares>(sharesOf(randomParts(12))), {}};
+  for (int i = 0; i <= 6; ++i) {
+    Component component =
+        componentOf(0.2 + 0.3 * i, Rgb(0.15 * i, 0.5, 0.9 - 0.1 * i), i < 4 ? 0.0 : 0.15 * i - 0.9);
+    component.transfer.extinction =
+        ScalarFunction({knot(0.25, 0.1 * i), knot(0.4 + 0.01 * i, 0.2 + 0.3 * i)});
+    component.isClipped = i % 3 != 2;
+    if (isHybrid)
+      component.transfer.shading = SurfaceShading::coat(0.1 * i, 0.2 + 0.1 * i);
+    mixture.components.push_back(component);
+  }
+  scene.mixture = std::move(mixture);
+  const Vec3 center = scene.volume.grid.worldCenter();
+  const Camera camera(scene.pose, scene.width, scene.height);
+  scene.clip = ClipPlane{camera, center, Vec3(0.3, -1.0, 0.2).normalized(), {0.0, 3.0}};
+  return scene;
+}
+
+/// Of the first collisions, mm.
+double meanDepth(const Film& film) {
+  double sum = 0.0, count = 0.0;
+  for (const PixelSums& pixel : film.pixels()) {
+    sum += pixel.depth;
+    count += static_cast<double>(pixel.collided);
+  }
+  return sum / count;
+}
+
+TEST(Mixture, LanesAreTheScalarEstimator) {
+  for (const bool isHybrid : {false, true}) {
+    const TestScene scene = mixedScene(isHybrid);
+    scene.with([](const RenderScene& all) { ASSERT_TRUE(lanesServe(all)); });
+    const Film lanes = rendered(scene, Transport::fast);
+    const Film scalar = rendered(scene, Transport::readable);
+    const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
+    EXPECT_LT(apart(lanes, scalar, albedo), 0.04) << isHybrid;
+    EXPECT_NEAR(meanDepth(lanes), meanDepth(scalar), 0.1) << isHybrid;
+    const Estimate a = imageEstimate(lanes), b = imageEstimate(scalar);
+    EXPECT_LT(std::abs(a.mean - b.mean), 4.0 * std::hypot(a.error, b.error)) << isHybrid;
+  }
+}
+
+TEST(Mixture, MarchInLanesIsTheReadableOne) {
+  mixedScene(true).with([](const RenderScene& scene) {
+    const ExpectedFlight lanes = expectedFlight(scene), readable = expectedFlightOneByOne(scene);
+    double albedo = 0.0, hit = 0.0;
+    for (std::size_t i = 0; i < lanes.hit.size(); ++i) {
+      hit += std::pow(static_cast<double>(lanes.hit[i] - readable.hit[i]), 2.0);
+      for (std::size_t c = 0; c < 3; ++c)
+        albedo += std::pow(static_cast<double>(lanes.albedo[c][i] - readable.albedo[c][i]), 2.0);
+    }
+    const auto n = static_cast<double>(lanes.hit.size());
+    EXPECT_LT(std::sqrt(albedo / (3.0 * n)), 0.02);
+    EXPECT_LT(std::sqrt(hit / n), 0.02);
+  });
+}
+
+/// In front of the clip there is only what it leaves.
+TEST(Mixture, TheClipLeavesWhatIsFree) {
+  TestScene scene = mixedScene(false);
+  const Vec3 center = scene.volume.grid.worldCenter();
+  const Camera camera(scene.pose, scene.width, scene.height);
+  const auto seen = [&](Transport transport) {
+    const Film film = rendered(scene, transport);
+    double sum = 0.0;
+    for (const PixelSums& pixel : film.pixels())
+      sum += static_cast<double>(pixel.collided);
+    return sum / 64.0;
+  };
+  scene.clip = ClipPlane{camera, center - 100.0 * Vec3::UnitY(), Vec3(0.0, 1.0, 0.0)}; // all of it
+  for (const Transport transport : {Transport::fast, Transport::readable})
+    EXPECT_GT(seen(transport), 5.0) << "pixels";
+  for (Component& component : scene.mixture->components)
+    component.isClipped = true;
+  for (const Transport transport : {Transport::fast, Transport::readable})
+    EXPECT_EQ(seen(transport), 0.0);
+}
+
+TEST(Mixture, BordersAsSurfacesAreTheScalarEstimators) {
+  TestScene scene = mixedScene(true);
+  scene.mixture->components[3].border = 0.5;
+  scene.with([](const RenderScene& all) { EXPECT_FALSE(lanesServe(all)); });
+}
+
+} // namespace
+} // namespace fenestra::testing::MixtureTests

@@ -1,0 +1,81 @@
+#pragma once
+// Random segments, a scene of dense matter around them, and pictures of it.
+
+#include "Support.h"
+#include "base/Random.h"
+
+namespace fenestra::testing {
+
+/// Box of a labelmap with `value` (0 to 255) in each voxel: index coordinates of the labelmap.
+template <typename Value>
+Mask maskOf(const Size3& first, const Size3& size, const Value& value) {
+  Affine map = Affine::Identity();
+  map.linear() = Mat3::Diagonal(Vec3(0.5, 0.75, 2.0));
+  map.translation() = Vec3(3.0, -7.0, 11.0);
+  map.translate(first.cast<double>());
+  Mask mask;
+  mask.grid = Grid(size, map);
+  mask.full = 255;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x)
+        mask.voxels.push_back(static_cast<std::uint8_t>(value(first + Size3(x, y, z))));
+  return mask;
+}
+
+/// Boxes of random indicators that overlap, with a margin of 0; priorities 0 to 2.
+inline std::vector<Shares::Part> randomParts(int count) {
+  std::vector<Shares::Part> parts;
+  for (int i = 0; i < count; ++i) {
+    Random random(7, static_cast<std::uint64_t>(i), 0);
+    const auto whole = [&](double most) {
+      return static_cast<std::int64_t>(random.uniform() * most);
+    };
+    const Size3 first(whole(9), whole(9), whole(9)), size(4 + whole(9), 4 + whole(9), 4 + whole(9));
+    const bool isHard = i % 2 == 0;
+    const auto priority = static_cast<int>(whole(3));
+    const auto value = [&, last = Size3(first + size)](const Size3& voxel) {
+      const bool inside =
+          (voxel.array() > first.array()).all() && (voxel.array() + 1 < last.array()).all();
+      if (!inside)
+        return std::int64_t{0};
+      return isHard ? 255 : whole(256);
+    };
+    parts.push_back({maskOf(first, size, value), priority, static_cast<std::uint8_t>(i % 6 + 1)});
+  }
+  return parts;
+}
+
+/// Dense matter on a grid off that of randomParts(), and partly beyond it.
+inline TestScene sceneOfParts() {
+  const Shares shares = sharesOf(randomParts(12));
+  Affine map = shares.grid().indexToWorld;
+  map.translate(Vec3(0.4, -0.7, 0.2));
+  const Grid grid(shares.grid().size, map);
+  return {makeVolume(grid, [](const Vec3& p) { return 0.3 + 0.02 * p.x(); }),
+          linearTransfer(0.6, Rgb(0.9, 0.8, 0.3)),
+          {EnvironmentLight{}},
+          {.position = grid.worldCenter() + Vec3(0, -100, 20),
+           .target = grid.worldCenter(),
+           .scale = 8.0}};
+}
+
+/// Film of 64 samples a pixel, with normals.
+inline Film rendered(const TestScene& scene, Transport transport) {
+  RenderSettings settings;
+  settings.samples = 64;
+  settings.transport = transport;
+  settings.path.wantNormals = true;
+  return scene.render(settings).film;
+}
+
+/// Root mean square over pixels and channels of the difference of `value`.
+template <typename Value>
+double apart(const Film& a, const Film& b, const Value& value) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.pixelCount(); ++i)
+    sum += (value(a.pixels()[i]) - value(b.pixels()[i])).matrix().squaredNorm();
+  return std::sqrt(sum / (3.0 * static_cast<double>(a.pixelCount())));
+}
+
+} // namespace fenestra::testing
