@@ -64,8 +64,8 @@ TEST(Shares, AreThoseOfTheDefinitionAtVoxels) {
     for (const auto& [component, share] : defined)
       ASSERT_NEAR(found[component], share, 2.5 / 255.0) << component; // others' rounding, too
   });
-  const auto last = [](const Shares::Group& group) { return group.isLast != 0; };
-  EXPECT_FALSE(std::ranges::all_of(shares.groups(), last)); // some bricks have two groups
+  const auto last = [](const Shares::Plane& plane) { return plane.isLast != 0; };
+  EXPECT_FALSE(std::ranges::all_of(shares.planes(), last)); // some bricks have two planes
 }
 
 TEST(Shares, AreTrilinearBetweenVoxelsAndAcrossBricks) {
@@ -105,7 +105,7 @@ TEST(Shares, BricksOfOneComponentArePure) {
   const Shares shares = sharesOf({{maskOf({0, 0, 0}, {33, 9, 9}, inside), 1, 3}});
   EXPECT_EQ(shares.pureFraction(), 1.0);
   EXPECT_EQ(shares.bricks(), std::vector<std::int32_t>(8 * 2 * 2, 3));
-  EXPECT_TRUE(shares.groups().empty());
+  EXPECT_TRUE(shares.planes().empty());
 }
 
 /// Components that differ in colour; two of them have the matter's own.

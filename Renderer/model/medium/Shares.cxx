@@ -135,19 +135,16 @@ public:
   std::optional<std::uint8_t> pure() const {
     return m_shares.size() == 1 ? std::optional(m_shares.front().component) : std::nullopt;
   }
-  std::size_t groupCount() const {
-    return (m_shares.size() + Shares::inGroup - 1) / Shares::inGroup;
-  }
-  /// Writes groupCount() groups.
-  void write(Shares::Group* groups) const {
-    for (std::size_t g = 0; g < groupCount(); ++g) {
-      groups[g].isLast = g + 1 == groupCount();
-      groups[g].components.fill(m_shares.front().component);
+  std::size_t planeCount() const { return m_shares.size() - 1; }
+  /// Writes planeCount() planes.
+  void write(Shares::Plane* planes) const {
+    for (std::size_t c = 0; c < planeCount(); ++c) {
+      planes[c].component = m_shares[c].component;
+      planes[c].rest = m_shares.back().component;
+      planes[c].isLast = c + 1 == planeCount();
     }
-    for (std::size_t c = 0; c < m_shares.size(); ++c)
-      groups[c / Shares::inGroup].components[c % Shares::inGroup] = m_shares[c].component;
     for (std::size_t voxel = 0; voxel < Shares::voxelsInBrick; ++voxel)
-      writeVoxel(voxel, groups);
+      writeVoxel(voxel, planes);
   }
 
 private:
@@ -189,20 +186,20 @@ private:
 
   /// Rounds the shares of a voxel; the greatest, of equals the first component's, takes what
   /// rounding loses or gains.
-  void writeVoxel(std::size_t voxel, Shares::Group* groups) const {
+  void writeVoxel(std::size_t voxel, Shares::Plane* planes) const {
     int left = static_cast<int>(full);
     std::size_t greatest = 0;
     for (std::size_t c = 0; c < m_shares.size(); ++c) {
       const int share = static_cast<int>(std::lround(m_shares[c].share[voxel]));
       left -= share;
-      groups[c / Shares::inGroup].shares[voxel][c % Shares::inGroup] =
-          static_cast<std::uint8_t>(share);
+      if (c < planeCount())
+        planes[c].shares[voxel] = static_cast<std::uint8_t>(share);
       if (m_shares[c].share[voxel] > m_shares[greatest].share[voxel])
         greatest = c;
     }
-    std::uint8_t& most =
-        groups[greatest / Shares::inGroup].shares[voxel][greatest % Shares::inGroup];
-    most = static_cast<std::uint8_t>(most + left);
+    if (greatest < planeCount())
+      planes[greatest].shares[voxel] =
+          static_cast<std::uint8_t>(planes[greatest].shares[voxel] + left);
   }
 
   InBrick m_left;
@@ -229,9 +226,9 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
   m_brickCount = ((m_grid.size.array() - 1).max(1) + edge - 1) / edge;
   m_bricks.resize(static_cast<std::size_t>(m_brickCount.prod()));
 
-  std::vector<std::vector<Group>> layers(static_cast<std::size_t>(m_brickCount.z()));
+  std::vector<std::vector<Plane>> layers(static_cast<std::size_t>(m_brickCount.z()));
   tbb::parallel_for(std::int64_t{0}, m_brickCount.z(), [&](std::int64_t z) {
-    std::vector<Group>& groups = layers[static_cast<std::size_t>(z)];
+    std::vector<Plane>& planes = layers[static_cast<std::size_t>(z)];
     std::vector<PartRows> rows;
     for (const Placed& part : parts)
       if (part.first.z() < edge * z + width && part.end.z() > edge * z)
@@ -246,19 +243,23 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
           code = *pure;
           continue;
         }
-        const std::size_t before = groups.size();
+        const std::size_t before = planes.size();
         code = ~static_cast<std::int32_t>(before);
-        groups.resize(before + shares.groupCount(), Group{});
-        shares.write(&groups[before]);
+        planes.resize(before + shares.planeCount());
+        shares.write(&planes[before]);
       }
     }
   });
-  // A layer's groups are counted from its own first one until now.
+  // A layer's planes are counted from its own first one until now.
+  std::size_t all = 0;
+  for (const std::vector<Plane>& planes : layers)
+    all += planes.size();
+  m_planes.reserve(all);
   std::int64_t next = 0;
   for (std::int64_t z = 0; z < m_brickCount.z(); ++z) {
-    const std::vector<Group>& groups = layers[static_cast<std::size_t>(z)];
-    const auto layersBefore = static_cast<std::int32_t>(m_groups.size());
-    m_groups.insert(m_groups.end(), groups.begin(), groups.end());
+    const std::vector<Plane> planes = std::move(layers[static_cast<std::size_t>(z)]);
+    const auto layersBefore = static_cast<std::int32_t>(m_planes.size());
+    m_planes.insert(m_planes.end(), planes.begin(), planes.end());
     for (std::int64_t i = 0; i < m_brickCount.x() * m_brickCount.y(); ++i, ++next)
       if (std::int32_t& code = m_bricks[static_cast<std::size_t>(next)]; code < 0)
         code -= layersBefore;

@@ -4,9 +4,9 @@
 //
 // Most voxels belong to one component alone, and most others to two. A grid of voxels is cut into
 // bricks of 4^3 cells, which hold all 5^3 voxels that interpolation inside them reads: a look-up
-// reads one brick. A pure brick is one number. A mixed one holds its components by fours, and for
-// each four 32 bits a voxel: lanes read all shares of a voxel at once. Bricks of more than four
-// components have several such groups, one after the other; nothing is left out.
+// reads one brick. A pure brick is one number. A mixed one of k components is k - 1 planes, one
+// after the other, each of one component's shares in 128 bytes; the component of the greatest
+// number gets what they leave, voxel by voxel in whole numbers, and so nothing where it has nothing.
 
 #include "model/volume/Mask.h"
 
@@ -28,15 +28,16 @@ public:
 
   static constexpr std::int64_t edge = 4; ///< cells of a brick along each axis
   static constexpr std::size_t voxelsInBrick = (edge + 1) * (edge + 1) * (edge + 1);
-  static constexpr std::size_t inGroup = 4;
 
-  /// Four components of a mixed brick; of those that it lacks others stand in, without a share.
-  struct Group {
-    std::array<std::uint8_t, inGroup> components;
-    std::uint32_t isLast; ///< 1: the brick's last group; else 0, and the next one is its, too
-    /// Shares of `components` in each voxel, of 255, x fastest.
-    std::array<std::array<std::uint8_t, inGroup>, voxelsInBrick> shares;
+  /// A component of a mixed brick. Its size lets lanes read 32 bits from any voxel on, and the three
+  /// numbers behind the shares in one load.
+  struct alignas(64) Plane {
+    std::array<std::uint8_t, voxelsInBrick> shares; ///< of 255, x fastest
+    std::uint8_t component;
+    std::uint8_t rest;   ///< component that gets what the brick's planes leave: the same in all
+    std::uint8_t isLast; ///< 1: the brick's last plane; else 0, and the next one is its, too
   };
+  static_assert(sizeof(Plane) == 128);
 
   /// Shares in order of the parts' priority, the greater first: with `left` = 1, and U the sum of
   /// the indicators u of a priority, each gets u min(1, left / U), and `left` loses min(left, U);
@@ -48,13 +49,13 @@ public:
   /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.
   const Grid& grid() const { return m_grid; }
   const Size3& brickCount() const { return m_brickCount; }
-  /// A pure brick's component; for a mixed brick ~n, its first group's number n. x fastest.
+  /// A pure brick's component; for a mixed brick ~n, its first plane's number n. x fastest.
   const std::vector<std::int32_t>& bricks() const { return m_bricks; }
-  const std::vector<Group>& groups() const { return m_groups; }
+  const std::vector<Plane>& planes() const { return m_planes; }
   /// Share of pure bricks, 0 to 1.
   double pureFraction() const;
   std::size_t bytes() const {
-    return m_bricks.size() * sizeof(std::int32_t) + m_groups.size() * sizeof(Group);
+    return m_bricks.size() * sizeof(std::int32_t) + m_planes.size() * sizeof(Plane);
   }
 
   /// Calls visit(component) for all components that may have a share in a box (the grid's index
@@ -63,7 +64,7 @@ public:
   void forEachIn(const Box& box, Visit&& visit) const;
 
   /// Calls visit(component, share) for the components at a point (the grid's index space): shares
-  /// are trilinear between voxels, > 0, and sum to 1. A component may come twice.
+  /// are trilinear between voxels, > 0, and sum to 1. Each comes once, by number.
   template <typename Visit>
   void at(const Vec3& index, Visit&& visit) const;
 
@@ -71,7 +72,7 @@ private:
   Grid m_grid;
   Size3 m_brickCount;
   std::vector<std::int32_t> m_bricks;
-  std::vector<Group> m_groups;
+  std::vector<Plane> m_planes;
 };
 
 template <typename Visit>
@@ -90,12 +91,11 @@ void Shares::forEachIn(const Box& box, Visit&& visit) const {
           visit(static_cast<std::uint8_t>(code));
           continue;
         }
-        for (auto group = m_groups.begin() + ~code;; ++group) {
-          for (std::size_t i = 0; i < inGroup; ++i)
-            visit(group->components[i]);
-          if (group->isLast)
-            break;
-        }
+        auto plane = m_planes.begin() + ~code;
+        visit(plane->rest);
+        visit(plane->component);
+        while (!plane->isLast)
+          visit((++plane)->component);
       }
 }
 
@@ -114,21 +114,31 @@ void Shares::at(const Vec3& index, Visit&& visit) const {
   const Vec3 f = inside - cell.cast<double>();
   const std::size_t first =
       numberOf(cell.array() - edge * brick.array(), Size3::Constant(edge + 1));
-  for (auto number = static_cast<std::size_t>(~code);; ++number) {
-    const Group& group = m_groups[number];
-    for (std::size_t i = 0; i < inGroup; ++i) {
-      const auto row = [&](std::size_t offset) {
-        const double a = group.shares[first + offset][i], b = group.shares[first + offset + 1][i];
-        return a + f.x() * (b - a);
-      };
-      constexpr std::size_t up = edge + 1, deep = up * up;
-      const double low = row(0) + f.y() * (row(up) - row(0));
-      const double high = row(deep) + f.y() * (row(deep + up) - row(deep));
-      if (const double share = (low + f.z() * (high - low)) / 255.0; share > 0.0)
-        visit(group.components[i], share);
+  // Whole numbers at the eight voxels around the point.
+  constexpr std::size_t up = edge + 1, deep = up * up;
+  constexpr std::array<std::size_t, 8> corners = {0,    1,        up,        up + 1,
+                                                  deep, deep + 1, deep + up, deep + up + 1};
+  using AtCorners = std::array<int, 8>;
+  const auto give = [&](std::uint8_t component, const AtCorners& values) {
+    const auto row = [&](std::size_t i) {
+      const double a = values[i], b = values[i + 1];
+      return a + f.x() * (b - a);
+    };
+    const auto slice = [&](std::size_t i) { return row(i) + f.y() * (row(i + 2) - row(i)); };
+    if (const double share = (slice(0) + f.z() * (slice(4) - slice(0))) / 255.0; share > 0.0)
+      visit(component, share);
+  };
+  AtCorners left;
+  left.fill(255);
+  for (auto plane = m_planes.begin() + ~code;; ++plane) {
+    AtCorners values;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = plane->shares[first + corners[i]];
+      left[i] -= values[i];
     }
-    if (group.isLast)
-      return;
+    give(plane->component, values);
+    if (plane->isLast)
+      return give(plane->rest, left);
   }
 }
 

@@ -63,10 +63,12 @@ struct Pairs {
   Float first, second;
 };
 
-/// Loads memory[i] and memory[i + 1] for each i.
-HWY_INLINE Pairs loadPairs(const float* memory, const Indices& index) {
+/// Loads 64 bits from memory[i] on for each i.
+template <typename Element>
+HWY_INLINE Pairs loadPairs(const Element* memory, const Indices& index) {
 #if HWY_TARGET == HWY_SCALAR
-  return {memory[index[0]], memory[index[0] + 1]};
+  const auto both = numberAt<std::array<float, 2>>(memory + index[0]);
+  return {both[0], both[1]};
 #else
   constexpr std::size_t half = laneCount / 2;
   const Float::Vector even =

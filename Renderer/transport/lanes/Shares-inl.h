@@ -40,11 +40,17 @@ public:
   HWY_INLINE void forEach(LaneMask which, Visit&& visit) const {
     const Int code = gather(m_shares.bricks, m_corner.brick);
     const LaneMask mixed = which & (code < 0);
-    const LaneMask pure = which.without(mixed);
-    if (pure.any())
-      visit(pure, code, orZero(pure, 1.0F));
-    if (mixed.any())
-      forEachMixed(mixed, code ^ -1, visit);
+    Int components = code;
+    Float share = orZero(which, 1.0F);
+    LaneMask some = which;
+    if (mixed.any()) {
+      const Rest rest = forEachPlane(mixed, code ^ -1, visit);
+      components.where(mixed, rest.components);
+      share.where(mixed, shareOf(rest.bytes));
+      some = share > 0.0F;
+    }
+    if (some.any())
+      visit(some, components, share);
   }
 
 private:
@@ -54,10 +60,13 @@ private:
     Float3 fractions; ///< position from there, 0 to 1
   };
   static constexpr std::int32_t edge = Shares::edge + 1; ///< voxels
-  /// Groups are read as numbers of 32 bits.
-  static constexpr std::int32_t words = sizeof(Shares::Group) / sizeof(std::int32_t);
-  static constexpr std::int32_t sharesAt = offsetof(Shares::Group, shares) / sizeof(std::int32_t);
-  static constexpr std::int32_t isLastAt = offsetof(Shares::Group, isLast) / sizeof(std::int32_t);
+  /// Of a plane, from voxels on: four of a row and the four behind them; then of the next slice.
+  using Bytes = std::array<Int, 4>;
+  /// What the planes of mixed bricks leave.
+  struct Rest {
+    Int components;
+    Bytes bytes;
+  };
 
   HWY_INLINE Corner cornerAt(const Float3& p) const {
     Corner corner{0, 0, p};
@@ -78,39 +87,47 @@ private:
     return corner;
   }
 
-  /// Shares in mixed bricks; `group`: of the first four.
+  /// Shares in mixed bricks, but for the rest's; `plane`: the first of the brick.
   template <typename Visit>
-  HWY_INLINE void forEachMixed(LaneMask mixed, Int group, Visit&& visit) const {
-    const auto* const memory = reinterpret_cast<const std::int32_t*>(m_shares.groups);
-    for (LaneMask left = mixed; left.any(); group = group + 1) {
-      const Int start = orZero(left, group * words);
-      const Int components = loadInts(memory, Indices(start));
-      const std::array<Int, 8> voxels = voxelsFrom(memory, start + sharesAt + m_corner.voxel);
-      for (int i = 0; i < static_cast<int>(Shares::inGroup); ++i) {
-        const Float share = orZero(left, shareOf(voxels, 8 * i));
-        if (const LaneMask some = share > 0.0F; some.any())
-          visit(some, shiftRight(components, 8 * i) & 0xff, share);
-      }
-      left = left & (loadInts(memory, Indices(start + isLastAt)) == 0);
+  HWY_INLINE Rest forEachPlane(LaneMask mixed, Int plane, Visit&& visit) const {
+    constexpr std::int32_t byte = 8, numbersAt = sizeof(Shares::Plane) - sizeof(std::int32_t);
+    static_assert(offsetof(Shares::Plane, component) == numbersAt + 1);
+    const auto* const memory = reinterpret_cast<const std::uint8_t*>(m_shares.planes);
+    Rest rest{0, {-1, -1, -1, -1}};
+    for (LaneMask left = mixed; left.any(); plane = plane + 1) {
+      const Int start = orZero(left, plane * std::int32_t{sizeof(Shares::Plane)});
+      const Int numbers = loadInts(memory + numbersAt, Indices(start));
+      const Bytes bytes = bytesFrom(memory, start + m_corner.voxel);
+      for (std::size_t i = 0; i < bytes.size(); ++i) // no byte of the shares falls below 0
+        rest.bytes[i] = rest.bytes[i] - orZero(left, bytes[i]);
+      rest.components.where(left, shiftRight<2 * byte>(numbers) & 0xff);
+      const Float share = orZero(left, shareOf(bytes));
+      if (const LaneMask some = share > 0.0F; some.any())
+        visit(some, shiftRight<byte>(numbers) & 0xff, share);
+      left = left & (numbers < 1 << 3 * byte);
     }
+    return rest;
   }
 
-  static HWY_INLINE std::array<Int, 8> voxelsFrom(const std::int32_t* memory, Int first) {
-    std::array<Int, 8> voxels;
-    for (std::int32_t i = 0; i < 8; ++i) {
-      const std::int32_t offset = (i & 1) + edge * (i >> 1 & 1) + edge * edge * (i >> 2);
-      voxels[static_cast<std::size_t>(i)] = loadInts(memory + offset, Indices(first));
-    }
-    return voxels;
+  static HWY_INLINE Bytes bytesFrom(const std::uint8_t* memory, Int first) {
+    const Indices index(first);
+    const Pairs low = loadPairs(memory, index), high = loadPairs(memory + edge * edge, index);
+    return {bitsAsInt(low.first), bitsAsInt(low.second), bitsAsInt(high.first),
+            bitsAsInt(high.second)};
   }
 
-  /// Share in the eight bits from `bit` on, trilinear.
-  HWY_INLINE Float shareOf(const std::array<Int, 8>& voxels, int bit) const {
+  /// Share, trilinear between the eight voxels around the point.
+  HWY_INLINE Float shareOf(const Bytes& bytes) const {
+    static_assert(edge == 5); // the next row is a byte beyond the first four
     const Float3& f = m_corner.fractions;
-    const auto value = [&](std::size_t i) { return toFloat(shiftRight(voxels[i], bit) & 0xff); };
-    const auto row = [&](std::size_t i) { return lerp(value(i), value(i + 1), f.x); };
-    const auto slice = [&](std::size_t i) { return lerp(row(i), row(i + 2), f.y); };
-    return lerp(slice(0), slice(4), f.z) * (1.0F / 255.0F);
+    const auto slice = [&](std::size_t i) {
+      const Int row = bytes[i], next = bytes[i + 1];
+      return lerp(lerp(toFloat(row & 0xff), toFloat(shiftRight<8>(row) & 0xff), f.x),
+                  lerp(toFloat(shiftRight<8>(next) & 0xff), toFloat(shiftRight<16>(next) & 0xff),
+                       f.x),
+                  f.y);
+    };
+    return lerp(slice(0), slice(2), f.z) * (1.0F / 255.0F);
   }
 
   const WideShares& m_shares;

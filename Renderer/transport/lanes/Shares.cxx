@@ -3,14 +3,14 @@
 namespace fenestra {
 
 bool WideShares::serves(const Shares& shares) {
-  constexpr std::size_t most = std::size_t{1} << 31; // indices of 32 bits
-  return shares.groups().size() < most / (sizeof(Shares::Group) / sizeof(std::int32_t));
+  constexpr std::size_t most = std::size_t{1} << 32; // indices of 32 bits
+  return shares.planes().size() <= most / sizeof(Shares::Plane);
 }
 
 WideShares::WideShares(const Shares& shares, const Grid& volume)
     : toShares(affineRows(shares.grid().worldToIndex * volume.indexToWorld)),
       bricks(shares.bricks().data()),
-      groups(shares.groups().data()) {
+      planes(shares.planes().data()) {
   std::int32_t stride = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t size = shares.grid().size[axis];

@@ -18,7 +18,7 @@ struct WideShares {
     std::int32_t brick; ///< offset of the next brick
   };
 
-  /// True if lanes can number the words of all groups.
+  /// True if lanes can number the bytes of all planes.
   static bool serves(const Shares& shares);
   /// `volume`: whose points are asked for.
   WideShares(const Shares& shares, const Grid& volume);
@@ -26,7 +26,7 @@ struct WideShares {
   AffineRows toShares; ///< from the volume's index space
   std::array<Axis, 3> axes;
   const std::int32_t* bricks; ///< Shares::bricks()
-  const Shares::Group* groups;
+  const Shares::Plane* planes;
 };
 
 } // namespace fenestra
