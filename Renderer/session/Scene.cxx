@@ -75,7 +75,8 @@ void Scene::makeTint() {
   const SceneRequest& r = m_request;
   const auto materials = m_materials.of(r.materials);
   const bool setsOff = materials->setsOffFocus();
-  const auto plan = m_plan.of(m_segments.result(), materials, r.materialChanges,
+  const auto there = m_segmentsThere.of(m_segments.result());
+  const auto plan = m_plan.of(m_segments.result(), there, materials, r.materialChanges,
                               setsOff ? r.focus : std::vector<std::string>());
   const auto shares =
       m_shares.of(m_segments.result(), plan->parts, r.focusLook.shaping.smoothing, volume().grid);
@@ -95,9 +96,9 @@ StageSeconds Scene::seconds() const {
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() +
                   m_look.seconds(),
-          .materials = m_materials.seconds() + m_plan.seconds() + m_shares.seconds() +
-                       m_tint.seconds() + m_borders.seconds() + m_tintContrast.seconds() +
-                       m_contrastedTint.seconds() + m_mixture.seconds(),
+          .materials = m_materials.seconds() + m_segmentsThere.seconds() + m_plan.seconds() +
+                       m_shares.seconds() + m_tint.seconds() + m_borders.seconds() +
+                       m_tintContrast.seconds() + m_contrastedTint.seconds() + m_mixture.seconds(),
           .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
                       m_style.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,

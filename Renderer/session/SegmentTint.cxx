@@ -133,17 +133,24 @@ void takeMaterial(const Material& material, Component& component) {
 
 } // namespace
 
-TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<NamedMaterials>& materials,
-                  const std::vector<std::string>& changes, const std::vector<std::string>& focus) {
+std::vector<bool> segmentsThere(const Handle<SegmentsInput>& input) {
+  std::vector<bool> there;
+  for (const SegmentStatistics& segment : input->segmentation.statistics())
+    there.push_back(segment.voxels > 0);
+  return there;
+}
+
+TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<bool>>& there,
+                  const Handle<NamedMaterials>& materials, const std::vector<std::string>& changes,
+                  const std::vector<std::string>& focus) {
   const Segmentation& segmentation = input->segmentation;
-  const std::vector<SegmentStatistics> statistics = segmentation.statistics();
   const std::vector<SegmentMaterial> all = matterOf(segmentation, *materials, changes);
   const std::vector<bool> isFocus = focusOf(segmentation, *materials, focus);
   TintPlan plan{
       .parts = {}, .components = {{restOf(*materials)}}, .names = {"the rest"}, .isFocus = {false}};
   std::map<std::pair<std::uint8_t, int>, std::vector<std::size_t>> segments;
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (statistics[i].voxels > 0) {
+    if ((*there)[i]) {
       const std::uint8_t component = componentOf(all[i], segmentation.segments()[i].name,
                                                  isFocus[i], plan, segmentation.source());
       segments[{component, all[i].matter.priority}].push_back(i);

@@ -30,13 +30,18 @@ struct TintPlan {
   std::vector<bool> isFocus;      ///< by component; none is where nothing sets off the focus
 };
 
-/// Components of the segments that have voxels: one for each matter, and, where materials set off
-/// the focus, those of the focus apart. `changes`: of --material, over the materials that the table
-/// gives; with contrast a segment of which nothing is known keeps the volume's own colours.
-/// `focus`: ids, names or label values. Throws Error (input) for a change to an unknown segment,
-/// for colours of a context without a focus, without any voxel, and for more than 256 components.
-TintPlan tintPlan(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
-                  const std::vector<std::string>& changes, const std::vector<std::string>& focus);
+/// By place in Segmentation::segments(): true if the segment has a voxel. Reads all labels.
+std::vector<bool> segmentsThere(const Handle<SegmentsInput>& segments);
+
+/// Components of the segments that have voxels (`there`: segmentsThere): one for each matter, and,
+/// where materials set off the focus, those of the focus apart. `changes`: of --material, over the
+/// materials that the table gives; with contrast a segment of which nothing is known keeps the
+/// volume's own colours. `focus`: ids, names or label values. Throws Error (input) for a change to
+/// an unknown segment, for colours of a context without a focus, without any voxel, and for more
+/// than 256 components.
+TintPlan tintPlan(const Handle<SegmentsInput>& segments, const Handle<std::vector<bool>>& there,
+                  const Handle<NamedMaterials>& materials, const std::vector<std::string>& changes,
+                  const std::vector<std::string>& focus);
 
 /// Shares of the components. `smoothing`: MaskShaping's.
 Shares tintShares(const Handle<SegmentsInput>& segments, const std::vector<TintPart>& parts,

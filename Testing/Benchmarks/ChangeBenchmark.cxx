@@ -1,6 +1,7 @@
 // Time from a change to the first new sample, which the user of a preview waits for all day.
 //
-//     ChangeBenchmark FOCUS ARGUMENTS...     (FOCUS: the changed focus; ARGUMENTS: of `fenestra`)
+//     ChangeBenchmark FOCUS ARGUMENTS...     (FOCUS: the changed focus, or coloured segment;
+//                                             ARGUMENTS: of `fenestra`)
 
 #include "base/Error.h"
 #include "base/Stopwatch.h"
@@ -11,6 +12,7 @@
 #include <functional>
 #include <iomanip>
 #include <iostream>
+#include <vector>
 
 namespace fenestra {
 namespace {
@@ -43,13 +45,17 @@ double firstSample(const Scene& scene, RenderSettings settings) {
 }
 
 void measure(const std::string& otherFocus, const RenderOptions& options) {
-  const Change changes[] = {
+  std::vector<Change> changes = {
       {"nothing, from the start", [](SceneRequest&) {}},
       {"camera", [](SceneRequest& r) { r.view.name = "left"; }},
       {"focus", [&](SceneRequest& r) { r.focus = {otherFocus}; }},
       {"clip", [](SceneRequest& r) { r.clip.mode = ClipMode::cutaway; }},
       {"transfer function", [](SceneRequest& r) { r.density *= 2.0; }},
       {"lights", [](SceneRequest& r) { r.environment = Rgb(1.0, 1.0, 1.0); }}};
+  if (options.scene.materials != noMaterials)
+    changes.push_back({"a segment's colour", [&](SceneRequest& r) {
+                         r.materialChanges.push_back(otherFocus + ": color=#3060c0");
+                       }});
   std::cout << "| change | made anew | seconds | and with the first sample |\n|---|---|---|---|\n"
             << std::fixed << std::setprecision(3);
   const Scene before(options.scene);
@@ -57,7 +63,7 @@ void measure(const std::string& otherFocus, const RenderOptions& options) {
     SceneRequest request = options.scene;
     change.apply(request);
     const Stopwatch watch;
-    const Scene scene = &change == changes ? Scene(request) : before.changed(request);
+    const Scene scene = &change == &changes.front() ? Scene(request) : before.changed(request);
     const double made = watch.seconds();
     std::cout << "| " << change.name << " | " << text(scene.made()) << " | " << made << " | "
               << made + firstSample(scene, options.settings) << " |\n";

@@ -36,7 +36,8 @@ const Handle<NamedMaterials> automatic = std::make_shared<NamedMaterials>(namedM
 TintPlan planOf(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
                 const std::vector<std::string>& changes = {},
                 const std::vector<std::string>& focus = {}) {
-  return tintPlan(segments, materials, changes, focus);
+  const auto there = std::make_shared<std::vector<bool>>(segmentsThere(segments));
+  return tintPlan(segments, there, materials, changes, focus);
 }
 
 using Parts = std::vector<TintPart>;
@@ -120,9 +121,9 @@ TEST(SegmentTint, MatterMakesAMixture) {
 
 TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   const auto segments = row({"kidney_left", "kidney_right", "spleen", "liver"});
-  TransferFunction own{ScalarFunction({{0.0, ScalarFunction::Value(0.0)},
-                                       {100.0, ScalarFunction::Value(2.0)}}),
-                       ColorFunction({{0.0, Rgb(0.3, 0.4, 0.5)}})};
+  TransferFunction own{
+      ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(2.0)}}),
+      ColorFunction({{0.0, Rgb(0.3, 0.4, 0.5)}})};
   own.g = 0.3;
   own.gradientOpacity = own.extinction;
   own.shading = SurfaceShading{0.8, 0.3, 12.0, 0.7};
@@ -134,7 +135,8 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
               "liver: kind=matter"}));
   const auto shares = std::make_shared<Shares>(
       tintShares(segments, plan->parts, 0.0, segments->segmentation.grid()));
-  const Mixture mixture = mixtureOf(*plan, *std::make_shared<Tint>(tintOf(plan, shares, own.g)), own);
+  const Mixture mixture =
+      mixtureOf(*plan, *std::make_shared<Tint>(tintOf(plan, shares, own.g)), own);
   ASSERT_EQ(mixture.components.size(), 5U);
   EXPECT_TRUE(mixture.hasFree());
   const auto extinctionAt = [&](std::size_t i, double scalar) {

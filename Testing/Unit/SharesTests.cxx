@@ -100,12 +100,37 @@ TEST(Shares, DoNotDependOnTheOrderOfParts) {
             [&](const Vec3& at) { ASSERT_EQ(sharesAt(shares, at), sharesAt(reversed, at)); });
 }
 
+TEST(Shares, WhatPlanesLeaveIsNothingWhereOthersHaveAll) {
+  const auto some = [](const Size3& v) { return (37 * v.x() + 91 * v.y() + 53 * v.z()) % 256; };
+  const Size3 first(0, 0, 0), size(12, 9, 9);
+  const auto partOf = [&](std::uint8_t component, const auto& value) {
+    return Shares::Part{maskOf(first, size, value), 1, component};
+  };
+  const Shares shares =
+      sharesOf({partOf(1, [&](const Size3& v) { return v.x() < 8 ? some(v) : 0; }),
+                partOf(2, [&](const Size3& v) { return v.x() < 8 ? 255 - some(v) : 0; }),
+                partOf(3, [](const Size3& v) { return v.x() < 8 ? 0 : 255; })});
+  Random random(3, 0, 0);
+  for (int i = 0; i < 2000; ++i) { // in bricks that have all three
+    const Vec3 at(4.0 + 3.0 * random.uniform(), 8.0 * random.uniform(), 8.0 * random.uniform());
+    shares.at(at, [&](std::uint8_t component, double) { ASSERT_LT(component, 3); });
+  }
+  EXPECT_EQ(sharesAt(shares, shares.grid().indexToWorld * Vec3(8, 3, 3)), (ByComponent{{3, 1.0}}));
+}
+
 TEST(Shares, BricksOfOneComponentArePure) {
   const auto inside = [](const Size3&) { return 255; };
   const Shares shares = sharesOf({{maskOf({0, 0, 0}, {33, 9, 9}, inside), 1, 3}});
   EXPECT_EQ(shares.pureFraction(), 1.0);
   EXPECT_EQ(shares.bricks(), std::vector<std::int32_t>(8 * 2 * 2, 3));
   EXPECT_TRUE(shares.planes().empty());
+}
+
+TEST(Shares, MixedBricksOfTwoComponentsTakeOnePlane) {
+  const auto half = [](const Size3& voxel) { return voxel.x() < 6 ? 255 : 0; };
+  const Shares shares = sharesOf({{maskOf({0, 0, 0}, {13, 5, 5}, half), 1, 1}});
+  EXPECT_EQ(shares.bricks(), (std::vector<std::int32_t>{1, ~0, 0}));
+  EXPECT_EQ(shares.bytes(), 3 * sizeof(std::int32_t) + 128);
 }
 
 /// Components that differ in colour; two of them have the matter's own.

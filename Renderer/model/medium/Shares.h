@@ -6,7 +6,8 @@
 // bricks of 4^3 cells, which hold all 5^3 voxels that interpolation inside them reads: a look-up
 // reads one brick. A pure brick is one number. A mixed one of k components is k - 1 planes, one
 // after the other, each of one component's shares in 128 bytes; the component of the greatest
-// number gets what they leave, voxel by voxel in whole numbers, and so nothing where it has nothing.
+// number gets what they leave, voxel by voxel in whole numbers, and so nothing where it has
+// nothing.
 
 #include "model/volume/Mask.h"
 
@@ -29,8 +30,8 @@ public:
   static constexpr std::int64_t edge = 4; ///< cells of a brick along each axis
   static constexpr std::size_t voxelsInBrick = (edge + 1) * (edge + 1) * (edge + 1);
 
-  /// A component of a mixed brick. Its size lets lanes read 32 bits from any voxel on, and the three
-  /// numbers behind the shares in one load.
+  /// A component of a mixed brick. Its size lets lanes read 32 bits from any voxel on, and the
+  /// three numbers behind the shares in one load.
   struct alignas(64) Plane {
     std::array<std::uint8_t, voxelsInBrick> shares; ///< of 255, x fastest
     std::uint8_t component;

@@ -70,20 +70,23 @@ private:
 
   HWY_INLINE Corner cornerAt(const Float3& p) const {
     Corner corner{0, 0, p};
-    std::int32_t stride = 1;
+    Float voxel = 0.0F;
+    float stride = 1.0F;
     const auto along = [&](const WideShares::Axis& axis, Float x, Float& fraction) {
       // This order of min and max maps NaN to 0.
       const Float inside = max(min(x, axis.last), 0.0F);
       const Float cell = min(floor(inside), axis.lastCell);
       const Float brick = floor(cell * (1.0F / Shares::edge));
       fraction = inside - cell;
-      corner.brick = corner.brick + wholeToInt(brick) * axis.brick;
-      corner.voxel = corner.voxel + wholeToInt(cell - brick * float{Shares::edge}) * stride;
+      voxel = fma(cell - brick * float{Shares::edge}, stride, voxel);
       stride *= edge;
+      return wholeToInt(brick);
     };
-    along(m_shares.axes[0], p.x, corner.fractions.x);
-    along(m_shares.axes[1], p.y, corner.fractions.y);
-    along(m_shares.axes[2], p.z, corner.fractions.z);
+    const Int x = along(m_shares.axes[0], p.x, corner.fractions.x);
+    const Int y = along(m_shares.axes[1], p.y, corner.fractions.y);
+    const Int z = along(m_shares.axes[2], p.z, corner.fractions.z);
+    corner.brick = x + y * m_shares.axes[1].brick + z * m_shares.axes[2].brick;
+    corner.voxel = wholeToInt(voxel);
     return corner;
   }
 
@@ -122,10 +125,10 @@ private:
     const Float3& f = m_corner.fractions;
     const auto slice = [&](std::size_t i) {
       const Int row = bytes[i], next = bytes[i + 1];
-      return lerp(lerp(toFloat(row & 0xff), toFloat(shiftRight<8>(row) & 0xff), f.x),
-                  lerp(toFloat(shiftRight<8>(next) & 0xff), toFloat(shiftRight<16>(next) & 0xff),
-                       f.x),
-                  f.y);
+      return lerp(
+          lerp(toFloat(row & 0xff), toFloat(shiftRight<8>(row) & 0xff), f.x),
+          lerp(toFloat(shiftRight<8>(next) & 0xff), toFloat(shiftRight<16>(next) & 0xff), f.x),
+          f.y);
     };
     return lerp(slice(0), slice(2), f.z) * (1.0F / 255.0F);
   }
