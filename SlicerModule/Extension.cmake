@@ -17,9 +17,9 @@ string(TOUPPER ${MODULE_NAME} MODULE_NAME_UPPER)
 add_subdirectory(MRML)
 add_subdirectory(Logic)
 
-set(module_classes qSlicerFenestraClipping qSlicerFenestraLook qSlicerFenestraMargins qSlicerFenestraModule
-  qSlicerFenestraModuleWidget qSlicerFenestraPanel qSlicerFenestraPlayer qSlicerFenestraSession
-  qSlicerFenestraSettings)
+set(module_classes qSlicerFenestraClipping qSlicerFenestraLook qSlicerFenestraMargins qSlicerFenestraMaterials
+  qSlicerFenestraModule qSlicerFenestraModuleWidget qSlicerFenestraPanel qSlicerFenestraPlayer
+  qSlicerFenestraSession qSlicerFenestraSettings)
 set(module_sources qSlicerFenestraSessionPreview.cxx qSlicerFenestraLights.cxx qSlicerFenestraLights.h qSlicerFenestraMeasures.cxx
   qSlicerFenestraMeasures.h qSlicerFenestraResults.cxx qSlicerFenestraResults.h
   qSlicerFenestraWidgets.cxx qSlicerFenestraWidgets.h)

@@ -1,6 +1,7 @@
 #include "qSlicerFenestraModuleWidget.h"
 
 #include "qFenestraCopies.h"
+#include "qSlicerFenestraMaterials.h"
 #include "qSlicerFenestraMeasures.h"
 #include "qSlicerFenestraModule.h"
 #include "qSlicerFenestraPanel.h"
@@ -107,6 +108,7 @@ void qSlicerFenestraModuleWidget::connectPanel() {
 
 void qSlicerFenestraModuleWidget::connectSession() {
   connect(m_settings, &qSlicerFenestraSettings::changed, this, [this] {
+    m_session->learnMaterials(vtkSlicerFenestraLogic::GetSegments(m_settings->node()));
     updateButtons();
     preview();
   });
@@ -115,6 +117,8 @@ void qSlicerFenestraModuleWidget::connectSession() {
             m_panel->offer(abilities);
             m_settings->use(m_settings->node());
           });
+  connect(m_session, &qSlicerFenestraSession::materialsTold, m_panel->materials,
+          &qSlicerFenestraMaterials::tell);
   connect(m_session, &qSlicerFenestraSession::previewed, this,
           &qSlicerFenestraModuleWidget::showPicture);
   connect(m_session, &qSlicerFenestraSession::previewRefused, m_panel->previewState,

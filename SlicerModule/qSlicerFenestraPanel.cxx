@@ -3,6 +3,7 @@
 #include "qFenestraAbilities.h"
 #include "qSlicerFenestraClipping.h"
 #include "qSlicerFenestraLook.h"
+#include "qSlicerFenestraMaterials.h"
 #include "qSlicerFenestraPlayer.h"
 #include "qSlicerFenestraWidgets.h"
 
@@ -103,6 +104,7 @@ qSlicerFenestraPanel::qSlicerFenestraPanel(QWidget* parent) : QWidget(parent) {
   buildPreview(layout);
   buildRender(layout);
   buildSubject(layout);
+  buildMaterials(layout);
   buildView(layout);
   buildQuality(layout);
   buildAnimation(layout);
@@ -171,6 +173,15 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   clipping = new qSlicerFenestraClipping(nodes("vtkMRMLMarkupsPlaneNode", "PlaneNodeBox"));
   clipping->setObjectName("Clipping");
   form->addRow(clipping);
+}
+
+void qSlicerFenestraPanel::buildMaterials(QVBoxLayout* layout) {
+  QFormLayout* form = section(layout, tr("Materials"), true);
+  m_materials = form->parentWidget();
+  m_materials->hide();
+  materials = new qSlicerFenestraMaterials;
+  materials->setObjectName("MaterialsOfSegments");
+  form->addRow(materials);
 }
 
 void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
@@ -340,6 +351,7 @@ void qSlicerFenestraPanel::offer(const qFenestraAbilities& abilities) {
     offerChoice(preset, preset->count(), anatomy, abilities.names("preset", anatomy.data));
   }
   look->offer(abilities);
+  m_materials->setVisible(abilities.flags.contains("material"));
   animation->setVisible(abilities.turns());
   const bool steadies = abilities.turntable.contains("--steady");
   showRow(qobject_cast<QFormLayout*>(animation->layout()), steady, steadies);

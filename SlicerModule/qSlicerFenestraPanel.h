@@ -9,6 +9,7 @@
 class qMRMLNodeComboBox;
 class qSlicerFenestraClipping;
 class qSlicerFenestraLook;
+class qSlicerFenestraMaterials;
 class qSlicerFenestraPlayer;
 class QCheckBox;
 class QComboBox;
@@ -47,6 +48,7 @@ public:
   QLabel* withheld;   ///< flags of the scene that are withheld; hidden if there are none
   QPushButton* allow; ///< allows the withheld files
   qSlicerFenestraClipping* clipping;
+  qSlicerFenestraMaterials* materials;
 
   QComboBox* view; ///< data: the flag's word; empty: the camera of a 3-D view
   qMRMLNodeComboBox* view3D;
@@ -92,6 +94,7 @@ signals:
 
 private:
   void buildSubject(QVBoxLayout* layout);
+  void buildMaterials(QVBoxLayout* layout);
   void buildPreview(QVBoxLayout* layout);
   void buildView(QVBoxLayout* layout);
   void buildQuality(QVBoxLayout* layout);
@@ -102,6 +105,7 @@ private:
   qMRMLNodeComboBox* nodes(const QString& type, const QString& name);
 
   QFormLayout* m_subject;
+  QWidget* m_materials; ///< section of the materials; hidden if the renderer has none
 };
 
 #endif

@@ -1,5 +1,7 @@
 #include "qSlicerFenestraSession.h"
 
+#include "FenestraMaterials.h"
+
 #include <QCoreApplication>
 #include <QDebug>
 #include <QDir>
@@ -86,6 +88,8 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
           [this](int, const QString& words) { emit reached(words); });
   connect(&m_queue, &qFenestraQueue::ended, this, &qSlicerFenestraSession::finishRender);
   connect(&m_question, &qFenestraQuestion::told, this, &qSlicerFenestraSession::learned);
+  connect(&m_materials, &qFenestraMaterialsQuestion::told, this,
+          &qSlicerFenestraSession::materialsTold);
   connect(this, &qSlicerFenestraSession::ended, this, [](Node*, const qFenestraOutcome& outcome) {
     if (outcome.kind == Ended::failed)
       qCritical().noquote() << "Fenestra:" << outcome.message << outcome.details;
@@ -98,6 +102,7 @@ qSlicerFenestraSession::~qSlicerFenestraSession() {
   disconnect(&m_queue, nullptr, this, nullptr);
   disconnect(&m_preview, nullptr, this, nullptr);
   disconnect(&m_question, nullptr, this, nullptr);
+  disconnect(&m_materials, nullptr, this, nullptr);
   m_preview.stop();
   m_worker.clear();
   m_worker.waitForDone();
@@ -110,6 +115,14 @@ void qSlicerFenestraSession::removeFolder(const QString& folder) {
 
 void qSlicerFenestraSession::learn() {
   m_question.ask(m_program);
+}
+
+void qSlicerFenestraSession::learnMaterials(const std::vector<FenestraScene::Segment>& segments) {
+  if (segments == m_asked)
+    return;
+  m_asked = segments;
+  if (!segments.empty())
+    m_materials.ask(m_program, segments, m_files->folder.path());
 }
 
 void qSlicerFenestraSession::work(const std::function<void()>& job) {
@@ -151,6 +164,7 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   }
   m_preview.stop();
   Node* node = m_logic->AddRender(settings, kind == Kind::turntable);
+  node->SetFlags(FenestraScene::withMaterialsOf(contents.segmentation.segments, node->GetFlags()));
   const int id = ++m_last;
   m_renders[id] = {node, m_files, {}};
   const bool withSurface = vtkSlicerFenestraLogic::HasSurface(node->GetFlags()) &&

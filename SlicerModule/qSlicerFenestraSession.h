@@ -4,6 +4,7 @@
 #include "FenestraSceneFiles.h"
 #include "qFenestraAbilities.h"
 #include "qFenestraFolder.h"
+#include "qFenestraMaterials.h"
 #include "qFenestraPreview.h"
 #include "qFenestraQueue.h"
 #include "qSlicerFenestraModuleExport.h"
@@ -60,6 +61,9 @@ public:
 
   /// Asks the renderer what it can do, which `learned` tells.
   void learn();
+  /// Asks what the renderer makes the segments of, which `materialsTold` tells; the same segments
+  /// are not asked about again.
+  void learnMaterials(const std::vector<FenestraScene::Segment>& segments);
   /// Previews the settings from now on; null: ends the preview.
   void preview(vtkMRMLFenestraRenderNode* settings);
 
@@ -77,6 +81,7 @@ public slots:
 signals:
   /// Abilities of the renderer, soon after learn().
   void learned(const qFenestraAbilities& abilities);
+  void materialsTold(const qFenestraMaterials& materials);
   void previewed(const QImage& picture, const qFenestraPicture& what);
   /// A sentence for the user; the last preview stays.
   void previewRefused(const QString& message);
@@ -118,9 +123,9 @@ private:
   void endRender(int id, const qFenestraOutcome& outcome);
 
   void follow();
-  void startPreview(const FenestraScene::Contents& contents, const QJsonObject& flags);
-  QJsonObject previewFlags(std::map<std::string, std::string> flags,
-                           const FenestraScene::Contents& contents) const;
+  using Flags = std::map<std::string, std::string>;
+  void startPreview(const FenestraScene::Contents& contents, const Flags& flags);
+  Flags previewFlags(Flags flags, const FenestraScene::Contents& contents) const;
   QString propertyFile(const FenestraScene::Contents& contents) const;
   void tellPreview(const QJsonObject& flags);
   void showPreview(const qFenestraPicture& picture);
@@ -134,6 +139,8 @@ private:
   QThreadPool m_worker;
 
   qFenestraQuestion m_question;
+  qFenestraMaterialsQuestion m_materials;
+  std::vector<FenestraScene::Segment> m_asked; ///< segments of the last question
   qFenestraQueue m_queue;
   QMap<int, Render> m_renders; ///< under way and waiting
   qSlicerFenestraResults m_results;

@@ -2,6 +2,9 @@
 
 #include "qSlicerFenestraSession.h"
 
+#include "FenestraFlags.h"
+#include "FenestraMaterials.h"
+
 #include <QCryptographicHash>
 #include <QDir>
 #include <QFile>
@@ -14,7 +17,6 @@
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
-using Flags = std::map<std::string, std::string>;
 
 /// Data whose change requires a new preview: volume, segmentation, transforms, crop.
 std::string dataOf(const FenestraScene::Contents& contents) {
@@ -62,17 +64,17 @@ void qSlicerFenestraSession::follow() {
   try {
     const FenestraScene::Contents contents =
         m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
-    const QJsonObject flags = previewFlags(m_logic->GetFlags(m_previewed), contents);
+    const Flags flags = previewFlags(m_logic->GetFlags(m_previewed), contents);
     if (!m_preview.running() || dataOf(contents) != m_shownData)
       return startPreview(contents, flags);
-    tellPreview(flags);
+    tellPreview(qFenestraPreview::valuesOf(flags));
   } catch (const FenestraScene::Complaint& complaint) {
     emit previewRefused(QString::fromUtf8(complaint.what()));
   }
 }
 
 void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& contents,
-                                          const QJsonObject& flags) {
+                                          const Flags& flags) {
   m_starting = true;
   m_shownData = dataOf(contents);
   write(contents, [this, flags, files = m_files](const QString& scene, const QString& message) {
@@ -80,9 +82,9 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
     if (!message.isEmpty() || !m_previewed)
       return message.isEmpty() ? void() : emit previewRefused(message);
     QStringList arguments = {scene, "--output=preview.png"};
-    for (auto flag = flags.begin(); flag != flags.end(); ++flag)
-      arguments << "--" + flag.key() + "=" + flag.value().toString();
-    m_told = flags;
+    for (const std::string& argument : FenestraScene::argumentsOf(flags))
+      arguments << QString::fromStdString(argument);
+    m_told = qFenestraPreview::valuesOf(flags);
     const QString folder = QFileInfo(scene).absolutePath();
     if (rendering() || files != m_files) // the scene was closed meanwhile
       return removeFolder(folder);
@@ -93,8 +95,9 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
 }
 
 /// The node's flags, adapted to a preview.
-QJsonObject qSlicerFenestraSession::previewFlags(Flags flags,
-                                                 const FenestraScene::Contents& contents) const {
+std::map<std::string, std::string>
+qSlicerFenestraSession::previewFlags(Flags flags, const FenestraScene::Contents& contents) const {
+  flags = FenestraScene::withMaterialsOf(contents.segmentation.segments, std::move(flags));
   for (const char* name : {"seconds", "seed", "samples"})
     flags.erase(name);
   for (const std::string& name : Node::GetTurntableFlagNames())
@@ -103,10 +106,7 @@ QJsonObject qSlicerFenestraSession::previewFlags(Flags flags,
   flags["size"] = previewSize(flags["size"]);
   if (flags.count("transfer") == 0 && flags.count("preset") == 0 && !contents.property.empty())
     flags["transfer"] = propertyFile(contents).toStdString();
-  QJsonObject all;
-  for (const auto& [name, value] : flags)
-    all[QString::fromStdString(name)] = QString::fromStdString(value);
-  return all;
+  return flags;
 }
 
 /// File named by a hash of its content: another transfer function is another file.

@@ -3,6 +3,7 @@
 #include "FenestraFlags.h"
 #include "qSlicerFenestraClipping.h"
 #include "qSlicerFenestraLook.h"
+#include "qSlicerFenestraMaterials.h"
 #include "qSlicerFenestraPanel.h"
 #include "qSlicerFenestraWidgets.h"
 #include "vtkSlicerFenestraLogic.h"
@@ -67,6 +68,7 @@ void qSlicerFenestraSettings::connectPanel() {
           &Settings::takePreset);
   connect(panel.view, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &Settings::take);
   connect(panel.look, &qSlicerFenestraLook::changed, this, &Settings::take);
+  connect(panel.materials, &qSlicerFenestraMaterials::changed, this, &Settings::take);
   connect(panel.allow, &QPushButton::clicked, this, [this] {
     if (m_node)
       m_node->AllowFiles();
@@ -87,6 +89,7 @@ void qSlicerFenestraSettings::use(Node* node) {
   m_node = node;
   m_volume = m_segmentation = m_camera = m_plane = nullptr;
   m_panel->clipping->reset();
+  m_panel->materials->reset();
   if (!m_node)
     return;
   this->qvtkConnect(m_node, vtkCommand::ModifiedEvent, this, SLOT(show()));
@@ -183,7 +186,17 @@ void qSlicerFenestraSettings::onPlaneMoved() {
 
 void qSlicerFenestraSettings::onDataChanged() {
   showSegments();
+  takeMaterials();
   emit changed();
+}
+
+/// Takes the materials alone: a segment may be gone, or there again.
+void qSlicerFenestraSettings::takeMaterials() {
+  if (!m_node || m_showing)
+    return;
+  Flags flags = m_node->GetFlags();
+  m_panel->materials->take(flags);
+  m_node->SetFlags(flags);
 }
 
 // ---- from the node to the panel
@@ -204,6 +217,7 @@ void qSlicerFenestraSettings::show() {
     watchPlane();
     showSegments();
     showSubject(flags);
+    m_panel->materials->show(flags);
     m_panel->showWithheld(m_node->GetWithheld(), m_node->WithholdsFiles());
     showView(flags);
     m_panel->look->show(flags, m_node->GetAttribute(rigAttribute), hasPreset());
@@ -223,6 +237,11 @@ void qSlicerFenestraSettings::showSegments() {
     node->GetSegmentation()->GetSegmentIDs(ids);
     focus = m_node->GetFocus();
   }
+  QList<qSlicerFenestraSegment> segments;
+  for (const std::string& id : ids)
+    segments.append({QString::fromStdString(id),
+                     QString::fromUtf8(node->GetSegmentation()->GetSegment(id)->GetName())});
+  m_panel->materials->list(segments);
   QListWidget& list = *m_panel->focus;
   while (list.count() > static_cast<int>(ids.size()))
     delete list.takeItem(list.count() - 1);
@@ -308,6 +327,7 @@ void qSlicerFenestraSettings::take() {
   flags["preset"] = chosenIn(m_panel->preset);
   takeClipping(flags);
   takeView(flags);
+  m_panel->materials->take(flags);
   m_node->SetAttribute(rigAttribute, m_panel->look->take(flags).toUtf8().constData());
   flags["samples"] = std::to_string(m_panel->samples->value());
   flags["noise"] = limit(m_panel->noise->value());
@@ -391,8 +411,10 @@ void qSlicerFenestraSettings::takeVolume(vtkMRMLNode* node) {
 void qSlicerFenestraSettings::takeSegmentation(vtkMRMLNode* node) {
   if (!m_node || m_showing)
     return;
+  m_panel->materials->reset();
   const int wasModifying = m_node->StartModify();
   m_node->SetNodeReferenceID(Node::SegmentationRole, idOf(node));
   m_node->SetFocus({});
+  m_node->SetFlag("material", ""); // changes of the other one's segments
   m_node->EndModify(wasModifying);
 }

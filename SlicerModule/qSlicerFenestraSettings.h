@@ -48,6 +48,7 @@ private slots:
   void takeVolume(vtkMRMLNode* node);
   void takeSegmentation(vtkMRMLNode* node);
   void onDataChanged();
+  void takeMaterials();
   void onPlaneMoved();
 
 private:

@@ -7,8 +7,12 @@
 
 #include <gtest/gtest.h>
 
-#ifdef FENESTRA_TEST_QT
+#ifdef FENESTRA_TEST_WIDGETS
+#include <QApplication>
+using Application = QApplication;
+#elif defined(FENESTRA_TEST_QT)
 #include <QCoreApplication>
+using Application = QCoreApplication;
 #endif
 
 int main(int argc, char** argv) {
@@ -16,8 +20,12 @@ int main(int argc, char** argv) {
   fenestra::serveApart(argc, argv); // the process that reads for a test is this executable
 #endif
   ::testing::InitGoogleTest(&argc, argv);
+#ifdef FENESTRA_TEST_WIDGETS
+  if (!qEnvironmentVariableIsSet("QT_QPA_PLATFORM"))
+    qputenv("QT_QPA_PLATFORM", "offscreen");
+#endif
 #ifdef FENESTRA_TEST_QT
-  const QCoreApplication application(argc, argv);
+  const Application application(argc, argv);
 #endif
   if (RUN_ALL_TESTS() != 0)
     return 1;

@@ -370,8 +370,8 @@ const Flag inspectFlags[] = {
      Takes::word({"auto", "bar", "xml", "none"})},
     {"json", "", inspectGroup,
      "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
-     "views, cameras, transforms, series, others; render (what it would use), refused (why it "
-     "would not start, else null), warnings, ignored; mm, RAS, ml"},
+     "views, cameras, transforms, series, others; materials (the library); render (what it would "
+     "use), refused (why it would not start, else null), warnings, ignored; mm, RAS, ml"},
 };
 
 const CommandSyntax inspectSyntax = {

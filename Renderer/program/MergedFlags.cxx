@@ -123,6 +123,17 @@ bool isTooMuch(const std::string& name, const std::string& value) {
   return samples.count(name) > mostSamples;
 }
 
+/// Adds a stored value; of a flag that may be repeated, values separated by commas ("\," is a
+/// comma).
+void addStored(const Flag& flag, const std::string& value, FlagValues& merged) {
+  if (!flag.takes.repeats)
+    return merged.add(flag.name, value);
+  FlagValues stored(renderSyntax.flags);
+  stored.add(flag.name, value);
+  for (const std::string& one : stored.list(flag.name))
+    merged.add(flag.name, one);
+}
+
 /// Reason why a scene's stored value is not taken; empty: taken.
 std::string objection(const Input& input, const std::string& name, const std::string& value) {
   if (name == "volume" || name == "segmentation")
@@ -183,7 +194,7 @@ SceneFlags withSceneFlags(const FlagValues& given, const Input& input) {
     if (!shapesPicture(flag) || value.empty() || isReplaced(flag, deciding))
       continue;
     if (const std::string why = objection(input, name, value); why.empty())
-      merged.add(name, value);
+      addStored(flag, value, merged);
     else
       result.leftOut.push_back(textOf(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
                                       "\" ", why, "; give --", name, ' ', shown(value)));

@@ -80,15 +80,28 @@ Json colorJson(const std::optional<ColorFunction>& color) {
   return knots;
 }
 
+const char* kindText(const Material& material) {
+  return material.kind == MaterialKind::tint ? "tint" : "matter";
+}
+
 Json materialJson(const SegmentMaterial& material) {
   const SegmentMatter& matter = material.matter;
   return {{"name", orNull(material.name)},
-          {"kind", matter.material.kind == MaterialKind::tint ? "tint" : "matter"},
+          {"kind", kindText(matter.material)},
           {"color", colorJson(seenColor(matter.material))},
           {"priority", matter.priority},
           {"clip", matter.isClipped},
           {"density", matter.density},
           {"why", material.why}};
+}
+
+/// The library's materials, by name.
+Json libraryJson() {
+  Json all = Json::array();
+  for (const auto& [name, material] : materialLibrary().materials)
+    all.push_back(
+        {{"name", name}, {"kind", kindText(material)}, {"color", colorJson(seenColor(material))}});
+  return all;
 }
 
 Json inspectFiles(const SceneRequest& request, const Input& input) {
@@ -131,6 +144,7 @@ Json emptyInspection(const SceneRequest& request, const char* kind) {
                            "rois", "views", "cameras", "transforms", "series"})
     report[list] = Json::array();
   report["others"] = Json::object();
+  report["materials"] = libraryJson();
   report["render"] = nullptr;
   report["refused"] = nullptr;
   report["warnings"] = Json::array();

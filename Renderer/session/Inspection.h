@@ -25,6 +25,7 @@ namespace fenestra {
 ///     transforms [NODE + linear, toWorld (row by row, with all transforms above)]
 ///     series [uid, number, description, modality, files]
 ///     others {tag: count}
+///     materials [name, kind, color (as of a segment's material)]: the library
 ///     render: null (undecided what a render shows), or what one uses, as far as it can be read:
 ///       volume {id, name, size, spacing, center, voxelType, range, transforms [id, nearest
 ///       first]}, look {source ("volumeProperty" | "volumeDisplay" | "preset" | "range"), id,

@@ -1,5 +1,6 @@
 #include "vtkSlicerFenestraLogic.h"
 
+#include "FenestraFlags.h"
 #include "vtkMRMLFenestraPictureDisplayNode.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraSnapshot.h"
@@ -168,6 +169,15 @@ FenestraScene::Contents vtkSlicerFenestraLogic::Snapshot(Node* render,
   return contents;
 }
 
+std::vector<FenestraScene::Segment> vtkSlicerFenestraLogic::GetSegments(Node* render) {
+  auto* segmentation =
+      render
+          ? vtkMRMLSegmentationNode::SafeDownCast(render->GetNodeReference(Node::SegmentationRole))
+          : nullptr;
+  return segmentation ? vtkSlicerFenestraSnapshot::SegmentsOf(segmentation)
+                      : std::vector<FenestraScene::Segment>();
+}
+
 vtkMRMLCameraNode* vtkSlicerFenestraLogic::GetFollowedCamera(Node* render) {
   if (!render || !this->GetMRMLScene())
     return nullptr;
@@ -241,7 +251,7 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
   const bool isFiltered = denoise == flags.end() || denoise->second != "off";
   if (isFiltered && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
     arguments.push_back("--noisetarget=filtered"); // of the picture that is looked at
-  for (const auto& [name, value] : flags)          // "=" keeps a value that begins with a dash
-    arguments.push_back("--" + name + "=" + value);
+  const std::vector<std::string> own = FenestraScene::argumentsOf(flags);
+  arguments.insert(arguments.end(), own.begin(), own.end());
   return arguments;
 }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "FenestraSceneFiles.h"
 #include "vtkSlicerFenestraModuleLogicExport.h"
@@ -85,6 +86,8 @@ public:
   /// for data that Slicer can only write as files. Throws FenestraScene::Complaint.
   FenestraScene::Contents Snapshot(vtkMRMLFenestraRenderNode* render,
                                    const std::filesystem::path& folder);
+  /// Names, tags and colours of the segments that the node names; of none without a segmentation.
+  static std::vector<FenestraScene::Segment> GetSegments(vtkMRMLFenestraRenderNode* render);
   /// The node's flags, and those of its 3-D view's camera unless another flag sets the view.
   std::map<std::string, std::string> GetFlags(vtkMRMLFenestraRenderNode* render);
   static std::map<std::string, std::string> GetCameraFlags(vtkMRMLCameraNode* camera);

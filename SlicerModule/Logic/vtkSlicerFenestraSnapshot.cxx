@@ -231,6 +231,16 @@ std::string Tags(vtkSegment* segment) {
   return std::string(vtkSegment::GetTerminologyEntryTagName()) + ":" + entry + "|";
 }
 
+FenestraScene::Segment ToSegment(const std::string& id, vtkSegment* segment, size_t layer) {
+  const double* color = segment->GetColor();
+  return {id,
+          segment->GetName() ? segment->GetName() : id,
+          segment->GetLabelValue(),
+          layer,
+          Tags(segment),
+          {color[0], color[1], color[2]}};
+}
+
 /// Layer on the lattice of the first one; labels on another lattice are resampled (nearest).
 FenestraScene::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* first) {
   vtkSmartPointer<vtkOrientedImageData> image = labels;
@@ -283,6 +293,17 @@ void vtkSlicerFenestraSnapshot::TakeRendering(vtkMRMLScalarVolumeNode* volume,
     TakeRoi(display, contents);
 }
 
+std::vector<FenestraScene::Segment>
+vtkSlicerFenestraSnapshot::SegmentsOf(vtkMRMLSegmentationNode* node) {
+  vtkSegmentation* segmentation = node->GetSegmentation();
+  std::vector<std::string> ids;
+  segmentation->GetSegmentIDs(ids);
+  std::vector<FenestraScene::Segment> segments;
+  for (const std::string& id : ids)
+    segments.push_back(ToSegment(id, segmentation->GetSegment(id), 0));
+  return segments;
+}
+
 void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
                                                  const std::vector<std::string>& focus,
                                                  FenestraScene::Contents& contents) {
@@ -299,11 +320,11 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
       continue;
     first = first ? first : labels;
     for (const std::string& id : segmentation->GetSegmentIDsForLayer(i, name)) {
-      vtkSegment* segment = segmentation->GetSegment(id);
-      taken.segments.push_back({id, segment->GetName() ? segment->GetName() : id,
-                                segment->GetLabelValue(), taken.layers.size(), Tags(segment)});
+      taken.segments.push_back(ToSegment(id, segmentation->GetSegment(id), taken.layers.size()));
       const Segment& last = taken.segments.back();
       key << '\n' << id << ' ' << last.label << ' ' << last.name << ' ' << last.tags;
+      for (const double part : last.color)
+        key << ' ' << part;
     }
     taken.layers.push_back(ToLayer(labels, first));
     key << '\n' << Key(labels, "", taken.layers.back().labels);

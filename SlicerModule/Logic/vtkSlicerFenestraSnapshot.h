@@ -21,6 +21,8 @@ void TakeRendering(vtkMRMLScalarVolumeNode* volume, const std::filesystem::path&
 /// empty.
 void TakeSegmentation(vtkMRMLSegmentationNode* segmentation, const std::vector<std::string>& focus,
                       FenestraScene::Contents& contents);
+/// All segments, also empty ones, without places of their labels.
+std::vector<FenestraScene::Segment> SegmentsOf(vtkMRMLSegmentationNode* segmentation);
 } // namespace vtkSlicerFenestraSnapshot
 
 #endif

@@ -120,30 +120,11 @@ void vtkMRMLFenestraRenderNode::EndRender(const std::string& problem) {
 }
 
 void vtkMRMLFenestraRenderNode::SetFocus(const std::vector<std::string>& segments) {
-  std::string text;
-  for (const std::string& segment : segments) {
-    text += text.empty() ? "" : ",";
-    for (const char c : segment)
-      text += c == ',' ? std::string("\\,") : std::string(1, c);
-  }
-  this->SetFlag("focus", text);
+  this->SetFlag("focus", FenestraScene::joined(segments));
 }
 
 std::vector<std::string> vtkMRMLFenestraRenderNode::GetFocus() const {
-  std::vector<std::string> segments;
-  const std::string text = this->GetFlag("focus");
-  std::string segment;
-  for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\\' && i + 1 < text.size() && text[i + 1] == ',')
-      segment += text[++i];
-    else if (text[i] != ',')
-      segment += text[i];
-    else
-      segments.push_back(std::move(segment)), segment.clear();
-  }
-  if (!text.empty())
-    segments.push_back(segment);
-  return segments;
+  return FenestraScene::textsIn(this->GetFlag("focus"));
 }
 
 void vtkMRMLFenestraRenderNode::ReadXMLAttributes(const char** atts) {

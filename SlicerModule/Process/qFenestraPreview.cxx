@@ -1,5 +1,7 @@
 #include "qFenestraPreview.h"
 
+#include "FenestraFlags.h"
+
 #include <QJsonArray>
 #include <QJsonDocument>
 
@@ -42,6 +44,18 @@ void qFenestraPreview::change(const QJsonObject& flags) {
   for (auto flag = flags.begin(); flag != flags.end(); ++flag)
     m_changes[flag.key()] = flag.value();
   m_rest.start();
+}
+
+QJsonObject qFenestraPreview::valuesOf(const std::map<std::string, std::string>& flags) {
+  QJsonObject all;
+  for (const auto& [name, value] : flags) {
+    QJsonArray texts;
+    for (const std::string& text : FenestraScene::valuesOf(name, value))
+      texts << QString::fromStdString(text);
+    all[QString::fromStdString(name)] =
+        FenestraScene::repeats(name) ? QJsonValue(texts) : texts.first();
+  }
+  return all;
 }
 
 void qFenestraPreview::tell() {

@@ -7,7 +7,9 @@
 #include <QJsonObject>
 #include <QTimer>
 
+#include <map>
 #include <memory>
+#include <string>
 
 struct qFenestraPicture {
   QStringList files;
@@ -39,6 +41,8 @@ public:
 
   /// Changes flags, with values as `fenestra serve` takes them; later values win.
   void change(const QJsonObject& flags);
+  /// Flags as a server takes them: texts, or a list of them for a flag that may be repeated.
+  static QJsonObject valuesOf(const std::map<std::string, std::string>& flags);
 
 signals:
   /// Picture of the last change; pictures of earlier changes are dropped.

@@ -69,10 +69,18 @@ bool isKind(FlagKind kind, const std::string& value) {
   case FlagKind::colour:
     return isWord(value) || areNumbers(value, true);
   case FlagKind::text:
+  case FlagKind::texts:
   case FlagKind::look:
     break;
   }
   return value.find('\0') == std::string::npos; // a zero byte would end an argument
+}
+
+/// Flag of that name; null: none.
+const Flag* find(const std::string& name) {
+  const auto flag = std::find_if(flags().begin(), flags().end(),
+                                 [&](const Flag& one) { return one.name == name; });
+  return flag == flags().end() ? nullptr : &*flag;
 }
 
 } // namespace
@@ -105,6 +113,8 @@ const std::vector<Flag>& flags() {
                                         {"transfer", Kind::look},
                                         {"shift", Kind::number},
                                         {"density", Kind::number},
+                                        {"materials", Kind::look},
+                                        {"material", Kind::texts},
                                         {"lights", Kind::look},
                                         {"environment", Kind::look},
                                         {"background", Kind::colour},
@@ -114,6 +124,8 @@ const std::vector<Flag>& flags() {
                                         {"samples", Kind::whole},
                                         {"seconds", Kind::number},
                                         {"noise", Kind::number},
+                                        {"noisetarget", Kind::word},
+                                        {"denoise", Kind::word},
                                         {"bounces", Kind::whole},
                                         {"seed", Kind::whole},
                                         {"sampling", Kind::word},
@@ -124,12 +136,53 @@ const std::vector<Flag>& flags() {
 }
 
 Verdict verdictOn(const std::string& name, const std::string& value) {
-  const auto flag = std::find_if(flags().begin(), flags().end(),
-                                 [&](const Flag& one) { return one.name == name; });
-  if (flag == flags().end() || value.empty() || value.size() > longest ||
-      !isKind(flag->kind, value))
+  const Flag* const flag = find(name);
+  if (!flag || value.empty() || value.size() > longest || !isKind(flag->kind, value))
     return Verdict::bad;
   return flag->kind == FlagKind::look && namesFile(value) ? Verdict::file : Verdict::good;
+}
+
+std::string joined(const std::vector<std::string>& texts) {
+  std::string value;
+  for (const std::string& text : texts) {
+    value += value.empty() ? "" : ",";
+    for (const char c : text)
+      value += c == ',' ? std::string("\\,") : std::string(1, c);
+  }
+  return value;
+}
+
+std::vector<std::string> textsIn(const std::string& value) {
+  std::vector<std::string> texts;
+  std::string text;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (value[i] == '\\' && i + 1 < value.size() && value[i + 1] == ',')
+      text += value[++i];
+    else if (value[i] != ',')
+      text += value[i];
+    else
+      texts.push_back(std::move(text)), text.clear();
+  }
+  if (!value.empty())
+    texts.push_back(text);
+  return texts;
+}
+
+bool repeats(const std::string& name) {
+  const Flag* const flag = find(name);
+  return flag && flag->kind == FlagKind::texts;
+}
+
+std::vector<std::string> valuesOf(const std::string& name, const std::string& value) {
+  return repeats(name) ? textsIn(value) : std::vector<std::string>{value};
+}
+
+std::vector<std::string> argumentsOf(const std::map<std::string, std::string>& flags) {
+  std::vector<std::string> arguments;
+  for (const auto& [name, value] : flags)
+    for (const std::string& one : valuesOf(name, value))
+      arguments.push_back("--" + name + "=" + one);
+  return arguments;
 }
 
 } // namespace FenestraScene

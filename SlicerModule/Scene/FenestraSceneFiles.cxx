@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 namespace FenestraScene {
@@ -108,6 +109,13 @@ std::string oneLine(std::string text) {
   return text;
 }
 
+/// Colour with six digits, as Slicer saves it: a picture of the saved scene has the same bits.
+std::string colorText(const std::array<double, 3>& color) {
+  std::ostringstream text;
+  text << color[0] << ' ' << color[1] << ' ' << color[2];
+  return text.str();
+}
+
 Image withSegmentFields(const Segmentation& segmentation) {
   Image image = composed(segmentation.layers);
   image.fields["Segmentation_MasterRepresentation"] = "Binary labelmap";
@@ -122,6 +130,7 @@ Image withSegmentFields(const Segmentation& segmentation) {
     image.fields[prefix + "LabelValue"] = std::to_string(segment.label);
     image.fields[prefix + "Layer"] = std::to_string(segment.layer);
     image.fields[prefix + "Extent"] = extent.str();
+    image.fields[prefix + "Color"] = colorText(segment.color);
     if (!segment.tags.empty())
       image.fields[prefix + "Tags"] = oneLine(segment.tags);
   }
@@ -201,6 +210,19 @@ Image composed(const std::vector<Layer>& layers) {
   box.data = bytes ? composedData<std::uint8_t>(layers, box, begin)
                    : composedData<std::int32_t>(layers, box, begin);
   return box;
+}
+
+void writeNames(std::vector<Segment> segments, const std::filesystem::path& file) {
+  Layer layer;
+  layer.labels.type = "uint8";
+  layer.labels.size = {1, 1, 1};
+  layer.labels.data = std::make_shared<const std::uint8_t>(std::uint8_t(0));
+  int label = 0;
+  for (Segment& segment : segments) {
+    segment.label = ++label;
+    segment.layer = 0;
+  }
+  writeNrrd(withSegmentFields({{layer}, std::move(segments), identity}), file);
 }
 
 void Writer::writeOrLink(const Image& image, const std::string& key, Kept& kept,

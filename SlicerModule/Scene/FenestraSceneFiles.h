@@ -18,9 +18,15 @@ struct Complaint : std::runtime_error {
 
 struct Segment {
   std::string id, name;
-  int label = 0;         ///< value of its voxels in its layer
-  std::size_t layer = 0; ///< component that holds it; segments may overlap
-  std::string tags;      ///< terminology, "key:value|..."
+  int label = 0;                                 ///< value of its voxels in its layer
+  std::size_t layer = 0;                         ///< component that holds it; segments may overlap
+  std::string tags = {};                         ///< terminology, "key:value|..."
+  std::array<double, 3> color = {0.5, 0.5, 0.5}; ///< sRGB in [0, 1]; Slicer's grey: none given
+
+  bool operator==(const Segment& other) const {
+    return id == other.id && name == other.name && label == other.label && layer == other.layer &&
+           tags == other.tags && color == other.color;
+  }
 };
 
 /// Labels of segments that do not overlap; all layers of a segmentation share one lattice.
@@ -54,6 +60,10 @@ struct Contents {
 
 /// All layers as components of one image, over the smallest box that holds them.
 Image composed(const std::vector<Layer>& layers);
+
+/// Writes a segmentation (.seg.nrrd) of one voxel in which each segment has a value of its own: for
+/// questions about names, tags and colours. Throws FileError.
+void writeNames(std::vector<Segment> segments, const std::filesystem::path& file);
 
 /// Writes scenes into numbered folders below a private one; files unchanged since the preceding
 /// scene are linked, not written again.

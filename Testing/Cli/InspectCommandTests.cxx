@@ -105,6 +105,12 @@ TEST_F(InspectCommand, ListsSceneNodesAndThoseRendered) {
                            "rois", "views", "cameras", "transforms"})
     EXPECT_EQ(said[list][0]["used"], true) << list;
   EXPECT_EQ(said["others"]["SegmentationDisplay"], 1);
+  const Json& library = said["materials"];
+  const auto liver =
+      std::ranges::find(library, "liver", [](const Json& one) { return one["name"]; });
+  ASSERT_NE(liver, library.end());
+  EXPECT_EQ((*liver)["kind"], "tint");
+  EXPECT_EQ((*liver)["color"][0], 0x96 / 255.0);
 
   const Json& render = said["render"];
   EXPECT_EQ(render["volume"]["id"], "vol1");

@@ -1,6 +1,7 @@
 // Flags in a scene from an untrusted source: those that are accepted.
 
 #include "FenestraFlags.h"
+#include "FenestraMaterials.h"
 #include "qFenestraAbilities.h"
 
 #include <QProcess>
@@ -40,6 +41,10 @@ TEST(SlicerFlags, ValuesThatTheRendererTakesAreGood) {
                          {"lights", R"({"lights": [{"type": "area"}]})"},
                          {"background", "transparent"},
                          {"background", "0,0,0"},
+                         {"materials", "library"},
+                         {"material", "Liver: color=#963e2e\\, clip=no,a/b.c: clip=no"},
+                         {"denoise", "off"},
+                         {"noisetarget", "filtered"},
                          {"size", "512x384"},
                          {"seed", "18446744073709551615"},
                          {"degrees", "-90.5"}})
@@ -73,6 +78,7 @@ TEST(SlicerFlags, MalformedValuesAreRejected) {
                                                      {"size", "1x2x3"},
                                                      {"background", "file.exr"},
                                                      {"focus", std::string("a\0b", 3)},
+                                                     {"material", std::string("a\0b", 3)},
                                                      {"lights", std::string(200000, 'a')},
                                                      {"output", "a.png"},
                                                      {"stats", "a.json"}})
@@ -87,6 +93,7 @@ TEST(SlicerFlags, NamesOfFilesAreDetectedAlsoInsideTexts) {
            {"preset", "\\\\server\\share"},
            {"preset", "~root"},
            {"environment", "sky.exr"},
+           {"materials", "mine.json"},
            {"lights", "C:lights"},
            {"lights", R"({"lights": [{"type": "environment", "file": "/etc/passwd"}]})"},
            {"lights", R"({"lights": [{"type": "environment", "\u0066ile": "/etc/passwd"}]})"}})
@@ -107,11 +114,41 @@ TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
     ASSERT_TRUE(known.contains(name)) << flag.name;
     const bool hasWords = !known[name].words.isEmpty();
     EXPECT_EQ(flag.kind == FlagKind::word, hasWords) << flag.name;
-    EXPECT_EQ(flag.kind == FlagKind::automatic, !hasWords && known[name].text.contains("auto:"))
+    const bool maySayAuto = !hasWords && flag.kind != FlagKind::look; // there it is a name
+    EXPECT_EQ(flag.kind == FlagKind::automatic, maySayAuto && known[name].text.contains("auto:"))
+        << flag.name;
+    EXPECT_TRUE(!FenestraScene::repeats(flag.name) || known[name].text.contains("may be repeated"))
         << flag.name;
     for (const QString& word : known[name].words)
       EXPECT_EQ(verdictOn(flag.name, word.toStdString()), Verdict::good) << flag.name;
   }
+}
+
+TEST(SlicerFlags, TextsSurviveAsOneValue) {
+  const std::vector<std::string> texts = {"Liver: color=#963e2e, clip=no", "a\\b, \"c\": clip=no",
+                                          "d"};
+  const std::string value = FenestraScene::joined(texts);
+  EXPECT_EQ(FenestraScene::textsIn(value), texts);
+  EXPECT_TRUE(FenestraScene::textsIn("").empty());
+  EXPECT_EQ(FenestraScene::argumentsOf({{"focus", "a,b"}, {"material", value}, {"offset", "-1"}}),
+            (std::vector<std::string>{"--focus=a,b", "--material=" + texts[0],
+                                      "--material=" + texts[1], "--material=d", "--offset=-1"}));
+}
+
+/// A change to a segment that is gone would be refused by the renderer, with the whole picture.
+TEST(SlicerFlags, ChangesOfGoneSegmentsAreLeftOut) {
+  using Flags = std::map<std::string, std::string>;
+  const std::vector<FenestraScene::Segment> there = {{"S,1", "Liver", 1}, {"S2", "Aorta", 7}};
+  const auto change = [](const char* selector) { return std::string(selector) + ": clip=no"; };
+  const std::string value = FenestraScene::joined(
+      {change("S,1"), change("gone"), change("Aorta"), change("7"), change("8")});
+  EXPECT_EQ(
+      FenestraScene::withMaterialsOf(there, {{"materials", "auto"}, {"material", value}}),
+      (Flags{{"materials", "auto"},
+             {"material", FenestraScene::joined({change("S,1"), change("Aorta"), change("7")})}}));
+  EXPECT_EQ(FenestraScene::withMaterialsOf({}, {{"materials", "auto"}, {"material", value}}),
+            Flags());
+  EXPECT_EQ(FenestraScene::withMaterialsOf({}, {{"view", "left"}}), (Flags{{"view", "left"}}));
 }
 
 } // namespace

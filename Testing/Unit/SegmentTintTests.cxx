@@ -114,7 +114,7 @@ TEST(SegmentTint, MatterMakesAMixture) {
     EXPECT_FALSE(isTint(plan)) << change;
     EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1}, {{1}, 10, 2}, {{2}, 10, 3}})) << change;
   }
-  EXPECT_EQ(planOf(segments, library, {"0: density=2", "1: density=2"}).parts.size(), 3U);
+  EXPECT_EQ(planOf(segments, library, {"id0: density=2", "id1: density=3"}).parts.size(), 3U);
   EXPECT_EQ(planOf(segments, library, {"id0: density=2", "id1: density=2"}).parts,
             (Parts{{{0, 1}, 10, 1}, {{2}, 10, 2}}));
 }

@@ -59,6 +59,10 @@ public:
     return m_bricks.size() * sizeof(std::int32_t) + m_planes.size() * sizeof(Plane);
   }
 
+  /// Calls visit(component) for the components of a brick, given by its number in bricks().
+  template <typename Visit>
+  void forEachOf(std::size_t brick, Visit&& visit) const;
+
   /// Calls visit(component) for all components that may have a share in a box (the grid's index
   /// space); some more than once.
   template <typename Visit>
@@ -77,6 +81,20 @@ private:
 };
 
 template <typename Visit>
+void Shares::forEachOf(std::size_t brick, Visit&& visit) const {
+  const std::int32_t code = m_bricks[brick];
+  if (code >= 0) {
+    visit(static_cast<std::uint8_t>(code));
+    return;
+  }
+  auto plane = m_planes.begin() + ~code;
+  visit(plane->rest);
+  visit(plane->component);
+  while (!plane->isLast)
+    visit((++plane)->component);
+}
+
+template <typename Visit>
 void Shares::forEachIn(const Box& box, Visit&& visit) const {
   const Vec3 last = (m_brickCount.array() - 1).cast<double>();
   const auto brickOf = [&](const Vec3& index) -> Size3 {
@@ -86,18 +104,8 @@ void Shares::forEachIn(const Box& box, Visit&& visit) const {
   const Size3 first = brickOf(box.lower), end = brickOf(box.upper).array() + 1;
   for (std::int64_t z = first.z(); z < end.z(); ++z)
     for (std::int64_t y = first.y(); y < end.y(); ++y)
-      for (std::int64_t x = first.x(); x < end.x(); ++x) {
-        const std::int32_t code = m_bricks[numberOf(Size3(x, y, z), m_brickCount)];
-        if (code >= 0) {
-          visit(static_cast<std::uint8_t>(code));
-          continue;
-        }
-        auto plane = m_planes.begin() + ~code;
-        visit(plane->rest);
-        visit(plane->component);
-        while (!plane->isLast)
-          visit((++plane)->component);
-      }
+      for (std::int64_t x = first.x(); x < end.x(); ++x)
+        forEachOf(numberOf(Size3(x, y, z), m_brickCount), visit);
 }
 
 template <typename Visit>

@@ -40,7 +40,8 @@ public:
   /// Each lane leaves an empty cell with its reach, or takes one step in matter. Returns the lanes
   /// that end with it.
   HWY_INLINE LaneMask step() {
-    const auto [cell, toFace] = stayAt(m_volume, m_way, m_t);
+    LaneCells cell;
+    const Float toFace = stayAt(m_volume, m_way, m_t, cell);
     const Float stop = min(toFace, m_end);
     // A little beyond the face: the next point lies in the next cell, whatever rounding does.
     const Float beyond = fma(m_shortest, 0.02F, max(stop, m_t));
@@ -77,8 +78,9 @@ private:
     const Float length = next - m_t;
     const Float middle = fma(0.5F, length, m_t);
     const Float3 p = pointAt(middle);
-    LaneExtinctions all =
-        extinctionsAt(m_volume, filled, p, scalarAt<Voxel>(m_volume.field, p));
+    const Float scalar = scalarAt<Voxel>(m_volume.field, p);
+    LaneExtinctions all = m_volume.mixture ? extinctionsAt<true>(m_volume, filled, p, scalar)
+                                           : extinctionsAt<false>(m_volume, filled, p, scalar);
     if (m_asksKeep) {
       const LaneMask cut = filled & cell.cut;
       if (cut.any())

@@ -63,7 +63,7 @@ struct LaneExtinctions {
 inline LaneExtinctions extinctionsOf(const WideMixture& mixture, LaneMask which,
                                      const Float3& index, Float scalar) {
   LaneExtinctions sums{0.0F, 0.0F};
-  LaneShares(mixture.shares, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
+  LaneShares(mixture.alike, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
     const Float part = share * extinctionOf(mixture, lanes, components, scalar);
     if (!mixture.hasFree) {
       sums.clipped = sums.clipped + part;
@@ -76,17 +76,21 @@ inline LaneExtinctions extinctionsOf(const WideMixture& mixture, LaneMask which,
   return sums;
 }
 
-/// Extinctions of all matter at points, under the context's style.
+/// Extinctions of all matter at points, under the context's style. `isMixed`: there is a mixture.
+template <bool isMixed>
 HWY_INLINE LaneExtinctions extinctionsAt(const WideScene& scene, LaneMask which,
                                          const Float3& index, Float scalar) {
   LaneExtinctions all{0.0F, 0.0F};
-  if (scene.mixture)
+  if constexpr (isMixed)
     all = extinctionsOf(*scene.mixture, which, index, scalar);
   else
     all.clipped = extinctionOf(scene, scalar);
   if (scene.context && scene.context->extinction != 1.0F) {
-    const Float factor = select(isFocus(*scene.context, index), 1.0F, scene.context->extinction);
-    all = {all.clipped * factor, all.free * factor};
+    const LaneMask focus = isFocus(*scene.context, index);
+    const float factor = scene.context->extinction;
+    all.clipped = select(focus, all.clipped, all.clipped * factor);
+    if constexpr (isMixed)
+      all.free = select(focus, all.free, all.free * factor);
   }
   return all;
 }

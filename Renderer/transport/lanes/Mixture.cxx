@@ -2,6 +2,45 @@
 
 namespace fenestra {
 
+namespace {
+
+bool areAlike(const Component& a, const Component& b) {
+  return a.isClipped == b.isClipped &&
+         std::ranges::equal(a.transfer.extinction.knots(), b.transfer.extinction.knots(),
+                            [](const auto& k, const auto& l) {
+                              return k.position == l.position && k.value == l.value;
+                            });
+}
+
+/// For each component the first one that is alike.
+std::vector<std::int32_t> firstAlike(const std::vector<Component>& components) {
+  std::vector<std::int32_t> first;
+  for (const Component& component : components)
+    first.push_back(static_cast<std::int32_t>(
+        std::ranges::find_if(components,
+                             [&](const Component& other) { return areAlike(other, component); }) -
+        components.begin()));
+  return first;
+}
+
+std::vector<std::int32_t> bricksAlike(const Mixture& mixture) {
+  const std::vector<std::int32_t> first = firstAlike(mixture.components);
+  std::vector<std::int32_t> bricks = mixture.shares->bricks();
+  for (std::size_t brick = 0; brick < bricks.size(); ++brick) {
+    std::int32_t common = -1;
+    bool isMixed = false;
+    mixture.shares->forEachOf(brick, [&](std::uint8_t component) {
+      isMixed = isMixed || (common >= 0 && first[component] != common);
+      common = first[component];
+    });
+    if (!isMixed)
+      bricks[brick] = common;
+  }
+  return bricks;
+}
+
+} // namespace
+
 bool WideMixture::serves(const Mixture& mixture) {
   const auto isServed = [](const Component& component) {
     return !component.transfer.gradientOpacity && component.border == 0.0;
@@ -11,7 +50,11 @@ bool WideMixture::serves(const Mixture& mixture) {
 }
 
 WideMixture::WideMixture(const Mixture& mixture, const Grid& volume)
-    : shares(*mixture.shares, volume), hasFree(mixture.hasFree()) {
+    : shares(*mixture.shares, volume),
+      alike(shares),
+      alikeBricks(std::make_shared<const std::vector<std::int32_t>>(bricksAlike(mixture))),
+      hasFree(mixture.hasFree()) {
+  alike.bricks = alikeBricks->data();
   double low = infinity, high = -infinity;
   for (const Component& component : mixture.components) {
     const auto& knots = component.transfer.extinction.knots();

@@ -4,6 +4,7 @@
 #include "model/medium/Mixture.h"
 #include "transport/lanes/Shares.h"
 
+#include <memory>
 #include <vector>
 
 namespace fenestra {
@@ -16,6 +17,10 @@ struct WideMixture {
   WideMixture(const Mixture& mixture, const Grid& volume);
 
   WideShares shares;
+  /// The same, but bricks whose components all have one extinction, and are clipped alike, are pure
+  /// ones of the first such component: flights need not tell them apart.
+  WideShares alike;
+  std::shared_ptr<const std::vector<std::int32_t>> alikeBricks;
   bool hasFree;                      ///< the clip leaves some component
   std::vector<std::int32_t> isFree;  ///< of each component: 1, or 0
   std::vector<WideTable> extinction; ///< of each component, mm^-1

@@ -36,7 +36,8 @@ struct Collisions {
   Int component; ///< of a mixture
 };
 
-template <typename Voxel>
+/// `isMixed`: the matter is a mixture.
+template <typename Voxel, bool isMixed>
 class Events {
 public:
   Events(const WideScene& volume, const EventScene& scene, PathBatch& paths, LightBatch& lights)
@@ -93,8 +94,10 @@ private:
     const Collisions at = matter(i, going, first, index, draws);
     if (first.any())
       recordFirst(i, at, distance);
-    return m_volume.mixture ? scatter(i, at, draws, lawsOf(m_scene, at.component))
-                            : scatter(i, at, draws, m_scene.law);
+    if constexpr (isMixed)
+      return scatter(i, at, draws, lawsOf(m_scene, at.component));
+    else
+      return scatter(i, at, draws, m_scene.law);
   }
 
   /// Scatters lanes by the law; returns those that go on afterwards.
@@ -140,7 +143,7 @@ private:
                   {0.0F, 0.0F, 0.0F},
                   LaneMask::none(),
                   0};
-    if (m_volume.mixture) {
+    if constexpr (isMixed) {
       at.component = drawComponents(*m_volume.mixture, going, index, at.scalar,
                                     keptOfParts(m_volume, going, index), draws.uniform());
       at.albedo = albedoIn(m_scene, going, at.component, at.scalar);
@@ -157,19 +160,26 @@ private:
       if (m_volume.cutSlope > 0.0F)
         at.gradient = at.gradient + cutGradient(m_volume, index, removable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
-      const Float extinction =
-          m_volume.mixture ? extinctionOf(*m_volume.mixture, going, at.component, at.scalar)
-                           : extinctionOf(m_volume, at.scalar);
-      at.surface = going & (draws.uniform() < surfaceChance(m_scene, extinction, slope));
+      const Float chance = surfaceChance(m_scene, extinctionOfOne(at), slope);
+      at.surface = going & (draws.uniform() < chance);
     }
     return at;
   }
 
   /// Lanes whose matter the clip may remove.
   HWY_INLINE LaneMask removable(const Collisions& at) const {
-    return m_volume.mixture && m_volume.mixture->hasFree
-               ? at.going.without(freeIn(*m_volume.mixture, at.going, at.component))
-               : at.going;
+    if constexpr (isMixed)
+      if (m_volume.mixture->hasFree)
+        return at.going.without(freeIn(*m_volume.mixture, at.going, at.component));
+    return at.going;
+  }
+
+  /// Extinction of the matter that collisions meet, as if it had all of the space.
+  HWY_INLINE Float extinctionOfOne(const Collisions& at) const {
+    if constexpr (isMixed)
+      return extinctionOf(*m_volume.mixture, at.going, at.component, at.scalar);
+    else
+      return extinctionOf(m_volume, at.scalar);
   }
 
   Float3 gradientAt(const Float3& p) const {
@@ -274,9 +284,14 @@ private:
 
 void scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& paths,
                 LightBatch& lights, Counters& counters) {
-  std::visit([&]<typename Voxel>(
-                 const Voxel*) { Events<Voxel>(volume, scene, paths, lights).run(counters); },
-             volume.voxels);
+  std::visit(
+      [&]<typename Voxel>(const Voxel*) {
+        if (volume.mixture)
+          Events<Voxel, true>(volume, scene, paths, lights).run(counters);
+        else
+          Events<Voxel, false>(volume, scene, paths, lights).run(counters);
+      },
+      volume.voxels);
 }
 
 } // namespace

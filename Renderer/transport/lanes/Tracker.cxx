@@ -28,8 +28,8 @@ struct Queue {
   std::size_t left() const { return rays.size - next; }
 };
 
-/// One ray a lane, all followed together.
-template <typename Voxel, bool wantRatio>
+/// One ray a lane, all followed together. `isMixed`: the matter is a mixture.
+template <typename Voxel, bool wantRatio, bool isMixed>
 class Lanes {
 public:
   Lanes(const WideScene& scene, Queue& queue)
@@ -95,7 +95,8 @@ private:
   /// Busy lanes that do not wait for a look-up reach a tentative collision in their cell and its
   /// reach, or leave these cells.
   HWY_INLINE void cross() {
-    const auto [cell, toFace] = stayAt(m_scene, m_way, m_t);
+    LaneCells cell;
+    const Float toFace = stayAt(m_scene, m_way, m_t, cell);
     const Float stop = min(max(toFace, m_t) + m_scene.overshoot, m_end);
     const Float depthToStop = (stop - m_t) * cell.majorant;
 
@@ -131,13 +132,15 @@ private:
     m_lookups += hit.count();
     const Float3 at = point();
     const Float scalar = scalarAt<Voxel>(m_scene.field, at);
-    LaneExtinctions all = extinctionsAt(m_scene, hit, at, scalar);
+    const LaneExtinctions all = extinctionsAt<isMixed>(m_scene, hit, at, scalar);
+    Float extinction = all.clipped;
     Word counter = m_counter;
     const Float u = m_acceptance;
     const LaneMask cut = hit & m_cut;
     if (cut.any())
-      all.clipped = clipped(cut, at, all, u, counter);
-    const Float extinction = all.clipped + all.free;
+      extinction = clipped(cut, at, all, u, counter);
+    if constexpr (isMixed)
+      extinction = extinction + all.free;
     m_depth.where(hit, exponential(counter));
     m_acceptance.where(hit, uniform(counter));
     m_counter.where(hit, counter);
@@ -166,7 +169,7 @@ private:
     Float extinction = all.clipped;
     if constexpr (wantRatio) {
       cut = cut & (extinction > 0.0F);
-      if (m_scene.seams && !(m_scene.mixture && m_scene.mixture->hasFree)) {
+      if (m_scene.seams && !(isMixed && m_scene.mixture->hasFree)) {
         Word after = counter;
         const LaneMask isReal = uniform(after) * m_majorant < extinction;
         counter.where(cut, after);
@@ -174,7 +177,7 @@ private:
         cut = cut & isReal;
       }
     } else {
-      cut = cut & (u * m_majorant < extinction + all.free);
+      cut = cut & (u * m_majorant < (isMixed ? extinction + all.free : extinction));
     }
     if (cut.any())
       extinction.where(cut, extinction * keep(m_scene, at, cut));
@@ -219,10 +222,10 @@ private:
 };
 
 /// Two sets of lanes take turns: while one waits for memory, the other computes.
-template <typename Voxel, bool wantRatio>
+template <typename Voxel, bool wantRatio, bool isMixed>
 void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
   Queue queue{rays};
-  using Set = Lanes<Voxel, wantRatio>;
+  using Set = Lanes<Voxel, wantRatio, isMixed>;
   std::array<Set, 2> sets{Set(scene, queue), Set(scene, queue)};
   bool isBusy = true;
   for (std::uint32_t steps = 1; isBusy; ++steps) {
@@ -238,9 +241,14 @@ void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, C
 
 template <bool wantRatio>
 void followAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
-  std::visit([&]<typename Voxel>(
-                 const Voxel*) { followBatch<Voxel, wantRatio>(scene, rays, stop, counters); },
-             scene.voxels);
+  std::visit(
+      [&]<typename Voxel>(const Voxel*) {
+        if (scene.mixture)
+          followBatch<Voxel, wantRatio, true>(scene, rays, stop, counters);
+        else
+          followBatch<Voxel, wantRatio, false>(scene, rays, stop, counters);
+      },
+      scene.voxels);
 }
 
 void flyAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {

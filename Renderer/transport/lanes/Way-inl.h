@@ -49,17 +49,14 @@ struct Way {
   }
 };
 
-/// Cells in which rays are, and t at which they have left these with their reach.
-struct Stay {
-  LaneCells cell;
-  Float end;
-};
-HWY_INLINE Stay stayAt(const WideScene& scene, const Way (&ways)[3], Float t) {
-  const Float x = floor(ways[0].at(t)), y = floor(ways[1].at(t)), z = floor(ways[2].at(t));
-  const LaneCells cell = cellsAt(scene, x, y, z);
+/// t at which rays have left the cells in which they are with their reach; `cell`: these.
+HWY_INLINE Float stayAt(const WideScene& scene, const Way (&ways)[3], Float t, LaneCells& cell) {
+  const Float x = floor(ways[0].at(t));
+  const Float y = floor(ways[1].at(t));
+  const Float z = floor(ways[2].at(t));
+  cell = cellsAt(scene, x, y, z);
   const Float half = cell.reach + 0.5F;
-  return {cell,
-          min(min(ways[0].leaving(x, half), ways[1].leaving(y, half)), ways[2].leaving(z, half))};
+  return min(min(ways[0].leaving(x, half), ways[1].leaving(y, half)), ways[2].leaving(z, half));
 }
 
 } // namespace fenestra::HWY_NAMESPACE

@@ -13,6 +13,7 @@
 #include <QPushButton>
 #include <QScopedPointer>
 #include <QSpinBox>
+#include <QTableWidget>
 
 #include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
 #include <vtkCacheManager.h>
@@ -43,6 +44,21 @@ void addPictureView(vtkMRMLApplicationLogic* application, vtkMRMLScene* scene) {
   vtkNew<vtkCollection> views;
   views->AddItem(view);
   application->SetSliceLogics(views);
+}
+
+QComboBox* materialOf(const Panel& panel, int row) {
+  return qobject_cast<QComboBox*>(panel.find<QTableWidget>("MaterialsTable")->cellWidget(row, 1));
+}
+
+/// Makes the ball of something else, once the renderer has told what it is by itself.
+int chooseMaterial(const Panel& panel) {
+  CHECK_INT(panel.find<QTableWidget>("MaterialsTable")->rowCount(), 2);
+  QComboBox& material = *materialOf(panel, 0);
+  CHECK_BOOL(waitFor([&] { return material.count() > 20; }), true);
+  material.setCurrentIndex(material.findData("spleen"));
+  CHECK_STD_STRING(panel.flag("materials"), "auto");
+  CHECK_STD_STRING(panel.flag("material"), panel.settings()->GetFocus()[0] + ": material=spleen");
+  return EXIT_SUCCESS;
 }
 
 int render(const Panel& panel, const char* from) {
@@ -78,6 +94,9 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   CHECK_INT(focus.count(), 2);
   CHECK_INT(focus.item(0)->checkState(), Qt::Checked);
   CHECK_STD_STRING(panel.flag("size"), "48x40");
+  CHECK_STD_STRING(panel.chosen("MaterialsBox").toStdString(), "hand");
+  CHECK_STD_STRING(panel.flag("materials"), "auto");
+  CHECK_STD_STRING(materialOf(panel, 0)->currentData().toString().toStdString(), "spleen");
   CHECK_BOOL(panel.find<QPushButton>("RenderButton")->isEnabled(), true);
   CHECK_STD_STRING(textOf(panel, "StateLabel"), "");
   CHECK_POINTER(panel.picture(), scene->GetFirstNodeByName("Ball render"));
@@ -115,6 +134,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   FenestraTesting::addSegmentation(scene);
   owner->enter();
   panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Checked);
+  CHECK_EXIT_SUCCESS(chooseMaterial(panel));
   panel.choose("TransferBox", "ct-soft");
   panel.find<QSpinBox>("SamplesBox")->setValue(8);
   panel.find<QSpinBox>("WidthBox")->setValue(48);

@@ -92,6 +92,18 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
       vtkSegment::GetTerminologyEntryTagName(), "a~SCT^1^b");
   CHECK_STD_STRING(logic->Snapshot(settings, folder).segmentation.segments[0].tags,
                    "TerminologyEntry:a~SCT^1^b|");
+  CHECK_BOOL(vtkSlicerFenestraLogic::GetSegments(nullptr).empty(), true);
+  const std::string before = logic->Snapshot(settings, folder).segmentationKey;
+  segmentation->GetSegmentation()->GetSegment(ids[0])->SetColor(0.25, 0.5, 1.0);
+  contents = logic->Snapshot(settings, folder);
+  CHECK_BOOL(contents.segmentationKey != before, true);
+  const auto named = vtkSlicerFenestraLogic::GetSegments(settings);
+  CHECK_INT(static_cast<int>(named.size()), 2); // also the empty one
+  for (const FenestraScene::Segment& one : {contents.segmentation.segments[0], named[0]}) {
+    CHECK_STD_STRING(one.id, ids[0]);
+    CHECK_STD_STRING(one.tags, "TerminologyEntry:a~SCT^1^b|");
+    CHECK_DOUBLE(one.color[0], 0.25);
+  }
   settings->SetFocus({"gone"});
   CHECK_BOOL(has(complaint(logic, settings), "gone"), true);
   settings->SetFocus({ids[0]});
@@ -140,6 +152,10 @@ int testTurntable(vtkSlicerFenestraLogic* logic, Node* settings) {
     CHECK_BOOL(says(logic->AddRender(settings), argument), false);
   }
   CHECK_BOOL(says(logic->AddRender(settings), "--surface=surface.vtp"), true);
+  settings->SetFlag("material", "a: clip=no,b\\, c: clip=no"); // two values of one flag
+  CHECK_BOOL(says(logic->AddRender(settings), "--material=a: clip=no"), true);
+  CHECK_BOOL(says(logic->AddRender(settings), "--material=b, c: clip=no"), true);
+  settings->SetFlag("material", "");
   CHECK_BOOL(says(turntable, "--surface=surface.vtp"), false);
   CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 0);
   return EXIT_SUCCESS;

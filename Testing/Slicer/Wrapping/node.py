@@ -23,6 +23,10 @@ node.SetFocus(["liver", "a,b"])
 assert node.GetFlag("samples") == "64" and node.GetFlag("nonsense") == ""
 assert list(node.GetFocus()) == ["liver", "a,b"]
 assert "samples" in node.GetFlagNames()
+changes = 'Segment_1: color=#963e2e\\, clip=no,<a\\, "b">: clip=no'
+stored = {"materials": "library", "material": changes, "denoise": "off", "noisetarget": "raw"}
+for name, value in stored.items():
+    node.SetFlag(name, value)
 roles = [getattr(Node, f"Get{role}NodeReferenceRole")() for role in
          "Volume Segmentation View Plane Picture Radiance Depth Surface".split()]
 assert roles == "volume segmentation view plane picture radiance depth surface".split()
@@ -35,6 +39,12 @@ assert read.GetFlag("clip") == "surface" and read.GetFlag("transfer") == "", "a 
 assert read.WithholdsFiles()
 written = read.Written()
 assert all(part in written for part in ('clip="surface"', 'transfer="/etc/passwd"', 'mood="&lt;deep>"'))
+
+scene = node.Written()
+assert 'materials="library"' in scene and "color=#963e2e\\, clip=no" in scene
+again = Node()
+again.ReadAll([text for pair in stored.items() for text in pair])
+assert all(one.GetFlag(name) == value for name, value in stored.items() for one in (node, again))
 
 copy = Node()
 copy.CopyContent(read)

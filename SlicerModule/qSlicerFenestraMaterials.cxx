@@ -1,0 +1,383 @@
+#include "qSlicerFenestraMaterials.h"
+
+#include "FenestraFlags.h"
+#include "qSlicerFenestraWidgets.h"
+
+#include <QAbstractItemView>
+#include <QColorDialog>
+#include <QComboBox>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QLineEdit>
+#include <QScopedValueRollback>
+#include <QTableWidget>
+#include <QToolButton>
+#include <QWheelEvent>
+
+#include <algorithm>
+
+using namespace qSlicerFenestraWidgets;
+
+namespace {
+
+enum Column { nameColumn, materialColumn, colorColumn, clipColumn, resetColumn, columns };
+
+// Sources of materials: values of --materials, and two that stand for others.
+const QString none = "none", automatically = "auto", library = "library";
+const QString ofFile = "file", byHand = "hand";
+
+/// Box that leaves the wheel to the table, which scrolls: no material changes unnoticed.
+class StillBox : public QComboBox {
+protected:
+  void wheelEvent(QWheelEvent* event) override { event->ignore(); }
+};
+
+QIcon square(const QString& color) {
+  constexpr int side = 16; // pixels
+  QPixmap pixels(side, side);
+  pixels.fill(QColor(color));
+  return pixels;
+}
+
+/// Tool tip that shows the text as it is: names in a scene must not be read as HTML.
+QString plain(const QString& text) {
+  return "<qt>" + text.toHtmlEscaped() + "</qt>";
+}
+
+} // namespace
+
+qSlicerFenestraMaterials::qSlicerFenestraMaterials(QWidget* parent) : QWidget(parent) {
+  m_form = new QFormLayout(this);
+  m_form->setContentsMargins(0, 0, 0, 0);
+  buildSource(m_form);
+  buildTable(m_form);
+  list({});
+  showSource();
+}
+
+void qSlicerFenestraMaterials::buildSource(QFormLayout* form) {
+  m_source = choices("MaterialsBox",
+                     {{tr("By default"), ""},
+                      {tr("None: the volume's colours"), none},
+                      {tr("Automatic: the focus set off"), automatically},
+                      {tr("Library"), library},
+                      {tr("File"), ofFile},
+                      {tr("By hand"), byHand}},
+                     tr("What the segments are made of: their colours, and what the clip leaves"));
+  form->addRow(tr("Materials:"), m_source);
+  m_fileRow = new QWidget;
+  auto* row = new QHBoxLayout(m_fileRow);
+  row->setContentsMargins(0, 0, 0, 0);
+  m_file = new QLineEdit;
+  m_file->setObjectName("MaterialsFile");
+  m_file->setToolTip(tr("Materials of your own over the library's (.json)"));
+  auto* browse = new QToolButton;
+  browse->setObjectName("MaterialsBrowse");
+  browse->setText(tr("..."));
+  browse->setToolTip(tr("Choose a file"));
+  browse->setAccessibleName(browse->toolTip());
+  row->addWidget(m_file, 1);
+  row->addWidget(browse);
+  form->addRow(tr("File:"), m_fileRow);
+  connect(m_source, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this] {
+    if (!m_showing)
+      onSource();
+  });
+  connect(m_file, &QLineEdit::editingFinished, this, &qSlicerFenestraMaterials::onFile);
+  connect(browse, &QToolButton::clicked, this, [this] {
+    const QString file = QFileDialog::getOpenFileName(this, tr("Materials"), m_file->text(),
+                                                      tr("Materials (*.json)"));
+    if (file.isEmpty())
+      return;
+    m_file->setText(file);
+    onFile();
+  });
+}
+
+void qSlicerFenestraMaterials::buildTable(QFormLayout* form) {
+  constexpr int tallest = 260; // pixels
+  m_table = new QTableWidget(0, columns);
+  m_table->setObjectName("MaterialsTable");
+  m_table->setAccessibleName(tr("Materials of the segments"));
+  m_table->setHorizontalHeaderLabels(
+      {tr("Segment"), tr("Material"), tr("Colour"), tr("Clip"), QString()});
+  m_table->horizontalHeaderItem(clipColumn)
+      ->setToolTip(tr("Unticked: the segment stays where the clip removes all else"));
+  m_table->verticalHeader()->hide();
+  m_table->setSelectionMode(QAbstractItemView::NoSelection);
+  m_table->setMaximumHeight(tallest);
+  for (int i = 0; i < columns; ++i)
+    m_table->horizontalHeader()->setSectionResizeMode(i, i == nameColumn || i == materialColumn
+                                                             ? QHeaderView::Stretch
+                                                             : QHeaderView::ResizeToContents);
+  form->addRow(m_table);
+  connect(m_table, &QTableWidget::itemChanged, this, [this](const QTableWidgetItem* item) {
+    if (item->column() == clipColumn && !m_showing)
+      onClip(item->row());
+  });
+}
+
+template <typename Widget>
+Widget* qSlicerFenestraMaterials::cell(int row, int column) const {
+  return qobject_cast<Widget*>(m_table->cellWidget(row, column));
+}
+
+void qSlicerFenestraMaterials::buildRow(int row) {
+  auto* name = new QTableWidgetItem;
+  name->setFlags(Qt::ItemIsEnabled);
+  m_table->setItem(row, nameColumn, name);
+  auto* material = new StillBox;
+  material->setFocusPolicy(Qt::StrongFocus);
+  material->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  m_table->setCellWidget(row, materialColumn, material);
+  auto* color = new QToolButton;
+  m_table->setCellWidget(row, colorColumn, color);
+  auto* clip = new QTableWidgetItem;
+  clip->setFlags(Qt::ItemIsEnabled | Qt::ItemIsUserCheckable);
+  m_table->setItem(row, clipColumn, clip);
+  auto* reset = new QToolButton;
+  reset->setText(QString::fromUtf8("\u21ba"));
+  reset->setToolTip(tr("Back to the automatic choice"));
+  m_table->setCellWidget(row, resetColumn, reset);
+  connect(material, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, row] {
+    if (!m_showing)
+      onMaterial(row);
+  });
+  connect(color, &QToolButton::clicked, this, [this, row] { onColor(row); });
+  connect(reset, &QToolButton::clicked, this, [this, row] { onReset(row); });
+}
+
+// ---- what is shown
+
+void qSlicerFenestraMaterials::list(const QList<qSlicerFenestraSegment>& segments) {
+  const QScopedValueRollback<bool> showing(m_showing, true);
+  m_segments = segments;
+  const int before = m_table->rowCount(), now = static_cast<int>(segments.size());
+  m_table->setRowCount(now);
+  for (int row = before; row < now; ++row)
+    buildRow(row);
+  setEnabled(now > 0);
+  showRows();
+}
+
+void qSlicerFenestraMaterials::tell(const qFenestraMaterials& known) {
+  m_known = known;
+  showRows();
+}
+
+QString qSlicerFenestraMaterials::source() const {
+  return m_source->currentData().toString();
+}
+
+/// Flag of the materials that changes are made to, or would be.
+QString qSlicerFenestraMaterials::base() const {
+  const QString word = source();
+  return word == byHand ? m_base : word == ofFile ? m_file->text() : word;
+}
+
+/// Changes of a segment that the flags have.
+FenestraScene::MaterialChange qSlicerFenestraMaterials::changeOf(const QString& segment) const {
+  return source() == byHand ? m_changes.value(segment) : Change();
+}
+
+/// Material that the renderer chooses, as far as it is known here: a file of the user's may choose
+/// another one.
+qFenestraMaterial qSlicerFenestraMaterials::automatic(const QString& segment) const {
+  const qFenestraMaterial one = m_known.ofSegments.value(segment);
+  const QString word = base();
+  const bool isUnknown = word != library && one.why == "by palette";
+  if (word == none || isUnknown)
+    return {{}, {}, tr("the volume's own colours"), true};
+  if (!QStringList{"", automatically, library}.contains(word))
+    return {{}, {}, tr("as the file says"), true};
+  return one;
+}
+
+/// Colour in which the segment is seen; empty: not known, or the volume's own.
+QString qSlicerFenestraMaterials::colorOf(const QString& segment) const {
+  const Change change = changeOf(segment);
+  const QString name = QString::fromStdString(change.field("material"));
+  if (const QColor own(QString::fromStdString(change.field("color"))); own.isValid())
+    return own.name();
+  if (name.isEmpty())
+    return automatic(segment).color;
+  const auto found = std::find_if(m_known.library.begin(), m_known.library.end(),
+                                  [&name](const auto& one) { return one.name == name; });
+  return found == m_known.library.end() ? QString() : found->color;
+}
+
+void qSlicerFenestraMaterials::showSource() {
+  const QString base = m_base == library         ? tr("the library")
+                       : m_base == automatically ? tr("the automatic choice")
+                                                 : QFileInfo(m_base).fileName();
+  m_source->setItemText(m_source->findData(byHand),
+                        m_base.isEmpty() ? tr("By hand") : tr("By hand, over %1").arg(base));
+  qSlicerFenestraWidgets::showRow(m_form, m_fileRow, source() == ofFile);
+  m_table->setEnabled(source() != none);
+  showRows();
+}
+
+void qSlicerFenestraMaterials::showRows() {
+  for (int row = 0; row < m_table->rowCount(); ++row)
+    showRow(row);
+}
+
+void qSlicerFenestraMaterials::showRow(int row) {
+  const QScopedValueRollback<bool> showing(m_showing, true);
+  const auto& [id, name] = m_segments[row];
+  const qFenestraMaterial own = automatic(id);
+  const Change change = changeOf(id);
+  m_table->item(row, nameColumn)->setText(name);
+  auto* material = cell<QComboBox>(row, materialColumn);
+  material->setAccessibleName(tr("Material of %1").arg(name));
+  if (material->count() != m_known.library.size() + 1) {
+    material->clear();
+    material->addItem(QString(), QString());
+    for (const qFenestraMaterial& one : m_known.library)
+      material->addItem(one.color.isEmpty() ? QIcon() : square(one.color), one.name, one.name);
+    material->view()->setMinimumWidth(material->view()->sizeHintForColumn(0)); // whole names
+  }
+  material->setItemText(0,
+                        own.name.isEmpty() ? tr("Automatic") : tr("%1 (automatic)").arg(own.name));
+  material->setToolTip(own.why.isEmpty() ? QString() : plain(tr("Automatic: %1").arg(own.why)));
+  chooseOrAdd(material, QString::fromStdString(change.field("material")));
+  auto* color = cell<QToolButton>(row, colorColumn);
+  color->setAccessibleName(tr("Colour of %1").arg(name));
+  const QString seen = colorOf(id);
+  color->setIcon(seen.isEmpty() ? QIcon() : square(seen));
+  color->setText(seen.isEmpty() ? tr("...") : QString());
+  color->setToolTip(tr("The colour in which the segment is seen, sRGB %1").arg(seen));
+  const std::string clip = change.field("clip");
+  const bool isClipped = clip.empty() ? own.isClipped : clip != "no";
+  m_table->item(row, clipColumn)->setCheckState(isClipped ? Qt::Checked : Qt::Unchecked);
+  auto* reset = cell<QToolButton>(row, resetColumn);
+  reset->setAccessibleName(tr("Reset %1").arg(name));
+  reset->setEnabled(!change.fields.empty());
+}
+
+// ---- what the user does
+
+/// Changes a row by hand. Changes made before another source was chosen are forgotten then.
+void qSlicerFenestraMaterials::change(int row, const std::map<std::string, QString>& fields) {
+  const QString& id = m_segments[row].id;
+  if (source() != byHand) {
+    const QScopedValueRollback<bool> showing(m_showing, true);
+    m_changes.clear();
+    m_base = base();
+    m_source->setCurrentIndex(m_source->findData(byHand));
+  }
+  Change& change = m_changes[id];
+  change.segment = id.toStdString();
+  for (const auto& [key, value] : fields)
+    change.set(key, value.toStdString());
+  onSource();
+}
+
+/// Changes need materials beneath them.
+void qSlicerFenestraMaterials::onSource() {
+  if (source() != byHand)
+    m_base = base();
+  else if (m_base.isEmpty() || m_base == none)
+    m_base = automatically;
+  showSource();
+  emit changed();
+}
+
+void qSlicerFenestraMaterials::onFile() {
+  if (m_file->text() != m_base)
+    onSource();
+}
+
+/// A material comes with its colour.
+void qSlicerFenestraMaterials::onMaterial(int row) {
+  const QString name = cell<QComboBox>(row, materialColumn)->currentData().toString();
+  change(row, {{"material", name}, {"color", {}}});
+}
+
+void qSlicerFenestraMaterials::onColor(int row) {
+  const auto [id, name] = m_segments[row];
+  const QColor color = QColorDialog::getColor(QColor(colorOf(id)), this,
+                                              tr("Colour of %1, as it is seen").arg(name));
+  const bool isListed = row < m_segments.size() && m_segments[row].id == id; // still
+  if (color.isValid() && isListed)
+    change(row, {{"color", color.name()}});
+}
+
+void qSlicerFenestraMaterials::onClip(int row) {
+  const bool isClipped = m_table->item(row, clipColumn)->checkState() == Qt::Checked;
+  const bool isAutomatic = isClipped == automatic(m_segments[row].id).isClipped;
+  change(row, {{"clip", isAutomatic ? QString() : isClipped ? "yes" : "no"}});
+}
+
+void qSlicerFenestraMaterials::onReset(int row) {
+  m_changes.remove(m_segments[row].id);
+  showSource();
+  emit changed();
+}
+
+// ---- flags
+
+/// Id of the segment that a change means; empty: none that is listed.
+QString qSlicerFenestraMaterials::idOf(const QString& selector) const {
+  for (const auto member : {&qSlicerFenestraSegment::id, &qSlicerFenestraSegment::name})
+    for (const qSlicerFenestraSegment& one : m_segments)
+      if (one.*member == selector)
+        return one.id;
+  return {};
+}
+
+void qSlicerFenestraMaterials::takeChanges(const std::vector<std::string>& texts) {
+  for (const qSlicerFenestraSegment& one : m_segments)
+    m_changes.remove(one.id);
+  for (const std::string& text : texts) {
+    Change given = FenestraScene::materialChange(text);
+    const QString selector = QString::fromStdString(given.segment);
+    const QString id = m_segments.isEmpty() ? selector : idOf(selector); // listed later
+    if (id.isEmpty())
+      continue;
+    given.segment = id.toStdString();
+    given.fields.insert(m_changes[id].fields.begin(), m_changes[id].fields.end()); // given earlier
+    m_changes[id] = given;
+  }
+}
+
+void qSlicerFenestraMaterials::show(const Flags& flags) {
+  const QString given = flagOf(flags, "materials");
+  const auto texts = FenestraScene::textsIn(flagOf(flags, "material").toStdString());
+  const bool isByHand = !texts.empty() || (source() == byHand && given == m_base);
+  const bool isFile = !given.isEmpty() && m_source->findData(given) < 0;
+  const bool isNoFileYet = given.isEmpty() && source() == ofFile && m_file->text().isEmpty();
+  const bool isNotPassed = m_segments.isEmpty() && given.isEmpty() && texts.empty();
+  if (isNotPassed || (isNoFileYet && !isByHand))
+    return;
+  const QScopedValueRollback<bool> showing(m_showing, true);
+  if (isFile)
+    m_file->setText(given);
+  m_source->setCurrentIndex(m_source->findData(isByHand ? byHand : isFile ? ofFile : given));
+  m_base = given;
+  if (isByHand)
+    takeChanges(texts);
+  showSource();
+}
+
+void qSlicerFenestraMaterials::reset() {
+  const QScopedValueRollback<bool> showing(m_showing, true);
+  m_changes.clear();
+  m_base.clear();
+  m_file->clear();
+  m_source->setCurrentIndex(0);
+  showSource();
+}
+
+void qSlicerFenestraMaterials::take(Flags& flags) const {
+  std::vector<std::string> texts;
+  for (const qSlicerFenestraSegment& one : m_segments)
+    if (const Change change = changeOf(one.id); !change.fields.empty())
+      texts.push_back(FenestraScene::textOf(change));
+  flags["materials"] = m_segments.isEmpty() ? "" : base().toStdString();
+  flags["material"] = FenestraScene::joined(texts);
+}

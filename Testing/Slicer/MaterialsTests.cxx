@@ -1,0 +1,426 @@
+// Table of the segments' materials: what it shows, the arguments that it makes, and that these make
+// the picture of a command typed by hand. With the renderer itself.
+
+#include "RunSettings.h"
+#include "TemporaryFolder.h"
+
+#include "FenestraFlags.h"
+#include "FenestraSceneFiles.h"
+#include "qFenestraPreview.h"
+#include "qFenestraQueue.h"
+#include "qSlicerFenestraMaterials.h"
+
+#include <QApplication>
+#include <QColorDialog>
+#include <QComboBox>
+#include <QElapsedTimer>
+#include <QLineEdit>
+#include <QTableWidget>
+#include <QTimer>
+#include <QToolButton>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numeric>
+
+namespace fenestra {
+namespace {
+
+using Flags = std::map<std::string, std::string>;
+using Materials = qSlicerFenestraMaterials;
+
+const QString program = FENESTRA_EXECUTABLE;
+
+bool waitFor(const std::function<bool()>& condition) {
+  const int longest = 30000 * static_cast<int>(testing::brevity()); // milliseconds
+  QElapsedTimer watch;
+  watch.start();
+  while (!condition() && watch.elapsed() < longest)
+    QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
+  return condition();
+}
+
+enum Column { name, material, color, clip, reset };
+
+/// Segments with ids and names that a shell, a list or a JSON text would have to escape.
+const std::string awkward = "a, \"b\": c=d; $HOME 'e' \\, \xc3\xa9";
+std::vector<FenestraScene::Segment> segments() {
+  return {{"Segment_1", "Liver", 1, 0, "", {0.9, 0.1, 0.1}},
+          {awkward, "Aorta: 'x', \"y\"", 2, 0, "", {0.5, 0.5, 0.5}},
+          {"Segment_3", "Thing", 3, 0, "", {0.2, 0.4, 0.8}}};
+}
+
+QList<qSlicerFenestraSegment> listed(const std::vector<FenestraScene::Segment>& all) {
+  QList<qSlicerFenestraSegment> list;
+  for (const FenestraScene::Segment& one : all)
+    list.append({QString::fromStdString(one.id), QString::fromStdString(one.name)});
+  return list;
+}
+
+qFenestraMaterials asked(const std::vector<FenestraScene::Segment>& all,
+                         const TemporaryFolder& folder) {
+  qFenestraMaterialsQuestion question;
+  std::vector<qFenestraMaterials> told;
+  QObject::connect(&question, &qFenestraMaterialsQuestion::told,
+                   [&](const qFenestraMaterials& materials) { told.push_back(materials); });
+  question.ask(program, {}, QString::fromStdString(folder.path().string()));
+  question.ask(program, all, QString::fromStdString(folder.path().string()));
+  EXPECT_TRUE(waitFor([&] { return !told.empty(); }));
+  EXPECT_EQ(told.size(), 1u) << "an outdated question has no answer";
+  return told.empty() ? qFenestraMaterials() : told.back();
+}
+
+/// Answer of the renderer about the segments, asked for once.
+const qFenestraMaterials& known() {
+  static const qFenestraMaterials materials = asked(segments(), TemporaryFolder());
+  return materials;
+}
+
+class SlicerMaterials : public ::testing::Test {
+protected:
+  SlicerMaterials() {
+    table.list(listed(segments()));
+    table.tell(known());
+  }
+
+  QTableWidget& widget() { return *table.findChild<QTableWidget*>("MaterialsTable"); }
+  QComboBox& source() { return *table.findChild<QComboBox*>("MaterialsBox"); }
+  template <typename Widget>
+  Widget& cell(int row, Column column) {
+    return *qobject_cast<Widget*>(widget().cellWidget(row, column));
+  }
+  QString text(int row) { return widget().item(row, name)->text(); }
+  void choose(const char* word) { source().setCurrentIndex(source().findData(word)); }
+  std::string chosen() { return source().currentData().toString().toStdString(); }
+  void make(int row, const char* of) {
+    auto& box = cell<QComboBox>(row, material);
+    box.setCurrentIndex(box.findData(of));
+  }
+  void setClip(int row, bool isClipped) {
+    widget().item(row, clip)->setCheckState(isClipped ? Qt::Checked : Qt::Unchecked);
+  }
+  bool isClipped(int row) { return widget().item(row, clip)->checkState() == Qt::Checked; }
+  /// Colour on the row's button, or its text.
+  QString seen(int row) {
+    auto& button = cell<QToolButton>(row, color);
+    return button.icon().isNull() ? button.text()
+                                  : button.icon().pixmap(16).toImage().pixelColor(8, 8).name();
+  }
+  /// Presses the row's button, and chooses in the dialog that opens.
+  void paint(int row, const char* chosen) {
+    QTimer::singleShot(0, [chosen] {
+      auto* dialog = qobject_cast<QColorDialog*>(QApplication::activeModalWidget());
+      ASSERT_NE(dialog, nullptr);
+      dialog->setCurrentColor(QColor(chosen));
+      dialog->accept();
+    });
+    cell<QToolButton>(row, color).click();
+  }
+
+  /// Flags that are given.
+  Flags taken() const {
+    Flags all, given;
+    table.take(all);
+    for (const auto& [name, value] : all)
+      if (!value.empty())
+        given[name] = value;
+    return given;
+  }
+  std::vector<std::string> arguments() const { return FenestraScene::argumentsOf(taken()); }
+
+  Materials table;
+};
+
+using Texts = std::vector<std::string>;
+
+TEST_F(SlicerMaterials, RendererTellsItsChoicesAndItsLibrary) {
+  EXPECT_GE(known().library.size(), 24);
+  for (const qFenestraMaterial& one : known().library)
+    EXPECT_FALSE(one.name.isEmpty());
+  EXPECT_EQ(cell<QComboBox>(0, material).itemText(0), "liver (automatic)");
+  EXPECT_TRUE(cell<QComboBox>(0, material).toolTip().contains("by name"));
+  EXPECT_EQ(cell<QComboBox>(1, material).itemText(0), "artery (automatic)");
+  EXPECT_EQ(cell<QComboBox>(2, material).itemText(0), "Automatic");
+  EXPECT_TRUE(cell<QComboBox>(2, material).toolTip().contains("by its own colour"));
+  EXPECT_EQ(cell<QComboBox>(0, material).count(), known().library.size() + 1);
+  EXPECT_EQ(seen(0), "#963e2e");
+  EXPECT_EQ(seen(2), "#3366cc"); // the segment's own
+}
+
+TEST_F(SlicerMaterials, SourceIsOneFlagAndNoChange) {
+  EXPECT_TRUE(arguments().empty()) << "what nobody has touched is no flag";
+  for (const char* word : {"none", "auto", "library"}) {
+    choose(word);
+    EXPECT_EQ(arguments(), (Texts{std::string("--materials=") + word}));
+    EXPECT_EQ(widget().isEnabled(), word != std::string("none"));
+  }
+  choose("file");
+  EXPECT_TRUE(arguments().empty()) << "no file yet";
+  auto& file = *table.findChild<QLineEdit*>("MaterialsFile");
+  EXPECT_FALSE(file.isHidden());
+  file.setText("/data/my own.json");
+  emit file.editingFinished();
+  EXPECT_EQ(arguments(), (Texts{"--materials=/data/my own.json"}));
+  EXPECT_EQ(seen(0), "...") << "what the file says is not known here";
+  choose("hand");
+  EXPECT_EQ(arguments(), (Texts{"--materials=/data/my own.json"}));
+  choose("");
+  EXPECT_TRUE(arguments().empty());
+}
+
+TEST_F(SlicerMaterials, OnlyWhatIsChangedIsAnArgument) {
+  int changes = 0;
+  QObject::connect(&table, &Materials::changed, [&changes] { ++changes; });
+  setClip(1, false);
+  EXPECT_EQ(changes, 1);
+  EXPECT_EQ(chosen(), "hand");
+  EXPECT_EQ(arguments(), (Texts{"--material=" + awkward + ": clip=no", "--materials=auto"}));
+  choose("library");
+  EXPECT_EQ(arguments(), (Texts{"--materials=library"}));
+  make(0, "spleen");
+  EXPECT_EQ(chosen(), "hand");
+  paint(0, "#ABCDEF");
+  EXPECT_EQ(arguments(),
+            (Texts{"--material=Segment_1: color=#abcdef, material=spleen", "--materials=library"}));
+  EXPECT_EQ(seen(0), "#abcdef");
+  make(0, "vein");
+  const Texts vein = {"--material=Segment_1: material=vein", "--materials=library"};
+  EXPECT_EQ(seen(0), "#4668b2") << "a material comes with its colour";
+  EXPECT_EQ(arguments(), vein);
+  setClip(0, false);
+  setClip(0, true);
+  EXPECT_EQ(arguments(), vein);
+  EXPECT_FALSE(cell<QToolButton>(1, reset).isEnabled());
+  cell<QToolButton>(0, reset).click();
+  EXPECT_EQ(arguments(), (Texts{"--materials=library"}));
+  EXPECT_EQ(seen(0), "#963e2e");
+}
+
+/// Texts of a scene are neither read as HTML nor as colours.
+TEST_F(SlicerMaterials, TextsOfASceneAreShownAsTheyAre) {
+  qFenestraMaterials hostile = known();
+  hostile.ofSegments["Segment_1"].why = "<img src='file:///etc/passwd'>";
+  table.tell(hostile);
+  EXPECT_TRUE(cell<QComboBox>(0, material).toolTip().contains("&lt;img"));
+  table.show({{"materials", "auto"}, {"material", "Segment_1: color=<b>red</b>"}});
+  EXPECT_EQ(seen(0), "#963e2e");
+  EXPECT_FALSE(cell<QToolButton>(0, color).toolTip().contains("<b>"));
+}
+
+TEST_F(SlicerMaterials, WhatNobodyKnowsKeepsTheVolumesColours) {
+  qFenestraMaterials palette = known();
+  palette.ofSegments["Segment_3"].why = "by palette";
+  table.tell(palette);
+  choose("library");
+  EXPECT_EQ(seen(2), "#3366cc");
+  for (const char* word : {"auto", "none"}) {
+    choose(word);
+    EXPECT_EQ(seen(2), "...") << word;
+  }
+}
+
+TEST_F(SlicerMaterials, ClipFollowsTheAutomaticChoice) {
+  qFenestraMaterials standing = known();
+  standing.ofSegments["Segment_1"].isClipped = false;
+  table.tell(standing);
+  EXPECT_FALSE(isClipped(0));
+  setClip(0, true);
+  EXPECT_EQ(arguments(), (Texts{"--material=Segment_1: clip=yes", "--materials=auto"}));
+  setClip(0, false);
+  EXPECT_EQ(arguments(), (Texts{"--materials=auto"}));
+}
+
+TEST_F(SlicerMaterials, CancelledDialogChangesNothing) {
+  QTimer::singleShot(0,
+                     [] { qobject_cast<QDialog*>(QApplication::activeModalWidget())->reject(); });
+  cell<QToolButton>(0, color).click();
+  EXPECT_TRUE(arguments().empty());
+}
+
+TEST_F(SlicerMaterials, RowsFollowTheSegments) {
+  make(0, "spleen");
+  setClip(1, false);
+  auto all = segments();
+  all[1].name = "<b>Aorta</b>";
+  table.list(listed(all));
+  EXPECT_EQ(text(1), "<b>Aorta</b>");
+  EXPECT_FALSE(isClipped(1));
+  const Texts both = arguments();
+  all.erase(all.begin());
+  table.list(listed(all)); // "Liver" is removed
+  EXPECT_EQ(widget().rowCount(), 2);
+  EXPECT_EQ(text(0), "<b>Aorta</b>");
+  EXPECT_FALSE(isClipped(0));
+  EXPECT_EQ(arguments(), (Texts{"--material=" + awkward + ": clip=no", "--materials=auto"}));
+  table.list(listed(segments())); // there again, as after Undo
+  EXPECT_EQ(arguments(), both);
+  table.list({});
+  EXPECT_FALSE(table.isEnabled());
+  EXPECT_TRUE(arguments().empty()) << "the renderer refuses materials without segments";
+}
+
+TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
+  const std::string own = "Segment_1: color=#abcdef, density=2, priority=20";
+  const std::string other = awkward + ": clip=no, material=vein";
+  for (const Flags& flags : std::vector<Flags>{
+           {},
+           {{"materials", "none"}},
+           {{"materials", "library"}},
+           {{"materials", "/data/mine.json"}},
+           {{"materials", "auto"}, {"material", FenestraScene::joined({own})}},
+           {{"materials", "/data/mine.json"}, {"material", FenestraScene::joined({other})}},
+           {{"materials", "library"}, {"material", FenestraScene::joined({own, other})}},
+           {{"materials", "auto"}, {"material", "Segment_3: material=of a file"}},
+           {{"material", "Segment_3: clip=no"}}}) { // what is missing is for the user to say
+    table.show(flags);
+    EXPECT_EQ(taken(), flags);
+    EXPECT_EQ(chosen() == "hand", flags.count("material") > 0);
+  }
+  table.show({{"materials", "auto"}, {"material", "Segment_3: material=of a file"}});
+  EXPECT_EQ(cell<QComboBox>(2, material).currentData().toString(), "of a file");
+  table.show({{"materials", "auto"}});
+  EXPECT_EQ(arguments(), (Texts{"--materials=auto"}));
+}
+
+TEST_F(SlicerMaterials, FlagsAreThereBeforeTheSegments) {
+  const Flags flags = {{"materials", "library"},
+                       {"material", FenestraScene::joined({awkward + ": clip=no"})}};
+  Materials early;
+  early.show(flags);
+  early.show({}); // nothing is passed without segments
+  early.list(listed(segments()));
+  Flags made;
+  early.take(made);
+  EXPECT_EQ(made, flags);
+}
+
+TEST_F(SlicerMaterials, ChangesOfScriptsAreFoundByName) {
+  table.show({{"materials", "library"},
+              {"material", FenestraScene::joined(
+                               {"Liver: clip=no", "Gone: clip=no", "Segment_1: color=#00ff00"})}});
+  EXPECT_FALSE(isClipped(0));
+  EXPECT_EQ(arguments(),
+            (Texts{"--material=Segment_1: clip=no, color=#00ff00", "--materials=library"}));
+}
+
+/// Scene with the segments side by side, as the extension hands it to the renderer.
+class SlicerMaterialsPicture : public SlicerMaterials {
+protected:
+  SlicerMaterialsPicture() {
+    FenestraScene::Contents contents;
+    contents.volume.type = "int16";
+    contents.volume.size = {9, 9, 9};
+    const auto values = std::make_shared<std::vector<std::int16_t>>(729);
+    std::iota(values->begin(), values->end(), std::int16_t(0));
+    contents.volume.data = {values, values->data()};
+    FenestraScene::Layer layer;
+    layer.labels.type = "uint8";
+    layer.labels.size = {9, 9, 9};
+    const auto labels = std::make_shared<std::vector<std::uint8_t>>(729);
+    for (std::size_t i = 0; i < labels->size(); ++i)
+      (*labels)[i] = static_cast<std::uint8_t>(1 + i % 9 / 3);
+    layer.labels.data = {labels, labels->data()};
+    contents.segmentation.layers = {layer};
+    contents.segmentation.segments = segments();
+    scene = FenestraScene::Writer(folder.path()).write(contents);
+  }
+
+  /// Picture with the table's arguments, by the panel's way: the queue of renders.
+  std::string byPanel() const {
+    QStringList all = {QString::fromStdString(scene.string()), "--size=24x24", "--samples=4",
+                       "--output=panel.nrrd"};
+    for (const std::string& argument : arguments())
+      all << QString::fromStdString(argument);
+    qFenestraQueue queue(program);
+    std::vector<qFenestraOutcome> ended;
+    QObject::connect(&queue, &qFenestraQueue::ended,
+                     [&](int, const qFenestraOutcome& outcome) { ended.push_back(outcome); });
+    queue.add({1, all, QString::fromStdString(folder.path().string())});
+    EXPECT_TRUE(waitFor([&] { return !ended.empty(); }));
+    for (const qFenestraOutcome& one : ended)
+      EXPECT_EQ(one.kind, qFenestraOutcome::Kind::done) << one.details.toStdString();
+    return bytesOf(folder / "panel.nrrd");
+  }
+  /// Picture with arguments as they are typed into a shell.
+  std::string byHand(const std::string& typed) const {
+    const std::string command = "cd '" + folder.path().string() + "' && '" + program.toStdString() +
+                                "' '" + scene.string() +
+                                "' --size 24x24 --samples 4 --output hand.nrrd --progress none " +
+                                typed + " >/dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    return bytesOf(folder / "hand.nrrd");
+  }
+
+  TemporaryFolder folder;
+  std::filesystem::path scene;
+};
+
+TEST_F(SlicerMaterialsPicture, IsThatOfTheCommandLineBitForBit) {
+  const std::string none = byPanel();
+  EXPECT_TRUE(none == byHand("")) << "no flag";
+  choose("library");
+  const std::string library = byPanel();
+  EXPECT_TRUE(library == byHand("--materials library"));
+  EXPECT_TRUE(library != none);
+  paint(0, "#22cc44");
+  make(1, "vein");
+  paint(1, "#4466ff");
+  make(2, "muscle");
+  const std::string own = byPanel();
+  EXPECT_TRUE(
+      own == byHand(R"(--materials library --material 'Segment_1: color=#22cc44' )"
+                    R"(--material "a, \"b\": c=d; \$HOME 'e' \\, é: material=vein, color=#4466ff" )"
+                    R"(--material "Thing: material=muscle")"));
+  EXPECT_TRUE(own != library);
+  for (int row = 0; row < 3; ++row)
+    cell<QToolButton>(row, reset).click();
+  EXPECT_TRUE(byPanel() == library);
+}
+
+/// The extension's scene holds the segments' own colours, which are those of unknown ones.
+TEST_F(SlicerMaterialsPicture, UnknownSegmentHasItsOwnColour) {
+  choose("library");
+  EXPECT_TRUE(byPanel() == byHand("--materials library --material 'Segment_3: color=#3366cc'"));
+}
+
+TEST_F(SlicerMaterialsPicture, PreviewTakesTheSameFlags) {
+  make(0, "spleen");
+  make(1, "vein");
+  qFenestraPreview preview;
+  std::vector<qFenestraPicture> pictures;
+  QStringList refused;
+  QObject::connect(&preview, &qFenestraPreview::refreshed,
+                   [&](const qFenestraPicture& picture) { pictures.push_back(picture); });
+  QObject::connect(&preview, &qFenestraPreview::refused,
+                   [&](const QString& message) { refused << message; });
+  const auto picture = [&] {
+    pictures.clear();
+    EXPECT_TRUE(
+        waitFor([&] { return !refused.isEmpty() || (!pictures.empty() && pictures.back().done); }));
+    EXPECT_TRUE(refused.isEmpty()) << refused.join('\n').toStdString();
+    return bytesOf(folder / "preview.png");
+  };
+  QStringList all = {QString::fromStdString(scene.string()), "--size=24x24", "--samples=2",
+                     "--output=preview.png"};
+  const QStringList bare = all;
+  for (const std::string& argument : arguments())
+    all << QString::fromStdString(argument);
+  const QString path = QString::fromStdString(folder.path().string());
+  preview.start(program, all, path);
+  const std::string first = picture();
+  preview.start(program, bare, path);
+  EXPECT_TRUE(picture() != first);
+  preview.change(qFenestraPreview::valuesOf(taken()));
+  EXPECT_TRUE(picture() == first);
+}
+
+TEST_F(SlicerMaterials, ResetForgetsAll) {
+  make(0, "spleen");
+  table.reset();
+  EXPECT_TRUE(arguments().empty());
+  choose("hand");
+  EXPECT_EQ(arguments(), (Texts{"--materials=auto"}));
+}
+
+} // namespace
+} // namespace fenestra
