@@ -4,6 +4,7 @@
 //   FENESTRA_BRIEF         number that divides the counts of samples, for slow builds
 //   FENESTRA_SEED          number that selects other seeds
 //   FENESTRA_COMBINATIONS  number of the matrix's combinations, for slow builds
+//   FENESTRA_PLANTED       names of the planted errors to look for, between commas
 //   FENESTRA_REPORT        folder for fragments of the report
 
 #include <algorithm>

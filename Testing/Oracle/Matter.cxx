@@ -36,14 +36,17 @@ Rgb valueAt(const ColorFunction& f, double s) {
   return valueOf(f, s);
 }
 
+double greatestExtinction(const TransferFunction& transfer) {
+  return greatestKnot(transfer.extinction) *
+         (transfer.gradientOpacity ? greatestKnot(*transfer.gradientOpacity) : 1.0);
+}
+
 Matter::Matter(const Volume& volume, const TransferFunction& transfer,
                const std::optional<Affine>& crop)
     : m_size(volume.grid.size),
       m_worldToIndex(volume.grid.indexToWorld.inverse()),
       m_voxels(asFloats(volume.voxels)),
-      m_transfer(transfer),
-      m_majorant(greatestKnot(transfer.extinction) *
-                 (transfer.gradientOpacity ? greatestKnot(*transfer.gradientOpacity) : 1.0)) {
+      m_transfer(transfer) {
   if (crop)
     m_worldToCrop = crop->inverse();
 }
@@ -80,15 +83,12 @@ double Matter::scalarAtIndex(const Vec3& index) const {
   return sum;
 }
 
-double Matter::extinction(const Vec3& world) const {
-  const double sigma_t = valueOf(m_transfer.extinction, scalar(world))[0];
-  if (!m_transfer.gradientOpacity || sigma_t == 0.0)
+double Matter::extinction(const TransferFunction& transfer, const Vec3& world,
+                          double scalar) const {
+  const double sigma_t = valueOf(transfer.extinction, scalar)[0];
+  if (!transfer.gradientOpacity || sigma_t == 0.0)
     return sigma_t;
-  return sigma_t * valueOf(*m_transfer.gradientOpacity, gradient(world).norm())[0];
-}
-
-Rgb Matter::albedo(const Vec3& world) const {
-  return valueAt(m_transfer.albedo, scalar(world));
+  return sigma_t * valueOf(*transfer.gradientOpacity, gradient(world).norm())[0];
 }
 
 Vec3 Matter::gradient(const Vec3& world) const {
@@ -106,9 +106,10 @@ Vec3 Matter::spansPerMm(const Vec3& world) const {
   return gradient(world) / (knots.back().position - knots.front().position);
 }
 
-double Matter::surfaceProbability(const Vec3& world, double slope) const {
-  const double o = 1.0 - std::exp(-extinction(world));
-  return o * (1.0 - std::exp(-25.0 * std::pow(m_transfer.shading->gamma, 3.0) * slope));
+double Matter::surfaceProbability(const TransferFunction& transfer, const Vec3& world,
+                                  double slope) const {
+  const double o = 1.0 - std::exp(-extinction(transfer, world, scalar(world)));
+  return o * (1.0 - std::exp(-25.0 * std::pow(transfer.shading->gamma, 3.0) * slope));
 }
 
 Interval Matter::inBox(const Vec3& origin, const Vec3& direction) const {

@@ -8,6 +8,9 @@ namespace fenestra::oracle {
 /// Value at s of sorted knots; at a step, the value on its right.
 Rgb valueAt(const ColorFunction& f, double s);
 
+/// Greatest extinction, mm^-1, that a transfer function has anywhere.
+double greatestExtinction(const TransferFunction& transfer);
+
 /// Interval of a ray, t >= 0, inside a box; empty: ray misses.
 Interval partIn(const Box& box, const Ray& ray);
 
@@ -17,22 +20,19 @@ public:
 
   /// True if a world point lies in the volume's box and in the crop.
   bool inside(const Vec3& world) const;
-  /// Extinction, mm^-1; valid inside only.
-  double extinction(const Vec3& world) const;
   double scalar(const Vec3& world) const { return scalarAtIndex(m_worldToIndex * world); }
-  Rgb albedo(const Vec3& world) const;
   /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;
-  /// Gradient in spans of the transfer function, which must have two knots.
+  /// Transfer function of the volume; that of a component may stand in its place below.
+  const TransferFunction& transfer() const { return m_transfer; }
+  /// Gradient in spans of the volume's transfer function, which must have two knots.
   Vec3 spansPerMm(const Vec3& world) const;
+  /// Extinction, mm^-1, by a transfer function; valid inside only.
+  double extinction(const TransferFunction& transfer, const Vec3& world, double scalar) const;
   /// Probability that a collision scatters at a surface (Kroes, Post, Botha 2012), where matter's
   /// gradient is `slope`, spans per mm.
-  double surfaceProbability(const Vec3& world, double slope) const;
-  /// Upper bound of the extinction, mm^-1.
-  double majorant() const { return m_majorant; }
-  double g() const { return m_transfer.g; }
-  bool hasSurfaces() const { return m_transfer.shading.has_value(); }
-  const SurfaceShading& shading() const { return *m_transfer.shading; }
+  double surfaceProbability(const TransferFunction& transfer, const Vec3& world,
+                            double slope) const;
 
   /// Interval of a world ray, t >= 0, inside the volume's box; empty: ray misses.
   Interval inBox(const Vec3& origin, const Vec3& direction) const;
@@ -45,7 +45,6 @@ private:
   std::vector<float> m_voxels; ///< exact for every storage type
   const TransferFunction& m_transfer;
   std::optional<Affine> m_worldToCrop;
-  double m_majorant;
 };
 
 } // namespace fenestra::oracle

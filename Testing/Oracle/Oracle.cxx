@@ -12,6 +12,8 @@
 namespace fenestra::oracle {
 namespace {
 
+using Component = ComponentsDescription::Component;
+
 class Tracer {
 public:
   explicit Tracer(const OracleScene& scene)
@@ -22,8 +24,14 @@ public:
         m_lights(scene.lights, scene.volume.grid, m_view) {
     if (scene.style)
       m_styledFocus.emplace(scene.style->focus);
-    if (scene.tint)
-      m_segments.emplace(*scene.tint);
+    if (scene.components)
+      m_segments.emplace(*scene.components);
+    if (isMixed())
+      m_components = scene.components->components;
+    else
+      m_components.push_back({scene.transfer});
+    for (const Component& component : m_components)
+      m_majorant = std::max(m_majorant, greatestExtinction(component.transfer));
     if (scene.background.kind == Background::Kind::gradient)
       throw std::invalid_argument("the oracle has no gradient background");
   }
@@ -39,12 +47,13 @@ public:
       return seenBackground(ray);
     result.collides = true;
     result.depth = m_view.depth(ray.at(distance));
-    result.albedo = albedo(ray.at(distance));
+    Met met = meet(ray.at(distance), generator);
+    result.albedo = met.albedo;
 
     Rgb weight = Rgb::Ones();
     for (std::uint64_t scattered = 0; scattered < m_scene.bounces; ++scattered) {
       const Vec3 point = ray.at(distance);
-      const Scatterer scatterer = collide(point, ray.direction, generator);
+      const Scatterer scatterer = collide(met, point, ray.direction, generator);
       result.radiance += weight * (parallelLight(point, scatterer, generator) +
                                    areaLight(point, scatterer, generator));
       const Vec3 outgoing = scatterer.draw(generator);
@@ -57,6 +66,7 @@ public:
         result.radiance += weight * m_lights.environment(ray.direction);
         break;
       }
+      met = meet(ray.at(distance), generator);
     }
     return result;
   }
@@ -64,26 +74,65 @@ public:
   const Clipping& clipping() const { return m_clipping; }
 
 private:
+  /// Matter that a path meets at a collision.
+  struct Met {
+    std::size_t component;
+    Rgb albedo;
+  };
+
+  bool isMixed() const { return m_scene.components && !m_scene.components->isTint; }
+
   /// Distance to the next real collision, by delta tracking with one majorant for the whole volume;
   /// every tentative collision is tested at its place.
   double collision(const Ray& ray, Generator& generator) const {
-    const double majorant = m_matter.majorant();
     const Interval part = m_matter.inBox(ray.origin, ray.direction);
-    if (part.empty() || majorant == 0.0)
+    if (part.empty() || m_majorant == 0.0)
       return infinity;
     double t = part.begin;
     for (;;) {
-      t += -std::log(1.0 - uniform(generator)) / majorant;
+      t += -std::log(1.0 - uniform(generator)) / m_majorant;
       if (t >= part.end)
         return infinity;
       const Vec3 point = ray.at(t);
       if (!m_matter.inside(point))
         continue;
-      const double extinction =
-          m_clipping.keep(point) * thinning(point) * m_matter.extinction(point);
-      if (uniform(generator) * majorant < extinction)
+      if (uniform(generator) * m_majorant < sumOf(extinctions(point)))
         return t;
     }
+  }
+
+  /// Extinction, mm^-1, of each component: keep w sigma(s), with keep 1 where the clip leaves it.
+  Segments::Shares extinctions(const Vec3& point) const {
+    Segments::Shares all{};
+    Segments::Shares shares{1.0};
+    if (isMixed())
+      shares = m_segments->at(point);
+    const double keep = m_clipping.keep(point), thin = thinning(point);
+    const double scalar = m_matter.scalar(point);
+    for (std::size_t c = 0; c < m_components.size(); ++c)
+      if (shares[c] > 0.0)
+        all[c] = (m_components[c].isClipped ? keep : 1.0) * thin * shares[c] *
+                 m_matter.extinction(m_components[c].transfer, point, scalar);
+    return all;
+  }
+
+  static double sumOf(const Segments::Shares& all) {
+    double sum = 0.0;
+    for (const double one : all)
+      sum += one;
+    return sum;
+  }
+
+  /// One component, drawn in proportion to the extinctions.
+  Met meet(const Vec3& point, Generator& generator) const {
+    std::size_t drawn = 0;
+    if (isMixed()) {
+      const Segments::Shares all = extinctions(point);
+      double left = uniform(generator) * sumOf(all);
+      while (drawn + 1 < m_components.size() && left >= all[drawn])
+        left -= all[drawn++];
+    }
+    return {drawn, albedo(drawn, point)};
   }
 
   PathEstimate seenBackground(const Ray& ray) const {
@@ -95,23 +144,36 @@ private:
     return result;
   }
 
-  Scatterer collide(const Vec3& point, const Vec3& incoming, Generator& generator) const {
-    if (m_matter.hasSurfaces()) {
-      const Vec3 gradient = m_matter.spansPerMm(point) + m_clipping.cutGradient(point);
-      if (uniform(generator) < m_matter.surfaceProbability(point, gradient.norm()))
-        return Scatterer::atSurface(incoming, albedo(point), gradient, m_matter.shading());
+  Scatterer collide(const Met& met, const Vec3& point, const Vec3& incoming,
+                    Generator& generator) const {
+    const Component& component = m_components[met.component];
+    if (component.transfer.shading) {
+      Vec3 gradient = m_matter.spansPerMm(point);
+      if (component.isClipped)
+        gradient += m_clipping.cutGradient(point);
+      if (component.border > 0.0)
+        gradient += component.border * m_segments->gradient(met.component, point);
+      if (uniform(generator) <
+          m_matter.surfaceProbability(component.transfer, point, gradient.norm()))
+        return Scatterer::atSurface(incoming, met.albedo, gradient, *component.transfer.shading);
     }
-    return Scatterer::byPhase(incoming, albedo(point), m_matter.g());
+    return Scatterer::byPhase(incoming, met.albedo, component.transfer.g);
   }
 
   bool isStyled(const Vec3& point) const { return m_styledFocus && m_styledFocus->at(point) < 0.5; }
   double thinning(const Vec3& point) const {
     return isStyled(point) ? m_scene.style->extinction : 1.0;
   }
-  Rgb albedo(const Vec3& point) const {
-    Rgb own = m_matter.albedo(point);
-    if (m_segments)
-      own = m_segments->albedo(point, m_matter.scalar(point), own);
+  /// Albedo of a component; of a tint, the mean of all, weighted by their shares.
+  Rgb albedo(std::size_t number, const Vec3& point) const {
+    const double scalar = m_matter.scalar(point);
+    Rgb own = valueAt(m_components[number].transfer.albedo, scalar);
+    if (m_segments && !isMixed()) {
+      const Segments::Shares shares = m_segments->at(point);
+      own.setZero();
+      for (std::size_t c = 0; c < m_scene.components->components.size(); ++c)
+        own += shares[c] * valueAt(m_scene.components->components[c].transfer.albedo, scalar);
+    }
     if (!isStyled(point))
       return own;
     const Rgb grey = Rgb::Constant(own.matrix().dot(Vec3(0.2126, 0.7152, 0.0722)));
@@ -163,6 +225,8 @@ private:
   Clipping m_clipping;
   std::optional<FocusField> m_styledFocus;
   std::optional<Segments> m_segments;
+  std::vector<Component> m_components; ///< of the medium; of a tint one, the volume's own matter
+  double m_majorant = 0.0;             ///< greatest extinction anywhere, mm^-1
   Lights m_lights;
 };
 

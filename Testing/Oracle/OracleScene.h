@@ -66,15 +66,25 @@ struct StyleDescription {
   double extinction = 1.0, saturation = 1.0;
 };
 
-/// Colours of segments, whose labels lie on voxels of one labelmap.
-struct TintDescription {
+/// Components of the medium: one of what is in no segment, and those of the segments, whose labels
+/// lie on voxels of one labelmap.
+struct ComponentsDescription {
   struct Segment {
     Mask mask;
     int priority;          ///< where segments overlap, the greater takes what it covers
     std::size_t component; ///< 0: what is in no segment
   };
+  struct Component {
+    TransferFunction transfer; ///< with surfaces where the volume's own has them
+    bool isClipped = true;     ///< false: the clip leaves it
+    /// Weight of its share's gradient, per mm, beside the scalar's in spans per mm.
+    double border = 0.0;
+  };
   std::vector<Segment> segments;
-  std::vector<std::optional<ColorFunction>> albedo; ///< of each component; nothing: matter's own
+  std::vector<Component> components;
+  /// True: only albedo differs between components, and a point has the mean of it. False: a
+  /// collision meets one component.
+  bool isTint = false;
 };
 
 struct OracleScene {
@@ -88,7 +98,7 @@ struct OracleScene {
   Background background = {};      ///< any but a gradient
   std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max();
   std::optional<StyleDescription> style = {};
-  std::optional<TintDescription> tint = {};
+  std::optional<ComponentsDescription> components = {};
 };
 
 } // namespace fenestra::oracle

@@ -1,56 +1,94 @@
 #include "Segments.h"
 
-#include "Matter.h"
-
+#include <algorithm>
 #include <set>
+#include <stdexcept>
 
 namespace fenestra::oracle {
+namespace {
 
-Rgb Segments::albedo(const Vec3& world, double scalar, const Rgb& own) const {
-  const Vec3 index = m_tint.segments.front().mask.grid.indexToWorld.inverse() * world;
+/// First voxel of a mask in the labelmap's index space.
+Vec3 firstOf(const Mask& mask, const Affine& worldToIndex) {
+  return (worldToIndex * mask.grid.indexToWorld.translation()).array().round();
+}
+
+} // namespace
+
+Segments::Segments(const ComponentsDescription& description)
+    : m_description(description),
+      m_worldToIndex(description.segments.front().mask.grid.indexToWorld.inverse()) {
+  if (description.components.size() > most)
+    throw std::invalid_argument("the oracle has no more than 16 components");
+  Box box = Box::nothing();
+  for (const auto& segment : description.segments) {
+    const Vec3 first = firstOf(segment.mask, m_worldToIndex);
+    box.extend(first);
+    box.extend(first + segment.mask.grid.size.cast<double>());
+  }
+  m_first = box.lower;
+  m_count = box.upper - box.lower;
+  for (double z = 0.0; z < m_count.z(); ++z)
+    for (double y = 0.0; y < m_count.y(); ++y)
+      for (double x = 0.0; x < m_count.x(); ++x)
+        m_voxels.push_back(voxel(m_first + Vec3(x, y, z)));
+}
+
+Segments::Shares Segments::atIndex(const Vec3& index) const {
   const Vec3 base = index.array().floor();
-  Rgb mean = Rgb::Zero();
+  const std::size_t count = m_description.components.size();
+  Shares sum{};
   for (int corner = 0; corner < 8; ++corner) {
     double weight = 1.0;
-    Vec3 voxel = base;
+    Vec3 from = base - m_first; // the voxel, counted from the first one
     for (int axis = 0; axis < 3; ++axis) {
       const bool upper = corner >> axis & 1;
       weight *= upper ? index[axis] - base[axis] : 1.0 - index[axis] + base[axis];
-      voxel[axis] += upper;
+      from[axis] += upper;
     }
-    const std::vector<double> shares = sharesAt(voxel);
-    for (std::size_t c = 0; c < shares.size(); ++c) {
-      const auto& colors = m_tint.albedo[c];
-      mean += weight * shares[c] / 255.0 * (colors ? Rgb(valueAt(*colors, scalar)) : own);
+    if (from.minCoeff() < 0.0 || (m_count - from).minCoeff() < 1.0) {
+      sum[0] += weight;
+      continue;
     }
+    const double number = from.x() + m_count.x() * (from.y() + m_count.y() * from.z());
+    const Shares& shares = m_voxels[static_cast<std::size_t>(number)];
+    for (std::size_t c = 0; c < count; ++c)
+      sum[c] += weight * shares[c] / 255.0;
   }
-  return mean;
+  return sum;
 }
 
-std::vector<double> Segments::sharesAt(const Vec3& voxel) const {
-  const Vec3 world = m_tint.segments.front().mask.grid.indexToWorld * voxel;
-  const auto indicator = [&](const TintDescription::Segment& segment) {
-    const Grid& grid = segment.mask.grid;
-    const Vec3 index = (grid.indexToWorld.inverse() * world).array().round();
+Vec3 Segments::gradient(std::size_t component, const Vec3& world) const {
+  const Vec3 index = m_worldToIndex * world;
+  Vec3 perVoxel;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 step = Vec3::Unit(axis);
+    perVoxel[axis] = (atIndex(index + step)[component] - atIndex(index - step)[component]) / 2.0;
+  }
+  return m_worldToIndex.linear().transpose() * perVoxel; // chain rule
+}
+
+Segments::Shares Segments::voxel(const Vec3& at) const {
+  const auto indicator = [&](const ComponentsDescription::Segment& segment) {
+    const Size3& size = segment.mask.grid.size;
+    const Vec3 from = at - firstOf(segment.mask, m_worldToIndex);
     for (int axis = 0; axis < 3; ++axis)
-      if (index[axis] < 0.0 || index[axis] >= static_cast<double>(grid.size[axis]))
+      if (from[axis] < 0.0 || from[axis] >= static_cast<double>(size[axis]))
         return 0.0;
-    const Vec3 strides(1.0, static_cast<double>(grid.size[0]),
-                       static_cast<double>(grid.size[0] * grid.size[1]));
-    const auto at = static_cast<std::size_t>(index.dot(strides));
-    return 255.0 * segment.mask.voxels[at] / segment.mask.full;
+    const Vec3 strides(1.0, static_cast<double>(size[0]), static_cast<double>(size[0] * size[1]));
+    const auto number = static_cast<std::size_t>(from.dot(strides));
+    return 255.0 * segment.mask.voxels[number] / segment.mask.full;
   };
   std::set<int, std::greater<>> priorities;
-  for (const auto& segment : m_tint.segments)
+  for (const auto& segment : m_description.segments)
     priorities.insert(segment.priority);
 
-  std::vector<double> shares(m_tint.albedo.size(), 0.0);
+  Shares shares{};
   double left = 255.0;
   for (const int priority : priorities) {
     double all = 0.0;
-    for (const auto& segment : m_tint.segments)
+    for (const auto& segment : m_description.segments)
       all += segment.priority == priority ? indicator(segment) : 0.0;
-    for (const auto& segment : m_tint.segments)
+    for (const auto& segment : m_description.segments)
       if (segment.priority == priority && all > 0.0)
         shares[segment.component] += indicator(segment) * std::min(1.0, left / all);
     left = std::max(left - all, 0.0);

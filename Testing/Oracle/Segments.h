@@ -1,23 +1,35 @@
 #pragma once
-// Colours of segments at a point, straight from their labels.
+// Shares of components at a point, straight from the labels of their segments.
 
 #include "OracleScene.h"
+
+#include <array>
 
 namespace fenestra::oracle {
 
 class Segments {
 public:
-  explicit Segments(const TintDescription& tint) : m_tint(tint) {}
+  static constexpr std::size_t most = 16; ///< components
+  /// Of each component; all sum to 1.
+  using Shares = std::array<double, most>;
 
-  /// Albedo at a world point where the scalar's own is `own`: mean over the components, weighted by
-  /// trilinear shares of the eight voxels around.
-  Rgb albedo(const Vec3& world, double scalar, const Rgb& own) const;
+  /// Throws std::invalid_argument for too many components.
+  explicit Segments(const ComponentsDescription& description);
+
+  /// Trilinear between the voxels of the first segment's labelmap.
+  Shares at(const Vec3& world) const { return atIndex(m_worldToIndex * world); }
+  /// Gradient of a component's share, per mm, world axes: from one voxel to each side.
+  Vec3 gradient(std::size_t component, const Vec3& world) const;
 
 private:
-  /// Shares at a voxel of the first segment's labelmap, in 255ths, by component.
-  std::vector<double> sharesAt(const Vec3& voxel) const;
+  Shares atIndex(const Vec3& index) const;
+  /// At a voxel, in 255ths.
+  Shares voxel(const Vec3& at) const;
 
-  const TintDescription& m_tint;
+  const ComponentsDescription& m_description;
+  Affine m_worldToIndex;
+  Vec3 m_first, m_count; ///< voxels beyond which there is component 0 alone
+  std::vector<Shares> m_voxels;
 };
 
 } // namespace fenestra::oracle

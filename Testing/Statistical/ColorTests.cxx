@@ -3,6 +3,7 @@
 #include "Slab.h"
 
 #include "model/medium/Reflectance.h"
+#include "session/SegmentTint.h"
 
 namespace fenestra::testing::ColorTests {
 namespace {
@@ -21,6 +22,29 @@ TEST_P(SeenColor, IsRenderedByVolumeShading) {
     scene.transfer.g = g;
     expectMean(seen(scene, 400, 41), color, 0.02, 0.03);
   }
+}
+
+/// Segment of `color` and mean cosine g that is all of a slab, in a volume of another mean cosine.
+TestScene slabOfMaterial(const Rgb& color, double g) {
+  TestScene scene = endlessSlab(deepFor(g), Rgb::Constant(0.5));
+  scene.transfer.g = 0.3;
+  TintPlan plan{{}, std::vector<SegmentMatter>(2), {}, {}};
+  Material& material = plan.components[1].material;
+  material.kind = MaterialKind::matter;
+  material.color = ColorFunction({{0.0, color}});
+  material.extinction = ScalarFunction({knot(0.0, 0.5)});
+  material.g = g;
+  plan.components[1].density = 2.0;
+  const Mask all{scene.volume.grid, std::vector<std::uint8_t>(8, 1), 8, {}};
+  const auto shares = std::make_shared<const Shares>(sharesOf({{all, 10, 1}}));
+  const Tint tint = tintOf(std::make_shared<const TintPlan>(plan), shares, scene.transfer.g);
+  scene.mixture = mixtureOf(plan, tint, scene.transfer);
+  return scene;
+}
+
+TEST_P(SeenColor, IsThatOfASegment) {
+  for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)})
+    expectMean(seen(slabOfMaterial(color, GetParam()), 100, 45), color, 0.04, 0.03);
 }
 
 INSTANTIATE_TEST_SUITE_P(Anisotropies, SeenColor, ::testing::Values(0.0, 0.5, 0.9));

@@ -46,12 +46,18 @@ Combination combination(int index) {
   const double offset = offsets[next(3)];
   const bool isOtherKind = next(2) == 0;
   const bool isOtherLight = next(3) == 0;
-  c.isCoated = next(2) == 0 && c.isHybrid;
+  const bool isCoated = next(2) == 0;
   constexpr int counts[] = {1, 3, 8};
-  const int tints = counts[next(3)];
+  const int count = counts[next(3)];
   c.segments = static_cast<SegmentFactor>(next(3));
   c.areSoft = next(2) == 0;
-  c.tints = index % 2 == 1 ? tints : 0;
+  const bool isMore = index >= shortCount && index % 3 != 0;
+  c.segmentCount = index % 2 == 1 || isMore ? count : 0;
+  c.areMatter = (next(2) == 0 && c.segmentCount > 0) || isMore;
+  if (next(2) == 0 && c.areMatter) // surfaces of several kinds
+    c.isHybrid = true;
+  c.isCoated = isCoated && c.isHybrid;
+  c.haveBorders = next(3) == 0 && c.areMatter && c.isHybrid;
   if (index % 4 == 1 ||
       index % 4 == 2) { // the others are plain, which shows errors of other factors best
     c.edge = static_cast<EdgeFactor>(isSoftCut ? 2 + edge % 2 : edge);
@@ -361,7 +367,7 @@ std::string describe(const Combination& c) {
   static constexpr const char* edges[] = {"", ", ghost", ", soft", ", soft ghost"};
   static constexpr const char* styles[] = {"", ", thin context", ", pale context",
                                            ", thin pale context"};
-  static constexpr const char* segments[] = {"overlapping tints", "nested tints", "disjoint tints"};
+  static constexpr const char* segments[] = {"overlapping", "nested", "disjoint"};
   static constexpr const char* lights[] = {"constant", "map",     "directional", "rectangle",
                                            "disk",     "several", "sky",         "sphere"};
   static constexpr const char* albedos[] = {"0", "0.5", "0.999", "1", "per channel", "by scalar"};
@@ -378,8 +384,10 @@ std::string describe(const Combination& c) {
     text << name(edges, c.edge);
   if (c.clip > ClipFactor::plane && c.offset != 0.0)
     text << (c.offset < 0.0 ? ", nearer" : ", deeper");
-  if (c.tints > 0)
-    text << ", " << c.tints << (c.areSoft ? " soft " : " hard ") << name(segments, c.segments);
+  if (c.segmentCount > 0)
+    text << ", " << c.segmentCount << (c.areSoft ? " soft " : " hard ")
+         << name(segments, c.segments) << (c.areMatter ? " matter" : " tints")
+         << (c.haveBorders ? " with borders" : "");
   text << name(styles, c.style) << (c.isCropped ? ", cropped" : "") << " | "
        << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo) << " | "
        << name(transfers, c.transfer) << (c.isHybrid ? c.isCoated ? ", coated" : ", hybrid" : "")
@@ -403,7 +411,7 @@ MatrixScene matrixScene(const Combination& c) {
     scene.product.crop = CropBox(cropOf(generator));
   placeClip(c, generator, scene);
   styleContext(c.style, scene);
-  tintSegments(c, generator, scene);
+  placeSegments(c, generator, scene);
   return scene;
 }
 
@@ -422,7 +430,7 @@ oracle::OracleScene MatrixScene::forOracle() const {
           settings.path.background,
           settings.path.bounces,
           style,
-          tint};
+          components};
 }
 
 } // namespace fenestra::testing

@@ -7,6 +7,9 @@
 // times. Every eighth combination has hybrid shading and, if it has a clip, a soft edge, whatever
 // the design says of these two: by itself it makes too few for each kind of clip. Combination i is
 // always the same scene; only the estimators' seeds change.
+//
+// Every other combination has segments, half of these of matter. Beyond the first `shortCount` two
+// of three have segments of matter, so that over 640 combinations more than 320 have.
 
 #include "Oracle/OracleScene.h"
 #include "Support.h"
@@ -35,7 +38,7 @@ enum class VoxelFactor { uint8, int16, uint16, float32 };
 enum class GridFactor { cubes, thickSlices, turned, shearedMirrored, fine };
 enum class BackgroundFactor { color, transparent, environment };
 
-/// How segments lie that are coloured.
+/// How segments lie.
 enum class SegmentFactor { overlapping, nested, disjoint };
 
 struct Combination {
@@ -56,10 +59,15 @@ struct Combination {
   EdgeFactor edge{};
   StyleFactor style{};
   double offset = 0.0; ///< of the clip, mm
-  int tints = 0;       ///< coloured segments
+  int segmentCount = 0;
   SegmentFactor segments{};
-  bool areSoft = false; ///< segments, at their borders
+  bool areSoft = false;     ///< segments, at their borders
+  bool areMatter = false;   ///< segments: all of their matter is their own, not albedo alone
+  bool haveBorders = false; ///< segments: some borders are surfaces
 };
+
+/// Combinations of the short version of the suite, and of the long one.
+inline constexpr int shortCount = 240, longCount = 640;
 
 /// First `count` combinations of an endless list.
 std::vector<Combination> combinations(int count);
@@ -73,7 +81,7 @@ struct MatrixScene {
   RenderSettings settings; ///< background and bounces
   oracle::ClipDescription clip = {};
   std::optional<oracle::StyleDescription> style = {};
-  std::optional<oracle::TintDescription> tint = {};
+  std::optional<oracle::ComponentsDescription> components = {};
   /// Depth clip's buffer, mm, row by row, for comparison with the oracle's.
   std::vector<double> productDepths = {};
 

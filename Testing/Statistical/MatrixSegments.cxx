@@ -13,7 +13,7 @@ struct Ball {
 std::vector<Ball> balls(const Combination& c, Generator& generator) {
   const Vec3 middle = Vec3::Constant(8.0);
   std::vector<Ball> all;
-  for (int i = 0; i < c.tints; ++i) {
+  for (int i = 0; i < c.segmentCount; ++i) {
     const auto priority = static_cast<int>(uniform(generator, 0.0, 3.0));
     const double radius = uniform(generator, 2.0, 4.5);
     const Vec3 corner(i & 1 ? 12.0 : 4.0, i & 2 ? 12.0 : 4.0, i & 4 ? 12.0 : 4.0);
@@ -46,34 +46,89 @@ Mask maskOf(const Ball& ball, const Grid& labels, bool isSoft) {
   return mask;
 }
 
+using Component = oracle::ComponentsDescription::Component;
+
+ColorFunction colorsOf(const ScalarFunction& extinction, Generator& generator) {
+  const auto channel = [&] { return uniform(generator, 0.1, 0.95); };
+  const auto color = [&] { return Rgb(channel(), channel(), channel()); };
+  const auto& knots = extinction.knots();
+  return ColorFunction({{knots.front().position, color()}, {knots.back().position, color()}});
+}
+
+/// Extinction of a segment's own: one for all scalars, or over them.
+ScalarFunction extinctionOf(const ScalarFunction& volume, bool isConstant, Generator& generator) {
+  const double low = volume.knots().front().position, high = volume.knots().back().position;
+  const auto at = [&](double position) {
+    return ScalarFunction::Knot{position, ScalarFunction::Value(uniform(generator, 0.0, 2.5))};
+  };
+  if (isConstant)
+    return ScalarFunction({at(low)});
+  return ScalarFunction({at(low), at(0.6 * low + 0.4 * high), at(high)});
+}
+
+/// Matter of segment `number`, from 1. The volume's own extinction, denser or thinner, is that of
+/// every third.
+Component matterOf(const Combination& c, std::size_t number, const TransferFunction& volume,
+                   Generator& generator) {
+  constexpr double anisotropies[] = {-0.4, 0.0, 0.5, 0.8};
+  Component component{volume, uniform(generator, 0.0, 1.0) < 0.6};
+  TransferFunction& transfer = component.transfer;
+  transfer.albedo = colorsOf(volume.extinction, generator);
+  transfer.g = anisotropies[generator() % 4];
+  if (number % 3 == 0) {
+    transfer = transfer.scaled(uniform(generator, 0.5, 2.0));
+  } else {
+    transfer.extinction = extinctionOf(volume.extinction, number % 3 == 1, generator);
+    transfer.gradientOpacity.reset();
+  }
+  if (transfer.shading) {
+    transfer.shading = SurfaceShading::coat(uniform(generator, 0.0, 1.0),
+                                            uniform(generator, 0.05, 0.95), transfer.g);
+    transfer.shading->gamma = volume.shading->gamma; // the same for all
+    transfer.shading->diffuse = uniform(generator, 0.0, 1.0);
+  }
+  if (c.haveBorders && number % 2 == 1)
+    component.border = uniform(generator, 0.2, 1.0);
+  return component;
+}
+
 } // namespace
 
-void tintSegments(const Combination& c, Generator& generator, MatrixScene& scene) {
-  if (c.tints == 0)
+void placeSegments(const Combination& c, Generator& generator, MatrixScene& scene) {
+  if (c.segmentCount == 0)
     return;
   Grid labels = centredGrid(Size3::Constant(17), Vec3(0.7, 0.6, 0.8));
   labels = Grid(labels.size, rotationBy(uniform(generator, 0.0, 6.0), randomDirection(generator)) *
                                  labels.indexToWorld);
-  const auto& knots = scene.product.transfer.extinction.knots();
-  const double low = knots.front().position, high = knots.back().position;
-  const auto color = [&] {
-    const auto channel = [&] { return uniform(generator, 0.1, 0.95); };
-    return Rgb(channel(), channel(), channel());
-  };
+  const TransferFunction& volume = scene.product.transfer;
   std::vector<Shares::Part> parts;
-  oracle::TintDescription tint{{}, {std::nullopt}};
+  Tint tint{{}, {std::nullopt}};
+  Mixture mixture{{}, {{volume}}};
+  oracle::ComponentsDescription all{{}, {{volume}}, !c.areMatter};
   for (const Ball& ball : balls(c, generator)) {
-    const std::size_t component = tint.albedo.size();
+    const std::size_t number = all.components.size();
     const Mask mask = maskOf(ball, labels, c.areSoft);
-    parts.push_back({mask, ball.priority, static_cast<std::uint8_t>(component)});
-    tint.segments.push_back({mask, ball.priority, component});
-    if (component == 2) // of its own colour no more than what is in no segment
+    parts.push_back({mask, ball.priority, static_cast<std::uint8_t>(number)});
+    all.segments.push_back({mask, ball.priority, number});
+    Component component{volume};
+    if (number == 2) { // what is in no segment, too, has this matter
       tint.albedo.emplace_back();
-    else
-      tint.albedo.emplace_back(ColorFunction({{low, color()}, {high, color()}}));
+    } else if (c.areMatter) {
+      component = matterOf(c, number, volume, generator);
+    } else {
+      component.transfer.albedo = colorsOf(volume.extinction, generator);
+      tint.albedo.emplace_back(component.transfer.albedo);
+    }
+    mixture.components.push_back({component.transfer, component.isClipped, component.border});
+    all.components.push_back(std::move(component));
   }
-  scene.product.tint = Tint{std::make_shared<const Shares>(sharesOf(parts)), tint.albedo};
-  scene.tint = std::move(tint);
+  const auto shares = std::make_shared<const Shares>(sharesOf(parts));
+  tint.shares = mixture.shares = shares;
+  if (c.areMatter)
+    scene.product.mixture = std::move(mixture);
+  else
+    scene.product.tint = std::move(tint);
+  scene.components = std::move(all);
 }
 
 } // namespace fenestra::testing

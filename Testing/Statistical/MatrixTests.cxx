@@ -41,8 +41,9 @@ class Matrix : public ::testing::TestWithParam<Transport> {};
 
 TEST_P(Matrix, AgreesWithTheOracle) {
   const MatrixSettings settings{isLongRun() ? 512U : 128U, seedBase(), GetParam()};
-  const std::vector<Combination> all = combinations(static_cast<int>(
-      numberFromEnvironment("FENESTRA_COMBINATIONS").value_or(isLongRun() ? 480 : 240)));
+  const std::vector<Combination> all =
+      combinations(static_cast<int>(numberFromEnvironment("FENESTRA_COMBINATIONS")
+                                        .value_or(isLongRun() ? longCount : shortCount)));
   std::vector<Outcome> outcomes;
   for (const Combination& c : all) {
     outcomes.push_back(compareWithOracle(c, settings, truthOf(c, settings)));

@@ -25,14 +25,33 @@ struct Fault {
   bool isLookedFor() const { return foundIn.empty() && !inToldError; }
 };
 
+/// Transports in which an entry of faults.json shows; without a word, the fast one.
+std::vector<Transport> transportsOf(const nlohmann::json& entry) {
+  const std::string named = entry.value("transport", "fast");
+  if (named == "both")
+    return {Transport::fast, Transport::readable};
+  return {named == "fast" ? Transport::fast : Transport::readable};
+}
+
+/// FENESTRA_PLANTED, names between commas; unset: all errors are looked for.
+bool isWanted(const std::string& name) {
+  const char* const wanted = std::getenv("FENESTRA_PLANTED");
+  return !wanted || (',' + std::string(wanted) + ',').find(',' + name + ',') != std::string::npos;
+}
+
 std::vector<Fault> readFaults() {
   std::ifstream file(FENESTRA_FAULTS);
   std::vector<Fault> faults;
   for (const auto& entry : nlohmann::json::parse(file))
-    faults.push_back(
-        {entry.at("name"), entry.at("why"),
-         entry.value("transport", "fast") == "fast" ? Transport::fast : Transport::readable,
-         entry.value("shows", "") == "told error"});
+    if (isWanted(entry.at("name")))
+      for (const Transport transport : transportsOf(entry)) {
+        std::string why = entry.at("why");
+        why += entry.value("transport", "") != "both" ? ""
+               : transport == Transport::fast         ? " (fast transport)"
+                                                      : " (readable transport)";
+        faults.push_back(
+            {entry.at("name"), why, transport, entry.value("shows", "") == "told error"});
+      }
   return faults;
 }
 
@@ -118,9 +137,9 @@ void lookAgain(std::vector<Fault>& faults, double bound) {
 }
 
 TEST(PlantedErrors, EveryErrorIsFound) {
-  constexpr int count = 240; // combinations in the suite; sets the bound for a single one
+  constexpr int count = shortCount; // sets the bound for a single combination
   std::vector<Fault> faults = readFaults();
-  ASSERT_GE(faults.size(), 12U);
+  ASSERT_FALSE(faults.empty());
   findInToldErrors(faults, leastProbability(count));
   for (const Combination& c : combinations(count)) {
     std::vector<Fault*> lookedFor;

@@ -80,7 +80,10 @@ public:
                     point.scalar, wantGradient, border + (component.isClipped ? cut : Vec3::Zero()));
   }
   /// A point with what a mixture's parts there depend on.
-  MixedPoint at(const Vec3& index, double kept) const { return {index, m_field.value(index), kept}; }
+  MixedPoint at(const Vec3& index, double kept) const {
+    const double slope = m_mixed->needsGradient() ? m_field.gradient(index).norm() : 0.0;
+    return {index, m_field.value(index), kept, slope};
+  }
 
 private:
   /// Factor of the context's style on the extinction.

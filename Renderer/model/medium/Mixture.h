@@ -4,11 +4,11 @@
 //
 //     sigma_j(x) = keep_j(x) w_j(x) extinction_j(s(x)),   sigma_t = sum of sigma_j,
 //
-// where s is the interpolated scalar, and keep_j the clip's, or 1 for a component that the clip
-// leaves. At a collision one component is drawn with probability sigma_j / sigma_t, and all that
-// follows (albedo, phase function or surface) is that component's: unbiased, whatever differs. The
-// estimator knows a list of parts alone: another volume's matter would join it with shares of its
-// own.
+// where s is the interpolated scalar (and the extinction is times the gradient opacity, where a
+// transfer function has one), and keep_j the clip's, or 1 for a component that the clip leaves. At a
+// collision one component is drawn with probability sigma_j / sigma_t, and all that follows (albedo,
+// phase function or surface) is that component's: unbiased, whatever differs. The estimator knows a
+// list of parts alone: another volume's matter would join it with shares of its own.
 //
 // Where components differ in nothing but albedo, Tint is the same medium with less noise.
 
@@ -43,6 +43,12 @@ struct Mixture {
   bool hasFree() const {
     return !std::ranges::all_of(components, &Component::isClipped);
   }
+  /// True if some extinction depends on the gradient.
+  bool hasGradientOpacity() const {
+    return std::ranges::any_of(components, [](const Component& component) {
+      return component.transfer.gradientOpacity.has_value();
+    });
+  }
 };
 
 /// Part of a mixture's extinction at a point.
@@ -55,7 +61,8 @@ struct MixturePart {
 struct MixedPoint {
   Vec3 index;
   double scalar;
-  double kept; ///< keep of the clip there
+  double kept;        ///< keep of the clip there
+  double slope = 0.0; ///< |gradient|, scalar units per mm; 0 unless needsGradient()
 };
 
 /// A volume's mixture at its points. A view: the mixture must outlive the object.
@@ -64,18 +71,22 @@ public:
   MixedField(const Mixture& mixture, const Grid& volume)
       : m_mixture(mixture),
         m_toShares(mixture.shares->grid().worldToIndex * volume.indexToWorld),
-        m_hasFree(mixture.hasFree()) {}
+        m_hasFree(mixture.hasFree()),
+        m_needsGradient(mixture.hasGradientOpacity()) {}
 
   const Mixture& mixture() const { return m_mixture; }
   bool hasFree() const { return m_hasFree; }
+  bool needsGradient() const { return m_needsGradient; }
 
   /// Calls visit(part) for the parts at a point. A component may come twice.
   template <typename Visit>
   void forEachPart(const MixedPoint& point, Visit&& visit) const {
     m_mixture.shares->at(m_toShares * point.index, [&](std::uint8_t number, double share) {
       const Component& component = m_mixture.components[number];
-      const double extinction = (component.isClipped ? point.kept : 1.0) * share *
-                                component.transfer.extinction(point.scalar).value();
+      double extinction = (component.isClipped ? point.kept : 1.0) * share *
+                          component.transfer.extinction(point.scalar).value();
+      if (component.transfer.gradientOpacity)
+        extinction *= (*component.transfer.gradientOpacity)(point.slope).value();
       if (extinction > 0.0)
         visit(MixturePart{number, extinction});
     });
@@ -133,7 +144,7 @@ public:
 private:
   const Mixture& m_mixture;
   Affine m_toShares;
-  bool m_hasFree;
+  bool m_hasFree, m_needsGradient;
 };
 
 } // namespace fenestra

@@ -85,7 +85,8 @@ double greatest(const TransferFunction& transfer, const Grid& grid, double low, 
 }
 
 /// Bound for a mixture, among the corners of a cell whose scalars lie in [low, high].
-CellBound mixtureBound(const Mixture& mixture, const Corners& corners, double low, double high) {
+CellBound mixtureBound(const Mixture& mixture, const Grid& grid, const Corners& corners, double low,
+                       double high) {
   // Shares sum to 1 but for rounding.
   constexpr double rounding = 1.0 + 64.0 * std::numeric_limits<double>::epsilon();
   Box box = Box::nothing();
@@ -95,7 +96,7 @@ CellBound mixtureBound(const Mixture& mixture, const Corners& corners, double lo
   mixture.shares->forEachIn(box, [&](std::uint8_t number) {
     const Component& component = mixture.components[number];
     double& most = component.isClipped ? bound.clipped : bound.free;
-    most = std::max(most, rounding * greatest(component.transfer.extinction, low, high));
+    most = std::max(most, rounding * greatest(component.transfer, grid, low, high));
   });
   return bound;
 }
@@ -119,7 +120,7 @@ MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
         const auto corners = [&] {
           return cornersOf(cellToWorld, Size3(x, y, z).cast<double>(), strip);
         };
-        const CellBound bound = mixture ? mixtureBound(*mixture, corners(), low, high)
+        const CellBound bound = mixture ? mixtureBound(*mixture, grid, corners(), low, high)
                                         : CellBound{greatest(transfer, grid, low, high)};
         m_cells[cell] = bound.clipped > 0.0 || bound.free > 0.0
                             ? cellOf(bound, corners(), clip, style)

@@ -1,0 +1,361 @@
+// Matter of several components: against one component, closed forms, a furnace, and its bound.
+
+#include "Slab.h"
+
+#include "clip/surface/ClippingSurface.h"
+
+#include <algorithm>
+#include <iostream>
+
+namespace fenestra::testing::ComponentsTests {
+namespace {
+
+constexpr Transport transports[] = {Transport::fast, Transport::readable};
+
+/// Ball in a labelmap of one voxel a mm, turned against the volumes, and smooth over 2 mm or hard.
+Mask ball(const Vec3& center, double radius, bool isSoft) {
+  const Grid flat = centredGrid(Size3::Constant(23), Vec3::Constant(1.0));
+  const Grid grid(flat.size,
+                  rotationBy(0.4, Vec3(1.0, 2.0, -0.5).normalized()) * flat.indexToWorld);
+  Mask mask;
+  mask.grid = grid;
+  mask.full = isSoft ? 255 : 1;
+  for (std::int64_t z = 0; z < grid.size.z(); ++z)
+    for (std::int64_t y = 0; y < grid.size.y(); ++y)
+      for (std::int64_t x = 0; x < grid.size.x(); ++x) {
+        const Vec3 p = grid.indexToWorld * Size3(x, y, z).cast<double>();
+        const double inside = radius - (p - center).norm();
+        const double share = isSoft ? std::clamp(0.5 + inside / 2.0, 0.0, 1.0) : inside > 0.0;
+        mask.voxels.push_back(static_cast<std::uint8_t>(share * mask.full));
+      }
+  return mask;
+}
+
+/// Parts 1 to `count`, a ball each, some of which overlap, of three priorities.
+std::vector<Shares::Part> balls(int count, bool isSoft) {
+  std::vector<Shares::Part> parts;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.4 * i, height = -6.0 + 12.0 * (i + 0.5) / count;
+    const Vec3 center(5.0 * std::cos(angle), 5.0 * std::sin(angle), height);
+    parts.push_back(
+        {ball(center, 3.0 + 0.2 * (i % 5), isSoft), i % 3, static_cast<std::uint8_t>(i + 1)});
+  }
+  return parts;
+}
+
+Mixture mixtureOf(const std::vector<Shares::Part>& parts, std::vector<Component> components) {
+  return {std::make_shared<const Shares>(sharesOf(parts)), std::move(components)};
+}
+
+/// Hills of scalars from 0 to 1, seen from the front.
+TestScene hills(const TransferFunction& transfer) {
+  TestScene scene{makeVolume(centredGrid({20, 24, 18}, {1.0, 0.8, 1.3}),
+                             [](const Vec3& p) {
+                               return 0.5 + 0.5 * std::sin(0.9 * p.x()) *
+                                                std::cos(0.7 * p.y() + 0.3 * p.z());
+                             }),
+                  transfer,
+                  {EnvironmentLight{}},
+                  {},
+                  12,
+                  12};
+  scene.pose.position = {5.0, 40.0, 12.0};
+  scene.pose.target = Vec3::Zero();
+  scene.pose.scale = 10.0;
+  return scene;
+}
+
+TransferFunction coated() {
+  TransferFunction transfer = linearTransfer(0.6, Rgb(0.9, 0.6, 0.3), 0.4);
+  transfer.shading = SurfaceShading::coat(0.5, 0.3, transfer.g);
+  return transfer;
+}
+
+RenderSettings settingsOf(Transport transport, std::uint64_t samples, std::uint64_t seed) {
+  RenderSettings settings;
+  settings.transport = transport;
+  settings.samples = budget(samples);
+  settings.seed = seeded(seed);
+  settings.path.background.kind = Background::Kind::environment;
+  return settings;
+}
+
+// ---- one matter
+// ----------------------------------------------------------------------------------
+
+/// Expects two pictures of one scene: the sum of squared z over pixels and channels, and the mean
+/// z.
+void expectSame(const Film& a, const Film& b) {
+  double n = 0.0, squares = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < a.pixelCount(); ++i) {
+    const PixelSums &p = a.pixels()[i], &q = b.pixels()[i];
+    const Rgb variance = p.standardError().square() + q.standardError().square();
+    const Rgb difference = p.mean - q.mean;
+    for (int c = 0; c < 3; ++c)
+      if (variance[c] > 0.0) {
+        const double z = difference[c] / std::sqrt(variance[c]);
+        n += 1.0 / 3.0; // channels of a path go together
+        squares += z * z / 3.0;
+        sum += z / 3.0;
+      }
+  }
+  ASSERT_GT(n, 50.0);
+  std::cout << "z " << sum / std::sqrt(n) << ", chi2 / n " << squares / n << ", n " << n << '\n';
+  EXPECT_LT(std::abs(sum / std::sqrt(n)), 4.0);
+  EXPECT_LT(std::abs(squares - n) / std::sqrt(2.0 * n), 4.0);
+}
+
+/// Segments of the volume's own matter change nothing but random numbers.
+TEST(OneMatter, IsThatOfEverySegment) {
+  TransferFunction steep = coated();
+  steep.gradientOpacity = ScalarFunction({knot(0.0, 0.1), knot(0.3, 1.0)});
+  for (const TransferFunction& transfer : {coated(), steep})
+    for (const Transport transport : transports) {
+      const TestScene alone = hills(transfer);
+      TestScene mixed = hills(transfer);
+      mixed.mixture = mixtureOf(balls(4, true), std::vector<Component>(5, {transfer}));
+      expectSame(alone.render(settingsOf(transport, 400, 61)).film,
+                 mixed.render(settingsOf(transport, 400, 62)).film);
+    }
+}
+
+// ---- slabs
+// ---------------------------------------------------------------------------------------
+
+/// Indicators of a segment over the voxels of a column along z, 1 mm each, of 255.
+using Column = std::vector<std::uint8_t>;
+
+Mask wideMask(const Column& column) {
+  const auto n = static_cast<std::int64_t>(column.size());
+  Mask mask;
+  mask.grid = centredGrid({2, 2, n}, {10000.0, 10000.0, 1.0});
+  mask.full = 255;
+  for (const std::uint8_t voxel : column)
+    mask.voxels.insert(mask.voxels.end(), 4, voxel);
+  return mask;
+}
+
+/// Integral over z of a function that is linear between the voxels of a column and, beyond the
+/// outermost ones, constant for half a voxel.
+double integral(const std::vector<double>& values) {
+  double sum = 0.5 * (values.front() + values.back());
+  for (std::size_t i = 0; i + 1 < values.size(); ++i)
+    sum += 0.5 * (values[i] + values[i + 1]);
+  return sum;
+}
+
+const Column lower = {255, 255, 250, 180, 77, 13, 0, 0};
+const Column upper = {0, 40, 120, 200, 255, 255, 90, 20};
+
+/// Slab of 8 mm with two segments that overlap, of extinctions 0.6 and 0.1 per mm, in 0.25.
+TestScene slabOfTwo(int lowerPriority, int upperPriority) {
+  TestScene scene = slab(20000.0, 8.0, Rgb::Zero(), 0.25);
+  scene.pose.scale = 1.0;
+  const auto dense = [&](double sigma_t) {
+    TransferFunction transfer = scene.transfer;
+    transfer.extinction = ScalarFunction({knot(0.0, sigma_t)});
+    return transfer;
+  };
+  scene.mixture =
+      mixtureOf({{wideMask(lower), lowerPriority, 1}, {wideMask(upper), upperPriority, 2}},
+                {{scene.transfer}, {dense(0.6)}, {dense(0.1)}});
+  return scene;
+}
+
+/// Optical depth along z; the shares of a voxel in 255ths, as they are kept.
+double depthOfTwo(int lowerPriority, int upperPriority) {
+  std::vector<double> extinctions;
+  for (std::size_t i = 0; i < lower.size(); ++i) {
+    double a = lower[i], b = upper[i];
+    if (lowerPriority > upperPriority)
+      b = std::min(b, 255.0 - a);
+    else if (lowerPriority < upperPriority)
+      a = std::min(a, 255.0 - b);
+    else if (a + b > 255.0) {
+      const double factor = 255.0 / (a + b);
+      a = std::round(factor * a);
+      b = 255.0 - a;
+    }
+    extinctions.push_back((0.6 * a + 0.1 * b + 0.25 * (255.0 - a - b)) / 255.0);
+  }
+  return integral(extinctions);
+}
+
+/// Expects exp(-depth / mu) behind the slab, at five angles.
+void expectTransmittance(TestScene scene, double depth, std::uint64_t seed) {
+  for (const Transport transport : transports)
+    for (const double mu : {1.0, 0.9, 0.7, 0.5, 0.35}) {
+      SCOPED_TRACE(mu);
+      look(scene, downward(mu, 0.3));
+      const RenderSettings settings = settingsOf(transport, 500, seed++);
+      const Estimate estimate = imageEstimate(scene.render(settings).film);
+      const double expected = std::exp(-depth / mu);
+      // Every sample is 0 or 1.
+      const double error =
+          std::sqrt(expected * (1.0 - expected) / (64.0 * static_cast<double>(settings.samples)));
+      EXPECT_NEAR(estimate.mean, expected, 4.0 * error);
+    }
+}
+
+TEST(SlabOfComponents, LetsThroughWhatTheIntegralOfTheirExtinctionsLeaves) {
+  expectTransmittance(slabOfTwo(20, 10), depthOfTwo(20, 10), 1000);
+  expectTransmittance(slabOfTwo(10, 20), depthOfTwo(10, 20), 1100);
+  expectTransmittance(slabOfTwo(10, 10), depthOfTwo(10, 10), 1200);
+}
+
+/// In the removed half only the upper segment is left.
+TEST(SlabOfComponents, LosesToAClipWhatIsClipped) {
+  TestScene scene = slabOfTwo(20, 10);
+  scene.mixture->components[2].isClipped = false;
+  scene.clip =
+      ClipPlane{Camera(scene.pose, scene.width, scene.height), Vec3::Zero(), Vec3::UnitZ()};
+  const auto sum = [](std::size_t first, std::size_t end, auto&& extinction) {
+    double all = 0.0; // from the middle of the slab, half-way between two voxels, to its face
+    for (std::size_t i = first; i < end; ++i)
+      all += extinction(i);
+    return all;
+  };
+  const auto upperShare = [](std::size_t i) {
+    return std::min<double>(upper[i], 255.0 - lower[i]) / 255.0;
+  };
+  const auto all = [&](std::size_t i) {
+    const double a = lower[i] / 255.0, b = upperShare(i);
+    return 0.6 * a + 0.1 * b + 0.25 * (1.0 - a - b);
+  };
+  const auto left = [&](std::size_t i) { return 0.1 * upperShare(i); };
+  // Trapezoids: what lies between voxels 3 and 4 is halved at the plane.
+  const double kept = sum(0, 4, all) + (all(4) - all(3)) / 8.0;
+  const double removed = sum(4, 8, left) - (left(4) - left(3)) / 8.0;
+  expectTransmittance(scene, kept + removed, 1300);
+}
+
+// ---- furnace
+// -------------------------------------------------------------------------------------
+
+/// Fourteen materials of albedo 1, each with a phase function, density and roughness of its own, of
+/// which the clip leaves every fourth.
+std::vector<Component> whiteMatter(bool isHybrid) {
+  std::vector<Component> all;
+  for (int i = 0; i < 15; ++i) {
+    TransferFunction transfer = linearTransfer(1.7 - 0.1 * i, Rgb::Ones(), 0.12 * (i % 8) - 0.2);
+    if (i % 3 == 2)
+      transfer.extinction = ScalarFunction({knot(0.0, 0.8 - 0.05 * i)});
+    if (isHybrid) {
+      transfer.shading = SurfaceShading::coat(0.0, 0.1 + 0.05 * i, transfer.g);
+      transfer.shading->diffuse = 1.0;
+    }
+    all.push_back({transfer, i % 4 != 3});
+  }
+  return all;
+}
+
+TEST(FurnaceOfComponents, IsOneInEveryPixel) {
+  for (const bool isHybrid : {false, true})
+    for (const bool isCutaway : {false, true})
+      for (const Transport transport : transports) {
+        const std::vector<Component> components = whiteMatter(isHybrid);
+        TestScene scene = hills(components.front().transfer);
+        scene.mixture = mixtureOf(balls(14, true), components);
+        const Camera camera(scene.pose, scene.width, scene.height);
+        scene.clip = ClipPlane{camera, Vec3(0.0, 2.0, 0.0), Vec3(0.2, 1.0, 0.1).normalized()};
+        scene.lights = {SkyLight{Rgb::Ones(), Rgb::Ones(), Rgb::Ones()}}; // which is sampled, too
+        if (isCutaway) {
+          scene.lights = {EnvironmentLight{}};
+          scene.clip =
+              buildClippingSurface(camera, Domain(scene.volume.grid, {}),
+                                   ball(Vec3::Zero(), 4.0, false), {SurfaceMode::cutaway, 50, 0.5})
+                  .clip;
+        }
+        const RenderResult result = scene.render(settingsOf(transport, 128, 71));
+        EXPECT_GT(result.counters.collisions, 10000U) << "the medium must matter";
+        for (const PixelSums& pixel : result.film.pixels()) {
+          const double error = pixel.standardError()[0];
+          EXPECT_NEAR(pixel.mean[0], 1.0, 4.0 * error + 1e-5); // lanes are float
+          EXPECT_LT(error, 0.1);
+        }
+      }
+}
+
+// ---- order, bound
+// --------------------------------------------------------------------------------
+
+/// Neither segments' order nor that of priorities in it tells anything.
+TEST(OrderOfSegments, ChangesNoBit) {
+  for (const bool isSoft : {false, true})
+    for (const Transport transport : transports) {
+      std::vector<Shares::Part> parts = balls(7, isSoft);
+      TestScene scene = hills(coated());
+      scene.mixture = mixtureOf(parts, whiteMatter(true));
+      const RenderSettings settings = settingsOf(transport, 8, 81);
+      const Film first = scene.render(settings).film;
+      std::ranges::reverse(parts);
+      std::ranges::rotate(parts, parts.begin() + 2);
+      // A labelmap begins where its first part does: all of these begin there.
+      scene.mixture = mixtureOf(parts, whiteMatter(true));
+      const Film other = scene.render(settings).film;
+      for (std::size_t i = 0; i < first.pixelCount(); ++i)
+        EXPECT_EQ(first.pixels()[i].mean, other.pixels()[i].mean);
+    }
+}
+
+/// Expects no extinction above its cell's majorant at points of the cell and of the strip around it
+/// in which the bound holds; returns the greatest share of a majorant that was met.
+double expectBound(const TestScene& scene) {
+  double greatest = 0.0;
+  scene.with([&](const RenderScene& parts) {
+    const MajorantGrid& majorants = parts.majorants;
+    const auto& voxels = std::get<std::vector<float>>(scene.volume.voxels);
+    const Medium<float> medium(scene.volume.grid, voxels, scene.transfer, parts.style, nullptr,
+                               parts.mixture);
+    const Affine toWorld = majorants.worldToCell().inverse();
+    const Vec3 strip = MajorantGrid::margin * majorants.edge().cast<double>().cwiseInverse();
+    Random random(seeded(91), 0, 0);
+    const Size3& count = majorants.cellCount();
+    std::int64_t cell = 0;
+    for (std::int64_t z = 0; z < count.z(); ++z)
+      for (std::int64_t y = 0; y < count.y(); ++y)
+        for (std::int64_t x = 0; x < count.x(); ++x, ++cell)
+          for (int i = 0; i < budget(4); ++i) {
+            const Vec3 u(random.uniform(), random.uniform(), random.uniform());
+            const Vec3 within = (1.0 + 2.0 * strip.array()) * u.array() - strip.array();
+            const Vec3 world = toWorld * (Size3(x, y, z).cast<double>() + within);
+            const MajorantGrid::Cell& bound = majorants.cell(cell);
+            const double kept = bound.cut ? keep(scene.clip, world) : 1.0;
+            const double extinction =
+                bound.majorant > 0.0F
+                    ? medium.extinction(scene.volume.grid.worldToIndex * world, kept)
+                    : medium.extinction(scene.volume.grid.worldToIndex * world,
+                                        keep(scene.clip, world));
+            EXPECT_LE(extinction, static_cast<double>(bound.majorant));
+            if (bound.majorant > 0.0F)
+              greatest = std::max(greatest, extinction / static_cast<double>(bound.majorant));
+          }
+    return 0;
+  });
+  return greatest;
+}
+
+TEST(MajorantOfComponents, IsNeverExceeded) {
+  for (const bool isSoft : {false, true})
+    for (const bool isSteep : {false, true})
+      for (const bool isThin : {false, true}) {
+        TransferFunction own = coated();
+        if (isSteep)
+          own.gradientOpacity = ScalarFunction({knot(0.0, 0.1), knot(0.3, 1.0), knot(0.6, 0.2)});
+        TestScene scene = hills(own);
+        std::vector<Component> components = whiteMatter(true);
+        components[0].transfer = components[3].transfer = own;
+        scene.mixture = mixtureOf(balls(14, isSoft), components);
+        scene.clip = ClipPlane{Camera(scene.pose, scene.width, scene.height),
+                               Vec3::Zero(),
+                               Vec3(0.2, 1.0, 0.1).normalized(),
+                               {0.2, isSoft ? 2.0 : 0.0}};
+        if (isThin)
+          scene.style.emplace(
+              ContextStyle{std::make_shared<const Mask>(ball(Vec3::Zero(), 4.0, false)), 0.3, 1.0});
+        EXPECT_GT(expectBound(scene), 0.95) << "the bound is no better than it must be";
+      }
+}
+
+} // namespace
+} // namespace fenestra::testing::ComponentsTests
