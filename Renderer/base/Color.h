@@ -3,11 +3,21 @@
 
 #include "base/Vector.h"
 
+#include <cstdint>
+
 namespace fenestra {
 
 /// Luminance of linear Rec. 709.
 inline double luminance(const Rgb& color) {
   return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+}
+
+/// Components, 0 to 1, of a colour 0xrrggbb.
+inline Rgb colorOf(std::uint32_t color) {
+  const auto byte = [color](unsigned shift) {
+    return static_cast<double>((color >> shift) & 0xffU);
+  };
+  return Rgb(byte(16), byte(8), byte(0)) / 255.0;
 }
 
 /// The sRGB electro-optical transfer function (IEC 61966-2-1), per component.

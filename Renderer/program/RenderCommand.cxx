@@ -60,7 +60,9 @@ void addContrast(Json& json, const Scene& scene) {
                      {"contextSaturation", tint->knobs.contextSaturation},
                      {"contextLightness", tint->knobs.contextLightness},
                      {"focusChroma", tint->knobs.focusChroma},
-                     {"focusLightness", tint->knobs.focusLightness}});
+                     {"focusLightness", tint->knobs.focusLightness},
+                     {"focusAccent", tint->knobs.focusAccent},
+                     {"accent", accents[tint->knobs.accent].name}});
 }
 
 /// Adds the measures of the clip.

@@ -37,14 +37,18 @@ double Contrast::share() const {
   return std::min({deltaE[0] / normal, deltaE[1] / colorBlind, deltaE[2] / colorBlind});
 }
 
-Contrast contrastBetween(const Rgb& focus, const Rgb& context) {
-  const Rgb first = displayed(focus), second = displayed(context);
+Contrast shownContrast(const Rgb& focus, const Rgb& context,
+                       double (*difference)(const Lab&, const Lab&)) {
   Contrast contrast = {};
   for (const ColorSight sight : colorSights)
     contrast.deltaE[static_cast<std::size_t>(sight)] =
-        deltaE2000(labOf(seenBy(sight, first)), labOf(seenBy(sight, second)));
-  contrast.deltaL = std::abs(labOf(first).L - labOf(second).L);
+        difference(labOf(seenBy(sight, focus)), labOf(seenBy(sight, context)));
+  contrast.deltaL = std::abs(labOf(focus).L - labOf(context).L);
   return contrast;
+}
+
+Contrast contrastBetween(const Rgb& focus, const Rgb& context) {
+  return shownContrast(displayed(focus), displayed(context), deltaE2000);
 }
 
 Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfer,

@@ -11,10 +11,9 @@
 
 namespace fenestra {
 
-/// Differences of the colours in which thick matter of the focus and of its surroundings is shown,
-/// lit a little above white (radiance 1.1), by the film curve.
+/// Differences of the colours in which the focus and its surroundings are shown.
 struct Contrast {
-  std::array<double, 4> deltaE; ///< CIEDE2000 by ColorSight
+  std::array<double, 4> deltaE; ///< by ColorSight
   double deltaL;                ///< of CIELAB lightness, in absolute value
 
   /// Least share of what normal sight and the two frequent kinds of colour blindness need, 20, 12
@@ -24,7 +23,12 @@ struct Contrast {
   double colorBlind() const { return std::min(deltaE[1], deltaE[2]); }
 };
 
-/// Contrast of two colours that an eye sees of thick matter in white light, linear.
+/// Contrast of two colours as displayed, linear. `difference`: of two colours in CIELAB.
+Contrast shownContrast(const Rgb& focus, const Rgb& context,
+                       double (*difference)(const Lab&, const Lab&));
+
+/// Contrast (CIEDE2000) of two colours that an eye sees of thick matter in white light, linear: lit
+/// a little above white (radiance 1.1), by the film curve.
 Contrast contrastBetween(const Rgb& focus, const Rgb& context);
 
 /// Contrast of the mean colours of both sides, which have at least one scalar each. `saturation`:

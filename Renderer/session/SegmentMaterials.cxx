@@ -94,11 +94,6 @@ constexpr std::array<std::uint32_t, 20> palette = {
     0xffb7ba, 0x0c9d52, 0x1b7f97, 0xbfddac, 0x8f5a79, 0xa9daff, 0x9648b7,
     0x71871b, 0x9b5b15, 0xfdb0f3, 0xd5ad73, 0x47977c, 0x30f0ad};
 
-Rgb paletteColor(std::size_t i) {
-  const std::uint32_t color = palette[i % palette.size()];
-  return Rgb((color >> 16U) & 0xffU, (color >> 8U) & 0xffU, color & 0xffU) / 255.0;
-}
-
 } // namespace
 
 const MaterialTable& materialLibrary() {
@@ -124,7 +119,7 @@ std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segment
     else if (!isDefault(segment.color))
       materials.push_back(colored(segment.color, "by its own colour"));
     else {
-      materials.push_back(colored(paletteColor(unknown++), "by palette"));
+      materials.push_back(colored(colorOf(palette[unknown++ % palette.size()]), "by palette"));
       materials.back().isOfPalette = true;
     }
   }

@@ -96,6 +96,13 @@ std::vector<bool> focusOf(const Segmentation& segmentation, const NamedMaterials
   return isFocus;
 }
 
+/// Gives a smoothed part all of what it has half of: the surface of a focus, which lies there, is
+/// not shown in a mixture of its colour with the context's.
+void fill(Mask& mask) {
+  for (std::uint8_t& voxel : mask.voxels)
+    voxel = static_cast<std::uint8_t>(std::min(2 * voxel, int{mask.full}));
+}
+
 /// Parts without those of component 0 that leave to others what they cover.
 std::vector<TintPart> withoutIdle(std::vector<TintPart> parts) {
   const auto isColored = [](const TintPart& part) { return part.component != 0; };
@@ -156,7 +163,8 @@ TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<b
       segments[{component, all[i].matter.priority}].push_back(i);
     }
   for (auto& [of, places] : segments)
-    plan.parts.push_back({std::move(places), of.second, of.first});
+    plan.parts.push_back(
+        {std::move(places), of.second, of.first, static_cast<bool>(plan.isFocus[of.first])});
   plan.parts = withoutIdle(std::move(plan.parts));
   if (plan.parts.empty())
     throw inputError(segmentation.source(),
@@ -172,8 +180,10 @@ Shares tintShares(const Handle<SegmentsInput>& input, const std::vector<TintPart
     std::vector<SegmentInfo> segments;
     for (const std::size_t i : part.segments)
       segments.push_back(segmentation.segments()[i]);
-    return {segmentation.maskOf(segments, volume, {.margins = {}, .smoothing = smoothing}),
-            part.priority, part.component};
+    Mask mask = segmentation.maskOf(segments, volume, {.margins = {}, .smoothing = smoothing});
+    if (part.isFocus)
+      fill(mask);
+    return {std::move(mask), part.priority, part.component};
   };
   return {parts.size(), partAt};
 }

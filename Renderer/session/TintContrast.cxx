@@ -1,5 +1,6 @@
 #include "session/TintContrast.h"
 
+#include "base/Color.h"
 #include "base/Text.h"
 #include "base/safe/ShownText.h"
 #include "model/medium/ContextStyle.h"
@@ -11,17 +12,39 @@
 namespace fenestra {
 namespace {
 
-Rgb shownColor(const Lab& lab) {
-  return linearOf(lab).max(0.0).min(whitest);
+bool isShown(const Rgb& color) {
+  return color.minCoeff() >= 0.0 && color.maxCoeff() <= whitest;
 }
 
-/// Colour, linear, as pictures show it on the whole: its part in shadow, and under what the wet
-/// surface reflects. Chosen by eye for the means inside the edges of five foci (abdomen, knee)
-/// under cinema, before the tone curve; single ones were checked, to 0.06. Outside the edges it
-/// holds on the whole alone.
-Rgb inScene(const Rgb& seen) {
-  constexpr double lit = 0.4, reflected = 0.09;
-  return lit * seen + reflected;
+/// Colour, linear, with as much of its chroma as the display has.
+Rgb shownColor(const Lab& lab) {
+  constexpr int halvings = 20;
+  const auto withChroma = [&](double share) {
+    return linearOf({lab.L, share * lab.a, share * lab.b});
+  };
+  double least = 0.0, most = 1.0;
+  if (isShown(withChroma(most)))
+    return withChroma(most);
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (least + most);
+    (isShown(withChroma(middle)) ? least : most) = middle;
+  }
+  return withChroma(least).max(0.0).min(whitest);
+}
+
+/// What light takes from the L* of a context at the edge: where it faces the light, and in a groove
+/// that the focus shades. With what pictured() says, chosen by eye for means from 3 to 8 pixels to
+/// both sides of the edges of seven foci (abdomen, knee, torso; LookBenchmark) under cinema and the
+/// film curve.
+constexpr std::array contextShades = {-3.0, 4.0};
+
+/// Colour, linear, that pictures show of matter at the edge: shadow and what wet surfaces reflect
+/// leave less than half of the differences in lightness.
+Rgb pictured(const Rgb& seen, double shade) {
+  constexpr double darkest = 29.0, lightness = 0.43, saturation = 0.62;
+  const Lab lab = labOf(seen);
+  const double L = darkest + lightness * lab.L, chroma = saturation * L / std::max(lab.L, 1.0);
+  return linearOf({L - shade, chroma * lab.a, chroma * lab.b}).max(0.0).min(1.0);
 }
 
 /// Albedo of a component over the scalar.
@@ -35,9 +58,10 @@ class Knobs {
 public:
   Knobs(const std::vector<BorderColors>& colors, const ContrastKnobs& start, double saturation,
         double g)
-      : m_colors(colors),
+      : m_colors(&colors),
         m_saturation(saturation),
         m_g(g),
+        m_start(start),
         m_knobs(start),
         m_share(shareOf(start)) {}
 
@@ -45,41 +69,82 @@ public:
 
   /// Turns a knob from where it is, in steps, to at most `farthest`.
   void turn(double ContrastKnobs::*knob, double farthest) {
-    constexpr int steps = 20;
     const double first = m_knobs.*knob;
-    for (int i = 1; i <= steps && m_share < enoughShare; ++i) {
-      ContrastKnobs turned = m_knobs;
-      turned.*knob = first + (farthest - first) * i / steps;
-      if (const double share = shareOf(turned); share > m_share) {
-        m_share = share;
-        m_knobs = turned;
-      }
-    }
+    for (int i = 1; i <= steps && m_share < enoughShare; ++i)
+      take(knob, first + (farthest - first) * i / steps,
+           [this](double share) { return share > m_share; });
   }
 
-  /// -1 if the focus is darker than its neighbours, else 1.
-  double awayFromContext() const {
-    double difference = 0.0;
-    for (const BorderColors& part : m_colors)
-      difference += part.area * (labOf(changedFocus(part.focus, m_knobs)).L -
-                                 labOf(changedContext(part.context, m_knobs)).L);
-    return difference < 0.0 ? -1.0 : 1.0;
+  /// Turns a knob back toward the start, as far as that costs nothing that is wanted.
+  void turnBack(double ContrastKnobs::*knob) {
+    const double last = m_knobs.*knob, needed = std::min(m_share, enoughShare);
+    for (int i = 1; i <= steps; ++i)
+      if (!take(knob, last + (m_start.*knob - last) * i / steps,
+                [needed](double share) { return share >= needed; }))
+        return;
   }
+
+  /// Turns the focus toward the accent that is worth most, if one is worth the change.
+  void turnToAccent(double farthest) {
+    Knobs best = *this;
+    for (std::size_t i = 0; i < accents.size() && m_share < enoughShare; ++i) {
+      Knobs turned = *this;
+      turned.m_knobs.accent = i;
+      turned.turn(&ContrastKnobs::focusAccent, farthest);
+      if (turned.isBetterThan(best))
+        best = turned;
+    }
+    m_knobs = best.m_knobs;
+    m_share = best.m_share;
+  }
+
+  /// True if its share is worth its change: a tenth of what is wanted, colours that differ by 30
+  /// from their own.
+  bool isBetterThan(const Knobs& other) const { return worth() > other.worth(); }
 
 private:
-  /// Mean over the border.
-  double shareOf(const ContrastKnobs& knobs) const {
-    double sum = 0.0, area = 0.0;
-    for (const BorderColors& part : m_colors) {
-      sum += part.area * tintShare(contrastUnder(knobs, part, m_saturation, m_g));
-      area += part.area;
-    }
-    return m_colors.empty() ? 1.0 : sum / area;
+  static constexpr int steps = 20;
+
+  bool take(double ContrastKnobs::*knob, double value, const auto& isWanted) {
+    ContrastKnobs turned = m_knobs;
+    turned.*knob = value;
+    const double share = shareOf(turned);
+    if (!isWanted(share))
+      return false;
+    m_knobs = turned;
+    m_share = share;
+    return true;
   }
 
-  const std::vector<BorderColors>& m_colors;
+  /// Mean over the border of a function of its parts.
+  double meanOf(const auto& function) const {
+    double sum = 0.0, area = 0.0;
+    for (const BorderColors& part : *m_colors) {
+      sum += part.area * function(part);
+      area += part.area;
+    }
+    return sum / area;
+  }
+  double shareOf(const ContrastKnobs& knobs) const {
+    return meanOf([&](const BorderColors& part) {
+      return tintShare(contrastUnder(knobs, part, m_saturation, m_g));
+    });
+  }
+  double worth() const {
+    constexpr double changePerShare = 300.0;
+    return std::min(m_share, enoughShare) - change() / changePerShare;
+  }
+  /// Difference of the colours from their own, both sides together.
+  double change() const {
+    return meanOf([&](const BorderColors& part) {
+      return deltaE76(labOf(part.focus), labOf(changedFocus(part.focus, m_knobs))) +
+             deltaE76(labOf(part.context), labOf(changedContext(part.context, m_knobs)));
+    });
+  }
+
+  const std::vector<BorderColors>* m_colors;
   double m_saturation, m_g;
-  ContrastKnobs m_knobs;
+  ContrastKnobs m_start, m_knobs;
   double m_share;
 };
 
@@ -102,13 +167,17 @@ Rgb changedContext(const Rgb& seen, const ContrastKnobs& knobs) {
 }
 
 Rgb changedFocus(const Rgb& seen, const ContrastKnobs& knobs) {
-  const Lab lab = labOf(seen);
-  return shownColor(
-      {lab.L + knobs.focusLightness, knobs.focusChroma * lab.a, knobs.focusChroma * lab.b});
+  const Lab lab = labOf(seen), accent = labOf(decodeSrgb(colorOf(accents[knobs.accent].color)));
+  const auto mixed = [&](double own, double other) {
+    return own + knobs.focusAccent * (other - own);
+  };
+  return shownColor({mixed(lab.L + knobs.focusLightness, accent.L),
+                     mixed(knobs.focusChroma * lab.a, accent.a),
+                     mixed(knobs.focusChroma * lab.b, accent.b)});
 }
 
 double tintShare(const Contrast& contrast) {
-  constexpr double normal = 16.0, colorBlind = 13.0, lightness = 15.0;
+  constexpr double normal = 22.0, colorBlind = 13.2, lightness = 8.8;
   return 0.25 * (std::min(1.0, contrast.deltaE[0] / normal) +
                  std::min(1.0, contrast.deltaE[1] / colorBlind) +
                  std::min(1.0, contrast.deltaE[2] / colorBlind) +
@@ -118,31 +187,49 @@ double tintShare(const Contrast& contrast) {
 Contrast contrastUnder(const ContrastKnobs& knobs, const BorderColors& colors, double saturation,
                        double g) {
   const ContextStyle style{.focus = nullptr, .saturation = saturation};
-  const Rgb context = style.paled(albedoFor(changedContext(colors.context, knobs), g));
-  return contrastBetween(inScene(changedFocus(colors.focus, knobs)),
-                         inScene(reflectance(context, g)));
+  const Rgb focus = changedFocus(colors.focus, knobs),
+            context = reflectance(
+                Rgb(style.paled(albedoFor(changedContext(colors.context, knobs), g))), g);
+  const auto in = [&](double shade) {
+    return shownContrast(pictured(focus, 0.0), pictured(context, shade), deltaE76);
+  };
+  return std::min(in(contextShades[0]), in(contextShades[1]),
+                  [](const Contrast& x, const Contrast& y) { return tintShare(x) < tintShare(y); });
 }
 
 ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const ContextColors& context,
-                          bool isAutomatic, double saturation, double g) {
+                          Turned what, double saturation, double g) {
   constexpr double leastSaturation = 0.5, mostLightness = 0.35, mostChroma = 1.4, mostShift = 12.0,
-                   white = 100.0;
+                   mostAccent = 0.35, white = 100.0, bright = 72.0, dim = 40.0;
   ContrastKnobs start;
   start.contextSaturation = context.saturation.value_or(start.contextSaturation);
   if (context.lightness) {
     start.contextLightness = *context.lightness;
     start.contextGoal = white;
   }
-  if (!isAutomatic)
+  if (what == Turned::nothing || colors.empty())
     return start;
-  Knobs knobs(colors, start, saturation, g);
-  if (!context.saturation)
-    knobs.turn(&ContrastKnobs::contextSaturation, leastSaturation);
-  if (!context.lightness)
-    knobs.turn(&ContrastKnobs::contextLightness, mostLightness);
-  knobs.turn(&ContrastKnobs::focusChroma, mostChroma);
-  knobs.turn(&ContrastKnobs::focusLightness, knobs.awayFromContext() * mostShift);
-  return knobs.knobs();
+  const auto turned = [&](double shift, double goal) {
+    if (!context.lightness)
+      start.contextGoal = goal;
+    Knobs knobs(colors, start, saturation, g);
+    if (!context.saturation)
+      knobs.turn(&ContrastKnobs::contextSaturation, what == Turned::both ? leastSaturation : grey);
+    if (!context.lightness)
+      knobs.turn(&ContrastKnobs::contextLightness, mostLightness);
+    if (what == Turned::both) {
+      knobs.turn(&ContrastKnobs::focusLightness, shift);
+      knobs.turn(&ContrastKnobs::focusChroma, mostChroma);
+      knobs.turnToAccent(mostAccent);
+    }
+    for (const auto knob :
+         {&ContrastKnobs::focusAccent, &ContrastKnobs::focusChroma, &ContrastKnobs::focusLightness,
+          &ContrastKnobs::contextLightness, &ContrastKnobs::contextSaturation})
+      knobs.turnBack(knob);
+    return knobs;
+  };
+  const Knobs darker = turned(-mostShift, bright), lighter = turned(mostShift, dim);
+  return lighter.isBetterThan(darker) ? lighter.knobs() : darker.knobs();
 }
 
 TintContrast tintContrast(const std::vector<ComponentBorder>& borders, const TintPlan& plan,
@@ -157,8 +244,12 @@ TintContrast tintContrast(const std::vector<ComponentBorder>& borders, const Tin
   for (const ComponentBorder& part : parts)
     colors.push_back(
         {seen(part.focus, part.focusScalar), seen(part.context, part.contextScalar), part.area});
-  TintContrast result{.knobs =
-                          chosenKnobs(colors, table.context, table.hasContrast, saturation, g)};
+  const bool isKnown = std::ranges::any_of(
+      parts, [&](const ComponentBorder& part) { return tint.albedo[part.focus].has_value(); });
+  const Turned what = !table.hasContrast ? Turned::nothing
+                      : isKnown          ? Turned::both
+                                         : Turned::context;
+  TintContrast result{.knobs = chosenKnobs(colors, table.context, what, saturation, g)};
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Contrast contrast = contrastUnder(result.knobs, colors[i], saturation, g);
     if (result.contrast && tintShare(contrast) >= tintShare(*result.contrast))
@@ -176,14 +267,15 @@ std::string told(const TintContrast& chosen) {
   const Contrast& contrast = *chosen.contrast;
   const ContrastKnobs &knobs = chosen.knobs, none;
   std::vector<std::string> turned = {"colour-blind " + numberText(contrast.colorBlind(), 3)};
-  const auto tell = [&](const char* what, double ContrastKnobs::*knob) {
+  const auto tell = [&](const std::string& what, double ContrastKnobs::*knob) {
     if (knobs.*knob != none.*knob)
       turned.push_back(what + numberText(knobs.*knob, 3));
   };
   tell("surroundings' colour x ", &ContrastKnobs::contextSaturation);
   tell("lightness evened by ", &ContrastKnobs::contextLightness);
-  tell("focus's colour x ", &ContrastKnobs::focusChroma);
-  tell("lightness + ", &ContrastKnobs::focusLightness);
+  tell("focus's lightness + ", &ContrastKnobs::focusLightness);
+  tell("colour x ", &ContrastKnobs::focusChroma);
+  tell(textOf("toward ", accents[knobs.accent].name, " by "), &ContrastKnobs::focusAccent);
   return textOf(numberText(contrast.deltaE[0], 3), " of ", shown(chosen.segment), " to ",
                 shown(chosen.neighbour), " (", joined(turned, ", "), ")");
 }

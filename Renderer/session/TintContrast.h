@@ -15,14 +15,25 @@ namespace fenestra {
 struct ContrastKnobs {
   double contextSaturation = 1.0; ///< factor of the context's chroma
   double contextLightness = 0.0;  ///< share of the way to the lightness `contextGoal`
-  double contextGoal = 72.0;      ///< bright, so that a cut through the context stays readable
-  double focusChroma = 1.0;       ///< factor
-  double focusLightness = 0.0;    ///< added to L*
+  double contextGoal = 72.0;
+  double focusLightness = 0.0; ///< added to L*
+  double focusChroma = 1.0;    ///< factor
+  double focusAccent = 0.0;    ///< share of the way to the colour `accent`
+  std::size_t accent = 0;      ///< of `accents`
 
   bool operator==(const ContrastKnobs&) const = default;
 };
 
-/// Colour changed by the knobs; linear, in the display's gamut and no whiter than matter can be.
+/// Colours far from each other in CIELAB, for the colour-blind, too.
+struct Accent {
+  const char* name;
+  std::uint32_t color; ///< sRGB, 0xrrggbb
+};
+inline constexpr std::array accents = {Accent{"yellow", 0xebbe3c}, Accent{"ice", 0xbfe6f2},
+                                       Accent{"dark red", 0x7c1e22}};
+
+/// Colour changed by the knobs; linear, no whiter than matter can be, and, where the display has no
+/// such colour, of less chroma.
 Rgb changedContext(const Rgb& seen, const ContrastKnobs& knobs);
 Rgb changedFocus(const Rgb& seen, const ContrastKnobs& knobs);
 
@@ -32,26 +43,32 @@ struct BorderColors {
   double area; ///< of the border, any unit
 };
 
-/// Share of what is wanted between two colours, 0 to 1, the mean of four: 16 for normal sight, 13
-/// for each of both frequent kinds of colour blindness (CIEDE2000), and 15 of lightness, which
-/// survives a grey print. With these, pictures have 20, 12, 12 and 8 in CIELAB across the edge,
-/// mostly in deeper shadow than contrastUnder() knows of (Testing/Benchmarks/look.sh).
+/// Share of what is wanted across an edge in a picture, 0 to 1, the mean of four: of a difference
+/// (CIELAB) of 20 for normal sight, of 12 for each of both frequent kinds of colour blindness, and
+/// of 8 in lightness, which survives a grey print; each and a tenth, since contrastUnder() is not
+/// exact.
 double tintShare(const Contrast& contrast);
 /// Share beyond which no knob is turned: nobody sees what is missing.
-inline constexpr double enoughShare = 0.98;
+inline constexpr double enoughShare = 0.995;
 
-/// Contrast under the knobs, of both colours as pictures show them: partly in shadow, and under
-/// what a wet surface reflects. `saturation`: of the context's albedo, after the knobs
-/// (ContextStyle).
+/// Contrast (CIELAB) under the knobs across the focus's edge in a picture: in the light, or, if
+/// that is less, where the focus stands in a groove that it shades. `saturation`: of the context's
+/// albedo, after the knobs (ContextStyle).
 Contrast contrastUnder(const ContrastKnobs& knobs, const BorderColors& colors, double saturation,
                        double g);
 
+/// What knobs may change. `context`: of a focus of which nothing is known, so that it keeps the
+/// volume's colours.
+enum class Turned { nothing, context, both };
+
 /// Knobs with which the border has enoughShare, as the mean over its area. They are turned one
 /// after the other, in their order, each no further than that needs, or, where that is out of its
-/// reach, to where the share is greatest. `context`: what it sets is not turned. `isAutomatic`:
-/// false: nothing is. `colors`: without any, nothing is, either.
+/// reach, to where the share is greatest; then, from the last to the first, back as far as nothing
+/// is lost. Of a darker focus in a lighter context and the reverse, the way whose share is more
+/// worth its change of colours. `context`: what it sets is not turned. `colors`: without any,
+/// nothing is, either. Where the focus is not turned, its context may become grey.
 ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const ContextColors& context,
-                          bool isAutomatic, double saturation, double g);
+                          Turned what, double saturation, double g);
 
 struct TintContrast {
   ContrastKnobs knobs = {};

@@ -153,8 +153,8 @@ int benchmark(int argc, char** argv) {
     return 0;
   const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
   const std::vector<std::string> scenes = values->list("scenes");
-  std::cout << "| scene | L* spread at mean | mean sRGB | ΔE*ab | protan | deutan | ΔL* | told: "
-               "ΔE00 |\n|---|---|---|---|---|---|---|---|"
+  std::cout << "| scene | L* spread at mean | mean sRGB | ΔE*ab | protan | deutan | ΔL* | told "
+               "|\n|---|---|---|---|---|---|---|---|"
             << std::endl;
   for (const SceneCase& scene : readScenes(
            values->text("table").value_or(FENESTRA_LOOK_TABLE),

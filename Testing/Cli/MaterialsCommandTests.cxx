@@ -50,6 +50,8 @@ void expectOnlyColors(Arguments arguments, const std::string& materials = "libra
     EXPECT_NE(stats.at("contrast").at("segment"), stats.at("contrast").at("neighbour"));
     EXPECT_GE(stats.at("contrast").at("contextSaturation"), 0.5);
     EXPECT_LE(stats.at("contrast").at("focusChroma"), 1.4);
+    EXPECT_LE(stats.at("contrast").at("focusAccent"), 0.35);
+    EXPECT_TRUE(stats.at("contrast").at("accent").is_string());
   }
 }
 

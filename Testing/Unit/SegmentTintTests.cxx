@@ -72,7 +72,7 @@ TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
   EXPECT_EQ(one.names,
             (std::vector<std::string>{"the rest", "kidney_left", "kidney_right", "aorta"}));
   EXPECT_EQ(one.isFocus, (std::vector<bool>{false, false, true, false}));
-  EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{0}, 10, 1}, {{1}, 10, 2}, {{2}, 15, 3}}));
+  EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{0}, 10, 1}, {{1}, 10, 2, true}, {{2}, 15, 3}}));
   const TintPlan both = planOf(segments, automatic, {}, {"1", "body", "id1"});
   EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "kidney", "aorta", "body"}));
   EXPECT_EQ(both.isFocus, (std::vector<bool>{false, true, false, true}));
@@ -224,12 +224,20 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
     const Rgb half = 0.5 * (own + field.albedo(Vec3(2, 0, 0), 7.0, own));
     EXPECT_LT((field.albedo(Vec3(2.5, 0, 0), 7.0, own) - half).abs().maxCoeff(), 1e-12);
   }
-  const Shares smooth = tintShares(segments, plan->parts, 1.0, grid);
-  double liver = 0.0;
-  smooth.at(smooth.grid().worldToIndex * Vec3(2, 0, 0),
-            [&](std::uint8_t component, double share) { liver += component == 1 ? share : 0.0; });
+  const auto liverIn = [&](const std::vector<TintPart>& parts) {
+    const Shares smooth = tintShares(segments, parts, 1.0, grid);
+    double liver = 0.0;
+    smooth.at(smooth.grid().worldToIndex * Vec3(2, 0, 0),
+              [&](std::uint8_t component, double share) { liver += component == 1 ? share : 0.0; });
+    return liver;
+  };
+  const double liver = liverIn(plan->parts);
   EXPECT_GT(liver, 0.0);
   EXPECT_LT(liver, 0.5) << "smoothed as asked";
+  std::vector<TintPart> focus = plan->parts;
+  for (TintPart& part : focus)
+    part.isFocus = part.component == 1;
+  EXPECT_NEAR(liverIn(focus), 2.0 * liver, 0.01) << "a focus has twice its share";
 }
 
 TEST(SegmentTint, AlbedoIsTakenAsItIs) {

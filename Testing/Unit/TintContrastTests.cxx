@@ -14,14 +14,15 @@ namespace fenestra::testing::TintContrastTests {
 namespace {
 
 Rgb colorOf(std::uint32_t rgb) {
-  return decodeSrgb(Rgb((rgb >> 16U) & 0xffU, (rgb >> 8U) & 0xffU, rgb & 0xffU) / 255.0);
+  return decodeSrgb(fenestra::colorOf(rgb));
 }
 
 const Rgb liver = colorOf(0x963e2e), muscle = colorOf(0xa03e38), bone = colorOf(0xf6eedc),
-          spleen = colorOf(0x763448), skin = colorOf(0xdea98f), teal = colorOf(0x207068);
+          spleen = colorOf(0x763448), skin = colorOf(0xdea98f), teal = colorOf(0x207068),
+          artery = colorOf(0xd62824), fat = colorOf(0xc59685), pancreas = colorOf(0xecc48a);
 
 ContrastKnobs chosen(const std::vector<BorderColors>& colors, const ContextColors& context = {}) {
-  return chosenKnobs(colors, context, true, 1.0, 0.0);
+  return chosenKnobs(colors, context, Turned::both, 1.0, 0.0);
 }
 double shareOf(const ContrastKnobs& knobs, const BorderColors& colors) {
   return tintShare(contrastUnder(knobs, colors, 1.0, 0.0));
@@ -43,11 +44,29 @@ TEST(TintContrast, KnobsChangeWhatTheySay) {
   EXPECT_NEAR(context.L, before.L + 0.25 * (72.0 - before.L), 1e-6);
   EXPECT_NEAR(context.a, 0.5 * before.a, 1e-6);
   EXPECT_NEAR(context.b, 0.5 * before.b, 1e-6);
-  const Lab focus = labOf(changedFocus(liver, {.focusChroma = 1.1, .focusLightness = -5.0}));
+  const Lab focus = labOf(changedFocus(liver, {.focusLightness = -5.0, .focusChroma = 1.1}));
   EXPECT_NEAR(focus.L, before.L - 5.0, 1e-6);
   EXPECT_NEAR(focus.a, 1.1 * before.a, 1e-6);
+  const Lab lesion = labOf(decodeSrgb(fenestra::colorOf(accents[0].color)));
+  const Lab half =
+      labOf(changedFocus(liver, {.focusLightness = 2.0, .focusAccent = 0.5, .accent = 0}));
+  EXPECT_NEAR(half.L, 0.5 * (before.L + 2.0 + lesion.L), 1e-6);
+  EXPECT_NEAR(half.a, 0.5 * (before.a + lesion.a), 1e-6);
+  EXPECT_NEAR(half.b, 0.5 * (before.b + lesion.b), 1e-6);
   const Rgb white = changedFocus(Rgb::Constant(0.94), {.focusLightness = 12.0});
   EXPECT_EQ(white.maxCoeff(), whitest) << "no whiter than matter can be";
+}
+
+/// An artery's red has no darker and more colourful one: it loses chroma, not its lightness or hue.
+TEST(TintContrast, ColoursBeyondTheDisplayKeepLightnessAndHue) {
+  const Lab before = labOf(artery);
+  const Rgb color = changedFocus(artery, {.focusLightness = -12.0, .focusChroma = 1.4});
+  const Lab after = labOf(color);
+  EXPECT_GE(color.minCoeff(), 0.0);
+  EXPECT_NEAR(after.L, before.L - 12.0, 1e-3);
+  EXPECT_NEAR(after.b / after.a, before.b / before.a, 1e-3);
+  EXPECT_LT(std::hypot(after.a, after.b), 1.4 * std::hypot(before.a, before.b));
+  EXPECT_LT(color.minCoeff(), 1e-3) << "as much chroma as there is";
 }
 
 // ---- knobs
@@ -61,8 +80,8 @@ TEST(TintContrast, FocusWithoutNeighboursStaysAsItIs) {
   EXPECT_EQ(chosen({}), ContrastKnobs());
 }
 
-/// Expects that `knob` alone is turned, in the middle of its range, and that a step of it less
-/// would not be enough.
+/// Expects that `knob` alone is turned, in the middle of its range, and that a twentieth of the
+/// range less would not be enough.
 void expectAlone(double ContrastKnobs::*knob, double farthest, const BorderColors& colors) {
   const ContrastKnobs knobs = chosen({colors}), none;
   const double step = (farthest - none.*knob) / 20.0, turned = (knobs.*knob - none.*knob) / step;
@@ -77,26 +96,90 @@ void expectAlone(double ContrastKnobs::*knob, double farthest, const BorderColor
 }
 
 TEST(TintContrast, TurnsAKnobNoFurtherThanNeeded) {
-  expectAlone(&ContrastKnobs::contextSaturation, 0.5, {colorOf(0xc03030), colorOf(0xff98b8), 1.0});
-  expectAlone(&ContrastKnobs::contextLightness, 0.35, {colorOf(0x802018), colorOf(0xe08060), 1.0});
+  expectAlone(&ContrastKnobs::contextSaturation, 0.5, {colorOf(0x882a2e), colorOf(0xe78670), 1.0});
+  expectAlone(&ContrastKnobs::contextLightness, 0.35, {liver, fat, 1.0});
 }
 
-/// Knobs that do not help stay; of those that do, a later one is turned only if the earlier are
-/// turned out.
+/// A later knob is turned only if the earlier are turned out.
 TEST(TintContrast, TurnsKnobsInTheirOrder) {
-  const ContrastKnobs red = chosen({{liver, muscle, 1.0}});
-  EXPECT_EQ(red.contextSaturation, 0.5);
-  EXPECT_EQ(red.contextLightness, 0.35);
-  EXPECT_EQ(red.focusLightness, -12.0) << "away from the context's";
-  EXPECT_LE(red.focusChroma, 1.4);
-  const ContrastKnobs both = chosen({{colorOf(0x705040), colorOf(0xf09070), 1.0}});
-  EXPECT_LT(both.contextSaturation, 1.0);
-  EXPECT_GT(both.contextLightness, 0.0);
-  EXPECT_LT(both.contextLightness, 0.35) << "would be farther, or alone, if it came first";
-  const ContrastKnobs grey = chosen({{Rgb::Constant(0.6), Rgb::Constant(0.2), 1.0}});
-  EXPECT_EQ(grey.contextSaturation, 1.0) << "it has none";
-  EXPECT_EQ(grey.contextLightness, 0.0) << "would come nearer";
-  EXPECT_GT(grey.focusLightness, 0.0);
+  const auto onRed = [](std::uint32_t context) {
+    return chosen({{colorOf(0x882a2e), colorOf(context), 1.0}});
+  };
+  const ContrastKnobs two = onRed(0xd57661), three = onRed(0xed674d);
+  EXPECT_EQ(two.contextSaturation, 0.5);
+  EXPECT_GT(two.contextLightness, 0.0);
+  EXPECT_LT(two.contextLightness, 0.35);
+  EXPECT_EQ(two.focusLightness, 0.0);
+  EXPECT_EQ(three.contextSaturation, 0.5);
+  EXPECT_EQ(three.contextLightness, 0.35);
+  EXPECT_LT(three.focusLightness, 0.0);
+  EXPECT_GT(three.focusLightness, -12.0);
+  EXPECT_EQ(three.focusChroma, 1.0);
+}
+
+TEST(TintContrast, DarkFociAreDarkenedAndLightOnesSetBeforeDimmerSurroundings) {
+  const ContrastKnobs dark = chosen({{liver, muscle, 1.0}});
+  EXPECT_EQ(dark.contextLightness, 0.35);
+  EXPECT_EQ(dark.contextGoal, 72.0);
+  EXPECT_EQ(dark.focusLightness, -12.0);
+  const ContrastKnobs light = chosen({{Rgb::Constant(0.6), Rgb::Constant(0.2), 1.0}});
+  EXPECT_EQ(light.contextSaturation, 1.0) << "it has none";
+  EXPECT_EQ(light.contextLightness, 0.35);
+  EXPECT_EQ(light.contextGoal, 40.0);
+  EXPECT_EQ(light.focusLightness, 12.0);
+}
+
+/// An accent is the last resort, a part of the way alone, and no other would be worth more.
+TEST(TintContrast, AccentComesLast) {
+  const BorderColors colors{pancreas, fat, 1.0};
+  const ContrastKnobs knobs = chosen({colors});
+  EXPECT_GT(knobs.focusAccent, 0.0);
+  EXPECT_LE(knobs.focusAccent, 0.35);
+  EXPECT_EQ(knobs.accent, 0U) << "yellow";
+  EXPECT_EQ(knobs.contextSaturation, 0.5);
+  EXPECT_EQ(knobs.contextLightness, 0.35);
+  ContrastKnobs other = knobs;
+  for (other.accent = 1; other.accent < accents.size(); ++other.accent)
+    EXPECT_LT(shareOf(other, colors), shareOf(knobs, colors));
+}
+
+/// Every knob that is turned is needed: a twentieth less of any leaves less than there is, or less
+/// than enough.
+TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
+  constexpr std::array turning = {&ContrastKnobs::contextSaturation,
+                                  &ContrastKnobs::contextLightness, &ContrastKnobs::focusLightness,
+                                  &ContrastKnobs::focusChroma, &ContrastKnobs::focusAccent};
+  const ContrastKnobs none;
+  for (const BorderColors& colors :
+       {BorderColors{pancreas, fat, 1.0}, BorderColors{artery, fat, 1.0},
+        BorderColors{liver, muscle, 1.0},
+        BorderColors{colorOf(0x882a2e), colorOf(0xbb8375), 1.0}}) {
+    const ContrastKnobs knobs = chosen({colors});
+    const double needed = std::min(shareOf(knobs, colors), enoughShare);
+    for (const auto knob : turning) {
+      ContrastKnobs less = knobs;
+      less.*knob += 0.05 * (none.*knob - less.*knob);
+      if (!(less == knobs)) {
+        EXPECT_LT(shareOf(less, colors), needed) << labOf(colors.focus).L;
+      }
+    }
+  }
+}
+
+/// Greys differ by lightness alone, of which pictures have 43 %, less by 4 where a dark focus
+/// shades what is around it, and by 3 where that is in more light than a light focus.
+TEST(TintContrast, EdgesAreShownInTheLightAndInAGroove) {
+  const Rgb dark = linearOf({40.0, 0.0, 0.0}), light = linearOf({80.0, 0.0, 0.0});
+  for (const auto& [colors, lost] : {std::pair(BorderColors{dark, light, 1.0}, 4.0),
+                                     std::pair(BorderColors{light, dark, 1.0}, 3.0)}) {
+    const Contrast contrast = contrastUnder({}, colors, 1.0, 0.0);
+    EXPECT_NEAR(contrast.deltaL, 0.43 * 40.0 - lost, 1e-3);
+    EXPECT_NEAR(contrast.deltaE[0], contrast.deltaL, 0.1);
+  }
+  const Lab red{50.0, 40.0, 10.0};
+  const BorderColors hues{linearOf(red), linearOf({50.0, 0.0, 0.0}), 1.0};
+  const double chroma = 0.62 * (29.0 + 0.43 * 50.0) / 50.0 * std::hypot(red.a, red.b);
+  EXPECT_NEAR(contrastUnder({}, hues, 1.0, 0.0).deltaE[0], std::hypot(chroma, 4.0), 0.1);
 }
 
 /// Green and red of one lightness: normal sight needs nothing, the red-blind do.
@@ -126,11 +209,11 @@ TEST(TintContrast, WhatTheUserSetsIsNotTurned) {
   EXPECT_EQ(pale.contextSaturation, 0.8);
   EXPECT_EQ(pale.contextLightness, 0.35);
   const ContrastKnobs light = chosen(colors, {.saturation = {}, .lightness = 0.1});
-  EXPECT_EQ(light.contextSaturation, 0.5);
+  EXPECT_LT(light.contextSaturation, 1.0);
   EXPECT_EQ(light.contextLightness, 0.1);
   EXPECT_EQ(light.contextGoal, 100.0) << "white";
   const ContrastKnobs fixed =
-      chosenKnobs(colors, {.saturation = 0.8, .lightness = {}}, false, 1.0, 0.0);
+      chosenKnobs(colors, {.saturation = 0.8, .lightness = {}}, Turned::nothing, 1.0, 0.0);
   EXPECT_EQ(fixed, ContrastKnobs{.contextSaturation = 0.8}) << "nothing else is turned unasked";
 }
 
@@ -236,6 +319,14 @@ TEST_F(Borders, SmallOnesDoNotCount) {
   EXPECT_EQ(at(6.0).segment, "focus");
   EXPECT_EQ(at(6.0).neighbour, "neighbour");
   EXPECT_FALSE(tintContrast({}, plan, tint, table, all, 1.0).contrast);
+
+  Tint unknown = tint;
+  unknown.albedo[1].reset();
+  const ContrastKnobs knobs =
+      tintContrast({{1, 2, 10.0, 0.0, 0.0}}, plan, unknown, table, all, 1.0).knobs;
+  EXPECT_EQ(changedFocus(skin, knobs).matrix(), changedFocus(skin, {}).matrix())
+      << "of which nothing is known";
+  EXPECT_LT(chosenKnobs({{skin, fat, 1.0}}, {}, Turned::context, 1.0, 0.0).contextSaturation, 0.5);
 
   const Tint turned = contrastedTint(tint, plan, {.contextSaturation = 0.0}, all);
   const auto chroma = [&](std::size_t i) {
