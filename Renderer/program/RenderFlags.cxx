@@ -227,7 +227,8 @@ struct RenderTable {
        "the data's",
        Takes::text().into(scene.materials), Topic::materials},
       {"material", "TEXT", lookGroup,
-       "Changes the material of one segment, such as \"Liver: color=#963e2e\" or \"Aorta: clip=no\", "
+       "Changes the material of one segment, such as \"Liver: color=#963e2e\" or \"Aorta: "
+       "clip=no\", "
        "which then stays where all else is clipped; may be repeated",
        Takes::texts().into(scene.materialChanges, readTexts), Topic::materials},
       {"lights", "FILE|PRESET|JSON", lookGroup,

@@ -162,9 +162,10 @@ TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<b
                                                  isFocus[i], plan, segmentation.source());
       segments[{component, all[i].matter.priority}].push_back(i);
     }
+  const bool mayGrow = isTint(plan); // matter stays where its segment is
   for (auto& [of, places] : segments)
     plan.parts.push_back(
-        {std::move(places), of.second, of.first, static_cast<bool>(plan.isFocus[of.first])});
+        {std::move(places), of.second, of.first, mayGrow && plan.isFocus[of.first]});
   plan.parts = withoutIdle(std::move(plan.parts));
   if (plan.parts.empty())
     throw inputError(segmentation.source(),

@@ -17,7 +17,7 @@ struct TintPart {
   std::vector<std::size_t> segments; ///< places in Segmentation::segments()
   int priority;
   std::uint8_t component;
-  bool isFocus = false; ///< the focus's, to be set off
+  bool isFocus = false; ///< the focus's, to be set off by colour
 
   bool operator==(const TintPart&) const = default;
 };

@@ -321,8 +321,7 @@ ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Hand
                         const Handle<Camera>& camera, const Handle<ClipResult>& clip,
                         const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants) {
   return expectedFlight({volume->volume, look->transfer, *majorants, *lights, *camera, clip->clip,
-                         settings->crop, style.get(), segments.tint.get(),
-                         segments.mixture.get()});
+                         settings->crop, style.get(), segments.tint.get(), segments.mixture.get()});
 }
 
 } // namespace fenestra

@@ -39,22 +39,36 @@ measured() {
 show() {
   local name=materials-$1
   # shellcheck disable=SC2086
-  render "$name" $4 --materials auto
+  render "$name" $4
   convert "$out/$name.png" \( +clone -colorspace RGB -color-matrix \
     '0.367322 0.860646 -0.227968 0.280085 0.672501 0.047413 -0.011820 0.042940 0.968881' -colorspace sRGB \) \
     +append -quality 84 "$shown/$name.jpg"
   {
-    printf '## %s\n\n![%s](%s.jpg)\n\n%s Told from what surrounds it by %s.\n\n`%s`\n\n' "$2" "$2" "$name" "$3" \
-      "$(measured "$4 --materials auto")" "${4//$data\//}"
+    printf '## %s\n\n![%s](%s.jpg)\n\n%s\n\n`%s`\n\n' "$2" "$2" "$name" "$3" "${4//$data\//}"
   } >>"$page"
 }
 
-show liver "Liver" "The liver's own colour; fat around it a little lighter." "$abdomen --focus liver --view auto"
-show kidneys "Kidneys from behind" "A little darker than the library has them, since fat around them lies in their shade." \
+# setOff NAME TITLE "WHAT" "ARGUMENTS": show, with --materials auto and what was measured.
+setOff() {
+  local all="$4 --materials auto"
+  show "$1" "$2" "$3 Told from what surrounds it by $(measured "$all")." "$all"
+}
+
+setOff liver "Liver" "The liver's own colour; fat around it a little lighter." "$abdomen --focus liver --view auto"
+setOff kidneys "Kidneys from behind" "A little darker than the library has them, since fat around them lies in their shade." \
   "$abdomen --focus kidney_left --focus kidney_right --view posterior"
-show aorta "Aorta with veins" "Behind it the vena cava, the portal vein, liver, gallbladder, spleen and kidney by name." \
+setOff aorta "Aorta with veins" "Behind it the vena cava, the portal vein, liver, gallbladder, spleen and kidney by name." \
   "$abdomen --focus aorta --view auto"
-show cartilage "Cartilage of the knee" "What surrounds it is dimmed, since much of that is nearly as white: bone, fat, menisci." \
+setOff cartilage "Cartilage of the knee" "What surrounds it is dimmed, since much of that is nearly as white: bone, fat, menisci." \
   "$knee --focus 83 --view auto"
-show torso "Torso: bones, lungs and liver" "Of the lungs the transfer function shows the vessels." "$torso --focus liver --view auto"
+setOff torso "Torso: bones, lungs and liver" "Of the lungs the transfer function shows the vessels." "$torso --focus liver --view auto"
+
+# What the clip leaves of an opened abdomen.
+opened="$abdomen --view anterior --clip plane --plane 0,135,300,0,1,0 --materials library"
+for segment in aorta inferior_vena_cava portal_vein_and_splenic_vein iliac_artery_left iliac_artery_right kidney_left \
+  kidney_right; do
+  opened+=" --material $segment:clip=no"
+done
+show opened "Vessels and kidneys stand in an opened abdomen" \
+  "Each of them has \`clip=no\`: the plane removes all else in front of it." "$opened"
 say "Done: $page"

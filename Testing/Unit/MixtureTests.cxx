@@ -18,9 +18,11 @@ Component componentOf(double extinction, const Rgb& albedo, double g = 0.0) {
 
 /// Share of component 1: x / 8 along a row of nine voxels, 0.5 mm apart; the rest is component 0's.
 Mixture rampMixture() {
-  const auto value = [](const Size3& voxel) { return std::lround(255.0 * static_cast<double>(voxel.x()) / 8.0); };
-  const auto shares = std::make_shared<const Shares>(
-      sharesOf({{maskOf({0, 0, 0}, {9, 2, 2}, value), 1, 1}}));
+  const auto value = [](const Size3& voxel) {
+    return std::lround(255.0 * static_cast<double>(voxel.x()) / 8.0);
+  };
+  const auto shares =
+      std::make_shared<const Shares>(sharesOf({{maskOf({0, 0, 0}, {9, 2, 2}, value), 1, 1}}));
   return {shares, {componentOf(1.0, Rgb::Ones()), componentOf(3.0, Rgb::Ones())}};
 }
 

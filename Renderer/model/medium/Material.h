@@ -13,8 +13,8 @@
 //
 // A renderer of them takes a list of components (Mixture.h, Tint.h), one for each distinct material
 // of a volume, and the share of each in every voxel, on the segmentation's grid and under its
-// transform; all shares of a volume sum to 1, by `priority` where segments overlap. A volume without
-// segments is one component.
+// transform; all shares of a volume sum to 1, by `priority` where segments overlap. A volume
+// without segments is one component.
 
 #include "model/medium/PiecewiseLinear.h"
 

@@ -16,7 +16,7 @@ namespace fenestra {
 struct Matter {
   Rgb albedo;
   Vec3 gradient; ///< of the scalar, with a cut's, per mm, world axes; zero unless needsGradient()
-  double surfaceProbability; ///< probability that the path scatters at a surface here
+  double surfaceProbability;        ///< probability that the path scatters at a surface here
   const TransferFunction* transfer; ///< its phase function and surfaces scatter
 };
 
@@ -77,7 +77,8 @@ public:
                             ? Vec3(component.border * m_mixed->shareGradient(number, point.index))
                             : Vec3::Zero();
     return matterOf(component.transfer, component.transfer.albedo(point.scalar), point.index,
-                    point.scalar, wantGradient, border + (component.isClipped ? cut : Vec3::Zero()));
+                    point.scalar, wantGradient,
+                    border + (component.isClipped ? cut : Vec3::Zero()));
   }
   /// A point with what a mixture's parts there depend on.
   MixedPoint at(const Vec3& index, double kept) const {

@@ -5,10 +5,11 @@
 //     sigma_j(x) = keep_j(x) w_j(x) extinction_j(s(x)),   sigma_t = sum of sigma_j,
 //
 // where s is the interpolated scalar (and the extinction is times the gradient opacity, where a
-// transfer function has one), and keep_j the clip's, or 1 for a component that the clip leaves. At a
-// collision one component is drawn with probability sigma_j / sigma_t, and all that follows (albedo,
-// phase function or surface) is that component's: unbiased, whatever differs. The estimator knows a
-// list of parts alone: another volume's matter would join it with shares of its own.
+// transfer function has one), and keep_j the clip's, or 1 for a component that the clip leaves. At
+// a collision one component is drawn with probability sigma_j / sigma_t, and all that follows
+// (albedo, phase function or surface) is that component's: unbiased, whatever differs. The
+// estimator knows a list of parts alone: another volume's matter would join it with shares of its
+// own.
 //
 // Where components differ in nothing but albedo, Tint is the same medium with less noise.
 
@@ -40,9 +41,7 @@ struct Mixture {
   std::vector<Component> components;
 
   /// True if the clip leaves some component.
-  bool hasFree() const {
-    return !std::ranges::all_of(components, &Component::isClipped);
-  }
+  bool hasFree() const { return !std::ranges::all_of(components, &Component::isClipped); }
   /// True if some extinction depends on the gradient.
   bool hasGradientOpacity() const {
     return std::ranges::any_of(components, [](const Component& component) {
@@ -128,9 +127,8 @@ public:
     const Vec3 middle = m_toShares * index;
     const auto shareAt = [&](const Vec3& at) {
       double sum = 0.0;
-      m_mixture.shares->at(at, [&](std::uint8_t other, double share) {
-        sum += other == number ? share : 0.0;
-      });
+      m_mixture.shares->at(
+          at, [&](std::uint8_t other, double share) { sum += other == number ? share : 0.0; });
       return sum;
     };
     Vec3 difference;

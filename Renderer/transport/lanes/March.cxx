@@ -189,8 +189,8 @@ template <typename Voxel>
 void marchBatch(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
   // Eye rays begin behind the surface, where only an edge that is not sharp matters; unless they
   // are whole, for matter that the clip leaves.
-  const bool asksKeep = volume.ghost > 0.0F || volume.softness > 0.0F ||
-                        (volume.mixture && volume.mixture->hasFree);
+  const bool asksKeep =
+      volume.ghost > 0.0F || volume.softness > 0.0F || (volume.mixture && volume.mixture->hasFree);
   for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
     Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
     Sums<Voxel> sums(volume, scene);

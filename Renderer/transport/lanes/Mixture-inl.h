@@ -44,16 +44,17 @@ HWY_INLINE LaneMask freeIn(const WideMixture& mixture, LaneMask which, Int compo
 template <typename Visit>
 HWY_INLINE void forEachPart(const WideMixture& mixture, LaneMask which, const Float3& index,
                             Float scalar, Float kept, Visit&& visit) {
-  LaneShares(mixture.shares, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
-    Float part = share * extinctionOf(mixture, lanes, components, scalar);
-    if (mixture.hasFree) {
-      const LaneMask free = freeIn(mixture, lanes, components);
-      part = select(free, part, kept * part);
-    } else {
-      part = kept * part;
-    }
-    visit(lanes, components, part);
-  });
+  LaneShares(mixture.shares, index)
+      .forEach(which, [&](LaneMask lanes, Int components, Float share) {
+        Float part = share * extinctionOf(mixture, lanes, components, scalar);
+        if (mixture.hasFree) {
+          const LaneMask free = freeIn(mixture, lanes, components);
+          part = select(free, part, kept * part);
+        } else {
+          part = kept * part;
+        }
+        visit(lanes, components, part);
+      });
 }
 
 /// Extinction (mm^-1) of what a clip may remove, and of what it leaves.
@@ -121,8 +122,7 @@ inline Int drawComponents(const WideMixture& mixture, LaneMask which, const Floa
 }
 
 /// Albedo of one component a lane.
-HWY_INLINE Float3 albedoIn(const EventScene& scene, LaneMask which, Int components,
-                           Float scalar) {
+HWY_INLINE Float3 albedoIn(const EventScene& scene, LaneMask which, Int components, Float scalar) {
   Float3 albedo(0.0F, 0.0F, 0.0F);
   forEachComponent(which, components, [&](LaneMask same, std::size_t component) {
     albedo = select(same, albedoOf(scene.albedos[component], scalar), albedo);

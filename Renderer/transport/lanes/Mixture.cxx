@@ -45,8 +45,7 @@ bool WideMixture::serves(const Mixture& mixture) {
   const auto isServed = [](const Component& component) {
     return !component.transfer.gradientOpacity && component.border == 0.0;
   };
-  return WideShares::serves(*mixture.shares) &&
-         std::ranges::all_of(mixture.components, isServed);
+  return WideShares::serves(*mixture.shares) && std::ranges::all_of(mixture.components, isServed);
 }
 
 WideMixture::WideMixture(const Mixture& mixture, const Grid& volume)

@@ -50,8 +50,8 @@ bool isWide(const TransferFunction& transfer) {
 
 } // namespace
 
-bool EventScene::serves(const Grid& grid, const TransferFunction& transfer,
-                        const LightSet& lights, const Mixture* mixture) {
+bool EventScene::serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
+                        const Mixture* mixture) {
   constexpr double farthest = 1e15; // mm; squares and areas stay far below the greatest float
   constexpr double brightest = 1e20;
   constexpr double smallest = 1e-3; // mm; radius of a sphere whose square of the sine is a float

@@ -159,11 +159,11 @@ private:
 
   /// What may be removed, times keep, for lanes of `cut`; unchanged for others. keep is queried
   /// only where needed: for a flight if the collision would be real without clipping; for a
-  /// transmittance if there is something to remove. Seams make a query cost more than everything else: chance then decides first
-  /// whether a transmittance's collision would be real without clipping, and only for real
-  /// collisions keep is queried (delta instead of ratio tracking; Novák et al. 2018, section 4.2).
-  /// Such estimates vary a little more, and cost half. (Not where something is left: together they
-  /// could exceed the majorant.)
+  /// transmittance if there is something to remove. Seams make a query cost more than everything
+  /// else: chance then decides first whether a transmittance's collision would be real without
+  /// clipping, and only for real collisions keep is queried (delta instead of ratio tracking; Novák
+  /// et al. 2018, section 4.2). Such estimates vary a little more, and cost half. (Not where
+  /// something is left: together they could exceed the majorant.)
   HWY_INLINE Float clipped(LaneMask cut, const Float3& at, const LaneExtinctions& all, Float u,
                            Word& counter) {
     Float extinction = all.clipped;

@@ -77,8 +77,8 @@ public:
   static bool serves(const Volume& volume, const TransferFunction& transfer,
                      const Mixture* mixture = nullptr);
 
-  /// A view: volume, clip, style, mixture and stop must outlive the tracker. Once `stop` is true rays are
-  /// abandoned and results are meaningless.
+  /// A view: volume, clip, style, mixture and stop must outlive the tracker. Once `stop` is true
+  /// rays are abandoned and results are meaningless.
   WideTracker(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
               const MajorantGrid& majorants, const Clip& clip, const ContextStyle* style = nullptr,
               const StopFlag& stop = neverStopped, const Mixture* mixture = nullptr);

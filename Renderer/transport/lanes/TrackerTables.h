@@ -60,7 +60,7 @@ struct WideScene {
   bool cropped = false;
   AffineRows toCrop = {};
 
-  WideTable extinction; ///< mm^-1 over the scalar
+  WideTable extinction;                    ///< mm^-1 over the scalar
   std::optional<WideMixture> mixture = {}; ///< in place of `extinction`
 
   WideCells cells;        ///< fewer than 2^23

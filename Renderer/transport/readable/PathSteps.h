@@ -90,8 +90,8 @@ public:
     const bool first = path.bounces == 0;
     const bool wantGradient = first && m_settings.wantNormals;
     counters.gradients += m_medium.needsGradient(wantGradient) ? 1 : 0;
-    const Matter matter = drawMatter(m_medium, m_clip, point, m_worldToIndex * point, wantGradient,
-                                     path.random);
+    const Matter matter =
+        drawMatter(m_medium, m_clip, point, m_worldToIndex * point, wantGradient, path.random);
     if (first)
       recordFirst(path, distance, matter);
     const Scattering scattering = chooseScattering(path.ray.direction, matter, path.random);

@@ -170,8 +170,9 @@ private:
     const double share = at.matter.surfaceProbability;
     Rgb factor = Rgb::Zero();
     if (share < 1.0)
-      factor += (1.0 - share) * PhaseScattering(at.incoming, at.matter.transfer->g, at.matter.albedo)
-                                    .evaluate(light->direction);
+      factor +=
+          (1.0 - share) * PhaseScattering(at.incoming, at.matter.transfer->g, at.matter.albedo)
+                              .evaluate(light->direction);
     if (share > 0.0)
       factor += share * SurfaceScattering(at.incoming, at.matter.gradient,
                                           *at.matter.transfer->shading, at.matter.albedo)

@@ -34,7 +34,8 @@ public:
   void along(std::span<const RasterPoint> points, Met* out) const {
     for (const RasterPoint& point : points) {
       const Ray ray = m_scene.camera.ray(point.column, point.row);
-      const FirstMatter first = m_march.along(ray, visible(eyeClip(m_scene.clip, m_scene.mixture), ray));
+      const FirstMatter first =
+          m_march.along(ray, visible(eyeClip(m_scene.clip, m_scene.mixture), ray));
       Met met{narrow(first.hit), narrow(first.distance * m_scene.camera.depthPerLength(ray))};
       met.albedo = narrow3(first.albedo.matrix());
       met.normal = narrow3(first.normal);
@@ -75,7 +76,8 @@ public:
       batch->rays.size = count;
       for (std::size_t i = 0; i < count; ++i) {
         const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
-        before[i] = setInside(batch->rays, i, m_domain, ray, visible(eyeClip(m_scene.clip, m_scene.mixture), ray), {});
+        before[i] = setInside(batch->rays, i, m_domain, ray,
+                              visible(eyeClip(m_scene.clip, m_scene.mixture), ray), {});
         perLength[i] = m_scene.camera.depthPerLength(ray);
       }
       march.along(*batch);
