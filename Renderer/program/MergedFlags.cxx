@@ -199,7 +199,7 @@ SceneFlags withSceneFlags(const FlagValues& given, const Input& input) {
       result.leftOut.push_back(textOf(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
                                       "\" ", why, "; give --", name, ' ', shown(value)));
   }
-  const bool hasMaterials = merged.differs("materials");
+  const bool hasMaterials = merged.text("materials").value_or(noMaterials) != noMaterials;
   if (!hasMaterials && !given.has("material")) // changes of what was not taken
     merged.remove("material");
   const bool usesLabels = merged.has("focus") || hasMaterials;

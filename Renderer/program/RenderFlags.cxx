@@ -224,7 +224,8 @@ struct RenderTable {
       {"materials", "none|auto|library|FILE", lookGroup,
        "Colours of the segments by what they are made of: Fenestra's library, or a .json over it; "
        "auto: the library's, changed until the focus is told from its neighbours; surfaces stay "
-       "the data's",
+       "the data's [auto with a focus of which something is known and without "
+       "--contextsaturation, else none]",
        Takes::text().into(scene.materials), Topic::materials},
       {"material", "TEXT", lookGroup,
        "Changes the material of one segment, such as \"Liver: color=#963e2e\" or \"Aorta: "

@@ -12,7 +12,7 @@ namespace fenestra {
 namespace {
 
 bool hasMaterials(const SceneRequest& scene) {
-  return scene.materials != noMaterials;
+  return scene.materials.value_or(noMaterials) != noMaterials;
 }
 
 void checkInput(const FlagValues& flags, const SceneRequest& scene) {

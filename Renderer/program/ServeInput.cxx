@@ -98,8 +98,8 @@ void checkChange(const json& change, const FlagValues& flags, const Input& input
     namedLights(scene.lights);
   if (scene.transfer && (isPreset || change.contains("transfer")))
     namedTransfer(*scene.transfer, input);
-  if (isPreset || change.contains("materials"))
-    namedMaterials(scene.materials);
+  if (scene.materials && (isPreset || change.contains("materials")))
+    namedMaterials(*scene.materials);
   if (scene.environmentMap && change.contains("environment"))
     readEnvironmentMap(*scene.environmentMap);
 }

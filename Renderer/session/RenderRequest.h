@@ -84,7 +84,9 @@ struct SceneRequest {
   std::optional<std::string> segmentation = {}; ///< a node of the scene, or a file
   std::optional<std::string> labels = {};       ///< names of a label map's values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values
-  std::string materials = noMaterials;          ///< or "auto", "library", or a file over it
+  /// "none", "auto", "library", or a file over it; nothing: auto around a focus of which something
+  /// is known, unless the context's saturation is given; else none.
+  std::optional<std::string> materials = {};
   std::vector<std::string> materialChanges = {}; ///< parseMaterialChange's texts
   std::optional<std::string> transfer =
       {}; ///< a file, or a preset's name; by default the scene's, else from the volume

@@ -36,8 +36,7 @@ void Scene::make() {
     m_namedTransfer.of(*r.transfer, m_input);
   const auto volume = m_volume.of(m_input, r.volume);
   const auto settings = m_settings.of(m_input, r.volume, r.view.followsScene());
-  const bool hasMaterials = r.materials != noMaterials;
-  if (hasMaterials || !r.focus.empty())
+  if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
     m_segments.of(m_input, {r.volume, r.segmentation, r.labels}, volume->volume.grid);
   const auto focus =
       m_focus.of(m_segments.result(), r.focus, r.focusLook.shaping, volume->volume.grid);
@@ -45,8 +44,8 @@ void Scene::make() {
     m_sceneLook.of(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
   const auto look = m_look.of(volume, m_namedTransfer.result(), m_sceneLook.result(), r.transferFor,
                               r.shift, r.density);
-  if (hasMaterials) {
-    makeTint();
+  if (const std::string name = wantedMaterials(m_segments.result()); name != noMaterials) {
+    makeTint(name);
     if (!isTint(*m_plan))
       m_mixture.of(m_plan.result(), tintInUse(), look);
   }
@@ -71,9 +70,17 @@ void Scene::make() {
                 majorants);
 }
 
-void Scene::makeTint() {
+std::string Scene::wantedMaterials(const Handle<SegmentsInput>& segments) const {
   const SceneRequest& r = m_request;
-  const auto materials = m_materials.of(r.materials);
+  if (r.materials)
+    return *r.materials;
+  const bool isSetOff = !r.focus.empty() && !r.focusLook.contextSaturation;
+  return isSetOff && isSomeKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
+}
+
+void Scene::makeTint(const std::string& name) {
+  const SceneRequest& r = m_request;
+  const auto materials = m_materials.of(name);
   const bool setsOff = materials->setsOffFocus();
   const auto there = m_segmentsThere.of(m_segments.result());
   const auto plan = m_plan.of(m_segments.result(), there, materials, r.materialChanges,
@@ -130,8 +137,8 @@ std::string Scene::choices() const {
     parts.push_back("labels: " + joined(labels, ", "));
   if (tint()) {
     const std::size_t colors = tint()->albedo.size() - 1;
-    parts.push_back(
-        textOf("materials: ", r.materials, ", ", colors, colors == 1 ? " colour" : " colours"));
+    parts.push_back(textOf("materials: ", m_materials->source, ", ", colors,
+                           colors == 1 ? " colour" : " colours"));
   }
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)

@@ -78,7 +78,9 @@ public:
 private:
   /// Makes all stages that m_request needs, in their order.
   void make();
-  void makeTint();
+  /// Name of the materials; `segments`: null without labels.
+  std::string wantedMaterials(const Handle<SegmentsInput>& segments) const;
+  void makeTint(const std::string& name);
   const Handle<Tint>& tintInUse() const {
     return m_contrastedTint.result() ? m_contrastedTint.result() : m_tint.result();
   }

@@ -126,4 +126,11 @@ std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segment
   return materials;
 }
 
+bool isSomeKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors) {
+  const std::vector<SegmentMaterial> all = materialsOf(segmentation.segments(), materialLibrary());
+  return std::ranges::any_of(selectors, [&](const std::string& selector) {
+    return !all[segmentation.find(selector)].isOfPalette;
+  });
+}
+
 } // namespace fenestra

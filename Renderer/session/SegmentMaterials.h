@@ -31,4 +31,8 @@ const MaterialTable& materialLibrary();
 std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segments,
                                          const MaterialTable& table);
 
+/// True if the library knows one of the segments, or it has a colour of its own. `selectors`: ids,
+/// names or label values. Throws Error (input) for one that is not there.
+bool isSomeKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors);
+
 } // namespace fenestra

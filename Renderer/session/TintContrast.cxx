@@ -32,7 +32,7 @@ Rgb shownColor(const Lab& lab) {
   return withChroma(least).max(0.0).min(whitest);
 }
 
-/// What light takes from the L* of a context at the edge: where it faces the light, and in a groove
+/// Loss of L* of a context at the edge: where it faces the light, and in a groove
 /// that the focus shades. With what pictured() says, chosen by eye for means from 3 to 8 pixels to
 /// both sides of the edges of seven foci (abdomen, knee, torso; LookBenchmark) under cinema and the
 /// film curve.

@@ -57,7 +57,7 @@ inline constexpr double enoughShare = 0.995;
 Contrast contrastUnder(const ContrastKnobs& knobs, const BorderColors& colors, double saturation,
                        double g);
 
-/// What knobs may change. `context`: of a focus of which nothing is known, so that it keeps the
+/// Knobs that may be turned. `context`: of a focus of which nothing is known, so that it keeps the
 /// volume's colours.
 enum class Turned { nothing, context, both };
 

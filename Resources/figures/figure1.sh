@@ -23,9 +23,9 @@ outlined() {
 
 phantom knee
 phantom foot
-knee=("$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd" --focus "Femoral cartilage"
+knee=("$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd" --materials none --focus "Femoral cartilage"
   --labelsmoothing 0.6 --transfer mr-knee --position=-15,200,-90)
-foot=("$out/foot/foot.mrml" --focus bones --labelsmoothing 0.6 --transfer ct-skeleton --view superior)
+foot=("$out/foot/foot.mrml" --materials none --focus bones --labelsmoothing 0.6 --transfer ct-skeleton --view superior)
 render knee-none "${knee[@]}" --clip none
 render knee-hand-plane "${knee[@]}" --clip plane --plane=0,10,-5,0,0.91,-0.41
 render knee-cutaway "${knee[@]}" --clip cutaway --soft 2

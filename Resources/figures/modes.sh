@@ -6,7 +6,7 @@ page=$shown/modes.md
 size=${SIZE:-320}
 
 phantom knee
-knee=("$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd" --transfer mr-knee --position=-15,200,-90)
+knee=("$out/knee/knee.nrrd" --materials none --segmentation "$out/knee/knee.seg.nrrd" --transfer mr-knee --position=-15,200,-90)
 cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6)
 
 cat >"$page" <<'END'

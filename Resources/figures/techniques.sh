@@ -52,15 +52,15 @@ END
 
 phantom knee
 subject knee "Knee: femoral cartilage (synthetic MR)" "$out/knee/knee.nrrd" \
-  --segmentation "$out/knee/knee.seg.nrrd" --focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2 \
+  --segmentation "$out/knee/knee.seg.nrrd" --materials none --focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2 \
   --transfer mr-knee --position=-15,200,-90
 phantom foot
-subject foot "Foot: its bones (synthetic CT)" "$out/foot/foot.mrml" --focus bones --labelsmoothing 0.6 \
+subject foot "Foot: its bones (synthetic CT)" "$out/foot/foot.mrml" --materials none --focus bones --labelsmoothing 0.6 \
   --transfer ct-skeleton --view superior
 liver=$data/torso_ct_ccth_a01
 if [ -d "$liver" ]; then
   subject liver "Liver (CT of the collection CC-Tumor-Heterogeneity, TCIA, CC BY 4.0)" "$liver/ct.nii.gz" \
-    --segmentation "$liver/seg_totalsegmentator_rtstruct.nii.gz" --focus 1 --labelsmoothing 2 \
+    --segmentation "$liver/seg_totalsegmentator_rtstruct.nii.gz" --materials none --focus 1 --labelsmoothing 2 \
     --transfer ct-liver --view anterior
 else
   printf '\n## Liver\n\nSKIPPED: there is no %s.\n' "torso_ct_ccth_a01 in FENESTRA_DATA" >>"$page"

@@ -17,8 +17,9 @@ namespace {
 
 constexpr const char* samples = FENESTRA_SAMPLES; // small phantoms
 constexpr const char* foot = " {phantoms}/foot/foot.mrml --size 32x32 --background 0,0,0\n";
-constexpr const char* knee = " {phantoms}/knee/knee.mrml --focus FemoralCartilage --size 32x32 "
-                             "--background 0,0,0\n";
+constexpr const char* knee =
+    " {phantoms}/knee/knee.mrml --focus FemoralCartilage --materials none --size 32x32 "
+    "--background 0,0,0\n";
 
 SceneCase caseOf(const std::string& line) {
   const TemporaryFolder folder;

@@ -52,7 +52,7 @@ void measure(const std::string& otherFocus, const RenderOptions& options) {
       {"clip", [](SceneRequest& r) { r.clip.mode = ClipMode::cutaway; }},
       {"transfer function", [](SceneRequest& r) { r.density *= 2.0; }},
       {"lights", [](SceneRequest& r) { r.environment = Rgb(1.0, 1.0, 1.0); }}};
-  if (options.scene.materials != noMaterials)
+  if (options.scene.materials.value_or(noMaterials) != noMaterials)
     changes.push_back({"a segment's colour", [&](SceneRequest& r) {
                          r.materialChanges.push_back(otherFocus + ": color=#3060c0");
                        }});

@@ -69,7 +69,7 @@ say "Instructions a path"
 rows=() slower=()
 for scene in S1 S2 S2hi knee; do
   before=$(recorded $scene 5)
-  arguments=("$knee/knee.mrml" --focus FemoralCartilage --clip surface --boundary exact --size $size)
+  arguments=("$knee/knee.mrml" --focus FemoralCartilage --clip surface --boundary exact --materials none --size $size)
   if [ $scene != knee ]; then
     if [ ! -e "$reference/$scene.arguments" ]; then
       echo "$scene: SKIPPED, not in $reference"

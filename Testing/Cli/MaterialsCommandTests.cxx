@@ -27,7 +27,9 @@ bool isOfColor(const std::string& channel) {
 void expectOnlyColors(Arguments arguments, const std::string& materials = "library") {
   const TemporaryFolder folder;
   arguments.insert(arguments.end(), {"--size", "40x40", "--samples", "2"});
-  const Image none = rendered(arguments, folder.path());
+  Arguments plain = arguments;
+  plain.insert(plain.end(), {"--materials", "none"});
+  const Image none = rendered(plain, folder.path());
   arguments.insert(arguments.end(), {"--materials", materials, "--stats", "s.json"});
   const Image tinted = rendered(arguments, folder.path());
   EXPECT_EQ(none.channels.size(), tinted.channels.size());
@@ -114,6 +116,22 @@ TEST_F(MaterialsCommand, NeedNoFocusAndAreTold) {
             "look: by the volume's range; light: cinema; materials: library, 1 colour");
 }
 
+/// "Bone, left" is known, and "Void" is not.
+TEST_F(MaterialsCommand, AKnownFocusIsSetOffByDefault) {
+  const auto picture = [&](const Arguments& more) {
+    return rendered(with(more), folder.path()).channels;
+  };
+  const auto automatic = picture({"--focus", "A", "--materials", "auto"});
+  const auto none = picture({"--focus", "A", "--materials", "none"});
+  EXPECT_NE(automatic, none);
+  EXPECT_EQ(picture({"--focus", "A"}), automatic);
+  EXPECT_EQ(picture({"--focus", "A,B"}), automatic);
+  EXPECT_EQ(picture({"--focus", "A", "--contextsaturation", "1"}),
+            picture({"--focus", "A", "--contextsaturation", "1", "--materials", "none"}));
+  const Outcome outcome = run(with({"--focus", "A", "--output", "a.png"}), folder.path());
+  EXPECT_NE(outcome.choices.find("; materials: auto, "), std::string::npos) << outcome.choices;
+}
+
 TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
   folder.write("green.json",
                R"({"version": 1, "materials": {"green": {"albedo": [0, 1, 0]}},
@@ -160,7 +178,7 @@ TEST_F(MaterialsCommand, ContextOfAFileIsAppliedAroundAFocus) {
                 folder.path());
 }
 
-/// What a clip removes of the rest it leaves of a segment that is not clipped.
+/// A segment that is not clipped stands where the clip removes the rest.
 TEST_F(MaterialsCommand, MatterCanBeDenserAndStandThroughTheClip) {
   folder.write("dense.json",
                R"({"version": 1, "segments":

@@ -59,7 +59,7 @@ TEST(PresetsCommand, PresetSetsFocusLookViewAndClip) {
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
   for (const std::string& line : lines)
     for (const char* flag :
-         {"transfer", "lights", "view", "clip", "boundary", "labelsmoothing", "soft"})
+         {"materials", "transfer", "lights", "view", "clip", "boundary", "labelsmoothing", "soft"})
       if (line.starts_with(std::string(flag) + ": "))
         written.insert(written.end(),
                        {std::string("--") + flag, line.substr(std::string(flag).size() + 2)});

@@ -10,7 +10,7 @@ namespace fenestra::oracle {
 class Segments {
 public:
   static constexpr std::size_t most = 16; ///< components
-  /// Of each component; all sum to 1.
+  /// Shares of each component; all sum to 1.
   using Shares = std::array<double, most>;
 
   /// Throws std::invalid_argument for too many components.

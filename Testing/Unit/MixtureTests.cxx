@@ -101,7 +101,7 @@ TestScene mixedScene(bool isHybrid) {
   return scene;
 }
 
-/// Of the first collisions, mm.
+/// Mean depth of the first collisions, mm.
 double meanDepth(const Film& film) {
   double sum = 0.0, count = 0.0;
   for (const PixelSums& pixel : film.pixels()) {

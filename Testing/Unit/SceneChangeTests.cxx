@@ -44,6 +44,7 @@ protected:
     request.input = folder / "volume.nrrd";
     request.segmentation = folder / "labels.nrrd";
     request.focus = {"1"};
+    request.materials = noMaterials;
     request.transfer = folder / "ramp.json";
     request.width = request.height = 16;
   }

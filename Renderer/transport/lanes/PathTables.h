@@ -67,7 +67,7 @@ struct EventScene {
   ScatterLaw<float> law;
   bool hybrid;       ///< surface shading
   float surfaceRate; ///< 25 gamma^3 of Medium's surface probability
-  /// Of a mixture's components; empty: there is none.
+  /// Components of a mixture; empty: there is none.
   std::vector<WideTable> albedos;
   std::vector<ScatterLaw<float>> laws;
   bool wantNormals;

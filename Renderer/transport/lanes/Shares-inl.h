@@ -60,9 +60,10 @@ private:
     Float3 fractions; ///< position from there, 0 to 1
   };
   static constexpr std::int32_t edge = Shares::edge + 1; ///< voxels
-  /// Of a plane, from voxels on: four of a row and the four behind them; then of the next slice.
+  /// Shares of a plane, from voxels on: four of a row and the four behind them; then of the next
+  /// slice.
   using Bytes = std::array<Int, 4>;
-  /// What the planes of mixed bricks leave.
+  /// Remainder that the planes of mixed bricks leave.
   struct Rest {
     Int components;
     Bytes bytes;

@@ -157,8 +157,8 @@ private:
     }
   }
 
-  /// What may be removed, times keep, for lanes of `cut`; unchanged for others. keep is queried
-  /// only where needed: for a flight if the collision would be real without clipping; for a
+  /// Extinction that may be removed, times keep, for lanes of `cut`; unchanged for others. keep is
+  /// queried only where needed: for a flight if the collision would be real without clipping; for a
   /// transmittance if there is something to remove. Seams make a query cost more than everything
   /// else: chance then decides first whether a transmittance's collision would be real without
   /// clipping, and only for real collisions keep is queried (delta instead of ratio tracking; Novák
