@@ -1,7 +1,6 @@
 #include "session/SegmentTint.h"
 
 #include "base/Error.h"
-#include "base/safe/ShownText.h"
 #include "model/medium/Reflectance.h"
 #include "session/SegmentMaterials.h"
 
@@ -35,30 +34,17 @@ std::vector<SegmentMaterial> matterOf(const Segmentation& segmentation,
 /// Material of what no segment covers.
 Material restOf(const NamedMaterials& materials) {
   const MaterialTable& table = materials.table;
-  if (table.rest.empty())
-    return {};
-  return table.materials.at(table.rest);
-}
-
-template <int Channels>
-bool isSame(const std::optional<PiecewiseLinear<Channels>>& a,
-            const std::optional<PiecewiseLinear<Channels>>& b) {
-  if (!a || !b)
-    return a.has_value() == b.has_value();
-  return std::ranges::equal(a->knots(), b->knots(), [](const auto& k, const auto& l) {
-    return k.position == l.position && k.value == l.value;
-  });
+  return table.rest.empty() ? Material() : table.materials.at(table.rest);
 }
 
 /// True if both are the same under any transfer function; priority aside.
 bool isSame(const SegmentMatter& a, const SegmentMatter& b) {
   const Material &m = a.material, &n = b.material;
-  const bool looksAlike =
-      isSame(m.color, n.color) && (!m.color || m.colorIsAlbedo == n.colorIsAlbedo);
+  const bool looksAlike = m.color == n.color && (!m.color || m.colorIsAlbedo == n.colorIsAlbedo);
   if (!looksAlike || m.kind != n.kind || a.isClipped != b.isClipped || a.density != b.density)
     return false;
   return m.kind == MaterialKind::tint ||
-         (isSame(m.extinction, n.extinction) &&
+         (m.extinction == n.extinction &&
           std::tie(m.g, m.diffuse, m.specular, m.roughness, m.border) ==
               std::tie(n.g, n.diffuse, n.specular, n.roughness, n.border));
 }

@@ -77,7 +77,7 @@ public:
   bool hasFree() const { return m_hasFree; }
   bool needsGradient() const { return m_needsGradient; }
 
-  /// Calls visit(part) for the parts at a point. A component may come twice.
+  /// Calls visit(part) for the parts at a point, each component once.
   template <typename Visit>
   void forEachPart(const MixedPoint& point, Visit&& visit) const {
     m_mixture.shares->at(m_toShares * point.index, [&](std::uint8_t number, double share) {

@@ -17,6 +17,8 @@ public:
   struct Knot {
     double position;
     Value value;
+
+    bool operator==(const Knot&) const = default;
   };
 
   /// Knots in any order (sorted here, stably by position), finite, at least one.
@@ -38,6 +40,7 @@ public:
   std::array<double, 2> range(double low, double high) const;
 
   const std::vector<Knot>& knots() const { return m_knots; }
+  bool operator==(const PiecewiseLinear& other) const { return m_knots == other.m_knots; }
   /// Function of the same knots after change(knot).
   template <typename Change>
   PiecewiseLinear withKnots(const Change& change) const {

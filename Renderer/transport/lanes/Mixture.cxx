@@ -5,11 +5,7 @@ namespace fenestra {
 namespace {
 
 bool areAlike(const Component& a, const Component& b) {
-  return a.isClipped == b.isClipped &&
-         std::ranges::equal(a.transfer.extinction.knots(), b.transfer.extinction.knots(),
-                            [](const auto& k, const auto& l) {
-                              return k.position == l.position && k.value == l.value;
-                            });
+  return a.isClipped == b.isClipped && a.transfer.extinction == b.transfer.extinction;
 }
 
 /// For each component the first one that is alike.
