@@ -133,6 +133,16 @@ std::array<double, 2> usualRange(const Volume& volume) {
   return {low, high > low ? high : volume.maximum};
 }
 
+std::optional<double> airLevel(const Volume& volume) {
+  if (suits(Modality::ct, volume))
+    return -300.0;
+  const std::vector<double> values = sampledValues(volume);
+  if (10 * std::ranges::count(values, volume.minimum) >= std::ssize(values))
+    return std::nullopt;
+  const auto [low, high] = usualRange(volume);
+  return backgroundLevel(volume, low, high);
+}
+
 double transparentShare(const Mask& focus, const Volume& volume, const TransferFunction& transfer) {
   const Affine toVolume = volume.grid.worldToIndex * focus.grid.indexToWorld;
   const Box box = volume.grid.indexBox();

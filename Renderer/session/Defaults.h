@@ -21,6 +21,12 @@ bool suits(Modality modality, const Volume& volume);
 /// Usual range of the voxels: percentiles 0.5 and 99.5, low < high. Constant volume: low = high.
 std::array<double, 2> usualRange(const Volume& volume);
 
+/// Scalar below which air lies around a body: -300 HU in CT, else Otsu's threshold (1979) of the
+/// usual range. Nothing where a tenth of a volume other than CT has its least value: its
+/// surroundings are cut off, such as the skull's around a brain, and what is left need not be a
+/// body.
+std::optional<double> airLevel(const Volume& volume);
+
 /// Share of the focus's voxels, 0 to 1, whose extinction is 0: a look that is made for something
 /// else shows a hole where the focus is. From at most about a million voxels of the mask.
 double transparentShare(const Mask& focus, const Volume& volume, const TransferFunction& transfer);

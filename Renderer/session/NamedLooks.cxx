@@ -124,7 +124,7 @@ bool isFileOfLights(const std::string& name) {
 NamedMaterials namedMaterials(const std::string& name) {
   if (!isFileOfMaterials(name)) {
     NamedMaterials materials{materialLibrary(), name};
-    materials.table.hasContrast = name == autoMaterials;
+    materials.table.hasContrast = materials.table.findsSkin = name == autoMaterials;
     return materials;
   }
   if (!isFoundAsFile(name))

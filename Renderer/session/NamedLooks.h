@@ -60,7 +60,8 @@ struct NamedMaterials {
     return table.hasContrast || table.context.saturation || table.context.lightness;
   }
 };
-/// Materials of the library ("auto": with contrast), or of a file over it. Throws Error (input).
+/// Materials of the library ("auto": with contrast and skin), or of a file over it. Throws Error
+/// (input).
 NamedMaterials namedMaterials(const std::string& name);
 
 /// True if namedMaterials would open a file of that name.

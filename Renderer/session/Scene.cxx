@@ -83,10 +83,12 @@ void Scene::makeTint(const std::string& name) {
   const auto materials = m_materials.of(name);
   const bool setsOff = materials->setsOffFocus();
   const auto there = m_segmentsThere.of(m_segments.result());
+  if (materials->table.findsSkin)
+    m_skin.of(m_volume.result());
   const auto plan = m_plan.of(m_segments.result(), there, materials, r.materialChanges,
-                              setsOff ? r.focus : std::vector<std::string>());
-  const auto shares =
-      m_shares.of(m_segments.result(), plan->parts, r.focusLook.shaping.smoothing, volume().grid);
+                              setsOff ? r.focus : std::vector<std::string>(), m_skin.result());
+  const auto shares = m_shares.of(m_segments.result(), plan->parts, m_skin.result(),
+                                  r.focusLook.shaping.smoothing, volume().grid);
   const auto look = m_look.result();
   const auto tint = m_tint.of(plan, shares, look->transfer.g);
   if (!setsOff || !focus())
@@ -100,18 +102,18 @@ void Scene::makeTint(const std::string& name) {
 
 StageSeconds Scene::seconds() const {
   const ClipResult none, &clip = m_clip.isNew() ? *m_clip : none;
-  return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
-                  m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() +
-                  m_look.seconds(),
-          .materials = m_materials.seconds() + m_segmentsThere.seconds() + m_plan.seconds() +
-                       m_shares.seconds() + m_tint.seconds() + m_borders.seconds() +
-                       m_tintContrast.seconds() + m_contrastedTint.seconds() + m_mixture.seconds(),
-          .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
-                      m_style.seconds() + m_majorants.seconds(),
-          .focus = clip.focusSeconds,
-          .spline = clip.splineSeconds,
-          .fill = clip.fillSeconds,
-          .features = m_flight.seconds()};
+  return {
+      .load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
+              m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() + m_look.seconds(),
+      .materials = m_materials.seconds() + m_segmentsThere.seconds() + m_plan.seconds() +
+                   m_skin.seconds() + m_shares.seconds() + m_tint.seconds() + m_borders.seconds() +
+                   m_tintContrast.seconds() + m_contrastedTint.seconds() + m_mixture.seconds(),
+      .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
+                  m_style.seconds() + m_majorants.seconds(),
+      .focus = clip.focusSeconds,
+      .spline = clip.splineSeconds,
+      .fill = clip.fillSeconds,
+      .features = m_flight.seconds()};
 }
 
 StagesMade Scene::made() const {
@@ -138,7 +140,8 @@ std::string Scene::choices() const {
   if (tint()) {
     const std::size_t colors = tint()->albedo.size() - 1;
     parts.push_back(textOf("materials: ", m_materials->source, ", ", colors,
-                           colors == 1 ? " colour" : " colours"));
+                           colors == 1 ? " colour" : " colours",
+                           m_plan->hasFoundSkin() ? ", skin found" : ""));
   }
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)

@@ -91,10 +91,11 @@ private:
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
-                    s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_segmentsThere, s.m_plan,
-                    s.m_shares, s.m_tint, s.m_borders, s.m_tintContrast, s.m_contrastedTint,
-                    s.m_mixture, s.m_focusWarnings, s.m_view, s.m_ranges, s.m_matter, s.m_camera,
-                    s.m_lights, s.m_clip, s.m_contrast, s.m_style, s.m_majorants, s.m_flight);
+                    s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_segmentsThere, s.m_skin,
+                    s.m_plan, s.m_shares, s.m_tint, s.m_borders, s.m_tintContrast,
+                    s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view, s.m_ranges,
+                    s.m_matter, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
+                    s.m_majorants, s.m_flight);
   }
 
   SceneRequest m_request;
@@ -107,8 +108,9 @@ private:
   Stage<&requestedFocus> m_focus;
   Stage<&Input::look> m_sceneLook; ///< unused with --transfer
   Stage<&chosenLook> m_look;
-  Stage<&namedMaterials> m_materials; ///< this and the next four: unused without materials
+  Stage<&namedMaterials> m_materials; ///< this and the next five: unused without materials
   Stage<&segmentsThere> m_segmentsThere;
+  Stage<&skinOf> m_skin; ///< unused unless materials find skin
   Stage<&tintPlan> m_plan;
   Stage<&tintShares> m_shares;
   Stage<&tintOf> m_tint;

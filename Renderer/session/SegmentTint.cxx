@@ -1,6 +1,7 @@
 #include "session/SegmentTint.h"
 
 #include "base/Error.h"
+#include "model/masks/OuterLayer.h"
 #include "model/medium/Reflectance.h"
 #include "session/SegmentMaterials.h"
 
@@ -12,6 +13,8 @@ namespace fenestra {
 namespace {
 
 constexpr std::size_t mostComponents = 256; ///< a component is a byte
+constexpr const char* skinMaterial = "skin";
+constexpr int skinPriority = 1;
 
 /// Material of each segment, with the changes; empty segments as they come.
 std::vector<SegmentMaterial> matterOf(const Segmentation& segmentation,
@@ -35,6 +38,14 @@ std::vector<SegmentMaterial> matterOf(const Segmentation& segmentation,
 Material restOf(const NamedMaterials& materials) {
   const MaterialTable& table = materials.table;
   return table.rest.empty() ? Material() : table.materials.at(table.rest);
+}
+
+/// True if a segment that has voxels is skin.
+bool isSkinThere(const std::vector<SegmentMaterial>& all, const std::vector<bool>& there) {
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (there[i] && all[i].name == skinMaterial)
+      return true;
+  return false;
 }
 
 /// True if both are the same under any transfer function; priority aside.
@@ -135,7 +146,7 @@ std::vector<bool> segmentsThere(const Handle<SegmentsInput>& input) {
 
 TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<bool>>& there,
                   const Handle<NamedMaterials>& materials, const std::vector<std::string>& changes,
-                  const std::vector<std::string>& focus) {
+                  const std::vector<std::string>& focus, const Handle<Mask>& skin) {
   const Segmentation& segmentation = input->segmentation;
   const std::vector<SegmentMaterial> all = matterOf(segmentation, *materials, changes);
   const std::vector<bool> isFocus = focusOf(segmentation, *materials, focus);
@@ -152,6 +163,12 @@ TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<b
   for (auto& [of, places] : segments)
     plan.parts.push_back(
         {std::move(places), of.second, of.first, mayGrow && plan.isFocus[of.first]});
+  if (skin && skin->count > 0 && !isSkinThere(all, *there)) {
+    const Material& material = materials->table.materials.at(skinMaterial);
+    const std::uint8_t component =
+        componentOf({{material}, skinMaterial}, skinMaterial, false, plan, segmentation.source());
+    plan.parts.push_back({{}, skinPriority, component});
+  }
   plan.parts = withoutIdle(std::move(plan.parts));
   if (plan.parts.empty())
     throw inputError(segmentation.source(),
@@ -160,16 +177,21 @@ TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<b
 }
 
 Shares tintShares(const Handle<SegmentsInput>& input, const std::vector<TintPart>& parts,
-                  const std::optional<double>& smoothing, const Grid& volume) {
+                  const Handle<Mask>& skin, const std::optional<double>& smoothing,
+                  const Grid& volume) {
   const Segmentation& segmentation = input->segmentation;
+  std::optional<Grid> labels; // of the parts before
   const auto partAt = [&](std::size_t number) -> Shares::Part {
     const TintPart& part = parts[number];
+    if (part.segments.empty())
+      return {onLattice(*skin, labels.value_or(skin->grid), volume), part.priority, part.component};
     std::vector<SegmentInfo> segments;
     for (const std::size_t i : part.segments)
       segments.push_back(segmentation.segments()[i]);
     Mask mask = segmentation.maskOf(segments, volume, {.margins = {}, .smoothing = smoothing});
     if (part.isFocus)
       fill(mask);
+    labels = mask.grid;
     return {std::move(mask), part.priority, part.component};
   };
   return {parts.size(), partAt};

@@ -12,9 +12,9 @@
 
 namespace fenestra {
 
-/// Segments of one component and one priority.
+/// Segments of one component and one priority, or the skin that is no segment.
 struct TintPart {
-  std::vector<std::size_t> segments; ///< places in Segmentation::segments()
+  std::vector<std::size_t> segments; ///< places in Segmentation::segments(); none: the skin
   int priority;
   std::uint8_t component;
   bool isFocus = false; ///< the focus's, to be set off by colour
@@ -23,12 +23,15 @@ struct TintPart {
 };
 
 struct TintPlan {
-  std::vector<TintPart> parts; ///< at least one
+  std::vector<TintPart> parts; ///< at least one; skin that is no segment is the last
   /// Matter of the components, at least one; their priority is the parts'. Component 0 is what no
   /// segment covers, and every segment of the same matter.
   std::vector<SegmentMatter> components;
   std::vector<std::string> names; ///< of the components: a segment's, else a material's
   std::vector<bool> isFocus;      ///< by component; none is where nothing sets off the focus
+
+  /// True if there is skin that is no segment.
+  bool hasFoundSkin() const { return parts.back().segments.empty(); }
 };
 
 /// By place in Segmentation::segments(): true if the segment has a voxel. Reads all labels.
@@ -37,16 +40,19 @@ std::vector<bool> segmentsThere(const Handle<SegmentsInput>& segments);
 /// Components of the segments that have voxels (`there`: segmentsThere): one for each matter, and,
 /// where materials set off the focus, those of the focus apart. `changes`: of --material, over the
 /// materials that the table gives; with contrast a segment of which nothing is known keeps the
-/// volume's own colours. `focus`: ids, names or label values. Throws Error (input) for a change to
+/// volume's own colours. `focus`: ids, names or label values. `skin`: skinOf(); null or without
+/// voxels: none; it is left out, too, where a segment is skin. Throws Error (input) for a change to
 /// an unknown segment, for colours of a context without a focus, without any voxel, and for more
 /// than 256 components.
 TintPlan tintPlan(const Handle<SegmentsInput>& segments, const Handle<std::vector<bool>>& there,
                   const Handle<NamedMaterials>& materials, const std::vector<std::string>& changes,
-                  const std::vector<std::string>& focus);
+                  const std::vector<std::string>& focus, const Handle<Mask>& skin);
 
-/// Shares of the components. `smoothing`: MaskShaping's.
+/// Shares of the components. `smoothing`: MaskShaping's. Skin that is no
+/// segment is put on the labels' voxels (onLattice()).
 Shares tintShares(const Handle<SegmentsInput>& segments, const std::vector<TintPart>& parts,
-                  const std::optional<double>& smoothing, const Grid& volume);
+                  const Handle<Mask>& skin, const std::optional<double>& smoothing,
+                  const Grid& volume);
 
 /// `g`: mean cosine of whatever scatters, by which albedo makes a colour.
 Tint tintOf(const Handle<TintPlan>& plan, const Handle<Shares>& shares, double g);

@@ -4,6 +4,7 @@
 #include "base/TextStream.h"
 #include "clip/surface/SteadySurface.h"
 #include "files/looks/LightReader.h"
+#include "model/masks/OuterLayer.h"
 #include "session/Defaults.h"
 
 namespace fenestra {
@@ -274,6 +275,12 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
 
 CellRanges rangesOf(const Read& volume, int apron) {
   return {volume->volume, apron};
+}
+
+Mask skinOf(const Read& volume) {
+  constexpr double depth = 2.5; // mm
+  const std::optional<double> air = airLevel(volume->volume);
+  return air ? outerLayer(volume->volume, *air, depth) : Mask();
 }
 
 TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,

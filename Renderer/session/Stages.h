@@ -95,6 +95,9 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
 /// `apron`: MajorantGrid::apronFor.
 CellRanges rangesOf(const Read& volume, int apron);
 
+/// Skin without a segment: what lies within 2.5 mm of the air around the body (outerLayer()).
+Mask skinOf(const Read& volume);
+
 /// Where the focus's components meet the others. `isFocus`: TintPlan's.
 TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
                       const Handle<Shares>& shares, const std::vector<bool>& isFocus);

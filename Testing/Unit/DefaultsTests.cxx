@@ -145,6 +145,21 @@ TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
   EXPECT_FALSE(transferPresetFor(ramp(0, 4000)));
 }
 
+TEST(AirLevel, IsThatOfTheModalityAndNothingWhereSurroundingsAreCutOff) {
+  EXPECT_EQ(airLevel(ramp(-1000, 1500)), -300.0);
+  const auto head = [](double air) {
+    return makeVolume<float>(centredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
+      return p.norm() < 20.0 ? 400.0 + p.x() : air * std::abs(std::sin(100.0 * p.x() + p.y()));
+    });
+  };
+  const std::optional<double> level = airLevel(head(30.0));
+  ASSERT_TRUE(level);
+  EXPECT_GT(*level, 30.0);
+  EXPECT_LT(*level, 380.0);
+  EXPECT_FALSE(airLevel(head(0.0))) << "masked";
+  EXPECT_FALSE(airLevel(ramp(7, 7))) << "constant";
+}
+
 TEST(DefaultTransfer, RangeRunsFromTransparentToOpaqueAndAConstantIsVisible) {
   const TransferFunction transfer = relativeTransfer(ramp(0, 1000));
   EXPECT_EQ(transfer.extinction(0.0).value(), 0.0);

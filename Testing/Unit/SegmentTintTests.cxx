@@ -35,9 +35,9 @@ const Handle<NamedMaterials> automatic = std::make_shared<NamedMaterials>(namedM
 
 TintPlan planOf(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
                 const std::vector<std::string>& changes = {},
-                const std::vector<std::string>& focus = {}) {
+                const std::vector<std::string>& focus = {}, const Handle<Mask>& skin = {}) {
   const auto there = std::make_shared<std::vector<bool>>(segmentsThere(segments));
-  return tintPlan(segments, there, materials, changes, focus);
+  return tintPlan(segments, there, materials, changes, focus, skin);
 }
 
 using Parts = std::vector<TintPart>;
@@ -134,7 +134,7 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
               "diffuse=0.7, border=0.5",
               "liver: kind=matter"}));
   const auto shares = std::make_shared<Shares>(
-      tintShares(segments, plan->parts, 0.0, segments->segmentation.grid()));
+      tintShares(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
   const Mixture mixture =
       mixtureOf(*plan, *std::make_shared<Tint>(tintOf(plan, shares, own.g)), own);
   ASSERT_EQ(mixture.components.size(), 5U);
@@ -206,7 +206,7 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
   const auto segments = row({"liver", "spleen"});
   const auto plan = std::make_shared<TintPlan>(planOf(segments, library, {}));
   const Grid& grid = segments->segmentation.grid();
-  const auto shares = std::make_shared<Shares>(tintShares(segments, plan->parts, 0.0, grid));
+  const auto shares = std::make_shared<Shares>(tintShares(segments, plan->parts, {}, 0.0, grid));
   const Rgb own(0.1, 0.2, 0.3);
   for (const double g : {0.0, 0.5}) {
     const Tint tint = tintOf(plan, shares, g);
@@ -225,7 +225,7 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
     EXPECT_LT((field.albedo(Vec3(2.5, 0, 0), 7.0, own) - half).abs().maxCoeff(), 1e-12);
   }
   const auto liverIn = [&](const std::vector<TintPart>& parts) {
-    const Shares smooth = tintShares(segments, parts, 1.0, grid);
+    const Shares smooth = tintShares(segments, parts, {}, 1.0, grid);
     double liver = 0.0;
     smooth.at(smooth.grid().worldToIndex * Vec3(2, 0, 0),
               [&](std::uint8_t component, double share) { liver += component == 1 ? share : 0.0; });
@@ -240,13 +240,46 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
   EXPECT_NEAR(liverIn(focus), 2.0 * liver, 0.01) << "a focus has twice its share";
 }
 
+/// Skin at the first of the row's voxels and the air before it.
+Handle<Mask> skinOf(const Grid& grid) {
+  Mask skin{
+      grid, std::vector<std::uint8_t>(static_cast<std::size_t>(grid.voxelCount())), 1, {}, 255};
+  skin.voxels[0] = 255;
+  return std::make_shared<Mask>(skin);
+}
+
+TEST(SegmentTint, SkinNeedsNoSegment) {
+  const auto segments = row({"liver", "spleen"});
+  const Grid& grid = segments->segmentation.grid();
+  const TintPlan plan = planOf(segments, automatic, {}, {"liver"}, skinOf(grid));
+  EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1, true}, {{1}, 10, 2}, {{}, 1, 3}}));
+  EXPECT_EQ(plan.names.back(), "skin");
+  EXPECT_TRUE(plan.hasFoundSkin());
+  const Shares shares = tintShares(segments, plan.parts, skinOf(grid), 0.0, grid);
+  const auto skinAt = [&](double x) {
+    double skin = 0.0;
+    shares.at(shares.grid().worldToIndex * Vec3(x, 0, 0),
+              [&](std::uint8_t component, double share) { skin += component == 3 ? share : 0.0; });
+    return skin;
+  };
+  EXPECT_EQ(skinAt(0.0), 1.0);
+  EXPECT_NEAR(skinAt(0.25), 0.75, 0.01);
+  EXPECT_EQ(skinAt(1.0), 0.0);
+
+  EXPECT_FALSE(planOf(segments, automatic, {}, {"liver"}, std::make_shared<Mask>()).hasFoundSkin());
+  EXPECT_FALSE(planOf(segments, automatic, {}, {"liver"}).hasFoundSkin());
+  EXPECT_FALSE(
+      planOf(row({"liver", "skin"}), automatic, {}, {"liver"}, skinOf(grid)).hasFoundSkin());
+  EXPECT_TRUE(planOf(row({"body"}), automatic, {}, {}, skinOf(grid)).hasFoundSkin());
+}
+
 TEST(SegmentTint, AlbedoIsTakenAsItIs) {
   const auto segments = row({"liver"});
   const auto plan = std::make_shared<TintPlan>(planOf(
       segments, materials(R"({"version": 1, "materials": {"liver": {"albedo": [0.5, 0.6, 0.7]}}})"),
       {}));
   const auto shares = std::make_shared<Shares>(
-      tintShares(segments, plan->parts, 0.0, segments->segmentation.grid()));
+      tintShares(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
   EXPECT_EQ((*tintOf(plan, shares, 0.3).albedo[1])(0.0).matrix(), Vec3(0.5, 0.6, 0.7));
 }
 

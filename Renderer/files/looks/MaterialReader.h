@@ -38,6 +38,7 @@ struct MaterialTable {
   std::string rest;                ///< material of what is no segment; empty: the volume's own
   ContextColors context;
   bool hasContrast = false; ///< colours are changed until the focus is told from its neighbours
+  bool findsSkin = false;   ///< what is no segment is skin in the outer millimetres of the body
 };
 
 /// Reads a table over the table `beneath`: its materials replace those of the same name, its rules

@@ -43,6 +43,9 @@ std::vector<Placed> placed(std::size_t count,
   return all;
 }
 
+/// What of a brick a part has.
+enum class Cover { none, some, whole };
+
 /// Indicators of a part in the voxels of a row of bricks along x.
 class PartRows {
 public:
@@ -65,19 +68,24 @@ public:
         takeRow(std::min(y + j, m_last.y()), std::min(z + k, m_last.z()), row);
   }
 
-  /// Indicators in the brick whose first voxel has this x; false: all are 0.
-  bool at(std::int64_t x, InBrick& values) const {
+  /// Indicators in the brick whose first voxel has this x; not written for none.
+  Cover at(std::int64_t x, InBrick& values) const {
     if (!m_hasSome || x >= m_part.end.x() || x + width <= m_part.first.x())
-      return false;
+      return Cover::none;
     const std::uint8_t* row = m_voxels.data() + x;
-    std::uint64_t some = 0; // of the eight voxels from x on; padding has them all
+    std::uint64_t some = 0, all = ~some; // of the eight voxels from x on; padding has them all
     for (std::int64_t i = 0; i < rowsInBrick; ++i) {
       std::uint64_t eight;
       std::memcpy(&eight, row + i * m_stride, sizeof eight);
       some |= eight;
+      all &= eight;
     }
     if (some == 0)
-      return false;
+      return Cover::none;
+    if (all == ~std::uint64_t{0} && m_part.mask.full() == full) {
+      values.fill(full);
+      return Cover::whole;
+    }
     const float scale = full / static_cast<float>(m_part.mask.full());
     float* to = values.data();
     bool isAny = false;
@@ -86,7 +94,7 @@ public:
         *to = scale * static_cast<float>(row[k]);
         isAny = isAny || row[k] > 0;
       }
-    return isAny;
+    return isAny ? Cover::some : Cover::none;
   }
 
 private:
@@ -118,10 +126,18 @@ public:
     for (auto p = parts.begin(); p != parts.end() && isLeft();) {
       m_class.clear();
       const int priority = p->priority();
+      Cover cover = Cover::none;
       for (; p != parts.end() && p->priority() == priority; ++p) {
         InBrick values;
-        if (p->at(x, values))
+        const Cover one = p->at(x, values);
+        if (one != Cover::none) {
           m_class.push_back({p->component(), values});
+          cover = one;
+        }
+      }
+      if (m_shares.empty() && m_class.size() == 1 && cover == Cover::whole) {
+        m_shares.swap(m_class);
+        return;
       }
       if (!m_class.empty())
         shareOut();
