@@ -56,15 +56,20 @@ declare -A origin=([ld.so]=$loader) # file of each library
 while read -r library file; do
   [[ $own == *" $library "* ]] || origin[$library]=$file
 done < <(awk '/=> \//{ print $1, $3 }' <<<"$found")
+tbb=$(dirname "${origin[libtbb.so.12]}")
+origin[libtbbmalloc.so.2]=$tbb/libtbbmalloc.so.2 # asked for by oneTBB, as soon as it works
 for library in "${!origin[@]}"; do
   cp -L "${origin[$library]}" "$root/lib/$library"
 done
 # DT_RPATH: it holds for the libraries of libraries, unless one has a path of its own, and comes before the user's
-# LD_LIBRARY_PATH.
+# LD_LIBRARY_PATH. No folder of the system is searched: oneTBB looks for libraries that it can do without, and would
+# load one that is made for another libc.
 patchelf --force-rpath --set-rpath '$ORIGIN/../lib' "$root/libexec/fenestra"
 for library in "${!origin[@]}"; do
   [ -z "$(patchelf --print-rpath "$root/lib/$library")" ] || patchelf --remove-rpath "$root/lib/$library"
 done
+patchelf --no-default-lib "$root/libexec/fenestra"
+patchelf --no-default-lib "$root/lib/libtbb.so.12"
 
 source "$parts/notices.sh"
 find_packages

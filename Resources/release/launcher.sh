@@ -3,4 +3,4 @@
 self=$(readlink -f -- "$0") || exit 2
 root=${self%/*/*}
 unset LD_PRELOAD LD_LIBRARY_PATH LD_AUDIT ITK_AUTOLOAD_PATH # libraries of this system do not fit
-exec "$root/lib/ld.so" "$root/libexec/fenestra" "$@"
+exec "$root/lib/ld.so" --inhibit-cache "$root/libexec/fenestra" "$@"
