@@ -7,6 +7,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 umask 022
+export LC_ALL=C # the order of names
 parts=$top/Resources/release
 [ $# -ge 1 ] || die "usage: release.sh DIR [BUILD]"
 out=$(mkdir -p "$1" && cd "$1" && pwd) || die "cannot make folder $1"
@@ -19,8 +20,9 @@ else
   build=$top/build/release
   install_packages "${build_packages[@]}" patchelf
   say "Building (some minutes the first time)"
+  # Neither the folder nor a linker that not everybody has may change the program.
   cmake -S "$top" --preset release -B "$build" -DFENESTRA_BUILD_TESTS=OFF -DFENESTRA_DEVELOPER=OFF \
-    -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$top/=" >/dev/null && cmake --build "$build" --target fenestra ||
+    -DFENESTRA_HAS_LLD=OFF -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$top/=" >/dev/null && cmake --build "$build" --target fenestra ||
     die "the build failed (see above)"
 fi
 command -v patchelf >/dev/null || die "needs patchelf (Debian: patchelf)"

@@ -1,5 +1,6 @@
 # Sourced by release.sh: licences of what is in the archive, and its bill of materials. Reads `root` (the archive's
-# folder), `parts`, `version`, `name`, `epoch`, `own` (libraries of our own) and `origin` (the file of each other library). Sets `package` (Debian's, of each library).
+# folder), `parts`, `version`, `name`, `epoch` and `origin` (the file of each library but our own); sets `package`
+# (Debian's, of each of these).
 
 # Whose headers are compiled in.
 header_packages=(libeigen3-dev nlohmann-json3-dev)

@@ -156,10 +156,12 @@ stage_slicer() {
 }
 
 stage_again() {
-  local copy sums=()
+  local copy commit sums=()
+  commit=$(git -C "$top" rev-parse HEAD)
   for copy in one another/place; do
     mkdir -p "$work/$copy"
     git clone -q "$top" "$work/$copy/fenestra"
+    git -C "$work/$copy/fenestra" checkout -q "$commit"
     CCACHE_DISABLE=1 bash "$work/$copy/fenestra/Resources/release.sh" "$work/$copy" >"$work/again.log" 2>&1 ||
       { tail "$work/again.log"; die "again: no archive"; }
     sums+=("$(sha256sum <"$(echo "$work/$copy"/*.tar.gz)")")
