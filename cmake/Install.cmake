@@ -1,5 +1,6 @@
 # What `cmake --install` puts where distributions expect it, and Resources/release.sh into its archive: component
 # `program`. Presets, lights, tables and materials are compiled in.
+set(CMAKE_INSTALL_DOCDIR share/doc/fenestra CACHE PATH "Folder of README and changes")
 include(GNUInstallDirs)
 set(elsewhere)
 if(Slicer_DIR) # the extension's package holds the archive
