@@ -14,7 +14,7 @@
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
 #   paths         instructions a path, against the record in Testing/Benchmarks/Report
 #   package       the archive in a root with busybox alone, in Debian 11, in the extension's package; built
-#                 twice
+#                 twice; the Debian package by lintian
 # and only where it is named:
 #   fuzz          10^6 executions of every fuzz target, in an hour each at most, and 10^4 damaged
 #                 files through the child that reads DICOM and transforms
@@ -209,10 +209,12 @@ stage_paths() {
 }
 
 stage_package() {
-  install_packages patchelf busybox-static jq debootstrap
+  install_packages patchelf busybox-static jq debootstrap lintian
   build release -DFENESTRA_BUILD_TESTS=ON
   bash "$top/Testing/Package/check.sh" "$top/build" contents moved busybox debian slicer again \
     >"$logs/package.log" 2>&1 || say "the archive does not hold, or a stage was left out: $logs/package.log"
+  bash "$top/Testing/Package/deb.sh" "$top/build" strictly >"$logs/deb.log" 2>&1 ||
+    say "the Debian package does not hold: $logs/deb.log"
 }
 
 stage_boundary() {
