@@ -13,6 +13,8 @@
 #   headers       each header of the renderer compiled alone
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
 #   paths         instructions a path, against the record in Testing/Benchmarks/Report
+#   package       the archive in a root with busybox alone, in Debian 11, in the extension's package; built
+#                 twice; the Debian package by lintian
 # and only where it is named:
 #   fuzz          10^6 executions of every fuzz target, in an hour each at most, and 10^4 damaged
 #                 files through the child that reads DICOM and transforms
@@ -206,6 +208,15 @@ stage_paths() {
     say "a path takes more instructions than the record has: $logs/paths.log"
 }
 
+stage_package() {
+  install_packages patchelf busybox-static jq debootstrap lintian
+  build release -DFENESTRA_BUILD_TESTS=ON
+  bash "$top/Testing/Package/check.sh" "$top/build" contents moved busybox debian slicer again \
+    >"$logs/package.log" 2>&1 || say "the archive does not hold, or a stage was left out: $logs/package.log"
+  bash "$top/Testing/Package/deb.sh" "$top/build" strictly >"$logs/deb.log" 2>&1 ||
+    say "the Debian package does not hold: $logs/deb.log"
+}
+
 stage_boundary() {
   (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target BoundaryCheck)
   (sed '/^## /,$d' "$record/boundary.md" && "$top/build/bin/BoundaryCheck" 256 12) \
@@ -223,7 +234,7 @@ stage_fuzz() {
 
 mkdir -p "$logs"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
-[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang headers faults paths
+[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang headers faults paths package
 for name in "$@"; do
   say "$name"
   "stage_$name"

@@ -9,7 +9,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
 run_tests() { (cd "$top" && ctest --preset "$1" -j"$(nproc)"); }
 
 stage "install packages" 60 install_packages "${build_packages[@]}" libgmock-dev libboost-dev \
-  qtbase5-dev clang libclang-rt-14-dev lld
+  qtbase5-dev clang libclang-rt-14-dev lld patchelf busybox-static jq mandoc zsh fish
 stage "build (release)" 260 build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=OFF \
   ${Slicer_DIR:+"-DSlicer_DIR=$Slicer_DIR"}
 stage "tests (release)" 240 run_tests release

@@ -1,7 +1,8 @@
 #include "program/CommandLine.h"
 
 #include "base/Error.h"
-#include "program/Version.h"
+#include "program/Commands.h"
+#include "program/about/About.h"
 
 #include <algorithm>
 #include <iostream>
@@ -9,6 +10,13 @@
 
 namespace fenestra {
 namespace {
+
+const Flag everywhere[] = {
+    {"help", "", "", "Print this and exit"},
+    {"version", "", "",
+     "Print version, commit, compiler, instruction set, libraries and licence, as JSON with "
+     "--json, and exit"},
+};
 
 constexpr std::size_t page = 80, column = 30; ///< characters of a help line, and before its text
 
@@ -31,7 +39,8 @@ std::string helpText(const CommandSyntax& syntax) {
     names += entry(positional.name, positional.text);
   }
   std::string text = textOf(wrapped(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
-  text += entry("--help", "Print this and exit") + entry("--version", "Print the version and exit");
+  for (const Flag& flag : commonFlags)
+    text += entry("--" + flag.name, flag.text);
   std::string_view group;
   for (const Flag& flag : syntax.flags) {
     if (flag.group != group)
@@ -48,8 +57,8 @@ std::string seeHelp(const CommandSyntax& syntax) {
 
 Error unknownFlag(const CommandSyntax& syntax, std::string_view given) {
   given = given.substr(0, given.find('='));
-  std::vector<std::string> names = namesOf(syntax.flags);
-  names.insert(names.begin(), {"help", "version"});
+  std::vector<std::string> names = namesOf(commonFlags);
+  std::ranges::copy(namesOf(syntax.flags), std::back_inserter(names));
   const std::string_view word = given.substr(std::min(given.find_first_not_of('-'), given.size()));
   const std::string likely = nearest(lower(word), names);
   return usageError(given, ": no such flag",
@@ -133,6 +142,8 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 } // namespace
 
+const std::span<const Flag> commonFlags = everywhere;
+
 std::string wrapped(std::string_view text, std::size_t width) {
   std::string lines;
   std::size_t used = 0;
@@ -175,12 +186,14 @@ std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc
   const auto asksFor = [&words](std::string_view word) {
     return std::ranges::find(words, word) != words.end();
   };
-  if (asksFor("--help"))
+  if (asksFor("--help")) {
     std::cout << helpText(syntax) << std::flush;
-  else if (asksFor("--version"))
-    std::cout << "fenestra " << versionText << std::endl;
-  else
+  } else if (asksFor("--version")) {
+    useInstructions();
+    std::cout << (asksFor("--json") ? aboutJson() : aboutText()) << std::flush;
+  } else {
     return parsedWords(syntax, words);
+  }
   return std::nullopt;
 }
 

@@ -7,12 +7,20 @@
 
 namespace fenestra {
 
+/// Switches that every command takes, whatever else it is given.
+extern const std::span<const Flag> commonFlags;
+
 /// Parses argv[first …]: "--name value" or "--name=value", positionals in between; after "--", only
 /// positionals. A value may begin with one dash, as negative numbers do. If --help or --version is
-/// among the words, prints the text and returns nullopt, whatever else is wrong. Throws Error
-/// (usage).
+/// among the words, prints the text (of the version as JSON if --json is, too) and returns nullopt,
+/// whatever else is wrong. Throws Error (usage).
 std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
                                            int first);
+
+/// True if two commands take the same flag.
+inline bool isSame(const Flag& a, const Flag& b) {
+  return a.name == b.name && a.value == b.value && a.text == b.text;
+}
 
 /// Words of `text` in lines of at most `width` bytes; a longer word has its own line.
 std::string wrapped(std::string_view text, std::size_t width);

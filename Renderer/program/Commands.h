@@ -1,10 +1,27 @@
 #pragma once
-// Subcommands, and a step that they share. Each takes the arguments from argv[first] on and returns
+// Subcommands, and steps that they share. Each takes the arguments from argv[first] on and returns
 // the exit status; errors are thrown (base/Error.h) and reported by main.
+
+#include <span>
 
 namespace fenestra {
 
 class FlagValues;
+struct CommandSyntax;
+
+struct Command {
+  const CommandSyntax& (*syntax)();
+  int (*run)(int argc, char** argv, int first);
+};
+
+/// All subcommands; the name of the first may be left out.
+std::span<const Command> commands();
+
+const CommandSyntax& inspectSyntax();
+const CommandSyntax& compareSyntax();
+const CommandSyntax& phantomSyntax();
+const CommandSyntax& serveSyntax();
+const CommandSyntax& describeSyntax();
 
 int renderCommand(int argc, char** argv, int first);
 int inspectCommand(int argc, char** argv, int first);
@@ -12,11 +29,15 @@ int compareCommand(int argc, char** argv, int first);
 int phantomCommand(int argc, char** argv, int first);
 int serveCommand(int argc, char** argv, int first);
 int turntableCommand(int argc, char** argv, int first);
+int describeCommand(int argc, char** argv, int first);
+
+/// Pins the instruction set that the environment variable FENESTRA_INSTRUCTIONS names. Throws Error
+/// (usage) if the machine lacks it.
+void useInstructions();
 
 /// Limits this process to --threads threads, at most one a core, and starts them before other code
-/// uses threads; pins the instruction set that the environment variable FENESTRA_INSTRUCTIONS
-/// names. Throws Error: usage if the machine lacks that instruction set, output if the threads
-/// cannot be started.
+/// uses threads; pins the instruction set, too. Throws Error: as useInstructions; output if the
+/// threads cannot be started.
 void useMachine(const FlagValues& flags);
 
 } // namespace fenestra

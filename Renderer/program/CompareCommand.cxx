@@ -19,14 +19,6 @@ const Flag compareFlags[] = {
     {"output", "FILE", compareGroup, "Difference picture: .png .tif .exr .nrrd"},
 };
 
-const CommandSyntax compareSyntax = {
-    "compare",
-    "Compares picture A with reference B: error measures, and z statistics where both carry "
-    "errors.",
-    {{"A", "Picture: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
-    compareFlags,
-};
-
 Image readWithError(const FlagValues& values, const char* name, const char* errorFlag) {
   Image image = readImage(*values.text(name));
   if (const auto error = values.text(errorFlag))
@@ -75,8 +67,19 @@ void print(const Comparison& c) {
 
 } // namespace
 
+const CommandSyntax& compareSyntax() {
+  static const CommandSyntax syntax = {
+      "compare",
+      "Compares picture A with reference B: error measures, and z statistics where both carry "
+      "errors.",
+      {{"A", "Picture: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
+      compareFlags,
+  };
+  return syntax;
+}
+
 int compareCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(compareSyntax, argc, argv, first);
+  const std::optional<FlagValues> values = parseCommandLine(compareSyntax(), argc, argv, first);
   if (!values)
     return 0;
   Outputs outputs;

@@ -28,6 +28,7 @@ struct Takes {
   std::string extensions = {};                   ///< of a file that is written
   double least = -infinity, greatest = infinity; ///< range of a number
   std::vector<std::string> words = {};           ///< values, if not empty
+  std::vector<std::string> names = {};           ///< some of the values of a flag without `words`
   std::string standard = {}; ///< default, shown in the help and in Slicer's panel; empty: none
   bool repeats = false;      ///< may be given several times, each value one by itself (texts)
   std::optional<double> idle = {}; ///< number that changes nothing, whatever else is given
@@ -52,7 +53,8 @@ struct Takes {
   /// A number, or the word auto, which leaves `place` empty and is the default.
   static Takes numberOrAuto(std::optional<double>& place, double least, double greatest,
                             double idle) {
-    Takes takes = Takes{.least = least, .greatest = greatest, .standard = "auto", .idle = idle};
+    Takes takes = Takes{
+        .least = least, .greatest = greatest, .names = {"auto"}, .standard = "auto", .idle = idle};
     return takes.into(place, [](const auto& flags, const auto& name, auto& at) {
       at = flags.numberOrAuto(name);
     });
@@ -95,6 +97,12 @@ struct Takes {
     takes.put = [&place, read](const FlagValues& flags, const std::string& name) {
       read(flags, name, place);
     };
+    return takes;
+  }
+  /// Names that stand for values, beside other values.
+  Takes orNames(std::vector<std::string> known) const {
+    Takes takes = *this;
+    takes.names = std::move(known);
     return takes;
   }
   /// Default to be shown instead; empty: none.
@@ -153,7 +161,8 @@ struct Flag {
 
 struct Positional {
   std::string name;
-  std::string text; ///< one sentence of help
+  std::string text;                    ///< one sentence of help
+  std::vector<std::string> words = {}; ///< values; empty: it names a file
 };
 
 struct CommandSyntax {

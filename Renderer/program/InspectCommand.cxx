@@ -374,14 +374,6 @@ const Flag inspectFlags[] = {
      "use), refused (why it would not start, else null), warnings, ignored; mm, RAS, ml"},
 };
 
-const CommandSyntax inspectSyntax = {
-    "inspect",
-    "Lists what an input holds, what a render of it would use, and what it would ignore and why.",
-    {{"INPUT", "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
-               "segmentation (.seg.nrrd) or DICOM folder"}},
-    inspectFlags,
-};
-
 /// Arguments of `merged` that are not given.
 std::vector<std::string> argumentsBeyond(const FlagValues& given, const FlagValues& merged) {
   std::vector<std::string> arguments = merged.arguments();
@@ -393,8 +385,20 @@ std::vector<std::string> argumentsBeyond(const FlagValues& given, const FlagValu
 
 } // namespace
 
+const CommandSyntax& inspectSyntax() {
+  static const CommandSyntax syntax = {
+      "inspect",
+      "Lists what an input holds, what a render of it would use, and what it would ignore and why.",
+      {{"INPUT",
+        "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
+        "segmentation (.seg.nrrd) or DICOM folder"}},
+      inspectFlags,
+  };
+  return syntax;
+}
+
 int inspectCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(inspectSyntax, argc, argv, first);
+  const std::optional<FlagValues> values = parseCommandLine(inspectSyntax(), argc, argv, first);
   if (!values)
     return 0;
   useMachine(*values);

@@ -44,6 +44,11 @@ void tryThreads(int count) {
 
 } // namespace
 
+void useInstructions() {
+  if (const char* pinned = std::getenv("FENESTRA_INSTRUCTIONS"))
+    WideTracker::useInstructionSet(pinned);
+}
+
 void useMachine(const FlagValues& flags) {
   const int count = threadCount(flags);
   // Never destroyed: after its destruction TBB would start more than `count` threads.
@@ -58,8 +63,7 @@ void useMachine(const FlagValues& flags) {
                       " cannot be started; allow more processes (ulimit -u), or "
                       "render with --threads 1");
   }
-  if (const char* pinned = std::getenv("FENESTRA_INSTRUCTIONS"))
-    WideTracker::useInstructionSet(pinned);
+  useInstructions();
 }
 
 } // namespace fenestra

@@ -25,13 +25,6 @@ const Flag phantomFlags[] = {
      Takes::number(1e-3, 1e5).shows(numberText(CubeOptions().edge))},
 };
 
-const CommandSyntax phantomSyntax = {
-    "phantom",
-    "Makes a synthetic subject: an image, its segments, a transfer function, and scenes of them.",
-    {{"KIND", "knee (MR), foot (CT), fetus (ultrasound) or cube (the scalar is the z index)"}},
-    phantomFlags,
-};
-
 /// Size WxHxD in voxels; without --size: `standard`.
 Size3 sizeOf(const FlagValues& values, const Size3& standard) {
   const auto text = values.text("size");
@@ -69,8 +62,20 @@ Phantom makePhantom(const std::string& kind, const FlagValues& values) {
 
 } // namespace
 
+const CommandSyntax& phantomSyntax() {
+  static const CommandSyntax syntax = {
+      "phantom",
+      "Makes a synthetic subject: an image, its segments, a transfer function, and scenes of them.",
+      {{"KIND",
+        "knee (MR), foot (CT), fetus (ultrasound) or cube (the scalar is the z index)",
+        {"knee", "foot", "fetus", "cube"}}},
+      phantomFlags,
+  };
+  return syntax;
+}
+
 int phantomCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(phantomSyntax, argc, argv, first);
+  const std::optional<FlagValues> values = parseCommandLine(phantomSyntax(), argc, argv, first);
   if (!values)
     return 0;
   const std::string kind = *values->text("KIND");

@@ -8,7 +8,7 @@
 #include "files/pictures/ImageWriter.h"
 #include "program/FileNames.h"
 #include "program/MergedFlags.h"
-#include "program/Version.h"
+#include "program/about/Version.h"
 
 #include <algorithm>
 #include <future>

@@ -94,6 +94,13 @@ void readLayers(const FlagValues& flags, const std::string& name, LayerSet& laye
   layers = layerSet(flags.list(name));
 }
 
+/// Names of the program's own presets, and others.
+std::vector<std::string> ownAnd(const std::string& kind, const std::vector<std::string>& others) {
+  std::vector<std::string> names = ownPresets(kind);
+  std::ranges::copy(others, std::back_inserter(names));
+  return names;
+}
+
 // ---- the table
 
 /// Flags with the places of their values: the members of `options`, at first the defaults.
@@ -117,7 +124,8 @@ struct RenderTable {
       {"labels", "FILE|NAME", sceneGroup,
        "Names of a label map's values: a .ctbl, .label, .json or .csv, or one of totalsegmentator, "
        "totalsegmentator1, totalsegmentator2, freesurfer [in or beside the label map]",
-       Takes::text().into(scene.labels), Topic::focus},
+       Takes::text().into(scene.labels).orNames(ownAnd("labels", {"totalsegmentator"})),
+       Topic::focus},
       {"focus", "A,B,...", sceneGroup,
        "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,); may be "
        "repeated",
@@ -126,7 +134,7 @@ struct RenderTable {
        textOf(
            "Focus, look, view and clip of an anatomy in one: ", joined(ownPresets("presets"), ", "),
            ", a .json, or auto (by the segments' names); other flags win over it"),
-       Takes::text().into(options.preset)},
+       Takes::text().into(options.preset).orNames(ownAnd("presets", {"auto"}))},
       {"output", "FILE", sceneGroup,
        "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "
        "repeated [INPUT.png]",
@@ -216,7 +224,7 @@ struct RenderTable {
        "Transfer function: .vp, .vp.json, Fenestra .json or its text, a preset such as ct-soft, or "
        "a volume property of the scene or of 3D Slicer by name, such as CT-AAA [the scene's, else "
        "by modality]",
-       Takes::text().into(scene.transfer)},
+       Takes::text().into(scene.transfer).orNames(ownPresets("transfer"))},
       {"shift", "X", lookGroup, "Moves the transfer function along the scalar",
        Takes::number(-1e30, 1e30).into(scene.shift)},
       {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000",
@@ -226,7 +234,7 @@ struct RenderTable {
        "auto: the library's, changed until the focus is told from its neighbours; surfaces stay "
        "the data's [auto with a focus of which something is known and without "
        "--contextsaturation, else none]",
-       Takes::text().into(scene.materials), Topic::materials},
+       Takes::text().into(scene.materials).orNames({"none", "auto", "library"}), Topic::materials},
       {"material", "TEXT", lookGroup,
        "Changes the material of one segment, such as \"Liver: color=#963e2e\" or \"Aorta: "
        "clip=no\", "
@@ -235,14 +243,16 @@ struct RenderTable {
       {"lights", "FILE|PRESET|JSON", lookGroup,
        "Lights: .json, cinema, studio, headlight, soft, amber, or the text of a .json itself, "
        "{...}",
-       Takes::text().into(scene.lights), Topic::lights},
+       Takes::text().into(scene.lights).orNames(ownPresets("lights")), Topic::lights},
       {"environment", "R,G,B|GREY|FILE", lookGroup,
        "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own",
        Takes::text().into(scene, readEnvironment), Topic::lights},
       {"background", "R,G,B|GREY|KIND", lookGroup,
        "Linear colour (the tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
        "white), gradient (dark greys), transparent or environment [the scene's, else gradient]",
-       Takes::text().into(options.background, readBackground)},
+       Takes::text()
+           .into(options.background, readBackground)
+           .orNames({"gradient", "transparent", "environment"})},
       {"exposure", "EV", lookGroup,
        "Stops, -16 to 16, by which .png and .tif are shown brighter or darker; .exr and .nrrd stay",
        Takes::number(-16.0, 16.0).into(options.display.exposure)},
@@ -295,7 +305,11 @@ struct RenderTable {
        "Channels of an .exr: color, depth, clip, albedo, normal, error, samples, and with "
        "--denoise "
        "on denoised, expected; of a .nrrd: color, depth and denoised (files of their own) [all]",
-       Takes::list().into(options.layers, readLayers).shows("color"), Topic::process},
+       Takes::list()
+           .into(options.layers, readLayers)
+           .shows("color")
+           .orNames({allLayers.begin(), allLayers.end()}),
+       Topic::process},
       {"surface", "FILE", outputGroup,
        "Clipping surface as triangles in RAS mm, to a tenth of a pixel in depth (any --clip but "
        "none and plane): .vtp .ply (with depths) .stl",
@@ -327,7 +341,7 @@ const CommandSyntax renderSyntax = {
     "render",
     "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
     "a clipping surface. \"render\" may be left out. Other subcommands: fenestra inspect, fenestra "
-    "compare, fenestra phantom, fenestra serve, fenestra turntable.",
+    "compare, fenestra phantom, fenestra serve, fenestra turntable, fenestra describe.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
     described.flags,

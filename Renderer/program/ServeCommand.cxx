@@ -14,21 +14,6 @@
 namespace fenestra {
 namespace {
 
-/// Built on first use: renderSyntax is initialised in another source.
-const CommandSyntax& serveSyntax() {
-  static const CommandSyntax syntax = {
-      "serve",
-      "Keeps a scene loaded and renders it anew after every change, for previews. Changes are JSON "
-      "objects of flags on standard input, a line each, as {\"id\": 7, \"view\": \"left\", "
-      "\"focus\": [\"Femur\", \"Tibia\"]}; null takes a flag back. Every refreshed picture "
-      "replaces the output files at once and is told on standard output, as are errors: "
-      "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input.",
-      renderSyntax.positionals,
-      renderSyntax.flags,
-  };
-  return syntax;
-}
-
 class Server {
 public:
   Server(const PictureRequest& start, Outputs& outputs)
@@ -153,6 +138,22 @@ private:
 };
 
 } // namespace
+
+// Built on first use: renderSyntax is initialised in another source.
+const CommandSyntax& serveSyntax() {
+  static const CommandSyntax syntax = {
+      "serve",
+      "Keeps a scene loaded and renders it anew after every change, for previews. Changes are JSON "
+      "objects of flags on standard input, a line each, as {\"id\": 7, \"view\": \"left\", "
+      "\"focus\": [\"Femur\", \"Tibia\"]}; null takes a flag back. Every refreshed picture "
+      "replaces the output files at once and is told on standard output, as are errors: "
+      "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input. Takes the "
+      "flags of fenestra render.",
+      renderSyntax.positionals,
+      renderSyntax.flags,
+  };
+  return syntax;
+}
 
 int serveCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(serveSyntax(), argc, argv, first);

@@ -1,7 +1,7 @@
 #include "program/SlicerModule.h"
 
 #include "base/TextStream.h"
-#include "program/Version.h"
+#include "program/about/Version.h"
 
 #include <pugixml.hpp>
 

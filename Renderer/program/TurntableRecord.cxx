@@ -4,7 +4,7 @@
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
 #include "program/FileNames.h"
-#include "program/Version.h"
+#include "program/about/Version.h"
 
 #include <algorithm>
 #include <fstream>

@@ -21,22 +21,11 @@
 
 namespace {
 
-struct NamedCommand {
-  const char* name;
-  int (*run)(int argc, char** argv, int first);
-};
-
-constexpr NamedCommand commands[] = {
-    {"render", fenestra::renderCommand},   {"inspect", fenestra::inspectCommand},
-    {"compare", fenestra::compareCommand}, {"phantom", fenestra::phantomCommand},
-    {"serve", fenestra::serveCommand},     {"turntable", fenestra::turntableCommand},
-};
-
 /// Throws Error (usage) for a word that names no file and nearly a subcommand.
 void refuseMisspelt(std::string_view word) {
   std::vector<std::string> names;
-  for (const NamedCommand& command : commands)
-    names.push_back(command.name);
+  for (const fenestra::Command& command : fenestra::commands())
+    names.push_back(command.syntax().name);
   const std::string likely = fenestra::nearest(word, names);
   std::error_code failed;
   if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
@@ -46,8 +35,8 @@ void refuseMisspelt(std::string_view word) {
 
 int dispatch(int argc, char** argv) {
   const std::string_view word = argc > 1 ? argv[1] : "";
-  for (const auto& [name, run] : commands)
-    if (word == name)
+  for (const auto& [syntax, run] : fenestra::commands())
+    if (word == syntax().name)
       return run(argc, argv, 2);
   refuseMisspelt(word);
   return fenestra::renderCommand(argc, argv, 1);

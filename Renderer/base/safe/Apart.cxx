@@ -15,6 +15,7 @@
 #include <poll.h>
 #include <spawn.h>
 #include <stdexcept>
+#include <sys/auxv.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -180,12 +181,24 @@ std::vector<const ApartJob*>& jobs() {
 
 // ---- starting a child
 
+/// Arguments of /proc/self/exe that make it this program with `words`. Where a loader was called
+/// with the program's file (an archive brings its own), /proc/self/exe is that loader: the kernel
+/// has no base of an interpreter then, and the loader says the file (glibc: AT_EXECFN).
+std::vector<std::string> ownArguments(std::vector<std::string> words) {
+  if (::getauxval(AT_BASE) == 0)
+    words.insert(words.begin(), reinterpret_cast<const char*>(::getauxval(AT_EXECFN)));
+  words.insert(words.begin(), "fenestra");
+  return words;
+}
+
 /// Starts the child for `job`, which has no file but its end of the connection, and default signal
 /// handlers. Returns the process id, or 0: failed.
-pid_t spawn(std::string job, int connection) {
-  std::string program = "fenestra", word = subcommand, parent = std::to_string(::getpid());
-  const std::array<char*, 5> arguments = {program.data(), word.data(), job.data(), parent.data(),
-                                          nullptr};
+pid_t spawn(const std::string& job, int connection) {
+  std::vector<std::string> words = ownArguments({subcommand, job, std::to_string(::getpid())});
+  std::vector<char*> arguments;
+  for (std::string& word : words)
+    arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   posix_spawn_file_actions_t files;
   ::posix_spawn_file_actions_init(&files);
   ::posix_spawn_file_actions_adddup2(&files, connection, childConnection);

@@ -2,9 +2,10 @@
 // Reading in a process of its own, for libraries that do not survive damaged files: GDCM and HDF5.
 //
 // The child runs the parent's own executable (/proc/self/exe: the same build, even if the file has
-// been replaced since) and inherits no memory, files, threads or locks. A program whose readers
-// work apart calls serveApart first in main, as fenestra, its tests and its fuzz targets do. In any
-// other program Apart::ask throws std::logic_error instead of running that program's main again.
+// been replaced since; under a loader that was called with it, the file of its name) and inherits
+// no memory, files, threads or locks. A program whose readers work apart calls serveApart first in
+// main, as fenestra, its tests and its fuzz targets do. In any other program Apart::ask throws
+// std::logic_error instead of running that program's main again.
 
 #include "base/Text.h"
 #include "base/safe/Descriptor.h"

@@ -1,0 +1,267 @@
+#include "base/Text.h"
+#include "program/CommandLine.h"
+#include "program/Commands.h"
+#include "program/Describe.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+/// Values that a shell can offer for a flag or an argument.
+struct Offer {
+  std::vector<std::string> words; ///< of letters, digits and dashes
+  bool files = false;
+
+  bool operator==(const Offer&) const = default;
+  std::string text() const { return joined(words, " "); }
+};
+
+Offer offerFor(const Flag& flag) {
+  const Takes& takes = flag.takes;
+  return {takes.words.empty() ? takes.names : takes.words, flag.takesFile() || flag.value == "DIR"};
+}
+
+Offer offerFor(const Positional& positional) {
+  return {positional.words, positional.words.empty()};
+}
+
+std::string nameOf(const Command& command) {
+  return command.syntax().name;
+}
+
+std::string commandNames() {
+  return joined(commands(), " ", nameOf);
+}
+
+/// Flags of a command, the common ones first.
+std::vector<Flag> allFlags(const CommandSyntax& syntax) {
+  std::vector<Flag> flags(commonFlags.begin(), commonFlags.end());
+  flags.insert(flags.end(), syntax.flags.begin(), syntax.flags.end());
+  return flags;
+}
+
+/// Summary up to its first stop.
+std::string firstClause(const std::string& summary) {
+  const std::size_t end = std::min({summary.find(". "), summary.find("; "), summary.find(": ")});
+  std::string clause = summary.substr(0, end);
+  if (clause.ends_with('.'))
+    clause.pop_back();
+  return clause;
+}
+
+// ---- bash
+
+constexpr const char* bashBegin =
+    R"sh(# Completions of fenestra for bash 4, made by `fenestra describe bash`.
+
+_fenestra() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]}
+  local commands='@COMMANDS@' command=render flags words files value=yes
+  if [[ $word == = ]]; then # --flag=value is three words
+    word=
+  elif [[ $before == = ]]; then
+    before=${COMP_WORDS[COMP_CWORD - 2]}
+  fi
+  if ((COMP_CWORD > 1)) && [[ " $commands " == *" ${COMP_WORDS[1]} "* ]]; then
+    command=${COMP_WORDS[1]}
+  fi
+  case $command in
+)sh";
+
+constexpr const char* bashEnd = R"sh(  esac
+  if [[ ! $value && $word == -* ]]; then
+    words=$flags files=
+  elif ((COMP_CWORD == 1)); then
+    words="$commands $words"
+  fi
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word"; [[ ! $files ]] || compgen -f -- "$word")
+  [[ ! $files ]] || compopt -o filenames -o default 2>/dev/null
+}
+complete -F _fenestra fenestra
+)sh";
+
+/// Assignments of an offer to the script's variables.
+std::string bashOffer(const Offer& offer) {
+  return textOf("words='", offer.text(), "' files=", offer.files ? "yes" : "");
+}
+
+/// Case of a command: all its flags, and the offer for the value of each.
+std::string bashCase(const CommandSyntax& syntax) {
+  std::vector<std::pair<Offer, std::string>> cases; // with the flags that have it
+  const std::vector<Flag> flags = allFlags(syntax);
+  for (const Flag& flag : flags) {
+    if (flag.isSwitch())
+      continue;
+    const Offer offer = offerFor(flag);
+    const auto known = std::ranges::find(cases, offer, &std::pair<Offer, std::string>::first);
+    if (known == cases.end())
+      cases.emplace_back(offer, "--" + flag.name);
+    else
+      known->second += " | --" + flag.name;
+  }
+  const auto name = [](const Flag& flag) { return "--" + flag.name; };
+  std::string text = textOf("    ", syntax.name, ")\n      flags='", joined(flags, " ", name),
+                            "'\n      case $before in\n");
+  for (const auto& [offer, names] : cases)
+    text += textOf("        ", names, ") ", bashOffer(offer), " ;;\n");
+  return textOf(text, "        *) ", bashOffer(offerFor(syntax.positionals.front())),
+                " value= ;;\n      esac\n      ;;\n");
+}
+
+// ---- zsh
+
+constexpr const char* zshBegin = R"sh(#compdef fenestra
+# Completions of fenestra for zsh, made by `fenestra describe zsh`.
+
+_fenestra_either() { # NAME...: one of these, or a file
+  _alternative "names:name:($*)" 'files:file:_files'
+}
+
+_fenestra() {
+  local command=render
+  local -a commands=(
+@COMMANDS@  )
+  if ((CURRENT == 2)) && [[ $words[2] != -* ]]; then
+    _describe -t commands command commands
+    _files
+    return
+  fi
+  if ((${commands[(I)${(b)words[2]}:*]})); then
+    command=$words[2]
+    shift words
+    ((CURRENT--))
+  fi
+  case $command in
+)sh";
+
+constexpr const char* zshEnd = R"sh(  esac
+}
+
+_fenestra "$@"
+)sh";
+
+/// Text in single quotes, for zsh.
+std::string zshQuoted(std::string_view text) {
+  return textOf("'", replacedAll(text, "'", "'\\''"), "'");
+}
+
+/// Text in which `marks` are escaped by a backslash.
+std::string escaped(std::string_view text, std::string_view marks) {
+  std::string result;
+  for (const char c : text)
+    result.append(marks.find(c) == marks.npos ? 0 : 1, '\\').push_back(c);
+  return result;
+}
+
+std::string zshAction(const Offer& offer) {
+  if (offer.words.empty())
+    return offer.files ? "_files" : " ";
+  return offer.files ? textOf(" _fenestra_either ", offer.text()) : textOf("(", offer.text(), ")");
+}
+
+std::string zshCase(const CommandSyntax& syntax) {
+  std::string text = textOf("    ", syntax.name, ")\n      _arguments");
+  const auto add = [&text](const std::string& specification) {
+    text += textOf(" \\\n        ", zshQuoted(specification));
+  };
+  for (const Flag& flag : allFlags(syntax)) {
+    const std::string help = textOf("[", escaped(flag.help(), "\\]"), "]");
+    if (flag.isSwitch())
+      add(textOf("--", flag.name, help));
+    else
+      add(textOf("*--", flag.name, "=", help, ":", escaped(flag.value, "\\:"), ":",
+                 zshAction(offerFor(flag))));
+  }
+  for (const Positional& positional : syntax.positionals)
+    add(textOf(":", positional.name, ":", zshAction(offerFor(positional))));
+  return text + "\n      ;;\n";
+}
+
+// ---- fish
+
+constexpr const char* fishBegin =
+    R"sh(# Completions of fenestra for fish 3, made by `fenestra describe fish`.
+
+function __fenestra_is -d 'True if the command is one of these; without: if it may still be named'
+    set -l words (commandline -opc)
+    set -l command render
+    if contains -- "$words[2]" @COMMANDS@
+        set command $words[2]
+    end
+    if set -q argv[1]
+        contains -- $command $argv
+    else
+        not set -q words[2]
+    end
+end
+
+complete -c fenestra -f
+)sh";
+
+std::string fishLine(const std::string& condition, const std::string& rest,
+                     std::string_view text = "") {
+  return textOf("complete -c fenestra -n '__fenestra_is", condition, "'", rest,
+                text.empty() ? "" : textOf(" -d '", escaped(text, "\\'"), "'"), "\n");
+}
+
+std::string fishOffer(const Offer& offer) {
+  return textOf(offer.files ? " -F" : "",
+                offer.words.empty() ? "" : textOf(" -a '", offer.text(), "'"));
+}
+
+bool takes(const Command& command, const Flag& flag) {
+  return std::ranges::any_of(allFlags(command.syntax()),
+                             [&flag](const Flag& own) { return isSame(own, flag); });
+}
+
+/// Lines of the flags that no earlier command takes, each with all commands that take it.
+std::string fishFlags(std::size_t which) {
+  std::string lines;
+  for (const Flag& flag : allFlags(commands()[which].syntax())) {
+    std::string takers;
+    const auto isTaker = [&flag](const Command& command) { return takes(command, flag); };
+    if (std::ranges::any_of(commands().first(which), isTaker))
+      continue;
+    for (const Command& command : commands())
+      if (isTaker(command))
+        takers += textOf(" ", nameOf(command));
+    const Offer offer = offerFor(flag);
+    const char* const value = flag.isSwitch() ? "" : offer.files ? " -r" : " -x";
+    lines += fishLine(takers, textOf(" -l ", flag.name, value, fishOffer(offer)), flag.help());
+  }
+  return lines;
+}
+
+} // namespace
+
+std::string bashCompletions() {
+  std::string text = replacedAll(bashBegin, "@COMMANDS@", commandNames());
+  for (const Command& command : commands())
+    text += bashCase(command.syntax());
+  return text + bashEnd;
+}
+
+std::string zshCompletions() {
+  std::string names;
+  std::string cases;
+  for (const Command& command : commands()) {
+    const CommandSyntax& syntax = command.syntax();
+    names += textOf("    ", zshQuoted(textOf(syntax.name, ":", firstClause(syntax.summary))), "\n");
+    cases += zshCase(syntax);
+  }
+  return replacedAll(zshBegin, "@COMMANDS@", names) + cases + zshEnd;
+}
+
+std::string fishCompletions() {
+  std::string text = replacedAll(fishBegin, "@COMMANDS@", commandNames());
+  for (std::size_t i = 0; i < commands().size(); ++i) {
+    const CommandSyntax& syntax = commands()[i].syntax();
+    text += fishLine("", " -a " + syntax.name, firstClause(syntax.summary));
+    text += fishLine(" " + syntax.name, fishOffer(offerFor(syntax.positionals.front())));
+    text += fishFlags(i);
+  }
+  return text;
+}
+
+} // namespace fenestra

@@ -1,0 +1,45 @@
+#include "base/Error.h"
+#include "base/safe/ShownText.h"
+#include "program/CommandLine.h"
+#include "program/Commands.h"
+#include "program/Describe.h"
+
+#include <iostream>
+#include <map>
+
+namespace fenestra {
+namespace {
+
+const std::map<std::string, std::string (*)()> descriptions = {
+    {"bash", bashCompletions},
+    {"fish", fishCompletions},
+    {"man", manPage},
+    {"zsh", zshCompletions},
+};
+
+} // namespace
+
+const CommandSyntax& describeSyntax() {
+  static const CommandSyntax syntax = {
+      "describe",
+      "Prints the manual page, or what a shell needs to complete fenestra's commands, flags and "
+      "their values.",
+      {{"KIND", "man (the manual page), bash, zsh or fish", {"man", "bash", "zsh", "fish"}}},
+      {},
+  };
+  return syntax;
+}
+
+int describeCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> values = parseCommandLine(describeSyntax(), argc, argv, first);
+  if (!values)
+    return 0;
+  const std::string kind = *values->text("KIND");
+  const auto description = descriptions.find(kind);
+  if (description == descriptions.end())
+    throw usageError("KIND: '", oneLine(kind), "' is unknown; use man, bash, zsh or fish");
+  std::cout << description->second() << std::flush;
+  return 0;
+}
+
+} // namespace fenestra

@@ -1,0 +1,140 @@
+#include "base/Text.h"
+#include "program/CommandLine.h"
+#include "program/Commands.h"
+#include "program/Describe.h"
+#include "program/about/Commit.h"
+#include "program/about/Version.h"
+
+#include <algorithm>
+#include <array>
+
+namespace fenestra {
+namespace {
+
+/// "November 26, 2026" of "2026-11-26".
+std::string writtenDate(const std::string& date) {
+  constexpr std::array months = {"January",   "February", "March",    "April",
+                                 "May",       "June",     "July",     "August",
+                                 "September", "October",  "November", "December"};
+  const std::vector<std::string> parts = split(date, '-');
+  const auto number = [&parts](std::size_t i) { return parsed<std::size_t>(parts.at(i)).value(); };
+  return textOf(months.at(number(1) - 1), " ", number(2), ", ", parts[0]);
+}
+
+/// Running text: dashes of flags stay dashes, a sentence begins a line, no line begins a macro.
+std::string prose(std::string_view text) {
+  constexpr std::size_t width = 76;
+  const std::string plain = replacedAll(replacedAll(text, "\\", "\\e"), "--", "\\-\\-");
+  std::string lines;
+  for (const std::string& sentence : split(replacedAll(plain, ". ", ".\n"), '\n'))
+    for (const std::string& line : split(wrapped(sentence, width), '\n'))
+      lines += textOf(line.starts_with('.') || line.starts_with('\'') ? "\\&" : "", line, "\n");
+  return lines;
+}
+
+std::string argumentsOf(const CommandSyntax& syntax) {
+  std::string text;
+  for (const Positional& positional : syntax.positionals)
+    text += " Ar " + positional.name;
+  return text;
+}
+
+bool isOfRender(const Flag& flag) {
+  const Flag* const other = findFlag(commands().front().syntax().flags, flag.name);
+  return other && isSame(*other, flag);
+}
+
+std::string commandEntry(const CommandSyntax& syntax, bool isRender) {
+  std::string text = textOf(".It Nm Cm ", syntax.name, argumentsOf(syntax), " Op Ar FLAGS\n",
+                            prose(syntax.summary));
+  if (isRender || !std::ranges::equal(syntax.positionals, commands().front().syntax().positionals,
+                                      {}, &Positional::text, &Positional::text))
+    for (const Positional& positional : syntax.positionals)
+      text += textOf(".Pp\n.Ar ", positional.name, " :\n", prose(positional.text));
+  return text;
+}
+
+std::string flagEntry(const Flag& flag) {
+  return textOf(".It Fl Fl ", flag.name, flag.isSwitch() ? "" : " Ar ", flag.value, "\n",
+                prose(flag.help()));
+}
+
+constexpr const char* listBegin = ".Bl -tag -width Ds\n";
+constexpr const char* listEnd = ".El\n";
+
+/// Flags of a command by group; those that render has as well are told there.
+std::string flagLists(const CommandSyntax& syntax, bool isRender) {
+  std::string text;
+  std::string_view group;
+  for (const Flag& flag : syntax.flags) {
+    if (!isRender && isOfRender(flag))
+      continue;
+    if (flag.group != group)
+      text += textOf(group.empty() ? "" : listEnd, ".Ss ", syntax.name,
+                     isRender ? ": " + flag.group : "", "\n", listBegin);
+    group = flag.group;
+    text += flagEntry(flag);
+  }
+  return text + (group.empty() ? "" : listEnd);
+}
+
+constexpr const char* rest = R"man(.Sh ENVIRONMENT
+.Bl -tag -width Ds
+.It Ev FENESTRA_INSTRUCTIONS
+Instruction set to use, in place of the best that the machine has;
+.Nm Fl Fl version Fl Fl json
+lists them.
+.It Ev SLICER_HOME
+Folder of 3D Slicer, whose presets of volume properties
+.Fl Fl transfer
+then knows by name.
+.El
+.Sh EXIT STATUS
+.Bl -tag -width Ds -compact
+.It 0
+Done.
+.It 2
+Wrong usage.
+.It 3
+Bad input.
+.It 4
+Output cannot be written, or memory or threads are too few.
+.It 5
+Stopped on request: what was rendered so far is kept.
+.El
+.Sh EXAMPLES
+A knee, made and rendered with its cartilage unoccluded:
+.Bd -literal -offset indent
+fenestra phantom knee
+fenestra knee/knee.mrml \-\-focus FemoralCartilage \-\-output knee.png
+.Ed
+.Pp
+What a scene holds, and what a render of it would use:
+.Bd -literal -offset indent
+fenestra inspect scene.mrb
+.Ed
+)man";
+
+} // namespace
+
+std::string manPage() {
+  std::string synopsis, entries, lists;
+  for (const Command& command : commands()) {
+    const CommandSyntax& syntax = command.syntax();
+    const bool isFirst = &command == &commands().front();
+    synopsis += textOf(".Nm\n", isFirst ? ".Op Cm " : ".Cm ", syntax.name, "\n.", //
+                       argumentsOf(syntax).substr(1), "\n.Op Ar FLAGS\n");
+    entries += commandEntry(syntax, isFirst);
+    lists += flagLists(syntax, isFirst);
+  }
+  std::string common;
+  for (const Flag& flag : commonFlags)
+    common += flagEntry(flag);
+  return textOf(".\\\" Made by fenestra describe man.\n.Dd ", writtenDate(commitDate),
+                "\n.Dt FENESTRA 1\n.Os\n.Sh NAME\n.Nm fenestra\n.Nd ", descriptionText,
+                "\n.Sh SYNOPSIS\n", synopsis, ".Sh DESCRIPTION\n", listBegin, entries, listEnd,
+                ".Sh FLAGS\nEvery command takes:\n", listBegin, common, listEnd, lists, rest,
+                ".Sh SEE ALSO\n.Lk ", homepageText, "\n");
+}
+
+} // namespace fenestra

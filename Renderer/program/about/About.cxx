@@ -1,0 +1,51 @@
+#include "program/about/About.h"
+
+#include "base/safe/JsonNode.h"
+#include "files/slicer/SlicerPresets.h"
+#include "program/about/Commit.h"
+#include "program/about/Version.h"
+#include "transport/lanes/Tracker.h"
+
+namespace fenestra {
+namespace {
+
+nlohmann::ordered_json facts() {
+  nlohmann::ordered_json all = {
+      {"name", "fenestra"},
+      {"version", versionText},
+      {"commit", commitText},
+      {"date", commitDate},
+      {"license", "Apache-2.0"},
+      {"system", systemText},
+      {"compiler", compilerText},
+      {"instructions", WideTracker::instructionSet()},
+      {"instructionSets", WideTracker::instructionSets()},
+      {"data", nullptr}, // compiled in
+      {"slicerPresets", nullptr},
+  };
+  if (const auto presets = findSlicerPresets())
+    all["slicerPresets"] = presets->string();
+  for (const auto& [name, version] : libraryVersions())
+    all["libraries"][name] = version;
+  return all;
+}
+
+} // namespace
+
+std::string aboutText() {
+  const nlohmann::ordered_json all = facts();
+  const auto fact = [&all](const char* key) { return all[key].get<std::string>(); };
+  const auto library = [](const auto& named) { return named.first + " " + named.second; };
+  return textOf("fenestra ", versionText,                                  //
+                "\ncommit: ", fact("commit"), ", ", fact("date"),          //
+                "\nbuild: ", fact("compiler"), ", ", fact("system"),       //
+                "\ninstruction set: ", fact("instructions"),               //
+                "\nlibraries: ", joined(libraryVersions(), ", ", library), //
+                "\nlicence: ", fact("license"), "\n");
+}
+
+std::string aboutJson() {
+  return jsonText(facts());
+}
+
+} // namespace fenestra

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace fenestra {
+
+extern const char* const commitText; ///< "unknown": built outside git; "…-dirty": with changes
+extern const char* const commitDate; ///< year-month-day, UTC
+
+} // namespace fenestra

@@ -1,0 +1,66 @@
+// Versions of all libraries, in one place that includes a header of each.
+
+#include "base/Text.h"
+#include "program/about/About.h"
+
+#include <Eigen/Core>
+#include <OpenColorIO/OpenColorIO.h>
+#include <OpenEXRConfig.h>
+#include <gdcmVersion.h>
+#include <gnu/libc-version.h>
+#include <hdf5.h>
+#include <hwy/highway.h>
+#include <itkVersion.h>
+#include <nlohmann/json.hpp>
+#include <png.h>
+#include <pugixml.hpp>
+#include <tbb/version.h>
+#include <tiffio.h>
+#include <zip.h>
+#include <zlib.h>
+
+#include <array>
+
+namespace fenestra {
+namespace {
+
+std::string dotted(std::initializer_list<std::size_t> parts) {
+  return numbersText(parts, ".");
+}
+
+std::string hdf5Version() {
+  std::array<unsigned, 3> parts = {};
+  H5get_libversion(&parts[0], &parts[1], &parts[2]);
+  return numbersText(parts, ".");
+}
+
+/// Third word of "LIBTIFF, Version 4.5.0".
+std::string tiffVersion() {
+  const std::vector<std::string> all = words(TIFFGetVersion());
+  return all.size() < 3 ? "" : all[2];
+}
+
+} // namespace
+
+std::vector<std::pair<std::string, std::string>> libraryVersions() {
+  return {
+      {"Eigen", dotted({EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION})},
+      {"GDCM", gdcm::Version::GetVersion()},
+      {"glibc", gnu_get_libc_version()},
+      {"HDF5", hdf5Version()},
+      {"Highway", dotted({HWY_MAJOR, HWY_MINOR, HWY_PATCH})},
+      {"ITK", itk::Version::GetITKVersion()},
+      {"libpng", png_get_libpng_ver(nullptr)},
+      {"libtiff", tiffVersion()},
+      {"libzip", zip_libzip_version()},
+      {"nlohmann-json", dotted({NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                                NLOHMANN_JSON_VERSION_PATCH})},
+      {"oneTBB", TBB_runtime_version()},
+      {"OpenColorIO", OCIO_NAMESPACE::GetVersion()},
+      {"OpenEXR", OPENEXR_VERSION_STRING},
+      {"pugixml", dotted({PUGIXML_VERSION / 1000, PUGIXML_VERSION / 10 % 100})},
+      {"zlib", zlibVersion()},
+  };
+}
+
+} // namespace fenestra

@@ -1,0 +1,108 @@
+# Sourced by release.sh: licences of what is in the archive, and its bill of materials. Reads `root` (the archive's
+# folder), `parts`, `version`, `name`, `epoch` and `origin` (the file of each library but our own); sets `package`
+# (Debian's, of each of these).
+
+# Whose headers are compiled in.
+header_packages=(libeigen3-dev nlohmann-json3-dev)
+
+# find_packages: sets `package`.
+find_packages() {
+  local file library who names=()
+  local -A owner
+  for file in "${origin[@]}"; do # Debian knows a file by the name that it was packed with
+    names+=("$file" "/usr$file" "$(realpath "$file")" "/usr$(realpath "$file")")
+  done
+  while read -r who file; do
+    owner[$file]=${who%%:*}
+  done < <(dpkg-query -S "${names[@]}" 2>/dev/null)
+  declare -gA package
+  for library in "${!origin[@]}"; do
+    for file in "${origin[$library]}" "$(realpath "${origin[$library]}")"; do
+      who=${owner[$file]:-${owner[/usr$file]:-}}
+      [ -z "$who" ] || package[$library]=$who
+    done
+    [ -v "package[$library]" ] || die "$library belongs to no package: its licence cannot be told"
+  done
+}
+
+# packages: those of Debian that have a share in the archive, by name.
+packages() { printf '%s\n' "${package[@]}" "${header_packages[@]}" | sort -u; }
+
+# license PACKAGE: its SPDX expression in licenses.txt.
+license() {
+  sed -n "s/^${1//./[.]} \{1,\}//p" "$parts/licenses.txt" | grep . ||
+    die "no licence of $1 is known: read /usr/share/doc/$1/copyright, add a line to Resources/release/licenses.txt"
+}
+
+# write_notices: each package's copyright file, and the licences' texts that those refer to.
+write_notices() {
+  local one text
+  while read -r one; do
+    license "$one" >/dev/null
+    cp -L "/usr/share/doc/$one/copyright" "$root/licenses/$one.txt" || die "$one has no copyright file"
+  done < <(packages)
+  cat "$root"/licenses/*.txt | grep -oE '/usr/share/common-licenses/[A-Za-z]+(-[0-9]+(\.[0-9]+)*)?' | sort -u |
+    while read -r text; do
+      [ ! -e "$text" ] || cp -L "$text" "$root/licenses/common"
+    done
+}
+
+# list ITEM...: items of a list of JSON.
+list() {
+  local IFS=,
+  printf '[%s]' "$*"
+}
+
+# described ID NAME VERSION LICENSE PLACE [MORE]: a package of the bill.
+described() {
+  printf '\n{"SPDXID":"SPDXRef-%s","name":"%s","versionInfo":"%s","licenseConcluded":"%s","licenseDeclared":"%s",' \
+    "$1" "$2" "$3" "$4" "$4"
+  printf '"downloadLocation":"%s","filesAnalyzed":false,"copyrightText":"NOASSERTION"%s}' "$5" "${6:-}"
+}
+
+# located PACKAGE: its package URL, as a member of a package of the bill.
+located() {
+  local url=pkg:deb/debian/$1@
+  url+=$(dpkg-query -W -f='${Version}\n' "$1" | head -n 1)
+  url=${url//+/%2B}
+  printf ',"externalRefs":[{"referenceCategory":"PACKAGE-MANAGER","referenceType":"purl","referenceLocator":"%s"}]' "$url"
+}
+
+# related FROM HOW TO
+related() {
+  printf '\n{"spdxElementId":"SPDXRef-%s","relationshipType":"%s","relatedSpdxElement":"SPDXRef-%s"}' "$@"
+}
+
+# write_bill: the bill of materials, SPDX 2.3 as JSON: a package for each of Debian's, a file for each library.
+write_bill() {
+  local one id source built place file library bill=() files=() relations=()
+  bill+=("$(described fenestra fenestra "$version" Apache-2.0 NOASSERTION)")
+  relations+=("$(related DOCUMENT DESCRIBES fenestra)")
+  while read -r one; do
+    id=${one//[^A-Za-z0-9.-]/-}
+    read -r source built < <(dpkg-query -W -f='${source:Package} ${source:Version}\n' "$one" | head -n 1)
+    place=https://snapshot.debian.org/package/$source/$built/
+    bill+=("$(described "$id" "$one" "$built" "$(license "$one")" "$place" "$(located "$one")")")
+    relations+=("$(related fenestra CONTAINS "$id")")
+  done < <(packages)
+  for file in "$root"/lib/* "$root/libexec/fenestra"; do
+    library=${file##*/}
+    id=File-${library//[^A-Za-z0-9.-]/-}
+    files+=("$(printf '\n{"SPDXID":"SPDXRef-%s","fileName":"./%s","licenseConcluded":"%s","copyrightText":"NOASSERTION",' \
+      "$id" "${file#"$root"/}" "$([ -v "package[$library]" ] && license "${package[$library]}" || echo Apache-2.0)"
+    printf '"checksums":[{"algorithm":"SHA1","checksumValue":"%s"},{"algorithm":"SHA256","checksumValue":"%s"}]}' \
+      "$(sha1sum <"$file" | cut -c1-40)" "$(sha256sum <"$file" | cut -c1-64)")")
+    one=fenestra
+    [ ! -v "package[$library]" ] || one=${package[$library]//[^A-Za-z0-9.-]/-}
+    relations+=("$(related "$id" GENERATED_FROM "$one")")
+  done
+  printf '{"spdxVersion":"SPDX-2.3","dataLicense":"CC0-1.0","SPDXID":"SPDXRef-DOCUMENT","name":"%s",' "$name"
+  printf '"documentNamespace":"https://spdx.org/spdxdocs/%s-%s",' "$name" \
+    "$(cat "$root"/lib/* "$root/libexec/fenestra" | sha256sum | cut -c1-32)"
+  printf '"creationInfo":{"created":"%s","creators":["Tool: Fenestra-Resources/release.sh"]},' \
+    "$(date -u -d "@$epoch" +%Y-%m-%dT%H:%M:%SZ)"
+  printf '"hasExtractedLicensingInfos":[{"licenseId":"LicenseRef-public-domain","name":"Public domain",'
+  printf '"extractedText":"Its authors put it into the public domain: licenses/liblzma5.txt."}],\n'
+  printf '"packages":%s,\n"files":%s,\n"relationships":%s}\n' \
+    "$(list "${bill[@]}")" "$(list "${files[@]}")" "$(list "${relations[@]}")"
+}

@@ -1,0 +1,119 @@
+#!/usr/bin/env bash
+# Asks a shell to complete commands, flags and values, by the script that the program prints for it; or
+# mandoc for faults of the manual page. Exits 1 with the wrong answers, 77 where the shell is missing.
+# usage: completions.sh FENESTRA bash|zsh|fish|man
+set -euo pipefail
+export LC_ALL=C.UTF-8
+program=$(realpath "$1")
+kind=$2
+tool=${kind/#man/mandoc}
+command -v "$tool" >/dev/null || { echo "SKIPPED: there is no $tool here"; exit 77; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+"$program" describe "$kind" >"described"
+mkdir folder
+(cd folder && touch scan.nrrd labels.nrrd look.json)
+
+# Line as typed, and the words that complete its last; none: no completion.
+cases='fenestra --cl|--clip
+fenestra --clip su|surface
+fenestra --clip=su|surface
+fenestra tur|turntable
+fenestra turntable --fra|--frames
+fenestra inspect --fra|
+fenestra inspect --js|--json
+fenestra serve scan.nrrd --noiset|--noisetarget
+fenestra serve scan.nrrd --noisetarget fi|filtered
+fenestra phantom kn|knee
+fenestra phantom cube --ed|--edge
+fenestra describe zs|zsh
+fenestra scan.nrrd --transfer ct-li|ct-liver
+fenestra --preset brain-t|brain-tumour
+fenestra --lights ci|cinema
+fenestra --layers den|denoised
+fenestra --soft au|auto
+fenestra --transfer loo|look.json
+fenestra --segmentation lab|labels.nrrd
+fenestra compare scan.nrrd lab|labels.nrrd
+fenestra sc|scan.nrrd
+fenestra --volume sc|
+fenestra describe sc|'
+
+# Each prints, for every line of its input, the candidates for its last word, in a line each, and a line "/".
+ask_bash() {
+  (
+    set +e # as in a terminal
+    cd folder
+    source ../described
+    complete -p fenestra | grep -qx 'complete -F _fenestra fenestra' || echo "not registered"
+    while IFS= read -r line; do
+      COMP_WORDS=()
+      for word in $line; do # as readline splits words, where = breaks them
+        if [[ $word == --*=* ]]; then COMP_WORDS+=("${word%%=*}" = "${word#*=}"); else COMP_WORDS+=("$word"); fi
+      done
+      [[ $line != *' ' ]] || COMP_WORDS+=("")
+      COMP_CWORD=$((${#COMP_WORDS[@]} - 1)) COMPREPLY=()
+      _fenestra
+      ((${#COMPREPLY[@]} == 0)) || printf '%s\n' "${COMPREPLY[@]}"
+      echo /
+    done
+  )
+}
+ask_fish() {
+  HOME=$work fish --no-config -c 'cd folder
+    source ../described
+    while read -l line
+        complete -C $line | cut -f 1 | string replace -r "^--[a-z]+=" ""
+        echo /
+    end'
+}
+# A zsh of its own behind a terminal: what stands in its line after a tab, beyond what was typed.
+ask_zsh() {
+  cat >ask.zsh <<'Z'
+zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell 'PROMPT= PS2= RPROMPT=; stty -echo; unsetopt beep zle_bracketed_paste 2>/dev/null; cd folder'
+zpty -w shell 'autoload -Uz compinit && compinit -D -u'
+zpty -w shell 'autoload -Uz +X _fenestra; source ../described 2>/dev/null; compdef _fenestra fenestra'
+zpty -w shell 'show() { print -r -- "<<$BUFFER>>"; BUFFER=; zle -I }; zle -N show; bindkey "^T" show'
+zpty -w shell 'setopt no_list_ambiguous no_auto_menu; print READY'
+zpty -r shell text '*READY*READY*'
+while IFS= read -r line; do
+  zpty -n -w shell "$line"$'\t\x14'
+  zpty -r shell text '*<<*>>*'
+  text=${${text##*<<}%%>>*}
+  [[ $text == "$line" ]] || print -r -- ${${${${text% }##* }%=}#--*=}
+  print /
+done
+zpty -d shell
+Z
+  timeout 60 zsh -f ask.zsh
+}
+
+# Every flag of every command's help stands in what was printed.
+for command in render inspect turntable serve compare phantom describe; do
+  "$program" "$command" --help | sed -n 's/^  --\([a-z]*\).*/\1/p'
+done | sort -u >flags
+[ "$(wc -l <flags)" -gt 50 ]
+while read -r flag; do
+  case $kind in
+    bash) form=" --$flag[ ']|'--$flag[ ']" ;;
+    zsh) form="--$flag(=|\[)" ;;
+    fish) form=" -l $flag " ;;
+    man) form="^.It Fl Fl $flag( |\$)" ;;
+  esac
+  grep -qE -- "$form" described || echo "--$flag is missing"
+done <flags >missing
+if [ "$kind" = man ]; then
+  mandoc -Tlint described >>missing || true
+  mandoc -Tutf8 described >page || true
+  [ "$(wc -l <page)" -gt 200 ] || echo "the page is short" >>missing
+else
+  "$kind" -n described >>missing 2>&1 || echo "$kind does not parse it" >>missing
+  cut -d '|' -f 1 <<<"$cases" | "ask_$kind" >answers
+  cut -d '|' -f 2 <<<"$cases" | sed 's/$/\n\//' | sed '/^$/d' >expected
+  diff --label expected --label answered -U 99 expected answers >>missing || true
+fi
+cat missing
+[ ! -s missing ]

@@ -1,0 +1,21 @@
+# What `cmake --install` puts where distributions expect it, and Resources/release.sh into its archive: component
+# `program`. Presets, lights, tables and materials are compiled in.
+set(CMAKE_INSTALL_DOCDIR share/doc/fenestra CACHE PATH "Folder of README and changes")
+include(GNUInstallDirs)
+set(elsewhere)
+if(Slicer_DIR) # the extension's package holds the archive
+  set(elsewhere EXCLUDE_FROM_ALL)
+endif()
+install(TARGETS fenestra RUNTIME COMPONENT program ${elsewhere})
+install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR}"
+  COMPONENT program ${elsewhere})
+foreach(described IN ITEMS
+    "man:fenestra.1:${CMAKE_INSTALL_MANDIR}/man1"
+    "bash:fenestra:${CMAKE_INSTALL_DATADIR}/bash-completion/completions"
+    "zsh:_fenestra:${CMAKE_INSTALL_DATADIR}/zsh/site-functions"
+    "fish:fenestra.fish:${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d")
+  string(REPLACE ":" ";" described "${described}")
+  list(POP_FRONT described kind name folder)
+  install(FILES "$<TARGET_FILE_DIR:fenestra>/described/${kind}" RENAME ${name} DESTINATION "${folder}"
+    COMPONENT program ${elsewhere})
+endforeach()
