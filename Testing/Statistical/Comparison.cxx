@@ -137,9 +137,13 @@ void comparePicture(Outcome& outcome) {
   // both.
   for (int i = 0; i < 3; ++i) {
     double variance = b.firstVariance[i] / (b.pixels * b.pixels);
-    if (variance ==
-        0.0) // every path of the oracle collides, or none: what the product says of that
-      variance = share * (1.0 - share) / b.samples * std::pow(b.first[i] / b.pixels, 2.0);
+    if (variance == 0.0) { // the oracle's paths are all alike: what both say of that
+      const double mean = 0.5 * (a.first[i] + b.first[i]) / a.pixels;
+      const bool isRareMatter = i == 2 && b.first[i] == 0.0; // of any albedo, amid black
+      variance = isRareMatter  ? mean * (1.0 - mean) / b.samples
+                 : share > 0.0 ? (1.0 - share) * mean * mean / share / b.samples
+                               : 0.0;
+    }
     least.add(welchProbability({a.first[i] / a.pixels, variance, a.samples},
                                {b.first[i] / b.pixels, variance, b.samples}));
   }
