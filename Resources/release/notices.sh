@@ -63,7 +63,7 @@ described() {
 # located PACKAGE: its package URL, as a member of a package of the bill.
 located() {
   local url=pkg:deb/debian/$1@
-  url+=$(dpkg-query -W -f='${Version}\n' "$1" | head -n 1)
+  url+=$(dpkg-query -W -f='${Version}\n' "$1" | sed -n 1p)
   url=${url//+/%2B}
   printf ',"externalRefs":[{"referenceCategory":"PACKAGE-MANAGER","referenceType":"purl","referenceLocator":"%s"}]' "$url"
 }
@@ -80,7 +80,7 @@ write_bill() {
   relations+=("$(related DOCUMENT DESCRIBES fenestra)")
   while read -r one; do
     id=${one//[^A-Za-z0-9.-]/-}
-    read -r source built < <(dpkg-query -W -f='${source:Package} ${source:Version}\n' "$one" | head -n 1)
+    read -r source built < <(dpkg-query -W -f='${source:Package} ${source:Version}\n' "$one" | sed -n 1p)
     place=https://snapshot.debian.org/package/$source/$built/
     bill+=("$(described "$id" "$one" "$built" "$(license "$one")" "$place" "$(located "$one")")")
     relations+=("$(related fenestra CONTAINS "$id")")

@@ -134,7 +134,7 @@ stage_debian() {
       { leave_out "no Debian 11 can be fetched ($build/package/debootstrap.log)"; return; }
     touch "$root/made"
   fi
-  chroot "$root" ldd --version | head -n 1
+  chroot "$root" ldd --version | sed -n 1p
   within "$root"
 }
 
