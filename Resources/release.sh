@@ -22,8 +22,8 @@ else
   say "Building (some minutes the first time)"
   # Neither the folder nor a linker that not everybody has may change the program.
   cmake -S "$top" --preset release -B "$build" -DFENESTRA_BUILD_TESTS=OFF -DFENESTRA_DEVELOPER=OFF \
-    -DFENESTRA_HAS_LLD=OFF -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$top/=" >/dev/null && cmake --build "$build" --target fenestra ||
-    die "the build failed (see above)"
+    -DFENESTRA_HAS_LLD=OFF -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$top/=" >/dev/null || die "cannot configure (see above)"
+  cmake --build "$build" --target fenestra || die "the build failed (see above)"
 fi
 command -v patchelf >/dev/null || die "needs patchelf (Debian: patchelf)"
 version=$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/CMakeCache.txt")

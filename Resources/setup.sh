@@ -28,7 +28,7 @@ print_stages() {
 # install_packages PACKAGE...: only those that are missing; as root, or through sudo.
 install_packages() {
   command -v dpkg-query >/dev/null || die "this set-up needs Debian or a derivative (dpkg is missing)"
-  local missing=()
+  local package missing=()
   for package in "$@"; do
     [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       missing+=("$package")

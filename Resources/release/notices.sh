@@ -63,9 +63,20 @@ described() {
 # located PACKAGE: its package URL, as a member of a package of the bill.
 located() {
   local url=pkg:deb/debian/$1@
-  url+=$(dpkg-query -W -f='${Version}\n' "$1" | head -n 1)
+  url+=$(dpkg-query -W -f='${Version}\n' "$1" | sed -n 1p)
   url=${url//+/%2B}
-  printf ',"externalRefs":[{"referenceCategory":"PACKAGE-MANAGER","referenceType":"purl","referenceLocator":"%s"}]' "$url"
+  printf ',"externalRefs":[{"referenceCategory":"PACKAGE-MANAGER","referenceType":"purl",'
+  printf '"referenceLocator":"%s"}]' "$url"
+}
+
+# filed ID FILE: a file of the bill.
+filed() {
+  local library=${2##*/} expression=Apache-2.0
+  [ ! -v "package[$library]" ] || expression=$(license "${package[$library]}")
+  printf '\n{"SPDXID":"SPDXRef-%s","fileName":"./%s","licenseConcluded":"%s",' "$1" "${2#"$root"/}" "$expression"
+  printf '"copyrightText":"NOASSERTION","checksums":[{"algorithm":"SHA1","checksumValue":"%s"},' \
+    "$(sha1sum <"$2" | cut -c1-40)"
+  printf '{"algorithm":"SHA256","checksumValue":"%s"}]}' "$(sha256sum <"$2" | cut -c1-64)"
 }
 
 # related FROM HOW TO
@@ -80,7 +91,7 @@ write_bill() {
   relations+=("$(related DOCUMENT DESCRIBES fenestra)")
   while read -r one; do
     id=${one//[^A-Za-z0-9.-]/-}
-    read -r source built < <(dpkg-query -W -f='${source:Package} ${source:Version}\n' "$one" | head -n 1)
+    read -r source built < <(dpkg-query -W -f='${source:Package} ${source:Version}\n' "$one" | sed -n 1p)
     place=https://snapshot.debian.org/package/$source/$built/
     bill+=("$(described "$id" "$one" "$built" "$(license "$one")" "$place" "$(located "$one")")")
     relations+=("$(related fenestra CONTAINS "$id")")
@@ -88,10 +99,7 @@ write_bill() {
   for file in "$root"/lib/* "$root/libexec/fenestra"; do
     library=${file##*/}
     id=File-${library//[^A-Za-z0-9.-]/-}
-    files+=("$(printf '\n{"SPDXID":"SPDXRef-%s","fileName":"./%s","licenseConcluded":"%s","copyrightText":"NOASSERTION",' \
-      "$id" "${file#"$root"/}" "$([ -v "package[$library]" ] && license "${package[$library]}" || echo Apache-2.0)"
-    printf '"checksums":[{"algorithm":"SHA1","checksumValue":"%s"},{"algorithm":"SHA256","checksumValue":"%s"}]}' \
-      "$(sha1sum <"$file" | cut -c1-40)" "$(sha256sum <"$file" | cut -c1-64)")")
+    files+=("$(filed "$id" "$file")")
     one=fenestra
     [ ! -v "package[$library]" ] || one=${package[$library]//[^A-Za-z0-9.-]/-}
     relations+=("$(related "$id" GENERATED_FROM "$one")")

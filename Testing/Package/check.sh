@@ -107,6 +107,7 @@ stage_moved() {
     LD_PRELOAD=$(ldconfig -p | sed -n 's/.*libz.so.1 .*x86-64.* => //p' | head -n 1) \
     /bin/busybox sh "$here/requests.sh" "$work/traced" "$work/moved" || die "moved: the above failed"
   same "$work/moved"
+  grep -qF "calling init: $folder/fenestra/libexec/../lib/libopenjp2.so.7" "$trace"/* || die "moved: no trace of libraries"
   outside=$(grep -lE 'init(ialize program)?: .*(libexec/fenestra|fenestra)$' "$trace"/* |
     xargs -d '\n' grep -hE 'search cache=|trying file=|calling init:' |
     grep -vF "$folder/fenestra/" | grep -v 'calling init: fenestra$' || true)
@@ -133,7 +134,7 @@ stage_debian() {
       { leave_out "no Debian 11 can be fetched ($build/package/debootstrap.log)"; return; }
     touch "$root/made"
   fi
-  chroot "$root" ldd --version | head -n 1
+  chroot "$root" ldd --version | sed -n 1p
   within "$root"
 }
 
