@@ -156,10 +156,7 @@ private:
                                    {"rendered", rendered()},
                                    {"degrees", m_options.degrees},
                                    {"seconds", m_total.seconds()}};
-    std::vector<SurfaceChange> changes;
-    for (const auto& [number, frame] : m_record.finished())
-      if (frame.change)
-        changes.push_back(*frame.change);
+    const std::vector<SurfaceChange> changes = m_record.changes();
     SurfaceChange all;
     double excess = 0.0;
     for (const SurfaceChange& change : changes) {
