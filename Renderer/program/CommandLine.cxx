@@ -133,19 +133,6 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 } // namespace
 
-std::string wrapped(std::string_view text, std::size_t width) {
-  std::string lines;
-  std::size_t used = 0;
-  for (const std::string& word : split(text, ' ')) {
-    const bool fits = used + 1 + word.size() <= width;
-    if (!lines.empty())
-      lines += fits ? ' ' : '\n';
-    lines += word;
-    used = (fits ? used + 1 : 0) + word.size();
-  }
-  return lines;
-}
-
 std::vector<std::string> namesOf(std::span<const Flag> flags) {
   std::vector<std::string> names;
   std::ranges::transform(flags, std::back_inserter(names), &Flag::name);

@@ -11,7 +11,11 @@ int inspectCommand(int argc, char** argv, int first);
 int compareCommand(int argc, char** argv, int first);
 int phantomCommand(int argc, char** argv, int first);
 int serveCommand(int argc, char** argv, int first);
+int studyCommand(int argc, char** argv, int first);
 int turntableCommand(int argc, char** argv, int first);
+
+/// Threads that --threads asks for, at most one a core.
+int threadCount(const FlagValues& flags);
 
 /// Limits this process to --threads threads, at most one a core, and starts them before other code
 /// uses threads; pins the instruction set that the environment variable FENESTRA_INSTRUCTIONS

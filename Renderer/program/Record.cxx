@@ -14,17 +14,21 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Name, size and time of each file.
+/// Name, size and time of each file, in the names' order.
 json fileStates(const std::set<fs::path>& files, const fs::path& folder) {
-  json states = json::array();
+  std::map<std::string, json> states; // one, however many names a file has in `files`
   std::error_code failed;
   for (const fs::path& file : files) // a member of an archive changes with the archive
-    if (fs::is_regular_file(file, failed))
-      states.push_back(
-          {{"file", relativeName(file.string(), folder)},
-           {"bytes", fs::file_size(file, failed)},
-           {"modified", fs::last_write_time(file, failed).time_since_epoch().count()}});
-  return states;
+    if (fs::is_regular_file(file, failed)) {
+      const std::string name = relativeName(file.string(), folder);
+      states[name] = {{"file", name},
+                      {"bytes", fs::file_size(file, failed)},
+                      {"modified", fs::last_write_time(file, failed).time_since_epoch().count()}};
+    }
+  json list = json::array();
+  for (const auto& [name, state] : states)
+    list.push_back(state);
+  return list;
 }
 
 /// True if a piece's file is as recorded; false if missing or empty: to be made again. Throws Error

@@ -327,7 +327,7 @@ const CommandSyntax renderSyntax = {
     "render",
     "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
     "a clipping surface. \"render\" may be left out. Other subcommands: fenestra inspect, fenestra "
-    "compare, fenestra phantom, fenestra serve, fenestra turntable.",
+    "compare, fenestra phantom, fenestra serve, fenestra study, fenestra turntable.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
     described.flags,
