@@ -26,6 +26,7 @@ std::vector<Request> makeRequests() {
   const Words turntable = joined({"turntable", "knee.mrb", "--frames", "2", "--output", "t.png",
                                   "--stats", "s.json", "--restart"},
                                  quick);
+  const Words study = joined({"study", "t.csv", "--output", "d"}, quick);
   const Words phantom = {"phantom", "cube", "--output", "p", "--size", "16"};
   Request three = {"phantom", phantom, joined(phantom, {"--edge", "2"}), {{}}, "", ""};
   for (const char* ending :
@@ -45,6 +46,13 @@ std::vector<Request> makeRequests() {
        "s.json",
        "t.turntable.json"},
       three,
+      {"study",
+       study,
+       joined(study, {"--seed", "7"}),
+       {{"d/a/a.png"}},
+       "d/a/a.json",
+       "d/a/a.study.json",
+       {{"t.csv", "name,input\na,knee.mrb\n"}}},
   };
 }
 
@@ -107,8 +115,12 @@ Outcome Place::run(const Words& words, const Fault& fault) const {
 
 Subject learn(const Request& request, const Tools& tools) {
   const Place place(tools);
-  Subject subject = {&request, {}, {}, {"knee.mrb"}, {}};
-  place.fill({{"knee.mrb", bytesOf(tools.data / "knee/knee.mrb")}});
+  Files inputs = request.inputs;
+  inputs.emplace("knee.mrb", bytesOf(tools.data / "knee/knee.mrb"));
+  Subject subject = {&request, {}, {}, {}, {}};
+  for (const auto& [name, content] : inputs)
+    subject.inputs.push_back(name);
+  place.fill(inputs);
   const Outcome first = place.run(request.before, {});
   subject.before = place.files();
   subject.undisturbed = place.run(request.words, {Fault::Kind::counting});

@@ -14,9 +14,10 @@ struct Request {
   std::vector<std::vector<std::string>> groups; ///< files that must stem from one request
   std::string stats;  ///< name of the JSON file written after the groups; may be empty
   std::string record; ///< name of the JSON file that may precede some groups; may be empty
+  std::map<std::string, std::string> inputs = {}; ///< files beside knee.mrb, by name
 };
 
-/// Requests: a render with all kinds of files, two frames of a turntable, a phantom.
+/// Requests: a render with all kinds of files, two frames of a turntable, a phantom, a study.
 const std::vector<Request>& requests();
 
 struct Tools {
