@@ -3,10 +3,11 @@
 # no row made twice.
 # usage: twelve.sh FENESTRA DATA FOLDER [FLAGS...]
 # DATA: folder of the real data; without it the study is skipped, visibly. FOLDER: for table, phantoms
-# and results, emptied first. FLAGS: for all rows, beside those below.
+# and results, emptied first. FLAGS: for all rows, in place of --size 400x400 --samples 24 --workers 2.
 set -euo pipefail
 fenestra=$(realpath "$1") data=$2 folder=$3
 shift 3
+[ $# -gt 0 ] || set -- --size 400x400 --samples 24 --workers 2
 fail() {
   printf 'twelve.sh: %s\n' "$*" >&2
   exit 1
@@ -37,7 +38,7 @@ head MR,$data/head_mr_seg3d/t1.nii.gz,$data/head_mr_seg3d/seg_brain_skull.nii.gz
 head CT DICOM,$data/head_ct_slicer_dicom/dicom,,,,,anterior
 knee atlas,$data/spl_knee_atlas_labels/SYNTHETIC_mr_256.nii.gz,$data/spl_knee_atlas_labels/seg_256.nii.gz,$data/spl_knee_atlas_labels/knee.ctbl,,knee-cartilage,
 TABLE
-study=("$fenestra" study cases.csv --output results --size 400x400 --samples 24 "$@")
+study=("$fenestra" study cases.csv --output results "$@")
 
 # done_rows: how many rows their records tell to be done.
 done_rows() { { grep -ls '"status": 0$' results/*/*.study.json || true; } | wc -l; }
