@@ -1,5 +1,6 @@
 # Sourced: a Slurm of one machine (munged, slurmctld, slurmd) in a folder of its own, for a test.
-# start_cluster FOLDER starts it and sets SLURM_CONF; stop_cluster ends what was started.
+# begin_test FENESTRA FOLDER goes to the folder, emptied, or skips where there is no Slurm; start_cluster
+# starts it and sets SLURM_CONF; what was started ends with the test.
 
 cluster_ids=()
 
@@ -10,6 +11,39 @@ can_run_cluster() {
     PATH=$PATH:/usr/sbin command -v "$name" >/dev/null || { echo "$name is not installed"; return 1; }
   done
   [ "$(id -u)" -eq 0 ] || { echo "slurmd needs root"; return 1; }
+}
+
+fail() {
+  printf '%s: %s\n' "$(basename "$0")" "$*" >&2
+  exit 1
+}
+
+skip() {
+  printf 'SKIPPED: %s\n' "$*"
+  exit 77
+}
+
+begin_test() {
+  local why
+  why=$(can_run_cluster) || skip "the array job, for $why"
+  export FENESTRA
+  FENESTRA=$(realpath "$1")
+  rm -rf "$2"
+  mkdir -p "$2"
+  cd "$2"
+  trap stop_cluster EXIT
+}
+
+# print_jobs: the log of the jobs, as slurmctld keeps it, and what they printed.
+print_jobs() {
+  local log
+  printf -- '-- jobs, as slurmctld records them\n'
+  grep -oE '\<(JobId|Name|JobState|StartTime|EndTime|NodeList|ArrayJobId|ArrayTaskId|ExitCode)=[^ ]+' \
+    slurm/jobs.log | tr '\n' ' ' | sed 's/ JobId/\nJobId/g; s/ $/\n/'
+  for log in fenestra-*.log; do
+    printf '\n-- %s\n' "$log"
+    cat "$log"
+  done
 }
 
 free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
@@ -23,7 +57,7 @@ in_background() {
 }
 
 start_cluster() {
-  local folder=$1 host
+  local folder=$PWD/slurm host
   host=$(hostname -s)
   export PATH=$PATH:/usr/sbin SLURM_CONF=$folder/slurm.conf
   mkdir -p "$folder"/{state,spool,munge}

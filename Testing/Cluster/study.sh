@@ -6,22 +6,8 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 top=$(cd "$here/../.." && pwd)
 source "$here/cluster.sh"
-if ! why=$(can_run_cluster); then
-  printf 'SKIPPED: the array job, for %s\n' "$why"
-  exit 77
-fi
-export FENESTRA
-FENESTRA=$(realpath "$1")
-folder=$2
-rm -rf "$folder"
-mkdir -p "$folder"
-folder=$(realpath "$folder")
-fail() {
-  printf 'study.sh: %s\n' "$*" >&2
-  exit 1
-}
+begin_test "$1" "$2"
 
-cd "$folder"
 cp "$top/Testing/Data/knee/knee.mrb" "$top/Testing/Data/foot/foot.mrb" .
 {
   printf 'name,input,focus,view\n'
@@ -33,20 +19,14 @@ cp "$top/Testing/Data/knee/knee.mrb" "$top/Testing/Data/foot/foot.mrb" .
 } >cases.csv
 flags=(--size 64x64 --samples 4)
 
-start_cluster "$folder/slurm"
-trap stop_cluster EXIT
+start_cluster
 script=$top/Resources/cluster/study.sbatch
 options=(--parsable --cpus-per-task=1)
 array=$(sbatch "${options[@]}" --array=1-4 "$script" cases.csv results "${flags[@]}")
 last=$(sbatch "${options[@]}" --output=%x-%j.log --dependency="afterany:$array" "$script" cases.csv results "${flags[@]}")
 squeue
 wait_for_jobs 300
-printf '\n-- jobs, as slurmctld records them\n'
-sed -E 's/ (UserId|GroupId|WorkDir|ReservationName|Tres|Account|QOS|WcKey|Cluster|SubmitTime|EligibleTime|DerivedExitCode)=[^ ]*//g' slurm/jobs.log
-for log in fenestra-study-*.log; do
-  printf '\n-- %s\n' "$log"
-  cat "$log"
-done
+print_jobs
 
 "$FENESTRA" study cases.csv --output alone "${flags[@]}" >alone.log 2>&1 && fail "the torn row did not fail"
 for picture in alone/*/*.png; do
