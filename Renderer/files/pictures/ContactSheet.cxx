@@ -144,6 +144,14 @@ Thumbnail thumbnailOf(const SheetEntry& entry) {
   return thumbnail;
 }
 
+/// Columns for a sheet somewhat wider than high, with few empty places in the last row.
+int columnsFor(int count) {
+  const int wide = std::max(1, static_cast<int>(std::ceil(std::sqrt(1.4 * count))));
+  const int narrow = std::max(1, wide - 1);
+  const auto empty = [count](int columns) { return (columns - count % columns) % columns; };
+  return empty(narrow) < empty(wide) ? narrow : wide;
+}
+
 /// Draws an entry into its cell.
 void draw(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail& thumbnail) {
   constexpr int margin = 14, nameLine = static_cast<int>(lineHeight * nameDot),
@@ -185,8 +193,7 @@ Image contactSheet(const std::string& title, const std::string& subtitle,
       boxHeight = std::max(boxHeight, picture->height());
   }
   const int count = static_cast<int>(entries.size());
-  const int columns =
-      std::clamp(static_cast<int>(std::ceil(std::sqrt(1.4 * count))), 1, mostColumns);
+  const int columns = std::min(mostColumns, columnsFor(count));
   const int rows = (count + columns - 1) / columns;
   const int caption = 8 + static_cast<int>(lineHeight * nameDot) +
                       static_cast<int>(lines) * (static_cast<int>(lineHeight * textDot) + 2);
