@@ -41,8 +41,7 @@ TEST(Child, DISABLED_Sleeps) {
 TEST(Child, DISABLED_HasNoFileOfTheParent) {
   EXPECT_EQ(std::cin.get(), EOF);
   for (int file = 3; file < 64; ++file)
-    EXPECT_FALSE(::fcntl(file, F_GETFD) >= 0 && (::fcntl(file, F_GETFL) & O_ACCMODE) != O_RDONLY)
-        << file;
+    EXPECT_LT(::fcntl(file, F_GETFD), 0) << file;
 }
 
 TEST(Child, TellsHowItEnded) {

@@ -11,9 +11,9 @@
 
 namespace fenestra {
 
-/// Child process with default signal handlers, no standard input, standard output discarded and
-/// standard error kept. Signals of the terminal do not reach the child; the kernel kills the child
-/// when the thread that made it ends.
+/// Child process with default signal handlers, no files of this process, no standard input,
+/// standard output discarded and standard error kept. Signals of the terminal do not reach the
+/// child; the kernel kills the child when the thread that made it ends.
 class Child {
 public:
   /// Runs `fenestra arguments…`. Throws Error (output) where no process can be started.
