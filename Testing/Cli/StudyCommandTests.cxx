@@ -1,6 +1,7 @@
 // `fenestra study`: a row's failure is its own, and no row is made twice.
 
 #include "CommandTesting.h"
+#include "base/Stopwatch.h"
 #include "files/pictures/ImageReader.h"
 
 #include <nlohmann/json.hpp>
@@ -158,9 +159,9 @@ TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
   Arguments words = {"study", "t.csv", "--output", "out", "--rows", "1/1"};
   Process process(words, folder.path());
   ASSERT_TRUE(process.waitForOutput("a: "));
-  while (!std::filesystem::exists(folder / "out/b/b.study.json"))
-    std::this_thread::yield();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const Stopwatch watch;
+  while (!std::filesystem::exists(folder / "out/b/b.study.json") && watch.seconds() < 10.0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   process.send(SIGTERM);
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 5) << outcome.err;
