@@ -6,6 +6,7 @@
 #include "files/pictures/ImageFormat.h"
 #include "files/pictures/ImageWriter.h"
 #include "measure/FocusMeasures.h"
+#include "program/Checkpoint.h"
 #include "program/CommandLine.h"
 #include "program/FileNames.h"
 #include "program/Pictures.h"
@@ -199,7 +200,8 @@ void report(const RenderOptions& options, const RenderResult& result,
     line += ", filtered " + numberText(*filtered, 3);
   line += ", " + numberText(seconds, 3) + " s";
   if (result.reason == StopReason::request)
-    line += " (stopped on request)";
+    line += options.checkpoint ? " (stopped on request; the same command goes on)"
+                               : " (stopped on request)";
   std::cout << oneLine(line) << std::endl;
 }
 
@@ -209,10 +211,10 @@ void warn(const RenderOptions& options, const std::vector<std::string>& warnings
         << "fenestra: warning: " << oneLine(warning) << '\n';
 }
 
-/// Renders the scene, puts its pictures in place, then measures them for the statistics. Returns
-/// the exit status.
+/// Renders the scene, from `checkpoint` on if there is one, puts its pictures in place, then
+/// measures them for the statistics. Returns the exit status.
 int renderScene(const PictureRequest& request, const std::vector<std::string>& words,
-                Outputs& outputs) {
+                std::optional<Checkpoint>& checkpoint, Outputs& outputs) {
   const RenderOptions& options = request.options;
   const Stopwatch total;
   const Scene scene(options.scene, request.input);
@@ -227,10 +229,18 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   Stopwatch watch;
   RenderStats stats;
   PictureFilter filter(options, scene);
+  const RenderSettings settings = filter.settings();
+  std::optional<RenderResult> begun;
+  if (checkpoint) {
+    begun = checkpoint->begun(scene, settings);
+    checkpoint->watch(monitor);
+  }
   const RenderResult result = [&] {
     const Progress progress(options, monitor);
-    return render(scene.forRender(), filter.settings(), monitor);
+    return render(scene.forRender(), settings, monitor, std::move(begun));
   }();
+  if (checkpoint)
+    checkpoint->keep(result);
   stats.transport = watch.seconds();
   surface.get();
   if (result.finishedSamples == 0) {
@@ -281,10 +291,15 @@ int renderCommand(int argc, char** argv, int first) {
   const PictureRequest request = pictureRequest(*given);
   if (given->has("echo"))
     std::cout << request.flags.echo() << std::flush;
+  std::optional<Checkpoint> checkpoint;
+  if (request.options.checkpoint)
+    checkpoint.emplace(request, *given, [&request](const std::string& warning) {
+      warn(request.options, {warning});
+    });
   Outputs outputs;
   declareOutputs(request.options, outputs);
   checkMemory(request.options.scene);
-  return renderScene(request, {argv + 1, argv + argc}, outputs);
+  return renderScene(request, {argv + 1, argv + argc}, checkpoint, outputs);
 }
 
 } // namespace fenestra

@@ -302,6 +302,11 @@ struct RenderTable {
        Takes::surface().into(options.surface), Topic::process},
       {"stats", "FILE", outputGroup, "Times, counts and measures as .json",
        Takes::report().into(options.stats), Topic::process},
+      {"checkpoint", "FILE", outputGroup,
+       "Keeps what is rendered so far in this film (.film), so that the same command goes on after "
+       "a stop, a crash or a power cut, and ends with the same picture; --samples, --noise, "
+       "--seconds, --threads and outputs may change",
+       Takes::film().into(options.checkpoint), Topic::process},
       {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none",
        Takes::word(options.progress, {{"auto", ProgressMode::automatic},
                                       {"bar", ProgressMode::bar},

@@ -128,7 +128,9 @@ void settleLayers(const FlagValues& flags, RenderOptions& options) {
   for (const std::filesystem::path& path : options.outputs)
     if (!options.layers.contains("color") && imageFormat(path) != ImageFormat::exr)
       throw usageError("--layers: ", path, " needs color; add it, or write .exr alone");
-  options.settings.path.wantNormals = hasExr && options.layers.contains("normal");
+  // A film holds all that a later command may write.
+  options.settings.path.wantNormals =
+      (hasExr && options.layers.contains("normal")) || options.checkpoint;
 }
 
 /// Settles what is filtered, and which noise ends the render.
