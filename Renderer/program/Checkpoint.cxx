@@ -172,6 +172,7 @@ std::optional<RenderResult> Checkpoint::begun(const Scene& scene, const RenderSe
   requireRoom(result, settings);
   m_film->read(result.film);
   m_film.reset();
+  m_paths = result.counters.paths;
   return result;
 }
 
@@ -198,8 +199,11 @@ void Checkpoint::keep(const RenderResult& result) {
 }
 
 void Checkpoint::write(const RenderResult& result) {
+  if (result.counters.paths == m_paths)
+    return;
   m_outputs.write(m_path, filmContent(result, m_request.options.settings.shard, m_made));
   m_outputs.commit();
+  m_paths = result.counters.paths;
 }
 
 } // namespace fenestra

@@ -44,7 +44,8 @@ public:
   /// or each minute if it takes more.
   void watch(RenderMonitor& monitor);
 
-  /// Writes the film. A failure is one warning, however often: the earlier film stays.
+  /// Writes the film, if there is more than in the one on disk. A failure is one warning, however
+  /// often: the earlier film stays.
   void keep(const RenderResult& result);
 
   /// Writes the film, which is the command's result. Throws Error (output).
@@ -61,6 +62,7 @@ private:
   std::optional<FilmFile> m_film; ///< as it was at the start
   nlohmann::ordered_json m_made;
   Outputs m_outputs;
+  std::uint64_t m_paths = 0; ///< in the film on disk
   Stopwatch m_watch;
   double m_due = 1.0; ///< s by m_watch
   bool m_isWarned = false;
