@@ -61,11 +61,6 @@ std::string missingFile(const json& some, const json& others) {
   return "";
 }
 
-Error otherRender(const fs::path& path, const std::string& difference) {
-  return usageError(path, ": is of another render: ", difference,
-                    "; choose another --checkpoint, or move this one away to begin anew");
-}
-
 } // namespace
 
 bool shapesSamples(const Flag& flag) {
@@ -118,29 +113,54 @@ std::string firstDifference(const json& there, const json& here, const std::stri
   return "";
 }
 
+Error Checkpoint::otherRender(const std::string& difference) const {
+  return usageError(m_path, ": is of another render: ", difference,
+                    m_isMerge ? "; put inputs and films back as they were, or render anew"
+                              : "; choose another --checkpoint, or move this one away to begin "
+                                "anew");
+}
+
+std::string partText(const Shard& shard) {
+  return textOf(shard.index + 1, '/', shard.count);
+}
+
 Checkpoint::Checkpoint(const PictureRequest& request, const FlagValues& given, Warn warn)
     : m_request(request),
       m_path(*request.options.checkpoint),
       m_warn(std::move(warn)),
       m_lock(m_path),
       m_made(madeWith(given, request.flags, m_path.parent_path())) {
-  if (!m_lock.isHeld())
+  if (!m_lock->isHeld())
     throw usageError(m_path, ": another process is writing this film; wait for it, or choose "
                              "another --checkpoint");
   std::error_code failed;
   if (isThere(m_path) && !(fs::is_regular_file(m_path, failed) && fs::is_empty(m_path, failed))) {
-    m_film.emplace(m_path);
+    const FilmFile& film = m_films.emplace_back(m_path);
     for (const char* key : {"version", "settings"})
-      requireSame(key, m_made.at(key));
+      requireSame(film, key);
+    if (const Shard& here = request.options.settings.shard; film.shard() != here)
+      throw otherRender(textOf("--shard was ", partText(film.shard()), ", is ",
+                                       partText(here)));
     forgetInput(*fileId(m_path)); // it is written again
   }
   m_outputs.add(m_path);
 }
 
-void Checkpoint::requireSame(const std::string& key, const ordered_json& here) const {
-  const auto difference = firstDifference(m_film->made(), {{key, here}}, m_path.string());
+Checkpoint::Checkpoint(const PictureRequest& request, const FlagValues& given,
+                       std::vector<FilmFile> parts)
+    : m_request(request),
+      m_path(parts.front().path()),
+      m_films(std::move(parts)),
+      m_isMerge(true),
+      m_made(madeWith(given, request.flags, m_path.parent_path())) {
+  for (const char* key : {"version", "settings"})
+    requireSame(m_films.front(), key);
+}
+
+void Checkpoint::requireSame(const FilmFile& film, const std::string& key) const {
+  const auto difference = firstDifference(film.made(), {{key, m_made.at(key)}}, m_path.string());
   if (!difference.empty())
-    throw otherRender(m_path, difference);
+    throw otherRender(difference);
 }
 
 /// Samples are never taken back, nor dealt out anew.
@@ -157,26 +177,32 @@ void Checkpoint::requireRoom(const RenderResult& result, const RenderSettings& s
 
 std::optional<RenderResult> Checkpoint::begun(const Scene& scene, const RenderSettings& settings) {
   m_made["inputs"] = inputsOf(scene, m_request.options, m_path.parent_path());
-  if (!m_film)
+  if (m_films.empty())
     return std::nullopt;
-  requireSame("inputs", m_made["inputs"]);
-  const std::string target = targetOf(scene.forRender(), settings);
-  if (m_film->target() != target)
-    throw otherRender(m_path, textOf("its instruction set was ", m_film->target(), ", is ", target,
+  const FilmFile& first = m_films.front();
+  requireSame(first, "inputs");
+  if (const std::string here = targetOf(scene.forRender(), settings); first.target() != here)
+    throw otherRender(textOf("its instruction set was ", first.target(), ", is ", here,
                                      " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
   const SceneRequest& request = m_request.options.scene;
-  if (m_film->width() != request.width || m_film->height() != request.height ||
-      m_film->shard() != settings.shard)
-    throw inputError(m_path, "has another size than its settings say; remove it to begin anew");
-  RenderResult result = m_film->begun();
-  requireRoom(result, settings);
-  m_film->read(result.film);
-  m_film.reset();
+  if (first.width() != request.width || first.height() != request.height)
+    throw inputError(m_path, "has another size than its settings say; render it again");
+  RenderResult result = first.begun();
+  if (!m_isMerge)
+    requireRoom(result, settings);
+  result.counters = {};
+  for (const FilmFile& film : m_films) {
+    film.read(result.film);
+    result.counters += film.counters();
+  }
+  m_films.clear();
   m_paths = result.counters.paths;
   return result;
 }
 
 void Checkpoint::watch(RenderMonitor& monitor) {
+  if (m_isMerge)
+    return;
   m_watch = Stopwatch();
   monitor.isKeepDue = [this] { return m_watch.seconds() >= m_due; };
   monitor.keep = [this](const RenderResult& result) { keep(result); };

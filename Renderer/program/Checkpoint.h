@@ -27,6 +27,9 @@ nlohmann::ordered_json inputsOf(const Scene& scene, const RenderOptions& options
 std::string firstDifference(const nlohmann::json& there, const nlohmann::json& here,
                             const std::string& source);
 
+/// "2/3" for the second of three parts.
+std::string partText(const Shard& shard);
+
 class Checkpoint {
 public:
   using Warn = std::function<void(const std::string&)>;
@@ -35,6 +38,9 @@ public:
   /// this. Throws Error: usage where another process writes that film, or it belongs to other
   /// settings; input where it is damaged; output where none can be written.
   Checkpoint(const PictureRequest& request, const FlagValues& given, Warn warn);
+
+  /// The parts of one picture, in their order (wholePicture), which are read and never written.
+  Checkpoint(const PictureRequest& request, const FlagValues& given, std::vector<FilmFile> parts);
 
   /// Result to go on from; nothing: from the beginning. Throws Error: usage where the film belongs
   /// to other inputs, another instruction set, or more samples than the settings allow; input.
@@ -52,17 +58,19 @@ public:
   void write(const RenderResult& result);
 
 private:
-  void requireSame(const std::string& key, const nlohmann::ordered_json& here) const;
+  Error otherRender(const std::string& difference) const;
+  void requireSame(const FilmFile& film, const std::string& key) const;
   void requireRoom(const RenderResult& result, const RenderSettings& settings) const;
 
   const PictureRequest& m_request;
-  const std::filesystem::path& m_path;
+  const std::filesystem::path m_path;
   Warn m_warn;
-  NameLock m_lock;
-  std::optional<FilmFile> m_film; ///< as it was at the start
+  std::optional<NameLock> m_lock;
+  std::vector<FilmFile> m_films; ///< as they were at the start
+  bool m_isMerge = false;
   nlohmann::ordered_json m_made;
   Outputs m_outputs;
-  std::uint64_t m_paths = 0; ///< in the film on disk
+  std::optional<std::uint64_t> m_paths; ///< in the film on disk
   Stopwatch m_watch;
   double m_due = 1.0; ///< s by m_watch
   bool m_isWarned = false;

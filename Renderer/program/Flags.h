@@ -154,7 +154,8 @@ struct Flag {
 
 struct Positional {
   std::string name;
-  std::string text; ///< one sentence of help
+  std::string text;     ///< one sentence of help
+  bool repeats = false; ///< the last may be given several times
 };
 
 struct CommandSyntax {

@@ -43,7 +43,7 @@ std::size_t columns() {
 Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int before, int frames)
     : m_mode(options.progress),
       m_settings(options.settings),
-      m_pixels(1.0 * options.scene.width * options.scene.height),
+      m_pixels(1.0 * options.scene.width * options.scene.height / options.settings.shard.count),
       m_monitor(monitor),
       m_before(before),
       m_finished(before),

@@ -157,6 +157,19 @@ void settleFilter(const FlagValues& flags, RenderOptions& options) {
             : NoiseTarget::raw;
 }
 
+/// Checks the flags of a part of a picture, which has no picture yet.
+void checkPart(const FlagValues& flags, const RenderOptions& options) {
+  if (!options.checkpoint)
+    throw usageError("--shard: needs --checkpoint FILE, the film of that part; add it");
+  for (const char* name : {"output", "surface", "stats", "layers"})
+    if (flags.differs(name))
+      throw usageError("--", name, ": is for the whole picture; give it to fenestra merge");
+  for (const char* name : {"noise", "seconds"})
+    if (flags.has(name))
+      throw usageError("--", name, ": depends on the whole picture, and parts must have the same "
+                       "samples; with --shard give --samples N");
+}
+
 } // namespace
 
 RenderOptions renderOptions(const FlagValues& flags) {
@@ -170,7 +183,9 @@ RenderOptions renderOptions(const FlagValues& flags) {
   if (!flags.has("samples") && (flags.has("seconds") || flags.has("noise")))
     options.settings.samples = static_cast<std::uint64_t>(unlimited);
   options.inputs = inputFiles(flags);
-  if (options.outputs.empty()) {
+  if (options.isPart) {
+    checkPart(flags, options);
+  } else if (options.outputs.empty()) {
     options.outputs.push_back(defaultOutput(scene.input));
     options.outputsNamedBy = NamedBy::standard;
   }

@@ -244,7 +244,7 @@ int turntableCommand(int argc, char** argv, int first) {
     return 0;
   refuseFlags(*given, {"surface", "returnparameterfile", "xml", "echo"},
               "is for a single picture; use it with fenestra render, or drop it");
-  refuseFlags(*given, {"checkpoint"}, "a turntable records its frames by itself; drop it");
+  refuseFlags(*given, {"checkpoint", "shard"}, "a turntable records its frames by itself; drop it");
   useMachine(*given);
   const PictureRequest request = pictureRequest(*given);
   const TurntableOptions options = turntableOptions(request.flags, request.options);

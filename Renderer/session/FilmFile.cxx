@@ -18,7 +18,7 @@ using nlohmann::ordered_json;
 constexpr std::string_view filmFormat = "fenestra film 1 ";
 constexpr std::size_t pixelWords = 30;
 constexpr std::size_t longestFirstLine = 40;
-constexpr double mostFilmSamples = 0x1p48; ///< sums of counts stay whole in double
+constexpr double mostFilmSamples = 0x1p62; ///< sums of a few such counts fit 64 bits
 
 using PixelWords = std::array<std::uint64_t, pixelWords>;
 
@@ -172,7 +172,7 @@ FilmFile::FilmFile(const fs::path& path) : m_path(path) {
 }
 
 Error FilmFile::damaged() const {
-  return inputError(m_path, "is a damaged film; remove it to begin anew");
+  return inputError(m_path, "is a damaged film; remove it, and render it anew");
 }
 
 std::ifstream FilmFile::open(std::uint64_t position) const {
@@ -191,20 +191,26 @@ std::uint64_t FilmFile::samplesOf(const char* key) const {
   return static_cast<std::uint64_t>(samples);
 }
 
+Counters FilmFile::counters() const {
+  const JsonNode counts = JsonNode(m_header, m_path.string()).at("counts");
+  Counters counters;
+  for (const auto& [name, count] : namedCounts)
+    counters.*count = static_cast<std::uint64_t>(counts.at(name).numberIn(0.0, mostFilmSamples));
+  return counters;
+}
+
 RenderResult FilmFile::begun() const {
   const JsonNode header(m_header, m_path.string());
   constexpr double largestBlock = 1024.0;
   const auto block = static_cast<std::uint32_t>(header.at("block").numberIn(1.0, largestBlock));
   RenderResult result{Film(m_width, m_height, NumberSource::hasIndependentHalves, block)};
   result.target = target();
-  result.finishedSamples = samplesOf("finished");
-  result.begunSamples = samplesOf("begun");
+  result.counters = counters();
+  result.finishedSamples = finishedSamples();
+  result.begunSamples = begunSamples();
   result.last.samples = samplesOf("lastPass");
   if (header.at("lastNoise").isNumber())
     result.last.noise = header.at("lastNoise").numberIn(0.0, infinity);
-  for (const auto& [name, count] : namedCounts)
-    result.counters.*count =
-        static_cast<std::uint64_t>(header.at("counts").at(name).numberIn(0.0, 0x1p63));
   if (!m_hasPlan)
     return result;
   std::vector<float> plan(result.film.pixelCount());

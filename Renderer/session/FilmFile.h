@@ -39,6 +39,11 @@ public:
   const nlohmann::json& made() const { return m_header.at("made"); }
   /// Arithmetic of the samples (RenderResult::target).
   std::string target() const;
+  /// RenderResult::finishedSamples and begunSamples.
+  std::uint64_t finishedSamples() const { return samplesOf("finished"); }
+  std::uint64_t begunSamples() const { return samplesOf("begun"); }
+  /// Counts of this part's work.
+  Counters counters() const;
 
   /// Progress, over an empty film. Takes memory for width() x height() pixels.
   RenderResult begun() const;

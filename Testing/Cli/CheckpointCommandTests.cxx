@@ -1,11 +1,9 @@
 // Films of renders that are under way: the same command goes on, and no other one does.
 
 #include "CommandTesting.h"
-#include "files/pictures/ImageReader.h"
+#include "PictureTesting.h"
 
-#include <chrono>
 #include <csignal>
-#include <thread>
 
 namespace fenestra::CheckpointCommandTests {
 namespace {
@@ -32,14 +30,6 @@ protected:
 
   const Arguments small = {"--size", "16x16", "--samples", "2"};
 };
-
-/// Expects the same channels, and the same sample count in the header.
-void expectSamePicture(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const Image one = readImage(a), other = readImage(b);
-  EXPECT_TRUE(one.channels == other.channels);
-  EXPECT_EQ(one.header.at("samples"), other.header.at("samples"));
-  EXPECT_GT(one.channels.count("error.R") + one.channels.count("samples.N"), 1U);
-}
 
 TEST_F(CheckpointCommand, MoreSamplesGoOnFromTheFilm) {
   const Outcome more = run({"volume.nrrd", "--size", "16x16", "--samples", "9", "--checkpoint",
@@ -129,7 +119,7 @@ TEST_F(CheckpointCommand, OtherInstructionSetIsRefused) {
   const Outcome outcome = keep();
   ::unsetenv("FENESTRA_INSTRUCTIONS");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("is scalar"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("is SCALAR"), std::string::npos) << outcome.err;
 }
 
 TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
