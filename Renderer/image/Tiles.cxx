@@ -35,8 +35,8 @@ std::vector<int> Tiles::of(const Shard& shard) const {
   std::iota(tiles.begin(), tiles.end(), 0);
   if (shard.isWhole())
     return tiles;
-  std::ranges::sort(tiles, {},
-                    [&](int tile) { return spread(tile % m_across) | spread(tile / m_across) << 1; });
+  std::ranges::sort(
+      tiles, {}, [&](int tile) { return spread(tile % m_across) | spread(tile / m_across) << 1; });
   std::vector<int> part;
   for (auto i = static_cast<std::size_t>(shard.index); i < tiles.size();
        i += static_cast<std::size_t>(shard.count))

@@ -139,8 +139,7 @@ Checkpoint::Checkpoint(const PictureRequest& request, const FlagValues& given, W
     for (const char* key : {"version", "settings"})
       requireSame(film, key);
     if (const Shard& here = request.options.settings.shard; film.shard() != here)
-      throw otherRender(textOf("--shard was ", partText(film.shard()), ", is ",
-                                       partText(here)));
+      throw otherRender(textOf("--shard was ", partText(film.shard()), ", is ", partText(here)));
     forgetInput(*fileId(m_path)); // it is written again
   }
   m_outputs.add(m_path);
@@ -183,7 +182,7 @@ std::optional<RenderResult> Checkpoint::begun(const Scene& scene, const RenderSe
   requireSame(first, "inputs");
   if (const std::string here = targetOf(scene.forRender(), settings); first.target() != here)
     throw otherRender(textOf("its instruction set was ", first.target(), ", is ", here,
-                                     " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
+                             " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
   const SceneRequest& request = m_request.options.scene;
   if (first.width() != request.width || first.height() != request.height)
     throw inputError(m_path, "has another size than its settings say; render it again");

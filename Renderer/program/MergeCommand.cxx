@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 /// True for flags of a picture that is rendered already.
 bool isOfMerge(const Flag& flag) {
-  constexpr std::string_view others[] = {"checkpoint", "shard", "xml", "echo",
-                                         "returnparameterfile", "processinformationaddress"};
+  constexpr std::string_view others[] = {
+      "checkpoint", "shard", "xml", "echo", "returnparameterfile", "processinformationaddress"};
   return !shapesSamples(flag) && flag.topic != Topic::stop &&
          std::ranges::find(others, flag.name) == std::end(others);
 }
@@ -57,8 +57,8 @@ void requireTogether(const FilmFile& one, const FilmFile& other) {
       throw refuse(textOf("is not of the picture of ", one.path(), ": ", difference));
   }
   if (one.target() != other.target())
-    throw refuse(textOf("has samples by ", other.target(), ", and ", one.path(), " by ",
-                        one.target()));
+    throw refuse(
+        textOf("has samples by ", other.target(), ", and ", one.path(), " by ", one.target()));
   if (one.finishedSamples() != other.finishedSamples())
     throw usageError(other.path(), ": has ", other.finishedSamples(), " samples a pixel, and ",
                      one.path(), " has ", one.finishedSamples(),
@@ -89,7 +89,8 @@ std::vector<FilmFile> wholePicture(const std::vector<std::string>& names) {
   constexpr std::size_t mostNamed = 10;
   if (!missing.empty())
     throw usageError("PART: of ", count, " parts, number ",
-                     joined(missing, ", ", [](int i) { return textOf(i); }, mostNamed),
+                     joined(
+                         missing, ", ", [](int i) { return textOf(i); }, mostNamed),
                      missing.size() == 1 ? " is" : " are", " missing; add ",
                      missing.size() == 1 ? "it" : "them");
   return films;

@@ -278,8 +278,7 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   Stopwatch watch;
   RenderStats stats;
   PictureFilter filter(options, scene);
-  const RenderResult result =
-      renderFilm(options, scene, filter.settings(), checkpoint, monitor);
+  const RenderResult result = renderFilm(options, scene, filter.settings(), checkpoint, monitor);
   stats.transport = watch.seconds();
   surface.get();
   if (options.isPart)

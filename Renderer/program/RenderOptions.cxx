@@ -166,7 +166,8 @@ void checkPart(const FlagValues& flags, const RenderOptions& options) {
       throw usageError("--", name, ": is for the whole picture; give it to fenestra merge");
   for (const char* name : {"noise", "seconds"})
     if (flags.has(name))
-      throw usageError("--", name, ": depends on the whole picture, and parts must have the same "
+      throw usageError("--", name,
+                       ": depends on the whole picture, and parts must have the same "
                        "samples; with --shard give --samples N");
 }
 

@@ -158,7 +158,7 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
 
 TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
     : m_options(options),
-      m_path(recordPath(options.render.outputs.front())),
+      m_path(recordPath(options.render.outputs.front(), options.shard)),
       m_request{{"version", versionText},
                 {"arguments", requestedArguments(flags, m_path.parent_path())}} {
   const std::optional<FileId> there = fileId(m_path);
@@ -173,7 +173,7 @@ TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValu
 }
 
 void TurntableRecord::refuseFramesWithoutRecord() const {
-  for (int frame = 0; frame < m_options.frames; ++frame)
+  for (int frame = m_options.first(); frame < m_options.end(); ++frame)
     for (const fs::path& file : m_options.files(frame))
       if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs have their own refusal
         throw usageError(file, ": is there, and no ", m_path,

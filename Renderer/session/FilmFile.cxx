@@ -55,9 +55,8 @@ PixelWords wordsOf(const PixelSums& pixel) {
 
 void setWords(const PixelWords& words, PixelSums& pixel) {
   std::size_t i = 0;
-  forNumbers(pixel, [&]<typename Number>(Number& number) {
-    number = std::bit_cast<Number>(words[i++]);
-  });
+  forNumbers(pixel,
+             [&]<typename Number>(Number& number) { number = std::bit_cast<Number>(words[i++]); });
 }
 
 /// Calls visit(index of the pixel in the film) for the pixels of a part, in the order of the file.
@@ -85,13 +84,16 @@ std::uint64_t pixelsOf(int width, int height, const Shard& shard) {
 
 struct NamedCount {
   const char* name;
-  std::uint64_t Counters::* count;
+  std::uint64_t Counters::*count;
 };
 
 constexpr NamedCount namedCounts[] = {
-    {"paths", &Counters::paths},           {"collisions", &Counters::collisions},
-    {"lookups", &Counters::lookups},       {"cells", &Counters::cells},
-    {"skippedCells", &Counters::skippedCells}, {"shadowRays", &Counters::shadowRays},
+    {"paths", &Counters::paths},
+    {"collisions", &Counters::collisions},
+    {"lookups", &Counters::lookups},
+    {"cells", &Counters::cells},
+    {"skippedCells", &Counters::skippedCells},
+    {"shadowRays", &Counters::shadowRays},
     {"gradients", &Counters::gradients},
 };
 
@@ -119,11 +121,11 @@ std::string filmContent(const RenderResult& result, const Shard& shard, const or
   const std::string header = jsonText(headerOf(result, shard, made), -1) + '\n';
   const std::vector<float>& plan = result.last.plan.noise();
   std::string content = textOf(filmFormat, header.size(), '\n', header);
-  content.reserve(content.size() + sizeof(PixelWords) * pixelsOf(film.width(), film.height(), shard) +
+  content.reserve(content.size() +
+                  sizeof(PixelWords) * pixelsOf(film.width(), film.height(), shard) +
                   plan.size() * sizeof(float) + sizeof(std::uint64_t));
-  forPixels(film, shard, [&](int column, int row) {
-    content += memoryOf(wordsOf(film.at(column, row)));
-  });
+  forPixels(film, shard,
+            [&](int column, int row) { content += memoryOf(wordsOf(film.at(column, row))); });
   content += memoryOf(plan);
   Digest digest;
   digest.add(content);
@@ -137,10 +139,10 @@ FilmFile::FilmFile(const fs::path& path) : m_path(path) {
   file.read(line.data(), static_cast<std::streamsize>(line.size()));
   line.resize(static_cast<std::size_t>(file.gcount()));
   const std::size_t end = line.find('\n');
-  const auto bytes = line.starts_with(filmFormat) && end != line.npos
-                         ? parsed<std::uint64_t>(line.substr(filmFormat.size(),
-                                                             end - filmFormat.size()))
-                         : std::nullopt;
+  const auto bytes =
+      line.starts_with(filmFormat) && end != line.npos
+          ? parsed<std::uint64_t>(line.substr(filmFormat.size(), end - filmFormat.size()))
+          : std::nullopt;
   if (!bytes)
     throw inputError(path, "is no film of this version of Fenestra; name another file, or move it "
                            "away to begin anew");
@@ -166,7 +168,8 @@ FilmFile::FilmFile(const fs::path& path) : m_path(path) {
     throw damaged();
   m_pixelsBegin = end + 1 + *bytes;
   m_planBegin = m_pixelsBegin + sizeof(PixelWords) * pixelsOf(m_width, m_height, m_shard);
-  const std::uint64_t all = static_cast<std::uint64_t>(m_width) * static_cast<std::uint64_t>(m_height);
+  const std::uint64_t all =
+      static_cast<std::uint64_t>(m_width) * static_cast<std::uint64_t>(m_height);
   if (size != m_planBegin + (m_hasPlan ? all * sizeof(float) : 0) + sizeof digest)
     throw damaged();
 }
@@ -186,8 +189,7 @@ std::string FilmFile::target() const {
 }
 
 std::uint64_t FilmFile::samplesOf(const char* key) const {
-  const double samples =
-      JsonNode(m_header, m_path.string()).at(key).numberIn(0.0, mostFilmSamples);
+  const double samples = JsonNode(m_header, m_path.string()).at(key).numberIn(0.0, mostFilmSamples);
   return static_cast<std::uint64_t>(samples);
 }
 
@@ -214,8 +216,9 @@ RenderResult FilmFile::begun() const {
   if (!m_hasPlan)
     return result;
   std::vector<float> plan(result.film.pixelCount());
-  open(m_planBegin).read(reinterpret_cast<char*>(plan.data()),
-                         static_cast<std::streamsize>(plan.size() * sizeof(float)));
+  open(m_planBegin)
+      .read(reinterpret_cast<char*>(plan.data()),
+            static_cast<std::streamsize>(plan.size() * sizeof(float)));
   if (!std::ranges::all_of(plan, [](float s) { return s >= 0.0F && std::isfinite(s); }))
     throw damaged();
   result.last.plan = SamplePlan(std::move(plan));

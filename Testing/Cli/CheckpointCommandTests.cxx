@@ -49,15 +49,15 @@ TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
   EXPECT_TRUE(bytesOf(folder / "a.film") == film);
   EXPECT_EQ(keep().status, 0);
   EXPECT_TRUE(bytesOf(folder / "a.exr") == picture);
-  EXPECT_EQ(filesIn(folder.path()),
-            (std::set<std::string>{"a.exr", "a.film", "a.png", "segments.seg.nrrd", "volume.nrrd"}));
+  EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a.exr", "a.film", "a.png",
+                                                           "segments.seg.nrrd", "volume.nrrd"}));
 }
 
 TEST_F(CheckpointCommand, StoppedRenderGoesOnToTheSameBits) {
   const auto words = [](const std::string& name) {
-    return Arguments{"volume.nrrd", "--size",       "64x64",        "--samples", "600",
-                     "--noise",     "0.1",          "--noisetarget", "raw",      "--progress",
-                     "xml",         "--checkpoint", name + ".film", "--output",  name + ".exr"};
+    return Arguments{"volume.nrrd", "--size",       "64x64",         "--samples", "600",
+                     "--noise",     "0.1",          "--noisetarget", "raw",       "--progress",
+                     "xml",         "--checkpoint", name + ".film",  "--output",  name + ".exr"};
   };
   const Outcome once = run(words("once"), folder.path());
   ASSERT_EQ(once.status, 0) << once.err;
@@ -142,9 +142,9 @@ TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
 }
 
 TEST_F(CheckpointCommand, FilmOfARunningRenderIsRefused) {
-  const Arguments words = {"volume.nrrd", "--size",       "64x64",  "--samples", "1000000",
-                           "--progress",  "xml",          "--checkpoint", "c.film", "--output",
-                           "c.exr"};
+  const Arguments words = {"volume.nrrd", "--size",     "64x64", "--samples",
+                           "1000000",     "--progress", "xml",   "--checkpoint",
+                           "c.film",      "--output",   "c.exr"};
   Process process(words, folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-start>"));
   const Outcome second = run(words, folder.path());

@@ -15,11 +15,21 @@ protected:
   /// Renders part `number` of `count` into a film; returns its name.
   std::string part(int number, int count, const Arguments& more = {}) const {
     const std::string name = std::to_string(number) + "of" + std::to_string(count) + ".film";
-    Arguments all = {"volume.nrrd", "--size",  "64x64",
-                     "--samples",   "9",       "--segmentation",
-                     "segments.seg.nrrd", "--focus", "A",
-                     "--shard",     std::to_string(number) + "/" + std::to_string(count),
-                     "--checkpoint", name,     "--progress", "none"};
+    Arguments all = {"volume.nrrd",
+                     "--size",
+                     "64x64",
+                     "--samples",
+                     "9",
+                     "--segmentation",
+                     "segments.seg.nrrd",
+                     "--focus",
+                     "A",
+                     "--shard",
+                     std::to_string(number) + "/" + std::to_string(count),
+                     "--checkpoint",
+                     name,
+                     "--progress",
+                     "none"};
     all.insert(all.end(), more.begin(), more.end());
     const Outcome outcome = run(all, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -40,11 +50,10 @@ protected:
 };
 
 TEST_F(MergeCommand, PartsInAnyOrderGiveThePictureOfOneMachine) {
-  const Outcome once =
-      run({"volume.nrrd", "--size", "64x64", "--samples", "9", "--segmentation",
-           "segments.seg.nrrd", "--focus", "A", "--denoise", "on", "--output", "once.exr",
-           "--output", "once.png", "--surface", "once.ply"},
-          folder.path());
+  const Outcome once = run({"volume.nrrd", "--size", "64x64", "--samples", "9", "--segmentation",
+                            "segments.seg.nrrd", "--focus", "A", "--denoise", "on", "--output",
+                            "once.exr", "--output", "once.png", "--surface", "once.ply"},
+                           folder.path());
   ASSERT_EQ(once.status, 0) << once.err;
   std::mt19937 random(5);
   std::vector<int> counts = {1, 3, 7};
@@ -54,9 +63,9 @@ TEST_F(MergeCommand, PartsInAnyOrderGiveThePictureOfOneMachine) {
     SCOPED_TRACE(count);
     Arguments films = parts(count);
     std::ranges::shuffle(films, random);
-    const Outcome merged = merge(films, {"--denoise", "on", "--output", "merged.exr", "--output",
-                                         "merged.png", "--surface", "merged.ply", "--stats",
-                                         "merged.json"});
+    const Outcome merged =
+        merge(films, {"--denoise", "on", "--output", "merged.exr", "--output", "merged.png",
+                      "--surface", "merged.ply", "--stats", "merged.json"});
     ASSERT_EQ(merged.status, 0) << merged.err;
     expectSamePicture(folder / "once.exr", folder / "merged.exr");
     expectSamePicture(folder / "once.png", folder / "merged.png");
@@ -67,9 +76,9 @@ TEST_F(MergeCommand, PartsInAnyOrderGiveThePictureOfOneMachine) {
 }
 
 TEST_F(MergeCommand, PartThatWasStoppedGoesOn) {
-  const Arguments words = {"volume.nrrd", "--size",       "64x64",  "--samples",    "40",
-                           "--shard",     "2/2",          "--checkpoint", "2of2.film",
-                           "--progress",  "xml"};
+  const Arguments words = {"volume.nrrd", "--size",     "64x64", "--samples",
+                           "40",          "--shard",    "2/2",   "--checkpoint",
+                           "2of2.film",   "--progress", "xml"};
   Process process(words, folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-progress>0\\.0*[1-9]"));
   process.send(SIGTERM);

@@ -111,7 +111,7 @@ Lines mixedFiles(const Subject& subject, const Files& files, const Outcome& outc
     wrong.push_back("status 0 without all files");
   const std::string& film = subject.request->film;
   const bool isFilmNew = film.empty() || areAs(files, subject.after, {film});
-  if (isDone && !isFilmNew && outcome.errors.find("warning: " + film) == std::string::npos)
+  if (isDone && !isFilmNew && outcome.errors.find(film + ": ") == std::string::npos)
     wrong.push_back("status 0 without a film, and without a warning");
   return wrong;
 }

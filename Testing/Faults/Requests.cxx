@@ -28,9 +28,9 @@ std::vector<Request> makeRequests() {
                                  quick);
   const Words phantom = {"phantom", "cube", "--output", "p", "--size", "16"};
   const auto kept = [](const char* samples) {
-    return Words{"render",    "knee.mrb",  "--size", "16x16",        "--samples", samples,
-                 "--threads", "1",         "--progress", "none",     "--checkpoint", "o.film",
-                 "--output",  "o.exr"};
+    return Words{"render",       "knee.mrb",  "--size",   "16x16",      "--samples",
+                 samples,        "--threads", "1",        "--progress", "none",
+                 "--checkpoint", "o.film",    "--output", "o.exr"};
   };
   const auto part = [](const char* shard, const char* film) {
     return Words{"render", "knee.mrb", "--shard", shard, "--checkpoint", film};
@@ -53,13 +53,7 @@ std::vector<Request> makeRequests() {
        "s.json",
        "t.turntable.json"},
       three,
-      {"checkpoint",
-       kept("2"),
-       {kept("1")},
-       {{"o.exr"}},
-       "",
-       "",
-       "o.film"},
+      {"checkpoint", kept("2"), {kept("1")}, {{"o.exr"}}, "", "", "o.film"},
       {"merge",
        {"merge", "a.film", "b.film", "--output", "o.exr", "--threads", "1", "--progress", "none"},
        {joined(part("1/2", "a.film"), quick), joined(part("2/2", "b.film"), quick),

@@ -9,7 +9,7 @@ namespace fenestra::faults {
 
 struct Request {
   std::string name;
-  std::vector<std::string> words;  ///< arguments, without the executable
+  std::vector<std::string> words; ///< arguments, without the executable
   /// Arguments of the runs that wrote the files already there.
   std::vector<std::vector<std::string>> before;
   std::vector<std::vector<std::string>> groups; ///< files that must stem from one request

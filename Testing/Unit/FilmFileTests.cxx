@@ -116,11 +116,16 @@ TEST(FilmFile, ForgedHeaderIsRefused) {
   const std::string content = filmContent(someResult(8, 8, -1.0), {}, madeForTest);
   ASSERT_NO_THROW(readFrom(folder.write("a.film", forged(content, "[8,8]", "[8,8]"))));
   const std::pair<const char*, const char*> forgeries[] = {
-      {"[8,8]", "[9,8]"},           {"[8,8]", "[0,8]"},
-      {"[0,1]", "[1,1]"},           {"[0,1]", "[0,0]"},
-      {"[0,1]", "[1,2]"},           {"\"block\":8", "\"block\":0"},
-      {"\"begun\":21", "\"begun\":-1"}, {"\"finished\"", "\"finish\":0"},
-      {"false", "true "},           {"\"made\"", "\"mode\""},
+      {"[8,8]", "[9,8]"},
+      {"[8,8]", "[0,8]"},
+      {"[0,1]", "[1,1]"},
+      {"[0,1]", "[0,0]"},
+      {"[0,1]", "[1,2]"},
+      {"\"block\":8", "\"block\":0"},
+      {"\"begun\":21", "\"begun\":-1"},
+      {"\"finished\"", "\"finish\":0"},
+      {"false", "true "},
+      {"\"made\"", "\"mode\""},
   };
   for (const auto& [text, by] : forgeries) {
     const auto path = folder.write("a.film", forged(content, text, by));

@@ -196,8 +196,8 @@ private:
 
 /// Result before the first sample.
 RenderResult emptyResult(const Camera& camera, const NumberSource& numbers) {
-  return {Film(camera.width(), camera.height(), NumberSource::hasIndependentHalves,
-               numbers.block())};
+  return {
+      Film(camera.width(), camera.height(), NumberSource::hasIndependentHalves, numbers.block())};
 }
 
 /// True if no tile of the film is ahead of the last pass or behind it.
@@ -243,7 +243,8 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
     const std::uint64_t done = result.finishedSamples;
     const std::uint64_t whole =
         std::max(result.last.samples + target.nextPass(result.last), done + 1);
-    const std::uint64_t count = std::min({whole - done, settings.samples - done, pace.affordable()});
+    const std::uint64_t count =
+        std::min({whole - done, settings.samples - done, pace.affordable()});
     if (count == 0) {
       result.reason = StopReason::seconds;
       return result;
