@@ -73,7 +73,7 @@ TEST(Continued, PlanByNoiseEndsAtTheSameBits) {
   const RenderResult once = scene.render(settings);
   ASSERT_GT(once.finishedSamples, 2 * SamplePlan::pilotSamples);
   ASSERT_FALSE(once.last.plan.noise().empty());
-  const auto kept = keptResults(scene, settings, 211);
+  const auto kept = keptResults(scene, settings, 97);
   ASSERT_GT(kept.size(), 5U);
   for (const RenderResult& begun : kept)
     expectSameEnd(once, continued(scene, settings, begun));
@@ -83,9 +83,12 @@ TEST(Continued, PlanByNoiseEndsAtTheSameBits) {
 TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
   const TestScene scene = wavyScene(80, 72);
   const RenderResult once = scene.render(settingsOf(1000, 0.05));
-  for (const std::uint64_t samples : {5U, 16U, 21U, 30U}) {
+  const std::pair<std::uint64_t, std::uint64_t> limitsAndPasses[] = {
+      {5, 4}, {16, 16}, {19, 18}, {25, 24}}; // passes of 1, 1, 2, 4, 8; 1, 1, 2, 4, ...
+  for (const auto& [samples, lastPass] : limitsAndPasses) {
     const RenderResult fewer = scene.render(settingsOf(samples, 0.05));
     EXPECT_EQ(fewer.finishedSamples, samples);
+    EXPECT_EQ(fewer.last.samples, lastPass);
     expectSameEnd(once, continued(scene, settingsOf(1000, 0.05), fewer));
   }
 }
