@@ -27,6 +27,18 @@ command=("$program" volume.nrrd --size 64x64 --samples "$samples" --threads "$th
 (cd "$work/once" && "${command[@]}") || exit 1
 cd "$work/again" || exit 1
 
+# Time until the first film is there, ms; kills come in the half of that time more.
+begin=$(date +%s%N)
+"${command[@]}" >out 2>&1 &
+run=$!
+while [ ! -e v.film ] && kill -0 "$run" 2>/dev/null; do
+  sleep 0.02
+done
+first=$((($(date +%s%N) - begin) / 1000000))
+kill -9 "$run" 2>/dev/null
+wait "$run" 2>/dev/null
+rm -f out v.*
+
 killed=0 after=0 pictures=0 wrong=0
 # check: the picture of a whole run, and what is left beside it; then begins anew.
 check() {
@@ -41,7 +53,7 @@ check() {
 while [ "$killed" -lt "$kills" ]; do
   "${command[@]}" >out 2>&1 &
   run=$!
-  sleep "$(awk -v r="$RANDOM" 'BEGIN { print 0.1 + 1.5 * r / 32768 }')"
+  sleep "$(awk -v r="$RANDOM" -v first="$first" 'BEGIN { print 0.1 + 1.5 * r / 32768 * first / 1000 }')"
   if kill -9 "$run" 2>/dev/null; then
     [ -e v.film ] && after=$((after + 1))
     killed=$((killed + 1))
