@@ -27,7 +27,7 @@ std::string entry(std::string_view name, std::string_view text) {
 std::string helpText(const CommandSyntax& syntax) {
   std::string usage = "Usage: fenestra " + syntax.name, names;
   for (const Positional& positional : syntax.positionals) {
-    usage += " " + positional.name;
+    usage += " " + positional.name + (positional.repeats ? "..." : "");
     names += entry(positional.name, positional.text);
   }
   std::string text = textOf(wrapped(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
@@ -105,10 +105,10 @@ FlagValues parsedWords(const CommandSyntax& syntax, Words words) {
       throw extraArgument(syntax, word);
     else if (word.empty())
       throw usageError(positional->name, ": is empty; name a file");
-    else
-      values.add((positional++)->name, std::string(word));
+    else if (values.add(positional->name, std::string(word)); !positional->repeats)
+      ++positional;
   }
-  if (positional != syntax.positionals.end())
+  if (positional != syntax.positionals.end() && !values.has(positional->name))
     throw usageError(positional->name, ": is missing; name it: ", positional->text,
                      seeHelp(syntax));
   return values;

@@ -10,6 +10,7 @@ int renderCommand(int argc, char** argv, int first);
 int inspectCommand(int argc, char** argv, int first);
 int compareCommand(int argc, char** argv, int first);
 int phantomCommand(int argc, char** argv, int first);
+int mergeCommand(int argc, char** argv, int first);
 int serveCommand(int argc, char** argv, int first);
 int studyCommand(int argc, char** argv, int first);
 int turntableCommand(int argc, char** argv, int first);

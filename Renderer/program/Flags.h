@@ -42,6 +42,7 @@ struct Takes {
   static Takes picture() { return {"image", "output", "vector", ".nrrd"}; }
   static Takes surface() { return {"file", "output", "", ".vtp,.ply,.stl"}; }
   static Takes report() { return {"file", "output", "", ".json"}; }
+  static Takes film() { return {"file", "output", "", ".film"}; }
   static Takes slicersOwn() { return {""}; }
   static Takes number(double least, double greatest) {
     return {"double", "", "", "", least, greatest};
@@ -153,7 +154,8 @@ struct Flag {
 
 struct Positional {
   std::string name;
-  std::string text; ///< one sentence of help
+  std::string text;     ///< one sentence of help
+  bool repeats = false; ///< the last may be given several times
 };
 
 struct CommandSyntax {

@@ -17,7 +17,7 @@ std::string formatted(const char* format, double value) {
 Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int before, int frames)
     : m_view(options.progress, "Path tracing"),
       m_settings(options.settings),
-      m_pixels(1.0 * options.scene.width * options.scene.height),
+      m_pixels(1.0 * options.scene.width * options.scene.height / options.settings.shard.count),
       m_monitor(monitor),
       m_before(before),
       m_finished(before),

@@ -64,7 +64,8 @@ std::vector<const Flag*> columnsOf(const CsvRecord& head, const std::string& sou
     const Flag* const flag = findFlag(renderSyntax.flags, name);
     if (std::ranges::find(known, name) == known.end()) {
       const std::string likely = nearest(lower(name), known);
-      throw inputError(source, "line ", head.line, ": '", fenestra::shown(name), "' is no column of a study",
+      throw inputError(source, "line ", head.line, ": '", fenestra::shown(name),
+                       "' is no column of a study",
                        likely.empty() ? "; columns are name, input and flags of fenestra render"
                                       : "; did you mean " + likely + "?");
     }

@@ -42,9 +42,8 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
 
 TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
     : m_options(options),
-      m_record(
-          recordPath(options.render.outputs.front()), "frame",
-          requestedArguments(flags, recordPath(options.render.outputs.front()).parent_path())) {
+      m_record(recordPath(options.render.outputs.front(), options.shard), "frame",
+               requestedArguments(flags, options.render.outputs.front().parent_path())) {
   const std::optional<FileId> there = fileId(m_record.path());
   if (options.restart && there)
     m_warning = warningBeyond();
@@ -61,7 +60,7 @@ int TurntableRecord::mostFiles() const {
 }
 
 void TurntableRecord::refuseFramesWithoutRecord() const {
-  for (int frame = 0; frame < m_options.frames; ++frame)
+  for (int frame = m_options.first(); frame < m_options.end(); ++frame)
     for (const fs::path& file : m_options.files(frame))
       if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs have their own refusal
         throw usageError(file, ": is there, and no ", m_record.path(),

@@ -30,7 +30,7 @@ constexpr NamedCommand commands[] = {
     {"render", fenestra::renderCommand},   {"inspect", fenestra::inspectCommand},
     {"compare", fenestra::compareCommand}, {"phantom", fenestra::phantomCommand},
     {"serve", fenestra::serveCommand},     {"turntable", fenestra::turntableCommand},
-    {"study", fenestra::studyCommand},
+    {"study", fenestra::studyCommand},     {"merge", fenestra::mergeCommand},
 };
 
 /// Throws Error (usage) for a word that names no file and nearly a subcommand.
