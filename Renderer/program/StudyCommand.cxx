@@ -117,8 +117,12 @@ private:
   void end(std::unique_ptr<Worker>& worker) {
     const Child& child = worker->child;
     RowOutcome outcome{State::done, child.status(), worker->watch.seconds()};
-    if (outcome.status != 0) {
-      outcome.state = outcome.status == stoppedStatus ? State::stopped : State::failed;
+    const bool wasYoung = m_asked && outcome.status == 128 + SIGTERM; // without a handler yet
+    if (wasYoung || outcome.status == stoppedStatus) {
+      outcome.state = State::stopped;
+      outcome.status = stoppedStatus;
+    } else if (outcome.status != 0) {
+      outcome.state = State::failed;
       outcome.error = errorLine(child);
     }
     try {

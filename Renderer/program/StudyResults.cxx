@@ -73,10 +73,6 @@ Measures measuresOf(const StudyRow& row, const fs::path& folder) {
   return measures;
 }
 
-bool hasPicture(const RowOutcome& outcome) {
-  return outcome.state == State::done || outcome.state == State::stopped;
-}
-
 std::string summary(const StudyResults& results, const std::vector<Measures>& measures) {
   std::vector<std::string> columns = {"noise", "noiseFiltered", "focusCoverage"};
   for (const Measures& row : measures)
@@ -94,7 +90,7 @@ std::string summary(const StudyResults& results, const std::vector<Measures>& me
         nameOf(outcome.state),
         outcome.state == State::missing ? "" : textOf(outcome.status),
         outcome.error,
-        hasPicture(outcome) ? picture.lexically_relative(results.folder).string() : "",
+        outcome.state == State::done ? picture.lexically_relative(results.folder).string() : "",
         outcome.state == State::missing ? "" : numberText(outcome.seconds)};
     for (const std::string& column : columns) {
       const auto found = measures[i].find(column);
@@ -108,7 +104,7 @@ std::string summary(const StudyResults& results, const std::vector<Measures>& me
 SheetEntry entryOf(const StudyRow& row, const RowOutcome& outcome, const Measures& measures,
                    const fs::path& folder) {
   SheetEntry entry{.name = row.name, .lines = {row.shown}};
-  if (hasPicture(outcome))
+  if (outcome.state == State::done)
     entry.picture = rowPicture(row, folder);
   if (outcome.state != State::done)
     entry.problem = textOf(nameOf(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
@@ -144,7 +140,7 @@ void writeResults(const StudyResults& results, Outputs& outputs) {
   for (std::size_t i = 0; i < results.rows.size(); ++i) {
     const StudyRow& row = results.rows[i];
     const RowOutcome& outcome = results.outcomes[i];
-    measures.push_back(hasPicture(outcome) ? measuresOf(row, results.folder) : Measures());
+    measures.push_back(outcome.state == State::done ? measuresOf(row, results.folder) : Measures());
     entries.push_back(entryOf(row, outcome, measures.back(), results.folder));
   }
   outputs.write(summaryPath(results), summary(results, measures));

@@ -19,9 +19,9 @@ struct StudyResults {
 void declareResults(const StudyResults& results, Outputs& outputs);
 
 /// Writes DIR/study.csv: a line a row with name, status, exit status, error line, picture, seconds,
-/// and all numbers of its statistics; and DIR/study.png, the pictures of the rows that are done or
-/// stopped with their names (study-2.png and so on beyond 36). The caller commits them. Throws
-/// Error (output).
+/// and all numbers of its statistics; and DIR/study.png, the pictures of the rows that are done
+/// with their names, and what is wrong with the others (study-2.png and so on beyond 36). The
+/// caller commits them. Throws Error (output).
 void writeResults(const StudyResults& results, Outputs& outputs);
 
 } // namespace fenestra

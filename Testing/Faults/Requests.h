@@ -17,7 +17,8 @@ struct Request {
   std::string record; ///< name of the JSON file that may precede some groups; may be empty
   /// Name of a film that is kept meanwhile, and may stay old in a run that succeeds with a warning;
   /// may be empty.
-  std::string film = {  std::map<std::string, std::string> inputs = {}; ///< files beside knee.mrb, by name
+  std::string film = {};
+  std::map<std::string, std::string> inputs = {}; ///< files beside knee.mrb, by name
 };
 
 /// Requests: a render with all kinds of files, two frames of a turntable, a phantom, a study, a
