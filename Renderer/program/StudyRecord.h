@@ -8,7 +8,7 @@
 
 namespace fenestra {
 
-/// What came of a row.
+/// End of a row.
 struct RowOutcome {
   enum class State { missing, done, failed, stopped };
 
